@@ -1,0 +1,34 @@
+// The two mistakes a caller can make: a file that cannot be used, and a parameter out of range.
+#pragma once
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace hyselam {
+
+/// An input that cannot be used: says which file (or topic), where in it, and why.
+class InputError : public std::runtime_error {
+ public:
+  /// `place` may be empty ("line 12", "byte 0x40", "key 'resolution'").
+  InputError(const std::string& source, const std::string& place, const std::string& reason)
+      : std::runtime_error(source + (place.empty() ? "" : ": " + place) + ": " + reason) {}
+};
+
+/// A parameter with its rejected value and the range that it must lie in.
+class ParameterError : public std::invalid_argument {
+ public:
+  template <typename T>
+  ParameterError(const std::string& name, const T& value, const std::string& allowed)
+      : std::invalid_argument(text(name, value, allowed)) {}
+
+ private:
+  template <typename T>
+  static std::string text(const std::string& name, const T& value, const std::string& allowed) {
+    std::ostringstream out;
+    out << "parameter '" << name << "' is " << value << ", but must be " << allowed;
+    return out.str();
+  }
+};
+
+}  // namespace hyselam
