@@ -1,0 +1,13 @@
+# Thin: each target calls one script, which explains itself at its top.
+.DEFAULT_GOAL := build
+.PHONY: deps build demo test bench lint sanitize install clean
+
+deps:     ; @scripts/deps
+build:    ; @scripts/build
+demo:     ; @scripts/demo
+test:     ; @scripts/test
+bench:    ; @bench/run --json out/bench.json
+lint:     ; @scripts/lint
+sanitize: ; @scripts/sanitize address
+install:  ; @scripts/build install
+clean:    ; rm -rf build build_address build_thread devel install out
