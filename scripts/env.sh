@@ -1,4 +1,5 @@
 # shellcheck shell=bash
+# shellcheck disable=SC2034  # the variables are for the scripts that source this file
 # Common ground of the scripts: sourced, never run. Sets ROOT, BUILD, DEVEL, JOBS and an environment
 # that knows no other workspace.
 
@@ -39,9 +40,9 @@ system_ros() {
   if [ -f /opt/ros/noetic/setup.bash ]; then source_setup /opt/ros/noetic/setup.bash; fi
 }
 
-# use_workspace [PREFIX]: source a devel or install space; the host name need not resolve.
+# use_workspace PREFIX: source a devel or install space; the host name need not resolve.
 use_workspace() {
-  local setup=${1:-$DEVEL}/setup.bash
+  local setup=$1/setup.bash
   [ -f "$setup" ] || fail "$setup is missing: run 'make build' first"
   source_setup "$setup"
   export ROS_HOSTNAME=localhost
