@@ -1,0 +1,19 @@
+// map_server_node [MAP.yaml]: the map server as a node of its own. Exit 2 if the map cannot be
+// used.
+#include <iostream>
+
+#include "hyselam_map_server/map_server.hpp"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "map_server");  // takes the remappings out of argv
+  try {
+    const ros::NodeHandle private_nh("~");
+    const hyselam_map_server::MapServer server(
+        ros::NodeHandle(), hyselam_map_server::loadParameters(private_nh, argc > 1 ? argv[1] : ""));
+    ros::spin();
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return 2;
+  }
+  return 0;
+}
