@@ -1,0 +1,19 @@
+// The frame that all offline tools share: options, exit codes, machine-readable results.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace hyselam {
+
+/// Adds `--json FILE` to `app`, parses the command line, runs `body` and, if asked, writes what it
+/// returns to FILE (at once, indented).
+///
+/// Returns the exit status: 0 done (also after --help), 2 wrong usage or input that cannot be used
+/// (CLI::ParseError, InputError, ParameterError), 1 anything else. Errors are one line
+/// `error: ...` on stderr. If the JSON file cannot be written, the status is 2.
+int runTool(int argc, const char* const* argv, CLI::App& app,
+            const std::function<nlohmann::json()>& body);
+
+}  // namespace hyselam

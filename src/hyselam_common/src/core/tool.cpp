@@ -1,0 +1,55 @@
+#include "hyselam_common/tool.hpp"
+
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+
+namespace hyselam {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kUnusable = 2;
+
+int fail(int status, std::string message) {
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::cerr << "error: " << message << std::endl;
+  return status;
+}
+
+}  // namespace
+
+int runTool(int argc, const char* const* argv, CLI::App& app,
+            const std::function<nlohmann::json()>& body) {
+  std::string json_path;
+  app.add_option("--json", json_path, "write the results as JSON to this file")
+      ->type_name("FILE");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(e);
+    return fail(kUnusable, e.what());
+  }
+  try {
+    const nlohmann::json result = body();
+    if (!json_path.empty()) {
+      writeFileAtomically(json_path, [&](std::ostream& out) { out << result.dump(2) << '\n'; });
+    }
+    return kDone;
+  } catch (const InputError& e) {
+    return fail(kUnusable, e.what());
+  } catch (const ParameterError& e) {
+    return fail(kUnusable, e.what());
+  } catch (const std::exception& e) {
+    return fail(kFailed, e.what());
+  } catch (...) {
+    return fail(kFailed, "unknown failure");
+  }
+}
+
+}  // namespace hyselam
