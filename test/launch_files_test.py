@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 import rospkg
 import rostest
 import roslaunch.config
+from catkin_pkg.package import parse_package
 from roslaunch.rlutil import resolve_launch_arguments
 from roslib.packages import find_node
 
@@ -60,10 +61,10 @@ class LaunchFilesTest(unittest.TestCase):
             for node in config.nodes:
                 words = node.args.split()
                 if node.type == "nodelet" and words[0] in ("load", "standalone"):
-                    self.assertIn(words[1], declared, name)
+                    self.assertTrue(words[1] in declared, f"{name}: no nodelet {words[1]}")
 
     def test_packages_are_declared(self):
-        declared = {d.name for d in rospkg.RosPack().get_manifest(PACKAGE).depends}
+        declared = {d.name for d in parse_package(os.path.dirname(self.folder)).exec_depends}
         for name, config in self.configurations():
             for node in config.nodes:
                 self.assertIn(node.package, declared, name)
