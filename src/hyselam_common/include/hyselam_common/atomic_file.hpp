@@ -7,14 +7,15 @@
 
 namespace hyselam {
 
-/// Replaces `path` by what `write` puts into the stream (binary): writes a temporary file beside it,
-/// flushes it to the disk, renames it. On any failure, an exception of `write` included, the
+/// Replaces `path` by what `write` puts into the stream (binary): writes a temporary file beside
+/// it, flushes it to the disk, renames it. On any failure, an exception of `write` included, the
 /// temporary file is removed and an existing file stays as it was.
 /// Throws InputError when the place cannot be written; passes on what `write` throws.
 void writeFileAtomically(const std::string& path, const std::function<void(std::ostream&)>& write);
 
-/// The same for libraries that insist on opening a file by name: `write` gets the name of a temporary
-/// file in the same directory (with the extension of `path`), which is then flushed and renamed.
+/// The same for libraries that insist on opening a file by name: `write` gets the name of a
+/// temporary file in the same directory (with the extension of `path`), which is then flushed and
+/// renamed.
 void replaceFileAtomically(const std::string& path,
                            const std::function<void(const std::string& temporary)>& write);
 

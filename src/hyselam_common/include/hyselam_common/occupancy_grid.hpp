@@ -24,7 +24,7 @@ struct GridGeometry {
   int width = 0;            ///< cells along x
   int height = 0;           ///< cells along y
   double resolution = 0.1;  ///< side of a cell [m]
-  Pose2 origin;             ///< pose, in the map frame, of the outer corner of cell (0, 0); may be rotated
+  Pose2 origin;  ///< pose, in the map frame, of the outer corner of cell (0, 0); may be rotated
 
   std::size_t cellCount() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

@@ -15,33 +15,33 @@ struct OccupancyMapperParameters {
   /// Returns farther away only clear the beam up to here [m], > 0. Far returns are sparse and their
   /// position suffers most from a wrong heading.
   double usable_range = 40.0;
-  /// How far a beam without return clears cells [m], >= 0 (capped by range_max and usable_range). 0:
-  /// it clears nothing, the safe choice where glass, black surfaces and sunlight give no return.
+  /// How far a beam without return clears cells [m], >= 0 (capped by range_max and usable_range).
+  /// 0: it clears nothing, the safe choice where glass, black surfaces and sunlight give no return.
   double no_return_clears = 0.0;
-  /// A cell is occupied if hits / (hits + misses) is above; (0, 1). Low, because a thin wall is also
-  /// missed by beams that graze it.
+  /// A cell is occupied if hits / (hits + misses) is above; (0, 1). Low, because a thin wall is
+  /// also missed by beams that graze it.
   double occupied_ratio = 0.25;
-  std::uint32_t min_observations = 1;  ///< cells seen less often stay unknown; >= 1
+  std::uint32_t min_observations = 1;            ///< cells seen less often stay unknown; >= 1
   std::size_t max_cells = std::size_t{1} << 28;  ///< growth beyond is refused
 };
 
-/// Counting model ("reflection probability map"): each beam counts a miss in the cells it crosses and
-/// a hit where it ends. The order of scans does not matter. Not thread safe.
+/// Counting model ("reflection probability map"): each beam counts a miss in the cells it crosses
+/// and a hit where it ends. The order of scans does not matter. Not thread safe.
 class OccupancyMapper {
  public:
   /// Throws ParameterError for values out of range.
   explicit OccupancyMapper(const OccupancyMapperParameters& parameters = {});
 
-  /// Adds a scan taken with the robot at `base_in_map`. Throws std::invalid_argument for a pose that
-  /// is not finite, std::length_error if the map would exceed max_cells.
+  /// Adds a scan taken with the robot at `base_in_map`. Throws std::invalid_argument for a pose
+  /// that is not finite, std::length_error if the map would exceed max_cells.
   void insert(const Pose2& base_in_map, const LaserScan& scan);
   void clear();
 
   std::size_t scanCount() const { return scans_; }
   const OccupancyMapperParameters& parameters() const { return parameters_; }
 
-  /// The map so far, cropped to the observed cells plus a margin of two unknown cells; its origin is a
-  /// multiple of the resolution. Without any observation: 1 x 1 unknown cell.
+  /// The map so far, cropped to the observed cells plus a margin of two unknown cells; its origin
+  /// is a multiple of the resolution. Without any observation: 1 x 1 unknown cell.
   OccupancyGrid grid() const;
 
  private:

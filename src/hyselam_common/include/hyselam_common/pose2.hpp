@@ -8,8 +8,12 @@ namespace hyselam {
 constexpr double kPi = 3.14159265358979323846;
 
 /// Degrees to radians, for readable literals.
-constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
-constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
+constexpr double radians(double degrees) {
+  return degrees * (kPi / 180.0);
+}
+constexpr double degrees(double radians) {
+  return radians * (180.0 / kPi);
+}
 
 /// The angle wrapped to (-pi, pi]. NaN and infinities give NaN.
 inline double normalizeAngle(double angle) {
@@ -49,10 +53,14 @@ struct Pose2 {
 };
 
 /// `to` seen from `from`: from.inverse() * to.
-inline Pose2 between(const Pose2& from, const Pose2& to) { return from.inverse() * to; }
+inline Pose2 between(const Pose2& from, const Pose2& to) {
+  return from.inverse() * to;
+}
 
 /// Euclidean distance of the positions [m].
-inline double distance(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+inline double distance(const Pose2& a, const Pose2& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
 
 /// A pose with its time [s].
 struct StampedPose2 {

@@ -16,12 +16,13 @@ struct RobotLog {
   std::vector<StampedPose2> ground_truth;  ///< base in map; empty if unknown
 };
 
-/// The pose of the motion from `a` to `b` at `fraction` (0: a, 1: b): positions linearly, the angle on
-/// the shorter way.
+/// The pose of the motion from `a` to `b` at `fraction` (0: a, 1: b): positions linearly, the angle
+/// on the shorter way.
 Pose2 interpolate(const Pose2& a, const Pose2& b, double fraction);
 
-/// The pose at `stamp`, interpolated between its neighbours. Outside the covered time the first or last
-/// pose holds for up to `tolerance` [s]; beyond that, and for an empty trajectory, there is none.
+/// The pose at `stamp`, interpolated between its neighbours. Outside the covered time the first or
+/// last pose holds for up to `tolerance` [s]; beyond that, and for an empty trajectory, there is
+/// none.
 std::optional<Pose2> poseAt(const std::vector<StampedPose2>& trajectory, double stamp,
                             double tolerance = 0.0);
 

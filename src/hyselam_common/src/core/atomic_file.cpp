@@ -17,7 +17,9 @@
 namespace hyselam {
 namespace {
 
-std::string errnoText() { return std::strerror(errno); }
+std::string errnoText() {
+  return std::strerror(errno);
+}
 
 /// "dir/name.ext" -> "dir/.name.PID-COUNT.tmp.ext": unique among the processes of this machine, and
 /// libraries that look at the extension still see it.
@@ -28,8 +30,8 @@ std::string temporaryBeside(const std::string& path) {
   const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   const std::size_t dot = name.rfind('.');
   const std::string extension = dot == std::string::npos || dot == 0 ? "" : name.substr(dot);
-  return directory + "." + name + "." + std::to_string(::getpid()) + "-" +
-         std::to_string(count++) + ".tmp" + extension;
+  return directory + "." + name + "." + std::to_string(::getpid()) + "-" + std::to_string(count++) +
+         ".tmp" + extension;
 }
 
 void flushToDisk(const std::string& file, const std::string& path) {
@@ -71,8 +73,7 @@ void replaceFileAtomically(const std::string& path,
   }
 }
 
-void writeFileAtomically(const std::string& path,
-                         const std::function<void(std::ostream&)>& write) {
+void writeFileAtomically(const std::string& path, const std::function<void(std::ostream&)>& write) {
   const auto fill = [&](const std::string& file) {
     std::ofstream out(file, std::ios::binary | std::ios::trunc);
     if (!out) throw InputError(path, "", "cannot be written: " + errnoText());
@@ -90,7 +91,8 @@ void writeFileAtomically(const std::string& path,
 
 std::string readTextFile(const std::string& path, std::size_t max_bytes) {
   struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) throw InputError(path, "", "cannot be read: " + errnoText());
+  if (::stat(path.c_str(), &info) != 0)
+    throw InputError(path, "", "cannot be read: " + errnoText());
   if (S_ISDIR(info.st_mode)) throw InputError(path, "", "is a directory, not a file");
   errno = 0;
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);

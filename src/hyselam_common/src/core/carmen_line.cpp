@@ -9,16 +9,39 @@ namespace hyselam {
 namespace {
 
 constexpr double kCentimetre = 0.01;
-constexpr std::size_t kMinBeams = 2;      // one beam has no increment
+constexpr std::size_t kMinBeams = 2;       // one beam has no increment
 constexpr std::size_t kMaxBeams = 100000;  // more is no laser scanner but a damaged count
 
 /// Known messages that hold nothing for us.
-constexpr const char* kIgnored[] = {
-    "SYNC",        "RLASER",       "LASER",           "MARKER",       "SCANMARK",      "SONAR",
-    "BUMPER",      "IR",           "POSITIONLASER",   "PANTILT",      "GPSGGA",        "GPSRMC",
-    "NMEAGGA",     "NMEARMC",      "GPGGA",           "IMU",          "XSENS",         "ARM",
-    "VECTORMOVE",  "ROBOTVELOCITY", "FOLLOWTRAJECTORY", "BASEVELOCITY", "COMMENT",       "VERSION",
-    "POSE",        "LOCALIZE",     "GLOBALPOS",       "SIMULATOR",    "TRUEPOSE"};
+constexpr const char* kIgnored[] = {"SYNC",
+                                    "RLASER",
+                                    "LASER",
+                                    "MARKER",
+                                    "SCANMARK",
+                                    "SONAR",
+                                    "BUMPER",
+                                    "IR",
+                                    "POSITIONLASER",
+                                    "PANTILT",
+                                    "GPSGGA",
+                                    "GPSRMC",
+                                    "NMEAGGA",
+                                    "NMEARMC",
+                                    "GPGGA",
+                                    "IMU",
+                                    "XSENS",
+                                    "ARM",
+                                    "VECTORMOVE",
+                                    "ROBOTVELOCITY",
+                                    "FOLLOWTRAJECTORY",
+                                    "BASEVELOCITY",
+                                    "COMMENT",
+                                    "VERSION",
+                                    "POSE",
+                                    "LOCALIZE",
+                                    "GLOBALPOS",
+                                    "SIMULATOR",
+                                    "TRUEPOSE"};
 
 /// Reads fields one after the other; the first failure sticks.
 class FieldReader {
@@ -105,7 +128,8 @@ void parseFrontLaser(FieldReader& in, CarmenLine* line) {
   if (in.ok()) assumeHalfCircle(&line->scan);
 }
 
-/// laser_type start_angle field_of_view angular_resolution maximum_range accuracy remission_mode n r.. m e..
+/// laser_type start_angle field_of_view angular_resolution maximum_range accuracy remission_mode n
+/// r.. m e..
 void parseConfiguredReadings(FieldReader& in, LaserScan* scan) {
   in.number("the laser type");
   scan->angle_min = in.number("the start angle");
@@ -125,11 +149,12 @@ void parseConfiguredReadings(FieldReader& in, LaserScan* scan) {
   if (in.ok() && scan->range_max < 0.0) in.fail("states a negative maximum range");
 }
 
-/// The old form of RAWLASER and ROBOTLASER has the count in the first place; the new one has it in the
-/// eighth. In the old form the number of fields follows from the count alone.
+/// The old form of RAWLASER and ROBOTLASER has the count in the first place; the new one has it in
+/// the eighth. In the old form the number of fields follows from the count alone.
 bool isOldForm(const std::vector<std::string_view>& fields, std::size_t tail) {
   const auto n = fields.size() > 1 ? parseNumber(fields[1]) : std::nullopt;
-  return n && *n >= 2.0 && *n + 2.0 + static_cast<double>(tail) == static_cast<double>(fields.size());
+  return n && *n >= 2.0 &&
+         *n + 2.0 + static_cast<double>(tail) == static_cast<double>(fields.size());
 }
 
 void parseRawLaser(FieldReader& in, bool old, CarmenLine* line) {
@@ -249,7 +274,8 @@ std::optional<CarmenLine> parseCarmenLine(std::string_view text,
       FieldReader value(*fields, 2, reason);
       line.kind = Kind::kLaserOffset;
       line.laser_offset = value.number("the laser offset");
-      if (value.ok() && std::abs(line.laser_offset) > 100.0) value.fail("a laser offset beyond 100 m");
+      if (value.ok() && std::abs(line.laser_offset) > 100.0)
+        value.fail("a laser offset beyond 100 m");
       if (!value.ok()) return std::nullopt;
     }
   } else if (tag == "NEFF") {

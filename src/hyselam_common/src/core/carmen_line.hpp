@@ -17,8 +17,8 @@ struct CarmenLine {
   double logger_stamp = 0.0;
   // kScan
   std::string message;
-  LaserScan scan;               ///< without stamp; range_max 0 if the line does not state it
-  std::optional<Pose2> odometry;  ///< robot pose carried by the scan
+  LaserScan scan;                  ///< without stamp; range_max 0 if the line does not state it
+  std::optional<Pose2> odometry;   ///< robot pose carried by the scan
   bool states_laser_pose = false;  ///< scan.laser_in_base is given by the line itself
   // kOdometry, kGroundTruth
   Pose2 pose;

@@ -100,8 +100,8 @@ void setStamps(std::vector<Entry>* entries, const CarmenOptions& options,
     return;
   }
   std::vector<CarmenIssue> retimed;
-  for (const auto kind : {CarmenLine::Kind::kScan, CarmenLine::Kind::kOdometry,
-                          CarmenLine::Kind::kGroundTruth}) {
+  for (const auto kind :
+       {CarmenLine::Kind::kScan, CarmenLine::Kind::kOdometry, CarmenLine::Kind::kGroundTruth}) {
     const std::vector<std::size_t> indices = indicesOf(*entries, kind);
     std::vector<double> stamps;
     for (const std::size_t i : indices) {
@@ -180,8 +180,8 @@ void setLimits(const std::vector<Entry>& entries, const CarmenOptions& options, 
   }
 }
 
-/// ODOM lines and the poses that scans carry, by time; at one stamp the scan's pose counts, else the
-/// last one given.
+/// ODOM lines and the poses that scans carry, by time; at one stamp the scan's pose counts, else
+/// the last one given.
 std::vector<StampedPose2> mergeOdometry(std::vector<Entry>& entries) {
   struct Sample {
     StampedPose2 pose;
@@ -247,8 +247,8 @@ RobotLog parseCarmenLog(const std::string& text, const std::string& source,
   std::vector<Entry> entries;
   for (Entry& e : parsed.entries) {
     const bool is_scan = e.content.kind == CarmenLine::Kind::kScan;
-    const bool artefact = parsed.corrected && e.after_scan &&
-                          e.content.kind == CarmenLine::Kind::kOdometry;
+    const bool artefact =
+        parsed.corrected && e.after_scan && e.content.kind == CarmenLine::Kind::kOdometry;
     if ((is_scan && e.content.message != message) || artefact) continue;
     entries.push_back(std::move(e));
   }
@@ -273,11 +273,11 @@ RobotLog parseCarmenLog(const std::string& text, const std::string& source,
   }
   if (log.scans.empty()) {
     const std::string first = found.empty() ? "" : " (" + toString(found.front()) + ")";
-    throw InputError(source, "",
-                     (options.scan_message.empty()
-                          ? std::string("holds no usable scan")
-                          : "holds no usable scan '" + options.scan_message + "'") +
-                         first);
+    throw InputError(
+        source, "",
+        (options.scan_message.empty() ? std::string("holds no usable scan")
+                                      : "holds no usable scan '" + options.scan_message + "'") +
+            first);
   }
   setLimits(entries, options, &log);
   std::stable_sort(found.begin(), found.end(),

@@ -160,8 +160,7 @@ std::int8_t cellValue(const MapFile& map, const std::uint8_t* pixel, int channel
     return grey <= 100.0 ? static_cast<std::int8_t>(grey) : OccupancyGrid::kUnknown;
   }
   const double p = (255.0 - grey) / 255.0;
-  const bool transparent =
-      map.mode == MapMode::kScale && has_alpha && pixel[channels - 1] < 255;
+  const bool transparent = map.mode == MapMode::kScale && has_alpha && pixel[channels - 1] < 255;
   if (transparent) return OccupancyGrid::kUnknown;
   if (p > map.occupied_thresh) return OccupancyGrid::kOccupied;
   if (p < map.free_thresh) return OccupancyGrid::kFree;
@@ -271,7 +270,8 @@ void saveMap(const std::string& yaml_path, const OccupancyGrid& grid, MapMode mo
     std::vector<std::uint8_t> png;
     if (!cv::imencode(".png", image, png)) throw std::runtime_error("saveMap: PNG encoding failed");
     writeFileAtomically(directory + name, [&](std::ostream& out) {
-      out.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+      out.write(reinterpret_cast<const char*>(png.data()),
+                static_cast<std::streamsize>(png.size()));
     });
   } else {
     writeFileAtomically(directory + name, [&](std::ostream& out) {

@@ -8,7 +8,8 @@
 
 namespace hyselam {
 
-/// A finite decimal number that fills the whole field; nothing for "nan", "inf", hexadecimal, "1.5x".
+/// A finite decimal number that fills the whole field; nothing for "nan", "inf", hexadecimal,
+/// "1.5x".
 std::optional<double> parseNumber(std::string_view field);
 
 /// The shortest of 15, 16 or 17 significant digits that reads back as the same number.

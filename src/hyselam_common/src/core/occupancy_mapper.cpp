@@ -57,7 +57,8 @@ void OccupancyMapper::cover(const Box& box) {
   const double height = 1.0 + grown.max_y - grown.min_y;
   if (width * height > static_cast<double>(parameters_.max_cells)) {
     throw std::length_error("the map would grow to " + std::to_string(std::llround(width)) + " x " +
-                            std::to_string(std::llround(height)) + " cells, more than the limit of " +
+                            std::to_string(std::llround(height)) +
+                            " cells, more than the limit of " +
                             std::to_string(parameters_.max_cells));
   }
   std::vector<Counts> counts(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -90,8 +91,8 @@ void OccupancyMapper::trace(double x0, double y0, double x1, double y1, bool hit
   double next_x = steps_x > 0 ? (dx > 0 ? cx + 1 - x0 : x0 - cx) * delta_x : kNever;
   double next_y = steps_y > 0 ? (dy > 0 ? cy + 1 - y0 : y0 - cy) * delta_y : kNever;
 
-  Counts* cell = counts_.data() + static_cast<std::ptrdiff_t>(cy - box_.min_y) * stride_ +
-                 (cx - box_.min_x);
+  Counts* cell =
+      counts_.data() + static_cast<std::ptrdiff_t>(cy - box_.min_y) * stride_ + (cx - box_.min_x);
   for (int left = steps_x + steps_y; left > 0; --left) {
     ++cell->misses;
     if (steps_y == 0 || (steps_x > 0 && next_x < next_y)) {
@@ -131,7 +132,8 @@ void OccupancyMapper::insert(const Pose2& base_in_map, const LaserScan& scan) {
     const bool hit = is_return && r <= parameters_.usable_range;
     const double length = is_return ? std::min(r, parameters_.usable_range) : clears;
     if (length <= 0.0) continue;
-    const double bearing = laser.theta + scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    const double bearing =
+        laser.theta + scan.angle_min + static_cast<double>(i) * scan.angle_increment;
     const double x = x0 + length * std::cos(bearing) * to_cells;
     const double y = y0 + length * std::sin(bearing) * to_cells;
     ends_.insert(ends_.end(), {x, y, hit ? 1.0 : 0.0});

@@ -12,9 +12,8 @@ Pose2 interpolate(const Pose2& a, const Pose2& b, double fraction) {
 std::optional<Pose2> poseAt(const std::vector<StampedPose2>& trajectory, double stamp,
                             double tolerance) {
   if (trajectory.empty() || !std::isfinite(stamp)) return std::nullopt;
-  const auto after =
-      std::lower_bound(trajectory.begin(), trajectory.end(), stamp,
-                       [](const StampedPose2& p, double s) { return p.stamp < s; });
+  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), stamp,
+                                      [](const StampedPose2& p, double s) { return p.stamp < s; });
   if (after == trajectory.end()) {
     if (stamp - trajectory.back().stamp > tolerance) return std::nullopt;
     return trajectory.back().pose;

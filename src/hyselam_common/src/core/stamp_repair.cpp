@@ -12,7 +12,8 @@ constexpr double kDefaultStep = 0.1;  // [s], where a single kept stamp gives no
 
 /// Indices of a longest increasing (or non-decreasing) subsequence of the usable stamps.
 std::vector<std::size_t> longestOrdered(const std::vector<double>& stamps, bool strict) {
-  std::vector<std::size_t> tails;  // tails[k]: index of the smallest end of a sequence of length k + 1
+  std::vector<std::size_t>
+      tails;  // tails[k]: index of the smallest end of a sequence of length k + 1
   std::vector<std::size_t> previous(stamps.size(), kNone);
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!(stamps[i] >= 0.0 && stamps[i] <= kMaxStamp)) continue;
@@ -49,8 +50,9 @@ RepairedStamps repairStamps(const std::vector<double>& stamps, bool strict) {
     return result;
   }
   const std::size_t first = kept.front(), last = kept.back();
-  const double step = kept.size() > 1 ? (stamps[last] - stamps[first]) / static_cast<double>(last - first)
-                                      : kDefaultStep;
+  const double step = kept.size() > 1
+                          ? (stamps[last] - stamps[first]) / static_cast<double>(last - first)
+                          : kDefaultStep;
   std::size_t next = 0;  // in kept: the first one at or after i
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (next < kept.size() && kept[next] == i) {
@@ -66,8 +68,8 @@ RepairedStamps repairStamps(const std::vector<double>& stamps, bool strict) {
       stamp = std::min(stamps[last] + step * static_cast<double>(i - last), kMaxStamp);
     } else {
       const std::size_t a = kept[next - 1], b = kept[next];
-      stamp = stamps[a] + (stamps[b] - stamps[a]) * static_cast<double>(i - a) /
-                              static_cast<double>(b - a);
+      stamp = stamps[a] +
+              (stamps[b] - stamps[a]) * static_cast<double>(i - a) / static_cast<double>(b - a);
     }
     result.changed.push_back(i);
   }

@@ -27,8 +27,7 @@ int fail(int status, std::string message) {
 int runTool(int argc, const char* const* argv, CLI::App& app,
             const std::function<nlohmann::json()>& body) {
   std::string json_path;
-  app.add_option("--json", json_path, "write the results as JSON to this file")
-      ->type_name("FILE");
+  app.add_option("--json", json_path, "write the results as JSON to this file")->type_name("FILE");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -14,10 +14,12 @@ namespace {
 constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kReferenceColumns = 6;  // further ones are not needed
 
-std::string lineText(std::size_t line) { return "line " + std::to_string(line); }
+std::string lineText(std::size_t line) {
+  return "line " + std::to_string(line);
+}
 
-/// Calls f(line, numbers) for each line with data; each must hold `columns` numbers or, if `more`, at
-/// least as many.
+/// Calls f(line, numbers) for each line with data; each must hold `columns` numbers or, if `more`,
+/// at least as many.
 template <typename F>
 void forEachRow(const std::string& text, const std::string& path, std::size_t columns, bool more,
                 F&& f) {
@@ -63,9 +65,9 @@ std::vector<StampedPose2> parseReference(const std::string& text, const std::str
   std::vector<StampedPose2> poses;
   forEachRow(text, path, kReferenceColumns, true, [&](std::size_t line, const auto& v) {
     if (v[0] != static_cast<double>(poses.size())) {
-      throw InputError(path, lineText(line),
-                       "scan_index is " + formatNumber(v[0]) + " instead of " +
-                           std::to_string(poses.size()));
+      throw InputError(
+          path, lineText(line),
+          "scan_index is " + formatNumber(v[0]) + " instead of " + std::to_string(poses.size()));
     }
     poses.push_back({v[2], {v[3], v[4], normalizeAngle(v[5])}});
   });

@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "hyselam_common/carmen_log.hpp"
 #include "hyselam_common/robot_log.hpp"
 
 namespace hyselam {
@@ -26,21 +28,27 @@ struct BagOptions {
 /// Reads scans, odometry and ground truth of a bag; gzip-packed bags (.bag.gz) too.
 ///
 /// Scans: `scan_topic`, or the only LaserScan topic if that one is missing. Odometry:
-/// `odometry_topic` (nav_msgs/Odometry), or the only Odometry topic, else the odom_frame -> base_frame
-/// transform of /tf. Ground truth: `ground_truth_topic` as nav_msgs/Odometry or
-/// geometry_msgs/PoseStamped, if present. laser_in_base: the option, else the first chain of transforms
-/// of /tf_static and /tf from base_frame (or base_footprint) to the scans' frame_id, else identity.
-/// Times are those of the headers; messages are put in the order of their headers.
-/// Throws InputError for: a missing file, no bag, a truncated or damaged bag, no scans, several scan
-/// topics without a choice, no odometry, and messages that cannot be used (topic and time are named).
+/// `odometry_topic` (nav_msgs/Odometry), or the only Odometry topic, else the odom_frame ->
+/// base_frame transform of /tf. Ground truth: `ground_truth_topic` as nav_msgs/Odometry or
+/// geometry_msgs/PoseStamped, if present. laser_in_base: the option, else the first chain of
+/// transforms of /tf_static and /tf from base_frame to the scans' frame_id, else identity; a laser
+/// mounted upside down comes out with mirrored angles and a negative increment. Times are those of
+/// the headers; messages are put in the order of their headers. Throws InputError for: a missing
+/// file, no bag, a truncated or damaged bag, no scans, several scan topics without a choice, no
+/// odometry, and messages that cannot be used (topic and time are named).
 RobotLog readBag(const std::string& path, const BagOptions& options = {});
 
-/// Writes /scan, /odom (with the velocities that neighbouring samples give), /tf (odom -> base_link at
-/// each odometry), /tf_static (latched, base_link -> laser) and /ground_truth (nav_msgs/Odometry) if
-/// known, in the order of time. The same log gives the same bytes; an existing file is replaced at
-/// once. A time of 0 becomes 1 ns, since bags cannot hold 0.
-/// Throws InputError if the file cannot be written, a time cannot be held by a bag, or the log has
-/// neither scans nor odometry; std::invalid_argument if the laser moves on the robot.
+/// Writes /scan, /odom (with the velocities that neighbouring samples give), /tf (odom -> base_link
+/// at each odometry), /tf_static (latched, base_link -> laser) and /ground_truth
+/// (nav_msgs/Odometry) if known, in the order of time. The same log gives the same bytes; an
+/// existing file is replaced at once. A time of 0 becomes 1 ns, since bags cannot hold 0. Throws
+/// InputError if the file cannot be written, a time cannot be held by a bag, or the log has neither
+/// scans nor odometry; std::invalid_argument if the laser moves on the robot.
 void writeBag(const std::string& path, const RobotLog& log, const BagOptions& options = {});
+
+/// readBag() for names that end in .bag or .bag.gz, readCarmenLog() for all others.
+RobotLog readRobotLog(const std::string& path, const BagOptions& bag_options = {},
+                      const CarmenOptions& carmen_options = {},
+                      std::vector<CarmenIssue>* issues = nullptr);
 
 }  // namespace hyselam

@@ -1,5 +1,6 @@
-// Between messages and the plain values of hyselam_common. Every message is checked: what comes out is
-// finite and consistent, or InputError says what is wrong, beginning with `source` (a topic or file).
+// Between messages and the plain values of hyselam_common. Every message is checked: what comes out
+// is finite and consistent, or InputError says what is wrong, beginning with `source` (a topic or
+// file).
 #pragma once
 
 #include <geometry_msgs/Pose.h>
@@ -23,7 +24,8 @@ double toSeconds(const ros::Time& time);
 /// negative, not finite or too large (>= 2^32 s) values.
 ros::Time toRosTime(double seconds, const std::string& source = "time");
 
-/// The heading of a quaternion, which is normalised. Throws InputError if it is not finite or so short
+/// The heading of a quaternion, which is normalised. Throws InputError if it is not finite or so
+/// short
 /// (|q| < 0.1) that it says nothing; an all-zero quaternion is such a case.
 double yawFromMsg(const geometry_msgs::Quaternion& q, const std::string& source);
 geometry_msgs::Quaternion yawToMsg(double yaw);
@@ -40,8 +42,8 @@ LaserScan fromMsg(const sensor_msgs::LaserScan& msg, const std::string& source,
                   const Pose2& laser_in_base = Pose2{});
 sensor_msgs::LaserScan toMsg(const LaserScan& scan, const std::string& frame_id);
 
-/// Refuses: no cells, more or fewer data than width * height, resolution not positive, a bad origin,
-/// values outside -1 .. 100.
+/// Refuses: no cells, more or fewer data than width * height, resolution not positive, a bad
+/// origin, values outside -1 .. 100.
 OccupancyGrid fromMsg(const nav_msgs::OccupancyGrid& msg, const std::string& source);
 nav_msgs::OccupancyGrid toMsg(const OccupancyGrid& grid, const std::string& frame_id,
                               const ros::Time& stamp);

@@ -1,8 +1,9 @@
-// Parameters of a node, checked at start: wrong type, out of range and misspelt keys are said aloud.
+// Parameters of a node, checked at start: wrong type, out of range and misspelt keys are said
+// aloud.
 #pragma once
 
-#include <ros/node_handle.h>
 #include <XmlRpcValue.h>
+#include <ros/node_handle.h>
 
 #include <limits>
 #include <map>
@@ -56,10 +57,11 @@ class MapParamSource : public ParamSource {
   std::map<std::string, XmlRpc::XmlRpcValue> values_;
 };
 
-/// Usage: `ParamLoader p(private_nh); p.get("sigma_hit", parameters.sigma_hit, Range::above(0), "[m]
-/// ..."); ...; p.warnUnknown();`. The variable holds the default on entry and the value on return; it
-/// is untouched if an exception leaves. All get() throw ParameterError with the full name, the value
-/// and what is allowed.
+/// Usage: `ParamLoader p(private_nh); p.get("sigma_hit", parameters.sigma_hit, Range::above(0),
+/// "[m]
+/// ..."); ...; p.warnUnknown();`. The variable holds the default on entry and the value on return;
+/// it is untouched if an exception leaves. All get() throw ParameterError with the full name, the
+/// value and what is allowed.
 class ParamLoader {
  public:
   explicit ParamLoader(const ros::NodeHandle& private_nh);
@@ -100,8 +102,8 @@ class ParamLoader {
   /// Marks a name as known that something else reads (nodelet parameters, dynamic reconfigure).
   void know(const std::string& name) { known_.insert(name); }
 
-  /// Set but never asked for, with the nearest known name: "unknown parameter '/n/alhpa' (did you mean
-  /// 'alpha'?)". Call after the last get().
+  /// Set but never asked for, with the nearest known name: "unknown parameter '/n/alhpa' (did you
+  /// mean 'alpha'?)". Call after the last get().
   std::vector<std::string> reportUnknown() const;
   /// Logs reportUnknown() as warnings.
   void warnUnknown() const;

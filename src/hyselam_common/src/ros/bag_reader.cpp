@@ -1,0 +1,285 @@
+#include <geometry_msgs/PoseStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <tf2/LinearMath/Transform.h>
+#include <tf2_msgs/TFMessage.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/ros/conversions.hpp"
+
+namespace hyselam {
+namespace {
+
+constexpr double kTilted =
+    0.5;  // |cosine| of the laser's inclination below which its plane is none
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string withoutSlash(const std::string& name) {
+  return !name.empty() && name[0] == '/' ? name.substr(1) : name;
+}
+
+/// A bag packed by gzip, unpacked for as long as this object lives.
+class UnpackedBag {
+ public:
+  explicit UnpackedBag(const std::string& path) : name_(path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!(file.get() == 0x1f && file.get() == 0x8b)) return;
+    const std::string content = readTextFile(path);
+    const char* directory = std::getenv("TMPDIR");
+    name_ = std::string(directory != nullptr && *directory != '\0' ? directory : "/tmp") +
+            "/hyselam-XXXXXX";
+    const int fd = ::mkstemp(&name_[0]);
+    if (fd < 0) throw InputError(path, "", "cannot be unpacked: no temporary file " + name_);
+    ::close(fd);
+    temporary_ = true;
+    std::ofstream out(name_, std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    if (!out) {
+      ::unlink(name_.c_str());
+      throw InputError(path, "", "cannot be unpacked: the disk of " + name_ + " is full");
+    }
+  }
+  ~UnpackedBag() {
+    if (temporary_) ::unlink(name_.c_str());
+  }
+  UnpackedBag(const UnpackedBag&) = delete;
+  UnpackedBag& operator=(const UnpackedBag&) = delete;
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+  bool temporary_ = false;
+};
+
+/// What is taken out of the bag before transforms and order are settled.
+struct Content {
+  struct Scan {
+    LaserScan scan;
+    std::string frame;
+  };
+  std::vector<Scan> scans;
+  std::vector<StampedPose2> odometry, tf_odometry, truth;
+  std::map<std::pair<std::string, std::string>, tf2::Transform> transforms;  ///< (parent, child)
+};
+
+std::map<std::string, std::string> topicTypes(rosbag::Bag& bag) {
+  std::map<std::string, std::string> types;
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* c : view.getConnections()) types[c->topic] = c->datatype;
+  return types;
+}
+
+/// The wanted topic if it has the type, else the only one of that type, else "".
+std::string findTopic(const std::map<std::string, std::string>& types, const std::string& wanted,
+                      const std::string& type, const std::string& path) {
+  std::vector<std::string> candidates;
+  for (const auto& t : types) {
+    if (t.second != type) continue;
+    if (withoutSlash(t.first) == withoutSlash(wanted)) return t.first;
+    candidates.push_back(t.first);
+  }
+  if (candidates.size() <= 1) return candidates.empty() ? "" : candidates.front();
+  std::string names;
+  for (const std::string& c : candidates) names += " " + c;
+  throw InputError(path, "", "there is no topic " + wanted + ", and several " + type + ":" + names);
+}
+
+/// The time of the header, or that of the recording where the header has none.
+double stampOf(const ros::Time& header, const rosbag::MessageInstance& m) {
+  return toSeconds(header.isZero() ? m.getTime() : header);
+}
+
+tf2::Transform toTransform(const geometry_msgs::Transform& t, const std::string& source) {
+  fromMsg(t, source);  // checks it
+  tf2::Quaternion q(t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w);
+  if (!std::isfinite(t.translation.z)) throw InputError(source, "", "the position is not finite");
+  return tf2::Transform(q.normalized(),
+                        tf2::Vector3(t.translation.x, t.translation.y, t.translation.z));
+}
+
+void takeTransforms(const rosbag::MessageInstance& m, const tf2_msgs::TFMessage& msg,
+                    const std::string& source, const BagOptions& options, Content* content) {
+  for (const auto& t : msg.transforms) {
+    const std::string parent = withoutSlash(t.header.frame_id);
+    const std::string child = withoutSlash(t.child_frame_id);
+    const std::string what = source + ": " + parent + " -> " + child;
+    if (parent == options.odom_frame && child == options.base_frame) {
+      content->tf_odometry.push_back({stampOf(t.header.stamp, m), fromMsg(t.transform, what)});
+    } else if (parent != options.odom_frame && parent != options.map_frame) {
+      // Only what is fixed on the robot matters here: its first value counts.
+      content->transforms.emplace(std::make_pair(parent, child), toTransform(t.transform, what));
+    }
+  }
+}
+
+/// base -> frame through known transforms, in either direction.
+std::optional<tf2::Transform> chain(const Content& content, const std::string& base,
+                                    const std::string& frame) {
+  std::map<std::string, tf2::Transform> reached{{base, tf2::Transform::getIdentity()}};
+  for (bool grown = true; grown && reached.count(frame) == 0;) {
+    grown = false;
+    for (const auto& t : content.transforms) {
+      const auto& [parent, child] = t.first;
+      const auto p = reached.find(parent), c = reached.find(child);
+      if (p != reached.end() && c == reached.end()) {
+        reached.emplace(child, p->second * t.second);
+        grown = true;
+      } else if (c != reached.end() && p == reached.end()) {
+        reached.emplace(parent, c->second * t.second.inverse());
+        grown = true;
+      }
+    }
+  }
+  const auto found = reached.find(frame);
+  if (found == reached.end()) return std::nullopt;
+  return found->second;
+}
+
+/// Puts the laser on the robot. One that hangs upside down turns the other way round.
+void placeLaser(const std::string& source, const tf2::Transform& laser, LaserScan* scan) {
+  const double up = laser.getBasis()[2][2];
+  if (std::abs(up) < kTilted) {
+    throw InputError(source, "", "the laser's plane is not horizontal");
+  }
+  scan->laser_in_base = {laser.getOrigin().x(), laser.getOrigin().y(),
+                         std::atan2(laser.getBasis()[1][0], laser.getBasis()[0][0])};
+  if (up < 0.0) {
+    scan->angle_min = -scan->angle_min;
+    scan->angle_increment = -scan->angle_increment;
+  }
+}
+
+template <typename T>
+boost::shared_ptr<T> decode(const rosbag::MessageInstance& m, const std::string& source) {
+  try {
+    if (auto msg = m.instantiate<T>()) return msg;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw InputError(source, "", std::string("the message is damaged (") + e.what() + ")");
+  }
+  throw InputError(source, "", "the message has another version of its type");
+}
+
+Content readContent(rosbag::Bag& bag, const std::string& path, const BagOptions& options) {
+  const auto types = topicTypes(bag);
+  const std::string scan_topic =
+      findTopic(types, options.scan_topic, "sensor_msgs/LaserScan", path);
+  if (scan_topic.empty()) throw InputError(path, "", "holds no laser scans");
+  // The ground truth is an Odometry topic too, but never a candidate for the odometry.
+  auto odometry_types = types;
+  std::string truth_topic;
+  for (const auto& t : types) {
+    if (withoutSlash(t.first) == withoutSlash(options.ground_truth_topic)) truth_topic = t.first;
+  }
+  odometry_types.erase(truth_topic);
+  const std::string odometry_topic =
+      findTopic(odometry_types, options.odometry_topic, "nav_msgs/Odometry", path);
+
+  std::vector<std::string> topics{scan_topic, "/tf", "/tf_static", "tf", "tf_static"};
+  for (const std::string& t : {odometry_topic, truth_topic}) {
+    if (!t.empty()) topics.push_back(t);
+  }
+  Content content;
+  for (const rosbag::MessageInstance& m : rosbag::View(bag, rosbag::TopicQuery(topics))) {
+    const std::string source =
+        path + ": " + m.getTopic() + " at " + std::to_string(m.getTime().toSec());
+    const std::string& topic = m.getTopic();
+    if (topic == scan_topic) {
+      const auto msg = decode<sensor_msgs::LaserScan>(m, source);
+      content.scans.push_back({fromMsg(*msg, source), withoutSlash(msg->header.frame_id)});
+      content.scans.back().scan.stamp = stampOf(msg->header.stamp, m);
+    } else if (topic == truth_topic && m.getDataType() == "geometry_msgs/PoseStamped") {
+      const auto msg = decode<geometry_msgs::PoseStamped>(m, source);
+      content.truth.push_back({stampOf(msg->header.stamp, m), fromMsg(msg->pose, source)});
+    } else if (topic == truth_topic || topic == odometry_topic) {
+      const auto msg = decode<nav_msgs::Odometry>(m, source);
+      auto& list = topic == truth_topic ? content.truth : content.odometry;
+      list.push_back({stampOf(msg->header.stamp, m), fromMsg(msg->pose.pose, source)});
+    } else {
+      takeTransforms(m, *decode<tf2_msgs::TFMessage>(m, source), source, options, &content);
+    }
+  }
+  return content;
+}
+
+void sortByStamp(std::vector<StampedPose2>* poses) {
+  std::stable_sort(poses->begin(), poses->end(),
+                   [](const StampedPose2& a, const StampedPose2& b) { return a.stamp < b.stamp; });
+}
+
+RobotLog assemble(Content content, const std::string& path, const BagOptions& options) {
+  RobotLog log;
+  if (content.scans.empty()) throw InputError(path, "", "holds no laser scans");
+  log.odometry = std::move(content.odometry.empty() ? content.tf_odometry : content.odometry);
+  if (log.odometry.empty() && options.odometry_required) {
+    throw InputError(path, "",
+                     "holds no odometry: neither " + options.odometry_topic +
+                         " nor the transform " + options.odom_frame + " -> " + options.base_frame);
+  }
+  log.ground_truth = std::move(content.truth);
+  sortByStamp(&log.odometry);
+  sortByStamp(&log.ground_truth);
+  std::map<std::string, std::optional<tf2::Transform>> lasers;
+  for (Content::Scan& s : content.scans) {
+    if (options.laser_in_base) {
+      s.scan.laser_in_base = *options.laser_in_base;
+    } else {
+      auto found = lasers.find(s.frame);
+      if (found == lasers.end()) {
+        found = lasers.emplace(s.frame, chain(content, options.base_frame, s.frame)).first;
+      }
+      if (found->second) placeLaser(path + ": frame " + s.frame, *found->second, &s.scan);
+    }
+    log.scans.push_back(std::move(s.scan));
+  }
+  std::stable_sort(log.scans.begin(), log.scans.end(),
+                   [](const LaserScan& a, const LaserScan& b) { return a.stamp < b.stamp; });
+  return log;
+}
+
+}  // namespace
+
+RobotLog readBag(const std::string& path, const BagOptions& options) {
+  if (::access(path.c_str(), R_OK) != 0) {
+    throw InputError(path, "", "cannot be read: no such file, or no permission");
+  }
+  const UnpackedBag unpacked(path);
+  try {
+    rosbag::Bag bag(unpacked.name(), rosbag::bagmode::Read);
+    return assemble(readContent(bag, path, options), path, options);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw InputError(path, "", "the bag has no index: it is truncated (rosbag reindex may help)");
+  } catch (const rosbag::BagException& e) {
+    throw InputError(path, "", std::string("is no usable bag: ") + e.what());
+  } catch (const ros::Exception& e) {
+    throw InputError(path, "", std::string("is no usable bag: ") + e.what());
+  } catch (const std::bad_alloc&) {
+    throw InputError(path, "", "is no usable bag: it states sizes beyond the memory");
+  } catch (const std::length_error&) {
+    throw InputError(path, "", "is no usable bag: it states sizes beyond the memory");
+  }
+}
+
+RobotLog readRobotLog(const std::string& path, const BagOptions& bag_options,
+                      const CarmenOptions& carmen_options, std::vector<CarmenIssue>* issues) {
+  if (endsWith(path, ".bag") || endsWith(path, ".bag.gz")) return readBag(path, bag_options);
+  return readCarmenLog(path, carmen_options, issues);
+}
+
+}  // namespace hyselam
