@@ -25,8 +25,9 @@ inline transcription::Cells rooms(std::mt19937_64& rng, int width, int height) {
     const bool across = upTo(2) == 0;
     const int at = upTo(across ? height : width), gap = upTo(across ? width : height);
     for (int k = 0; k < (across ? width : height); ++k)
-      if (std::abs(k - gap) > 4) across ? put(k, at, transcription::Cells::kOccupied)
-                                        : put(at, k, transcription::Cells::kOccupied);
+      if (std::abs(k - gap) > 4)
+        across ? put(k, at, transcription::Cells::kOccupied)
+               : put(at, k, transcription::Cells::kOccupied);
   }
   const int clutter = upTo(width * height / 40 + 1);
   for (int i = 0; i < clutter; ++i) put(upTo(width), upTo(height), transcription::Cells::kOccupied);
@@ -50,7 +51,8 @@ inline fsd_localization::FreeSpace toFreeSpace(const transcription::Cells& m) {
 }
 
 /// Beams over some field of view with returns, no-returns, NaN and too short ranges among them.
-inline hyselam::LaserScan scan(std::mt19937_64& rng, int beams, double field_of_view, double reach) {
+inline hyselam::LaserScan scan(std::mt19937_64& rng, int beams, double field_of_view,
+                               double reach) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   hyselam::LaserScan s;
   s.angle_increment = field_of_view / (beams - 1);
@@ -62,9 +64,12 @@ inline hyselam::LaserScan scan(std::mt19937_64& rng, int beams, double field_of_
     if (unit(rng) < 0.1) r = reach * 1.3 * unit(rng);
     double value = std::max(0.0, r + 0.02 * (unit(rng) - 0.5));
     const double kind = unit(rng);
-    if (kind < 0.02) value = std::numeric_limits<double>::quiet_NaN();
-    else if (kind < 0.04) value = std::numeric_limits<double>::infinity();
-    else if (kind < 0.05) value = 0.01;
+    if (kind < 0.02)
+      value = std::numeric_limits<double>::quiet_NaN();
+    else if (kind < 0.04)
+      value = std::numeric_limits<double>::infinity();
+    else if (kind < 0.05)
+      value = 0.01;
     s.ranges.push_back(static_cast<float>(value));
   }
   return s;

@@ -30,12 +30,15 @@ TEST(Oracle, densityAndBoundsEqualAlgorithm31) {
     const auto plain = transcription::freeSpaceDensity(world, x, y, f.kernel());
     const auto plain_upper = transcription::freeSpaceDensity(world, x, y, f.kernel(), true);
     const auto quick = f.density(space, {x, y});
-    SCOPED_TRACE("round " + std::to_string(round) + " radius " + std::to_string(f.kernel().radius()));
+    SCOPED_TRACE("round " + std::to_string(round) + " radius " +
+                 std::to_string(f.kernel().radius()));
     ASSERT_NEAR(quick.soft, plain.soft, 1e-6);
     ASSERT_NEAR(f.soft(space, {x, y}), plain.soft, 1e-6);
     ASSERT_NEAR(quick.upper, plain_upper.soft, 1e-6);
     ASSERT_EQ(quick.hard.has_value(), plain.hard.has_value());
-    if (quick.hard) { ASSERT_NEAR(*quick.hard, *plain.hard, 1e-6); }
+    if (quick.hard) {
+      ASSERT_NEAR(*quick.hard, *plain.hard, 1e-6);
+    }
     undefined += !quick.hard;
     folded += quick.soft > 0.0 && quick.soft < 0.9;
   }
@@ -73,7 +76,8 @@ TEST(Oracle, localMapEqualsAlgorithm22) {
     fsd_localization::LocalMap map(p);
     transcription::HimmGrid plain(map.side());
     const double cells = std::lround(p.radius / p.resolution);
-    const double fov = round % 3 == 0 ? 2.0 * hyselam::kPi * 0.995 : hyselam::radians(90 + 180 * unit(rng));
+    const double fov =
+        round % 3 == 0 ? 2.0 * hyselam::kPi * 0.995 : hyselam::radians(90 + 180 * unit(rng));
     const int beams = 20 + static_cast<int>(rng() % 60);
     const hyselam::Pose2 at{20.0 * (unit(rng) - 0.5), 20.0 * (unit(rng) - 0.5), 0.0};
     for (int k = 0; k < 4; ++k) {
@@ -86,8 +90,7 @@ TEST(Oracle, localMapEqualsAlgorithm22) {
       map.update(scan, pose);
       const double usable = p.usable_range > 0.0 ? std::min(p.usable_range, p.radius)
                                                  : std::min(scan.range_max, p.radius);
-      transcription::himm(plain, scan, pose.theta, p.resolution, cells, usable,
-                          p.obstacle_depth);
+      transcription::himm(plain, scan, pose.theta, p.resolution, cells, usable, p.obstacle_depth);
     }
     for (int y = 0; y < map.side(); ++y)
       for (int x = 0; x < map.side(); ++x)

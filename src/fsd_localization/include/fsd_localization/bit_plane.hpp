@@ -85,7 +85,8 @@ class BitPlane {
       : width_(width),
         height_(height),
         stride_((width + 63) / 64 + 2 * kMargin / 64 + 1),
-        words_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * kMargin)) {}
+        words_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * kMargin)) {
+  }
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -11,12 +11,13 @@ namespace fsd_localization {
 
 /// Which map values mean what; between the two a cell is unknown, as are negative values.
 struct OccupancyThresholds {
-  int free_below = 25;      ///< free: 0 <= value < free_below
-  int occupied_from = 65;   ///< occupied: value >= occupied_from
+  int free_below = 25;     ///< free: 0 <= value < free_below
+  int occupied_from = 65;  ///< occupied: value >= occupied_from
 };
 
 /// @throws hyselam::InputError for a grid whose cell count does not fit its size.
-FreeSpace freeSpaceOf(const hyselam::OccupancyGrid& map, const OccupancyThresholds& thresholds = {});
+FreeSpace freeSpaceOf(const hyselam::OccupancyGrid& map,
+                      const OccupancyThresholds& thresholds = {});
 
 /// Density of each cell, row-major, in [0, 1]; 0 where the cell is not free.
 struct DensityField {
@@ -46,9 +47,10 @@ struct GradientParams {
   void validate() const;
 };
 
-/// Where the density falls steepest at the centre of a 5x5 patch of densities (row-major, y upwards),
-/// by the Sobel operator; empty unless the direction is stable: slope above the floor, and direction
-/// within the spread, for the centre and each of its 8 neighbours. [rad], in the grid's axes.
+/// Where the density falls steepest at the centre of a 5x5 patch of densities (row-major, y
+/// upwards), by the Sobel operator; empty unless the direction is stable: slope above the floor,
+/// and direction within the spread, for the centre and each of its 8 neighbours. [rad], in the
+/// grid's axes.
 std::optional<double> stableDescent(const float* patch, int row_stride, double resolution,
                                     const GradientParams& params);
 

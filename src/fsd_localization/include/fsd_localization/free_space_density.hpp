@@ -14,8 +14,8 @@ namespace fsd_localization {
 
 /// What the free space around one cell looks like through one kernel. Densities lie in [0, 1].
 struct Density {
-  /// Psi: kernel sum over the free cells connected to the centre within the disc; unknown cells stop
-  /// the flood. 0 where the centre is not free.
+  /// Psi: kernel sum over the free cells connected to the centre within the disc; unknown cells
+  /// stop the flood. 0 where the centre is not free.
   double soft = 0.0;
   /// What Psi would be if every unknown cell were free. soft <= true density <= upper.
   double upper = 0.0;

@@ -22,13 +22,13 @@ struct FsdMapParams {
   void validate() const;
 };
 
-/// Cell layout: byte 2 k holds the density of kernel k, byte 2 k + 1 its descent direction; padded to
-/// 8 (up to 4 kernels) or 16 bytes.
+/// Cell layout: byte 2 k holds the density of kernel k, byte 2 k + 1 its descent direction; padded
+/// to 8 (up to 4 kernels) or 16 bytes.
 class FsdMap {
  public:
-  static constexpr std::uint8_t kNotFree = 255;    ///< density byte of a cell that is not free
-  static constexpr std::uint8_t kMaxDensity = 254; ///< density 1
-  static constexpr std::uint8_t kStable = 0x80;    ///< set in the direction byte where there is one
+  static constexpr std::uint8_t kNotFree = 255;     ///< density byte of a cell that is not free
+  static constexpr std::uint8_t kMaxDensity = 254;  ///< density 1
+  static constexpr std::uint8_t kStable = 0x80;  ///< set in the direction byte where there is one
 
   /// Computes all fields. @param threads, progress as in densityField().
   /// @throws hyselam::InputError, hyselam::ParameterError.
@@ -36,12 +36,14 @@ class FsdMap {
          const std::function<void(double)>& progress = {});
 
   /// As the constructor, but looks for the result in `cache_path` first and leaves it there after
-  /// (atomically). A cache made from another map or other parameters, or a damaged one, is made anew;
-  /// `*from_cache` tells which it was. A cache that cannot be written is no error: `*from_cache` stays
-  /// false.
+  /// (atomically). A cache made from another map or other parameters, or a damaged one, is made
+  /// anew;
+  /// `*from_cache` tells which it was. A cache that cannot be written is no error: `*from_cache`
+  /// stays false.
   static FsdMap cached(const std::string& cache_path, const hyselam::OccupancyGrid& map,
                        const FsdMapParams& params, int threads = 0,
-                       const std::function<void(double)>& progress = {}, bool* from_cache = nullptr);
+                       const std::function<void(double)>& progress = {},
+                       bool* from_cache = nullptr);
 
   const hyselam::GridGeometry& geometry() const { return geometry_; }
   const FsdMapParams& params() const { return params_; }
@@ -50,9 +52,7 @@ class FsdMap {
   const std::uint8_t* data() const { return cells_.data(); }
   std::size_t bytes() const { return cells_.size(); }
 
-  bool isFree(hyselam::Cell c) const {
-    return geometry_.contains(c) && cell(c)[0] != kNotFree;
-  }
+  bool isFree(hyselam::Cell c) const { return geometry_.contains(c) && cell(c)[0] != kNotFree; }
   /// Density of a free cell, to 1/508.
   double density(hyselam::Cell c, int kernel) const { return cell(c)[2 * kernel] / 254.0; }
   /// Direction in which the density falls, in the grid's axes, to 1.4 degrees; empty if unstable.

@@ -20,8 +20,9 @@ struct KernelSpec {
 
 /// A circular kernel on the cells of a grid.
 ///
-/// Covers the cells whose centre lies closer than `radius` cells to the nucleus (d < h). Whatever the
-/// profile, the weights sum to 1 over the covered cells, so a fully free disc has density exactly 1.
+/// Covers the cells whose centre lies closer than `radius` cells to the nucleus (d < h). Whatever
+/// the profile, the weights sum to 1 over the covered cells, so a fully free disc has density
+/// exactly 1.
 class Kernel {
  public:
   static constexpr int kMaxRadius = 127;  ///< [cells]; what the flood's bit rows can hold

@@ -1,5 +1,5 @@
-// The robot's surroundings as a HIMM grid (thesis 2.1.2 and 3.2.1, Alg. 2.2): a window of cells that
-// moves with the robot; every cell in the field of view is updated, so that no holes are left.
+// The robot's surroundings as a HIMM grid (thesis 2.1.2 and 3.2.1, Alg. 2.2): a window of cells
+// that moves with the robot; every cell in the field of view is updated, so that no holes are left.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,15 @@
 namespace fsd_localization {
 
 struct LocalMapParams {
-  double radius = 9.0;           ///< r_max: cells farther from the robot are forgotten [m]
-  double resolution = 0.1;       ///< side of a cell [m]
-  double usable_range = 0.0;     ///< beams say nothing beyond it [m]; 0: min(range_max, radius)
-  double obstacle_depth = 1.0;   ///< epsilon_d: an obstacle covers the cells nearer than this to a
-                                 ///< beam's end [cells]
-  int free_below = 3;            ///< epsilon_f: a cell is free where its value is smaller
-  int occupied_above = 12;       ///< epsilon_o: a cell is occupied where its value is larger
-  double footprint_radius = 0.2; ///< where the robot stands is free [m]; 0: only what the laser sees
+  double radius = 9.0;          ///< r_max: cells farther from the robot are forgotten [m]
+  double resolution = 0.1;      ///< side of a cell [m]
+  double usable_range = 0.0;    ///< beams say nothing beyond it [m]; 0: min(range_max, radius)
+  double obstacle_depth = 1.0;  ///< epsilon_d: an obstacle covers the cells nearer than this to a
+                                ///< beam's end [cells]
+  int free_below = 3;           ///< epsilon_f: a cell is free where its value is smaller
+  int occupied_above = 12;      ///< epsilon_o: a cell is occupied where its value is larger
+  double footprint_radius =
+      0.2;  ///< where the robot stands is free [m]; 0: only what the laser sees
 
   /// @throws hyselam::ParameterError naming the first value out of range.
   void validate() const;
@@ -28,8 +29,8 @@ struct LocalMapParams {
 
 /// Cells hold 0 (surely free) .. 15 (surely occupied); 8 is not known yet.
 ///
-/// The grid is aligned with the odometry frame and its centre cell holds the robot. Cost of an update:
-/// one pass over the cells of the field of view.
+/// The grid is aligned with the odometry frame and its centre cell holds the robot. Cost of an
+/// update: one pass over the cells of the field of view.
 class LocalMap {
  public:
   static constexpr std::uint8_t kUnknown = 8;
@@ -41,7 +42,8 @@ class LocalMap {
 
   /// Moves the window to the robot and updates the cells that the scan sees.
   /// @param base_in_odom where the robot is while the scan is taken, finite.
-  /// @throws hyselam::InputError for a scan that cannot be used (no beams, an increment of 0, limits
+  /// @throws hyselam::InputError for a scan that cannot be used (no beams, an increment of 0,
+  /// limits
   ///   that are not ordered, a laser outside the window, not finite numbers); the map is unchanged.
   void update(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
   /// Forgets everything.
@@ -58,8 +60,8 @@ class LocalMap {
   bool isFree(std::uint8_t v) const { return v < params_.free_below; }
   bool isOccupied(std::uint8_t v) const { return v > params_.occupied_above; }
 
-  /// Free and unknown cells of the part of the window nearer than `reach` cells to the robot (in the
-  /// maximum norm). The planes have the window's size; their other cells stay as they were.
+  /// Free and unknown cells of the part of the window nearer than `reach` cells to the robot (in
+  /// the maximum norm). The planes have the window's size; their other cells stay as they were.
   void freeSpace(int reach, FreeSpace& out) const;
   /// The window as an occupancy grid in the odometry frame.
   hyselam::OccupancyGrid toGrid() const;
@@ -70,8 +72,8 @@ class LocalMap {
     std::int32_t offset;            // added to the index of the laser's cell
     std::int32_t squared_distance;  // [cells^2]
   };
-  /// The cells of a range of distances, sorted by bearing: (-pi, pi], then once more a turn later, so
-  /// that a scan that passes pi goes on reading.
+  /// The cells of a range of distances, sorted by bearing: (-pi, pi], then once more a turn later,
+  /// so that a scan that passes pi goes on reading.
   struct Ring {
     std::int32_t begin = 0;  // squared distances begin .. end
     std::int32_t end = 0;
@@ -100,14 +102,14 @@ class LocalMap {
   LocalMapParams params_;
   int radius_cells_;
   int side_;
-  int pad_ = 0;     // cells around the window, so that a laser off the centre stays inside
+  int pad_ = 0;  // cells around the window, so that a laser off the centre stays inside
   int stride_ = 0;
   hyselam::Cell window_;
   bool placed_ = false;
   std::vector<std::uint8_t> cells_;
   std::vector<std::uint8_t> scratch_;
-  std::vector<int> half_width_;      // of the disc, per row of the window
-  std::vector<Ring> rings_;          // the whole field of view
+  std::vector<int> half_width_;  // of the disc, per row of the window
+  std::vector<Ring> rings_;      // the whole field of view
 };
 
 }  // namespace fsd_localization

@@ -17,8 +17,10 @@ FreeSpace freeSpaceOf(const hyselam::OccupancyGrid& map, const OccupancyThreshol
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x) {
       const int v = map.at({x, y});
-      if (v >= 0 && v < thresholds.free_below) space.free.set(x, y, true);
-      else if (v < thresholds.occupied_from) space.unknown.set(x, y, true);
+      if (v >= 0 && v < thresholds.free_below)
+        space.free.set(x, y, true);
+      else if (v < thresholds.occupied_from)
+        space.unknown.set(x, y, true);
     }
   return space;
 }
@@ -35,14 +37,15 @@ DensityField densityField(const FreeSpace& space, const Kernel& kernel, int thre
   std::atomic<int> next_row{0};
   const auto work = [&](bool report) {
     for (int y = next_row++; y < field.height; y = next_row++) {
-      float* row = &field.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(field.width)];
+      float* row =
+          &field.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(field.width)];
       for (int x = 0; x < field.width; ++x)
         if (space.free.get(x, y)) row[x] = static_cast<float>(density.soft(space, {x, y}));
       if (report && progress) progress(static_cast<double>(y + 1) / field.height);
     }
   };
-  const int count = threads > 0 ? threads
-                                : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int count =
+      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::vector<std::thread> helpers;
   for (int i = 1; i < count; ++i) helpers.emplace_back(work, false);
   work(true);
@@ -80,7 +83,8 @@ std::optional<double> stableDescent(const float* patch, int row_stride, double r
       float gx = 0.0F, gy = 0.0F;
       sobel(x, y, gx, gy);
       const float g2 = gx * gx + gy * gy;
-      if (!(g2 > floor2) || gx * cx + gy * cy < cos_spread * std::sqrt(g2 * c2)) return std::nullopt;
+      if (!(g2 > floor2) || gx * cx + gy * cy < cos_spread * std::sqrt(g2 * c2))
+        return std::nullopt;
     }
   return std::atan2(static_cast<double>(-cy), static_cast<double>(-cx));
 }

@@ -18,8 +18,8 @@ class FreeSpaceDensity::Flood {
   const Kernel kernel;
 };
 
-/// A flood whose rows fit W words: the disc and a ring of one cell around it, 2 h + 1 cells wide, and
-/// one spare bit for the end of a run.
+/// A flood whose rows fit W words: the disc and a ring of one cell around it, 2 h + 1 cells wide,
+/// and one spare bit for the end of a run.
 template <int W>
 class FreeSpaceDensity::WideFlood final : public Flood {
  public:
@@ -208,8 +208,8 @@ class FreeSpaceDensity::WideFlood final : public Flood {
   }
 
   int h_;
-  std::vector<Row> disc_;        // bit i of row j: offset (i - h, j - h) lies in the disc
-  std::vector<float> row_sum_;   // prefix sums of the kernel along each row
+  std::vector<Row> disc_;       // bit i of row j: offset (i - h, j - h) lies in the disc
+  std::vector<float> row_sum_;  // prefix sums of the kernel along each row
 };
 
 FreeSpaceDensity::FreeSpaceDensity(const Kernel& kernel) {
@@ -227,7 +227,9 @@ FreeSpaceDensity::~FreeSpaceDensity() = default;
 FreeSpaceDensity::FreeSpaceDensity(FreeSpaceDensity&&) noexcept = default;
 FreeSpaceDensity& FreeSpaceDensity::operator=(FreeSpaceDensity&&) noexcept = default;
 
-const Kernel& FreeSpaceDensity::kernel() const { return flood_->kernel; }
+const Kernel& FreeSpaceDensity::kernel() const {
+  return flood_->kernel;
+}
 double FreeSpaceDensity::soft(const FreeSpace& space, Cell centre) const {
   return flood_->soft(space, centre);
 }

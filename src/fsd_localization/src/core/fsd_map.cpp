@@ -67,8 +67,9 @@ FsdMap::FsdMap(const OccupancyGrid& map, const FsdMapParams& params, int threads
     });
     padded.assign(static_cast<std::size_t>(padded_width) * static_cast<std::size_t>(h + 4), 0.0F);
     for (int y = 0; y < h; ++y)
-      std::copy_n(&field.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(w)], w,
-                  &padded[static_cast<std::size_t>(y + 2) * static_cast<std::size_t>(padded_width) + 2]);
+      std::copy_n(
+          &field.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(w)], w,
+          &padded[static_cast<std::size_t>(y + 2) * static_cast<std::size_t>(padded_width) + 2]);
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
         std::uint8_t* out = &cells_[geometry_.index({x, y}) * static_cast<std::size_t>(stride_) +
@@ -79,9 +80,11 @@ FsdMap::FsdMap(const OccupancyGrid& map, const FsdMapParams& params, int threads
         }
         const float d = std::min(1.0F, field.at(x, y));
         out[0] = static_cast<std::uint8_t>(std::lround(d * kMaxDensity));
-        const float* patch = &padded[static_cast<std::size_t>(y) * static_cast<std::size_t>(padded_width) +
-                                     static_cast<std::size_t>(x)];
-        if (const auto a = stableDescent(patch, padded_width, geometry_.resolution, params.gradient))
+        const float* patch =
+            &padded[static_cast<std::size_t>(y) * static_cast<std::size_t>(padded_width) +
+                    static_cast<std::size_t>(x)];
+        if (const auto a =
+                stableDescent(patch, padded_width, geometry_.resolution, params.gradient))
           out[1] = static_cast<std::uint8_t>(kStable | directionByte(*a));
       }
   }
@@ -105,8 +108,8 @@ std::uint64_t FsdMap::fingerprint(const OccupancyGrid& map, const FsdMapParams& 
   Fnv1a hash;
   hash.add(map.cells.data(), map.cells.size());
   const auto& g = map.geometry;
-  for (double v : {static_cast<double>(g.width), static_cast<double>(g.height), g.resolution, g.origin.x,
-                   g.origin.y, g.origin.theta})
+  for (double v : {static_cast<double>(g.width), static_cast<double>(g.height), g.resolution,
+                   g.origin.x, g.origin.y, g.origin.theta})
     hash.add(v);
   for (const KernelSpec& k : params.kernels) {
     hash.add(static_cast<double>(static_cast<int>(k.profile)));

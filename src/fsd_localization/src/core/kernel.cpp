@@ -10,9 +10,12 @@ namespace {
 /// Unnormalised profile at distance d < h, both in cells.
 double profileValue(KernelProfile profile, double d, double h) {
   switch (profile) {
-    case KernelProfile::kUniform: return 1.0;
-    case KernelProfile::kGaussian: return std::exp(-0.5 * d * d / (h * h));
-    case KernelProfile::kInverted: break;
+    case KernelProfile::kUniform:
+      return 1.0;
+    case KernelProfile::kGaussian:
+      return std::exp(-0.5 * d * d / (h * h));
+    case KernelProfile::kInverted:
+      break;
   }
   // Eq. 2.16 with c = 1 and b = 0.871 c: a disc less an oblate ellipsoid, heaviest at the border.
   constexpr double kB = 0.871;
@@ -38,9 +41,12 @@ KernelProfile kernelProfileFromName(const std::string& name) {
 
 const char* toString(KernelProfile profile) {
   switch (profile) {
-    case KernelProfile::kUniform: return "uniform";
-    case KernelProfile::kGaussian: return "gaussian";
-    case KernelProfile::kInverted: break;
+    case KernelProfile::kUniform:
+      return "uniform";
+    case KernelProfile::kGaussian:
+      return "gaussian";
+    case KernelProfile::kInverted:
+      break;
   }
   return "inverted";
 }

@@ -36,8 +36,8 @@ void checkScan(const LaserScan& scan, const Pose2& base_in_odom) {
 }
 
 /// The smallest n >= 0 with predicate(sqrt(n)), for a predicate that is false, then true; starting
-/// from a guess that is at most a few off. Gives thresholds on squared distances that decide exactly
-/// as the comparison of distances in Alg. 2.2 does.
+/// from a guess that is at most a few off. Gives thresholds on squared distances that decide
+/// exactly as the comparison of distances in Alg. 2.2 does.
 template <typename Predicate>
 std::int32_t firstSquare(double guess, std::int32_t limit, Predicate predicate) {
   auto n = static_cast<std::int32_t>(std::min(std::max(guess, 0.0), static_cast<double>(limit)));
@@ -129,7 +129,8 @@ void LocalMap::update(const LaserScan& scan, const Pose2& base_in_odom) {
   constexpr double kFarthest = 1e8;  // [cells]: beyond it cell numbers would not fit an int
   if (std::abs(base_in_odom.x) > kFarthest * params_.resolution ||
       std::abs(base_in_odom.y) > kFarthest * params_.resolution)
-    throw hyselam::InputError("laser scan", "pose in odom", "farther than 1e8 cells from the origin");
+    throw hyselam::InputError("laser scan", "pose in odom",
+                              "farther than 1e8 cells from the origin");
   const Cell robot = cellOf(base_in_odom), laser = cellOf(laser_in_odom);
   const int off = std::max(std::abs(laser.x - robot.x), std::abs(laser.y - robot.y));
   if (off >= radius_cells_)
@@ -150,7 +151,8 @@ void LocalMap::moveTo(Cell robot_in_odom) {
     placed_ = true;
     return;
   }
-  const long dx = static_cast<long>(corner.x) - window_.x, dy = static_cast<long>(corner.y) - window_.y;
+  const long dx = static_cast<long>(corner.x) - window_.x,
+             dy = static_cast<long>(corner.y) - window_.y;
   scratch_.assign(cells_.size(), kUnknown);
   if (std::abs(dx) < side_ && std::abs(dy) < side_) {
     const int x_from = static_cast<int>(std::max(0L, dx));
@@ -158,8 +160,8 @@ void LocalMap::moveTo(Cell robot_in_odom) {
     for (int y = 0; y < side_; ++y) {
       const int old_y = y + static_cast<int>(dy);
       if (old_y < 0 || old_y >= side_) continue;
-      std::memcpy(&scratch_[index({x_from - static_cast<int>(dx), y})], &cells_[index({x_from, old_y})],
-                  static_cast<std::size_t>(count));
+      std::memcpy(&scratch_[index({x_from - static_cast<int>(dx), y})],
+                  &cells_[index({x_from, old_y})], static_cast<std::size_t>(count));
     }
   }
   cells_.swap(scratch_);
@@ -177,9 +179,8 @@ void LocalMap::forgetOutside() {
 }
 
 std::optional<LocalMap::BeamLimits> LocalMap::limitsOf(float range, const LaserScan& scan) const {
-  const double reach = params_.usable_range > 0.0
-                           ? std::min(params_.usable_range, params_.radius)
-                           : std::min(scan.range_max, params_.radius);
+  const double reach = params_.usable_range > 0.0 ? std::min(params_.usable_range, params_.radius)
+                                                  : std::min(scan.range_max, params_.radius);
   if (std::isnan(range) || range < scan.range_min) return std::nullopt;
   const std::int32_t end = radius_cells_ * radius_cells_;  // d_i < d_max
   const double eps = params_.obstacle_depth;
@@ -193,8 +194,8 @@ std::optional<LocalMap::BeamLimits> LocalMap::limitsOf(float range, const LaserS
   const double lo = d - eps, hi = d + eps;
   limits.free_end =
       firstSquare(lo > 0 ? lo * lo : 0.0, end, [&](double d_i) { return !(d_i < d - eps); });
-  limits.occupied_begin =
-      firstSquare(lo > 0 ? lo * lo : 0.0, end, [&](double d_i) { return d_i >= d || d - d_i < eps; });
+  limits.occupied_begin = firstSquare(lo > 0 ? lo * lo : 0.0, end,
+                                      [&](double d_i) { return d_i >= d || d - d_i < eps; });
   limits.occupied_end =
       firstSquare(hi * hi, end, [&](double d_i) { return d_i > d && !(d_i - d < eps); });
   limits.free_end = std::min(limits.free_end, limits.occupied_begin);
@@ -207,10 +208,11 @@ void LocalMap::sweep(const LaserScan& scan, double laser_heading, Cell laser_cel
   // More beams than a turn holds would see the same cells again.
   const auto beams = std::min(static_cast<long>(scan.ranges.size()),
                               static_cast<long>(std::floor(2.0 * kPi / inc)) + 1);
-  const double lowest =
-      reversed ? scan.angle_min + scan.angle_increment * static_cast<double>(beams - 1) : scan.angle_min;
-  // Each beam owns the bearings nearest to it: half an increment to either side, less at the ends of
-  // a scan that comes full circle.
+  const double lowest = reversed
+                            ? scan.angle_min + scan.angle_increment * static_cast<double>(beams - 1)
+                            : scan.angle_min;
+  // Each beam owns the bearings nearest to it: half an increment to either side, less at the ends
+  // of a scan that comes full circle.
   const double excess = std::max(0.0, static_cast<double>(beams) * inc - 2.0 * kPi);
   const double start = hyselam::normalizeAngle(lowest - 0.5 * inc + 0.5 * excess + laser_heading);
   const double shift = start - (lowest - 0.5 * inc + 0.5 * excess);
@@ -253,7 +255,8 @@ void LocalMap::updateCells(const Ring& ring, std::size_t from, std::size_t to,
     const int miss = d2 < limits.free_end ? kMiss : 0;
     const int hit = (d2 >= limits.occupied_begin) & (d2 < limits.occupied_end) ? kHit : 0;
     std::uint8_t& value = laser[cell->offset];
-    value = static_cast<std::uint8_t>(std::clamp(value + hit - miss, 0, static_cast<int>(kMaxValue)));
+    value =
+        static_cast<std::uint8_t>(std::clamp(value + hit - miss, 0, static_cast<int>(kMaxValue)));
   }
 }
 
@@ -268,9 +271,10 @@ void LocalMap::clearFootprint() {
 
 void LocalMap::freeSpace(int reach, FreeSpace& out) const {
   if (out.free.width() != side_) out = FreeSpace(side_, side_);
-  const int first = std::max(0, radius_cells_ - reach), last = std::min(side_, radius_cells_ + reach + 1);
-  // Eight cells at a time: adding 128 - t to a byte below 128 sets its top bit where it is >= t, and
-  // the multiplication gathers the eight top bits in one byte.
+  const int first = std::max(0, radius_cells_ - reach),
+            last = std::min(side_, radius_cells_ + reach + 1);
+  // Eight cells at a time: adding 128 - t to a byte below 128 sets its top bit where it is >= t,
+  // and the multiplication gathers the eight top bits in one byte.
   constexpr std::uint64_t kOnes = 0x0101010101010101ULL, kTop = 0x8080808080808080ULL;
   const std::uint64_t not_free_from = kOnes * static_cast<std::uint64_t>(128 - params_.free_below);
   const std::uint64_t occupied_from =
@@ -305,8 +309,10 @@ hyselam::OccupancyGrid LocalMap::toGrid() const {
   for (int y = 0; y < side_; ++y)
     for (int x = 0; x < side_; ++x) {
       const std::uint8_t v = value({x, y});
-      if (isFree(v)) grid.at({x, y}) = hyselam::OccupancyGrid::kFree;
-      else if (isOccupied(v)) grid.at({x, y}) = hyselam::OccupancyGrid::kOccupied;
+      if (isFree(v))
+        grid.at({x, y}) = hyselam::OccupancyGrid::kFree;
+      else if (isOccupied(v))
+        grid.at({x, y}) = hyselam::OccupancyGrid::kOccupied;
     }
   return grid;
 }

@@ -105,7 +105,8 @@ inline int frontiers(const Cells& m, int x0, int y0, int h, double min_share) {
       open.pop_back();
       group.push_back(cell);
       for (std::size_t i = 0; i < border.size();)
-        if (std::abs(border[i].first - cell.first) <= 1 && std::abs(border[i].second - cell.second) <= 1) {
+        if (std::abs(border[i].first - cell.first) <= 1 &&
+            std::abs(border[i].second - cell.second) <= 1) {
           open.push_back(border[i]);
           border.erase(border.begin() + static_cast<std::ptrdiff_t>(i));
         } else {

@@ -20,10 +20,11 @@ struct HimmGrid {
   int& at(int x, int y) { return occ[static_cast<std::size_t>(y * side + x)]; }
 };
 
-/// One update. `d_max` is r_max in cells; `usable` is the range up to which beams are believed [m]; a beam without return frees up
-/// to it; NaN and too short beams update nothing (the decisions on what the thesis leaves open).
-inline void himm(HimmGrid& m, const hyselam::LaserScan& scan, double laser_heading, double resolution,
-                 double d_max, double usable, double epsilon_d) {
+/// One update. `d_max` is r_max in cells; `usable` is the range up to which beams are believed [m];
+/// a beam without return frees up to it; NaN and too short beams update nothing (the decisions on
+/// what the thesis leaves open).
+inline void himm(HimmGrid& m, const hyselam::LaserScan& scan, double laser_heading,
+                 double resolution, double d_max, double usable, double epsilon_d) {
   const int centre = m.side / 2;
   const double inc = std::abs(scan.angle_increment);
   for (int y = 0; y < m.side; ++y)

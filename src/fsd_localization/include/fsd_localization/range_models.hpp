@@ -1,0 +1,103 @@
+// The observation models that FSD is compared with, on the ranges of single beams: beam-based ray
+// casting ("bb", Fox, Burgard, Thrun 1999), fast cosine similarity ("fcs", Eq. 3.7, 3.8) and the
+// likelihood field (Thrun, Burgard, Fox 2005, 6.4).
+#pragma once
+
+#include <memory>
+
+#include "fsd_localization/distance_field.hpp"
+#include "fsd_localization/observation_model.hpp"
+#include "fsd_localization/ray_caster.hpp"
+
+namespace fsd_localization {
+
+/// Some beams of a scan, evenly spread, in the base frame. Beams without a return are kept where
+/// the model can use them (range = max_range), beams that say nothing never.
+struct BeamSample {
+  std::vector<float> bearing;  ///< in the base frame [rad]
+  std::vector<float> range;    ///< [m]
+  hyselam::Pose2 laser_in_base;
+  double max_range = 0.0;  ///< min of the scan's limit and the model's [m]
+};
+BeamSample sampleBeams(const hyselam::LaserScan& scan, int max_beams, double max_range,
+                       bool keep_no_return);
+
+struct BeamModelParams {
+  int max_beams = 19;         ///< the thesis: one each 10 degrees
+  double max_range = 20.0;    ///< [m]
+  double z_hit = 0.8;         ///< share of returns from the mapped obstacle
+  double z_short = 0.1;       ///< from something nearer
+  double z_max = 0.05;        ///< without return
+  double z_rand = 0.05;       ///< from anywhere
+  double sigma_hit = 0.2;     ///< [m]
+  double lambda_short = 0.1;  ///< [1/m]
+
+  void validate() const;  ///< @throws hyselam::ParameterError
+};
+
+class BeamModel final : public ObservationModel {
+ public:
+  BeamModel(std::shared_ptr<const RayCaster> map, const BeamModelParams& params = {});
+  const char* name() const override { return "beam"; }
+  std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
+
+ private:
+  std::shared_ptr<const RayCaster> map_;
+  BeamModelParams params_;
+};
+
+struct CosineModelParams {
+  int max_beams = 19;
+  double max_range = 20.0;  ///< [m]
+  double exponent = 4.0;    ///< Eq. 3.8
+
+  void validate() const;  ///< @throws hyselam::ParameterError
+};
+
+class CosineModel final : public ObservationModel {
+ public:
+  CosineModel(std::shared_ptr<const RayCaster> map, const CosineModelParams& params = {});
+  const char* name() const override { return "cosine"; }
+  std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
+
+ private:
+  std::shared_ptr<const RayCaster> map_;
+  CosineModelParams params_;
+};
+
+struct LikelihoodFieldParams {
+  int max_beams = 60;
+  double max_range = 30.0;          ///< [m]
+  double z_hit = 0.9;               ///< share of returns from mapped obstacles
+  double z_rand = 0.1;              ///< share of returns from anywhere
+  double sigma_hit = 0.15;          ///< [m]
+  double max_distance = 1.0;        ///< beyond it an obstacle is simply not there [m]
+  double independent_beams = 10.0;  ///< the beams of a scan count as this many independent ones
+  double occupied_penalty = 0.05;   ///< factor for a pose on a cell that is not free
+
+  void validate() const;  ///< @throws hyselam::ParameterError
+};
+
+/// The likelihood of a return as one byte per cell.
+class LikelihoodFieldModel final : public ObservationModel {
+ public:
+  LikelihoodFieldModel(const hyselam::OccupancyGrid& map, const LikelihoodFieldParams& params = {},
+                       const OccupancyThresholds& thresholds = {});
+  const char* name() const override { return "likelihood"; }
+  std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
+
+  /// Share of the returns that end within `tolerance` [m] of an obstacle of the map, for a pose of
+  /// the grid's frame, 0..1; empty if the scan has no return. What supervision looks at.
+  std::optional<double> explainedShare(const hyselam::LaserScan& scan,
+                                       const hyselam::Pose2& base_in_grid, double tolerance) const;
+
+ private:
+  LikelihoodFieldParams params_;
+  DistanceField distance_;
+  int padded_width_;
+  std::vector<std::uint8_t> cost_;  // -log likelihood in steps of step_, framed by one far cell
+  std::vector<bool> free_;
+  double step_;
+};
+
+}  // namespace fsd_localization

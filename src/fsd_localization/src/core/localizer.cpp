@@ -1,0 +1,257 @@
+#include "fsd_localization/localizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hyselam_common/errors.hpp"
+
+namespace fsd_localization {
+
+using hyselam::ParameterError;
+using hyselam::Pose2;
+
+namespace {
+
+constexpr std::pair<Model, const char*> kModelNames[] = {{Model::kFsd, "fsd"},
+                                                         {Model::kBeam, "beam"},
+                                                         {Model::kCosine, "cosine"},
+                                                         {Model::kLikelihood, "likelihood"},
+                                                         {Model::kHybrid, "hybrid"}};
+constexpr Pose2 kCandidateBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of the search
+constexpr double kFastMemory = 1.0;                               // [m] of travel
+constexpr double kSlowMemory = 30.0;                              // [m]
+constexpr double kGuessShare = 0.1;  // of the particles stays with the old belief when lost
+
+FsdSensorParams sensorParams(const LocalizerParams& p) {
+  FsdSensorParams s;
+  s.local_map = p.local_map;
+  s.kernels = p.map.kernels;
+  s.gradient = p.map.gradient;
+  s.with_frontiers = false;
+  return s;
+}
+
+}  // namespace
+
+Model modelFromName(const std::string& name) {
+  for (const auto& [model, text] : kModelNames)
+    if (name == text) return model;
+  throw ParameterError("model", name, "one of fsd, beam, cosine, likelihood, hybrid");
+}
+
+const char* toString(Model model) {
+  for (const auto& [m, text] : kModelNames)
+    if (m == model) return text;
+  return "?";
+}
+
+const char* toString(Phase phase) {
+  switch (phase) {
+    case Phase::kGlobal:
+      return "global";
+    case Phase::kTracking:
+      return "tracking";
+    case Phase::kLost:
+      break;
+  }
+  return "lost";
+}
+
+void LocalizerParams::validate() const {
+  if (!(update_min_d >= 0.0)) throw ParameterError("update_min_d", update_min_d, ">= 0 m");
+  if (!(update_min_a >= 0.0)) throw ParameterError("update_min_a", update_min_a, ">= 0 rad");
+  if (!(converged_share > 0.0 && converged_share <= 1.0))
+    throw ParameterError("converged_share", converged_share, "in (0, 1]");
+  if (!(converged_stddev > 0.0))
+    throw ParameterError("converged_stddev", converged_stddev, "> 0 m");
+  if (tracking_particles < 1)
+    throw ParameterError("tracking_particles", tracking_particles, ">= 1");
+  if (candidate_particles < tracking_particles)
+    throw ParameterError("candidate_particles", candidate_particles, ">= tracking_particles");
+  if (max_candidate_bins < 1)
+    throw ParameterError("max_candidate_bins", max_candidate_bins, ">= 1");
+  if (!(explained_tolerance > 0.0))
+    throw ParameterError("explained_tolerance", explained_tolerance, "> 0 m");
+  if (!(lost_below >= 0.0 && lost_below < 1.0))
+    throw ParameterError("lost_below", lost_below, "in [0, 1)");
+  if (!(lost_ratio >= 0.0 && lost_ratio < 1.0))
+    throw ParameterError("lost_ratio", lost_ratio, "in [0, 1)");
+  map.validate();
+  sensorParams(*this).validate();
+  fsd.validate();
+  beam.validate();
+  cosine.validate();
+  likelihood.validate();
+  filter.validate();
+}
+
+Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& params,
+                     const std::string& cache_path, const std::function<void(double)>& progress)
+    : params_((params.validate(), params)),
+      map_(std::make_shared<const FsdMap>(
+          cache_path.empty()
+              ? FsdMap(map, params.map, 0, progress)
+              : FsdMap::cached(cache_path, map, params.map, 0, progress, &map_was_cached_))),
+      sensor_(sensorParams(params)),
+      filter_(map_, searchParams(), params.seed) {
+  const auto rays = [&] { return std::make_shared<const RayCaster>(map, params.map.thresholds); };
+  switch (params_.model) {
+    case Model::kBeam:
+      model_ = std::make_unique<BeamModel>(rays(), params_.beam);
+      break;
+    case Model::kCosine:
+      model_ = std::make_unique<CosineModel>(rays(), params_.cosine);
+      break;
+    case Model::kLikelihood:
+      model_ =
+          std::make_unique<LikelihoodFieldModel>(map, params_.likelihood, params_.map.thresholds);
+      break;
+    case Model::kHybrid:
+      tracker_ =
+          std::make_unique<LikelihoodFieldModel>(map, params_.likelihood, params_.map.thresholds);
+      [[fallthrough]];
+    case Model::kFsd:
+      model_ = std::make_unique<FsdModel>(map_, params_.fsd);
+  }
+}
+Localizer::~Localizer() = default;
+
+FilterParams Localizer::searchParams() const {
+  return params_.filter;
+}
+
+const ObservationModel& Localizer::activeModel() const {
+  if (params_.model == Model::kHybrid && phase_ == Phase::kTracking) return *tracker_;
+  return *model_;
+}
+
+void Localizer::relocalizeGlobally() {
+  filter_ = ParticleFilter(map_, searchParams(), hyselam::splitmix64(params_.seed));
+  phase_ = Phase::kGlobal;
+  travelled_ = 0.0;
+  restartClock();
+}
+
+void Localizer::setInitialPose(const Pose2& base_in_map, const Pose2& stddev) {
+  if (!base_in_map.isFinite()) throw hyselam::InputError("initial pose", "", "not finite");
+  if (!stddev.isFinite() || stddev.x < 0.0 || stddev.y < 0.0 || stddev.theta < 0.0)
+    throw hyselam::InputError("initial pose", "standard deviations",
+                              "must be finite and not negative");
+  const Pose2 base_in_grid = map_->geometry().origin.inverse() * base_in_map;
+  travelled_ = 0.0;
+  restartClock();
+  if (params_.model == Model::kHybrid)
+    startTracking(gaussianParticles(base_in_grid, stddev, params_.candidate_particles,
+                                    hyselam::mix(params_.seed, 0x1217)));
+  else
+    filter_.concentrate(base_in_grid, stddev);
+}
+
+void Localizer::restartClock() {
+  sensor_.reset();
+  observation_ = {};
+  last_stamp_.reset();
+  last_odom_.reset();
+  updated_odom_.reset();
+}
+
+void Localizer::startTracking(Particles particles) {
+  FilterParams p = params_.filter;
+  p.adaptive_size = true;
+  p.min_particles = std::min(params_.tracking_particles, params_.candidate_particles);
+  p.max_particles = params_.candidate_particles;
+  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // supervise() sees to that
+  filter_ = ParticleFilter(
+      map_, p, hyselam::mix(params_.seed, static_cast<std::uint64_t>(travelled_ * 1000)));
+  filter_.take(std::move(particles));
+  phase_ = Phase::kTracking;
+  explained_fast_ = explained_slow_ = 0.0;
+  tracked_ = 0.0;
+}
+
+void Localizer::startSearch(bool keep_guess) {
+  const Particles old = filter_.particles();
+  filter_ = ParticleFilter(
+      map_, searchParams(),
+      hyselam::mix(params_.seed, 0x5ea7c4 + static_cast<std::uint64_t>(travelled_ * 1000)));
+  if (keep_guess && old.size() > 0) {
+    Particles mixed = filter_.particles();
+    const auto every = static_cast<std::size_t>(1.0 / kGuessShare);
+    for (std::size_t i = 0, k = 0; i < mixed.size(); i += every, k = (k + 1) % old.size())
+      mixed.set(i, old.pose(k), 1.0F);
+    filter_.take(std::move(mixed));
+  }
+  phase_ = Phase::kLost;
+  sensor_.reset();
+}
+
+std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& scan,
+                                                    const Pose2& base_in_odom, bool force) {
+  if (!std::isfinite(scan.stamp)) throw hyselam::InputError("laser scan", "stamp", "not finite");
+  if (last_stamp_ && scan.stamp <= *last_stamp_)
+    throw hyselam::InputError("laser scan", "stamp", "not later than the scan before");
+  sensor_.integrate(scan, base_in_odom);  // refuses what cannot be used, before anything changes
+  last_stamp_ = scan.stamp;
+  if (last_odom_) travelled_ += hyselam::distance(*last_odom_, base_in_odom);
+  last_odom_ = base_in_odom;
+
+  const Pose2 delta = updated_odom_ ? hyselam::between(*updated_odom_, base_in_odom) : Pose2{};
+  const double moved = std::hypot(delta.x, delta.y);
+  if (updated_odom_ && !force && moved < params_.update_min_d &&
+      std::abs(delta.theta) < params_.update_min_a)
+    return std::nullopt;
+  updated_odom_ = base_in_odom;
+
+  observation_.scan = scan;
+  observation_.fsd = usesFsd() ? sensor_.observe() : FsdObservation{};
+  const FilterStep step = filter_.step(delta, activeModel(), observation_);
+  const PoseEstimate estimate = estimatePose(filter_.particles());
+
+  LocalizationResult result;
+  result.stamp = scan.stamp;
+  const Pose2& origin = map_->geometry().origin;
+  result.base_in_map = origin * estimate.mean;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  const double c = std::cos(origin.theta), s = std::sin(origin.theta);
+  rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+  result.covariance = rotation * estimate.covariance * rotation.transpose();
+  result.converged = estimate.share >= params_.converged_share &&
+                     estimate.positionStddev() <= params_.converged_stddev;
+  result.cluster_share = estimate.share;
+  result.particles = filter_.particles().size();
+  result.effective_size = step.effective_size;
+  result.travelled = travelled_;
+  if (params_.model == Model::kHybrid) {
+    supervise(estimate, moved, result);
+  } else {
+    phase_ = result.converged ? Phase::kTracking : Phase::kGlobal;
+  }
+  result.phase = phase_;
+  return result;
+}
+
+void Localizer::supervise(const PoseEstimate& estimate, double moved, LocalizationResult& result) {
+  if (phase_ != Phase::kTracking) {
+    result.converged = false;  // the search alone is coarse; the likelihood field has the last word
+    if (estimate.bins > 0 && estimate.bins <= params_.max_candidate_bins)
+      startTracking(filter_.resampledCopy(params_.candidate_particles, kCandidateBlur));
+    return;
+  }
+  tracked_ += moved;
+  result.explained =
+      tracker_->explainedShare(observation_.scan, estimate.mean, params_.explained_tolerance);
+  if (!result.explained) return;
+  const auto follow = [&](double& average, double memory) {
+    average +=
+        (average == 0.0 ? 1.0 : std::min(1.0, moved / memory)) * (*result.explained - average);
+  };
+  follow(explained_fast_, kFastMemory);
+  follow(explained_slow_, kSlowMemory);
+  const double limit = std::max(params_.lost_below, params_.lost_ratio * explained_slow_);
+  if (tracked_ > kFastMemory && explained_fast_ < limit) {
+    result.converged = false;
+    startSearch(true);
+  }
+}
+
+}  // namespace fsd_localization

@@ -1,0 +1,174 @@
+// localize_offline: a bag or CARMEN log through the same localiser as the nodelet, without a
+// master.
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+
+#include "fsd_localization/localizer.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+
+namespace {
+
+using fsd_localization::KernelProfile;
+using hyselam::Pose2;
+
+struct Options {
+  std::string map, log, model = "hybrid", kernel = "uniform", trajectory, reference;
+  std::vector<double> bandwidths{1.5, 3.0, 5.0};
+  std::size_t particles = 20000;
+  std::uint64_t seed = 1;
+  double start = 0.0, duration = 0.0, success_m = 0.5, success_deg = 15.0;
+  bool global = true, cache = false;
+};
+
+/// What is compared with the reference, if there is one.
+struct Score {
+  std::vector<bool> good;
+  std::vector<double> travelled, error_m, error_deg;
+
+  void add(const Pose2& estimate, const Pose2& truth, double at, const Options& o) {
+    error_m.push_back(hyselam::distance(estimate, truth));
+    error_deg.push_back(
+        hyselam::degrees(std::abs(hyselam::normalizeAngle(estimate.theta - truth.theta))));
+    good.push_back(error_m.back() < o.success_m && error_deg.back() < o.success_deg);
+    travelled.push_back(at);
+  }
+  nlohmann::json report() const {
+    nlohmann::json j;
+    // Held to the end: from the first good estimate after the last bad one.
+    std::size_t first = good.size();
+    while (first > 0 && good[first - 1]) --first;
+    j["success"] = first < good.size();
+    if (first == good.size()) {
+      j["held_from_m"] = nullptr;
+      j["median_error_m"] = nullptr;
+      j["median_error_deg"] = nullptr;
+      return j;
+    }
+    j["held_from_m"] = travelled[first];
+    const auto median = [first](std::vector<double> v) {
+      v.erase(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(first));
+      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+      return v[v.size() / 2];
+    };
+    j["median_error_m"] = median(error_m);
+    j["median_error_deg"] = median(error_deg);
+    return j;
+  }
+};
+
+nlohmann::json run(const Options& o) {
+  fsd_localization::LocalizerParams p;
+  p.model = fsd_localization::modelFromName(o.model);
+  p.seed = o.seed;
+  p.filter.max_particles = o.particles;
+  p.filter.min_particles = std::min(p.filter.min_particles, o.particles);
+  p.map.kernels.clear();
+  for (double h : o.bandwidths)
+    p.map.kernels.push_back({fsd_localization::kernelProfileFromName(o.kernel), h});
+  p.validate();
+
+  const hyselam::OccupancyGrid map = hyselam::loadMap(o.map);
+  const hyselam::RobotLog log = hyselam::readRobotLog(o.log);
+  std::vector<hyselam::StampedPose2> truth = log.ground_truth;
+  if (!o.reference.empty()) truth = hyselam::readPoses(o.reference).poses;
+
+  const double begin = log.scans.front().stamp + o.start;
+  if (begin > log.scans.back().stamp)
+    throw hyselam::InputError(o.log, "--start " + std::to_string(o.start),
+                              "lies after the last scan");
+  hyselam::Progress preparing("density fields", 100);
+  fsd_localization::Localizer localizer(map, p, o.cache ? o.map + ".fsd" : "", [&](double share) {
+    preparing.update(static_cast<std::size_t>(100 * share));
+  });
+
+  hyselam::Progress progress("localising", log.scans.size());
+  std::vector<hyselam::StampedPose2> trajectory;
+  std::vector<double> update_ms;
+  std::size_t without_odometry = 0, refused = 0, index = 0;
+  nlohmann::json converged_at = nullptr;
+  std::string phase;
+  nlohmann::json phases = nlohmann::json::array();
+  Score score;
+  for (const hyselam::LaserScan& scan : log.scans) {
+    progress.update(++index);
+    if (scan.stamp < begin) continue;
+    if (o.duration > 0.0 && scan.stamp > begin + o.duration) break;
+    const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
+    if (!odom) {
+      ++without_odometry;
+      continue;
+    }
+    const auto t0 = std::chrono::steady_clock::now();
+    std::optional<fsd_localization::LocalizationResult> result;
+    try {
+      result = localizer.update(scan, *odom);
+    } catch (const hyselam::InputError& e) {
+      if (refused++ == 0)
+        std::cerr << "warning: scan at " << std::fixed << scan.stamp << " s: " << e.what() << "\n";
+      continue;
+    }
+    if (!result) continue;
+    update_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t0).count());
+    trajectory.push_back({result->stamp, result->base_in_map});
+    if (result->converged && converged_at.is_null()) converged_at = result->travelled;
+    const std::string now = toString(result->phase);
+    if (now != phase)
+      phases.push_back(
+          {{"phase", now}, {"travelled_m", result->travelled}, {"stamp", result->stamp}});
+    phase = now;
+    if (const auto at = hyselam::poseAt(truth, scan.stamp, 0.05))
+      score.add(result->base_in_map, *at, result->travelled, o);
+  }
+  if (trajectory.empty())
+    throw hyselam::InputError(o.log, "", "no scan could be used for an update");
+  if (!o.trajectory.empty()) hyselam::writeTum(o.trajectory, trajectory);
+
+  std::vector<double> sorted = update_ms;
+  std::sort(sorted.begin(), sorted.end());
+  nlohmann::json j = {{"model", o.model},
+                      {"particles", o.particles},
+                      {"seed", o.seed},
+                      {"updates", trajectory.size()},
+                      {"median_update_ms", sorted[sorted.size() / 2]},
+                      {"worst_update_ms", sorted.back()},
+                      {"converged_at_m", converged_at},
+                      {"phases", phases},
+                      {"scans_without_odometry", without_odometry},
+                      {"scans_refused", refused}};
+  if (!score.good.empty()) j["against_reference"] = score.report();
+  std::cout << j.dump(2) << "\n";
+  return j;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Localises a recorded run on a map, offline.", "localize_offline");
+  Options o;
+  app.option_defaults()->always_capture_default();
+  app.add_option("--map", o.map, "map (map_server YAML)")->required();
+  app.add_option("--bag", o.log, "bag or CARMEN log, plain or gzip")->required();
+  app.add_option("--model", o.model, "fsd, beam, cosine, likelihood or hybrid");
+  app.add_option("--particles", o.particles, "particles of the search");
+  app.add_option("--kernel", o.kernel,
+                 "profile of the density kernels: uniform, gaussian or inverted");
+  app.add_option("--bandwidths", o.bandwidths, "bandwidths of the density kernels [m]")
+      ->delimiter(',');
+  app.add_option("--seed", o.seed, "equal seeds give equal results");
+  app.add_option("--start", o.start, "seconds to skip at the beginning; the robot wakes up there")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--duration", o.duration, "seconds to use; 0: to the end")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--reference", o.reference,
+                 "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
+  app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");
+  app.add_flag("--cache", o.cache, "keep the density fields beside the map (MAP.yaml.fsd)");
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+}
