@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 
 #include "fsd_localization/noise.hpp"
 #include "hyselam_common/errors.hpp"
+#include "pose_bins.hpp"
 
 namespace fsd_localization {
 
@@ -92,19 +92,10 @@ std::size_t occupiedBins(const Particles& p, double cell, double angle) {
   double sum = 0.0;
   for (float w : p.weight) sum += w;
   const double threshold = 0.1 * sum / std::max<double>(1.0, static_cast<double>(p.size()));
-  const auto turn =
-      static_cast<std::uint64_t>(std::max(1.0, std::round(2.0 * hyselam::kPi / angle)));
-  std::unordered_set<std::uint64_t> bins;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.weight[i] < threshold) continue;
-    const auto bx = static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(std::floor(p.x[i] / cell)) + (1 << 20));
-    const auto by = static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(std::floor(p.y[i] / cell)) + (1 << 20));
-    const std::uint64_t ba = (static_cast<std::uint64_t>(p.heading[i]) * turn) >> 32;
-    bins.insert(bx << 42 | by << 20 | ba);
-  }
-  return bins.size();
+  PoseBins bins(cell, angle, p.size());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p.weight[i] >= threshold) bins.add(p, i);
+  return bins.bins.size();
 }
 
 }  // namespace fsd_localization

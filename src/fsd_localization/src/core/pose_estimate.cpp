@@ -2,23 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <vector>
+
+#include "pose_bins.hpp"
 
 namespace fsd_localization {
 
 namespace {
 
-struct Bin {
-  int x = 0, y = 0, a = 0;
-  double weight = 0.0;
-  int cluster = -1;
-};
+using Bin = PoseBins::Bin;
+/// With more bins than this the particles are all over the place, and clusters mean nothing yet.
+constexpr std::size_t kMaxClusteredBins = 4000;
 
-std::uint64_t key(int x, int y, int a) {
-  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 40) ^
-         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 12) ^
-         static_cast<std::uint64_t>(a);
+/// Numbers the clusters of touching bins; returns their weights.
+std::vector<double> cluster(PoseBins& bins, double negligible) {
+  std::vector<double> weights;
+  std::vector<int> stack;
+  for (std::size_t first = 0; first < bins.bins.size(); ++first) {
+    if (bins.bins[first].cluster >= 0 || bins.bins[first].weight <= negligible) continue;
+    const int id = static_cast<int>(weights.size());
+    weights.push_back(0.0);
+    bins.bins[first].cluster = id;
+    stack.assign(1, static_cast<int>(first));
+    while (!stack.empty()) {
+      const Bin b = bins.bins[static_cast<std::size_t>(stack.back())];
+      stack.pop_back();
+      weights.back() += b.weight;
+      for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy)
+          for (int da = -1; da <= 1; ++da) {
+            const int number = bins.find(b.x + dx, b.y + dy, b.a + da);
+            if (number < 0) continue;
+            Bin& other = bins.bins[static_cast<std::size_t>(number)];
+            if (other.cluster >= 0 || other.weight <= negligible) continue;
+            other.cluster = id;
+            stack.push_back(number);
+          }
+    }
+  }
+  return weights;
 }
 
 }  // namespace
@@ -35,66 +57,30 @@ PoseEstimate estimatePose(const Particles& p, const ClusterParams& params) {
   for (float w : p.weight) total += w;
   if (!(total > 0.0) || !std::isfinite(total)) return result;
 
-  const int turn = std::max(1, static_cast<int>(std::lround(2.0 * hyselam::kPi / params.angle)));
-  const auto per_metre = static_cast<float>(1.0 / params.cell);
-  std::unordered_map<std::uint64_t, int> index;
-  index.reserve(p.size() / 4 + 16);
-  std::vector<Bin> bins;
+  PoseBins bins(params.cell, params.angle, p.size());
   std::vector<int> bin_of(p.size());
-  std::uint64_t last_key = ~std::uint64_t{0};
-  int last = -1;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const int x = static_cast<int>(std::floor(p.x[i] * per_metre));
-    const int y = static_cast<int>(std::floor(p.y[i] * per_metre));
-    const int a = static_cast<int>(
-        (static_cast<std::uint64_t>(p.heading[i]) * static_cast<unsigned>(turn)) >> 32);
-    const std::uint64_t k = key(x, y, a);
-    if (k != last_key) {  // neighbours in memory mostly share their bin
-      const auto [it, is_new] = index.emplace(k, static_cast<int>(bins.size()));
-      if (is_new) bins.push_back({x, y, a});
-      last = it->second;
-      last_key = k;
-    }
-    bin_of[i] = last;
-    bins[static_cast<std::size_t>(last)].weight += p.weight[i];
-  }
+  for (std::size_t i = 0; i < p.size(); ++i) bin_of[i] = bins.add(p, i);
   // Bins with next to no weight would bridge what lies apart.
-  const double negligible = 1e-3 * total / static_cast<double>(bins.size());
-  std::vector<double> cluster_weight;
-  std::vector<int> stack;
-  for (std::size_t first = 0; first < bins.size(); ++first) {
-    if (bins[first].weight <= negligible) continue;
-    ++result.bins;
-    if (bins[first].cluster >= 0) continue;
-    const int id = static_cast<int>(cluster_weight.size());
-    cluster_weight.push_back(0.0);
-    bins[first].cluster = id;
-    stack.assign(1, static_cast<int>(first));
-    while (!stack.empty()) {
-      const Bin b = bins[static_cast<std::size_t>(stack.back())];
-      stack.pop_back();
-      cluster_weight[static_cast<std::size_t>(id)] += b.weight;
-      for (int dx = -1; dx <= 1; ++dx)
-        for (int dy = -1; dy <= 1; ++dy)
-          for (int da = -1; da <= 1; ++da) {
-            const auto it = index.find(key(b.x + dx, b.y + dy, (b.a + da + turn) % turn));
-            if (it == index.end()) continue;
-            Bin& other = bins[static_cast<std::size_t>(it->second)];
-            if (other.cluster >= 0 || other.weight <= negligible) continue;
-            other.cluster = id;
-            stack.push_back(it->second);
-          }
+  const double negligible = 1e-3 * total / static_cast<double>(bins.bins.size());
+  for (const Bin& b : bins.bins) result.bins += b.weight > negligible ? 1 : 0;
+
+  std::vector<double> weights;
+  if (result.bins <= kMaxClusteredBins) {
+    weights = cluster(bins, negligible);
+  } else {  // each bin for itself
+    for (Bin& b : bins.bins) {
+      b.cluster = static_cast<int>(weights.size());
+      weights.push_back(b.weight);
     }
   }
-  const int best = static_cast<int>(std::max_element(cluster_weight.begin(), cluster_weight.end()) -
-                                    cluster_weight.begin());
-  for (double w : cluster_weight) result.clusters += w >= 0.01 * total;
-  const double weight = cluster_weight[static_cast<std::size_t>(best)];
+  const int best = static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  for (double w : weights) result.clusters += w >= 0.01 * total ? 1 : 0;
+  const double weight = weights[static_cast<std::size_t>(best)];
   result.share = weight / total;
 
   double x = 0.0, y = 0.0, s = 0.0, c = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i)
-    if (bins[static_cast<std::size_t>(bin_of[i])].cluster == best) {
+    if (bins.bins[static_cast<std::size_t>(bin_of[i])].cluster == best) {
       const double w = p.weight[i] / weight, a = toRadians(p.heading[i]);
       x += w * p.x[i];
       y += w * p.y[i];
@@ -103,7 +89,7 @@ PoseEstimate estimatePose(const Particles& p, const ClusterParams& params) {
     }
   result.mean = {x, y, std::atan2(s, c)};
   for (std::size_t i = 0; i < p.size(); ++i)
-    if (bins[static_cast<std::size_t>(bin_of[i])].cluster == best) {
+    if (bins.bins[static_cast<std::size_t>(bin_of[i])].cluster == best) {
       const Eigen::Vector3d e(p.x[i] - x, p.y[i] - y,
                               hyselam::normalizeAngle(toRadians(p.heading[i]) - result.mean.theta));
       result.covariance += p.weight[i] / weight * e * e.transpose();

@@ -70,6 +70,17 @@ inline Fsd freeSpaceDensity(const Cells& m, int x0, int y0, const fsd_localizati
   return result;
 }
 
+/// The same on a copy of the cells that the kernel can reach, so that a large map costs nothing extra.
+inline Fsd freeSpaceDensityNear(const Cells& m, int x0, int y0, const fsd_localization::Kernel& kernel) {
+  const int h = kernel.radius();
+  Cells near;
+  near.width = near.height = 2 * h + 1;
+  near.state.reserve(static_cast<std::size_t>(near.width * near.height));
+  for (int y = y0 - h; y <= y0 + h; ++y)
+    for (int x = x0 - h; x <= x0 + h; ++x) near.state.push_back(m.at(x, y));
+  return freeSpaceDensity(near, h, h, kernel);
+}
+
 /// Alg. 6.1, frontiers 8-connected, larger than `min_share` of the kernel's perimeter.
 inline int frontiers(const Cells& m, int x0, int y0, int h, double min_share) {
   std::vector<char> processed(static_cast<std::size_t>(m.width * m.height), 0);
