@@ -21,9 +21,6 @@
 namespace hyselam {
 namespace {
 
-constexpr double kTilted =
-    0.5;  // |cosine| of the laser's inclination below which its plane is none
-
 bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
@@ -150,20 +147,6 @@ std::optional<tf2::Transform> chain(const Content& content, const std::string& b
   return found->second;
 }
 
-/// Puts the laser on the robot. One that hangs upside down turns the other way round.
-void placeLaser(const std::string& source, const tf2::Transform& laser, LaserScan* scan) {
-  const double up = laser.getBasis()[2][2];
-  if (std::abs(up) < kTilted) {
-    throw InputError(source, "", "the laser's plane is not horizontal");
-  }
-  scan->laser_in_base = {laser.getOrigin().x(), laser.getOrigin().y(),
-                         std::atan2(laser.getBasis()[1][0], laser.getBasis()[0][0])};
-  if (up < 0.0) {
-    scan->angle_min = -scan->angle_min;
-    scan->angle_increment = -scan->angle_increment;
-  }
-}
-
 template <typename T>
 boost::shared_ptr<T> decode(const rosbag::MessageInstance& m, const std::string& source) {
   try {
@@ -244,7 +227,7 @@ RobotLog assemble(Content content, const std::string& path, const BagOptions& op
       if (found == lasers.end()) {
         found = lasers.emplace(s.frame, chain(content, options.base_frame, s.frame)).first;
       }
-      if (found->second) placeLaser(path + ": frame " + s.frame, *found->second, &s.scan);
+      if (found->second) placeLaser(*found->second, path + ": frame " + s.frame, &s.scan);
     }
     log.scans.push_back(std::move(s.scan));
   }

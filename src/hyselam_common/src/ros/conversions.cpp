@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kTooLate = 4294967296.0;  // ros::Time counts seconds in 32 bits
 constexpr double kShortestQuaternion = 0.1;
+constexpr double kTilted =
+    0.5;  // |cosine| of the laser's inclination below which its plane is none
 
 Pose2 checkedPose(double x, double y, const geometry_msgs::Quaternion& q,
                   const std::string& source) {
@@ -125,6 +127,22 @@ sensor_msgs::LaserScan toMsg(const LaserScan& scan, const std::string& frame_id)
   msg.range_max = static_cast<float>(scan.range_max);
   msg.ranges = scan.ranges;
   return msg;
+}
+
+void placeLaser(const tf2::Transform& laser_in_base, const std::string& source, LaserScan* scan) {
+  const tf2::Matrix3x3& axes = laser_in_base.getBasis();
+  const double up = axes[2][2];
+  const Pose2 pose{laser_in_base.getOrigin().x(), laser_in_base.getOrigin().y(),
+                   std::atan2(axes[1][0], axes[0][0])};
+  if (!pose.isFinite() || !std::isfinite(up)) {
+    throw InputError(source, "", "the laser's pose on the robot is not finite");
+  }
+  if (std::abs(up) < kTilted) throw InputError(source, "", "the laser's plane is not horizontal");
+  scan->laser_in_base = pose;
+  if (up < 0.0) {
+    scan->angle_min = -scan->angle_min;
+    scan->angle_increment = -scan->angle_increment;
+  }
 }
 
 OccupancyGrid fromMsg(const nav_msgs::OccupancyGrid& msg, const std::string& source) {

@@ -9,6 +9,7 @@
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/time.h>
 #include <sensor_msgs/LaserScan.h>
+#include <tf2/LinearMath/Transform.h>
 
 #include <string>
 
@@ -41,6 +42,11 @@ geometry_msgs::Transform toTransformMsg(const Pose2& pose);
 LaserScan fromMsg(const sensor_msgs::LaserScan& msg, const std::string& source,
                   const Pose2& laser_in_base = Pose2{});
 sensor_msgs::LaserScan toMsg(const LaserScan& scan, const std::string& frame_id);
+
+/// Says where the laser of `scan` sits on the robot (laser in base). One that is mounted upside
+/// down comes out with mirrored angles and a negative increment. Throws InputError for a transform
+/// that is not finite, and for a laser whose plane is inclined by more than 60 degrees.
+void placeLaser(const tf2::Transform& laser_in_base, const std::string& source, LaserScan* scan);
 
 /// Refuses: no cells, more or fewer data than width * height, resolution not positive, a bad
 /// origin, values outside -1 .. 100.
