@@ -99,6 +99,9 @@ class ParamLoader {
     }
   }
 
+  /// Whether the parameter server holds a value, for parameters whose absence means something.
+  bool isSet(const std::string& name) const { return source_->get(name).has_value(); }
+
   /// Marks a name as known that something else reads (nodelet parameters, dynamic reconfigure).
   void know(const std::string& name) { known_.insert(name); }
 
