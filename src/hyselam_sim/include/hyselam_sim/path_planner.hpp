@@ -19,6 +19,9 @@ class ClearanceMap {
   /// [m], never more than the true clearance plus half a cell; 0 in and outside obstacles.
   double at(Point2 p) const;
 
+  /// The same with discs of that radius [m] forbidden: the clearance there is 0.
+  ClearanceMap without(const std::vector<Point2>& centres, double radius) const;
+
   const hyselam::GridGeometry& geometry() const { return geometry_; }
 
  private:

@@ -52,6 +52,8 @@ struct Route {
   std::string plan;    ///< name of the plan it belongs to; may be empty
   std::string description;
   Spot start;
+  /// A leg between places must not pass another place (what comes nearer to one than 1.2 m).
+  bool direct = false;
   std::optional<double> speed;  ///< cruising speed [m/s] instead of the default
   std::vector<RouteStep> steps;
   std::vector<Person> people;

@@ -182,6 +182,23 @@ double ClearanceMap::at(Point2 p) const {
   return std::max(0.0, static_cast<double>(metres_.at<float>(c.y, c.x)));
 }
 
+ClearanceMap ClearanceMap::without(const std::vector<Point2>& centres, double radius) const {
+  ClearanceMap out(*this);
+  out.metres_ = metres_.clone();
+  const Point2 reach{radius, radius};
+  for (const Point2& centre : centres) {
+    const Cell low = geometry_.cellAt(centre - reach), high = geometry_.cellAt(centre + reach);
+    for (int y = std::max(0, low.y); y <= std::min(geometry_.height - 1, high.y); ++y) {
+      for (int x = std::max(0, low.x); x <= std::min(geometry_.width - 1, high.x); ++x) {
+        if (length(geometry_.centre({x, y}) - centre) <= radius) {
+          out.metres_.at<float>(y, x) = 0.0F;
+        }
+      }
+    }
+  }
+  return out;
+}
+
 std::vector<Point2> straightPath(Point2 from, Point2 to, double spacing) {
   const int steps = std::max(1, static_cast<int>(std::ceil(length(to - from) / spacing - 1e-9)));
   std::vector<Point2> out;

@@ -16,7 +16,8 @@ namespace {
 const cv::Scalar kOutside(225, 225, 225), kFloor(255, 255, 255), kWall(40, 40, 40);
 const cv::Scalar kFurniture(150, 190, 215), kDoor(60, 130, 30), kShutDoor(40, 40, 200);
 const cv::Scalar kWay(200, 80, 220), kStart(0, 190, 240), kEnd(220, 90, 20), kName(120, 60, 0);
-constexpr int kShift = 4;  // fixed-point digits of OpenCV's drawing functions
+constexpr double kNameWidth = 3.2;  // [m]
+constexpr int kShift = 4;           // fixed-point digits of OpenCV's drawing functions
 
 class Canvas {
  public:
@@ -30,6 +31,11 @@ class Canvas {
 
   cv::Point2d pixel(Point2 p) const {
     return {(p.x - plan_.origin.x) * scale_, image.rows - (p.y - plan_.origin.y) * scale_};
+  }
+  /// Middle of a pixel.
+  Point2 metres(int row, int column) const {
+    return {plan_.origin.x + (column + 0.5) / scale_,
+            plan_.origin.y + (image.rows - row - 0.5) / scale_};
   }
   cv::Point fixed(Point2 p) const {
     const cv::Point2d q = pixel(p);
@@ -49,7 +55,10 @@ class Canvas {
                cv::LINE_AA, kShift);
   }
   void name(Point2 p, const std::string& text) {
-    const double size = std::clamp(scale_ / 45.0, 0.3, 1.0);
+    // At most as wide as a small room.
+    double size = std::clamp(scale_ / 45.0, 0.3, 1.0);
+    const int wide = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, size, 1, nullptr).width;
+    size = std::max(0.3, size * std::min(1.0, kNameWidth * scale_ / wide));
     const cv::Size box = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, size, 1, nullptr);
     const cv::Point at(static_cast<int>(pixel(p).x) - box.width / 2,
                        static_cast<int>(pixel(p).y) - box.height / 2);
@@ -70,15 +79,12 @@ void drawFloor(const FloorPlan& plan, Canvas& canvas) {
   options.resolution = std::max(0.05, 1.0 / canvas.scale());
   options.with_furniture = false;
   const hyselam::OccupancyGrid grid = rasterise(plan, options);
-  const double half = 0.5 * grid.geometry.resolution;
-  for (int y = 0; y < grid.geometry.height; ++y) {
-    for (int x = 0; x < grid.geometry.width; ++x) {
-      if (grid.at({x, y}) == hyselam::OccupancyGrid::kUnknown) continue;
-      const Point2 m = grid.geometry.centre({x, y});
-      const cv::Point2d a = canvas.pixel(m - Point2{half, half});
-      const cv::Point2d b = canvas.pixel(m + Point2{half, half});
-      cv::rectangle(canvas.image, cv::Point(cvRound(a.x), cvRound(b.y)),
-                    cv::Point(cvRound(b.x) - 1, cvRound(a.y) - 1), kFloor, cv::FILLED);
+  for (int row = 0; row < canvas.image.rows; ++row) {
+    for (int column = 0; column < canvas.image.cols; ++column) {
+      const hyselam::Cell c = grid.geometry.cellAt(canvas.metres(row, column));
+      if (grid.valueOr(c) != hyselam::OccupancyGrid::kUnknown) {
+        canvas.image.at<cv::Vec3b>(row, column) = cv::Vec3b(255, 255, 255);
+      }
     }
   }
 }

@@ -130,8 +130,9 @@ std::optional<Point2> Person::at(double time) const {
 }
 
 Route parseRoute(const std::string& content, const std::string& source) {
-  const YamlMap map(source, "", parseYaml(content, source),
-                    {"route", "plan", "description", "start", "speed", "steps", "people"});
+  const YamlMap map(
+      source, "", parseYaml(content, source),
+      {"route", "plan", "description", "start", "speed", "direct", "steps", "people"});
   Route route;
   route.source = source;
   route.name = map.text("route");
@@ -145,6 +146,7 @@ Route parseRoute(const std::string& content, const std::string& source) {
   } else {
     route.start = readSpot(source, "start", start);
   }
+  route.direct = map.has("direct") && map.boolean("direct");
   if (map.has("speed")) route.speed = map.number("speed", 0.05, 1.4);
   readSteps(source, "steps", map.child("steps"), route.steps);
   if (route.steps.empty()) map.fail("steps", "there must be at least one step");

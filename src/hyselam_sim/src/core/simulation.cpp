@@ -16,6 +16,7 @@ namespace {
 constexpr double kPlannerResolution = 0.05;
 constexpr double kPlanAhead = 2.0;                     // [m] before the end of a leg
 constexpr double kTurnBack = hyselam::radians(100.0);  // sharper turns are made on the spot
+constexpr double kPlaceRadius = 1.2;                   // who comes this near passes a place [m]
 constexpr double kPersonalSpace = 0.75;                // people step aside within this [m]
 constexpr double kExactBelow = 0.1;  // the grid's clearance is checked exactly below radius + this
 
@@ -203,10 +204,26 @@ class Run {
       const auto found = world_->ways.find(key);
       if (found != world_->ways.end()) return found->second;
     }
-    std::optional<std::vector<Point2>> way = planPath(world_->clearance, from, to, params_.planner);
+    std::optional<std::vector<Point2>> way =
+        planPath(route_.direct ? withoutPlaces(world_->clearance, from, to) : world_->clearance,
+                 from, to, params_.planner);
+    if (!way && route_.direct && planPath(world_->clearance, from, to, params_.planner)) {
+      fail(leg(step), "no way leads there without passing another place (key 'direct')");
+    }
     if (!way) fail(leg(step), whyNoWay(from, to));
     if (known) world_->ways.emplace(key, *way);
     return *way;
+  }
+
+  // The other places as obstacles.
+  ClearanceMap withoutPlaces(const ClearanceMap& clearance, Point2 from, Point2 to) const {
+    std::vector<Point2> others;
+    for (const Place& place : plan_.places) {
+      if (length(place.at - from) > kPlaceRadius && length(place.at - to) > kPlaceRadius) {
+        others.push_back(place.at);
+      }
+    }
+    return clearance.without(others, kPlaceRadius);
   }
 
   std::string whyNoWay(Point2 from, Point2 to) const {
