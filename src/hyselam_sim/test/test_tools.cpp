@@ -1,0 +1,124 @@
+// The tools as a shell sees them: exit codes, one line of error, byte-identical bags.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+class Tools : public testing::Test {
+ protected:
+  Tools() {
+    std::string name = (fs::temp_directory_path() / "hyselam_sim_XXXXXX").string();
+    directory_ = mkdtemp(name.data());
+  }
+  ~Tools() override { fs::remove_all(directory_); }
+
+  fs::path file(const std::string& name) const { return directory_ / name; }
+
+  int run(const std::string& tool, const std::string& arguments) {
+    const std::string command = "\"" + tool + "\" " + arguments + " >" + file("stdout").string() +
+                                " 2>" + file("stderr").string();
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int simulate(const std::string& arguments) { return run(HYSELAM_SIMULATE, arguments); }
+
+  void expectError(int status, const std::string& part) {
+    const std::string error = content(file("stderr"));
+    EXPECT_EQ(status, 2) << error;
+    EXPECT_EQ(error.rfind("error: ", 0), 0U) << error;
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+  }
+
+  fs::path directory_;
+};
+
+TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {
+  for (const char* name : {"a", "b"}) {
+    ASSERT_EQ(simulate("--plan small --route small --seed 5 --out " +
+                       file(std::string(name) + ".bag").string()),
+              0)
+        << content(file("stderr"));
+  }
+  ASSERT_EQ(simulate("--plan small --route small --seed 6 --out " + file("c.bag").string()), 0);
+  const std::string a = content(file("a.bag"));
+  EXPECT_GT(a.size(), 100000U);
+  EXPECT_TRUE(a == content(file("b.bag")));
+  EXPECT_FALSE(a == content(file("c.bag")));
+}
+
+TEST_F(Tools, WritesBagMapPictureAndJson) {
+  ASSERT_EQ(simulate("--route small --out " + file("o.bag").string() + " --map " +
+                     file("m.yaml").string() + " --resolution 0.05 --picture " +
+                     file("p.png").string() + " --json " + file("j.json").string()),
+            0)
+      << content(file("stderr"));
+  const hyselam::RobotLog log = hyselam::readBag(file("o.bag").string());
+  const auto json = nlohmann::json::parse(content(file("j.json")));
+  EXPECT_EQ(json["scans"], log.scans.size());
+  EXPECT_EQ(log.ground_truth.size(), log.odometry.size());
+  EXPECT_NEAR(log.scans.at(0).laser_in_base.x, 0.1, 1e-9);
+  EXPECT_GT(json["times_real_time"], 1.0);
+  EXPECT_EQ(hyselam::loadMap(file("m.yaml").string()).geometry.width, 180);
+  EXPECT_GT(fs::file_size(file("p.png")), 1000U);
+}
+
+TEST_F(Tools, PlanToMapWritesTheMap) {
+  ASSERT_EQ(run(HYSELAM_PLAN_TO_MAP, "mcl_c " + file("m.yaml").string()), 0)
+      << content(file("stderr"));
+  const hyselam::OccupancyGrid grid = hyselam::loadMap(file("m.yaml").string());
+  EXPECT_EQ(grid.geometry.width, 262);
+  EXPECT_EQ(grid.geometry.origin.x, -0.6);
+}
+
+TEST_F(Tools, Help) {
+  EXPECT_EQ(simulate("--help"), 0);
+  EXPECT_EQ(run(HYSELAM_PLAN_TO_MAP, "--help"), 0);
+}
+
+TEST_F(Tools, BadUsage) {
+  expectError(simulate("--plan small"), "--");
+}
+TEST_F(Tools, UnknownPlan) {
+  expectError(simulate("--plan smal --route small --out " + file("o.bag").string()),
+              "did you mean 'small'?");
+}
+TEST_F(Tools, MissingRouteFile) {
+  expectError(simulate("--route nowhere.yaml --out " + file("o.bag").string()), "nowhere.yaml");
+}
+TEST_F(Tools, UnwritableBag) {
+  expectError(simulate("--route small --out /nowhere/o.bag"), "/nowhere/o.bag");
+}
+TEST_F(Tools, UnknownPictureFormat) {
+  expectError(simulate("--route small --out " + file("o.bag").string() + " --picture " +
+                       file("p.xyz").string()),
+              "p.xyz");
+}
+TEST_F(Tools, BadResolution) {
+  expectError(run(HYSELAM_PLAN_TO_MAP, "small " + file("m.yaml").string() + " --resolution -1"),
+              "resolution");
+}
+TEST_F(Tools, RouteOfAnotherPlan) {
+  expectError(simulate("--plan small --route mcl_b --out " + file("o.bag").string()),
+              "key 'start'");
+}
+
+}  // namespace
