@@ -9,12 +9,12 @@
 
 namespace fsd_localization {
 
+/// Distances between cell centres [m], row-major; the map's diagonal where there is no such cell at
+/// all.
 struct DistanceField {
   hyselam::GridGeometry geometry;
-  std::vector<float> metres;  ///< centre to centre [m], row-major; 0 on obstacles; the map's
-                              ///< diagonal where there is no obstacle at all
-
-  float at(hyselam::Cell c) const { return metres[geometry.index(c)]; }
+  std::vector<float> to_occupied;  ///< 0 on occupied cells
+  std::vector<float> to_open;      ///< to the nearest cell that is not occupied; 0 on all but these
 };
 
 /// Euclidean, exact. @throws hyselam::InputError for a grid whose cell count does not fit its size.

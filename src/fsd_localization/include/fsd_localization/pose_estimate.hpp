@@ -24,8 +24,8 @@ struct PoseEstimate {
   double positionStddev() const;
 };
 
-/// The mean and covariance of the heaviest cluster. While the particles fill thousands of bins each bin
-/// counts as a cluster of its own. Without any weight there is no cluster (share 0).
+/// The mean and covariance of the heaviest cluster. While the particles fill thousands of bins each
+/// bin counts as a cluster of its own. Without any weight there is no cluster (share 0).
 PoseEstimate estimatePose(const Particles& particles, const ClusterParams& params = {});
 
 }  // namespace fsd_localization

@@ -66,19 +66,24 @@ class CosineModel final : public ObservationModel {
 };
 
 struct LikelihoodFieldParams {
-  int max_beams = 60;
+  int max_beams = 180;
   double max_range = 30.0;          ///< [m]
   double z_hit = 0.9;               ///< share of returns from mapped obstacles
   double z_rand = 0.1;              ///< share of returns from anywhere
-  double sigma_hit = 0.15;          ///< [m]
+  double sigma_hit = 0.1;          ///< [m]
   double max_distance = 1.0;        ///< beyond it an obstacle is simply not there [m]
-  double independent_beams = 10.0;  ///< the beams of a scan count as this many independent ones
+  double independent_beams = 60.0;  ///< the beams of a scan count as this many independent ones
   double occupied_penalty = 0.05;   ///< factor for a pose on a cell that is not free
+  double surface_offset = 0.5;  ///< from the centre of a wall's outermost cell out to its surface
+                                ///< [cells]: 0.5 on drawn plans, 0 where cells mark laser returns
 
   void validate() const;  ///< @throws hyselam::ParameterError
 };
 
-/// The likelihood of a return as one byte per cell.
+/// The likelihood of a return by its distance from the surface of the nearest obstacle, outside or
+/// inside of it: a wall's inside is no better than the air before it, so thick walls do not draw
+/// the robot towards them. One byte per cell; coarse maps are refined, so that a cell does not
+/// limit the accuracy.
 class LikelihoodFieldModel final : public ObservationModel {
  public:
   LikelihoodFieldModel(const hyselam::OccupancyGrid& map, const LikelihoodFieldParams& params = {},
@@ -92,12 +97,26 @@ class LikelihoodFieldModel final : public ObservationModel {
                                        const hyselam::Pose2& base_in_grid, double tolerance) const;
 
  private:
+  /// Ends of the beams in the base frame [fine cells], and the cells they fall on for one pose.
+  struct Ends {
+    std::vector<float> x, y;
+    std::vector<std::int32_t> cell;
+  };
+  Ends endsOf(const BeamSample& beams) const;
+  void lookUp(float px, float py, BinaryAngle heading, Ends& ends) const;
+  /// From the surface of the nearest obstacle [m]; position in cells, (0, 0) the first cell's
+  /// centre.
+  double surfaceDistance(const DistanceField& distance, double x, double y) const;
+
   LikelihoodFieldParams params_;
-  DistanceField distance_;
-  int padded_width_;
-  std::vector<std::uint8_t> cost_;  // -log likelihood in steps of step_, framed by one far cell
+  hyselam::GridGeometry geometry_;
+  double fine_resolution_ = 0.0;  // [m]
+  int fine_width_ = 0;            // the frame of one far cell included
+  int fine_height_ = 0;
+  std::vector<std::uint8_t> cost_;  // -log likelihood in steps of step_
   std::vector<bool> free_;
-  double step_;
+  double step_ = 0.0;
+  double best_ = 0.0;  // log likelihood at distance 0
 };
 
 }  // namespace fsd_localization

@@ -32,8 +32,8 @@ class PoseBins {
   int add(const Particles& p, std::size_t i) {
     const int x = static_cast<int>(std::floor(p.x[i] * per_metre_));
     const int y = static_cast<int>(std::floor(p.y[i] * per_metre_));
-    const int a =
-        static_cast<int>((static_cast<std::uint64_t>(p.heading[i]) * static_cast<unsigned>(turn_)) >> 32);
+    const int a = static_cast<int>(
+        (static_cast<std::uint64_t>(p.heading[i]) * static_cast<unsigned>(turn_)) >> 32);
     if (last_ < 0 || !is(last_, x, y, a)) {  // neighbours in memory mostly share their bin
       std::int32_t& slot = table_[slotOf(x, y, a)];
       if (slot < 0) {

@@ -73,7 +73,8 @@ PoseEstimate estimatePose(const Particles& p, const ClusterParams& params) {
       weights.push_back(b.weight);
     }
   }
-  const int best = static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  const int best =
+      static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin());
   for (double w : weights) result.clusters += w >= 0.01 * total ? 1 : 0;
   const double weight = weights[static_cast<std::size_t>(best)];
   result.share = weight / total;

@@ -21,7 +21,9 @@ struct OccupancyMapperParameters {
   /// A cell is occupied if hits / (hits + misses) is above; (0, 1). Low, because a thin wall is
   /// also missed by beams that graze it.
   double occupied_ratio = 0.25;
-  std::uint32_t min_observations = 1;            ///< cells seen less often stay unknown; >= 1
+  /// Cells seen less often stay unknown; >= 1. More than 1 drops the rays that slip through walls
+  /// where a single pose is a little off.
+  std::uint32_t min_observations = 2;
   std::size_t max_cells = std::size_t{1} << 28;  ///< growth beyond is refused
 };
 

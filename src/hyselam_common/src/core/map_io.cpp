@@ -3,16 +3,17 @@
 #include <sys/stat.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "numbers.hpp"
+#include "pgm.hpp"
 
 namespace hyselam {
 namespace {
@@ -121,6 +122,14 @@ MapFile readMapFile(const std::string& path) {
   return map;
 }
 
+/// Told here, since the decoder would write to stderr.
+bool isTruncatedPng(const std::string& bytes) {
+  constexpr char kSignature[] = "\x89PNG\r\n";
+  constexpr std::size_t kTail = 64;  // the last chunk may be followed by a little padding
+  return bytes.compare(0, sizeof kSignature - 1, kSignature) == 0 &&
+         bytes.find("IEND", bytes.size() - std::min(bytes.size(), kTail)) == std::string::npos;
+}
+
 cv::Mat readImage(const std::string& yaml_path, const std::string& path, std::size_t max_cells) {
   const auto fail = [&](const std::string& reason) {
     throw InputError(yaml_path, "key 'image'", path + ": " + reason);
@@ -129,11 +138,23 @@ cv::Mat readImage(const std::string& yaml_path, const std::string& path, std::si
   if (::stat(path.c_str(), &info) != 0) fail("no such image");
   if (S_ISDIR(info.st_mode)) fail("is a directory, not an image");
   if (info.st_size == 0) fail("is empty");
+  const std::string bytes = readTextFile(path);
   cv::Mat image;
   try {
-    image = cv::imread(path, cv::IMREAD_UNCHANGED);
+    if (isPgm(bytes)) {
+      image = decodePgm(bytes, max_cells);
+    } else if (isTruncatedPng(bytes)) {
+      fail("is truncated");
+    } else {
+      const std::vector<char> buffer(bytes.begin(), bytes.end());
+      image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+    }
   } catch (const cv::Exception& e) {
     fail("cannot be decoded (" + e.err + ")");
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    fail(e.what());
   }
   if (image.empty()) fail("is not an image that can be decoded");
   if (image.total() > max_cells) {

@@ -22,6 +22,8 @@ std::vector<std::size_t> longestOrdered(const std::vector<double>& stamps, bool 
                                   [&](std::size_t t, double s) { return stamps[t] < s; })
                : std::upper_bound(tails.begin(), tails.end(), stamps[i],
                                   [&](double s, std::size_t t) { return s < stamps[t]; });
+    // Of two equal stamps the first one stays.
+    if (strict && position != tails.end() && stamps[*position] == stamps[i]) continue;
     if (position != tails.begin()) previous[i] = *(position - 1);
     if (position == tails.end()) {
       tails.push_back(i);

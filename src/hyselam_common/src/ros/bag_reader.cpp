@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 
+#include "bag_structure.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
@@ -147,8 +148,37 @@ std::optional<tf2::Transform> chain(const Content& content, const std::string& b
   return found->second;
 }
 
+/// Whether the list in a message fits into it. roscpp would take the memory for any stated length
+/// before it looks.
+bool statedLengthsFit(const rosbag::MessageInstance& m) {
+  constexpr std::size_t kHeader = 12;             // seq, stamp; the frame's name follows
+  constexpr std::size_t kScanNumbers = 7 * 4;     // between the header and the ranges
+  constexpr std::size_t kSmallestTransform = 76;  // with empty names
+  std::vector<std::uint8_t> bytes(m.size());
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  m.write(stream);
+  const auto numberAt = [&](std::size_t at) -> std::optional<std::size_t> {
+    if (at + 4 > bytes.size()) return std::nullopt;
+    return bytes[at] + (bytes[at + 1] << 8) + (bytes[at + 2] << 16) +
+           (static_cast<std::size_t>(bytes[at + 3]) << 24);
+  };
+  if (m.getDataType() == "sensor_msgs/LaserScan") {
+    const auto name = numberAt(kHeader);
+    const auto ranges = name ? numberAt(kHeader + 4 + *name + kScanNumbers) : std::nullopt;
+    if (!ranges || *ranges * 4 > bytes.size()) return false;
+    const auto intensities = numberAt(kHeader + 4 + *name + kScanNumbers + 4 + *ranges * 4);
+    return intensities && *intensities * 4 <= bytes.size();
+  }
+  if (m.getDataType() == "tf2_msgs/TFMessage" || m.getDataType() == "tf/tfMessage") {
+    const auto transforms = numberAt(0);
+    return transforms && *transforms * kSmallestTransform <= bytes.size();
+  }
+  return true;
+}
+
 template <typename T>
 boost::shared_ptr<T> decode(const rosbag::MessageInstance& m, const std::string& source) {
+  if (!statedLengthsFit(m)) throw InputError(source, "", "the message is damaged (wrong lengths)");
   try {
     if (auto msg = m.instantiate<T>()) return msg;
   } catch (const InputError&) {
@@ -244,6 +274,7 @@ RobotLog readBag(const std::string& path, const BagOptions& options) {
   }
   const UnpackedBag unpacked(path);
   try {
+    checkBagStructure(unpacked.name(), path);
     rosbag::Bag bag(unpacked.name(), rosbag::bagmode::Read);
     return assemble(readContent(bag, path, options), path, options);
   } catch (const rosbag::BagUnindexedException&) {

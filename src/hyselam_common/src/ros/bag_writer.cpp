@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 #include "hyselam_common/atomic_file.hpp"
@@ -81,6 +83,18 @@ boost::shared_ptr<ros::M_string> latchedHeader(const std::string& topic) {
   return header;
 }
 
+/// The order of messages with one stamp. A player sorts by the time of recording and puts equal
+/// times in any order, so each kind is recorded some nanoseconds after its stamp, as a real
+/// recorder would; the transform of a scan is then known when the scan arrives.
+enum class Rank : std::uint32_t { kStatic, kTransform, kOdometry, kTruth, kScan };
+
+ros::Time recorded(const ros::Time& stamp, Rank rank) {
+  const std::uint32_t later = stamp.nsec + static_cast<std::uint32_t>(rank);
+  if (later < 1000000000U) return ros::Time(stamp.sec, later);
+  if (stamp.sec == std::numeric_limits<std::uint32_t>::max()) return stamp;
+  return ros::Time(stamp.sec + 1, later - 1000000000U);
+}
+
 void writeMessages(rosbag::Bag& bag, const RobotLog& log, const BagOptions& options) {
   const double begin = timeSpan(log)->begin;
   if (!log.scans.empty()) {
@@ -88,10 +102,9 @@ void writeMessages(rosbag::Bag& bag, const RobotLog& log, const BagOptions& opti
     const ros::Time stamp = toRosTime(begin, "log");
     fixed.transforms.push_back(
         transform(stamp, options.base_frame, options.laser_frame, log.scans.front().laser_in_base));
-    bag.write("/tf_static", stamp, fixed, latchedHeader("/tf_static"));
+    bag.write("/tf_static", recorded(stamp, Rank::kStatic), fixed, latchedHeader("/tf_static"));
   }
-  // Three ordered lists merged; at equal times the odometry comes first, so that the transform of a
-  // scan is known when the scan arrives.
+  // Three ordered lists merged.
   std::size_t i_odometry = 0, i_truth = 0, i_scan = 0;
   constexpr double kNever = std::numeric_limits<double>::infinity();
   for (;;) {
@@ -107,15 +120,15 @@ void writeMessages(rosbag::Bag& bag, const RobotLog& log, const BagOptions& opti
       tf2_msgs::TFMessage tf;
       tf.transforms.push_back(transform(msg.header.stamp, options.odom_frame, options.base_frame,
                                         log.odometry[i_odometry].pose));
-      bag.write("/tf", msg.header.stamp, tf);
-      bag.write(options.odometry_topic, msg.header.stamp, msg);
+      bag.write("/tf", recorded(msg.header.stamp, Rank::kTransform), tf);
+      bag.write(options.odometry_topic, recorded(msg.header.stamp, Rank::kOdometry), msg);
       ++i_odometry;
     } else if (t_truth == next) {
       const auto msg = odometry(log.ground_truth, i_truth++, options.map_frame, options.base_frame);
-      bag.write(options.ground_truth_topic, msg.header.stamp, msg);
+      bag.write(options.ground_truth_topic, recorded(msg.header.stamp, Rank::kTruth), msg);
     } else {
       const auto msg = toMsg(log.scans[i_scan++], options.laser_frame);
-      bag.write(options.scan_topic, msg.header.stamp, msg);
+      bag.write(options.scan_topic, recorded(msg.header.stamp, Rank::kScan), msg);
     }
   }
 }

@@ -30,11 +30,13 @@ int main(int argc, char** argv) {
       "of these that the log has");
   app.add_option("--range-max", carmen.range_max,
                  "at or above it a reading means no return [m]; 0: from the log");
-  app.add_option("--clock", carmen.clock, "times: logger, ipc, or index (message number * period)")
-      ->transform(CLI::CheckedTransformer(clocks));
+  std::string clock = "logger";
+  app.add_option("--clock", clock, "times: logger, ipc, or index (message number * period)")
+      ->check(CLI::IsMember({"logger", "ipc", "index"}));
   app.add_option("--index-period", carmen.index_period, "period of --clock index [s]");
 
   return hyselam::runTool(argc, argv, app, [&] {
+    carmen.clock = clocks.at(clock);
     std::vector<hyselam::CarmenIssue> issues;
     const hyselam::RobotLog log = hyselam::readCarmenLog(in, carmen, &issues);
     const nlohmann::json list = hyselam::reportIssues(in, issues);

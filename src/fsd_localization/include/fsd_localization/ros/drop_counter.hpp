@@ -1,0 +1,40 @@
+// What was not used, why, and how often: told in the log now and then, and in the diagnostics.
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+#include <ros/time.h>
+
+#include <map>
+#include <string>
+
+namespace fsd_localization {
+
+/// Not thread safe: for the callbacks of one queue.
+class DropCounter {
+ public:
+  /// @param who begins the warnings ("[/localization]").
+  explicit DropCounter(std::string who) : who_(std::move(who)) {}
+
+  /// Counts one scan; warns at the first one of a reason, then at most once in ten seconds.
+  /// @param reason a fixed word or two ("no transform"), @param detail what is special this time.
+  void drop(const std::string& reason, const std::string& detail);
+
+  std::size_t total() const { return total_; }
+  std::size_t count(const std::string& reason) const;
+  /// Reason and detail of the last one; empty at first.
+  const std::string& last() const { return last_; }
+  /// One value per reason: "dropped: no transform" = 12.
+  void report(diagnostic_msgs::DiagnosticStatus& status) const;
+
+ private:
+  struct Tally {
+    std::size_t count = 0;
+    ros::WallTime told;
+  };
+  std::string who_;
+  std::map<std::string, Tally> tallies_;
+  std::size_t total_ = 0;
+  std::string last_;
+};
+
+}  // namespace fsd_localization

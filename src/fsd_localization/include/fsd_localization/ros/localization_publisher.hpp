@@ -1,0 +1,40 @@
+// Everything that the localisation tells the world.
+#pragma once
+
+#include <hyselam_msgs/LocalizationStatus.h>
+#include <ros/ros.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include "fsd_localization/localizer.hpp"
+#include "fsd_localization/ros/parameters.hpp"
+#include "fsd_localization/ros/rate_limit.hpp"
+
+namespace fsd_localization {
+
+class LocalizationPublisher {
+ public:
+  LocalizationPublisher(ros::NodeHandle nh, const LocalizationServerParams& params);
+
+  /// `density_field`, latched, when a map is ready.
+  void publishMap(const Localizer& localizer);
+  /// `amcl_pose` and `localization_status` at each update; `particlecloud`, `local_map` and
+  /// `fsd_markers` only while someone listens, and not more often than gui_publish_rate.
+  void publishUpdate(const Localizer& localizer, const LocalizationResult& result,
+                     double update_ms, const ros::Time& stamp);
+  /// `localization_status` without an update: the robot knows nothing, and why.
+  void publishUnknown(const std::string& text, std::size_t particles);
+  /// tf global frame -> odom, valid from `stamp` + transform_tolerance.
+  void broadcast(const hyselam::Pose2& odom_in_map, const ros::Time& stamp);
+
+ private:
+  void show(const Localizer& localizer, const std_msgs::Header& in_map);
+  std_msgs::Header header(const ros::Time& stamp, const std::string& frame) const;
+
+  LocalizationServerParams params_;
+  RateLimit gui_rate_;
+  bool markers_shown_ = false;
+  ros::Publisher pose_, status_, cloud_, density_field_, local_map_, markers_;
+  tf2_ros::TransformBroadcaster tf_;
+};
+
+}  // namespace fsd_localization

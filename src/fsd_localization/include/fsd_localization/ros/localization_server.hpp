@@ -1,0 +1,77 @@
+// Where am I on this map, on amcl's interface.
+#pragma once
+
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <nav_msgs/SetMap.h>
+#include <ros/ros.h>
+#include <std_srvs/Empty.h>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "fsd_localization/ros/diagnostics.hpp"
+#include "fsd_localization/ros/initial_pose.hpp"
+#include "fsd_localization/ros/localization_publisher.hpp"
+#include "fsd_localization/ros/map_preparation.hpp"
+#include "fsd_localization/ros/scan_input.hpp"
+
+namespace fsd_localization {
+
+/// Topics, services, parameters and tf: see README.md. All callbacks run on the queue of `nh`, one
+/// at a time; a new map is prepared in a thread of its own and taken over between two callbacks.
+class LocalizationServer {
+ public:
+  /// Reads and checks the parameters of `private_nh`, before anything is subscribed.
+  /// @throws hyselam::ParameterError.
+  LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh);
+
+ private:
+  // Maps.
+  void onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg);
+  bool prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source);
+  void takeOverMap();
+
+  // Scans.
+  bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
+              const ros::Time& stamp);
+  void noteResult(const LocalizationResult& result, const hyselam::Pose2& base_in_odom);
+  void onTimeBack();
+  void savePose(const LocalizationResult& result);
+
+  // Guesses and orders from outside.
+  void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
+  void startAt(const InitialPose& pose);
+  void startLost(const std::string& why);
+  bool onSetMap(nav_msgs::SetMap::Request& request, nav_msgs::SetMap::Response& response);
+
+  void report(diagnostic_msgs::DiagnosticStatus& status);
+
+  ros::NodeHandle private_nh_;
+  std::string who_;
+  LocalizationServerParams params_;
+  LocalizationPublisher publisher_;
+  MapPreparation preparation_;
+  std::unique_ptr<Localizer> localizer_;
+  std::uint64_t fingerprint_ = 0;  // of the newest map that came by topic or set_map
+  mutable std::atomic<bool> map_seen_{false};  // a map that looks usable has come
+  std::string map_error_;                       // of the newest map; empty: it is good
+  std::optional<InitialPose> pending_initial_;  // for the map that is being prepared
+  std::optional<LocalizationResult> last_result_;
+  std::optional<hyselam::Pose2> odom_in_map_;  // what tf says
+  bool guided_ = false;  // an initial pose was given, and nothing has converged since
+  bool force_update_ = false;
+  double update_ms_ = 0.0;
+  std::size_t updates_ = 0;
+  ros::WallTime saved_;
+
+  ScanInput input_;
+  Diagnostics diagnostics_;
+  ros::WallTimer map_timer_;
+  ros::Subscriber map_subscriber_, initial_pose_subscriber_;
+  ros::ServiceServer global_service_, update_service_, set_map_service_;
+};
+
+}  // namespace fsd_localization

@@ -1,0 +1,63 @@
+// Parameters of the two servers, and the one place where the parameter server fills them. The names
+// are amcl's where the meaning is the same; README.md holds the table.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "fsd_localization/localizer.hpp"
+#include "hyselam_common/ros/params.hpp"
+
+namespace fsd_localization {
+
+/// How scans come in, for both servers.
+struct ScanInputParams {
+  std::string odom_frame_id = "odom";       ///< frame in which the robot moves smoothly
+  std::string base_frame_id = "base_link";  ///< frame of the robot
+  double transform_wait = 0.5;  ///< a scan waits at most this long for its odometry [s]
+  int queue_size = 100;         ///< scans that may wait; the oldest is dropped first
+};
+
+struct FsdServerParams {
+  ScanInputParams input;
+  FsdSensorParams sensor;
+  double update_min_d = 0.1;      ///< travel between observations [m]; 0: one per scan
+  double update_min_a = 0.0;      ///< turn between observations [rad]; 0: turning alone gives none
+  double gui_publish_rate = 5.0;  ///< of local_map and fsd_markers [Hz]; -1: no limit
+  double diagnostic_period = 1.0;  ///< [s]
+};
+
+/// Base in the map frame with standard deviations [m, m, rad].
+struct InitialPose {
+  hyselam::Pose2 base_in_map;
+  hyselam::Pose2 stddev;
+};
+
+struct LocalizationServerParams {
+  ScanInputParams input;
+  LocalizerParams localizer;
+  std::string global_frame_id = "map";
+  bool use_map_topic = false;    ///< map from the topic `map`, else from the service `static_map`
+  bool first_map_only = false;   ///< later maps are ignored
+  int max_map_cells = 50000000;  ///< a larger map is refused
+  std::string cache_dir;         ///< density fields are kept there between runs; empty: nowhere
+  bool tf_broadcast = true;
+  bool publish_unconverged_tf = false;  ///< map -> odom from guesses too, as amcl does
+  double transform_tolerance = 0.1;     ///< map -> odom is dated this far into the future [s]
+  double save_pose_rate = 0.5;  ///< of saving the pose on the parameter server [Hz]; -1: never
+  double gui_publish_rate = -1.0;  ///< of particlecloud, local_map, fsd_markers [Hz]; -1: no limit
+  int max_cloud_particles = 5000;  ///< in particlecloud; of more, a fair sample
+  int density_field_kernel = 1;    ///< index into the kernels; -1: density_field is not published
+  double diagnostic_period = 1.0;  ///< [s]
+  std::optional<InitialPose> initial_pose;  ///< empty: the robot knows nothing at the start
+};
+
+/// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.
+FsdServerParams loadFsdParams(hyselam::ParamLoader& loader);
+/// As above. Names of amcl that mean nothing here are taken as known; see ignoredAmclParams().
+LocalizationServerParams loadLocalizationParams(hyselam::ParamLoader& loader);
+
+/// Parameters of amcl that are set but have no effect here, one sentence each.
+std::vector<std::string> ignoredAmclParams(const hyselam::ParamLoader& loader);
+
+}  // namespace fsd_localization

@@ -1,0 +1,348 @@
+#include "fsd_localization/ros/localization_server.hpp"
+
+#include <nav_msgs/GetMap.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "fsd_localization/ros/server_setup.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/ros/conversions.hpp"
+
+namespace fsd_localization {
+
+using hyselam::Pose2;
+
+namespace {
+
+constexpr double kTakeOverEvery = 0.05;  // [s] while a map is being prepared
+constexpr double kAskEvery = 0.5;        // [s] for the service static_map
+
+LocalizationServerParams loadParams(const ros::NodeHandle& private_nh) {
+  for (const std::string& sentence : ignoredAmclParams(hyselam::ParamLoader(private_nh)))
+    ROS_WARN_STREAM(logName(private_nh) << " " << sentence);
+  return loadAndTell(private_nh, loadLocalizationParams);
+}
+
+hyselam::OccupancyGrid checkedMap(const nav_msgs::OccupancyGrid& msg,
+                                  const LocalizationServerParams& params,
+                                  const std::string& source) {
+  std::string frame = msg.header.frame_id;
+  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+  if (frame != params.global_frame_id)
+    throw hyselam::InputError(source, "frame_id",
+                              "is '" + frame + "', but global_frame_id is '" +
+                                  params.global_frame_id + "'");
+  const double cells = static_cast<double>(msg.info.width) * static_cast<double>(msg.info.height);
+  if (cells > params.max_map_cells)
+    throw hyselam::InputError(source, "size",
+                              std::to_string(msg.info.width) + " x " +
+                                  std::to_string(msg.info.height) +
+                                  " cells are more than max_map_cells, " +
+                                  std::to_string(params.max_map_cells));
+  return hyselam::fromMsg(msg, source);
+}
+
+/// Calls static_map until it answers.
+MapPreparation::Source mapService(ros::NodeHandle nh, const LocalizationServerParams& params,
+                                  const std::string& who, std::atomic<bool>& map_seen) {
+  return [nh, params, who, &map_seen](
+             const std::function<bool()>& cancelled) mutable -> std::optional<hyselam::OccupancyGrid> {
+    ros::ServiceClient client = nh.serviceClient<nav_msgs::GetMap>("static_map");
+    while (ros::ok() && !cancelled()) {
+      nav_msgs::GetMap call;
+      if (client.exists() && client.call(call)) {
+        hyselam::OccupancyGrid map =
+            checkedMap(call.response.map, params, "service " + client.getService());
+        map_seen = true;
+        return map;
+      }
+      ROS_INFO_STREAM_THROTTLE(10.0, who << " waiting for a map from the service "
+                                         << client.getService());
+      for (double waited = 0.0; waited < kAskEvery && !cancelled(); waited += kTakeOverEvery)
+        ros::WallDuration(kTakeOverEvery).sleep();
+    }
+    return std::nullopt;
+  };
+}
+
+}  // namespace
+
+LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
+    : private_nh_(private_nh),
+      who_(logName(private_nh)),
+      params_(loadParams(private_nh)),
+      publisher_(nh, params_),
+      preparation_(params_.localizer, params_.cache_dir),
+      pending_initial_(params_.initial_pose),
+      input_(
+          nh, params_.input, who_,
+          [this](const hyselam::LaserScan& scan, const Pose2& base_in_odom,
+                 const ros::Time& stamp) { return onScan(scan, base_in_odom, stamp); },
+          [this] { onTimeBack(); }),
+      diagnostics_(nh, private_nh.getNamespace().substr(1) + ": localisation",
+                   params_.diagnostic_period,
+                   [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }),
+      map_timer_(nh.createWallTimer(
+          ros::WallDuration(kTakeOverEvery),
+          [this](const ros::WallTimerEvent&) { takeOverMap(); }, false, !params_.use_map_topic)) {
+  using Empty = std_srvs::Empty;
+  if (params_.use_map_topic)
+    map_subscriber_ = nh.subscribe("map", 1, &LocalizationServer::onMap, this);
+  else
+    preparation_.start(mapService(nh, params_, who_, map_seen_));
+  initial_pose_subscriber_ =
+      nh.subscribe("initialpose", 2, &LocalizationServer::onInitialPose, this);
+  global_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
+      "global_localization", [this](Empty::Request&, Empty::Response&) {
+        startLost("asked to by the service global_localization");
+        return true;
+      });
+  update_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
+      "request_nomotion_update", [this](Empty::Request&, Empty::Response&) {
+        force_update_ = true;
+        return true;
+      });
+  set_map_service_ = nh.advertiseService("set_map", &LocalizationServer::onSetMap, this);
+}
+
+// ---- maps
+
+void LocalizationServer::onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg) {
+  if (params_.first_map_only && map_seen_) {
+    ROS_INFO_STREAM(who_ << " another map is ignored (first_map_only)");
+    return;
+  }
+  prepare(*msg, map_subscriber_.getTopic());
+}
+
+bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source) {
+  hyselam::OccupancyGrid map;
+  try {
+    map = checkedMap(msg, params_, source);
+  } catch (const hyselam::InputError& e) {
+    map_error_ = e.what();
+    ROS_ERROR_STREAM(who_ << " map refused: " << e.what()
+                          << (localizer_ ? "; the map before stays" : ""));
+    return false;
+  }
+  const std::uint64_t fingerprint = FsdMap::fingerprint(map, params_.localizer.map);
+  if (map_seen_ && fingerprint == fingerprint_ && map_error_.empty()) {
+    ROS_INFO_STREAM(who_ << " the same map again, nothing to do");
+    return true;
+  }
+  fingerprint_ = fingerprint;
+  map_seen_ = true;
+  map_error_.clear();
+  ROS_INFO_STREAM(who_ << " preparing a map of " << map.geometry.width << " x "
+                       << map.geometry.height << " cells of " << map.geometry.resolution << " m");
+  preparation_.start([map = std::move(map)](const std::function<bool()>&) { return map; });
+  map_timer_.start();
+  return true;
+}
+
+void LocalizationServer::takeOverMap() {
+  std::optional<MapPreparation::Outcome> outcome = preparation_.take();
+  if (!preparation_.busy()) map_timer_.stop();
+  if (!outcome) return;
+  if (!outcome->localizer) {
+    map_error_ = outcome->error;
+    if (!map_error_.empty())
+      ROS_ERROR_STREAM(who_ << " map refused: " << map_error_
+                            << (localizer_ ? "; the map before stays" : ""));
+    return;
+  }
+  // A corrected map of the same place shall not make a robot lost that knows where it is.
+  std::optional<InitialPose> start = pending_initial_;
+  if (!start && last_result_ && last_result_->converged) {
+    const auto deviation = [&](int i) { return std::max(0.25, std::sqrt(last_result_->covariance(i, i))); };
+    start = InitialPose{last_result_->base_in_map, {deviation(0), deviation(1), deviation(2)}};
+  }
+  pending_initial_.reset();
+  localizer_ = std::move(outcome->localizer);
+  map_error_.clear();
+  const FsdMap& map = localizer_->map();
+  ROS_INFO_STREAM(who_ << " map ready: " << map.freeCells().size() << " free cells, "
+                       << map.kernelCount() << " density fields "
+                       << (outcome->cached ? "read" : "computed") << " in " << outcome->seconds
+                       << " s, " << map.bytes() / 1000000.0 << " MB");
+  publisher_.publishMap(*localizer_);
+  if (start)
+    startAt(*start);
+  else
+    startLost("a new map");
+}
+
+// ---- scans
+
+bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odom,
+                                const ros::Time& stamp) {
+  takeOverMap();
+  if (!localizer_) {
+    if (!map_seen_)
+      input_.drops().drop("no map", "none has come yet");
+    else
+      input_.drops().drop("map not ready", map_error_.empty() ? "it is being prepared" : map_error_);
+    return false;
+  }
+  const ros::WallTime begin = ros::WallTime::now();
+  const auto result = localizer_->update(scan, base_in_odom, force_update_);
+  if (result) {
+    update_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
+    force_update_ = false;
+    ++updates_;
+    noteResult(*result, base_in_odom);
+    publisher_.publishUpdate(*localizer_, *result, update_ms_, stamp);
+    savePose(*result);
+  }
+  // Between updates too: tf listeners need transforms that cover the present.
+  if (odom_in_map_ && params_.tf_broadcast) publisher_.broadcast(*odom_in_map_, stamp);
+  return true;
+}
+
+void LocalizationServer::noteResult(const LocalizationResult& result, const Pose2& base_in_odom) {
+  if (!last_result_ || last_result_->phase != result.phase ||
+      last_result_->converged != result.converged)
+    ROS_INFO_STREAM(who_ << " " << toString(result.phase)
+                         << (result.converged ? ", converged" : ", not converged") << " at x "
+                         << result.base_in_map.x << " m, y " << result.base_in_map.y << " m, "
+                         << hyselam::degrees(result.base_in_map.theta) << " deg after "
+                         << result.travelled << " m");
+  last_result_ = result;
+  // A guess does not move the transform: dead reckoning from the last pose that was known is better
+  // than jumping between guesses.
+  if (result.converged || guided_ || params_.publish_unconverged_tf)
+    odom_in_map_ = result.base_in_map * base_in_odom.inverse();
+  if (result.converged) guided_ = false;
+}
+
+void LocalizationServer::onTimeBack() {
+  odom_in_map_.reset();  // the odometry may have begun again elsewhere
+  if (localizer_) localizer_->restartClock();
+}
+
+void LocalizationServer::savePose(const LocalizationResult& result) {
+  if (params_.save_pose_rate <= 0.0 || !result.converged) return;
+  const ros::WallTime now = ros::WallTime::now();
+  if ((now - saved_).toSec() < 1.0 / params_.save_pose_rate) return;
+  saved_ = now;
+  private_nh_.setParam("initial_pose_x", result.base_in_map.x);
+  private_nh_.setParam("initial_pose_y", result.base_in_map.y);
+  private_nh_.setParam("initial_pose_a", result.base_in_map.theta);
+  constexpr const char* kNames[] = {"initial_cov_xx", "initial_cov_yy", "initial_cov_aa"};
+  constexpr double kSmallest = 1e-6;  // 0 would be refused at the next start
+  for (int i = 0; i < 3; ++i)
+    private_nh_.setParam(kNames[i], std::max(kSmallest, result.covariance(i, i)));
+}
+
+// ---- guesses and orders from outside
+
+void LocalizationServer::onInitialPose(
+    const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
+  InitialPose pose;
+  try {
+    pose = fromMsg(*msg, params_.global_frame_id, initial_pose_subscriber_.getTopic());
+  } catch (const hyselam::InputError& e) {
+    ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
+    return;
+  }
+  if (msg->header.frame_id.empty())
+    ROS_WARN_STREAM(who_ << " initial pose without frame_id, taken as "
+                         << params_.global_frame_id);
+  // The robot may have moved on while a person pointed at the map.
+  if (!msg->header.stamp.isZero())
+    if (const auto motion = input_.motionSince(msg->header.stamp))
+      pose.base_in_map = pose.base_in_map * *motion;
+  startAt(pose);
+}
+
+void LocalizationServer::startAt(const InitialPose& pose) {
+  ROS_INFO_STREAM(who_ << " initial pose x " << pose.base_in_map.x << " m, y "
+                       << pose.base_in_map.y << " m, "
+                       << hyselam::degrees(pose.base_in_map.theta) << " deg"
+                       << (localizer_ ? "" : ", kept for when a map is ready"));
+  if (!localizer_) {
+    pending_initial_ = pose;
+    return;
+  }
+  localizer_->setInitialPose(pose.base_in_map, pose.stddev);
+  odom_in_map_.reset();
+  last_result_.reset();
+  guided_ = true;
+}
+
+void LocalizationServer::startLost(const std::string& why) {
+  ROS_INFO_STREAM(who_ << " searching the whole map: " << why);
+  pending_initial_.reset();
+  odom_in_map_.reset();
+  last_result_.reset();
+  guided_ = false;
+  if (localizer_) localizer_->relocalizeGlobally();
+  publisher_.publishUnknown("global, not converged: " + why,
+                            localizer_ ? localizer_->particles().size() : 0);
+}
+
+bool LocalizationServer::onSetMap(nav_msgs::SetMap::Request& request,
+                                  nav_msgs::SetMap::Response& response) {
+  response.success = false;
+  InitialPose pose;
+  try {
+    pose = fromMsg(request.initial_pose, params_.global_frame_id, "service set_map: initial_pose");
+  } catch (const hyselam::InputError& e) {
+    ROS_ERROR_STREAM(who_ << " set_map refused: " << e.what());
+    return true;
+  }
+  if (!prepare(request.map, "service set_map: map")) return true;
+  response.success = true;
+  if (preparation_.busy())
+    pending_initial_ = pose;
+  else
+    startAt(pose);  // it was the same map
+  return true;
+}
+
+// ---- diagnostics
+
+void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
+  using Status = diagnostic_msgs::DiagnosticStatus;
+  input_.checkClock();
+  const bool preparing = map_seen_ && preparation_.busy();
+  if (preparing)
+    addRemark(status, Status::WARN,
+              "preparing map (" + std::to_string(static_cast<int>(100.0 * preparation_.progress())) +
+                  " %)");
+  if (!map_error_.empty()) addRemark(status, Status::ERROR, "map refused: " + map_error_);
+  if (!localizer_) {
+    if (!preparing && map_error_.empty())
+      addRemark(status, Status::WARN,
+                std::string("waiting for a map from the ") +
+                    (params_.use_map_topic ? "topic map" : "service static_map"));
+  } else if (!last_result_) {
+    addRemark(status, Status::WARN, "map ready, no update yet");
+  } else {
+    addRemark(status, last_result_->converged ? Status::OK : Status::WARN,
+              std::string(toString(last_result_->phase)) +
+                  (last_result_->converged ? "" : ", not converged"));
+  }
+  addValue(status, "map ready", localizer_ != nullptr);
+  addValue(status, "model", toString(params_.localizer.model));
+  addValue(status, "updates", updates_);
+  addValue(status, "last update [ms]", update_ms_);
+  if (last_result_) {
+    const Eigen::Matrix3d& c = last_result_->covariance;
+    addValue(status, "phase", toString(last_result_->phase));
+    addValue(status, "converged", last_result_->converged);
+    addValue(status, "particles", last_result_->particles);
+    addValue(status, "cluster share", last_result_->cluster_share);
+    addValue(status, "cluster deviation x, y [m], yaw [deg]",
+             std::to_string(std::sqrt(c(0, 0))) + " " + std::to_string(std::sqrt(c(1, 1))) + " " +
+                 std::to_string(hyselam::degrees(std::sqrt(c(2, 2)))));
+    if (last_result_->explained) addValue(status, "explained returns", *last_result_->explained);
+    addValue(status, "travelled [m]", last_result_->travelled);
+  }
+  addValue(status, "publishing tf", odom_in_map_.has_value() && params_.tf_broadcast);
+  input_.report(status);
+}
+
+}  // namespace fsd_localization

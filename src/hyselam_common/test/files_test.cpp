@@ -1,0 +1,164 @@
+// Files in and out: whole or not at all, and what is wrong with them.
+#include "hyselam_common/testing/files.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include <stdexcept>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+
+namespace hyselam {
+namespace {
+
+using testing::fileBytes;
+using testing::messageOf;
+using testing::TemporaryDirectory;
+using testing::writeFile;
+
+std::string gzipped(const std::string& text, const TemporaryDirectory& directory) {
+  const std::string path = directory / "packed.gz";
+  gzFile file = gzopen(path.c_str(), "wb");
+  gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(file);
+  return fileBytes(path);
+}
+
+bool mentions(const std::string& message, const std::string& part) {
+  return message.find(part) != std::string::npos;
+}
+
+TEST(AtomicFile, ReplacesAFileAndLeavesNothingElse) {
+  TemporaryDirectory d;
+  writeFile(d / "a.txt", "old");
+  ::chmod((d / "a.txt").c_str(), 0640);
+  writeFileAtomically(d / "a.txt", [](std::ostream& out) { out << "new"; });
+  EXPECT_EQ(fileBytes(d / "a.txt"), "new");
+  EXPECT_EQ(d.fileCount(), 1U);
+  struct stat info {};
+  ASSERT_EQ(::stat((d / "a.txt").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777U, 0640U);
+}
+
+TEST(AtomicFile, FailureKeepsTheOldFileAndLeavesNothingElse) {
+  TemporaryDirectory d;
+  writeFile(d / "a.txt", "old");
+  EXPECT_THROW(writeFileAtomically(d / "a.txt",
+                                   [](std::ostream& out) {
+                                     out << "half";
+                                     throw std::runtime_error("stop");
+                                   }),
+               std::runtime_error);
+  EXPECT_EQ(fileBytes(d / "a.txt"), "old");
+  EXPECT_EQ(d.fileCount(), 1U);
+}
+
+TEST(AtomicFile, PlaceThatCannotBeWrittenIsNamed) {
+  TemporaryDirectory d;
+  const auto nothing = [](std::ostream&) {};
+  const std::string missing = d / "no/such/a.txt";
+  EXPECT_TRUE(
+      mentions(messageOf<InputError>([&] { writeFileAtomically(missing, nothing); }), missing));
+  EXPECT_TRUE(mentions(messageOf<InputError>([&] { writeFileAtomically(d.path(), nothing); }),
+                       "is a directory"));
+  EXPECT_THROW(writeFileAtomically("", nothing), InputError);
+}
+
+TEST(AtomicFile, FullDiskIsAnError) {
+  if (::access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this system has no /dev/full";
+  EXPECT_THROW(
+      writeFileAtomically("/dev/full", [](std::ostream& out) { out << std::string(100000, 'x'); }),
+      InputError);
+}
+
+TEST(ReadTextFile, ReadsPlainAndGzipAlike) {
+  TemporaryDirectory d;
+  const std::string text = "one\ntwo\n" + std::string(3000000, 'x');
+  writeFile(d / "plain.log", text);
+  writeFile(d / "packed.log", gzipped(text, d));
+  EXPECT_EQ(readTextFile(d / "plain.log"), text);
+  EXPECT_EQ(readTextFile(d / "packed.log"), text);
+  writeFile(d / "empty", "");
+  EXPECT_EQ(readTextFile(d / "empty"), "");
+}
+
+TEST(ReadTextFile, TruncatedGzipIsAnErrorWhereverItIsCut) {
+  TemporaryDirectory d;
+  const std::string packed = gzipped(std::string(5000, 'x') + "end", d);
+  for (std::size_t size = 2; size < packed.size(); ++size) {
+    writeFile(d / "cut.gz", packed.substr(0, size));
+    EXPECT_THROW(readTextFile(d / "cut.gz"), InputError) << "cut to " << size << " bytes";
+  }
+}
+
+TEST(ReadTextFile, DamagedGzipIsAnError) {
+  TemporaryDirectory d;
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += std::to_string(i * i);
+  std::string packed = gzipped(text, d);
+  packed[packed.size() / 2] = static_cast<char>(packed[packed.size() / 2] ^ 0x55);
+  writeFile(d / "bad.gz", packed);
+  EXPECT_TRUE(mentions(messageOf<InputError>([&] { readTextFile(d / "bad.gz"); }), "damaged"));
+}
+
+TEST(ReadTextFile, MissingFileDirectoryAndTooLargeAreErrors) {
+  TemporaryDirectory d;
+  EXPECT_TRUE(mentions(messageOf<InputError>([&] { readTextFile(d / "none"); }), d / "none"));
+  EXPECT_TRUE(mentions(messageOf<InputError>([&] { readTextFile(d.path()); }), "is a directory"));
+  writeFile(d / "big", std::string(1000, 'x'));
+  EXPECT_THROW(readTextFile(d / "big", 999), InputError);
+}
+
+TEST(Tum, RoundTrip) {
+  TemporaryDirectory d;
+  const std::vector<StampedPose2> poses{{0.0, {1, 2, 3}},
+                                        {1234567890.123456, {-1e3, 1e-4, -kPi / 3}}};
+  writeTum(d / "t.tum", poses);
+  const auto back = readTum(d / "t.tum");
+  ASSERT_EQ(back.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(back[i].stamp, poses[i].stamp, 1e-6);
+    EXPECT_NEAR(back[i].pose.x, poses[i].pose.x, 1e-9);
+    EXPECT_NEAR(back[i].pose.y, poses[i].pose.y, 1e-9);
+    EXPECT_NEAR(back[i].pose.theta, poses[i].pose.theta, 1e-8);
+  }
+}
+
+TEST(Tum, BadLinesAreNamed) {
+  TemporaryDirectory d;
+  const auto error = [&](const std::string& text) {
+    writeFile(d / "t.tum", text);
+    return messageOf<InputError>([&] { readTum(d / "t.tum"); });
+  };
+  EXPECT_TRUE(mentions(error("# c\n\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n"), "line 4: 7 columns"));
+  EXPECT_TRUE(mentions(error("1 nan 0 0 0 0 0 1\n"), "line 1: column 2"));
+  EXPECT_TRUE(mentions(error("1 0 0 0 0 0 0 0.5\n"), "quaternion"));
+  EXPECT_TRUE(mentions(error("1 0 0 0 0 0 0 0\n"), "quaternion"));
+  EXPECT_TRUE(mentions(error("# nothing\n"), "no pose"));
+}
+
+TEST(ReferenceTable, IsReadAndToldFromTum) {
+  TemporaryDirectory d;
+  writeFile(d / "r.txt",
+            "# scan_index ipc_timestamp monotone_timestamp x y theta u e\n"
+            "0 976052857.3 0.0 1 2 0.5 0 0\n1 976052857.4 0.2 3 4 7 0 0\n");
+  const PoseFile file = readPoses(d / "r.txt");
+  EXPECT_TRUE(file.one_per_scan);
+  ASSERT_EQ(file.poses.size(), 2U);
+  EXPECT_EQ(file.poses[1].stamp, 0.2);
+  EXPECT_NEAR(file.poses[1].pose.theta, 7 - 2 * kPi, 1e-12);
+  writeFile(d / "t.tum", "0 0 0 0 0 0 0 1\n");
+  EXPECT_FALSE(readPoses(d / "t.tum").one_per_scan);
+}
+
+TEST(ReferenceTable, GapInTheIndexIsAnError) {
+  TemporaryDirectory d;
+  writeFile(d / "r.txt", "# scan_index\n0 0 0 0 0 0\n2 0 0 0 0 0\n");
+  EXPECT_TRUE(mentions(messageOf<InputError>([&] { readReferenceTable(d / "r.txt"); }), "line 3"));
+}
+
+}  // namespace
+}  // namespace hyselam

@@ -1,0 +1,138 @@
+// The programs as people call them: exit status, one line of error, results as JSON.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/files.hpp"
+
+namespace hyselam {
+namespace {
+
+using testing::fileBytes;
+using testing::TemporaryDirectory;
+using testing::writeFile;
+
+struct Result {
+  int status = -1;
+  std::string errors;
+};
+
+Result run(const TemporaryDirectory& d, const std::string& command) {
+  const std::string errors = d / "stderr";
+  const int status =
+      std::system((std::string(HYSELAM_TOOLS) + "/" + command + " >/dev/null 2>" + errors).c_str());
+  Result r{WIFEXITED(status) ? WEXITSTATUS(status) : -1, fileBytes(errors)};
+  std::remove(errors.c_str());
+  return r;
+}
+
+/// Exit status 2 and exactly one line "error: ...".
+::testing::AssertionResult refused(const Result& r, const std::string& part) {
+  const bool one_line =
+      r.errors.rfind("error: ", 0) == 0 && std::count(r.errors.begin(), r.errors.end(), '\n') == 1;
+  if (r.status == 2 && one_line && r.errors.find(part) != std::string::npos) {
+    return ::testing::AssertionSuccess();
+  }
+  return ::testing::AssertionFailure() << "status " << r.status << ", stderr '" << r.errors << "'";
+}
+
+std::string scanLine(double stamp, double x) {
+  std::string line = "FLASER 180";
+  for (int i = 0; i < 180; ++i) line += " 3.0";
+  return line + " 0 0 0 " + std::to_string(x) + " 0 0 1 h " + std::to_string(stamp) + "\n";
+}
+
+class Tools : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    writeFile(d / "in.log",
+              scanLine(1, 0) + "FLASER 180 1 2\n" + scanLine(2, 0.5) + scanLine(3, 1.0));
+  }
+  TemporaryDirectory d;
+};
+
+TEST_F(Tools, CarmenToBagConverts) {
+  const Result r = run(d, "carmen_to_bag " + d / "in.log" + " " +
+                              d / "out.bag --laser-frame front --json " + d / "out.json");
+  ASSERT_EQ(r.status, 0) << r.errors;
+  EXPECT_NE(r.errors.find("line 2: skipped"), std::string::npos);
+  const auto json = nlohmann::json::parse(fileBytes(d / "out.json"));
+  EXPECT_EQ(json["scans"], 3);
+  EXPECT_EQ(json["beams"], 180);
+  EXPECT_EQ(json["odometry"], 3);
+  EXPECT_EQ(json["skipped"], 1);
+  EXPECT_EQ(json["duration"], 2.0);
+  EXPECT_EQ(json["issues"][0]["line"], 2);
+  EXPECT_EQ(readBag(d / "out.bag").scans.size(), 3U);
+  const std::string first = fileBytes(d / "out.bag");
+  EXPECT_NE(first.find("front"), std::string::npos);
+  run(d, "carmen_to_bag " + d / "in.log" + " " + d / "out.bag --laser-frame front");
+  EXPECT_TRUE(first == fileBytes(d / "out.bag"));
+}
+
+TEST_F(Tools, BuildMapMaps) {
+  ASSERT_EQ(run(d, "build_map " + d / "in.log" + " " +
+                       d / "map.yaml --poses odometry "
+                           "--resolution 0.1 --json " +
+                       d / "out.json")
+                .status,
+            0);
+  const OccupancyGrid grid = loadMap(d / "map.yaml");
+  EXPECT_EQ(grid.geometry.resolution, 0.1);
+  EXPECT_EQ(grid.valueOr(grid.geometry.cellAt({1.0, 0.5})), OccupancyGrid::kFree);
+  EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "out.json"))["scans"], 3);
+}
+
+TEST_F(Tools, HelpIsNoError) {
+  EXPECT_EQ(run(d, "carmen_to_bag --help").status, 0);
+  EXPECT_EQ(run(d, "build_map --help").status, 0);
+}
+
+TEST_F(Tools, WrongUsageIsStatus2) {
+  EXPECT_TRUE(refused(run(d, "carmen_to_bag"), "IN"));
+  EXPECT_TRUE(refused(run(d, "carmen_to_bag a b --no-such-option"), "--no-such-option"));
+  EXPECT_TRUE(refused(run(d, "carmen_to_bag a b --clock sun"), "--clock"));
+  EXPECT_TRUE(refused(run(d, "build_map a b"), "--poses"));
+  EXPECT_TRUE(refused(run(d, "build_map a b --poses odometry --resolution x"), "--resolution"));
+}
+
+TEST_F(Tools, UnreadableInputIsStatus2) {
+  EXPECT_TRUE(refused(run(d, "carmen_to_bag " + d / "none.log " + d / "o.bag"), "none.log"));
+  writeFile(d / "bad.log", "");
+  EXPECT_TRUE(refused(run(d, "carmen_to_bag " + d / "bad.log " + d / "o.bag"), "no usable scan"));
+  EXPECT_TRUE(
+      refused(run(d, "carmen_to_bag " + d / "in.log " + d / "o.bag --range-max -1"), "range_max"));
+  EXPECT_TRUE(
+      refused(run(d, "build_map " + d / "none.bag " + d / "o.yaml --poses odometry"), "none.bag"));
+  EXPECT_FALSE(std::filesystem::exists(d / "o.bag"));
+}
+
+TEST_F(Tools, UnwritableOutputIsStatus2) {
+  const Result r = run(d, "carmen_to_bag " + d / "in.log " + d / "none/o.bag");
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.errors.find("\nerror: "), std::string::npos);  // after the warning of line 2
+  EXPECT_EQ(
+      run(d, "carmen_to_bag " + d / "in.log " + d / "o.bag --json " + d / "none/o.json").status, 2);
+}
+
+TEST_F(Tools, PosesThatDoNotFitTheLogAreRefused) {
+  writeFile(d / "clean.log", scanLine(1, 0) + scanLine(2, 0.5));
+  const std::string build = "build_map " + d / "clean.log " + d / "o.yaml --poses ";
+  EXPECT_TRUE(refused(run(d, build + d / "none.tum"), "none.tum"));
+  EXPECT_TRUE(refused(run(d, build + "ground_truth"), "no ground truth"));
+  writeFile(d / "late.tum", "100 0 0 0 0 0 0 1\n");
+  EXPECT_TRUE(refused(run(d, build + d / "late.tum"), "no scan falls into the time"));
+  writeFile(d / "r.txt", "# scan_index\n0 0 0 0 0 0\n");
+  EXPECT_TRUE(refused(run(d, build + d / "r.txt"), "1 poses for 2 scans"));
+  EXPECT_TRUE(refused(run(d, build + "odometry --resolution 0"), "resolution"));
+  EXPECT_TRUE(refused(run(d, "build_map " + d / "clean.log " + d / "o.pgm --poses odometry"),
+                      "name of the image"));
+}
+
+}  // namespace
+}  // namespace hyselam
