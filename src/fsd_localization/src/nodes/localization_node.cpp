@@ -1,5 +1,5 @@
-// The server of the nodelet fsd_localization/Localization as a node of its own. Exit 2 if a parameter cannot
-// be used.
+// The server of the nodelet fsd_localization/Localization as a node of its own. Exit 2 if a
+// parameter cannot be used.
 #include <iostream>
 
 #include "fsd_localization/ros/localization_server.hpp"

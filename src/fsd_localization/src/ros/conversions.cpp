@@ -50,10 +50,9 @@ hyselam_msgs::FsdObservation toMsg(const FsdObservation& observation,
                                             : kUndefined);
     msg.upper.push_back(static_cast<float>(reading.density.upper));
     // The density grows where it does not fall.
-    msg.gradient_direction.push_back(
-        reading.descent
-            ? static_cast<float>(hyselam::normalizeAngle(*reading.descent + hyselam::kPi))
-            : kUndefined);
+    msg.gradient_direction.push_back(reading.descent ? static_cast<float>(hyselam::normalizeAngle(
+                                                           *reading.descent + hyselam::kPi))
+                                                     : kUndefined);
     msg.frontiers.push_back(reading.frontiers);
   }
   msg.travelled = travelled;

@@ -10,8 +10,8 @@ Diagnostics::Diagnostics(ros::NodeHandle nh, const std::string& name, double per
                          std::function<void(diagnostic_msgs::DiagnosticStatus&)> fill)
     : name_(name), fill_(std::move(fill)) {
   publisher_ = nh.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
-  timer_ =
-      nh.createWallTimer(ros::WallDuration(period), [this](const ros::WallTimerEvent&) { publish(); });
+  timer_ = nh.createWallTimer(ros::WallDuration(period),
+                              [this](const ros::WallTimerEvent&) { publish(); });
 }
 
 void Diagnostics::publish() {

@@ -28,8 +28,7 @@ std::size_t DropCounter::count(const std::string& reason) const {
 
 void DropCounter::report(diagnostic_msgs::DiagnosticStatus& status) const {
   addValue(status, "scans dropped", total_);
-  for (const auto& [reason, tally] : tallies_)
-    addValue(status, "dropped: " + reason, tally.count);
+  for (const auto& [reason, tally] : tallies_) addValue(status, "dropped: " + reason, tally.count);
   if (!last_.empty()) addValue(status, "last dropped", last_);
 }
 

@@ -33,8 +33,7 @@ bool FsdServer::onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& bas
   if (observed_odom_) {
     const hyselam::Pose2 moved = hyselam::between(*observed_odom_, base_in_odom);
     const bool far = std::hypot(moved.x, moved.y) >= params_.update_min_d;
-    const bool turned =
-        params_.update_min_a > 0.0 && std::abs(moved.theta) >= params_.update_min_a;
+    const bool turned = params_.update_min_a > 0.0 && std::abs(moved.theta) >= params_.update_min_a;
     if (!far && !turned) return true;
   }
   observed_odom_ = base_in_odom;
@@ -42,8 +41,7 @@ bool FsdServer::onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& bas
   header.stamp = stamp;
   header.frame_id = params_.input.odom_frame_id;
   const FsdObservation observation = sensor_.observe();
-  observation_publisher_.publish(
-      toMsg(observation, params_.sensor.kernels, header, travelled_));
+  observation_publisher_.publish(toMsg(observation, params_.sensor.kernels, header, travelled_));
   ++observations_;
   observe_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
   if (gui_rate_.pass(stamp)) show(observation, header);

@@ -19,9 +19,9 @@ InitialPose fromMsg(const geometry_msgs::PoseWithCovarianceStamped& msg,
   const auto deviation = [&](std::size_t place, const std::string& of) {
     const double variance = msg.pose.covariance[place];
     if (!std::isfinite(variance) || !(variance > 0.0))
-      throw hyselam::InputError(source, "covariance of " + of,
-                                "is " + std::to_string(variance) +
-                                    ", but must be > 0: say how sure the guess is");
+      throw hyselam::InputError(
+          source, "covariance of " + of,
+          "is " + std::to_string(variance) + ", but must be > 0: say how sure the guess is");
     return std::sqrt(variance);
   };
   pose.stddev = {deviation(0, "x"), deviation(7, "y"), deviation(35, "yaw")};

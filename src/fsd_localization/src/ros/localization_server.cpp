@@ -31,40 +31,40 @@ hyselam::OccupancyGrid checkedMap(const nav_msgs::OccupancyGrid& msg,
   std::string frame = msg.header.frame_id;
   if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
   if (frame != params.global_frame_id)
-    throw hyselam::InputError(source, "frame_id",
-                              "is '" + frame + "', but global_frame_id is '" +
-                                  params.global_frame_id + "'");
+    throw hyselam::InputError(
+        source, "frame_id",
+        "is '" + frame + "', but global_frame_id is '" + params.global_frame_id + "'");
   const double cells = static_cast<double>(msg.info.width) * static_cast<double>(msg.info.height);
   if (cells > params.max_map_cells)
-    throw hyselam::InputError(source, "size",
-                              std::to_string(msg.info.width) + " x " +
-                                  std::to_string(msg.info.height) +
-                                  " cells are more than max_map_cells, " +
-                                  std::to_string(params.max_map_cells));
+    throw hyselam::InputError(
+        source, "size",
+        std::to_string(msg.info.width) + " x " + std::to_string(msg.info.height) +
+            " cells are more than max_map_cells, " + std::to_string(params.max_map_cells));
   return hyselam::fromMsg(msg, source);
 }
 
 /// Calls static_map until it answers.
 MapPreparation::Source mapService(ros::NodeHandle nh, const LocalizationServerParams& params,
                                   const std::string& who, std::atomic<bool>& map_seen) {
-  return [nh, params, who, &map_seen](
-             const std::function<bool()>& cancelled) mutable -> std::optional<hyselam::OccupancyGrid> {
-    ros::ServiceClient client = nh.serviceClient<nav_msgs::GetMap>("static_map");
-    while (ros::ok() && !cancelled()) {
-      nav_msgs::GetMap call;
-      if (client.exists() && client.call(call)) {
-        hyselam::OccupancyGrid map =
-            checkedMap(call.response.map, params, "service " + client.getService());
-        map_seen = true;
-        return map;
-      }
-      ROS_INFO_STREAM_THROTTLE(10.0, who << " waiting for a map from the service "
-                                         << client.getService());
-      for (double waited = 0.0; waited < kAskEvery && !cancelled(); waited += kTakeOverEvery)
-        ros::WallDuration(kTakeOverEvery).sleep();
-    }
-    return std::nullopt;
-  };
+  return
+      [nh, params, who, &map_seen](
+          const std::function<bool()>& cancelled) mutable -> std::optional<hyselam::OccupancyGrid> {
+        ros::ServiceClient client = nh.serviceClient<nav_msgs::GetMap>("static_map");
+        while (ros::ok() && !cancelled()) {
+          nav_msgs::GetMap call;
+          if (client.exists() && client.call(call)) {
+            hyselam::OccupancyGrid map =
+                checkedMap(call.response.map, params, "service " + client.getService());
+            map_seen = true;
+            return map;
+          }
+          ROS_INFO_STREAM_THROTTLE(
+              10.0, who << " waiting for a map from the service " << client.getService());
+          for (double waited = 0.0; waited < kAskEvery && !cancelled(); waited += kTakeOverEvery)
+            ros::WallDuration(kTakeOverEvery).sleep();
+        }
+        return std::nullopt;
+      };
 }
 
 }  // namespace
@@ -85,8 +85,8 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
                    params_.diagnostic_period,
                    [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }),
       map_timer_(nh.createWallTimer(
-          ros::WallDuration(kTakeOverEvery),
-          [this](const ros::WallTimerEvent&) { takeOverMap(); }, false, !params_.use_map_topic)) {
+          ros::WallDuration(kTakeOverEvery), [this](const ros::WallTimerEvent&) { takeOverMap(); },
+          false, !params_.use_map_topic)) {
   using Empty = std_srvs::Empty;
   if (params_.use_map_topic)
     map_subscriber_ = nh.subscribe("map", 1, &LocalizationServer::onMap, this);
@@ -156,7 +156,9 @@ void LocalizationServer::takeOverMap() {
   // A corrected map of the same place shall not make a robot lost that knows where it is.
   std::optional<InitialPose> start = pending_initial_;
   if (!start && last_result_ && last_result_->converged) {
-    const auto deviation = [&](int i) { return std::max(0.25, std::sqrt(last_result_->covariance(i, i))); };
+    const auto deviation = [&](int i) {
+      return std::max(0.25, std::sqrt(last_result_->covariance(i, i)));
+    };
     start = InitialPose{last_result_->base_in_map, {deviation(0), deviation(1), deviation(2)}};
   }
   pending_initial_.reset();
@@ -183,7 +185,8 @@ bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& bas
     if (!map_seen_)
       input_.drops().drop("no map", "none has come yet");
     else
-      input_.drops().drop("map not ready", map_error_.empty() ? "it is being prepared" : map_error_);
+      input_.drops().drop("map not ready",
+                          map_error_.empty() ? "it is being prepared" : map_error_);
     return false;
   }
   const ros::WallTime begin = ros::WallTime::now();
@@ -248,8 +251,7 @@ void LocalizationServer::onInitialPose(
     return;
   }
   if (msg->header.frame_id.empty())
-    ROS_WARN_STREAM(who_ << " initial pose without frame_id, taken as "
-                         << params_.global_frame_id);
+    ROS_WARN_STREAM(who_ << " initial pose without frame_id, taken as " << params_.global_frame_id);
   // The robot may have moved on while a person pointed at the map.
   if (!msg->header.stamp.isZero())
     if (const auto motion = input_.motionSince(msg->header.stamp))
@@ -258,9 +260,8 @@ void LocalizationServer::onInitialPose(
 }
 
 void LocalizationServer::startAt(const InitialPose& pose) {
-  ROS_INFO_STREAM(who_ << " initial pose x " << pose.base_in_map.x << " m, y "
-                       << pose.base_in_map.y << " m, "
-                       << hyselam::degrees(pose.base_in_map.theta) << " deg"
+  ROS_INFO_STREAM(who_ << " initial pose x " << pose.base_in_map.x << " m, y " << pose.base_in_map.y
+                       << " m, " << hyselam::degrees(pose.base_in_map.theta) << " deg"
                        << (localizer_ ? "" : ", kept for when a map is ready"));
   if (!localizer_) {
     pending_initial_ = pose;
@@ -310,8 +311,8 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   const bool preparing = map_seen_ && preparation_.busy();
   if (preparing)
     addRemark(status, Status::WARN,
-              "preparing map (" + std::to_string(static_cast<int>(100.0 * preparation_.progress())) +
-                  " %)");
+              "preparing map (" +
+                  std::to_string(static_cast<int>(100.0 * preparation_.progress())) + " %)");
   if (!map_error_.empty()) addRemark(status, Status::ERROR, "map refused: " + map_error_);
   if (!localizer_) {
     if (!preparing && map_error_.empty())

@@ -109,9 +109,9 @@ void loadFsdModel(ParamLoader& loader, FsdModelParams& p) {
 
 /// amcl's laser_* go to the model that looks at beams.
 void loadBeams(ParamLoader& loader, LocalizerParams& p) {
-  for (const char* name : {"laser_max_beams", "laser_max_range", "laser_z_hit", "laser_z_rand",
-                           "laser_z_short", "laser_z_max", "laser_lambda_short", "laser_sigma_hit",
-                           "laser_likelihood_max_dist"})
+  for (const char* name :
+       {"laser_max_beams", "laser_max_range", "laser_z_hit", "laser_z_rand", "laser_z_short",
+        "laser_z_max", "laser_lambda_short", "laser_sigma_hit", "laser_likelihood_max_dist"})
     loader.know(name);
   const Range share = Range::between(0.0, 1.0), some = Range::between(1e-6, 1.0);
   const Range length = Range::between(1e-3, 10.0);
@@ -165,8 +165,7 @@ void loadFilter(ParamLoader& loader, FilterParams& p) {
   const std::string unit[] = {"rotation from rotation", "[rad^2/m^2] rotation from translation",
                               "translation from translation",
                               "[m^2/rad^2] translation from rotation"};
-  double* const alphas[] = {&p.motion.alpha1, &p.motion.alpha2, &p.motion.alpha3,
-                            &p.motion.alpha4};
+  double* const alphas[] = {&p.motion.alpha1, &p.motion.alpha2, &p.motion.alpha3, &p.motion.alpha4};
   for (std::size_t i = 0; i < 4; ++i)
     loader.get("odom_alpha" + std::to_string(i + 1), *alphas[i], Range::atLeast(0.0), unit[i]);
 }
@@ -197,7 +196,8 @@ void loadLocalizer(ParamLoader& loader, LocalizerParams& p) {
              "[m] a return this near to a mapped obstacle is explained");
   loader.get("lost_below", p.lost_below, {0.0, 1.0, false, true},
              "hybrid, lost below this explained share");
-  loader.get("lost_ratio", p.lost_ratio, {0.0, 1.0, false, true}, "or below this times its average");
+  loader.get("lost_ratio", p.lost_ratio, {0.0, 1.0, false, true},
+             "or below this times its average");
   loadKernels(loader, p.map.kernels, p.map.gradient);
   loader.get("map_free_below", p.map.thresholds.free_below, Range::between(1, 100), "map value");
   loader.get("map_occupied_from", p.map.thresholds.occupied_from, Range::between(1, 100),
@@ -212,8 +212,7 @@ void loadInitialPose(ParamLoader& loader, LocalizationServerParams& p) {
   const bool given = loader.isSet("initial_pose_x") || loader.isSet("initial_pose_y") ||
                      loader.isSet("initial_pose_a");
   const Range finite = Range::between(-1e8, 1e8);
-  for (const char* name : {"initial_pose_x", "initial_pose_y", "initial_pose_a"})
-    loader.know(name);
+  for (const char* name : {"initial_pose_x", "initial_pose_y", "initial_pose_a"}) loader.know(name);
   if (given) {
     loader.get("initial_pose_x", mean.x, finite, "[m]");
     loader.get("initial_pose_y", mean.y, finite, "[m]");
@@ -260,8 +259,7 @@ LocalizationServerParams loadLocalizationParams(ParamLoader& loader) {
   loader.get("max_map_cells", p.max_map_cells, Range::between(1, 1e9), "a larger map is refused");
   loader.get("cache_dir", p.cache_dir, "folder for density fields; empty: none are kept");
   struct stat info {};
-  if (!p.cache_dir.empty() &&
-      (::stat(p.cache_dir.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)))
+  if (!p.cache_dir.empty() && (::stat(p.cache_dir.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)))
     throw ParameterError("cache_dir", p.cache_dir, "an existing folder");
   loader.get("tf_broadcast", p.tf_broadcast, "publish global_frame_id -> odom_frame_id");
   loader.get("publish_unconverged_tf", p.publish_unconverged_tf, "from guesses too, as amcl");

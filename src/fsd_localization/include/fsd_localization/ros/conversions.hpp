@@ -34,8 +34,8 @@ hyselam_msgs::LocalizationStatus toStatusMsg(const LocalizationResult& result, d
 geometry_msgs::PoseArray toMsg(const Particles& particles, std::size_t most,
                                const hyselam::Pose2& grid_in_map, const std_msgs::Header& header);
 
-/// The density of one kernel: 0 where the map is not free, else 1 .. 98 for densities 0 .. 1 (rviz's
-/// cost colours keep 99 and 100 for something else).
+/// The density of one kernel: 0 where the map is not free, else 1 .. 98 for densities 0 .. 1
+/// (rviz's cost colours keep 99 and 100 for something else).
 nav_msgs::OccupancyGrid densityFieldMsg(const FsdMap& map, int kernel,
                                         const std_msgs::Header& header);
 

@@ -19,8 +19,8 @@ class LocalizationPublisher {
   void publishMap(const Localizer& localizer);
   /// `amcl_pose` and `localization_status` at each update; `particlecloud`, `local_map` and
   /// `fsd_markers` only while someone listens, and not more often than gui_publish_rate.
-  void publishUpdate(const Localizer& localizer, const LocalizationResult& result,
-                     double update_ms, const ros::Time& stamp);
+  void publishUpdate(const Localizer& localizer, const LocalizationResult& result, double update_ms,
+                     const ros::Time& stamp);
   /// `localization_status` without an update: the robot knows nothing, and why.
   void publishUnknown(const std::string& text, std::size_t particles);
   /// tf global frame -> odom, valid from `stamp` + transform_tolerance.

@@ -55,8 +55,8 @@ class LocalizationServer {
   LocalizationPublisher publisher_;
   MapPreparation preparation_;
   std::unique_ptr<Localizer> localizer_;
-  std::uint64_t fingerprint_ = 0;  // of the newest map that came by topic or set_map
-  mutable std::atomic<bool> map_seen_{false};  // a map that looks usable has come
+  std::uint64_t fingerprint_ = 0;               // of the newest map that came by topic or set_map
+  mutable std::atomic<bool> map_seen_{false};   // a map that looks usable has come
   std::string map_error_;                       // of the newest map; empty: it is good
   std::optional<InitialPose> pending_initial_;  // for the map that is being prepared
   std::optional<LocalizationResult> last_result_;

@@ -14,16 +14,16 @@ namespace fsd_localization {
 struct ScanInputParams {
   std::string odom_frame_id = "odom";       ///< frame in which the robot moves smoothly
   std::string base_frame_id = "base_link";  ///< frame of the robot
-  double transform_wait = 0.5;  ///< a scan waits at most this long for its odometry [s]
-  int queue_size = 100;         ///< scans that may wait; the oldest is dropped first
+  double transform_wait = 0.5;              ///< a scan waits at most this long for its odometry [s]
+  int queue_size = 100;                     ///< scans that may wait; the oldest is dropped first
 };
 
 struct FsdServerParams {
   ScanInputParams input;
   FsdSensorParams sensor;
-  double update_min_d = 0.1;      ///< travel between observations [m]; 0: one per scan
-  double update_min_a = 0.0;      ///< turn between observations [rad]; 0: turning alone gives none
-  double gui_publish_rate = 5.0;  ///< of local_map and fsd_markers [Hz]; -1: no limit
+  double update_min_d = 0.1;       ///< travel between observations [m]; 0: one per scan
+  double update_min_a = 0.0;       ///< turn between observations [rad]; 0: turning alone gives none
+  double gui_publish_rate = 5.0;   ///< of local_map and fsd_markers [Hz]; -1: no limit
   double diagnostic_period = 1.0;  ///< [s]
 };
 
@@ -44,7 +44,7 @@ struct LocalizationServerParams {
   bool tf_broadcast = true;
   bool publish_unconverged_tf = false;  ///< map -> odom from guesses too, as amcl does
   double transform_tolerance = 0.1;     ///< map -> odom is dated this far into the future [s]
-  double save_pose_rate = 0.5;  ///< of saving the pose on the parameter server [Hz]; -1: never
+  double save_pose_rate = 0.5;     ///< of saving the pose on the parameter server [Hz]; -1: never
   double gui_publish_rate = -1.0;  ///< of particlecloud, local_map, fsd_markers [Hz]; -1: no limit
   int max_cloud_particles = 5000;  ///< in particlecloud; of more, a fair sample
   int density_field_kernel = 1;    ///< index into the kernels; -1: density_field is not published

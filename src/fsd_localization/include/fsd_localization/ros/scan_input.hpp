@@ -21,8 +21,8 @@ namespace fsd_localization {
 
 /// Subscribes to `scan`, looks up odom -> base at the time of each scan and base -> laser.
 ///
-/// Everything runs on the queue of the node handle, which must serve one callback at a time; only tf
-/// is filled by a thread of its own.
+/// Everything runs on the queue of the node handle, which must serve one callback at a time; only
+/// tf is filled by a thread of its own.
 class ScanInput {
  public:
   /// Gets every usable scan; returns whether it used it, or else has told drops() why not. An
