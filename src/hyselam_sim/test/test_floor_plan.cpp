@@ -227,7 +227,10 @@ TEST(BadPlanFile, UnknownShippedNameSuggestsTheNearest) {
   expectRefused([] { routeFile("offise"); }, "did you mean 'office'?");
 }
 TEST(BadPlanFile, DeeplyNestedYaml) {
-  expectRefused([] { parseFloorPlan(std::string(100000, '['), "x.yaml"); }, "x.yaml");
+  expectRefused([] { parseFloorPlan(std::string(100000, '['), "x.yaml"); }, "nested too deep");
+  std::string dashes;
+  for (int i = 0; i < 50000; ++i) dashes += "- ";
+  expectRefused([&] { parseFloorPlan(dashes + "1", "x.yaml"); }, "nested too deep");
 }
 
 }  // namespace

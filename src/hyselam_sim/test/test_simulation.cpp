@@ -1,7 +1,9 @@
 // Whole runs: repeatability, doors, teleports, people, and routes that cannot be driven.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <opencv2/core.hpp>
+#include <sstream>
 #include <thread>
 
 #include "hyselam_common/errors.hpp"
@@ -187,6 +189,20 @@ TEST(People, AreSeenAndKeepOffTheRobot) {
   for (const auto& scan : busy.log.scans) nearest = std::min<double>(nearest, scan.ranges[90]);
   EXPECT_LT(nearest, 0.6);
   EXPECT_GT(nearest, 0.75 - 0.25 - 0.1 - 0.06);  // personal space - radius - mount - noise
+}
+
+TEST(Readme, ExamplesOfBothFormatsWork) {
+  std::ifstream in(HYSELAM_SIM_README);
+  std::stringstream text;
+  text << in.rdbuf();
+  std::vector<std::string> examples;
+  for (std::size_t at = 0; (at = text.str().find("```yaml\n", at)) != std::string::npos;) {
+    at += 8;
+    examples.push_back(text.str().substr(at, text.str().find("```", at) - at));
+  }
+  ASSERT_EQ(examples.size(), 2U);
+  const Route r = parseRoute(examples[1], "README.md");
+  EXPECT_EQ(simulate(parseFloorPlan(examples[0], "README.md"), r, 1).visits.size(), r.steps.size());
 }
 
 // ---- routes that cannot be read or driven
