@@ -275,7 +275,8 @@ RobotLog readBag(const std::string& path, const BagOptions& options) {
   const UnpackedBag unpacked(path);
   try {
     checkBagStructure(unpacked.name(), path);
-    rosbag::Bag bag(unpacked.name(), rosbag::bagmode::Read);
+    rosbag::Bag bag;  // opened below: where open() throws, only a finished object frees its memory
+    bag.open(unpacked.name(), rosbag::bagmode::Read);
     return assemble(readContent(bag, path, options), path, options);
   } catch (const rosbag::BagUnindexedException&) {
     throw InputError(path, "", "the bag has no index: it is truncated (rosbag reindex may help)");

@@ -137,12 +137,21 @@ class Checker {
         break;
       case kConnection:
         number<std::uint32_t>(fields, "conn", at);
-        fieldsOf(bytesAt(data_at, data_length), at);
+        connection(fields, bytesAt(data_at, data_length), at);
         break;
       default:
         fail(at, "a record of unknown kind " + std::to_string(op));
     }
     return data_at + data_length;
+  }
+
+  void connection(const Fields& fields, const std::string& data, std::uint64_t at) const {
+    const Fields described = fieldsOf(data, at);
+    bool complete = fields.count("topic") > 0;
+    for (const char* key : {"type", "md5sum", "message_definition"}) {
+      complete = complete && described.count(key) > 0;
+    }
+    if (!complete) fail(at, "a connection does not state its topic and type");
   }
 
   void chunk(std::uint64_t at, const Fields& fields, std::uint64_t data_at, std::uint64_t length) {
@@ -174,12 +183,12 @@ class Checker {
       const Fields inner = fieldsOf(data.substr(header.first, header.second), data_at + begin);
       const auto body = part();
       const auto op = number<std::uint8_t>(inner, "op", data_at + begin);
-      const auto connection = number<std::uint32_t>(inner, "conn", data_at + begin);
+      const auto connection_id = number<std::uint32_t>(inner, "conn", data_at + begin);
       if (op == kMessage) {
         number<std::uint64_t>(inner, "time", data_at + begin);
-        messages_.emplace(static_cast<std::uint32_t>(begin), connection);
+        messages_.emplace(static_cast<std::uint32_t>(begin), connection_id);
       } else if (op == kConnection) {
-        fieldsOf(data.substr(body.first, body.second), data_at + begin);
+        connection(inner, data.substr(body.first, body.second), data_at + begin);
       } else {
         fail(data_at + begin, "a record of unknown kind in a chunk");
       }
@@ -189,7 +198,7 @@ class Checker {
   void index(std::uint64_t at, const Fields& fields, std::uint64_t data_at, std::uint64_t length) {
     constexpr std::uint64_t kEntry = 12;  // time, offset
     const std::uint64_t count = number<std::uint32_t>(fields, "count", at);
-    const auto connection = number<std::uint32_t>(fields, "conn", at);
+    const auto connection_id = number<std::uint32_t>(fields, "conn", at);
     if (number<std::uint32_t>(fields, "ver", at) != 1 || count * kEntry != length) {
       fail(at, "an index record is damaged");
     }
@@ -201,8 +210,9 @@ class Checker {
         fail(at, "an index record holds a time that is none");
       }
       const auto message = messages_.find(offset);
-      const bool found = compressed_ ? offset < chunk_size_
-                                     : message != messages_.end() && message->second == connection;
+      const bool found = compressed_
+                             ? offset < chunk_size_
+                             : message != messages_.end() && message->second == connection_id;
       if (!found) fail(at, "an index record points to no message");
     }
   }
