@@ -96,7 +96,8 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
       nh.subscribe("initialpose", 2, &LocalizationServer::onInitialPose, this);
   global_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
       "global_localization", [this](Empty::Request&, Empty::Response&) {
-        startLost("asked to by the service global_localization");
+        if (localizer_) localizer_->relocalizeGlobally();
+        forgetPose("asked to by the service global_localization");
         return true;
       });
   update_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
@@ -173,7 +174,7 @@ void LocalizationServer::takeOverMap() {
   if (start)
     startAt(*start);
   else
-    startLost("a new map");
+    forgetPose("a new map");  // whose particles lie everywhere already
 }
 
 // ---- scans
@@ -273,13 +274,12 @@ void LocalizationServer::startAt(const InitialPose& pose) {
   guided_ = true;
 }
 
-void LocalizationServer::startLost(const std::string& why) {
+void LocalizationServer::forgetPose(const std::string& why) {
   ROS_INFO_STREAM(who_ << " searching the whole map: " << why);
   pending_initial_.reset();
   odom_in_map_.reset();
   last_result_.reset();
   guided_ = false;
-  if (localizer_) localizer_->relocalizeGlobally();
   publisher_.publishUnknown("global, not converged: " + why,
                             localizer_ ? localizer_->particles().size() : 0);
 }

@@ -44,7 +44,7 @@ class LocalizationServer {
   // Guesses and orders from outside.
   void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
   void startAt(const InitialPose& pose);
-  void startLost(const std::string& why);
+  void forgetPose(const std::string& why);
   bool onSetMap(nav_msgs::SetMap::Request& request, nav_msgs::SetMap::Response& response);
 
   void report(diagnostic_msgs::DiagnosticStatus& status);
