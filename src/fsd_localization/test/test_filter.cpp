@@ -1,0 +1,302 @@
+// The parts of Monte Carlo localisation: ray casting against plain steps, resampling in exact
+// cases, noise by its statistics, weights by the equations, and a robot that finds itself.
+#include <gtest/gtest.h>
+
+#include "fsd_localization/localizer.hpp"
+#include "hyselam_common/errors.hpp"
+#include "random_worlds.hpp"
+
+using namespace fsd_localization;  // NOLINT: a test, not a header
+using hyselam::Pose2;
+
+namespace {
+
+hyselam::OccupancyGrid gridOf(const transcription::Cells& cells) {
+  hyselam::GridGeometry g;
+  g.width = cells.width;
+  g.height = cells.height;
+  hyselam::OccupancyGrid map(g);
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x)
+      map.at({x, y}) = cells.at(x, y) == transcription::Cells::kOccupied ? 100
+                       : cells.at(x, y) == transcription::Cells::kFree   ? 0
+                                                                         : -1;
+  return map;
+}
+
+/// The basic beam model's ray: from cell to cell, one boundary after the other.
+double plainRange(const hyselam::OccupancyGrid& map, double x, double y, double a,
+                  double max_range) {
+  const double res = map.geometry.resolution, px = x / res, py = y / res;
+  const double dx = std::cos(a), dy = std::sin(a);
+  int cx = static_cast<int>(std::floor(px)), cy = static_cast<int>(std::floor(py));
+  double t = 0.0;
+  while (t < max_range / res && map.geometry.contains({cx, cy})) {
+    if (map.at({cx, cy}) == 100) return t * res;
+    const double tx = ((dx > 0.0 ? cx + 1 : cx) - px) / dx,
+                 ty = ((dy > 0.0 ? cy + 1 : cy) - py) / dy;
+    t = std::min(tx, ty);
+    (tx < ty ? cx : cy) += (tx < ty ? dx : dy) > 0.0 ? 1 : -1;
+  }
+  return max_range;
+}
+
+/// A room of 12 x 8 m with one alcove, so that no two places look the same.
+hyselam::OccupancyGrid room() {
+  hyselam::GridGeometry g;
+  g.width = 120;
+  g.height = 80;
+  hyselam::OccupancyGrid map(g, 0);
+  const auto wall = [&map](int x0, int y0, int x1, int y1) {
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) map.at({x, y}) = 100;
+  };
+  wall(0, 0, 120, 3);
+  wall(0, 77, 120, 80);
+  wall(0, 0, 3, 80);
+  wall(117, 0, 120, 80);
+  wall(70, 3, 75, 30);
+  wall(30, 50, 40, 60);
+  return map;
+}
+
+hyselam::LaserScan look(const RayCaster& rays, const Pose2& at, double stamp) {
+  hyselam::LaserScan s;
+  s.stamp = stamp;
+  s.angle_min = -hyselam::kPi / 2;
+  s.angle_increment = hyselam::kPi / 180;
+  s.range_max = 30.0;
+  for (int b = 0; b < 181; ++b)
+    s.ranges.push_back(static_cast<float>(
+        rays.range(at.x, at.y, at.theta + s.angle_min + b * s.angle_increment, 30.0)));
+  return s;
+}
+
+}  // namespace
+
+TEST(Oracle, rangesEqualPlainStepsFromCellToCell) {
+  std::mt19937_64 rng(19);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int hits = 0;
+  for (int world = 0; world < 500; ++world) {
+    const auto map = gridOf(random_worlds::rooms(rng, 60, 50));
+    const RayCaster rays(map);
+    for (int i = 0; i < 20; ++i) {
+      const double x = 6.0 * unit(rng), y = 5.0 * unit(rng), a = 6.28 * unit(rng);
+      const double plain = plainRange(map, x, y, a, 8.0);
+      ASSERT_NEAR(rays.range(x, y, a, 8.0), plain, 1e-9) << "world " << world << " ray " << i;
+      hits += plain < 8.0;
+    }
+  }
+  EXPECT_GT(hits, 5000);
+}
+
+TEST(Resampling, copiesEachParticleByItsShare) {
+  Particles in, out;
+  in.resize(4);
+  for (std::size_t i = 0; i < 4; ++i) in.set(i, {static_cast<double>(i), 0, 0}, 0.0F);
+  in.weight = {1.0F, 0.0F, 2.0F, 1.0F};
+  for (double offset : {0.0, 0.3, 0.999}) {
+    resampleSystematic(in, 8, offset, out);
+    std::array<int, 4> copies{};
+    for (float x : out.x) ++copies[static_cast<std::size_t>(x)];
+    EXPECT_EQ(copies[1], 0);
+    EXPECT_EQ(copies[0] + copies[2] + copies[3], 8);
+    EXPECT_NEAR(copies[2], 4, 1);
+    EXPECT_NEAR(copies[0], 2, 1);
+  }
+}
+
+TEST(Resampling, keepsEverybodyWhenNothingIsKnown) {
+  Particles in, out;
+  in.resize(5);
+  for (std::size_t i = 0; i < 5; ++i) in.set(i, {static_cast<double>(i), 0, 0}, 0.0F);
+  resampleSystematic(in, 5, 0.5, out);
+  EXPECT_EQ(out.x, in.x);
+}
+
+TEST(Noise, isStandardNormal) {
+  const NoiseTable table;
+  double sum = 0.0, squares = 0.0, cross = 0.0;
+  constexpr int kDraws = 300000;
+  for (int i = 0; i < kDraws; ++i) {
+    float a, b, c;
+    table.gaussians(hashAt(7, static_cast<std::uint64_t>(i)), a, b, c);
+    sum += a + b + c;
+    squares += a * a + b * b + c * c;
+    cross += a * b + b * c;
+  }
+  EXPECT_NEAR(sum / (3.0 * kDraws), 0.0, 0.005);      // 4.7 standard errors
+  EXPECT_NEAR(squares / (3.0 * kDraws), 1.0, 0.008);  // 5 standard errors
+  EXPECT_NEAR(cross / (2.0 * kDraws), 0.0, 0.007);
+}
+
+TEST(Motion, spreadsAsItsParametersSay) {
+  Particles p;
+  p.resize(40000);
+  for (std::size_t i = 0; i < p.size(); ++i) p.set(i, {5.0, 5.0, 1.0}, 1.0F);
+  MotionParams params;
+  params.alpha1 = params.alpha2 = params.alpha4 = 0.0;
+  params.alpha3 = 0.04;  // 20 % of the way
+  MotionModel(params).move({1.0, 0.0, 0.0}, 99, p);
+  double mean = 0.0, var = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double d = std::hypot(p.x[i] - 5.0F, p.y[i] - 5.0F);
+    mean += d / 40000.0;
+    var += (d - 1.0) * (d - 1.0) / 40000.0;
+  }
+  EXPECT_NEAR(mean, 1.0, 0.005);
+  EXPECT_NEAR(std::sqrt(var), 0.2, 0.005);
+}
+
+TEST(FsdModel, weighsAsEquations34To36) {
+  const auto map = std::make_shared<const FsdMap>(room(), FsdMapParams{});
+  FsdModelParams params;
+  params.undefined = FsdModelParams::Undefined::kNeutral;
+  const FsdModel model(map, params);
+  Observation o;
+  o.fsd.readings.resize(3);
+  const double densities[] = {0.7, 0.5, 0.3};
+  for (std::size_t k = 0; k < 3; ++k) {
+    o.fsd.readings[k].density = {densities[k], densities[k], densities[k]};
+    o.fsd.readings[k].descent = 0.4 + static_cast<double>(k);
+  }
+  o.fsd.readings[2].density.hard.reset();  // undefined: factor 1
+  Particles p = uniformParticles(*map, 5000, 3);
+  ASSERT_TRUE(model.weigh(o, p).has_value());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const hyselam::Cell c{static_cast<int>(p.x[i] / 0.1F), static_cast<int>(p.y[i] / 0.1F)};
+    double w = 1.0;
+    bool borderline = false;
+    for (int k = 0; k < 3; ++k) {
+      if (k < 2) {
+        const double off = std::abs(map->density(c, k) - densities[k]) - params.epsilon_d;
+        borderline |= std::abs(off) < 1e-6;
+        if (off > 0.0) w *= 0.5;
+      }
+      if (const auto a = map->descent(c, k)) {
+        const double alpha = hyselam::normalizeAngle(*a - toRadians(p.heading[i]));
+        const double off =
+            std::abs(hyselam::normalizeAngle(alpha - (0.4 + k))) - params.epsilon_theta;
+        borderline |= std::abs(off) < hyselam::radians(1.5);  // half a step of the heading
+        if (off > 0.0) w *= 0.5;
+      }
+    }
+    if (!borderline) {
+      ASSERT_FLOAT_EQ(p.weight[i], static_cast<float>(w)) << i;
+    }
+  }
+}
+
+TEST(Localizer, findsItselfAndDoesSoAgain) {
+  const auto map = room();
+  const RayCaster rays(map);
+  const auto drive = [&](std::uint64_t seed) {
+    LocalizerParams params;
+    params.filter.max_particles = 5000;
+    params.seed = seed;
+    Localizer localizer(map, params);
+    std::optional<LocalizationResult> last;
+    Pose2 pose{1.5, 1.5, 0.0}, truth;
+    for (int i = 0; i < 400; ++i) {
+      pose = pose * Pose2{0.05, 0.0,
+                          pose.x > 5.5 && pose.theta < 1.57  ? 0.05
+                          : pose.y > 6.0 && pose.theta < 3.1 ? 0.05
+                                                             : 0.0};
+      if (pose.x < 1.5 && i > 150) break;
+      if (const auto r = localizer.update(look(rays, pose, 1.0 + 0.1 * i), pose)) {
+        last = r;
+        truth = pose;
+      }
+    }
+    EXPECT_TRUE(last && last->converged);
+    // Two cells of the map, a few metres after waking up.
+    EXPECT_LT(hyselam::distance(last->base_in_map, truth), 0.2);
+    return last->base_in_map;
+  };
+  const Pose2 first = drive(4), again = drive(4);
+  EXPECT_EQ(first.x, again.x);
+  EXPECT_EQ(first.y, again.y);
+  EXPECT_EQ(first.theta, again.theta);
+}
+
+TEST(Localizer, refusesBadScansAndStaysAsItWas) {
+  const auto map = room();
+  const RayCaster rays(map);
+  LocalizerParams params;
+  params.filter.max_particles = 1000;
+  Localizer localizer(map, params);
+  const Pose2 at{2.0, 2.0, 0.0};
+  ASSERT_TRUE(localizer.update(look(rays, at, 1.0), at));
+  const auto before = localizer.particles().x;
+  const auto refused = [&](auto change, const Pose2& pose = Pose2{2.0, 2.0, 0.0}) {
+    hyselam::LaserScan s = look(rays, at, 2.0);
+    change(s);
+    EXPECT_THROW(localizer.update(s, pose, true), hyselam::InputError);
+    EXPECT_EQ(localizer.particles().x, before);
+  };
+  refused([](auto& s) { s.ranges.clear(); });
+  refused([](auto& s) { s.angle_increment = 0.0; });
+  refused([](auto& s) { s.angle_min = std::nan(""); });
+  refused([](auto& s) { s.range_max = s.range_min; });
+  refused([](auto& s) { s.stamp = 1.0; });
+  refused([](auto& s) { s.stamp = 0.5; });
+  refused([](auto& s) { s.laser_in_base.x = 50.0; });
+  refused([](auto&) {}, Pose2{std::nan(""), 0.0, 0.0});
+  refused([](auto&) {}, Pose2{1e12, 0.0, 0.0});
+  EXPECT_TRUE(localizer.update(look(rays, at, 3.0), at, true));
+  EXPECT_THROW(localizer.setInitialPose({std::nan(""), 0, 0}, {}), hyselam::InputError);
+  EXPECT_THROW(localizer.setInitialPose({}, {-1, 0, 0}), hyselam::InputError);
+}
+
+TEST(Parameters, outOfRangeAreNamed) {
+  const auto named = [](auto change, const std::string& name) {
+    LocalizerParams p;
+    change(p);
+    try {
+      p.validate();
+      ADD_FAILURE() << name << " was accepted";
+    } catch (const hyselam::ParameterError& e) {
+      EXPECT_NE(std::string(e.what()).find(name), std::string::npos) << e.what();
+    }
+  };
+  named([](auto& p) { p.update_min_d = -1; }, "update_min_d");
+  named([](auto& p) { p.converged_share = 0; }, "converged_share");
+  named([](auto& p) { p.filter.min_particles = 0; }, "min_particles");
+  named([](auto& p) { p.filter.kld_error = 2; }, "kld_err");
+  named([](auto& p) { p.filter.motion.alpha1 = std::nan(""); }, "odom_alpha1");
+  named([](auto& p) { p.map.kernels.clear(); }, "kernels");
+  named([](auto& p) { p.map.kernels[0].bandwidth = 20; }, "bandwidth");
+  named([](auto& p) { p.local_map.resolution = 0; }, "resolution");
+  named([](auto& p) { p.likelihood.sigma_hit = 0; }, "sigma_hit");
+  EXPECT_THROW(modelFromName("amcl"), hyselam::ParameterError);
+}
+
+TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
+  const std::string path = ::testing::TempDir() + "room.fsd";
+  std::remove(path.c_str());
+  bool cached = true;
+  const auto first = FsdMap::cached(path, room(), {}, 1, {}, &cached);
+  EXPECT_FALSE(cached);
+  const auto second = FsdMap::cached(path, room(), {}, 1, {}, &cached);
+  EXPECT_TRUE(cached);
+  EXPECT_TRUE(std::equal(first.data(), first.data() + first.bytes(), second.data()));
+  auto changed = room();
+  changed.at({50, 40}) = 100;
+  FsdMap::cached(path, changed, {}, 1, {}, &cached);
+  EXPECT_FALSE(cached);
+  if (FILE* f = std::fopen(path.c_str(), "r+b")) {  // damage a byte
+    std::fseek(f, 1000, SEEK_SET);
+    std::fputc(77, f);
+    std::fclose(f);
+  }
+  FsdMap::cached(path, changed, {}, 1, {}, &cached);
+  EXPECT_FALSE(cached);
+  std::remove(path.c_str());
+}
+
+TEST(DensityField, doesNotDependOnTheNumberOfThreads) {
+  const FreeSpace space = freeSpaceOf(room());
+  const Kernel kernel(KernelProfile::kGaussian, 20);
+  EXPECT_EQ(densityField(space, kernel, 1).values, densityField(space, kernel, 3).values);
+}
