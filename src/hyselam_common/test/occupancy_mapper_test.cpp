@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -127,6 +128,21 @@ TEST(OccupancyMapper, RecoversARoomFromManyPosesAndGrows) {
     EXPECT_EQ(valueAt(grid, 4.05, s), 100) << s;
     EXPECT_EQ(valueAt(grid, -4.05, s), 100) << s;
     for (double t = -3.95; t < 4.0; t += 0.1) ASSERT_EQ(valueAt(grid, s, t), 0) << s << " " << t;
+  }
+}
+
+TEST(OccupancyMapper, GrowthInAnyDirectionKeepsWhatWasSeen) {
+  for (const Point2 far : {Point2{-60, 0}, Point2{60, 0}, Point2{0, -60}, Point2{0, 60}}) {
+    OccupancyMapper mapper(coarse());
+    mapper.insert({0.05, 0.05, 0}, scanOf({1.0F}));
+    mapper.insert({far.x + 0.05, far.y + 0.05, 0}, scanOf({1.0F}));
+    const OccupancyGrid grid = mapper.grid();
+    for (const Point2 at : {Point2{0, 0}, far}) {
+      EXPECT_EQ(valueAt(grid, at.x + 0.55, at.y + 0.05), 0);
+      EXPECT_EQ(valueAt(grid, at.x + 1.05, at.y + 0.05), 100);
+      EXPECT_EQ(valueAt(grid, at.x + 1.15, at.y + 0.05), -1);
+    }
+    EXPECT_EQ(std::count(grid.cells.begin(), grid.cells.end(), 100), 2);
   }
 }
 
