@@ -1,0 +1,282 @@
+"""Drives the localisation nodelets message by message: a simulated run, a clock of its own, and what the
+nodelets answer. No test; the localization_*_test.py files import it."""
+import copy
+import math
+import os
+import subprocess
+import tempfile
+import time
+
+import rosbag
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from hyselam_msgs.msg import FsdObservation, LocalizationStatus
+from nav_msgs.msg import OccupancyGrid
+from nodelet.srv import NodeletLoad, NodeletUnload
+from rosgraph_msgs.msg import Clock, Log
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+WAIT = 20.0  # [s] of wall time; never reached when all is well
+
+
+def planar(pose):
+    return pose.position.x, pose.position.y, 2 * math.atan2(pose.orientation.z, pose.orientation.w)
+
+
+def angle_between(a, b):
+    return abs(math.remainder(a - b, 2 * math.pi))
+
+
+def wait_until(condition, what):
+    deadline = time.monotonic() + WAIT
+    while not condition():
+        if time.monotonic() > deadline or rospy.is_shutdown():
+            raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
+        time.sleep(0.01)
+
+
+class Recording:
+    """A run through a shipped plan: its bag and map as files and as messages."""
+
+    def __init__(self, route="small", seed=1):
+        self.folder = tempfile.TemporaryDirectory()
+        self.bag = os.path.join(self.folder.name, route + ".bag")
+        self.yaml = os.path.join(self.folder.name, route + ".yaml")
+        subprocess.run(["rosrun", "hyselam_sim", "simulate", "--route", route, "--seed", str(seed), "--out", self.bag,
+                        "--map", self.yaml], check=True, stdout=subprocess.DEVNULL)
+        self.scans, self.transforms, self.static, self.truth = [], [], [], []
+        with rosbag.Bag(self.bag) as bag:
+            for topic, msg, _ in bag.read_messages():
+                if topic == "/scan":
+                    self.scans.append(msg)
+                elif topic == "/tf":
+                    self.transforms += msg.transforms
+                elif topic == "/tf_static":
+                    self.static += msg.transforms
+                elif topic == "/ground_truth":
+                    self.truth.append((msg.header.stamp.to_sec(), planar(msg.pose.pose)))
+        self.map = self.read_map()
+
+    def read_map(self):
+        """The PGM and YAML that `simulate` writes, as a map server would publish them."""
+        keys = dict(line.split(": ", 1) for line in open(self.yaml).read().splitlines() if ": " in line)
+        with open(os.path.join(self.folder.name, keys["image"].strip()), "rb") as file:
+            words = file.read().split(maxsplit=4)
+        width, height, pixels = int(words[1]), int(words[2]), words[4]
+        x, y, _ = (float(v) for v in keys["origin"].strip("[] ").split(","))
+        value = {254: 0, 0: 100}
+        rows = [[value.get(p, -1) for p in pixels[r * width:(r + 1) * width]] for r in range(height)]
+        return make_map([v for row in reversed(rows) for v in row], width, height, float(keys["resolution"]), x, y)
+
+    def truth_at(self, stamp):
+        return min(self.truth, key=lambda entry: abs(entry[0] - stamp))[1]
+
+    def truth_pose(self, stamp, stddev=0.2):
+        """The true pose as an initialpose message."""
+        x, y, theta = self.truth_at(stamp)
+        msg = PoseWithCovarianceStamped()
+        msg.header.frame_id = "map"
+        msg.pose.pose.position.x, msg.pose.pose.position.y = x, y
+        msg.pose.pose.orientation.z, msg.pose.pose.orientation.w = math.sin(theta / 2), math.cos(theta / 2)
+        for i in (0, 7, 35):
+            msg.pose.covariance[i] = stddev ** 2
+        msg.pose.covariance = list(msg.pose.covariance)
+        return msg
+
+
+def make_map(cells, width, height, resolution, x=0.0, y=0.0, yaw=0.0, frame="map"):
+    grid = OccupancyGrid()
+    grid.header.frame_id = frame
+    grid.info.width, grid.info.height, grid.info.resolution = width, height, resolution
+    grid.info.origin.position.x, grid.info.origin.position.y = x, y
+    grid.info.origin.orientation.z, grid.info.origin.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    grid.data = cells
+    return grid
+
+
+class Listener:
+    """Keeps what comes on a topic."""
+
+    def __init__(self, topic, kind):
+        self.messages = []
+        self.subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=10000)
+
+    def wait(self, count=1):
+        wait_until(lambda: len(self.messages) >= count,
+                   lambda: f"{count} messages on {self.subscriber.name}, {len(self.messages)} came")
+        return self.messages[-1]
+
+    def close(self):
+        self.subscriber.unregister()
+
+
+class Rig:
+    """One nodelet in the manager `manager`, in a namespace of its own, fed by hand.
+
+    Simulated time is what the rig says. The frames of all rigs are the same; so only one rig lives at a time.
+    """
+    log = None  # /rosout_agg of all rigs
+
+    def __init__(self, name, recording, kind="Localization", **params):
+        if Rig.log is None:
+            Rig.log = Listener("/rosout_agg", Log)
+            Rig.clock = rospy.Publisher("/clock", Clock, queue_size=1000)
+            Rig.tf = rospy.Publisher("/tf", TFMessage, queue_size=10000)
+            Rig.tf_static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
+            wait_until(lambda: Rig.log.subscriber.get_num_connections() > 0, "no connection to /rosout_agg")
+        self.name, self.recording = name, recording
+        self.node = f"/{name}/{kind.lower()}"
+        self.next = 0  # scan to feed
+        self.sent = 0  # scans published
+        self.logged_before = len(Rig.log.messages)
+        self.set_clock(recording.scans[0].header.stamp.to_sec() - 0.5)
+        Rig.tf_static.publish(TFMessage(recording.static))
+        params.setdefault("diagnostic_period", 0.05)
+        if kind == "Localization":
+            params.setdefault("use_map_topic", True)
+            params.setdefault("save_pose_rate", -1.0)
+        for key, value in params.items():
+            rospy.set_param(f"{self.node}/{key}", value)
+        self.map_publisher = rospy.Publisher(f"/{name}/map", OccupancyGrid, queue_size=5, latch=True)
+        self.scan = rospy.Publisher(f"/{name}/scan", LaserScan, queue_size=10000)
+        self.initialpose = rospy.Publisher(f"/{name}/initialpose", PoseWithCovarianceStamped, queue_size=10)
+        self.poses = Listener(f"/{name}/amcl_pose", PoseWithCovarianceStamped)
+        self.status = Listener(f"/{name}/localization_status", LocalizationStatus)
+        self.observations = Listener(f"/{name}/fsd_observation", FsdObservation)
+        self.fields = Listener(f"/{name}/density_field", OccupancyGrid)
+        self.tf_seen = Listener("/tf", TFMessage)
+        self.diagnostics_seen = Listener("/diagnostics", DiagnosticArray)
+        self.loaded = self.load(kind)
+        if self.loaded:
+            wait_until(lambda: self.scan.get_num_connections() > 0 and Rig.tf.get_num_connections() > 1
+                       and Rig.clock.get_num_connections() > 0, "the nodelet does not listen")
+
+    def load(self, kind):
+        rospy.wait_for_service("/manager/load_nodelet", WAIT)
+        try:
+            return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
+                self.node, "fsd_localization/" + kind, [], [], [], "").success
+        except rospy.ServiceException:
+            return False
+
+    def close(self):
+        if self.loaded:
+            rospy.ServiceProxy("/manager/unload_nodelet", NodeletUnload)(self.node)
+        for listener in (self.poses, self.status, self.observations, self.fields, self.tf_seen, self.diagnostics_seen):
+            listener.close()
+        for publisher in (self.map_publisher, self.scan, self.initialpose):
+            publisher.unregister()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    # What goes in.
+
+    @classmethod
+    def set_clock(cls, seconds):
+        cls.now = seconds
+
+        def heard():
+            cls.clock.publish(Clock(rospy.Time.from_sec(seconds)))
+            time.sleep(0.001)
+            return abs(rospy.get_time() - seconds) < 1e-6
+        wait_until(heard, "the clock is not heard")
+
+    def give_map(self, grid=None):
+        self.map_publisher.publish(grid or self.recording.map)
+
+    def use_map(self, grid=None):
+        """Gives a map and waits until it is in use."""
+        fields = len(self.fields.messages)
+        self.give_map(grid)
+        self.fields.wait(fields + 1)
+
+    def send(self, scan):
+        self.scan.publish(scan)
+        self.sent += 1
+
+    def feed(self, count, change=None, with_tf=True):
+        """The next scans of the run with their odometry, `change` applied to a copy of each."""
+        for _ in range(count):
+            scan = self.recording.scans[self.next]
+            stamp = scan.header.stamp
+            before = self.recording.scans[self.next - 1].header.stamp if self.next > 0 else rospy.Time(0)
+            if with_tf:
+                Rig.tf.publish(TFMessage([t for t in self.recording.transforms if before < t.header.stamp <= stamp]))
+            self.set_clock(stamp.to_sec())
+            if change:
+                scan = copy.deepcopy(scan)
+                change(scan)
+            self.send(scan)
+            self.next += 1
+        self.settle(tick=0.0 if with_tf else 0.02)
+
+    def feed_until_converged(self):
+        while self.next + 10 <= len(self.recording.scans):
+            self.feed(10)
+            if self.status.messages and self.status.messages[-1].converged:
+                return
+        raise AssertionError("the run ended before the robot was found")
+
+    def settle(self, tick=0.0):
+        """Waits until every scan sent has been used or dropped; the clock goes on by `tick` meanwhile."""
+        def settled():
+            if self.value("scans received") == str(self.sent) and self.value("scans waiting") == "0":
+                return True
+            if tick:
+                self.set_clock(Rig.now + tick)
+            return False
+        wait_until(settled, lambda: f"sent {self.sent}, " + str(self.values()))
+
+    # What comes out.
+
+    def diagnosis(self):
+        for array in reversed(self.diagnostics_seen.messages):
+            for status in array.status:
+                if status.name.startswith(self.node[1:] + ":"):
+                    return status
+        return None
+
+    def fresh_diagnosis(self):
+        """One that was filled after this call."""
+        seen = len(self.diagnostics_seen.messages)
+        wait_until(lambda: len(self.diagnostics_seen.messages) > seen + 1, "no diagnostics")
+        return self.diagnosis()
+
+    def values(self):
+        status = self.diagnosis()
+        return {v.key: v.value for v in status.values} if status else {}
+
+    def value(self, key):
+        return self.values().get(key)
+
+    def wait_value(self, key, value):
+        wait_until(lambda: self.value(key) == str(value), lambda: f"{key} = {value}, it is {self.value(key)}")
+
+    def said(self, *words, level=None):
+        """Whether one log message since the rig began holds all the words."""
+        return any(all(w in m.msg for w in words) and (level is None or m.level == level)
+                   for m in Rig.log.messages[self.logged_before:])
+
+    def wait_said(self, *words, level=None):
+        wait_until(lambda: self.said(*words, level=level),
+                   lambda: f"{words}; said: {[m.msg for m in Rig.log.messages[self.logged_before:]]}")
+
+    def odom_in_map(self):
+        """Everything that tf was told about map -> odom, as (stamp, pose)."""
+        return [(t.header.stamp.to_sec(), (t.transform.translation.x, t.transform.translation.y,
+                                          2 * math.atan2(t.transform.rotation.z, t.transform.rotation.w)))
+                for m in self.tf_seen.messages for t in m.transforms
+                if t.header.frame_id == "map" and t.child_frame_id == "odom"]
+
+    def error(self, truth=None):
+        """Distance [m] and angle [deg] of the last pose from the truth."""
+        pose = self.poses.messages[-1]
+        x, y, theta = planar(pose.pose.pose)
+        tx, ty, ttheta = truth or self.recording.truth_at(pose.header.stamp.to_sec())
+        return math.hypot(x - tx, y - ty), math.degrees(angle_between(theta, ttheta))
