@@ -123,6 +123,11 @@ const hyselam::OccupancyGrid& bigMap() {
   static const auto map = bench::building(kBigSide, 11);
   return map;
 }
+LikelihoodFieldModel likelihood60() {
+  LikelihoodFieldParams params;
+  params.max_beams = 60;
+  return LikelihoodFieldModel(bigMap(), params);
+}
 std::shared_ptr<const FsdMap> bigFields() {
   static const auto fields = std::make_shared<const FsdMap>(bigMap(), FsdMapParams{});
   return fields;
@@ -159,7 +164,7 @@ void WeighBeam19(benchmark::State& s) {
   weigh(s, kParticles, [] { return BeamModel(std::make_shared<const RayCaster>(bigMap())); }, nullptr);
 }
 void WeighLikelihood60(benchmark::State& s) {
-  weigh(s, kParticles, [] { return LikelihoodFieldModel(bigMap()); }, nullptr);
+  weigh(s, kParticles, [] { return likelihood60(); }, nullptr);
 }
 void WeighFsd3(benchmark::State& s) {
   weigh(s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighBeam19");
@@ -192,7 +197,7 @@ void iterate(benchmark::State& state, const Model& model, const char* baseline) 
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kParticles));
   if (baseline != nullptr) state.SetLabel(baseline);
 }
-void IterationLikelihood60(benchmark::State& s) { iterate(s, LikelihoodFieldModel(bigMap()), nullptr); }
+void IterationLikelihood60(benchmark::State& s) { iterate(s, likelihood60(), nullptr); }
 void IterationFsd3(benchmark::State& s) {
   iterate(s, FsdModel(bigFields()), "baseline=IterationLikelihood60");
 }
