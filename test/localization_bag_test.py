@@ -42,8 +42,9 @@ class LocalizationBagTest(unittest.TestCase):
                         "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
         for ns in ("nodelet", "node"):
             wait_until(lambda: cls.value(f"{ns}/localization", "scans waiting") == "0"
-                       and int(cls.value(f"{ns}/localization", "scans received")) >= len(cls.run_.scans) - 1,
-                       lambda: f"{ns}: {cls.values(f'{ns}/localization')}")
+                       and all(int(cls.value(f"{ns}/{name}", "scans used")) >= len(cls.run_.scans)
+                               for name in ("localization", "fsd")),
+                       lambda: f"{ns}: {cls.values(f'{ns}/localization')} {cls.values(f'{ns}/fsd')}")
 
     @classmethod
     def values(cls, node):

@@ -200,14 +200,19 @@ class Rig:
         self.scan.publish(scan)
         self.sent += 1
 
+    def odometry_of_next(self):
+        """The transforms since the scan before, up to the next one."""
+        before = self.recording.scans[self.next - 1].header.stamp if self.next > 0 else rospy.Time(0)
+        stamp = self.recording.scans[self.next].header.stamp
+        return TFMessage([t for t in self.recording.transforms if before < t.header.stamp <= stamp])
+
     def feed(self, count, change=None, with_tf=True):
         """The next scans of the run with their odometry, `change` applied to a copy of each."""
         for _ in range(count):
             scan = self.recording.scans[self.next]
             stamp = scan.header.stamp
-            before = self.recording.scans[self.next - 1].header.stamp if self.next > 0 else rospy.Time(0)
             if with_tf:
-                Rig.tf.publish(TFMessage([t for t in self.recording.transforms if before < t.header.stamp <= stamp]))
+                Rig.tf.publish(self.odometry_of_next())
             self.set_clock(stamp.to_sec())
             if change:
                 scan = copy.deepcopy(scan)
