@@ -150,8 +150,9 @@ class Rig:
         self.diagnostics_seen = Listener("/diagnostics", DiagnosticArray)
         self.loaded = self.load(kind)
         if self.loaded:
-            wait_until(lambda: self.scan.get_num_connections() > 0 and Rig.tf.get_num_connections() > 1
-                       and Rig.clock.get_num_connections() > 0, "the nodelet does not listen")
+            inputs = [self.scan] + ([self.initialpose] if kind == "Localization" else [])
+            wait_until(lambda: all(topic.get_num_connections() > 0 for topic in inputs + [Rig.clock])
+                       and Rig.tf.get_num_connections() > 1, "the nodelet does not listen")
 
     def load(self, kind):
         rospy.wait_for_service("/manager/load_nodelet", WAIT)
