@@ -295,6 +295,22 @@ TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
   std::remove(path.c_str());
 }
 
+TEST(FsdMap, cacheThatCannotBeWrittenIsToldAndDoesNoHarm) {
+  const std::string path = ::testing::TempDir() + "no/such/folder/room.fsd";
+  bool cached = true;
+  std::string problem;
+  const auto map = FsdMap::cached(path, room(), {}, 1, {}, &cached, &problem);
+  EXPECT_FALSE(cached);
+  EXPECT_EQ(problem.find(path), 0U) << problem;
+  const FsdMap fresh(room(), {}, 1);
+  EXPECT_TRUE(std::equal(fresh.data(), fresh.data() + fresh.bytes(), map.data()));
+
+  const std::string good = ::testing::TempDir() + "room_kept.fsd";
+  FsdMap::cached(good, room(), {}, 1, {}, &cached, &problem);
+  EXPECT_TRUE(problem.empty()) << problem;
+  std::remove(good.c_str());
+}
+
 TEST(DensityField, doesNotDependOnTheNumberOfThreads) {
   const FreeSpace space = freeSpaceOf(room());
   const Kernel kernel(KernelProfile::kGaussian, 20);

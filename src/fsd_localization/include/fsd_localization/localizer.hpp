@@ -106,6 +106,8 @@ class Localizer {
   /// Of the last update; without readings before it or in modes that do not use FSD.
   const FsdObservation& lastObservation() const { return observation_.fsd; }
   bool mapWasCached() const { return map_was_cached_; }
+  /// Why the cache could not be written; empty if it could, or if there is none.
+  const std::string& mapCacheProblem() const { return map_cache_problem_; }
 
  private:
   bool usesFsd() const { return params_.model == Model::kFsd || searching(); }
@@ -118,6 +120,7 @@ class Localizer {
 
   LocalizerParams params_;
   bool map_was_cached_ = false;
+  std::string map_cache_problem_;
   std::shared_ptr<const FsdMap> map_;
   std::unique_ptr<ObservationModel> model_;        // of the search, or the only one
   std::unique_ptr<LikelihoodFieldModel> tracker_;  // hybrid only

@@ -124,9 +124,11 @@ std::uint64_t FsdMap::fingerprint(const OccupancyGrid& map, const FsdMapParams& 
 
 FsdMap FsdMap::cached(const std::string& cache_path, const OccupancyGrid& map,
                       const FsdMapParams& params, int threads,
-                      const std::function<void(double)>& progress, bool* from_cache) {
+                      const std::function<void(double)>& progress, bool* from_cache,
+                      std::string* problem) {
   const std::uint64_t key = fingerprint(map, params);
   if (from_cache != nullptr) *from_cache = false;
+  if (problem != nullptr) problem->clear();
   FsdMap result;
   result.allocate(map, params);
   if (std::ifstream in{cache_path, std::ios::binary}) {
@@ -159,8 +161,9 @@ FsdMap FsdMap::cached(const std::string& cache_path, const OccupancyGrid& map,
       out.write(reinterpret_cast<const char*>(result.cells_.data()),
                 static_cast<std::streamsize>(result.cells_.size()));
     });
-  } catch (const hyselam::InputError&) {
+  } catch (const hyselam::InputError& e) {
     // A map on a read-only disk is common; the fields are here, only the next start is slower.
+    if (problem != nullptr) *problem = e.what();
   }
   return result;
 }

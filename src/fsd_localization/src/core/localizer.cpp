@@ -89,9 +89,9 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
                      const std::string& cache_path, const std::function<void(double)>& progress)
     : params_((params.validate(), params)),
       map_(std::make_shared<const FsdMap>(
-          cache_path.empty()
-              ? FsdMap(map, params.map, 0, progress)
-              : FsdMap::cached(cache_path, map, params.map, 0, progress, &map_was_cached_))),
+          cache_path.empty() ? FsdMap(map, params.map, 0, progress)
+                             : FsdMap::cached(cache_path, map, params.map, 0, progress,
+                                              &map_was_cached_, &map_cache_problem_))),
       sensor_(sensorParams(params)),
       filter_(map_, searchParams(), params.seed) {
   const auto rays = [&] { return std::make_shared<const RayCaster>(map, params.map.thresholds); };

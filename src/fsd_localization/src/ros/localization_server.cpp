@@ -170,6 +170,10 @@ void LocalizationServer::takeOverMap() {
                        << map.kernelCount() << " density fields "
                        << (outcome->cached ? "read" : "computed") << " in " << outcome->seconds
                        << " s, " << map.bytes() / 1000000.0 << " MB");
+  if (!outcome->cache_problem.empty())
+    ROS_WARN_STREAM(
+        who_ << " the density fields could not be kept, the next start will compute them"
+             << " again: " << outcome->cache_problem);
   publisher_.publishMap(*localizer_);
   if (start)
     startAt(*start);

@@ -77,6 +77,7 @@ MapPreparation::Outcome MapPreparation::prepare(const Source& source) {
     outcome.localizer = std::make_unique<Localizer>(*map, params_, cache,
                                                     [this](double share) { progress_ = share; });
     outcome.cached = outcome.localizer->mapWasCached();
+    outcome.cache_problem = outcome.localizer->mapCacheProblem();
     outcome.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   } catch (const std::bad_alloc&) {

@@ -87,6 +87,10 @@ nlohmann::json run(const Options& o) {
     preparing.update(static_cast<std::size_t>(100 * share));
   });
 
+  if (!localizer.mapCacheProblem().empty())
+    std::cerr << "warning: the density fields are not kept: " << localizer.mapCacheProblem()
+              << "\n";
+
   hyselam::Progress progress("localising", log.scans.size());
   std::vector<hyselam::StampedPose2> trajectory;
   std::vector<double> update_ms;

@@ -28,6 +28,7 @@ class MapPreparation {
     std::string error;
     double seconds = 0.0;
     bool cached = false;
+    std::string cache_problem;  ///< why the density fields could not be kept; empty: they were
   };
 
   /// @param cache_dir keeps density fields, one file per map and parameters; empty: nowhere.
