@@ -149,10 +149,20 @@ TEST(Motion, spreadsAsItsParametersSay) {
   EXPECT_NEAR(std::sqrt(var), 0.2, 0.005);
 }
 
-TEST(FsdModel, weighsAsEquations34To36) {
+/// A density or direction `off` beyond what fits.
+double agreement(double off, double tolerance, const FsdModelParams& p) {
+  if (p.profile == FsdModelParams::Profile::kStep) return off > tolerance ? p.penalty : 1.0;
+  const double stddev = tolerance / 2.0;
+  return p.penalty + (1.0 - p.penalty) * std::exp(-off * off / (2.0 * stddev * stddev));
+}
+
+class FsdModelProfile : public testing::TestWithParam<FsdModelParams::Profile> {};
+
+TEST_P(FsdModelProfile, weighsAsEquations34To36) {
   const auto map = std::make_shared<const FsdMap>(room(), FsdMapParams{});
   FsdModelParams params;
   params.undefined = FsdModelParams::Undefined::kNeutral;
+  params.profile = GetParam();
   const FsdModel model(map, params);
   Observation o;
   o.fsd.readings.resize(3);
@@ -170,23 +180,27 @@ TEST(FsdModel, weighsAsEquations34To36) {
     bool borderline = false;
     for (int k = 0; k < 3; ++k) {
       if (k < 2) {
-        const double off = std::abs(map->density(c, k) - densities[k]) - params.epsilon_d;
-        borderline |= std::abs(off) < 1e-6;
-        if (off > 0.0) w *= 0.5;
+        const double off = std::abs(map->density(c, k) - densities[k]);
+        borderline |= std::abs(off - params.epsilon_d) < 1e-6;
+        w *= agreement(off, params.epsilon_d, params);
       }
       if (const auto a = map->descent(c, k)) {
-        const double alpha = hyselam::normalizeAngle(*a - toRadians(p.heading[i]));
-        const double off =
-            std::abs(hyselam::normalizeAngle(alpha - (0.4 + k))) - params.epsilon_theta;
-        borderline |= std::abs(off) < hyselam::radians(1.5);  // half a step of the heading
-        if (off > 0.0) w *= 0.5;
+        // The model takes headings in the 128 steps of the map's directions.
+        const double step = 2.0 * hyselam::kPi / 128.0;
+        const double heading = std::round(toRadians(p.heading[i]) / step) * step;
+        const double off = std::abs(hyselam::normalizeAngle(*a - heading - (0.4 + k)));
+        borderline |= std::abs(off - params.epsilon_theta) < 1e-6;
+        w *= agreement(off, params.epsilon_theta, params);
       }
     }
     if (!borderline) {
-      ASSERT_FLOAT_EQ(p.weight[i], static_cast<float>(w)) << i;
+      ASSERT_NEAR(p.weight[i], w, 1e-5 * w) << i;
     }
   }
 }
+INSTANTIATE_TEST_SUITE_P(Both, FsdModelProfile,
+                         testing::Values(FsdModelParams::Profile::kStep,
+                                         FsdModelParams::Profile::kGaussian));
 
 TEST(Localizer, findsItselfAndDoesSoAgain) {
   const auto map = room();

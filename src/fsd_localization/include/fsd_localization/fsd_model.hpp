@@ -15,6 +15,12 @@ struct FsdModelParams {
     kNeutral,  ///< nothing: factor 1 for all (the thesis, Eq. 3.4)
     kBounds,   ///< the true density lies between the soft value and its upper bound
   };
+  /// How a factor falls from 1 to `penalty` as reading and map disagree.
+  enum class Profile {
+    kStep,      ///< at once, where the tolerance ends (the thesis, Eq. 3.4 and 3.5)
+    kGaussian,  ///< smoothly; the tolerance is two standard deviations
+  };
+  Profile profile = Profile::kGaussian;
   double epsilon_d = 0.2;                         ///< density tolerance
   double epsilon_theta = hyselam::radians(45.0);  ///< direction tolerance [rad]
   double penalty = 0.5;            ///< factor for a density or direction out of tolerance

@@ -18,7 +18,7 @@ enum class Model {
   kBeam,        ///< ray casting, "bb"
   kCosine,      ///< "fcs"
   kLikelihood,  ///< likelihood field
-  kHybrid,      ///< FSD until the place is found, then the likelihood field (3.5)
+  kHybrid,      ///< FSD until few places are left, then the likelihood field (3.5)
 };
 /// "fsd", "beam", "cosine", "likelihood", "hybrid". @throws hyselam::ParameterError for other
 /// names.
@@ -45,7 +45,8 @@ struct LocalizerParams {
 
   // Hybrid only.
   std::size_t tracking_particles = 2000;    ///< once converged
-  std::size_t candidate_particles = 10000;  ///< when the likelihood field takes over
+  std::size_t candidate_particles = 10000;  ///< while the likelihood field chooses among places
+  double candidate_beams = 10.0;            ///< its independent_beams then: no haste to choose
   std::size_t max_candidate_bins =
       400;                           ///< it does when FSD leaves this many bins of 0.5 m, 15 deg
   double explained_tolerance = 0.3;  ///< a return this near to a mapped obstacle is explained [m]
@@ -57,7 +58,11 @@ struct LocalizerParams {
   void validate() const;
 };
 
-enum class Phase { kGlobal, kTracking, kLost };
+enum class Phase {
+  kGlobal,    ///< not found yet
+  kTracking,  ///< found
+  kLost,      ///< was found, is being searched for again
+};
 const char* toString(Phase phase);
 
 struct LocalizationResult {
@@ -110,12 +115,20 @@ class Localizer {
   const std::string& mapCacheProblem() const { return map_cache_problem_; }
 
  private:
+  /// Of the hybrid model; the others stay in the search.
+  enum class Stage {
+    kSearch,  ///< free-space density, everywhere
+    kChoice,  ///< likelihood field, among the places that are left
+    kTrack,   ///< likelihood field, one place
+  };
   bool usesFsd() const { return params_.model == Model::kFsd || searching(); }
-  bool searching() const { return params_.model == Model::kHybrid && phase_ != Phase::kTracking; }
+  bool searching() const { return params_.model == Model::kHybrid && stage_ == Stage::kSearch; }
   const ObservationModel& activeModel() const;
-  FilterParams searchParams() const;
-  void startSearch(bool keep_guess);
-  void startTracking(Particles particles);
+  void startSearch();
+  void startChoice(Particles particles);
+  void startTracking();
+  void searchAgain();
+  void continueWith(Particles particles, std::size_t min_particles, double independent_beams);
   void supervise(const PoseEstimate& estimate, double moved, LocalizationResult& result);
 
   LocalizerParams params_;
@@ -127,6 +140,7 @@ class Localizer {
   FsdSensor sensor_;
   ParticleFilter filter_;
   Observation observation_;
+  Stage stage_ = Stage::kSearch;
   Phase phase_ = Phase::kGlobal;
   std::optional<double> last_stamp_;
   std::optional<hyselam::Pose2> last_odom_;     // of the last scan
@@ -134,7 +148,7 @@ class Localizer {
   double travelled_ = 0.0;
   double explained_fast_ = 0.0;
   double explained_slow_ = 0.0;
-  double tracked_ = 0.0;  // [m] since tracking began
+  double judged_ = 0.0;  // [m] since the likelihood field took over
 };
 
 }  // namespace fsd_localization

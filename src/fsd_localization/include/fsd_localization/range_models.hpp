@@ -70,7 +70,7 @@ struct LikelihoodFieldParams {
   double max_range = 30.0;          ///< [m]
   double z_hit = 0.9;               ///< share of returns from mapped obstacles
   double z_rand = 0.1;              ///< share of returns from anywhere
-  double sigma_hit = 0.1;          ///< [m]
+  double sigma_hit = 0.1;           ///< [m]
   double max_distance = 1.0;        ///< beyond it an obstacle is simply not there [m]
   double independent_beams = 60.0;  ///< the beams of a scan count as this many independent ones
   double occupied_penalty = 0.05;   ///< factor for a pose on a cell that is not free
@@ -90,6 +90,8 @@ class LikelihoodFieldModel final : public ObservationModel {
                        const OccupancyThresholds& thresholds = {});
   const char* name() const override { return "likelihood"; }
   std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
+  /// Another LikelihoodFieldParams::independent_beams: smaller is softer.
+  void setIndependentBeams(double beams) { params_.independent_beams = beams; }
 
   /// Share of the returns that end within `tolerance` [m] of an obstacle of the map, for a pose of
   /// the grid's frame, 0..1; empty if the scan has no return. What supervision looks at.

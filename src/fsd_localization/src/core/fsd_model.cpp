@@ -35,7 +35,14 @@ std::optional<double> FsdModel::weigh(const Observation& observation, Particles&
   // Eq. 3.4 and 3.5 for every value that a cell can hold.
   std::vector<float> density_factor(static_cast<std::size_t>(kernels) * 256, 1.0F);
   std::vector<float> direction_factor(static_cast<std::size_t>(kernels) * 256, 1.0F);
-  const auto penalty = static_cast<float>(params_.penalty);
+  const double floor = params_.penalty;
+  // The agreement fades with the excess over what fits, or breaks off at the tolerance.
+  const auto fade = [&](double excess, double tolerance) {
+    if (params_.profile == FsdModelParams::Profile::kStep)
+      return static_cast<float>(excess > tolerance ? floor : 1.0);
+    const double z = 2.0 * excess / tolerance;
+    return static_cast<float>(floor + (1.0 - floor) * std::exp(-0.5 * z * z));
+  };
   int factors = 0;
   for (int k = 0; k < kernels; ++k) {
     const FsdReading& reading = readings[static_cast<std::size_t>(k)];
@@ -46,11 +53,11 @@ std::optional<double> FsdModel::weigh(const Observation& observation, Particles&
                        reading.density.upper - reading.density.soft < 1.0);
     if (told) {
       ++factors;
-      const double low = reading.density.soft - params_.epsilon_d;
-      const double high = reading.density.upper + params_.epsilon_d;
+      const double low = reading.density.soft;
+      const double high = reading.density.upper;
       for (int b = 0; b <= FsdMap::kMaxDensity; ++b) {
         const double d = b / static_cast<double>(FsdMap::kMaxDensity);
-        if (d < low || d > high) by_density[b] = penalty;
+        by_density[b] = fade(std::max({0.0, low - d, d - high}), params_.epsilon_d);
       }
     }
     if (reading.descent) {
@@ -58,8 +65,7 @@ std::optional<double> FsdModel::weigh(const Observation& observation, Particles&
       for (int a = 0; a < 128; ++a) {
         const double difference =
             hyselam::normalizeAngle(a * (2.0 * hyselam::kPi / 128.0) - *reading.descent);
-        if (std::abs(difference) > params_.epsilon_theta)
-          by_direction[FsdMap::kStable | a] = penalty;
+        by_direction[FsdMap::kStable | a] = fade(std::abs(difference), params_.epsilon_theta);
       }
     }
   }

@@ -68,6 +68,8 @@ void LocalizerParams::validate() const {
     throw ParameterError("tracking_particles", tracking_particles, ">= 1");
   if (candidate_particles < tracking_particles)
     throw ParameterError("candidate_particles", candidate_particles, ">= tracking_particles");
+  if (!(candidate_beams > 0.0 && candidate_beams <= 1e4))
+    throw ParameterError("candidate_beams", candidate_beams, "in (0, 10000]");
   if (max_candidate_bins < 1)
     throw ParameterError("max_candidate_bins", max_candidate_bins, ">= 1");
   if (!(explained_tolerance > 0.0))
@@ -93,7 +95,7 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
                              : FsdMap::cached(cache_path, map, params.map, 0, progress,
                                               &map_was_cached_, &map_cache_problem_))),
       sensor_(sensorParams(params)),
-      filter_(map_, searchParams(), params.seed) {
+      filter_(map_, params_.filter, params.seed) {
   const auto rays = [&] { return std::make_shared<const RayCaster>(map, params.map.thresholds); };
   switch (params_.model) {
     case Model::kBeam:
@@ -116,17 +118,14 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
 }
 Localizer::~Localizer() = default;
 
-FilterParams Localizer::searchParams() const {
-  return params_.filter;
-}
-
 const ObservationModel& Localizer::activeModel() const {
-  if (params_.model == Model::kHybrid && phase_ == Phase::kTracking) return *tracker_;
-  return *model_;
+  if (stage_ == Stage::kSearch) return *model_;
+  return *tracker_;
 }
 
 void Localizer::relocalizeGlobally() {
-  filter_ = ParticleFilter(map_, searchParams(), hyselam::splitmix64(params_.seed));
+  filter_ = ParticleFilter(map_, params_.filter, hyselam::splitmix64(params_.seed));
+  startSearch();
   phase_ = Phase::kGlobal;
   travelled_ = 0.0;
   restartClock();
@@ -140,9 +139,10 @@ void Localizer::setInitialPose(const Pose2& base_in_map, const Pose2& stddev) {
   const Pose2 base_in_grid = map_->geometry().origin.inverse() * base_in_map;
   travelled_ = 0.0;
   restartClock();
+  phase_ = Phase::kGlobal;
   if (params_.model == Model::kHybrid)
-    startTracking(gaussianParticles(base_in_grid, stddev, params_.candidate_particles,
-                                    hyselam::mix(params_.seed, 0x1217)));
+    startChoice(gaussianParticles(base_in_grid, stddev, params_.candidate_particles,
+                                  hyselam::mix(params_.seed, 0x1217)));
   else
     filter_.concentrate(base_in_grid, stddev);
 }
@@ -155,34 +155,56 @@ void Localizer::restartClock() {
   updated_odom_.reset();
 }
 
-void Localizer::startTracking(Particles particles) {
-  FilterParams p = params_.filter;
-  p.adaptive_size = true;
-  p.min_particles = std::min(params_.tracking_particles, params_.candidate_particles);
-  p.max_particles = params_.candidate_particles;
-  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // supervise() sees to that
-  filter_ = ParticleFilter(
-      map_, p, hyselam::mix(params_.seed, static_cast<std::uint64_t>(travelled_ * 1000)));
-  filter_.take(std::move(particles));
-  phase_ = Phase::kTracking;
-  explained_fast_ = explained_slow_ = 0.0;
-  tracked_ = 0.0;
+void Localizer::startSearch() {
+  stage_ = Stage::kSearch;
+  sensor_.reset();
 }
 
-void Localizer::startSearch(bool keep_guess) {
+void Localizer::startChoice(Particles particles) {
+  stage_ = Stage::kChoice;
+  explained_fast_ = explained_slow_ = 0.0;
+  judged_ = 0.0;
+  // Few particles would let places die out by chance, and a sharp model by the luck of the nearest.
+  continueWith(std::move(particles), params_.candidate_particles, params_.candidate_beams);
+}
+
+void Localizer::startTracking() {
+  stage_ = Stage::kTrack;
+  phase_ = Phase::kTracking;
+  continueWith(filter_.particles(),
+               std::min(params_.tracking_particles, params_.candidate_particles),
+               params_.likelihood.independent_beams);
+}
+
+void Localizer::continueWith(Particles particles, std::size_t min_particles,
+                             double independent_beams) {
+  tracker_->setIndependentBeams(independent_beams);
+  FilterParams p = params_.filter;
+  p.adaptive_size = true;
+  p.min_particles = min_particles;
+  p.max_particles = params_.candidate_particles;
+  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // supervise() sees to that
+  filter_ =
+      ParticleFilter(map_, p,
+                     hyselam::mix(params_.seed, 2 * static_cast<std::uint64_t>(travelled_ * 1000) +
+                                                    (stage_ == Stage::kTrack ? 1 : 0)));
+  filter_.take(std::move(particles));
+}
+
+void Localizer::searchAgain() {
   const Particles old = filter_.particles();
   filter_ = ParticleFilter(
-      map_, searchParams(),
+      map_, params_.filter,
       hyselam::mix(params_.seed, 0x5ea7c4 + static_cast<std::uint64_t>(travelled_ * 1000)));
-  if (keep_guess && old.size() > 0) {
+  if (phase_ == Phase::kTracking && old.size() > 0) {  // the alarm may be false
     Particles mixed = filter_.particles();
     const auto every = static_cast<std::size_t>(1.0 / kGuessShare);
     for (std::size_t i = 0, k = 0; i < mixed.size(); i += every, k = (k + 1) % old.size())
       mixed.set(i, old.pose(k), 1.0F);
     filter_.take(std::move(mixed));
+    phase_ = Phase::kLost;
   }
-  phase_ = Phase::kLost;
-  sensor_.reset();
+  startSearch();
 }
 
 std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& scan,
@@ -231,27 +253,30 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
 }
 
 void Localizer::supervise(const PoseEstimate& estimate, double moved, LocalizationResult& result) {
-  if (phase_ != Phase::kTracking) {
+  if (stage_ == Stage::kSearch) {
     result.converged = false;  // the search alone is coarse; the likelihood field has the last word
     if (estimate.bins > 0 && estimate.bins <= params_.max_candidate_bins)
-      startTracking(filter_.resampledCopy(params_.candidate_particles, kCandidateBlur));
+      startChoice(filter_.resampledCopy(params_.candidate_particles, kCandidateBlur));
     return;
   }
-  tracked_ += moved;
+  judged_ += moved;
   result.explained =
       tracker_->explainedShare(observation_.scan, estimate.mean, params_.explained_tolerance);
-  if (!result.explained) return;
-  const auto follow = [&](double& average, double memory) {
-    average +=
-        (average == 0.0 ? 1.0 : std::min(1.0, moved / memory)) * (*result.explained - average);
-  };
-  follow(explained_fast_, kFastMemory);
-  follow(explained_slow_, kSlowMemory);
-  const double limit = std::max(params_.lost_below, params_.lost_ratio * explained_slow_);
-  if (tracked_ > kFastMemory && explained_fast_ < limit) {
-    result.converged = false;
-    startSearch(true);
+  if (result.explained) {
+    const auto follow = [&](double& average, double memory) {
+      average +=
+          (average == 0.0 ? 1.0 : std::min(1.0, moved / memory)) * (*result.explained - average);
+    };
+    follow(explained_fast_, kFastMemory);
+    follow(explained_slow_, kSlowMemory);
+    const double limit = std::max(params_.lost_below, params_.lost_ratio * explained_slow_);
+    if (judged_ > kFastMemory && explained_fast_ < limit) {
+      result.converged = false;
+      searchAgain();
+      return;
+    }
   }
+  if (stage_ == Stage::kChoice && result.converged) startTracking();
 }
 
 }  // namespace fsd_localization

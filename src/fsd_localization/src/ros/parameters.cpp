@@ -102,6 +102,10 @@ void loadFsdModel(ParamLoader& loader, FsdModelParams& p) {
   loader.get("fsd_penalty", p.penalty, {0.0, 1.0, true, true}, "factor beyond a tolerance");
   loader.get("fsd_occupied_penalty", p.occupied_penalty, {0.0, 1.0, true, false},
              "factor where the map is not free");
+  using Profile = FsdModelParams::Profile;
+  loader.getEnum<Profile>("fsd_profile", p.profile,
+                          {{"step", Profile::kStep}, {"gaussian", Profile::kGaussian}},
+                          "how the factor falls to the penalty within the tolerance");
   loader.getEnum<Undefined>("fsd_undefined", p.undefined,
                             {{"neutral", Undefined::kNeutral}, {"bounds", Undefined::kBounds}},
                             "what a density without a hard value tells");
@@ -189,7 +193,9 @@ void loadLocalizer(ParamLoader& loader, LocalizerParams& p) {
   loader.get("converged_stddev", p.converged_stddev, Range::above(0.0), "[m] and of its position");
   getCount(loader, "tracking_particles", p.tracking_particles, 1, 1e7, "hybrid, once converged");
   getCount(loader, "candidate_particles", p.candidate_particles, 1, 1e7,
-           "hybrid, when the likelihood field takes over");
+           "hybrid, while the likelihood field chooses among places");
+  loader.get("candidate_beams", p.candidate_beams, {0.0, 1e4, true, false},
+             "hybrid, beams taken as independent meanwhile");
   getCount(loader, "max_candidate_bins", p.max_candidate_bins, 1, 1e7,
            "hybrid, which it does at this many places left");
   loader.get("explained_tolerance", p.explained_tolerance, Range::above(0.0),
