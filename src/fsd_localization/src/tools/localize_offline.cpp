@@ -22,44 +22,90 @@ struct Options {
   std::vector<double> bandwidths{1.5, 3.0, 5.0};
   std::size_t particles = 20000;
   std::uint64_t seed = 1;
-  double start = 0.0, duration = 0.0, success_m = 0.5, success_deg = 15.0;
+  double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
   bool global = true, cache = false;
 };
 
-/// What is compared with the reference, if there is one.
-struct Score {
-  std::vector<bool> good;
-  std::vector<double> travelled, error_m, error_deg;
+/// The estimates against the reference, if there is one.
+class Score {
+ public:
+  explicit Score(const Options& o) : success_m_(o.success_m), success_deg_(o.success_deg) {}
+  bool empty() const { return entries_.empty(); }
 
-  void add(const Pose2& estimate, const Pose2& truth, double at, const Options& o) {
-    error_m.push_back(hyselam::distance(estimate, truth));
-    error_deg.push_back(
-        hyselam::degrees(std::abs(hyselam::normalizeAngle(estimate.theta - truth.theta))));
-    good.push_back(error_m.back() < o.success_m && error_deg.back() < o.success_deg);
-    travelled.push_back(at);
+  void add(const Pose2& estimate, const Pose2& truth, double travelled, bool converged) {
+    Entry e;
+    e.travelled = travelled;
+    e.error_m = hyselam::distance(estimate, truth);
+    e.error_deg = hyselam::degrees(std::abs(hyselam::normalizeAngle(estimate.theta - truth.theta)));
+    e.good = e.error_m < success_m_ && e.error_deg < success_deg_;
+    e.converged = converged;
+    if (!entries_.empty() &&
+        hyselam::distance(truth_, truth) > travelled - entries_.back().travelled + kJump)
+      jumps_.push_back(entries_.size());
+    truth_ = truth;
+    entries_.push_back(e);
   }
+
   nlohmann::json report() const {
-    nlohmann::json j;
-    // Held to the end: from the first good estimate after the last bad one.
-    std::size_t first = good.size();
-    while (first > 0 && good[first - 1]) --first;
-    j["success"] = first < good.size();
-    if (first == good.size()) {
-      j["held_from_m"] = nullptr;
-      j["median_error_m"] = nullptr;
-      j["median_error_deg"] = nullptr;
-      return j;
-    }
-    j["held_from_m"] = travelled[first];
-    const auto median = [first](std::vector<double> v) {
-      v.erase(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(first));
-      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-      return v[v.size() / 2];
-    };
-    j["median_error_m"] = median(error_m);
-    j["median_error_deg"] = median(error_deg);
+    const std::size_t held = heldFrom(0, entries_.size());
+    const bool success = held < entries_.size();
+    nlohmann::json j = {{"success", success},
+                        {"held_from_m", nullptr},
+                        {"median_error_m", nullptr},
+                        {"median_error_deg", nullptr},
+                        {"wrongly_converged_m", wronglyConverged()},
+                        {"kidnaps", kidnaps()}};
+    if (!success) return j;
+    j["held_from_m"] = entries_[held].travelled;
+    j["median_error_m"] = median(held, &Entry::error_m);
+    j["median_error_deg"] = median(held, &Entry::error_deg);
     return j;
   }
+
+ private:
+  static constexpr double kJump = 1.0;  // [m] more than was travelled: the robot was carried
+  struct Entry {
+    double travelled, error_m, error_deg;
+    bool good, converged;
+  };
+
+  /// The first good estimate of [begin, end) after the last bad one; `end` if the last is bad.
+  std::size_t heldFrom(std::size_t begin, std::size_t end) const {
+    if (end == begin || !entries_[end - 1].good) return entries_.size();
+    while (end > begin && entries_[end - 1].good) --end;
+    return end;
+  }
+  /// Travel in which the robot was sure of a wrong place [m].
+  double wronglyConverged() const {
+    double sum = 0.0;
+    for (std::size_t i = 1; i < entries_.size(); ++i)
+      if (entries_[i].converged && !entries_[i].good)
+        sum += entries_[i].travelled - entries_[i - 1].travelled;
+    return sum;
+  }
+  nlohmann::json kidnaps() const {
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < jumps_.size(); ++i) {
+      const std::size_t end = i + 1 < jumps_.size() ? jumps_[i + 1] : entries_.size();
+      const std::size_t held = heldFrom(jumps_[i], end);
+      const double at = entries_[jumps_[i]].travelled;
+      nlohmann::json after = nullptr;
+      if (held < end) after = entries_[held].travelled - at;
+      list.push_back({{"at_m", at}, {"recovered_after_m", after}});
+    }
+    return list;
+  }
+  double median(std::size_t from, double Entry::*field) const {
+    std::vector<double> v;
+    for (std::size_t i = from; i < entries_.size(); ++i) v.push_back(entries_[i].*field);
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+  }
+
+  double success_m_, success_deg_;
+  Pose2 truth_;
+  std::vector<Entry> entries_;
+  std::vector<std::size_t> jumps_;  // first entry after each
 };
 
 nlohmann::json run(const Options& o) {
@@ -98,11 +144,13 @@ nlohmann::json run(const Options& o) {
   nlohmann::json converged_at = nullptr;
   std::string phase;
   nlohmann::json phases = nlohmann::json::array();
-  Score score;
+  Score score(o);
+  double travelled = 0.0;
   for (const hyselam::LaserScan& scan : log.scans) {
     progress.update(++index);
     if (scan.stamp < begin) continue;
     if (o.duration > 0.0 && scan.stamp > begin + o.duration) break;
+    if (o.distance > 0.0 && travelled > o.distance) break;
     const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
     if (!odom) {
       ++without_odometry;
@@ -121,6 +169,7 @@ nlohmann::json run(const Options& o) {
     update_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t0).count());
     trajectory.push_back({result->stamp, result->base_in_map});
+    travelled = result->travelled;
     if (result->converged && converged_at.is_null()) converged_at = result->travelled;
     const std::string now = toString(result->phase);
     if (now != phase)
@@ -128,7 +177,7 @@ nlohmann::json run(const Options& o) {
           {{"phase", now}, {"travelled_m", result->travelled}, {"stamp", result->stamp}});
     phase = now;
     if (const auto at = hyselam::poseAt(truth, scan.stamp, 0.05))
-      score.add(result->base_in_map, *at, result->travelled, o);
+      score.add(result->base_in_map, *at, result->travelled, result->converged);
   }
   if (trajectory.empty())
     throw hyselam::InputError(o.log, "", "no scan could be used for an update");
@@ -146,7 +195,7 @@ nlohmann::json run(const Options& o) {
                       {"phases", phases},
                       {"scans_without_odometry", without_odometry},
                       {"scans_refused", refused}};
-  if (!score.good.empty()) j["against_reference"] = score.report();
+  if (!score.empty()) j["against_reference"] = score.report();
   std::cout << j.dump(2) << "\n";
   return j;
 }
@@ -169,6 +218,8 @@ int main(int argc, char** argv) {
   app.add_option("--start", o.start, "seconds to skip at the beginning; the robot wakes up there")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--duration", o.duration, "seconds to use; 0: to the end")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--distance", o.distance, "metres of travel to use; 0: to the end")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
