@@ -52,7 +52,7 @@ struct LocalizerParams {
   double explained_tolerance = 0.3;  ///< a return this near to a mapped obstacle is explained [m]
   double lost_below = 0.45;          ///< lost when the explained share of the returns, averaged
                                      ///< over about 1 m of travel, is lower than this ...
-  double lost_ratio = 0.65;          ///< ... or than this times its long-term average
+  double lost_ratio = 0.8;          ///< ... or than this times its long-term average
 
   /// @throws hyselam::ParameterError naming the first value out of range.
   void validate() const;
