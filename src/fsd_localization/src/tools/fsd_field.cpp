@@ -58,8 +58,13 @@ int main(int argc, char** argv) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
     const cv::Mat picture = draw(space, field);
     hyselam::replaceFileAtomically(out, [&](const std::string& temporary) {
-      if (!cv::imwrite(temporary, picture))
-        throw hyselam::InputError(out, "", "the picture cannot be written (is it a .png?)");
+      bool done = false;
+      try {
+        done = cv::imwrite(temporary, picture);
+      } catch (const cv::Exception&) {
+        throw hyselam::InputError(out, "", "no picture format has this extension");
+      }
+      if (!done) throw hyselam::InputError(out, "", "the picture cannot be written");
     });
     std::size_t free_cells = 0;
     for (int y = 0; y < field.height; ++y)
