@@ -1,0 +1,175 @@
+// The tools as a shell sees them: exit status, one line of error, results as JSON.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fsd_localization/ray_caster.hpp"
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+
+namespace {
+
+using hyselam::Pose2;
+using hyselam::testing::fileBytes;
+using hyselam::testing::TemporaryDirectory;
+using hyselam::testing::writeFile;
+
+/// A room of 8 x 5 m with a niche.
+hyselam::OccupancyGrid room() {
+  hyselam::GridGeometry g;
+  g.width = 80;
+  g.height = 50;
+  g.resolution = 0.1;
+  hyselam::OccupancyGrid map(g, 0);
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x)
+      if (x < 2 || y < 2 || x >= g.width - 2 || y >= g.height - 2 || (x > 50 && x < 56 && y < 20))
+        map.at({x, y}) = 100;
+  return map;
+}
+
+/// Three metres straight on, a scan each 10 cm.
+hyselam::RobotLog drive() {
+  hyselam::RobotLog log;
+  const fsd_localization::RayCaster rays(room());
+  for (int i = 0; i < 30; ++i) {
+    const Pose2 at{1.0 + 0.1 * i, 2.5, 0.0};
+    hyselam::LaserScan s;
+    s.stamp = 1.0 + 0.2 * i;
+    s.angle_min = -hyselam::kPi / 2;
+    s.angle_increment = hyselam::kPi / 180;
+    s.range_min = 0.05;
+    s.range_max = 20.0;
+    for (int b = 0; b < 181; ++b)
+      s.ranges.push_back(static_cast<float>(
+          rays.range(at.x, at.y, s.angle_min + b * s.angle_increment, s.range_max)));
+    log.scans.push_back(s);
+    log.odometry.push_back({s.stamp, {0.1 * i, 0.0, 0.0}});
+    log.ground_truth.push_back({s.stamp, at});
+  }
+  return log;
+}
+
+class Tools : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    hyselam::saveMap(d / "m.yaml", room());
+    hyselam::writeBag(d / "r.bag", drive());
+  }
+  int run(const std::string& command) {
+    const int status = std::system((std::string(FSD_LOCALIZATION_TOOLS) + "/" + command + " >" +
+                                    d / "stdout" + " 2>" + d / "stderr")
+                                       .c_str());
+    errors = fileBytes(d / "stderr");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int localize(const std::string& options) {
+    return run("localize_offline --map " + d / "m.yaml --bag " + d / "r.bag --particles 2000 " +
+               options);
+  }
+  int field(const std::string& options) { return run("fsd_field " + d / "m.yaml " + options); }
+  /// Exit status 2 and exactly one line "error: ...".
+  void expectRefused(int status, const std::string& part) {
+    EXPECT_EQ(status, 2) << errors;
+    EXPECT_EQ(errors.rfind("error: ", 0), 0U) << errors;
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  }
+
+  TemporaryDirectory d;
+  std::string errors;
+};
+
+TEST_F(Tools, LocalizeOfflineWritesTrajectoryAndJson) {
+  ASSERT_EQ(localize("--trajectory " + d / "t.tum --json " + d / "j.json"), 0) << errors;
+  const auto json = nlohmann::json::parse(fileBytes(d / "j.json"));
+  EXPECT_EQ(json["updates"], hyselam::readTum(d / "t.tum").size());
+  EXPECT_EQ(json["scans_refused"], 0);
+  EXPECT_EQ(json["scans_without_odometry"], 0);
+  EXPECT_TRUE(json["against_reference"]["kidnaps"].empty());
+  EXPECT_EQ(json, nlohmann::json::parse(fileBytes(d / "stdout")));
+}
+
+TEST_F(Tools, EqualSeedsGiveEqualBytes) {
+  ASSERT_EQ(localize("--seed 3 --trajectory " + d / "a.tum"), 0) << errors;
+  ASSERT_EQ(localize("--seed 3 --trajectory " + d / "b.tum"), 0) << errors;
+  ASSERT_EQ(localize("--seed 4 --trajectory " + d / "c.tum"), 0) << errors;
+  EXPECT_TRUE(fileBytes(d / "a.tum") == fileBytes(d / "b.tum"));
+  EXPECT_FALSE(fileBytes(d / "a.tum") == fileBytes(d / "c.tum"));
+}
+
+TEST_F(Tools, CacheGivesTheSameAndIsToldWhenItCannotBeKept) {
+  ASSERT_EQ(localize("--trajectory " + d / "a.tum"), 0) << errors;
+  for (const char* round : {"written", "read"}) {
+    ASSERT_EQ(localize("--cache --trajectory " + d / "b.tum"), 0) << round << errors;
+    EXPECT_EQ(errors, "");
+    EXPECT_TRUE(std::filesystem::is_regular_file(d / "m.yaml.fsd"));
+    EXPECT_TRUE(fileBytes(d / "a.tum") == fileBytes(d / "b.tum")) << round;
+  }
+  std::filesystem::remove(d / "m.yaml.fsd");
+  std::filesystem::create_directory(d / "m.yaml.fsd");  // where the file should go
+  ASSERT_EQ(localize("--cache --trajectory " + d / "b.tum"), 0) << errors;
+  EXPECT_EQ(errors.rfind("warning: the density fields are not kept: " + d / "m.yaml.fsd", 0), 0U)
+      << errors;
+  EXPECT_TRUE(fileBytes(d / "a.tum") == fileBytes(d / "b.tum"));
+}
+
+TEST_F(Tools, FsdFieldDraws) {
+  ASSERT_EQ(field("--bandwidth 1 --out " + d / "f.png --json " + d / "j.json"), 0) << errors;
+  EXPECT_GT(std::filesystem::file_size(d / "f.png"), 100U);
+  const auto json = nlohmann::json::parse(fileBytes(d / "j.json"));
+  EXPECT_EQ(json["cells"], 4000);
+  EXPECT_EQ(json["radius_cells"], 10);
+  EXPECT_EQ(json["bytes"], 16000);
+}
+
+TEST_F(Tools, HelpIsNoError) {
+  EXPECT_EQ(run("localize_offline --help"), 0);
+  EXPECT_EQ(run("fsd_field --help"), 0);
+}
+
+TEST_F(Tools, WrongUsageIsStatus2) {
+  expectRefused(run("localize_offline"), "--");
+  expectRefused(localize("--no-such-option"), "--no-such-option");
+  expectRefused(localize("--start -1"), "--start");
+  expectRefused(field(""), "--out");
+  expectRefused(field("--out " + d / "f.png --threads many"), "--threads");
+}
+
+TEST_F(Tools, UnreadableInputIsStatus2) {
+  expectRefused(run("localize_offline --map " + d / "none.yaml --bag " + d / "r.bag"), "none.yaml");
+  expectRefused(run("localize_offline --map " + d / "m.yaml --bag " + d / "none.bag"), "none.bag");
+  writeFile(d / "text.bag", "no bag");
+  expectRefused(run("localize_offline --map " + d / "m.yaml --bag " + d / "text.bag"), "text.bag");
+  expectRefused(localize("--reference " + d / "none.tum"), "none.tum");
+  expectRefused(localize("--start 1000"), "after the last scan");
+  expectRefused(run("fsd_field " + d / "none.yaml --out " + d / "f.png"), "none.yaml");
+  EXPECT_FALSE(std::filesystem::exists(d / "f.png"));
+}
+
+TEST_F(Tools, ParametersOutOfRangeAreStatus2) {
+  expectRefused(localize("--model amcl"), "fsd, beam, cosine, likelihood, hybrid");
+  expectRefused(localize("--kernel round"), "uniform, gaussian, inverted");
+  expectRefused(localize("--bandwidths 1.5,20"), "bandwidth");
+  expectRefused(localize("--bandwidths 1.5,nan"), "bandwidth");
+  expectRefused(localize("--particles 0"), "particles");
+  expectRefused(field("--out " + d / "f.png --kernel round"), "uniform, gaussian, inverted");
+  expectRefused(field("--out " + d / "f.png --bandwidth 50"), "127 cells");
+  expectRefused(field("--out " + d / "f.png --bandwidth nan"), "bandwidth");
+}
+
+TEST_F(Tools, UnwritableOutputIsStatus2) {
+  expectRefused(localize("--trajectory " + d / "none/t.tum"), "none/t.tum");
+  expectRefused(localize("--json " + d / "none/j.json"), "none/j.json");
+  expectRefused(field("--out " + d / "none/f.png"), "none/f.png");
+  expectRefused(field("--out " + d / "f.xyz"), "f.xyz: no picture format");
+  EXPECT_FALSE(std::filesystem::exists(d / "f.xyz"));
+}
+
+}  // namespace
