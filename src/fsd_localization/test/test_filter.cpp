@@ -286,6 +286,17 @@ TEST(Parameters, outOfRangeAreNamed) {
   EXPECT_THROW(modelFromName("amcl"), hyselam::ParameterError);
 }
 
+TEST(LikelihoodField, farReturnsAreExplainedByNoTolerance) {
+  LikelihoodFieldParams params;
+  params.sigma_hit = 0.03;
+  const LikelihoodFieldModel model(room(), params);
+  const Pose2 at{6.0, 4.0, 0.0};
+  hyselam::LaserScan scan = look(RayCaster(room()), at, 1.0);
+  EXPECT_GT(*model.explainedShare(scan, at, 0.3), 0.9);
+  for (float& range : scan.ranges) range *= 0.5F;  // into the open
+  EXPECT_LT(*model.explainedShare(scan, at, 0.3), 0.1);
+}
+
 TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
   const std::string path = ::testing::TempDir() + "room.fsd";
   std::remove(path.c_str());

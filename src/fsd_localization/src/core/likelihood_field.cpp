@@ -138,7 +138,9 @@ std::optional<double> LikelihoodFieldModel::explainedShare(const hyselam::LaserS
   // The cost grows with the distance, so the tolerance is a limit on the cost.
   const double hit =
       std::exp(-0.5 * tolerance * tolerance / (params_.sigma_hit * params_.sigma_hit));
-  const double limit = (best_ - std::log(params_.z_hit * hit + params_.z_rand)) / step_;
+  // The largest cost says only "far away", which no tolerance explains.
+  const double limit =
+      std::min(254.0, (best_ - std::log(params_.z_hit * hit + params_.z_rand)) / step_);
   std::size_t explained = 0;
   for (const std::int32_t cell : ends.cell)
     explained += cost_[static_cast<std::size_t>(cell)] <= limit ? 1 : 0;
