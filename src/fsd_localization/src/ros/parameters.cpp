@@ -113,9 +113,10 @@ void loadFsdModel(ParamLoader& loader, FsdModelParams& p) {
 
 /// amcl's laser_* go to the model that looks at beams.
 void loadBeams(ParamLoader& loader, LocalizerParams& p) {
-  for (const char* name :
-       {"laser_max_beams", "laser_max_range", "laser_z_hit", "laser_z_rand", "laser_z_short",
-        "laser_z_max", "laser_lambda_short", "laser_sigma_hit", "laser_likelihood_max_dist"})
+  for (const char* name : {"laser_max_beams", "laser_max_range", "laser_z_hit", "laser_z_rand",
+                           "laser_z_short", "laser_z_max", "laser_lambda_short", "laser_sigma_hit",
+                           "laser_likelihood_max_dist", "laser_independent_beams",
+                           "laser_occupied_penalty", "laser_surface_offset", "cosine_exponent"})
     loader.know(name);
   const Range share = Range::between(0.0, 1.0), some = Range::between(1e-6, 1.0);
   const Range length = Range::between(1e-3, 10.0);
@@ -148,6 +149,8 @@ void loadBeams(ParamLoader& loader, LocalizerParams& p) {
                "what the beams of a scan count as");
     loader.get("laser_occupied_penalty", f.occupied_penalty, Range::between(1e-9, 1.0),
                "factor where the map is not free");
+    loader.get("laser_surface_offset", f.surface_offset, Range::between(0.0, 0.5),
+               "[cells] from the centre of a wall's outermost cell to its surface");
   }
 }
 
