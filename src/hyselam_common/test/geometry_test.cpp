@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hyselam_common/coarsen.hpp"
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/robot_log.hpp"
@@ -118,6 +120,32 @@ TEST(Rng, HasTheStatisticsItClaims) {
   EXPECT_NEAR(square / kDraws, 9.0, 5 * 9.0 * std::sqrt(2.0 / kDraws));
   EXPECT_NEAR(uniform / kDraws, 0.0, 5 * 0.58 / std::sqrt(kDraws));
   for (const int c : counts) EXPECT_NEAR(c, kDraws / 6.0, 5 * std::sqrt(kDraws / 6.0));
+}
+
+TEST(Coarsen, keepsThinWallsAndPlaces) {
+  GridGeometry g;
+  g.width = 5;
+  g.height = 4;
+  g.resolution = 0.05;
+  g.origin = {1.0, -2.0, 0.5};
+  OccupancyGrid map(g);
+  map.at({0, 0}) = 0;
+  map.at({1, 1}) = 100;  // one cell of four
+  map.at({2, 0}) = 30;
+  map.at({4, 3}) = 0;  // in a block that reaches over the edge
+  const OccupancyGrid coarse = coarsen(map, coarseningFactor(g.resolution, 0.1));
+  ASSERT_EQ(coarse.geometry.width, 3);
+  ASSERT_EQ(coarse.geometry.height, 2);
+  EXPECT_DOUBLE_EQ(coarse.geometry.resolution, 0.1);
+  EXPECT_EQ(coarse.cells, (std::vector<std::int8_t>{100, 30, -1, -1, -1, 0}));
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 5; ++x)
+      EXPECT_EQ(coarse.geometry.cellAt(g.centre({x, y})), (Cell{x / 2, y / 2}));
+  EXPECT_EQ(coarsen(map, 1).cells, map.cells);
+  EXPECT_THROW(coarsen(map, 0), ParameterError);
+  EXPECT_EQ(coarseningFactor(0.05, 0.1), 2);
+  EXPECT_EQ(coarseningFactor(0.1, 0.1), 1);
+  EXPECT_EQ(coarseningFactor(0.2, 0.1), 1);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/coarsen.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace fsd_localization {
@@ -87,13 +88,30 @@ void LocalizerParams::validate() const {
   filter.validate();
 }
 
+namespace {
+
+/// Densities are compared like with like: fields on the local map's cells, if the map's are finer.
+/// It also closes the gaps in walls of finely drawn maps, through which free space would leak.
+std::shared_ptr<const FsdMap> densities(const hyselam::OccupancyGrid& map,
+                                        const LocalizerParams& params,
+                                        const std::string& cache_path,
+                                        const std::function<void(double)>& progress, bool* cached,
+                                        std::string* problem) {
+  const int factor =
+      hyselam::coarseningFactor(map.geometry.resolution, params.local_map.resolution);
+  const hyselam::OccupancyGrid coarse = hyselam::coarsen(map, factor);
+  return std::make_shared<const FsdMap>(
+      cache_path.empty()
+          ? FsdMap(coarse, params.map, 0, progress)
+          : FsdMap::cached(cache_path, coarse, params.map, 0, progress, cached, problem));
+}
+
+}  // namespace
+
 Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& params,
                      const std::string& cache_path, const std::function<void(double)>& progress)
     : params_((params.validate(), params)),
-      map_(std::make_shared<const FsdMap>(
-          cache_path.empty() ? FsdMap(map, params.map, 0, progress)
-                             : FsdMap::cached(cache_path, map, params.map, 0, progress,
-                                              &map_was_cached_, &map_cache_problem_))),
+      map_(densities(map, params, cache_path, progress, &map_was_cached_, &map_cache_problem_)),
       sensor_(sensorParams(params)),
       filter_(map_, params_.filter, params.seed) {
   const auto rays = [&] { return std::make_shared<const RayCaster>(map, params.map.thresholds); };
