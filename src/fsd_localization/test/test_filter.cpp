@@ -207,7 +207,7 @@ TEST(Localizer, findsItselfAndDoesSoAgain) {
   const RayCaster rays(map);
   const auto drive = [&](std::uint64_t seed) {
     LocalizerParams params;
-    params.filter.max_particles = 5000;
+    params.filter.max_particles = 10000;
     params.seed = seed;
     Localizer localizer(map, params);
     std::optional<LocalizationResult> last;

@@ -45,14 +45,16 @@ struct LocalizerParams {
 
   // Hybrid only.
   std::size_t tracking_particles = 2000;    ///< once converged
-  std::size_t candidate_particles = 10000;  ///< while the likelihood field chooses among places
-  double candidate_beams = 10.0;            ///< its independent_beams then: no haste to choose
+  std::size_t candidate_particles = 20000;  ///< while the likelihood field chooses among places
+  double candidate_beams = 3.0;             ///< its independent_beams then: no haste to choose
   std::size_t max_candidate_bins =
-      400;                           ///< it does when FSD leaves this many bins of 0.5 m, 15 deg
+      4000;                          ///< it does when FSD leaves this many bins of 0.5 m, 15 deg
   double explained_tolerance = 0.3;  ///< a return this near to a mapped obstacle is explained [m]
-  double lost_below = 0.45;          ///< lost when the explained share of the returns, averaged
-                                     ///< over about 1 m of travel, is lower than this ...
-  double lost_ratio = 0.8;          ///< ... or than this times its long-term average
+  double found_above = 0.75;  ///< a place is believed only if it explains this share, averaged
+                              ///< over about 1 m of travel; else the search goes on
+  double lost_below = 0.45;   ///< lost when the explained share of the returns, averaged
+                              ///< over about 1 m of travel, is lower than this ...
+  double lost_ratio = 0.85;    ///< ... or than this times its long-term average
 
   /// @throws hyselam::ParameterError naming the first value out of range.
   void validate() const;

@@ -19,9 +19,10 @@ constexpr std::pair<Model, const char*> kModelNames[] = {{Model::kFsd, "fsd"},
                                                          {Model::kLikelihood, "likelihood"},
                                                          {Model::kHybrid, "hybrid"}};
 constexpr Pose2 kCandidateBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of the search
-constexpr double kFastMemory = 1.0;                               // [m] of travel
-constexpr double kSlowMemory = 30.0;                              // [m]
-constexpr double kGuessShare = 0.1;  // of the particles stays with the old belief when lost
+constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
+constexpr double kFastMemory = 1.0;          // [m] of travel
+constexpr double kSlowMemory = 30.0;         // [m]
+constexpr double kGuessShare = 0.1;          // of the particles stays with the old belief when lost
 
 FsdSensorParams sensorParams(const LocalizerParams& p) {
   FsdSensorParams s;
@@ -75,6 +76,8 @@ void LocalizerParams::validate() const {
     throw ParameterError("max_candidate_bins", max_candidate_bins, ">= 1");
   if (!(explained_tolerance > 0.0))
     throw ParameterError("explained_tolerance", explained_tolerance, "> 0 m");
+  if (!(found_above >= 0.0 && found_above < 1.0))
+    throw ParameterError("found_above", found_above, "in [0, 1)");
   if (!(lost_below >= 0.0 && lost_below < 1.0))
     throw ParameterError("lost_below", lost_below, "in [0, 1)");
   if (!(lost_ratio >= 0.0 && lost_ratio < 1.0))
@@ -273,7 +276,9 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
 void Localizer::supervise(const PoseEstimate& estimate, double moved, LocalizationResult& result) {
   if (stage_ == Stage::kSearch) {
     result.converged = false;  // the search alone is coarse; the likelihood field has the last word
-    if (estimate.bins > 0 && estimate.bins <= params_.max_candidate_bins)
+    const std::size_t limit =
+        std::min(params_.max_candidate_bins, filter_.particles().size() / kParticlesPerBin);
+    if (estimate.bins > 0 && estimate.bins <= limit)
       startChoice(filter_.resampledCopy(params_.candidate_particles, kCandidateBlur));
     return;
   }
@@ -287,14 +292,18 @@ void Localizer::supervise(const PoseEstimate& estimate, double moved, Localizati
     };
     follow(explained_fast_, kFastMemory);
     follow(explained_slow_, kSlowMemory);
-    const double limit = std::max(params_.lost_below, params_.lost_ratio * explained_slow_);
+    const double limit =
+        std::max(stage_ == Stage::kChoice ? params_.found_above : params_.lost_below,
+                 params_.lost_ratio * explained_slow_);
     if (judged_ > kFastMemory && explained_fast_ < limit) {
       result.converged = false;
       searchAgain();
       return;
     }
   }
-  if (stage_ == Stage::kChoice && result.converged) startTracking();
+  if (stage_ == Stage::kTrack) return;
+  result.converged = result.converged && explained_fast_ >= params_.found_above;
+  if (result.converged) startTracking();
 }
 
 }  // namespace fsd_localization

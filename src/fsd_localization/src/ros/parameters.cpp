@@ -203,6 +203,8 @@ void loadLocalizer(ParamLoader& loader, LocalizerParams& p) {
            "hybrid, which it does at this many places left");
   loader.get("explained_tolerance", p.explained_tolerance, Range::above(0.0),
              "[m] a return this near to a mapped obstacle is explained");
+  loader.get("found_above", p.found_above, {0.0, 1.0, false, true},
+             "hybrid, a place must explain this share to be believed");
   loader.get("lost_below", p.lost_below, {0.0, 1.0, false, true},
              "hybrid, lost below this explained share");
   loader.get("lost_ratio", p.lost_ratio, {0.0, 1.0, false, true},
