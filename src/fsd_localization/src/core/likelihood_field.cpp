@@ -113,14 +113,16 @@ std::optional<double> LikelihoodFieldModel::weigh(const Observation& observation
   const double before = totalWeight(p);
   const double factors = std::min(static_cast<double>(n), params_.independent_beams);
   const auto scale = static_cast<float>(-step_ * factors / static_cast<double>(n));
+  const auto width = static_cast<double>(geometry_.width),
+             height = static_cast<double>(geometry_.height);
   for (std::size_t i = 0; i < p.size(); ++i) {
     lookUp(p.x[i], p.y[i], p.heading[i], ends);
     std::uint32_t sum = 0;
     for (std::size_t b = 0; b < n; ++b) sum += cost_[static_cast<std::size_t>(ends.cell[b])];
     float w = std::exp(scale * static_cast<float>(sum));
-    const hyselam::Cell at{static_cast<int>(std::floor(p.x[i] / geometry_.resolution)),
-                           static_cast<int>(std::floor(p.y[i] / geometry_.resolution))};
-    if (!geometry_.contains(at) || !free_[geometry_.index(at)])
+    const double cx = p.x[i] / geometry_.resolution, cy = p.y[i] / geometry_.resolution;
+    const bool inside = cx >= 0.0 && cy >= 0.0 && cx < width && cy < height;
+    if (!inside || !free_[geometry_.index({static_cast<int>(cx), static_cast<int>(cy)})])
       w *= static_cast<float>(params_.occupied_penalty);
     p.weight[i] *= w;
   }

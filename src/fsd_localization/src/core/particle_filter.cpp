@@ -13,6 +13,16 @@ using hyselam::Pose2;
 namespace {
 constexpr double kKldCell = 0.5;                      // [m]
 constexpr double kKldAngle = hyselam::radians(15.0);  // [rad]
+
+/// Weights that steps without resampling have multiplied far from 1 come back before a float cannot
+/// hold them any more. By a power of two: their ratios stay exactly as they are.
+void keepInRange(Particles& particles) {
+  constexpr int kFar = 32;
+  const double mean = totalWeight(particles) / static_cast<double>(particles.size());
+  if (!(mean > 0.0) || !std::isfinite(mean) || std::abs(std::ilogb(mean)) < kFar) return;
+  const double scale = std::ldexp(1.0, -std::ilogb(mean));
+  for (float& w : particles.weight) w = static_cast<float>(w * scale);
+}
 }  // namespace
 
 void FilterParams::validate() const {
@@ -76,7 +86,11 @@ FilterStep ParticleFilter::step(const Pose2& delta, const ObservationModel& mode
   // Weights only change, and only ask for resampling, when something was seen.
   const bool starved =
       result.effective_size < params_.resample_below * static_cast<double>(particles_.size());
-  if (!result.likelihood || (!starved && replaced_share == 0.0)) return result;
+  if (!result.likelihood) return result;
+  if (!starved && replaced_share == 0.0) {
+    keepInRange(particles_);
+    return result;
+  }
 
   std::size_t n = params_.max_particles;
   if (params_.adaptive_size)

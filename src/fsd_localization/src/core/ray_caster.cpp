@@ -28,7 +28,8 @@ double RayCaster::range(double x, double y, double direction, double max_range) 
   const double px = x / resolution_, py = y / resolution_, limit = max_range / resolution_;
   const double dx = std::cos(direction), dy = std::sin(direction);
   const double inv_x = 1.0 / dx, inv_y = 1.0 / dy;
-  int cx = static_cast<int>(std::floor(px)), cy = static_cast<int>(std::floor(py));
+  if (!(px >= 0.0 && py >= 0.0 && px < width_ && py < height_)) return max_range;
+  int cx = static_cast<int>(px), cy = static_cast<int>(py);
   double t = 0.0;  // [cells] along the ray where it enters (cx, cy)
   while (t < limit && cx >= 0 && cy >= 0 && cx < width_ && cy < height_) {
     const int open = open_within_[static_cast<std::size_t>(cy) * static_cast<std::size_t>(width_) +
