@@ -123,8 +123,11 @@ void loadBeams(ParamLoader& loader, LocalizerParams& p) {
   const auto common = [&](int& beams, double& range) {
     loader.get("laser_max_beams", beams, Range::between(1, 10000), "beams used of a scan");
     double limit = range;
-    loader.get("laser_max_range", limit, Range::atLeast(-1.0), "[m] -1: the model's default");
-    if (limit > 0.0) range = std::clamp(limit, 0.1, 1000.0);
+    loader.get("laser_max_range", limit, Range::between(-1.0, 1000.0),
+               "[m] -1: the model's default");
+    if (limit != -1.0 && limit < 0.1)
+      throw ParameterError("laser_max_range", limit, "-1, or in [0.1, 1000] m");
+    if (limit > 0.0) range = limit;
   };
   if (p.model == Model::kBeam) {
     common(p.beam.max_beams, p.beam.max_range);

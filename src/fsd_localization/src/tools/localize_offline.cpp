@@ -23,7 +23,7 @@ struct Options {
   std::size_t particles = 20000;
   std::uint64_t seed = 1;
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
-  bool global = true, cache = false;
+  bool cache = false;
 };
 
 /// The estimates against the reference, if there is one.
