@@ -234,6 +234,62 @@ TEST(Localizer, findsItselfAndDoesSoAgain) {
   EXPECT_EQ(first.theta, again.theta);
 }
 
+TEST(Localizer, noticesThatItWasCarriedOffThoughItOnlyTurns) {
+  const auto map = room();
+  const RayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
+  double stamp = 0.0, heading = 0.0;
+  const auto turn = [&](double x, double y) {
+    heading = hyselam::normalizeAngle(heading + hyselam::radians(10.0));
+    stamp += 0.1;
+    // The wheels know of the turn only.
+    return localizer.update(look(rays, {x, y, heading}, stamp), {2.0, 2.0, heading});
+  };
+  std::optional<LocalizationResult> result;
+  for (int i = 0; i < 36; ++i) result = turn(2.0, 2.0);
+  ASSERT_TRUE(result && result->converged);
+  ASSERT_EQ(result->phase, Phase::kTracking);
+  bool lost = false;
+  for (int i = 0; i < 72 && !lost; ++i) {
+    result = turn(10.0, 5.5);
+    lost = result && result->phase == Phase::kLost;
+  }
+  EXPECT_TRUE(lost) << "not within two turns";
+}
+
+TEST(ParticleFilter, weightsStayInRangeWithoutResampling) {
+  /// Prefers particles on the left a little, and calls everything far more or less likely than 1.
+  class Extreme final : public ObservationModel {
+   public:
+    explicit Extreme(double scale) : scale_(scale) {}
+    const char* name() const override { return "extreme"; }
+    std::optional<double> weigh(const Observation&, Particles& p) const override {
+      for (std::size_t i = 0; i < p.size(); ++i)
+        p.weight[i] = static_cast<float>(p.weight[i] * scale_ * (p.x[i] < 6.0F ? 1.0 : 0.9));
+      return 1.0;
+    }
+
+   private:
+    double scale_;
+  };
+  const auto map = std::make_shared<const FsdMap>(room(), FsdMapParams{});
+  FilterParams params;
+  params.max_particles = 1000;
+  params.resample_below = 0.01;
+  params.motion.alpha1 = params.motion.alpha2 = params.motion.alpha3 = params.motion.alpha4 = 0.0;
+  for (const double scale : {1e-25, 1e25}) {
+    ParticleFilter filter(map, params, 1);
+    for (int i = 0; i < 10; ++i) EXPECT_FALSE(filter.step({}, Extreme(scale), {}).resampled);
+    const Particles& p = filter.particles();
+    const auto right =
+        static_cast<std::size_t>(std::max_element(p.x.begin(), p.x.end()) - p.x.begin());
+    const auto left =
+        static_cast<std::size_t>(std::min_element(p.x.begin(), p.x.end()) - p.x.begin());
+    EXPECT_NEAR(p.weight[right] / p.weight[left], std::pow(0.9, 10), 1e-5) << scale;
+  }
+}
+
 TEST(Localizer, refusesBadScansAndStaysAsItWas) {
   const auto map = room();
   const RayCaster rays(map);
@@ -261,6 +317,8 @@ TEST(Localizer, refusesBadScansAndStaysAsItWas) {
   EXPECT_TRUE(localizer.update(look(rays, at, 3.0), at, true));
   EXPECT_THROW(localizer.setInitialPose({std::nan(""), 0, 0}, {}), hyselam::InputError);
   EXPECT_THROW(localizer.setInitialPose({}, {-1, 0, 0}), hyselam::InputError);
+  EXPECT_THROW(localizer.setInitialPose({1e9, 0, 0}, {}), hyselam::InputError);
+  EXPECT_THROW(localizer.setInitialPose({}, {0, 1e9, 0}), hyselam::InputError);
 }
 
 TEST(Parameters, outOfRangeAreNamed) {
@@ -284,6 +342,18 @@ TEST(Parameters, outOfRangeAreNamed) {
   named([](auto& p) { p.local_map.resolution = 0; }, "resolution");
   named([](auto& p) { p.likelihood.sigma_hit = 0; }, "sigma_hit");
   EXPECT_THROW(modelFromName("amcl"), hyselam::ParameterError);
+}
+
+TEST(Localizer, tellsAtOnceWhichMapsItCannotUse) {
+  const LocalizerParams params;
+  EXPECT_NO_THROW(Localizer::checkMap(room(), params));
+  hyselam::OccupancyGrid shut(room().geometry, 100);
+  EXPECT_THROW(Localizer::checkMap(shut, params), hyselam::InputError);
+  EXPECT_THROW(Localizer(shut, params), hyselam::InputError);
+  hyselam::OccupancyGrid vast = room();
+  vast.geometry.resolution = 10.0;  // larger than a kernel
+  EXPECT_THROW(Localizer::checkMap(vast, params), hyselam::ParameterError);
+  EXPECT_THROW(Localizer(vast, params), hyselam::ParameterError);
 }
 
 TEST(LikelihoodField, farReturnsAreExplainedByNoTolerance) {

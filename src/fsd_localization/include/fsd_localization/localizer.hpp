@@ -54,7 +54,7 @@ struct LocalizerParams {
                               ///< over about 1 m of travel; else the search goes on
   double lost_below = 0.45;   ///< lost when the explained share of the returns, averaged
                               ///< over about 1 m of travel, is lower than this ...
-  double lost_ratio = 0.85;    ///< ... or than this times its long-term average
+  double lost_ratio = 0.85;   ///< ... or than this times its long-term average
 
   /// @throws hyselam::ParameterError naming the first value out of range.
   void validate() const;
@@ -89,6 +89,11 @@ class Localizer {
             const std::string& cache_path = {}, const std::function<void(double)>& progress = {});
   ~Localizer();
 
+  /// Looks whether the constructor could use this map, in a small part of its time.
+  /// @throws hyselam::InputError if it has no free cell, hyselam::ParameterError if its cells are
+  ///   too large or too small for a kernel.
+  static void checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params);
+
   /// Takes a scan with the odometry of its moment. Runs the filter when the robot has moved enough,
   /// or when `force` is set; returns its result then.
   /// @throws hyselam::InputError for a scan or pose that cannot be used, or a stamp that is not
@@ -100,7 +105,8 @@ class Localizer {
   /// Starts over, knowing nothing: particles everywhere, surroundings forgotten.
   void relocalizeGlobally();
   /// Starts over around a pose of the map frame. Standard deviations [m, m, rad].
-  /// @throws hyselam::InputError if a value is not finite or a deviation negative.
+  /// @throws hyselam::InputError if a value is not finite, a deviation negative, or either more
+  ///   than 1000 km off the map; the state is unchanged.
   void setInitialPose(const hyselam::Pose2& base_in_map, const hyselam::Pose2& stddev);
   /// Forgets time, odometry and surroundings (time went back, a bag starts again), keeps the
   /// particles.
@@ -131,7 +137,8 @@ class Localizer {
   void startTracking();
   void searchAgain();
   void continueWith(Particles particles, std::size_t min_particles, double independent_beams);
-  void supervise(const PoseEstimate& estimate, double moved, LocalizationResult& result);
+  /// @param motion since the last update [m]: travel, and turn as the travel that shows as much.
+  void supervise(const PoseEstimate& estimate, double motion, LocalizationResult& result);
 
   LocalizerParams params_;
   bool map_was_cached_ = false;
@@ -148,9 +155,9 @@ class Localizer {
   std::optional<hyselam::Pose2> last_odom_;     // of the last scan
   std::optional<hyselam::Pose2> updated_odom_;  // of the last update
   double travelled_ = 0.0;
-  double explained_fast_ = 0.0;
-  double explained_slow_ = 0.0;
-  double judged_ = 0.0;  // [m] since the likelihood field took over
+  std::optional<double> explained_fast_;  // averages since the likelihood field took over
+  std::optional<double> explained_slow_;
+  double judged_ = 0.0;  // [m] of motion since then
 };
 
 }  // namespace fsd_localization

@@ -20,9 +20,11 @@ constexpr std::pair<Model, const char*> kModelNames[] = {{Model::kFsd, "fsd"},
                                                          {Model::kHybrid, "hybrid"}};
 constexpr Pose2 kCandidateBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of the search
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
-constexpr double kFastMemory = 1.0;          // [m] of travel
-constexpr double kSlowMemory = 30.0;         // [m]
-constexpr double kGuessShare = 0.1;          // of the particles stays with the old belief when lost
+constexpr double kFastMemory = 1.0;           // [m] of motion
+constexpr double kSlowMemory = 30.0;          // [m]
+constexpr double kTurnAsTravel = 0.5;         // [m/rad] a turn shows as much as so much travel
+constexpr double kFarthest = 1e6;             // [m] beyond it cell numbers would not fit an int
+constexpr double kGuessShare = 0.1;  // of the particles stays with the old belief when lost
 
 FsdSensorParams sensorParams(const LocalizerParams& p) {
   FsdSensorParams s;
@@ -95,14 +97,18 @@ namespace {
 
 /// Densities are compared like with like: fields on the local map's cells, if the map's are finer.
 /// It also closes the gaps in walls of finely drawn maps, through which free space would leak.
+hyselam::OccupancyGrid forDensities(const hyselam::OccupancyGrid& map,
+                                    const LocalizerParams& params) {
+  return hyselam::coarsen(
+      map, hyselam::coarseningFactor(map.geometry.resolution, params.local_map.resolution));
+}
+
 std::shared_ptr<const FsdMap> densities(const hyselam::OccupancyGrid& map,
                                         const LocalizerParams& params,
                                         const std::string& cache_path,
                                         const std::function<void(double)>& progress, bool* cached,
                                         std::string* problem) {
-  const int factor =
-      hyselam::coarseningFactor(map.geometry.resolution, params.local_map.resolution);
-  const hyselam::OccupancyGrid coarse = hyselam::coarsen(map, factor);
+  const hyselam::OccupancyGrid coarse = forDensities(map, params);
   return std::make_shared<const FsdMap>(
       cache_path.empty()
           ? FsdMap(coarse, params.map, 0, progress)
@@ -110,6 +116,14 @@ std::shared_ptr<const FsdMap> densities(const hyselam::OccupancyGrid& map,
 }
 
 }  // namespace
+
+void Localizer::checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params) {
+  const hyselam::OccupancyGrid coarse = forDensities(map, params);
+  const auto free = [&](std::int8_t v) { return v >= 0 && v < params.map.thresholds.free_below; };
+  if (std::none_of(coarse.cells.begin(), coarse.cells.end(), free))
+    throw hyselam::InputError("map", "", "has no free cell to put particles on");
+  for (const KernelSpec& spec : params.map.kernels) Kernel(spec, coarse.geometry.resolution);
+}
 
 Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& params,
                      const std::string& cache_path, const std::function<void(double)>& progress)
@@ -158,6 +172,10 @@ void Localizer::setInitialPose(const Pose2& base_in_map, const Pose2& stddev) {
     throw hyselam::InputError("initial pose", "standard deviations",
                               "must be finite and not negative");
   const Pose2 base_in_grid = map_->geometry().origin.inverse() * base_in_map;
+  if (std::hypot(base_in_grid.x, base_in_grid.y) > kFarthest ||
+      std::hypot(stddev.x, stddev.y) > kFarthest)
+    throw hyselam::InputError("initial pose", "",
+                              "or its standard deviation lies more than 1000 km off the map");
   travelled_ = 0.0;
   restartClock();
   phase_ = Phase::kGlobal;
@@ -183,7 +201,8 @@ void Localizer::startSearch() {
 
 void Localizer::startChoice(Particles particles) {
   stage_ = Stage::kChoice;
-  explained_fast_ = explained_slow_ = 0.0;
+  explained_fast_.reset();
+  explained_slow_.reset();
   judged_ = 0.0;
   // Few particles would let places die out by chance, and a sharp model by the luck of the nearest.
   continueWith(std::move(particles), params_.candidate_particles, params_.candidate_beams);
@@ -265,7 +284,7 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   result.effective_size = step.effective_size;
   result.travelled = travelled_;
   if (params_.model == Model::kHybrid) {
-    supervise(estimate, moved, result);
+    supervise(estimate, moved + kTurnAsTravel * std::abs(delta.theta), result);
   } else {
     phase_ = result.converged ? Phase::kTracking : Phase::kGlobal;
   }
@@ -273,7 +292,7 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   return result;
 }
 
-void Localizer::supervise(const PoseEstimate& estimate, double moved, LocalizationResult& result) {
+void Localizer::supervise(const PoseEstimate& estimate, double motion, LocalizationResult& result) {
   if (stage_ == Stage::kSearch) {
     result.converged = false;  // the search alone is coarse; the likelihood field has the last word
     const std::size_t limit =
@@ -282,27 +301,27 @@ void Localizer::supervise(const PoseEstimate& estimate, double moved, Localizati
       startChoice(filter_.resampledCopy(params_.candidate_particles, kCandidateBlur));
     return;
   }
-  judged_ += moved;
+  judged_ += motion;
   result.explained =
       tracker_->explainedShare(observation_.scan, estimate.mean, params_.explained_tolerance);
   if (result.explained) {
-    const auto follow = [&](double& average, double memory) {
-      average +=
-          (average == 0.0 ? 1.0 : std::min(1.0, moved / memory)) * (*result.explained - average);
+    const auto follow = [&](std::optional<double>& average, double memory) {
+      const double before = average.value_or(*result.explained);
+      average = before + std::min(1.0, motion / memory) * (*result.explained - before);
     };
     follow(explained_fast_, kFastMemory);
     follow(explained_slow_, kSlowMemory);
     const double limit =
         std::max(stage_ == Stage::kChoice ? params_.found_above : params_.lost_below,
-                 params_.lost_ratio * explained_slow_);
-    if (judged_ > kFastMemory && explained_fast_ < limit) {
+                 params_.lost_ratio * *explained_slow_);
+    if (judged_ > kFastMemory && *explained_fast_ < limit) {
       result.converged = false;
       searchAgain();
       return;
     }
   }
   if (stage_ == Stage::kTrack) return;
-  result.converged = result.converged && explained_fast_ >= params_.found_above;
+  result.converged = result.converged && explained_fast_.value_or(0.0) >= params_.found_above;
   if (result.converged) startTracking();
 }
 
