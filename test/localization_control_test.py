@@ -166,13 +166,19 @@ class LocalizationControlTest(unittest.TestCase):
         self.assertEqual(rig.value("scans used"), "10")
 
     def test_bad_map_from_the_service(self):
+        served = [make_map([], 0, 0, 0.1)]
         service = rospy.Service("/test_bad_map_from_the_service/static_map", GetMap,
-                                lambda _: GetMapResponse(make_map([], 0, 0, 0.1)))
+                                lambda _: GetMapResponse(served[-1]))
         self.addCleanup(service.shutdown)
         rig = self.rig(use_map_topic=False)
         rig.wait_said("map refused", "service", "no cells", level=Log.ERROR)
         rig.feed(3)
         self.assertEqual(rig.value("dropped: no map"), "3")
+        self.assertEqual(rig.fresh_diagnosis().level, 2)
+        served.append(self.run_.map)
+        rig.fields.wait()
+        rig.feed(10)
+        self.assertEqual(rig.value("scans used"), "10")
 
     def test_set_map(self):
         rig = self.started(scans=5)
@@ -185,6 +191,24 @@ class LocalizationControlTest(unittest.TestCase):
         self.assertTrue(self.call(rig, "set_map", SetMap, grid, pose).success)
         rig.fields.wait(fields + 1)
         rig.wait_said("initial pose x")
+
+    def test_set_map_without_free_cells(self):
+        rig = self.started(scans=5)
+        full = make_map([100] * 2500, 50, 50, 0.1)
+        self.assertFalse(self.call(rig, "set_map", SetMap, full, self.run_.truth_pose(1.0)).success)
+        rig.wait_said("map refused", "free cell", "the map before stays", level=Log.ERROR)
+        rig.use_map(turned(self.run_.map, 1.0))
+        rig.wait_said("searching the whole map", "a new map")
+        self.assertFalse(rig.said("initial pose x"), "the pose went with the map it was given for")
+
+    def test_initial_pose_out_of_the_world(self):
+        rig = self.started(scans=5)
+        pose = self.run_.truth_pose(1.0)
+        pose.pose.pose.position.x = 1e12
+        rig.initialpose.publish(pose)
+        rig.wait_said("initial pose ignored", "1000 km", level=Log.ERROR)
+        rig.feed(5)
+        self.assertEqual(rig.value("scans used"), "10")
 
     # Initial poses.
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kTakeOverEvery = 0.05;  // [s] while a map is being prepared
 constexpr double kAskEvery = 0.5;        // [s] for the service static_map
+constexpr double kAskAgainAfter = 2.0;   // [s] when it gave a map that cannot be used
 
 LocalizationServerParams loadParams(const ros::NodeHandle& private_nh) {
   for (const std::string& sentence : ignoredAmclParams(hyselam::ParamLoader(private_nh)))
@@ -40,7 +41,19 @@ hyselam::OccupancyGrid checkedMap(const nav_msgs::OccupancyGrid& msg,
         source, "size",
         std::to_string(msg.info.width) + " x " + std::to_string(msg.info.height) +
             " cells are more than max_map_cells, " + std::to_string(params.max_map_cells));
-  return hyselam::fromMsg(msg, source);
+  hyselam::OccupancyGrid map = hyselam::fromMsg(msg, source);
+  try {
+    Localizer::checkMap(map, params.localizer);
+  } catch (const std::exception& e) {
+    throw hyselam::InputError(source, "", e.what());
+  }
+  return map;
+}
+
+/// Sleeps, but not on when the map is not wanted any more. @param seconds of wall time.
+void pauseFor(double seconds, const std::function<bool()>& cancelled) {
+  for (double waited = 0.0; waited < seconds && ros::ok() && !cancelled(); waited += kTakeOverEvery)
+    ros::WallDuration(kTakeOverEvery).sleep();
 }
 
 /// Calls static_map until it answers.
@@ -60,8 +73,7 @@ MapPreparation::Source mapService(ros::NodeHandle nh, const LocalizationServerPa
           }
           ROS_INFO_STREAM_THROTTLE(
               10.0, who << " waiting for a map from the service " << client.getService());
-          for (double waited = 0.0; waited < kAskEvery && !cancelled(); waited += kTakeOverEvery)
-            ros::WallDuration(kTakeOverEvery).sleep();
+          pauseFor(kAskEvery, cancelled);
         }
         return std::nullopt;
       };
@@ -74,6 +86,7 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
       who_(logName(private_nh)),
       params_(loadParams(private_nh)),
       publisher_(nh, params_),
+      map_service_(mapService(nh, params_, who_, map_seen_)),
       preparation_(params_.localizer, params_.cache_dir),
       pending_initial_(params_.initial_pose),
       input_(
@@ -86,12 +99,12 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
                    [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }),
       map_timer_(nh.createWallTimer(
           ros::WallDuration(kTakeOverEvery), [this](const ros::WallTimerEvent&) { takeOverMap(); },
-          false, !params_.use_map_topic)) {
+          false, false)) {
   using Empty = std_srvs::Empty;
   if (params_.use_map_topic)
     map_subscriber_ = nh.subscribe("map", 1, &LocalizationServer::onMap, this);
   else
-    preparation_.start(mapService(nh, params_, who_, map_seen_));
+    askForMap(0.0);
   initial_pose_subscriber_ =
       nh.subscribe("initialpose", 2, &LocalizationServer::onInitialPose, this);
   global_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
@@ -123,9 +136,8 @@ bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::
   try {
     map = checkedMap(msg, params_, source);
   } catch (const hyselam::InputError& e) {
-    map_error_ = e.what();
-    ROS_ERROR_STREAM(who_ << " map refused: " << e.what()
-                          << (localizer_ ? "; the map before stays" : ""));
+    map_error_.clear();  // told each time that somebody sends it
+    refuseMap(e.what());
     return false;
   }
   const std::uint64_t fingerprint = FsdMap::fingerprint(map, params_.localizer.map);
@@ -138,9 +150,25 @@ bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::
   map_error_.clear();
   ROS_INFO_STREAM(who_ << " preparing a map of " << map.geometry.width << " x "
                        << map.geometry.height << " cells of " << map.geometry.resolution << " m");
+  if (localizer_) pending_initial_.reset();  // it was for a map that is not wanted any more
   preparation_.start([map = std::move(map)](const std::function<bool()>&) { return map; });
   map_timer_.start();
   return true;
+}
+
+void LocalizationServer::askForMap(double pause) {
+  preparation_.start([ask = map_service_, pause](const std::function<bool()>& cancelled) {
+    pauseFor(pause, cancelled);
+    return ask(cancelled);
+  });
+  map_timer_.start();
+}
+
+void LocalizationServer::refuseMap(const std::string& why) {
+  if (why != map_error_)
+    ROS_ERROR_STREAM(who_ << " map refused: " << why
+                          << (localizer_ ? "; the map before stays" : ""));
+  map_error_ = why;
 }
 
 void LocalizationServer::takeOverMap() {
@@ -148,15 +176,18 @@ void LocalizationServer::takeOverMap() {
   if (!preparation_.busy()) map_timer_.stop();
   if (!outcome) return;
   if (!outcome->localizer) {
-    map_error_ = outcome->error;
-    if (!map_error_.empty())
-      ROS_ERROR_STREAM(who_ << " map refused: " << map_error_
-                            << (localizer_ ? "; the map before stays" : ""));
+    if (outcome->error.empty()) return;  // the node ends
+    refuseMap(outcome->error);
+    map_seen_ = localizer_ != nullptr;
+    if (localizer_)
+      pending_initial_.reset();  // it came with this map
+    else if (!params_.use_map_topic)
+      askForMap(kAskAgainAfter);  // the map server may have a better one by then
     return;
   }
   // A corrected map of the same place shall not make a robot lost that knows where it is.
   std::optional<InitialPose> start = pending_initial_;
-  if (!start && last_result_ && last_result_->converged) {
+  if (!start && last_result_ && (last_result_->converged || guided_)) {
     const auto deviation = [&](int i) {
       return std::max(0.25, std::sqrt(last_result_->covariance(i, i)));
     };
@@ -175,9 +206,7 @@ void LocalizationServer::takeOverMap() {
         who_ << " the density fields could not be kept, the next start will compute them"
              << " again: " << outcome->cache_problem);
   publisher_.publishMap(*localizer_);
-  if (start)
-    startAt(*start);
-  else
+  if (!start || !startAt(*start))
     forgetPose("a new map");  // whose particles lie everywhere already
 }
 
@@ -264,18 +293,22 @@ void LocalizationServer::onInitialPose(
   startAt(pose);
 }
 
-void LocalizationServer::startAt(const InitialPose& pose) {
+bool LocalizationServer::startAt(const InitialPose& pose) {
   ROS_INFO_STREAM(who_ << " initial pose x " << pose.base_in_map.x << " m, y " << pose.base_in_map.y
                        << " m, " << hyselam::degrees(pose.base_in_map.theta) << " deg"
                        << (localizer_ ? "" : ", kept for when a map is ready"));
-  if (!localizer_) {
-    pending_initial_ = pose;
-    return;
+  if (!localizer_ || pending_initial_) pending_initial_ = pose;  // the newest guess counts
+  if (!localizer_) return true;
+  try {
+    localizer_->setInitialPose(pose.base_in_map, pose.stddev);
+  } catch (const hyselam::InputError& e) {
+    ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
+    return false;
   }
-  localizer_->setInitialPose(pose.base_in_map, pose.stddev);
   odom_in_map_.reset();
   last_result_.reset();
   guided_ = true;
+  return true;
 }
 
 void LocalizationServer::forgetPose(const std::string& why) {
@@ -299,11 +332,12 @@ bool LocalizationServer::onSetMap(nav_msgs::SetMap::Request& request,
     return true;
   }
   if (!prepare(request.map, "service set_map: map")) return true;
-  response.success = true;
-  if (preparation_.busy())
+  if (preparation_.busy()) {
     pending_initial_ = pose;
-  else
-    startAt(pose);  // it was the same map
+    response.success = true;
+  } else {
+    response.success = startAt(pose);  // it was the same map
+  }
   return true;
 }
 

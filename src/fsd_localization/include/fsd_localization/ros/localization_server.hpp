@@ -32,7 +32,9 @@ class LocalizationServer {
   // Maps.
   void onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg);
   bool prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source);
+  void askForMap(double pause);
   void takeOverMap();
+  void refuseMap(const std::string& why);
 
   // Scans.
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
@@ -43,7 +45,7 @@ class LocalizationServer {
 
   // Guesses and orders from outside.
   void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
-  void startAt(const InitialPose& pose);
+  bool startAt(const InitialPose& pose);
   void forgetPose(const std::string& why);
   bool onSetMap(nav_msgs::SetMap::Request& request, nav_msgs::SetMap::Response& response);
 
@@ -53,10 +55,11 @@ class LocalizationServer {
   std::string who_;
   LocalizationServerParams params_;
   LocalizationPublisher publisher_;
-  MapPreparation preparation_;
+  std::atomic<bool> map_seen_{false};   // a map that looks usable has come
+  MapPreparation::Source map_service_;  // static_map
+  MapPreparation preparation_;          // its thread sets map_seen_: ends before that does
   std::unique_ptr<Localizer> localizer_;
   std::uint64_t fingerprint_ = 0;               // of the newest map that came by topic or set_map
-  mutable std::atomic<bool> map_seen_{false};   // a map that looks usable has come
   std::string map_error_;                       // of the newest map; empty: it is good
   std::optional<InitialPose> pending_initial_;  // for the map that is being prepared
   std::optional<LocalizationResult> last_result_;
