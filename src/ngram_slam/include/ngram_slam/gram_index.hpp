@@ -1,0 +1,66 @@
+// Finds old grams whose words may match the words of a new gram, without looking at the others.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ngram_slam/text.hpp"
+
+namespace ngram_slam {
+
+/// Words are sorted into buckets of class, logarithm of the size and angle, about twice as wide as
+/// the tolerance; a gram into a list by the buckets of its words. A new gram asks the lists of all
+/// combinations of buckets that can hold matching words: every gram that matches is among the
+/// answers, others may be.
+class GramIndex {
+ public:
+  /// Grams of `n` words, 2^bits lists.
+  GramIndex(const Text& text, const WordTolerance& tolerance, int n, int bits);
+
+  /// Takes in all grams that end with this word, through all its predecessors.
+  void insert(WordIndex last);
+  /// Calls `use(older)` with the last word of every gram that may match one of those that end with
+  /// `last`; with one word perhaps several times.
+  template <typename Use>
+  void candidates(WordIndex last, Use&& use) {
+    lists_.clear();
+    collect(last, 0, 0);
+    sortLists();
+    for (std::uint32_t list : lists_)
+      for (std::uint32_t chunk = heads_[list]; chunk != 0; chunk = chunks_[chunk].before)
+        for (std::uint32_t i = 0; i < chunks_[chunk].count; ++i) use(chunks_[chunk].words[i]);
+  }
+
+  std::size_t bytes() const { return heads_.capacity() * sizeof(std::uint32_t) + chunks_.bytes(); }
+
+ private:
+  static constexpr std::uint32_t kChunk = 6;
+  struct Chunk {
+    std::uint32_t before;  // 0: none
+    std::uint32_t count;
+    WordIndex words[kChunk];
+  };
+
+  std::uint32_t sizeBucket(double size) const;
+  std::uint32_t bucket(const Syllables& s) const;
+  std::uint32_t listOf(std::uint64_t key) const {
+    return static_cast<std::uint32_t>(key >> shift_);
+  }
+  void insertPaths(WordIndex end, WordIndex word, int depth, std::uint64_t key);
+  void collect(WordIndex word, int depth, std::uint64_t key);
+  void sortLists();
+  void add(std::uint32_t list, WordIndex word);
+
+  const Text& text_;
+  WordTolerance tolerance_;
+  int n_;
+  int shift_;
+  double log_width_;             // of a size bucket
+  std::uint32_t angle_buckets_;  // around the circle
+  std::vector<std::uint32_t> heads_;
+  BlockVector<Chunk> chunks_;
+  std::vector<std::uint32_t> lists_;
+};
+
+}  // namespace ngram_slam

@@ -1,0 +1,114 @@
+// Place recognition: all n-grams of old words that match the words up to the newest one (4.2.3,
+// 5.2.3, Alg. 5.3 with its errata), found while the text grows.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ngram_slam/gram_index.hpp"
+#include "ngram_slam/text.hpp"
+
+namespace ngram_slam {
+
+struct MatcherParams {
+  WordTolerance tolerance;
+  /// epsilon_g: least number of words of a match, with 1, 2, ... levels of words in use (5.3.2).
+  /// As many entries as the text has levels; each 1 .. 65535.
+  std::vector<int> min_n = {7, 10, 13};
+  /// Words of the grams that the index knows, 1 .. 4; min(index_gram, smallest min_n) is used.
+  /// Fewer: less memory, more candidates that come to nothing.
+  int index_gram = 3;
+  int index_bits = 20;  ///< 2^index_bits lists of the index, 4 bytes each; 4 .. 28
+
+  /// @throws hyselam::ParameterError
+  void validate() const;
+};
+
+/// n words that end with `newer` match n words that end with `older`.
+struct Match {
+  WordIndex newer = 0;  ///< a real word
+  WordIndex older = 0;  ///< of any level below `levels`
+  int levels = 1;       ///< levels of words in use when the match was accepted, as few as possible
+  int n = 0;  ///< words of the longest match of these two with that many levels in use; longer
+              ///< ones than 65535 count as 65535
+};
+
+/// What the search had to do.
+struct MatcherCounters {
+  std::uint64_t positions = 0;    ///< words taken in
+  std::uint64_t comparisons = 0;  ///< pairs of words compared
+  std::uint64_t live = 0;         ///< pairs that continued a gram
+  std::uint64_t started = 0;      ///< grams of the index' length that began
+};
+
+/// Follows a text and tells, for every new real word, which grams of old words end like the text.
+///
+/// A pair of words belongs to a match if they match by the tolerances, the older one ends before
+/// the newer one begins, and some pair of their predecessors belongs to it too, or it is the first
+/// pair. A match is maximal when no pair of predecessors matches. Pass k uses words of the levels
+/// below k and needs min_n[k - 1] words; a pair that more than one pass accepts is told with the
+/// lowest.
+///
+/// Only grams of at least `index_gram` words are followed: each costs a few comparisons per word.
+/// A gram that reaches this length is found in an index. Hence the cost of a word depends on the
+/// number of grams alive, not on the length of the text.
+class Matcher {
+ public:
+  /// `text` must outlive the matcher. @throws hyselam::ParameterError
+  Matcher(const Text& text, const MatcherParams& params = {});
+
+  /// Takes in the words that the text has gained. Returns their matches, in the order of the newer
+  /// words, for each in no particular order. The list is overwritten by the next call.
+  const std::vector<Match>& update();
+  /// Takes words in without looking for matches among them, for the runs of a loaded text. Later
+  /// matches are as they should be if the next word starts a run; else those that reach back across
+  /// this point are told too short.
+  void skip();
+
+  const MatcherParams& params() const { return params_; }
+  const MatcherCounters& counters() const { return counters_; }
+  std::size_t bytes() const;
+
+ private:
+  static constexpr std::size_t kMaxPasses = Text::kMaxLevels;
+  using Lengths = std::array<std::uint16_t, kMaxPasses>;
+
+  /// For one position of the newer words: how long the grams are that end there and at an older
+  /// position, for each pass. Only what has at least `gram_` words in the last pass.
+  struct Row {
+    std::vector<Position> ends;          // of the older words
+    std::vector<std::uint16_t> lengths;  // passes_ for each
+    BlockVector<std::uint32_t> slot;     // by older position: where it is in `ends`, if it is
+    std::size_t find(Position end) const;
+  };
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
+  Row& row(Position p) { return rows_[p % rows_.size()]; }
+  void take(Position p, bool search);
+  void follow(WordIndex newer, Row& target, bool report);
+  void start(WordIndex newer, Row& target, bool report);
+  void complete(Position newer_end, Row& target);
+  void extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Row& target,
+              bool report);
+  void enter(WordIndex newer, WordIndex older, const Lengths& lengths, Row& target, bool report);
+  Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth);
+  bool match(WordIndex newer, WordIndex older) {
+    ++counters_.comparisons;
+    return wordsMatch(text_.syllables(newer), text_.syllables(older), params_.tolerance);
+  }
+
+  const Text& text_;
+  MatcherParams params_;
+  std::size_t passes_;
+  int gram_;
+  GramIndex index_;
+  std::vector<Row> rows_;  // a ring over positions
+  Position next_ = 0;
+  std::vector<WordIndex> candidates_;
+  std::vector<Match> matches_;
+  MatcherCounters counters_;
+};
+
+}  // namespace ngram_slam

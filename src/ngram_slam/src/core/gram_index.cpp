@@ -1,0 +1,100 @@
+#include "ngram_slam/gram_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hyselam_common/rng.hpp"
+
+namespace ngram_slam {
+
+GramIndex::GramIndex(const Text& text, const WordTolerance& tolerance, int n, int bits)
+    : text_(text), tolerance_(tolerance), n_(n), shift_(64 - bits) {
+  log_width_ = -2.0 * std::log1p(-tolerance.size);
+  angle_buckets_ =
+      std::max(1u, static_cast<std::uint32_t>(hyselam::kPi / tolerance.angle));  // width >= 2 eps_a
+  heads_.assign(std::size_t{1} << bits, 0);
+  chunks_.push_back({});  // chunk 0 means none
+}
+
+std::uint32_t GramIndex::sizeBucket(double size) const {
+  return static_cast<std::uint32_t>(std::log(std::max(size, 1.0)) / log_width_);
+}
+
+namespace {
+/// The bucket of an angle, counted from the one whose middle is 0 (straight on, the commonest
+/// word).
+int angleBucket(double angle, std::uint32_t buckets) {
+  return static_cast<int>(std::floor(angle / (2.0 * hyselam::kPi) * buckets + 0.5));
+}
+std::uint32_t wrapped(int bucket, std::uint32_t buckets) {
+  const int n = static_cast<int>(buckets);
+  return static_cast<std::uint32_t>(((bucket % n) + n) % n);
+}
+std::uint32_t pack(int density_class, std::uint32_t size, std::uint32_t angle) {
+  return (static_cast<std::uint32_t>(density_class) << 16 | size) * 64u + angle % 64u;
+}
+}  // namespace
+
+std::uint32_t GramIndex::bucket(const Syllables& s) const {
+  return pack(s.density_class, sizeBucket(s.size),
+              wrapped(angleBucket(s.angle, angle_buckets_), angle_buckets_));
+}
+
+void GramIndex::insert(WordIndex last) {
+  lists_.clear();
+  insertPaths(last, last, 0, 0);
+  sortLists();
+  for (std::uint32_t list : lists_) add(list, last);
+}
+
+void GramIndex::insertPaths(WordIndex end, WordIndex word, int depth, std::uint64_t key) {
+  key = hyselam::mix(key, bucket(text_.syllables(word)));
+  if (depth + 1 == n_) {
+    lists_.push_back(listOf(key));
+    return;
+  }
+  const WordRange before = text_.predecessors(word);
+  for (WordIndex w = before.begin; w < before.end; ++w) insertPaths(end, w, depth + 1, key);
+}
+
+void GramIndex::collect(WordIndex word, int depth, std::uint64_t key) {
+  const WordRange before = depth + 1 == n_ ? WordRange{} : text_.predecessors(word);
+  if (depth + 1 < n_ && before.empty()) return;
+  const Syllables s = text_.syllables(word);
+  // A hair more than the tolerance, against rounding at the edges of buckets.
+  const double share = 1.0 - tolerance_.size - 1e-9, turn = tolerance_.angle + 1e-6;
+  const std::uint32_t size_from = sizeBucket(s.size * share), size_to = sizeBucket(s.size / share);
+  const int angle_from = angleBucket(s.angle - turn, angle_buckets_);
+  const int angle_to = std::min(angleBucket(s.angle + turn, angle_buckets_),
+                                angle_from + static_cast<int>(angle_buckets_) - 1);
+  for (std::uint32_t size = size_from; size <= size_to; ++size) {
+    for (int angle = angle_from; angle <= angle_to; ++angle) {
+      const std::uint64_t longer =
+          hyselam::mix(key, pack(s.density_class, size, wrapped(angle, angle_buckets_)));
+      if (depth + 1 == n_) {
+        lists_.push_back(listOf(longer));
+      } else {
+        for (WordIndex w = before.begin; w < before.end; ++w) collect(w, depth + 1, longer);
+      }
+    }
+  }
+}
+
+void GramIndex::sortLists() {
+  std::sort(lists_.begin(), lists_.end());
+  lists_.erase(std::unique(lists_.begin(), lists_.end()), lists_.end());
+}
+
+void GramIndex::add(std::uint32_t list, WordIndex word) {
+  std::uint32_t& head = heads_[list];
+  if (head == 0 || chunks_[head].count == kChunk) {
+    Chunk chunk{};
+    chunk.before = head;
+    head = static_cast<std::uint32_t>(chunks_.size());
+    chunks_.push_back(chunk);
+  }
+  Chunk& chunk = chunks_[head];
+  chunk.words[chunk.count++] = word;
+}
+
+}  // namespace ngram_slam
