@@ -137,7 +137,7 @@ class Localizer {
   void startTracking();
   void searchAgain();
   void continueWith(Particles particles, std::size_t min_particles, double independent_beams);
-  /// @param motion since the last update [m]: travel, and turn as the travel that shows as much.
+  /// @param motion since the last update [m]: travel and, while tracking, turn as such.
   void supervise(const PoseEstimate& estimate, double motion, LocalizationResult& result);
 
   LocalizerParams params_;

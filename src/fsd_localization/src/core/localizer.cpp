@@ -284,7 +284,10 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   result.effective_size = step.effective_size;
   result.travelled = travelled_;
   if (params_.model == Model::kHybrid) {
-    supervise(estimate, moved + kTurnAsTravel * std::abs(delta.theta), result);
+    // Turning shows the same surroundings again: enough to see that they do not fit, too little to
+    // tell places apart that look alike.
+    const double turned = stage_ == Stage::kTrack ? std::abs(delta.theta) : 0.0;
+    supervise(estimate, moved + kTurnAsTravel * turned, result);
   } else {
     phase_ = result.converged ? Phase::kTracking : Phase::kGlobal;
   }
