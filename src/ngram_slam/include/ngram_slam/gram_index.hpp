@@ -20,37 +20,40 @@ class GramIndex {
 
   /// Takes in all grams that end with this word, through all its predecessors.
   void insert(WordIndex last);
-  /// Calls `use(older)` with the last word of every gram that may match one of those that end with
-  /// `last`; with one word perhaps several times.
+  /// Calls `use(first, level)` with first position and level of the last word of every gram that
+  /// may match one of those that end with `last`; with one word perhaps several times.
   template <typename Use>
   void candidates(WordIndex last, Use&& use) {
     lists_.clear();
     collect(last, 0, 0);
     sortLists();
     for (std::uint32_t list : lists_)
-      for (std::uint32_t chunk = heads_[list]; chunk != 0; chunk = chunks_[chunk].before)
-        for (std::uint32_t i = 0; i < chunks_[chunk].count; ++i) use(chunks_[chunk].words[i]);
+      for (std::uint32_t chunk = heads_[list]; chunk != 0; chunk = pool_[chunk]) {
+        const std::uint32_t* entry = &pool_[chunk + kHeader];
+        for (const std::uint32_t* end = entry + pool_[chunk + 1]; entry != end; ++entry)
+          use(static_cast<Position>(*entry >> 4), static_cast<int>(*entry & 15u));
+      }
   }
 
-  std::size_t bytes() const { return heads_.capacity() * sizeof(std::uint32_t) + chunks_.bytes(); }
+  std::size_t bytes() const { return heads_.capacity() * sizeof(std::uint32_t) + pool_.bytes(); }
 
  private:
-  static constexpr std::uint32_t kChunk = 6;
-  struct Chunk {
-    std::uint32_t before;  // 0: none
-    std::uint32_t count;
-    WordIndex words[kChunk];
-  };
+  // A list is a chain of chunks, newest first, each twice as large as the one before: chunk before
+  // (0: none), entries, room for entries, then the entries (first position << 4 | level).
+  static constexpr int kBlockBits = 16;
+  static constexpr std::uint32_t kHeader = 3;
+  static constexpr std::uint32_t kSmallest = 8, kLargest = 1024;  // chunks with their header
 
   std::uint32_t sizeBucket(double size) const;
   std::uint32_t bucket(const Syllables& s) const;
   std::uint32_t listOf(std::uint64_t key) const {
     return static_cast<std::uint32_t>(key >> shift_);
   }
-  void insertPaths(WordIndex end, WordIndex word, int depth, std::uint64_t key);
+  void insertPaths(WordIndex word, int depth, std::uint64_t key);
   void collect(WordIndex word, int depth, std::uint64_t key);
   void sortLists();
-  void add(std::uint32_t list, WordIndex word);
+  void add(std::uint32_t list, std::uint32_t entry);
+  std::uint32_t newChunk(std::uint32_t before, std::uint32_t size);
 
   const Text& text_;
   WordTolerance tolerance_;
@@ -59,7 +62,7 @@ class GramIndex {
   double log_width_;             // of a size bucket
   std::uint32_t angle_buckets_;  // around the circle
   std::vector<std::uint32_t> heads_;
-  BlockVector<Chunk> chunks_;
+  BlockVector<std::uint32_t, kBlockBits> pool_;
   std::vector<std::uint32_t> lists_;
 };
 

@@ -75,25 +75,53 @@ class Matcher {
   static constexpr std::size_t kMaxPasses = Text::kMaxLevels;
   using Lengths = std::array<std::uint16_t, kMaxPasses>;
 
-  /// For one position of the newer words: how long the grams are that end there and at an older
-  /// position, for each pass. Only what has at least `gram_` words in the last pass.
-  struct Row {
+  /// What following a gram has to know about the words that begin at a position: 8 bytes, for the
+  /// million of them that a word may have to look at.
+  struct Begin {
+    float angle;         // of the real word
+    std::uint32_t tags;  // of the real word: class, 8 bits; size, 20; and the flags below
+    static constexpr std::uint32_t kStartsRun = 1;
+    static constexpr std::uint32_t kAlternativesBegin = 2;
+    static constexpr std::uint32_t kAlternativesEnd = 4;
+  };
+  /// A word to compare others with: its class, the sizes that match, its angle.
+  struct Probe {
+    std::uint32_t density_class, smallest, span;
+    float angle;
+  };
+  /// How long the grams are that end at a position of the newer words and at an older one, for each
+  /// pass. Ordered by the older position.
+  struct Grams {
     std::vector<Position> ends;          // of the older words
     std::vector<std::uint16_t> lengths;  // passes_ for each
-    BlockVector<std::uint32_t> slot;     // by older position: where it is in `ends`, if it is
-    std::size_t find(Position end) const;
+    void clear() {
+      ends.clear();
+      lengths.clear();
+    }
   };
-  static constexpr std::size_t kNone = ~std::size_t{0};
+  /// The grams of a position, and which older positions they have. Only what has at least `gram_`
+  /// words in the last pass.
+  struct Row {
+    Grams grams;
+    BlockVector<std::uint64_t> has;  // a bit for each older position
+    bool holds(Position end) const {
+      return end / 64 < has.size() && (has[end / 64] >> end % 64 & 1u) != 0;
+    }
+  };
 
   Row& row(Position p) { return rows_[p % rows_.size()]; }
-  void take(Position p, bool search);
-  void follow(WordIndex newer, Row& target, bool report);
-  void start(WordIndex newer, Row& target, bool report);
+  void take(Position p, bool searching);
+  void search(WordIndex newer, Row& target, bool report);
+  void follow(WordIndex newer, bool report);
+  void start(WordIndex newer, bool report);
   void complete(Position newer_end, Row& target);
-  void extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Row& target,
+  void mergeInto(Row& target, const Grams& more);
+  void extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Grams& out,
               bool report);
-  void enter(WordIndex newer, WordIndex older, const Lengths& lengths, Row& target, bool report);
+  void enter(WordIndex newer, WordIndex older, const Lengths& lengths, Grams& out, bool report);
   Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth);
+  Probe probe(const Syllables& s) const;
+  bool matches(const Probe& probe, const Begin& begin) const;
   bool match(WordIndex newer, WordIndex older) {
     ++counters_.comparisons;
     return wordsMatch(text_.syllables(newer), text_.syllables(older), params_.tolerance);
@@ -104,7 +132,10 @@ class Matcher {
   std::size_t passes_;
   int gram_;
   GramIndex index_;
-  std::vector<Row> rows_;  // a ring over positions
+  BlockVector<Begin> begins_;
+  std::vector<Row> rows_;     // a ring over positions
+  std::vector<Grams> found_;  // what one word adds, by the level of the older words; last: started
+  Grams merged_;
   Position next_ = 0;
   std::vector<WordIndex> candidates_;
   std::vector<Match> matches_;

@@ -45,6 +45,7 @@ using AngleOf = std::function<double(std::uint32_t begin, std::uint32_t end)>;
 class Text {
  public:
   static constexpr int kMaxLevels = 16;
+  static constexpr std::size_t kMaxPositions = std::size_t{1} << 28;
   static constexpr int kMaxClasses = 256;
   static constexpr std::uint32_t kMaxSize = (1u << 20) - 1;  ///< longer words count as this long
 
@@ -61,7 +62,8 @@ class Text {
 
   /// Appends the alternative words that end at the position before, then a real word. Its
   /// observations follow those of the word before. Returns its position.
-  /// @throws hyselam::ParameterError for a class or size out of range (size >= 1).
+  /// @throws hyselam::ParameterError for a class or size out of range (size >= 1), InputError
+  /// when the text is full (2^28 positions, 2^31 words).
   Position push(const Syllables& word);
 
   int levels() const { return levels_; }

@@ -13,7 +13,7 @@ GramIndex::GramIndex(const Text& text, const WordTolerance& tolerance, int n, in
   angle_buckets_ =
       std::max(1u, static_cast<std::uint32_t>(hyselam::kPi / tolerance.angle));  // width >= 2 eps_a
   heads_.assign(std::size_t{1} << bits, 0);
-  chunks_.push_back({});  // chunk 0 means none
+  pool_.push_back(0);  // chunk 0 means none
 }
 
 std::uint32_t GramIndex::sizeBucket(double size) const {
@@ -42,19 +42,21 @@ std::uint32_t GramIndex::bucket(const Syllables& s) const {
 
 void GramIndex::insert(WordIndex last) {
   lists_.clear();
-  insertPaths(last, last, 0, 0);
+  insertPaths(last, 0, 0);
   sortLists();
-  for (std::uint32_t list : lists_) add(list, last);
+  const std::uint32_t entry =
+      text_.first(last) << 4 | static_cast<std::uint32_t>(text_.level(last));
+  for (std::uint32_t list : lists_) add(list, entry);
 }
 
-void GramIndex::insertPaths(WordIndex end, WordIndex word, int depth, std::uint64_t key) {
+void GramIndex::insertPaths(WordIndex word, int depth, std::uint64_t key) {
   key = hyselam::mix(key, bucket(text_.syllables(word)));
   if (depth + 1 == n_) {
     lists_.push_back(listOf(key));
     return;
   }
   const WordRange before = text_.predecessors(word);
-  for (WordIndex w = before.begin; w < before.end; ++w) insertPaths(end, w, depth + 1, key);
+  for (WordIndex w = before.begin; w < before.end; ++w) insertPaths(w, depth + 1, key);
 }
 
 void GramIndex::collect(WordIndex word, int depth, std::uint64_t key) {
@@ -85,16 +87,25 @@ void GramIndex::sortLists() {
   lists_.erase(std::unique(lists_.begin(), lists_.end()), lists_.end());
 }
 
-void GramIndex::add(std::uint32_t list, WordIndex word) {
+void GramIndex::add(std::uint32_t list, std::uint32_t entry) {
   std::uint32_t& head = heads_[list];
-  if (head == 0 || chunks_[head].count == kChunk) {
-    Chunk chunk{};
-    chunk.before = head;
-    head = static_cast<std::uint32_t>(chunks_.size());
-    chunks_.push_back(chunk);
+  if (head == 0) {
+    head = newChunk(0, kSmallest);
+  } else if (pool_[head + 1] == pool_[head + 2]) {
+    head = newChunk(head, std::min(2 * (pool_[head + 2] + kHeader), kLargest));
   }
-  Chunk& chunk = chunks_[head];
-  chunk.words[chunk.count++] = word;
+  pool_[head + kHeader + pool_[head + 1]++] = entry;
+}
+
+std::uint32_t GramIndex::newChunk(std::uint32_t before, std::uint32_t size) {
+  // A chunk lies in one block of the pool, so that its entries are neighbours in memory.
+  constexpr std::size_t kBlock = std::size_t{1} << kBlockBits;
+  std::size_t at = pool_.size();
+  if (at / kBlock != (at + size - 1) / kBlock) at = (at / kBlock + 1) * kBlock;
+  pool_.grow(at + size);
+  pool_[at] = before;
+  pool_[at + 2] = size - kHeader;
+  return static_cast<std::uint32_t>(at);
 }
 
 }  // namespace ngram_slam

@@ -1,6 +1,8 @@
 #include "ngram_slam/matcher.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "hyselam_common/errors.hpp"
 
@@ -34,17 +36,12 @@ Matcher::Matcher(const Text& text, const MatcherParams& params)
       gram_(gramOf(params)),
       index_(text, params.tolerance, gram_, params.index_bits),
       // An alternative word of the highest level L - 1 that ends at p starts after row p - L - 1.
-      rows_(static_cast<std::size_t>(text.levels()) + 2) {
+      rows_(static_cast<std::size_t>(text.levels()) + 2),
+      found_(static_cast<std::size_t>(text.levels()) + 1) {
   if (passes_ != static_cast<std::size_t>(text.levels()))
     throw hyselam::ParameterError(
         "number of entries of min_n", passes_,
         "the number of levels of the text, " + std::to_string(text.levels()));
-}
-
-std::size_t Matcher::Row::find(Position end) const {
-  if (end >= slot.size()) return kNone;
-  const std::size_t i = slot[end];
-  return i < ends.size() && ends[i] == end ? i : kNone;
 }
 
 const std::vector<Match>& Matcher::update() {
@@ -58,68 +55,100 @@ void Matcher::skip() {
   for (; next_ < text_.positions(); ++next_) take(next_, false);
 }
 
-void Matcher::take(Position p, bool search) {
+void Matcher::take(Position p, bool searching) {
   ++counters_.positions;
   if (p > 0) {
     // The text has completed the words that end at the position before: so do we.
     const WordRange before = text_.endingAt(p - 1);
-    Row& unfinished = row(p - 1);
-    for (WordIndex w = before.begin + 1; search && w < before.end; ++w) {
-      follow(w, unfinished, false);
-      start(w, unfinished, false);
+    for (WordIndex w = before.begin + 1; w < before.end; ++w) {
+      begins_[text_.first(w)].tags |= Begin::kAlternativesBegin;
+      begins_[p - 1].tags |= Begin::kAlternativesEnd;
+      if (searching) search(w, row(p - 1), false);
     }
-    if (search) complete(p - 1, unfinished);
+    if (searching) complete(p - 1, row(p - 1));
     for (WordIndex w = before.begin; w < before.end; ++w) index_.insert(w);
   }
-  Row& fresh = row(p);
-  fresh.ends.clear();
-  fresh.lengths.clear();
-  if (!search) return;
   const WordIndex newest = text_.realWord(p);
-  follow(newest, fresh, true);
-  start(newest, fresh, true);
+  const Syllables s = text_.syllables(newest);
+  begins_.push_back({s.angle, static_cast<std::uint32_t>(s.density_class) << 24 | s.size << 4 |
+                                  (text_.startsRun(p) ? Begin::kStartsRun : 0u)});
+  Row& fresh = row(p);
+  for (Position end : fresh.grams.ends) fresh.has[end / 64] = 0;
+  fresh.grams.clear();
+  if (searching) search(newest, fresh, true);
+}
+
+/// Finds all grams that end with `newer`.
+void Matcher::search(WordIndex newer, Row& target, bool report) {
+  for (Grams& g : found_) g.clear();
+  follow(newer, report);
+  start(newer, report);
+  for (const Grams& g : found_) mergeInto(target, g);
 }
 
 /// Carries on the grams that ended just before `newer`.
-void Matcher::follow(WordIndex newer, Row& target, bool report) {
+void Matcher::follow(WordIndex newer, bool report) {
   const Position first = text_.first(newer);
   if (text_.startsRun(first)) return;
-  const Row& before = row(first - 1);
+  const Grams& before = row(first - 1).grams;
+  const Probe newer_probe = probe(text_.syllables(newer));
+  const auto newer_level = static_cast<std::size_t>(text_.level(newer));
+  Grams& real = found_[0];
   for (std::size_t i = 0; i < before.ends.size(); ++i) {
     const Position begin = before.ends[i] + 1;
-    if (begin >= first || text_.startsRun(begin)) continue;
+    if (begin >= first) break;  // they are in order
+    const Begin& older = begins_[begin];
+    if ((older.tags & Begin::kStartsRun) != 0) continue;
     const std::uint16_t* lengths = &before.lengths[i * passes_];
-    extend(newer, text_.realWord(begin), lengths, target, report);
+    ++counters_.comparisons;
+    if (matches(newer_probe, older)) {
+      ++counters_.live;
+      real.ends.push_back(begin);
+      const std::size_t at = real.lengths.size();
+      real.lengths.resize(at + passes_, 0);
+      bool told = !report;
+      for (std::size_t k = newer_level; k < passes_; ++k) {
+        const std::uint16_t n = real.lengths[at + k] = oneMore(lengths[k]);
+        if (told || n < params_.min_n[k]) continue;
+        matches_.push_back({newer, text_.realWord(begin), static_cast<int>(k) + 1, n});
+        told = true;
+      }
+    }
+    if ((older.tags & Begin::kAlternativesBegin) == 0) continue;
     for (int level = 1; level < text_.levels(); ++level) {
       const Position end = begin + static_cast<Position>(level) + 1;
       if (end >= first) break;
-      WordIndex older;
-      if (text_.findEndingAt(end, level, &older)) extend(newer, older, lengths, target, report);
+      WordIndex word;
+      if (text_.findEndingAt(end, level, &word))
+        extend(newer, word, lengths, found_[static_cast<std::size_t>(level)], report);
     }
   }
 }
 
-void Matcher::extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Row& target,
+void Matcher::extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Grams& out,
                      bool report) {
   if (!match(newer, older)) return;
   ++counters_.live;
   Lengths lengths{};
   const auto from = static_cast<std::size_t>(std::max(text_.level(newer), text_.level(older)));
   for (std::size_t k = from; k < passes_; ++k) lengths[k] = oneMore(before[k]);
-  enter(newer, older, lengths, target, report);
+  enter(newer, older, lengths, out, report);
 }
 
 /// Finds the grams that have just become `gram_` words long.
-void Matcher::start(WordIndex newer, Row& target, bool report) {
+void Matcher::start(WordIndex newer, bool report) {
   const Position first = text_.first(newer);
   const Row* before = text_.startsRun(first) ? nullptr : &row(first - 1);
   candidates_.clear();
-  index_.candidates(newer, [&](WordIndex older) {
-    if (text_.last(older) >= first) return;
-    const Position begin = text_.first(older);
-    const bool followed =
-        before != nullptr && !text_.startsRun(begin) && before->find(begin - 1) != kNone;
-    if (!followed) candidates_.push_back(older);
+  index_.candidates(newer, [&](Position begin, int level) {
+    const Position end = begin + static_cast<Position>(level == 0 ? 0 : level + 1);
+    if (end >= first) return;
+    // Where a gram of enough words ended just before, it is being followed.
+    if (before != nullptr && begin > 0 && before->holds(begin - 1) &&
+        (begins_[begin].tags & Begin::kStartsRun) == 0)
+      return;
+    WordIndex older;
+    if (text_.findEndingAt(end, level, &older)) candidates_.push_back(older);
   });
   std::sort(candidates_.begin(), candidates_.end());
   candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
@@ -127,8 +156,34 @@ void Matcher::start(WordIndex newer, Row& target, bool report) {
     const Lengths lengths = lengthsFromScratch(newer, older, gram_);
     if (lengths[passes_ - 1] < gram_) continue;
     ++counters_.started;
-    enter(newer, older, lengths, target, report);
+    enter(newer, older, lengths, found_.back(), report);
   }
+}
+
+/// The sizes that match are found by the rule itself, so that rounding cannot tell them apart.
+Matcher::Probe Matcher::probe(const Syllables& s) const {
+  Syllables other = s;
+  const auto fits = [&](std::uint32_t size) {
+    other.size = size;
+    return size >= 1 && wordsMatch(s, other, params_.tolerance);
+  };
+  const double share = 1.0 - params_.tolerance.size;
+  auto smallest = std::min(s.size, static_cast<std::uint32_t>(s.size * share) + 1);
+  while (fits(smallest - 1)) --smallest;
+  while (!fits(smallest)) ++smallest;
+  auto largest = std::max(s.size, static_cast<std::uint32_t>(s.size / share) - 1);
+  while (fits(largest + 1)) ++largest;
+  while (!fits(largest)) --largest;
+  return {static_cast<std::uint32_t>(s.density_class), smallest, largest - smallest, s.angle};
+}
+
+bool Matcher::matches(const Probe& p, const Begin& begin) const {
+  if (begin.tags >> 24 != p.density_class) return false;
+  if ((begin.tags >> 4 & Text::kMaxSize) - p.smallest > p.span) return false;  // wraps below
+  const double difference =
+      std::abs(static_cast<double>(p.angle) - static_cast<double>(begin.angle));
+  return difference < params_.tolerance.angle ||
+         difference > 2.0 * hyselam::kPi - params_.tolerance.angle;
 }
 
 /// Lengths of the longest grams that end with this pair, up to `depth` words.
@@ -155,11 +210,12 @@ Matcher::Lengths Matcher::lengthsFromScratch(WordIndex newer, WordIndex older, i
 /// alternative word may carry a long gram to where two real words end a short one.
 void Matcher::complete(Position newer_end, Row& target) {
   const WordRange newer = text_.endingAt(newer_end);
-  for (std::size_t i = 0; i < target.ends.size(); ++i) {
-    std::uint16_t* lengths = &target.lengths[i * passes_];
+  Grams& grams = target.grams;
+  for (std::size_t i = 0; i < grams.ends.size(); ++i) {
+    std::uint16_t* lengths = &grams.lengths[i * passes_];
     if (lengths[0] >= gram_) continue;
-    const WordRange older = text_.endingAt(target.ends[i]);
-    if (newer.size() == 1 && older.size() == 1) continue;
+    if (newer.size() == 1 && (begins_[grams.ends[i]].tags & Begin::kAlternativesEnd) == 0) continue;
+    const WordRange older = text_.endingAt(grams.ends[i]);
     for (WordIndex a = newer.begin; a < newer.end; ++a)
       for (WordIndex b = older.begin; b < older.end; ++b) {
         if (text_.last(b) >= text_.first(a)) continue;
@@ -169,21 +225,11 @@ void Matcher::complete(Position newer_end, Row& target) {
   }
 }
 
-void Matcher::enter(WordIndex newer, WordIndex older, const Lengths& lengths, Row& target,
+void Matcher::enter(WordIndex newer, WordIndex older, const Lengths& lengths, Grams& out,
                     bool report) {
-  const Position end = text_.last(older);
-  std::size_t i = target.find(end);
-  if (i == kNone) {
-    i = target.ends.size();
-    target.slot.grow(end + 1);
-    target.slot[end] = static_cast<std::uint32_t>(i);
-    target.ends.push_back(end);
-    target.lengths.insert(target.lengths.end(), lengths.begin(),
-                          lengths.begin() + static_cast<std::ptrdiff_t>(passes_));
-  } else {
-    for (std::size_t k = 0; k < passes_; ++k)
-      target.lengths[i * passes_ + k] = std::max(target.lengths[i * passes_ + k], lengths[k]);
-  }
+  out.ends.push_back(text_.last(older));
+  out.lengths.insert(out.lengths.end(), lengths.begin(),
+                     lengths.begin() + static_cast<std::ptrdiff_t>(passes_));
   if (!report) return;
   for (std::size_t k = 0; k < passes_; ++k) {
     if (lengths[k] < params_.min_n[k]) continue;
@@ -192,11 +238,45 @@ void Matcher::enter(WordIndex newer, WordIndex older, const Lengths& lengths, Ro
   }
 }
 
+/// Both are in order; of grams that end at the same positions the longest in each pass counts.
+void Matcher::mergeInto(Row& target, const Grams& more) {
+  if (more.ends.empty()) return;
+  for (Position end : more.ends) {
+    target.has.grow(end / 64 + 1);
+    target.has[end / 64] |= std::uint64_t{1} << end % 64;
+  }
+  merged_.clear();
+  const Grams& old = target.grams;
+  const auto append = [&](const Grams& from, std::size_t i) {
+    const std::uint16_t* lengths = &from.lengths[i * passes_];
+    if (!merged_.ends.empty() && merged_.ends.back() == from.ends[i]) {
+      std::uint16_t* best = &merged_.lengths[merged_.lengths.size() - passes_];
+      for (std::size_t k = 0; k < passes_; ++k) best[k] = std::max(best[k], lengths[k]);
+    } else {
+      merged_.ends.push_back(from.ends[i]);
+      merged_.lengths.insert(merged_.lengths.end(), lengths, lengths + passes_);
+    }
+  };
+  std::size_t a = 0, b = 0;
+  while (a < old.ends.size() && b < more.ends.size()) {
+    if (old.ends[a] <= more.ends[b]) {
+      append(old, a++);
+    } else {
+      append(more, b++);
+    }
+  }
+  while (a < old.ends.size()) append(old, a++);
+  while (b < more.ends.size()) append(more, b++);
+  std::swap(target.grams, merged_);
+}
+
 std::size_t Matcher::bytes() const {
-  std::size_t sum = index_.bytes();
-  for (const Row& r : rows_)
-    sum += r.ends.capacity() * sizeof(Position) + r.lengths.capacity() * sizeof(std::uint16_t) +
-           r.slot.bytes();
+  const auto of = [](const Grams& g) {
+    return g.ends.capacity() * sizeof(Position) + g.lengths.capacity() * sizeof(std::uint16_t);
+  };
+  std::size_t sum = index_.bytes() + begins_.bytes() + of(merged_);
+  for (const Grams& g : found_) sum += of(g);
+  for (const Row& r : rows_) sum += of(r.grams) + r.has.bytes();
   return sum;
 }
 

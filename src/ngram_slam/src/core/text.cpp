@@ -26,8 +26,9 @@ Position Text::push(const Syllables& word) {
     throw hyselam::ParameterError("density class", word.density_class,
                                   "0.." + std::to_string(kMaxClasses - 1));
   if (word.size < 1) throw hyselam::ParameterError("word size", word.size, ">= 1 [observations]");
-  if (words_.size() + static_cast<std::size_t>(levels_) >= (std::size_t{1} << 31))
-    throw hyselam::InputError("text", "", "is full: 2^31 words");
+  if (blocks_.size() >= kMaxPositions ||
+      words_.size() + static_cast<std::size_t>(levels_) >= (std::size_t{1} << 31))
+    throw hyselam::InputError("text", "", "is full");
 
   if (!starts_run_) writeAlternatives();
   const Position here = positions();

@@ -1,0 +1,193 @@
+// What one new word costs, against texts of a thousand to a million words with three levels. The
+// baseline is Alg. 5.3 over a scan of all words.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "../test/random_texts.hpp"
+#include "../test/transcription/matching.hpp"
+#include "ngram_slam/matcher.hpp"
+
+namespace {
+
+using namespace ngram_slam;  // NOLINT: a bench, not a header
+
+enum class Place {
+  kCircuit,  // one corridor circuit of 24 words with doors, round and round (chapter 5)
+  kBuilding  // 40 different corridors of 24 words, visited in random order
+};
+
+/// Writes the way of a robot: real words with noise of sizes and angles. In one corridor out of
+/// three a door is open: three words instead of one.
+class Writer {
+ public:
+  Writer(Place place, std::uint64_t seed) : rng_(seed), place_(place) {
+    const std::size_t corridors = place == Place::kCircuit ? 1 : 40;
+    for (std::size_t c = 0; c < corridors; ++c) {
+      std::vector<Syllables> words;
+      for (int i = 0; i < 24; ++i) {
+        Syllables w;
+        w.density_class = static_cast<int>(rng_.below(4)) * 2 + i % 2;
+        w.size = 8 + rng_.below(i % 2 == 0 ? 120 : 30);
+        w.angle = static_cast<float>(i % 2 == 0 || rng_.below(2) == 0 ? 0.0
+                                     : rng_.below(2) == 0             ? 1.57
+                                                                      : -1.57);
+        words.push_back(w);
+      }
+      corridors_.push_back(words);
+    }
+  }
+  void write(Text& text) {
+    if (pending_.empty()) {
+      const auto& corridor = corridors_[corridor_];
+      const Syllables w = random_texts::noisy(corridor[at_], rng_, 0.08, 0.15);
+      if (w.size > 60 && rng_.below(3) == 0) {
+        const std::uint32_t before = w.size / 4 + rng_.below(w.size / 3);
+        pending_ = {{w.density_class, w.size - 6 - before, 0.0f},
+                    {w.density_class ^ 1, 6, 0.0f},
+                    {w.density_class, before, 0.0f}};
+      } else {
+        pending_ = {w};
+      }
+      if (++at_ == corridor.size()) {
+        at_ = 0;
+        corridor_ = rng_.below(static_cast<std::uint32_t>(corridors_.size()));
+      }
+    }
+    text.push(pending_.back());
+    pending_.pop_back();
+  }
+
+ private:
+  hyselam::Rng rng_;
+  Place place_;
+  std::vector<std::vector<Syllables>> corridors_;
+  std::size_t corridor_ = 0, at_ = 0;
+  std::vector<Syllables> pending_;
+};
+
+struct Situation {
+  explicit Situation(Place place) : writer(place, 7), matcher(text) {}
+  Writer writer;
+  Text text{3};
+  Matcher matcher;
+};
+
+/// A text of so many words; kept from the smaller ones on, so that it is written only once.
+Situation& situation(Place place, std::size_t words) {
+  static std::map<Place, std::unique_ptr<Situation>> all;
+  auto& s = all[place];
+  if (!s || s->text.words() > words + 50000) s = std::make_unique<Situation>(place);
+  while (s->text.words() < words) {
+    s->writer.write(s->text);
+    s->matcher.skip();
+  }
+  for (int i = 0; i < 200; ++i) {  // the grams come alive
+    s->writer.write(s->text);
+    s->matcher.update();
+  }
+  return *s;
+}
+
+void oneWord(benchmark::State& state, Place place, const char* baseline) {
+  const auto words = static_cast<std::size_t>(state.range(0));
+  Situation& s = situation(place, words);
+  std::vector<double> ms;
+  std::size_t matches = 0;
+  const auto compared = s.matcher.counters().comparisons;
+  for (auto _ : state) {
+    const auto t0 = std::chrono::steady_clock::now();
+    s.writer.write(s.text);
+    const auto& found = s.matcher.update();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
+    matches += found.size();
+    state.SetIterationTime(seconds);
+    ms.push_back(1e3 * seconds);
+  }
+  double sum = 0.0;
+  for (double t : ms) sum += t;
+  std::sort(ms.begin(), ms.end());
+  const auto n = static_cast<double>(ms.size());
+  const auto comparisons = static_cast<double>(s.matcher.counters().comparisons - compared);
+  state.counters["median_ms"] = ms[ms.size() / 2];
+  state.counters["p99_ms"] = ms[ms.size() * 99 / 100];
+  state.counters["worst_ms"] = ms.back();
+  state.counters["matches_per_word"] = static_cast<double>(matches) / n;
+  state.counters["comparisons_per_word"] = comparisons / n;
+  state.counters["comparisons_per_100ms"] = comparisons / sum * 100.0;
+  state.counters["text_bytes_per_word"] =
+      static_cast<double>(s.text.bytes()) / static_cast<double>(s.text.words());
+  state.counters["index_bytes_per_word"] =
+      static_cast<double>(s.matcher.bytes()) / static_cast<double>(s.text.words());
+  if (baseline != nullptr)
+    state.SetLabel(std::string("baseline=") + baseline + "/" + std::to_string(words) +
+                   "/iterations:3/manual_time");
+}
+
+void OneWord_Circuit(benchmark::State& state) {
+  oneWord(state, Place::kCircuit, nullptr);
+}
+void OneWord_Building(benchmark::State& state) {
+  oneWord(state, Place::kBuilding, state.range(0) <= 100000 ? "OneWord_Building_Scan" : nullptr);
+}
+BENCHMARK(OneWord_Circuit)
+    ->RangeMultiplier(10)
+    ->Range(1000, 1000000)
+    ->UseManualTime()
+    ->Iterations(3000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(OneWord_Building)
+    ->RangeMultiplier(10)
+    ->Range(1000, 1000000)
+    ->UseManualTime()
+    ->Iterations(3000)
+    ->Unit(benchmark::kMillisecond);
+
+/// All words are compared with the newest, then predecessors are followed (Alg. 5.3). Longest
+/// n-grams instead of all, which nobody could wait for.
+void OneWord_Building_Scan(benchmark::State& state) {
+  Writer writer(Place::kBuilding, 7);
+  Text text(3);
+  while (text.words() < static_cast<std::size_t>(state.range(0))) writer.write(text);
+  const MatcherParams params;
+  for (auto _ : state) {
+    writer.write(text);
+    const auto words = transcription::plainWords(text);
+    const auto newest = text.realWord(text.positions() - 1);
+    const auto t0 = std::chrono::steady_clock::now();
+    std::size_t matches = 0;
+    for (std::size_t v = 0; v < words.size(); ++v) {
+      if (words[v].last >= words[newest].first) continue;
+      if (!transcription::equal(words[newest], words[v], params.tolerance)) continue;
+      // The longest gram, layer by layer, up to what the third pass asks for.
+      std::set<std::pair<std::size_t, std::size_t>> layer = {{newest, v}};
+      int n = 0;
+      for (; n < params.min_n.back() && !layer.empty(); ++n) {
+        std::set<std::pair<std::size_t, std::size_t>> next;
+        for (const auto& [a, b] : layer)
+          for (std::size_t p : words[a].P)
+            for (std::size_t q : words[b].P)
+              if (words[q].last < words[p].first &&
+                  transcription::equal(words[p], words[q], params.tolerance))
+                next.insert({p, q});
+        layer = std::move(next);
+      }
+      matches += n >= params.min_n.back();
+    }
+    benchmark::DoNotOptimize(matches);
+    state.SetIterationTime(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
+  }
+}
+BENCHMARK(OneWord_Building_Scan)
+    ->RangeMultiplier(10)
+    ->Range(1000, 100000)
+    ->UseManualTime()
+    ->Iterations(3)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
