@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "check_range.hpp"
 
@@ -63,9 +64,10 @@ std::optional<double> BeamModel::weigh(const Observation& observation, Particles
   const double before = totalWeight(p);
   const double hit = params_.z_hit / (params_.sigma_hit * std::sqrt(2.0 * kPi));
   const double spread = -0.5 / (params_.sigma_hit * params_.sigma_hit);
+  // The product of many densities fits no float: logarithms, relative to the best.
+  std::vector<double> log_likelihood(p.size(), 0.0);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const hyselam::Pose2 laser = laserPose(p, i, beams.laser_in_base);
-    double likelihood = 1.0;
     for (std::size_t b = 0; b < beams.range.size(); ++b) {
       const double expected =
           map_->range(laser.x, laser.y, laser.theta + beams.bearing[b], beams.max_range);
@@ -74,11 +76,14 @@ std::optional<double> BeamModel::weigh(const Observation& observation, Particles
       if (miss < 0.0)
         q += params_.z_short * params_.lambda_short * std::exp(-params_.lambda_short * z);
       if (z >= beams.max_range) q += params_.z_max;
-      likelihood *= q;
+      log_likelihood[i] += std::log(q);
     }
-    p.weight[i] = static_cast<float>(p.weight[i] * std::max(likelihood, 1e-30));
   }
-  return likelihoodPerFactor(before, totalWeight(p), static_cast<double>(beams.range.size()));
+  const double best = *std::max_element(log_likelihood.begin(), log_likelihood.end());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    p.weight[i] *= static_cast<float>(std::max(std::exp(log_likelihood[i] - best), 1e-30));
+  const auto factors = static_cast<double>(beams.range.size());
+  return likelihoodPerFactor(before, totalWeight(p), factors) * std::exp(best / factors);
 }
 
 void CosineModelParams::validate() const {
