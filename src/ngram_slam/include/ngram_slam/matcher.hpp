@@ -75,14 +75,15 @@ class Matcher {
   static constexpr std::size_t kMaxPasses = Text::kMaxLevels;
   using Lengths = std::array<std::uint16_t, kMaxPasses>;
 
-  /// What following a gram has to know about the words that begin at a position: 8 bytes, for the
-  /// million of them that a word may have to look at.
+  /// What following a gram has to know about a word, found by the position where the word begins:
+  /// 16 bytes that lie together, for the many thousands that a word may have to look at.
   struct Begin {
-    float angle;         // of the real word
-    std::uint32_t tags;  // of the real word: class, 8 bits; size, 20; and the flags below
+    float angle;
+    std::uint32_t tags;  // class, 8 bits; size, 20; level or flags, 4
+    WordIndex word;
+    std::uint32_t alternative;  // another word that begins here, in alternatives_; 0: none
     static constexpr std::uint32_t kStartsRun = 1;
-    static constexpr std::uint32_t kAlternativesBegin = 2;
-    static constexpr std::uint32_t kAlternativesEnd = 4;
+    static constexpr std::uint32_t kAlternativesEnd = 2;
   };
   /// A word to compare others with: its class, the sizes that match, its angle.
   struct Probe {
@@ -116,10 +117,10 @@ class Matcher {
   void start(WordIndex newer, bool report);
   void complete(Position newer_end, Row& target);
   void mergeInto(Row& target, const Grams& more);
-  void extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Grams& out,
-              bool report);
-  void enter(WordIndex newer, WordIndex older, const Lengths& lengths, Grams& out, bool report);
-  Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth);
+  void enter(WordIndex newer, WordIndex older, Position end, const std::uint16_t* lengths,
+             Grams& out, bool report);
+  Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth, int levels);
+  Begin beginOf(WordIndex word, std::uint32_t flags) const;
   Probe probe(const Syllables& s) const;
   bool matches(const Probe& probe, const Begin& begin) const;
   bool match(WordIndex newer, WordIndex older) {
@@ -132,8 +133,9 @@ class Matcher {
   std::size_t passes_;
   int gram_;
   GramIndex index_;
-  BlockVector<Begin> begins_;
-  std::vector<Row> rows_;     // a ring over positions
+  BlockVector<Begin> begins_;        // the real words, by position
+  BlockVector<Begin> alternatives_;  // the others
+  std::vector<Row> rows_;            // a ring over positions
   std::vector<Grams> found_;  // what one word adds, by the level of the older words; last: started
   Grams merged_;
   Position next_ = 0;

@@ -42,6 +42,7 @@ Matcher::Matcher(const Text& text, const MatcherParams& params)
     throw hyselam::ParameterError(
         "number of entries of min_n", passes_,
         "the number of levels of the text, " + std::to_string(text.levels()));
+  alternatives_.push_back({});  // 0 means none
 }
 
 const std::vector<Match>& Matcher::update() {
@@ -61,7 +62,11 @@ void Matcher::take(Position p, bool searching) {
     // The text has completed the words that end at the position before: so do we.
     const WordRange before = text_.endingAt(p - 1);
     for (WordIndex w = before.begin + 1; w < before.end; ++w) {
-      begins_[text_.first(w)].tags |= Begin::kAlternativesBegin;
+      Begin alternative = beginOf(w, static_cast<std::uint32_t>(text_.level(w)));
+      Begin& real = begins_[text_.first(w)];
+      alternative.alternative = real.alternative;
+      real.alternative = static_cast<std::uint32_t>(alternatives_.size());
+      alternatives_.push_back(alternative);
       begins_[p - 1].tags |= Begin::kAlternativesEnd;
       if (searching) search(w, row(p - 1), false);
     }
@@ -69,9 +74,7 @@ void Matcher::take(Position p, bool searching) {
     for (WordIndex w = before.begin; w < before.end; ++w) index_.insert(w);
   }
   const WordIndex newest = text_.realWord(p);
-  const Syllables s = text_.syllables(newest);
-  begins_.push_back({s.angle, static_cast<std::uint32_t>(s.density_class) << 24 | s.size << 4 |
-                                  (text_.startsRun(p) ? Begin::kStartsRun : 0u)});
+  begins_.push_back(beginOf(newest, text_.startsRun(p) ? Begin::kStartsRun : 0u));
   Row& fresh = row(p);
   for (Position end : fresh.grams.ends) fresh.has[end / 64] = 0;
   fresh.grams.clear();
@@ -94,6 +97,9 @@ void Matcher::follow(WordIndex newer, bool report) {
   const Probe newer_probe = probe(text_.syllables(newer));
   const auto newer_level = static_cast<std::size_t>(text_.level(newer));
   Grams& real = found_[0];
+  real.ends.reserve(before.ends.size());
+  real.lengths.reserve(before.lengths.size());
+  Lengths longer{};
   for (std::size_t i = 0; i < before.ends.size(); ++i) {
     const Position begin = before.ends[i] + 1;
     if (begin >= first) break;  // they are in order
@@ -103,36 +109,24 @@ void Matcher::follow(WordIndex newer, bool report) {
     ++counters_.comparisons;
     if (matches(newer_probe, older)) {
       ++counters_.live;
-      real.ends.push_back(begin);
-      const std::size_t at = real.lengths.size();
-      real.lengths.resize(at + passes_, 0);
-      bool told = !report;
-      for (std::size_t k = newer_level; k < passes_; ++k) {
-        const std::uint16_t n = real.lengths[at + k] = oneMore(lengths[k]);
-        if (told || n < params_.min_n[k]) continue;
-        matches_.push_back({newer, text_.realWord(begin), static_cast<int>(k) + 1, n});
-        told = true;
-      }
+      for (std::size_t k = newer_level; k < passes_; ++k) longer[k] = oneMore(lengths[k]);
+      enter(newer, older.word, begin, longer.data(), real, report);
     }
-    if ((older.tags & Begin::kAlternativesBegin) == 0) continue;
-    for (int level = 1; level < text_.levels(); ++level) {
+    for (std::uint32_t next = older.alternative; next != 0;) {
+      const Begin& alternative = alternatives_[next];
+      next = alternative.alternative;
+      const std::size_t level = alternative.tags & 15u;
       const Position end = begin + static_cast<Position>(level) + 1;
-      if (end >= first) break;
-      WordIndex word;
-      if (text_.findEndingAt(end, level, &word))
-        extend(newer, word, lengths, found_[static_cast<std::size_t>(level)], report);
+      if (end >= first) continue;
+      ++counters_.comparisons;
+      if (!matches(newer_probe, alternative)) continue;
+      ++counters_.live;
+      Lengths through{};
+      for (std::size_t k = std::max(level, newer_level); k < passes_; ++k)
+        through[k] = oneMore(lengths[k]);
+      enter(newer, alternative.word, end, through.data(), found_[level], report);
     }
   }
-}
-
-void Matcher::extend(WordIndex newer, WordIndex older, const std::uint16_t* before, Grams& out,
-                     bool report) {
-  if (!match(newer, older)) return;
-  ++counters_.live;
-  Lengths lengths{};
-  const auto from = static_cast<std::size_t>(std::max(text_.level(newer), text_.level(older)));
-  for (std::size_t k = from; k < passes_; ++k) lengths[k] = oneMore(before[k]);
-  enter(newer, older, lengths, out, report);
 }
 
 /// Finds the grams that have just become `gram_` words long.
@@ -153,10 +147,10 @@ void Matcher::start(WordIndex newer, bool report) {
   std::sort(candidates_.begin(), candidates_.end());
   candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
   for (WordIndex older : candidates_) {
-    const Lengths lengths = lengthsFromScratch(newer, older, gram_);
+    const Lengths lengths = lengthsFromScratch(newer, older, gram_, text_.levels());
     if (lengths[passes_ - 1] < gram_) continue;
     ++counters_.started;
-    enter(newer, older, lengths, found_.back(), report);
+    enter(newer, older, text_.last(older), lengths.data(), found_.back(), report);
   }
 }
 
@@ -186,9 +180,12 @@ bool Matcher::matches(const Probe& p, const Begin& begin) const {
          difference > 2.0 * hyselam::kPi - params_.tolerance.angle;
 }
 
-/// Lengths of the longest grams that end with this pair, up to `depth` words.
-Matcher::Lengths Matcher::lengthsFromScratch(WordIndex newer, WordIndex older, int depth) {
+/// Lengths of the longest grams that end with this pair, up to `depth` words of the levels below
+/// `levels`.
+Matcher::Lengths Matcher::lengthsFromScratch(WordIndex newer, WordIndex older, int depth,
+                                             int levels) {
   Lengths best{};
+  if (text_.level(newer) >= levels || text_.level(older) >= levels) return best;
   if (!match(newer, older)) return best;
   if (depth > 1) {
     const WordRange before_newer = text_.predecessors(newer);
@@ -196,7 +193,7 @@ Matcher::Lengths Matcher::lengthsFromScratch(WordIndex newer, WordIndex older, i
     for (WordIndex a = before_newer.begin; a < before_newer.end; ++a)
       for (WordIndex b = before_older.begin; b < before_older.end; ++b) {
         if (text_.last(b) >= text_.first(a)) continue;
-        const Lengths l = lengthsFromScratch(a, b, depth - 1);
+        const Lengths l = lengthsFromScratch(a, b, depth - 1, levels);
         for (std::size_t k = 0; k < passes_; ++k) best[k] = std::max(best[k], l[k]);
       }
   }
@@ -210,32 +207,45 @@ Matcher::Lengths Matcher::lengthsFromScratch(WordIndex newer, WordIndex older, i
 /// alternative word may carry a long gram to where two real words end a short one.
 void Matcher::complete(Position newer_end, Row& target) {
   const WordRange newer = text_.endingAt(newer_end);
+  const Probe real = probe(text_.syllables(newer.begin));
   Grams& grams = target.grams;
   for (std::size_t i = 0; i < grams.ends.size(); ++i) {
     std::uint16_t* lengths = &grams.lengths[i * passes_];
-    if (lengths[0] >= gram_) continue;
-    if (newer.size() == 1 && (begins_[grams.ends[i]].tags & Begin::kAlternativesEnd) == 0) continue;
+    int levels = 0;  // passes whose lengths may be too short; the higher ones have longer grams
+    while (static_cast<std::size_t>(levels) < passes_ && lengths[levels] < gram_) ++levels;
+    if (levels == 0) continue;
+    const Begin& end = begins_[grams.ends[i]];
+    if (newer.size() == 1 && (end.tags & Begin::kAlternativesEnd) == 0) continue;
+    if (levels == 1 && !matches(real, end)) continue;
     const WordRange older = text_.endingAt(grams.ends[i]);
     for (WordIndex a = newer.begin; a < newer.end; ++a)
       for (WordIndex b = older.begin; b < older.end; ++b) {
         if (text_.last(b) >= text_.first(a)) continue;
-        const Lengths l = lengthsFromScratch(a, b, gram_);
-        for (std::size_t k = 0; k < passes_; ++k) lengths[k] = std::max(lengths[k], l[k]);
+        const Lengths l = lengthsFromScratch(a, b, gram_, levels);
+        for (int k = 0; k < levels; ++k) {
+          const auto at = static_cast<std::size_t>(k);
+          lengths[at] = std::max(lengths[at], l[at]);
+        }
       }
   }
 }
 
-void Matcher::enter(WordIndex newer, WordIndex older, const Lengths& lengths, Grams& out,
-                    bool report) {
-  out.ends.push_back(text_.last(older));
-  out.lengths.insert(out.lengths.end(), lengths.begin(),
-                     lengths.begin() + static_cast<std::ptrdiff_t>(passes_));
+void Matcher::enter(WordIndex newer, WordIndex older, Position end, const std::uint16_t* lengths,
+                    Grams& out, bool report) {
+  out.ends.push_back(end);
+  out.lengths.insert(out.lengths.end(), lengths, lengths + passes_);
   if (!report) return;
   for (std::size_t k = 0; k < passes_; ++k) {
     if (lengths[k] < params_.min_n[k]) continue;
     matches_.push_back({newer, older, static_cast<int>(k) + 1, lengths[k]});
     return;
   }
+}
+
+Matcher::Begin Matcher::beginOf(WordIndex word, std::uint32_t flags) const {
+  const Syllables s = text_.syllables(word);
+  return {s.angle, static_cast<std::uint32_t>(s.density_class) << 24 | s.size << 4 | flags, word,
+          0};
 }
 
 /// Both are in order; of grams that end at the same positions the longest in each pass counts.
@@ -274,7 +284,7 @@ std::size_t Matcher::bytes() const {
   const auto of = [](const Grams& g) {
     return g.ends.capacity() * sizeof(Position) + g.lengths.capacity() * sizeof(std::uint16_t);
   };
-  std::size_t sum = index_.bytes() + begins_.bytes() + of(merged_);
+  std::size_t sum = index_.bytes() + begins_.bytes() + alternatives_.bytes() + of(merged_);
   for (const Grams& g : found_) sum += of(g);
   for (const Row& r : rows_) sum += of(r.grams) + r.has.bytes();
   return sum;
