@@ -1,0 +1,79 @@
+// Everything together: observations in, words and matches out, while the classes are being learnt.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ngram_slam/corpus.hpp"
+#include "ngram_slam/matcher.hpp"
+#include "ngram_slam/regions.hpp"
+
+namespace ngram_slam {
+
+struct RecogniserParams {
+  int levels = 3;           ///< levels of words, 1..16
+  int min_region = 5;       ///< t_o of Alg. 4.2 [observations], >= 1
+  int uniform_classes = 8;  ///< with `learn_classes` false: classes of equal width (5.3.1), 1..256
+  bool learn_classes = false;  ///< classes by mean shift instead
+  MeanShiftParams mean_shift;
+  MatcherParams matcher;  ///< as many min_n as levels
+
+  /// @throws hyselam::ParameterError
+  void validate() const;
+};
+
+/// What one observation brought about.
+struct RecogniserUpdate {
+  bool word = false;           ///< a word was completed: the last position of the text
+  bool requantised = false;    ///< the classes changed: all words and matches before are void
+  std::vector<Match> matches;  ///< of the new word; after a requantisation of all words
+};
+
+/// Keeps the observations of all runs, their words and the index.
+class Recogniser {
+ public:
+  explicit Recogniser(const RecogniserParams& params = {});
+  /// Goes on with a corpus: its runs are old ones, the next observation starts a new one. Words are
+  /// built with the corpus' classes if classes are learnt, else with the uniform ones of `params`.
+  /// @throws hyselam::ParameterError
+  Recogniser(const RecogniserParams& params, Corpus corpus);
+  Recogniser(const Recogniser&) = delete;
+  Recogniser& operator=(const Recogniser&) = delete;
+
+  /// Takes an observation in. @throws hyselam::InputError for one that cannot be used; nothing is
+  /// changed then.
+  RecogniserUpdate add(const Observation& observation);
+  /// Ends the run: its last region becomes a word (4.3.2: an incomplete one). What comes next
+  /// starts at an unknown place.
+  RecogniserUpdate endRun();
+
+  const RecogniserParams& params() const { return params_; }
+  const ObservationStore& observations() const { return observations_; }
+  const DensityClasses& classes() const {
+    return params_.learn_classes ? quantizer_.classes() : fixed_classes_;
+  }
+  const Text& text() const { return *text_; }
+  const MatcherCounters& counters() const { return matcher_->counters(); }
+  /// How often the classes changed.
+  int requantisations() const { return requantisations_; }
+  std::size_t bytes() const { return observations_.bytes() + text_->bytes() + matcher_->bytes(); }
+  /// What to save.
+  Corpus corpus() const;
+
+ private:
+  void startAnew();
+  std::vector<Match> rebuild(bool match_old_runs);
+  void write(const Region& region);
+
+  RecogniserParams params_;
+  ObservationStore observations_;
+  DensityClasses fixed_classes_;
+  MeanShiftQuantizer quantizer_;
+  RegionBuilder regions_;
+  std::unique_ptr<Text> text_;
+  std::unique_ptr<Matcher> matcher_;
+  bool run_open_ = false;
+  int requantisations_ = 0;
+};
+
+}  // namespace ngram_slam

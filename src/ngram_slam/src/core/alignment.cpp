@@ -1,0 +1,69 @@
+#include "ngram_slam/alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hyselam_common/errors.hpp"
+
+namespace ngram_slam {
+
+void AlignmentParams::validate() const {
+  if (max_shift < 1) throw hyselam::ParameterError("max_shift", max_shift, ">= 1 [observations]");
+  if (!(min_overlap > 0.0 && min_overlap <= 1.0))
+    throw hyselam::ParameterError("min_overlap", min_overlap, "in (0, 1]");
+}
+
+std::optional<Alignment> align(const ObservationStore& observations, std::uint32_t s1,
+                               std::uint32_t s2, std::uint32_t n, const AlignmentParams& params) {
+  params.validate();
+  const std::uint32_t run1 = observations.runOf(s1), run2 = observations.runOf(s2);
+  const auto begin1 = static_cast<std::int64_t>(observations.runBegin(run1));
+  const auto end1 = static_cast<std::int64_t>(observations.runEnd(run1));
+  const std::int64_t end2 = std::min<std::int64_t>(observations.runEnd(run2), std::int64_t{s2} + n);
+  std::optional<Alignment> best;
+  double least = 0.0;
+  for (int k = 0; k < 2 * params.max_shift - 1; ++k) {
+    const int shift = k % 2 == 0 ? k / 2 : -(k + 1) / 2;  // 0, -1, 1, -2, 2, ...
+    const std::int64_t offset = std::int64_t{s1} - s2 + shift;
+    const std::int64_t from = std::max<std::int64_t>(s2, begin1 - offset);
+    const std::int64_t to = std::min(end2, end1 - offset);
+    const std::int64_t terms = to - from;
+    if (terms < 1 || static_cast<double>(terms) < params.min_overlap * n) continue;
+    double sum = 0.0;
+    for (std::int64_t i = from; i < to; ++i) {
+      const double difference = observations.soft(static_cast<std::uint32_t>(i + offset)) -
+                                observations.soft(static_cast<std::uint32_t>(i));
+      sum += difference * difference;
+    }
+    const double mean = sum / static_cast<double>(terms);
+    if (best && mean >= least) continue;
+    least = mean;
+    best = Alignment{shift, std::sqrt(mean), static_cast<std::uint32_t>(terms)};
+  }
+  return best;
+}
+
+std::vector<ObservationPair> alignedObservations(const Text& text,
+                                                 const ObservationStore& observations,
+                                                 const std::vector<WordPair>& ngram, int step,
+                                                 const AlignmentParams& params) {
+  if (step < 1) throw hyselam::ParameterError("step", step, ">= 1 [observations]");
+  std::vector<ObservationPair> pairs;
+  for (const WordPair& words : ngram) {
+    const std::uint32_t s1 = text.observationBegin(words.newer);
+    const std::uint32_t s2 = text.observationBegin(words.older);
+    const std::uint32_t n =
+        std::min(text.observationEnd(words.newer) - s1, text.observationEnd(words.older) - s2);
+    const auto alignment = align(observations, s1, s2, n, params);
+    if (!alignment) continue;
+    const std::uint32_t run = observations.runOf(s1);
+    for (std::uint32_t i = 0; i < n; i += static_cast<std::uint32_t>(step)) {
+      const std::int64_t newer = std::int64_t{s1} + i + alignment->shift;
+      if (newer < observations.runBegin(run) || newer >= observations.runEnd(run)) continue;
+      pairs.push_back({static_cast<std::uint32_t>(newer), s2 + i, alignment->rms});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace ngram_slam
