@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kTakeOverEvery = 0.05;  // [s] while a map is being prepared
 constexpr double kAskEvery = 0.5;        // [s] for the service static_map
+constexpr double kRemindEvery = 10.0;    // [s] that no map has come on the topic
 constexpr double kAskAgainAfter = 2.0;   // [s] when it gave a map that cannot be used
 
 LocalizationServerParams loadParams(const ros::NodeHandle& private_nh) {
@@ -353,10 +354,17 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
                   std::to_string(static_cast<int>(100.0 * preparation_.progress())) + " %)");
   if (!map_error_.empty()) addRemark(status, Status::ERROR, "map refused: " + map_error_);
   if (!localizer_) {
-    if (!preparing && map_error_.empty())
+    if (!preparing && map_error_.empty()) {
       addRemark(status, Status::WARN,
                 std::string("waiting for a map from the ") +
                     (params_.use_map_topic ? "topic map" : "service static_map"));
+      const ros::WallTime now = ros::WallTime::now();
+      if (params_.use_map_topic && (now - reminded_of_map_).toSec() > kRemindEvery) {
+        reminded_of_map_ = now;
+        ROS_WARN_STREAM(who_ << " waiting for a map on " << map_subscriber_.getTopic() << " ("
+                             << map_subscriber_.getNumPublishers() << " publishers)");
+      }
+    }
   } else if (!last_result_) {
     addRemark(status, Status::WARN, "map ready, no update yet");
   } else {

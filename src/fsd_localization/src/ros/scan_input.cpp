@@ -11,9 +11,10 @@ namespace fsd_localization {
 
 namespace {
 
-constexpr double kClockSlack = 0.5;   // [s] a smaller step back is a clock being adjusted
-constexpr double kStampSlack = 2.0;   // [s] an older scan is not late: the bag began again
-constexpr double kRetryEvery = 0.01;  // [s] while scans wait
+constexpr double kClockSlack = 0.5;    // [s] a smaller step back is a clock being adjusted
+constexpr double kStampSlack = 2.0;    // [s] an older scan is not late: the bag began again
+constexpr double kRetryEvery = 0.01;   // [s] while scans wait
+constexpr double kRemindEvery = 10.0;  // [s] of wall time without scans
 
 std::string seconds(double s) {
   std::ostringstream out;
@@ -34,7 +35,8 @@ ScanInput::ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const st
       drops_(who),
       tf_listener_(tf_),
       last_now_(ros::Time::now()),
-      reported_(ros::WallTime::now()) {
+      reported_(ros::WallTime::now()),
+      quiet_since_(reported_) {
   retry_ = nh.createWallTimer(
       ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); }, false,
       false);
@@ -185,6 +187,13 @@ void ScanInput::report(diagnostic_msgs::DiagnosticStatus& status) {
   reported_ = now;
   reported_received_ = received_;
   reported_drops_ = drops_.total();
+  if (fresh > 0) {
+    quiet_since_ = now;
+  } else if ((now - quiet_since_).toSec() > kRemindEvery) {
+    quiet_since_ = now;
+    ROS_WARN_STREAM(who_ << " no scans on " << subscriber_.getTopic() << " ("
+                         << subscriber_.getNumPublishers() << " publishers)");
+  }
   if (fresh == 0)
     addRemark(status, Status::WARN, "no scans");
   else if (dropped > 0)

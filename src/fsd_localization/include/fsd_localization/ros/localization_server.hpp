@@ -71,6 +71,7 @@ class LocalizationServer {
   ros::WallTime saved_;
 
   ScanInput input_;
+  ros::WallTime reminded_of_map_ = ros::WallTime::now();
   Diagnostics diagnostics_;
   ros::WallTimer map_timer_;
   ros::Subscriber map_subscriber_, initial_pose_subscriber_;
