@@ -20,12 +20,13 @@ inline hyselam::OccupancyGrid building(int side, std::uint64_t seed) {
     for (int y = std::max(0, y0); y < std::min(map.geometry.height, y1); ++y)
       for (int x = std::max(0, x0); x < std::min(map.geometry.width, x1); ++x) map.at({x, y}) = v;
   };
-  constexpr std::int8_t kWall = hyselam::OccupancyGrid::kOccupied, kOpen = hyselam::OccupancyGrid::kFree;
+  constexpr std::int8_t kWall = hyselam::OccupancyGrid::kOccupied,
+                        kOpen = hyselam::OccupancyGrid::kFree;
   // Corridors every 15 to 20 m, a row of rooms on either side of each.
   for (int y = 30; y < side;) {
     const int depth = 60 + upTo(25);
-    fill(0, y, side, y + 2, kWall);                   // corridor wall
-    fill(0, y + depth, side, y + depth + 2, kWall);   // back wall
+    fill(0, y, side, y + 2, kWall);                  // corridor wall
+    fill(0, y + depth, side, y + depth + 2, kWall);  // back wall
     for (int x = 0; x < side;) {
       const int w = 40 + upTo(40), door = x + 8 + upTo(w - 20);
       fill(x, y, x + 2, y + depth, kWall);
@@ -37,7 +38,8 @@ inline hyselam::OccupancyGrid building(int side, std::uint64_t seed) {
       x += w;
     }
     y += depth + 2 + 30;
-    for (int x = 60; x < side; x += 300 + upTo(100)) fill(x, y - depth - 32, x + 25, y - 30, kOpen);  // links
+    for (int x = 60; x < side; x += 300 + upTo(100))
+      fill(x, y - depth - 32, x + 25, y - 30, kOpen);  // links
   }
   fill(0, 0, side, 2, kWall);
   fill(0, side - 2, side, side, kWall);

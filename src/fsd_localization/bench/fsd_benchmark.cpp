@@ -1,5 +1,6 @@
 // What one observation, one density field and one filter iteration cost, each beside the thesis'
-// algorithm written down plainly, or beside the peer that it replaces. The label names the baseline.
+// algorithm written down plainly, or beside the peer that it replaces. The label names the
+// baseline.
 #include <benchmark/benchmark.h>
 
 #include "../test/random_worlds.hpp"
@@ -15,7 +16,8 @@ using hyselam::Pose2;
 constexpr int kBigSide = 2000;
 constexpr std::size_t kParticles = 40000;
 
-// ---- one observation: a scan of 181 beams into the local map, soft and hard density at h = 40 ----
+// ---- one observation: a scan of 181 beams into the local map, soft and hard density at h = 40
+// ----
 
 /// Scans as a robot takes them that drives through a building.
 const std::vector<std::pair<hyselam::LaserScan, Pose2>>& drive() {
@@ -106,7 +108,8 @@ BENCHMARK(DensityOfACell_Transcription)->Arg(15)->Arg(30)->Arg(50)->Unit(benchma
 
 void DensityOfACell(benchmark::State& state) {
   const FreeSpace space = freeSpaceOf(bench::building(500, 7));
-  const FreeSpaceDensity density(Kernel(KernelProfile::kInverted, static_cast<int>(state.range(0))));
+  const FreeSpaceDensity density(
+      Kernel(KernelProfile::kInverted, static_cast<int>(state.range(0))));
   int i = 0;
   for (auto _ : state) {  // row by row over the free cells, as a field is made
     do i = (i + 1) % (500 * 500);
@@ -161,16 +164,21 @@ void weigh(benchmark::State& state, std::size_t n, MakeModel make, const char* b
   if (baseline != nullptr) state.SetLabel(baseline);
 }
 void WeighBeam19(benchmark::State& s) {
-  weigh(s, kParticles, [] { return BeamModel(std::make_shared<const RayCaster>(bigMap())); }, nullptr);
+  weigh(
+      s, kParticles, [] { return BeamModel(std::make_shared<const RayCaster>(bigMap())); },
+      nullptr);
 }
 void WeighLikelihood60(benchmark::State& s) {
-  weigh(s, kParticles, [] { return likelihood60(); }, nullptr);
+  weigh(
+      s, kParticles, [] { return likelihood60(); }, nullptr);
 }
 void WeighFsd3(benchmark::State& s) {
-  weigh(s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighBeam19");
+  weigh(
+      s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighBeam19");
 }
 void WeighFsd3AgainstLikelihood(benchmark::State& s) {
-  weigh(s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighLikelihood60");
+  weigh(
+      s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighLikelihood60");
 }
 BENCHMARK(WeighBeam19)->Unit(benchmark::kMillisecond);
 BENCHMARK(WeighLikelihood60)->Unit(benchmark::kMillisecond);
@@ -197,7 +205,9 @@ void iterate(benchmark::State& state, const Model& model, const char* baseline) 
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kParticles));
   if (baseline != nullptr) state.SetLabel(baseline);
 }
-void IterationLikelihood60(benchmark::State& s) { iterate(s, likelihood60(), nullptr); }
+void IterationLikelihood60(benchmark::State& s) {
+  iterate(s, likelihood60(), nullptr);
+}
 void IterationFsd3(benchmark::State& s) {
   iterate(s, FsdModel(bigFields()), "baseline=IterationLikelihood60");
 }

@@ -70,8 +70,10 @@ inline Fsd freeSpaceDensity(const Cells& m, int x0, int y0, const fsd_localizati
   return result;
 }
 
-/// The same on a copy of the cells that the kernel can reach, so that a large map costs nothing extra.
-inline Fsd freeSpaceDensityNear(const Cells& m, int x0, int y0, const fsd_localization::Kernel& kernel) {
+/// The same on a copy of the cells that the kernel can reach, so that a large map costs nothing
+/// extra.
+inline Fsd freeSpaceDensityNear(const Cells& m, int x0, int y0,
+                                const fsd_localization::Kernel& kernel) {
   const int h = kernel.radius();
   Cells near;
   near.width = near.height = 2 * h + 1;
