@@ -33,7 +33,7 @@ struct FsdModelParams {
 
 class FsdModel final : public ObservationModel {
  public:
-  FsdModel(std::shared_ptr<const FsdMap> map, const FsdModelParams& params = {});
+  explicit FsdModel(std::shared_ptr<const FsdMap> map, const FsdModelParams& params = {});
   const char* name() const override { return "fsd"; }
   /// @throws hyselam::InputError if the observation has not one reading per kernel of the map.
   std::optional<double> weigh(const Observation& observation, Particles& particles) const override;

@@ -37,7 +37,7 @@ struct BeamModelParams {
 
 class BeamModel final : public ObservationModel {
  public:
-  BeamModel(std::shared_ptr<const RayCaster> map, const BeamModelParams& params = {});
+  explicit BeamModel(std::shared_ptr<const RayCaster> map, const BeamModelParams& params = {});
   const char* name() const override { return "beam"; }
   std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
 
@@ -56,7 +56,7 @@ struct CosineModelParams {
 
 class CosineModel final : public ObservationModel {
  public:
-  CosineModel(std::shared_ptr<const RayCaster> map, const CosineModelParams& params = {});
+  explicit CosineModel(std::shared_ptr<const RayCaster> map, const CosineModelParams& params = {});
   const char* name() const override { return "cosine"; }
   std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
 
@@ -86,8 +86,9 @@ struct LikelihoodFieldParams {
 /// limit the accuracy.
 class LikelihoodFieldModel final : public ObservationModel {
  public:
-  LikelihoodFieldModel(const hyselam::OccupancyGrid& map, const LikelihoodFieldParams& params = {},
-                       const OccupancyThresholds& thresholds = {});
+  explicit LikelihoodFieldModel(const hyselam::OccupancyGrid& map,
+                                const LikelihoodFieldParams& params = {},
+                                const OccupancyThresholds& thresholds = {});
   const char* name() const override { return "likelihood"; }
   std::optional<double> weigh(const Observation& observation, Particles& particles) const override;
   /// Another LikelihoodFieldParams::independent_beams: smaller is softer.
