@@ -1,0 +1,67 @@
+// What both offline tools have in common: options, and a recogniser fed with logs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/tool.hpp"
+#include "ngram_slam/log_observations.hpp"
+#include "ngram_slam/recogniser.hpp"
+
+namespace ngram_slam {
+
+struct RecognitionOptions {
+  std::vector<std::string> logs;
+  RecogniserParams recogniser;
+  LogObservationParams observations;
+  double angle_deg = 30.0;
+  std::vector<int> min_n;
+
+  void addTo(CLI::App& app) {
+    app.option_defaults()->always_capture_default();
+    app.add_option("logs", logs, "bags or CARMEN logs, plain or gzip: one run each, in this order")
+        ->required();
+    app.add_option("--levels", recogniser.levels, "levels of words");
+    app.add_option("--min-n", min_n, "least words of a match, one number per level (7,10,13,...)")
+        ->delimiter(',');
+    app.add_option("--size-tolerance", recogniser.matcher.tolerance.size, "epsilon_s");
+    app.add_option("--angle-tolerance", angle_deg, "epsilon_a [deg]");
+    app.add_option("--min-region", recogniser.min_region, "t_o: least observations of a region");
+    app.add_option("--classes", recogniser.uniform_classes, "density classes of equal width");
+    app.add_flag("--mean-shift", recogniser.learn_classes, "density classes by mean shift instead");
+    app.add_option("--bandwidth", observations.bandwidth, "radius of the density kernel [m]");
+    app.add_option("--resolution", observations.resolution, "of the local map [m]");
+    app.add_option("--usable-range", observations.usable_range,
+                   "beams say nothing beyond it [m]; 0: all that fits the local map");
+    app.add_option("--step", observations.step, "way between observations [m]");
+  }
+  /// The parameters, completed. @throws hyselam::ParameterError
+  RecogniserParams params() const {
+    RecogniserParams p = recogniser;
+    p.matcher.tolerance.angle = hyselam::radians(angle_deg);
+    p.matcher.min_n = min_n;
+    for (int l = static_cast<int>(min_n.size()); l < p.levels; ++l)
+      p.matcher.min_n.push_back(l == 0 ? 7 : p.matcher.min_n.back() + 3);
+    p.matcher.min_n.resize(static_cast<std::size_t>(p.levels > 0 ? p.levels : 1));
+    p.validate();
+    return p;
+  }
+};
+
+/// Feeds all logs. `use` gets what each observation brought about.
+inline void feed(const RecognitionOptions& options, Recogniser& recogniser,
+                 const std::function<void(const RecogniserUpdate&)>& use) {
+  for (const std::string& path : options.logs) {
+    const hyselam::RobotLog log = hyselam::readRobotLog(path);
+    hyselam::Progress progress("densities of " + path, log.scans.size());
+    const LogObservations seen =
+        observationsOf(log, options.observations, [&](std::size_t done) { progress.update(done); });
+    for (const Observation& o : seen.observations) use(recogniser.add(o));
+    use(recogniser.endRun());
+  }
+}
+
+}  // namespace ngram_slam
