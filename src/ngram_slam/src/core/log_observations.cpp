@@ -1,5 +1,7 @@
 #include "ngram_slam/log_observations.hpp"
 
+#include <algorithm>
+
 #include "fsd_localization/fsd_sensor.hpp"
 #include "hyselam_common/errors.hpp"
 
@@ -34,8 +36,14 @@ LogObservations observationsOf(const hyselam::RobotLog& log, const LogObservatio
     const std::vector<Pose2> due = sampler.due(*odom);
     if (due.empty()) continue;
     const fsd_localization::FsdObservation seen = sensor.observe();
-    const Observation now{scan.stamp, *odom, seen.readings[0].density.soft,
-                          seen.readings[0].density.hard, seen.readings[0].frontiers};
+    const fsd_localization::Density& density = seen.readings[0].density;
+    // Sums of a kernel's weights may exceed 1 by their rounding.
+    Observation now;
+    now.stamp = scan.stamp;
+    now.base_in_odom = *odom;
+    now.soft = std::clamp(density.soft, 0.0, 1.0);
+    if (density.hard) now.hard = std::clamp(*density.hard, 0.0, 1.0);
+    now.frontiers = std::min(seen.readings[0].frontiers, 255);
     const Observation before = out.observations.empty() ? now : out.observations.back();
     const double way = hyselam::distance(before.base_in_odom, *odom);
     const bool jump = way > DistanceSampler::kMaxGap;

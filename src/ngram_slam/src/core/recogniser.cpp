@@ -5,10 +5,10 @@
 namespace ngram_slam {
 
 void RecogniserParams::validate() const {
+  const Text level_check(levels);
+  const RegionBuilder region_check(min_region);
   mean_shift.validate();
   matcher.validate();
-  const RegionBuilder region_check(min_region);
-  const Text level_check(levels);
   const DensityClasses class_check = DensityClasses::uniform(uniform_classes);
 }
 

@@ -1,0 +1,272 @@
+// From logs to scores: observations of a log, the score against reference poses, and the tools as a
+// shell sees them.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "fsd_localization/ray_caster.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "ngram_slam/corpus.hpp"
+#include "ngram_slam/log_observations.hpp"
+#include "ngram_slam/recognition_score.hpp"
+
+using namespace ngram_slam;  // NOLINT: a test, not a header
+using hyselam::Pose2;
+using hyselam::testing::fileBytes;
+using hyselam::testing::messageOf;
+using hyselam::testing::TemporaryDirectory;
+using hyselam::testing::writeFile;
+
+namespace {
+
+/// A corridor of 2 m around a block of 16 x 12 m, with niches that make it asymmetric.
+const hyselam::OccupancyGrid& building() {
+  static const hyselam::OccupancyGrid map = [] {
+    hyselam::GridGeometry g;
+    g.width = 280;
+    g.height = 240;
+    g.resolution = 0.1;
+    hyselam::OccupancyGrid m(g, 100);
+    const auto open = [&](double x0, double y0, double x1, double y1) {
+      for (int y = static_cast<int>(y0 * 10); y < static_cast<int>(y1 * 10); ++y)
+        for (int x = static_cast<int>(x0 * 10); x < static_cast<int>(x1 * 10); ++x)
+          m.at({x, y}) = 0;
+    };
+    open(4, 4, 24, 20);
+    for (int y = 60; y < 180; ++y)
+      for (int x = 60; x < 220; ++x) m.at({x, y}) = 100;
+    open(9, 2, 12, 4);  // niches
+    open(24, 13, 26, 17);
+    open(10, 20, 16, 22);
+    open(17, 20, 18, 23);
+    return m;
+  }();
+  return map;
+}
+
+/// Round the block, `laps` times, in steps of 5 cm and with rounded corners.
+hyselam::RobotLog drive(int laps) {
+  hyselam::RobotLog log;
+  const fsd_localization::RayCaster rays(building());
+  Pose2 at{7, 5, 0};
+  const Pose2 start = at;
+  hyselam::Rng rng(3);
+  double stamp = 1.0;
+  const auto step = [&](double length, double turn) {
+    at = at * Pose2{length, 0.0, turn};
+    hyselam::LaserScan s;
+    s.stamp = stamp += 0.1;
+    s.angle_min = -hyselam::kPi / 2;
+    s.angle_increment = hyselam::kPi / 90;
+    s.range_min = 0.05;
+    s.range_max = 20.0;
+    for (int b = 0; b < 91; ++b)
+      s.ranges.push_back(static_cast<float>(
+          rays.range(at.x, at.y, at.theta + s.angle_min + b * s.angle_increment, s.range_max) +
+          rng.gaussian(0.0, 0.01)));
+    log.scans.push_back(s);
+    log.odometry.push_back({s.stamp, start.inverse() * at});
+    log.ground_truth.push_back({s.stamp, at});
+  };
+  for (int side = 0; side < 4 * laps; ++side) {
+    const int straight = side % 2 == 0 ? 318 : 238;  // with the arcs: 18 and 14 m
+    for (int i = 0; i < straight; ++i) step(0.05, 0.0);
+    for (int i = 0; i < 40; ++i) step(1.05 * hyselam::kPi / 80, hyselam::kPi / 80);
+  }
+  return log;
+}
+
+}  // namespace
+
+TEST(LogObservations, areEveryStepOfTheWayAndSeeTheBuilding) {
+  hyselam::RobotLog log = drive(1);
+  LogObservationParams params;
+  params.bandwidth = 1.5;
+  const LogObservations seen = observationsOf(log, params);
+  EXPECT_EQ(seen.scans_refused, 0u);
+  double way = 0.0;
+  for (std::size_t i = 1; i < log.odometry.size(); ++i)
+    way += hyselam::distance(log.odometry[i - 1].pose, log.odometry[i].pose);
+  EXPECT_NEAR(static_cast<double>(seen.observations.size()), way / 0.1, 0.05 * way / 0.1);
+  // A corridor is narrower than the place beside a niche.
+  const auto densityNear = [&](double x, double y) {
+    double best = 1e9, density = 0.0;
+    for (const Observation& o : seen.observations) {
+      const Pose2 p = Pose2{7, 5, 0} * o.base_in_odom;
+      const double away = std::hypot(p.x - x, p.y - y);
+      if (away >= best) continue;
+      best = away;
+      density = o.soft;
+    }
+    EXPECT_LT(best, 0.5);
+    return density;
+  };
+  EXPECT_GT(densityNear(10.7, 5), densityNear(15, 5) + 0.05);
+
+  // Every third scan, 15 cm apart: the count is still the length.
+  hyselam::RobotLog sparse = log;
+  sparse.scans.clear();
+  for (std::size_t i = 0; i < log.scans.size(); i += 3) sparse.scans.push_back(log.scans[i]);
+  const auto thin = observationsOf(sparse, params).observations;
+  EXPECT_NEAR(static_cast<double>(thin.size()), way / 0.1, 0.05 * way / 0.1);
+  for (std::size_t i = 1; i < thin.size(); ++i) ASSERT_GE(thin[i].stamp, thin[i - 1].stamp);
+
+  log.odometry.clear();
+  EXPECT_EQ(observationsOf(log, params).scans_without_odometry, log.scans.size());
+  params.bandwidth = 100.0;
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] { observationsOf(log, params); }), "");
+}
+
+TEST(Score, countsAsIfEveryPairWereLookedAt) {
+  for (int round = 0; round < 50; ++round) {
+    SCOPED_TRACE(round);
+    hyselam::Rng rng(77, static_cast<std::uint64_t>(round));
+    std::vector<std::optional<Pose2>> poses;
+    std::vector<std::uint32_t> runs;
+    Pose2 at;
+    const std::uint32_t n = 150;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      at = at * Pose2{0.5, 0.0, rng.uniform(-0.4, 0.6)};
+      poses.push_back(rng.below(10) == 0 ? std::nullopt : std::optional<Pose2>(at));
+      runs.push_back(i / 60);
+    }
+    ScoreParams params;
+    params.distance = 1.0;
+    params.separation = 20;
+    RecognitionScore score(poses, runs, params);
+    const auto counts = [&](std::uint32_t a, std::uint32_t b) {
+      return poses[a] && poses[b] && (runs[a] != runs[b] || a - b >= 20);
+    };
+    const auto isTrue = [&](std::uint32_t a, std::uint32_t b, bool any) {
+      return std::hypot(poses[a]->x - poses[b]->x, poses[a]->y - poses[b]->y) <= 1.0 &&
+             (any || std::abs(hyselam::normalizeAngle(poses[a]->theta - poses[b]->theta)) <=
+                         hyselam::radians(45));
+    };
+    std::vector<char> revisit(n, 0), any(n, 0), found(n, 0);
+    for (std::uint32_t a = 0; a < n; ++a)
+      for (std::uint32_t b = 0; b < a; ++b) {
+        if (!counts(a, b)) continue;
+        if (isTrue(a, b, false)) revisit[a] = 1;
+        if (isTrue(a, b, true)) any[a] = 1;
+      }
+    ASSERT_EQ(score.revisits(),
+              static_cast<std::size_t>(std::count(revisit.begin(), revisit.end(), 1)));
+    ASSERT_EQ(score.revisitsAnyDirection(),
+              static_cast<std::size_t>(std::count(any.begin(), any.end(), 1)));
+    EXPECT_EQ(score.precision(), 1.0);
+    EXPECT_EQ(score.recall(), 0.0);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> added;
+    std::size_t right = 0;
+    for (int k = 0; k < 400; ++k) {
+      const std::uint32_t a = rng.below(n), b = rng.below(n);
+      const std::uint32_t newer = std::max(a, b), older = std::min(a, b);
+      const auto verdict = score.add(a, b);
+      ASSERT_EQ(verdict.has_value(), counts(newer, older));
+      if (!verdict) continue;
+      ASSERT_EQ(*verdict, isTrue(newer, older, false));
+      if (!added.insert({newer, older}).second) continue;
+      right += *verdict;
+      if (*verdict) found[newer] = 1;
+    }
+    ASSERT_EQ(score.pairs(), added.size());
+    ASSERT_EQ(score.truePairs(), right);
+    for (const std::uint32_t reach : {0u, 3u}) {
+      std::size_t recognised = 0;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        bool near = false;
+        for (std::uint32_t k = i > reach ? i - reach : 0; k <= std::min(n - 1, i + reach); ++k)
+          near = near || found[k] != 0;
+        recognised += near && revisit[i] != 0;
+      }
+      ASSERT_NEAR(score.recall(reach),
+                  static_cast<double>(recognised) / static_cast<double>(score.revisits()), 1e-12);
+    }
+  }
+}
+
+class Tools : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    directory = new TemporaryDirectory;
+    hyselam::writeBag(*directory / "r.bag", drive(3));
+  }
+  static void TearDownTestSuite() {
+    delete directory;
+    directory = nullptr;
+  }
+  int run(const std::string& command) {
+    const int status = std::system(
+        (std::string(NGRAM_SLAM_TOOLS) + "/" + command + " >" + d / "stdout" + " 2>" + d / "stderr")
+            .c_str());
+    errors = fileBytes(d / "stderr");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void expectRefused(const std::string& command, const std::string& part) {
+    EXPECT_EQ(run(command), 2) << errors;
+    EXPECT_EQ(errors.rfind("error: ", 0), 0u) << errors;
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  }
+  static TemporaryDirectory* directory;
+  TemporaryDirectory& d = *directory;
+  std::string errors;
+};
+TemporaryDirectory* Tools::directory = nullptr;
+
+TEST_F(Tools, wordsOfflineWritesWordsMatchesAndCorpus) {
+  const std::string options = " --levels 2 --min-n 4,6 --bandwidth 1.5 --classes 10 ";
+  ASSERT_EQ(run("words_offline " + d / "r.bag" + options + "--out " + d / "a" + " --corpus " +
+                d / "c" + " --json " + d / "j.json"),
+            0)
+      << errors;
+  EXPECT_EQ(errors, "");
+  const auto j = nlohmann::json::parse(fileBytes(d / "j.json"));
+  EXPECT_GT(j["words"], 20);
+  EXPECT_GT(j["matches"], 5);
+  const std::string words = fileBytes(d / "a/words.csv"), matches = fileBytes(d / "a/matches.csv");
+  EXPECT_EQ(words.rfind("word,level,first,last,run,stamp_begin,stamp_end,class,size,angle\n", 0),
+            0u);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(words.begin(), words.end(), '\n')),
+            1 + j["words"].get<std::size_t>() + j["alternative_words"].get<std::size_t>());
+  EXPECT_EQ(matches.rfind("stamp_a,stamp_b,level,n,direction,", 0), 0u);
+  EXPECT_EQ(CorpusFile::load(d / "c").observations.size(), j["observations"].get<std::uint32_t>());
+  // The same input gives the same bytes.
+  ASSERT_EQ(run("words_offline " + d / "r.bag" + options + "--out " + d / "b"), 0) << errors;
+  EXPECT_EQ(fileBytes(d / "b/words.csv"), words);
+  EXPECT_EQ(fileBytes(d / "b/matches.csv"), matches);
+}
+
+TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
+  ASSERT_EQ(run("evaluate_recognition " + d / "r.bag" +
+                " --levels 2 --min-n 4,6 --bandwidth 1.5 --classes 10 --json " + d / "j.json"),
+            0)
+      << errors;
+  const auto j = nlohmann::json::parse(fileBytes(d / "j.json"));
+  EXPECT_GT(j["revisits"], 1000);
+  EXPECT_GE(j["precision"], 0.95);
+  EXPECT_GE(j["recall"], 0.5);
+  EXPECT_GE(j["match_precision"], 0.95);
+}
+
+TEST_F(Tools, refuseWhatTheyCannotUseInOneLine) {
+  expectRefused("words_offline /nowhere.bag --out " + d / "x", "/nowhere.bag");
+  writeFile(d / "bad.log", "FLASER nonsense\n");
+  expectRefused("words_offline " + d / "bad.log" + " --out " + d / "x", "bad.log");
+  writeFile(d / "file", "");
+  expectRefused("words_offline " + d / "r.bag" + " --out " + d / "file/x", "file/x");
+  expectRefused("words_offline " + d / "r.bag" + " --levels 0 --out " + d / "x", "levels");
+  expectRefused("words_offline " + d / "r.bag" + " --min-n 0 --out " + d / "x", "min_n");
+  expectRefused("words_offline " + d / "r.bag" + " --step 0 --out " + d / "x", "step");
+  expectRefused("evaluate_recognition " + d / "r.bag" + " --reference " + d / "file", "file");
+  expectRefused("evaluate_recognition " + d / "r.bag" + " --distance -1", "distance");
+  EXPECT_EQ(run("words_offline --help"), 0);
+  EXPECT_EQ(run("evaluate_recognition --help"), 0);
+  EXPECT_EQ(run("words_offline"), 2);
+}
