@@ -90,6 +90,18 @@ class Matcher {
     std::uint32_t density_class, smallest, span;
     float angle;
   };
+  /// A set of positions.
+  struct Bits {
+    BlockVector<std::uint64_t> words;
+    bool has(Position p) const {
+      return p / 64 < words.size() && (words[p / 64] >> p % 64 & 1u) != 0;
+    }
+    void set(Position p) {
+      words.grow(p / 64 + 1);
+      words[p / 64] |= std::uint64_t{1} << p % 64;
+    }
+    void clearAround(Position p) { words[p / 64] = 0; }
+  };
   /// How long the grams are that end at a position of the newer words and at an older one, for each
   /// pass. Ordered by the older position.
   struct Grams {
@@ -99,15 +111,16 @@ class Matcher {
       ends.clear();
       lengths.clear();
     }
+    void add(Position end, const std::uint16_t* first, std::size_t passes) {
+      ends.push_back(end);
+      for (std::size_t k = 0; k < passes; ++k) lengths.push_back(first[k]);
+    }
   };
   /// The grams of a position, and which older positions they have. Only what has at least `gram_`
   /// words in the last pass.
   struct Row {
     Grams grams;
-    BlockVector<std::uint64_t> has;  // a bit for each older position
-    bool holds(Position end) const {
-      return end / 64 < has.size() && (has[end / 64] >> end % 64 & 1u) != 0;
-    }
+    Bits has;  // older positions
   };
 
   Row& row(Position p) { return rows_[p % rows_.size()]; }
@@ -135,7 +148,8 @@ class Matcher {
   GramIndex index_;
   BlockVector<Begin> begins_;        // the real words, by position
   BlockVector<Begin> alternatives_;  // the others
-  std::vector<Row> rows_;            // a ring over positions
+  Bits run_starts_;
+  std::vector<Row> rows_;     // a ring over positions
   std::vector<Grams> found_;  // what one word adds, by the level of the older words; last: started
   Grams merged_;
   Position next_ = 0;

@@ -75,8 +75,9 @@ void Matcher::take(Position p, bool searching) {
   }
   const WordIndex newest = text_.realWord(p);
   begins_.push_back(beginOf(newest, text_.startsRun(p) ? Begin::kStartsRun : 0u));
+  if (text_.startsRun(p)) run_starts_.set(p);
   Row& fresh = row(p);
-  for (Position end : fresh.grams.ends) fresh.has[end / 64] = 0;
+  for (Position end : fresh.grams.ends) fresh.has.clearAround(end);
   fresh.grams.clear();
   if (searching) search(newest, fresh, true);
 }
@@ -138,8 +139,7 @@ void Matcher::start(WordIndex newer, bool report) {
     const Position end = begin + static_cast<Position>(level == 0 ? 0 : level + 1);
     if (end >= first) return;
     // Where a gram of enough words ended just before, it is being followed.
-    if (before != nullptr && begin > 0 && before->holds(begin - 1) &&
-        (begins_[begin].tags & Begin::kStartsRun) == 0)
+    if (before != nullptr && begin > 0 && before->has.has(begin - 1) && !run_starts_.has(begin))
       return;
     WordIndex older;
     if (text_.findEndingAt(end, level, &older)) candidates_.push_back(older);
@@ -232,8 +232,7 @@ void Matcher::complete(Position newer_end, Row& target) {
 
 void Matcher::enter(WordIndex newer, WordIndex older, Position end, const std::uint16_t* lengths,
                     Grams& out, bool report) {
-  out.ends.push_back(end);
-  out.lengths.insert(out.lengths.end(), lengths, lengths + passes_);
+  out.add(end, lengths, passes_);
   if (!report) return;
   for (std::size_t k = 0; k < passes_; ++k) {
     if (lengths[k] < params_.min_n[k]) continue;
@@ -251,11 +250,12 @@ Matcher::Begin Matcher::beginOf(WordIndex word, std::uint32_t flags) const {
 /// Both are in order; of grams that end at the same positions the longest in each pass counts.
 void Matcher::mergeInto(Row& target, const Grams& more) {
   if (more.ends.empty()) return;
-  for (Position end : more.ends) {
-    target.has.grow(end / 64 + 1);
-    target.has[end / 64] |= std::uint64_t{1} << end % 64;
-  }
+  for (Position end : more.ends) target.has.set(end);
   merged_.clear();
+  if (target.grams.ends.empty()) {
+    merged_.ends.reserve(more.ends.size());
+    merged_.lengths.reserve(more.lengths.size());
+  }
   const Grams& old = target.grams;
   const auto append = [&](const Grams& from, std::size_t i) {
     const std::uint16_t* lengths = &from.lengths[i * passes_];
@@ -263,8 +263,7 @@ void Matcher::mergeInto(Row& target, const Grams& more) {
       std::uint16_t* best = &merged_.lengths[merged_.lengths.size() - passes_];
       for (std::size_t k = 0; k < passes_; ++k) best[k] = std::max(best[k], lengths[k]);
     } else {
-      merged_.ends.push_back(from.ends[i]);
-      merged_.lengths.insert(merged_.lengths.end(), lengths, lengths + passes_);
+      merged_.add(from.ends[i], lengths, passes_);
     }
   };
   std::size_t a = 0, b = 0;
@@ -284,9 +283,10 @@ std::size_t Matcher::bytes() const {
   const auto of = [](const Grams& g) {
     return g.ends.capacity() * sizeof(Position) + g.lengths.capacity() * sizeof(std::uint16_t);
   };
-  std::size_t sum = index_.bytes() + begins_.bytes() + alternatives_.bytes() + of(merged_);
+  std::size_t sum = index_.bytes() + begins_.bytes() + alternatives_.bytes() +
+                    run_starts_.words.bytes() + of(merged_);
   for (const Grams& g : found_) sum += of(g);
-  for (const Row& r : rows_) sum += of(r.grams) + r.has.bytes();
+  for (const Row& r : rows_) sum += of(r.grams) + r.has.words.bytes();
   return sum;
 }
 
