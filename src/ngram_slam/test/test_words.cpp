@@ -306,3 +306,42 @@ TEST(Words, textRefusesWhatItCannotHold) {
   EXPECT_EQ(text.syllables(0).size, Text::kMaxSize);
   EXPECT_EQ(text.syllables(0).density_class, 255);
 }
+
+#ifdef HYSELAM_HAVE_RAPIDCHECK
+#include "hyselam_common/testing/properties.hpp"
+
+namespace {
+rc::Gen<Syllables> anyWord() {
+  return rc::gen::map(rc::gen::tuple(rc::gen::inRange(0, 3), rc::gen::inRange(1, 60),
+                                     hyselam::testing::between(-hyselam::kPi, hyselam::kPi)),
+                      [](const std::tuple<int, int, double>& t) {
+                        return Syllables{
+                            std::get<0>(t), static_cast<std::uint32_t>(std::get<1>(t)),
+                            static_cast<float>(hyselam::normalizeAngle(std::get<2>(t)))};
+                      });
+}
+}  // namespace
+
+RC_GTEST_PROP(WordProperties, matchingIsReflexiveAndSymmetricAndWidensWithTheTolerance, ()) {
+  const Syllables a = *anyWord(), b = *anyWord();
+  WordTolerance t;
+  t.size = *hyselam::testing::between(0.01, 0.9);
+  t.angle = *hyselam::testing::between(0.01, 3.0);
+  RC_ASSERT(wordsMatch(a, a, t));
+  RC_ASSERT(wordsMatch(a, b, t) == wordsMatch(b, a, t));
+  WordTolerance wider = t;
+  wider.size += 0.05;
+  wider.angle += 0.1;
+  RC_ASSERT(!wordsMatch(a, b, t) || wordsMatch(a, b, wider));
+}
+
+RC_GTEST_PROP(WordProperties, angleVariationDoesNotDependOnTheFrame, ()) {
+  const Pose2 frame = *hyselam::testing::anyPose();
+  const Pose2 a = *hyselam::testing::anyPose(5.0), b = *hyselam::testing::anyPose(5.0),
+              c = *hyselam::testing::anyPose(5.0);
+  const double here = angleVariation(a, b, c);
+  const double there = angleVariation(frame * a, frame * b, frame * c);
+  RC_ASSERT(here > -hyselam::kPi - 1e-9 && here <= hyselam::kPi);
+  RC_ASSERT(std::abs(hyselam::normalizeAngle(here - there)) < 1e-6);
+}
+#endif
