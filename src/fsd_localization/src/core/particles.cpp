@@ -21,8 +21,9 @@ Particles uniformParticles(const FsdMap& map, std::size_t n, std::uint64_t seed)
     const double u =
         (static_cast<double>(i) + toUnit(hashAt(stream, 4 * i))) / static_cast<double>(n);
     const std::uint32_t c = cells[static_cast<std::size_t>(u * static_cast<double>(cells.size()))];
-    p.x[i] = static_cast<float>((c % width + toUnit(hashAt(stream, 4 * i + 1))) * res);
-    p.y[i] = static_cast<float>((c / width + toUnit(hashAt(stream, 4 * i + 2))) * res);
+    const std::uint32_t column = c % width, row = c / width;
+    p.x[i] = static_cast<float>((column + toUnit(hashAt(stream, 4 * i + 1))) * res);
+    p.y[i] = static_cast<float>((row + toUnit(hashAt(stream, 4 * i + 2))) * res);
     p.heading[i] = static_cast<BinaryAngle>(hashAt(stream, 4 * i + 3) >> 32);
     p.weight[i] = 1.0F;
   }

@@ -104,6 +104,7 @@ void setStamps(std::vector<Entry>* entries, const CarmenOptions& options,
        {CarmenLine::Kind::kScan, CarmenLine::Kind::kOdometry, CarmenLine::Kind::kGroundTruth}) {
     const std::vector<std::size_t> indices = indicesOf(*entries, kind);
     std::vector<double> stamps;
+    stamps.reserve(indices.size());
     for (const std::size_t i : indices) {
       stamps.push_back(stampOf((*entries)[i].content, options.clock));
     }

@@ -28,7 +28,7 @@ class PathFollower {
   PathFollower(const FollowerParams& params, const RobotParams& robot);
 
   /// Begins a new path (at least two points, starting at the robot).
-  void start(std::vector<Point2> path);
+  void start(const std::vector<Point2>& path);
   /// Goes on after the end of the present path; `more` begins where that one ends.
   void extend(const std::vector<Point2>& more);
   /// Way left [m].

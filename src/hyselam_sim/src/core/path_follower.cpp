@@ -32,7 +32,7 @@ PathFollower::PathFollower(const FollowerParams& params, const RobotParams& robo
   }
 }
 
-void PathFollower::start(std::vector<Point2> path) {
+void PathFollower::start(const std::vector<Point2>& path) {
   path_.clear();
   way_.clear();
   progress_ = 0.0;

@@ -64,7 +64,7 @@ void readSteps(const std::string& source, const std::string& path, const YAML::N
     if (map.has("repeat")) {
       const double times = map.number("repeat", 1, kMaxSteps);
       if (times != std::floor(times)) map.fail("repeat", "must be a whole number");
-      for (double k = 0; k < times; ++k) {
+      for (int k = 0; k < static_cast<int>(times); ++k) {
         readSteps(source, map.pathOf("steps"), map.child("steps"), out);
       }
       continue;

@@ -137,7 +137,7 @@ class Run {
   Pose2 poseOf(const Spot& spot, const std::string& where, std::size_t next_step) const {
     const Point2 p = resolve(spot, where);
     const World::Nearest near = world_->nearest(p);
-    if (near.distance < params_.robot.radius) {
+    if (near.solid && near.distance < params_.robot.radius) {
       fail(where, "the robot does not fit at " + nameOf(spot) + ": " +
                       describe(plan_, *near.solid) + " is in the way");
     }
@@ -190,10 +190,10 @@ class Run {
     const Spot& spot = route_.steps[step].spot;
     const Point2 to = resolve(spot, route_.steps[step].where);
     if (spot.place.empty()) {
-      const std::vector<Point2> way = straightPath(from, to, params_.planner.spacing);
+      std::vector<Point2> way = straightPath(from, to, params_.planner.spacing);
       for (const Point2& p : way) {
         const World::Nearest near = world_->nearest(p);
-        if (near.distance < params_.robot.radius) {
+        if (near.solid && near.distance < params_.robot.radius) {
           fail(leg(step), "blocked at " + text(p) + " by " + describe(plan_, *near.solid));
         }
       }
@@ -290,7 +290,7 @@ class Run {
     refreshWorld();
     if (world_->clearance.at(position()) < params_.robot.radius + kExactBelow) {
       const World::Nearest near = world_->nearest(position());
-      if (near.distance < params_.robot.radius) {
+      if (near.solid && near.distance < params_.robot.radius) {
         fail(step < route_.steps.size() ? leg(step) : "",
              "the robot hits " + describe(plan_, *near.solid) + " at " + text(position()));
       }

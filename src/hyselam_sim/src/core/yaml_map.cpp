@@ -208,7 +208,7 @@ std::vector<YAML::Node> YamlMap::list(const std::string& key) const {
 
 std::string YamlMap::choice(const std::string& key, const std::vector<std::string>& words,
                             const std::string& fallback) const {
-  const std::string word = textOr(key, fallback);
+  std::string word = textOr(key, fallback);
   if (std::find(words.begin(), words.end(), word) == words.end()) {
     fail(key, "is '" + word + "'" + suggestion(word, words));
   }
