@@ -3,6 +3,14 @@
 # Common ground of the scripts: sourced, never run. Sets ROOT, BUILD, DEVEL, JOBS and an environment
 # that knows no other workspace.
 
+# --help of every script: the comment at its top.
+case "${1:-}" in
+  -h | --help)
+    sed -n '2,/^[^#]/{s/^# \{0,1\}//p}' "$0"
+    exit 0
+    ;;
+esac
+
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 BUILD=$ROOT/build
 DEVEL=$ROOT/devel

@@ -2,6 +2,8 @@
 
 #include <nav_msgs/MapMetaData.h>
 
+#include <fstream>
+
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/conversions.hpp"
@@ -68,7 +70,9 @@ bool MapServer::changeMap(nav_msgs::LoadMap::Request& request,
     response.result = nav_msgs::LoadMap::Response::RESULT_SUCCESS;
   } catch (const std::exception& error) {
     ROS_ERROR_STREAM("the map stays as it was: " << error.what());
-    response.result = nav_msgs::LoadMap::Response::RESULT_INVALID_MAP_DATA;
+    response.result = std::ifstream(request.map_url).good()
+                          ? nav_msgs::LoadMap::Response::RESULT_INVALID_MAP_DATA
+                          : nav_msgs::LoadMap::Response::RESULT_MAP_DOES_NOT_EXIST;
   }
   return true;
 }

@@ -28,8 +28,9 @@ class MapServerTest(unittest.TestCase):
 
     def test_a_map_that_cannot_be_loaded_changes_nothing(self):
         change = self.service("change_map", LoadMap)
-        answer = change(rospy.get_param("~data") + "/no_image.yaml")
-        self.assertNotEqual(answer.result, LoadMapResponse.RESULT_SUCCESS)
+        for name, result in (("no_image.yaml", LoadMapResponse.RESULT_INVALID_MAP_DATA),
+                             ("nowhere.yaml", LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST)):
+            self.assertEqual(change(rospy.get_param("~data") + "/" + name).result, result)
         self.assertEqual(list(self.service("static_map", GetMap)().map.data), CELLS)
         self.assertEqual(change(rospy.get_param("~data") + "/tiny.yaml").result,
                          LoadMapResponse.RESULT_SUCCESS)
