@@ -147,7 +147,7 @@ class Rig:
         self.observations = Listener(f"/{name}/fsd_observation", FsdObservation)
         self.fields = Listener(f"/{name}/density_field", OccupancyGrid)
         self.tf_seen = Listener("/tf", TFMessage)
-        self.diagnostics_seen = Listener("/diagnostics", DiagnosticArray)
+        self.diagnostics_seen = Listener(f"/{name}/diagnostics", DiagnosticArray)
         self.loaded = self.load(kind)
         if self.loaded:
             inputs = [self.scan] + ([self.initialpose] if kind == "Localization" else [])
@@ -155,10 +155,12 @@ class Rig:
                        and Rig.tf.get_num_connections() > 1, "the nodelet does not listen")
 
     def load(self, kind):
+        # A topic for each rig: one that another nodelet of the same process gave up a moment ago is at times not
+        # connected again.
         rospy.wait_for_service("/manager/load_nodelet", WAIT)
         try:
             return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
-                self.node, "fsd_localization/" + kind, [], [], [], "").success
+                self.node, "fsd_localization/" + kind, ["/diagnostics"], [f"/{self.name}/diagnostics"], [], "").success
         except rospy.ServiceException:
             return False
 

@@ -57,7 +57,7 @@ struct MatcherCounters {
 class Matcher {
  public:
   /// `text` must outlive the matcher. @throws hyselam::ParameterError
-  Matcher(const Text& text, const MatcherParams& params = {});
+  explicit Matcher(const Text& text, const MatcherParams& params = {});
 
   /// Takes in the words that the text has gained. Returns their matches, in the order of the newer
   /// words, for each in no particular order. The list is overwritten by the next call.

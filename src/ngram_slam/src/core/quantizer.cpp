@@ -28,6 +28,7 @@ DensityClasses::DensityClasses(std::vector<DensityClass> classes) : classes_(std
 DensityClasses DensityClasses::uniform(int count) {
   if (count < 1 || count > 256) throw ParameterError("number of density classes", count, "1..256");
   std::vector<DensityClass> classes;
+  classes.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     classes.push_back({i, (i + 0.5) / count, static_cast<double>(i + 1) / count});
   return DensityClasses(std::move(classes));
@@ -115,6 +116,7 @@ std::vector<DensityMode> densityModes(const Histogram& histogram, double bandwid
     basins.erase(weakest);
   }
   std::vector<DensityMode> modes;
+  modes.reserve(basins.size());
   for (const Basin& b : basins)
     modes.push_back({centreOf(peak(f, b.top), f.size()), b.begin, b.end, b.mass / total});
   return modes;
