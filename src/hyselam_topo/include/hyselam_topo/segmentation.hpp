@@ -28,8 +28,8 @@ struct Segmentation {
 };
 
 struct SegmentationParams {
-  int free_max = 25;                ///< cells of 0 .. free_max are free [0 .. 100]
-  double working_resolution = 0.05; ///< [m] finer grids are joined to about this, 0.01 .. 0.25
+  int free_max = 25;                 ///< cells of 0 .. free_max are free [0 .. 100]
+  double working_resolution = 0.05;  ///< [m] finer grids are joined to about this, 0.01 .. 0.25
 };
 
 /// @throws hyselam::ParameterError for a parameter out of range, hyselam::InputError for a grid
