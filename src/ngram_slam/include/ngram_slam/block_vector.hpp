@@ -37,4 +37,10 @@ class BlockVector {
   std::size_t size_ = 0;
 };
 
+/// Fetches a value into the cache while something else is being done.
+template <typename T>
+void prefetch(const T& value) {
+  __builtin_prefetch(&value);
+}
+
 }  // namespace ngram_slam

@@ -20,20 +20,16 @@ class GramIndex {
 
   /// Takes in all grams that end with this word, through all its predecessors.
   void insert(WordIndex last);
-  /// Calls `use(first, level)` with first position and level of the last word of every gram that
-  /// may match one of those that end with `last`; with one word perhaps several times.
-  template <typename Use>
-  void candidates(WordIndex last, Use&& use) {
-    lists_.clear();
-    collect(last, 0, 0);
-    sortLists();
-    for (std::uint32_t list : lists_)
-      for (std::uint32_t chunk = heads_[list]; chunk != 0; chunk = pool_[chunk]) {
-        const std::uint32_t* entry = &pool_[chunk + kHeader];
-        for (const std::uint32_t* end = entry + pool_[chunk + 1]; entry != end; ++entry)
-          use(static_cast<Position>(*entry >> 4), static_cast<int>(*entry & 15u));
-      }
-  }
+  /// An old gram by its last word: first position << 4 | level.
+  using Entry = std::uint32_t;
+  static Position firstOf(Entry e) { return e >> 4; }
+  static int levelOf(Entry e) { return static_cast<int>(e & 15u); }
+  static Position endOf(Entry e) { return firstOf(e) + ((e & 15u) == 0 ? 0 : (e & 15u) + 1); }
+  /// Asks for every gram that may match one of those that end with `last`.
+  void ask(WordIndex last);
+  /// Writes the next part of the answer, newest grams first: all of a part end later than all of the
+  /// next one; within a part in no particular order, some perhaps several times. False: no more.
+  bool answer(std::vector<Entry>& part);
 
   std::size_t bytes() const { return heads_.capacity() * sizeof(std::uint32_t) + pool_.bytes(); }
 
@@ -43,6 +39,11 @@ class GramIndex {
   static constexpr int kBlockBits = 16;
   static constexpr std::uint32_t kHeader = 3;
   static constexpr std::uint32_t kSmallest = 8, kLargest = 1024;  // chunks with their header
+
+  /// Where reading of a list has come to: before this entry of this chunk.
+  struct Cursor {
+    std::uint32_t chunk, left;
+  };
 
   std::uint32_t sizeBucket(double size) const;
   std::uint32_t bucket(const Syllables& s) const;
@@ -64,6 +65,9 @@ class GramIndex {
   std::vector<std::uint32_t> heads_;
   BlockVector<std::uint32_t, kBlockBits> pool_;
   std::vector<std::uint32_t> lists_;
+  std::vector<Cursor> cursors_;
+  Position until_ = 0;   // the parts before held all that ends here or later
+  Position reach_ = 0;  // positions of the next part
 };
 
 }  // namespace ngram_slam

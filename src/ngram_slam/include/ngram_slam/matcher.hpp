@@ -2,6 +2,7 @@
 // 5.2.3, Alg. 5.3 with its errata), found while the text grows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -21,18 +22,31 @@ struct MatcherParams {
   /// Fewer: less memory, more candidates that come to nothing.
   int index_gram = 3;
   int index_bits = 20;  ///< 2^index_bits lists of the index, 4 bytes each; 4 .. 28
+  /// Old places where grams are followed at a time, >= 1: the bound of what a word can cost. Of
+  /// more, the newest are followed. One that falls out and comes back counts its words anew.
+  int max_followed = 8192;
 
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
-/// n words that end with `newer` match n words that end with `older`.
+/// Which way the robot went when it passed a place before.
+enum class Direction : std::uint8_t { kSame, kReverse };
+
+/// n words that end with `newer` match n words that end with `older`, or, travelled the other way,
+/// n words that begin with `older`.
 struct Match {
   WordIndex newer = 0;  ///< a real word
   WordIndex older = 0;  ///< of any level below `levels`
   int levels = 1;       ///< levels of words in use when the match was accepted, as few as possible
   int n = 0;  ///< words of the longest match of these two with that many levels in use; longer
               ///< ones than 65535 count as 65535
+  Direction direction = Direction::kSame;
+  /// Expected number of old n-grams that match by chance, by the text's own statistics; negative
+  /// where nobody asked for it (RecogniserParams::max_chance, with_probability).
+  double chance = -1.0;
+  /// That the match is right, 0..1; negative where nobody asked for it.
+  double probability = -1.0;
 };
 
 /// What the search had to do.
@@ -53,7 +67,9 @@ struct MatcherCounters {
 ///
 /// Only grams of at least `index_gram` words are followed: each costs a few comparisons per word.
 /// A gram that reaches this length is found in an index. Hence the cost of a word depends on the
-/// number of grams alive, not on the length of the text.
+/// number of grams alive, not on the length of the text, and `max_followed` bounds it: where the
+/// same few words come back a hundred thousand times, the newest places stand for the rest. Below
+/// this bound the search is exact.
 class Matcher {
  public:
   /// `text` must outlive the matcher. @throws hyselam::ParameterError
@@ -100,6 +116,7 @@ class Matcher {
       words.grow(p / 64 + 1);
       words[p / 64] |= std::uint64_t{1} << p % 64;
     }
+    void clear(Position p) { words[p / 64] &= ~(std::uint64_t{1} << p % 64); }
     void clearAround(Position p) { words[p / 64] = 0; }
   };
   /// How long the grams are that end at a position of the newer words and at an older one, for each
@@ -115,6 +132,13 @@ class Matcher {
       ends.push_back(end);
       for (std::size_t k = 0; k < passes; ++k) lengths.push_back(first[k]);
     }
+    void reverse(std::size_t passes) {
+      std::reverse(ends.begin(), ends.end());
+      for (std::size_t i = 0, j = ends.size(); i + 1 < j--; ++i)
+        std::swap_ranges(lengths.begin() + static_cast<std::ptrdiff_t>(i * passes),
+                         lengths.begin() + static_cast<std::ptrdiff_t>((i + 1) * passes),
+                         lengths.begin() + static_cast<std::ptrdiff_t>(j * passes));
+    }
   };
   /// The grams of a position, and which older positions they have. Only what has at least `gram_`
   /// words in the last pass.
@@ -129,13 +153,23 @@ class Matcher {
   void follow(WordIndex newer, bool report);
   void start(WordIndex newer, bool report);
   void complete(Position newer_end, Row& target);
-  void mergeInto(Row& target, const Grams& more);
-  void enter(WordIndex newer, WordIndex older, Position end, const std::uint16_t* lengths,
-             Grams& out, bool report);
+  void mergeInto(Row& target, Grams& more);
+  void tell(WordIndex newer, WordIndex older, const std::uint16_t* lengths);
+  void trim(Row& target);
   Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth, int levels);
   Begin beginOf(WordIndex word, std::uint32_t flags) const;
   Probe probe(const Syllables& s) const;
-  bool matches(const Probe& probe, const Begin& begin) const;
+  bool matches(const Probe& p, const Begin& begin) const {
+    // All three are looked at: one of them alone would decide too often to be foretold.
+    const bool same_class = begin.tags >> 24 == p.density_class;
+    const bool same_size =
+        (begin.tags >> 4 & Text::kMaxSize) - p.smallest <= p.span;  // wraps below
+    const double difference =
+        std::abs(static_cast<double>(p.angle) - static_cast<double>(begin.angle));
+    const bool same_angle = (difference < params_.tolerance.angle) |
+                            (difference > 2.0 * hyselam::kPi - params_.tolerance.angle);
+    return same_class & same_size & same_angle;
+  }
   bool match(WordIndex newer, WordIndex older) {
     ++counters_.comparisons;
     return wordsMatch(text_.syllables(newer), text_.syllables(older), params_.tolerance);
@@ -152,7 +186,12 @@ class Matcher {
   std::vector<Row> rows_;     // a ring over positions
   std::vector<Grams> found_;  // what one word adds, by the level of the older words; last: started
   Grams merged_;
+  struct Hit {
+    std::uint32_t gram, word;
+  };
+  std::vector<Hit> hits_, branches_;
   Position next_ = 0;
+  std::vector<GramIndex::Entry> part_;
   std::vector<WordIndex> candidates_;
   std::vector<Match> matches_;
   MatcherCounters counters_;

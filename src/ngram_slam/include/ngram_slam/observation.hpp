@@ -17,6 +17,10 @@ struct Observation {
   double soft = 0.0;            ///< Psi, 0..1: always defined
   std::optional<double> hard;   ///< Psi-diamond, 0..1: empty where unknown cells are in reach
   int frontiers = 0;            ///< frontiers of free space, 0..255
+  /// Psi of the same spot, 0..1, from a map in which all around it has been seen, also what lies
+  /// behind the robot and round the corner: the same in whichever direction the robot passes. Empty
+  /// where nobody looked back.
+  std::optional<double> full;
 };
 
 /// Says where along the way observations are due: one for every `step` metres of displacement.

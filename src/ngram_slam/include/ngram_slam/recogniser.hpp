@@ -10,6 +10,12 @@
 
 namespace ngram_slam {
 
+/// Which density words are made of.
+enum class WordDensity {
+  kSoft,  ///< Observation::soft, what the robot sees when it comes by (4.2.1)
+  kFull   ///< Observation::full, seen from farther on; soft where it is missing
+};
+
 struct RecogniserParams {
   int levels = 3;           ///< levels of words, 1..16
   int min_region = 5;       ///< t_o of Alg. 4.2 [observations], >= 1
@@ -17,6 +23,18 @@ struct RecogniserParams {
   bool learn_classes = false;  ///< classes by mean shift instead
   MeanShiftParams mean_shift;
   MatcherParams matcher;  ///< as many min_n as levels
+
+  // Beyond the thesis.
+  WordDensity word_density = WordDensity::kSoft;  ///< (a), (b): words of which density
+  bool reverse = false;  ///< (a): also look for places that were travelled the other way
+  /// (b): a density keeps the class of the one before while it lies within this of its bounds; 0:
+  /// classes as they are. [0, 0.5)
+  double class_hysteresis = 0.0;
+  /// (c): a match is told if fewer than this many of its kind are expected by chance, whatever its
+  /// length (matcher.min_n should then be small); 0: matcher.min_n alone decides.
+  double max_chance = 0.0;
+  bool with_probability = false;  ///< (d): tell Match::probability
+  double min_probability = 0.0;   ///< (d): tell only matches at least this probable, [0, 1]
 
   /// @throws hyselam::ParameterError
   void validate() const;

@@ -100,6 +100,10 @@ class Text {
   /// The word of a level that ends at a position, if there is one: true and its index.
   bool findEndingAt(Position p, int level, WordIndex* found) const;
 
+  /// Fetches into the cache what findEndingAt will look at: first where the words are, then they.
+  void prefetchPosition(Position p) const { prefetch(blocks_[p]); }
+  void prefetchWords(Position p) const { prefetch(words_[blocks_[p].begin]); }
+
   /// The observations that a word describes: [begin, end).
   std::uint32_t observationBegin(WordIndex i) const { return observations_[first(i)]; }
   std::uint32_t observationEnd(WordIndex i) const {
