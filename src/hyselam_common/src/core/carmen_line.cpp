@@ -3,7 +3,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "numbers.hpp"
+#include "hyselam_common/numbers.hpp"
 
 namespace hyselam {
 namespace {

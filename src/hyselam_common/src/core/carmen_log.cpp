@@ -7,7 +7,7 @@
 #include "carmen_line.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "numbers.hpp"
+#include "hyselam_common/numbers.hpp"
 #include "stamp_repair.hpp"
 
 namespace hyselam {

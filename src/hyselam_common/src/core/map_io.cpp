@@ -12,7 +12,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "numbers.hpp"
+#include "hyselam_common/numbers.hpp"
 #include "pgm.hpp"
 
 namespace hyselam {

@@ -1,4 +1,4 @@
-#include "numbers.hpp"
+#include "hyselam_common/numbers.hpp"
 
 #include <locale.h>
 #include <stdlib.h>

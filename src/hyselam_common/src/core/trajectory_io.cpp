@@ -6,7 +6,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "numbers.hpp"
+#include "hyselam_common/numbers.hpp"
 
 namespace hyselam {
 namespace {

@@ -173,6 +173,7 @@ struct AugmentedTopologicalMap {
   Edge* findEdge(Id a, Id b);
 };
 
+/// All fields, exactly.
 bool operator==(const Extras& a, const Extras& b);
 bool operator==(const Word& a, const Word& b);
 bool operator==(const Appearance& a, const Appearance& b);
@@ -183,10 +184,6 @@ bool operator==(const VisualSignature& a, const VisualSignature& b);
 bool operator==(const Place& a, const Place& b);
 bool operator==(const PlaceGrid& a, const PlaceGrid& b);
 bool operator==(const AugmentedTopologicalMap& a, const AugmentedTopologicalMap& b);
-template <typename T>
-auto operator!=(const T& a, const T& b) -> decltype(!(a == b)) {
-  return !(a == b);
-}
 
 /// "room", "corridor", "virtual" and back; nothing for another word.
 const char* toString(PlaceKind kind);
