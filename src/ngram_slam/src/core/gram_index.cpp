@@ -6,6 +6,10 @@
 #include "hyselam_common/rng.hpp"
 
 namespace ngram_slam {
+namespace {
+constexpr Position kFirstReach = 4096;
+constexpr std::size_t kPart = 1024;  // entries of a part, about
+}  // namespace
 
 GramIndex::GramIndex(const Text& text, const WordTolerance& tolerance, int n, int bits)
     : text_(text), tolerance_(tolerance), n_(n), shift_(64 - bits) {
@@ -57,6 +61,41 @@ void GramIndex::insertPaths(WordIndex word, int depth, std::uint64_t key) {
   }
   const WordRange before = text_.predecessors(word);
   for (WordIndex w = before.begin; w < before.end; ++w) insertPaths(w, depth + 1, key);
+}
+
+void GramIndex::ask(WordIndex last) {
+  lists_.clear();
+  collect(last, 0, 0);
+  sortLists();
+  cursors_.clear();
+  for (std::uint32_t list : lists_)
+    if (heads_[list] != 0) cursors_.push_back({heads_[list], pool_[heads_[list] + 1]});
+  until_ = text_.positions();
+  reach_ = kFirstReach;
+}
+
+bool GramIndex::answer(std::vector<Entry>& part) {
+  part.clear();
+  while (part.empty() && !cursors_.empty()) {
+    until_ = until_ > reach_ ? until_ - reach_ : 0;
+    // Within a list grams lie in the order in which they end.
+    std::size_t open = 0;
+    for (Cursor c : cursors_) {
+      for (;;) {
+        const Entry* entries = &pool_[c.chunk + kHeader];
+        while (c.left > 0 && endOf(entries[c.left - 1]) >= until_)
+          part.push_back(entries[--c.left]);
+        if (c.left > 0) break;
+        c.chunk = pool_[c.chunk];
+        if (c.chunk == 0) break;
+        c.left = pool_[c.chunk + 1];
+      }
+      if (c.chunk != 0) cursors_[open++] = c;
+    }
+    cursors_.resize(open);
+    if (part.size() < kPart) reach_ *= 2;
+  }
+  return !part.empty();
 }
 
 void GramIndex::collect(WordIndex word, int depth, std::uint64_t key) {

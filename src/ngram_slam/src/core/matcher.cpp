@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -11,6 +12,8 @@ namespace {
 std::uint16_t oneMore(std::uint16_t n) {
   return static_cast<std::uint16_t>(n == 65535 ? n : n + 1);
 }
+constexpr std::size_t kMostTried = 4;  // candidates, by what may be followed
+constexpr std::size_t kAhead = 16;     // words that are being fetched
 int gramOf(const MatcherParams& p) {
   p.validate();
   return std::min(p.index_gram, *std::min_element(p.min_n.begin(), p.min_n.end()));
@@ -27,6 +30,7 @@ void MatcherParams::validate() const {
     throw hyselam::ParameterError("index_gram", index_gram, "1..4 [words]");
   if (index_bits < 4 || index_bits > 28)
     throw hyselam::ParameterError("index_bits", index_bits, "4..28");
+  if (max_followed < 1) throw hyselam::ParameterError("max_followed", max_followed, ">= 1");
 }
 
 Matcher::Matcher(const Text& text, const MatcherParams& params)
@@ -87,37 +91,56 @@ void Matcher::search(WordIndex newer, Row& target, bool report) {
   for (Grams& g : found_) g.clear();
   follow(newer, report);
   start(newer, report);
-  for (const Grams& g : found_) mergeInto(target, g);
+  for (Grams& g : found_) mergeInto(target, g);
+  trim(target);
 }
 
-/// Carries on the grams that ended just before `newer`.
+/// Carries on the grams that ended just before `newer`. Old words lie far apart in memory: they are
+/// fetched ahead, and what fits is noted without a branch, which nobody could foretell.
 void Matcher::follow(WordIndex newer, bool report) {
   const Position first = text_.first(newer);
   if (text_.startsRun(first)) return;
   const Grams& before = row(first - 1).grams;
   const Probe newer_probe = probe(text_.syllables(newer));
   const auto newer_level = static_cast<std::size_t>(text_.level(newer));
+  // They are in order: those that reach the newer word are the last ones.
+  const auto count = static_cast<std::size_t>(
+      std::lower_bound(before.ends.begin(), before.ends.end(), first - 1) - before.ends.begin());
+  hits_.resize(count);
+  branches_.resize(count);
+  std::size_t hits = 0, branches = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    prefetch(begins_[before.ends[std::min(i + kAhead, count - 1)] + 1]);
+    const Begin& older = begins_[before.ends[i] + 1];
+    const bool inside = (older.tags & Begin::kStartsRun) == 0;
+    hits_[hits] = {static_cast<std::uint32_t>(i), older.word};
+    hits += inside & matches(newer_probe, older);
+    branches_[branches] = {static_cast<std::uint32_t>(i), older.alternative};
+    branches += inside & (older.alternative != 0);
+  }
+  counters_.comparisons += count;
+  counters_.live += hits;
+
   Grams& real = found_[0];
-  real.ends.reserve(before.ends.size());
-  real.lengths.reserve(before.lengths.size());
-  Lengths longer{};
-  for (std::size_t i = 0; i < before.ends.size(); ++i) {
-    const Position begin = before.ends[i] + 1;
-    if (begin >= first) break;  // they are in order
-    const Begin& older = begins_[begin];
-    if ((older.tags & Begin::kStartsRun) != 0) continue;
+  real.ends.resize(hits);
+  real.lengths.resize(hits * passes_);
+  for (std::size_t h = 0; h < hits; ++h) {
+    const std::uint16_t* lengths = &before.lengths[hits_[h].gram * passes_];
+    std::uint16_t* longer = &real.lengths[h * passes_];
+    real.ends[h] = before.ends[hits_[h].gram] + 1;
+    for (std::size_t k = 0; k < passes_; ++k)
+      longer[k] = k < newer_level ? std::uint16_t{0} : oneMore(lengths[k]);
+    if (report) tell(newer, hits_[h].word, longer);
+  }
+  for (std::size_t b = 0; b < branches; ++b) {
+    prefetch(alternatives_[branches_[std::min(b + kAhead, branches - 1)].word]);
+    const std::size_t i = branches_[b].gram;
     const std::uint16_t* lengths = &before.lengths[i * passes_];
-    ++counters_.comparisons;
-    if (matches(newer_probe, older)) {
-      ++counters_.live;
-      for (std::size_t k = newer_level; k < passes_; ++k) longer[k] = oneMore(lengths[k]);
-      enter(newer, older.word, begin, longer.data(), real, report);
-    }
-    for (std::uint32_t next = older.alternative; next != 0;) {
+    for (std::uint32_t next = branches_[b].word; next != 0;) {
       const Begin& alternative = alternatives_[next];
       next = alternative.alternative;
       const std::size_t level = alternative.tags & 15u;
-      const Position end = begin + static_cast<Position>(level) + 1;
+      const Position end = before.ends[i] + static_cast<Position>(level) + 2;
       if (end >= first) continue;
       ++counters_.comparisons;
       if (!matches(newer_probe, alternative)) continue;
@@ -125,33 +148,71 @@ void Matcher::follow(WordIndex newer, bool report) {
       Lengths through{};
       for (std::size_t k = std::max(level, newer_level); k < passes_; ++k)
         through[k] = oneMore(lengths[k]);
-      enter(newer, alternative.word, end, through.data(), found_[level], report);
+      found_[level].add(end, through.data(), passes_);
+      if (report) tell(newer, alternative.word, through.data());
     }
   }
 }
 
-/// Finds the grams that have just become `gram_` words long.
+/// Finds the grams that have just become `gram_` words long, newest first, until there are enough.
 void Matcher::start(WordIndex newer, bool report) {
   const Position first = text_.first(newer);
   const Row* before = text_.startsRun(first) ? nullptr : &row(first - 1);
-  candidates_.clear();
-  index_.candidates(newer, [&](Position begin, int level) {
-    const Position end = begin + static_cast<Position>(level == 0 ? 0 : level + 1);
-    if (end >= first) return;
-    // Where a gram of enough words ended just before, it is being followed.
-    if (before != nullptr && begin > 0 && before->has.has(begin - 1) && !run_starts_.has(begin))
-      return;
-    WordIndex older;
-    if (text_.findEndingAt(end, level, &older)) candidates_.push_back(older);
-  });
-  std::sort(candidates_.begin(), candidates_.end());
-  candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
-  for (WordIndex older : candidates_) {
-    const Lengths lengths = lengthsFromScratch(newer, older, gram_, text_.levels());
-    if (lengths[passes_ - 1] < gram_) continue;
-    ++counters_.started;
-    enter(newer, older, text_.last(older), lengths.data(), found_.back(), report);
+  const auto most = static_cast<std::size_t>(params_.max_followed);
+  std::vector<std::size_t> older_followed;  // of each list in found_, those not yet passed
+  for (const Grams& g : found_) older_followed.push_back(g.ends.size());
+  std::size_t enough = 0;  // pairs newer than the candidate
+  const auto passed = [&](Position end) {
+    for (std::size_t l = 0; l + 1 < found_.size(); ++l)
+      for (std::size_t& n = older_followed[l]; n > 0 && found_[l].ends[n - 1] > end; --n) ++enough;
+  };
+  std::size_t tried = 0;
+  Grams& started = found_.back();
+  index_.ask(newer);
+  while (enough < most && tried < kMostTried * most && index_.answer(part_)) {
+    candidates_.clear();
+    for (std::size_t i = 0; i < part_.size(); ++i) {
+      const GramIndex::Entry e = part_[i];
+      if (i + 2 * kAhead < part_.size())
+        text_.prefetchPosition(GramIndex::endOf(part_[i + 2 * kAhead]));
+      if (i + kAhead < part_.size()) text_.prefetchWords(GramIndex::endOf(part_[i + kAhead]));
+      const Position begin = GramIndex::firstOf(e), end = GramIndex::endOf(e);
+      if (end >= first) continue;
+      // Where a gram of enough words ended just before, it is being followed.
+      if (before != nullptr && begin > 0 && before->has.has(begin - 1) && !run_starts_.has(begin))
+        continue;
+      WordIndex older;
+      if (text_.findEndingAt(end, GramIndex::levelOf(e), &older)) candidates_.push_back(older);
+    }
+    std::sort(candidates_.begin(), candidates_.end(), std::greater<>());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    tried += candidates_.size();
+    for (WordIndex older : candidates_) {
+      const Position end = text_.last(older);
+      passed(end);
+      if (enough >= most) break;
+      const Lengths lengths = lengthsFromScratch(newer, older, gram_, text_.levels());
+      if (lengths[passes_ - 1] < gram_) continue;
+      ++counters_.started;
+      ++enough;
+      started.add(end, lengths.data(), passes_);
+      if (report) tell(newer, older, lengths.data());
+    }
   }
+  started.reverse(passes_);
+}
+
+/// Forgets the oldest grams of too many.
+void Matcher::trim(Row& target) {
+  Grams& grams = target.grams;
+  const auto most = static_cast<std::size_t>(params_.max_followed);
+  if (grams.ends.size() <= most) return;
+  const auto many = static_cast<std::ptrdiff_t>(grams.ends.size() - most);
+  for (auto end = grams.ends.begin(); end != grams.ends.begin() + many; ++end)
+    target.has.clear(*end);
+  grams.ends.erase(grams.ends.begin(), grams.ends.begin() + many);
+  grams.lengths.erase(grams.lengths.begin(),
+                      grams.lengths.begin() + many * static_cast<std::ptrdiff_t>(passes_));
 }
 
 /// The sizes that match are found by the rule itself, so that rounding cannot tell them apart.
@@ -169,15 +230,6 @@ Matcher::Probe Matcher::probe(const Syllables& s) const {
   while (fits(largest + 1)) ++largest;
   while (!fits(largest)) --largest;
   return {static_cast<std::uint32_t>(s.density_class), smallest, largest - smallest, s.angle};
-}
-
-bool Matcher::matches(const Probe& p, const Begin& begin) const {
-  if (begin.tags >> 24 != p.density_class) return false;
-  if ((begin.tags >> 4 & Text::kMaxSize) - p.smallest > p.span) return false;  // wraps below
-  const double difference =
-      std::abs(static_cast<double>(p.angle) - static_cast<double>(begin.angle));
-  return difference < params_.tolerance.angle ||
-         difference > 2.0 * hyselam::kPi - params_.tolerance.angle;
 }
 
 /// Lengths of the longest grams that end with this pair, up to `depth` words of the levels below
@@ -210,6 +262,7 @@ void Matcher::complete(Position newer_end, Row& target) {
   const Probe real = probe(text_.syllables(newer.begin));
   Grams& grams = target.grams;
   for (std::size_t i = 0; i < grams.ends.size(); ++i) {
+    prefetch(begins_[grams.ends[std::min(i + kAhead, grams.ends.size() - 1)]]);
     std::uint16_t* lengths = &grams.lengths[i * passes_];
     int levels = 0;  // passes whose lengths may be too short; the higher ones have longer grams
     while (static_cast<std::size_t>(levels) < passes_ && lengths[levels] < gram_) ++levels;
@@ -230,10 +283,7 @@ void Matcher::complete(Position newer_end, Row& target) {
   }
 }
 
-void Matcher::enter(WordIndex newer, WordIndex older, Position end, const std::uint16_t* lengths,
-                    Grams& out, bool report) {
-  out.add(end, lengths, passes_);
-  if (!report) return;
+void Matcher::tell(WordIndex newer, WordIndex older, const std::uint16_t* lengths) {
   for (std::size_t k = 0; k < passes_; ++k) {
     if (lengths[k] < params_.min_n[k]) continue;
     matches_.push_back({newer, older, static_cast<int>(k) + 1, lengths[k]});
@@ -248,15 +298,18 @@ Matcher::Begin Matcher::beginOf(WordIndex word, std::uint32_t flags) const {
 }
 
 /// Both are in order; of grams that end at the same positions the longest in each pass counts.
-void Matcher::mergeInto(Row& target, const Grams& more) {
+/// Leaves something or other in `more`.
+void Matcher::mergeInto(Row& target, Grams& more) {
   if (more.ends.empty()) return;
   for (Position end : more.ends) target.has.set(end);
-  merged_.clear();
-  if (target.grams.ends.empty()) {
-    merged_.ends.reserve(more.ends.size());
-    merged_.lengths.reserve(more.lengths.size());
+  if (target.grams.ends.empty() && &more != &found_.back()) {  // no position twice
+    std::swap(target.grams, more);
+    return;
   }
   const Grams& old = target.grams;
+  merged_.clear();
+  merged_.ends.reserve(old.ends.size() + more.ends.size());
+  merged_.lengths.reserve(old.lengths.size() + more.lengths.size());
   const auto append = [&](const Grams& from, std::size_t i) {
     const std::uint16_t* lengths = &from.lengths[i * passes_];
     if (!merged_.ends.empty() && merged_.ends.back() == from.ends[i]) {
