@@ -19,7 +19,8 @@ class SemanticClassifier {
   virtual SemanticVerdict classify(const SemanticFeatures& features) const = 0;
 };
 
-/// Thresholds of Table 6.4. Those of the density and of the frontiers depend on the kernel's radius.
+/// Thresholds of Table 6.4. Those of the density and of the frontiers depend on the kernel's
+/// radius.
 struct DecisionTreeParams {
   double high_variation = 0.05;                ///< of the density; the thesis has 0.1
   double high_density = 0.8;                   ///< 0..1

@@ -1,5 +1,5 @@
-// Where the way is cut into regions of meaning (Maffei 2017, 6.4): where the density starts or stops
-// to vary.
+// Where the way is cut into regions of meaning (Maffei 2017, 6.4): where the density starts or
+// stops to vary.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 namespace ngram_slam {
 
 struct SemanticCutParams {
-  int smoothing = 3;       ///< the mean filter takes this many observations on each side, 0..100
-  double leave = 0.03;     ///< density varies once it is this far from where it stood or turned, > 0
+  int smoothing = 3;    ///< the mean filter takes this many observations on each side, 0..100
+  double leave = 0.03;  ///< density varies once it is this far from where it stood or turned, > 0
   double settled = 0.012;  ///< it stands once it keeps within this, in (0, leave] ...
   int settled_for = 10;    ///< ... for so many observations, >= 2
-  double border = 0.5;     ///< share of the way from one level to the next that is made at the border
-                           ///< between two regions, in (0, 1)
+  double border = 0.5;  ///< share of the way from one level to the next that is made at the border
+                        ///< between two regions, in (0, 1)
 
   /// @throws hyselam::ParameterError
   void validate() const;
@@ -40,8 +40,8 @@ inline bool operator==(const SemanticCut& a, const SemanticCut& b) {
 /// Cuts the densities of one run while they come in.
 ///
 /// The density stands at a level while it stays within `leave` of it (of the mean of all densities
-/// there). It then moves, and each time it turns back by more than `leave` the extreme is a level of
-/// its own (hysteresis: smaller wiggles are none); when it has kept within `settled` for
+/// there). It then moves, and each time it turns back by more than `leave` the extreme is a level
+/// of its own (hysteresis: smaller wiggles are none); when it has kept within `settled` for
 /// `settled_for` observations, it stands again. Between two levels that follow each other lies one
 /// border. Cuts follow each other without gap and together hold every observation of the run.
 class SemanticCutter {
@@ -61,17 +61,17 @@ class SemanticCutter {
   double at(std::uint32_t i) const { return moved_[i - since_]; }
 
   SemanticCutParams params_;
-  std::deque<double> raw_;    // at most 2 * smoothing + 1: the window of the mean filter
-  std::uint32_t raw_end_ = 0; // densities seen
-  std::uint32_t next_ = 0;    // smoothed densities seen
-  SemanticCut growing_;       // around the last level reached; `last` is not kept up
-  bool standing_ = false;     // the density has not left that level
-  double sum_ = 0.0;          // of the densities while it stands there
+  std::deque<double> raw_;     // at most 2 * smoothing + 1: the window of the mean filter
+  std::uint32_t raw_end_ = 0;  // densities seen
+  std::uint32_t next_ = 0;     // smoothed densities seen
+  SemanticCut growing_;        // around the last level reached; `last` is not kept up
+  bool standing_ = false;      // the density has not left that level
+  double sum_ = 0.0;           // of the densities while it stands there
   std::uint32_t count_ = 0;
-  std::deque<double> moved_;  // smoothed densities since it moves
-  std::uint32_t since_ = 0;   // observation of the first of them
-  int direction_ = 1;         // of the move: up 1, down -1
-  std::uint32_t extreme_ = 0; // of the move so far
+  std::deque<double> moved_;   // smoothed densities since it moves
+  std::uint32_t since_ = 0;    // observation of the first of them
+  int direction_ = 1;          // of the move: up 1, down -1
+  std::uint32_t extreme_ = 0;  // of the move so far
 };
 
 }  // namespace ngram_slam

@@ -28,7 +28,7 @@ struct SemanticParams {
   int shortest_gap = 8;  ///< [observations], >= 0
   /// ... or if the robot turns by more than `turning` in it and it is no longer than this: the
   /// inside of a wide corner.
-  int longest_bend = 30;  ///< [observations], >= shortest_gap
+  int longest_bend = 30;                    ///< [observations], >= shortest_gap
   double turning = hyselam::radians(20.0);  ///< [rad], > 0
 
   /// @throws hyselam::ParameterError
@@ -64,9 +64,9 @@ class SemanticSegmenter {
   SemanticParams params_;
   std::shared_ptr<const SemanticClassifier> classifier_;
   SemanticCutter cutter_;
-  std::deque<Seen> seen_;        // of the run, from seen_begin_ on
+  std::deque<Seen> seen_;  // of the run, from seen_begin_ on
   std::uint32_t seen_begin_ = 0;
-  std::uint32_t run_begin_ = 0;  // observations of the runs before
+  std::uint32_t run_begin_ = 0;      // observations of the runs before
   std::optional<SemanticCut> held_;  // complete, but what follows may join it
   bool open_ = false;                // its last part was a gap: what follows joins it
 };
