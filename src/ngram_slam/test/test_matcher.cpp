@@ -342,6 +342,53 @@ TEST(Matcher, doesNotLookAtWordsThatCannotContinueAGram) {
   EXPECT_LT(comparisonsPerWord(30000), 30.0);
 }
 
+TEST(Matcher, followsTheNewestPlacesOfTooMany) {
+  // A circuit of eight words, 200 laps: with every lap one more place matches.
+  Text text(2);
+  MatcherParams params;
+  params.min_n = {4, 5};
+  params.index_bits = 12;
+  Matcher all(text, params);
+  params.max_followed = 20;
+  Matcher few(text, params);
+  for (int i = 0; i < 1600; ++i) {
+    text.push({i % 8 / 2, 10u << i % 8 / 2, i % 2 == 0 ? 0.0f : 1.5f});
+    auto complete = byPair(all.update());
+    const auto newest = byPair(few.update());
+    ASSERT_EQ(newest.size(), std::min<std::size_t>(complete.size(), 20));
+    while (complete.size() > 20) complete.erase(complete.begin());
+    ASSERT_EQ(newest, complete) << i;
+  }
+}
+
+TEST(Matcher, isExactWhileItMayFollowAll) {
+  // The same texts with room for few grams and with room for all.
+  std::size_t complete_texts = 0, short_texts = 0;
+  for (std::uint64_t round = 0; round < 2000; ++round) {
+    hyselam::Rng rng(55, round);
+    Text text(3);
+    MatcherParams params = randomParams(rng, 3);
+    Matcher all(text, params);
+    params.max_followed = 1 + static_cast<int>(rng.below(12));
+    Matcher few(text, params);
+    Matcher again(text, params);
+    random_texts::write(text, 60, rng);
+    const auto whole = byPair(all.update()), part = byPair(few.update());
+    ASSERT_EQ(byPair(again.update()), part);
+    for (const auto& [pair, how] : part) {
+      const auto found = whole.find(pair);
+      ASSERT_NE(found, whole.end());
+      ASSERT_GE(how.first, found->second.first);  // never with fewer levels
+      if (how.first == found->second.first) {
+        ASSERT_LE(how.second, found->second.second);
+      }
+    }
+    ++(part == whole ? complete_texts : short_texts);
+  }
+  EXPECT_GT(complete_texts, 100u);
+  EXPECT_GT(short_texts, 100u);
+}
+
 TEST(Matcher, refusesParametersOutOfRange) {
   const auto messageFor = [](const std::function<void(MatcherParams&)>& change, int levels = 3) {
     MatcherParams p;
@@ -357,6 +404,8 @@ TEST(Matcher, refusesParametersOutOfRange) {
   EXPECT_NE(messageFor([](MatcherParams& p) { p.tolerance.angle = 0.0; }).find("angle"),
             std::string::npos);
   EXPECT_NE(messageFor([](MatcherParams& p) { p.index_gram = 0; }).find("index_gram"),
+            std::string::npos);
+  EXPECT_NE(messageFor([](MatcherParams& p) { p.max_followed = 0; }).find("max_followed"),
             std::string::npos);
   EXPECT_NE(messageFor([](MatcherParams& p) { p.index_bits = 40; }).find("index_bits"),
             std::string::npos);
