@@ -48,6 +48,12 @@ struct Door {
   bool isOpen(double time) const;
 };
 
+/// A state of all doors under a name that routes use.
+struct DoorConfiguration {
+  std::string name;
+  std::vector<std::string> open;  ///< names of the open doors; all others are shut
+};
+
 /// Something that stands on the floor and that the laser sees.
 struct Furniture {
   std::string name;
@@ -62,6 +68,15 @@ struct Place {
   Polygon outline;  ///< its area; empty if not given
 };
 
+/// A part of the floor with what it is: the truth for those who recognise kinds of places.
+struct Area {
+  std::string kind;  ///< one of areaKinds()
+  Polygon outline;
+};
+
+/// "bifurcation", "corner", "corridor", "dead-end", "hall".
+const std::vector<std::string>& areaKinds();
+
 struct FloorPlan {
   std::string name;
   std::string source;  ///< file, for messages
@@ -71,11 +86,21 @@ struct FloorPlan {
   std::vector<Point2> inside;  ///< points of the interior besides the places
   std::vector<Wall> walls;
   std::vector<Door> doors;
+  std::vector<DoorConfiguration> configurations;
   std::vector<Furniture> furniture;
   std::vector<Place> places;
+  std::vector<Area> areas;
+  std::string floor_kind;  ///< of the floor that no area covers; empty: not told
+
+  /// What the floor is there: the kind of the first area that holds the point, else `floor_kind`.
+  const std::string& kindAt(Point2 p) const;
 
   /// The place of that name. Throws hyselam::InputError with the nearest known name.
   const Place& place(const std::string& place_name) const;
+
+  /// Puts all doors as a configuration says; their schedules end. Throws hyselam::InputError with
+  /// the nearest known name.
+  void setDoors(const std::string& configuration);
 
   /// The next time after `time` at which a door moves; infinity if none does.
   double nextDoorChange(double time) const;

@@ -117,28 +117,32 @@ Door readDoor(const FloorPlan& plan, const YamlMap& map) {
   return door;
 }
 
+// Key 'box' or key 'polygon'.
+Polygon readOutline(const YamlMap& map) {
+  if (map.has("box") == map.has("polygon")) {
+    map.fail("box", "exactly one of 'box' and 'polygon' must be given");
+  }
+  if (map.has("polygon")) return map.points("polygon", 3);
+  const std::vector<double> v =
+      YamlMap::numbersIn(map.source(), map.pathOf("box"), map.child("box"));
+  if (v.size() != 4 && v.size() != 5) {
+    map.fail("box", "must be [centre x, centre y, length, width] or with an angle in degrees");
+  }
+  if (!(v[2] > 0.0 && v[3] > 0.0)) map.fail("box", "length and width must be positive");
+  const Pose2 pose{v[0], v[1], v.size() == 5 ? hyselam::radians(v[4]) : 0.0};
+  const double l = 0.5 * v[2], w = 0.5 * v[3];
+  Polygon outline;
+  for (const Point2& p : {Point2{-l, -w}, Point2{l, -w}, Point2{l, w}, Point2{-l, w}}) {
+    outline.push_back(pose * p);
+  }
+  return outline;
+}
+
 Furniture readFurniture(const FloorPlan& plan, const YamlMap& map) {
   Furniture item;
   item.name = map.textOr("name", "");
   item.height = map.numberOr("height", 0.8, 0.01, 100.0);
-  if (map.has("box") == map.has("polygon")) {
-    map.fail("box", "exactly one of 'box' and 'polygon' must be given");
-  }
-  if (map.has("polygon")) {
-    item.outline = map.points("polygon", 3);
-  } else {
-    const std::vector<double> v =
-        YamlMap::numbersIn(map.source(), map.pathOf("box"), map.child("box"));
-    if (v.size() != 4 && v.size() != 5) {
-      map.fail("box", "must be [centre x, centre y, length, width] or with an angle in degrees");
-    }
-    if (!(v[2] > 0.0 && v[3] > 0.0)) map.fail("box", "length and width must be positive");
-    const Pose2 pose{v[0], v[1], v.size() == 5 ? hyselam::radians(v[4]) : 0.0};
-    const double l = 0.5 * v[2], w = 0.5 * v[3];
-    for (const Point2& p : {Point2{-l, -w}, Point2{l, -w}, Point2{l, w}, Point2{-l, w}}) {
-      item.outline.push_back(pose * p);
-    }
-  }
+  item.outline = readOutline(map);
   requireInside(plan, map, map.has("box") ? "box" : "polygon", item.outline);
   return item;
 }
@@ -159,6 +163,32 @@ Place readPlace(const FloorPlan& plan, const YamlMap& map, const std::vector<Sol
     map.fail("polygon", "does not contain the place's own point " + text(place.at));
   }
   return place;
+}
+
+Area readArea(const FloorPlan& plan, const YamlMap& map) {
+  Area area;
+  map.text("kind");  // has no default
+  area.kind = map.choice("kind", areaKinds(), "");
+  area.outline = readOutline(map);
+  requireInside(plan, map, map.has("box") ? "box" : "polygon", area.outline);
+  return area;
+}
+
+DoorConfiguration readConfiguration(const FloorPlan& plan, const YamlMap& map) {
+  DoorConfiguration configuration;
+  configuration.name = map.text("name");
+  std::vector<std::string> known;
+  for (const Door& door : plan.doors) known.push_back(door.name);
+  const std::vector<YAML::Node> open = map.list("open");
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const std::string name = open[i].IsScalar() ? open[i].Scalar() : "";
+    if (name.empty() || std::find(known.begin(), known.end(), name) == known.end()) {
+      YamlMap::failAt(map.source(), map.pathOf(entry("open", i)), open[i],
+                      "there is no door '" + name + "'" + suggestion(name, known));
+    }
+    configuration.open.push_back(name);
+  }
+  return configuration;
 }
 
 // An opening must lead through: no other wall may cross it.
@@ -184,6 +214,19 @@ bool Door::isOpen(double time) const {
   return open;
 }
 
+const std::vector<std::string>& areaKinds() {
+  static const std::vector<std::string> kinds{"bifurcation", "corner", "corridor", "dead-end",
+                                              "hall"};
+  return kinds;
+}
+
+const std::string& FloorPlan::kindAt(Point2 p) const {
+  for (const Area& area : areas) {
+    if (contains(area.outline, p)) return area.kind;
+  }
+  return floor_kind;
+}
+
 const Place& FloorPlan::place(const std::string& place_name) const {
   std::vector<std::string> names;
   for (const Place& candidate : places) {
@@ -192,6 +235,23 @@ const Place& FloorPlan::place(const std::string& place_name) const {
   }
   throw hyselam::InputError(
       source, "", "there is no place '" + place_name + "'" + suggestion(place_name, names));
+}
+
+void FloorPlan::setDoors(const std::string& configuration) {
+  std::vector<std::string> names;
+  for (const DoorConfiguration& candidate : configurations) {
+    names.push_back(candidate.name);
+    if (candidate.name != configuration) continue;
+    for (Door& door : doors) {
+      door.initially_open = std::find(candidate.open.begin(), candidate.open.end(), door.name) !=
+                            candidate.open.end();
+      door.schedule.clear();
+    }
+    return;
+  }
+  throw hyselam::InputError(source, "",
+                            "there is no configuration of doors '" + configuration + "'" +
+                                suggestion(configuration, names));
 }
 
 double FloorPlan::nextDoorChange(double time) const {
@@ -205,9 +265,10 @@ double FloorPlan::nextDoorChange(double time) const {
 }
 
 FloorPlan parseFloorPlan(const std::string& content, const std::string& source) {
-  const YamlMap map(source, "", parseYaml(content, source),
-                    {"plan", "description", "size", "origin", "wall_thickness", "wall_height",
-                     "walls", "doors", "furniture", "places", "inside"});
+  const YamlMap map(
+      source, "", parseYaml(content, source),
+      {"plan", "description", "size", "origin", "wall_thickness", "wall_height", "walls", "doors",
+       "configurations", "furniture", "places", "inside", "areas", "floor_kind"});
   FloorPlan plan;
   plan.source = source;
   plan.name = map.text("plan");
@@ -243,6 +304,14 @@ FloorPlan parseFloorPlan(const std::string& content, const std::string& source) 
     requirePassable(plan, plan.doors[i], m, solid_walls);
   }
 
+  names.clear();
+  const std::vector<YAML::Node> configurations = map.list("configurations");
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    const YamlMap m(source, entry("configurations", i), configurations[i], {"name", "open"});
+    plan.configurations.push_back(readConfiguration(plan, m));
+    requireNewName(m, plan.configurations.back().name, names);
+  }
+
   const std::vector<YAML::Node> furniture = map.list("furniture");
   for (std::size_t i = 0; i < furniture.size(); ++i) {
     const YamlMap m(source, entry("furniture", i), furniture[i],
@@ -256,6 +325,13 @@ FloorPlan parseFloorPlan(const std::string& content, const std::string& source) 
     const YamlMap m(source, entry("places", i), places[i], {"name", "at", "polygon"});
     plan.places.push_back(readPlace(plan, m, solid_walls));
     requireNewName(m, plan.places.back().name, names);
+  }
+
+  if (map.has("floor_kind")) plan.floor_kind = map.choice("floor_kind", areaKinds(), "");
+  const std::vector<YAML::Node> areas = map.list("areas");
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const YamlMap m(source, entry("areas", i), areas[i], {"kind", "box", "polygon"});
+    plan.areas.push_back(readArea(plan, m));
   }
 
   if (map.has("inside")) {
