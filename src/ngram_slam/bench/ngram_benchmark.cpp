@@ -101,6 +101,10 @@ Situation& situation(Place place, std::size_t words) {
   return *s;
 }
 
+void textLengths(benchmark::internal::Benchmark* b) {
+  for (int words : {1000, 3000, 10000, 30000, 100000, 300000, 1000000}) b->Arg(words);
+}
+
 void oneWord(benchmark::State& state, Place place, const char* baseline) {
   const auto words = static_cast<std::size_t>(state.range(0));
   Situation& s = situation(place, words);
@@ -142,16 +146,8 @@ void OneWord_Circuit(benchmark::State& state) {
 void OneWord_Building(benchmark::State& state) {
   oneWord(state, Place::kBuilding, "OneWord_Building_Scan");
 }
-BENCHMARK(OneWord_Circuit)
-    ->RangeMultiplier(10)
-    ->Range(1000, 1000000)
-    ->Iterations(3000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(OneWord_Building)
-    ->RangeMultiplier(10)
-    ->Range(1000, 1000000)
-    ->Iterations(3000)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(OneWord_Circuit)->Apply(textLengths)->Iterations(3000)->Unit(benchmark::kMillisecond);
+BENCHMARK(OneWord_Building)->Apply(textLengths)->Iterations(3000)->Unit(benchmark::kMillisecond);
 
 /// A lap of the circuit after 40 laps (5.3.2), regions already built: words, levels, all matches.
 void OneLap_Circuit(benchmark::State& state) {
@@ -260,10 +256,6 @@ void OneWord_Building_Scan(benchmark::State& state) {
     benchmark::DoNotOptimize(matches);
   }
 }
-BENCHMARK(OneWord_Building_Scan)
-    ->RangeMultiplier(10)
-    ->Range(1000, 1000000)
-    ->Iterations(3)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(OneWord_Building_Scan)->Apply(textLengths)->Iterations(3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
