@@ -12,7 +12,7 @@ using hyselam::Point2;
 
 Point2 leftOf(Point2 a, Point2 b) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
-  return length > 0.0 ? Point2{-(b.y - a.y) / length, (b.x - a.x) / length} : Point2{1.0, 0.0};
+  return length > 0.0 ? Point2{(a.y - b.y) / length, (b.x - a.x) / length} : Point2{1.0, 0.0};
 }
 
 template <typename T>
