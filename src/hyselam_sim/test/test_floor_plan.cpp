@@ -185,6 +185,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"ScheduleGoingBack", "from: 20", "from: 5", "must increase"},
         BadPlan{"ScheduleWithoutState", "{from: 20, open: true}", "{from: 20}", "open"},
         BadPlan{"OpenIsNoTruthValue", "from: 20, open: true", "from: 20, open: 3", "true or false"},
+        BadPlan{"ConfigurationOfNoDoor",
+                "furniture:", "configurations:\n  - {name: open, open: [dor]}\nfurniture:",
+                "did you mean 'door'?"},
+        BadPlan{"ConfigurationTwice", "furniture:",
+                "configurations:\n  - {name: shut, open: []}\n  - {name: shut}\nfurniture:",
+                "used twice"},
         BadPlan{"NegativeFurniture", "0.4, 0.2]", "0.4, -0.2]", "must be positive"},
         BadPlan{"FurnitureWithoutShape", "box: [3, 2.5, 0.4, 0.2]", "height: 1", "exactly one"},
         BadPlan{"PlaceInAWall", "at: [1, 1]}", "at: [2, 0.5]}", "inside wall 'middle'"},
@@ -221,6 +227,10 @@ TEST(BadPlanFile, Missing) {
 TEST(BadPlanFile, UnknownPlaceSuggestsTheNearest) {
   const FloorPlan plan = parseFloorPlan(kRoom, "room.yaml");
   expectRefused([&] { plan.place("letf"); }, "did you mean 'left'?");
+}
+TEST(BadPlanFile, UnknownConfigurationSuggestsTheNearest) {
+  FloorPlan plan = loadFloorPlan(planFile("university"));
+  expectRefused([&] { plan.setDoors("E_C9"); }, "no configuration of doors 'E_C9'");
 }
 TEST(BadPlanFile, UnknownShippedNameSuggestsTheNearest) {
   expectRefused([] { planFile("mcl_d"); }, "did you mean 'mcl_a'?");

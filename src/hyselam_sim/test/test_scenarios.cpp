@@ -24,7 +24,7 @@ double clearance(const std::vector<Solid>& bodies, Point2 p) {
 TEST(Shipped, EveryPlanLoadsAndIsClosed) {
   const std::vector<std::string> names = shippedPlans();
   EXPECT_EQ(names, (std::vector<std::string>{"mcl_a", "mcl_b", "mcl_c", "ngram_a", "ngram_b",
-                                             "office", "small"}));
+                                             "office", "small", "university"}));
   for (const std::string& name : names) {
     const FloorPlan plan = loadFloorPlan(planFile(name));
     EXPECT_EQ(plan.name, name);
@@ -179,6 +179,81 @@ TEST(Layouts, LoopsOfLayoutB) {
   EXPECT_NEAR(loopLength(plan, {{8, 8}, {16, 8}, {16, 12}, {8, 12}}, 1.0), 24.0, 0.02 * 24.0);
 }
 
+TEST(Layouts, LoopsOfTheUniversity) {
+  const FloorPlan plan = loadFloorPlan(planFile("university"));
+  const auto corner = [&](const char* name) { return plan.place(name).at; };
+  const Point2 north{12, 18}, south{12, 0};
+  EXPECT_NEAR(loopLength(plan, {corner("A"), north, south, corner("D")}, 1.1), 60.0, 0.6);
+  EXPECT_NEAR(loopLength(plan, {north, corner("B"), corner("C"), south}, 1.1), 90.0, 0.9);
+}
+
+// Fig. 5.8: B opens one door in each of the four corridors, C several at a time.
+TEST(Layouts, DoorsOfTheUniversity) {
+  FloorPlan plan = loadFloorPlan(planFile("university"));
+  const auto open = [&](const std::string& configuration) {
+    plan.setDoors(configuration);
+    std::string sides;
+    for (const Door& door : plan.doors) {
+      if (door.isOpen(0.0)) sides += door.name.front();
+    }
+    return sides;
+  };
+  EXPECT_EQ(open("E_0"), "");
+  EXPECT_EQ(open("E_B1"), "nesw");
+  EXPECT_EQ(open("E_B2"), "nesw");
+  for (const char* name : {"E_C1", "E_C2", "E_C3", "E_C4", "E_C5"}) {
+    EXPECT_GE(open(name).size(), 5U) << name;
+  }
+}
+
+// Fig. 5.7 b: after which share of the 40 laps the doors change, and to what.
+class LongTerm : public testing::TestWithParam<std::pair<const char*, std::string>> {};
+
+TEST_P(LongTerm, DoorsChangeAsInFigure57) {
+  const auto [letter, expected] = GetParam();
+  const std::vector<double> shares{21.4, 7.1, 2.4, 1.2, 10.7, 4.8, 9.6, 21.4, 7.1, 2.4, 1.2, 10.7};
+  std::string configurations, now;
+  std::vector<double> begins;
+  double travelled = 0.0;
+  for (int run = 1; run <= 4; ++run) {
+    const Route route =
+        loadRoute(routeFile("longterm_" + std::string(letter) + "_" + std::to_string(run)));
+    const FloorPlan plan = loadFloorPlan(planFile(route.plan));
+    SimulationParams params;
+    params.scan_rate = 1.0;
+    const Simulation driven = simulate(plan, route, 1, params);
+    if (run > 1) {
+      EXPECT_EQ(route.doors, now) << run;
+    }
+    if (run == 1) {
+      configurations = now = route.doors;
+      begins.push_back(0.0);
+    }
+    for (std::size_t i = 0; i < route.steps.size(); ++i) {
+      if (route.steps[i].doors.empty()) continue;
+      now = route.steps[i].doors;
+      configurations += " " + now;
+      begins.push_back(travelled + driven.distance * static_cast<double>(i) /
+                                       static_cast<double>(route.steps.size()));
+    }
+    travelled += driven.distance;
+  }
+  EXPECT_EQ(configurations, expected);
+  EXPECT_NEAR(travelled, 40 * 114.0, 0.03 * 40 * 114.0);
+  ASSERT_EQ(begins.size(), shares.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    EXPECT_NEAR(begins[i] / travelled, 0.01 * sum, 0.03) << i;  // to a leg of the walk
+    sum += shares[i];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    BAndC, LongTerm,
+    testing::Values(std::make_pair("b", "E_0 E_B1 E_B2 E_0 E_B1 E_B2 E_B1 E_0 E_B1 E_0 E_B2 E_B1"),
+                    std::make_pair("c",
+                                   "E_0 E_C1 E_C2 E_C3 E_C4 E_C5 E_0 E_0 E_C1 E_C2 E_C3 E_C4")));
+
 // Table 4.1 of Maffei (2017), as printed.
 const char* const kTable41A =
     "ABCD ABCH GCDA BCHG BADC BABH GCDA BCHE DCGH DABC DEGB FEAB CHGB FHDA BCDE GBFE ABCH GBFH "
@@ -209,7 +284,7 @@ std::string sequence(const Route& route) {
 // Every step leads straight to the next place: no other place is passed on the way.
 void expectDirectLegs(const std::string& name) {
   const Route route = loadRoute(routeFile(name));
-  const FloorPlan plan = loadFloorPlan(planFile(name));
+  const FloorPlan plan = loadFloorPlan(planFile(route.plan));
   SimulationParams params;
   params.scan_rate = 1.0;
   const Simulation run = simulate(plan, route, 1, params);
@@ -240,6 +315,16 @@ TEST(Table41, RouteAIsTheSequenceWithThreeStepsRestored) {
   printed = restored(printed, "BFHABC", "BFHDABC");
   printed = restored(printed, "CBFDCG", "CBFEDCG");
   EXPECT_EQ(sequence(loadRoute(routeFile("ngram_a"))), printed);
+}
+
+TEST(Table41, RoutesCAreTheSequencesAsPrinted) {
+  const std::vector<std::string> printed{"DEBCEA DEBCEA DEBC", "DEBCEA DEBCEA DEBCEA DEBC",
+                                         "DEBCEA DEBCEA DEBCEA DEBCEA D", "DEADEB CEBCEA DEADE"};
+  for (std::size_t i = 0; i < printed.size(); ++i) {
+    const std::string name = "ngram_c_" + std::to_string(i + 1);
+    EXPECT_EQ(sequence(loadRoute(routeFile(name))), withoutBlanks(printed[i]));
+    expectDirectLegs(name);
+  }
 }
 
 // The corridors of layout A that meet in one point.

@@ -102,6 +102,22 @@ TEST(Simulation, ShutDoorIsSeenAtItsTimes) {
   }
 }
 
+TEST(Simulation, DoorsTakeOnTheConfigurationOfTheStep) {
+  const FloorPlan plan = loadFloorPlan(planFile("university"));
+  // Before the door of room n2, 1.5 m from it.
+  const Simulation run = simulate(plan,
+                                  route("start: {at: [6.5, 17.6], heading: 90}\ndoors: E_C5\n"
+                                        "steps: [{wait: 10}, {wait: 10, doors: E_0}, "
+                                        "{wait: 10, doors: E_B2}]\n"),
+                                  1);
+  for (const hyselam::LaserScan& scan : run.log.scans) {
+    const double t = scan.stamp - 1.0;
+    const float ahead = scan.ranges[90];
+    if (ahead >= scan.range_max) continue;  // a dropout
+    EXPECT_NEAR(ahead, (t <= 10.0 || t > 20.0 ? 23.9 : 19.175) - 17.7, 0.06) << t;
+  }
+}
+
 TEST(Simulation, TeleportMovesTheTruthButNotTheOdometry) {
   const Simulation run = simulate(small(),
                                   route("start: {at: left room, heading: 0}\nsteps:\n"
@@ -252,6 +268,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadRoute{"DoorShutsBeforeTheRobot",
                  "start: left room\nspeed: 0.05\nsteps: [{wait: 20}, right room]\n",
                  "the robot hits door 'door'"},
+        BadRoute{"UnknownConfiguration", "start: left room\nsteps: [{wait: 1, doors: shut}]\n",
+                 "steps[0]'"},
+        BadRoute{"UnknownFirstConfiguration", "start: left room\ndoors: shut\nsteps: [{wait: 1}]\n",
+                 "key 'doors'"},
+        BadRoute{"ConfigurationOfARepeat",
+                 "start: left room\nsteps: [{repeat: 2, doors: shut, steps: [{wait: 1}]}]\n",
+                 "goes with 'go'"},
         BadRoute{"TeleportIntoAWall", "start: left room\nsteps: [{teleport: [8, 2]}]\n",
                  "does not fit"},
         BadRoute{"NanWaypoint", "start: left room\nsteps: [[.nan, 2]]\n", "finite"},

@@ -25,6 +25,7 @@ struct RouteStep {
   Kind kind = Kind::kGo;
   Spot spot;
   double seconds = 0.0;  ///< of kWait
+  std::string doors;     ///< configuration that the plan's doors take on before; may be empty
   std::string where;     ///< "line 7, key 'steps[2]'", for messages
 };
 
@@ -52,6 +53,7 @@ struct Route {
   std::string plan;    ///< name of the plan it belongs to; may be empty
   std::string description;
   Spot start;
+  std::string doors;  ///< configuration of the plan's doors at the start; empty: as the plan says
   /// A leg between places must not pass another place (what comes nearer to one than 1.2 m).
   bool direct = false;
   std::optional<double> speed;  ///< cruising speed [m/s] instead of the default

@@ -52,7 +52,8 @@ void readSteps(const std::string& source, const std::string& path, const YAML::N
       out.push_back(step);
       continue;
     }
-    const YamlMap map(source, here, node, {"go", "teleport", "heading", "wait", "repeat", "steps"});
+    const YamlMap map(source, here, node,
+                      {"go", "teleport", "heading", "wait", "doors", "repeat", "steps"});
     if (map.has("go") + map.has("teleport") + map.has("wait") + map.has("repeat") != 1) {
       YamlMap::failAt(source, here, node,
                       "must have exactly one of 'go', 'teleport', 'wait' and 'repeat'");
@@ -62,6 +63,7 @@ void readSteps(const std::string& source, const std::string& path, const YAML::N
     }
     if (map.has("steps") != map.has("repeat")) map.fail("steps", "goes with 'repeat'");
     if (map.has("repeat")) {
+      if (map.has("doors")) map.fail("doors", "goes with 'go', 'teleport' and 'wait' only");
       const double times = map.number("repeat", 1, kMaxSteps);
       if (times != std::floor(times)) map.fail("repeat", "must be a whole number");
       for (int k = 0; k < static_cast<int>(times); ++k) {
@@ -69,6 +71,7 @@ void readSteps(const std::string& source, const std::string& path, const YAML::N
       }
       continue;
     }
+    step.doors = map.textOr("doors", "");
     if (map.has("wait")) {
       step.kind = RouteStep::Kind::kWait;
       step.seconds = map.number("wait", 0.0, kMaxTime);
@@ -132,7 +135,7 @@ std::optional<Point2> Person::at(double time) const {
 Route parseRoute(const std::string& content, const std::string& source) {
   const YamlMap map(
       source, "", parseYaml(content, source),
-      {"route", "plan", "description", "start", "speed", "direct", "steps", "people"});
+      {"route", "plan", "description", "start", "doors", "speed", "direct", "steps", "people"});
   Route route;
   route.source = source;
   route.name = map.text("route");
@@ -146,6 +149,7 @@ Route parseRoute(const std::string& content, const std::string& source) {
   } else {
     route.start = readSpot(source, "start", start);
   }
+  route.doors = map.textOr("doors", "");
   route.direct = map.has("direct") && map.boolean("direct");
   if (map.has("speed")) route.speed = map.number("speed", 0.05, 1.4);
   readSteps(source, "steps", map.child("steps"), route.steps);

@@ -62,11 +62,11 @@ struct World {
 class Run {
  public:
   Run(const FloorPlan& plan, const Route& route, std::uint64_t seed, const SimulationParams& params)
-      : plan_(plan),
+      : plan_(withDoors(plan, route)),
         route_(route),
         params_(withRoute(params, route)),
         laser_rng_(seed, 1),
-        world_(std::make_unique<World>(plan, 0.0)),
+        world_(std::make_unique<World>(plan_, 0.0)),
         follower_(params_.follower, params_.robot),
         robot_(params_.robot, startPose()),
         odometry_(params_.odometry, params_.robot.wheel_base, hyselam::Rng(seed, 2)) {
@@ -77,6 +77,7 @@ class Run {
     sample();
     for (std::size_t i = 0; i < route_.steps.size(); ++i) {
       const RouteStep& step = route_.steps[i];
+      if (!step.doors.empty()) setDoors(step);
       switch (step.kind) {
         case RouteStep::Kind::kGo:
           go(i);
@@ -110,6 +111,26 @@ class Run {
       throw ParameterError("start_time", params.start_time, "within (0, 4e9) s");
     }
     return params;
+  }
+
+  static FloorPlan withDoors(FloorPlan plan, const Route& route) {
+    if (route.doors.empty()) return plan;
+    try {
+      plan.setDoors(route.doors);
+    } catch (const hyselam::InputError& e) {
+      throw hyselam::InputError(route.source, "key 'doors'",
+                                "does not fit the plan: " + std::string(e.what()));
+    }
+    return plan;
+  }
+
+  void setDoors(const RouteStep& step) {
+    try {
+      plan_.setDoors(step.doors);
+    } catch (const hyselam::InputError& e) {
+      fail(step.where, "does not fit the plan: " + std::string(e.what()));
+    }
+    world_ = std::make_unique<World>(plan_, time());
   }
 
   double time() const { return static_cast<double>(ticks_) / params_.odometry_rate; }
@@ -355,7 +376,7 @@ class Run {
     return follower_.remaining() - before;
   }
 
-  const FloorPlan& plan_;
+  FloorPlan plan_;  // its doors move
   const Route& route_;
   const SimulationParams params_;
   std::uint64_t ticks_ = 0;
