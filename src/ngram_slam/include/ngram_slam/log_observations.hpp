@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "hyselam_common/robot_log.hpp"
-#include "ngram_slam/observation.hpp"
+#include "ngram_slam/observation_sensor.hpp"
 
 namespace ngram_slam {
 
-struct LogObservationParams {
-  double bandwidth = 2.5;     ///< radius of the uniform kernel [m] (5.3.1), > 0
-  double resolution = 0.1;    ///< of the local map [m]
-  double usable_range = 0.0;  ///< beams say nothing beyond it [m]; 0: all that fits the local map
-  double step = 0.1;          ///< of way between observations [m], > 0
-};
+using LogObservationParams = ObservationSensorParams;
 
 /// What a scan of the log was good for.
 struct LogObservations {

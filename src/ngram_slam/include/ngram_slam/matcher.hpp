@@ -30,9 +30,6 @@ struct MatcherParams {
   void validate() const;
 };
 
-/// Which way the robot went when it passed a place before.
-enum class Direction : std::uint8_t { kSame, kReverse };
-
 /// n words that end with `newer` match n words that end with `older`, or, travelled the other way,
 /// n words that begin with `older`.
 struct Match {

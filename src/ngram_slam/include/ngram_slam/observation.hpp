@@ -23,6 +23,12 @@ struct Observation {
   std::optional<double> full;
 };
 
+/// Which density words are made of.
+enum class WordDensity {
+  kSoft,  ///< Observation::soft, what the robot sees when it comes by (4.2.1)
+  kFull   ///< Observation::full, seen from farther on; soft where it is missing
+};
+
 /// Says where along the way observations are due: one for every `step` metres of displacement.
 class DistanceSampler {
  public:
@@ -43,7 +49,7 @@ class DistanceSampler {
   std::optional<hyselam::Pose2> last_;
 };
 
-/// All observations of all runs in 25 bytes each. Values are rounded when they are taken in
+/// All observations of all runs in 27 bytes each. Values are rounded when they are taken in
 /// (positions to 0.1 mm, densities to 1/65534), so that what is built from the store is the same
 /// before it is saved and after it is loaded.
 class ObservationStore {
@@ -58,6 +64,11 @@ class ObservationStore {
   std::uint32_t size() const { return static_cast<std::uint32_t>(stamps_.size()); }
   Observation operator[](std::uint32_t i) const;
   double soft(std::uint32_t i) const { return soft_[i] * (1.0 / kDensitySteps); }
+  /// What words are made of. Where nobody looked back, the soft density takes the full one's place.
+  double density(std::uint32_t i, WordDensity which) const {
+    return which == WordDensity::kFull && full_[i] != kUndefined ? full_[i] * (1.0 / kDensitySteps)
+                                                                 : soft(i);
+  }
   double stamp(std::uint32_t i) const { return stamps_[i]; }
   hyselam::Pose2 pose(std::uint32_t i) const;
 
@@ -84,7 +95,7 @@ class ObservationStore {
   std::vector<Run> runs_;
   std::vector<double> stamps_;
   std::vector<std::int32_t> x_, y_, theta_;
-  std::vector<std::uint16_t> soft_, hard_;
+  std::vector<std::uint16_t> soft_, hard_, full_;
   std::vector<std::uint8_t> frontiers_;
 };
 

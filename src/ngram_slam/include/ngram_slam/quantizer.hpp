@@ -28,6 +28,8 @@ class DensityClasses {
 
   /// The id of the class of a density in [0, 1].
   int classOf(double density) const;
+  /// The same, but the class `before` is kept while the density lies within `hysteresis` of it.
+  int classOf(double density, int before, double hysteresis) const;
   const std::vector<DensityClass>& list() const { return classes_; }
 
  private:

@@ -2,19 +2,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ngram_slam/corpus.hpp"
 #include "ngram_slam/matcher.hpp"
 #include "ngram_slam/regions.hpp"
+#include "ngram_slam/reverse_matcher.hpp"
 
 namespace ngram_slam {
-
-/// Which density words are made of.
-enum class WordDensity {
-  kSoft,  ///< Observation::soft, what the robot sees when it comes by (4.2.1)
-  kFull   ///< Observation::full, seen from farther on; soft where it is missing
-};
 
 struct RecogniserParams {
   int levels = 3;           ///< levels of words, 1..16
@@ -70,17 +66,25 @@ class Recogniser {
   const DensityClasses& classes() const {
     return params_.learn_classes ? quantizer_.classes() : fixed_classes_;
   }
+  /// Of the densities, from which the classes are learnt; empty for fixed classes.
+  Histogram histogram() const {
+    return params_.learn_classes ? quantizer_.histogram() : Histogram{};
+  }
   const Text& text() const { return *text_; }
   const MatcherCounters& counters() const { return matcher_->counters(); }
   /// How often the classes changed.
   int requantisations() const { return requantisations_; }
-  std::size_t bytes() const { return observations_.bytes() + text_->bytes() + matcher_->bytes(); }
+  std::size_t bytes() const;
   /// What to save.
   Corpus corpus() const;
 
  private:
   void startAnew();
+  void startRun(std::uint32_t first_observation);
   std::vector<Match> rebuild(bool match_old_runs);
+  std::vector<Match> newMatches();
+  double densityOf(std::uint32_t i) const { return observations_.density(i, params_.word_density); }
+  int classOf(std::uint32_t i);
   void write(const Region& region);
 
   RecogniserParams params_;
@@ -90,6 +94,8 @@ class Recogniser {
   RegionBuilder regions_;
   std::unique_ptr<Text> text_;
   std::unique_ptr<Matcher> matcher_;
+  std::unique_ptr<ReverseMatcher> reverse_matcher_;
+  std::optional<int> last_class_;  // of the observation before, in this run
   bool run_open_ = false;
   int requantisations_ = 0;
 };

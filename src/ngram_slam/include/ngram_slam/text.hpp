@@ -97,6 +97,23 @@ class Text {
     const Position p = first(i);
     return startsRun(p) ? WordRange{} : endingAt(p - 1);
   }
+  /// Calls `use(word)` with the words below `levels` that begin at a position: the real one, then
+  /// alternatives by level.
+  template <typename Use>
+  void forEachBeginningAt(Position p, int levels, Use&& use) const {
+    for (int level = 0; level < levels; ++level) {
+      const Position end = p + static_cast<Position>(level == 0 ? 0 : level + 1);
+      WordIndex w;
+      if (end >= positions()) return;
+      if (findEndingAt(end, level, &w)) use(w);
+    }
+  }
+  /// The words below `levels` just after a word, in its run.
+  template <typename Use>
+  void forEachSuccessor(WordIndex i, int levels, Use&& use) const {
+    const Position next = last(i) + 1;
+    if (next < positions() && !startsRun(next)) forEachBeginningAt(next, levels, use);
+  }
   /// The word of a level that ends at a position, if there is one: true and its index.
   bool findEndingAt(Position p, int level, WordIndex* found) const;
 

@@ -16,6 +16,16 @@ struct Syllables {
   float angle = 0.0f;      ///< a: change of direction in the region [rad], (-pi, pi], left positive
 };
 
+/// Which way the robot went when it passed a place before.
+enum class Direction : std::uint8_t { kSame, kReverse };
+
+/// The word of the same region passed the other way: a turn to the left becomes one to the right.
+inline Syllables reversed(Syllables s) {
+  // Half a turn is its own reverse: angles lie in (-pi, pi].
+  if (s.angle < static_cast<float>(hyselam::kPi)) s.angle = -s.angle;
+  return s;
+}
+
 /// Syllable a of Alg. 4.3 / 5.1: direction from the median to the last pose minus direction from
 /// the first to the median one, wrapped. A displacement shorter than `min_displacement` [m] has no
 /// direction; the heading of the first (or last) pose takes its place.

@@ -1,12 +1,8 @@
 #include "ngram_slam/corpus.hpp"
 
-#include <zlib.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <type_traits>
 
+#include "binary_io.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 
@@ -16,121 +12,44 @@ namespace {
 using hyselam::InputError;
 
 constexpr char kMagic[] = "NGRAMTXT";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeaderBytes = 28;
-
-template <typename T>
-using Bits = std::conditional_t<
-    sizeof(T) == 8, std::uint64_t,
-    std::conditional_t<sizeof(T) == 4, std::uint32_t,
-                       std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
-
-/// Puts numbers into a stream and sums them up.
-class Writer {
- public:
-  explicit Writer(std::ostream& out) : out_(out) {}
-  template <typename T>
-  void put(T value) {
-    Bits<T> bits;
-    std::memcpy(&bits, &value, sizeof(bits));
-    for (std::size_t i = 0; i < sizeof(bits); ++i)
-      buffer_.push_back(static_cast<char>(static_cast<std::uint64_t>(bits) >> 8 * i & 0xff));
-    if (buffer_.size() >= kChunk) flush();
-  }
-  template <typename T>
-  void putAll(const std::vector<T>& values) {
-    for (T v : values) put(v);
-  }
-  void putText(const char* text, std::size_t n) { buffer_.append(text, n); }
-  void putChecksum() {
-    flush();
-    const std::uint32_t sum = crc_;
-    put(sum);
-    flush();
-    crc_ = 0;
-  }
-
- private:
-  static constexpr std::size_t kChunk = 1 << 18;
-  void flush() {
-    crc_ = static_cast<std::uint32_t>(crc32(crc_, reinterpret_cast<const Bytef*>(buffer_.data()),
-                                            static_cast<uInt>(buffer_.size())));
-    out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    buffer_.clear();
-  }
-  std::ostream& out_;
-  std::string buffer_;
-  std::uint32_t crc_ = 0;
-};
-
-/// Takes numbers out of text whose length has been checked.
-class Reader {
- public:
-  explicit Reader(const std::string& text) : text_(text) {}
-  template <typename T>
-  T get() {
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < sizeof(T); ++i)
-      bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(text_[at_ + i])) << 8 * i;
-    at_ += sizeof(T);
-    const auto narrow = static_cast<Bits<T>>(bits);
-    T value;
-    std::memcpy(&value, &narrow, sizeof(value));
-    return value;
-  }
-  template <typename T>
-  void getAll(std::vector<T>& values, std::size_t n) {
-    values.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) values.push_back(get<T>());
-  }
-  void skip(std::size_t n) { at_ += n; }
-  std::size_t at() const { return at_; }
-
- private:
-  const std::string& text_;
-  std::size_t at_ = 0;
-};
-
-std::uint32_t checksum(const std::string& text, std::size_t begin, std::size_t end) {
-  uLong crc = 0;
-  while (begin < end) {
-    const std::size_t n = std::min(end - begin, std::size_t{1} << 30);
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(text.data() + begin), static_cast<uInt>(n));
-    begin += n;
-  }
-  return static_cast<std::uint32_t>(crc);
-}
 
 }  // namespace
 
 void CorpusFile::save(const std::string& path, const Corpus& corpus) {
-  const ObservationStore& o = corpus.observations;
+  save(path, corpus.observations, corpus.classes, corpus.histogram);
+}
+
+void CorpusFile::save(const std::string& path, const ObservationStore& o,
+                      const DensityClasses& classes, const Histogram& histogram) {
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
     Writer w(out);
     w.putText(kMagic, 8);
     w.put(kVersion);
     w.put(o.runs());
     w.put(o.size());
-    w.put(static_cast<std::uint32_t>(corpus.classes.list().size()));
-    w.put(static_cast<std::uint32_t>(corpus.histogram.size()));
+    w.put(static_cast<std::uint32_t>(classes.list().size()));
+    w.put(static_cast<std::uint32_t>(histogram.size()));
     w.putChecksum();
     for (const auto& run : o.runs_) {
       w.put(run.begin);
       w.put(run.x);
       w.put(run.y);
     }
-    for (const DensityClass& c : corpus.classes.list()) {
+    for (const DensityClass& c : classes.list()) {
       w.put(static_cast<std::uint32_t>(c.id));
       w.put(c.mode);
       w.put(c.upper);
     }
-    w.putAll(corpus.histogram);
+    w.putAll(histogram);
     w.putAll(o.stamps_);
     w.putAll(o.x_);
     w.putAll(o.y_);
     w.putAll(o.theta_);
     w.putAll(o.soft_);
     w.putAll(o.hard_);
+    w.putAll(o.full_);
     w.putAll(o.frontiers_);
     w.putChecksum();
   });
@@ -147,7 +66,7 @@ Corpus CorpusFile::load(const std::string& path) {
   r.skip(8);
   const auto version = r.get<std::uint32_t>();
   if (version != kVersion)
-    refuse("version", "is " + std::to_string(version) + ", but only 1 is known");
+    refuse("version", "is " + std::to_string(version) + ", but only 2 is known");
   const auto runs = r.get<std::uint32_t>(), observations = r.get<std::uint32_t>(),
              classes = r.get<std::uint32_t>(), bins = r.get<std::uint32_t>();
   if (r.get<std::uint32_t>() != checksum(text, 0, kHeaderBytes))
@@ -157,7 +76,7 @@ Corpus CorpusFile::load(const std::string& path) {
     refuse("header", "has a histogram of " + std::to_string(bins) + " bins");
   if (runs > observations + 1ull) refuse("header", "has more runs than observations");
   // 64 bits hold the sum whatever the counts.
-  const std::uint64_t body = 20ull * runs + 20ull * classes + 8ull * bins + 25ull * observations;
+  const std::uint64_t body = 20ull * runs + 20ull * classes + 8ull * bins + 27ull * observations;
   const std::uint64_t expected = kHeaderBytes + 4 + body + 4;
   if (text.size() != expected)
     refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
@@ -203,6 +122,7 @@ Corpus CorpusFile::load(const std::string& path) {
   r.getAll(o.theta_, observations);
   r.getAll(o.soft_, observations);
   r.getAll(o.hard_, observations);
+  r.getAll(o.full_, observations);
   r.getAll(o.frontiers_, observations);
   for (std::uint32_t i = 0; i < observations; ++i) {
     if (!std::isfinite(o.stamps_[i]))

@@ -11,8 +11,9 @@ constexpr Position kFirstReach = 4096;
 constexpr std::size_t kPart = 1024;  // entries of a part, about
 }  // namespace
 
-GramIndex::GramIndex(const Text& text, const WordTolerance& tolerance, int n, int bits)
-    : text_(text), tolerance_(tolerance), n_(n), shift_(64 - bits) {
+GramIndex::GramIndex(const Text& text, const WordTolerance& tolerance, int n, int bits,
+                     bool backwards)
+    : text_(text), tolerance_(tolerance), n_(n), shift_(64 - bits), backwards_(backwards) {
   log_width_ = -2.0 * std::log1p(-tolerance.size);
   angle_buckets_ =
       std::max(1u, static_cast<std::uint32_t>(hyselam::kPi / tolerance.angle));  // width >= 2 eps_a
@@ -44,23 +45,37 @@ std::uint32_t GramIndex::bucket(const Syllables& s) const {
               wrapped(angleBucket(s.angle, angle_buckets_), angle_buckets_));
 }
 
+/// A sum, so that a gram has one key whichever end it is read from.
+std::uint64_t GramIndex::keyOf(int place, std::uint32_t bucket) {
+  return hyselam::mix(static_cast<std::uint64_t>(place), bucket);
+}
+
 void GramIndex::insert(WordIndex last) {
-  lists_.clear();
+  targets_.clear();
   insertPaths(last, 0, 0);
-  sortLists();
-  const std::uint32_t entry =
-      text_.first(last) << 4 | static_cast<std::uint32_t>(text_.level(last));
-  for (std::uint32_t list : lists_) add(list, entry);
+  std::sort(targets_.begin(), targets_.end(), [](const Target& a, const Target& b) {
+    return a.list != b.list ? a.list < b.list : a.entry < b.entry;
+  });
+  const Target* before = nullptr;
+  for (const Target& t : targets_) {
+    if (before == nullptr || before->list != t.list || before->entry != t.entry)
+      add(t.list, t.entry);
+    before = &t;
+  }
 }
 
 void GramIndex::insertPaths(WordIndex word, int depth, std::uint64_t key) {
-  key = hyselam::mix(key, bucket(text_.syllables(word)));
+  key += keyOf(backwards_ ? n_ - 1 - depth : depth, bucket(text_.syllables(word)));
+  const Entry entry = text_.first(word) << 4 | static_cast<std::uint32_t>(text_.level(word));
   if (depth + 1 == n_) {
-    lists_.push_back(listOf(key));
+    targets_.push_back({listOf(key), entry});
     return;
   }
+  const std::size_t from = targets_.size();
   const WordRange before = text_.predecessors(word);
   for (WordIndex w = before.begin; w < before.end; ++w) insertPaths(w, depth + 1, key);
+  if (depth == 0 && !backwards_)
+    for (std::size_t i = from; i < targets_.size(); ++i) targets_[i].entry = entry;
 }
 
 void GramIndex::ask(WordIndex last) {
@@ -101,7 +116,7 @@ bool GramIndex::answer(std::vector<Entry>& part) {
 void GramIndex::collect(WordIndex word, int depth, std::uint64_t key) {
   const WordRange before = depth + 1 == n_ ? WordRange{} : text_.predecessors(word);
   if (depth + 1 < n_ && before.empty()) return;
-  const Syllables s = text_.syllables(word);
+  const Syllables s = backwards_ ? reversed(text_.syllables(word)) : text_.syllables(word);
   // A hair more than the tolerance, against rounding at the edges of buckets.
   const double share = 1.0 - tolerance_.size - 1e-9, turn = tolerance_.angle + 1e-6;
   const std::uint32_t size_from = sizeBucket(s.size * share), size_to = sizeBucket(s.size / share);
@@ -111,7 +126,7 @@ void GramIndex::collect(WordIndex word, int depth, std::uint64_t key) {
   for (std::uint32_t size = size_from; size <= size_to; ++size) {
     for (int angle = angle_from; angle <= angle_to; ++angle) {
       const std::uint64_t longer =
-          hyselam::mix(key, pack(s.density_class, size, wrapped(angle, angle_buckets_)));
+          key + keyOf(depth, pack(s.density_class, size, wrapped(angle, angle_buckets_)));
       if (depth + 1 == n_) {
         lists_.push_back(listOf(longer));
       } else {

@@ -8,12 +8,19 @@ namespace {
 
 /// The pairs that may stand before a pair, those of low levels first.
 std::vector<WordPair> predecessorPairs(const Text& text, const WordTolerance& tolerance,
-                                       const WordPair& pair, int levels) {
+                                       const WordPair& pair, int levels, Direction direction) {
   std::vector<WordPair> out;
   const WordRange newer = text.predecessors(pair.newer), older = text.predecessors(pair.older);
-  for (WordIndex a = newer.begin; a < newer.end; ++a)
-    for (WordIndex b = older.begin; b < older.end; ++b)
-      if (mayPair(text, tolerance, {a, b}, levels)) out.push_back({a, b});
+  for (WordIndex a = newer.begin; a < newer.end; ++a) {
+    const auto take = [&](WordIndex b) {
+      if (mayPair(text, tolerance, {a, b}, levels, direction)) out.push_back({a, b});
+    };
+    if (direction == Direction::kReverse) {
+      text.forEachSuccessor(pair.older, levels, take);
+    } else {
+      for (WordIndex b = older.begin; b < older.end; ++b) take(b);
+    }
+  }
   return out;
 }
 
@@ -23,15 +30,19 @@ std::uint64_t key(const WordPair& p) {
 
 }  // namespace
 
-bool mayPair(const Text& text, const WordTolerance& tolerance, const WordPair& pair, int levels) {
+bool mayPair(const Text& text, const WordTolerance& tolerance, const WordPair& pair, int levels,
+             Direction direction) {
+  const Syllables older = text.syllables(pair.older);
   return text.level(pair.newer) < levels && text.level(pair.older) < levels &&
          text.last(pair.older) < text.first(pair.newer) &&
-         wordsMatch(text.syllables(pair.newer), text.syllables(pair.older), tolerance);
+         wordsMatch(text.syllables(pair.newer),
+                    direction == Direction::kReverse ? reversed(older) : older, tolerance);
 }
 
 std::vector<WordPair> longestNgram(const Text& text, const WordTolerance& tolerance,
-                                   const WordPair& last, int levels, std::size_t max_words) {
-  if (!mayPair(text, tolerance, last, levels) || max_words == 0) return {};
+                                   const WordPair& last, int levels, std::size_t max_words,
+                                   Direction direction) {
+  if (!mayPair(text, tolerance, last, levels, direction) || max_words == 0) return {};
   struct Node {
     WordPair pair;
     std::vector<WordPair> before;
@@ -48,7 +59,7 @@ std::vector<WordPair> longestNgram(const Text& text, const WordTolerance& tolera
       const auto [at, fresh] = nodes.try_emplace(key(pair));
       if (!fresh) continue;
       at->second.pair = pair;
-      at->second.before = predecessorPairs(text, tolerance, pair, levels);
+      at->second.before = predecessorPairs(text, tolerance, pair, levels, direction);
       order.push_back(&at->second);
       next.insert(next.end(), at->second.before.begin(), at->second.before.end());
     }
@@ -73,8 +84,8 @@ std::vector<WordPair> longestNgram(const Text& text, const WordTolerance& tolera
 
 void forEachMaximalNgram(const Text& text, const WordTolerance& tolerance, const WordPair& last,
                          int levels, const std::function<bool(const std::vector<WordPair>&)>& use,
-                         std::size_t max_words) {
-  if (!mayPair(text, tolerance, last, levels) || max_words == 0) return;
+                         std::size_t max_words, Direction direction) {
+  if (!mayPair(text, tolerance, last, levels, direction) || max_words == 0) return;
   struct Step {
     std::vector<WordPair> choices;
     std::size_t next = 0;
@@ -89,7 +100,8 @@ void forEachMaximalNgram(const Text& text, const WordTolerance& tolerance, const
       continue;
     }
     chain.push_back(step.choices[step.next++]);
-    std::vector<WordPair> before = predecessorPairs(text, tolerance, chain.back(), levels);
+    std::vector<WordPair> before =
+        predecessorPairs(text, tolerance, chain.back(), levels, direction);
     if (before.empty() || chain.size() == max_words) {
       if (!use(std::vector<WordPair>(chain.rbegin(), chain.rend()))) return;
       chain.pop_back();

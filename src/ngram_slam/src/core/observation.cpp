@@ -48,6 +48,7 @@ std::uint32_t ObservationStore::append(const Observation& o) {
   if (!o.base_in_odom.isFinite()) refuse("pose");
   if (!(o.soft >= 0.0 && o.soft <= 1.0)) refuse("soft density");
   if (o.hard && !(*o.hard >= 0.0 && *o.hard <= 1.0)) refuse("hard density");
+  if (o.full && !(*o.full >= 0.0 && *o.full <= 1.0)) refuse("full density");
   if (o.frontiers < 0 || o.frontiers > 255) refuse("number of frontiers");
   if (size() == std::numeric_limits<std::uint32_t>::max()) refuse("number of observations");
 
@@ -71,6 +72,7 @@ std::uint32_t ObservationStore::append(const Observation& o) {
       std::lround(hyselam::normalizeAngle(o.base_in_odom.theta) / kAngle)));
   soft_.push_back(density(o.soft));
   hard_.push_back(o.hard ? density(*o.hard) : kUndefined);
+  full_.push_back(o.full ? density(*o.full) : kUndefined);
   frontiers_.push_back(static_cast<std::uint8_t>(o.frontiers));
   return size() - 1;
 }
@@ -92,6 +94,7 @@ Observation ObservationStore::operator[](std::uint32_t i) const {
   o.base_in_odom = pose(i);
   o.soft = soft(i);
   if (hard_[i] != kUndefined) o.hard = hard_[i] * (1.0 / kDensitySteps);
+  if (full_[i] != kUndefined) o.full = full_[i] * (1.0 / kDensitySteps);
   o.frontiers = frontiers_[i];
   return o;
 }
@@ -99,7 +102,8 @@ Observation ObservationStore::operator[](std::uint32_t i) const {
 std::size_t ObservationStore::bytes() const {
   return runs_.capacity() * sizeof(Run) + stamps_.capacity() * sizeof(double) +
          (x_.capacity() + y_.capacity() + theta_.capacity()) * sizeof(std::int32_t) +
-         (soft_.capacity() + hard_.capacity()) * sizeof(std::uint16_t) + frontiers_.capacity();
+         (soft_.capacity() + hard_.capacity() + full_.capacity()) * sizeof(std::uint16_t) +
+         frontiers_.capacity();
 }
 
 }  // namespace ngram_slam

@@ -40,6 +40,16 @@ int DensityClasses::classOf(double density) const {
   return classes_[i].id;
 }
 
+int DensityClasses::classOf(double density, int before, double hysteresis) const {
+  for (std::size_t i = 0; i < classes_.size(); ++i) {
+    if (classes_[i].id != before) continue;
+    const bool above = i == 0 || density >= classes_[i - 1].upper - hysteresis;
+    const bool below = i + 1 == classes_.size() || density < classes_[i].upper + hysteresis;
+    if (above && below) return before;
+  }
+  return classOf(density);
+}
+
 namespace {
 
 double centreOf(double bin, std::size_t bins) {

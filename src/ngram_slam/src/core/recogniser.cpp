@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "hyselam_common/errors.hpp"
+
 namespace ngram_slam {
 
 void RecogniserParams::validate() const {
@@ -10,6 +12,11 @@ void RecogniserParams::validate() const {
   mean_shift.validate();
   matcher.validate();
   const DensityClasses class_check = DensityClasses::uniform(uniform_classes);
+  if (!(class_hysteresis >= 0.0 && class_hysteresis < 0.5))
+    throw hyselam::ParameterError("class_hysteresis", class_hysteresis, "in [0, 0.5)");
+  if (!(max_chance >= 0.0)) throw hyselam::ParameterError("max_chance", max_chance, ">= 0");
+  if (!(min_probability >= 0.0 && min_probability <= 1.0))
+    throw hyselam::ParameterError("min_probability", min_probability, "in [0, 1]");
 }
 
 Recogniser::Recogniser(const RecogniserParams& params) : Recogniser(params, Corpus{}) {}
@@ -24,8 +31,7 @@ Recogniser::Recogniser(const RecogniserParams& params, Corpus corpus)
     if (!corpus.histogram.empty()) {
       quantizer_.restore(corpus.classes, corpus.histogram);
     } else {
-      for (std::uint32_t i = 0; i < observations_.size(); ++i)
-        quantizer_.add(observations_.soft(i));
+      for (std::uint32_t i = 0; i < observations_.size(); ++i) quantizer_.add(densityOf(i));
     }
   }
   rebuild(false);
@@ -36,6 +42,7 @@ void Recogniser::startAnew() {
     return angleVariation(observations_, begin, end);
   });
   matcher_ = std::make_unique<Matcher>(*text_, params_.matcher);
+  if (params_.reverse) reverse_matcher_ = std::make_unique<ReverseMatcher>(*text_, params_.matcher);
 }
 
 /// Writes the text of all observations again.
@@ -43,17 +50,39 @@ std::vector<Match> Recogniser::rebuild(bool match_old_runs) {
   startAnew();
   for (std::uint32_t run = 0; run < observations_.runs(); ++run) {
     const std::uint32_t begin = observations_.runBegin(run), end = observations_.runEnd(run);
-    regions_ = RegionBuilder(params_.min_region, begin);
-    text_->startRun(begin);
+    startRun(begin);
     for (std::uint32_t i = begin; i < end; ++i)
-      if (const auto region = regions_.add(classes().classOf(observations_.soft(i))))
-        write(*region);
+      if (const auto region = regions_.add(classOf(i))) write(*region);
     if (run_open_ && run + 1 == observations_.runs()) break;
     if (const auto region = regions_.finish()) write(*region);
   }
-  if (match_old_runs) return matcher_->update();
+  if (match_old_runs) return newMatches();
   matcher_->skip();
+  if (reverse_matcher_) reverse_matcher_->skip();
   return {};
+}
+
+std::vector<Match> Recogniser::newMatches() {
+  std::vector<Match> matches = matcher_->update();
+  if (reverse_matcher_) {
+    const std::vector<Match>& more = reverse_matcher_->update();
+    matches.insert(matches.end(), more.begin(), more.end());
+  }
+  return matches;
+}
+
+void Recogniser::startRun(std::uint32_t first_observation) {
+  regions_ = RegionBuilder(params_.min_region, first_observation);
+  text_->startRun(first_observation);
+  last_class_.reset();
+}
+
+int Recogniser::classOf(std::uint32_t i) {
+  const double density = densityOf(i);
+  last_class_ = last_class_ && params_.class_hysteresis > 0.0
+                    ? classes().classOf(density, *last_class_, params_.class_hysteresis)
+                    : classes().classOf(density);
+  return *last_class_;
 }
 
 void Recogniser::write(const Region& region) {
@@ -66,11 +95,10 @@ RecogniserUpdate Recogniser::add(const Observation& observation) {
   const std::uint32_t at = observations_.append(observation);
   if (!run_open_) {
     run_open_ = true;
-    regions_ = RegionBuilder(params_.min_region, at);
-    text_->startRun(at);
+    startRun(at);
   }
   RecogniserUpdate update;
-  if (params_.learn_classes && quantizer_.add(observations_.soft(at))) {
+  if (params_.learn_classes && quantizer_.add(densityOf(at))) {
     ++requantisations_;
     update.requantised = true;
     const Position before = text_->positions();
@@ -78,11 +106,11 @@ RecogniserUpdate Recogniser::add(const Observation& observation) {
     update.word = text_->positions() != before;
     return update;
   }
-  const auto region = regions_.add(classes().classOf(observations_.soft(at)));
+  const auto region = regions_.add(classOf(at));
   if (!region) return update;
   write(*region);
   update.word = true;
-  update.matches = matcher_->update();
+  update.matches = newMatches();
   return update;
 }
 
@@ -93,9 +121,14 @@ RecogniserUpdate Recogniser::endRun() {
   if (const auto region = regions_.finish()) {
     write(*region);
     update.word = true;
-    update.matches = matcher_->update();
+    update.matches = newMatches();
   }
   return update;
+}
+
+std::size_t Recogniser::bytes() const {
+  return observations_.bytes() + text_->bytes() + matcher_->bytes() +
+         (reverse_matcher_ ? reverse_matcher_->bytes() : 0);
 }
 
 Corpus Recogniser::corpus() const {
