@@ -1,27 +1,11 @@
-// What both servers do with their parameters at the start.
+// The setup of servers of hyselam_common under the names of this package.
 #pragma once
 
-#include <ros/console.h>
-
-#include <string>
-
-#include "hyselam_common/ros/params.hpp"
+#include "hyselam_common/ros/server_setup.hpp"
 
 namespace fsd_localization {
 
-/// How a server calls itself in the log.
-inline std::string logName(const ros::NodeHandle& private_nh) {
-  return "[" + private_nh.getNamespace() + "]";
-}
-
-/// Loads, warns of unknown names and logs the resolved table.
-template <typename Params>
-Params loadAndTell(const ros::NodeHandle& private_nh, Params (*load)(hyselam::ParamLoader&)) {
-  hyselam::ParamLoader loader(private_nh);
-  const Params params = load(loader);
-  loader.warnUnknown();
-  ROS_INFO_STREAM("parameters of " << loader.table());
-  return params;
-}
+using hyselam::loadAndTell;
+using hyselam::logName;
 
 }  // namespace fsd_localization

@@ -1,10 +1,10 @@
-#include "fsd_localization/ros/diagnostics.hpp"
+#include "hyselam_common/ros/diagnostics.hpp"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 
 #include <algorithm>
 
-namespace fsd_localization {
+namespace hyselam {
 
 Diagnostics::Diagnostics(ros::NodeHandle nh, const std::string& name, double period,
                          std::function<void(diagnostic_msgs::DiagnosticStatus&)> fill)
@@ -31,4 +31,4 @@ void addRemark(diagnostic_msgs::DiagnosticStatus& status, std::int8_t level,
   status.message += (status.message.empty() ? "" : "; ") + text;
 }
 
-}  // namespace fsd_localization
+}  // namespace hyselam
