@@ -18,7 +18,7 @@ void DropCounter::drop(const std::string& reason, const std::string& detail) {
   const ros::WallTime now = ros::WallTime::now();
   if (tally.count > 1 && (now - tally.told).toSec() < kTellEvery) return;
   tally.told = now;
-  ROS_WARN_STREAM(who_ << " scan dropped, " << last_ << " (" << tally.count << " so far)");
+  ROS_WARN_STREAM(who_ << " " << what_ << " dropped, " << last_ << " (" << tally.count << " so far)");
 }
 
 std::size_t DropCounter::count(const std::string& reason) const {
@@ -27,7 +27,7 @@ std::size_t DropCounter::count(const std::string& reason) const {
 }
 
 void DropCounter::report(diagnostic_msgs::DiagnosticStatus& status) const {
-  addValue(status, "scans dropped", total_);
+  addValue(status, what_ + "s dropped", total_);
   for (const auto& [reason, tally] : tallies_) addValue(status, "dropped: " + reason, tally.count);
   if (!last_.empty()) addValue(status, "last dropped", last_);
 }

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 
 namespace fsd_localization {
 
@@ -13,9 +14,11 @@ namespace fsd_localization {
 class DropCounter {
  public:
   /// @param who begins the warnings ("[/localization]").
-  explicit DropCounter(std::string who) : who_(std::move(who)) {}
+  /// @param what is dropped.
+  explicit DropCounter(std::string who, std::string what = "scan")
+      : who_(std::move(who)), what_(std::move(what)) {}
 
-  /// Counts one scan; warns at the first one of a reason, then at most once in ten seconds.
+  /// Counts one; warns at the first one of a reason, then at most once in ten seconds.
   /// @param reason a fixed word or two ("no transform"), @param detail what is special this time.
   void drop(const std::string& reason, const std::string& detail);
 
@@ -31,7 +34,7 @@ class DropCounter {
     std::size_t count = 0;
     ros::WallTime told;
   };
-  std::string who_;
+  std::string who_, what_;
   std::map<std::string, Tally> tallies_;
   std::size_t total_ = 0;
   std::string last_;

@@ -52,7 +52,14 @@ struct LocalizationServerParams {
   std::optional<InitialPose> initial_pose;  ///< empty: the robot knows nothing at the start
 };
 
+/// Frames, waiting time and queue of scans, for every server that takes scans.
 /// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.
+void loadScanInput(hyselam::ParamLoader& loader, ScanInputParams& params);
+/// A rate [Hz] that may be -1 for "no limit" or "never". @throws as above.
+void loadRate(hyselam::ParamLoader& loader, const std::string& name, double& value,
+              const std::string& meaning);
+
+/// @throws as above.
 FsdServerParams loadFsdParams(hyselam::ParamLoader& loader);
 /// As above. Names of amcl that mean nothing here are taken as known; see ignoredAmclParams().
 LocalizationServerParams loadLocalizationParams(hyselam::ParamLoader& loader);

@@ -1,0 +1,31 @@
+// Parameters of the nodelet Words; README.md holds the table.
+#pragma once
+
+#include <string>
+
+#include "fsd_localization/ros/parameters.hpp"
+#include "hyselam_common/ros/params.hpp"
+#include "ngram_slam/observation_sensor.hpp"
+#include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/semantic_segmenter.hpp"
+
+namespace ngram_slam {
+
+struct WordsServerParams {
+  bool from_scan = false;  ///< observations from `scan` and tf, else from `fsd_observation`
+  fsd_localization::ScanInputParams input;
+  ObservationSensorParams sensor;  ///< with `fsd_observation` only bandwidth and step count
+  RecogniserParams recogniser;
+  bool semantics = true;
+  SemanticParams semantic;
+  std::string corpus;              ///< file loaded at the start and saved; empty: none
+  double save_period = 60.0;       ///< [s] of wall time; 0: only at the end and when asked
+  double gui_publish_rate = 1.0;   ///< of word_markers [Hz]; -1: no limit
+  int shown_words = 300;           ///< in word_markers, the newest
+  double diagnostic_period = 1.0;  ///< [s]
+};
+
+/// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.
+WordsServerParams loadWordsParams(hyselam::ParamLoader& loader);
+
+}  // namespace ngram_slam

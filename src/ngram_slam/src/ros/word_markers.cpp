@@ -1,0 +1,167 @@
+#include "ngram_slam/ros/word_markers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "hyselam_common/ros/conversions.hpp"
+
+namespace ngram_slam {
+
+using visualization_msgs::Marker;
+
+namespace {
+
+std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
+  std_msgs::ColorRGBA c;
+  c.r = static_cast<float>(r);
+  c.g = static_cast<float>(g);
+  c.b = static_cast<float>(b);
+  c.a = static_cast<float>(a);
+  return c;
+}
+
+std_msgs::ColorRGBA colourOf(SemanticClass c) {
+  switch (c) {
+    case SemanticClass::kBifurcation:
+      return colour(0.95, 0.75, 0.10);
+    case SemanticClass::kCorner:
+      return colour(0.90, 0.35, 0.10);
+    case SemanticClass::kCorridor:
+      return colour(0.45, 0.65, 0.90);
+    case SemanticClass::kDeadEnd:
+      return colour(0.55, 0.30, 0.70);
+    case SemanticClass::kHall:
+      return colour(0.35, 0.75, 0.40);
+  }
+  return colour(0.6, 0.6, 0.6);
+}
+
+/// From blue (narrow) over green to red (wide), for densities 0..1.
+std_msgs::ColorRGBA colourOf(double density) {
+  const double x = std::clamp(density, 0.0, 1.0);
+  return colour(std::clamp(2.0 * x - 0.6, 0.0, 1.0), 1.0 - std::abs(2.0 * x - 1.0),
+                std::clamp(1.2 - 2.4 * x, 0.0, 1.0));
+}
+
+geometry_msgs::Point at(const hyselam::Pose2& pose, double z) {
+  geometry_msgs::Point p;
+  p.x = pose.x;
+  p.y = pose.y;
+  p.z = z;
+  return p;
+}
+
+Marker marker(const std_msgs::Header& header, const char* name, int type, double width) {
+  Marker m;
+  m.header = header;
+  m.ns = name;
+  m.type = type;
+  m.action = Marker::ADD;
+  m.pose.orientation.w = 1.0;
+  m.scale.x = width;
+  m.color = colour(0.1, 0.1, 0.1);
+  return m;
+}
+
+/// Beside the way at an observation, `aside` metres to its left.
+geometry_msgs::Point beside(const ObservationStore& observations, std::uint32_t i, double aside) {
+  return at(observations.pose(i) * hyselam::Pose2{0.0, aside, 0.0}, 0.3);
+}
+
+void addText(visualization_msgs::MarkerArray& array, Marker m, int id,
+             const geometry_msgs::Point& place, const std::string& text) {
+  m.id = id;
+  m.pose.position = place;
+  m.text = text;
+  array.markers.push_back(m);
+}
+
+std::string textOf(const Syllables& s) {
+  std::ostringstream text;
+  text << s.density_class << '.' << s.size;
+  const long degrees = std::lround(hyselam::degrees(s.angle));
+  if (std::abs(degrees) >= 10) text << ' ' << std::showpos << degrees << "°";
+  return text.str();
+}
+
+}  // namespace
+
+visualization_msgs::MarkerArray wordMarkers(const Recogniser& recogniser, const ShownRun& shown,
+                                            int words, const std_msgs::Header& header) {
+  const ObservationStore& observations = recogniser.observations();
+  const Text& text = recogniser.text();
+  visualization_msgs::MarkerArray array;
+  Marker clear;
+  clear.header = header;
+  clear.action = Marker::DELETEALL;
+  array.markers.push_back(clear);
+  if (observations.size() == 0) return array;
+
+  const std::uint32_t run_begin = observations.runBegin(observations.runs() - 1);
+  Position first = text.positions();
+  for (int n = 0; n < words && first > 0; ++n) {
+    if (text.observationBegin(text.realWord(first - 1)) < run_begin) break;
+    --first;
+  }
+  const std::uint32_t begin =
+      first < text.positions() ? text.observationBegin(text.realWord(first)) : run_begin;
+
+  Marker regions = marker(header, "regions", Marker::LINE_STRIP, 0.45);
+  Marker kinds = marker(header, "kinds", Marker::TEXT_VIEW_FACING, 0.0);
+  kinds.scale.z = 0.55;
+  kinds.color = colour(0.25, 0.25, 0.25, 0.9);
+  Marker classes = marker(header, "classes", Marker::LINE_STRIP, 0.12);
+  Marker label = marker(header, "words", Marker::TEXT_VIEW_FACING, 0.0);
+  label.scale.z = 0.5;
+
+  Position p = first;
+  auto region = shown.regions.begin();
+  for (std::uint32_t i = begin; i < observations.size(); ++i) {
+    const hyselam::Pose2 pose = observations.pose(i);
+    while (region != shown.regions.end() && region->last < i) ++region;
+    regions.points.push_back(at(pose, -0.02));
+    regions.colors.push_back(region != shown.regions.end() ? colourOf(region->semantic_class)
+                                                           : colour(0.7, 0.7, 0.7));
+    if (p < text.positions() && i >= text.observationEnd(text.realWord(p))) ++p;
+    std_msgs::ColorRGBA c = colour(0.7, 0.7, 0.7);
+    if (p < text.positions()) {
+      const int id = text.syllables(text.realWord(p)).density_class;
+      for (const DensityClass& known : recogniser.classes().list())
+        if (known.id == id) c = colourOf(known.mode);
+    }
+    classes.points.push_back(at(pose, 0.05));
+    classes.colors.push_back(c);
+  }
+  if (regions.points.size() >= 2) {
+    if (!shown.regions.empty()) array.markers.push_back(regions);
+    array.markers.push_back(classes);
+  }
+  int id = 0;
+  for (const SemanticRegion& r : shown.regions)
+    if (r.first >= begin)
+      addText(array, kinds, id++, beside(observations, (r.first + r.last) / 2, -0.9),
+              nameOf(r.semantic_class));
+  for (Position w = first; w < text.positions(); ++w) {
+    const WordIndex word = text.realWord(w);
+    const std::uint32_t middle = (text.observationBegin(word) + text.observationEnd(word) - 1) / 2;
+    addText(array, label, static_cast<int>(w - first), beside(observations, middle, 0.8),
+            textOf(text.syllables(word)));
+  }
+
+  Marker lines = marker(header, "matches", Marker::LINE_LIST, 0.06);
+  for (const MatchLine& m : shown.matches) {
+    if (m.pair.older < begin || m.pair.newer >= observations.size()) continue;
+    const auto c = m.direction == Direction::kReverse ? colour(0.85, 0.1, 0.75, 0.8)
+                                                      : colour(0.05, 0.55, 0.1, 0.8);
+    for (std::uint32_t i : {m.pair.newer, m.pair.older}) {
+      lines.points.push_back(at(observations.pose(i), 0.2));
+      lines.colors.push_back(c);
+    }
+  }
+  if (!lines.points.empty()) array.markers.push_back(lines);
+  return array;
+}
+
+}  // namespace ngram_slam
