@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -11,8 +12,25 @@ using hyselam::Cell;
 
 namespace {
 
+// As masks of OpenCV have it, so that equal maps are equal bytes.
+constexpr std::uint8_t kObstacle = 255;
+
 std::int32_t square(std::int32_t v) {
   return v * v;
+}
+
+// By x, then y, in two counting passes.
+void sortByColumn(std::vector<Cell>* cells, int width, int height) {
+  std::vector<Cell> other(cells->size());
+  std::vector<std::size_t> start(static_cast<std::size_t>(std::max(width, height)) + 1);
+  const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>* to, int Cell::*key) {
+    std::fill(start.begin(), start.end(), std::size_t{0});
+    for (const Cell& c : from) ++start[static_cast<std::size_t>(c.*key) + 1];
+    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+    for (const Cell& c : from) (*to)[start[static_cast<std::size_t>(c.*key)]++] = c;
+  };
+  pass(*cells, &other, &Cell::y);
+  pass(other, cells, &Cell::x);
 }
 
 }  // namespace
@@ -30,7 +48,7 @@ DistanceMap::DistanceMap(const cv::Mat& obstacles)
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* row = obstacles.ptr<std::uint8_t>(y);
     std::transform(row, row + width_, &obstacle_[index({0, y})],
-                   [](std::uint8_t v) { return v != 0 ? std::uint8_t{1} : std::uint8_t{0}; });
+                   [](std::uint8_t v) { return v != 0 ? kObstacle : std::uint8_t{0}; });
   }
   nearest_row_.resize(cells);
   nearest_column_.resize(cells);
@@ -44,7 +62,7 @@ void DistanceMap::setObstacle(Cell c, bool obstacle) {
   if (c.x < 0 || c.y < 0 || c.x >= width_ || c.y >= height_) return;
   std::uint8_t& value = obstacle_[index(c)];
   if ((value != 0) == obstacle) return;
-  value = obstacle ? 1 : 0;
+  value = obstacle ? kObstacle : std::uint8_t{0};
   edited_.push_back(c);
 }
 
@@ -183,8 +201,7 @@ std::vector<RowSpan> DistanceMap::update() {
     for (int y = 0; y < height_; ++y) spans.push_back({y, 0, width_ - 1});
     return spans;
   }
-  std::sort(edited_.begin(), edited_.end(),
-            [](const Cell& a, const Cell& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  sortByColumn(&edited_, width_, height_);
   // A column changes between the obstacles that enclose its edited cells.
   int lowest = height_, highest = -1;
   for (std::size_t i = 0; i < edited_.size();) {
@@ -246,8 +263,13 @@ std::vector<RowSpan> DistanceMap::update(const cv::Mat& obstacles) {
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* row = obstacles.ptr<std::uint8_t>(y);
     const std::uint8_t* old = &obstacle_[index({0, y})];
-    for (int x = 0; x < width_; ++x) {
-      if ((row[x] != 0) != (old[x] != 0)) setObstacle({x, y}, row[x] != 0);
+    constexpr int kChunk = 64;
+    for (int x = 0; x < width_; x += kChunk) {
+      const int end = std::min(x + kChunk, width_);
+      if (std::memcmp(row + x, old + x, static_cast<std::size_t>(end - x)) == 0) continue;
+      for (int u = x; u < end; ++u) {
+        if ((row[u] != 0) != (old[u] != 0)) setObstacle({u, y}, row[u] != 0);
+      }
     }
   }
   return update();

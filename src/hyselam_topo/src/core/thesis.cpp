@@ -366,10 +366,11 @@ ThesisResult runThesis(const OccupancyGrid& grid, const ThesisParams& params) {
   for (const ConfirmedDoor& d : r.doors) {
     cv::line(closed, toPoint(d.critical.basis_a), toPoint(d.critical.basis_b), 255, 1, cv::LINE_4);
   }
-  // A circle in a doorway is no place.
+  // A circle in a doorway is no place, nor one that is narrower than the narrowest door.
   r.circles.erase(std::remove_if(r.circles.begin(), r.circles.end(),
                                  [&](const Circle& c) {
-                                   return closed.at<std::uint8_t>(c.centre.y, c.centre.x) != 0;
+                                   return c.radius <= door_min ||
+                                          closed.at<std::uint8_t>(c.centre.y, c.centre.x) != 0;
                                  }),
                   r.circles.end());
   if (r.circles.size() > kMaxPlaces) {

@@ -106,27 +106,45 @@ void VoronoiDiagram::update(const DistanceMap& d, const std::vector<RowSpan>& ch
     }
   };
   // A cell's mark depends on its own site and those of its four neighbours.
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(borders_.cols));
   const auto refresh = [&](int y, int first, int last) {
-    if (y < 0 || y >= borders_.rows) return;
     std::uint8_t* row = borders_.ptr<std::uint8_t>(y);
-    for (int x = std::max(first, 0); x <= std::min(last, borders_.cols - 1); ++x) {
-      std::uint8_t mark = 0;
-      if (d.squared({x, y}) != 0) {
-        if (x > 0) markPair(d, {x - 1, y}, {x, y}, noise_, nullptr, &mark);
-        if (x + 1 < borders_.cols) markPair(d, {x, y}, {x + 1, y}, noise_, &mark, nullptr);
-        if (y > 0) markPair(d, {x, y - 1}, {x, y}, noise_, nullptr, &mark);
-        if (y + 1 < borders_.rows) markPair(d, {x, y}, {x, y + 1}, noise_, &mark, nullptr);
+    std::uint8_t* now = marks.data();
+    std::fill(now + first, now + last + 1, std::uint8_t{0});
+    if (first > 0) markPair(d, {first - 1, y}, {first, y}, noise_, nullptr, now + first);
+    for (int x = first; x <= last; ++x) {
+      if (x + 1 < borders_.cols) {
+        markPair(d, {x, y}, {x + 1, y}, noise_, now + x, x < last ? now + x + 1 : nullptr);
       }
-      if (mark == row[x]) continue;
-      row[x] = mark;
+      if (y > 0) markPair(d, {x, y - 1}, {x, y}, noise_, nullptr, now + x);
+      if (y + 1 < borders_.rows) markPair(d, {x, y}, {x, y + 1}, noise_, now + x, nullptr);
+      if (now[x] == row[x]) continue;
+      row[x] = now[x];
       touch(x, y);
     }
   };
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    const RowSpan& s = changed[i];
-    refresh(s.y, s.first - 1, s.last + 1);
-    refresh(s.y - 1, s.first, s.last);
-    refresh(s.y + 1, s.first, s.last);
+  // Spans come in the order of rows. Row y is looked at where it, the row below or the one above
+  // has changed.
+  std::size_t begin = 0;
+  std::vector<std::pair<int, int>> parts;
+  for (int y = changed.empty() ? 0 : changed.front().y - 1;
+       !changed.empty() && y <= changed.back().y + 1; ++y) {
+    while (begin < changed.size() && changed[begin].y < y - 1) ++begin;
+    if (y < 0 || y >= borders_.rows) continue;
+    parts.clear();
+    for (std::size_t i = begin; i < changed.size() && changed[i].y <= y + 1; ++i) {
+      const int more = changed[i].y == y ? 1 : 0;
+      parts.push_back({std::max(0, changed[i].first - more),
+                       std::min(borders_.cols - 1, changed[i].last + more)});
+    }
+    std::sort(parts.begin(), parts.end());
+    for (std::size_t i = 0; i < parts.size();) {
+      const int first = parts[i].first;
+      int last = parts[i].second;
+      while (++i < parts.size() && parts[i].first <= last + 1)
+        last = std::max(last, parts[i].second);
+      refresh(y, first, last);
+    }
   }
   for (int ty = 0; ty < tiles_y; ++ty) {
     for (int tx = 0; tx < tiles_x; ++tx) {
