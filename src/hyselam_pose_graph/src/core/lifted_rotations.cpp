@@ -1,0 +1,247 @@
+#include "lifted_rotations.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+
+#include "hyselam_common/rng.hpp"
+
+namespace hyselam_pose_graph {
+
+namespace {
+
+using Vector4 = Eigen::Matrix<double, 4, 1>;
+using Matrix4 = Eigen::Matrix<double, 4, 4>;
+
+/// 7 unknowns per pose: 3 for the direction of its rotation on the sphere, 4 for its position.
+struct Block7 {
+  using Vector = Eigen::Matrix<double, 7, 1>;
+  using Matrix = Eigen::Matrix<double, 7, 7>;
+  Matrix m;
+
+  static Block7 zero() { return {Matrix::Zero()}; }
+  void subtractProduct(const Block7& a, const Block7& b) { m.noalias() -= a.m * b.m.transpose(); }
+  bool factor() {
+    const Eigen::LLT<Matrix> llt(m);
+    if (llt.info() != Eigen::Success) return false;
+    m = llt.matrixL();
+    return m.allFinite();
+  }
+  void solveRight(const Block7& l) {
+    l.m.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(m);
+  }
+  void solveLower(Vector& v) const { m.triangularView<Eigen::Lower>().solveInPlace(v); }
+  void solveUpper(Vector& v) const { m.triangularView<Eigen::Lower>().transpose().solveInPlace(v); }
+  void subtractTimes(const Vector& x, Vector& y) const { y.noalias() -= m * x; }
+  void subtractAdjointTimes(const Vector& x, Vector& y) const { y.noalias() -= m.transpose() * x; }
+};
+
+/// (re, im, re, im) of two complex numbers times c + i s.
+Vector4 turned(const Vector4& u, double c, double s) {
+  return {c * u[0] - s * u[1], s * u[0] + c * u[1], c * u[2] - s * u[3], s * u[2] + c * u[3]};
+}
+
+/// Orthonormal directions in which a unit vector of R^4 can move: its products with the quaternions
+/// i, j, k.
+Eigen::Matrix<double, 4, 3> tangent(const Vector4& u) {
+  Eigen::Matrix<double, 4, 3> b;
+  b << -u[1], -u[2], -u[3],  //
+      u[0], u[3], -u[2],     //
+      -u[3], u[0], u[1],     //
+      u[2], -u[1], u[0];
+  return b;
+}
+
+struct Lifted {
+  Vector4 rotation, position;
+};
+
+struct LiftedEdge {
+  int from, to;
+  double kappa, tau;
+  double c, s;  ///< measured rotation
+  double x, y;  ///< measured position
+};
+
+class LiftedProblem {
+ public:
+  explicit LiftedProblem(const PoseSystem& system) : system_(system) {
+    for (const SystemEdge& e : system.edges()) {
+      // tau: what the information of the position is on average, 2 / trace(inverse).
+      const double determinant = e.w[0] * e.w[2] - e.w[1] * e.w[1];
+      const double trace = e.w[0] + e.w[2];
+      const double tau = trace > 0.0 ? std::max(0.0, 2.0 * determinant / trace) : 0.0;
+      edges_.push_back({e.from, e.to, e.w[5], tau, std::cos(e.theta), std::sin(e.theta), e.x, e.y});
+    }
+  }
+
+  double cost(const std::vector<Lifted>& v) const {
+    double sum = 0.0;
+    for (const LiftedEdge& e : edges_) {
+      const Residual r = residual(e, v);
+      sum += e.kappa * r.rotation.squaredNorm() + e.tau * r.position.squaredNorm();
+    }
+    return sum;
+  }
+
+  /// Newton's equations on the spheres, damped. False where they have no minimum.
+  bool step(const std::vector<Lifted>& v, double damping, BlockCholesky<Block7>* h,
+            std::vector<Block7::Vector>* x) const {
+    h->setZero();
+    x->assign(static_cast<std::size_t>(system_.rows()), Block7::Vector::Zero());
+    std::vector<double> pull(v.size(), 0.0);  // of the cost along each rotation: Lambda
+    for (const LiftedEdge& e : edges_) {
+      const Lifted& vi = v[static_cast<std::size_t>(e.from)];
+      const Lifted& vj = v[static_cast<std::size_t>(e.to)];
+      const Residual r = residual(e, v);
+      // Gradients with respect to the rotations in R^4 and the positions.
+      const Vector4 rj = e.kappa * r.rotation, tj = e.tau * r.position;
+      const Vector4 ri = -turned(rj, e.c, -e.s) - turned(tj, e.x, -e.y);
+      pull[static_cast<std::size_t>(e.from)] += ri.dot(vi.rotation);
+      pull[static_cast<std::size_t>(e.to)] += rj.dot(vj.rotation);
+      const int row_i = system_.row(e.from), row_j = system_.row(e.to);
+      const Eigen::Matrix<double, 4, 3> bi = tangent(vi.rotation), bj = tangent(vj.rotation);
+      Eigen::Matrix<double, 4, 3> zb, yb;  // derivatives of the residuals by rotation i, negative
+      for (int k = 0; k < 3; ++k) {
+        zb.col(k) = turned(bi.col(k), e.c, e.s);
+        yb.col(k) = turned(bi.col(k), e.x, e.y);
+      }
+      if (row_i >= 0) {
+        Block7& d = h->entry(system_.pattern().diagonal(row_i));
+        d.m.topLeftCorner<3, 3>() += e.kappa * zb.transpose() * zb + e.tau * yb.transpose() * yb;
+        d.m.topRightCorner<3, 4>() += e.tau * yb.transpose();
+        d.m.bottomLeftCorner<4, 3>() += e.tau * yb;
+        d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
+        (*x)[static_cast<std::size_t>(row_i)].head<3>() -= bi.transpose() * ri;
+        (*x)[static_cast<std::size_t>(row_i)].tail<4>() += tj;
+      }
+      if (row_j >= 0) {
+        Block7& d = h->entry(system_.pattern().diagonal(row_j));
+        d.m.topLeftCorner<3, 3>() += e.kappa * Eigen::Matrix3d::Identity();
+        d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
+        (*x)[static_cast<std::size_t>(row_j)].head<3>() -= bj.transpose() * rj;
+        (*x)[static_cast<std::size_t>(row_j)].tail<4>() -= tj;
+      }
+      if (row_i >= 0 && row_j >= 0) {
+        Block7::Matrix o = Block7::Matrix::Zero();  // H(i, j)
+        o.topLeftCorner<3, 3>() = -e.kappa * zb.transpose() * bj;
+        o.topRightCorner<3, 4>() = -e.tau * yb.transpose();
+        o.bottomRightCorner<4, 4>() = -e.tau * Matrix4::Identity();
+        const CholeskyPattern::Slot slot = system_.pattern().slot(row_i, row_j);
+        if (slot.transposed)
+          h->entry(slot.entry).m += o.transpose();
+        else
+          h->entry(slot.entry).m += o;
+      }
+    }
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const int row = system_.row(static_cast<int>(i));
+      if (row < 0) continue;
+      Block7& d = h->entry(system_.pattern().diagonal(row));
+      const Block7::Vector scale = d.m.diagonal();
+      d.m.topLeftCorner<3, 3>().diagonal().array() -= pull[i];
+      d.m.diagonal() += damping * scale;
+    }
+    if (!h->factor()) return false;
+    h->solve(x);
+    return true;
+  }
+
+  std::vector<Lifted> moved(const std::vector<Lifted>& v,
+                            const std::vector<Block7::Vector>& x) const {
+    std::vector<Lifted> result = v;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const int row = system_.row(static_cast<int>(i));
+      if (row < 0) continue;
+      const Block7::Vector& d = x[static_cast<std::size_t>(row)];
+      result[i].rotation = (v[i].rotation + tangent(v[i].rotation) * d.head<3>()).normalized();
+      result[i].position += d.tail<4>();
+    }
+    return result;
+  }
+
+ private:
+  struct Residual {
+    Vector4 rotation, position;
+  };
+  static Residual residual(const LiftedEdge& e, const std::vector<Lifted>& v) {
+    const Lifted& i = v[static_cast<std::size_t>(e.from)];
+    const Lifted& j = v[static_cast<std::size_t>(e.to)];
+    return {j.rotation - turned(i.rotation, e.c, e.s),
+            j.position - i.position - turned(i.rotation, e.x, e.y)};
+  }
+
+  const PoseSystem& system_;
+  std::vector<LiftedEdge> edges_;
+};
+
+/// The complex direction of C^2 that most of the rotations share.
+Eigen::Vector2cd mainDirection(const std::vector<Lifted>& v) {
+  Eigen::Matrix2cd gram = Eigen::Matrix2cd::Zero();
+  for (const Lifted& p : v) {
+    const Eigen::Vector2cd u{{p.rotation[0], p.rotation[1]}, {p.rotation[2], p.rotation[3]}};
+    gram += u * u.adjoint();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd>(gram).eigenvectors().col(1);
+}
+
+}  // namespace
+
+std::vector<SystemPose> liftedSolution(const PoseSystem& system, std::vector<SystemPose> poses,
+                                       int max_iterations) {
+  const LiftedProblem problem(system);
+  // A little of the second dimension, at random, leads away from the false minimum of the first.
+  hyselam::Rng rng(1);
+  std::vector<Lifted> v;
+  v.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const SystemPose& p = poses[i];
+    const double shake = system.row(static_cast<int>(i)) < 0 ? 0.0 : 0.3;
+    const double a = shake * (2.0 * rng.uniform() - 1.0), b = shake * (2.0 * rng.uniform() - 1.0);
+    v.push_back({Vector4(p.c, p.s, a, b).normalized(), Vector4(p.x, p.y, 0.0, 0.0)});
+  }
+  BlockCholesky<Block7> h(system.pattern());
+  std::vector<Block7::Vector> x;
+  double cost = problem.cost(v), damping = 1e-2;
+  for (int i = 0; i < max_iterations && damping < 1e9; ++i) {
+    if (!problem.step(v, damping, &h, &x)) {
+      damping *= 4.0;
+      continue;
+    }
+    std::vector<Lifted> next = problem.moved(v, x);
+    const double next_cost = problem.cost(next);
+    if (!(next_cost < cost)) {
+      damping *= 4.0;
+      continue;
+    }
+    const double gain = cost - next_cost;
+    v = std::move(next);
+    cost = next_cost;
+    damping = std::max(damping / 4.0, 1e-9);
+    if (gain < 1e-8 * cost) break;
+  }
+  const Eigen::Vector2cd direction = mainDirection(v);
+  // Poses held fast keep their rotation: each part is turned back by that of its first pose, which
+  // comes before the others.
+  std::vector<std::complex<double>> turn;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Vector4& u = v[i].rotation;
+    const std::complex<double> r = std::conj(direction[0]) * std::complex<double>(u[0], u[1]) +
+                                   std::conj(direction[1]) * std::complex<double>(u[2], u[3]);
+    const double length = std::abs(r);
+    const std::complex<double> unit = length > 0.0 ? r / length : std::complex<double>(1.0, 0.0);
+    SystemPose& p = poses[i];
+    if (system.row(static_cast<int>(i)) < 0) {
+      turn.push_back(std::complex<double>(p.c, p.s) / unit);
+      continue;
+    }
+    const std::complex<double> rotation =
+        unit * turn[static_cast<std::size_t>(system.part(static_cast<int>(i)))];
+    p.c = rotation.real();
+    p.s = rotation.imag();
+    p.theta = std::arg(rotation);
+  }
+  return poses;
+}
+
+}  // namespace hyselam_pose_graph

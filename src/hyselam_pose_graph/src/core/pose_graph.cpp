@@ -1,0 +1,147 @@
+#include "hyselam_pose_graph/pose_graph.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <deque>
+#include <stdexcept>
+#include <string>
+
+namespace hyselam_pose_graph {
+
+namespace {
+
+using hyselam::Pose2;
+
+struct Neighbour {
+  int pose;
+  int edge;
+};
+
+std::vector<std::vector<Neighbour>> neighbours(const PoseGraph& graph) {
+  std::vector<std::vector<Neighbour>> list(graph.poses.size());
+  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+    const PoseEdge& edge = graph.edges[e];
+    list[static_cast<std::size_t>(edge.from)].push_back({edge.to, static_cast<int>(e)});
+    list[static_cast<std::size_t>(edge.to)].push_back({edge.from, static_cast<int>(e)});
+  }
+  return list;
+}
+
+/// Information up to rounding: a matrix written with six digits may be off a little.
+bool isInformation(const Eigen::Matrix3d& m) {
+  if (!m.allFinite()) return false;
+  const double scale = m.cwiseAbs().maxCoeff();
+  if ((m - m.transpose()).cwiseAbs().maxCoeff() > 1e-6 * scale) return false;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(m, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() >= -1e-6 * scale;
+}
+
+}  // namespace
+
+void PoseGraph::validate() const {
+  if (ids.size() != poses.size())
+    throw std::invalid_argument("a pose graph of " + std::to_string(poses.size()) + " poses has " +
+                                std::to_string(ids.size()) + " ids");
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (!poses[i].isFinite())
+      throw std::invalid_argument("pose " + std::to_string(ids[i]) + " is not finite");
+  const int n = static_cast<int>(poses.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const PoseEdge& e = edges[i];
+    const std::string name = "edge " + std::to_string(i);
+    if (e.from < 0 || e.from >= n || e.to < 0 || e.to >= n)
+      throw std::invalid_argument(name + " refers to a pose that is not there");
+    if (e.from == e.to) throw std::invalid_argument(name + " ties a pose to itself");
+    if (!e.measured.isFinite()) throw std::invalid_argument(name + " is not finite");
+    if (!isInformation(e.information))
+      throw std::invalid_argument(name +
+                                  ": information is not a symmetric positive semidefinite matrix");
+  }
+}
+
+Eigen::Vector3d edgeError(const PoseEdge& edge, const Pose2& from, const Pose2& to) {
+  const Pose2 e = between(edge.measured, between(from, to));
+  return {e.x, e.y, e.theta};
+}
+
+double edgeCost(const PoseEdge& edge, const std::vector<Pose2>& poses) {
+  const Eigen::Vector3d e = edgeError(edge, poses[static_cast<std::size_t>(edge.from)],
+                                      poses[static_cast<std::size_t>(edge.to)]);
+  return e.dot(edge.information * e);
+}
+
+double graphCost(const PoseGraph& graph, const std::vector<Pose2>& poses) {
+  double sum = 0.0;
+  for (const PoseEdge& edge : graph.edges) sum += edgeCost(edge, poses);
+  return sum;
+}
+
+std::vector<Pose2> composedPoses(const PoseGraph& graph) {
+  const auto list = neighbours(graph);
+  std::vector<Pose2> poses = graph.poses;
+  std::vector<char> known(poses.size(), 0);
+  std::deque<std::size_t> queue;
+  const auto settle = [&](std::size_t at, const Neighbour& n) {
+    const PoseEdge& edge = graph.edges[static_cast<std::size_t>(n.edge)];
+    const auto next = static_cast<std::size_t>(n.pose);
+    const bool forward = static_cast<std::size_t>(edge.from) == at;
+    poses[next] = poses[at] * (forward ? edge.measured : edge.measured.inverse());
+    known[next] = 1;
+    queue.push_back(next);
+  };
+  // Follows the way of the robot from `at` as far as odometry tells it.
+  const auto followChain = [&](std::size_t at) {
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (const Neighbour& n : list[at]) {
+        if (n.pose != static_cast<int>(at) + 1 || known[at + 1]) continue;
+        settle(at, n);
+        ++at;
+        moved = true;
+        break;
+      }
+    }
+  };
+  for (std::size_t first = 0; first < poses.size(); ++first) {
+    if (known[first]) continue;
+    known[first] = 1;
+    queue.push_back(first);
+    followChain(first);
+    while (!queue.empty()) {
+      const std::size_t at = queue.front();
+      queue.pop_front();
+      for (const Neighbour& n : list[at]) {
+        if (known[static_cast<std::size_t>(n.pose)]) continue;
+        settle(at, n);
+        followChain(static_cast<std::size_t>(n.pose));
+      }
+    }
+  }
+  return poses;
+}
+
+std::vector<int> connectedParts(const PoseGraph& graph) {
+  const auto list = neighbours(graph);
+  std::vector<int> part(graph.poses.size(), -1);
+  int parts = 0;
+  std::vector<std::size_t> stack;
+  for (std::size_t first = 0; first < part.size(); ++first) {
+    if (part[first] >= 0) continue;
+    part[first] = parts;
+    stack.push_back(first);
+    while (!stack.empty()) {
+      const std::size_t at = stack.back();
+      stack.pop_back();
+      for (const Neighbour& n : list[at]) {
+        const auto next = static_cast<std::size_t>(n.pose);
+        if (part[next] >= 0) continue;
+        part[next] = parts;
+        stack.push_back(next);
+      }
+    }
+    ++parts;
+  }
+  return part;
+}
+
+}  // namespace hyselam_pose_graph

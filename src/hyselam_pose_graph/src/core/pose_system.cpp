@@ -1,0 +1,272 @@
+#include "pose_system.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace hyselam_pose_graph {
+
+namespace {
+
+struct Residual {
+  double px, py;      // t_j in i
+  double ex, ey, et;  // error
+  double wx, wy, wt;  // Omega e
+};
+
+Residual residual(const SystemEdge& e, const SystemPose& i, const SystemPose& j) {
+  Residual r{};
+  const double dx = j.x - i.x, dy = j.y - i.y;
+  r.px = i.c * dx + i.s * dy;
+  r.py = -i.s * dx + i.c * dy;
+  r.ex = r.px - e.x;
+  r.ey = r.py - e.y;
+  r.et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
+  r.wx = e.w[0] * r.ex + e.w[1] * r.ey + e.w[3] * r.et;
+  r.wy = e.w[1] * r.ex + e.w[2] * r.ey + e.w[4] * r.et;
+  r.wt = e.w[3] * r.ex + e.w[4] * r.ey + e.w[5] * r.et;
+  return r;
+}
+
+double squared(const Residual& r) {
+  return r.ex * r.wx + r.ey * r.wy + r.et * r.wt;
+}
+
+}  // namespace
+
+PoseSystem::PoseSystem(const PoseGraph& graph)
+    : row_(graph.poses.size(), -1), part_(connectedParts(graph)) {
+  int rows = 0, parts = 0;
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    if (part_[i] == parts)
+      ++parts;  // first of its part: held fast
+    else
+      row_[i] = rows++;
+  }
+  std::vector<std::pair<int, int>> couplings;
+  couplings.reserve(graph.edges.size());
+  for (const PoseEdge& edge : graph.edges)
+    if (row(edge.from) >= 0 && row(edge.to) >= 0)
+      couplings.emplace_back(row(edge.from), row(edge.to));
+  pattern_ = analysePattern(rows, couplings);
+  diagonal_.resize(static_cast<std::size_t>(rows));
+  for (int i = 0; i < rows; ++i) diagonal_[static_cast<std::size_t>(i)] = pattern_.diagonal(i);
+
+  edges_.reserve(graph.edges.size());
+  for (const PoseEdge& edge : graph.edges) {
+    SystemEdge e{};
+    e.from = edge.from;
+    e.to = edge.to;
+    e.block = -1;
+    if (row(e.from) >= 0 && row(e.to) >= 0) {
+      const CholeskyPattern::Slot slot = pattern_.slot(row(e.from), row(e.to));
+      e.block = slot.entry;
+      e.from_row = !slot.transposed;
+    }
+    e.x = edge.measured.x;
+    e.y = edge.measured.y;
+    e.theta = edge.measured.theta;
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(edge.measured.theta).toRotationMatrix();
+    const Eigen::Matrix3d w = turn * edge.information * turn.transpose();
+    e.w[0] = w(0, 0);
+    e.w[1] = w(0, 1);
+    e.w[2] = w(1, 1);
+    e.w[3] = w(0, 2);
+    e.w[4] = w(1, 2);
+    e.w[5] = w(2, 2);
+    edges_.push_back(e);
+  }
+}
+
+std::vector<SystemPose> PoseSystem::system(const std::vector<hyselam::Pose2>& poses) {
+  std::vector<SystemPose> result;
+  result.reserve(poses.size());
+  for (const hyselam::Pose2& p : poses)
+    result.push_back({p.x, p.y, p.theta, std::cos(p.theta), std::sin(p.theta)});
+  return result;
+}
+
+std::vector<hyselam::Pose2> PoseSystem::poses(const std::vector<SystemPose>& poses) {
+  std::vector<hyselam::Pose2> result;
+  result.reserve(poses.size());
+  for (const SystemPose& p : poses) result.push_back({p.x, p.y, hyselam::normalizeAngle(p.theta)});
+  return result;
+}
+
+double PoseSystem::cost(const std::vector<SystemPose>& poses,
+                        const std::vector<double>& weights) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    const SystemEdge& e = edges_[k];
+    const double squares = squared(residual(e, poses[static_cast<std::size_t>(e.from)],
+                                            poses[static_cast<std::size_t>(e.to)]));
+    sum += weights.empty() ? squares : weights[k] * squares;
+  }
+  return sum;
+}
+
+void PoseSystem::edgeCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const {
+  costs->resize(edges_.size());
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    const SystemEdge& e = edges_[k];
+    (*costs)[k] = squared(residual(e, poses[static_cast<std::size_t>(e.from)],
+                                   poses[static_cast<std::size_t>(e.to)]));
+  }
+}
+
+template <bool kFromRotations>
+void PoseSystem::fill(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+                      BlockCholesky<Block3>* h, std::vector<Vector>* b) const {
+  h->setZero();
+  b->assign(static_cast<std::size_t>(rows()), Vector{});
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    const SystemEdge& e = edges_[k];
+    const double weight = weights.empty() ? 1.0 : weights[k];
+    if (weight == 0.0) continue;
+    const SystemPose& i = poses[static_cast<std::size_t>(e.from)];
+    const SystemPose& j = poses[static_cast<std::size_t>(e.to)];
+    const int ri = row(e.from), rj = row(e.to);
+    Residual r{};
+    if (kFromRotations) {
+      // Positions are unknowns themselves, counted from the origin; those held fast are known. The
+      // derivative by the angle is taken where the measurement would have it.
+      const double dx = (rj < 0 ? j.x : 0.0) - (ri < 0 ? i.x : 0.0);
+      const double dy = (rj < 0 ? j.y : 0.0) - (ri < 0 ? i.y : 0.0);
+      r.ex = i.c * dx + i.s * dy - e.x;
+      r.ey = -i.s * dx + i.c * dy - e.y;
+      r.et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
+      r.wx = e.w[0] * r.ex + e.w[1] * r.ey + e.w[3] * r.et;
+      r.wy = e.w[1] * r.ex + e.w[2] * r.ey + e.w[4] * r.et;
+      r.wt = e.w[3] * r.ex + e.w[4] * r.ey + e.w[5] * r.et;
+      r.px = e.x;
+      r.py = e.y;
+    } else {
+      r = residual(e, i, j);
+    }
+    // J_j = (R_i^T 0; 0 1), J_i = -(R_i^T q; 0 1) with q = (-py, px): d(R_i^T d)/dtheta = -q.
+    // u = Omega J_j and its products, in columns of x, y, theta.
+    const double w00 = weight * e.w[0], w01 = weight * e.w[1], w11 = weight * e.w[2];
+    const double w02 = weight * e.w[3], w12 = weight * e.w[4], w22 = weight * e.w[5];
+    const double ux0 = w00 * i.c - w01 * i.s, ux1 = w01 * i.c - w11 * i.s;
+    const double uy0 = w00 * i.s + w01 * i.c, uy1 = w01 * i.s + w11 * i.c;
+    const double hxx = i.c * ux0 - i.s * ux1, hxy = i.c * uy0 - i.s * uy1;
+    const double hyy = i.s * uy0 + i.c * uy1;
+    const double hxt = i.c * w02 - i.s * w12, hyt = i.s * w02 + i.c * w12;
+    // With m = Omega (q, 1): the column of theta in Omega J_i, but for the sign.
+    const double qx = -r.py, qy = r.px;
+    const double m0 = w00 * qx + w01 * qy + w02, m1 = w01 * qx + w11 * qy + w12;
+    const double m2 = w02 * qx + w12 * qy + w22;
+    const double mx = i.c * m0 - i.s * m1, my = i.s * m0 + i.c * m1;
+    const double mt = qx * m0 + qy * m1 + m2;
+    const double gx = weight * (i.c * r.wx - i.s * r.wy), gy = weight * (i.s * r.wx + i.c * r.wy);
+    const double gt = weight * r.wt;
+    if (rj >= 0) {
+      Block3& d = h->entry(diagonal_[static_cast<std::size_t>(rj)]);
+      d.column[0] += Vector{hxx, hxy, hxt, 0.0};
+      d.column[1] += Vector{hxy, hyy, hyt, 0.0};
+      d.column[2] += Vector{hxt, hyt, w22, 0.0};
+      (*b)[static_cast<std::size_t>(rj)] -= Vector{gx, gy, gt, 0.0};
+    }
+    if (ri >= 0) {
+      Block3& d = h->entry(diagonal_[static_cast<std::size_t>(ri)]);
+      d.column[0] += Vector{hxx, hxy, mx, 0.0};
+      d.column[1] += Vector{hxy, hyy, my, 0.0};
+      d.column[2] += Vector{mx, my, mt, 0.0};
+      const double git = weight * (qx * r.wx + qy * r.wy) + gt;
+      (*b)[static_cast<std::size_t>(ri)] += Vector{gx, gy, git, 0.0};
+    }
+    if (e.block >= 0) {
+      // H(i, j) = J_i^T Omega J_j.
+      Block3& o = h->entry(e.block);
+      if (e.from_row) {  // the entry's row is i
+        o.column[0] -= Vector{hxx, hxy, mx, 0.0};
+        o.column[1] -= Vector{hxy, hyy, my, 0.0};
+        o.column[2] -= Vector{hxt, hyt, m2, 0.0};
+      } else {
+        o.column[0] -= Vector{hxx, hxy, hxt, 0.0};
+        o.column[1] -= Vector{hxy, hyy, hyt, 0.0};
+        o.column[2] -= Vector{mx, my, m2, 0.0};
+      }
+    }
+  }
+}
+
+void PoseSystem::linearise(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+                           double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const {
+  fill<false>(poses, weights, h, b);
+  if (damping > 0.0)
+    for (const int d : diagonal_)
+      for (int k = 0; k < 3; ++k) h->entry(d).column[k][k] *= 1.0 + damping;
+}
+
+void PoseSystem::lineariseFromRotations(const std::vector<SystemPose>& poses,
+                                        const std::vector<double>& weights,
+                                        BlockCholesky<Block3>* h, std::vector<Vector>* b) const {
+  fill<true>(poses, weights, h, b);
+}
+
+std::vector<SystemPose> PoseSystem::moved(const std::vector<SystemPose>& poses,
+                                          const std::vector<Vector>& x) const {
+  std::vector<SystemPose> result = poses;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (row_[i] < 0) continue;
+    const Vector& d = x[static_cast<std::size_t>(row_[i])];
+    SystemPose& p = result[i];
+    p.x += d[0];
+    p.y += d[1];
+    p.theta += d[2];
+    p.c = std::cos(p.theta);
+    p.s = std::sin(p.theta);
+  }
+  return result;
+}
+
+bool PoseSystem::chordalRotations(const std::vector<double>& weights,
+                                  std::vector<SystemPose>* poses) const {
+  using Complex = std::complex<double>;
+  BlockCholesky<BlockComplex> h(pattern_);
+  h.setZero();
+  std::vector<Complex> b(static_cast<std::size_t>(rows()));
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    // kappa |r_j - z r_i|^2
+    const SystemEdge& e = edges_[k];
+    const double kappa = (weights.empty() ? 1.0 : weights[k]) * e.w[5];
+    if (kappa == 0.0) continue;
+    const Complex z{std::cos(e.theta), std::sin(e.theta)};
+    const int ri = row(e.from), rj = row(e.to);
+    if (ri >= 0) h.entry(diagonal_[static_cast<std::size_t>(ri)]).value += kappa;
+    if (rj >= 0) h.entry(diagonal_[static_cast<std::size_t>(rj)]).value += kappa;
+    // H(j, i) = -kappa z, H(i, j) its conjugate.
+    if (e.block >= 0) h.entry(e.block).value -= kappa * (e.from_row ? std::conj(z) : z);
+    const auto fixed = [&](int pose) {
+      const SystemPose& p = (*poses)[static_cast<std::size_t>(pose)];
+      return Complex{p.c, p.s};
+    };
+    if (ri < 0 && rj >= 0) b[static_cast<std::size_t>(rj)] += kappa * z * fixed(e.from);
+    if (rj < 0 && ri >= 0) b[static_cast<std::size_t>(ri)] += kappa * std::conj(z) * fixed(e.to);
+  }
+  if (!h.factor()) return false;
+  h.solve(&b);
+  for (std::size_t i = 0; i < poses->size(); ++i) {
+    if (row_[i] < 0) continue;
+    const Complex& r = b[static_cast<std::size_t>(row_[i])];
+    const double length = std::abs(r);
+    SystemPose& p = (*poses)[i];
+    p.theta = std::arg(r);
+    p.c = length > 0.0 ? r.real() / length : 1.0;
+    p.s = length > 0.0 ? r.imag() / length : 0.0;
+  }
+  return true;
+}
+
+double PoseSystem::largestTurn(const std::vector<SystemPose>& poses) const {
+  double largest = 0.0;
+  for (const SystemEdge& e : edges_) {
+    const double turn = poses[static_cast<std::size_t>(e.to)].theta -
+                        poses[static_cast<std::size_t>(e.from)].theta - e.theta;
+    largest = std::max(largest, std::abs(hyselam::normalizeAngle(turn)));
+  }
+  return largest;
+}
+
+}  // namespace hyselam_pose_graph

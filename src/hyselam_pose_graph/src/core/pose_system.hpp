@@ -1,0 +1,83 @@
+// The normal equations of a pose graph: which edges fill which blocks, worked out once.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "graph_blocks.hpp"
+#include "hyselam_pose_graph/cholesky_pattern.hpp"
+#include "hyselam_pose_graph/pose_graph.hpp"
+
+namespace hyselam_pose_graph {
+
+/// An edge with what never changes in its error. Rotating the error by the measured angle gives
+/// e = (R_i^T (t_j - t_i) - t_z, wrap(theta_j - theta_i - theta_z)) with the information rotated
+/// too.
+struct SystemEdge {
+  int from, to;
+  int block = -1;         ///< entry that couples the two; -1 if one of them is held fast
+  bool from_row = false;  ///< that entry holds H(from, to), not H(to, from)
+  double x, y, theta;     ///< as measured
+  double w[6];            ///< rotated information: xx, xy, yy, xt, yt, tt
+};
+
+/// A pose with its sine and cosine.
+struct SystemPose {
+  double x, y, theta, c, s;
+};
+
+class PoseSystem {
+ public:
+  using Vector = Block3::Vector;
+
+  /// Holds the first pose of each connected part fast.
+  explicit PoseSystem(const PoseGraph& graph);
+
+  const CholeskyPattern& pattern() const { return pattern_; }
+  const std::vector<SystemEdge>& edges() const { return edges_; }
+  /// Row of a pose among the unknowns; -1 for one held fast.
+  int row(int pose) const { return row_[static_cast<std::size_t>(pose)]; }
+  int rows() const { return pattern_.size; }
+  /// The connected part of a pose.
+  int part(int pose) const { return part_[static_cast<std::size_t>(pose)]; }
+
+  static std::vector<SystemPose> system(const std::vector<hyselam::Pose2>& poses);
+  static std::vector<hyselam::Pose2> poses(const std::vector<SystemPose>& poses);
+
+  /// Sum of weight_i e^T Omega e; `weights` empty: all 1.
+  double cost(const std::vector<SystemPose>& poses, const std::vector<double>& weights) const;
+  /// Errors squared by information, edge by edge.
+  void edgeCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const;
+  /// H = J^T Omega J + damping diag(H), b = -J^T Omega e at `poses`.
+  void linearise(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+                 double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const;
+  /// The same with unknown positions and rotations near those of `poses`, whose positions count for
+  /// the poses held fast only.
+  void lineariseFromRotations(const std::vector<SystemPose>& poses,
+                              const std::vector<double>& weights, BlockCholesky<Block3>* h,
+                              std::vector<Vector>* b) const;
+  /// poses + x.
+  std::vector<SystemPose> moved(const std::vector<SystemPose>& poses,
+                                const std::vector<Vector>& x) const;
+
+  /// Rotations that come nearest to the measured ones when they may be any complex numbers: the
+  /// chordal relaxation (one linear system). Poses held fast keep theirs. False if the measurements
+  /// do not determine them.
+  bool chordalRotations(const std::vector<double>& weights, std::vector<SystemPose>* poses) const;
+
+  /// The largest error of an angle, 0..pi [rad].
+  double largestTurn(const std::vector<SystemPose>& poses) const;
+
+ private:
+  template <bool kFromRotations>
+  void fill(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+            BlockCholesky<Block3>* h, std::vector<Vector>* b) const;
+
+  std::vector<int> row_;
+  std::vector<int> part_;
+  std::vector<int> diagonal_;  ///< entry of each row's diagonal block
+  std::vector<SystemEdge> edges_;
+  CholeskyPattern pattern_;
+};
+
+}  // namespace hyselam_pose_graph
