@@ -46,6 +46,38 @@ inline cv::Mat labels(const hyselam_sim::FloorPlan& plan, const OccupancyGrid& g
   return out;
 }
 
+/// Moves the borders in the doorways out into one of the places, as a segmentation does that is
+/// right about the places but not about where exactly they end.
+inline void shiftBorders(const hyselam_sim::FloorPlan& plan, const OccupancyGrid& grid,
+                         double distance, cv::Mat* labels) {
+  int k = 0;
+  for (const hyselam_sim::Door& door : plan.doors) {
+    // Two doorways close together would become one place.
+    const bool alone =
+        std::none_of(plan.doors.begin(), plan.doors.end(), [&](const hyselam_sim::Door& other) {
+          const double d = std::hypot(other.at.x - door.at.x, other.at.y - door.at.y);
+          return d > 0.0 && d < 0.5 * (door.width + other.width) + 2.0 * distance;
+        });
+    if (!alone) continue;
+    const double sign = ++k % 2 == 0 ? 1.0 : -1.0;
+    const Point2 across{-sign * door.along.y, sign * door.along.x};
+    const auto at = [&](double s) {
+      const Cell c = grid.geometry.cellAt({door.at.x + s * across.x, door.at.y + s * across.y});
+      return labels->at<std::uint16_t>(c.y, c.x);
+    };
+    const std::uint16_t grows = at(-0.2), yields = at(0.2);
+    const double reach = std::hypot(0.5 * door.width, distance);
+    for (int y = 0; y < labels->rows; ++y) {
+      for (int x = 0; x < labels->cols; ++x) {
+        const Point2 p = grid.geometry.centre({x, y});
+        if (std::hypot(p.x - door.at.x, p.y - door.at.y) > reach) continue;
+        auto& label = labels->at<std::uint16_t>(y, x);
+        if (label == yields) label = grows;
+      }
+    }
+  }
+}
+
 struct Score {
   int truth = 0;
   int found = 0;

@@ -19,6 +19,7 @@ struct Case {
   bool furniture;
   double rotation;
   double resolution;
+  double shift;  // of the borders from the doorways [m]
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -42,6 +43,7 @@ TEST_P(SimulatedPlans, DoorsAndWallsAreFound) {
     const auto grid = hyselam_sim::rasterise(plan, c.resolution, 0.0);
     Segmentation s;
     s.labels = plan_truth::labels(plan, grid);
+    if (c.shift > 0.0) plan_truth::shiftBorders(plan, grid, c.shift, &s.labels);
     s.places = static_cast<int>(plan.places.size());
     s.doors = refineDoors(grid, s.labels);
     std::vector<std::string> mistakes;
@@ -64,11 +66,14 @@ TEST_P(SimulatedPlans, DoorsAndWallsAreFound) {
             << ", walls found " << walls.found_near / walls.found_length << "\n";
   EXPECT_GE(doors.precision(), 0.95);
   EXPECT_GE(doors.recall(), 0.95);
+  if (c.shift > 0.3) return;  // places with borders in the middle of a room have other walls
   EXPECT_GE(walls.true_near / walls.true_length, 0.95);
   EXPECT_GE(walls.found_near / walls.found_length, 0.95);
 }
 
 INSTANTIATE_TEST_SUITE_P(Plans, SimulatedPlans,
-                         ::testing::Values(Case{false, 0.0, 0.05}, Case{true, 0.0, 0.05},
-                                           Case{false, 0.3, 0.05}, Case{true, 0.3, 0.05},
-                                           Case{false, 0.0, 0.1}, Case{false, 0.3, 0.02}));
+                         ::testing::Values(Case{false, 0.0, 0.05, 0.0}, Case{true, 0.0, 0.05, 0.0},
+                                           Case{false, 0.3, 0.05, 0.0}, Case{true, 0.3, 0.05, 0.0},
+                                           Case{false, 0.0, 0.1, 0.0}, Case{false, 0.3, 0.02, 0.0},
+                                           Case{false, 0.0, 0.05, 0.3}, Case{true, 0.3, 0.05, 0.3},
+                                           Case{true, 0.0, 0.05, 0.6}));

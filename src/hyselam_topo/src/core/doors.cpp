@@ -85,72 +85,93 @@ class DoorFinder {
     return true;
   }
 
-  // Blocked cells beside free ones within the radius of a point, at most half way to the other end.
-  std::vector<Cell> surface(cv::Point2d at, cv::Point2d other, double radius) const {
+  bool surface(int x, int y) const {
+    return blocked(x, y) &&
+           (!blocked(x + 1, y) || !blocked(x - 1, y) || !blocked(x, y + 1) || !blocked(x, y - 1));
+  }
+
+  // The face of the wall at one end of the line: blocked cells beside free ones that hang together
+  // with it (over gaps of a cell), within the radius and nearer to this end than to the other. What
+  // stands free in a place is no part of it: a line to it would not part the places.
+  std::vector<Cell> face(cv::Point2d at, cv::Point2d other, double radius) const {
+    const int r = static_cast<int>(std::ceil(radius)) + 1, side = 2 * r + 1;
+    const int x0 = static_cast<int>(std::floor(at.x)) - r,
+              y0 = static_cast<int>(std::floor(at.y)) - r;
+    std::vector<char> seen(static_cast<std::size_t>(side * side), 0);
     std::vector<Cell> out;
-    const int r = static_cast<int>(std::ceil(radius));
-    const int cx = static_cast<int>(std::floor(at.x)), cy = static_cast<int>(std::floor(at.y));
-    for (int y = cy - r; y <= cy + r; ++y) {
-      for (int x = cx - r; x <= cx + r; ++x) {
-        if (!blocked(x, y)) continue;
-        const cv::Point2d p{x + 0.5, y + 0.5};
-        if (length(p - at) > radius || length(p - at) > length(p - other)) continue;
-        if (!blocked(x + 1, y) || !blocked(x - 1, y) || !blocked(x, y + 1) || !blocked(x, y - 1)) {
-          out.push_back({x, y});
-        }
+    const auto take = [&](int x, int y, double limit) {
+      if (x < x0 || y < y0 || x >= x0 + side || y >= y0 + side) return;
+      char& known = seen[static_cast<std::size_t>((y - y0) * side + x - x0)];
+      const cv::Point2d p{x + 0.5, y + 0.5};
+      if (known != 0 || length(p - at) > limit || length(p - at) > length(p - other)) return;
+      known = 1;
+      if (surface(x, y)) out.push_back({x, y});
+    };
+    for (int y = -2; y <= 2; ++y) {
+      for (int x = -2; x <= 2; ++x) take(x0 + r + x, y0 + r + y, 2.0);
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Cell c = out[i];
+      for (int dy = -2; dy <= 2; ++dy) {
+        for (int dx = -2; dx <= 2; ++dx) take(c.x + dx, c.y + dy, radius);
       }
     }
     return out;
   }
 
-  // Moves the line to where it is shortest between the walls at its ends, in short steps, so that
-  // it slides along a passage and does not jump to another one.
+  // Moves the line to where the passage is narrowest between the walls at its ends. Its length
+  // counts most, but a line that is about as short as others stays where it is.
   void narrowest(Line* line) const {
+    constexpr double kPerMove = 0.1;
     const double reach = params_.search * cells_;
-    const double step = std::clamp(0.35 * cells_, 2.0, 12.0);
     const cv::Point2d start = 0.5 * (line->a + line->b);
-    double best = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < 12; ++round) {
-      const std::vector<Cell> left = surface(line->a, line->b, step),
-                              right = surface(line->b, line->a, step);
-      double shortest = std::numeric_limits<double>::infinity();
+    const auto middle = [](const Cell& p, const Cell& q) {
+      return cv::Point2d(0.5 * (p.x + q.x + 1), 0.5 * (p.y + q.y + 1));
+    };
+    for (int round = 0; round < 3; ++round) {
+      const std::vector<Cell> left = face(line->a, line->b, reach),
+                              right = face(line->b, line->a, reach);
+      double least = std::numeric_limits<double>::infinity();
       std::vector<std::tuple<double, Cell, Cell>> pairs;
       for (const Cell& p : left) {
         for (const Cell& q : right) {
-          const double d = std::hypot(p.x - q.x, p.y - q.y);
-          if (d > shortest + 0.5) continue;
-          const cv::Point2d middle{0.5 * (p.x + q.x + 1), 0.5 * (p.y + q.y + 1)};
-          if (length(middle - start) > reach || !clear(p, q)) continue;
-          shortest = std::min(shortest, d);
-          pairs.push_back({d, p, q});
+          const double moved = length(middle(p, q) - start);
+          const double cost = std::hypot(p.x - q.x, p.y - q.y) + kPerMove * moved;
+          if (cost > least + 1.0 || moved > reach || !clear(p, q)) continue;
+          least = std::min(least, cost);
+          pairs.push_back({cost, p, q});
         }
       }
-      if (shortest > best - 0.25) break;
-      best = shortest;
+      if (pairs.empty()) return;
       // Of about equally short lines the one in their middle: the middle of a thick wall.
       cv::Point2d mean{0.0, 0.0};
       double count = 0.0;
-      for (const auto& [d, p, q] : pairs) {
-        if (d > shortest + 0.5) continue;
-        mean += cv::Point2d(0.5 * (p.x + q.x + 1), 0.5 * (p.y + q.y + 1));
+      for (const auto& [cost, p, q] : pairs) {
+        if (cost > least + 1.0) continue;
+        mean += middle(p, q);
         count += 1.0;
       }
       mean *= 1.0 / count;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const auto& [d, p, q] : pairs) {
-        if (d > shortest + 0.5) continue;
-        const cv::Point2d middle{0.5 * (p.x + q.x + 1), 0.5 * (p.y + q.y + 1)};
-        // A little weight on the length prefers the straight line among those around the middle.
-        const double cost = length(middle - mean) + 2.0 * (d - shortest);
-        if (cost >= nearest) continue;
-        nearest = cost;
+      double best = std::numeric_limits<double>::infinity();
+      Line found = *line;
+      for (const auto& [cost, p, q] : pairs) {
+        if (cost > least + 1.0) continue;
+        const double d = std::hypot(p.x - q.x, p.y - q.y);
+        // The straightest of those around the middle.
+        const double off = length(middle(p, q) - mean) + 2.0 * (cost - least);
+        if (off >= best) continue;
+        best = off;
         // From face to face: half a cell less at either end.
         const cv::Point2d from{p.x + 0.5, p.y + 0.5}, to{q.x + 0.5, q.y + 0.5};
         const cv::Point2d u = (1.0 / std::max(d, 1e-9)) * (to - from);
-        const double face = 0.5 / std::max({std::abs(u.x), std::abs(u.y), 1e-9});
-        line->a = from + face * u;
-        line->b = to - face * u;
+        const double half = 0.5 / std::max({std::abs(u.x), std::abs(u.y), 1e-9});
+        found.a = from + half * u;
+        found.b = to - half * u;
       }
+      const double moved = length(found.a - line->a) + length(found.b - line->b);
+      line->a = found.a;
+      line->b = found.b;
+      if (moved < 1.0) return;
     }
   }
 
@@ -195,6 +216,21 @@ Point2 middleOf(const DoorLine& d) {
   return {0.5 * (d.a.x + d.b.x), 0.5 * (d.a.y + d.b.y)};
 }
 
+// Borders too narrow to pass (behind the leaf of a door, through a gap in a wall) count only where
+// no wider one joins the same places.
+void dropChinks(double min_width, std::vector<DoorLine>* doors) {
+  const std::vector<DoorLine> all = *doors;
+  doors->erase(std::remove_if(doors->begin(), doors->end(),
+                              [&](const DoorLine& d) {
+                                return d.width < 0.5 * min_width &&
+                                       std::any_of(all.begin(), all.end(), [&](const DoorLine& o) {
+                                         return o.place_a == d.place_a && o.place_b == d.place_b &&
+                                                o.width >= min_width;
+                                       });
+                              }),
+               doors->end());
+}
+
 }  // namespace
 
 std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labels,
@@ -219,6 +255,7 @@ std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labe
     });
     if (!known) out.push_back(door);
   }
+  dropChinks(params.min_width, &out);
   std::sort(out.begin(), out.end(), [](const DoorLine& p, const DoorLine& q) {
     return std::tie(p.place_a, p.place_b, p.a.x, p.a.y) <
            std::tie(q.place_a, q.place_b, q.a.x, q.a.y);
