@@ -156,18 +156,22 @@ class WallMaker {
 
   static Point2d corner(const Piece& before, const Piece& after) {
     const Point2d turn = 0.5 * (before.points.back() + after.points.front());
-    const bool lines =
-        before.points.size() >= 2 && after.points.size() >= 2 && !before.arc && !after.arc;
-    if (!lines) return turn;
+    const auto line = [](const Piece& p) {
+      return p.kind == kSolid && p.points.size() >= 2 && !p.arc;
+    };
+    const auto foot = [&](const LineFit& l) {
+      return l.mean + (turn - l.mean).dot(l.along) * l.along;
+    };
+    // A wall ends where its line does, whatever way an open limit goes on from there.
+    if (!line(before) && !line(after)) return turn;
+    if (!line(after)) return foot(before.line);
+    if (!line(before)) return foot(after.line);
     const double sine = cross(before.line.along, after.line.along);
     if (std::abs(sine) > 0.35) {
       const double s = cross(after.line.mean - before.line.mean, after.line.along) / sine;
       const Point2d meet = before.line.mean + s * before.line.along;
       if (std::hypot(meet.x - turn.x, meet.y - turn.y) <= kCornerReach) return meet;
     }
-    const auto foot = [&](const LineFit& line) {
-      return line.mean + (turn - line.mean).dot(line.along) * line.along;
-    };
     return 0.5 * (foot(before.line) + foot(after.line));
   }
 
