@@ -1,12 +1,10 @@
-// From logs to scores: observations of a log, the score against reference poses, and the tools as a
-// shell sees them.
+// From logs to scores: observations of a log, and the tools as a shell sees them.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "fsd_localization/ray_caster.hpp"
 #include "hyselam_common/errors.hpp"
@@ -15,7 +13,6 @@
 #include "hyselam_common/testing/files.hpp"
 #include "ngram_slam/corpus.hpp"
 #include "ngram_slam/log_observations.hpp"
-#include "ngram_slam/recognition_score.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::Pose2;
@@ -122,73 +119,6 @@ TEST(LogObservations, areEveryStepOfTheWayAndSeeTheBuilding) {
   EXPECT_EQ(observationsOf(log, params).scans_without_odometry, log.scans.size());
   params.bandwidth = 100.0;
   EXPECT_NE(messageOf<hyselam::ParameterError>([&] { observationsOf(log, params); }), "");
-}
-
-TEST(Score, countsAsIfEveryPairWereLookedAt) {
-  for (int round = 0; round < 50; ++round) {
-    SCOPED_TRACE(round);
-    hyselam::Rng rng(77, static_cast<std::uint64_t>(round));
-    std::vector<std::optional<Pose2>> poses;
-    std::vector<std::uint32_t> runs;
-    Pose2 at;
-    const std::uint32_t n = 150;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      at = at * Pose2{0.5, 0.0, rng.uniform(-0.4, 0.6)};
-      poses.push_back(rng.below(10) == 0 ? std::nullopt : std::optional<Pose2>(at));
-      runs.push_back(i / 60);
-    }
-    ScoreParams params;
-    params.distance = 1.0;
-    params.separation = 20;
-    RecognitionScore score(poses, runs, params);
-    const auto counts = [&](std::uint32_t a, std::uint32_t b) {
-      return poses[a] && poses[b] && (runs[a] != runs[b] || a - b >= 20);
-    };
-    const auto isTrue = [&](std::uint32_t a, std::uint32_t b, bool any) {
-      return std::hypot(poses[a]->x - poses[b]->x, poses[a]->y - poses[b]->y) <= 1.0 &&
-             (any || std::abs(hyselam::normalizeAngle(poses[a]->theta - poses[b]->theta)) <=
-                         hyselam::radians(45));
-    };
-    std::vector<char> revisit(n, 0), any(n, 0), found(n, 0);
-    for (std::uint32_t a = 0; a < n; ++a)
-      for (std::uint32_t b = 0; b < a; ++b) {
-        if (!counts(a, b)) continue;
-        if (isTrue(a, b, false)) revisit[a] = 1;
-        if (isTrue(a, b, true)) any[a] = 1;
-      }
-    ASSERT_EQ(score.revisits(),
-              static_cast<std::size_t>(std::count(revisit.begin(), revisit.end(), 1)));
-    ASSERT_EQ(score.revisitsAnyDirection(),
-              static_cast<std::size_t>(std::count(any.begin(), any.end(), 1)));
-    EXPECT_EQ(score.precision(), 1.0);
-    EXPECT_EQ(score.recall(), 0.0);
-    std::set<std::pair<std::uint32_t, std::uint32_t>> added;
-    std::size_t right = 0;
-    for (int k = 0; k < 400; ++k) {
-      const std::uint32_t a = rng.below(n), b = rng.below(n);
-      const std::uint32_t newer = std::max(a, b), older = std::min(a, b);
-      const auto verdict = score.add(a, b);
-      ASSERT_EQ(verdict.has_value(), counts(newer, older));
-      if (!verdict) continue;
-      ASSERT_EQ(*verdict, isTrue(newer, older, false));
-      if (!added.insert({newer, older}).second) continue;
-      right += *verdict;
-      if (*verdict) found[newer] = 1;
-    }
-    ASSERT_EQ(score.pairs(), added.size());
-    ASSERT_EQ(score.truePairs(), right);
-    for (const std::uint32_t reach : {0u, 3u}) {
-      std::size_t recognised = 0;
-      for (std::uint32_t i = 0; i < n; ++i) {
-        bool near = false;
-        for (std::uint32_t k = i > reach ? i - reach : 0; k <= std::min(n - 1, i + reach); ++k)
-          near = near || found[k] != 0;
-        recognised += near && revisit[i] != 0;
-      }
-      ASSERT_NEAR(score.recall(reach),
-                  static_cast<double>(recognised) / static_cast<double>(score.revisits()), 1e-12);
-    }
-  }
 }
 
 class Tools : public ::testing::Test {

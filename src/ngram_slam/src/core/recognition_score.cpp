@@ -9,109 +9,177 @@
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
+namespace {
+
+constexpr std::uint32_t kPassGap = 20;  // observations between two passes at least
+
+// Observations in one square that follow each other.
+struct Interval {
+  std::uint32_t first, last;
+};
+
+}  // namespace
 
 void ScoreParams::validate() const {
   if (!(distance > 0.0 && std::isfinite(distance)))
     throw hyselam::ParameterError("distance", distance, "> 0 [m]");
-  if (!(heading > 0.0 && heading <= hyselam::kPi))
-    throw hyselam::ParameterError("heading", heading, "in (0, pi] [rad]");
+  if (!(heading > 0.0 && heading <= 0.5 * hyselam::kPi))
+    throw hyselam::ParameterError("heading", heading, "in (0, pi/2] [rad]");
 }
 
-RecognitionScore::RecognitionScore(std::vector<std::optional<hyselam::Pose2>> reference,
+RecognitionTruth::RecognitionTruth(std::vector<std::optional<hyselam::Pose2>> reference,
                                    std::vector<std::uint32_t> run, const ScoreParams& params)
     : reference_(std::move(reference)), run_(std::move(run)), params_(params) {
   params.validate();
   if (run_.size() != reference_.size())
-    throw std::invalid_argument("RecognitionScore: as many runs as reference poses are needed");
-  revisit_.assign(run_.size(), 0);
-  revisit_any_ = recognised_ = revisit_;
-  findRevisits();
+    throw std::invalid_argument("RecognitionTruth: as many runs as reference poses are needed");
+  any_.assign(run_.size(), 0);
+  begin_.assign(1, 0);
+  findPasses();
 }
 
-bool RecognitionScore::counts(std::uint32_t newer, std::uint32_t older) const {
+bool RecognitionTruth::counts(std::uint32_t newer, std::uint32_t older) const {
   return reference_[newer] && reference_[older] &&
          (run_[newer] != run_[older] || newer - older >= params_.separation);
 }
-bool RecognitionScore::near(std::uint32_t a, std::uint32_t b) const {
-  return hyselam::distance(*reference_[a], *reference_[b]) <= params_.distance;
+bool RecognitionTruth::near(std::uint32_t a, std::uint32_t b) const {
+  const double dx = reference_[a]->x - reference_[b]->x, dy = reference_[a]->y - reference_[b]->y;
+  return dx * dx + dy * dy <= params_.distance * params_.distance;
 }
-bool RecognitionScore::sameWay(std::uint32_t a, std::uint32_t b) const {
-  return std::abs(hyselam::normalizeAngle(reference_[a]->theta - reference_[b]->theta)) <=
-         params_.heading;
+bool RecognitionTruth::headingsFit(std::uint32_t a, std::uint32_t b, Direction direction) const {
+  const double turn =
+      std::abs(hyselam::normalizeAngle(reference_[a]->theta - reference_[b]->theta));
+  return direction == Direction::kSame ? turn <= params_.heading
+                                       : turn >= hyselam::kPi - params_.heading;
 }
 
-void RecognitionScore::findRevisits() {
+std::optional<bool> RecognitionTruth::verdict(std::uint32_t newer, std::uint32_t older,
+                                              Direction direction) const {
+  if (newer < older) std::swap(newer, older);
+  if (!counts(newer, older)) return std::nullopt;
+  return near(newer, older) && headingsFit(newer, older, direction);
+}
+
+bool RecognitionTruth::revisit(std::uint32_t i) const {
+  return begin_[i] < begin_[i + 1] && passes_[begin_[i]].direction == Direction::kSame;
+}
+
+void RecognitionTruth::findPasses() {
   // Squares with the distance as side: the neighbours of a square hold all that is near.
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> squares;
-  const auto square = [&](double x, double y, int dx, int dy) {
-    const auto i = static_cast<std::int32_t>(std::floor(x / params_.distance)) + dx;
-    const auto k = static_cast<std::int32_t>(std::floor(y / params_.distance)) + dy;
+  std::unordered_map<std::uint64_t, std::vector<Interval>> squares;
+  const auto square = [&](const hyselam::Pose2& p, int dx, int dy) {
+    const auto i = static_cast<std::int32_t>(std::floor(p.x / params_.distance)) + dx;
+    const auto k = static_cast<std::int32_t>(std::floor(p.y / params_.distance)) + dy;
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 |
            static_cast<std::uint32_t>(k);
   };
-  for (std::uint32_t i = 0; i < reference_.size(); ++i) {
-    if (!reference_[i]) continue;
-    for (int d = 0; d < 9 && revisit_[i] == 0; ++d) {
-      const auto at =
-          squares.find(square(reference_[i]->x, reference_[i]->y, d / 3 - 1, d % 3 - 1));
-      if (at == squares.end()) continue;
-      for (std::uint32_t older : at->second) {
-        if (!counts(i, older) || !near(i, older)) continue;
-        revisit_any_[i] = 1;
-        if (!sameWay(i, older)) continue;
-        revisit_[i] = 1;
-        break;
+  std::vector<Pass> found[2];
+  for (std::uint32_t i = 0; i < size(); ++i) {
+    if (reference_[i]) {
+      const hyselam::Pose2& at = *reference_[i];
+      for (auto& passes : found) passes.clear();
+      for (int d = 0; d < 9; ++d) {
+        const auto here = squares.find(square(at, d / 3 - 1, d % 3 - 1));
+        if (here == squares.end()) continue;
+        for (const Interval& interval : here->second) {
+          for (std::uint32_t older = interval.first; older <= interval.last; ++older) {
+            if (!counts(i, older) || !near(i, older)) continue;
+            any_[i] = 1;
+            for (const Direction direction : {Direction::kSame, Direction::kReverse}) {
+              if (!headingsFit(i, older, direction)) continue;
+              auto& passes = found[direction == Direction::kReverse];
+              if (!passes.empty() && passes.back().last + 1 == older &&
+                  run_[passes.back().last] == run_[older])
+                passes.back().last = older;
+              else
+                passes.push_back({older, older, direction});
+            }
+          }
+        }
       }
+      for (auto& passes : found) {
+        std::sort(passes.begin(), passes.end(),
+                  [](const Pass& a, const Pass& b) { return a.first < b.first; });
+        bool joined = false;
+        for (const Pass& pass : passes) {
+          joined = joined && run_[pass.first] == run_[passes_.back().last] &&
+                   pass.first - passes_.back().last < kPassGap;
+          if (joined)
+            passes_.back().last = std::max(passes_.back().last, pass.last);
+          else
+            passes_.push_back(pass);
+          joined = true;
+        }
+      }
+      auto& intervals = squares[square(at, 0, 0)];
+      if (!intervals.empty() && intervals.back().last + 1 == i)
+        intervals.back().last = i;
+      else
+        intervals.push_back({i, i});
     }
-    revisits_ += static_cast<std::size_t>(revisit_[i]);
-    revisits_any_ += static_cast<std::size_t>(revisit_any_[i]);
-    squares[square(reference_[i]->x, reference_[i]->y, 0, 0)].push_back(i);
+    begin_.push_back(passes_.size());
   }
 }
 
-std::optional<bool> RecognitionScore::add(std::uint32_t newer, std::uint32_t older) {
+RecognitionScore::RecognitionScore(std::shared_ptr<const RecognitionTruth> truth)
+    : truth_(std::move(truth)) {
+  pairs_.assign(truth_->size(), 0);
+  true_pairs_ = pairs_;
+  recognised_.assign(truth_->size(), 0);
+  recognised_any_ = recognised_;
+  pass_.assign(truth_->passes().size(), 0);
+}
+
+std::optional<bool> RecognitionScore::add(std::uint32_t newer, std::uint32_t older,
+                                          Direction direction) {
   if (newer < older) std::swap(newer, older);
-  if (!counts(newer, older)) return std::nullopt;
-  const bool right = near(newer, older) && sameWay(newer, older);
-  if (!seen_.insert(static_cast<std::uint64_t>(newer) << 32 | older).second) return right;
-  ++pairs_;
-  true_pairs_ += right;
-  if (right) recognised_[newer] = 1;
+  const std::optional<bool> right = truth_->verdict(newer, older, direction);
+  if (!right) return std::nullopt;
+  const bool reverse = direction == Direction::kReverse;
+  // Observations are fewer than 2^31: the topmost bit is free.
+  if (!seen_
+           .insert(static_cast<std::uint64_t>(reverse) << 63 |
+                   static_cast<std::uint64_t>(newer) << 32 | older)
+           .second)
+    return right;
+  ++pairs_[newer];
+  if (!*right) return right;
+  ++true_pairs_[newer];
+  recognised_any_[newer] = 1;
+  if (!reverse) recognised_[newer] = 1;
+  const auto begin =
+      truth_->passes().begin() + static_cast<std::ptrdiff_t>(truth_->passesBegin(newer));
+  const auto end = truth_->passes().begin() + static_cast<std::ptrdiff_t>(truth_->passesEnd(newer));
+  const auto at = std::find_if(begin, end, [&](const RecognitionTruth::Pass& p) {
+    return p.direction == direction && p.first <= older && older <= p.last;
+  });
+  if (at != end) pass_[static_cast<std::size_t>(at - truth_->passes().begin())] = 1;
   return right;
 }
 
-double RecognitionScore::precision() const {
-  return pairs_ == 0 ? 1.0 : static_cast<double>(true_pairs_) / static_cast<double>(pairs_);
-}
-
-std::size_t RecognitionScore::recognised(const std::vector<char>& revisit,
-                                         std::uint32_t reach) const {
-  std::size_t count = 0;
-  const auto n = static_cast<std::int64_t>(revisit.size());
-  std::int64_t last = -static_cast<std::int64_t>(reach) - 1;
-  std::vector<char> covered(revisit.size(), 0);
-  for (std::int64_t i = 0; i < n; ++i) {
-    if (recognised_[static_cast<std::size_t>(i)] != 0) last = i;
-    covered[static_cast<std::size_t>(i)] = i - last <= reach;
+RecognitionFigures RecognitionScore::figures(std::uint32_t until) const {
+  RecognitionFigures f;
+  until = std::min(until, truth_->size());
+  for (std::uint32_t i = 0; i < until; ++i) {
+    f.pairs += pairs_[i];
+    f.true_pairs += true_pairs_[i];
+    if (truth_->revisit(i)) {
+      ++f.revisits;
+      f.recognised += recognised_[i] != 0;
+    }
+    if (truth_->revisitAnyDirection(i)) {
+      ++f.revisits_any;
+      f.recognised_any += recognised_any_[i] != 0;
+    }
+    for (std::size_t k = truth_->passesBegin(i); k < truth_->passesEnd(i); ++k) {
+      ++f.passes_any;
+      f.recognised_passes_any += pass_[k] != 0;
+      if (truth_->passes()[k].direction == Direction::kReverse) continue;
+      ++f.passes;
+      f.recognised_passes += pass_[k] != 0;
+    }
   }
-  last = n + reach;
-  for (std::int64_t i = n - 1; i >= 0; --i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (recognised_[at] != 0) last = i;
-    count += revisit[at] != 0 && (covered[at] != 0 || last - i <= reach);
-  }
-  return count;
-}
-
-double RecognitionScore::recall(std::uint32_t reach) const {
-  return revisits_ == 0
-             ? 0.0
-             : static_cast<double>(recognised(revisit_, reach)) / static_cast<double>(revisits_);
-}
-double RecognitionScore::recallAnyDirection(std::uint32_t reach) const {
-  return revisits_any_ == 0 ? 0.0
-                            : static_cast<double>(recognised(revisit_any_, reach)) /
-                                  static_cast<double>(revisits_any_);
+  return f;
 }
 
 }  // namespace ngram_slam

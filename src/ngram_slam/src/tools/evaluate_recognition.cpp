@@ -1,24 +1,33 @@
 // evaluate_recognition: what is recognised in recorded runs, against reference poses.
+#include <algorithm>
 #include <iostream>
-#include <set>
+#include <sstream>
 
+#include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "ngram_slam/alignment.hpp"
-#include "ngram_slam/ngram.hpp"
-#include "ngram_slam/recognition_score.hpp"
+#include "ngram_slam/match_evaluation.hpp"
 #include "recognition_options.hpp"
+#include "similarity_picture.hpp"
 
 namespace {
 
 using namespace ngram_slam;  // NOLINT: a program, not a header
+
+constexpr int kParts = 40;    // rows of precision and recall over time
+constexpr int kPoints = 200;  // of a curve
 
 struct Options {
   RecognitionOptions recognition;
   std::vector<std::string> references;
   ScoreParams score;
   double heading_deg = 45.0;
+  std::string n;                         // to sweep
+  std::vector<double> sizes;             // to sweep
+  std::string table, curve, similarity;  // files
 };
+
+using Truth = std::shared_ptr<const RecognitionTruth>;
 
 /// Poses of a run in the common frame: a file, or the log's own ground truth.
 std::vector<hyselam::StampedPose2> referenceOf(const Options& o, std::size_t run) {
@@ -29,64 +38,173 @@ std::vector<hyselam::StampedPose2> referenceOf(const Options& o, std::size_t run
   return truth;
 }
 
-nlohmann::json run(const Options& o) {
-  ScoreParams score_params = o.score;
-  score_params.heading = hyselam::radians(o.heading_deg);
-  score_params.validate();
-  if (!o.references.empty() && o.references.size() != o.recognition.logs.size())
-    throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
-  Recogniser r(o.recognition.params());
+Truth truthOf(const Options& o, const ObservationStore& observations,
+              const std::vector<Run>& logs) {
+  ScoreParams params = o.score;
+  params.heading = hyselam::radians(o.heading_deg);
+  std::vector<std::optional<hyselam::Pose2>> poses;
+  std::vector<std::uint32_t> runs;  // a log in which the robot was carried off has several
+  for (std::size_t log = 0; log < logs.size(); ++log) {
+    const std::vector<hyselam::StampedPose2> reference = referenceOf(o, log);
+    for (const Observation& observation : logs[log].observations) {
+      runs.push_back(observations.runOf(static_cast<std::uint32_t>(runs.size())));
+      poses.push_back(hyselam::poseAt(reference, observation.stamp, 0.5));
+    }
+  }
+  return std::make_shared<const RecognitionTruth>(std::move(poses), std::move(runs), params);
+}
+
+nlohmann::json summary(const MatchEvaluation& evaluation) {
+  const RecognitionFigures f = evaluation.score().figures();
+  return {{"matches", evaluation.matches()},
+          {"match_precision", evaluation.matchPrecision()},
+          {"pairs", f.pairs},
+          {"precision", f.precision()},
+          {"revisits", f.revisits},
+          {"recall", f.recall()},
+          {"pass_recall", f.passRecall()},
+          {"revisits_any_direction", f.revisits_any},
+          {"recall_any_direction", f.recallAnyDirection()},
+          {"pass_recall_any_direction", f.passRecallAnyDirection()}};
+}
+
+/// "1..20", "7,10,13", "5" as a list. @throws hyselam::ParameterError
+std::vector<int> listOf(const std::string& name, const std::string& text) {
+  std::vector<int> list;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    int first = 0, last = 0;
+    char rest = 0;
+    const int read = std::sscanf(part.c_str(), "%d..%d%c", &first, &last, &rest);
+    if (read == 1 && std::to_string(first) == part)
+      last = first;
+    else if (read != 2)
+      throw hyselam::ParameterError(name, text, "numbers like 7,10 or 1..20");
+    if (first < 1 || last < first || last > 65535)
+      throw hyselam::ParameterError(name, text, "rising numbers from 1 to 65535");
+    for (int i = first; i <= last; ++i) list.push_back(i);
+  }
+  if (list.empty()) throw hyselam::ParameterError(name, text, "numbers like 7,10 or 1..20");
+  return list;
+}
+
+std::vector<Match> recognise(Recogniser& recogniser, const std::vector<Run>& runs) {
   std::vector<Match> matches;
-  feed(o.recognition, r, [&](const RecogniserUpdate& u) {
+  feed(runs, recogniser, [&](const RecogniserUpdate& u) {
     if (u.requantised) matches.clear();
     matches.insert(matches.end(), u.matches.begin(), u.matches.end());
   });
+  return matches;
+}
 
-  const ObservationStore& observations = r.observations();
-  std::vector<std::vector<hyselam::StampedPose2>> references;
-  for (std::size_t i = 0; i < o.recognition.logs.size(); ++i)
-    references.push_back(referenceOf(o, i));
-  std::vector<std::optional<hyselam::Pose2>> poses;
-  std::vector<std::uint32_t> runs;
-  for (std::uint32_t i = 0; i < observations.size(); ++i) {
-    runs.push_back(observations.runOf(i));
-    poses.push_back(hyselam::poseAt(references[runs.back()], observations.stamp(i), 0.5));
-  }
-  RecognitionScore score(std::move(poses), std::move(runs), score_params);
-
-  std::size_t true_matches = 0, counted_matches = 0;
-  std::set<std::pair<WordIndex, WordIndex>> done;
-  for (const Match& m : matches) {
-    // A match is true if most observations of its last pair of words are.
-    int right = 0, wrong = 0;
-    const auto ngram =
-        longestNgram(r.text(), r.params().matcher.tolerance, {m.newer, m.older}, m.levels, 64);
-    for (const WordPair& words : ngram) {
-      const bool last = words.newer == m.newer;
-      if (!done.insert({words.newer, words.older}).second && !last) continue;
-      for (const ObservationPair& p : alignedObservations(r.text(), observations, {words})) {
-        const auto verdict = score.add(p.newer, p.older);
-        if (last && verdict) ++(*verdict ? right : wrong);
+/// One row per n and size tolerance, and where the run stood by then.
+nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth& truth) {
+  const RecogniserParams base = o.recognition.params();
+  const std::vector<int> list =
+      o.n.empty() ? std::vector<int>{base.matcher.min_n.front()} : listOf("--n", o.n);
+  const std::vector<double> sizes =
+      o.sizes.empty() ? std::vector<double>{base.matcher.tolerance.size} : o.sizes;
+  nlohmann::json rows = nlohmann::json::array();
+  hyselam::Progress progress("sweep", list.size() * sizes.size());
+  for (const double size : sizes) {
+    for (const int n : list) {
+      RecogniserParams params = base;
+      params.matcher.tolerance.size = size;
+      for (std::size_t l = 0; l < params.matcher.min_n.size(); ++l)
+        params.matcher.min_n[l] = n + base.matcher.min_n[l] - base.matcher.min_n[0];
+      params.validate();
+      Recogniser recogniser(params);
+      MatchEvaluation evaluation(recogniser, truth);
+      evaluation.add(recognise(recogniser, runs));
+      nlohmann::json row = summary(evaluation);
+      row["n"] = n;
+      row["size_tolerance"] = size;
+      for (int part = 1; part <= kParts; ++part) {
+        const auto until = static_cast<std::uint32_t>(static_cast<std::uint64_t>(truth->size()) *
+                                                      static_cast<std::uint64_t>(part) / kParts);
+        const RecognitionFigures f = evaluation.score().figures(until);
+        row["over_time"].push_back(
+            {f.precision(), f.recall(), static_cast<double>(part) / kParts, f.pairs});
       }
+      rows.push_back(row);
+      progress.update(rows.size());
     }
-    if (right + wrong == 0) continue;
-    ++counted_matches;
-    true_matches += right > wrong;
   }
-  const nlohmann::json j = {
-      {"observations", observations.size()},
-      {"words", r.text().positions()},
-      {"matches", counted_matches},
-      {"match_precision", counted_matches == 0 ? 1.0
-                                               : static_cast<double>(true_matches) /
-                                                     static_cast<double>(counted_matches)},
-      {"pairs", score.pairs()},
-      {"precision", score.precision()},
-      {"revisits", score.revisits()},
-      {"recall", score.recall()},
-      {"revisits_any_direction", score.revisitsAnyDirection()},
-      {"recall_any_direction", score.recallAnyDirection()}};
+  if (!o.table.empty()) {
+    hyselam::writeFileAtomically(o.table, [&](std::ostream& out) {
+      const std::vector<const char*> columns{"n",
+                                             "size_tolerance",
+                                             "matches",
+                                             "match_precision",
+                                             "pairs",
+                                             "precision",
+                                             "recall",
+                                             "pass_recall",
+                                             "recall_any_direction",
+                                             "pass_recall_any_direction"};
+      for (const char* column : columns) out << column << (column == columns.back() ? "\n" : ",");
+      for (const auto& row : rows)
+        for (const char* column : columns)
+          out << row[column] << (column == columns.back() ? "\n" : ",");
+    });
+  }
+  return rows;
+}
+
+/// Precision and recall while ever less sure matches are taken in.
+nlohmann::json curve(const Options& o, const Recogniser& recogniser, std::vector<Match> matches,
+                     const Truth& truth) {
+  const bool by_probability = recogniser.params().with_probability;
+  const auto key = [&](const Match& m) {
+    return by_probability ? m.probability : static_cast<double>(m.n);
+  };
+  std::stable_sort(matches.begin(), matches.end(),
+                   [&](const Match& a, const Match& b) { return key(a) > key(b); });
+  nlohmann::json points = nlohmann::json::array();
+  MatchEvaluation evaluation(recogniser, truth);
+  std::size_t told = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    evaluation.add(matches[i]);
+    const bool last = i + 1 == matches.size();
+    if (!last &&
+        (key(matches[i]) == key(matches[i + 1]) || (i + 1) * kPoints < told * matches.size()))
+      continue;
+    told = (i + 1) * kPoints / matches.size() + 1;
+    nlohmann::json point = summary(evaluation);
+    point["threshold"] = key(matches[i]);
+    points.push_back(point);
+  }
+  if (!o.curve.empty()) {
+    hyselam::writeFileAtomically(o.curve, [&](std::ostream& out) {
+      out << "threshold,matches,precision,recall,pass_recall,recall_any_direction,"
+             "pass_recall_any_direction\n";
+      for (const auto& p : points)
+        out << p["threshold"] << ',' << p["matches"] << ',' << p["precision"] << ',' << p["recall"]
+            << ',' << p["pass_recall"] << ',' << p["recall_any_direction"] << ','
+            << p["pass_recall_any_direction"] << '\n';
+    });
+  }
+  return points;
+}
+
+nlohmann::json run(const Options& o) {
+  if (!o.references.empty() && o.references.size() != o.recognition.logs.size())
+    throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
+  if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
+  Recogniser recogniser(o.recognition.params());
+  const std::vector<Run> runs = readRuns(o.recognition);
+  const std::vector<Match> matches = recognise(recogniser, runs);
+  const Truth truth = truthOf(o, recogniser.observations(), runs);
+  MatchEvaluation evaluation(recogniser, truth);
+  evaluation.add(matches);
+
+  nlohmann::json j = summary(evaluation);
+  j["observations"] = recogniser.observations().size();
+  j["words"] = recogniser.text().positions();
   std::cout << j.dump(2) << "\n";
+  if (!o.similarity.empty()) saveSimilarityPicture(o.similarity, evaluation.score());
+  if (!o.table.empty() || !o.n.empty() || !o.sizes.empty()) j["sweep"] = sweep(o, runs, truth);
+  if (!o.curve.empty()) j["curve"] = curve(o, recogniser, matches, truth);
   return j;
 }
 
@@ -95,9 +213,10 @@ nlohmann::json run(const Options& o) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Recognises places in recorded runs and compares with reference poses. A pair of "
-      "observations "
-      "is true if they were made within --distance and --heading of each other; a revisit is an "
-      "observation for which such an earlier one exists.",
+      "observations is true if they were made within --distance and --heading of each other (or "
+      "of the opposite heading, where a match in reverse is told). A revisit is an observation "
+      "for which such an earlier one exists; recall is the share of revisits recognised, pass "
+      "recall the share of all earlier passes of all revisits.",
       "evaluate_recognition");
   Options o;
   o.recognition.addTo(app);
@@ -108,5 +227,15 @@ int main(int argc, char** argv) {
   app.add_option("--heading", o.heading_deg, "difference of headings of a true pair at most [deg]");
   app.add_option("--separation", o.score.separation,
                  "observations between the two of a pair in one run at least");
+  app.add_option("--n", o.n,
+                 "also a table over the least words of the first level, like 1..20 or 5,7; other "
+                 "levels keep their distance to it");
+  app.add_option("--size-tolerances", o.sizes, "of the table, like 0.1,0.2,0.3")->delimiter(',');
+  app.add_option("--table", o.table, "the table as CSV");
+  app.add_option("--curve", o.curve,
+                 "precision and recall as CSV while ever shorter (with --probability: less "
+                 "probable) matches are taken in");
+  app.add_option("--similarity", o.similarity,
+                 "similarity matrix as PNG: what is true, and what was recognised");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

@@ -10,6 +10,7 @@
 #include "hyselam_common/tool.hpp"
 #include "ngram_slam/log_observations.hpp"
 #include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/way_sampler.hpp"
 
 namespace ngram_slam {
 
@@ -19,6 +20,7 @@ struct RecognitionOptions {
   LogObservationParams observations;
   double angle_deg = 30.0;
   std::vector<int> min_n;
+  bool full_density = false;
 
   void addTo(CLI::App& app) {
     app.option_defaults()->always_capture_default();
@@ -37,10 +39,26 @@ struct RecognitionOptions {
     app.add_option("--usable-range", observations.usable_range,
                    "beams say nothing beyond it [m]; 0: all that fits the local map");
     app.add_option("--step", observations.step, "way between observations [m]");
+    app.add_flag("--reverse", recogniser.reverse,
+                 "also find places travelled the other way before");
+    app.add_option("--look-back", observations.look_back,
+                   "way after which the density of a spot is taken again, for --full-density [m]");
+    app.add_flag("--full-density", full_density,
+                 "words of the density seen from --look-back farther on");
+    app.add_option("--class-hysteresis", recogniser.class_hysteresis,
+                   "a density keeps its class this far beyond the class' bounds");
+    app.add_option(
+        "--max-chance", recogniser.max_chance,
+        "tell a match if fewer than this many are expected by chance; give small --min-n");
+    app.add_flag("--probability", recogniser.with_probability,
+                 "the probability of each match to be right");
+    app.add_option("--min-probability", recogniser.min_probability,
+                   "tell only matches at least this probable");
   }
   /// The parameters, completed. @throws hyselam::ParameterError
   RecogniserParams params() const {
     RecogniserParams p = recogniser;
+    p.word_density = full_density ? WordDensity::kFull : WordDensity::kSoft;
     p.matcher.tolerance.angle = hyselam::radians(angle_deg);
     p.matcher.min_n = min_n;
     for (int l = static_cast<int>(min_n.size()); l < p.levels; ++l)
@@ -51,17 +69,39 @@ struct RecognitionOptions {
   }
 };
 
-/// Feeds all logs. `use` gets what each observation brought about.
-inline void feed(const RecognitionOptions& options, Recogniser& recogniser,
-                 const std::function<void(const RecogniserUpdate&)>& use) {
+/// The observations of one log.
+struct Run {
+  std::vector<Observation> observations;
+};
+
+inline std::vector<Run> readRuns(const RecognitionOptions& options) {
+  std::vector<Run> runs;
   for (const std::string& path : options.logs) {
     const hyselam::RobotLog log = hyselam::readRobotLog(path);
     hyselam::Progress progress("densities of " + path, log.scans.size());
-    const LogObservations seen =
-        observationsOf(log, options.observations, [&](std::size_t done) { progress.update(done); });
-    for (const Observation& o : seen.observations) use(recogniser.add(o));
+    runs.push_back({observationsOf(log, options.observations, [&](std::size_t done) {
+                      progress.update(done);
+                    }).observations});
+  }
+  return runs;
+}
+
+/// Feeds all runs. `use` gets what each observation brought about.
+inline void feed(const std::vector<Run>& runs, Recogniser& recogniser,
+                 const std::function<void(const RecogniserUpdate&)>& use) {
+  for (const Run& run : runs) {
+    const Observation* before = nullptr;
+    for (const Observation& o : run.observations) {
+      if (before != nullptr && leapt(*before, o)) use(recogniser.endRun());
+      use(recogniser.add(o));
+      before = &o;
+    }
     use(recogniser.endRun());
   }
+}
+inline void feed(const RecognitionOptions& options, Recogniser& recogniser,
+                 const std::function<void(const RecogniserUpdate&)>& use) {
+  feed(readRuns(options), recogniser, use);
 }
 
 }  // namespace ngram_slam

@@ -1,0 +1,307 @@
+// What is true and how much of it is recognised: against hand-made cases and against looking at
+// every pair; the evaluator's tables against single runs.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <sstream>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_sim/data.hpp"
+#include "hyselam_sim/simulation.hpp"
+#include "ngram_slam/match_evaluation.hpp"
+
+using namespace ngram_slam;  // NOLINT: a test, not a header
+using hyselam::Pose2;
+using hyselam::testing::fileBytes;
+using hyselam::testing::messageOf;
+using hyselam::testing::TemporaryDirectory;
+
+namespace {
+
+using Poses = std::vector<std::optional<Pose2>>;
+
+RecognitionScore scoreOf(const Poses& poses, const std::vector<std::uint32_t>& runs,
+                         const ScoreParams& params) {
+  return RecognitionScore(std::make_shared<const RecognitionTruth>(poses, runs, params));
+}
+
+/// Along a corridor of 10 m: there, back, there again, one observation for every metre.
+Poses toAndFro() {
+  Poses poses;
+  for (int i = 0; i < 10; ++i) poses.push_back(Pose2{1.0 * i, 0.0, 0.0});
+  for (int i = 9; i >= 0; --i) poses.push_back(Pose2{1.0 * i, 0.3, hyselam::kPi});
+  for (int i = 0; i < 10; ++i) poses.push_back(Pose2{1.0 * i, -0.3, 0.0});
+  return poses;
+}
+
+ScoreParams narrow() {
+  ScoreParams params;
+  params.distance = 0.7;
+  params.separation = 5;
+  return params;
+}
+
+}  // namespace
+
+TEST(Truth, ofACorridorTravelledToAndFroAndToAgain) {
+  const RecognitionTruth truth(toAndFro(), std::vector<std::uint32_t>(30, 0), narrow());
+  // Where the robot turns the last five observations do not count: 10..12 repeat 9..7.
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    EXPECT_EQ(truth.revisit(i), i >= 20) << i;
+    EXPECT_EQ(truth.revisitAnyDirection(i), i >= 12) << i;
+  }
+  EXPECT_EQ(truth.verdict(25, 5, Direction::kSame), true);
+  EXPECT_EQ(truth.verdict(5, 25, Direction::kSame), true);  // in whichever order
+  EXPECT_EQ(truth.verdict(25, 5, Direction::kReverse), false);
+  EXPECT_EQ(truth.verdict(25, 14, Direction::kReverse), true);
+  EXPECT_EQ(truth.verdict(25, 14, Direction::kSame), false);
+  EXPECT_EQ(truth.verdict(25, 6, Direction::kSame), false);  // 1 m off
+  EXPECT_EQ(truth.verdict(25, 21, Direction::kSame), std::nullopt);
+  // Observation 25 was there twice: once this way, once the other.
+  ASSERT_EQ(truth.passesEnd(25) - truth.passesBegin(25), 2u);
+  const auto& same = truth.passes()[truth.passesBegin(25)];
+  const auto& reverse = truth.passes()[truth.passesBegin(25) + 1];
+  EXPECT_EQ(same.direction, Direction::kSame);
+  EXPECT_EQ(same.first, 5u);
+  EXPECT_EQ(same.last, 5u);
+  EXPECT_EQ(reverse.direction, Direction::kReverse);
+  EXPECT_EQ(reverse.first, 14u);
+}
+
+TEST(Score, ofHandMadePairs) {
+  RecognitionScore score = scoreOf(toAndFro(), std::vector<std::uint32_t>(30, 0), narrow());
+  EXPECT_EQ(score.figures().precision(), 1.0);
+  EXPECT_EQ(score.figures().recall(), 0.0);
+  EXPECT_EQ(score.add(20, 0), true);
+  EXPECT_EQ(score.add(21, 1), true);
+  EXPECT_EQ(score.add(1, 21), true);  // the same again
+  EXPECT_EQ(score.add(22, 4), false);
+  EXPECT_EQ(score.add(23, 16, Direction::kReverse), true);
+  EXPECT_EQ(score.add(24, 4, Direction::kReverse), false);  // true only as same way
+  EXPECT_EQ(score.add(24, 22), std::nullopt);
+  const RecognitionFigures f = score.figures();
+  EXPECT_EQ(f.pairs, 5u);
+  EXPECT_DOUBLE_EQ(f.precision(), 3.0 / 5.0);
+  EXPECT_DOUBLE_EQ(f.recall(), 2.0 / 10.0);              // 20, 21 of 20..29
+  EXPECT_DOUBLE_EQ(f.recallAnyDirection(), 3.0 / 18.0);  // 20, 21, 23 of 12..29
+  EXPECT_DOUBLE_EQ(f.passRecall(), 2.0 / 10.0);
+  EXPECT_DOUBLE_EQ(f.passRecallAnyDirection(), 3.0 / 26.0);  // 22..29 were there twice
+  const RecognitionFigures early = score.figures(22);
+  EXPECT_EQ(early.pairs, 2u);
+  EXPECT_DOUBLE_EQ(early.precision(), 1.0);
+  EXPECT_DOUBLE_EQ(early.recall(), 1.0);
+}
+
+// A pass ends with the run, even where the next one begins at the same spot.
+TEST(Truth, passesDoNotReachAcrossRuns) {
+  Poses poses(12, Pose2{});
+  const RecognitionTruth truth(poses, {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}, narrow());
+  ASSERT_EQ(truth.passesEnd(11) - truth.passesBegin(11), 2u);
+  EXPECT_EQ(truth.passes()[truth.passesBegin(11)].last, 3u);
+  EXPECT_EQ(truth.passes()[truth.passesBegin(11) + 1].first, 4u);
+  EXPECT_EQ(truth.passes()[truth.passesBegin(11) + 1].last, 7u);
+}
+
+TEST(Truth, refusesWhatIsNoTruth) {
+  ScoreParams params;
+  params.distance = 0.0;
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] { RecognitionTruth({}, {}, params); }), "");
+  params = {};
+  params.heading = 2.0;  // same and opposite would be one
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] { RecognitionTruth({}, {}, params); }), "");
+  EXPECT_THROW(RecognitionTruth({Pose2{}}, {}), std::invalid_argument);
+}
+
+TEST(Score, countsAsIfEveryPairWereLookedAt) {
+  for (int round = 0; round < 50; ++round) {
+    SCOPED_TRACE(round);
+    hyselam::Rng rng(77, static_cast<std::uint64_t>(round));
+    Poses poses;
+    std::vector<std::uint32_t> runs;
+    Pose2 at;
+    const std::uint32_t n = 150;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      at = at * Pose2{0.5, 0.0, rng.uniform(-0.4, 0.6)};
+      poses.push_back(rng.below(10) == 0 ? std::nullopt : std::optional<Pose2>(at));
+      runs.push_back(i / 60);
+    }
+    ScoreParams params;
+    params.distance = 1.0;
+    params.separation = 20;
+    RecognitionScore score = scoreOf(poses, runs, params);
+    const auto counts = [&](std::uint32_t a, std::uint32_t b) {
+      return poses[a] && poses[b] && (runs[a] != runs[b] || a - b >= 20);
+    };
+    const auto isNear = [&](std::uint32_t a, std::uint32_t b) {
+      return std::hypot(poses[a]->x - poses[b]->x, poses[a]->y - poses[b]->y) <= 1.0;
+    };
+    const auto isTrue = [&](std::uint32_t a, std::uint32_t b, Direction direction) {
+      const double turn = std::abs(hyselam::normalizeAngle(poses[a]->theta - poses[b]->theta));
+      return isNear(a, b) && (direction == Direction::kSame ? turn <= hyselam::radians(45)
+                                                            : turn >= hyselam::radians(135));
+    };
+    // Every older observation of a true pair, by pass: a gap of 20 or another run parts two.
+    using Visit = std::tuple<std::uint32_t, Direction, int>;
+    std::map<std::tuple<std::uint32_t, std::uint32_t, Direction>, int> pass_of;
+    std::set<Visit> visits, found;
+    std::set<std::uint32_t> any, found_any, found_same;
+    for (std::uint32_t a = 0; a < n; ++a)
+      for (const Direction direction : {Direction::kSame, Direction::kReverse}) {
+        int pass = 0;
+        std::optional<std::uint32_t> last;
+        for (std::uint32_t b = 0; b < a; ++b) {
+          if (!counts(a, b)) continue;
+          if (isNear(a, b)) any.insert(a);
+          if (!isTrue(a, b, direction)) continue;
+          if (last && (b - *last >= 20 || runs[b] != runs[*last])) ++pass;
+          last = b;
+          visits.insert({a, direction, pass});
+          pass_of[{a, b, direction}] = pass;
+        }
+      }
+    std::set<std::tuple<std::uint32_t, std::uint32_t, Direction>> added;
+    std::size_t right = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const std::uint32_t a = rng.below(n), b = rng.below(n);
+      const std::uint32_t newer = std::max(a, b), older = std::min(a, b);
+      const Direction direction = rng.below(2) == 0 ? Direction::kSame : Direction::kReverse;
+      const auto verdict = score.add(a, b, direction);
+      ASSERT_EQ(verdict.has_value(), counts(newer, older));
+      if (!verdict) continue;
+      ASSERT_EQ(*verdict, isTrue(newer, older, direction));
+      if (!added.insert({newer, older, direction}).second || !*verdict) continue;
+      ++right;
+      found_any.insert(newer);
+      if (direction == Direction::kSame) found_same.insert(newer);
+      found.insert({newer, direction, pass_of.at({newer, older, direction})});
+    }
+    const auto same = [](const std::set<Visit>& list) {
+      return static_cast<std::size_t>(std::count_if(list.begin(), list.end(), [](const Visit& v) {
+        return std::get<1>(v) == Direction::kSame;
+      }));
+    };
+    std::set<std::uint32_t> revisits;
+    for (const Visit& v : visits)
+      if (std::get<1>(v) == Direction::kSame) revisits.insert(std::get<0>(v));
+    const RecognitionFigures f = score.figures();
+    ASSERT_EQ(f.pairs, added.size());
+    ASSERT_EQ(f.true_pairs, right);
+    ASSERT_EQ(f.revisits, revisits.size());
+    ASSERT_EQ(f.recognised, found_same.size());
+    ASSERT_EQ(f.revisits_any, any.size());
+    ASSERT_EQ(f.recognised_any, found_any.size());
+    ASSERT_EQ(f.passes_any, visits.size());
+    ASSERT_EQ(f.recognised_passes_any, found.size());
+    ASSERT_EQ(f.passes, same(visits));
+    ASSERT_EQ(f.recognised_passes, same(found));
+    std::size_t told = 0;
+    score.forEachPair([&](std::uint32_t newer, std::uint32_t older, Direction direction) {
+      told += added.count({newer, older, direction});
+    });
+    ASSERT_EQ(told, added.size());
+  }
+}
+
+/// A run through the university: a loop of 60 m two and a half times, with doors open.
+class Evaluator : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    directory = new TemporaryDirectory;
+    const hyselam_sim::FloorPlan plan =
+        hyselam_sim::loadFloorPlan(hyselam_sim::planFile("university"));
+    const auto route = hyselam_sim::parseRoute(
+        "route: test\nstart: D\ndoors: E_R\ndirect: true\nsteps: [E, A, D, E, A, D, E]\n", "test");
+    hyselam::writeBag(*directory / "1.bag", hyselam_sim::simulate(plan, route, 1).log);
+  }
+  static void TearDownTestSuite() {
+    delete directory;
+    directory = nullptr;
+  }
+  int run(const std::string& options) {
+    const int status =
+        std::system((std::string(NGRAM_SLAM_TOOLS) + "/evaluate_recognition " + d / "1.bag" +
+                     " --bandwidth 4 " + options + " >" + d / "stdout" + " 2>" + d / "stderr")
+                        .c_str());
+    errors = fileBytes(d / "stderr");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  nlohmann::json json(const std::string& options) {
+    EXPECT_EQ(run(options + " --json " + d / "j.json"), 0) << errors;
+    return nlohmann::json::parse(fileBytes(d / "j.json"));
+  }
+  static TemporaryDirectory* directory;
+  TemporaryDirectory& d = *directory;
+  std::string errors;
+};
+TemporaryDirectory* Evaluator::directory = nullptr;
+
+TEST_F(Evaluator, tableHasTheFiguresOfSingleRuns) {
+  const auto table = json("--levels 2 --min-n 4,6 --n 2..3,5 --size-tolerances 0.2,0.3 --table " +
+                          d / "t.csv")["sweep"];
+  ASSERT_EQ(table.size(), 6u);
+  const std::string csv = fileBytes(d / "t.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
+  EXPECT_EQ(csv.rfind("n,size_tolerance,matches,", 0), 0u);
+  std::set<int> matches;
+  for (const auto& row : table) {
+    SCOPED_TRACE(row.dump());
+    const int n = row["n"];
+    std::ostringstream options;
+    options << "--levels 2 --min-n " << n << ',' << n + 2 << " --size-tolerance "
+            << row["size_tolerance"];
+    const auto single = json(options.str());
+    for (const char* figure : {"matches", "match_precision", "pairs", "precision", "recall",
+                               "pass_recall", "recall_any_direction", "pass_recall_any_direction"})
+      EXPECT_EQ(row[figure], single[figure]) << figure;
+    EXPECT_EQ(row["over_time"].back()[0], single["precision"]);
+    EXPECT_EQ(row["over_time"].back()[1], single["recall"]);
+    matches.insert(row["matches"].get<int>());
+  }
+  EXPECT_GT(matches.size(), 3u);  // the thresholds matter
+}
+
+// A curve over the number of words passes through the single runs of one level.
+TEST_F(Evaluator, curveGoesThroughSingleRuns) {
+  const auto curve = json("--levels 1 --min-n 2 --curve " + d / "c.csv")["curve"];
+  ASSERT_GT(curve.size(), 4u);
+  for (const auto& point : {curve[1], curve[curve.size() / 2], curve.back()}) {
+    const auto single =
+        json("--levels 1 --min-n " + std::to_string(static_cast<int>(point["threshold"])));
+    for (const char* figure : {"matches", "precision", "recall", "pass_recall"})
+      EXPECT_EQ(point[figure], single[figure]) << figure << ' ' << point["threshold"];
+  }
+}
+
+TEST_F(Evaluator, drawsASimilarityMatrix) {
+  ASSERT_EQ(run("--levels 1 --min-n 4 --similarity " + d / "s.png"), 0) << errors;
+  const cv::Mat picture = cv::imread(d / "s.png");
+  ASSERT_FALSE(picture.empty());
+  std::size_t blue = 0, grey = 0;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      const auto p = picture.at<cv::Vec3b>(y, x);
+      blue += p == cv::Vec3b(170, 90, 20);
+      grey += p == cv::Vec3b(190, 190, 190);
+    }
+  EXPECT_GT(blue, 1000u);
+  EXPECT_GT(grey, 1000u);
+}
+
+TEST_F(Evaluator, refusesListsThatAreNone) {
+  for (const char* bad : {"x", "0..3", "5..2", "1..", "1,,2", "1..3x"}) {
+    EXPECT_EQ(run("--n " + std::string(bad)), 2) << bad;
+    EXPECT_NE(errors.find("--n"), std::string::npos) << errors;
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+  }
+  EXPECT_EQ(run("--table /nowhere/t.csv"), 2);
+  EXPECT_EQ(run("--similarity /nowhere/s.png"), 2);
+}
