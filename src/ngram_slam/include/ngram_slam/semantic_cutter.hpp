@@ -14,8 +14,8 @@ struct SemanticCutParams {
   double leave = 0.03;  ///< density varies once it is this far from where it stood or turned, > 0
   double settled = 0.012;  ///< it stands once it keeps within this, in (0, leave] ...
   int settled_for = 10;    ///< ... for so many observations, >= 2
-  double border = 0.5;  ///< share of the way from one level to the next that is made at the border
-                        ///< between two regions, in (0, 1)
+  double border = 0.6;  ///< the border between two regions lies where the density is this share of
+                        ///< the way from the lower level to the higher one, in (0, 1)
 
   /// @throws hyselam::ParameterError
   void validate() const;

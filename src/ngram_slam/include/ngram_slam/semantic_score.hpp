@@ -29,15 +29,18 @@ struct SemanticConfusion {
   double accuracy() const;  ///< 0 without observations
 };
 
-/// Compares along one run. Observations without truth count nowhere and end regions.
-///
-/// A wrong prediction is forgiven, as a border that was drawn too early or too late, if a place of
-/// the predicted class begins or ends within `tolerance` observations, and both places were found:
-/// part of the true region is predicted right, and so is part of the predicted one. This is no
-/// laxer than the thesis, which grants 1 m at every border.
-/// @throws hyselam::ParameterError if the lists differ in length.
+/// Which wrong predictions near a border count as a border drawn too early or too late.
+enum class BorderRule {
+  kThesis,  ///< 6.4: all, if a place of the predicted class is within the tolerance
+  kStrict   ///< of these, only where both places were found: part of the true place is predicted
+            ///< right, and so is part of the predicted region
+};
+
+/// Compares along one run; `tolerance` in observations. Observations without truth count nowhere
+/// and end places. @throws hyselam::ParameterError if the lists differ in length.
 SemanticConfusion compareClasses(const std::vector<std::optional<SemanticClass>>& truth,
                                  const std::vector<SemanticClass>& predicted,
-                                 std::uint32_t tolerance = 10);
+                                 std::uint32_t tolerance = 10,
+                                 BorderRule rule = BorderRule::kThesis);
 
 }  // namespace ngram_slam

@@ -30,6 +30,15 @@ struct SemanticParams {
   /// inside of a wide corner.
   int longest_bend = 30;                    ///< [observations], >= shortest_gap
   double turning = hyselam::radians(20.0);  ///< [rad], > 0
+  /// Where bifurcations follow each other closely the density hardly falls between them, but the
+  /// number of frontiers does: a region is divided where three or more frontiers, or fewer, are
+  /// seen so many times in a row. 0: never, as in the thesis.
+  int shortest_stretch = 6;  ///< [observations], >= 0
+  /// Fewer frontiers at the rim of a region are no reason to divide it up to this length.
+  int widest_rim = 12;  ///< [observations], >= 0
+  /// Where the density stands and the robot turns by more than this, the bend is a region of its
+  /// own. Infinite: never, as in the thesis.
+  double bend = hyselam::radians(45.0);  ///< [rad], > 0
 
   /// @throws hyselam::ParameterError
   void validate() const;
@@ -58,6 +67,8 @@ class SemanticSegmenter {
   };
   void take(const SemanticCut& cut, std::vector<SemanticRegion>& out);
   void tell(std::vector<SemanticRegion>& out);
+  std::vector<SemanticCut> divided(const SemanticCut& cut) const;
+  std::vector<SemanticCut> bendOf(const SemanticCut& cut) const;
   SemanticFeatures featuresOf(const SemanticCut& cut) const;
   double turnIn(std::uint32_t first, std::uint32_t last) const;
 

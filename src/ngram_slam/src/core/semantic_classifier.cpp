@@ -27,6 +27,7 @@ void DecisionTreeParams::validate() const {
   require("many_frontiers", many_frontiers, 0.0, 255.0, "in (0, 255]");
   require("huge_turn", huge_turn, 0.0, 1e3, "positive [rad]");
   require("small_turn", small_turn, 0.0, huge_turn, "positive and at most 'huge_turn' [rad]");
+  require("straight", straight, 0.0, 1e3, "positive [rad]");
   require("very_long", very_long, 0.0, 1e9, "positive [observations]");
 }
 
@@ -36,14 +37,18 @@ DecisionTree::DecisionTree(const DecisionTreeParams& params) : params_(params) {
 
 SemanticVerdict DecisionTree::classify(const SemanticFeatures& f) const {
   const DecisionTreeParams& p = params_;
+  const bool very_long = f.length > p.very_long;
+  const bool flat = f.variation <= p.high_variation, straight = f.turn < p.straight;
   const double length = certainty(f.length, p.very_long);
   const double variation = certainty(f.variation, p.high_variation);
+  const double direction = certainty(f.turn, p.straight);
   // Either of the two is enough.
-  if (f.length > p.very_long || f.variation <= p.high_variation) {
-    return {SemanticClass::kCorridor, std::max(f.length > p.very_long ? length : 0.0,
-                                               f.variation <= p.high_variation ? variation : 0.0)};
+  if (very_long || (flat && straight)) {
+    const double by_length = very_long ? length : 0.0;
+    const double by_density = flat && straight ? std::min(variation, direction) : 0.0;
+    return {SemanticClass::kCorridor, std::max(by_length, by_density)};
   }
-  double sure = std::min(length, variation);
+  double sure = std::min(length, std::max(flat ? 0.0 : variation, straight ? 0.0 : direction));
   const auto test = [&](double value, double threshold) {
     sure = std::min(sure, certainty(value, threshold));
   };

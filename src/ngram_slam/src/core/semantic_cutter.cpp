@@ -59,7 +59,8 @@ std::vector<SemanticCut> SemanticCutter::finish() {
 /// A new level from observation `begin` on: the border to the one before, and that one's cut.
 void SemanticCutter::reach(double level, std::uint32_t begin, bool stands,
                            std::vector<SemanticCut>& out) {
-  const double way = params_.border * std::abs(level - growing_.level);
+  const double share = level > growing_.level ? params_.border : 1.0 - params_.border;
+  const double way = share * std::abs(level - growing_.level);
   std::uint32_t border = since_;
   while (border < begin && std::abs(at(border) - growing_.level) < way) ++border;
   growing_.last = border - 1;

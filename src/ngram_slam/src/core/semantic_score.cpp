@@ -88,7 +88,7 @@ double SemanticConfusion::accuracy() const {
 
 SemanticConfusion compareClasses(const std::vector<Truth>& truth,
                                  const std::vector<SemanticClass>& predicted,
-                                 std::uint32_t tolerance) {
+                                 std::uint32_t tolerance, BorderRule rule) {
   const std::size_t n = truth.size();
   if (predicted.size() != n)
     throw hyselam::ParameterError("predicted", predicted.size(), "as many as there are truths");
@@ -100,7 +100,7 @@ SemanticConfusion compareClasses(const std::vector<Truth>& truth,
   for (std::size_t i = 0; i < n; ++i) {
     if (!truth[i]) continue;
     bool forgiven = false;
-    if (!right[i] && place_found[i] && region_found[i]) {
+    if (!right[i] && (rule == BorderRule::kThesis || (place_found[i] && region_found[i]))) {
       const std::size_t begin = i - std::min<std::size_t>(i, tolerance);
       const std::size_t end = std::min(n, i + tolerance + 1);
       for (std::size_t k = begin; k < end && !forgiven; ++k) forgiven = truth[k] == predicted[i];

@@ -4,26 +4,8 @@
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"
-#include "ngram_slam/word.hpp"
 
 namespace ngram_slam {
-namespace {
-
-double rise(const SemanticCut& cut, const std::optional<double>& neighbour) {
-  return neighbour ? cut.level - *neighbour : 0.0;
-}
-
-/// A density that only turned has varied all the way; one that stood differs where it is above both
-/// neighbours, as in a hall. Corridors stand below what they join.
-double variationOf(const SemanticCut& cut) {
-  const double before = rise(cut, cut.before), after = rise(cut, cut.after);
-  if (!cut.stands) return std::max(std::abs(before), std::abs(after));
-  if (!cut.before || !cut.after) return std::max(0.0, before + after);
-  return std::max(0.0, std::min(before, after));
-}
-
-}  // namespace
-
 void SemanticParams::validate() const {
   cut.validate();
   if (shortest_gap < 0)
@@ -31,6 +13,12 @@ void SemanticParams::validate() const {
   if (longest_bend < shortest_gap || longest_bend > 100000)
     throw hyselam::ParameterError("longest_bend", longest_bend,
                                   "in 'shortest_gap' .. 100000 [observations]");
+  if (shortest_stretch < 0 || shortest_stretch > 100000)
+    throw hyselam::ParameterError("shortest_stretch", shortest_stretch,
+                                  "in 0 .. 100000 [observations]");
+  if (widest_rim < 0 || widest_rim > 100000)
+    throw hyselam::ParameterError("widest_rim", widest_rim, "in 0 .. 100000 [observations]");
+  if (!(bend > 0.0)) throw hyselam::ParameterError("bend", bend, "positive [rad]");
   if (!(turning > 0.0)) throw hyselam::ParameterError("turning", turning, "positive [rad]");
 }
 
@@ -81,15 +69,6 @@ std::vector<SemanticRegion> SemanticSegmenter::finish() {
   return out;
 }
 
-double SemanticSegmenter::turnIn(std::uint32_t first, std::uint32_t last) const {
-  double low = seen_[first - seen_begin_].heading, high = low;
-  for (std::uint32_t i = first; i <= last; ++i) {
-    low = std::min(low, seen_[i - seen_begin_].heading);
-    high = std::max(high, seen_[i - seen_begin_].heading);
-  }
-  return high - low;
-}
-
 void SemanticSegmenter::take(const SemanticCut& cut, std::vector<SemanticRegion>& out) {
   if (held_ && open_) {
     held_->last = cut.last;
@@ -114,14 +93,16 @@ void SemanticSegmenter::take(const SemanticCut& cut, std::vector<SemanticRegion>
 
 void SemanticSegmenter::tell(std::vector<SemanticRegion>& out) {
   if (!held_) return;
-  SemanticRegion region;
-  region.first = run_begin_ + held_->first;
-  region.last = run_begin_ + held_->last;
-  region.features = featuresOf(*held_);
-  const SemanticVerdict verdict = classifier_->classify(region.features);
-  region.semantic_class = verdict.semantic_class;
-  region.confidence = verdict.confidence;
-  out.push_back(region);
+  for (const SemanticCut& part : divided(*held_)) {
+    SemanticRegion region;
+    region.first = run_begin_ + part.first;
+    region.last = run_begin_ + part.last;
+    region.features = featuresOf(part);
+    const SemanticVerdict verdict = classifier_->classify(region.features);
+    region.semantic_class = verdict.semantic_class;
+    region.confidence = verdict.confidence;
+    out.push_back(region);
+  }
   const std::uint32_t done = held_->last + 1 - seen_begin_;
   // The newest observation stays: the next heading follows it.
   const auto drop = std::min<std::size_t>(done, seen_.size() - 1);
@@ -129,37 +110,6 @@ void SemanticSegmenter::tell(std::vector<SemanticRegion>& out) {
   seen_begin_ += static_cast<std::uint32_t>(drop);
   held_.reset();
   open_ = false;
-}
-
-SemanticFeatures SemanticSegmenter::featuresOf(const SemanticCut& cut) const {
-  SemanticFeatures f;
-  const auto seen = [&](std::uint32_t i) -> const Seen& { return seen_[i - seen_begin_]; };
-  f.length = static_cast<double>(cut.last - cut.first) + 1.0;
-  f.level = cut.level;
-  f.rise_before = rise(cut, cut.before);
-  f.rise_after = rise(cut, cut.after);
-  f.variation = variationOf(cut);
-  f.density_min = f.density_max = seen(cut.first).soft;
-  for (std::uint32_t i = cut.first; i <= cut.last; ++i) {
-    const Seen& s = seen(i);
-    f.density_min = std::min(f.density_min, static_cast<double>(s.soft));
-    f.density_max = std::max(f.density_max, static_cast<double>(s.soft));
-    f.few_frontiers += s.frontiers <= 1;
-    f.many_frontiers += s.frontiers >= 3;
-  }
-  // Where one region passes into the next, frontiers come and go.
-  const std::uint32_t quarter = (cut.last - cut.first + 1) / 4;
-  for (std::uint32_t i = cut.first + quarter; i <= cut.last - quarter; ++i)
-    f.frontiers += seen(i).frontiers;
-  f.frontiers /= f.length - 2.0 * quarter;
-  f.few_frontiers /= f.length;
-  f.many_frontiers /= f.length;
-  f.turn = turnIn(cut.first, cut.last);
-  f.angle = std::abs(angleVariation(seen(cut.first).pose,
-                                    seen(cut.first + (cut.last - cut.first) / 2).pose,
-                                    seen(cut.last).pose));
-  f.stands = cut.stands ? 1.0 : 0.0;
-  return f;
 }
 
 }  // namespace ngram_slam

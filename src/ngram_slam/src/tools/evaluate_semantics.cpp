@@ -37,7 +37,7 @@ nlohmann::json evaluate(const Options& o) {
     throw hyselam::InputError(plan.source, "keys 'areas', 'floor_kind'",
                               "missing: the plan does not say what its places are");
 
-  SemanticConfusion confusion;
+  SemanticConfusion confusion, strict;
   std::size_t regions = 0, observations = 0;
   for (const std::string& path : o.logs) {
     const hyselam::RobotLog log = hyselam::readRobotLog(path);
@@ -46,7 +46,9 @@ nlohmann::json evaluate(const Options& o) {
     hyselam::Progress progress("densities of " + path, log.scans.size());
     const SemanticRun run = semanticRun(log, o.run, classifier, &plan,
                                         [&](std::size_t done) { progress.update(done); });
-    confusion.add(compareClasses(run.truth, classesOf(run), o.tolerance));
+    const std::vector<SemanticClass> classes = classesOf(run);
+    confusion.add(compareClasses(run.truth, classes, o.tolerance));
+    strict.add(compareClasses(run.truth, classes, o.tolerance, BorderRule::kStrict));
     regions += run.regions.size();
     observations += run.stamps.size();
     if (!o.regions.empty()) writeRegions(o.regions, run.regions, run.stamps);
@@ -57,6 +59,7 @@ nlohmann::json evaluate(const Options& o) {
     hyselam_sim::savePicture(o.confusion, drawConfusion(confusion, title));
   }
   nlohmann::json j = toJson(confusion);
+  j["strict"] = toJson(strict);
   j["plan"] = plan.name;
   j["classifier"] = o.model.empty() ? "tree" : "forest";
   j["observations"] = observations;
@@ -72,7 +75,7 @@ int main(int argc, char** argv) {
       "Cuts recorded runs into regions, tells corridors, corners, bifurcations, dead ends and "
       "halls, "
       "and compares with the plan of the building. Counted in observations; a border may be drawn "
-      "--tolerance observations too early or late.",
+      "--tolerance observations too early or late ('strict': only where both places were found).",
       "evaluate_semantics");
   Options o;
   app.add_option("logs", o.logs, "bags with ground truth, each a run")->required();

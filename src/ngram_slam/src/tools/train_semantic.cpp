@@ -69,9 +69,9 @@ nlohmann::json train(const Options& o) {
   SemanticConfusion by_forest, by_tree;
   for (int i = 0; i < o.held_out; ++i) {
     SemanticRun run = drive(o, o.buildings + i);
-    by_tree.add(compareClasses(run.truth, classesOf(run)));
+    by_tree.add(compareClasses(run.truth, classesOf(run), 10, BorderRule::kStrict));
     classify(run, forest);
-    by_forest.add(compareClasses(run.truth, classesOf(run)));
+    by_forest.add(compareClasses(run.truth, classesOf(run), 10, BorderRule::kStrict));
     progress.update(static_cast<std::size_t>(o.buildings + i + 1));
   }
   nlohmann::json j = {{"buildings", o.buildings}, {"examples", examples.size()}, {"seed", o.seed}};
