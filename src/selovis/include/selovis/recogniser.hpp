@@ -1,0 +1,58 @@
+// From one frame to a place: filter of images, descriptor, classifier, filter over time.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "selovis/descriptive.hpp"
+#include "selovis/model.hpp"
+#include "selovis/place_filter.hpp"
+
+namespace selovis {
+
+struct RecogniserParams {
+  DescriptiveParams descriptive;
+  PlaceFilterParams filter;
+  /// A frame that lies farther from everything learnt than so many times the usual is no witness
+  /// (exemplar classifiers); 0: never.
+  double novelty_max = 0.0;
+};
+
+struct Recognition {
+  bool descriptive = true;  ///< false: the frame told nothing and the filter stood still
+  bool novel = false;       ///< nothing learnt fits: the filter stood still, the place is unknown
+  double novelty = 0.0;
+  int frame_place = -1;    ///< likeliest by this frame alone; -1: not descriptive or novel
+  PlaceEstimate estimate;  ///< by all frames
+};
+
+/// One stream of frames. The filter of each frame allocates nothing once the first has passed,
+/// other than what the descriptor's library needs.
+class Recogniser {
+ public:
+  /// `graph` must have the model's places in the model's order (reordered()); throws
+  /// std::invalid_argument.
+  Recogniser(const Model& model, const PlaceGraph& graph, const RecogniserParams& params);
+
+  Recognition update(const cv::Mat& image, const Readings& readings = {});
+  /// The part after the descriptor, for signatures that are at hand.
+  Recognition updateWithSignature(const float* signature);
+  void reset() { filter_.reset(); }
+
+  const std::vector<std::string>& places() const { return places_; }
+  const std::vector<double>& frameProbabilities() const { return frame_; }
+  const std::vector<double>& probabilities() const { return filter_.probabilities(); }
+  const std::vector<float>& signature() const { return signature_; }
+
+ private:
+  RecogniserParams params_;
+  std::vector<std::string> places_;
+  std::unique_ptr<Descriptor> descriptor_;
+  std::unique_ptr<Classifier> classifier_;
+  DescriptiveFilter descriptive_;
+  PlaceFilter filter_;
+  std::vector<float> signature_;
+  std::vector<double> frame_;
+};
+
+}  // namespace selovis

@@ -1,0 +1,190 @@
+#include "selovis/labels.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+
+namespace selovis {
+namespace {
+
+constexpr std::size_t kMaxColumns = 4096;
+constexpr int kDepthColumns = 20;  // distances taken from a depth image
+
+std::vector<std::string> split(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',')
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+enum class Column { kSkip, kImage, kPlace, kDepth, kHeading, kMagX, kMagY, kMagZ, kRange, kScan };
+
+Column columnOf(const std::string& name) {
+  if (name == "image_path" || name == "image" || name == "file" || name == "path")
+    return Column::kImage;
+  if (name == "place") return Column::kPlace;
+  if (name == "depth_path") return Column::kDepth;
+  if (name == "psi") return Column::kHeading;
+  if (name == "mag_x") return Column::kMagX;
+  if (name == "mag_y") return Column::kMagY;
+  if (name == "mag_z") return Column::kMagZ;
+  if (name.compare(0, 6, "range_") == 0) return Column::kRange;
+  if (name.compare(0, 5, "scan_") == 0) return Column::kScan;
+  return Column::kSkip;
+}
+
+double number(const std::string& cell, const std::string& path, const std::string& where) {
+  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  if (end != cell.c_str() + cell.size()) {
+    throw hyselam::InputError(path, where, "'" + cell.substr(0, 40) + "' is no number");
+  }
+  return value;
+}
+
+void put(LabelledFrame& frame, Column column, const std::string& cell, const std::string& folder,
+         const std::string& path, const std::string& where) {
+  const auto file = [&]() {
+    return (std::filesystem::path(folder) / cell).lexically_normal().string();
+  };
+  switch (column) {
+    case Column::kSkip:
+      break;
+    case Column::kImage:
+      frame.image = file();
+      break;
+    case Column::kPlace:
+      frame.place = cell;
+      break;
+    case Column::kDepth:
+      if (!cell.empty()) frame.depth = file();
+      break;
+    case Column::kHeading:
+      frame.readings.heading = number(cell, path, where);
+      break;
+    case Column::kMagX:
+      frame.readings.magnetic[0] = number(cell, path, where);
+      break;
+    case Column::kMagY:
+      frame.readings.magnetic[1] = number(cell, path, where);
+      break;
+    case Column::kMagZ:
+      frame.readings.magnetic[2] = number(cell, path, where);
+      break;
+    case Column::kRange:
+      frame.readings.ranges.push_back(static_cast<float>(number(cell, path, where)));
+      break;
+    case Column::kScan:
+      frame.readings.scan.push_back(static_cast<float>(number(cell, path, where)));
+      break;
+  }
+}
+
+bool endsWithin(const std::string& bytes, const char* mark, std::size_t length, std::size_t tail) {
+  const std::size_t from = bytes.size() > tail ? bytes.size() - tail : 0;
+  return bytes.find(std::string(mark, length), from) != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<LabelledFrame> readLabels(const std::string& path) {
+  std::istringstream in(hyselam::readTextFile(path, std::size_t{1} << 30));
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  std::vector<LabelledFrame> frames;
+  std::vector<Column> columns;
+  std::string line;
+  bool header = false;
+  for (std::size_t n = 1; std::getline(in, line); ++n) {
+    const std::string where = "line " + std::to_string(n);
+    if (line.empty() || line == "\r" || line.front() == '#') continue;
+    if (line.find('\0') != std::string::npos) throw hyselam::InputError(path, where, "is no text");
+    const std::vector<std::string> cells = split(line);
+    if (cells.size() > kMaxColumns) throw hyselam::InputError(path, where, "has too many columns");
+    if (columns.empty()) {
+      std::vector<Column> named;
+      for (const auto& cell : cells) named.push_back(columnOf(cell));
+      header = std::count(named.begin(), named.end(), Column::kPlace) == 1 &&
+               std::count(named.begin(), named.end(), Column::kImage) == 1;
+      if (header) {
+        columns = named;
+        continue;
+      }
+      if (cells.size() < 2) {
+        throw hyselam::InputError(path, where, "needs at least an image and a place");
+      }
+      columns.assign(cells.size(), Column::kRange);
+      columns[0] = Column::kImage;
+      columns[1] = Column::kPlace;
+    }
+    if (cells.size() != columns.size()) {
+      throw hyselam::InputError(path, where,
+                                "has " + std::to_string(cells.size()) + " columns, but " +
+                                    std::to_string(columns.size()) + " were expected");
+    }
+    LabelledFrame frame;
+    frame.line = n;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      put(frame, columns[i], cells[i], folder, path, where);
+    }
+    if (frame.place.empty()) throw hyselam::InputError(path, where, "has no place");
+    if (frame.image.empty() || cells[0].empty()) {
+      throw hyselam::InputError(path, where, "has no image");
+    }
+    frames.push_back(std::move(frame));
+  }
+  if (frames.empty()) throw hyselam::InputError(path, "", "lists no frames");
+  return frames;
+}
+
+cv::Mat readImage(const std::string& path) {
+  const std::string bytes = hyselam::readTextFile(path, std::size_t{256} << 20);
+  if (bytes.empty()) throw hyselam::InputError(path, "", "is empty");
+  const bool jpeg = bytes.compare(0, 2, "\xFF\xD8") == 0, png = bytes.compare(0, 4, "\x89PNG") == 0;
+  if ((jpeg && !endsWithin(bytes, "\xFF\xD9", 2, 4096)) ||
+      (png && !endsWithin(bytes, "IEND", 4, 4096))) {
+    throw hyselam::InputError(path, "byte " + std::to_string(bytes.size()),
+                              "the image is cut short");
+  }
+  cv::Mat image;
+  try {
+    const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    image = cv::imdecode(raw, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& e) {
+    throw hyselam::InputError(path, "", "cannot be decoded: " + e.err);
+  }
+  if (image.empty()) throw hyselam::InputError(path, "", "is no image that can be decoded");
+  if (image.channels() == 4 && image.depth() == CV_8U) {
+    cv::Mat color(image.size(), CV_8UC3);
+    const int from_to[] = {0, 0, 1, 1, 2, 2};
+    cv::mixChannels(&image, 1, &color, 1, from_to, 3);
+    return color;
+  }
+  return image;
+}
+
+Readings readingsOf(const LabelledFrame& frame) {
+  Readings readings = frame.readings;
+  if (!frame.depth.empty() && readings.ranges.empty()) {
+    try {
+      readings.ranges = rangesOfDepth(readImage(frame.depth), kDepthColumns);
+    } catch (const std::invalid_argument& e) {
+      throw hyselam::InputError(frame.depth, "", e.what());
+    }
+  }
+  return readings;
+}
+
+}  // namespace selovis

@@ -1,0 +1,231 @@
+#include "selovis/lbp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
+
+#include "hyselam_common/errors.hpp"
+
+namespace selovis {
+namespace {
+
+constexpr int kPadding = 64;  // whole vectors may be read and written past the last column
+
+/// Ceiling of x / n for all x <= limit as (x + n - 1) * multiplier >> 16 >> shift, found by trying.
+bool findReciprocal(std::uint32_t n, std::uint32_t limit, std::uint32_t& multiplier, int& shift) {
+  for (shift = 0; shift <= 10; ++shift) {
+    multiplier = ((1u << (16 + shift)) + n - 1) / n;
+    if (multiplier > 0xffff) return false;
+    bool exact = true;
+    for (std::uint32_t x = 0; x <= limit + n - 1 && exact; ++x) {
+      exact = (static_cast<std::uint64_t>(x) * multiplier >> 16 >> shift) == x / n;
+    }
+    if (exact) return true;
+  }
+  return false;
+}
+
+std::array<std::uint8_t, kLbpCodes> makeUniformLabels() {
+  std::array<std::uint8_t, kLbpCodes> labels{};
+  std::uint8_t next = 0;
+  for (int code = 0; code < kLbpCodes; ++code) {
+    int changes = 0;
+    for (int p = 0; p < 8; ++p) changes += ((code >> p) & 1) != ((code >> ((p + 1) % 8)) & 1);
+    labels[code] = changes <= 2 ? next++ : static_cast<std::uint8_t>(kUniformCodes);
+  }
+  return labels;
+}
+
+inline cv::v_uint8x16 narrow(const cv::v_uint16x8& low, const cv::v_uint16x8& high) {
+  return cv::v_pack(low, high);
+}
+
+}  // namespace
+
+void validate(const LbpParams& params) {
+  if (params.radius < 1 || params.radius > 9) {
+    throw hyselam::ParameterError("lbp_radius", params.radius, "1 to 9 pixels");
+  }
+}
+
+std::array<Offset, 8> lbpOffsets(int radius) {
+  std::array<Offset, 8> offsets;
+  const int diagonal = static_cast<int>(std::lround(radius * std::sqrt(0.5)));
+  const int x[8] = {radius, diagonal, 0, -diagonal, -radius, -diagonal, 0, diagonal};
+  for (int p = 0; p < 8; ++p) offsets[p] = {x[p], -x[(p + 6) % 8]};
+  return offsets;
+}
+
+std::vector<int> discHalfHeights(int radius) {
+  std::vector<int> heights;
+  for (int dx = 0; dx <= radius; ++dx) {
+    int h = 0;
+    while (dx * dx + (h + 1) * (h + 1) <= radius * radius) ++h;
+    heights.push_back(h);
+  }
+  return heights;
+}
+
+const std::array<std::uint8_t, kLbpCodes>& uniformLabels() {
+  static const std::array<std::uint8_t, kLbpCodes> labels = makeUniformLabels();
+  return labels;
+}
+
+template <typename T>
+LbpStream<T>::LbpStream(const LbpParams& params)
+    : params_(params), mean_(params.disc_mean && params.radius > 1) {
+  validate(params);
+  offsets_ = lbpOffsets(params.radius);
+  half_heights_ = discHalfHeights(params.radius);
+  disc_size_ = 0;
+  for (int dx = 0; dx <= params.radius; ++dx) {
+    disc_size_ += static_cast<std::uint32_t>((dx == 0 ? 1 : 2) * (2 * half_heights_[dx] + 1));
+    const auto known =
+        std::find(distinct_heights_.begin(), distinct_heights_.end(), half_heights_[dx]);
+    sum_of_.push_back(static_cast<int>(known - distinct_heights_.begin()));
+    if (known == distinct_heights_.end()) distinct_heights_.push_back(half_heights_[dx]);
+  }
+  const std::uint32_t brightest = sizeof(T) == 1 ? 255 : 1023;
+  if (mean_ && (disc_size_ * (brightest + 1) > 0xffff ||
+                !findReciprocal(disc_size_, disc_size_ * brightest, multiplier_, shift_))) {
+    throw hyselam::ParameterError("lbp_radius", params.radius, "small enough for 16-bit sums");
+  }
+  ring_rows_ = 2 * params.radius + 2;
+}
+
+template <typename T>
+void LbpStream<T>::begin(int cols) {
+  pushed_ = 0;
+  if (cols == cols_) return;
+  cols_ = cols;
+  pitch_ = static_cast<std::size_t>(cols) + kPadding;
+  ring_.assign(pitch_ * ring_rows_, 0);
+  thresholds_.assign(pitch_, 0);
+  sums_.assign(pitch_ * distinct_heights_.size(), 0);
+  codes_.assign(pitch_, 0);
+}
+
+template <typename T>
+T* LbpStream<T>::next() {
+  return row(pushed_);
+}
+
+template <typename T>
+bool LbpStream<T>::push() {
+  const int centre = pushed_++ - params_.radius;
+  if (centre < params_.radius) return false;
+  if (mean_) {
+    updateSums(centre);
+    thresholds(centre);
+  }
+  compare(centre);
+  return true;
+}
+
+namespace {
+
+/// sums += add - drop over n columns (rounded up to whole vectors).
+void slide(std::uint16_t* sums, const std::uint8_t* add, const std::uint8_t* drop, int n) {
+  for (int x = 0; x < n; x += 16) {
+    cv::v_uint16x8 a0, a1, d0, d1;
+    cv::v_expand(cv::v_load(add + x), a0, a1);
+    cv::v_expand(cv::v_load(drop + x), d0, d1);
+    cv::v_store(sums + x, cv::v_sub_wrap(cv::v_add_wrap(cv::v_load(sums + x), a0), d0));
+    cv::v_store(sums + x + 8, cv::v_sub_wrap(cv::v_add_wrap(cv::v_load(sums + x + 8), a1), d1));
+  }
+}
+void slide(std::uint16_t* sums, const std::uint16_t* add, const std::uint16_t* drop, int n) {
+  for (int x = 0; x < n; x += 8) {
+    cv::v_store(sums + x, cv::v_sub_wrap(cv::v_add_wrap(cv::v_load(sums + x), cv::v_load(add + x)),
+                                         cv::v_load(drop + x)));
+  }
+}
+
+void storeThreshold(std::uint8_t* out, const cv::v_uint16x8& low, const cv::v_uint16x8& high) {
+  cv::v_store(out, narrow(low, high));
+}
+void storeThreshold(std::uint16_t* out, const cv::v_uint16x8& low, const cv::v_uint16x8& high) {
+  cv::v_store(out, low);
+  cv::v_store(out + 8, high);
+}
+
+}  // namespace
+
+template <typename T>
+void LbpStream<T>::updateSums(int centre) {
+  for (std::size_t k = 0; k < distinct_heights_.size(); ++k) {
+    const int h = distinct_heights_[k];
+    std::uint16_t* sums = sums_.data() + k * pitch_;
+    if (centre == params_.radius) {  // the first row with codes
+      std::fill(sums, sums + pitch_, std::uint16_t{0});
+      for (int y = centre - h; y <= centre + h; ++y) {
+        const T* values = row(y);
+        for (int x = 0; x < cols_; ++x) sums[x] = static_cast<std::uint16_t>(sums[x] + values[x]);
+      }
+    } else {
+      slide(sums, row(centre + h), row(centre - h - 1), cols_);
+    }
+  }
+}
+
+template <typename T>
+void LbpStream<T>::thresholds(int centre) {
+  (void)centre;
+  const int radius = params_.radius;
+  const cv::v_uint16x8 multiplier = cv::v_setall_u16(static_cast<std::uint16_t>(multiplier_));
+  const cv::v_uint16x8 round = cv::v_setall_u16(static_cast<std::uint16_t>(disc_size_ - 1));
+  for (int x = radius; x < cols_ - radius; x += 16) {
+    cv::v_uint16x8 low = round, high = round;
+    for (int dx = -radius; dx <= radius; ++dx) {
+      const std::uint16_t* sums =
+          sums_.data() + static_cast<std::size_t>(sum_of_[dx < 0 ? -dx : dx]) * pitch_ + x + dx;
+      low = cv::v_add_wrap(low, cv::v_load(sums));
+      high = cv::v_add_wrap(high, cv::v_load(sums + 8));
+    }
+    storeThreshold(thresholds_.data() + x, cv::v_mul_hi(low, multiplier) >> shift_,
+                   cv::v_mul_hi(high, multiplier) >> shift_);
+  }
+}
+
+namespace {
+
+void compareRow(std::uint8_t* codes, const std::uint8_t* const samples[8],
+                const std::uint8_t* thresholds, int begin, int end) {
+  for (int x = begin; x < end; x += 16) {
+    const cv::v_uint8x16 threshold = cv::v_load(thresholds + x);
+    cv::v_uint8x16 code = cv::v_setzero_u8();
+    for (int p = 0; p < 8; ++p) {
+      const cv::v_uint8x16 bit = cv::v_setall_u8(static_cast<std::uint8_t>(1 << p));
+      code = code | ((cv::v_load(samples[p] + x) >= threshold) & bit);
+    }
+    cv::v_store(codes + x, code);
+  }
+}
+void compareRow(std::uint8_t* codes, const std::uint16_t* const samples[8],
+                const std::uint16_t* thresholds, int begin, int end) {
+  for (int x = begin; x < end; x += 16) {
+    const cv::v_uint16x8 t0 = cv::v_load(thresholds + x), t1 = cv::v_load(thresholds + x + 8);
+    cv::v_uint16x8 c0 = cv::v_setzero_u16(), c1 = cv::v_setzero_u16();
+    for (int p = 0; p < 8; ++p) {
+      const cv::v_uint16x8 bit = cv::v_setall_u16(static_cast<std::uint16_t>(1 << p));
+      c0 = c0 | ((cv::v_load(samples[p] + x) >= t0) & bit);
+      c1 = c1 | ((cv::v_load(samples[p] + x + 8) >= t1) & bit);
+    }
+    cv::v_store(codes + x, narrow(c0, c1));
+  }
+}
+
+}  // namespace
+
+template <typename T>
+void LbpStream<T>::compare(int centre) {
+  const T* samples[8];
+  for (int p = 0; p < 8; ++p) samples[p] = row(centre + offsets_[p].dy) + offsets_[p].dx;
+  compareRow(codes_.data(), samples, mean_ ? thresholds_.data() : row(centre), params_.radius,
+             cols_ - params_.radius);
+}
+
+template class LbpStream<std::uint8_t>;
+template class LbpStream<std::uint16_t>;
+
+}  // namespace selovis

@@ -1,0 +1,124 @@
+// train: learns the look of places from labelled images.
+#include <iostream>
+#include <memory>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/tool.hpp"
+#include "options.hpp"
+
+namespace {
+
+using namespace selovis;  // NOLINT: a program, not a header
+
+struct Options {
+  std::vector<std::string> labels;
+  std::string out, kernel, views, libsvm;
+  bool add = false;
+  TrainingOptions training;
+};
+
+/// One progress line per stage.
+class Stages {
+ public:
+  void operator()(const std::string& stage, std::size_t done, std::size_t all) {
+    if (stage != stage_) {
+      line_ = std::make_unique<hyselam::Progress>(stage, all);
+      stage_ = stage;
+    }
+    line_->update(done);
+  }
+
+ private:
+  std::string stage_;
+  std::unique_ptr<hyselam::Progress> line_;
+};
+
+nlohmann::json run(Options& o) {
+  const Tours tours(o.labels);
+  const auto load = [&](std::size_t tour, std::size_t i) { return tours.load(tour, i); };
+  auto stages = std::make_shared<Stages>();
+  TrainingOptions& t = o.training;
+  t.progress = [stages](const std::string& stage, std::size_t done, std::size_t all) {
+    (*stages)(stage, done, all);
+  };
+  Model model;
+  try {
+    t.classifier.kernel = kernelOf(o.kernel);
+    const bool exemplar = t.classifier.kernel == Kernel::kExemplar;
+    t.views = numbersOf(o.views != "auto" ? o.views
+                        : exemplar        ? "0,-0.09,0.09,-0.18,0.18"
+                                          : "0",
+                        "--views");
+    const auto learn = [&](const std::string& libsvm_file) {
+      t.libsvm_file = libsvm_file;
+      if (o.add) {
+        model = loadModel(o.out);
+        addTo(model, tours.sizes(), load, t);
+      } else {
+        model = train(tours.sizes(), load, t);
+      }
+    };
+    if (o.libsvm.empty())
+      learn("");
+    else
+      hyselam::replaceFileAtomically(o.libsvm, learn);
+  } catch (const std::invalid_argument& e) {
+    throw hyselam::InputError(o.labels.front(), "", e.what());
+  }
+  saveModel(model, o.out);
+  return {{"descriptor", model.descriptor},
+          {"signature_size", model.samples.size},
+          {"kernel", nameOf(model.classifier.kernel)},
+          {"cost", model.classifier.cost},
+          {"gamma", model.classifier.gamma},
+          {"places", model.graph.places},
+          {"signatures", model.samples.count()},
+          {"model", o.out}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Learns the look of places from labelled images and writes a model directory.",
+               "train"};
+  Options o;
+  TrainingOptions& t = o.training;
+  app.add_option("--labels", o.labels, "CSV: image_path,place[,sensor columns]; one file per tour")
+      ->required();
+  app.add_option("--out", o.out, "model directory")->required();
+  app.add_option("--descriptor", t.descriptor, "name, as in the thesis; --list shows some")
+      ->capture_default_str();
+  app.add_option("--kernel", o.kernel = "poly", "linear, poly, rbf or exemplar")
+      ->capture_default_str();
+  app.add_flag("--grid", t.grid_search, "choose cost and gamma (beta) by cross-validation");
+  app.add_flag("--add", o.add, "add the frames, and new places, to the model in --out");
+  app.add_option("--cost", t.classifier.cost, "C of the SVM")->capture_default_str();
+  app.add_option("--gamma", t.classifier.gamma, "gamma of poly and rbf")->capture_default_str();
+  app.add_option("--beta", t.classifier.beta, "sharpness of the exemplar kernel")
+      ->capture_default_str();
+  app.add_option("--neighbours", t.classifier.neighbours, "exemplars that are weighed")
+      ->capture_default_str();
+  app.add_option("--power", t.classifier.power, "each value is raised to it; 1: as it is")
+      ->capture_default_str();
+  app.add_option("--views", o.views = "auto",
+                 "sideways shifts of each image, in widths; auto: five for exemplar, else one")
+      ->capture_default_str();
+  app.add_option("--heading-weight", t.descriptor_params.heading_weight, "of psi and [psi]")
+      ->capture_default_str();
+  app.add_option("--range-weight", t.descriptor_params.range_weight, "of An and scan")
+      ->capture_default_str();
+  app.add_option("--lbp-radius", t.descriptor_params.lbp.radius, "[pixels]")->capture_default_str();
+  app.add_option("--seed", t.seed, "of k-means; cross-validation for probabilities has its own")
+      ->capture_default_str();
+  app.add_option("--libsvm", o.libsvm, "also write libsvm's own model file");
+  app.add_flag_callback(
+      "--list",
+      [] {
+        for (const auto& name : descriptorNames()) std::cout << name << '\n';
+        throw CLI::Success();
+      },
+      "list descriptors and exit");
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+}
