@@ -1,0 +1,27 @@
+// Between the augmented topological map and its messages.
+#pragma once
+
+#include <hyselam_msgs/AugmentedTopologicalMap.h>
+#include <octomap_msgs/Octomap.h>
+
+#include <string>
+
+#include "hyselam_topo/octomap_reader.hpp"
+#include "hyselam_topo/topological_map.hpp"
+
+namespace hyselam_topo {
+
+/// fromMsg(toMsg(m)) == m, but for a stamp that is not a whole number of ns. Throws
+/// hyselam::InputError for a stamp that messages cannot hold.
+hyselam_msgs::AugmentedTopologicalMap toMsg(const AugmentedTopologicalMap& map);
+
+/// Throws hyselam::InputError, beginning with `source`, for constants that do not exist, arrays
+/// that do not fit together, and maps that checkMap() refuses.
+AugmentedTopologicalMap fromMsg(const hyselam_msgs::AugmentedTopologicalMap& msg,
+                                const std::string& source);
+
+/// Throws as octoMapFromData().
+VoxelMap fromMsg(const octomap_msgs::Octomap& msg, const std::string& source,
+                 const OctoMapLimits& limits = {});
+
+}  // namespace hyselam_topo

@@ -1,0 +1,77 @@
+#include "dynamic_parameters.hpp"
+
+#ifdef HYSELAM_HAVE_DYNAMIC_RECONFIGURE
+
+#include <dynamic_reconfigure/server.h>
+#include <hyselam_topo/Gr2ToConfig.h>
+
+namespace hyselam_topo {
+namespace {
+
+Gr2ToConfig configOf(const Gr2ToServerParams& params) {
+  Gr2ToConfig config = Gr2ToConfig::__getDefault__();
+  config.mode = params.gr2to.mode == Gr2ToParams::Mode::kThesis ? "thesis" : "default";
+  config.free_max = params.gr2to.segmentation.free_max;
+  config.working_resolution = params.gr2to.segmentation.working_resolution;
+  config.clutter = params.gr2to.segmentation.clutter;
+  config.smallest_place = params.gr2to.segmentation.smallest_place;
+  config.max_free_height = params.octomap.max_free_height;
+  config.min_occupied_height = params.octomap.min_occupied_height;
+  config.marker_alpha = params.markers.alpha;
+  return config;
+}
+
+/// The server of dynamic_reconfigure and what it needs.
+class DynamicParameters {
+ public:
+  DynamicParameters(const ros::NodeHandle& private_nh, Gr2ToServer* server)
+      : server_(server), dynamic_(mutex_, private_nh) {
+    // setCallback() calls at once with what the parameter server says: nothing new.
+    dynamic_.setCallback([this](Gr2ToConfig& config, std::uint32_t) {
+      if (ready_) apply(config);
+    });
+    dynamic_.updateConfig(configOf(server->params()));
+    ready_ = true;
+  }
+
+ private:
+  void apply(const Gr2ToConfig& config) {
+    Gr2ToServerParams params = server_->params();
+    params.gr2to.mode =
+        config.mode == "thesis" ? Gr2ToParams::Mode::kThesis : Gr2ToParams::Mode::kDefault;
+    params.gr2to.segmentation.free_max = config.free_max;
+    params.gr2to.segmentation.working_resolution = config.working_resolution;
+    params.gr2to.segmentation.clutter = config.clutter;
+    params.gr2to.segmentation.smallest_place = config.smallest_place;
+    params.octomap.max_free_height = config.max_free_height;
+    params.octomap.min_occupied_height = config.min_occupied_height;
+    params.markers.alpha = config.marker_alpha;
+    server_->setParams(params);
+  }
+
+  Gr2ToServer* server_;
+  bool ready_ = false;
+  boost::recursive_mutex mutex_;
+  dynamic_reconfigure::Server<Gr2ToConfig> dynamic_;
+};
+
+}  // namespace
+
+std::shared_ptr<void> makeDynamicParameters(const ros::NodeHandle& private_nh,
+                                            Gr2ToServer* server) {
+  return std::make_shared<DynamicParameters>(private_nh, server);
+}
+
+}  // namespace hyselam_topo
+
+#else
+
+namespace hyselam_topo {
+
+std::shared_ptr<void> makeDynamicParameters(const ros::NodeHandle&, Gr2ToServer*) {
+  return nullptr;
+}
+
+}  // namespace hyselam_topo
+
+#endif

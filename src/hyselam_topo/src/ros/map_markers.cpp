@@ -1,0 +1,286 @@
+#include "hyselam_topo/ros/map_markers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "hyselam_topo/map_geometry.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::Point2;
+using visualization_msgs::Marker;
+
+// Heights of the layers [m]: just above a map at 0, in the order in which they cover each other.
+constexpr double kPlaceHeight = 0.02;
+constexpr double kWallHeight = 0.05;
+constexpr double kGraphHeight = 0.08;
+constexpr double kDoorHeight = 0.1;
+constexpr double kNameHeight = 0.3;
+
+std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
+  std_msgs::ColorRGBA c;
+  c.r = static_cast<float>(r);
+  c.g = static_cast<float>(g);
+  c.b = static_cast<float>(b);
+  c.a = static_cast<float>(a);
+  return c;
+}
+
+/// A light colour for each id; ids that follow each other differ most (golden section of the hues).
+std_msgs::ColorRGBA placeColour(Id id, double alpha) {
+  const double hue = 6.0 * std::fmod(0.618033988749895 * id, 1.0);
+  const double saturation = id % 2 == 0 ? 0.45 : 0.65;
+  const auto channel = [&](double shift) {
+    const double k = std::fmod(shift + hue, 6.0);
+    return 0.97 * (1.0 - saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0));
+  };
+  return colour(channel(5.0), channel(3.0), channel(1.0), alpha);
+}
+
+geometry_msgs::Point at(Point2 p, double z) {
+  geometry_msgs::Point point;
+  point.x = p.x;
+  point.y = p.y;
+  point.z = z;
+  return point;
+}
+
+class Markers {
+ public:
+  explicit Markers(const std::string& frame) : frame_(frame) {
+    Marker all = make("", 0, Marker::CUBE);
+    all.action = Marker::DELETEALL;
+    array_.markers.push_back(all);
+  }
+
+  Marker make(const std::string& ns, int id, int type) const {
+    Marker m;
+    m.header.frame_id = frame_;
+    m.ns = ns;
+    m.id = id;
+    m.type = type;
+    m.action = Marker::ADD;
+    m.pose.orientation.w = 1.0;
+    m.scale.x = m.scale.y = m.scale.z = 1.0;
+    return m;
+  }
+
+  /// A list of lines of one width.
+  Marker makeLines(const std::string& ns, int id, double width,
+                   const std_msgs::ColorRGBA& c) const {
+    Marker lines = make(ns, id, Marker::LINE_LIST);
+    lines.scale.x = width;
+    lines.color = c;
+    return lines;
+  }
+
+  /// Unless it is a list of nothing, of which rviz would warn.
+  void put(Marker marker) {
+    const bool empty = marker.points.empty() && marker.type != Marker::TEXT_VIEW_FACING;
+    if (!empty) array_.markers.push_back(std::move(marker));
+  }
+
+  visualization_msgs::MarkerArray take() { return std::move(array_); }
+
+ private:
+  std::string frame_;
+  visualization_msgs::MarkerArray array_;
+};
+
+void line(Marker* lines, Point2 a, Point2 b, double z) {
+  lines->points.push_back(at(a, z));
+  lines->points.push_back(at(b, z));
+}
+
+/// Cells of one place in a row, [begin, end), over rows [low, high).
+struct Block {
+  Id place;
+  int begin, end, low, high;
+};
+
+/// The cells of all places as rectangles: runs along the rows, joined with equal runs below.
+std::vector<Block> blocksOf(const PlaceGrid& grid) {
+  std::vector<Block> blocks;
+  std::map<std::pair<int, int>, std::size_t> open;  // runs of the row below -> block
+  for (int y = 0; y < grid.geometry.height; ++y) {
+    std::map<std::pair<int, int>, std::size_t> row;
+    for (int x = 0; x < grid.geometry.width;) {
+      const Id id = grid.placeOf({x, y});
+      int end = x + 1;
+      while (end < grid.geometry.width && grid.placeOf({end, y}) == id) ++end;
+      if (id != 0) {
+        const auto below = open.find({x, end});
+        if (below != open.end() && blocks[below->second].place == id) {
+          blocks[below->second].high = y + 1;
+          row[{x, end}] = below->second;
+        } else {
+          row[{x, end}] = blocks.size();
+          blocks.push_back({id, x, end, y, y + 1});
+        }
+      }
+      x = end;
+    }
+    open = std::move(row);
+  }
+  return blocks;
+}
+
+void addPlaces(const AugmentedTopologicalMap& map, double alpha, Markers* markers) {
+  if (!map.grid) return;
+  const hyselam::GridGeometry& g = map.grid->geometry;
+  std::map<Id, std::vector<geometry_msgs::Point>> triangles;
+  for (const Block& block : blocksOf(*map.grid)) {
+    const auto corner = [&](int x, int y) {
+      return at(g.origin * Point2{x * g.resolution, y * g.resolution}, kPlaceHeight);
+    };
+    const auto a = corner(block.begin, block.low), b = corner(block.end, block.low);
+    const auto c = corner(block.end, block.high), d = corner(block.begin, block.high);
+    auto& list = triangles[block.place];
+    for (const auto& p : {a, b, c, a, c, d}) list.push_back(p);
+  }
+  for (auto& [id, points] : triangles) {
+    Marker marker = markers->make("places", static_cast<int>(id), Marker::TRIANGLE_LIST);
+    marker.color = placeColour(id, alpha);
+    marker.points = std::move(points);
+    markers->put(std::move(marker));
+  }
+}
+
+void addNames(const AugmentedTopologicalMap& map, Markers* markers) {
+  for (const Place& place : map.places) {
+    if (!place.centre) continue;
+    Marker marker = markers->make("names", static_cast<int>(place.id), Marker::TEXT_VIEW_FACING);
+    marker.pose.position = at({place.centre->x, place.centre->y}, kNameHeight);
+    // Large places bear large names, but a name shall fit its place.
+    marker.scale.z = std::clamp(0.13 * std::sqrt(place.area), 0.25, 0.9);
+    marker.color = colour(0.05, 0.05, 0.15);
+    marker.text = nameOf(place);
+    markers->put(std::move(marker));
+  }
+}
+
+void addWalls(const AugmentedTopologicalMap& map, Markers* markers) {
+  // Virtual walls first: a solid wall that lies on one covers it.
+  struct Style {
+    WallKind kind;
+    double width;
+    std_msgs::ColorRGBA colour;
+  };
+  const Style styles[] = {{WallKind::kVirtual, 0.04, colour(0.5, 0.5, 0.55, 0.9)},
+                          {WallKind::kGlass, 0.08, colour(0.3, 0.65, 0.95)},
+                          {WallKind::kSolid, 0.14, colour(0.12, 0.12, 0.16)}};
+  for (const Style& style : styles) {
+    Marker lines =
+        markers->makeLines("walls", static_cast<int>(style.kind), style.width, style.colour);
+    for (const Place& place : map.places) {
+      for (const Wall& wall : place.walls) {
+        if (wall.kind != style.kind) continue;
+        const std::vector<Point2> points = polyline(wall);
+        for (std::size_t i = 1; i < points.size(); ++i) {
+          line(&lines, points[i - 1], points[i], kWallHeight);
+        }
+      }
+    }
+    markers->put(std::move(lines));
+  }
+}
+
+/// The leaf, opened by a right angle about its first post, and the quarter circle it sweeps.
+void drawSwing(const Door& door, Marker* lines) {
+  const auto [hinge, latch] = ends(door);
+  const Point2 along{latch.x - hinge.x, latch.y - hinge.y};
+  const Point2 across{door.normal.x * door.width, door.normal.y * door.width};
+  const auto at_angle = [&](double angle) {
+    return Point2{hinge.x + std::cos(angle) * along.x + std::sin(angle) * across.x,
+                  hinge.y + std::cos(angle) * along.y + std::sin(angle) * across.y};
+  };
+  line(lines, hinge, at_angle(hyselam::kPi / 2), kDoorHeight);
+  constexpr int kPieces = 8;
+  for (int i = 0; i < kPieces; ++i) {
+    line(lines, at_angle(hyselam::kPi / 2 * i / kPieces),
+         at_angle(hyselam::kPi / 2 * (i + 1) / kPieces), kDoorHeight);
+  }
+}
+
+void drawDashed(Point2 a, Point2 b, double dash, Marker* lines) {
+  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  const int dashes = std::clamp(static_cast<int>(length / (2.0 * dash)), 1, 200);
+  for (int i = 0; i < dashes; ++i) {
+    const auto point = [&](double share) {
+      return Point2{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+    };
+    line(lines, point((i + 0.25) / dashes), point((i + 0.75) / dashes), kDoorHeight);
+  }
+}
+
+void addDoors(const AugmentedTopologicalMap& map, Markers* markers) {
+  enum { kSwings, kThresholds, kClosed, kVirtual };
+  Marker swings = markers->makeLines("doors", kSwings, 0.06, colour(0.55, 0.27, 0.07));
+  Marker thresholds = markers->makeLines("doors", kThresholds, 0.16, colour(0.95, 0.6, 0.2));
+  Marker closed = markers->makeLines("doors", kClosed, 0.16, colour(0.8, 0.1, 0.1));
+  Marker dashed = markers->makeLines("doors", kVirtual, 0.08, colour(0.35, 0.35, 0.45));
+  for (const Edge& edge : map.edges) {
+    for (const Door& door : edge.doors) {
+      const auto [a, b] = ends(door);
+      if (!door.real) {
+        drawDashed(a, b, 0.15, &dashed);
+      } else if (door.state == DoorState::kClosed) {
+        line(&closed, a, b, kDoorHeight);
+      } else {
+        line(&thresholds, a, b, kGraphHeight);
+        drawSwing(door, &swings);
+      }
+    }
+  }
+  for (Marker* m : {&swings, &thresholds, &closed, &dashed}) markers->put(std::move(*m));
+}
+
+void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
+  Marker spheres = markers->make("graph", 0, Marker::SPHERE_LIST);
+  spheres.scale.x = spheres.scale.y = spheres.scale.z = 0.25;
+  spheres.color = colour(0.1, 0.25, 0.6);
+  Marker lines = markers->makeLines("graph", 1, 0.05, colour(0.1, 0.25, 0.6, 0.8));
+  for (const Place& place : map.places) {
+    if (place.centre) {
+      spheres.points.push_back(at({place.centre->x, place.centre->y}, kGraphHeight));
+    }
+  }
+  for (const Edge& edge : map.edges) {
+    const Place *a = map.findPlace(edge.a), *b = map.findPlace(edge.b);
+    if (a == nullptr || b == nullptr || !a->centre || !b->centre) continue;
+    const Point2 from{a->centre->x, a->centre->y}, to{b->centre->x, b->centre->y};
+    if (edge.doors.empty()) line(&lines, from, to, kGraphHeight);
+    for (const Door& door : edge.doors) {
+      const Point2 middle{door.position.x, door.position.y};
+      line(&lines, from, middle, kGraphHeight);
+      line(&lines, middle, to, kGraphHeight);
+    }
+  }
+  markers->put(std::move(spheres));
+  markers->put(std::move(lines));
+}
+
+}  // namespace
+
+std::string nameOf(const Place& place) {
+  const auto confirmed = std::find_if(place.words.begin(), place.words.end(),
+                                      [](const Word& word) { return word.confirmed; });
+  if (confirmed != place.words.end()) return confirmed->text;
+  if (!place.words.empty()) return place.words.front().text;
+  return std::string(toString(place.kind)) + " " + std::to_string(place.id);
+}
+
+visualization_msgs::MarkerArray mapMarkers(const AugmentedTopologicalMap& map,
+                                           const MapMarkerParams& params) {
+  Markers markers(map.frame_id);
+  if (params.places) addPlaces(map, params.alpha, &markers);
+  if (params.walls) addWalls(map, &markers);
+  if (params.graph) addGraph(map, &markers);
+  if (params.doors) addDoors(map, &markers);
+  if (params.names) addNames(map, &markers);
+  return markers.take();
+}
+
+}  // namespace hyselam_topo
