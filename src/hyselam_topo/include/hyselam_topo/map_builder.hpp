@@ -9,14 +9,15 @@
 
 namespace hyselam_topo {
 
-/// When a place is a corridor. Its width is the diameter of the largest circle that fits between
-/// its walls (what stands free in it is seen through), its elongation its area by its width
-/// squared: 1 for a square, and the length by the width for a corridor, straight, bent or branched.
+/// When a place is a corridor. Its width is four times the mean distance of its cells to its limits
+/// (what stands free in it is seen through): 2/3 of the side for a square, and the width for a long
+/// strip, straight, bent or branched. Its elongation is its area by its width squared: 2.25 for a
+/// square, about the length by the width for a strip.
 struct CorridorRule {
-  double max_width = 4.0;        ///< [m] > 0
-  double min_elongation = 3.0;   ///< with `min_neighbours` or more places around, >= 1
-  double long_elongation = 6.0;  ///< with any number, >= min_elongation
-  int min_neighbours = 3;
+  double max_width = 4.0;         ///< [m] > 0
+  int min_neighbours = 4;         ///< other places that it leads to,
+  double min_elongation = 4.0;    ///< and its elongation then, >= 1
+  double long_elongation = 10.0;  ///< with two or three neighbours, >= min_elongation
 };
 
 struct MapBuilderParams {

@@ -5,8 +5,9 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <set>
+#include <stdexcept>
 
-#include "contours.hpp"
+#include "contour_walls.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 
@@ -20,71 +21,97 @@ namespace {
 
 // What a label's cells say about a place.
 struct Region {
-  cv::Rect box;
   double cells = 0.0;
-  cv::Point2d sum{0.0, 0.0};
-  double filled = 0.0;       // cells with what stands free in the place
-  double clearance = 0.0;    // radius of the largest circle in it [cells]
-  cv::Point centre{-1, -1};  // inside, near the middle, away from the walls
+  double filled = 0.0;        // cells with what stands free in the place
+  cv::Point2d sum{0.0, 0.0};  // of the cells' positions, then their mean
+  double distances = 0.0;     // to the limits of the place, summed over `filled` [cells]
+  float clearance = 0.0f;     // the largest of these distances
+  cv::Point centre{-1, -1};   // inside, near the middle, away from the walls
+  bool deep = false;          // the centre is
+  double off_middle = 0.0;    // squared
 };
 
-std::vector<Region> regionsOf(const cv::Mat& labels, int places) {
+// Gives the cells inside of a hole that are in no place to the place around it.
+void fillHole(const Contour& hole, cv::Mat* labels) {
+  std::vector<cv::Point> crossings;  // upright sides: row and column
+  for (const ContourSide& side : hole.sides) {
+    if (side.direction % 2 == 0) continue;
+    crossings.emplace_back(side.from.x, side.direction == 1 ? side.from.y : side.from.y - 1);
+  }
+  std::sort(crossings.begin(), crossings.end(), [](const cv::Point& p, const cv::Point& q) {
+    return p.y != q.y ? p.y < q.y : p.x < q.x;
+  });
+  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+    auto* row = labels->ptr<std::uint16_t>(crossings[i].y);
+    for (int x = crossings[i].x; x < crossings[i + 1].x; ++x) {
+      if (row[x] == 0) row[x] = hole.label;
+    }
+  }
+}
+
+// The distance of each cell to the limits of its place, CV_32F.
+cv::Mat distancesWithin(const cv::Mat& labels) {
+  cv::Mat inner(labels.size(), CV_8UC1, cv::Scalar(0));
+  for (int y = 1; y + 1 < labels.rows; ++y) {
+    const auto* below = labels.ptr<std::uint16_t>(y - 1);
+    const auto* row = labels.ptr<std::uint16_t>(y);
+    const auto* above = labels.ptr<std::uint16_t>(y + 1);
+    auto* out = inner.ptr<std::uint8_t>(y);
+    for (int x = 1; x + 1 < labels.cols; ++x) {
+      out[x] = row[x] != 0 && row[x] == row[x - 1] && row[x] == row[x + 1] && row[x] == below[x] &&
+                       row[x] == above[x]
+                   ? 255
+                   : 0;
+    }
+  }
+  cv::Mat distance;
+  cv::distanceTransform(inner, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  return distance;
+}
+
+std::vector<Region> measure(const cv::Mat& labels, const std::vector<Contour>& contours, int places,
+                            double resolution, const WallParams& walls) {
+  cv::Mat filled = labels.clone();
+  for (const Contour& contour : contours) {
+    if (isIsland(contour, resolution, walls)) fillHole(contour, &filled);
+  }
+  const cv::Mat distance = distancesWithin(filled);
   std::vector<Region> out(static_cast<std::size_t>(places));
   for (int y = 0; y < labels.rows; ++y) {
-    const auto* row = labels.ptr<std::uint16_t>(y);
+    const auto* row = filled.ptr<std::uint16_t>(y);
+    const auto* own = labels.ptr<std::uint16_t>(y);
+    const auto* d = distance.ptr<float>(y);
     for (int x = 0; x < labels.cols; ++x) {
       if (row[x] == 0 || row[x] > places) continue;
       Region& r = out[row[x] - 1u];
-      r.box = r.cells == 0.0 ? cv::Rect(x, y, 1, 1) : r.box | cv::Rect(x, y, 1, 1);
+      r.filled += 1.0;
+      r.distances += d[x] + 0.5;
+      r.clearance = std::max(r.clearance, d[x]);
+      if (own[x] == 0) continue;
       r.cells += 1.0;
       r.sum += cv::Point2d(x, y);
     }
   }
+  for (Region& r : out) {
+    if (r.cells > 0.0) r.sum *= 1.0 / r.cells;
+  }
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* own = labels.ptr<std::uint16_t>(y);
+    const auto* d = distance.ptr<float>(y);
+    for (int x = 0; x < labels.cols; ++x) {
+      if (own[x] == 0 || own[x] > places) continue;
+      Region& r = out[own[x] - 1u];
+      // A place may have no cell of its own where it is widest: then any will do.
+      const bool deep = d[x] >= 0.5f * r.clearance;
+      if (!deep && (r.deep || r.centre.x >= 0)) continue;
+      const double dx = x - r.sum.x, dy = y - r.sum.y, off = dx * dx + dy * dy;
+      if (r.deep && off >= r.off_middle) continue;
+      r.deep = deep;
+      r.off_middle = off;
+      r.centre = {x, y};
+    }
+  }
   return out;
-}
-
-// Looks at one place on its own: holes smaller than `min_island` [cells around] filled, distances
-// to its limits.
-void measure(const cv::Mat& labels, int label, double min_island, Region* region) {
-  if (region->cells == 0.0) return;
-  cv::Mat mask;
-  cv::copyMakeBorder(labels(region->box) == label, mask, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
-  const cv::Mat own = mask.clone();
-  cv::Mat parts;
-  cv::Mat stats, centroids;
-  const int count = cv::connectedComponentsWithStats(mask == 0, parts, stats, centroids, 4, CV_32S);
-  const int outer = parts.at<int>(0, 0);
-  for (int i = 1; i < count; ++i) {
-    const double around =
-        2.0 * (stats.at<int>(i, cv::CC_STAT_WIDTH) + stats.at<int>(i, cv::CC_STAT_HEIGHT));
-    if (i != outer && around < min_island) mask.setTo(255, parts == i);
-  }
-  region->filled = cv::countNonZero(mask);
-  cv::Mat distance;
-  cv::distanceTransform(mask, distance, cv::DIST_L2, cv::DIST_MASK_5);
-  double widest = 0.0;
-  cv::minMaxLoc(distance, nullptr, &widest);
-  region->clearance = widest - 0.5;
-  const cv::Point2d mean =
-      (1.0 / region->cells) * region->sum - cv::Point2d(region->box.x - 1.0, region->box.y - 1.0);
-  double best = -1.0;
-  for (int y = 0; y < mask.rows; ++y) {
-    for (int x = 0; x < mask.cols; ++x) {
-      if (own.at<std::uint8_t>(y, x) == 0 || distance.at<float>(y, x) < 0.5 * widest) continue;
-      const double d = std::hypot(x - mean.x, y - mean.y);
-      if (best >= 0.0 && d >= best) continue;
-      best = d;
-      region->centre = {x + region->box.x - 1, y + region->box.y - 1};
-    }
-  }
-  // All the room may stand full of things that were filled: then any of its cells.
-  for (int y = 0; y < own.rows && region->centre.x < 0; ++y) {
-    for (int x = 0; x < own.cols; ++x) {
-      if (own.at<std::uint8_t>(y, x) == 0) continue;
-      region->centre = {x + region->box.x - 1, y + region->box.y - 1};
-      break;
-    }
-  }
 }
 
 // The normal of a door points from place a to place b: the label that is met first on its left.
@@ -125,9 +152,17 @@ AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
                                   ">= corridor_min_elongation");
   }
   const double r = grid.geometry.resolution;
-  std::vector<PlaceWalls> walls = extractWalls(grid, segmentation, params.walls);
+  const cv::Mat labels =
+      segmentation.labels.isContinuous() ? segmentation.labels : segmentation.labels.clone();
+  if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
+      labels.rows != grid.geometry.height) {
+    throw std::invalid_argument("the labels do not fit the grid");
+  }
+  const std::vector<Contour> contours = traceContours(labels);
+  std::vector<PlaceWalls> walls = wallsAlong(contours, grid, labels, params.walls);
   walls.resize(static_cast<std::size_t>(segmentation.places));
-  std::vector<Region> regions = regionsOf(segmentation.labels, segmentation.places);
+  const std::vector<Region> regions =
+      measure(labels, contours, segmentation.places, r, params.walls);
   std::map<int, std::set<int>> neighbours;
   for (const DoorLine& d : segmentation.doors) {
     neighbours[d.place_a].insert(d.place_b);
@@ -137,13 +172,10 @@ AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
   AugmentedTopologicalMap map;
   map.grid.emplace();
   map.grid->geometry = grid.geometry;
-  const cv::Mat labels =
-      segmentation.labels.isContinuous() ? segmentation.labels : segmentation.labels.clone();
   map.grid->labels.assign(labels.ptr<std::uint16_t>(0),
                           labels.ptr<std::uint16_t>(0) + grid.geometry.cellCount());
   for (int label = 1; label <= segmentation.places; ++label) {
-    Region& region = regions[static_cast<std::size_t>(label - 1)];
-    measure(labels, label, params.walls.min_island / r, &region);
+    const Region& region = regions[static_cast<std::size_t>(label - 1)];
     Place place;
     place.id = static_cast<Id>(label);
     map.grid->places.push_back(place.id);
@@ -152,11 +184,13 @@ AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
       const Point2 c = grid.geometry.centre({region.centre.x, region.centre.y});
       place.centre = Point3{c.x, c.y, 0.0};
     }
-    const double width = 2.0 * region.clearance * r;
+    // In a long strip the mean distance to its limits is a quarter of its width.
+    const double width = region.filled > 0.0 ? 4.0 * r * region.distances / region.filled : 0.0;
     const double elongation = width > 0.0 ? region.filled * r * r / (width * width) : 0.0;
-    const bool joins = static_cast<int>(neighbours[label].size()) >= rule.min_neighbours;
+    const auto around = static_cast<int>(neighbours[label].size());
     if (width <= rule.max_width &&
-        elongation >= (joins ? rule.min_elongation : rule.long_elongation)) {
+        ((around >= rule.min_neighbours && elongation >= rule.min_elongation) ||
+         (around >= 2 && elongation >= rule.long_elongation))) {
       place.kind = PlaceKind::kCorridor;
     }
     PlaceWalls& own = walls[static_cast<std::size_t>(label - 1)];

@@ -174,6 +174,14 @@ std::vector<ChainPiece> cutChain(std::vector<Point2d>* points, bool closed, doub
     first = last;
   }
   joinStraight(p, tolerance, &pieces);
+  // Around something thin the way there and the way back are two walls.
+  if (closed && pieces.size() == 1 && p.size() >= 4) {
+    const auto far = std::max_element(p.begin(), p.end(), [&](Point2d a, Point2d b) {
+      return length(a - p[0]) < length(b - p[0]);
+    });
+    const auto cut = static_cast<std::size_t>(far - p.begin());
+    if (cut > 0) pieces = {{0, cut, {}}, {cut, p.size(), {}}};
+  }
 
   std::vector<ChainPiece> out;
   for (std::size_t i = 0; i < pieces.size();) {

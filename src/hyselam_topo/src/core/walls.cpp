@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "contours.hpp"
+#include "contour_walls.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 #include "wall_fit.hpp"
@@ -48,10 +48,7 @@ class WallMaker {
       : grid_(grid), labels_(labels), params_(params), resolution_(grid.geometry.resolution) {}
 
   void add(const Contour& contour, PlaceWalls* out) const {
-    if (contour.hole &&
-        static_cast<double>(contour.sides.size()) * resolution_ < params_.min_island) {
-      return;
-    }
+    if (isIsland(contour, resolution_, params_)) return;
     std::vector<Piece> pieces = cut(contour);
     if (pieces.empty()) return;
     const std::size_t n = pieces.size();
@@ -257,25 +254,34 @@ class WallMaker {
 
 }  // namespace
 
-std::vector<PlaceWalls> extractWalls(const OccupancyGrid& grid, const cv::Mat& labels,
-                                     const WallParams& params) {
+bool isIsland(const Contour& contour, double resolution, const WallParams& params) {
+  return contour.hole && static_cast<double>(contour.sides.size()) * resolution < params.min_island;
+}
+
+std::vector<PlaceWalls> wallsAlong(const std::vector<Contour>& contours, const OccupancyGrid& grid,
+                                   const cv::Mat& labels, const WallParams& params) {
   require(params.tolerance > 0.0, "wall_tolerance", params.tolerance, "> 0 m");
   require(params.min_length >= 0.0, "wall_min_length", params.min_length, ">= 0 m");
   require(params.min_island >= 0.0, "wall_min_island", params.min_island, ">= 0 m");
   require(params.close_gaps >= 0.0, "wall_close_gaps", params.close_gaps, ">= 0 m");
   require(params.max_radius > 0.0, "wall_max_radius", params.max_radius, "> 0 m");
   require(params.occupied_min > params.free_max, "occupied_min", params.occupied_min, "> free_max");
-  if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
-      labels.rows != grid.geometry.height) {
-    throw std::invalid_argument("the labels do not fit the grid");
-  }
   const WallMaker maker(grid, labels, params);
   std::vector<PlaceWalls> out;
-  for (const Contour& contour : traceContours(labels)) {
+  for (const Contour& contour : contours) {
     if (out.size() < contour.label) out.resize(contour.label);
     maker.add(contour, &out[contour.label - 1u]);
   }
   return out;
+}
+
+std::vector<PlaceWalls> extractWalls(const OccupancyGrid& grid, const cv::Mat& labels,
+                                     const WallParams& params) {
+  if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
+      labels.rows != grid.geometry.height) {
+    throw std::invalid_argument("the labels do not fit the grid");
+  }
+  return wallsAlong(traceContours(labels), grid, labels, params);
 }
 
 }  // namespace hyselam_topo
