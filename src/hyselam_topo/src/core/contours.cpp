@@ -42,36 +42,36 @@ std::vector<Contour> traceContours(const cv::Mat& labels) {
   };
   cv::Mat walked(labels.rows + 1, labels.cols + 1, CV_8UC1, cv::Scalar(0));
   std::vector<Contour> out;
-  for (int y = 0; y <= labels.rows; ++y) {
-    for (int x = 0; x <= labels.cols; ++x) {
-      // Every contour has a side along +x or, if it is a hole's, along -x; each starts at one.
-      for (const int start : {0, 2}) {
-        const std::uint16_t label = left({x, y}, start);
-        if (label == 0 || right({x, y}, start) == label) continue;
-        if ((walked.at<std::uint8_t>(y, x) & (1 << start)) != 0) continue;
-        Contour contour;
-        contour.label = label;
-        cv::Point p{x, y};
-        int d = start;
-        long twice_area = 0;
-        while ((walked.at<std::uint8_t>(p) & (1 << d)) == 0) {
-          walked.at<std::uint8_t>(p) =
-              static_cast<std::uint8_t>(walked.at<std::uint8_t>(p) | 1 << d);
-          contour.sides.push_back({p, d});
-          const cv::Point q = contour.sides.back().to();
-          twice_area += static_cast<long>(p.x) * q.y - static_cast<long>(q.x) * p.y;
-          p = q;
-          // Left first: cells that touch at a corner only are apart.
-          for (const int turn : {1, 0, 3}) {
-            const int next = (d + turn) % 4;
-            if (left(p, next) != label || right(p, next) == label) continue;
-            d = next;
-            break;
-          }
+  // Every contour, around a region or a hole, has a side along +x: a cell above another label.
+  const std::vector<std::uint16_t> none(static_cast<std::size_t>(labels.cols), 0);
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* row = labels.ptr<std::uint16_t>(y);
+    const auto* below = y > 0 ? labels.ptr<std::uint16_t>(y - 1) : none.data();
+    for (int x = 0; x < labels.cols; ++x) {
+      const std::uint16_t label = row[x];
+      if (label == 0 || below[x] == label) continue;
+      if ((walked.at<std::uint8_t>(y, x) & 1) != 0) continue;
+      Contour contour;
+      contour.label = label;
+      cv::Point p{x, y};
+      int d = 0;
+      long twice_area = 0;
+      while ((walked.at<std::uint8_t>(p) & (1 << d)) == 0) {
+        walked.at<std::uint8_t>(p) = static_cast<std::uint8_t>(walked.at<std::uint8_t>(p) | 1 << d);
+        contour.sides.push_back({p, d});
+        const cv::Point q = contour.sides.back().to();
+        twice_area += static_cast<long>(p.x) * q.y - static_cast<long>(q.x) * p.y;
+        p = q;
+        // Left first: cells that touch at a corner only are apart.
+        for (const int turn : {1, 0, 3}) {
+          const int next = (d + turn) % 4;
+          if (left(p, next) != label || right(p, next) == label) continue;
+          d = next;
+          break;
         }
-        contour.hole = twice_area < 0;
-        out.push_back(std::move(contour));
       }
+      contour.hole = twice_area < 0;
+      out.push_back(std::move(contour));
     }
   }
   return out;

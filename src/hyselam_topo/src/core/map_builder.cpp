@@ -64,8 +64,13 @@ cv::Mat distancesWithin(const cv::Mat& labels) {
                    : 0;
     }
   }
-  cv::Mat distance;
-  cv::distanceTransform(inner, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::Mat distance(labels.size(), CV_32FC1, cv::Scalar(0));
+  // The middle of nowhere is large on many maps.
+  const cv::Rect box = cv::boundingRect(inner);
+  if (box.empty()) return distance;
+  const cv::Rect with_rim(box.x - 1, box.y - 1, box.width + 2, box.height + 2);
+  cv::Mat part = distance(with_rim);
+  cv::distanceTransform(inner(with_rim), part, cv::DIST_L2, cv::DIST_MASK_5);
   return distance;
 }
 
