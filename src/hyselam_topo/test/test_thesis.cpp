@@ -78,6 +78,7 @@ TEST(ThesisOracle, DoorCellsEqualTheTranscription) {
     const double low = 1.5 + 0.05 * static_cast<double>(seed % 40), high = low + 4.0;
     const auto found = doorCells(d, low, high);
     EXPECT_EQ(transcription::doorCells(d, low, high), found) << "seed " << seed;
+    EXPECT_EQ(transcription::centralLocations(found, low), centralLocations(found, low));
     cells += found.size();
   }
   EXPECT_GT(cells, 1000u);

@@ -11,7 +11,8 @@ using hyselam::Cell;
 namespace {
 
 double between(const Circle& a, const Circle& b) {
-  return std::hypot(a.centre.x - b.centre.x, a.centre.y - b.centre.y);
+  const double dx = a.centre.x - b.centre.x, dy = a.centre.y - b.centre.y;
+  return std::sqrt(dx * dx + dy * dy);
 }
 
 // Stored circles by squares of the map, so that a new one looks at those near it only.

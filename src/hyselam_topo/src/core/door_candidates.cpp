@@ -1,5 +1,6 @@
 #include "hyselam_topo/door_candidates.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -38,20 +39,57 @@ std::vector<Cell> doorCells(const DistanceMap& distances, double min_radius, dou
 std::vector<cv::Point2d> centralLocations(const std::vector<Cell>& cells, double radius) {
   struct Group {
     double x, y, count;
+    Cell square;
   };
   std::vector<Group> groups;
+  if (cells.empty()) return {};
+  // Groups by squares as wide as the radius: one that is near lies in the cell's square or around.
+  int width = 0, height = 0;
   for (const Cell& c : cells) {
-    bool joined = false;
-    for (Group& g : groups) {
-      const double dx = g.x / g.count - c.x, dy = g.y / g.count - c.y;
-      if (dx * dx + dy * dy >= radius * radius) continue;
-      g = {g.x + c.x, g.y + c.y, g.count + 1.0};
-      joined = true;
-      break;
+    width = std::max(width, c.x);
+    height = std::max(height, c.y);
+  }
+  const auto squareOf = [&](double x, double y) {
+    return Cell{static_cast<int>(x / radius) + 1, static_cast<int>(y / radius) + 1};
+  };
+  const Cell last = squareOf(width, height);
+  const int columns = last.x + 2;
+  std::vector<std::vector<std::size_t>> squares(static_cast<std::size_t>(columns) *
+                                                static_cast<std::size_t>(last.y + 2));
+  const auto at = [&](Cell s) -> std::vector<std::size_t>& {
+    return squares[static_cast<std::size_t>(s.y) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(s.x)];
+  };
+  for (const Cell& c : cells) {
+    const Cell own = squareOf(c.x, c.y);
+    std::size_t first = groups.size();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        for (const std::size_t k : at({own.x + dx, own.y + dy})) {
+          const Group& g = groups[k];
+          const double x = g.x / g.count - c.x, y = g.y / g.count - c.y;
+          if (x * x + y * y < radius * radius) first = std::min(first, k);
+        }
+      }
     }
-    if (!joined) groups.push_back({static_cast<double>(c.x), static_cast<double>(c.y), 1.0});
+    if (first == groups.size()) {
+      groups.push_back({static_cast<double>(c.x), static_cast<double>(c.y), 1.0, own});
+      at(own).push_back(first);
+      continue;
+    }
+    Group& g = groups[first];
+    g.x += c.x;
+    g.y += c.y;
+    g.count += 1.0;
+    const Cell now = squareOf(g.x / g.count, g.y / g.count);
+    if (now == g.square) continue;
+    std::vector<std::size_t>& before = at(g.square);
+    before.erase(std::find(before.begin(), before.end(), first));
+    at(now).push_back(first);
+    g.square = now;
   }
   std::vector<cv::Point2d> out;
+  out.reserve(groups.size());
   for (const Group& g : groups) out.emplace_back(g.x / g.count, g.y / g.count);
   return out;
 }

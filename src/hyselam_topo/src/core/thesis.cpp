@@ -74,8 +74,8 @@ class Labeller {
       for (int y = box.y; y < box.y + box.height; ++y) {
         for (int x = box.x; x < box.x + box.width; ++x) {
           if (mask.at<std::uint8_t>(y, x) == 0 || open_.at<std::uint8_t>(y, x) == 0) continue;
-          const auto d = static_cast<float>(
-              std::hypot(x - circles[i].centre.x, y - circles[i].centre.y) - circles[i].radius);
+          const double dx = x - circles[i].centre.x, dy = y - circles[i].centre.y;
+          const auto d = static_cast<float>(std::sqrt(dx * dx + dy * dy) - circles[i].radius);
           if (d >= nearest.at<float>(y, x)) continue;
           nearest.at<float>(y, x) = d;
           owner.at<int>(y, x) = static_cast<int>(i);
@@ -252,8 +252,8 @@ std::vector<ConfirmedDoor> validateDoors(const std::vector<Point2d>& candidates,
     double nearest = max_radius;
     for (std::size_t k = 0; k < critical.size(); ++k) {
       if (critical[k].clearance <= min_radius || critical[k].clearance >= max_radius) continue;
-      const double d =
-          std::hypot(critical[k].at.x - candidates[i].x, critical[k].at.y - candidates[i].y);
+      const double dx = critical[k].at.x - candidates[i].x, dy = critical[k].at.y - candidates[i].y;
+      const double d = std::sqrt(dx * dx + dy * dy);
       if (d > nearest) continue;
       nearest = d;
       best = k;

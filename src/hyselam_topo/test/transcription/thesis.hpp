@@ -39,6 +39,29 @@ inline std::vector<hyselam::Cell> doorCells(const hyselam_topo::DistanceMap& map
   return out;
 }
 
+/// Second stage: the central locations, every cell against every group.
+inline std::vector<cv::Point2d> centralLocations(const std::vector<hyselam::Cell>& cells,
+                                                 double radius) {
+  struct Group {
+    double x, y, count;
+  };
+  std::vector<Group> groups;
+  for (const hyselam::Cell& c : cells) {
+    bool joined = false;
+    for (Group& g : groups) {
+      const double dx = g.x / g.count - c.x, dy = g.y / g.count - c.y;
+      if (dx * dx + dy * dy >= radius * radius) continue;
+      g = {g.x + c.x, g.y + c.y, g.count + 1.0};
+      joined = true;
+      break;
+    }
+    if (!joined) groups.push_back({static_cast<double>(c.x), static_cast<double>(c.y), 1.0});
+  }
+  std::vector<cv::Point2d> out;
+  for (const Group& g : groups) out.emplace_back(g.x / g.count, g.y / g.count);
+  return out;
+}
+
 /// Fourth stage: the circles along the diagram, every one against every stored one.
 inline std::vector<hyselam_topo::Circle> packCircles(const hyselam_topo::DistanceMap& map,
                                                      const cv::Mat& voronoi) {
