@@ -27,6 +27,11 @@ Residual residual(const SystemEdge& e, const SystemPose& i, const SystemPose& j)
   return r;
 }
 
+double turnError(const SystemEdge& e, const std::vector<SystemPose>& poses) {
+  return hyselam::normalizeAngle(poses[static_cast<std::size_t>(e.to)].theta -
+                                 poses[static_cast<std::size_t>(e.from)].theta - e.theta);
+}
+
 double squared(const Residual& r) {
   return r.ex * r.wx + r.ey * r.wy + r.et * r.wt;
 }
@@ -111,6 +116,15 @@ void PoseSystem::edgeCosts(const std::vector<SystemPose>& poses, std::vector<dou
     const SystemEdge& e = edges_[k];
     (*costs)[k] = squared(residual(e, poses[static_cast<std::size_t>(e.from)],
                                    poses[static_cast<std::size_t>(e.to)]));
+  }
+}
+
+void PoseSystem::turnCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const {
+  costs->resize(edges_.size());
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    const SystemEdge& e = edges_[k];
+    const double turn = turnError(e, poses);
+    (*costs)[k] = e.w[5] * turn * turn;
   }
 }
 
@@ -261,11 +275,7 @@ bool PoseSystem::chordalRotations(const std::vector<double>& weights,
 
 double PoseSystem::largestTurn(const std::vector<SystemPose>& poses) const {
   double largest = 0.0;
-  for (const SystemEdge& e : edges_) {
-    const double turn = poses[static_cast<std::size_t>(e.to)].theta -
-                        poses[static_cast<std::size_t>(e.from)].theta - e.theta;
-    largest = std::max(largest, std::abs(hyselam::normalizeAngle(turn)));
-  }
+  for (const SystemEdge& e : edges_) largest = std::max(largest, std::abs(turnError(e, poses)));
   return largest;
 }
 

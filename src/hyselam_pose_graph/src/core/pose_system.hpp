@@ -48,6 +48,8 @@ class PoseSystem {
   double cost(const std::vector<SystemPose>& poses, const std::vector<double>& weights) const;
   /// Errors squared by information, edge by edge.
   void edgeCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const;
+  /// The same of their angles alone.
+  void turnCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const;
   /// H = J^T Omega J + damping diag(H), b = -J^T Omega e at `poses`.
   void linearise(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
                  double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const;

@@ -1,0 +1,68 @@
+#include "descent.hpp"
+
+#include <cmath>
+
+namespace hyselam_pose_graph {
+
+bool Descent::placeByRotations(Poses* poses) {
+  Poses placed = *poses;
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (system_.row(static_cast<int>(i)) >= 0) placed[i].x = placed[i].y = 0.0;
+  system_.lineariseFromRotations(placed, weights, &h_, &b_);
+  ++iterations_;
+  if (!factorPoses(&h_)) return false;
+  h_.solve(&b_);
+  *poses = system_.moved(placed, b_);
+  return true;
+}
+
+bool Descent::relax(Poses* poses) {
+  Poses relaxed = *poses;
+  if (!system_.chordalRotations(weights, &relaxed) || !placeByRotations(&relaxed)) return false;
+  *poses = std::move(relaxed);
+  return true;
+}
+
+/// The step at `poses`, in b_, and what it promises to take from the cost. False if there is none.
+bool Descent::step(const Poses& poses, double damping, double* promised) {
+  system_.linearise(poses, weights, damping, &h_, &b_);
+  ++iterations_;
+  if (!factorPoses(&h_)) return false;
+  gradient_ = b_;
+  h_.solve(&b_);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < b_.size(); ++i) {
+    const PoseSystem::Vector p = b_[i] * gradient_[i];
+    sum += p[0] + p[1] + p[2];
+  }
+  *promised = sum;
+  return std::isfinite(sum);
+}
+
+bool Descent::descend(Poses* poses, int steps) {
+  const bool damped = params_.method == GraphMethod::kLevenbergMarquardt;
+  double cost = system_.cost(*poses, weights), damping = 0.0;
+  for (int done = 0; done < steps; ++done) {
+    double promised = 0.0;
+    const bool found = step(*poses, damping, &promised);
+    if (!found && !damped) return false;
+    if (found) {
+      Poses next = system_.moved(*poses, b_);
+      const double next_cost = system_.cost(next, weights);
+      const bool settled = promised <= params_.tolerance * cost;
+      // Rounding may lift the cost a little at the very minimum.
+      if (!damped || next_cost <= cost || (settled && next_cost <= cost * (1.0 + 1e-9))) {
+        *poses = std::move(next);
+        cost = next_cost;
+        if (settled && damping == 0.0) return true;
+        damping = damping > 1e-6 ? damping / 10.0 : 0.0;
+        continue;
+      }
+    }
+    damping = damping > 0.0 ? damping * 10.0 : 1e-4;
+    if (damping > 1e12) return false;
+  }
+  return false;
+}
+
+}  // namespace hyselam_pose_graph

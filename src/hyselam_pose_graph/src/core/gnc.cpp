@@ -1,0 +1,102 @@
+#include "gnc.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "descent.hpp"
+#include "robust_weights.hpp"
+
+namespace hyselam_pose_graph {
+
+namespace {
+
+using Poses = Descent::Poses;
+using Squares = std::function<void(const Poses&, std::vector<double>*)>;
+
+constexpr double kGrowth = 1.4;     // of mu per round, as its authors have it
+constexpr double kLastStart = 0.1;  // mu of the last stage, whose start is good
+/// The 99 % quantile of chi^2 with one degree of freedom beside that with three.
+constexpr double kTurnShare = 6.635 / 11.345;
+
+/// Weighs loops by their squared errors and solves again, until each is in or out.
+void anneal(const PoseGraph& graph, double limit, double first_mu, const Squares& squares,
+            const std::function<void()>& solve, const Poses& poses, std::vector<double>* weights) {
+  std::vector<double> squared;
+  squares(poses, &squared);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < squared.size(); ++k)
+    if (!isOdometry(graph.edges[k])) largest = std::max(largest, squared[k]);
+  double mu = gncFirstMu(largest, limit);
+  if (mu <= 0.0) return;  // nothing contradicts
+  mu = std::max(mu, first_mu);
+  for (bool undecided = true; undecided; mu *= kGrowth) {
+    undecided = mu < 1.0;
+    for (std::size_t k = 0; k < squared.size(); ++k) {
+      if (isOdometry(graph.edges[k])) continue;
+      double& weight = (*weights)[k];
+      weight = gncWeight(squared[k], limit, mu);
+      undecided = undecided || (weight > 0.0 && weight < 1.0);
+    }
+    solve();
+    squares(poses, &squared);
+  }
+}
+
+/// The graph with those of its loops that `keep`; `kept`: which edges these are.
+PoseGraph withLoops(const PoseGraph& graph, const std::function<bool(std::size_t)>& keep,
+                    std::vector<std::size_t>* kept) {
+  PoseGraph part = graph;
+  part.edges.clear();
+  kept->clear();
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    if (!isOdometry(graph.edges[k]) && !keep(k)) continue;
+    part.edges.push_back(graph.edges[k]);
+    kept->push_back(k);
+  }
+  return part;
+}
+
+}  // namespace
+
+OptimizeResult solveGnc(const PoseGraph& graph, const PoseSystem& system,
+                        const OptimizeParams& params) {
+  OptimizeResult result;
+  Poses poses = PoseSystem::system(composedPoses(graph));
+  std::vector<double> weights(graph.edges.size(), 1.0);
+  anneal(
+      graph, params.gnc_inlier * kTurnShare, 0.0,
+      [&](const Poses& p, std::vector<double>* s) { system.turnCosts(p, s); },
+      [&] { system.chordalRotations(weights, &poses); }, poses, &weights);
+
+  std::vector<std::size_t> kept;
+  const auto stage = [&](const std::function<bool(std::size_t)>& keep, bool last) {
+    const PoseGraph part = withLoops(graph, keep, &kept);
+    const PoseSystem part_system(part);
+    Descent descent(part_system, params);
+    descent.weights.assign(part.edges.size(), 1.0);
+    if (!last) descent.placeByRotations(&poses);
+    anneal(
+        part, params.gnc_inlier, last ? kLastStart : 0.0,
+        [&](const Poses& p, std::vector<double>* s) { part_system.edgeCosts(p, s); },
+        [&] {
+          last ? static_cast<void>(descent.descend(&poses, 2))
+               : static_cast<void>(descent.relax(&poses));
+        },
+        poses, &descent.weights);
+    result.converged = descent.descend(&poses, params.max_iterations);
+    result.iterations += descent.iterations();
+    std::fill(weights.begin(), weights.end(), 0.0);
+    for (std::size_t k = 0; k < kept.size(); ++k) weights[kept[k]] = descent.weights[k];
+  };
+  const std::vector<double> turned = weights;
+  stage([&](std::size_t k) { return turned[k] > 0.0; }, false);
+  std::vector<double> squared;
+  system.edgeCosts(poses, &squared);
+  stage([&](std::size_t k) { return squared[k] <= params.gnc_inlier; }, true);
+
+  result.poses = PoseSystem::poses(poses);
+  result.weights = weights;
+  return result;
+}
+
+}  // namespace hyselam_pose_graph
