@@ -4,6 +4,10 @@
 
 namespace hyselam_pose_graph {
 
+namespace {
+constexpr int kLeaps = 8;  // what Gauss-Newton gets to show that it arrives
+}
+
 bool Descent::placeByRotations(Poses* poses) {
   Poses placed = *poses;
   for (std::size_t i = 0; i < placed.size(); ++i)
@@ -39,24 +43,42 @@ bool Descent::step(const Poses& poses, double damping, double* promised) {
   return std::isfinite(sum);
 }
 
-bool Descent::descend(Poses* poses, int steps) {
-  const bool damped = params_.method == GraphMethod::kLevenbergMarquardt;
-  double cost = system_.cost(*poses, weights), damping = 0.0;
+/// Full steps, wherever they lead: near a minimum along a curved valley they climb before they
+/// arrive, and damped ones would creep.
+bool Descent::leap(Poses* poses, int steps) {
   for (int done = 0; done < steps; ++done) {
     double promised = 0.0;
-    const bool found = step(*poses, damping, &promised);
-    if (!found && !damped) return false;
-    if (found) {
+    if (!step(*poses, 0.0, &promised)) return false;
+    *poses = system_.moved(*poses, b_);
+    if (promised <= params_.tolerance * system_.cost(*poses, weights)) return true;
+  }
+  return false;
+}
+
+bool Descent::descend(Poses* poses, int steps) {
+  if (params_.method == GraphMethod::kGaussNewton) return leap(poses, steps);
+  double cost = system_.cost(*poses, weights), damping = 0.0;
+  bool leapt = false;
+  for (int done = 0; done < steps; ++done) {
+    double promised = 0.0;
+    if (step(*poses, damping, &promised)) {
       Poses next = system_.moved(*poses, b_);
       const double next_cost = system_.cost(next, weights);
       const bool settled = promised <= params_.tolerance * cost;
       // Rounding may lift the cost a little at the very minimum.
-      if (!damped || next_cost <= cost || (settled && next_cost <= cost * (1.0 + 1e-9))) {
+      if (next_cost <= cost || (settled && next_cost <= cost * (1.0 + 1e-9))) {
         *poses = std::move(next);
         cost = next_cost;
         if (settled && damping == 0.0) return true;
         damping = damping > 1e-6 ? damping / 10.0 : 0.0;
         continue;
+      }
+      if (!leapt && steps - done > kLeaps) {
+        leapt = true;
+        if (leap(&next, kLeaps) && system_.cost(next, weights) <= cost) {
+          *poses = std::move(next);
+          return true;
+        }
       }
     }
     damping = damping > 0.0 ? damping * 10.0 : 1e-4;

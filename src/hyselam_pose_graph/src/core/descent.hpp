@@ -30,6 +30,7 @@ class Descent {
 
  private:
   bool step(const Poses& poses, double damping, double* promised);
+  bool leap(Poses* poses, int steps);
 
   const PoseSystem& system_;
   const OptimizeParams& params_;
