@@ -121,4 +121,23 @@ TEST_F(Tools, RouteOfAnotherPlan) {
               "key 'start'");
 }
 
+TEST_F(Tools, GeneratedPlansBecomeMaps) {
+  const std::string plan = file("plan.yaml").string();
+  ASSERT_EQ(run(HYSELAM_GENERATE_PLAN, plan + " --seed 4 --furniture --rotation 10"), 0)
+      << content(file("stderr"));
+  ASSERT_EQ(run(HYSELAM_PLAN_TO_MAP, plan + " " + file("map.yaml").string()), 0)
+      << content(file("stderr"));
+  EXPECT_GT(hyselam::loadMap(file("map.yaml").string()).geometry.width, 100);
+}
+
+TEST_F(Tools, PlansThatCannotBeGeneratedAreRefused) {
+  const std::string plan = file("plan.yaml").string();
+  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --min-door 0.2"), "min_door");
+  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --max-door 0.6"), "max_door");
+  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --layout castle"), "castle");
+  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --seed one"), "seed");
+  expectError(run(HYSELAM_GENERATE_PLAN, file("missing/plan.yaml").string()), "missing");
+  EXPECT_FALSE(fs::exists(plan));
+}
+
 }  // namespace
