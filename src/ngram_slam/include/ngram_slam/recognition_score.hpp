@@ -19,6 +19,7 @@ struct ScoreParams {
                                           ///< in reverse is meant, by this much [rad], in (0, pi/2]
   std::uint32_t separation = 100;         ///< pairs with fewer observations between them in one run
                                           ///< are no recognition: neither right nor wrong
+  std::uint32_t pass_gap = 20;            ///< observations between two passes at least, >= 1
   /// @throws hyselam::ParameterError
   void validate() const;
 };
@@ -30,8 +31,9 @@ struct ScoreParams {
 /// without reference count nowhere.
 class RecognitionTruth {
  public:
-  /// Earlier observations that follow each other and make true pairs with one later observation:
-  /// the robot came by once. What lies on one line of a similarity matrix (Fig. 4.11) there.
+  /// Earlier observations that follow each other (with gaps below `pass_gap`) and make true pairs
+  /// with one later observation: the robot came by once. What lies on one line of a similarity
+  /// matrix (Fig. 4.11) there.
   struct Pass {
     std::uint32_t first = 0, last = 0;
     Direction direction = Direction::kSame;

@@ -11,8 +11,6 @@
 namespace ngram_slam {
 namespace {
 
-constexpr std::uint32_t kPassGap = 20;  // observations between two passes at least
-
 // Observations in one square that follow each other.
 struct Interval {
   std::uint32_t first, last;
@@ -25,6 +23,7 @@ void ScoreParams::validate() const {
     throw hyselam::ParameterError("distance", distance, "> 0 [m]");
   if (!(heading > 0.0 && heading <= 0.5 * hyselam::kPi))
     throw hyselam::ParameterError("heading", heading, "in (0, pi/2] [rad]");
+  if (pass_gap < 1) throw hyselam::ParameterError("pass_gap", pass_gap, ">= 1");
 }
 
 RecognitionTruth::RecognitionTruth(std::vector<std::optional<hyselam::Pose2>> reference,
@@ -103,7 +102,7 @@ void RecognitionTruth::findPasses() {
         bool joined = false;
         for (const Pass& pass : passes) {
           joined = joined && run_[pass.first] == run_[passes_.back().last] &&
-                   pass.first - passes_.back().last < kPassGap;
+                   pass.first - passes_.back().last < params_.pass_gap;
           if (joined)
             passes_.back().last = std::max(passes_.back().last, pass.last);
           else

@@ -1,0 +1,64 @@
+// A descriptor of the field for single planar scans: what is seen in rings and sectors around the
+// robot ("scan context", Kim and Kim 2018, with the count of returns for the height of buildings).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "stations.hpp"
+
+namespace ngram_slam_peers {
+
+struct PolarContext {
+  static constexpr std::size_t kRings = 20, kSectors = 60;
+  static constexpr double kRange = 10.0;  ///< [m]
+  std::array<std::array<float, kRings>, kSectors> columns{};
+  std::array<float, kSectors> norms{};
+};
+
+inline PolarContext contextOf(const Station& station) {
+  PolarContext context;
+  for (const hyselam::Point2& p : returnsOf(station.scan)) {
+    const double r = std::hypot(p.x, p.y);
+    if (r >= PolarContext::kRange) continue;
+    const double bearing = std::atan2(p.y, p.x) + hyselam::kPi;
+    const auto sector =
+        std::min(PolarContext::kSectors - 1,
+                 static_cast<std::size_t>(bearing / (2 * hyselam::kPi) * PolarContext::kSectors));
+    const auto ring = static_cast<std::size_t>(r / PolarContext::kRange * PolarContext::kRings);
+    context.columns[sector][ring] += 1.0F;
+  }
+  for (std::size_t s = 0; s < PolarContext::kSectors; ++s) {
+    float sum = 0.0F;
+    for (float v : context.columns[s]) sum += v * v;
+    context.norms[s] = std::sqrt(sum);
+  }
+  return context;
+}
+
+/// 1 - mean cosine of the columns, least over all turns; 0: the same, 1: nothing in common.
+inline double contextDistance(const PolarContext& a, const PolarContext& b) {
+  constexpr std::size_t n = PolarContext::kSectors;
+  double best = 1.0;
+  for (std::size_t turn = 0; turn < n; ++turn) {
+    float sum = 0.0F;
+    std::size_t columns = 0;
+    for (std::size_t s = 0; s < n; ++s) {
+      const std::size_t t = s + turn < n ? s + turn : s + turn - n;
+      if (a.norms[s] == 0.0F && b.norms[t] == 0.0F) continue;
+      ++columns;  // one that only one of them has is a difference
+      if (a.norms[s] == 0.0F || b.norms[t] == 0.0F) continue;
+      float dot = 0.0F;
+      for (std::size_t r = 0; r < PolarContext::kRings; ++r)
+        dot += a.columns[s][r] * b.columns[t][r];
+      sum += dot / (a.norms[s] * b.norms[t]);
+    }
+    if (columns > 0)
+      best = std::min(best, 1.0 - static_cast<double>(sum) / static_cast<double>(columns));
+  }
+  return best;
+}
+
+}  // namespace ngram_slam_peers

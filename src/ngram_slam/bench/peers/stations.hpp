@@ -1,0 +1,83 @@
+// What peers of word matching compare: places along the way with the scan made there and the points
+// of the local map around them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "hyselam_common/robot_log.hpp"
+
+namespace ngram_slam_peers {
+
+struct Station {
+  double stamp = 0.0;
+  hyselam::LaserScan scan;
+  std::vector<hyselam::Point2> points;  ///< in the robot's frame there
+};
+
+struct StationParams {
+  double stride = 2.0;       ///< of way between stations [m]: 20 steps of 0.1 m (5.3.2)
+  double radius = 4.0;       ///< of the local map [m]
+  double memory = 4.0;       ///< way that the local map remembers [m]
+  std::size_t points = 150;  ///< of a station (5.3.2)
+};
+
+inline std::vector<hyselam::Point2> returnsOf(const hyselam::LaserScan& scan) {
+  std::vector<hyselam::Point2> points;
+  for (std::size_t b = 0; b < scan.ranges.size(); ++b) {
+    const double r = scan.ranges[b];
+    if (!(r >= scan.range_min && r < scan.range_max)) continue;
+    const double bearing = scan.angle_min + static_cast<double>(b) * scan.angle_increment;
+    points.push_back(scan.laser_in_base *
+                     hyselam::Point2{r * std::cos(bearing), r * std::sin(bearing)});
+  }
+  return points;
+}
+
+inline std::vector<Station> stationsOf(const hyselam::RobotLog& log, const StationParams& params) {
+  struct Seen {
+    double way;
+    hyselam::Pose2 pose;
+    const hyselam::LaserScan* scan;
+  };
+  std::deque<Seen> recent;
+  std::vector<Station> stations;
+  double way = 0.0, due = 0.0;
+  for (const hyselam::LaserScan& scan : log.scans) {
+    const auto pose = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
+    if (!pose) continue;
+    if (!recent.empty()) way += hyselam::distance(recent.back().pose, *pose);
+    recent.push_back({way, *pose, &scan});
+    while (way - recent.front().way > params.memory) recent.pop_front();
+    if (way < due) continue;
+    due = way + params.stride;
+    Station station;
+    station.stamp = scan.stamp;
+    station.scan = scan;
+    std::set<std::pair<int, int>> cells;  // of 0.1 m, so that near walls do not count more
+    for (const Seen& seen : recent) {
+      const hyselam::Pose2 relative = hyselam::between(*pose, seen.pose);
+      for (const hyselam::Point2& p : returnsOf(*seen.scan)) {
+        const hyselam::Point2 q = relative * p;
+        if (std::hypot(q.x, q.y) > params.radius) continue;
+        if (cells.emplace(std::lround(q.x * 10), std::lround(q.y * 10)).second)
+          station.points.push_back(q);
+      }
+    }
+    // Evenly from all of them.
+    const std::size_t all = station.points.size();
+    if (all > params.points) {
+      for (std::size_t i = 0; i < params.points; ++i)
+        station.points[i] = station.points[i * all / params.points];
+      station.points.resize(params.points);
+    }
+    stations.push_back(std::move(station));
+  }
+  return stations;
+}
+
+}  // namespace ngram_slam_peers
