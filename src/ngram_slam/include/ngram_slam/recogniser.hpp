@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ngram_slam/corpus.hpp"
+#include "ngram_slam/match_judge.hpp"
 #include "ngram_slam/matcher.hpp"
 #include "ngram_slam/regions.hpp"
 #include "ngram_slam/reverse_matcher.hpp"
@@ -31,6 +32,10 @@ struct RecogniserParams {
   double max_chance = 0.0;
   bool with_probability = false;  ///< (d): tell Match::probability
   double min_probability = 0.0;   ///< (d): tell only matches at least this probable, [0, 1]
+  JudgeParams judge;              ///< (c), (d)
+
+  /// Matches get a chance and a probability.
+  bool judges() const { return max_chance > 0.0 || with_probability || min_probability > 0.0; }
 
   /// @throws hyselam::ParameterError
   void validate() const;
@@ -83,6 +88,7 @@ class Recogniser {
   void startRun(std::uint32_t first_observation);
   std::vector<Match> rebuild(bool match_old_runs);
   std::vector<Match> newMatches();
+  std::vector<Match> judge(std::vector<Match> matches);
   double densityOf(std::uint32_t i) const { return observations_.density(i, params_.word_density); }
   int classOf(std::uint32_t i);
   void write(const Region& region);
@@ -95,6 +101,8 @@ class Recogniser {
   std::unique_ptr<Text> text_;
   std::unique_ptr<Matcher> matcher_;
   std::unique_ptr<ReverseMatcher> reverse_matcher_;
+  std::unique_ptr<MatchJudge> judge_;
+  Position judged_ = 0;            // words before it are known to judge_
   std::optional<int> last_class_;  // of the observation before, in this run
   bool run_open_ = false;
   int requantisations_ = 0;

@@ -1,5 +1,6 @@
 #include "ngram_slam/recogniser.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -10,6 +11,7 @@ void RecogniserParams::validate() const {
   const Text level_check(levels);
   const RegionBuilder region_check(min_region);
   mean_shift.validate();
+  judge.validate();
   matcher.validate();
   const DensityClasses class_check = DensityClasses::uniform(uniform_classes);
   if (!(class_hysteresis >= 0.0 && class_hysteresis < 0.5))
@@ -38,10 +40,13 @@ Recogniser::Recogniser(const RecogniserParams& params, Corpus corpus)
 }
 
 void Recogniser::startAnew() {
+  judged_ = 0;
   text_ = std::make_unique<Text>(params_.levels, [this](std::uint32_t begin, std::uint32_t end) {
     return angleVariation(observations_, begin, end);
   });
   matcher_ = std::make_unique<Matcher>(*text_, params_.matcher);
+  judge_ = std::make_unique<MatchJudge>(*text_, observations_, params_.matcher.tolerance,
+                                        params_.word_density, params_.judge);
   if (params_.reverse) reverse_matcher_ = std::make_unique<ReverseMatcher>(*text_, params_.matcher);
 }
 
@@ -59,6 +64,7 @@ std::vector<Match> Recogniser::rebuild(bool match_old_runs) {
   if (match_old_runs) return newMatches();
   matcher_->skip();
   if (reverse_matcher_) reverse_matcher_->skip();
+  judge({});
   return {};
 }
 
@@ -67,7 +73,27 @@ std::vector<Match> Recogniser::newMatches() {
   if (reverse_matcher_) {
     const std::vector<Match>& more = reverse_matcher_->update();
     matches.insert(matches.end(), more.begin(), more.end());
+    std::stable_sort(matches.begin(), matches.end(),
+                     [](const Match& a, const Match& b) { return a.newer < b.newer; });
   }
+  return judge(std::move(matches));
+}
+
+/// What chance and probability leave of the matches of the newest words, given in the order of
+/// these.
+std::vector<Match> Recogniser::judge(std::vector<Match> matches) {
+  if (!params_.judges()) return matches;
+  auto at = matches.begin();
+  for (; judged_ < text_->positions(); ++judged_) {
+    for (; at != matches.end() && at->newer == text_->realWord(judged_); ++at)
+      judge_->judge(*at, params_.with_probability || params_.min_probability > 0.0);
+    judge_->learn(judged_);
+  }
+  const auto unlikely = [&](const Match& m) {
+    return (params_.max_chance > 0.0 && m.chance >= params_.max_chance) ||
+           (params_.min_probability > 0.0 && m.probability < params_.min_probability);
+  };
+  matches.erase(std::remove_if(matches.begin(), matches.end(), unlikely), matches.end());
   return matches;
 }
 
@@ -128,7 +154,7 @@ RecogniserUpdate Recogniser::endRun() {
 
 std::size_t Recogniser::bytes() const {
   return observations_.bytes() + text_->bytes() + matcher_->bytes() +
-         (reverse_matcher_ ? reverse_matcher_->bytes() : 0);
+         (reverse_matcher_ ? reverse_matcher_->bytes() : 0) + judge_->bytes();
 }
 
 Corpus Recogniser::corpus() const {
