@@ -12,7 +12,7 @@ namespace ngram_slam {
 /// little of them overlaps.
 inline std::optional<ObservationPair> placeOf(const Recogniser& recogniser, const Match& match) {
   const auto pairs = alignedObservations(recogniser.text(), recogniser.observations(),
-                                         {{match.newer, match.older}});
+                                         {{match.newer, match.older}}, 1, {}, match.direction);
   if (pairs.empty()) return std::nullopt;
   return pairs[pairs.size() / 2];
 }

@@ -135,7 +135,9 @@ void WordsServer::take(const Observation& observation) {
   const RecogniserUpdate update = recogniser_->add(observation);
   last_ = observation;
   const std::vector<SemanticRegion> regions =
-      params_.semantics ? segmenter_.add(observation) : std::vector<SemanticRegion>{};
+      params_.semantics
+          ? segmenter_.add(recogniser_->observations()[recogniser_->observations().size() - 1])
+          : std::vector<SemanticRegion>{};
   if (update.word || update.requantised) {
     word_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
     worst_word_ms_ = std::max(worst_word_ms_, word_ms_);

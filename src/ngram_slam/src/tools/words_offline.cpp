@@ -5,7 +5,8 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "ngram_slam/alignment.hpp"
+#include "ngram_slam/match_place.hpp"
+#include "ngram_slam/semantic_regions_io.hpp"
 #include "recognition_options.hpp"
 
 namespace {
@@ -34,21 +35,44 @@ void writeWords(const std::string& path, const Recogniser& r) {
   });
 }
 
-/// One line per match: the observations in the middle of its last pair of words, aligned.
-void writeMatches(const std::string& path, const Recogniser& r, const std::vector<Match>& matches) {
+struct PlacedMatch {
+  Match match;
+  ObservationPair place;
+};
+
+/// One line per match: the pair of observations that stands for it. x, y, theta is where the newer
+/// one was made in the frame of the older one, as far as words can tell: the same place, and the
+/// same heading or the opposite one. Nobody has verified it.
+void writeMatches(const std::string& path, const Recogniser& r,
+                  const std::vector<PlacedMatch>& matches) {
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    out << std::setprecision(15)
-        << "stamp_a,stamp_b,level,n,direction,run_a,run_b,word_a,word_b,alignment_rms\n";
-    for (const Match& m : matches) {
-      const auto pairs = alignedObservations(r.text(), r.observations(), {{m.newer, m.older}});
-      if (pairs.empty()) continue;
-      const ObservationPair& middle = pairs[pairs.size() / 2];
-      out << r.observations().stamp(middle.newer) << ',' << r.observations().stamp(middle.older)
-          << ',' << m.levels - 1 << ',' << m.n << ",same," << r.observations().runOf(middle.newer)
-          << ',' << r.observations().runOf(middle.older) << ',' << m.newer << ',' << m.older << ','
-          << std::setprecision(6) << middle.rms << std::setprecision(15) << '\n';
+    out << "stamp_a,stamp_b,level,n,direction,x,y,theta,verified,run_a,run_b,word_a,word_b,"
+           "alignment_rms,chance,probability\n";
+    for (const auto& [m, place] : matches) {
+      const bool reverse = m.direction == Direction::kReverse;
+      out << std::setprecision(15) << r.observations().stamp(place.newer) << ','
+          << r.observations().stamp(place.older) << std::setprecision(6) << ',' << m.levels - 1
+          << ',' << m.n << ',' << (reverse ? "reverse,0,0,3.14159,0," : "same,0,0,0,0,")
+          << r.observations().runOf(place.newer) << ',' << r.observations().runOf(place.older)
+          << ',' << m.newer << ',' << m.older << ',' << place.rms << ',' << m.chance << ','
+          << m.probability << '\n';
     }
   });
+}
+
+/// Kinds of regions, from the observations as they are kept.
+std::vector<SemanticRegion> regionsOf(const ObservationStore& observations) {
+  SemanticSegmenter segmenter;
+  std::vector<SemanticRegion> all;
+  const auto take = [&](const std::vector<SemanticRegion>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  for (std::uint32_t run = 0; run < observations.runs(); ++run) {
+    for (std::uint32_t i = observations.runBegin(run); i < observations.runEnd(run); ++i)
+      take(segmenter.add(observations[i]));
+    take(segmenter.finish());
+  }
+  return all;
 }
 
 nlohmann::json run(const Options& o) {
@@ -56,13 +80,20 @@ nlohmann::json run(const Options& o) {
   std::error_code error;
   std::filesystem::create_directories(o.out, error);
   if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
-  std::vector<Match> matches;
+  std::vector<PlacedMatch> matches;
   feed(o.recognition, r, [&](const RecogniserUpdate& u) {
     if (u.requantised) matches.clear();
-    matches.insert(matches.end(), u.matches.begin(), u.matches.end());
+    // Now, as a robot would: later observations could move the pair a little.
+    for (const Match& m : u.matches)
+      if (const auto place = placeOf(r, m)) matches.push_back({m, *place});
   });
   writeWords(o.out + "/words.csv", r);
   writeMatches(o.out + "/matches.csv", r, matches);
+  const std::vector<SemanticRegion> regions = regionsOf(r.observations());
+  std::vector<double> stamps;
+  for (std::uint32_t i = 0; i < r.observations().size(); ++i)
+    stamps.push_back(r.observations().stamp(i));
+  writeRegions(o.out + "/regions.csv", regions, stamps);
   if (!o.corpus.empty()) CorpusFile::save(o.corpus, r.corpus());
   const auto words = static_cast<double>(r.text().words());
   const nlohmann::json j = {
@@ -72,6 +103,7 @@ nlohmann::json run(const Options& o) {
       {"classes", r.classes().list().size()},
       {"requantisations", r.requantisations()},
       {"matches", matches.size()},
+      {"regions", regions.size()},
       {"comparisons", r.counters().comparisons},
       {"bytes_per_word", words > 0 ? static_cast<double>(r.bytes()) / words : 0.0}};
   std::cout << j.dump(2) << "\n";
@@ -81,11 +113,12 @@ nlohmann::json run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes recorded runs as words, and the places that are recognised.",
-               "words_offline");
+  CLI::App app(
+      "Writes recorded runs as words, the places that are recognised, and kinds of regions.",
+      "words_offline");
   Options o;
   o.recognition.addTo(app);
-  app.add_option("--out", o.out, "folder for words.csv and matches.csv")->required();
+  app.add_option("--out", o.out, "folder for words.csv, matches.csv and regions.csv")->required();
   app.add_option("--corpus", o.corpus, "file for the text, to go on with later");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }
