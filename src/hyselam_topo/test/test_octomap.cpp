@@ -226,8 +226,8 @@ TEST(Compression, FurnitureGoesWallsAndDoorsStay) {
   building.addStorey(0.0);
   const Compression result = compress(building.map(), {}, "building");
   ASSERT_EQ(result.storeys.size(), 1u);
-  EXPECT_NEAR(result.storeys[0].floor, 0.0, 0.11);
-  EXPECT_NEAR(result.storeys[0].ceiling, 2.6, 0.11);
+  EXPECT_NEAR(result.storeys[0].floor, 0.0, 1e-6);
+  EXPECT_NEAR(result.storeys[0].ceiling, 2.6, 1e-6);
   const OccupancyGrid& grid = result.grid;
   EXPECT_EQ(valueAt(grid, 1.0, 1.0), OccupancyGrid::kFree);      // table
   EXPECT_EQ(valueAt(grid, 4.75, 2.5), OccupancyGrid::kFree);     // cupboard
@@ -249,8 +249,8 @@ TEST(Compression, SeveralStoreysMustBeChosen) {
   const auto storeys = findStoreys(map);
   ASSERT_EQ(storeys.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(storeys[i].floor, -3.0 + 3.0 * static_cast<double>(i), 0.11);
-    EXPECT_NEAR(storeys[i].ceiling, -0.4 + 3.0 * static_cast<double>(i), 0.11);
+    EXPECT_NEAR(storeys[i].floor, -3.0 + 3.0 * static_cast<double>(i), 1e-6);
+    EXPECT_NEAR(storeys[i].ceiling, -0.4 + 3.0 * static_cast<double>(i), 1e-6);
   }
   const std::string message =
       messageOf<hyselam::InputError>([&] { compress(map, {}, "building.bt"); });
@@ -258,7 +258,7 @@ TEST(Compression, SeveralStoreysMustBeChosen) {
   expectIn("3 storeys (0: -3.00 to -0.40 m, 1: 0.00 to 2.60 m", message);
   CompressionParams params;
   params.storey = 1;
-  EXPECT_NEAR(compress(map, params, "b").z_min, 0.25, 0.11);
+  EXPECT_NEAR(compress(map, params, "b").z_min, 0.25, 1e-6);
   params.storey = 3;
   expectIn("no storey 3", messageOf<hyselam::InputError>([&] { compress(map, params, "b"); }));
   params = {};

@@ -106,15 +106,15 @@ std::vector<int> slabsOf(const Profile& profile) {
 int edgeOf(const Profile& profile, int slab, int direction) {
   const auto occupied = [&](int i) { return profile.occupied[static_cast<std::size_t>(i)]; };
   const int reach = profile.layersIn(kSlabWindow), thickness = profile.layersIn(kSlabThickness);
-  double most = 0.0;
+  int fullest = slab;
   for (int i = std::max(0, slab - reach); i <= std::min(profile.layers() - 1, slab + reach); ++i) {
-    most = std::max(most, occupied(i));
+    if (occupied(i) > occupied(fullest)) fullest = i;
   }
-  int edge = slab;
-  for (int k = 0; k <= thickness; ++k) {
-    const int i = slab + direction * k;
+  int edge = fullest;
+  for (int k = 1; k <= thickness; ++k) {
+    const int i = fullest + direction * k;
     if (i < 0 || i >= profile.layers()) break;
-    if (occupied(i) >= kEdgeShare * most) edge = i;
+    if (occupied(i) >= kEdgeShare * occupied(fullest)) edge = i;
   }
   return edge;
 }
