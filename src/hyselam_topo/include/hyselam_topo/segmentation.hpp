@@ -28,12 +28,24 @@ struct Segmentation {
 };
 
 struct SegmentationParams {
-  int free_max = 25;                 ///< cells of 0 .. free_max are free [0 .. 100]
-  double working_resolution = 0.05;  ///< [m] finer grids are joined to about this, 0.01 .. 0.25
+  int free_max = 25;  ///< cells of 0 .. free_max are free, 0 .. 99
+  /// Finer grids are joined, coarser ones split to about this [m], 0.01 .. 0.25; what is known
+  /// about borders was learnt at 0.05.
+  double working_resolution = 0.05;
+  double clutter = 0.4;  ///< obstacles up to this across that stand free do not part places [m]
+  double smallest_place = 1.0;  ///< [m^2]
 };
 
+/// Places, and the doors between them. The same grid gives the same result, bit by bit; a grid
+/// without free space gives no places.
 /// @throws hyselam::ParameterError for a parameter out of range, hyselam::InputError for a grid
 /// without cells or whose cells do not fit its geometry.
 Segmentation segment(const hyselam::OccupancyGrid& grid, const SegmentationParams& params = {});
+
+/// The two halves of segment(): places alone, and the doors of given places.
+Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid,
+                           const SegmentationParams& params = {});
+void addDoors(const hyselam::OccupancyGrid& grid, Segmentation& places,
+              const SegmentationParams& params = {});
 
 }  // namespace hyselam_topo

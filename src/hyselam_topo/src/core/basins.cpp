@@ -1,0 +1,135 @@
+#include "basins.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace hyselam_topo {
+namespace {
+
+/// Sets with the index of one of their members as name.
+class Sets {
+ public:
+  int add() {
+    parents_.push_back(static_cast<int>(parents_.size()));
+    return parents_.back();
+  }
+  int find(int i) {
+    while (parent(i) != i) i = parent(i) = parent(parent(i));
+    return i;
+  }
+  void join(int into, int other) { parent(other) = into; }
+
+ private:
+  int& parent(int i) { return parents_[static_cast<std::size_t>(i)]; }
+  std::vector<int> parents_;
+};
+
+/// For each free cell the highest of itself and its neighbours; of equal ones the first in memory,
+/// which makes a strict order of all cells, so that no way up runs in a circle.
+cv::Mat waysUp(const cv::Mat& clearance) {
+  cv::Mat up(clearance.size(), CV_32S, cv::Scalar(-1));
+  const int stride = clearance.cols;
+  for (int y = 1; y + 1 < clearance.rows; ++y) {
+    const float* row = clearance.ptr<float>(y);
+    int* out = up.ptr<int>(y);
+    for (int x = 1; x + 1 < stride; ++x) {
+      const float* c = row + x;
+      const float own = *c;
+      if (own <= 0.0f) continue;
+      const bool left = c[-1] > 0, right = c[1] > 0, below = c[-stride] > 0, above = c[stride] > 0;
+      float best = own;
+      int offset = 0;
+      // In the order of memory: before the cell equal is enough, behind it only more.
+      if ((left || below) && c[-stride - 1] >= best) best = c[-stride - 1], offset = -stride - 1;
+      if (c[-stride] > best || (c[-stride] == best && offset == 0))
+        best = c[-stride], offset = -stride;
+      if ((right || below) && (c[-stride + 1] > best || (c[-stride + 1] == best && offset == 0)))
+        best = c[-stride + 1], offset = -stride + 1;
+      if (c[-1] > best || (c[-1] == best && offset == 0)) best = c[-1], offset = -1;
+      if (c[1] > best) best = c[1], offset = 1;
+      if ((left || above) && c[stride - 1] > best) best = c[stride - 1], offset = stride - 1;
+      if (c[stride] > best) best = c[stride], offset = stride;
+      if ((right || above) && c[stride + 1] > best) best = c[stride + 1], offset = stride + 1;
+      out[x] = y * stride + x + offset;
+    }
+  }
+  return up;
+}
+
+struct Saddle {
+  float height;
+  int a, b;
+};
+
+}  // namespace
+
+Basins findBasins(const cv::Mat& clearance, double resolution, const BasinParams& params) {
+  CV_Assert(clearance.type() == CV_32F && clearance.isContinuous());
+  cv::Mat labels = waysUp(clearance);  // cell to climb to, later -2 - peak
+  int* cells = labels.ptr<int>();
+  const float* heights = clearance.ptr<float>();
+  const int total = static_cast<int>(labels.total()), stride = labels.cols;
+
+  Sets sets;
+  std::vector<float> peaks;
+  std::vector<int> way;
+  for (int i = 0; i < total; ++i) {
+    if (cells[i] < 0) continue;
+    int top = i;
+    while (cells[top] >= 0 && cells[top] != top) {
+      way.push_back(top);
+      top = cells[top];
+    }
+    if (cells[top] >= 0) {
+      cells[top] = -2 - sets.add();
+      peaks.push_back(heights[top]);
+    }
+    for (const int cell : way) cells[cell] = cells[top];
+    way.clear();
+  }
+
+  std::vector<Saddle> saddles;
+  for (int i = 0; i + stride < total; ++i) {
+    if (cells[i] > -2) continue;
+    for (const int j : {i + 1, i + stride}) {
+      if (cells[j] > -2 || cells[j] == cells[i]) continue;
+      const int a = -2 - std::max(cells[i], cells[j]), b = -2 - std::min(cells[i], cells[j]);
+      const float height = std::min(heights[i], heights[j]);
+      // Borders are followed along rows: the last saddle is often of the same pair.
+      if (!saddles.empty() && saddles.back().a == a && saddles.back().b == b)
+        saddles.back().height = std::max(saddles.back().height, height);
+      else
+        saddles.push_back({height, a, b});
+    }
+  }
+  std::stable_sort(saddles.begin(), saddles.end(),
+                   [](const Saddle& s, const Saddle& t) { return s.height > t.height; });
+  const auto peak = [&](int set) { return peaks[static_cast<std::size_t>(set)]; };
+  for (const Saddle& saddle : saddles) {
+    int a = sets.find(saddle.a), b = sets.find(saddle.b);
+    if (a == b) continue;
+    if (peak(a) < peak(b)) std::swap(a, b);
+    if ((peak(b) - saddle.height) * resolution < params.shallow ||
+        saddle.height > params.level * peak(b))
+      sets.join(a, b);
+  }
+
+  Basins basins;
+  std::vector<int> names(peaks.size(), 0);
+  for (int i = 0; i < total; ++i) {
+    if (cells[i] > -2) {
+      cells[i] = 0;
+      continue;
+    }
+    int& name = names[static_cast<std::size_t>(sets.find(-2 - cells[i]))];
+    if (name == 0) name = ++basins.count;
+    cells[i] = name;
+  }
+  basins.labels = labels;
+  return basins;
+}
+
+}  // namespace hyselam_topo

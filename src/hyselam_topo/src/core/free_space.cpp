@@ -1,0 +1,176 @@
+#include "free_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "hyselam_common/coarsen.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+constexpr std::int8_t kOccupiedFrom = 50;  // unknown may be seen through, a likely obstacle not
+constexpr double kDensityWindow = 0.35;    // [m]
+constexpr double kLeak = 0.15;             // [m] passages up to this are gaps between rays
+constexpr double kLargestWorking = 20e6;   // [cells] above that, coarse grids are not split
+
+int odd(double cells) {
+  return std::max(1, static_cast<int>(std::lround(cells)) | 1);
+}
+
+struct Masks {
+  cv::Mat free;
+  cv::Mat occupied;
+};
+
+/// Cut out to the free cells, with a margin so that filters see the walls around them.
+Masks cutOut(const hyselam::OccupancyGrid& grid, int free_max, int margin, cv::Point& origin) {
+  const int width = grid.geometry.width, height = grid.geometry.height;
+  const cv::Mat cells(height, width, CV_8S, const_cast<std::int8_t*>(grid.cells.data()));
+  cv::Mat known, low;
+  cv::compare(cells, 0, known, cv::CMP_GE);
+  cv::compare(cells, free_max, low, cv::CMP_LE);
+  cv::bitwise_and(known, low, low);
+  const cv::Rect box = cv::boundingRect(low);
+  Masks masks;
+  if (box.empty()) return masks;
+  origin = {box.x - margin, box.y - margin};
+  cv::Mat occupied;
+  cv::compare(cells(box), kOccupiedFrom, occupied, cv::CMP_GE);
+  cv::copyMakeBorder(low(box), masks.free, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
+  cv::copyMakeBorder(occupied, masks.occupied, margin, margin, margin, margin, cv::BORDER_CONSTANT,
+                     0);
+  return masks;
+}
+
+/// Pieces of furniture up to `clutter` across, standing free, are seen through.
+void seeThroughClutter(cv::Mat& free, double resolution, double clutter) {
+  cv::Mat solid, labels, stats, centres;
+  cv::bitwise_not(free, solid);
+  const int n = cv::connectedComponentsWithStats(solid, labels, stats, centres, 8, CV_32S);
+  for (int i = 1; i < n; ++i) {
+    const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
+                       stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+    if (std::hypot(box.width, box.height) * resolution > clutter) continue;
+    cv::Mat part = free(box);
+    part.setTo(255, labels(box) == i);
+  }
+}
+
+void dropSmallParts(cv::Mat& free, double smallest_cells) {
+  cv::Mat labels, stats, centres;
+  const int n = cv::connectedComponentsWithStats(free, labels, stats, centres, 4, CV_32S);
+  for (int i = 1; i < n; ++i) {
+    if (stats.at<int>(i, cv::CC_STAT_AREA) >= smallest_cells) continue;
+    const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
+                       stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+    cv::Mat part = free(box);
+    part.setTo(0, labels(box) == i);
+  }
+}
+
+void clean(Masks& masks, double resolution, const SegmentationParams& params) {
+  cv::Mat& free = masks.free;
+  // Where a map was seen by few rays, free and unknown cells mingle: the majority decides.
+  cv::Mat density;
+  const int window = odd(kDensityWindow / resolution);
+  cv::boxFilter(free, density, -1, {window, window}, {-1, -1}, true, cv::BORDER_CONSTANT);
+  cv::compare(density, 127, density, cv::CMP_GT);
+  density.setTo(0, masks.occupied);
+  cv::bitwise_or(free, density, free);
+
+  const int leak = std::max(1, static_cast<int>(std::lround(kLeak / resolution)));
+  cv::morphologyEx(free, free, cv::MORPH_OPEN,
+                   cv::getStructuringElement(cv::MORPH_RECT, {leak, leak}), {-1, -1}, 1,
+                   cv::BORDER_CONSTANT, 0);
+  seeThroughClutter(free, resolution, params.clutter);
+  dropSmallParts(free, params.smallest_place / (resolution * resolution));
+}
+
+}  // namespace
+
+FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
+  FreeSpace space;
+  space.resolution = grid.geometry.resolution;
+  space.joined =
+      hyselam::coarseningFactor(grid.geometry.resolution, params.working_resolution * 1.25);
+  const hyselam::OccupancyGrid* source = &grid;
+  hyselam::OccupancyGrid joined;
+  if (space.joined > 1) {
+    joined = hyselam::coarsen(grid, space.joined);
+    source = &joined;
+    space.resolution *= space.joined;
+  }
+  Masks masks = cutOut(*source, params.free_max, 8, space.origin);
+  if (masks.free.empty()) return space;
+  if (space.joined == 1) {
+    const int split =
+        std::max(1, static_cast<int>(std::lround(space.resolution / params.working_resolution)));
+    if (split > 1 && static_cast<double>(masks.free.total()) * split * split <= kLargestWorking) {
+      space.split = split;
+      space.resolution /= split;
+      space.origin *= split;
+      for (cv::Mat* mask : {&masks.free, &masks.occupied})
+        cv::resize(*mask, *mask, {}, split, split, cv::INTER_NEAREST);
+    }
+  }
+  clean(masks, space.resolution, params);
+  space.free = masks.free;
+  cv::rectangle(space.free, {0, 0}, {space.free.cols - 1, space.free.rows - 1}, 0);
+  return space;
+}
+
+cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::OccupancyGrid& grid,
+               int free_max, int reach) {
+  const int width = grid.geometry.width, height = grid.geometry.height;
+  cv::Mat out(height, width, CV_16U, cv::Scalar(0));
+  std::vector<int> columns(static_cast<std::size_t>(width));
+  for (int x = 0; x < width; ++x)
+    columns[static_cast<std::size_t>(x)] =
+        x * space.split / space.joined + space.split / 2 - space.origin.x;
+  for (int y = 0; y < height; ++y) {
+    const int row = y * space.split / space.joined + space.split / 2 - space.origin.y;
+    if (row < 0 || row >= labels.rows) continue;
+    const int* from = labels.ptr<int>(row);
+    std::uint16_t* to = out.ptr<std::uint16_t>(y);
+    for (int x = 0; x < width; ++x) {
+      const int column = columns[static_cast<std::size_t>(x)];
+      if (column >= 0 && column < labels.cols) to[x] = static_cast<std::uint16_t>(from[column]);
+    }
+  }
+  const auto isFree = [&](int x, int y) {
+    const std::int8_t cell = grid.at({x, y});
+    return cell >= 0 && cell <= free_max;
+  };
+  std::vector<cv::Point> front, next;
+  const std::array<cv::Point, 4> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  const auto grow = [&](cv::Point p) {
+    for (const cv::Point d : around) {
+      const cv::Point q = p + d;
+      if (q.x < 0 || q.y < 0 || q.x >= width || q.y >= height) continue;
+      if (out.at<std::uint16_t>(q) != 0 || !isFree(q.x, q.y)) continue;
+      out.at<std::uint16_t>(q) = out.at<std::uint16_t>(p);
+      next.push_back(q);
+    }
+  };
+  for (int y = 0; y < height; ++y) {
+    const std::uint16_t* row = out.ptr<std::uint16_t>(y);
+    for (int x = 0; x < width; ++x) {
+      if (row[x] == 0) continue;
+      const bool edge = (x > 0 && row[x - 1] == 0) || (x + 1 < width && row[x + 1] == 0) ||
+                        (y > 0 && out.at<std::uint16_t>(y - 1, x) == 0) ||
+                        (y + 1 < height && out.at<std::uint16_t>(y + 1, x) == 0);
+      if (edge) front.emplace_back(x, y);
+    }
+  }
+  for (int step = 0; step < reach && !front.empty(); ++step) {
+    next.clear();
+    for (const cv::Point p : front) grow(p);
+    front.swap(next);
+  }
+  return out;
+}
+
+}  // namespace hyselam_topo

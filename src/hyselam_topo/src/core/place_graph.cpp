@@ -1,0 +1,241 @@
+#include "place_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <opencv2/imgproc.hpp>
+
+#include "hyselam_common/pose2.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+constexpr double kThinWall = 0.45;  // [m] from either side: thicker things do not part two rooms
+constexpr double kWallProbe = 0.8;  // [m] behind the ends of a chord
+constexpr int kChords = 36;         // tried directions
+
+/// Solid cells near free ones get the label of the nearest, so that labels meet within thin walls.
+cv::Mat reachIntoWalls(const cv::Mat& labels, int steps) {
+  cv::Mat out = labels.clone();
+  int* cells = out.ptr<int>();
+  const int stride = labels.cols, total = static_cast<int>(labels.total());
+  std::vector<int> front, next;
+  for (int i = stride; i + stride < total; ++i)
+    if (cells[i] != 0 && (cells[i - 1] == 0 || cells[i + 1] == 0 || cells[i - stride] == 0 ||
+                          cells[i + stride] == 0))
+      front.push_back(i);
+  for (int step = 0; step < steps; ++step) {
+    next.clear();
+    // Straight and slanting steps in turn: an octagon, near enough to a circle.
+    const int slanting = step % 2;
+    for (const int i : front) {
+      const int y = i / stride, x = i - y * stride;
+      if (y == 0 || x == 0 || y + 1 == labels.rows || x + 1 == stride) continue;
+      const auto grow = [&](int j) {
+        if (cells[j] != 0) return;
+        cells[j] = cells[i];
+        next.push_back(j);
+      };
+      for (const int j : {i - 1, i + 1, i - stride, i + stride}) grow(j);
+      if (slanting != 0)
+        for (const int j : {i - stride - 1, i - stride + 1, i + stride - 1, i + stride + 1})
+          grow(j);
+    }
+    front.swap(next);
+  }
+  return out;
+}
+
+/// Looks from a point of the free space along a line.
+class Probe {
+ public:
+  Probe(const cv::Mat& clearance, cv::Point from) : clearance_(clearance), from_(from) {}
+
+  /// Cells to the first one that is not free, at most `limit`.
+  double toWall(double angle, double limit) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    double t = 0.0;
+    while (t < limit) {
+      const float room = at(t * c, t * s);
+      if (room <= 0.0f) return t;
+      t += std::max(0.5, room - 1.0);  // no wall is nearer than that
+    }
+    return limit;
+  }
+
+  /// Share of solid cells, or of their direct neighbours, from `start` on.
+  double wallShare(double angle, double start, int length) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    int solid = 0;
+    for (int i = 1; i <= length; ++i)
+      if (at((start + i) * c, (start + i) * s) <= 1.5f) ++solid;
+    return static_cast<double>(solid) / length;
+  }
+
+ private:
+  float at(double dx, double dy) const {
+    const int x = from_.x + static_cast<int>(std::lround(dx));
+    const int y = from_.y + static_cast<int>(std::lround(dy));
+    if (x < 0 || y < 0 || x >= clearance_.cols || y >= clearance_.rows) return 0.0f;
+    return clearance_.at<float>(y, x);
+  }
+  const cv::Mat& clearance_;
+  cv::Point from_;
+};
+
+void measurePassage(const cv::Mat& clearance, double resolution, double saddle, Passage& passage) {
+  const Probe probe(clearance, passage.at);
+  const double limit = 8.0 * saddle / resolution + 4.0;
+  double angle = 0.0, ahead = 0.0, behind = limit, width = 1e9;
+  for (int k = 0; k < kChords; ++k) {
+    const double tried = k * hyselam::kPi / kChords;
+    const double there = probe.toWall(tried, limit);
+    if (there >= width) continue;
+    const double back = probe.toWall(tried + hyselam::kPi, limit);
+    if (there + back >= width) continue;
+    width = there + back;
+    angle = tried, ahead = there, behind = back;
+  }
+  passage.width = width * resolution;
+  const int length = std::max(1, static_cast<int>(std::ceil(kWallProbe / resolution)));
+  double first = 0.0, second = 0.0;
+  for (int k = -2; k <= 2; ++k) {
+    const double turn = angle + k * hyselam::kPi / kChords;
+    first = std::max(first, probe.wallShare(turn, ahead, length));
+    second = std::max(second, probe.wallShare(turn + hyselam::kPi, behind, length));
+  }
+  passage.weaker_wall = std::min(first, second);
+  passage.stronger_wall = std::max(first, second);
+}
+
+}  // namespace
+
+PlaceGraph::PlaceGraph(const cv::Mat& free, const cv::Mat& clearance, const Basins& basins,
+                       double resolution)
+    : resolution_(resolution),
+      nodes_(static_cast<std::size_t>(basins.count) + 1),
+      merged_into_(static_cast<std::size_t>(basins.count) + 1) {
+  CV_Assert(free.size() == clearance.size() && basins.labels.isContinuous());
+  for (std::size_t i = 0; i < merged_into_.size(); ++i) merged_into_[i] = static_cast<int>(i);
+  measureNodes(clearance, basins.labels);
+  const int steps = static_cast<int>(std::lround(kThinWall / resolution));
+  measureBorders(clearance, basins.labels, reachIntoWalls(basins.labels, steps));
+  for (PlaceBorder& border : borders_)
+    if (border.open > 0.0) measurePassage(clearance, resolution, border.saddle, border.passage);
+}
+
+void PlaceGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
+  const double cell = resolution_ * resolution_;
+  for (int y = 0; y < labels.rows; ++y) {
+    const int* row = labels.ptr<int>(y);
+    const float* heights = clearance.ptr<float>(y);
+    for (int x = 0; x < labels.cols;) {
+      const int label = row[x];
+      const int start = x;
+      double sum = 0.0;
+      float peak = 0.0f;
+      for (; x < labels.cols && row[x] == label; ++x) {
+        sum += heights[x];
+        peak = std::max(peak, heights[x]);
+      }
+      if (label == 0) continue;
+      PlaceNode& node = at(label);
+      node.area += (x - start) * cell;
+      node.clearances += sum * resolution_ * cell;
+      node.peak = std::max(node.peak, peak * resolution_);
+      node.hull.emplace_back(start, y);
+      if (x - start > 1) node.hull.emplace_back(x - 1, y);
+    }
+  }
+  for (int i = 1; i <= size(); ++i) setHull(at(i));
+}
+
+void PlaceGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
+                                const cv::Mat& reach) {
+  const int stride = labels.cols, total = static_cast<int>(labels.total());
+  const int* cells = labels.ptr<int>();
+  const int* near = reach.ptr<int>();
+  const float* heights = clearance.ptr<float>();
+  const auto meet = [&](int i, int j) {
+    const int a = cells[i], b = cells[j];
+    if (a != b) {
+      if (a != 0) at(a).perimeter += resolution_;
+      if (b != 0) at(b).perimeter += resolution_;
+      if (a != 0 && b != 0) {
+        PlaceBorder& border = between(a, b);
+        border.open += resolution_;
+        const double height = std::min(heights[i], heights[j]) * resolution_;
+        if (height > border.saddle) {
+          border.saddle = height;
+          border.passage.at = {i % stride, i / stride};
+        }
+        return;
+      }
+    }
+    if (near[i] != near[j] && near[i] != 0 && near[j] != 0)
+      between(near[i], near[j]).wall += resolution_;
+  };
+  for (int i = 0; i + stride < total; ++i) {
+    if (near[i] != near[i + 1] || cells[i] != cells[i + 1]) meet(i, i + 1);
+    if (near[i] != near[i + stride] || cells[i] != cells[i + stride]) meet(i, i + stride);
+  }
+}
+
+PlaceBorder& PlaceGraph::between(int a, int b) {
+  const auto [found, fresh] = at(a).borders.emplace(b, static_cast<int>(borders_.size()));
+  if (fresh) {
+    at(b).borders.emplace(a, found->second);
+    borders_.emplace_back();
+  }
+  return borders_[static_cast<std::size_t>(found->second)];
+}
+
+void PlaceGraph::setHull(PlaceNode& node) const {
+  std::vector<cv::Point> hull;
+  cv::convexHull(node.hull, hull);
+  node.hull.swap(hull);
+  node.hull_area =
+      node.hull.size() < 3 ? 0.0 : cv::contourArea(node.hull) * resolution_ * resolution_;
+}
+
+void PlaceGraph::merge(int kept, int gone) {
+  PlaceNode& to = at(kept);
+  PlaceNode& from = at(gone);
+  const int own = to.borders.at(gone);
+  to.area += from.area;
+  to.clearances += from.clearances;
+  to.peak = std::max(to.peak, from.peak);
+  to.perimeter += from.perimeter - 2.0 * border(own).open;
+  to.hull.insert(to.hull.end(), from.hull.begin(), from.hull.end());
+  setHull(to);
+  to.borders.erase(gone);
+  for (const auto& [neighbour, index] : from.borders) {
+    if (neighbour == kept) continue;
+    PlaceNode& other = at(neighbour);
+    other.borders.erase(gone);
+    const auto [found, fresh] = to.borders.emplace(neighbour, index);
+    if (fresh) {
+      other.borders[kept] = index;
+      continue;
+    }
+    PlaceBorder& joined = borders_[static_cast<std::size_t>(found->second)];
+    const PlaceBorder& added = border(index);
+    joined.open += added.open;
+    joined.wall += added.wall;
+    if (added.saddle > joined.saddle) {
+      joined.saddle = added.saddle;
+      joined.passage = added.passage;
+    }
+  }
+  from = PlaceNode();
+  from.alive = false;
+  merged_into_[static_cast<std::size_t>(gone)] = kept;
+}
+
+int PlaceGraph::root(int basin) const {
+  while (merged_into_[static_cast<std::size_t>(basin)] != basin)
+    basin = merged_into_[static_cast<std::size_t>(basin)];
+  return basin;
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,77 @@
+// Third step of the segmentation: basins as the nodes of a graph whose edges are the borders
+// between them, with all that the decision about a border looks at. Merging keeps the figures.
+#pragma once
+
+#include <array>
+#include <map>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "basins.hpp"
+
+namespace hyselam_topo {
+
+/// The passage at the widest point of a border, and the walls that carry on its line.
+struct Passage {
+  cv::Point at{-1, -1};    ///< cell of the widest point
+  double width = 0.0;      ///< of the shortest chord through it [m]
+  double weaker_wall = 0;  ///< share of solid cells along the chord's line behind its two ends
+  double stronger_wall = 0;
+};
+
+struct PlaceBorder {
+  double open = 0.0;    ///< length without a wall [m]
+  double wall = 0.0;    ///< length of thin wall between the two [m]
+  double saddle = 0.0;  ///< largest clearance on the open part [m]
+  Passage passage;
+};
+
+struct PlaceNode {
+  double area = 0.0;       ///< [m^2]
+  double clearances = 0;   ///< sum over the area [m^3]
+  double peak = 0.0;       ///< largest clearance [m]
+  double perimeter = 0.0;  ///< walls and open borders [m]
+  std::vector<cv::Point> hull;
+  double hull_area = 0.0;      ///< [m^2]
+  bool alive = true;           ///< false: has become part of another
+  std::map<int, int> borders;  ///< neighbour to index in PlaceGraph::borders
+};
+
+class PlaceGraph {
+ public:
+  /// `free`: CV_8U; `clearance`: CV_32F, its distance map [cells].
+  PlaceGraph(const cv::Mat& free, const cv::Mat& clearance, const Basins& basins,
+             double resolution);
+
+  int size() const { return static_cast<int>(nodes_.size()) - 1; }
+  /// 1 .. size(), as the basins are numbered.
+  const PlaceNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  const PlaceBorder& border(int index) const { return borders_[static_cast<std::size_t>(index)]; }
+  double resolution() const { return resolution_; }
+
+  /// Makes `gone` part of `kept`, its neighbour.
+  void merge(int kept, int gone);
+  /// The living node that a basin has become part of.
+  int root(int basin) const;
+
+ private:
+  PlaceNode& at(int i) { return nodes_[static_cast<std::size_t>(i)]; }
+  PlaceBorder& between(int a, int b);
+  void measureNodes(const cv::Mat& clearance, const cv::Mat& labels);
+  void measureBorders(const cv::Mat& clearance, const cv::Mat& labels, const cv::Mat& reach);
+  void setHull(PlaceNode& node) const;
+
+  double resolution_;
+  std::vector<PlaceNode> nodes_;  // [0] is not used
+  std::vector<PlaceBorder> borders_;
+  std::vector<int> merged_into_;
+};
+
+constexpr int kBorderFeatures = 27;
+using BorderFeatures = std::array<double, kBorderFeatures>;
+
+/// What the decision whether two neighbours are one place looks at; docs/algorithms.md has the
+/// list.
+BorderFeatures describeBorder(const PlaceGraph& graph, int a, int b);
+
+}  // namespace hyselam_topo

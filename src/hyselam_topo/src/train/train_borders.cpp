@@ -1,0 +1,326 @@
+// Learns which neighbours are one place from maps with known rooms, and says how well it carries
+// over to buildings that it has not seen.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "agglomeration.hpp"
+#include "boosting.hpp"
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/tool.hpp"
+
+namespace {
+
+using namespace hyselam_topo;
+
+struct Options {
+  std::string data, out;
+  int rounds = 4;
+  std::vector<double> scales{1.0, 0.85, 1.2};
+  double robot_weight = 2.0;
+  std::vector<int> without;
+  BoostingParams boosting;
+  SegmentationParams segmentation;
+};
+
+/// A map at one scale, ready to be merged, and how the cells of its basins share out on the rooms.
+struct Example {
+  std::string name, kind, building;
+  double scale = 1.0;
+  PlaceGraph graph;
+  std::vector<std::vector<int>> rooms;  // [basin][room], room 0: none
+};
+
+struct Scores {
+  double precision = 0, recall = 0, mcc = 0, f1 = 0, places = 0;
+};
+
+std::vector<int> sum(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> out(a);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] += b[i];
+  return out;
+}
+
+/// As score_segmentation.py with --domain common, on working cells.
+Scores score(const std::vector<std::vector<int>>& places, int rooms) {
+  std::vector<std::vector<double>> inner;
+  std::vector<double> b(static_cast<std::size_t>(rooms) + 1, 0.0), a;
+  double total = 0.0;
+  for (const auto& place : places) {
+    double cells = 0.0, known = 0.0;
+    for (std::size_t r = 0; r < place.size(); ++r) {
+      cells += place[r];
+      if (r > 0) known += place[r];
+    }
+    if (cells <= 100) continue;
+    inner.emplace_back(place.begin(), place.end());
+    a.push_back(known);
+    total += known;
+    for (std::size_t r = 1; r < place.size(); ++r) b[r] += place[r];
+  }
+  Scores s;
+  s.places = static_cast<double>(inner.size());
+  struct Overlap {
+    double cells;
+    std::size_t place, room;
+  };
+  std::vector<Overlap> overlaps;
+  int found = 0;
+  std::vector<double> best_room(b.size(), 0.0);
+  std::vector<char> matched(b.size(), 0);
+  int present = 0;
+  for (std::size_t p = 0; p < inner.size(); ++p) {
+    double best = 0.0;
+    for (std::size_t r = 1; r < b.size(); ++r) {
+      const double v = inner[p][r];
+      best = std::max(best, v);
+      best_room[r] = std::max(best_room[r], v);
+      if (v > 0 && v / (a[p] + b[r] - v) >= 0.5) matched[r] = 1;
+      if (v > 0) overlaps.push_back({v, p, r});
+    }
+    if (a[p] > 0) s.precision += best / a[p] / s.places;
+  }
+  for (std::size_t r = 1; r < b.size(); ++r) {
+    found += matched[r];
+    if (b[r] > 0) ++present, s.recall += best_room[r] / b[r];
+  }
+  s.recall /= rooms;
+  s.f1 = 2.0 * found / (s.places + rooms);
+  std::stable_sort(overlaps.begin(), overlaps.end(),
+                   [](const Overlap& x, const Overlap& y) { return x.cells > y.cells; });
+  std::set<std::size_t> used_places, used_rooms;
+  double sum_mcc = 0.0;
+  for (const Overlap& o : overlaps) {
+    if (used_places.count(o.place) || used_rooms.count(o.room)) continue;
+    used_places.insert(o.place);
+    used_rooms.insert(o.room);
+    const double tp = o.cells, fp = a[o.place] - tp, fn = b[o.room] - tp, tn = total - tp - fp - fn;
+    const double d = (tp + fp) * (tp + fn) * (tn + fp) * (tn + fn);
+    sum_mcc += d > 0 ? (tp * tn - fp * fn) / std::sqrt(d) : (fp == 0 && fn == 0 ? 1.0 : 0.0);
+  }
+  const double matches = static_cast<double>(used_places.size());
+  s.mcc = sum_mcc / (matches + (s.places - matches) + (rooms - matches));
+  return s;
+}
+
+std::vector<Example> load(const Options& options) {
+  std::vector<Example> examples;
+  const std::string index = options.data + "/index.csv";
+  std::ifstream file(index);
+  if (!file) throw hyselam::InputError(index, "", "cannot be opened");
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::vector<std::string> fields;
+    std::stringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    if (fields.size() < 8) throw hyselam::InputError(index, line, "has too few fields");
+    const hyselam::OccupancyGrid grid = hyselam::loadMap(options.data + "/" + fields[2]);
+    cv::Mat rooms = cv::imread(options.data + "/" + fields[3], cv::IMREAD_UNCHANGED);
+    if (rooms.empty()) throw hyselam::InputError(options.data + "/" + fields[3], "", "is no image");
+    cv::flip(rooms, rooms, 0);
+    rooms.convertTo(rooms, CV_32S);
+    double most = 0;
+    cv::minMaxLoc(rooms, nullptr, &most);
+    for (const double scale : options.scales) {
+      hyselam::OccupancyGrid scaled = grid;
+      scaled.geometry.resolution *= scale;
+      const PreparedPlaces p = preparePlaces(scaled, options.segmentation);
+      if (p.space.joined != 1 || p.space.split != 1)
+        throw hyselam::InputError(fields[2], "resolution", "is not near the working resolution");
+      Example e{fields[0],
+                fields[5],
+                fields[6],
+                scale,
+                PlaceGraph(p.space.free, p.clearance, p.basins, p.space.resolution),
+                {}};
+      e.rooms.assign(static_cast<std::size_t>(p.basins.count) + 1,
+                     std::vector<int>(static_cast<std::size_t>(most) + 1, 0));
+      for (int y = 0; y < rooms.rows; ++y)
+        for (int x = 0; x < rooms.cols; ++x) {
+          const int column = x - p.space.origin.x, row = y - p.space.origin.y;
+          if (row < 0 || column < 0 || row >= p.space.free.rows || column >= p.space.free.cols)
+            continue;
+          const int basin = p.basins.labels.at<int>(row, column);
+          if (basin != 0)
+            ++e.rooms[static_cast<std::size_t>(basin)]
+                     [static_cast<std::size_t>(rooms.at<int>(y, x))];
+        }
+      examples.push_back(std::move(e));
+    }
+  }
+  return examples;
+}
+
+int room(const std::vector<int>& cells) {
+  const auto most = std::max_element(cells.begin() + 1, cells.end());
+  return *most > 0 ? static_cast<int>(most - cells.begin()) : 0;
+}
+
+/// Samples of one example, apart, so that a building can be left out.
+using PerExample = std::vector<Samples>;
+
+Scores run(const Example& example, const BoostedTrees* model, const Options& options,
+           Samples* samples) {
+  PlaceGraph graph = example.graph;
+  // Nodes keep the number of the smaller: their cells per room are kept beside.
+  std::vector<std::vector<int>> rooms = example.rooms;
+  std::vector<char> alive(rooms.size(), 1);
+  const auto now = [&](const PlaceGraph& g) {
+    for (std::size_t i = 1; i < rooms.size(); ++i)
+      if (alive[i] && !g.node(static_cast<int>(i)).alive) {
+        alive[i] = 0;
+        const auto root = static_cast<std::size_t>(g.root(static_cast<int>(i)));
+        rooms[root] = sum(rooms[root], rooms[i]);
+      }
+  };
+  agglomerate(graph, [&](const PlaceGraph& g, int a, int b) {
+    BorderFeatures f = describeBorder(g, a, b);
+    for (const int w : options.without) f[static_cast<std::size_t>(w)] = 0.0;
+    if (samples != nullptr) {
+      now(g);
+      const int ra = room(rooms[static_cast<std::size_t>(a)]);
+      const int rb = room(rooms[static_cast<std::size_t>(b)]);
+      if (ra != 0 && rb != 0) {
+        const double small = std::min(g.node(a).area, g.node(b).area);
+        samples->values.insert(samples->values.end(), f.begin(), f.end());
+        samples->one_place.push_back(ra == rb);
+        samples->weights.push_back(std::min(small, 3.0) / 3.0 + 0.05);
+      }
+    }
+    if (model != nullptr) return (*model)(f.data());
+    return f[1] - std::log(0.75);
+  });
+  now(graph);
+  std::vector<std::vector<int>> places;
+  for (std::size_t i = 1; i < rooms.size(); ++i)
+    if (alive[i]) places.push_back(rooms[i]);
+  return score(places, static_cast<int>(rooms[0].size()) - 1);
+}
+
+BoostedTrees fit(const std::vector<Example>& examples, const PerExample& samples,
+                 const std::string& without, const Options& options) {
+  Samples all;
+  all.features = kBorderFeatures;
+  // Every map counts by the root of its weight: many rooms say more, but not as many times more.
+  std::map<std::string, double> weights;
+  for (std::size_t i = 0; i < examples.size(); ++i)
+    for (const double w : samples[i].weights) weights[examples[i].name] += w;
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    if (examples[i].building == without) continue;
+    all.values.insert(all.values.end(), samples[i].values.begin(), samples[i].values.end());
+    all.one_place.insert(all.one_place.end(), samples[i].one_place.begin(),
+                         samples[i].one_place.end());
+    const double share = (examples[i].kind == "robot" ? options.robot_weight : 1.0) /
+                         std::sqrt(weights[examples[i].name]);
+    for (const double w : samples[i].weights) all.weights.push_back(w * share);
+  }
+  return boost(all, options.boosting);
+}
+
+void print(const char* title, const std::vector<Example>& examples,
+           const std::vector<Scores>& scores, bool each) {
+  std::map<std::string, std::vector<Scores>> kinds;
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    if (examples[i].scale != 1.0) continue;
+    const Scores& s = scores[i];
+    if (each)
+      std::printf("  %-28s places %3.0f of %2zu  P %.3f R %.3f MCC %.3f F1 %.3f\n",
+                  examples[i].name.c_str(), s.places, examples[i].rooms[0].size() - 1, s.precision,
+                  s.recall, s.mcc, s.f1);
+    kinds[examples[i].kind].push_back(s);
+  }
+  std::printf("%s\n", title);
+  for (const auto& [kind, list] : kinds) {
+    Scores m;
+    for (const Scores& s : list) {
+      const double n = static_cast<double>(list.size());
+      m.precision += s.precision / n, m.recall += s.recall / n, m.mcc += s.mcc / n,
+          m.f1 += s.f1 / n;
+    }
+    std::printf("  %-12s P %.3f R %.3f MCC %.3f F1 %.3f\n", kind.c_str(), m.precision, m.recall,
+                m.mcc, m.f1);
+  }
+  std::fflush(stdout);
+}
+
+void write(const std::string& folder, const BoostedTrees& model) {
+  hyselam::writeFileAtomically(folder + "/border_model_nodes.inc", [&](std::ostream& out) {
+    out.precision(6);
+    for (const TreeNode& n : model.nodes())
+      out << '{' << n.feature << ", " << n.threshold << ", " << n.left << "},\n";
+  });
+  hyselam::writeFileAtomically(folder + "/border_model_roots.inc", [&](std::ostream& out) {
+    for (const int root : model.roots()) out << root << ",\n";
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  bool each = false;
+  CLI::App app("Learns which neighbouring parts of a map are one place");
+  app.add_option("DATA", options.data, "folder with index.csv, maps and rooms")->required();
+  app.add_option("--out", options.out, "folder for border_model_*.inc");
+  app.add_option("--rounds", options.rounds, "times that the borders met are added");
+  app.add_option("--scales", options.scales, "of the maps")->delimiter(',');
+  app.add_option("--robot-weight", options.robot_weight, "of robot-built maps");
+  app.add_option("--without", options.without, "features")->delimiter(',');
+  app.add_option("--trees", options.boosting.trees);
+  app.add_option("--leaves", options.boosting.leaves);
+  app.add_option("--rate", options.boosting.rate);
+  app.add_option("--l2", options.boosting.l2);
+  app.add_option("--least-hessian", options.boosting.least_hessian);
+  app.add_option("--feature-share", options.boosting.feature_share);
+  app.add_option("--seed", options.boosting.seed);
+  app.add_option("--clutter", options.segmentation.clutter);
+  app.add_flag("--each", each, "print every map");
+  options.boosting.monotone = {0, 1, 1, 1, 1, 0, 0, 1, 1, 1, 1, 0, 0, 0, -1, -1, 0, 0, -1, 0, 1};
+  return hyselam::runTool(argc, argv, app, [&]() -> nlohmann::json {
+    const std::vector<Example> examples = load(options);
+    std::set<std::string> buildings;
+    for (const Example& e : examples) buildings.insert(e.building);
+    PerExample samples(examples.size());
+    for (std::size_t i = 0; i < examples.size(); ++i)
+      run(examples[i], nullptr, options, &samples[i]);
+    BoostedTrees all;
+    for (int round = 0; round < options.rounds; ++round) {
+      const bool last = round + 1 == options.rounds;
+      std::map<std::string, BoostedTrees> models;
+      all = fit(examples, samples, "", options);
+      for (const std::string& b : buildings) models[b] = fit(examples, samples, b, options);
+      PerExample met(examples.size());
+      std::vector<Scores> seen, unseen;
+      for (std::size_t i = 0; i < examples.size(); ++i) {
+        seen.push_back(run(examples[i], &all, options, &met[i]));
+        unseen.push_back(run(examples[i], &models[examples[i].building], options, &met[i]));
+      }
+      std::size_t count = 0;
+      for (const Samples& s : samples) count += s.size();
+      std::printf("round %d, %zu borders\n", round + 1, count);
+      print("seen", examples, seen, false);
+      print("building left out", examples, unseen, each && last);
+      for (std::size_t i = 0; i < examples.size(); ++i) {
+        Samples& s = samples[i];
+        s.values.insert(s.values.end(), met[i].values.begin(), met[i].values.end());
+        s.one_place.insert(s.one_place.end(), met[i].one_place.begin(), met[i].one_place.end());
+        s.weights.insert(s.weights.end(), met[i].weights.begin(), met[i].weights.end());
+      }
+    }
+    if (!options.out.empty()) write(options.out, all);
+    return {};
+  });
+}
