@@ -122,6 +122,32 @@ TEST(Doors, ACorridorCutInTwoHasAnOpenBorder) {
   EXPECT_NEAR(4.5, 0.5 * (doors[0].a.x + doors[0].b.x), 0.15);
 }
 
+// The same with doors into rooms beside the border: they do not make the corridor wider.
+TEST(Doors, DoorsAtTheSideMakeNoJambs) {
+  OccupancyGrid grid = gridOf(200, 104, 0.05, OccupancyGrid::kOccupied);
+  cv::Mat labels(104, 200, CV_16UC1, cv::Scalar(0));
+  const auto clear = [&](const cv::Rect& box, int label) {
+    for (int y = box.y; y < box.y + box.height; ++y) {
+      for (int x = box.x; x < box.x + box.width; ++x) {
+        grid.at({x, y}) = OccupancyGrid::kFree;
+        labels.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(label);
+      }
+    }
+  };
+  clear({4, 4, 96, 36}, 1);
+  clear({100, 4, 96, 36}, 2);
+  clear({4, 44, 94, 56}, 3);
+  clear({102, 44, 94, 56}, 4);
+  clear({74, 40, 20, 4}, 3);
+  clear({106, 40, 20, 4}, 4);
+  int real = 0;
+  for (const DoorLine& d : refineDoors(grid, labels)) {
+    real += d.real ? 1 : 0;
+    EXPECT_EQ(d.real, d.place_b > 2);
+  }
+  EXPECT_EQ(2, real);
+}
+
 TEST(Doors, RefusesWhatDoesNotFit) {
   const Drawing d = twoRooms();
   EXPECT_THROW(refineDoors(d.grid, cv::Mat(3, 3, CV_16UC1, cv::Scalar(0))), std::invalid_argument);

@@ -28,8 +28,8 @@ double length(cv::Point2d p) {
 // Lengths in cells, positions in cells from the outer corner of cell (0, 0).
 class DoorFinder {
  public:
-  DoorFinder(const OccupancyGrid& grid, const DoorParams& params)
-      : grid_(grid), params_(params), cells_(1.0 / grid.geometry.resolution) {}
+  DoorFinder(const OccupancyGrid& grid, const cv::Mat& labels, const DoorParams& params)
+      : grid_(grid), labels_(labels), params_(params), cells_(1.0 / grid.geometry.resolution) {}
 
   DoorLine find(const Border& border) const {
     Line line{border.first, border.last, false, false};
@@ -43,7 +43,7 @@ class DoorFinder {
     door.b = toMap(line.b);
     door.width = length(line.b - line.a) * grid_.geometry.resolution;
     door.real = !border.closed && line.wall_a && line.wall_b && door.width >= params_.min_width &&
-                door.width <= params_.max_width && hasJambs(line);
+                door.width <= params_.max_width && hasJambs(line, door);
     return door;
   }
 
@@ -175,15 +175,22 @@ class DoorFinder {
     }
   }
 
-  // How far the floor reaches from a point along a direction, up to a limit.
-  double freeWay(cv::Point2d from, cv::Point2d along, double limit) const {
+  // How far the floor of the two places reaches from a point along a direction, up to a limit. A
+  // door at the side leads into a third place and makes neither of them wider.
+  double freeWay(cv::Point2d from, cv::Point2d along, double limit, const DoorLine& door) const {
     double s = 0.0;
-    while (s < limit && !blocked(from + (s + 0.5) * along)) s += 0.5;
+    for (; s < limit; s += 0.5) {
+      const cv::Point2d p = from + (s + 0.5) * along;
+      if (blocked(p)) break;
+      const int label = labels_.at<std::uint16_t>(static_cast<int>(std::floor(p.y)),
+                                                  static_cast<int>(std::floor(p.x)));
+      if (label != 0 && label != door.place_a && label != door.place_b) break;
+    }
     return std::min(s, limit);
   }
 
   // Whether the place on one side of the line is wider than the line.
-  bool widens(const Line& line, cv::Point2d across) const {
+  bool widens(const Line& line, cv::Point2d across, const DoorLine& door) const {
     const double width = length(line.b - line.a);
     const cv::Point2d u = (1.0 / width) * (line.b - line.a), middle = 0.5 * (line.a + line.b);
     const double more = std::max(params_.jambs * cells_, 1.5);
@@ -193,21 +200,22 @@ class DoorFinder {
       const cv::Point2d p = middle + t * across;
       if (blocked(p)) break;
       // Both sides together: a door in the corner of a room has a jamb on one side only.
-      const double reached = freeWay(p, u, 2.0 * limit) + freeWay(p, -u, 2.0 * limit);
+      const double reached = freeWay(p, u, 2.0 * limit, door) + freeWay(p, -u, 2.0 * limit, door);
       if (reached >= width + more && ++wide >= 2) return true;
     }
     return false;
   }
 
-  bool hasJambs(const Line& line) const {
+  bool hasJambs(const Line& line, const DoorLine& door) const {
     const cv::Point2d u = line.b - line.a;
     const double width = length(u);
     if (width < 1e-9) return false;
     const cv::Point2d across{-u.y / width, u.x / width};
-    return widens(line, across) && widens(line, -across);
+    return widens(line, across, door) && widens(line, -across, door);
   }
 
   const OccupancyGrid& grid_;
+  const cv::Mat& labels_;
   const DoorParams& params_;
   double cells_;  // in a metre
 };
@@ -244,7 +252,7 @@ std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labe
   if (labels.cols != grid.geometry.width || labels.rows != grid.geometry.height) {
     throw std::invalid_argument("the labels do not have the size of the grid");
   }
-  const DoorFinder finder(grid, params);
+  const DoorFinder finder(grid, labels, params);
   std::vector<DoorLine> out;
   for (const Border& border : findBorders(labels)) {
     const DoorLine door = finder.find(border);
