@@ -17,7 +17,7 @@ struct CorridorParams {
   double max_spacing = 18.0;  ///< [m]
   double loops = 0.45;  ///< share of the corridors that are not needed for a connected building
   double halls = 0.12;  ///< share of the meeting points with room for it that are halls
-  double rooms = 0.3;   ///< share of the corridors with an open room at their side
+  double rooms = 0.5;   ///< share of the corridors with an open room at their side
   int legs = 80;        ///< corridors that the route passes, >= 1
 
   /// @throws hyselam::ParameterError

@@ -132,8 +132,8 @@ class Builder {
   /// A small room with an open door at the side of a corridor, where nothing else is.
   void addRoom(const Edge& e) {
     if (rng_.uniform() >= params_.rooms) return;
-    const double door = rng_.uniform(0.8, 1.2), depth = rng_.uniform(1.5, 3.0),
-                 along = rng_.uniform(1.5, 3.0), side = rng_.below(2) == 0 ? -1.0 : 1.0;
+    const double door = rng_.uniform(0.8, 1.2), depth = rng_.uniform(1.5, 5.0),
+                 along = rng_.uniform(1.5, 5.0), side = rng_.below(2) == 0 ? -1.0 : 1.0;
     const double gap = 0.5 * width_ + 0.2 + 0.5 * depth;
     const Point2 m = middle(e), to = e.east ? Point2{0.0, side} : Point2{side, 0.0};
     const Point2 centre = m + gap * to, sill = m + (0.5 * width_ + 0.1) * to;

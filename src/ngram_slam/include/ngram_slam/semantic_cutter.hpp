@@ -29,7 +29,7 @@ struct SemanticCut {
   double level = 0.0;            ///< smoothed density there
   bool stands = false;           ///< it stayed there; else it only turned, at a peak or in a trough
   std::optional<double> before;  ///< level of the cut before; empty at the start of a run
-  std::optional<double> after;   ///< of the cut after; empty at the end
+  std::optional<double> after;   ///< of the cut after, as known when it began; empty at the end
 };
 
 inline bool operator==(const SemanticCut& a, const SemanticCut& b) {
@@ -52,8 +52,8 @@ class SemanticCutter {
   std::vector<SemanticCut> add(double density);
   /// Ends the run: the cuts that remain. What comes next is observation 0 of another run.
   std::vector<SemanticCut> finish();
-  /// First observation of the cut that is growing.
-  std::uint32_t growingSince() const { return growing_.first; }
+  /// How many observations the cut that is growing holds at least, whatever comes.
+  std::uint32_t grown() const { return (standing_ ? next_ : since_) - growing_.first; }
 
  private:
   void take(double x, std::vector<SemanticCut>& out);

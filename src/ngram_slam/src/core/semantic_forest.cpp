@@ -9,6 +9,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
 
 namespace ngram_slam {
 namespace {
@@ -67,8 +68,12 @@ SemanticForest SemanticForest::train(const std::vector<SemanticExample>& example
   model->trees->setTermCriteria({cv::TermCriteria::MAX_ITER, params.trees, 0.0});
   cv::Mat types(samples.cols + 1, 1, CV_8U, cv::Scalar(cv::ml::VAR_ORDERED));
   types.at<uchar>(samples.cols) = cv::ml::VAR_CATEGORICAL;
+  // OpenCV draws from the thread's own generator.
+  const std::uint64_t before = cv::theRNG().state;
+  cv::theRNG().state = hyselam::mix(params.seed, 1) | 1;
   model->trees->train(cv::ml::TrainData::create(samples, cv::ml::ROW_SAMPLE, answers, cv::noArray(),
                                                 cv::noArray(), cv::noArray(), types));
+  cv::theRNG().state = before;
   return SemanticForest(std::move(model));
 }
 

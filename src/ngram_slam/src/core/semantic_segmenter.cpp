@@ -50,11 +50,7 @@ std::vector<SemanticRegion> SemanticSegmenter::add(const Observation& o) {
   std::vector<SemanticRegion> out;
   for (const SemanticCut& cut : cutter_.add(o.soft)) take(cut, out);
   // What follows has become too long to be a gap within what is held.
-  const auto end = seen_begin_ + static_cast<std::uint32_t>(seen_.size());
-  if (held_ && !open_ &&
-      end > cutter_.growingSince() +
-                static_cast<std::uint32_t>(params_.longest_bend + params_.cut.smoothing + 1 +
-                                           params_.cut.settled_for))
+  if (held_ && !open_ && cutter_.grown() > static_cast<std::uint32_t>(params_.longest_bend))
     tell(out);
   return out;
 }

@@ -30,11 +30,29 @@ SemanticRun drive(const Options& o, int number) {
   return semanticRun(log, o.run, nullptr, &building.plan);
 }
 
-/// The class that most observations of a region have.
+/// The class of the place that lies in a region with at least half of its observations, the largest
+/// of several; regions are longer than the corners and bifurcations in them. Without such a place
+/// the class that most observations have.
 std::optional<SemanticClass> classOf(const SemanticRegion& region, const SemanticRun& run) {
   std::array<std::uint32_t, kSemanticClasses> counts{};
-  for (std::uint32_t i = region.first; i <= region.last; ++i)
-    if (run.truth[i]) ++counts[indexOf(*run.truth[i])];
+  std::optional<SemanticClass> place_class;
+  std::uint32_t largest = 0;
+  for (std::uint32_t i = region.first; i <= region.last; ++i) {
+    const auto& truth = run.truth[i];
+    if (!truth) continue;
+    ++counts[indexOf(*truth)];
+    const bool begins = i == region.first || run.truth[i - 1] != truth;
+    if (!begins || truth == SemanticClass::kCorridor) continue;
+    std::uint32_t first = i, last = i;
+    while (first > 0 && run.truth[first - 1] == truth) --first;
+    while (last + 1 < run.truth.size() && run.truth[last + 1] == truth) ++last;
+    const std::uint32_t inside = std::min(last, region.last) - i + 1;
+    if (2 * inside >= last - first + 1 && inside > largest) {
+      largest = inside;
+      place_class = truth;
+    }
+  }
+  if (place_class) return place_class;
   const auto most = std::max_element(counts.begin(), counts.end());
   if (*most == 0) return std::nullopt;
   return kAllSemanticClasses[static_cast<std::size_t>(most - counts.begin())];

@@ -1,0 +1,398 @@
+// Regions with a meaning: equality with the transcription of chapter 6, streams, the score, and
+// what is done with input that cannot be used.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "ngram_slam/semantic_forest.hpp"
+#include "ngram_slam/semantic_regions_io.hpp"
+#include "ngram_slam/semantic_score.hpp"
+#include "transcription/semantics.hpp"
+
+using namespace ngram_slam;  // NOLINT: a test, not a header
+using hyselam::Rng;
+using hyselam::testing::fileBytes;
+using hyselam::testing::messageOf;
+using hyselam::testing::TemporaryDirectory;
+using hyselam::testing::writeFile;
+
+namespace {
+
+/// Levels, ramps and noise; stretches of frontiers; bends. Densities have the precision of floats.
+std::vector<Observation> randomRun(Rng& rng, std::size_t length) {
+  std::vector<Observation> out;
+  double density = rng.uniform(0.2, 0.9), goal = density, slope = 0.01, heading = 0.0, bend = 0.0;
+  int frontiers = 2;
+  const double noise = rng.below(3) == 0 ? 0.02 : 0.004;
+  hyselam::Pose2 at;
+  while (out.size() < length) {
+    if (rng.below(12) == 0) {
+      goal = rng.uniform(0.1, 1.0);
+      slope = rng.uniform(0.003, 0.05);
+    }
+    density += std::clamp(goal - density, -slope, slope);
+    if (rng.below(9) == 0) frontiers = static_cast<int>(rng.below(5));
+    if (rng.below(15) == 0) bend = rng.below(3) == 0 ? rng.uniform(-0.3, 0.3) : 0.0;
+    heading += bend;
+    at = at * hyselam::Pose2{0.1, 0.0, hyselam::normalizeAngle(heading - at.theta)};
+    Observation o;
+    o.stamp = 0.1 * static_cast<double>(out.size());
+    o.base_in_odom = at;
+    o.soft = static_cast<float>(std::clamp(density + rng.gaussian(0.0, noise), 0.0, 1.0));
+    o.frontiers = frontiers;
+    out.push_back(o);
+  }
+  return out;
+}
+
+SemanticParams randomParams(Rng& rng) {
+  SemanticParams p;
+  p.cut.smoothing = static_cast<int>(rng.below(6));
+  p.cut.leave = rng.uniform(0.015, 0.08);
+  p.cut.settled = p.cut.leave * rng.uniform(0.2, 1.0);
+  p.cut.settled_for = 2 + static_cast<int>(rng.below(15));
+  p.cut.border = rng.uniform(0.2, 0.8);
+  p.shortest_gap = static_cast<int>(rng.below(12));
+  p.longest_bend = p.shortest_gap + static_cast<int>(rng.below(30));
+  p.shortest_stretch = static_cast<int>(rng.below(8));
+  p.widest_rim = static_cast<int>(rng.below(15));
+  return p;
+}
+
+std::vector<SemanticRegion> streamed(SemanticSegmenter& segmenter,
+                                     const std::vector<Observation>& run) {
+  std::vector<SemanticRegion> out;
+  const auto keep = [&](const std::vector<SemanticRegion>& more) {
+    out.insert(out.end(), more.begin(), more.end());
+  };
+  for (const Observation& o : run) keep(segmenter.add(o));
+  keep(segmenter.finish());
+  return out;
+}
+
+transcription::Run plain(const std::vector<Observation>& run) {
+  transcription::Run out;
+  for (const Observation& o : run) {
+    out.soft.push_back(o.soft);
+    out.frontiers.push_back(o.frontiers);
+    const double theta = o.base_in_odom.theta;
+    out.heading.push_back(
+        out.heading.empty()
+            ? theta
+            : out.heading.back() +
+                  hyselam::normalizeAngle(theta - run[out.heading.size() - 1].base_in_odom.theta));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST(SemanticCutter, equalsThePlainOneOnTenThousandStreams) {
+  for (std::uint64_t round = 0; round < 10000; ++round) {
+    SCOPED_TRACE(round);
+    Rng rng(round, 1);
+    const SemanticCutParams params = randomParams(rng).cut;
+    const auto run = randomRun(rng, 1 + rng.below(160));
+    std::vector<double> densities;
+    SemanticCutter cutter(params);
+    std::vector<SemanticCut> cuts;
+    for (const Observation& o : run) {
+      densities.push_back(o.soft);
+      for (const SemanticCut& c : cutter.add(o.soft)) cuts.push_back(c);
+      if (!cuts.empty()) {
+        ASSERT_LE(cuts.back().last + cutter.grown(), densities.size());
+      }
+    }
+    for (const SemanticCut& c : cutter.finish()) cuts.push_back(c);
+    const auto expected = transcription::cuts(densities, params);
+    ASSERT_EQ(cuts.size(), expected.size());
+    for (std::size_t k = 0; k < cuts.size(); ++k) {
+      ASSERT_EQ(cuts[k].first, expected[k].first);
+      ASSERT_EQ(cuts[k].last, expected[k].last);
+      ASSERT_DOUBLE_EQ(cuts[k].level, expected[k].level);
+      ASSERT_EQ(cuts[k].stands, expected[k].stands);
+      ASSERT_EQ(cuts[k].before.has_value(), expected[k].has_before);
+      ASSERT_EQ(cuts[k].after.has_value(), expected[k].has_after);
+      ASSERT_DOUBLE_EQ(cuts[k].before.value_or(0.0), expected[k].before);
+      ASSERT_DOUBLE_EQ(cuts[k].after.value_or(0.0), expected[k].after);
+    }
+  }
+}
+
+TEST(SemanticSegmenter, equalsThePlainOneOnTenThousandStreams) {
+  std::array<std::size_t, kSemanticClasses> seen{};
+  std::size_t regions = 0;
+  for (std::uint64_t round = 0; round < 10000; ++round) {
+    SCOPED_TRACE(round);
+    Rng rng(round, 2);
+    const SemanticParams params = randomParams(rng);
+    const DecisionTreeParams tree;
+    SemanticSegmenter segmenter(params);
+    std::uint32_t begin = 0;
+    for (int r = 0; r < 2; ++r) {  // the second run of the same segmenter starts anew
+      const auto run = randomRun(rng, 1 + rng.below(120));
+      const auto expected = transcription::regions(plain(run), params);
+      const auto got = streamed(segmenter, run);
+      ASSERT_EQ(got.size(), expected.size());
+      std::uint32_t next = begin;
+      for (std::size_t k = 0; k < got.size(); ++k) {
+        ASSERT_EQ(got[k].first, begin + expected[k].first);
+        ASSERT_EQ(got[k].last, begin + expected[k].last);
+        ASSERT_EQ(got[k].first, next);
+        next = got[k].last + 1;
+        ASSERT_DOUBLE_EQ(got[k].features.level, expected[k].level);
+        ASSERT_EQ(got[k].features.stands, expected[k].stands ? 1.0 : 0.0);
+        ASSERT_EQ(got[k].semantic_class, transcription::tree(got[k].features, tree));
+        ASSERT_GT(got[k].confidence, 0.49);
+        ASSERT_LE(got[k].confidence, 1.0);
+        ++seen[indexOf(got[k].semantic_class)];
+        ++regions;
+      }
+      ASSERT_EQ(next, begin + run.size());
+      begin = next;
+    }
+  }
+  for (SemanticClass c : kAllSemanticClasses)
+    EXPECT_GT(seen[indexOf(c)], regions / 2000) << nameOf(c);
+}
+
+TEST(DecisionTree, equalsThePlainOneOnTenThousandRegions) {
+  Rng rng(5);
+  for (int round = 0; round < 10000; ++round) {
+    SemanticFeatures f;
+    f.length = 1.0 + rng.below(120);
+    f.variation = rng.uniform(0.0, 0.3);
+    f.density_max = rng.uniform();
+    f.frontiers = rng.uniform(0.5, 3.5);
+    f.turn = rng.uniform(0.0, 3.5);
+    DecisionTreeParams p;
+    p.high_variation = rng.uniform(0.05, 0.2);
+    p.many_frontiers = rng.uniform(1.8, 2.8);
+    p.straight = rng.uniform(0.3, 1.5);
+    ASSERT_EQ(DecisionTree(p).classify(f).semantic_class, transcription::tree(f, p));
+  }
+}
+
+TEST(DecisionTree, table64Holds) {
+  const DecisionTree tree;
+  SemanticFeatures f;
+  const auto classOf = [&] { return tree.classify(f).semantic_class; };
+  f.length = 30;
+  f.variation = 0.05;
+  EXPECT_EQ(classOf(), SemanticClass::kCorridor);  // low variation, straight
+  f.variation = 0.2;
+  f.frontiers = 2.6;
+  EXPECT_EQ(classOf(), SemanticClass::kBifurcation);
+  f.frontiers = 2.0;
+  f.turn = hyselam::radians(90);
+  EXPECT_EQ(classOf(), SemanticClass::kCorner);
+  f.turn = hyselam::radians(170);
+  EXPECT_EQ(classOf(), SemanticClass::kDeadEnd);
+  f.turn = hyselam::radians(10);
+  EXPECT_EQ(classOf(), SemanticClass::kCorridor);
+  f.frontiers = 1.2;
+  f.density_max = 0.95;
+  EXPECT_EQ(classOf(), SemanticClass::kHall);
+  f.density_max = 0.7;
+  EXPECT_EQ(classOf(), SemanticClass::kCorridor);
+  f.frontiers = 2.6;
+  f.length = 101;
+  EXPECT_EQ(classOf(), SemanticClass::kCorridor);  // very long
+}
+
+TEST(SemanticSegmenter, tellsARegionBeforeTheNextOneEnds) {
+  // A corridor, a bifurcation, a corridor that goes on and on.
+  SemanticSegmenter segmenter;
+  std::vector<SemanticRegion> told;
+  for (int i = 0; i < 180; ++i) {
+    Observation o;
+    o.base_in_odom.x = 0.1 * i;
+    const double away = std::abs(i - 80);
+    o.soft = 0.5 + 0.3 * std::max(0.0, 1.0 - away / 20.0);
+    o.frontiers = away < 12 ? 3 : 2;
+    for (const SemanticRegion& r : segmenter.add(o)) told.push_back(r);
+  }
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].semantic_class, SemanticClass::kCorridor);
+  EXPECT_EQ(told[1].semantic_class, SemanticClass::kBifurcation);
+  EXPECT_NEAR(told[1].first, 72, 2);  // 0.6 of the way up
+  EXPECT_NEAR(told[1].last, 88, 2);
+}
+
+TEST(SemanticSegmenter, refusesObservationsThatCannotBeUsedAndGoesOn) {
+  Rng rng(3);
+  const auto run = randomRun(rng, 300);
+  SemanticSegmenter clean, disturbed;
+  const auto expected = streamed(clean, run);
+  std::vector<SemanticRegion> got;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Observation& o : run) {
+    for (int kind = 0; kind < 5; ++kind) {
+      Observation bad = o;
+      if (kind == 0) bad.soft = nan;
+      if (kind == 1) bad.soft = 1.5;
+      if (kind == 2) bad.frontiers = -1;
+      if (kind == 3) bad.base_in_odom.theta = nan;
+      if (kind == 4) bad.base_in_odom.x = std::numeric_limits<double>::infinity();
+      EXPECT_NE(messageOf<hyselam::InputError>([&] { disturbed.add(bad); }), "");
+    }
+    for (const SemanticRegion& r : disturbed.add(o)) got.push_back(r);
+  }
+  for (const SemanticRegion& r : disturbed.finish()) got.push_back(r);
+  ASSERT_EQ(got.size(), expected.size());
+  for (std::size_t k = 0; k < got.size(); ++k) EXPECT_EQ(got[k].last, expected[k].last);
+  EXPECT_TRUE(disturbed.finish().empty());  // an empty run
+}
+
+TEST(SemanticSegmenter, refusesParametersOutOfRange) {
+  const auto refused = [](auto change) {
+    SemanticParams p;
+    change(p);
+    return !messageOf<hyselam::ParameterError>([&] { SemanticSegmenter s(p); }).empty();
+  };
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.smoothing = -1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.leave = 0.0; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.settled = 2 * p.cut.leave; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.settled_for = 1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.border = 1.0; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.shortest_gap = -1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.longest_bend = p.shortest_gap - 1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.turning = std::nan(""); }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.bend = 0.0; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.shortest_stretch = -1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.widest_rim = -1; }));
+  EXPECT_FALSE(refused([](SemanticParams&) {}));
+  DecisionTreeParams t;
+  t.small_turn = 2 * t.huge_turn;
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] { DecisionTree tree(t); }), "");
+}
+
+TEST(SemanticScore, bordersWithinToleranceAreForgiven) {
+  constexpr auto kWay = SemanticClass::kCorridor, kMeet = SemanticClass::kBifurcation,
+                 kBend = SemanticClass::kCorner;
+  std::vector<std::optional<SemanticClass>> truth(100, kWay);
+  std::fill(truth.begin() + 40, truth.begin() + 60, kMeet);
+  std::vector<SemanticClass> predicted(100, kWay);
+  std::fill(predicted.begin() + 35, predicted.begin() + 75, kMeet);
+  // 5 too early are forgiven, of 15 too late 10.
+  SemanticConfusion c = compareClasses(truth, predicted, 10);
+  EXPECT_EQ(c.counts[indexOf(kWay)][indexOf(kMeet)], 5u);
+  EXPECT_EQ(c.counts[indexOf(kMeet)][indexOf(kMeet)], 20u);
+  EXPECT_EQ(c.total(), 100u);
+  EXPECT_DOUBLE_EQ(*c.precision(kMeet), 20.0 / 25.0);
+  EXPECT_DOUBLE_EQ(*c.recall(kWay), 75.0 / 80.0);
+  EXPECT_DOUBLE_EQ(c.averagePrecision(), 0.5 * (20.0 / 25.0 + 1.0));
+  EXPECT_FALSE(c.precision(kBend));
+  EXPECT_FALSE(c.recall(kBend));
+
+  // A place that nobody found is no shifted border; the rule of the thesis does not see it.
+  std::fill(predicted.begin(), predicted.end(), kWay);
+  EXPECT_EQ(compareClasses(truth, predicted, 10).counts[indexOf(kMeet)][indexOf(kMeet)], 20u);
+  c = compareClasses(truth, predicted, 10, BorderRule::kStrict);
+  EXPECT_EQ(c.counts[indexOf(kMeet)][indexOf(kWay)], 20u);
+  EXPECT_DOUBLE_EQ(c.averageRecall(), 0.5);
+
+  // What is neither here nor near stays wrong; without truth nothing is counted.
+  std::fill(predicted.begin() + 40, predicted.begin() + 60, kBend);
+  EXPECT_EQ(compareClasses(truth, predicted, 10).counts[indexOf(kMeet)][indexOf(kBend)], 20u);
+  std::fill(truth.begin(), truth.begin() + 40, std::nullopt);
+  EXPECT_EQ(compareClasses(truth, predicted, 10).total(), 60u);
+  EXPECT_EQ(compareClasses({}, {}, 10).averageRecall(), 0.0);
+  predicted.pop_back();
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] { compareClasses(truth, predicted, 10); }), "");
+}
+
+namespace {
+
+/// Corridors are long, bifurcations have many frontiers, the others turn.
+std::vector<SemanticExample> examples(int n) {
+  Rng rng(9);
+  std::vector<SemanticExample> out;
+  for (int i = 0; i < n; ++i) {
+    SemanticExample e;
+    e.semantic_class = kAllSemanticClasses[rng.below(4)];
+    const auto is = [&](SemanticClass c) { return e.semantic_class == c; };
+    e.features.length = rng.uniform(20, 40) + (is(SemanticClass::kCorridor) ? 60 : 0);
+    e.features.frontiers = rng.uniform(1.9, 2.2) + (is(SemanticClass::kBifurcation) ? 0.8 : 0.0);
+    e.features.turn = is(SemanticClass::kCorner)    ? rng.uniform(1.2, 1.8)
+                      : is(SemanticClass::kDeadEnd) ? rng.uniform(2.8, 3.2)
+                                                    : rng.uniform(0.0, 0.5);
+    out.push_back(e);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST(SemanticForest, learnsAndKeepsWhatItLearned) {
+  const auto lesson = examples(400);
+  const SemanticForest forest = SemanticForest::train(lesson);
+  int right = 0;
+  for (const SemanticExample& e : lesson) {
+    const SemanticVerdict v = forest.classify(e.features);
+    right += v.semantic_class == e.semantic_class;
+    EXPECT_GT(v.confidence, 0.2);
+    EXPECT_LE(v.confidence, 1.0);
+  }
+  EXPECT_GE(right, 390);
+  TemporaryDirectory dir;
+  forest.save(dir / "a");
+  SemanticForest::train(lesson).save(dir / "b");
+  EXPECT_EQ(fileBytes(dir / "a"), fileBytes(dir / "b"));
+  const SemanticForest loaded = SemanticForest::load(dir / "a");
+  for (const SemanticExample& e : lesson) {
+    EXPECT_EQ(loaded.classify(e.features).semantic_class,
+              forest.classify(e.features).semantic_class);
+    EXPECT_EQ(loaded.classify(e.features).confidence, forest.classify(e.features).confidence);
+  }
+  EXPECT_NE(messageOf<hyselam::ParameterError>([] { SemanticForest::train({}); }), "");
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { forest.save(dir / "none/a"); }), "");
+}
+
+TEST(SemanticForest, refusesFilesThatAreNone) {
+  TemporaryDirectory dir;
+  SemanticForest::train(examples(100)).save(dir / "good");
+  const std::string good = fileBytes(dir / "good");
+  const auto refused = [&](const std::string& bytes) {
+    writeFile(dir / "bad", bytes);
+    const auto message = messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "bad"); });
+    return message.find(dir / "bad") == 0;
+  };
+  EXPECT_TRUE(refused(""));
+  EXPECT_TRUE(refused("%YAML:1.0\n---\nmap: 1\n"));
+  for (std::size_t n = 1; n < good.size(); n += good.size() / 60 + 1)
+    EXPECT_TRUE(refused(good.substr(0, n))) << n;
+  Rng rng(4);
+  for (int i = 0; i < 300; ++i) {
+    std::string bytes = good;
+    bytes[rng.below(static_cast<std::uint32_t>(bytes.size()))] ^=
+        static_cast<char>(1 + rng.below(255));
+    EXPECT_TRUE(refused(bytes)) << i;
+  }
+  std::string other = good;
+  other.replace(other.find(" features") - 2, 2, "99");
+  EXPECT_TRUE(refused(other));
+  // A right checksum over something else.
+  EXPECT_TRUE(refused("ngram_slam semantic forest 1, 13 features, crc32 0\n"));
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "none"); }), "");
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir.path()); }), "");
+}
+
+TEST(SemanticRegions, areWrittenAsATable) {
+  TemporaryDirectory dir;
+  SemanticRegion a, b;
+  a.last = 1;
+  b.first = b.last = 2;
+  b.semantic_class = SemanticClass::kDeadEnd;
+  b.confidence = 0.75;
+  writeRegions(dir / "regions.csv", {a, b}, {10.5, 11.0, 11.25});
+  EXPECT_EQ(fileBytes(dir / "regions.csv"),
+            "first,last,stamp_begin,stamp_end,class,confidence\n"
+            "0,1,10.5,11,corridor,1\n2,2,11.25,11.25,dead-end,0.75\n");
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] { writeRegions(dir / "x", {b}, {1.0}); }), "");
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { writeRegions(dir / "none/x", {}, {}); }), "");
+  EXPECT_EQ(dir.fileCount(), 1u);
+}
