@@ -1,0 +1,98 @@
+#include "hyselam_scan_matching/refine.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "hyselam_common/errors.hpp"
+
+namespace hyselam_scan_matching {
+
+namespace {
+
+using hyselam::ParameterError;
+using hyselam::Pose2;
+
+/// Normal equations for a small motion (x, y, theta) in the frame of the pose.
+struct Equations {
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  int pairs = 0;
+};
+
+Equations equations(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& pose,
+                    double radius, double sigma) {
+  Equations e;
+  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  for (const SurfacePoint& p : scan) {
+    const SurfacePoint q{pose.x + c * p.x - s * p.y, pose.y + s * p.x + c * p.y,
+                         c * p.nx - s * p.ny, s * p.nx + c * p.ny};
+    const SurfacePoint* m = map.nearest(q, radius);
+    if (m == nullptr) continue;
+    // The line's normal, by both sides' opinion; none: no line, the points themselves.
+    double nx = m->nx + q.nx, ny = m->ny + q.ny;
+    const double length = std::hypot(nx, ny);
+    if (!(length > 0.0)) continue;
+    nx /= length;
+    ny /= length;
+    const double r = nx * (q.x - m->x) + ny * (q.y - m->y);
+    // In the frame of the pose: d q = R (d + theta x p).
+    const double lx = c * nx + s * ny, ly = -s * nx + c * ny;
+    const Eigen::Vector3d j(lx, ly, ly * p.x - lx * p.y);
+    const double t = r / sigma;
+    const double weight = 1.0 / (1.0 + t * t) / (sigma * sigma);  // Cauchy
+    e.h += weight * j * j.transpose();
+    e.g += weight * r * j;
+    e.squares += r * r;
+    ++e.pairs;
+  }
+  return e;
+}
+
+}  // namespace
+
+void RefineParams::validate() const {
+  if (max_iterations < 1) throw ParameterError("max_iterations", max_iterations, "at least 1");
+  if (!(last_radius > 0.0)) throw ParameterError("last_radius", last_radius, "above 0");
+  if (!(first_radius >= last_radius))
+    throw ParameterError("first_radius", first_radius, "at least last_radius");
+  if (!(sigma > 0.0)) throw ParameterError("sigma", sigma, "above 0");
+  if (!(settled > 0.0)) throw ParameterError("settled", settled, "above 0");
+}
+
+Refined refine(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& guess,
+               const Eigen::Matrix3d& guess_information, const RefineParams& params) {
+  Refined result;
+  result.pose = guess;
+  if (scan.empty() || map.empty()) return result;
+  double radius = params.first_radius;
+  for (; result.iterations < params.max_iterations; ++result.iterations) {
+    Equations e = equations(scan, map, result.pose, radius, params.sigma);
+    const Pose2 off = between(guess, result.pose);
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    turn.topLeftCorner<2, 2>() << std::cos(off.theta), -std::sin(off.theta), std::sin(off.theta),
+        std::cos(off.theta);
+    e.h += turn.transpose() * guess_information * turn;
+    e.g += turn.transpose() * guess_information * Eigen::Vector3d(off.x, off.y, off.theta);
+    // A trace of damping keeps the pose where nothing tells it.
+    e.h.diagonal().array() += 1e-3;
+    const Eigen::Vector3d step = e.h.ldlt().solve(-e.g);
+    if (!step.allFinite()) break;
+    result.pose = result.pose * Pose2{step[0], step[1], step[2]};
+    const bool last = radius <= params.last_radius;
+    if (last && step.cwiseAbs().maxCoeff() < params.settled) {
+      result.converged = true;
+      ++result.iterations;
+      break;
+    }
+    radius = std::max(params.last_radius, radius * 0.7);
+  }
+  const Equations end = equations(scan, map, result.pose, params.last_radius, params.sigma);
+  result.information = end.h;
+  result.matched = static_cast<double>(end.pairs) / static_cast<double>(scan.size());
+  result.rms = end.pairs > 0 ? std::sqrt(end.squares / end.pairs) : 0.0;
+  return result;
+}
+
+}  // namespace hyselam_scan_matching

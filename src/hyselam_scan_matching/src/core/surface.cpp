@@ -1,0 +1,99 @@
+#include "hyselam_scan_matching/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hyselam_common/errors.hpp"
+
+namespace hyselam_scan_matching {
+
+namespace {
+
+using hyselam::ParameterError;
+
+/// The normal of the line through points first..last, towards the origin's side `(sx, sy)`.
+void setNormal(const SurfacePoints& all, std::size_t first, std::size_t last, double bend,
+               double sx, double sy, SurfacePoint* p) {
+  const auto n = static_cast<double>(last - first + 1);
+  if (n < 3.0) return;
+  double mx = 0.0, my = 0.0;
+  for (std::size_t i = first; i <= last; ++i) {
+    mx += all[i].x;
+    my += all[i].y;
+  }
+  mx /= n;
+  my /= n;
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = first; i <= last; ++i) {
+    const double dx = all[i].x - mx, dy = all[i].y - my;
+    xx += dx * dx;
+    xy += dx * dy;
+    yy += dy * dy;
+  }
+  const double half = 0.5 * (xx + yy), root = std::hypot(0.5 * (xx - yy), xy);
+  const double large = half + root, small = std::max(0.0, half - root);
+  if (!(large > 0.0) || small > bend * bend * large) return;
+  const double along = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  double nx = -std::sin(along), ny = std::cos(along);
+  if (nx * (sx - p->x) + ny * (sy - p->y) < 0.0) {
+    nx = -nx;
+    ny = -ny;
+  }
+  p->nx = nx;
+  p->ny = ny;
+}
+
+}  // namespace
+
+void SurfaceParams::validate() const {
+  if (!(max_range > 0.0)) throw ParameterError("max_range", max_range, "above 0");
+  if (!(spacing >= 0.0)) throw ParameterError("spacing", spacing, "at least 0");
+  if (!(normal_reach > 0.0)) throw ParameterError("normal_reach", normal_reach, "above 0");
+  if (!(normal_reach_per_m >= 0.0))
+    throw ParameterError("normal_reach_per_m", normal_reach_per_m, "at least 0");
+  if (!(normal_bend > 0.0)) throw ParameterError("normal_bend", normal_bend, "above 0");
+}
+
+SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfaceParams& params) {
+  SurfacePoints all;
+  std::vector<double> reach;
+  all.reserve(scan.ranges.size());
+  const double limit = std::min(scan.range_max, params.max_range);
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const auto r = static_cast<double>(scan.ranges[i]);
+    if (!(r >= scan.range_min && r < limit)) continue;
+    const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    const hyselam::Point2 p =
+        scan.laser_in_base * hyselam::Point2{r * std::cos(bearing), r * std::sin(bearing)};
+    all.push_back({p.x, p.y, 0.0, 0.0});
+    reach.push_back(std::max(params.normal_reach, params.normal_reach_per_m * r));
+  }
+  SurfacePoints kept;
+  kept.reserve(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto near = [&](std::size_t j) {
+      return std::hypot(all[i].x - all[j].x, all[i].y - all[j].y) <= reach[i];
+    };
+    SurfacePoint p = all[i];
+    if (!kept.empty() && std::hypot(p.x - kept.back().x, p.y - kept.back().y) < params.spacing)
+      continue;
+    std::size_t first = i, last = i;
+    while (first > 0 && near(first - 1)) --first;
+    while (last + 1 < all.size() && near(last + 1)) ++last;
+    setNormal(all, first, last, params.normal_bend, scan.laser_in_base.x, scan.laser_in_base.y, &p);
+    kept.push_back(p);
+  }
+  return kept;
+}
+
+SurfacePoints transformed(const hyselam::Pose2& pose, const SurfacePoints& points) {
+  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  SurfacePoints result;
+  result.reserve(points.size());
+  for (const SurfacePoint& p : points)
+    result.push_back({pose.x + c * p.x - s * p.y, pose.y + s * p.x + c * p.y, c * p.nx - s * p.ny,
+                      s * p.nx + c * p.ny});
+  return result;
+}
+
+}  // namespace hyselam_scan_matching
