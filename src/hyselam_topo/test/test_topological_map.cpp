@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/place_paths.hpp"
 #include "hyselam_topo/topological_map.hpp"
 
 namespace hyselam_topo {
@@ -125,6 +127,39 @@ TEST(PlaceAt, SmallestOutlineWins) {
   }
   EXPECT_EQ(placeAt(map, {1, 1})->place, 2u);
   EXPECT_EQ(placeAt(map, {3, 1})->place, 1u);
+}
+
+TEST(Ways, GoAroundCornersAndStayInThePlace) {
+  // A horseshoe: from one end to the other there are two corners.
+  const std::vector<std::string> rows = {"aaaaaaaaa",  //
+                                         "aaaaaaaaa",  //
+                                         "aa.....aa",  //
+                                         "aa..b..aa",  //
+                                         "aa.....aa"};
+  PlaceGrid grid;
+  grid.geometry.width = 9;
+  grid.geometry.height = 5;
+  grid.geometry.resolution = 0.5;
+  grid.geometry.origin = {3.0, -1.0, 0.4};
+  for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+    for (const char c : *row) grid.labels.push_back(c == 'a' ? 1 : c == 'b' ? 2 : 0);
+  }
+  grid.places = {7, 9};
+  const auto at = [&](double x, double y) { return grid.geometry.origin * Point2{x, y}; };
+  const auto ways =
+      waysWithin(grid, 7, {at(0.25, 0.25), at(0.25, 2.25), at(-5.0, 0.25)}, at(4.25, 0.25));
+  ASSERT_EQ(ways.size(), 3u);
+  EXPECT_GE(ways[0].size(), 4u);
+  EXPECT_GT(lengthOf(ways[0]), 5.5);  // 4 m as the crow flies
+  EXPECT_LT(lengthOf(ways[0]), 8.0);
+  EXPECT_LT(lengthOf(ways[1]), lengthOf(ways[0]));
+  EXPECT_NEAR(lengthOf(ways[2]), lengthOf(ways[0]), 1e-9);  // from the nearest cell
+  for (const auto& way : ways) {
+    for (const Point2& corner : way) {
+      EXPECT_EQ(grid.placeOf(grid.geometry.cellAt(corner)), 7u);
+    }
+  }
+  EXPECT_TRUE(waysWithin(grid, 8, {at(1, 1)}, at(2, 1))[0].empty());
 }
 
 TEST(TopologicalMap, NormaliseOrdersAndTurnsDoors) {

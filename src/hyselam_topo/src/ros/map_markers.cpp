@@ -5,6 +5,7 @@
 #include <map>
 
 #include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/place_paths.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -29,9 +30,11 @@ std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
 }
 
 /// A light colour for each id; ids that follow each other differ most (golden section of the hues).
-std_msgs::ColorRGBA placeColour(Id id, double alpha) {
+/// Corridors are pale.
+std_msgs::ColorRGBA placeColour(const Place* place, Id id, double alpha) {
   const double hue = 6.0 * std::fmod(0.618033988749895 * id, 1.0);
-  const double saturation = id % 2 == 0 ? 0.45 : 0.65;
+  const bool corridor = place != nullptr && place->kind == PlaceKind::kCorridor;
+  const double saturation = corridor ? 0.15 : id % 2 == 0 ? 0.5 : 0.7;
   const auto channel = [&](double shift) {
     const double k = std::fmod(shift + hue, 6.0);
     return 0.97 * (1.0 - saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0));
@@ -142,7 +145,7 @@ void addPlaces(const AugmentedTopologicalMap& map, double alpha, Markers* marker
   }
   for (auto& [id, points] : triangles) {
     Marker marker = markers->make("places", static_cast<int>(id), Marker::TRIANGLE_LIST);
-    marker.color = placeColour(id, alpha);
+    marker.color = placeColour(map.findPlace(id), id, alpha);
     marker.points = std::move(points);
     markers->put(std::move(marker));
   }
@@ -152,9 +155,10 @@ void addNames(const AugmentedTopologicalMap& map, Markers* markers) {
   for (const Place& place : map.places) {
     if (!place.centre) continue;
     Marker marker = markers->make("names", static_cast<int>(place.id), Marker::TEXT_VIEW_FACING);
-    marker.pose.position = at({place.centre->x, place.centre->y}, kNameHeight);
     // Large places bear large names, but a name shall fit its place.
-    marker.scale.z = std::clamp(0.13 * std::sqrt(place.area), 0.25, 0.9);
+    marker.scale.z = std::clamp(0.12 * std::sqrt(place.area), 0.4, 0.75);
+    // Beside the dot of the graph.
+    marker.pose.position = at({place.centre->x, place.centre->y + marker.scale.z}, kNameHeight);
     marker.color = colour(0.05, 0.05, 0.15);
     marker.text = nameOf(place);
     markers->put(std::move(marker));
@@ -237,6 +241,30 @@ void addDoors(const AugmentedTopologicalMap& map, Markers* markers) {
   for (Marker* m : {&swings, &thresholds, &closed, &dashed}) markers->put(std::move(*m));
 }
 
+/// From all doors of a place to its centre, around its corners if the map has a grid.
+void addWays(const AugmentedTopologicalMap& map, const Place& place, Marker* lines) {
+  const Point2 centre{place.centre->x, place.centre->y};
+  std::vector<Point2> doors;
+  for (const Edge& edge : map.edges) {
+    if (edge.a != place.id && edge.b != place.id) continue;
+    for (const Door& door : edge.doors) doors.push_back({door.position.x, door.position.y});
+    const Place* other = map.findPlace(edge.a == place.id ? edge.b : edge.a);
+    if (edge.doors.empty() && edge.a == place.id && other != nullptr && other->centre) {
+      line(lines, centre, {other->centre->x, other->centre->y}, kGraphHeight);
+    }
+  }
+  std::vector<std::vector<Point2>> ways(doors.size());
+  if (map.grid) ways = waysWithin(*map.grid, place.id, doors, centre);
+  for (std::size_t k = 0; k < doors.size(); ++k) {
+    Point2 from = doors[k];
+    for (const Point2& corner : ways[k]) {
+      line(lines, from, corner, kGraphHeight);
+      from = corner;
+    }
+    line(lines, from, centre, kGraphHeight);
+  }
+}
+
 void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
   Marker spheres = markers->make("graph", 0, Marker::SPHERE_LIST);
   spheres.scale.x = spheres.scale.y = spheres.scale.z = 0.25;
@@ -247,16 +275,8 @@ void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
       spheres.points.push_back(at({place.centre->x, place.centre->y}, kGraphHeight));
     }
   }
-  for (const Edge& edge : map.edges) {
-    const Place *a = map.findPlace(edge.a), *b = map.findPlace(edge.b);
-    if (a == nullptr || b == nullptr || !a->centre || !b->centre) continue;
-    const Point2 from{a->centre->x, a->centre->y}, to{b->centre->x, b->centre->y};
-    if (edge.doors.empty()) line(&lines, from, to, kGraphHeight);
-    for (const Door& door : edge.doors) {
-      const Point2 middle{door.position.x, door.position.y};
-      line(&lines, from, middle, kGraphHeight);
-      line(&lines, middle, to, kGraphHeight);
-    }
+  for (const Place& place : map.places) {
+    if (place.centre) addWays(map, place, &lines);
   }
   markers->put(std::move(spheres));
   markers->put(std::move(lines));
