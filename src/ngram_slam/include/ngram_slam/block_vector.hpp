@@ -1,6 +1,7 @@
 // A vector that grows without ever moving what it holds: no pause when it gets large.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -11,6 +12,21 @@ namespace ngram_slam {
 template <typename T, int Bits = 14>
 class BlockVector {
  public:
+  BlockVector() = default;
+  BlockVector(BlockVector&&) noexcept = default;
+  BlockVector& operator=(BlockVector&&) noexcept = default;
+  ~BlockVector() = default;
+  BlockVector(const BlockVector& other) { *this = other; }
+  BlockVector& operator=(const BlockVector& other) {
+    if (this == &other) return *this;
+    blocks_.clear();
+    size_ = 0;
+    grow(other.size_);
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      std::copy_n(other.blocks_[b].get(), kMask + 1, blocks_[b].get());
+    return *this;
+  }
+
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   T& operator[](std::size_t i) { return blocks_[i >> Bits][i & kMask]; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
+#include "ngram_slam/block_vector.hpp"
 
 namespace ngram_slam {
 
@@ -49,9 +50,9 @@ class DistanceSampler {
   std::optional<hyselam::Pose2> last_;
 };
 
-/// All observations of all runs in 27 bytes each. Values are rounded when they are taken in
-/// (positions to 0.1 mm, densities to 1/65534), so that what is built from the store is the same
-/// before it is saved and after it is loaded.
+/// All observations of all runs in 27 bytes each; nothing is moved when they become more. Values
+/// are rounded when they are taken in (positions to 0.1 mm, densities to 1/65534), so that what is
+/// built from the store is the same before it is saved and after it is loaded.
 class ObservationStore {
  public:
   /// What comes next belongs to another run, in another odometry frame.
@@ -93,10 +94,10 @@ class ObservationStore {
   };
 
   std::vector<Run> runs_;
-  std::vector<double> stamps_;
-  std::vector<std::int32_t> x_, y_, theta_;
-  std::vector<std::uint16_t> soft_, hard_, full_;
-  std::vector<std::uint8_t> frontiers_;
+  BlockVector<double> stamps_;
+  BlockVector<std::int32_t> x_, y_, theta_;
+  BlockVector<std::uint16_t> soft_, hard_, full_;
+  BlockVector<std::uint8_t> frontiers_;
 };
 
 }  // namespace ngram_slam

@@ -31,9 +31,9 @@ class Writer {
       buffer_.push_back(static_cast<char>(static_cast<std::uint64_t>(bits) >> 8 * i & 0xff));
     if (buffer_.size() >= kChunk) flush();
   }
-  template <typename T>
-  void putAll(const std::vector<T>& values) {
-    for (T v : values) put(v);
+  template <typename Values>
+  void putAll(const Values& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) put(values[i]);
   }
   void putText(const char* text, std::size_t n) { buffer_.append(text, n); }
   void putChecksum() {
@@ -72,10 +72,9 @@ class Reader {
     std::memcpy(&value, &narrow, sizeof(value));
     return value;
   }
-  template <typename T>
-  void getAll(std::vector<T>& values, std::size_t n) {
-    values.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) values.push_back(get<T>());
+  template <typename Values>
+  void getAll(Values& values, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) values.push_back(get<std::decay_t<decltype(values[0])>>());
   }
   void skip(std::size_t n) { at_ += n; }
   std::size_t at() const { return at_; }

@@ -65,6 +65,16 @@ class File {
   int fd_;
 };
 
+/// A new name in a folder lasts only once the folder is on the disk; some systems cannot do that.
+void folderToDisk(const std::string& path) {
+  const auto slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);
+  if (fd < 0) return;
+  ::fsync(fd);
+  ::close(fd);
+}
+
 double orNan(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
@@ -258,6 +268,7 @@ void CorpusJournal::save(const ObservationStore& observations, const DensityClas
   const std::string bytes = fresh ? headerFor(file_checksum_) + block : block;
   file.write(bytes);
   file.toDisk();
+  if (fresh) folderToDisk(path_);
   journal_bytes_ += bytes.size();
   saved_ = observations.size();
 }

@@ -100,10 +100,8 @@ Observation ObservationStore::operator[](std::uint32_t i) const {
 }
 
 std::size_t ObservationStore::bytes() const {
-  return runs_.capacity() * sizeof(Run) + stamps_.capacity() * sizeof(double) +
-         (x_.capacity() + y_.capacity() + theta_.capacity()) * sizeof(std::int32_t) +
-         (soft_.capacity() + hard_.capacity() + full_.capacity()) * sizeof(std::uint16_t) +
-         frontiers_.capacity();
+  return runs_.capacity() * sizeof(Run) + stamps_.bytes() + x_.bytes() + y_.bytes() +
+         theta_.bytes() + soft_.bytes() + hard_.bytes() + full_.bytes() + frontiers_.bytes();
 }
 
 }  // namespace ngram_slam
