@@ -29,7 +29,8 @@ class LanguageModel {
 
   /// Real words counted.
   std::uint64_t words() const { return words_; }
-  /// Probability that a word that follows a match of `before` (any word, if null) matches `word`.
+  /// Probability that a word that follows a match of `before` (any word, if null) matches `word`,
+  /// where one such pair is known and does not count.
   double chanceOfMatch(const Syllables& word, const Syllables* before,
                        const WordTolerance& tolerance) const;
   std::size_t bytes() const;

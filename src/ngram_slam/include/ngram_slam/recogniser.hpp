@@ -37,6 +37,11 @@ struct RecogniserParams {
   /// Matches get a chance and a probability.
   bool judges() const { return max_chance > 0.0 || with_probability || min_probability > 0.0; }
 
+  /// The same with (a), (b) and (d) on and matches of 3 words and more told by their probability:
+  /// what is best in all buildings tried. Observations need a look back (see
+  /// ObservationSensorParams) of half a metre more than the kernel's radius.
+  static RecogniserParams improved();
+
   /// @throws hyselam::ParameterError
   void validate() const;
 };

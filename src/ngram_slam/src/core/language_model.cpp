@@ -110,6 +110,9 @@ double LanguageModel::chanceOfMatch(const Syllables& word, const Syllables* befo
     ++came;
     followed += wordsMatch(p.word, word, tolerance) ? 1.0 : 0.0;
   }
+  // One of them is the match that asks.
+  came = std::max(0.0, came - 1.0);
+  followed = std::max(0.0, followed - 1.0);
   return (followed + kPairBackOff * alone) / (came + kPairBackOff);
 }
 

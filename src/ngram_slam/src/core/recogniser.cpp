@@ -21,6 +21,16 @@ void RecogniserParams::validate() const {
     throw hyselam::ParameterError("min_probability", min_probability, "in [0, 1]");
 }
 
+RecogniserParams RecogniserParams::improved() {
+  RecogniserParams p;
+  p.word_density = WordDensity::kFull;
+  p.reverse = true;
+  p.matcher.min_n.assign(static_cast<std::size_t>(p.levels), 3);
+  p.with_probability = true;
+  p.min_probability = 0.7;
+  return p;
+}
+
 Recogniser::Recogniser(const RecogniserParams& params) : Recogniser(params, Corpus{}) {}
 
 Recogniser::Recogniser(const RecogniserParams& params, Corpus corpus)
