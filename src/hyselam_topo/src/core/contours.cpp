@@ -32,6 +32,11 @@ cv::Point2d ContourSide::middle() const {
 }
 
 std::vector<Contour> traceContours(const cv::Mat& labels) {
+  return traceContours(labels, cv::Rect(0, 0, labels.cols, labels.rows), {});
+}
+
+std::vector<Contour> traceContours(const cv::Mat& labels, const cv::Rect& box,
+                                   const std::vector<char>& wanted) {
   const auto at = [&](int x, int y) -> std::uint16_t {
     return x < 0 || y < 0 || x >= labels.cols || y >= labels.rows ? std::uint16_t{0}
                                                                   : labels.at<std::uint16_t>(y, x);
@@ -44,12 +49,13 @@ std::vector<Contour> traceContours(const cv::Mat& labels) {
   std::vector<Contour> out;
   // Every contour, around a region or a hole, has a side along +x: a cell above another label.
   const std::vector<std::uint16_t> none(static_cast<std::size_t>(labels.cols), 0);
-  for (int y = 0; y < labels.rows; ++y) {
+  for (int y = box.y; y < box.y + box.height; ++y) {
     const auto* row = labels.ptr<std::uint16_t>(y);
     const auto* below = y > 0 ? labels.ptr<std::uint16_t>(y - 1) : none.data();
-    for (int x = 0; x < labels.cols; ++x) {
+    for (int x = box.x; x < box.x + box.width; ++x) {
       const std::uint16_t label = row[x];
       if (label == 0 || below[x] == label) continue;
+      if (!wanted.empty() && wanted[label] == 0) continue;
       if ((walked.at<std::uint8_t>(y, x) & 1) != 0) continue;
       Contour contour;
       contour.label = label;

@@ -28,4 +28,8 @@ struct Contour {
 /// All contours of a label image (CV_16U); a region's cells touch along sides, not corners.
 std::vector<Contour> traceContours(const cv::Mat& labels);
 
+/// Those of the wanted labels (by label; empty: all), whose cells all lie in the box.
+std::vector<Contour> traceContours(const cv::Mat& labels, const cv::Rect& box,
+                                   const std::vector<char>& wanted);
+
 }  // namespace hyselam_topo

@@ -10,6 +10,7 @@
 #include "contour_walls.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/map_geometry.hpp"
+#include "place_builder.hpp"
 
 namespace hyselam_topo {
 
@@ -32,11 +33,12 @@ struct Region {
 };
 
 // Gives the cells inside of a hole that are in no place to the place around it.
-void fillHole(const Contour& hole, cv::Mat* labels) {
+void fillHole(const Contour& hole, cv::Point offset, cv::Mat* labels) {
   std::vector<cv::Point> crossings;  // upright sides: row and column
   for (const ContourSide& side : hole.sides) {
     if (side.direction % 2 == 0) continue;
-    crossings.emplace_back(side.from.x, side.direction == 1 ? side.from.y : side.from.y - 1);
+    crossings.emplace_back(side.from.x - offset.x,
+                           (side.direction == 1 ? side.from.y : side.from.y - 1) - offset.y);
   }
   std::sort(crossings.begin(), crossings.end(), [](const cv::Point& p, const cv::Point& q) {
     return p.y != q.y ? p.y < q.y : p.x < q.x;
@@ -74,14 +76,24 @@ cv::Mat distancesWithin(const cv::Mat& labels) {
   return distance;
 }
 
-std::vector<Region> measure(const cv::Mat& labels, const std::vector<Contour>& contours, int places,
-                            double resolution, const WallParams& walls) {
+bool chosen(const std::vector<char>& selection, int label) {
+  return selection.empty() || selection[static_cast<std::size_t>(label)] != 0;
+}
+
+std::vector<Region> measure(const cv::Mat& all_labels, const std::vector<Contour>& contours,
+                            int places, double resolution, const WallParams& walls,
+                            const PlaceSelection& selection) {
+  const cv::Rect& box = selection.measured_box;
+  std::vector<Region> out(static_cast<std::size_t>(places));
+  if (box.empty()) return out;
+  const cv::Mat labels = all_labels(box);
   cv::Mat filled = labels.clone();
   for (const Contour& contour : contours) {
-    if (isIsland(contour, resolution, walls)) fillHole(contour, &filled);
+    if (chosen(selection.measured, contour.label) && isIsland(contour, resolution, walls)) {
+      fillHole(contour, box.tl(), &filled);
+    }
   }
   const cv::Mat distance = distancesWithin(filled);
-  std::vector<Region> out(static_cast<std::size_t>(places));
   for (int y = 0; y < labels.rows; ++y) {
     const auto* row = filled.ptr<std::uint16_t>(y);
     const auto* own = labels.ptr<std::uint16_t>(y);
@@ -116,6 +128,9 @@ std::vector<Region> measure(const cv::Mat& labels, const std::vector<Contour>& c
       r.centre = {x, y};
     }
   }
+  for (Region& r : out) {
+    if (r.centre.x >= 0) r.centre += box.tl();
+  }
   return out;
 }
 
@@ -140,12 +155,7 @@ Door doorOf(const DoorLine& line, const PlaceGrid& grid) {
   return door;
 }
 
-}  // namespace
-
-AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
-                                            const Segmentation& segmentation,
-                                            const MapBuilderParams& params) {
-  const CorridorRule& rule = params.corridor;
+void check(const CorridorRule& rule) {
   if (!(rule.max_width > 0.0)) {
     throw hyselam::ParameterError("corridor_max_width", rule.max_width, "> 0 m");
   }
@@ -156,57 +166,80 @@ AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
     throw hyselam::ParameterError("corridor_long_elongation", rule.long_elongation,
                                   ">= corridor_min_elongation");
   }
-  const double r = grid.geometry.resolution;
-  const cv::Mat labels =
-      segmentation.labels.isContinuous() ? segmentation.labels : segmentation.labels.clone();
-  if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
-      labels.rows != grid.geometry.height) {
-    throw std::invalid_argument("the labels do not fit the grid");
-  }
-  const std::vector<Contour> contours = traceContours(labels);
-  std::vector<PlaceWalls> walls = wallsAlong(contours, grid, labels, params.walls);
-  walls.resize(static_cast<std::size_t>(segmentation.places));
-  const std::vector<Region> regions =
-      measure(labels, contours, segmentation.places, r, params.walls);
-  std::map<int, std::set<int>> neighbours;
-  for (const DoorLine& d : segmentation.doors) {
-    neighbours[d.place_a].insert(d.place_b);
-    neighbours[d.place_b].insert(d.place_a);
-  }
+}
 
-  AugmentedTopologicalMap map;
-  map.grid.emplace();
-  map.grid->geometry = grid.geometry;
-  map.grid->labels.assign(labels.ptr<std::uint16_t>(0),
-                          labels.ptr<std::uint16_t>(0) + grid.geometry.cellCount());
-  for (int label = 1; label <= segmentation.places; ++label) {
+// `neighbours`: how many other places it leads to.
+PlaceKind kindOf(const Region& region, double resolution, int neighbours,
+                 const CorridorRule& rule) {
+  if (region.filled <= 0.0) return PlaceKind::kRoom;
+  // In a long strip the mean distance to its limits is a quarter of its width.
+  const double width = 4.0 * resolution * region.distances / region.filled;
+  const double elongation = region.filled * resolution * resolution / (width * width);
+  const bool corridor = width <= rule.max_width &&
+                        ((neighbours >= rule.min_neighbours && elongation >= rule.min_elongation) ||
+                         (neighbours >= 2 && elongation >= rule.long_elongation));
+  return corridor ? PlaceKind::kCorridor : PlaceKind::kRoom;
+}
+
+}  // namespace
+
+Neighbours neighboursOf(const std::vector<DoorLine>& doors) {
+  Neighbours out;
+  for (const DoorLine& d : doors) {
+    out[d.place_a].insert(d.place_b);
+    out[d.place_b].insert(d.place_a);
+  }
+  return out;
+}
+
+std::vector<Place> buildPlaces(const OccupancyGrid& grid, const cv::Mat& labels, int places,
+                               const Neighbours& neighbours, const MapBuilderParams& params,
+                               const PlaceSelection& selection) {
+  const double r = grid.geometry.resolution;
+  std::vector<Contour> contours = traceContours(labels, selection.box, selection.wanted);
+  std::vector<PlaceWalls> walls = wallsAlong(contours, grid, labels, params.walls);
+  walls.resize(static_cast<std::size_t>(places));
+  const std::vector<Region> regions = measure(labels, contours, places, r, params.walls, selection);
+  std::vector<Place> out;
+  for (int label = 1; label <= places; ++label) {
+    if (!chosen(selection.wanted, label)) continue;
     const Region& region = regions[static_cast<std::size_t>(label - 1)];
     Place place;
     place.id = static_cast<Id>(label);
-    map.grid->places.push_back(place.id);
     place.area = region.cells * r * r;
     if (region.centre.x >= 0) {
       const Point2 c = grid.geometry.centre({region.centre.x, region.centre.y});
       place.centre = Point3{c.x, c.y, 0.0};
     }
-    // In a long strip the mean distance to its limits is a quarter of its width.
-    const double width = region.filled > 0.0 ? 4.0 * r * region.distances / region.filled : 0.0;
-    const double elongation = width > 0.0 ? region.filled * r * r / (width * width) : 0.0;
-    const auto around = static_cast<int>(neighbours[label].size());
-    if (width <= rule.max_width &&
-        ((around >= rule.min_neighbours && elongation >= rule.min_elongation) ||
-         (around >= 2 && elongation >= rule.long_elongation))) {
-      place.kind = PlaceKind::kCorridor;
-    }
+    const auto around = neighbours.find(label);
+    place.kind =
+        kindOf(region, r, around == neighbours.end() ? 0 : static_cast<int>(around->second.size()),
+               params.corridor);
     PlaceWalls& own = walls[static_cast<std::size_t>(label - 1)];
     place.walls = std::move(own.walls);
     place.outline = std::move(own.outline);
-    for (Wall& wall : place.walls) wall.id = map.next_wall_id++;
-    map.places.push_back(std::move(place));
+    out.push_back(std::move(place));
   }
-  for (const DoorLine& line : segmentation.doors) {
-    const Id a = static_cast<Id>(std::min(line.place_a, line.place_b)),
-             b = static_cast<Id>(std::max(line.place_a, line.place_b));
+  return out;
+}
+
+AugmentedTopologicalMap assembleMap(const OccupancyGrid& grid, const cv::Mat& labels,
+                                    std::vector<Place> places, const std::vector<DoorLine>& doors) {
+  AugmentedTopologicalMap map;
+  map.grid.emplace();
+  map.grid->geometry = grid.geometry;
+  map.grid->labels.assign(labels.ptr<std::uint16_t>(0),
+                          labels.ptr<std::uint16_t>(0) + grid.geometry.cellCount());
+  map.places = std::move(places);
+  for (Place& place : map.places) {
+    map.grid->places.push_back(place.id);
+    for (Wall& wall : place.walls) wall.id = map.next_wall_id++;
+  }
+  for (const DoorLine& line : doors) {
+    DoorLine ordered = line;
+    ordered.place_a = std::min(line.place_a, line.place_b);
+    ordered.place_b = std::max(line.place_a, line.place_b);
+    const Id a = static_cast<Id>(ordered.place_a), b = static_cast<Id>(ordered.place_b);
     Edge* edge = map.findEdge(a, b);
     if (edge == nullptr) {
       map.edges.emplace_back();
@@ -214,15 +247,30 @@ AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
       edge->a = a;
       edge->b = b;
     }
-    DoorLine ordered = line;
-    ordered.place_a = static_cast<int>(a);
-    ordered.place_b = static_cast<int>(b);
     Door door = doorOf(ordered, *map.grid);
     door.id = map.next_door_id++;
     edge->doors.push_back(std::move(door));
   }
   normalise(&map);
   return map;
+}
+
+AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
+                                            const Segmentation& segmentation,
+                                            const MapBuilderParams& params) {
+  check(params.corridor);
+  const cv::Mat labels =
+      segmentation.labels.isContinuous() ? segmentation.labels : segmentation.labels.clone();
+  if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
+      labels.rows != grid.geometry.height) {
+    throw std::invalid_argument("the labels do not fit the grid");
+  }
+  PlaceSelection all;
+  all.box = all.measured_box = cv::Rect(0, 0, labels.cols, labels.rows);
+  return assembleMap(
+      grid, labels,
+      buildPlaces(grid, labels, segmentation.places, neighboursOf(segmentation.doors), params, all),
+      segmentation.doors);
 }
 
 }  // namespace hyselam_topo
