@@ -35,12 +35,14 @@ std::vector<int> discHalfHeights(int radius);
 /// Label 0 .. 58 of each code (Eq. 6.9: at most two changes around the circle).
 const std::array<std::uint8_t, kLbpCodes>& uniformLabels();
 
-/// Codes of an image that comes row by row; T is uint8_t or uint16_t (values up to 1023).
+/// Codes of an image that comes row by row; T is uint8_t or uint16_t.
 /// Buffers are made once; nothing is allocated per row.
 template <typename T>
 class LbpStream {
  public:
-  explicit LbpStream(const LbpParams& params);
+  /// `brightest`: no value is above it. Throws hyselam::ParameterError where the sum over a disc of
+  /// such values exceeds 16 bits.
+  explicit LbpStream(const LbpParams& params, int brightest = 255);
 
   /// Starts an image of `cols` columns.
   void begin(int cols);

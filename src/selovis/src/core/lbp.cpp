@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
+#include <string>
 
 #include "hyselam_common/errors.hpp"
 
@@ -72,7 +73,7 @@ const std::array<std::uint8_t, kLbpCodes>& uniformLabels() {
 }
 
 template <typename T>
-LbpStream<T>::LbpStream(const LbpParams& params)
+LbpStream<T>::LbpStream(const LbpParams& params, int brightest)
     : params_(params), mean_(params.disc_mean && params.radius > 1) {
   validate(params);
   offsets_ = lbpOffsets(params.radius);
@@ -85,11 +86,12 @@ LbpStream<T>::LbpStream(const LbpParams& params)
     sum_of_.push_back(static_cast<int>(known - distinct_heights_.begin()));
     if (known == distinct_heights_.end()) distinct_heights_.push_back(half_heights_[dx]);
   }
-  const std::uint32_t brightest = sizeof(T) == 1 ? 255 : 1023;
-  if (mean_ && (disc_size_ * (brightest + 1) > 0xffff ||
-                !findReciprocal(disc_size_, disc_size_ * brightest, multiplier_, shift_))) {
-    throw hyselam::ParameterError("lbp_radius", params.radius, "small enough for 16-bit sums");
+  const std::uint32_t largest = disc_size_ * static_cast<std::uint32_t>(brightest);
+  if (mean_ && largest + disc_size_ > 0xffff) {
+    throw hyselam::ParameterError("lbp_radius", params.radius,
+                                  "smaller for " + std::to_string(brightest) + " grey levels");
   }
+  if (!findReciprocal(disc_size_, largest, multiplier_, shift_)) multiplier_ = 0;  // divide
   ring_rows_ = 2 * params.radius + 2;
 }
 
@@ -181,6 +183,13 @@ void LbpStream<T>::thresholds(int centre) {
           sums_.data() + static_cast<std::size_t>(sum_of_[dx < 0 ? -dx : dx]) * pitch_ + x + dx;
       low = cv::v_add_wrap(low, cv::v_load(sums));
       high = cv::v_add_wrap(high, cv::v_load(sums + 8));
+    }
+    if (multiplier_ == 0) {
+      std::uint16_t sum[16];
+      cv::v_store(sum, low);
+      cv::v_store(sum + 8, high);
+      for (int i = 0; i < 16; ++i) thresholds_[x + i] = static_cast<T>(sum[i] / disc_size_);
+      continue;
     }
     storeThreshold(thresholds_.data() + x, cv::v_mul_hi(low, multiplier) >> shift_,
                    cv::v_mul_hi(high, multiplier) >> shift_);

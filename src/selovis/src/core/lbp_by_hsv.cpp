@@ -41,8 +41,12 @@ class LbpByHsv : public Descriptor {
  public:
   LbpByHsv(const Variant& variant, const DescriptorParams& p)
       : variant_(variant),
-        engine_(p.lbp, {variant.colors, p.value_min, p.saturation_min}, p.threads),
-        second_(p.lbp) {}
+        engine_(p.lbp, {variant.colors, p.value_min, p.saturation_min}, p.threads) {
+    if (variant.second != 'N') {
+      second_ =
+          std::make_unique<LbpStream<std::uint16_t>>(p.lbp, variant.colors * kUniformLabels - 1);
+    }
+  }
 
   int size() const override {
     return variant_.firstLabels() * variant_.colors * parts() + variant_.secondLabels();
@@ -105,15 +109,15 @@ class LbpByHsv : public Descriptor {
     if (rows <= 2 * radius || cols <= 2 * radius) return;
     std::uint32_t counts[kLbpCodes] = {};
     const auto& labels = uniformLabels();
-    second_.begin(cols);
+    second_->begin(cols);
     for (int y = 0; y < rows; ++y) {
       const std::uint16_t* p = patterns_.ptr<std::uint16_t>(y + radius) + radius;
-      std::uint16_t* row = second_.next();
+      std::uint16_t* row = second_->next();
       for (int x = 0; x < cols; ++x) {
         row[x] = static_cast<std::uint16_t>(labels[p[x] & 255] + (p[x] >> 8) * kUniformLabels);
       }
-      if (!second_.push()) continue;
-      const std::uint8_t* codes = second_.codes();
+      if (!second_->push()) continue;
+      const std::uint8_t* codes = second_->codes();
       for (int x = radius; x < cols - radius; ++x) ++counts[codes[x]];
     }
     const float scale = 1.0f / static_cast<float>((rows - 2 * radius) * (cols - 2 * radius));
@@ -125,7 +129,7 @@ class LbpByHsv : public Descriptor {
   Layout layout_;
   VanishingPoint vanishing_;
   cv::Mat patterns_;
-  LbpStream<std::uint16_t> second_;
+  std::unique_ptr<LbpStream<std::uint16_t>> second_;  // only if there is a second stage
 };
 
 /// sLBP-(N|A|S)LRFn: columns nearer than 1 m, nearer than 2 m, the rest.

@@ -1,0 +1,229 @@
+// train and evaluate as a user calls them, lists and images that cannot be used.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "selovis/labels.hpp"
+#include "selovis/model.hpp"
+
+namespace selovis {
+namespace {
+
+using hyselam::InputError;
+using hyselam::testing::fileBytes;
+using hyselam::testing::messageOf;
+using hyselam::testing::TemporaryDirectory;
+using hyselam::testing::writeFile;
+
+struct Result {
+  int status;
+  std::string error;
+};
+
+Result run(const TemporaryDirectory& folder, const std::string& command) {
+  const std::string err = folder / "stderr";
+  const int status =
+      std::system((std::string(SELOVIS_TOOLS) + "/" + command + " > /dev/null 2> " + err).c_str());
+  return {WEXITSTATUS(status), fileBytes(err)};
+}
+
+/// Two rooms, ten frames each, as PNG; list "labels.csv".
+void makeTour(const TemporaryDirectory& folder) {
+  std::string list = "image_path,place\n";
+  for (int i = 0; i < 20; ++i) {
+    const int place = i / 10;
+    cv::Mat image(60, 80, CV_8UC3, place ? cv::Scalar(40, 160, 60) : cv::Scalar(180, 90, 200));
+    for (int x = i % 7; x < 80; x += place ? 9 : 4) image.col(x).setTo(cv::Scalar::all(10));
+    const std::string name = std::to_string(i) + ".png";
+    cv::imwrite(folder / name, image);
+    list += name + (place ? ",kitchen\n" : ",hall\n");
+  }
+  writeFile(folder / "labels.csv", list);
+}
+
+TEST(Tools, TrainAndEvaluateByTheContract) {
+  TemporaryDirectory f;
+  makeTour(f);
+  ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
+                       " --descriptor LBPbyHSV-U8N --kernel linear --libsvm " + (f / "x.svm") +
+                       " --out " + (f / "m"))
+                .status,
+            0);
+  EXPECT_NE(fileBytes(f / "x.svm").find("svm_type c_svc"), std::string::npos);
+  writeFile(f / "map.csv", "hall,kitchen\n");
+  for (const std::string filter : {"none", "lowpass", "markov", "bayes"}) {
+    const Result r =
+        run(f, "evaluate " + (f / "m") + " --labels " + (f / "labels.csv") + " --filter " + filter +
+                   " --topology " + (f / "map.csv") + " --json " + (f / "r.json") +
+                   " --predictions " + (f / "p.csv") + " --plots " + (f / "plots"));
+    ASSERT_EQ(r.status, 0) << r.error;
+    const auto j = nlohmann::json::parse(fileBytes(f / "r.json"));
+    EXPECT_GE(j["accuracy"].get<double>(), 0.8) << filter;
+    EXPECT_EQ(j["accuracy_frame_alone"], 1.0);
+    EXPECT_EQ(j["per_place"]["hall"]["frames"], 10);
+    EXPECT_GE(j["confusion"]["kitchen"]["kitchen"].get<int>(), 7);
+    EXPECT_TRUE(j["descriptor_ms"].is_number());
+    const std::string predictions = fileBytes(f / "p.csv");
+    EXPECT_EQ(std::count(predictions.begin(), predictions.end(), '\n'), 21);
+    EXPECT_FALSE(cv::imread(f / "plots/confusion.png").empty());
+    EXPECT_FALSE(cv::imread(f / "plots/timeline.png").empty());
+  }
+}
+
+TEST(Tools, TwoRunsWriteTheSameBytes) {
+  TemporaryDirectory f;
+  makeTour(f);
+  for (const std::string out : {"a", "b"}) {
+    ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
+                         " --descriptor LBPbyHSV-U8N --kernel rbf --out " + (f / out))
+                  .status,
+              0);
+  }
+  EXPECT_EQ(fileBytes(f / "a/model.json"), fileBytes(f / "b/model.json"));
+}
+
+TEST(Tools, PlacesOutsideTheModelAndAddedLater) {
+  TemporaryDirectory f;
+  makeTour(f);
+  ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
+                       " --descriptor LGOP --kernel exemplar --out " + (f / "m"))
+                .status,
+            0);
+  writeFile(f / "more.csv", "3.png,attic\n4.png,attic\n");
+  ASSERT_EQ(run(f, "evaluate " + (f / "m") + " --labels " + (f / "more.csv") + " --json " +
+                       (f / "r.json"))
+                .status,
+            0);
+  const auto j = nlohmann::json::parse(fileBytes(f / "r.json"));
+  EXPECT_EQ(j["accuracy"], 0.0);
+  EXPECT_EQ(j["unknown_places"][0], "attic");
+  ASSERT_EQ(
+      run(f, "train --add --labels " + (f / "more.csv") + " --kernel exemplar --out " + (f / "m"))
+          .status,
+      0);
+  EXPECT_EQ(loadModel(f / "m").graph.places,
+            (std::vector<std::string>{"hall", "kitchen", "attic"}));
+}
+
+TEST(Tools, BadInputIsOneLineAndStatus2) {
+  TemporaryDirectory f;
+  makeTour(f);
+  const std::string labels = f / "labels.csv",
+                    train = "train --out " + (f / "m") + " --kernel linear ";
+  const auto refused = [&](const std::string& command, const std::string& says) {
+    const Result r = run(f, command);
+    EXPECT_EQ(r.status, 2) << command;
+    EXPECT_EQ(r.error.compare(0, 7, "error: "), 0) << r.error;
+    EXPECT_EQ(std::count(r.error.begin(), r.error.end(), '\n'), 1) << r.error;
+    EXPECT_NE(r.error.find(says), std::string::npos) << r.error;
+  };
+  refused(train + "--labels " + (f / "none.csv"), "none.csv");
+  refused(train + "--labels " + labels + " --descriptor LBPbyHSV-Q8N", "LBPbyHSV-Q8N");
+  refused(train + "--labels " + labels + " --cost -1", "cost");
+  refused(train + "--labels " + labels + " --views 0,x", "--views");
+  refused(train + "--labels " + labels + " --views 0,0.7", "half");
+  refused("train --labels " + labels + " --kernel sigmoid --out " + (f / "m"), "sigmoid");
+  writeFile(f / "one.csv", "0.png,hall\n1.png,hall\n");
+  refused(train + "--labels " + (f / "one.csv"), "two places");
+  refused(train + "--labels " + labels + " --descriptor sLBP-\\(N\\)LRF20", "distances");
+  refused("evaluate " + (f / "m") + " --labels " + labels, "model.json");
+  ASSERT_EQ(run(f, train + "--descriptor LBPbyHSV-U8N --labels " + labels).status, 0);
+  refused("evaluate " + (f / "m") + " --labels " + labels + " --filter median", "median");
+  refused("evaluate " + (f / "m") + " --labels " + labels + " --topology " + (f / "0.png"),
+          "0.png");
+  refused("evaluate " + (f / "m") + " --labels " + labels + " --images blur", "blur");
+  cv::Mat image = cv::imread(f / "3.png"), grey;
+  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  cv::imwrite(f / "3.png", grey);
+  refused("evaluate " + (f / "m") + " --labels " + labels, "3.png: LBPbyHSV needs a colour image");
+}
+
+TEST(Labels, ColumnsByNameAndWithoutAHeader) {
+  TemporaryDirectory f;
+  writeFile(f / "a.csv",
+            "file,stamp,place,x,psi,mag_x,mag_y,mag_z,range_0,range_1,scan_0\n"
+            "rgb/1.jpg,12.5,hall,3,0.5,1,2,3,1.5,,4\n");
+  const auto a = readLabels(f / "a.csv");
+  ASSERT_EQ(a.size(), 1u);
+  EXPECT_EQ(a[0].image, f / "rgb/1.jpg");
+  EXPECT_EQ(a[0].place, "hall");
+  EXPECT_EQ(a[0].readings.heading, 0.5);
+  EXPECT_EQ(a[0].readings.magnetic[2], 3.0);
+  ASSERT_EQ(a[0].readings.ranges.size(), 2u);
+  EXPECT_TRUE(std::isnan(a[0].readings.ranges[1]));
+  EXPECT_EQ(a[0].readings.scan[0], 4.0f);
+  writeFile(f / "b.csv", "# a note\n/x/1.jpg,hall,1.5,2.5\r\n/x/2.jpg,hall,1.5,2.5\n");
+  const auto b = readLabels(f / "b.csv");
+  ASSERT_EQ(b.size(), 2u);
+  EXPECT_EQ(b[0].image, "/x/1.jpg");
+  EXPECT_EQ(b[1].readings.ranges[1], 2.5f);
+}
+
+TEST(Labels, BadListsAreNamedWithTheLine) {
+  TemporaryDirectory f;
+  const std::pair<std::string, const char*> cases[] = {
+      {"", "no frames"},
+      {"image_path,place\n", "no frames"},
+      {"a.jpg\n", "line 1"},
+      {"a.jpg,hall\nb.jpg\n", "line 2"},
+      {"a.jpg,hall\nb.jpg,\n", "line 2: has no place"},
+      {"a.jpg,hall\n,hall\n", "line 2: has no image"},
+      {"a.jpg,hall,1.5\nb.jpg,hall,x\n", "'x' is no number"},
+      {std::string("a.jpg,ha\0ll\n", 12), "is no text"},
+      {"a,b" + std::string(5000, ','), "too many columns"}};
+  for (const auto& c : cases) {
+    writeFile(f / "l.csv", c.first);
+    const std::string what = messageOf<InputError>([&] { readLabels(f / "l.csv"); });
+    EXPECT_NE(what.find(c.second), std::string::npos) << what;
+  }
+}
+
+TEST(Images, CutShortOrNoImagesAreNamed) {
+  TemporaryDirectory f;
+  cv::Mat image(120, 160, CV_8UC3);
+  cv::randu(image, 0, 255);
+  for (const std::string name : {"a.jpg", "a.png"}) {
+    cv::imwrite(f / name, image);
+    const std::string good = fileBytes(f / name);
+    EXPECT_EQ(readImage(f / name).size(), image.size());
+    for (const double share : {0.02, 0.5, 0.95}) {
+      writeFile(f / ("cut" + name),
+                good.substr(0, static_cast<std::size_t>(share * double(good.size()))));
+      const std::string what = messageOf<InputError>([&] { readImage(f / ("cut" + name)); });
+      EXPECT_NE(what.find("cut" + name), std::string::npos) << share;
+    }
+  }
+  writeFile(f / "t.jpg", "this is text");
+  EXPECT_NE(messageOf<InputError>([&] { readImage(f / "t.jpg"); }), "");
+  writeFile(f / "e.jpg", "");
+  EXPECT_NE(messageOf<InputError>([&] { readImage(f / "e.jpg"); }).find("empty"),
+            std::string::npos);
+  EXPECT_THROW(readImage(f / "none.jpg"), InputError);
+  EXPECT_THROW(readImage(f.path()), InputError);
+}
+
+TEST(Images, DepthGivesTheNearestDistancePerColumn) {
+  TemporaryDirectory f;
+  cv::Mat depth(240, 320, CV_16U, cv::Scalar(3000));
+  depth(cv::Rect(0, 80, 160, 80)).setTo(cv::Scalar(1200));
+  depth(cv::Rect(304, 0, 16, 240)).setTo(cv::Scalar(0));
+  cv::imwrite(f / "d.png", depth);
+  LabelledFrame frame;
+  frame.depth = f / "d.png";
+  const Readings r = readingsOf(frame);
+  ASSERT_EQ(r.ranges.size(), 20u);
+  EXPECT_FLOAT_EQ(r.ranges[0], 1.2f);
+  EXPECT_FLOAT_EQ(r.ranges[12], 3.0f);
+  EXPECT_TRUE(std::isinf(r.ranges[19]));
+  cv::imwrite(f / "d.png", cv::Mat(240, 320, CV_8U, cv::Scalar(3)));
+  EXPECT_NE(messageOf<InputError>([&] { readingsOf(frame); }).find("16 bits"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace selovis
