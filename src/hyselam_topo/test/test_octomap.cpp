@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
+#include <sys/wait.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <random>
 #include <set>
@@ -9,6 +12,7 @@
 #include <tuple>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/map_io.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_topo/octomap_compression.hpp"
 #include "hyselam_topo/octomap_reader.hpp"
@@ -386,6 +390,39 @@ TEST(Compression, RealOctoMapsOfOtherKinds) {
   EXPECT_GT(count(compress(room, params, "room").grid, OccupancyGrid::kFree), 10000u);
   // Out of doors: large, but it can be pressed.
   EXPECT_GT(compress(load("fr_campus.bt"), {}, "campus").grid.cells.size(), 1000000u);
+}
+
+/// The exit status of octomap_to_map; what it said goes to `dir`/said.
+int pressWithTool(const TemporaryDirectory& dir, const std::string& arguments) {
+  const std::string command =
+      "'" HYSELAM_TOPO_TOOLS "/octomap_to_map' " + arguments + " > '" + (dir / "said") + "' 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(OctomapToMap, WritesMapAndPictureOrSaysWhyNot) {
+  const TemporaryDirectory dir;
+  octomap::OcTree tree(0.1);
+  Building building(0.1);
+  building.addStorey(0.0);
+  for (const VoxelLeaf& leaf : building.map().leaves) {
+    tree.setNodeValue(
+        octomap::point3d(0.1f * (leaf.x + 0.5f), 0.1f * (leaf.y + 0.5f), 0.1f * (leaf.z + 0.5f)),
+        leaf.probability > 0.5f ? 2.0f : -2.0f);
+  }
+  ASSERT_TRUE(tree.writeBinary(dir / "b.bt"));
+  const std::string in = "'" + (dir / "b.bt") + "' ", out = "'" + (dir / "m.yaml") + "' ";
+  EXPECT_EQ(pressWithTool(dir, "--help"), 0);
+  EXPECT_EQ(pressWithTool(dir, in), 2);
+  EXPECT_EQ(pressWithTool(dir, in + out + "--picture '" + (dir / "m.png") + "'"), 0)
+      << fileBytes(dir / "said");
+  EXPECT_EQ(valueAt(hyselam::loadMap(dir / "m.yaml"), 1.0, 1.0), OccupancyGrid::kFree);
+  EXPECT_GT(fileBytes(dir / "m.png").size(), 500u);
+  EXPECT_EQ(pressWithTool(dir, in + out + "--storey 3"), 2);
+  expectIn("error: " + (dir / "b.bt") + ": there is no storey 3", fileBytes(dir / "said"));
+  EXPECT_EQ(pressWithTool(dir, in + out + "--max-free-height -1"), 2);
+  EXPECT_EQ(pressWithTool(dir, "/nowhere/b.bt " + out), 2);
+  EXPECT_EQ(pressWithTool(dir, in + "/nowhere/m.yaml"), 2);
 }
 
 }  // namespace
