@@ -75,6 +75,17 @@ std::string toYaml(const FloorPlan& plan) {
     if (!place.outline.empty()) put(key("polygon"), place.outline);
   });
   if (!plan.inside.empty()) put(key("inside"), plan.inside);
+  if (!plan.floor_kind.empty()) key("floor_kind") << plan.floor_kind;
+  if (!plan.areas.empty()) {
+    key("areas") << YAML::BeginSeq;
+    for (const Area& area : plan.areas) {
+      out << YAML::Flow << YAML::BeginMap;
+      key("kind") << area.kind;
+      put(key("polygon"), area.outline);
+      out << YAML::EndMap;
+    }
+    out << YAML::EndSeq;
+  }
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }

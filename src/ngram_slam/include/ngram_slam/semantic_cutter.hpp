@@ -10,8 +10,8 @@
 namespace ngram_slam {
 
 struct SemanticCutParams {
-  int smoothing = 3;    ///< the mean filter takes this many observations on each side, 0..100
-  double leave = 0.03;  ///< density varies once it is this far from where it stood or turned, > 0
+  int smoothing = 3;     ///< the mean filter takes this many observations on each side, 0..100
+  double leave = 0.025;  ///< density varies once it is this far from where it stood or turned, > 0
   double settled = 0.012;  ///< it stands once it keeps within this, in (0, leave] ...
   int settled_for = 10;    ///< ... for so many observations, >= 2
   double border = 0.6;  ///< the border between two regions lies where the density is this share of
