@@ -63,7 +63,7 @@ WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
           take(sensor_.add(scan, base_in_odom));
           return true;
         },
-        [this] { endRun("time went back"); });
+        [this] { startAnew("time went back"); });
   } else {
     subscriber_ = nh.subscribe("fsd_observation", kQueue, &WordsServer::onFsd, this);
   }
@@ -108,7 +108,7 @@ void WordsServer::onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg) {
       return drops_.drop("refused", "its stamp is not later than that of the observation before");
     ++time_jumps_;
     ROS_WARN_STREAM(who_ << " time went back by " << back << " s; a new run begins");
-    endRun("time went back");
+    startAnew("time went back");
   }
   last_stamp_ = stamp;
   try {
@@ -145,6 +145,13 @@ void WordsServer::take(const Observation& observation) {
   told(update);
   told(regions);
   if (gui_rate_.pass(hyselam::toRosTime(observation.stamp))) show();
+}
+
+/// What follows is another run, and nothing lies between it and what was seen.
+void WordsServer::startAnew(const std::string& why) {
+  if (params_.from_scan) take(sensor_.finish());
+  sampler_.reset();
+  endRun(why);
 }
 
 /// What follows starts at an unknown place.
@@ -291,9 +298,7 @@ bool WordsServer::onLoad(hyselam_msgs::CorpusPath::Request& request,
 }
 
 bool WordsServer::onStartRun(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& out) {
-  if (params_.from_scan) take(sensor_.finish());
-  sampler_.reset();
-  endRun("asked for");
+  startAnew("asked for");
   out.success = true;
   out.message =
       "the next observation starts run " + std::to_string(recogniser_->observations().runs());

@@ -36,6 +36,7 @@ class WordsServer {
   void onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg);
   void take(const std::vector<Observation>& observations);
   void take(const Observation& observation);
+  void startAnew(const std::string& why);
   void endRun(const std::string& why);
   void told(const RecogniserUpdate& update);
   void told(const std::vector<SemanticRegion>& regions);
