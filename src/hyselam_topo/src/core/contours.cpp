@@ -45,7 +45,11 @@ std::vector<Contour> traceContours(const cv::Mat& labels, const cv::Rect& box,
   const auto right = [&](cv::Point p, int d) {
     return at(p.x + of(d).right_x, p.y + of(d).right_y);
   };
-  cv::Mat walked(labels.rows + 1, labels.cols + 1, CV_8UC1, cv::Scalar(0));
+  // By corner and direction, from the box's own corner on.
+  cv::Mat walked(box.height + 1, box.width + 1, CV_8UC1, cv::Scalar(0));
+  const auto mark = [&](cv::Point p) -> std::uint8_t& {
+    return walked.at<std::uint8_t>(p - box.tl());
+  };
   std::vector<Contour> out;
   // Every contour, around a region or a hole, has a side along +x: a cell above another label.
   const std::vector<std::uint16_t> none(static_cast<std::size_t>(labels.cols), 0);
@@ -56,14 +60,14 @@ std::vector<Contour> traceContours(const cv::Mat& labels, const cv::Rect& box,
       const std::uint16_t label = row[x];
       if (label == 0 || below[x] == label) continue;
       if (!wanted.empty() && wanted[label] == 0) continue;
-      if ((walked.at<std::uint8_t>(y, x) & 1) != 0) continue;
+      if ((mark({x, y}) & 1) != 0) continue;
       Contour contour;
       contour.label = label;
       cv::Point p{x, y};
       int d = 0;
       long twice_area = 0;
-      while ((walked.at<std::uint8_t>(p) & (1 << d)) == 0) {
-        walked.at<std::uint8_t>(p) = static_cast<std::uint8_t>(walked.at<std::uint8_t>(p) | 1 << d);
+      while ((mark(p) & (1 << d)) == 0) {
+        mark(p) = static_cast<std::uint8_t>(mark(p) | 1 << d);
         contour.sides.push_back({p, d});
         const cv::Point q = contour.sides.back().to();
         twice_area += static_cast<long>(p.x) * q.y - static_cast<long>(q.x) * p.y;
