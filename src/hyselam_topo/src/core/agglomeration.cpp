@@ -50,7 +50,9 @@ PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const Segmentat
   prepared.space = findFreeSpace(grid, params);
   if (prepared.space.free.empty()) return prepared;
   cv::distanceTransform(prepared.space.free, prepared.clearance, cv::DIST_L2, cv::DIST_MASK_5);
-  prepared.basins = findBasins(prepared.clearance, prepared.space.resolution);
+  BasinParams basins;
+  basins.smallest = params.smallest_place;
+  prepared.basins = findBasins(prepared.clearance, prepared.space.resolution, basins);
   return prepared;
 }
 

@@ -66,15 +66,16 @@ struct Saddle {
 
 }  // namespace
 
-Basins findBasins(const cv::Mat& clearance, double resolution, const BasinParams& params) {
+Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& params) {
   CV_Assert(clearance.type() == CV_32F && clearance.isContinuous());
   cv::Mat labels = waysUp(clearance);  // cell to climb to, later -2 - peak
   int* cells = labels.ptr<int>();
-  const float* heights = clearance.ptr<float>();
+  float* heights = clearance.ptr<float>();
   const int total = static_cast<int>(labels.total()), stride = labels.cols;
 
-  Sets sets;
+  Sets sets, parts;  // basins, and what is connected at all
   std::vector<float> peaks;
+  std::vector<double> sizes;  // [cells]
   std::vector<int> way;
   for (int i = 0; i < total; ++i) {
     if (cells[i] < 0) continue;
@@ -85,8 +86,11 @@ Basins findBasins(const cv::Mat& clearance, double resolution, const BasinParams
     }
     if (cells[top] >= 0) {
       cells[top] = -2 - sets.add();
+      parts.add();
       peaks.push_back(heights[top]);
+      sizes.push_back(0.0);
     }
+    sizes[static_cast<std::size_t>(-2 - cells[top])] += 1.0 + static_cast<double>(way.size());
     for (const int cell : way) cells[cell] = cells[top];
     way.clear();
   }
@@ -109,6 +113,11 @@ Basins findBasins(const cv::Mat& clearance, double resolution, const BasinParams
                    [](const Saddle& s, const Saddle& t) { return s.height > t.height; });
   const auto peak = [&](int set) { return peaks[static_cast<std::size_t>(set)]; };
   for (const Saddle& saddle : saddles) {
+    const int p = parts.find(saddle.a), q = parts.find(saddle.b);
+    if (p != q) {
+      parts.join(p, q);
+      sizes[static_cast<std::size_t>(p)] += sizes[static_cast<std::size_t>(q)];
+    }
     int a = sets.find(saddle.a), b = sets.find(saddle.b);
     if (a == b) continue;
     if (peak(a) < peak(b)) std::swap(a, b);
@@ -118,15 +127,24 @@ Basins findBasins(const cv::Mat& clearance, double resolution, const BasinParams
   }
 
   Basins basins;
-  std::vector<int> names(peaks.size(), 0);
+  std::vector<int> names(peaks.size(), -1), of_peak(peaks.size(), -1);
+  const double smallest = params.smallest / (resolution * resolution);
   for (int i = 0; i < total; ++i) {
     if (cells[i] > -2) {
       cells[i] = 0;
       continue;
     }
-    int& name = names[static_cast<std::size_t>(sets.find(-2 - cells[i]))];
-    if (name == 0) name = ++basins.count;
-    cells[i] = name;
+    const int peak_index = -2 - cells[i];
+    int& known = of_peak[static_cast<std::size_t>(peak_index)];
+    if (known < 0) {
+      int& name = names[static_cast<std::size_t>(sets.find(peak_index))];
+      if (name < 0)
+        name =
+            sizes[static_cast<std::size_t>(parts.find(peak_index))] < smallest ? 0 : ++basins.count;
+      known = name;
+    }
+    cells[i] = known;
+    if (known == 0) heights[i] = 0.0f;
   }
   basins.labels = labels;
   return basins;

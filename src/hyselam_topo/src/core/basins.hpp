@@ -12,6 +12,7 @@ struct BasinParams {
   double shallow = 0.05;
   /// ... or to more than this share of it.
   double level = 0.93;
+  double smallest = 0.0;  ///< connected parts smaller than this are no free space [m^2]
 };
 
 struct Basins {
@@ -21,6 +22,7 @@ struct Basins {
 
 /// Cells from where the steepest way up leads to the same peak of `clearance` (CV_32F [cells], 0
 /// exactly where not free, which the outermost cells are), low saddles between them done away with.
-Basins findBasins(const cv::Mat& clearance, double resolution, const BasinParams& params = {});
+/// Sets the clearance of parts that are too small to 0.
+Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& params = {});
 
 }  // namespace hyselam_topo

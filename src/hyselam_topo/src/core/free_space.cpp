@@ -46,47 +46,34 @@ Masks cutOut(const hyselam::OccupancyGrid& grid, int free_max, int margin, cv::P
 }
 
 /// Pieces of furniture up to `clutter` across, standing free, are seen through.
-void seeThroughClutter(cv::Mat& free, double resolution, double clutter) {
-  cv::Mat solid, labels, stats, centres;
-  cv::bitwise_not(free, solid);
-  const int n = cv::connectedComponentsWithStats(solid, labels, stats, centres, 8, CV_32S);
+void seeThroughClutter(FreeSpace& space, double clutter) {
+  cv::Mat solid, centres;
+  cv::bitwise_not(space.free, solid);
+  const int n = cv::connectedComponentsWithStats(solid, space.pieces, space.boxes, centres, 8);
   for (int i = 1; i < n; ++i) {
-    const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
-                       stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
-    if (std::hypot(box.width, box.height) * resolution > clutter) continue;
-    cv::Mat part = free(box);
-    part.setTo(255, labels(box) == i);
+    const cv::Rect box = space.boxOf(i);
+    if (std::hypot(box.width, box.height) * space.resolution > clutter) continue;
+    cv::Mat part = space.free(box);
+    part.setTo(255, space.pieces(box) == i);
   }
 }
 
-void dropSmallParts(cv::Mat& free, double smallest_cells) {
-  cv::Mat labels, stats, centres;
-  const int n = cv::connectedComponentsWithStats(free, labels, stats, centres, 4, CV_32S);
-  for (int i = 1; i < n; ++i) {
-    if (stats.at<int>(i, cv::CC_STAT_AREA) >= smallest_cells) continue;
-    const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
-                       stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
-    cv::Mat part = free(box);
-    part.setTo(0, labels(box) == i);
-  }
-}
-
-void clean(Masks& masks, double resolution, const SegmentationParams& params) {
-  cv::Mat& free = masks.free;
+void clean(FreeSpace& space, const cv::Mat& occupied) {
+  cv::Mat& free = space.free;
+  const double resolution = space.resolution;
   // Where a map was seen by few rays, free and unknown cells mingle: the majority decides.
   cv::Mat density;
   const int window = odd(kDensityWindow / resolution);
   cv::boxFilter(free, density, -1, {window, window}, {-1, -1}, true, cv::BORDER_CONSTANT);
   cv::compare(density, 127, density, cv::CMP_GT);
-  density.setTo(0, masks.occupied);
+  density.setTo(0, occupied);
   cv::bitwise_or(free, density, free);
 
   const int leak = std::max(1, static_cast<int>(std::lround(kLeak / resolution)));
   cv::morphologyEx(free, free, cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, {leak, leak}), {-1, -1}, 1,
                    cv::BORDER_CONSTANT, 0);
-  seeThroughClutter(free, resolution, params.clutter);
-  dropSmallParts(free, params.smallest_place / (resolution * resolution));
+  cv::rectangle(free, {0, 0}, {free.cols - 1, free.rows - 1}, 0);
 }
 
 }  // namespace
@@ -116,9 +103,9 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
         cv::resize(*mask, *mask, {}, split, split, cv::INTER_NEAREST);
     }
   }
-  clean(masks, space.resolution, params);
   space.free = masks.free;
-  cv::rectangle(space.free, {0, 0}, {space.free.cols - 1, space.free.rows - 1}, 0);
+  clean(space, masks.occupied);
+  seeThroughClutter(space, params.clutter);
   return space;
 }
 

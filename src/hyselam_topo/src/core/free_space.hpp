@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_topo/segmentation.hpp"
@@ -15,6 +16,16 @@ struct FreeSpace {
   int joined = 1;           ///< so many cells of the grid, along each axis, make one cell
   int split = 1;            ///< ... or one cell of the grid makes so many; one of the two is 1
   cv::Point origin;  ///< working cell at (0, 0) of `free`; grid cell (0, 0) starts cell (0, 0)
+  /// CV_32S, the connected pieces that were not free before clutter was seen through, from 1, and
+  /// the statistics of cv::connectedComponentsWithStats() about them.
+  cv::Mat pieces;
+  cv::Mat boxes;
+
+  cv::Rect boxOf(int piece) const {
+    const int* row = boxes.ptr<int>(piece);
+    return {row[cv::CC_STAT_LEFT], row[cv::CC_STAT_TOP], row[cv::CC_STAT_WIDTH],
+            row[cv::CC_STAT_HEIGHT]};
+  }
 };
 
 /// Empty `free` if the grid has no free cell.

@@ -11,6 +11,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/place_paths.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -179,14 +180,23 @@ void drawDoors(const AugmentedTopologicalMap& map, Canvas& canvas, int thick) {
     }
 }
 
+/// From the middle of each place through its cells to its doors.
 void drawGraph(const AugmentedTopologicalMap& map, Canvas& canvas, int thin) {
-  for (const Edge& edge : map.edges) {
-    const Place *a = map.findPlace(edge.a), *b = map.findPlace(edge.b);
-    if (!a->centre || !b->centre) continue;
-    for (const Door& door : edge.doors) {
-      const cv::Point2d middle = canvas.pixel({door.position.x, door.position.y});
-      canvas.line(canvas.pixel({a->centre->x, a->centre->y}), middle, kGraph, thin);
-      canvas.line(middle, canvas.pixel({b->centre->x, b->centre->y}), kGraph, thin);
+  std::map<Id, std::vector<Point2>> doors;
+  for (const Edge& edge : map.edges)
+    for (const Door& door : edge.doors)
+      for (const Id id : {edge.a, edge.b}) doors[id].push_back({door.position.x, door.position.y});
+  for (const Place& place : map.places) {
+    if (!place.centre || !map.grid) continue;
+    const Point2 centre{place.centre->x, place.centre->y};
+    const std::vector<Point2>& goals = doors[place.id];
+    const auto ways = waysWithin(*map.grid, place.id, goals, centre);
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      Point2 from = goals[k];
+      for (const Point2& to : ways[k]) {
+        canvas.line(canvas.pixel(from), canvas.pixel(to), kGraph, thin);
+        from = to;
+      }
     }
   }
 }

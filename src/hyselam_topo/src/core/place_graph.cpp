@@ -110,12 +110,11 @@ void measurePassage(const cv::Mat& clearance, double resolution, double saddle, 
 
 }  // namespace
 
-PlaceGraph::PlaceGraph(const cv::Mat& free, const cv::Mat& clearance, const Basins& basins,
-                       double resolution)
+PlaceGraph::PlaceGraph(const cv::Mat& clearance, const Basins& basins, double resolution)
     : resolution_(resolution),
       nodes_(static_cast<std::size_t>(basins.count) + 1),
       merged_into_(static_cast<std::size_t>(basins.count) + 1) {
-  CV_Assert(free.size() == clearance.size() && basins.labels.isContinuous());
+  CV_Assert(basins.labels.size() == clearance.size() && basins.labels.isContinuous());
   for (std::size_t i = 0; i < merged_into_.size(); ++i) merged_into_[i] = static_cast<int>(i);
   measureNodes(clearance, basins.labels);
   const int steps = static_cast<int>(std::lround(kThinWall / resolution));

@@ -39,9 +39,8 @@ struct PlaceNode {
 
 class PlaceGraph {
  public:
-  /// `free`: CV_8U; `clearance`: CV_32F, its distance map [cells].
-  PlaceGraph(const cv::Mat& free, const cv::Mat& clearance, const Basins& basins,
-             double resolution);
+  /// `clearance`: CV_32F, the distance map [cells] that the basins are of.
+  PlaceGraph(const cv::Mat& clearance, const Basins& basins, double resolution);
 
   int size() const { return static_cast<int>(nodes_.size()) - 1; }
   /// 1 .. size(), as the basins are numbered.

@@ -56,34 +56,26 @@ void absorbSmall(PlaceGraph& graph, double smallest) {
 /// Solid pieces within one place - its furniture - up to this area belong to it [m^2].
 constexpr double kFurniture = 2.0;
 
-void fillFurniture(cv::Mat& labels, const cv::Mat& free, double resolution) {
-  cv::Mat solid, pieces, stats, centres;
-  cv::bitwise_not(free, solid);
-  const int n = cv::connectedComponentsWithStats(solid, pieces, stats, centres, 8, CV_32S);
-  const double most = kFurniture / (resolution * resolution);
-  for (int i = 1; i < n; ++i) {
-    if (stats.at<int>(i, cv::CC_STAT_AREA) > most) continue;
-    const int left = stats.at<int>(i, cv::CC_STAT_LEFT), top = stats.at<int>(i, cv::CC_STAT_TOP);
-    if (left == 0 || top == 0) continue;
-    const int right = left + stats.at<int>(i, cv::CC_STAT_WIDTH);
-    const int bottom = top + stats.at<int>(i, cv::CC_STAT_HEIGHT);
-    if (right >= labels.cols || bottom >= labels.rows) continue;
+void fillFurniture(cv::Mat& labels, const FreeSpace& space) {
+  const double most = kFurniture / (space.resolution * space.resolution);
+  const cv::Rect inner(1, 1, labels.cols - 2, labels.rows - 2);
+  for (int i = 1; i < space.boxes.rows; ++i) {
+    const cv::Rect box = space.boxOf(i);
+    if (space.boxes.at<int>(i, cv::CC_STAT_AREA) > most || (box & inner) != box) continue;
     int around = 0;
     bool one = true;
-    for (int y = top - 1; y <= bottom && one; ++y)
-      for (int x = left - 1; x <= right && one; ++x) {
-        if (pieces.at<int>(y, x) != i) continue;
+    for (int y = box.y; y < box.br().y && one; ++y)
+      for (int x = box.x; x < box.br().x && one; ++x) {
+        if (space.pieces.at<int>(y, x) != i) continue;
         for (const cv::Point d :
              {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
           const int label = labels.at<int>(y + d.y, x + d.x);
-          if (label == 0) continue;
-          if (around == 0) around = label;
-          one = one && label == around;
+          if (label == 0 || label == around) continue;
+          one = around == 0;
+          around = label;
         }
       }
-    if (!one || around == 0) continue;
-    const cv::Rect box(left, top, right - left, bottom - top);
-    labels(box).setTo(around, pieces(box) == i);
+    if (one && around != 0) labels(box).setTo(around, space.pieces(box) == i);
   }
 }
 
@@ -202,7 +194,7 @@ Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid, const Segmentatio
   if (prepared.basins.count == 0) return result;
 
   const double resolution = prepared.space.resolution;
-  PlaceGraph graph(prepared.space.free, prepared.clearance, prepared.basins, resolution);
+  PlaceGraph graph(prepared.clearance, prepared.basins, resolution);
   const BoostedTrees& model = borderModel();
   agglomerate(graph, [&model](const PlaceGraph& g, int a, int b) {
     const BorderFeatures features = describeBorder(g, a, b);
@@ -223,7 +215,7 @@ Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid, const Segmentatio
   for (int y = 0; y < labels.rows; ++y)
     for (int *cell = labels.ptr<int>(y), *end = cell + labels.cols; cell != end; ++cell)
       *cell = names[static_cast<std::size_t>(*cell)];
-  fillFurniture(labels, prepared.space.free, resolution);
+  fillFurniture(labels, prepared.space);
 
   const int reach = static_cast<int>(std::ceil(kReach / grid.geometry.resolution));
   result.labels = toGrid(labels, prepared.space, grid, params.free_max, reach);

@@ -144,7 +144,7 @@ std::vector<Example> load(const Options& options) {
                 fields[5],
                 fields[6],
                 scale,
-                PlaceGraph(p.space.free, p.clearance, p.basins, p.space.resolution),
+                PlaceGraph(p.clearance, p.basins, p.space.resolution),
                 {}};
       e.rooms.assign(static_cast<std::size_t>(p.basins.count) + 1,
                      std::vector<int>(static_cast<std::size_t>(most) + 1, 0));
