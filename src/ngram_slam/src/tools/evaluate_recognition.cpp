@@ -1,5 +1,7 @@
 // evaluate_recognition: what is recognised in recorded runs, against reference poses.
 #include <algorithm>
+#include <cmath>
+#include <ctime>
 #include <iostream>
 #include <sstream>
 
@@ -154,9 +156,10 @@ nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth
 /// Precision and recall while ever less sure matches are taken in.
 nlohmann::json curve(const Options& o, const Recogniser& recogniser, std::vector<Match> matches,
                      const Truth& truth) {
-  const bool by_probability = recogniser.params().with_probability;
+  const RecogniserParams& params = recogniser.params();
   const auto key = [&](const Match& m) {
-    return by_probability ? m.probability : static_cast<double>(m.n);
+    if (params.with_probability) return m.probability;
+    return params.max_chance > 0.0 ? -m.chance : static_cast<double>(m.n);
   };
   std::stable_sort(matches.begin(), matches.end(),
                    [&](const Match& a, const Match& b) { return key(a) > key(b); });
@@ -171,7 +174,7 @@ nlohmann::json curve(const Options& o, const Recogniser& recogniser, std::vector
       continue;
     told = (i + 1) * kPoints / matches.size() + 1;
     nlohmann::json point = summary(evaluation);
-    point["threshold"] = key(matches[i]);
+    point["threshold"] = std::abs(key(matches[i]));
     points.push_back(point);
   }
   if (!o.curve.empty()) {
@@ -193,7 +196,9 @@ nlohmann::json run(const Options& o) {
   if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
   Recogniser recogniser(o.recognition.params());
   const std::vector<Run> runs = readRuns(o.recognition);
+  const std::clock_t begin = std::clock();
   const std::vector<Match> matches = recognise(recogniser, runs);
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   const Truth truth = truthOf(o, recogniser.observations(), runs);
   MatchEvaluation evaluation(recogniser, truth);
   evaluation.add(matches);
@@ -202,6 +207,7 @@ nlohmann::json run(const Options& o) {
   j["observations"] = recogniser.observations().size();
   j["words"] = recogniser.text().positions();
   std::cout << j.dump(2) << "\n";
+  j["matching_s"] = seconds;  // words, matches and what judges them, without densities
   if (!o.similarity.empty()) saveSimilarityPicture(o.similarity, evaluation.score());
   if (!o.table.empty() || !o.n.empty() || !o.sizes.empty()) j["sweep"] = sweep(o, runs, truth);
   if (!o.curve.empty()) j["curve"] = curve(o, recogniser, matches, truth);
@@ -233,8 +239,8 @@ int main(int argc, char** argv) {
   app.add_option("--size-tolerances", o.sizes, "of the table, like 0.1,0.2,0.3")->delimiter(',');
   app.add_option("--table", o.table, "the table as CSV");
   app.add_option("--curve", o.curve,
-                 "precision and recall as CSV while ever shorter (with --probability: less "
-                 "probable) matches are taken in");
+                 "precision and recall as CSV while ever shorter (with --max-chance: likelier by "
+                 "chance; with --probability: less probable) matches are taken in");
   app.add_option("--similarity", o.similarity,
                  "similarity matrix as PNG: what is true, and what was recognised");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });

@@ -20,7 +20,7 @@ struct RecognitionOptions {
   LogObservationParams observations;
   double angle_deg = 30.0;
   std::vector<int> min_n;
-  bool full_density = false;
+  bool full_density = false, improved = false;
 
   void addTo(CLI::App& app) {
     app.option_defaults()->always_capture_default();
@@ -39,6 +39,10 @@ struct RecognitionOptions {
     app.add_option("--usable-range", observations.usable_range,
                    "beams say nothing beyond it [m]; 0: all that fits the local map");
     app.add_option("--step", observations.step, "way between observations [m]");
+    app.add_flag("--improved", improved,
+                 "what goes beyond the thesis: --full-density with a --look-back of the kernel's "
+                 "radius and 0.5 m, --reverse, --min-n 3,3,3 and --min-probability 0.7, as far as "
+                 "nothing else is given");
     app.add_flag("--reverse", recogniser.reverse,
                  "also find places travelled the other way before");
     app.add_option("--look-back", observations.look_back,
@@ -55,13 +59,27 @@ struct RecognitionOptions {
     app.add_option("--min-probability", recogniser.min_probability,
                    "tell only matches at least this probable");
   }
+  LogObservationParams observationParams() const {
+    LogObservationParams p = observations;
+    if (improved && p.look_back == 0.0) p.look_back = p.bandwidth + 0.5;
+    return p;
+  }
   /// The parameters, completed. @throws hyselam::ParameterError
   RecogniserParams params() const {
     RecogniserParams p = recogniser;
     p.word_density = full_density ? WordDensity::kFull : WordDensity::kSoft;
     p.matcher.tolerance.angle = hyselam::radians(angle_deg);
     p.matcher.min_n = min_n;
-    for (int l = static_cast<int>(min_n.size()); l < p.levels; ++l)
+    if (improved) {
+      const RecogniserParams better = RecogniserParams::improved();
+      p.word_density = better.word_density;
+      p.reverse = better.reverse;
+      p.with_probability = better.with_probability;
+      if (p.min_probability == 0.0) p.min_probability = better.min_probability;
+      if (min_n.empty() && p.levels > 0)
+        p.matcher.min_n.assign(static_cast<std::size_t>(p.levels), better.matcher.min_n.front());
+    }
+    for (int l = static_cast<int>(p.matcher.min_n.size()); l < p.levels; ++l)
       p.matcher.min_n.push_back(l == 0 ? 7 : p.matcher.min_n.back() + 3);
     p.matcher.min_n.resize(static_cast<std::size_t>(p.levels > 0 ? p.levels : 1));
     p.validate();
@@ -79,7 +97,7 @@ inline std::vector<Run> readRuns(const RecognitionOptions& options) {
   for (const std::string& path : options.logs) {
     const hyselam::RobotLog log = hyselam::readRobotLog(path);
     hyselam::Progress progress("densities of " + path, log.scans.size());
-    runs.push_back({observationsOf(log, options.observations, [&](std::size_t done) {
+    runs.push_back({observationsOf(log, options.observationParams(), [&](std::size_t done) {
                       progress.update(done);
                     }).observations});
   }
