@@ -342,6 +342,10 @@ TEST(SemanticForest, learnsAndKeepsWhatItLearned) {
   forest.save(dir / "a");
   SemanticForest::train(lesson).save(dir / "b");
   EXPECT_EQ(fileBytes(dir / "a"), fileBytes(dir / "b"));
+  forest.save(dir / "a.gz");
+  EXPECT_LT(fileBytes(dir / "a.gz").size(), fileBytes(dir / "a").size() / 3);
+  SemanticForest::load(dir / "a.gz").save(dir / "c");
+  EXPECT_EQ(fileBytes(dir / "a"), fileBytes(dir / "c"));
   const SemanticForest loaded = SemanticForest::load(dir / "a");
   for (const SemanticExample& e : lesson) {
     EXPECT_EQ(loaded.classify(e.features).semantic_class,
@@ -350,6 +354,7 @@ TEST(SemanticForest, learnsAndKeepsWhatItLearned) {
   }
   EXPECT_NE(messageOf<hyselam::ParameterError>([] { SemanticForest::train({}); }), "");
   EXPECT_NE(messageOf<hyselam::InputError>([&] { forest.save(dir / "none/a"); }), "");
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { forest.save(dir / "none/a.gz"); }), "");
 }
 
 TEST(SemanticForest, refusesFilesThatAreNone) {

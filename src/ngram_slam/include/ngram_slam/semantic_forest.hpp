@@ -36,7 +36,8 @@ class SemanticForest : public SemanticClassifier {
   /// @throws hyselam::InputError for a missing, damaged or foreign file, or one made for other
   /// features.
   static SemanticForest load(const std::string& path);
-  /// Text with a checksum, replacing the file at once. @throws hyselam::InputError
+  /// Text with a checksum, packed if the name ends in .gz, replacing the file at once.
+  /// @throws hyselam::InputError
   void save(const std::string& path) const;
 
   SemanticForest(SemanticForest&&) noexcept;

@@ -81,9 +81,20 @@ void SemanticForest::save(const std::string& path) const {
   cv::FileStorage file(".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   model_->trees->write(file);
   const std::string body = file.releaseAndGetString();
-  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    out << kMagic << ", " << kSemanticFeatures << " features, crc32 " << checksum(body) << "\n"
-        << body;
+  std::ostringstream head;
+  head << kMagic << ", " << kSemanticFeatures << " features, crc32 " << checksum(body) << "\n";
+  const std::string text = head.str() + body;
+  if (path.size() < 3 || path.compare(path.size() - 3, 3, ".gz") != 0) {
+    hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << text; });
+    return;
+  }
+  hyselam::replaceFileAtomically(path, [&](const std::string& temporary) {
+    gzFile file = gzopen(temporary.c_str(), "wb9");
+    const bool written =
+        file != nullptr && gzwrite(file, text.data(), static_cast<unsigned>(text.size())) ==
+                               static_cast<int>(text.size());
+    const bool closed = file != nullptr && gzclose(file) == Z_OK;
+    if (!written || !closed) throw hyselam::InputError(path, "", "cannot be written");
   });
 }
 

@@ -1,0 +1,143 @@
+// The tools of semantic classes as a shell sees them, in a small made-up building.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_sim/generate_corridors.hpp"
+#include "hyselam_sim/generate_plan.hpp"
+#include "hyselam_sim/simulation.hpp"
+
+using hyselam::testing::fileBytes;
+using hyselam::testing::TemporaryDirectory;
+using hyselam::testing::writeFile;
+
+namespace {
+
+struct SemanticTools : testing::Test {
+  static void SetUpTestSuite() {
+    directory = new TemporaryDirectory;
+    hyselam_sim::CorridorParams params;
+    params.lines = 3;
+    params.legs = 16;
+    const auto building = hyselam_sim::generateCorridors(11, params);
+    auto log = hyselam_sim::simulate(building.plan, building.route, 11).log;
+    hyselam::writeBag(*directory / "run.bag", log);
+    log.ground_truth.clear();
+    hyselam::writeBag(*directory / "blind.bag", log);
+    writeFile(*directory / "plan.yaml", toYaml(building.plan));
+    hyselam_sim::FloorPlan bare = building.plan;
+    bare.areas.clear();
+    bare.floor_kind.clear();
+    writeFile(*directory / "bare.yaml", toYaml(bare));
+  }
+  static void TearDownTestSuite() {
+    delete directory;
+    directory = nullptr;
+  }
+  int run(const std::string& command) {
+    const int status = std::system(
+        (std::string(NGRAM_SLAM_TOOLS) + "/" + command + " >" + d / "stdout" + " 2>" + d / "stderr")
+            .c_str());
+    errors = fileBytes(d / "stderr");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void expectRefused(const std::string& command, const std::string& part) {
+    EXPECT_EQ(run(command), 2) << command << "\n" << errors;
+    EXPECT_EQ(errors.rfind("error: ", 0), 0u) << errors;
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  }
+  std::string evaluate() const {
+    return "evaluate_semantics " + d / "run.bag" + " --plan " + d / "plan.yaml";
+  }
+
+  static TemporaryDirectory* directory;
+  TemporaryDirectory& d = *directory;
+  std::string errors;
+};
+TemporaryDirectory* SemanticTools::directory = nullptr;
+
+}  // namespace
+
+TEST_F(SemanticTools, evaluateScoresDrawsAndWritesRegions) {
+  const std::string outputs =
+      " --json " + d / "a.json" + " --confusion " + d / "a.png" + " --regions " + d / "a.csv";
+  ASSERT_EQ(run(evaluate() + outputs), 0) << errors;
+  const auto j = nlohmann::json::parse(fileBytes(d / "a.json"));
+  EXPECT_GT(j["accuracy"].get<double>(), 0.85);
+  EXPECT_GT(j["classes"]["corridor"]["actual"].get<int>(), 500);
+  EXPECT_LE(j["strict"]["accuracy"].get<double>(), j["accuracy"].get<double>());
+  const cv::Mat picture = cv::imread(d / "a.png");
+  EXPECT_GT(picture.cols, 600);
+
+  // The regions follow each other and hold every observation.
+  std::istringstream table(fileBytes(d / "a.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "first,last,stamp_begin,stamp_end,class,confidence");
+  std::size_t next = 0, regions = 0;
+  while (std::getline(table, line)) {
+    std::istringstream fields(line);
+    std::size_t first = 0, last = 0;
+    char comma = 0;
+    fields >> first >> comma >> last;
+    EXPECT_EQ(first, next);
+    next = last + 1;
+    ++regions;
+  }
+  EXPECT_EQ(next, j["observations"].get<std::size_t>());
+  EXPECT_EQ(regions, j["regions"].get<std::size_t>());
+
+  ASSERT_EQ(run(evaluate() + " --json " + d / "b.json" + " --confusion " + d / "b.png" +
+                " --regions " + d / "b.csv"),
+            0);
+  for (const char* kind : {"json", "png", "csv"})
+    EXPECT_EQ(fileBytes(d / (std::string("a.") + kind)), fileBytes(d / (std::string("b.") + kind)));
+}
+
+TEST_F(SemanticTools, trainLearnsAForestThatEvaluateUses) {
+  ASSERT_EQ(run("train_semantic --buildings 1 --held-out 0 --trees 10 --out " + d / "forest"), 0)
+      << errors;
+  ASSERT_EQ(run(evaluate() + " --model " + d / "forest" + " --json " + d / "f.json"), 0) << errors;
+  const auto j = nlohmann::json::parse(fileBytes(d / "f.json"));
+  EXPECT_EQ(j["classifier"], "forest");
+  EXPECT_GT(j["accuracy"].get<double>(), 0.7);
+
+  const std::string forest = fileBytes(d / "forest");
+  writeFile(d / "cut", forest.substr(0, forest.size() / 2));
+  expectRefused(evaluate() + " --model " + d / "cut", "checksum");
+  expectRefused(evaluate() + " --model " + d / "plan.yaml", "is no forest");
+  expectRefused(evaluate() + " --model " + d / "nothing", "nothing");
+}
+
+// The forest that comes with the package fits the features of this version.
+TEST_F(SemanticTools, theShippedForestIsUsable) {
+  ASSERT_EQ(run(evaluate() + " --model " + NGRAM_SLAM_FOREST + " --json " + d / "s.json"), 0)
+      << errors;
+  const auto j = nlohmann::json::parse(fileBytes(d / "s.json"));
+  EXPECT_GT(j["strict"]["accuracy"].get<double>(), 0.95);
+}
+
+TEST_F(SemanticTools, badInputIsStatus2) {
+  expectRefused("evaluate_semantics " + d / "none.bag" + " --plan " + d / "plan.yaml", "none.bag");
+  expectRefused("evaluate_semantics " + d / "blind.bag" + " --plan " + d / "plan.yaml",
+                "no ground truth");
+  expectRefused("evaluate_semantics " + d / "run.bag" + " --plan " + d / "bare.yaml", "areas");
+  expectRefused("evaluate_semantics " + d / "run.bag" + " --plan nowhere", "nowhere");
+  expectRefused("evaluate_semantics " + d / "run.bag", "--plan");
+  expectRefused(evaluate() + " --border 1.5", "border");
+  expectRefused(evaluate() + " --high-variation nan", "high_variation");
+  expectRefused(evaluate() + " --bandwidth -1", "");
+  expectRefused(evaluate() + " --confusion " + d / "none/c.png", "none");
+  expectRefused(evaluate() + " --confusion " + d / "c.unknown", "c.unknown");
+  expectRefused("train_semantic --buildings 0", "--buildings");
+  expectRefused("train_semantic --trees 0", "trees");
+  expectRefused("train_semantic --depth many", "--depth");
+}
