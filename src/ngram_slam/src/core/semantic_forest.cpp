@@ -89,11 +89,11 @@ void SemanticForest::save(const std::string& path) const {
     return;
   }
   hyselam::replaceFileAtomically(path, [&](const std::string& temporary) {
-    gzFile file = gzopen(temporary.c_str(), "wb9");
+    const gzFile packed = gzopen(temporary.c_str(), "wb9");
     const bool written =
-        file != nullptr && gzwrite(file, text.data(), static_cast<unsigned>(text.size())) ==
-                               static_cast<int>(text.size());
-    const bool closed = file != nullptr && gzclose(file) == Z_OK;
+        packed != nullptr && gzwrite(packed, text.data(), static_cast<unsigned>(text.size())) ==
+                                 static_cast<int>(text.size());
+    const bool closed = packed != nullptr && gzclose(packed) == Z_OK;
     if (!written || !closed) throw hyselam::InputError(path, "", "cannot be written");
   });
 }
