@@ -110,11 +110,11 @@ visualization_msgs::MarkerArray wordMarkers(const Recogniser& recogniser, const 
 
   Marker regions = marker(header, "regions", Marker::LINE_STRIP, 0.45);
   Marker kinds = marker(header, "kinds", Marker::TEXT_VIEW_FACING, 0.0);
-  kinds.scale.z = 0.55;
+  kinds.scale.z = 0.4;
   kinds.color = colour(0.25, 0.25, 0.25, 0.9);
   Marker classes = marker(header, "classes", Marker::LINE_STRIP, 0.12);
   Marker label = marker(header, "words", Marker::TEXT_VIEW_FACING, 0.0);
-  label.scale.z = 0.5;
+  label.scale.z = 0.45;
 
   Position p = first;
   auto region = shown.regions.begin();
@@ -122,14 +122,14 @@ visualization_msgs::MarkerArray wordMarkers(const Recogniser& recogniser, const 
     const hyselam::Pose2 pose = observations.pose(i);
     while (region != shown.regions.end() && region->last < i) ++region;
     regions.points.push_back(at(pose, -0.02));
-    regions.colors.push_back(region != shown.regions.end() ? colourOf(region->semantic_class)
-                                                           : colour(0.7, 0.7, 0.7));
+    const bool known = region != shown.regions.end() && region->first <= i;
+    regions.colors.push_back(known ? colourOf(region->semantic_class) : colour(0.7, 0.7, 0.7));
     if (p < text.positions() && i >= text.observationEnd(text.realWord(p))) ++p;
     std_msgs::ColorRGBA c = colour(0.7, 0.7, 0.7);
     if (p < text.positions()) {
       const int id = text.syllables(text.realWord(p)).density_class;
-      for (const DensityClass& known : recogniser.classes().list())
-        if (known.id == id) c = colourOf(known.mode);
+      for (const DensityClass& density : recogniser.classes().list())
+        if (density.id == id) c = colourOf(density.mode);
     }
     classes.points.push_back(at(pose, 0.05));
     classes.colors.push_back(c);

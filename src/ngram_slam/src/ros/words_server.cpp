@@ -23,6 +23,7 @@ namespace {
 constexpr std::uint32_t kQueue = 1000;
 constexpr double kStampSlack = 2.0;  // [s] an older observation is not late: the bag began again
 constexpr std::size_t kShownLines = 2000;  // matches
+constexpr std::size_t kRegionsPerWord = 4;
 }  // namespace
 
 WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
@@ -201,7 +202,8 @@ void WordsServer::told(const std::vector<SemanticRegion>& regions) {
     region.last += segmenter_begin_;
     out.regions.push_back(regionMsg(recogniser_->observations(), region, params_.sensor.step));
     shown_.regions.push_back(region);
-    while (shown_.regions.size() > static_cast<std::size_t>(params_.shown_words))
+    // As many as words may cover.
+    while (shown_.regions.size() > kRegionsPerWord * static_cast<std::size_t>(params_.shown_words))
       shown_.regions.pop_front();
   }
   regions_ += out.regions.size();
