@@ -148,6 +148,32 @@ TEST(Doors, DoorsAtTheSideMakeNoJambs) {
   EXPECT_EQ(2, real);
 }
 
+// A room that was cut in two beside a desk: the ways past it are no doors.
+TEST(Doors, WaysPastATableAreOpenBorders) {
+  OccupancyGrid grid = gridOf(88, 128, 0.05, OccupancyGrid::kOccupied);
+  cv::Mat labels(128, 88, CV_16UC1, cv::Scalar(0));
+  for (int y = 4; y < 124; ++y) {
+    for (int x = 4; x < 84; ++x) {
+      if (x >= 24 && x < 64 && y >= 50 && y < 66) continue;
+      grid.at({x, y}) = OccupancyGrid::kFree;
+      labels.at<std::uint16_t>(y, x) = y < 58 ? 1 : 2;
+    }
+  }
+  auto doors = refineDoors(grid, labels);
+  ASSERT_EQ(2u, doors.size());
+  EXPECT_FALSE(doors[0].real || doors[1].real);
+  // Against the wall on one side it leaves one way, which may be a door.
+  for (int y = 50; y < 66; ++y) {
+    for (int x = 4; x < 24; ++x) {
+      grid.at({x, y}) = OccupancyGrid::kOccupied;
+      labels.at<std::uint16_t>(y, x) = 0;
+    }
+  }
+  doors = refineDoors(grid, labels);
+  ASSERT_EQ(1u, doors.size());
+  EXPECT_TRUE(doors[0].real);
+}
+
 TEST(Doors, RefusesWhatDoesNotFit) {
   const Drawing d = twoRooms();
   EXPECT_THROW(refineDoors(d.grid, cv::Mat(3, 3, CV_16UC1, cv::Scalar(0))), std::invalid_argument);

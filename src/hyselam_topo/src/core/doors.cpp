@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -47,6 +48,15 @@ class DoorFinder {
     return door;
   }
 
+  // Whether one end of the line is at something that stands free: less than `kIsland` across.
+  bool endsAtIsland(const DoorLine& door) const {
+    const Point2 u{(door.b.x - door.a.x) / std::max(door.width, 1e-9),
+                   (door.b.y - door.a.y) / std::max(door.width, 1e-9)};
+    const double r = 0.7 * grid_.geometry.resolution;
+    return island(grid_.geometry.cellAt({door.a.x - r * u.x, door.a.y - r * u.y})) ||
+           island(grid_.geometry.cellAt({door.b.x + r * u.x, door.b.y + r * u.y}));
+  }
+
  private:
   struct Line {
     cv::Point2d a, b;
@@ -81,6 +91,35 @@ class DoorFinder {
                 y = p.y + static_cast<int>(std::lround(t * dy));
       if ((x == p.x && y == p.y) || (x == q.x && y == q.y)) continue;
       if (blocked(x, y)) return false;
+    }
+    return true;
+  }
+
+  bool island(Cell start) const {
+    constexpr double kIsland = 2.5;  // [m]
+    if (!blocked(start.x, start.y)) return false;
+    const int reach = static_cast<int>(kIsland * cells_);
+    const int side = 2 * reach + 1;
+    std::vector<char> seen(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0);
+    std::vector<Cell> front{start};
+    Cell low = start, high = start;
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const Cell n{front[i].x + dx, front[i].y + dy};
+          if (!grid_.geometry.contains(n)) return false;
+          if (!blocked(n.x, n.y)) continue;
+          low = {std::min(low.x, n.x), std::min(low.y, n.y)};
+          high = {std::max(high.x, n.x), std::max(high.y, n.y)};
+          if (high.x - low.x >= reach || high.y - low.y >= reach) return false;
+          char& known = seen[static_cast<std::size_t>(n.y - start.y + reach) *
+                                 static_cast<std::size_t>(side) +
+                             static_cast<std::size_t>(n.x - start.x + reach)];
+          if (known != 0) continue;
+          known = 1;
+          front.push_back(n);
+        }
+      }
     }
     return true;
   }
@@ -264,6 +303,12 @@ std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labe
     if (!known) out.push_back(door);
   }
   dropChinks(params.min_width, &out);
+  // Ways past a table on either side of it are no doors.
+  std::map<std::pair<int, int>, int> ways;
+  for (const DoorLine& d : out) ++ways[{d.place_a, d.place_b}];
+  for (DoorLine& d : out) {
+    if (d.real && ways[{d.place_a, d.place_b}] > 1 && finder.endsAtIsland(d)) d.real = false;
+  }
   std::sort(out.begin(), out.end(), [](const DoorLine& p, const DoorLine& q) {
     return std::tie(p.place_a, p.place_b, p.a.x, p.a.y) <
            std::tie(q.place_a, q.place_b, q.a.x, q.a.y);
