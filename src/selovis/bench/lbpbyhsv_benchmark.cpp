@@ -141,7 +141,8 @@ const int registered = [] {
   for (const char* name :
        {"LBPbyHSV-U8N", "LBPbyHSV-U8U", "LBPbyHSV-U8S", "LBPbyHSV-U16N", "LBPbyHSV-U16S",
         "LBPbyHSV-U8N-D", "LBPbyHSV-U8N-IRIS", "LBPbyHSV-U8N-IRIS-VP", "sLBP-(N)LRF20",
-        "sLBP-(A)LRF20", "sLBP-(S)LRF20", "HSV-LBP", "SLBP", "CENTRIST", "HSV-GIST", "LGOP"}) {
+        "sLBP-(A)LRF20", "sLBP-(S)LRF20", "HSV-LBP", "SLBP", "CENTRIST", "HSV-GIST", "LGOP",
+        "GLANCE"}) {
     benchmark::RegisterBenchmark((std::string("lbpbyhsv/") + name).c_str(),
                                  [name](benchmark::State& s) { describe(s, name); })
         ->Unit(kMillisecond);
@@ -152,8 +153,8 @@ const int registered = [] {
         [kernel](benchmark::State& s) { frameToPlace(s, "hLBP", kernel); })
         ->Unit(kMillisecond);
   }
-  benchmark::RegisterBenchmark("lbpbyhsv/frame_to_place/LGOP/exemplar", [](benchmark::State& s) {
-    frameToPlace(s, "LGOP", Kernel::kExemplar);
+  benchmark::RegisterBenchmark("lbpbyhsv/frame_to_place/GLANCE/exemplar", [](benchmark::State& s) {
+    frameToPlace(s, "GLANCE", Kernel::kExemplar);
   })->Unit(kMillisecond);
   return 0;
 }();

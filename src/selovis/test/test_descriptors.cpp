@@ -255,6 +255,9 @@ TEST(Descriptors, SizesAreThoseOfTheTables) {
                                                {"HSV-LBP-u", 174},
                                                {"SLBP", 1218},
                                                {"HSV-GIST", 960},
+                                               {"LGOP", 540},
+                                               {"GLANCE", 860},
+                                               {"GLANCE+scan", 921},
                                                {"BOF-SIFT200", 200},
                                                {"BOF-ORB500-D", 1500},
                                                {"LBPbyHSV-U8N-D+BOF-ORB500", 1916},
@@ -304,7 +307,8 @@ TEST(Descriptors, GreyAndOddImagesAreRefusedByName) {
     EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(deep); }), "") << name;
     EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(cv::Mat()); }), "") << name;
   }
-  for (const std::string name : {"LBP8,1", "SLBP", "CENTRIST", "LGOP"}) {  // these need no colour
+  for (const std::string name :
+       {"LBP8,1", "SLBP", "CENTRIST", "LGOP", "GLANCE"}) {  // these need no colour
     EXPECT_NO_THROW(makeDescriptor(name)->compute(grey)) << name;
   }
 }
@@ -340,7 +344,7 @@ TEST(Descriptors, BlackAndTinyImagesGiveFiniteSignatures) {
        {cv::Size(640, 480), cv::Size(1, 1), cv::Size(5, 300), cv::Size(7, 7)}) {
     const cv::Mat black(size, CV_8UC3, cv::Scalar::all(0));
     for (const std::string name : {"LBPbyHSV-U8S-IRIS", "LBPbyHSV-U8N-IRIS-VP", "SLBP", "HSV-LBP",
-                                   "LGOP", "HSV-GIST", "LGOP+scan"}) {
+                                   "LGOP", "HSV-GIST", "GLANCE+scan"}) {
       for (const float v : makeDescriptor(name)->compute(black, readings)) {
         ASSERT_TRUE(std::isfinite(v)) << name << " " << size;
       }
@@ -352,7 +356,7 @@ TEST(Descriptors, OneObjectServesImagesOfChangingSize) {
   hyselam::Rng rng(16);
   const cv::Mat a = randomImage(rng, 60, 80), b = randomImage(rng, 33, 121);
   for (const std::string name :
-       {"LBPbyHSV-U8S", "LBPbyHSV-U8N-IRIS", "SLBP", "HSV-LBP", "LGOP", "HSV-GIST"}) {
+       {"LBPbyHSV-U8S", "LBPbyHSV-U8N-IRIS", "SLBP", "HSV-LBP", "GLANCE", "HSV-GIST"}) {
     const auto d = makeDescriptor(name);
     const auto first = d->compute(a);
     EXPECT_EQ(d->compute(b), makeDescriptor(name)->compute(b)) << name;

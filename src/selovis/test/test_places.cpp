@@ -512,12 +512,15 @@ TEST(Recogniser, APlaceTakenOffTheMapKeepsItsClassWithoutTransitions) {
 
 TEST(DescriptiveFilter, CountsCornersAndSift) {
   cv::Mat busy(240, 320, CV_8UC1, cv::Scalar(100));
-  for (int y = 0; y + 11 < 240; y += 24) {
-    for (int x = 0; x + 11 < 320; x += 24) busy(cv::Rect(x, y, 11, 11)).setTo(cv::Scalar(200));
+  hyselam::Rng rng(51);
+  for (int i = 0; i < 80; ++i) {
+    const cv::Rect box(static_cast<int>(rng.below(290)), static_cast<int>(rng.below(210)),
+                       8 + static_cast<int>(rng.below(20)), 8 + static_cast<int>(rng.below(20)));
+    busy(box).setTo(cv::Scalar(rng.below(256)));
   }
   const cv::Mat bare(240, 320, CV_8UC1, cv::Scalar(100));
   for (const DescriptiveKind kind : {DescriptiveKind::kSift, DescriptiveKind::kCorners}) {
-    DescriptiveFilter filter({kind, 10});
+    DescriptiveFilter filter({kind, 5});
     EXPECT_TRUE(filter.accepts(busy));
     EXPECT_FALSE(filter.accepts(bare));
   }

@@ -21,11 +21,11 @@ struct ClassifierParams {
   /// Each value v becomes v^power before anything else; 0.5 makes the dot product of histograms
   /// that of Bhattacharyya. 1: as it is. Then all are scaled so that the mean squared length is 1.
   double power = 0.5;
-  double cost = 10.0;   ///< C of the SVM
-  double gamma = 1.0;   ///< of poly (gamma u.v + 1)^2 and rbf exp(-gamma |u - v|^2)
-  double beta = 10.0;   ///< exemplar: how fast the weight falls with (d^2 - d_min^2) / d_min^2
-  int neighbours = 30;  ///< exemplar: at most so many are weighed
-  unsigned seed = 1;    ///< of libsvm's cross-validation for probabilities
+  double cost = 10.0;    ///< C of the SVM
+  double gamma = 1.0;    ///< of poly (gamma u.v + 1)^2 and rbf exp(-gamma |u - v|^2)
+  double beta = 10.0;    ///< exemplar: how fast the weight falls with (d^2 - d_min^2) / d_min^2
+  int neighbours = 100;  ///< exemplar: at most so many are weighed
+  unsigned seed = 1;     ///< of libsvm's cross-validation for probabilities
 };
 
 /// Throws hyselam::ParameterError.

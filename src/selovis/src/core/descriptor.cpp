@@ -61,7 +61,17 @@ std::string plainSpelling(std::string name) {
   return name;
 }
 
+/// So weighted, the squared distances (of square roots) between two views of GIST are half those of
+/// LGOP.
+constexpr float kGistWeight = 0.09f;
+
 DescriptorPtr makeTerm(const std::string& name, const DescriptorParams& params) {
+  if (name == "GLANCE") {
+    std::vector<DescriptorPtr> terms;
+    terms.push_back(makeGradientPyramid("LGOP"));
+    terms.push_back(makeValueGist(kGistWeight));
+    return std::make_unique<Joined>(std::move(terms));
+  }
   if (auto d = makeLbpByHsv(name, params)) return d;
   if (auto d = makeDepthLbp(name, params)) return d;
   if (auto d = makeLbpBaseline(name, params)) return d;

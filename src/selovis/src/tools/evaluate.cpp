@@ -76,6 +76,13 @@ nlohmann::json run(Options& o) {
     throw hyselam::InputError("command line", "", e.what());
   }
   Recogniser recogniser(model, graph, o.recogniser);
+  std::vector<std::pair<std::string, PlaceFilter>> filters;  // all of them, for comparison
+  for (const char* name : {"none", "lowpass", "markov", "bayes"}) {
+    PlaceFilterParams params = o.recogniser.filter;
+    params.kind = filterKind(name);
+    filters.emplace_back(name, PlaceFilter(graph, params));
+  }
+  std::vector<std::size_t> right_by(filters.size(), 0);
   const auto descriptor = model.makeDescriptor();
   std::vector<float> signature(static_cast<std::size_t>(descriptor->size()));
   std::vector<Row> rows;
@@ -94,6 +101,10 @@ nlohmann::json run(Options& o) {
         descriptor_ms.push_back(t1 - t0);
         frame_ms.push_back(cpuMilliseconds() - t1);
         rows.push_back({model.graph.find(frame.place), r});
+        for (std::size_t k = 0; k < filters.size(); ++k) {
+          if (r.descriptive && !r.novel) filters[k].second.update(recogniser.frameProbabilities());
+          right_by[k] += filters[k].second.estimate().place == rows.back().truth;
+        }
       } catch (const std::invalid_argument& e) {
         throw hyselam::InputError(tours.frame(0, i).image, "", e.what());
       }
@@ -134,12 +145,15 @@ nlohmann::json run(Options& o) {
     }
   }
   const double all = static_cast<double>(rows.size());
+  nlohmann::json by_filter;
+  for (std::size_t k = 0; k < filters.size(); ++k) by_filter[filters[k].first] = right_by[k] / all;
   const nlohmann::json result = {{"accuracy", right / all},
                                  {"accuracy_frame_alone", right_alone / all},
                                  {"accuracy_with_transitions", right_with_second / all},
                                  {"frames", rows.size()},
                                  {"descriptive_frames", descriptive},
                                  {"novel_frames", novel},
+                                 {"accuracy_by_filter", by_filter},
                                  {"per_place", per_place},
                                  {"confusion", matrix},
                                  {"descriptor_ms", median(descriptor_ms)},
