@@ -7,6 +7,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
+#include "hyselam_topo/gr2to_updater.hpp"
 #include "hyselam_topo/thesis.hpp"
 
 namespace {
@@ -105,5 +106,93 @@ void Gr2ToVoronoi_UpdateScattered(benchmark::State& state) {
   voronoiUpdate(state, true);
 }
 BENCHMARK(Gr2ToVoronoi_UpdateScattered)->Unit(benchmark::kMillisecond);
+
+// ---- all of Gr2To: nine floors side by side, 5 cm, where a block of 1 % is cluttered and cleared
+// ----
+
+const hyselam::OccupancyGrid& nineFloors() {
+  static const hyselam::OccupancyGrid map = [] {
+    std::vector<hyselam::OccupancyGrid> floors;
+    int width = 0, height = 0;
+    for (std::uint64_t seed = 1; seed <= 9; ++seed) {
+      floors.push_back(hyselam_sim::rasterise(hyselam_sim::generatePlan(seed), 0.05, 0.0));
+      width = std::max(width, floors.back().geometry.width);
+      height = std::max(height, floors.back().geometry.height);
+    }
+    hyselam::GridGeometry g;
+    g.width = 3 * width;
+    g.height = 3 * height;
+    g.resolution = 0.05;
+    hyselam::OccupancyGrid out(g);
+    for (int k = 0; k < 9; ++k) {
+      const auto& floor = floors[static_cast<std::size_t>(k)];
+      for (int y = 0; y < floor.geometry.height; ++y) {
+        for (int x = 0; x < floor.geometry.width; ++x) {
+          out.at({x + k % 3 * width, y + k / 3 * height}) = floor.at({x, y});
+        }
+      }
+    }
+    return out;
+  }();
+  return map;
+}
+
+// Windows of 1 % of the cells all over the map, each with a few things put on the floor.
+std::vector<hyselam::OccupancyGrid> cluttered() {
+  std::vector<hyselam::OccupancyGrid> out;
+  hyselam::Rng rng(9);
+  const auto& map = nineFloors();
+  const auto upTo = [&](int n) {
+    return static_cast<int>(rng.below(static_cast<std::uint32_t>(n)));
+  };
+  const int w = map.geometry.width / 10, h = map.geometry.height / 10;
+  while (out.size() < 12) {
+    hyselam::OccupancyGrid next = map;
+    const int x0 = upTo(9 * w), y0 = upTo(9 * h);
+    int put = 0;
+    for (int k = 0; k < 8; ++k) {
+      // The first and the last in opposite corners.
+      const int bx = k == 0   ? x0
+                     : k == 7 ? x0 + w - 8
+                              : x0 + upTo(w - 8),
+                by = k == 0   ? y0
+                     : k == 7 ? y0 + h - 8
+                              : y0 + upTo(h - 8);
+      for (int y = by; y < by + 8; ++y) {
+        for (int x = bx; x < bx + 8; ++x) {
+          if (map.at({x, y}) != 0) continue;
+          next.at({x, y}) = hyselam::OccupancyGrid::kOccupied;
+          ++put;
+        }
+      }
+    }
+    if (put > 100) out.push_back(std::move(next));
+  }
+  return out;
+}
+
+void Gr2ToMap_FromScratch(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(gr2to(nineFloors()).map.places.size());
+}
+BENCHMARK(Gr2ToMap_FromScratch)->Unit(benchmark::kMillisecond);
+
+void Gr2ToMap_Update(benchmark::State& state) {
+  const auto maps = cluttered();
+  Gr2ToUpdater updater;
+  updater.update(nineFloors());
+  std::size_t i = 0;
+  double partial = 0.0, all = 0.0;
+  for (auto _ : state) {
+    const bool clear = i % 2 == 1;
+    benchmark::DoNotOptimize(
+        updater.update(clear ? nineFloors() : maps[i / 2 % maps.size()]).map.places.size());
+    ++i;
+    all += 1.0;
+    partial += updater.lastWay() == Gr2ToUpdater::Way::kPartial ? 1.0 : 0.0;
+  }
+  state.counters["in_part_share"] = partial / all;
+  state.SetLabel("baseline=Gr2ToMap_FromScratch");
+}
+BENCHMARK(Gr2ToMap_Update)->Unit(benchmark::kMillisecond);
 
 }  // namespace
