@@ -15,7 +15,7 @@ namespace ngram_slam {
 struct AlignmentParams {
   int max_shift = 20;        ///< delta_max: shifts of less than this are tried [observations], >= 1
   double min_overlap = 0.5;  ///< least share of the n terms that must exist for a shift, (0, 1]
-  WordDensity density = WordDensity::kSoft;  ///< which densities are compared
+  WordDensity density = WordDensity::kFull;  ///< which are compared; soft where full is missing
 
   /// @throws hyselam::ParameterError
   void validate() const;

@@ -27,7 +27,7 @@ RecogniserParams RecogniserParams::improved() {
   p.reverse = true;
   p.matcher.min_n.assign(static_cast<std::size_t>(p.levels), 3);
   p.with_probability = true;
-  p.min_probability = 0.7;
+  p.min_probability = 0.75;
   return p;
 }
 

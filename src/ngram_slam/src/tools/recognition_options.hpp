@@ -41,7 +41,7 @@ struct RecognitionOptions {
     app.add_option("--step", observations.step, "way between observations [m]");
     app.add_flag("--improved", improved,
                  "what goes beyond the thesis: --full-density with a --look-back of the kernel's "
-                 "radius and 0.5 m, --reverse, --min-n 3,3,3 and --min-probability 0.7, as far as "
+                 "radius and 0.5 m, --reverse, --min-n 3,3,3 and --min-probability 0.75, as far as "
                  "nothing else is given");
     app.add_flag("--reverse", recogniser.reverse,
                  "also find places travelled the other way before");
