@@ -192,5 +192,36 @@ TEST(Background, BadInputLeavesTheMapAsItWas) {
   EXPECT_EQ(outcomes.wait(4).error, "");
 }
 
+/// Two rooms of 4 m x 4 m with a door of 1 m, and a box at `x` of this size in the left one [m].
+OccupancyGrid rooms(double x, double size) {
+  hyselam::GridGeometry geometry;
+  geometry.width = 170;
+  geometry.height = 84;
+  geometry.resolution = 0.05;
+  OccupancyGrid grid(geometry, OccupancyGrid::kFree);
+  for (int row = 0; row < geometry.height; ++row) {
+    for (int column = 0; column < geometry.width; ++column) {
+      const auto c = geometry.centre({column, row});
+      const bool limit = c.x < 0.1 || c.x > 8.4 || c.y < 0.1 || c.y > 4.1;
+      const bool wall = c.x > 4.1 && c.x < 4.25 && (c.y < 1.5 || c.y > 2.5);
+      const bool box = c.x > x && c.x < x + size && c.y > 3.0 && c.y < 3.0 + size;
+      if (limit || wall || box) grid.at({column, row}) = OccupancyGrid::kOccupied;
+    }
+  }
+  return grid;
+}
+
+TEST(Background, UpdatesAreAsGoodAsStartsFromScratch) {
+  for (const int most_updates : {0, 2, 50}) {
+    const auto pipeline = BackgroundGr2To::updating(most_updates);
+    for (int i = 0; i < 6; ++i) {
+      const Gr2ToResult result = pipeline(rooms(1.0 + 0.2 * i, 0.3), {});
+      ASSERT_EQ(result.map.places.size(), 2u) << most_updates << " " << i;
+      ASSERT_EQ(result.map.edges.size(), 1u);
+      EXPECT_EQ(result.map.edges[0].doors.size(), 1u);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hyselam_topo

@@ -45,7 +45,12 @@ class BackgroundGr2To {
   };
 
   /// `done` is called in the thread after each input.
-  explicit BackgroundGr2To(std::function<void(const Outcome&)> done, Pipeline pipeline = gr2to);
+  BackgroundGr2To(std::function<void(const Outcome&)> done, Pipeline pipeline);
+
+  /// Gr2To that looks again only at the places around a change (Gr2ToUpdater), and after
+  /// `most_updates` of them at everything, because places far from the changes were not weighed
+  /// anew. 0: always at everything.
+  static Pipeline updating(int most_updates = 50);
   /// Waits for what is being done.
   ~BackgroundGr2To();
   BackgroundGr2To(const BackgroundGr2To&) = delete;

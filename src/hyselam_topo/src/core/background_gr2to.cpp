@@ -5,6 +5,7 @@
 #include <new>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_topo/gr2to_updater.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -17,6 +18,24 @@ bool sameGrid(const hyselam::OccupancyGrid& a, const hyselam::OccupancyGrid& b) 
 }
 
 }  // namespace
+
+BackgroundGr2To::Pipeline BackgroundGr2To::updating(int most_updates) {
+  struct Memory {
+    std::optional<Gr2ToUpdater> updater;
+    int updates = 0;  // since everything was looked at
+  };
+  return [memory = std::make_shared<Memory>(), most_updates](const hyselam::OccupancyGrid& grid,
+                                                             const Gr2ToParams& params) {
+    if (!memory->updater || memory->updates >= most_updates) {
+      memory->updater.emplace();
+      memory->updates = 0;
+    }
+    Gr2ToResult result = memory->updater->update(grid, params);
+    const bool everything = memory->updater->lastWay() == Gr2ToUpdater::Way::kFromScratch;
+    memory->updates = everything ? 0 : memory->updates + 1;
+    return result;
+  };
+}
 
 BackgroundGr2To::BackgroundGr2To(std::function<void(const Outcome&)> done, Pipeline pipeline)
     : on_done_(std::move(done)), pipeline_(std::move(pipeline)), thread_([this] { run(); }) {}

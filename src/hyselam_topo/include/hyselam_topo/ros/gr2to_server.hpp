@@ -24,7 +24,7 @@ class Gr2ToServer {
   /// Reads and checks the parameters of `private_nh`, before anything is subscribed.
   /// @throws hyselam::ParameterError; hyselam::InputError for `map_file`.
   Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
-              BackgroundGr2To::Pipeline pipeline = gr2to);
+              BackgroundGr2To::Pipeline pipeline = BackgroundGr2To::updating());
 
   const Gr2ToServerParams& params() const { return params_; }
   /// Other parameters from now on: the last input is segmented again.
