@@ -19,7 +19,11 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
+#include "hyselam_common/rng.hpp"
 #include "hyselam_common/tool.hpp"
+#include "hyselam_sim/generate_plan.hpp"
+#include "hyselam_sim/plan_geometry.hpp"
+#include "hyselam_sim/rasterise.hpp"
 
 namespace {
 
@@ -30,6 +34,8 @@ struct Options {
   int rounds = 4;
   std::vector<double> scales{1.0, 0.85, 1.2};
   double robot_weight = 2.0;
+  int plans = 24;
+  double plan_weight = 0.5;
   std::vector<int> without;
   BoostingParams boosting;
   SegmentationParams segmentation;
@@ -38,7 +44,7 @@ struct Options {
 /// A map at one scale, ready to be merged, and how the cells of its basins share out on the rooms.
 struct Example {
   std::string name, kind, building;
-  double scale = 1.0;
+  bool scored = true;
   PlaceGraph graph;
   std::vector<std::vector<int>> rooms;  // [basin][room], room 0: none
 };
@@ -115,6 +121,60 @@ Scores score(const std::vector<std::vector<int>>& places, int rooms) {
   return s;
 }
 
+/// `rooms`: CV_32S, row 0 lowest.
+Example prepare(const std::string& name, const std::string& kind, const std::string& building,
+                hyselam::OccupancyGrid grid, const cv::Mat& rooms, double scale,
+                const Options& options) {
+  grid.geometry.resolution *= scale;
+  const PreparedPlaces p = preparePlaces(grid, options.segmentation);
+  if (p.space.joined != 1 || p.space.split != 1)
+    throw hyselam::InputError(name, "resolution", "is not near the working resolution");
+  double most = 0;
+  cv::minMaxLoc(rooms, nullptr, &most);
+  Example e{
+      name, kind, building, scale == 1.0, PlaceGraph(p.clearance, p.basins, p.space.resolution),
+      {}};
+  e.rooms.assign(static_cast<std::size_t>(p.basins.count) + 1,
+                 std::vector<int>(static_cast<std::size_t>(most) + 1, 0));
+  for (int y = 0; y < rooms.rows; ++y)
+    for (int x = 0; x < rooms.cols; ++x) {
+      const int column = x - p.space.origin.x, row = y - p.space.origin.y;
+      if (row < 0 || column < 0 || row >= p.space.free.rows || column >= p.space.free.cols)
+        continue;
+      const int basin = p.basins.labels.at<int>(row, column);
+      if (basin != 0)
+        ++e.rooms[static_cast<std::size_t>(basin)][static_cast<std::size_t>(rooms.at<int>(y, x))];
+    }
+  return e;
+}
+
+/// One cell in a hundred free or occupied at random.
+hyselam::OccupancyGrid withNoise(hyselam::OccupancyGrid grid) {
+  hyselam::Rng rng(grid.cells.size());
+  for (std::int8_t& cell : grid.cells)
+    if (rng.below(100) == 0)
+      cell = rng.below(2) == 0 ? hyselam::OccupancyGrid::kFree : hyselam::OccupancyGrid::kOccupied;
+  return grid;
+}
+
+/// Floors of the simulator, every second one furnished, some turned. Tests and benches measure on
+/// the first seeds.
+std::pair<hyselam::OccupancyGrid, cv::Mat> generated(int i) {
+  hyselam_sim::PlanParams params;
+  params.furniture = i % 2 == 1;
+  params.rotation = i % 3 == 0 ? 0.0 : 0.13 * i;
+  const hyselam_sim::FloorPlan plan =
+      hyselam_sim::generatePlan(1001 + static_cast<std::uint64_t>(i), params);
+  const hyselam::OccupancyGrid grid = hyselam_sim::rasterise(plan, 0.05, 0.0);
+  cv::Mat rooms(grid.geometry.height, grid.geometry.width, CV_32S, cv::Scalar(0));
+  for (int y = 0; y < rooms.rows; ++y)
+    for (int x = 0; x < rooms.cols; ++x)
+      for (std::size_t k = 0; k < plan.places.size(); ++k)
+        if (hyselam_sim::contains(plan.places[k].outline, grid.geometry.centre({x, y})))
+          rooms.at<int>(y, x) = static_cast<int>(k) + 1;
+  return {grid, rooms};
+}
+
 std::vector<Example> load(const Options& options) {
   std::vector<Example> examples;
   const std::string index = options.data + "/index.csv";
@@ -132,34 +192,16 @@ std::vector<Example> load(const Options& options) {
     if (rooms.empty()) throw hyselam::InputError(options.data + "/" + fields[3], "", "is no image");
     cv::flip(rooms, rooms, 0);
     rooms.convertTo(rooms, CV_32S);
-    double most = 0;
-    cv::minMaxLoc(rooms, nullptr, &most);
-    for (const double scale : options.scales) {
-      hyselam::OccupancyGrid scaled = grid;
-      scaled.geometry.resolution *= scale;
-      const PreparedPlaces p = preparePlaces(scaled, options.segmentation);
-      if (p.space.joined != 1 || p.space.split != 1)
-        throw hyselam::InputError(fields[2], "resolution", "is not near the working resolution");
-      Example e{fields[0],
-                fields[5],
-                fields[6],
-                scale,
-                PlaceGraph(p.clearance, p.basins, p.space.resolution),
-                {}};
-      e.rooms.assign(static_cast<std::size_t>(p.basins.count) + 1,
-                     std::vector<int>(static_cast<std::size_t>(most) + 1, 0));
-      for (int y = 0; y < rooms.rows; ++y)
-        for (int x = 0; x < rooms.cols; ++x) {
-          const int column = x - p.space.origin.x, row = y - p.space.origin.y;
-          if (row < 0 || column < 0 || row >= p.space.free.rows || column >= p.space.free.cols)
-            continue;
-          const int basin = p.basins.labels.at<int>(row, column);
-          if (basin != 0)
-            ++e.rooms[static_cast<std::size_t>(basin)]
-                     [static_cast<std::size_t>(rooms.at<int>(y, x))];
-        }
-      examples.push_back(std::move(e));
-    }
+    for (const double scale : options.scales)
+      examples.push_back(prepare(fields[0], fields[5], fields[6], grid, rooms, scale, options));
+    examples.push_back(
+        prepare(fields[0], fields[5], fields[6], withNoise(grid), rooms, 1.0, options));
+    examples.back().scored = false;
+  }
+  for (int i = 0; i < options.plans; ++i) {
+    const auto [grid, rooms] = generated(i);
+    examples.push_back(prepare("generated " + std::to_string(i), "generated",
+                               "generated " + std::to_string(i % 4), grid, rooms, 1.0, options));
   }
   return examples;
 }
@@ -223,7 +265,9 @@ BoostedTrees fit(const std::vector<Example>& examples, const PerExample& samples
     all.values.insert(all.values.end(), samples[i].values.begin(), samples[i].values.end());
     all.one_place.insert(all.one_place.end(), samples[i].one_place.begin(),
                          samples[i].one_place.end());
-    const double share = (examples[i].kind == "robot" ? options.robot_weight : 1.0) /
+    const double share = (examples[i].kind == "robot"       ? options.robot_weight
+                          : examples[i].kind == "generated" ? options.plan_weight
+                                                            : 1.0) /
                          std::sqrt(weights[examples[i].name]);
     for (const double w : samples[i].weights) all.weights.push_back(w * share);
   }
@@ -234,7 +278,7 @@ void print(const char* title, const std::vector<Example>& examples,
            const std::vector<Scores>& scores, bool each) {
   std::map<std::string, std::vector<Scores>> kinds;
   for (std::size_t i = 0; i < examples.size(); ++i) {
-    if (examples[i].scale != 1.0) continue;
+    if (!examples[i].scored) continue;
     const Scores& s = scores[i];
     if (each)
       std::printf("  %-28s places %3.0f of %2zu  P %.3f R %.3f MCC %.3f F1 %.3f\n",
@@ -278,6 +322,8 @@ int main(int argc, char** argv) {
   app.add_option("--rounds", options.rounds, "times that the borders met are added");
   app.add_option("--scales", options.scales, "of the maps")->delimiter(',');
   app.add_option("--robot-weight", options.robot_weight, "of robot-built maps");
+  app.add_option("--plans", options.plans, "generated floors besides");
+  app.add_option("--plan-weight", options.plan_weight, "of generated floors");
   app.add_option("--without", options.without, "features")->delimiter(',');
   app.add_option("--trees", options.boosting.trees);
   app.add_option("--leaves", options.boosting.leaves);
