@@ -12,22 +12,28 @@
 #include "../test/random_texts.hpp"
 #include "../test/transcription/matching.hpp"
 #include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/reverse_matcher.hpp"
 
 namespace {
 
 using namespace ngram_slam;  // NOLINT: a bench, not a header
 
 enum class Place {
-  kCircuit,  // one corridor circuit of 24 words with doors, round and round (chapter 5)
-  kBuilding  // 40 different corridors of 24 words, visited in random order
+  kCircuit,      // one corridor circuit of 24 words with doors, round and round (chapter 5)
+  kBuilding,     // 40 different corridors of 24 words, visited in random order
+  kCircuitBoth,  // the same, every visit in one of both directions
+  kBuildingBoth
 };
+bool isCircuit(Place p) {
+  return p == Place::kCircuit || p == Place::kCircuitBoth;
+}
 
 /// Writes the way of a robot: real words with noise of sizes and angles. In one corridor out of
 /// three a door is open: three words instead of one.
 class Writer {
  public:
   Writer(Place place, std::uint64_t seed) : rng_(seed), place_(place) {
-    const std::size_t corridors = place == Place::kCircuit ? 1 : 40;
+    const std::size_t corridors = isCircuit(place) ? 1 : 40;
     for (std::size_t c = 0; c < corridors; ++c) {
       std::vector<Syllables> words;
       for (int i = 0; i < 24; ++i) {
@@ -45,7 +51,9 @@ class Writer {
   void write(Text& text) {
     if (pending_.empty()) {
       const auto& corridor = corridors_[corridor_];
-      const Syllables w = random_texts::noisy(corridor[at_], rng_, 0.08, 0.15);
+      const std::size_t at = backwards_ ? corridor.size() - 1 - at_ : at_;
+      Syllables w = random_texts::noisy(corridor[at], rng_, 0.08, 0.15);
+      if (backwards_) w.angle = -w.angle;
       if (w.size > 60 && rng_.below(3) == 0) {
         const std::uint32_t before = w.size / 4 + rng_.below(w.size / 3);
         pending_ = {{w.density_class, w.size - 6 - before, 0.0f},
@@ -57,6 +65,8 @@ class Writer {
       if (++at_ == corridor.size()) {
         at_ = 0;
         corridor_ = rng_.below(static_cast<std::uint32_t>(corridors_.size()));
+        const bool both = place_ == Place::kCircuitBoth || place_ == Place::kBuildingBoth;
+        backwards_ = both && rng_.below(2) == 0;
       }
     }
     text.push(pending_.back());
@@ -68,6 +78,7 @@ class Writer {
   Place place_;
   std::vector<std::vector<Syllables>> corridors_;
   std::size_t corridor_ = 0, at_ = 0;
+  bool backwards_ = false;
   std::vector<Syllables> pending_;
 };
 
@@ -78,18 +89,20 @@ double cpuSeconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+template <typename AnyMatcher>
 struct Situation {
   explicit Situation(Place place) : writer(place, 7), matcher(text) {}
   Writer writer;
   Text text{3};
-  Matcher matcher;
+  AnyMatcher matcher;
 };
 
 /// A text of so many words; kept from the smaller ones on, so that it is written only once.
-Situation& situation(Place place, std::size_t words) {
-  static std::map<Place, std::unique_ptr<Situation>> all;
+template <typename AnyMatcher>
+Situation<AnyMatcher>& situation(Place place, std::size_t words) {
+  static std::map<Place, std::unique_ptr<Situation<AnyMatcher>>> all;
   auto& s = all[place];
-  if (!s || s->text.words() > words + 50000) s = std::make_unique<Situation>(place);
+  if (!s || s->text.words() > words + 50000) s = std::make_unique<Situation<AnyMatcher>>(place);
   while (s->text.words() < words) {
     s->writer.write(s->text);
     s->matcher.skip();
@@ -105,9 +118,10 @@ void textLengths(benchmark::internal::Benchmark* b) {
   for (int words : {1000, 3000, 10000, 30000, 100000, 300000, 1000000}) b->Arg(words);
 }
 
+template <typename AnyMatcher>
 void oneWord(benchmark::State& state, Place place, const char* baseline) {
   const auto words = static_cast<std::size_t>(state.range(0));
-  Situation& s = situation(place, words);
+  auto& s = situation<AnyMatcher>(place, words);
   std::vector<double> ms;
   std::size_t matches = 0;
   const auto compared = s.matcher.counters().comparisons;
@@ -141,11 +155,26 @@ void oneWord(benchmark::State& state, Place place, const char* baseline) {
 }
 
 void OneWord_Circuit(benchmark::State& state) {
-  oneWord(state, Place::kCircuit, nullptr);
+  oneWord<Matcher>(state, Place::kCircuit, nullptr);
 }
 void OneWord_Building(benchmark::State& state) {
-  oneWord(state, Place::kBuilding, "OneWord_Building_Scan");
+  oneWord<Matcher>(state, Place::kBuilding, "OneWord_Building_Scan");
 }
+/// The same corridors both ways, and what the search the other way round costs by itself.
+void OneWord_CircuitReverse(benchmark::State& state) {
+  oneWord<ReverseMatcher>(state, Place::kCircuitBoth, nullptr);
+}
+void OneWord_BuildingReverse(benchmark::State& state) {
+  oneWord<ReverseMatcher>(state, Place::kBuildingBoth, nullptr);
+}
+BENCHMARK(OneWord_CircuitReverse)
+    ->Apply(textLengths)
+    ->Iterations(3000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(OneWord_BuildingReverse)
+    ->Apply(textLengths)
+    ->Iterations(3000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(OneWord_Circuit)->Apply(textLengths)->Iterations(3000)->Unit(benchmark::kMillisecond);
 BENCHMARK(OneWord_Building)->Apply(textLengths)->Iterations(3000)->Unit(benchmark::kMillisecond);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ngram_slam/gram_index.hpp"
+#include "ngram_slam/position_set.hpp"
 #include "ngram_slam/text.hpp"
 
 namespace ngram_slam {
@@ -103,19 +104,6 @@ class Matcher {
     std::uint32_t density_class, smallest, span;
     float angle;
   };
-  /// A set of positions.
-  struct Bits {
-    BlockVector<std::uint64_t> words;
-    bool has(Position p) const {
-      return p / 64 < words.size() && (words[p / 64] >> p % 64 & 1u) != 0;
-    }
-    void set(Position p) {
-      words.grow(p / 64 + 1);
-      words[p / 64] |= std::uint64_t{1} << p % 64;
-    }
-    void clear(Position p) { words[p / 64] &= ~(std::uint64_t{1} << p % 64); }
-    void clearAround(Position p) { words[p / 64] = 0; }
-  };
   /// How long the grams are that end at a position of the newer words and at an older one, for each
   /// pass. Ordered by the older position.
   struct Grams {
@@ -141,7 +129,7 @@ class Matcher {
   /// words in the last pass.
   struct Row {
     Grams grams;
-    Bits has;  // older positions
+    PositionSet has;  // older positions
   };
 
   Row& row(Position p) { return rows_[p % rows_.size()]; }
@@ -179,7 +167,7 @@ class Matcher {
   GramIndex index_;
   BlockVector<Begin> begins_;        // the real words, by position
   BlockVector<Begin> alternatives_;  // the others
-  Bits run_starts_;
+  PositionSet run_starts_;
   std::vector<Row> rows_;     // a ring over positions
   std::vector<Grams> found_;  // what one word adds, by the level of the older words; last: started
   Grams merged_;

@@ -9,6 +9,7 @@
 
 #include "ngram_slam/gram_index.hpp"
 #include "ngram_slam/matcher.hpp"
+#include "ngram_slam/position_set.hpp"
 
 namespace ngram_slam {
 
@@ -43,7 +44,10 @@ class ReverseMatcher {
     Position begin = 0;
     Lengths lengths{};
   };
-  using Row = std::vector<Grams>;  // ordered by `begin`
+  struct Row {
+    std::vector<Grams> grams;  // ordered by `begin`
+    PositionSet has;           // these
+  };
 
   Row& row(Position p) { return rows_[p % rows_.size()]; }
   void take(Position p, bool searching);
@@ -54,7 +58,6 @@ class ReverseMatcher {
   void enter(WordIndex newer, WordIndex older, const Lengths& lengths, bool report);
   void merge(Row& target);
   Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth, int levels);
-  static bool contains(const Row& row, Position begin);
 
   const Text& text_;
   MatcherParams params_;
@@ -62,7 +65,9 @@ class ReverseMatcher {
   int gram_;
   GramIndex index_;
   std::vector<Row> rows_;  // a ring over positions
-  Row found_;
+  std::vector<Grams> found_, merged_;
+  std::vector<Position> found_ends_;  // where the older words end that were followed
+  std::size_t started_from_ = 0;      // in found_
   Position next_ = 0;
   std::vector<GramIndex::Entry> part_;
   std::vector<WordIndex> candidates_;

@@ -81,7 +81,7 @@ void Matcher::take(Position p, bool searching) {
   begins_.push_back(beginOf(newest, text_.startsRun(p) ? Begin::kStartsRun : 0u));
   if (text_.startsRun(p)) run_starts_.set(p);
   Row& fresh = row(p);
-  for (Position end : fresh.grams.ends) fresh.has.clearAround(end);
+  for (Position end : fresh.grams.ends) fresh.has.clear(end);
   fresh.grams.clear();
   if (searching) search(newest, fresh, true);
 }
@@ -336,10 +336,10 @@ std::size_t Matcher::bytes() const {
   const auto of = [](const Grams& g) {
     return g.ends.capacity() * sizeof(Position) + g.lengths.capacity() * sizeof(std::uint16_t);
   };
-  std::size_t sum = index_.bytes() + begins_.bytes() + alternatives_.bytes() +
-                    run_starts_.words.bytes() + of(merged_);
+  std::size_t sum =
+      index_.bytes() + begins_.bytes() + alternatives_.bytes() + run_starts_.bytes() + of(merged_);
   for (const Grams& g : found_) sum += of(g);
-  for (const Row& r : rows_) sum += of(r.grams) + r.has.words.bytes();
+  for (const Row& r : rows_) sum += of(r.grams) + r.has.bytes();
   return sum;
 }
 

@@ -1,12 +1,16 @@
 #include "ngram_slam/reverse_matcher.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <string>
 
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
 namespace {
+constexpr std::size_t kMostTried = 4;  // candidates, by what may be followed
+constexpr std::size_t kAhead = 16;     // words that are being fetched
 std::uint16_t oneMore(std::uint16_t n) {
   return static_cast<std::uint16_t>(n == 65535 ? n : n + 1);
 }
@@ -52,13 +56,16 @@ void ReverseMatcher::take(Position p, bool searching) {
     for (WordIndex w = before.begin; w < before.end; ++w) index_.insert(w);
   }
   Row& fresh = row(p);
-  fresh.clear();
+  for (const Grams& g : fresh.grams) fresh.has.clear(g.begin);
+  fresh.grams.clear();
   if (searching) search(text_.realWord(p), fresh, true);
 }
 
 void ReverseMatcher::search(WordIndex newer, Row& target, bool report) {
   found_.clear();
+  found_ends_.clear();
   follow(newer, report);
+  started_from_ = found_.size();
   start(newer, report);
   merge(target);
 }
@@ -70,7 +77,12 @@ void ReverseMatcher::follow(WordIndex newer, bool report) {
   if (text_.startsRun(first)) return;
   const Syllables wanted = reversed(text_.syllables(newer));
   const int newer_level = text_.level(newer);
-  for (const Grams& g : row(first - 1)) {
+  const std::vector<Grams>& before = row(first - 1).grams;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    // Old words lie far apart in memory: they are fetched ahead.
+    if (i + 2 * kAhead < before.size()) text_.prefetchPosition(before[i + 2 * kAhead].begin - 1);
+    if (i + kAhead < before.size()) text_.prefetchWords(before[i + kAhead].begin - 1);
+    const Grams& g = before[i];
     if (text_.startsRun(g.begin)) continue;
     const WordRange older = text_.endingAt(g.begin - 1);
     for (WordIndex b = older.begin; b < older.end; ++b) {
@@ -82,32 +94,47 @@ void ReverseMatcher::follow(WordIndex newer, bool report) {
            ++k)
         longer[k] = oneMore(g.lengths[k]);
       enter(newer, b, longer, report);
+      found_ends_.push_back(g.begin - 1);
     }
   }
 }
 
-/// Finds the grams that have just become `gram_` words long.
+/// Finds the grams that have just become `gram_` words long, newest first, until there are enough.
 void ReverseMatcher::start(WordIndex newer, bool report) {
   const Position first = text_.first(newer);
   const Row* before = text_.startsRun(first) ? nullptr : &row(first - 1);
-  candidates_.clear();
+  const auto most = static_cast<std::size_t>(params_.max_followed);
+  // What is being followed already, in the order in which the older words end.
+  std::size_t older_followed = found_ends_.size(), enough = 0, tried = 0;
   index_.ask(newer);
-  while (index_.answer(part_))
-    for (GramIndex::Entry e : part_) {
-      const Position end = GramIndex::endOf(e);
+  while (enough < most && tried < kMostTried * most && index_.answer(part_)) {
+    candidates_.clear();
+    for (std::size_t i = 0; i < part_.size(); ++i) {
+      if (i + 2 * kAhead < part_.size())
+        text_.prefetchPosition(GramIndex::endOf(part_[i + 2 * kAhead]));
+      if (i + kAhead < part_.size()) text_.prefetchWords(GramIndex::endOf(part_[i + kAhead]));
+      const Position end = GramIndex::endOf(part_[i]);
       if (end >= first) continue;
       // Where a gram of enough words ended just before, it is being followed.
-      if (before != nullptr && !text_.startsRun(end + 1) && contains(*before, end + 1)) continue;
+      if (before != nullptr && before->has.has(end + 1) && !text_.startsRun(end + 1)) continue;
       WordIndex older;
-      if (text_.findEndingAt(end, GramIndex::levelOf(e), &older)) candidates_.push_back(older);
+      if (text_.findEndingAt(end, GramIndex::levelOf(part_[i]), &older))
+        candidates_.push_back(older);
     }
-  std::sort(candidates_.begin(), candidates_.end());
-  candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
-  for (WordIndex older : candidates_) {
-    const Lengths lengths = lengthsFromScratch(newer, older, gram_, text_.levels());
-    if (lengths[passes_ - 1] < gram_) continue;
-    ++counters_.started;
-    enter(newer, older, lengths, report);
+    std::sort(candidates_.begin(), candidates_.end(), std::greater<>());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    tried += candidates_.size();
+    for (WordIndex older : candidates_) {
+      for (; older_followed > 0 && found_ends_[older_followed - 1] > text_.last(older);
+           --older_followed)
+        ++enough;
+      if (enough >= most) break;
+      const Lengths lengths = lengthsFromScratch(newer, older, gram_, text_.levels());
+      if (lengths[passes_ - 1] < gram_) continue;
+      ++counters_.started;
+      ++enough;
+      enter(newer, older, lengths, report);
+    }
   }
 }
 
@@ -139,7 +166,7 @@ ReverseMatcher::Lengths ReverseMatcher::lengthsFromScratch(WordIndex newer, Word
 /// Matcher::complete does.
 void ReverseMatcher::complete(Position newer_end, Row& target) {
   const WordRange newer = text_.endingAt(newer_end);
-  for (Grams& g : target) {
+  for (Grams& g : target.grams) {
     int levels = 0;  // passes whose lengths may be too short; the higher ones have longer grams
     while (static_cast<std::size_t>(levels) < passes_ &&
            g.lengths[static_cast<std::size_t>(levels)] < gram_)
@@ -172,32 +199,45 @@ void ReverseMatcher::enter(WordIndex newer, WordIndex older, const Lengths& leng
 
 /// Adds what was found; of grams that meet the longest in each pass counts, of too many the newest.
 void ReverseMatcher::merge(Row& target) {
-  target.insert(target.end(), found_.begin(), found_.end());
-  std::sort(target.begin(), target.end(),
-            [](const Grams& a, const Grams& b) { return a.begin < b.begin; });
+  const auto earlier = [](const Grams& a, const Grams& b) { return a.begin < b.begin; };
+  // Both parts of what was found are nearly in order, the second from the newest on.
+  const auto started = found_.begin() + static_cast<std::ptrdiff_t>(started_from_);
+  std::reverse(started, found_.end());
+  const auto arrange = [&](std::vector<Grams>::iterator from, std::vector<Grams>::iterator to) {
+    for (auto g = from; g != to; ++g)
+      for (auto h = g; h != from && earlier(*h, *(h - 1)); --h) std::iter_swap(h, h - 1);
+  };
+  arrange(found_.begin(), started);
+  arrange(started, found_.end());
+  std::inplace_merge(found_.begin(), started, found_.end(), earlier);
+  merged_.clear();
+  merged_.reserve(target.grams.size() + found_.size());
+  std::merge(target.grams.begin(), target.grams.end(), found_.begin(), found_.end(),
+             std::back_inserter(merged_), earlier);
+  std::swap(target.grams, merged_);
+
+  std::vector<Grams>& grams = target.grams;
   std::size_t kept = 0;
-  for (const Grams& g : target) {
-    if (kept > 0 && target[kept - 1].begin == g.begin) {
-      Lengths& best = target[kept - 1].lengths;
+  for (const Grams& g : grams) {
+    if (kept > 0 && grams[kept - 1].begin == g.begin) {
+      Lengths& best = grams[kept - 1].lengths;
       for (std::size_t k = 0; k < passes_; ++k) best[k] = std::max(best[k], g.lengths[k]);
     } else {
-      target[kept++] = g;
+      target.has.set(g.begin);
+      grams[kept++] = g;
     }
   }
-  target.resize(kept);
+  grams.resize(kept);
   const auto most = static_cast<std::size_t>(params_.max_followed);
-  if (kept > most) target.erase(target.begin(), target.end() - static_cast<std::ptrdiff_t>(most));
-}
-
-bool ReverseMatcher::contains(const Row& row, Position begin) {
-  const auto at = std::lower_bound(row.begin(), row.end(), begin,
-                                   [](const Grams& g, Position p) { return g.begin < p; });
-  return at != row.end() && at->begin == begin;
+  if (kept <= most) return;
+  const auto many = static_cast<std::ptrdiff_t>(kept - most);
+  for (auto g = grams.begin(); g != grams.begin() + many; ++g) target.has.clear(g->begin);
+  grams.erase(grams.begin(), grams.begin() + many);
 }
 
 std::size_t ReverseMatcher::bytes() const {
-  std::size_t sum = index_.bytes() + found_.capacity() * sizeof(Grams);
-  for (const Row& r : rows_) sum += r.capacity() * sizeof(Grams);
+  std::size_t sum = index_.bytes() + (found_.capacity() + merged_.capacity()) * sizeof(Grams);
+  for (const Row& r : rows_) sum += r.grams.capacity() * sizeof(Grams) + r.has.bytes();
   return sum;
 }
 
