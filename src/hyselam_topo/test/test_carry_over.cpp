@@ -258,6 +258,15 @@ TEST(CarryOver, LostAndNewPlacesAreTold) {
   EXPECT_EQ(far.places[0].id, 4u);
 }
 
+TEST(CarryOver, TouchingIsNotEnough) {
+  const auto old = drawn({"aaaa......"});
+  EXPECT_EQ(carryOver(old, drawn({"..aaaaaaaa"})).places.at(0).id, 1u);
+  // One cell of four is less than 30 %.
+  CarryOverReport report;
+  EXPECT_EQ(carryOver(old, drawn({"...aaaaaaa"}), {}, &report).places.at(0).id, 2u);
+  EXPECT_EQ(report.lost, (std::vector<Id>{1}));
+}
+
 TEST(CarryOver, IdsAreNeverUsedAgain) {
   std::mt19937 rng(1);
   auto map = known();
