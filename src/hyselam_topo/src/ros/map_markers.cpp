@@ -193,7 +193,8 @@ void addWalls(const AugmentedTopologicalMap& map, Markers* markers) {
 
 /// The leaf, opened by a right angle about its first post, and the quarter circle it sweeps.
 void drawSwing(const Door& door, Marker* lines) {
-  const auto [hinge, latch] = ends(door);
+  const Segment posts = ends(door);
+  const Point2 hinge = posts.first, latch = posts.second;
   const Point2 along{latch.x - hinge.x, latch.y - hinge.y};
   const Point2 across{door.normal.x * door.width, door.normal.y * door.width};
   const auto at_angle = [&](double angle) {
