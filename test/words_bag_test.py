@@ -41,17 +41,24 @@ class WordsBagTest(unittest.TestCase):
         for ns in PLACES:
             # The last region becomes a word.
             assert rospy.ServiceProxy(f"/{ns}/words/start_run", Trigger)().success
-        out = os.path.join(cls.run_.folder.name, "offline")
-        subprocess.run(["rosrun", "ngram_slam", "words_offline", cls.run_.bag, "--out", out, "--min-n", "2,3,4",
-                        "--min-region", "3"], check=True, stdout=subprocess.DEVNULL)
-        cls.offline = {}
-        for name in ("words", "matches", "regions"):
-            with open(os.path.join(out, name + ".csv"), newline="") as file:
-                cls.offline[name] = list(csv.DictReader(file))
+        thesis = cls.write_offline("thesis", "--min-n", "2,3,4")
+        improved = cls.write_offline("improved", "--improved", "--min-probability", "0.01")
+        cls.offline = {"fsd": thesis, "node": thesis, "scan": improved}
         for ns in PLACES:
-            wait_until(lambda: len(cls.items(ns, "words", "words")) >= len(cls.offline["words"]), "words are missing")
-            wait_until(lambda: len(cls.items(ns, "semantic_regions", "regions")) >= len(cls.offline["regions"]),
+            wait_until(lambda: len(cls.items(ns, "words", "words")) >= len(cls.offline[ns]["words"]), "words are missing")
+            wait_until(lambda: len(cls.items(ns, "semantic_regions", "regions")) >= len(cls.offline[ns]["regions"]),
                        "regions are missing")
+
+    @classmethod
+    def write_offline(cls, name, *options):
+        out = os.path.join(cls.run_.folder.name, name)
+        subprocess.run(["rosrun", "ngram_slam", "words_offline", cls.run_.bag, "--out", out, "--min-region", "3", *options],
+                       check=True, stdout=subprocess.DEVNULL)
+        tables = {}
+        for table in ("words", "matches", "regions"):
+            with open(os.path.join(out, table + ".csv"), newline="") as file:
+                tables[table] = list(csv.DictReader(file))
+        return tables
 
     @classmethod
     def values(cls, node):
@@ -66,12 +73,12 @@ class WordsBagTest(unittest.TestCase):
         return [item for message in cls.heard[ns, topic].messages for item in getattr(message, field)]
 
     def test_words_are_those_of_the_tool(self):
-        self.assertGreater(len(self.offline["words"]), 60)
-        self.assertGreater(sum(row["level"] != "0" for row in self.offline["words"]), 10)
         for ns in PLACES:
+            self.assertGreater(len(self.offline[ns]["words"]), 60)
+            self.assertGreater(sum(row["level"] != "0" for row in self.offline[ns]["words"]), 10)
             words = self.items(ns, "words", "words")
-            self.assertEqual(len(words), len(self.offline["words"]), ns)
-            for word, row in zip(words, self.offline["words"]):
+            self.assertEqual(len(words), len(self.offline[ns]["words"]), ns)
+            for word, row in zip(words, self.offline[ns]["words"]):
                 self.assertEqual([word.index, word.level, word.first, word.last, word.run, word.density_class, word.size],
                                  [int(row[k]) for k in ("word", "level", "first", "last", "run", "class", "size")], ns)
                 self.assertAlmostEqual(word.stamp_begin.to_sec(), float(row["stamp_begin"]), places=6)
@@ -79,25 +86,28 @@ class WordsBagTest(unittest.TestCase):
                 self.assertAlmostEqual(word.angle, float(row["angle"]), places=4)
 
     def test_matches_are_those_of_the_tool(self):
-        self.assertGreater(len(self.offline["matches"]), 20)
+        self.assertIn("reverse", {row["direction"] for row in self.offline["scan"]["matches"]})
         for ns in PLACES:
+            self.assertGreater(len(self.offline[ns]["matches"]), 5)
             matches = self.items(ns, "word_matches", "matches")
-            self.assertEqual(len(matches), len(self.offline["matches"]), ns)
+            self.assertEqual(len(matches), len(self.offline[ns]["matches"]), ns)
             direction = {"same": WordMatch.SAME, "reverse": WordMatch.REVERSE}
-            for match, row in zip(matches, self.offline["matches"]):
+            for match, row in zip(matches, self.offline[ns]["matches"]):
                 self.assertEqual([match.newer, match.older, match.level, match.n, match.run_newer, match.run_older],
                                  [int(row[k]) for k in ("word_a", "word_b", "level", "n", "run_a", "run_b")], ns)
                 self.assertEqual(match.direction, direction[row["direction"]])
                 self.assertAlmostEqual(match.stamp_newer.to_sec(), float(row["stamp_a"]), places=6)
                 self.assertAlmostEqual(match.stamp_older.to_sec(), float(row["stamp_b"]), places=6)
-                self.assertAlmostEqual(match.alignment_rms, float(row["alignment_rms"]), places=5)
+                for value, name in ((match.alignment_rms, "alignment_rms"), (match.probability, "probability")):
+                    self.assertAlmostEqual(value, float(row[name]), places=5)
+                self.assertEqual(f"{match.chance:.4g}", f"{float(row['chance']):.4g}")
 
     def test_regions_are_those_of_the_tool(self):
-        self.assertGreater(len(self.offline["regions"]), 10)
         for ns in PLACES:
+            self.assertGreater(len(self.offline[ns]["regions"]), 10)
             regions = self.items(ns, "semantic_regions", "regions")
-            self.assertEqual(len(regions), len(self.offline["regions"]), ns)
-            for region, row in zip(regions, self.offline["regions"]):
+            self.assertEqual(len(regions), len(self.offline[ns]["regions"]), ns)
+            for region, row in zip(regions, self.offline[ns]["regions"]):
                 self.assertEqual([region.class_name, region.first, region.last],
                                  [row["class"], int(row["first"]), int(row["last"])], ns)
                 self.assertAlmostEqual(region.confidence, float(row["confidence"]), places=4)

@@ -13,11 +13,11 @@ using hyselam::Range;
 namespace {
 
 void loadMinN(ParamLoader& loader, RecogniserParams& p) {
+  const std::vector<int>& known = p.matcher.min_n;
+  const int step = known.back() > known.front() ? 3 : 0;
   std::vector<double> least;
-  for (int l = 0; l < p.levels; ++l)
-    least.push_back(static_cast<std::size_t>(l) < p.matcher.min_n.size()
-                        ? p.matcher.min_n[static_cast<std::size_t>(l)]
-                        : least.back() + 3);
+  for (std::size_t l = 0; l < static_cast<std::size_t>(p.levels); ++l)
+    least.push_back(l < known.size() ? known[l] : least.back() + step);
   loader.get("min_n", least, Range::between(1, 65535), static_cast<std::size_t>(p.levels),
              "least words of a match, one number per level");
   if (least.size() != static_cast<std::size_t>(p.levels))
@@ -72,9 +72,15 @@ void loadCorpus(ParamLoader& loader, WordsServerParams& p) {
 
 WordsServerParams loadWordsParams(ParamLoader& loader) {
   WordsServerParams p;
+  std::string preset = "thesis";
+  loader.get("preset", preset, {"thesis", "improved"},
+             "defaults of what is recognised; improved needs input scan");
+  if (preset == "improved") p.recogniser = RecogniserParams::improved();
   std::string input = "fsd_observation";
   loader.get("input", input, {"fsd_observation", "scan"}, "topic that observations are made from");
   p.from_scan = input == "scan";
+  if (preset == "improved" && !p.from_scan)
+    throw ParameterError("preset", "'improved'", "'thesis' unless input is scan");
   fsd_localization::loadScanInput(loader, p.input);
   loader.get("bandwidth", p.sensor.bandwidth, Range::between(0.2, 50.0),
              "[m] radius of the uniform kernel");
@@ -83,6 +89,7 @@ WordsServerParams loadWordsParams(ParamLoader& loader) {
              "[m/cell] of the local map; with input scan");
   loader.get("usable_range", p.sensor.usable_range, Range::atLeast(0.0),
              "[m] beams say nothing beyond it; 0: all that fits the local map; with input scan");
+  if (preset == "improved") p.sensor.look_back = p.sensor.bandwidth + 0.5;
   loader.get("look_back", p.sensor.look_back, Range::between(0.0, 20.0),
              "[m] driven before a second look at a spot, for word_density full; with input scan");
   if (!p.from_scan && p.sensor.look_back > 0.0)
