@@ -35,7 +35,7 @@ struct SemanticParams {
   /// seen so many times in a row. 0: never, as in the thesis.
   int shortest_stretch = 6;  ///< [observations], >= 0
   /// Fewer frontiers at the rim of a region are no reason to divide it up to this length.
-  int widest_rim = 12;  ///< [observations], >= 0
+  int widest_rim = 10;  ///< [observations], >= 0
   /// Where the density stands and the robot turns by more than this, the bend is a region of its
   /// own. Infinite: never, as in the thesis.
   double bend = hyselam::radians(45.0);  ///< [rad], > 0
