@@ -117,13 +117,22 @@ void frameToPlace(benchmark::State& state, const std::string& name, Kernel kerne
   options.descriptor = name;
   options.classifier.kernel = kernel;
   if (kernel == Kernel::kExemplar) options.views = {0.0, -0.09, 0.09, -0.18, 0.18};
+  std::vector<cv::Mat> scenes;  // small: training needs no more
+  for (std::size_t place = 0; place < kPlaces; ++place) {
+    scenes.emplace_back();
+    cv::resize(scene(place), scenes.back(), cv::Size(160, 120), 0.0, 0.0, cv::INTER_AREA);
+  }
   const Model model = train(
       {kPlaces * kPerPlace},
       [&](std::size_t, std::size_t i) {
+        // One scene per place, turned a little from frame to frame, some pixels new each time.
         const std::size_t place = i / kPerPlace;
-        cv::Mat image;  // one scene per place, turned a little from frame to frame
-        cv::resize(shifted(scene(place), 0.004 * static_cast<double>(i % kPerPlace)), image,
-                   cv::Size(320, 240));
+        cv::Mat image = shifted(scenes[place], 0.004 * static_cast<double>(i % kPerPlace)).clone();
+        hyselam::Rng rng(i);
+        for (int k = 0; k < 4000; ++k) {
+          image.ptr<std::uint8_t>(static_cast<int>(rng.below(120)))[rng.below(480)] =
+              static_cast<std::uint8_t>(rng.below(256));
+        }
         return TrainingFrame{image, {}, "place " + std::to_string(place)};
       },
       options);

@@ -15,11 +15,13 @@ DescriptiveKind descriptiveKind(const std::string& name);
 
 struct DescriptiveParams {
   DescriptiveKind kind = DescriptiveKind::kNone;
-  int min_features = 10;  ///< minSIFT of the text; of corners likewise
+  /// Images with fewer features tell nothing; 0: 10 SIFT features (6.4.4), or 20 corners, which
+  /// part the same images.
+  int min_features = 0;
 };
 
 /// SIFT features counted as in the text, or FAST corners of the image at a quarter of its pixels,
-/// which cost a hundredth of it. Keeps its buffers between frames.
+/// which cost a few hundredths of it. Keeps its buffers between frames.
 class DescriptiveFilter {
  public:
   /// Throws hyselam::ParameterError.

@@ -17,7 +17,7 @@ FilterKind filterKind(const std::string& name);
 struct PlaceFilterParams {
   FilterKind kind = FilterKind::kMarkov;
   double alpha = 2.0;      ///< Eq. 6.15, 0 or more
-  double rho1 = 1.0;       ///< Eq. 6.23, above 0
+  double rho1 = 0.5;       ///< Eq. 6.23, above 0
   double rho2 = 1.0;       ///< Eq. 6.23, 0 or more
   double stay_min = 0.05;  ///< least probability of staying, Eq. 6.24, 0 to 1
   double stay = 0.93;      ///< Bayes: probability of staying from one frame to the next, 0 to 1

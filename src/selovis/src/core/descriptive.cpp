@@ -26,6 +26,9 @@ DescriptiveFilter::DescriptiveFilter(const DescriptiveParams& params) : params_(
   if (params.min_features < 0) {
     throw hyselam::ParameterError("min_features", params.min_features, "0 or more");
   }
+  if (params_.min_features == 0) {
+    params_.min_features = params.kind == DescriptiveKind::kSift ? 10 : 20;
+  }
   if (params.kind == DescriptiveKind::kCorners) {
     detector_ = cv::FastFeatureDetector::create(kCornerContrast);
   } else if (params.kind == DescriptiveKind::kSift) {

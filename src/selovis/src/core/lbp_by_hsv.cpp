@@ -199,7 +199,7 @@ class DepthLbp : public Descriptor {
 };
 
 constexpr int kScanBins = 61;
-constexpr float kScanWeight = 0.9f;
+constexpr float kScanWeight = 2.0f;
 
 /// psi, [psi], An, scan.
 class ReadingsTerm : public Descriptor {
@@ -226,7 +226,7 @@ class ReadingsTerm : public Descriptor {
       const float max = static_cast<float>(params_.range_max);
       for (int i = 0; i < n_; ++i) {
         const float d = std::min(means_[i], max) / max;
-        // The scan as a whole weighs about as much as one level of LGOP.
+        // Squared distances of scans then count half as much as those of LGOP.
         out[i] = static_cast<float>(params_.range_weight) *
                  (kind_ == 's' ? kScanWeight * d / kScanBins : d);
       }
