@@ -61,7 +61,7 @@ std::string plainSpelling(std::string name) {
   return name;
 }
 
-/// So weighted, the squared distances (of square roots) between two views of GIST are half those of
+/// So weighted, squared distances (of square roots) between two images are as large in GIST as in
 /// LGOP.
 constexpr float kGistWeight = 0.09f;
 
@@ -69,7 +69,7 @@ DescriptorPtr makeTerm(const std::string& name, const DescriptorParams& params) 
   if (name == "GLANCE") {
     std::vector<DescriptorPtr> terms;
     terms.push_back(makeGradientPyramid("LGOP"));
-    terms.push_back(makeValueGist(kGistWeight));
+    terms.push_back(makeHuelessGist(kGistWeight));
     return std::make_unique<Joined>(std::move(terms));
   }
   if (auto d = makeLbpByHsv(name, params)) return d;

@@ -14,8 +14,8 @@ DescriptorPtr makeLbpByHsv(const std::string& name, const DescriptorParams& para
 DescriptorPtr makeDepthLbp(const std::string& name, const DescriptorParams& params);
 DescriptorPtr makeLbpBaseline(const std::string& name, const DescriptorParams& params);
 DescriptorPtr makeGist(const std::string& name);
-/// V-GIST with all values multiplied by `weight`.
-DescriptorPtr makeValueGist(float weight);
+/// SV-GIST with all values multiplied by `weight`.
+DescriptorPtr makeHuelessGist(float weight);
 DescriptorPtr makeBagOfFeatures(const std::string& name);
 DescriptorPtr makeGradientPyramid(const std::string& name);
 DescriptorPtr makeReadingsTerm(const std::string& name, const DescriptorParams& params);

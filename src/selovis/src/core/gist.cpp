@@ -17,9 +17,9 @@ constexpr double kPi = 3.14159265358979323846;
 
 class Gist : public Descriptor {
  public:
-  /// Of the three HSV channels, or of the brightness V alone, which a grey image has as well.
-  Gist(int side, bool value_only, float weight)
-      : side_(side), value_only_(value_only), weight_(weight) {
+  /// Of the three HSV channels, or of saturation and brightness alone.
+  Gist(int side, bool without_hue, float weight)
+      : side_(side), without_hue_(without_hue), weight_(weight) {
     int index = 0;
     for (int scale = 0; scale < 3; ++scale) {
       for (int o = 0; o < kOrientations[scale]; ++o, ++index) {
@@ -37,37 +37,23 @@ class Gist : public Descriptor {
     }
   }
 
-  int size() const override { return (value_only_ ? 1 : 3) * kPerChannel; }
+  int size() const override { return (without_hue_ ? 2 : 3) * kPerChannel; }
 
   void compute(const cv::Mat& image, const Readings&, float* out) override {
-    int count = 3;
-    if (value_only_ && image.type() == CV_8UC1) {
-      cv::resize(image, channels_[0], cv::Size(side_, side_), 0.0, 0.0, cv::INTER_AREA);
-      count = 1;
-    } else {
-      requireColor(image, value_only_ ? "V-GIST" : "HSV-GIST");
-      cv::resize(image, small_, cv::Size(side_, side_), 0.0, 0.0, cv::INTER_AREA);
-      if (value_only_) {
-        cv::extractChannel(small_, channels_[0], 0);
-        for (int c = 1; c < 3; ++c) {
-          cv::extractChannel(small_, channels_[c], c);
-          cv::max(channels_[0], channels_[c], channels_[0]);
-        }
-        count = 1;
-      } else {
-        cv::cvtColor(small_, hsv_, cv::COLOR_BGR2HSV);
-        cv::split(hsv_, channels_);
-      }
-    }
-    for (int c = 0; c < count; ++c) {
-      channels_[c].convertTo(plane_, CV_32F, c == 0 && !value_only_ ? 1.0 / 180.0 : 1.0 / 255.0);
+    requireColor(image, without_hue_ ? "SV-GIST" : "HSV-GIST");
+    cv::resize(image, small_, cv::Size(side_, side_), 0.0, 0.0, cv::INTER_AREA);
+    cv::cvtColor(small_, hsv_, cv::COLOR_BGR2HSV);
+    for (int c = without_hue_ ? 1 : 0; c < 3; ++c) {
+      cv::extractChannel(hsv_, channel_, c);
+      channel_.convertTo(plane_, CV_32F, c == 0 ? 1.0 / 180.0 : 1.0 / 255.0);
       normalise();
       cv::dft(plane_, spectrum_, cv::DFT_COMPLEX_OUTPUT);
       for (int f = 0; f < kFilters; ++f) {
         multiply(filters_[static_cast<std::size_t>(f)]);
         cv::dft(product_, response_, cv::DFT_INVERSE | cv::DFT_SCALE);
-        pool(out + c * kPerChannel + f * kBlocks * kBlocks);
+        pool(out + f * kBlocks * kBlocks);
       }
+      out += kPerChannel;
     }
   }
 
@@ -135,18 +121,18 @@ class Gist : public Descriptor {
   }
 
   int side_;
-  bool value_only_;
+  bool without_hue_;
   float weight_;
   std::vector<cv::Mat> filters_;
-  cv::Mat low_pass_, small_, hsv_, plane_, spectrum_, product_, response_, smooth_, square_;
-  cv::Mat channels_[3];
+  cv::Mat low_pass_, small_, hsv_, channel_, plane_, spectrum_, product_, response_, smooth_,
+      square_;
 };
 
 }  // namespace
 
 DescriptorPtr makeGist(const std::string& name) {
   if (name == "HSV-GIST") return std::make_unique<Gist>(32, false, 1.0f);
-  if (name == "V-GIST") return std::make_unique<Gist>(32, true, 1.0f);
+  if (name == "SV-GIST") return std::make_unique<Gist>(32, true, 1.0f);
   const int side = numberAfter(name, "HSV-GIST", 8, 256);
   if (side > 0 && side % kBlocks != 0) {
     throw std::invalid_argument("descriptor '" + name + "': the side must be a multiple of 4");
@@ -154,7 +140,7 @@ DescriptorPtr makeGist(const std::string& name) {
   return side > 0 ? std::make_unique<Gist>(side, false, 1.0f) : nullptr;
 }
 
-DescriptorPtr makeValueGist(float weight) {
+DescriptorPtr makeHuelessGist(float weight) {
   return std::make_unique<Gist>(32, true, weight);
 }
 
