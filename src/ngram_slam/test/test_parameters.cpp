@@ -1,0 +1,113 @@
+// What is written about parameters is what the code does: README.md and config/words.yaml hold
+// every parameter of Words with its default.
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "ngram_slam/ros/parameters.hpp"
+
+using namespace ngram_slam;  // NOLINT: a test, not a header
+using hyselam::MapParamSource;
+using hyselam::ParamLoader;
+using Values = std::map<std::string, XmlRpc::XmlRpcValue>;
+
+namespace {
+
+std::string written(const std::string& file) {
+  return hyselam::readTextFile(std::string(NGRAM_SLAM_SOURCE_DIR) + "/" + file);
+}
+
+WordsServerParams load(const Values& values, std::string* table = nullptr) {
+  ParamLoader loader(std::make_shared<MapParamSource>(values));
+  const WordsServerParams p = loadWordsParams(loader);
+  if (table != nullptr) *table = loader.table();
+  return p;
+}
+
+/// Names and defaults, out of the table that the server logs.
+std::map<std::string, std::string> defaults() {
+  static const std::regex row(R"(\n  (\w+) = (\[[^\]]*\]|'[^']*'|\S+)  \()");
+  std::string table;
+  load({}, &table);
+  std::map<std::string, std::string> all;
+  for (std::sregex_iterator i(table.begin(), table.end(), row), end; i != end; ++i)
+    all[(*i)[1]] = std::regex_replace((*i)[2].str(), std::regex("'"), "");
+  return all;
+}
+
+std::string escaped(const std::string& text) {
+  return std::regex_replace(text, std::regex(R"([.\[\]+*()^$|?\\])"), R"(\$&)");
+}
+
+std::string refusal(const Values& values) {
+  return hyselam::testing::messageOf<hyselam::ParameterError>([&] { load(values); });
+}
+
+}  // namespace
+
+TEST(Written, readmeHasEveryParameter) {
+  const std::string readme = written("README.md");
+  const auto all = defaults();
+  EXPECT_GT(all.size(), 25U);
+  for (const auto& [name, value] : all) {
+    const std::string cell = value.empty() ? "\\(empty\\)" : escaped(value);
+    EXPECT_TRUE(std::regex_search(readme, std::regex("\\| `" + name + "` \\| " + cell + " \\|")))
+        << name << " = " << value;
+  }
+}
+
+TEST(Written, parameterFileHasEveryParameterAndNoOther) {
+  const std::string yaml = written("config/words.yaml");
+  const auto all = defaults();
+  // These are arguments of the launch file.
+  const std::set<std::string> arguments = {"input", "bandwidth", "corpus", "odom_frame_id",
+                                           "base_frame_id"};
+  const std::regex line("\n([a-z_]+): +(\\[[^\\]]*\\]|[^ \n]+)");
+  std::set<std::string> found;
+  for (std::sregex_iterator i(yaml.begin(), yaml.end(), line), end; i != end; ++i) {
+    const std::string name = (*i)[1], value = (*i)[2];
+    ASSERT_EQ(all.count(name), 1u) << name;
+    found.insert(name);
+    if (name == "angle_tolerance") {
+      EXPECT_NEAR(std::stod(value), std::stod(all.at(name)), 1e-5);
+    } else if (std::isdigit(static_cast<unsigned char>(value[0])) != 0) {
+      EXPECT_EQ(std::stod(value), std::stod(all.at(name))) << name;
+    } else {
+      EXPECT_EQ(value, all.at(name)) << name;
+    }
+  }
+  for (const auto& [name, value] : all)
+    EXPECT_EQ(found.count(name) + arguments.count(name), 1u) << name;
+}
+
+TEST(WordsParameters, aPresetSetsDefaultsThatCanBeChanged) {
+  const WordsServerParams thesis = load({});
+  EXPECT_EQ(thesis.recogniser.matcher.min_n, (std::vector<int>{7, 10, 13}));
+  EXPECT_FALSE(thesis.recogniser.reverse);
+  const WordsServerParams improved =
+      load({{"preset", "improved"}, {"input", "scan"}, {"bandwidth", 4.0}});
+  const RecogniserParams expected = RecogniserParams::improved();
+  EXPECT_EQ(improved.recogniser.matcher.min_n, expected.matcher.min_n);
+  EXPECT_EQ(improved.recogniser.min_probability, expected.min_probability);
+  EXPECT_TRUE(improved.recogniser.reverse && improved.recogniser.with_probability);
+  EXPECT_EQ(improved.recogniser.word_density, WordDensity::kFull);
+  EXPECT_EQ(improved.sensor.look_back, 4.5);
+  const WordsServerParams changed =
+      load({{"preset", "improved"}, {"input", "scan"}, {"min_probability", 0.5}, {"levels", 5}});
+  EXPECT_EQ(changed.recogniser.min_probability, 0.5);
+  EXPECT_EQ(changed.recogniser.matcher.min_n, (std::vector<int>{3, 3, 3, 3, 3}));
+  EXPECT_EQ(load({{"levels", 4}}).recogniser.matcher.min_n, (std::vector<int>{7, 10, 13, 16}));
+  EXPECT_EQ(load({{"levels", 1}}).recogniser.matcher.min_n, (std::vector<int>{7}));
+}
+
+TEST(WordsParameters, impossibleOnesAreNamed) {
+  EXPECT_NE(refusal({{"preset", "improved"}}).find("preset"), std::string::npos);
+  EXPECT_NE(refusal({{"look_back", 2.0}}).find("look_back"), std::string::npos);
+  EXPECT_NE(refusal({{"max_followed", 0}}).find("max_followed"), std::string::npos);
+  EXPECT_NE(refusal({{"levels", 17}}).find("levels"), std::string::npos);
+  EXPECT_NE(refusal({{"gui_publish_rate", 0.0}}).find("gui_publish_rate"), std::string::npos);
+  EXPECT_NE(refusal({{"corpus", "/no/such/folder/c"}}).find("corpus"), std::string::npos);
+}
