@@ -32,7 +32,7 @@ struct SegmentationParams {
   /// Finer grids are joined, coarser ones split to about this [m], 0.01 .. 0.25; what is known
   /// about borders was learnt at 0.05.
   double working_resolution = 0.05;
-  double clutter = 0.4;  ///< obstacles up to this across that stand free do not part places [m]
+  double clutter = 0.7;  ///< obstacles up to this across that stand free do not part places [m]
   double smallest_place = 1.0;  ///< [m^2]
 };
 

@@ -64,9 +64,8 @@ void clean(FreeSpace& space, const cv::Mat& occupied) {
   // Lonely cells are noise. Now, or they would make the gap to the next wall look like a leak; one
   // more solid neighbour is allowed for pairs of them.
   cv::Mat around;
-  const cv::Mat ring = (cv::Mat_<float>(3, 3) << 1, 1, 1, 1, 0, 1, 1, 1, 1) / 8.0f;
-  cv::filter2D(free, around, -1, ring, {-1, -1}, 0.0, cv::BORDER_CONSTANT);
-  cv::compare(around, 255 * 13 / 16, around, cv::CMP_GT);
+  cv::boxFilter(free, around, -1, {3, 3}, {-1, -1}, true, cv::BORDER_CONSTANT);
+  cv::compare(around, 255 * 13 / 18, around, cv::CMP_GT);
   cv::bitwise_or(free, around, free);
 
   // Where a map was seen by few rays, free and unknown cells mingle: the majority decides.

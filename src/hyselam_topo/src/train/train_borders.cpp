@@ -157,6 +157,36 @@ hyselam::OccupancyGrid withNoise(hyselam::OccupancyGrid grid) {
   return grid;
 }
 
+/// Map and rooms turned about the middle.
+std::pair<hyselam::OccupancyGrid, cv::Mat> turned(const hyselam::OccupancyGrid& grid,
+                                                  const cv::Mat& rooms, double degrees) {
+  const cv::Mat cells(grid.geometry.height, grid.geometry.width, CV_8S,
+                      const_cast<std::int8_t*>(grid.cells.data()));
+  cv::Mat values;
+  cells.convertTo(values, CV_8U, 1.0, 1.0);  // unknown becomes 0
+  const cv::Point2f middle(0.5f * static_cast<float>(cells.cols - 1),
+                           0.5f * static_cast<float>(cells.rows - 1));
+  cv::Mat m = cv::getRotationMatrix2D(middle, degrees, 1.0);
+  const double c = std::abs(m.at<double>(0, 0)), s = std::abs(m.at<double>(0, 1));
+  const cv::Size size(static_cast<int>(std::ceil(cells.cols * c + cells.rows * s)) + 2,
+                      static_cast<int>(std::ceil(cells.cols * s + cells.rows * c)) + 2);
+  m.at<double>(0, 2) += 0.5 * (size.width - cells.cols);
+  m.at<double>(1, 2) += 0.5 * (size.height - cells.rows);
+  cv::Mat new_values, new_rooms, small_rooms;
+  cv::warpAffine(values, new_values, m, size, cv::INTER_NEAREST);
+  rooms.convertTo(small_rooms, CV_16U);
+  cv::warpAffine(small_rooms, new_rooms, m, size, cv::INTER_NEAREST);
+  new_rooms.convertTo(new_rooms, CV_32S);
+  hyselam::GridGeometry g = grid.geometry;
+  g.width = size.width;
+  g.height = size.height;
+  hyselam::OccupancyGrid out(g);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      out.at({x, y}) = static_cast<std::int8_t>(new_values.at<std::uint8_t>(y, x) - 1);
+  return {out, new_rooms};
+}
+
 /// Floors of the simulator, every second one furnished, some turned. Tests and benches measure on
 /// the first seeds.
 std::pair<hyselam::OccupancyGrid, cv::Mat> generated(int i) {
@@ -196,6 +226,10 @@ std::vector<Example> load(const Options& options) {
       examples.push_back(prepare(fields[0], fields[5], fields[6], grid, rooms, scale, options));
     examples.push_back(
         prepare(fields[0], fields[5], fields[6], withNoise(grid), rooms, 1.0, options));
+    examples.back().scored = false;
+    const auto [turned_grid, turned_rooms] = turned(grid, rooms, 31.0);
+    examples.push_back(
+        prepare(fields[0], fields[5], fields[6], turned_grid, turned_rooms, 1.0, options));
     examples.back().scored = false;
   }
   for (int i = 0; i < options.plans; ++i) {
