@@ -292,7 +292,8 @@ TEST_F(Evaluator, drawsASimilarityMatrix) {
       blue += p == cv::Vec3b(170, 90, 20);
       grey += p == cv::Vec3b(190, 190, 190);
     }
-  EXPECT_GT(blue, 1000u);
+  // 256 of each are the legend.
+  EXPECT_GT(blue, 600u);
   EXPECT_GT(grey, 1000u);
 }
 
