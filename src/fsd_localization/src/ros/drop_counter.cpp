@@ -18,7 +18,8 @@ void DropCounter::drop(const std::string& reason, const std::string& detail) {
   const ros::WallTime now = ros::WallTime::now();
   if (tally.count > 1 && (now - tally.told).toSec() < kTellEvery) return;
   tally.told = now;
-  ROS_WARN_STREAM(who_ << " " << what_ << " dropped, " << last_ << " (" << tally.count << " so far)");
+  ROS_WARN_STREAM(who_ << " " << what_ << " dropped, " << last_ << " (" << tally.count
+                       << " so far)");
 }
 
 std::size_t DropCounter::count(const std::string& reason) const {

@@ -225,7 +225,7 @@ void loadInitialPose(ParamLoader& loader, LocalizationServerParams& p) {
 }  // namespace
 
 void loadRate(ParamLoader& loader, const std::string& name, double& value,
-             const std::string& meaning) {
+              const std::string& meaning) {
   loader.get(name, value, Range::between(-1.0, 1000.0), meaning);
   if (value != -1.0 && !(value > 0.0))
     throw ParameterError(name, value, "-1, or > 0 and <= 1000 Hz");
@@ -253,7 +253,7 @@ FsdServerParams loadFsdParams(ParamLoader& loader) {
              "of the kernel's perimeter, to be a frontier");
   loadLocalMap(loader, p.sensor.local_map);
   loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
-          "[Hz] of local_map and fsd_markers; -1: no limit");
+           "[Hz] of local_map and fsd_markers; -1: no limit");
   loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");
   p.sensor.validate();
   return p;
@@ -280,7 +280,7 @@ LocalizationServerParams loadLocalizationParams(ParamLoader& loader) {
              "[s] tf is dated this far ahead");
   loadRate(loader, "save_pose_rate", p.save_pose_rate, "[Hz] -1: never");
   loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
-          "[Hz] of particlecloud, local_map, fsd_markers; -1: no limit");
+           "[Hz] of particlecloud, local_map, fsd_markers; -1: no limit");
   loader.get("max_cloud_particles", p.max_cloud_particles, Range::between(1, 1e7),
              "in particlecloud; of more, a fair sample");
   loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");
