@@ -165,12 +165,18 @@ TEST_F(Tools, wordsOfflineWritesWordsMatchesAndCorpus) {
             0u);
   EXPECT_EQ(static_cast<std::size_t>(std::count(words.begin(), words.end(), '\n')),
             1 + j["words"].get<std::size_t>() + j["alternative_words"].get<std::size_t>());
-  EXPECT_EQ(matches.rfind("stamp_a,stamp_b,level,n,direction,", 0), 0u);
+  EXPECT_EQ(matches.rfind("stamp_a,stamp_b,level,n,direction,x,y,theta,verified,", 0), 0u);
+  EXPECT_NE(matches.find(",same,0,0,0,0,"), std::string::npos);
+  const std::string regions = fileBytes(d / "a/regions.csv");
+  EXPECT_EQ(regions.rfind("first,last,stamp_begin,stamp_end,class,confidence\n0,", 0), 0u);
+  EXPECT_NE(regions.find("," + std::to_string(j["observations"].get<int>() - 1) + ","),
+            std::string::npos);
   EXPECT_EQ(CorpusFile::load(d / "c").observations.size(), j["observations"].get<std::uint32_t>());
   // The same input gives the same bytes.
   ASSERT_EQ(run("words_offline " + d / "r.bag" + options + "--out " + d / "b"), 0) << errors;
   EXPECT_EQ(fileBytes(d / "b/words.csv"), words);
   EXPECT_EQ(fileBytes(d / "b/matches.csv"), matches);
+  EXPECT_EQ(fileBytes(d / "b/regions.csv"), regions);
 }
 
 TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
