@@ -39,7 +39,7 @@ struct OptimizeParams {
   int max_iterations = 200;    ///< linear systems solved at most, >= 1
   double tolerance = 1e-6;     ///< stop when a step promises less than this part of the cost, > 0
   double dcs_phi = 5.0;        ///< squared error from which DCS takes weight, > 0
-  double gnc_inlier = 11.345;  ///< squared error that a true edge keeps below, > 0 (chi^2, 99 %)
+  double gnc_inlier = 16.266;  ///< squared error that a true edge keeps below, > 0 (chi^2, 99.9 %)
   /// kBest: an edge that is turned by more than this at the minimum [rad, > 0] makes it doubtful
   /// and asks for the global relaxation, which takes some hundred times as long.
   double doubtful_turn = 1.0;

@@ -63,7 +63,8 @@ CholeskyPattern analysePattern(int variables, const std::vector<std::pair<int, i
   CholeskyPattern p;
   p.size = variables;
   std::vector<int> order(n);
-  if (variables > 0 &&
+  for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<int>(i);
+  if (!a.neighbour.empty() &&
       amd_order(variables, a.begin.data(), a.neighbour.data(), order.data(), nullptr, nullptr) < 0)
     throw std::runtime_error("AMD found no order of elimination");
   p.position.resize(n);

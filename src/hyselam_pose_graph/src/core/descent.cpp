@@ -1,5 +1,7 @@
 #include "descent.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace hyselam_pose_graph {
@@ -85,6 +87,36 @@ bool Descent::descend(Poses* poses, int steps) {
     if (damping > 1e12) return false;
   }
   return false;
+}
+
+bool Descent::judgeAt(const Poses& poses) {
+  system_.linearise(poses, weights, 0.0, &h_, &b_);
+  return factorPoses(&h_);
+}
+
+double Descent::innovation(const SystemEdge& edge, const Poses& poses) const {
+  if (system_.part(edge.from) != system_.part(edge.to)) return 0.0;  // nothing contradicts
+  const PoseSystem::Jacobian j = PoseSystem::jacobian(
+      edge, poses[static_cast<std::size_t>(edge.from)], poses[static_cast<std::size_t>(edge.to)]);
+  const int from = system_.row(edge.from), to = system_.row(edge.to);
+  Eigen::Matrix3d open = Eigen::Matrix3d::Zero();  // covariance of the error by the graph
+  std::vector<PoseSystem::Vector> x(static_cast<std::size_t>(system_.rows()));
+  for (int c = 0; c < 3; ++c) {
+    std::fill(x.begin(), x.end(), PoseSystem::Vector{});
+    for (int k = 0; k < 3; ++k) {
+      if (from >= 0) x[static_cast<std::size_t>(from)][k] = j.from(c, k);
+      if (to >= 0) x[static_cast<std::size_t>(to)][k] = j.to(c, k);
+    }
+    h_.solve(&x);
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) {
+        if (from >= 0) open(r, c) += j.from(r, k) * x[static_cast<std::size_t>(from)][k];
+        if (to >= 0) open(r, c) += j.to(r, k) * x[static_cast<std::size_t>(to)][k];
+      }
+  }
+  // e^T (open + W^-1)^-1 e = e^T W (open W + 1)^-1 e: W need not have an inverse.
+  const Eigen::Matrix3d spread = j.information * open + Eigen::Matrix3d::Identity();
+  return j.error.dot(spread.partialPivLu().solve(j.information * j.error));
 }
 
 }  // namespace hyselam_pose_graph

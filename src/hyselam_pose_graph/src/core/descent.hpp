@@ -28,6 +28,13 @@ class Descent {
   /// Descends at most `steps` steps. True when the tolerance was reached.
   bool descend(Poses* poses, int steps);
 
+  /// Takes `poses` for the minimum: what innovation() is judged at. False if the edges do not
+  /// determine them.
+  bool judgeAt(const Poses& poses);
+  /// The squared error of an edge that is not in the graph, by its own information and by what the
+  /// graph leaves open between its two poses: chi^2 with three degrees of freedom if it is true.
+  double innovation(const SystemEdge& edge, const Poses& poses) const;
+
  private:
   bool step(const Poses& poses, double damping, double* promised);
   bool leap(Poses* poses, int steps);

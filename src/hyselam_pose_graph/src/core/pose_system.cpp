@@ -128,6 +128,18 @@ void PoseSystem::turnCosts(const std::vector<SystemPose>& poses, std::vector<dou
   }
 }
 
+PoseSystem::Jacobian PoseSystem::jacobian(const SystemEdge& edge, const SystemPose& from,
+                                          const SystemPose& to) {
+  const Residual r = residual(edge, from, to);
+  Jacobian j;
+  j.error << r.ex, r.ey, r.et;
+  j.from << -from.c, -from.s, r.py, from.s, -from.c, -r.px, 0.0, 0.0, -1.0;
+  j.to << from.c, from.s, 0.0, -from.s, from.c, 0.0, 0.0, 0.0, 1.0;
+  j.information << edge.w[0], edge.w[1], edge.w[3], edge.w[1], edge.w[2], edge.w[4], edge.w[3],
+      edge.w[4], edge.w[5];
+  return j;
+}
+
 template <bool kFromRotations>
 void PoseSystem::fill(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
                       BlockCholesky<Block3>* h, std::vector<Vector>* b) const {

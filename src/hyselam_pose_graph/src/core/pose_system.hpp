@@ -50,6 +50,13 @@ class PoseSystem {
   void edgeCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const;
   /// The same of their angles alone.
   void turnCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const;
+  /// Error of an edge, turned as SystemEdge has it, and its derivatives by the two poses.
+  struct Jacobian {
+    Eigen::Vector3d error;
+    Eigen::Matrix3d from, to, information;
+  };
+  static Jacobian jacobian(const SystemEdge& edge, const SystemPose& from, const SystemPose& to);
+
   /// H = J^T Omega J + damping diag(H), b = -J^T Omega e at `poses`.
   void linearise(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
                  double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const;

@@ -1,0 +1,265 @@
+// The optimiser against dense and library solutions, against what is known of published graphs, and
+// against graphs that lie.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_pose_graph/g2o_file.hpp"
+#include "hyselam_pose_graph/graph_optimizer.hpp"
+#include "random_graphs.hpp"
+
+namespace {
+
+using namespace hyselam_pose_graph;  // NOLINT: a test
+using hyselam::Pose2;
+
+/// Appendix B written down plainly: dense matrices, numeric derivatives, full steps. The first pose
+/// is held fast.
+std::vector<Pose2> denseGaussNewton(const PoseGraph& graph, std::vector<Pose2> poses, int steps,
+                                    Eigen::MatrixXd* information = nullptr) {
+  const auto n = static_cast<Eigen::Index>(poses.size());
+  for (int step = 0; step < steps; ++step) {
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(3 * n);
+    for (const PoseEdge& edge : graph.edges) {
+      const int at[2] = {edge.from, edge.to};
+      Eigen::Matrix<double, 3, 6> j;
+      const auto error = [&](int which, int coordinate, double d) {
+        Pose2 p[2] = {poses[static_cast<std::size_t>(edge.from)],
+                      poses[static_cast<std::size_t>(edge.to)]};
+        (coordinate == 0 ? p[which].x : coordinate == 1 ? p[which].y : p[which].theta) += d;
+        return edgeError(edge, p[0], p[1]);
+      };
+      for (int w = 0; w < 2; ++w)
+        for (int k = 0; k < 3; ++k) {
+          Eigen::Vector3d d = error(w, k, 1e-6) - error(w, k, -1e-6);
+          d[2] = hyselam::normalizeAngle(d[2]);
+          j.col(3 * w + k) = d / 2e-6;
+        }
+      const Eigen::Vector3d e = error(0, 0, 0.0);
+      for (int a = 0; a < 2; ++a) {
+        g.segment<3>(3 * at[a]) += j.middleCols<3>(3 * a).transpose() * edge.information * e;
+        for (int b = 0; b < 2; ++b)
+          h.block<3, 3>(3 * at[a], 3 * at[b]) +=
+              j.middleCols<3>(3 * a).transpose() * edge.information * j.middleCols<3>(3 * b);
+      }
+    }
+    const Eigen::Index m = 3 * n - 3;
+    if (information != nullptr) *information = h.bottomRightCorner(m, m);
+    const Eigen::VectorXd x = h.bottomRightCorner(m, m).ldlt().solve(-g.tail(m));
+    for (Eigen::Index i = 1; i < n; ++i) {
+      Pose2& p = poses[static_cast<std::size_t>(i)];
+      p.x += x[3 * i - 3];
+      p.y += x[3 * i - 2];
+      p.theta = hyselam::normalizeAngle(p.theta + x[3 * i - 1]);
+    }
+  }
+  return poses;
+}
+
+double worst(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    worst = std::max(
+        {worst, distance(a[i], b[i]), std::abs(hyselam::normalizeAngle(a[i].theta - b[i].theta))});
+  return worst;
+}
+
+TEST(GraphOptimizer, EqualsDenseGaussNewton) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const auto known = random_graphs::streets(25, 0.03, seed);
+    OptimizeParams params;
+    params.start = GraphStart::kGiven;
+    params.method = GraphMethod::kGaussNewton;
+    params.tolerance = 1e-14;
+    params.max_iterations = 20;
+    const OptimizeResult r = GraphOptimizer(known.graph).optimize(params);
+    EXPECT_LT(worst(r.poses, denseGaussNewton(known.graph, known.graph.poses, 20)), 1e-6) << seed;
+    EXPECT_NEAR(r.final_cost, graphCost(known.graph, r.poses), 1e-9 * (1.0 + r.final_cost));
+  }
+}
+
+TEST(GraphOptimizer, EveryStartEndsAtTheSameMinimum) {
+  const auto known = random_graphs::streets(300, 0.02, 7);
+  std::vector<double> costs;
+  for (const GraphStart start :
+       {GraphStart::kGiven, GraphStart::kComposed, GraphStart::kChordal, GraphStart::kBest}) {
+    OptimizeParams params;
+    params.start = start;
+    const OptimizeResult r = GraphOptimizer(known.graph).optimize(params);
+    EXPECT_TRUE(r.converged);
+    costs.push_back(r.final_cost);
+  }
+  for (const double c : costs) EXPECT_NEAR(c, costs[0], 1e-5 * costs[0]);
+}
+
+TEST(GraphOptimizer, NeedsNoGuess) {
+  auto known = random_graphs::streets(400, 0.02, 3);
+  const OptimizeResult good = GraphOptimizer(known.graph).optimize();
+  hyselam::Rng rng(5);
+  for (std::size_t i = 1; i < known.graph.poses.size(); ++i)
+    known.graph.poses[i] = {100.0 * rng.uniform(), 100.0 * rng.uniform(),
+                            6.0 * rng.uniform() - 3.0};
+  const OptimizeResult r = GraphOptimizer(known.graph).optimize();
+  EXPECT_NEAR(r.final_cost, good.final_cost, 1e-6 * good.final_cost);
+  EXPECT_LT(worst(r.poses, good.poses), 1e-4);
+}
+
+TEST(GraphOptimizer, GlobalRelaxationFindsWhatDescentMisses) {
+  // Rotations so noisy that some of these graphs mislead the chordal start.
+  int better = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const auto known = random_graphs::streets(400, 0.5, seed);
+    OptimizeParams chordal;
+    chordal.start = GraphStart::kChordal;
+    const double descended = GraphOptimizer(known.graph).optimize(chordal).final_cost;
+    const OptimizeResult best = GraphOptimizer(known.graph).optimize();
+    EXPECT_LE(best.final_cost, descended * (1.0 + 1e-6)) << seed;
+    if (best.final_cost < 0.99 * descended) ++better;
+  }
+  EXPECT_GE(better, 1);
+}
+
+TEST(GraphOptimizer, FalseLoopsAreRefused) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto known = random_graphs::streets(300, 0.01, seed);
+    const OptimizeResult clean = GraphOptimizer(known.graph).optimize();
+    const std::size_t true_edges = known.graph.edges.size();
+    hyselam::Rng rng(seed + 100);
+    for (int k = 0; k < 40; ++k) {
+      const auto a = static_cast<int>(rng.below(140)), b = 150 + static_cast<int>(rng.below(140));
+      PoseEdge e = random_graphs::measured(a, b, known.truth, 0.01, &rng);
+      e.measured = e.measured * Pose2{3.0 + 5.0 * rng.uniform(), -4.0, 1.0};
+      known.graph.edges.push_back(e);
+    }
+    OptimizeParams params;
+    params.robust = GraphRobust::kGnc;
+    const OptimizeResult r = GraphOptimizer(known.graph).optimize(params);
+    for (std::size_t k = true_edges; k < r.weights.size(); ++k) EXPECT_LT(r.weights[k], 0.01) << k;
+    // True loops keep their weight, but for the one in a thousand that chance makes look false.
+    int lost = 0;
+    for (std::size_t k = 0; k < true_edges; ++k) lost += r.weights[k] < 0.5 ? 1 : 0;
+    EXPECT_LE(lost, 1) << seed;
+    EXPECT_LT(worst(r.poses, clean.poses), 0.05) << seed;
+    EXPECT_GT(worst(GraphOptimizer(known.graph).optimize().poses, clean.poses), 0.5)
+        << "the false loops do no harm: the test shows nothing";
+  }
+}
+
+TEST(GraphOptimizer, DcsWeakensAFalseLoop) {
+  auto known = random_graphs::streets(60, 0.01, 4);
+  const OptimizeResult clean = GraphOptimizer(known.graph).optimize();
+  PoseEdge e = known.graph.edges.back();
+  e.from = 5;
+  e.to = 40;
+  e.measured = {30.0, 0.0, 2.0};
+  known.graph.edges.push_back(e);
+  OptimizeParams params;
+  params.robust = GraphRobust::kDcs;
+  const OptimizeResult r = GraphOptimizer(known.graph).optimize(params);
+  EXPECT_LT(r.weights.back(), 0.01);
+  EXPECT_LT(worst(r.poses, clean.poses), 0.05);
+}
+
+TEST(GraphOptimizer, CovariancesEqualTheDenseInverse) {
+  const auto known = random_graphs::streets(30, 0.02, 11);
+  const GraphOptimizer optimizer(known.graph);
+  const OptimizeResult r = optimizer.optimize();
+  Eigen::MatrixXd information;
+  denseGaussNewton(known.graph, r.poses, 1, &information);
+  const Eigen::MatrixXd covariance = information.inverse();
+  const auto found = optimizer.covariances(r.poses, {0, 7, 29});
+  EXPECT_EQ(found[0], Eigen::Matrix3d::Zero());
+  for (const auto& [pose, at] : {std::pair{7, 1}, std::pair{29, 2}}) {
+    const Eigen::Matrix3d expected = covariance.block<3, 3>(3 * pose - 3, 3 * pose - 3);
+    EXPECT_LT((found[static_cast<std::size_t>(at)] - expected).norm(), 1e-4 * expected.norm());
+  }
+  EXPECT_THROW(optimizer.covariances(r.poses, {30}), std::invalid_argument);
+}
+
+TEST(GraphOptimizer, PartsThatNothingTiesStayWhereTheyAre) {
+  PoseGraph graph;
+  graph.ids = {0, 1, 2, 3, 4};
+  graph.poses = {{1, 2, 0.5}, {}, {7, 7, 1}, {}, {9, 9, 2}};
+  PoseEdge e;
+  e.measured = {1, 0, 0};
+  e.from = 0;
+  e.to = 1;
+  graph.edges.push_back(e);
+  e.from = 2;
+  e.to = 3;
+  graph.edges.push_back(e);
+  const OptimizeResult r = GraphOptimizer(graph).optimize();
+  EXPECT_NEAR(r.final_cost, 0.0, 1e-12);
+  for (const std::size_t held : {0u, 2u, 4u})
+    EXPECT_LT(distance(r.poses[held], graph.poses[held]), 1e-12);
+  EXPECT_LT(worst({r.poses[3]}, {graph.poses[2] * Pose2{1, 0, 0}}), 1e-9);
+}
+
+TEST(GraphOptimizer, OnePoseAndNoEdgeIsSolved) {
+  PoseGraph graph;
+  graph.ids = {4};
+  graph.poses = {{1, 2, 3}};
+  EXPECT_EQ(GraphOptimizer(graph).optimize().final_cost, 0.0);
+}
+
+TEST(GraphOptimizer, SameInputSameBytes) {
+  const auto known = random_graphs::streets(200, 0.3, 2);
+  const auto a = GraphOptimizer(known.graph).optimize().poses;
+  const auto b = GraphOptimizer(known.graph).optimize().poses;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].x, b[i].x);
+    EXPECT_EQ(a[i].theta, b[i].theta);
+  }
+}
+
+TEST(GraphOptimizer, RefusesBrokenGraphsAndParameters) {
+  auto known = random_graphs::streets(10, 0.02, 1);
+  auto broken = known.graph;
+  broken.edges[0].to = 10;
+  EXPECT_THROW(GraphOptimizer{broken}, std::invalid_argument);
+  broken = known.graph;
+  broken.edges[0].information(0, 0) = -1.0;
+  EXPECT_THROW(GraphOptimizer{broken}, std::invalid_argument);
+  broken = known.graph;
+  broken.edges[0].measured.x = std::nan("");
+  EXPECT_THROW(GraphOptimizer{broken}, std::invalid_argument);
+  broken = known.graph;
+  broken.edges[0].to = broken.edges[0].from;
+  EXPECT_THROW(GraphOptimizer{broken}, std::invalid_argument);
+  OptimizeParams params;
+  params.tolerance = 0.0;
+  EXPECT_THROW(GraphOptimizer(known.graph).optimize(params), hyselam::ParameterError);
+}
+
+struct Published {
+  const char* name;
+  double cost;
+};
+class PublishedGraph : public testing::TestWithParam<Published> {};
+
+TEST_P(PublishedGraph, BestKnownCostIsReached) {
+  const auto folder = hyselam::testing::dataDirectory();
+  HYSELAM_NEED_DATA(data);
+  const OptimizeResult r =
+      GraphOptimizer(readG2o(data + "/posegraphs/" + GetParam().name + ".g2o.gz")).optimize();
+  EXPECT_TRUE(r.converged);
+  EXPECT_LT(r.final_cost, GetParam().cost * 1.0001);
+}
+
+// Costs by Gauss-Newton from certified optima of the relaxed problem.
+INSTANTIATE_TEST_SUITE_P(
+    All, PublishedGraph,
+    testing::Values(Published{"M3500", 137.91295}, Published{"M3500a", 912.11501},
+                    Published{"M3500c", 2554.7324}, Published{"manhattanOlson3500", 146.07661},
+                    Published{"manhattan_sesync", 3549.0368}, Published{"city10000", 511.98516},
+                    Published{"intel", 45.004696}, Published{"input_INTEL", 215.83024},
+                    Published{"MITb", 41.163269}, Published{"CSAIL", 40.555129},
+                    Published{"FR079", 37.598468}, Published{"ring", 11.163101},
+                    Published{"ais2klinik", 172.81558}, Published{"kitti_00", 98.322012},
+                    Published{"kitti_02", 78.764327}),
+    [](const auto& published) { return published.param.name; });
+
+}  // namespace
