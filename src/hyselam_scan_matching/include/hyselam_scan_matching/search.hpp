@@ -33,8 +33,8 @@ class SearchGrid {
   /// @throws hyselam::ParameterError
   SearchGrid(const SurfaceMap& map, const SearchParams& params = {});
 
-  /// The best pose of the window around `guess`, nothing if its score is below `least_score`. Equal
-  /// scores: the first in order of headings, then y, then x.
+  /// The best pose of the window around `guess`, nothing if its score is below `least_score`.
+  /// The same scan, map and guess give the same pose.
   std::optional<Found> search(const SurfacePoints& scan, const hyselam::Pose2& guess) const;
 
  private:

@@ -1,0 +1,231 @@
+// Surfaces, their map, refinement and search, in rooms whose walls are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_scan_matching/refine.hpp"
+#include "hyselam_scan_matching/search.hpp"
+
+namespace {
+
+using namespace hyselam_scan_matching;  // NOLINT: a test
+using hyselam::Pose2;
+
+/// A room of 8 x 5 m with a pillar, the origin at a corner; what a laser all round sees from
+/// `pose`.
+hyselam::LaserScan roomScan(const Pose2& pose) {
+  struct Box {
+    double x0, y0, x1, y1;
+  };
+  const Box boxes[] = {{0, 0, 8, 5}, {5, 1, 5.6, 1.9}};
+  hyselam::LaserScan scan;
+  scan.angle_min = -hyselam::kPi;
+  scan.angle_increment = hyselam::kPi / 180.0;
+  scan.range_min = 0.01;
+  scan.range_max = 50.0;
+  for (int i = 0; i < 360; ++i) {
+    const double a = pose.theta + scan.angle_min + i * scan.angle_increment;
+    const double c = std::cos(a), s = std::sin(a);
+    double best = 50.0;
+    for (const Box& b : boxes) {
+      for (const double x : {b.x0, b.x1}) {
+        const double t = (x - pose.x) / c, y = pose.y + t * s;
+        if (t > 1e-9 && t < best && y >= b.y0 && y <= b.y1) best = t;
+      }
+      for (const double y : {b.y0, b.y1}) {
+        const double t = (y - pose.y) / s, x = pose.x + t * c;
+        if (t > 1e-9 && t < best && x >= b.x0 && x <= b.x1) best = t;
+      }
+    }
+    scan.ranges.push_back(static_cast<float>(best));
+  }
+  return scan;
+}
+
+SurfaceMap roomMap() {
+  SurfaceMap map;
+  for (const Pose2& p : {Pose2{2, 2, 0}, Pose2{6.5, 3, 1}, Pose2{7, 1, 2}, Pose2{3, 4, -1}})
+    map.insert(p, surfacePoints(roomScan(p)));
+  map.finish();
+  return map;
+}
+
+TEST(Surface, NormalsFaceTheLaser) {
+  const Pose2 at{3, 2, 0.3};
+  const SurfacePoints points = transformed(at, surfacePoints(roomScan(at)));
+  ASSERT_GT(points.size(), 100u);
+  int told = 0;
+  for (const SurfacePoint& p : points) {
+    if (!p.hasNormal()) continue;
+    ++told;
+    EXPECT_GT(p.nx * (at.x - p.x) + p.ny * (at.y - p.y), 0.0);
+    if (p.y < 1e-3 && p.x > 0.5 && p.x < 4.5) {
+      EXPECT_NEAR(p.ny, 1.0, 1e-3);
+    }
+  }
+  EXPECT_GT(told, 80);
+}
+
+TEST(Surface, SaysNothingOfReadingsThatAreNone) {
+  hyselam::LaserScan scan = roomScan({3, 2, 0});
+  for (std::size_t i = 0; i < scan.ranges.size(); i += 4)
+    scan.ranges[i] = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 1; i < scan.ranges.size(); i += 4)
+    scan.ranges[i] = std::numeric_limits<float>::infinity();
+  for (const SurfacePoint& p : surfacePoints(scan))
+    EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.nx));
+  scan.ranges.clear();
+  EXPECT_TRUE(surfacePoints(scan).empty());
+}
+
+TEST(SurfaceMap, NearestEqualsLookingAtAll) {
+  const SurfaceMap map = roomMap();
+  hyselam::Rng rng(1);
+  for (int k = 0; k < 5000; ++k) {
+    SurfacePoint p{10.0 * rng.uniform() - 1.0, 7.0 * rng.uniform() - 1.0, 0.0, 0.0};
+    const double a = 6.3 * rng.uniform(), radius = 0.05 + rng.uniform();
+    p.nx = std::cos(a);
+    p.ny = std::sin(a);
+    double best = radius * radius;
+    for (const SurfacePoint& q : map.points()) {
+      if (p.nx * q.nx + p.ny * q.ny < 0.0) continue;
+      best = std::min(best, (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y));
+    }
+    const SurfacePoint* found = map.nearest(p, radius);
+    if (best >= radius * radius) {
+      EXPECT_EQ(found, nullptr);
+      continue;
+    }
+    ASSERT_NE(found, nullptr);
+    EXPECT_DOUBLE_EQ(std::pow(p.x - found->x, 2) + std::pow(p.y - found->y, 2), best);
+  }
+}
+
+TEST(SurfaceMap, EmptyAndFarAwayPointsAreNoTrouble) {
+  SurfaceMap map;
+  map.finish();
+  EXPECT_EQ(map.nearest({0, 0, 0, 0}, 1.0), nullptr);
+  map.insert({}, {{0, 0, 1, 0}, {1e9, 0, 1, 0}, {std::nan(""), 0, 1, 0}});
+  map.finish();
+  EXPECT_EQ(map.size(), 1u);
+  EXPECT_THROW(SurfaceMap(0.0), hyselam::ParameterError);
+}
+
+TEST(Refine, FindsThePoseFromGuessesNearby) {
+  const SurfaceMap map = roomMap();
+  hyselam::Rng rng(3);
+  for (int k = 0; k < 100; ++k) {
+    const Pose2 truth{1.0 + 3.0 * rng.uniform(), 1.0 + 3.0 * rng.uniform(), 6.0 * rng.uniform()};
+    const Pose2 guess = truth * Pose2{0.3 * rng.uniform() - 0.15, 0.3 * rng.uniform() - 0.15,
+                                      0.2 * rng.uniform() - 0.1};
+    const Refined r = refine(surfacePoints(roomScan(truth)), map, guess);
+    EXPECT_LT(distance(r.pose, truth), 0.01) << k;
+    EXPECT_LT(std::abs(hyselam::normalizeAngle(r.pose.theta - truth.theta)), 0.005) << k;
+    EXPECT_GT(r.matched, 0.8);
+    EXPECT_TRUE((r.information - r.information.transpose()).norm() < 1e-9 * r.information.norm());
+  }
+}
+
+TEST(Refine, ABareCorridorTellsNothingAlong) {
+  SurfaceMap map;
+  SurfacePoints walls;
+  for (int i = -200; i <= 200; ++i) {
+    walls.push_back({i * 0.05, 1.0, 0.0, -1.0});
+    walls.push_back({i * 0.05, -1.0, 0.0, 1.0});
+  }
+  map.insert({}, walls);
+  map.finish();
+  SurfacePoints seen;
+  for (const SurfacePoint& p : walls)
+    if (std::abs(p.x) < 4.0) seen.push_back(p);
+  Eigen::Matrix3d odometry = Eigen::Vector3d(100, 100, 100).asDiagonal();
+  const Refined r = refine(seen, map, {0.4, 0.1, 0.02}, odometry);
+  EXPECT_NEAR(r.pose.x, 0.4, 0.02);  // odometry's word counts
+  EXPECT_NEAR(r.pose.y, 0.0, 0.005);
+  EXPECT_NEAR(r.pose.theta, 0.0, 0.002);
+  EXPECT_LT(r.information(0, 0), 1e-3 * r.information(1, 1));
+}
+
+TEST(Refine, NothingToMatchGivesTheGuessBack) {
+  const Refined a = refine({}, roomMap(), {1, 2, 3});
+  SurfaceMap nothing;
+  nothing.finish();
+  const Refined b = refine(surfacePoints(roomScan({3, 2, 0})), nothing, {1, 2, 3});
+  for (const Refined* r : {&a, &b}) {
+    EXPECT_EQ(r->pose.y, 2.0);
+    EXPECT_EQ(r->matched, 0.0);
+  }
+  RefineParams bad;
+  bad.last_radius = 1.0;
+  EXPECT_THROW(bad.validate(), hyselam::ParameterError);
+}
+
+/// The score of every pose of the window, one by one.
+double bestByLookingAtAll(const SurfaceMap& map, const SurfacePoints& scan, const Pose2& guess,
+                          SearchParams params) {
+  params.window = params.resolution;  // a window of a cell each way ...
+  const double window = 0.4, turn = params.turn;
+  params.turn = 0.0;
+  double far = 1.0;
+  for (const SurfacePoint& p : scan) far = std::max(far, std::hypot(p.x, p.y));
+  const double step = std::max(params.resolution / far, 0.002);
+  const int turns = static_cast<int>(std::ceil(turn / step));
+  const int cells = static_cast<int>(std::ceil(window / params.resolution));
+  params.least_score = 0.0;
+  const SearchGrid grid(map, params);
+  double best = 0.0;
+  for (int t = -turns; t <= turns; ++t)
+    for (int y = -cells + 1; y < cells; ++y)
+      for (int x = -cells + 1; x < cells; ++x) {
+        // ... around each pose of the larger one.
+        const auto f = grid.search(scan, {guess.x + x * params.resolution,
+                                          guess.y + y * params.resolution, guess.theta + t * step});
+        if (f) best = std::max(best, f->score);
+      }
+  return best;
+}
+
+TEST(Search, NoPoseOfTheWindowIsMissed) {
+  const SurfaceMap map = roomMap();
+  hyselam::Rng rng(9);
+  for (int k = 0; k < 3; ++k) {
+    const Pose2 truth{2.0 + rng.uniform(), 2.0 + rng.uniform(), rng.uniform()};
+    SurfacePoints scan = surfacePoints(roomScan(truth));
+    SurfacePoints few;
+    for (std::size_t i = 0; i < scan.size(); i += 8) few.push_back(scan[i]);
+    SearchParams params;
+    params.window = 0.4;
+    params.turn = 0.05;
+    params.least_score = 0.0;
+    const Pose2 guess = truth * Pose2{0.2, -0.1, 0.03};
+    const auto found = SearchGrid(map, params).search(few, guess);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_NEAR(found->score, bestByLookingAtAll(map, few, guess, params), 0.004) << k;
+  }
+}
+
+TEST(Search, FindsThePoseAcrossTheRoom) {
+  const SurfaceMap map = roomMap();
+  const Pose2 truth{2.2, 3.1, 0.7};
+  const SurfacePoints scan = surfacePoints(roomScan(truth));
+  SearchParams params;
+  params.window = 2.5;
+  params.turn = 0.8;
+  const auto found = SearchGrid(map, params).search(scan, {4.0, 2.0, 0.1});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT(distance(found->pose, truth), 0.1);
+  EXPECT_LT(std::abs(found->pose.theta - truth.theta), 0.03);
+  params.least_score = 0.99;
+  EXPECT_FALSE(SearchGrid(map, params).search(surfacePoints(roomScan({20, 20, 0})), {4, 2, 0}));
+}
+
+TEST(Search, RefusesParametersOutOfRange) {
+  SearchParams params;
+  params.turn = 4.0;
+  EXPECT_THROW(SearchGrid(roomMap(), params), hyselam::ParameterError);
+}
+
+}  // namespace
