@@ -68,6 +68,10 @@ class Builder {
     return out;
   }
 
+  std::string nameOf(int node) const {
+    return (edgesAt(node).size() == 1 ? "end " : "meeting ") + std::to_string(node);
+  }
+
   void chooseCorridors() {
     std::vector<Edge> all;
     for (int n = 0; n < nodes(); ++n) {
@@ -219,8 +223,7 @@ class Builder {
     };
     for (std::size_t i = 0; i < edges_.size(); ++i)
       place(middle(edges_[i]), "corridor " + std::to_string(i));
-    for (int n = 0; n < nodes(); ++n)
-      if (edgesAt(n).size() == 1) place(at(n), "end " + std::to_string(n));
+    for (int n = 0; n < nodes(); ++n) place(at(n), nameOf(n));
     const auto go = [&](const std::string& name) {
       RouteStep step;
       step.spot.place = name;
@@ -235,8 +238,10 @@ class Builder {
       const std::vector<std::size_t> here = edgesAt(node);
       std::size_t best = edge;
       if (here.size() == 1) {
-        go("end " + std::to_string(node));
+        go(nameOf(node));
       } else {
+        // A place on the way makes for a sharp turn, without it the way is rounded.
+        if (rng_.uniform() < 0.4) go(nameOf(node));
         double least = 1e9;
         for (std::size_t k : here) {
           if (k == edge) continue;

@@ -16,9 +16,9 @@ struct SemanticExample {
 };
 
 struct ForestParams {
-  int trees = 40;          ///< 1 .. 1000
-  int depth = 7;           ///< of a tree at most, 1 .. 24
-  int smallest = 20;       ///< examples in a node that is divided further, >= 1
+  int trees = 60;          ///< 1 .. 1000
+  int depth = 10;          ///< of a tree at most, 1 .. 24
+  int smallest = 5;        ///< examples in a node that is divided further, >= 1
   int choice = 4;          ///< features that a node chooses from, 1 .. kSemanticFeatures
   std::uint64_t seed = 1;  ///< of the choices
 

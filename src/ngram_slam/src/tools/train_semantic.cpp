@@ -17,7 +17,7 @@ struct Options {
   SemanticRunOptions run;
   ForestParams forest;
   std::uint64_t seed = 1;
-  int buildings = 60, held_out = 20;
+  int buildings = 100, held_out = 30;
   std::string out;
 };
 
