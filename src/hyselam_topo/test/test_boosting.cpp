@@ -6,6 +6,7 @@
 
 #include "boosting.hpp"
 #include "hyselam_common/rng.hpp"
+#include "room_scores.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 
@@ -73,4 +74,28 @@ TEST(Boosting, WeightsCount) {
   }
   const double x = 0.0;
   EXPECT_NEAR(std::log(3.0), boost(s, {})(&x), 0.15);
+}
+
+// The cases of score_segmentation.py --self-test.
+TEST(RoomScores, AsTheScriptHasThem) {
+  const RoomScores same = scoreRooms({{0, 400, 0}, {0, 0, 400}}, 2);
+  EXPECT_DOUBLE_EQ(1.0, same.precision);
+  EXPECT_DOUBLE_EQ(1.0, same.recall);
+  EXPECT_DOUBLE_EQ(1.0, same.mcc);
+  EXPECT_DOUBLE_EQ(1.0, same.f1);
+
+  const RoomScores one = scoreRooms({{20, 400, 400}}, 2);
+  EXPECT_DOUBLE_EQ(0.5, one.precision);
+  EXPECT_DOUBLE_EQ(1.0, one.recall);
+  EXPECT_DOUBLE_EQ(0.0, one.mcc);
+
+  const RoomScores split = scoreRooms({{0, 300, 0}, {0, 0, 400}, {0, 101, 0}}, 2);
+  EXPECT_DOUBLE_EQ(1.0, split.precision);
+  EXPECT_DOUBLE_EQ((300.0 / 401.0 + 1.0) / 2.0, split.recall);
+  EXPECT_DOUBLE_EQ(0.8, split.f1);
+  const double pair = 300.0 * 400.0 / std::sqrt(300.0 * 401.0 * 501.0 * 400.0);
+  EXPECT_NEAR((1.0 + pair) / 3.0, split.mcc, 1e-12);
+
+  // 100 cells are too few for a place.
+  EXPECT_EQ(1.0, scoreRooms({{500, 100, 0}, {0, 0, 100}}, 2).places);
 }

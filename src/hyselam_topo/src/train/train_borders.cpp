@@ -24,6 +24,7 @@
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterise.hpp"
+#include "room_scores.hpp"
 
 namespace {
 
@@ -37,6 +38,7 @@ struct Options {
   int plans = 24;
   double plan_weight = 0.5;
   std::vector<int> without;
+  std::vector<double> leans;
   BoostingParams boosting;
   SegmentationParams segmentation;
 };
@@ -49,76 +51,10 @@ struct Example {
   std::vector<std::vector<int>> rooms;  // [basin][room], room 0: none
 };
 
-struct Scores {
-  double precision = 0, recall = 0, mcc = 0, f1 = 0, places = 0;
-};
-
 std::vector<int> sum(const std::vector<int>& a, const std::vector<int>& b) {
   std::vector<int> out(a);
   for (std::size_t i = 0; i < out.size(); ++i) out[i] += b[i];
   return out;
-}
-
-/// As score_segmentation.py with --domain common, on working cells.
-Scores score(const std::vector<std::vector<int>>& places, int rooms) {
-  std::vector<std::vector<double>> inner;
-  std::vector<double> b(static_cast<std::size_t>(rooms) + 1, 0.0), a;
-  double total = 0.0;
-  for (const auto& place : places) {
-    double cells = 0.0, known = 0.0;
-    for (std::size_t r = 0; r < place.size(); ++r) {
-      cells += place[r];
-      if (r > 0) known += place[r];
-    }
-    if (cells <= 100) continue;
-    inner.emplace_back(place.begin(), place.end());
-    a.push_back(known);
-    total += known;
-    for (std::size_t r = 1; r < place.size(); ++r) b[r] += place[r];
-  }
-  Scores s;
-  s.places = static_cast<double>(inner.size());
-  struct Overlap {
-    double cells;
-    std::size_t place, room;
-  };
-  std::vector<Overlap> overlaps;
-  int found = 0;
-  std::vector<double> best_room(b.size(), 0.0);
-  std::vector<char> matched(b.size(), 0);
-  int present = 0;
-  for (std::size_t p = 0; p < inner.size(); ++p) {
-    double best = 0.0;
-    for (std::size_t r = 1; r < b.size(); ++r) {
-      const double v = inner[p][r];
-      best = std::max(best, v);
-      best_room[r] = std::max(best_room[r], v);
-      if (v > 0 && v / (a[p] + b[r] - v) >= 0.5) matched[r] = 1;
-      if (v > 0) overlaps.push_back({v, p, r});
-    }
-    if (a[p] > 0) s.precision += best / a[p] / s.places;
-  }
-  for (std::size_t r = 1; r < b.size(); ++r) {
-    found += matched[r];
-    if (b[r] > 0) ++present, s.recall += best_room[r] / b[r];
-  }
-  s.recall /= rooms;
-  s.f1 = 2.0 * found / (s.places + rooms);
-  std::stable_sort(overlaps.begin(), overlaps.end(),
-                   [](const Overlap& x, const Overlap& y) { return x.cells > y.cells; });
-  std::set<std::size_t> used_places, used_rooms;
-  double sum_mcc = 0.0;
-  for (const Overlap& o : overlaps) {
-    if (used_places.count(o.place) || used_rooms.count(o.room)) continue;
-    used_places.insert(o.place);
-    used_rooms.insert(o.room);
-    const double tp = o.cells, fp = a[o.place] - tp, fn = b[o.room] - tp, tn = total - tp - fp - fn;
-    const double d = (tp + fp) * (tp + fn) * (tn + fp) * (tn + fn);
-    sum_mcc += d > 0 ? (tp * tn - fp * fn) / std::sqrt(d) : (fp == 0 && fn == 0 ? 1.0 : 0.0);
-  }
-  const double matches = static_cast<double>(used_places.size());
-  s.mcc = sum_mcc / (matches + (s.places - matches) + (rooms - matches));
-  return s;
 }
 
 /// `rooms`: CV_32S, row 0 lowest.
@@ -248,8 +184,9 @@ int room(const std::vector<int>& cells) {
 /// Samples of one example, apart, so that a building can be left out.
 using PerExample = std::vector<Samples>;
 
-Scores run(const Example& example, const BoostedTrees* model, const Options& options,
-           Samples* samples) {
+/// `lean`: added to the odds.
+RoomScores run(const Example& example, const BoostedTrees* model, const Options& options,
+               Samples* samples, double lean = 0.0) {
   PlaceGraph graph = example.graph;
   // Nodes keep the number of the smaller: their cells per room are kept beside.
   std::vector<std::vector<int>> rooms = example.rooms;
@@ -276,14 +213,14 @@ Scores run(const Example& example, const BoostedTrees* model, const Options& opt
         samples->weights.push_back(std::min(small, 3.0) / 3.0 + 0.05);
       }
     }
-    if (model != nullptr) return (*model)(f.data());
+    if (model != nullptr) return (*model)(f.data()) + lean;
     return f[1] - std::log(0.75);
   });
   now(graph);
   std::vector<std::vector<int>> places;
   for (std::size_t i = 1; i < rooms.size(); ++i)
     if (alive[i]) places.push_back(rooms[i]);
-  return score(places, static_cast<int>(rooms[0].size()) - 1);
+  return scoreRooms(places, static_cast<int>(rooms[0].size()) - 1);
 }
 
 BoostedTrees fit(const std::vector<Example>& examples, const PerExample& samples,
@@ -309,11 +246,11 @@ BoostedTrees fit(const std::vector<Example>& examples, const PerExample& samples
 }
 
 void print(const char* title, const std::vector<Example>& examples,
-           const std::vector<Scores>& scores, bool each) {
-  std::map<std::string, std::vector<Scores>> kinds;
+           const std::vector<RoomScores>& scores, bool each) {
+  std::map<std::string, std::vector<RoomScores>> kinds;
   for (std::size_t i = 0; i < examples.size(); ++i) {
     if (!examples[i].scored) continue;
-    const Scores& s = scores[i];
+    const RoomScores& s = scores[i];
     if (each)
       std::printf("  %-28s places %3.0f of %2zu  P %.3f R %.3f MCC %.3f F1 %.3f\n",
                   examples[i].name.c_str(), s.places, examples[i].rooms[0].size() - 1, s.precision,
@@ -322,8 +259,8 @@ void print(const char* title, const std::vector<Example>& examples,
   }
   std::printf("%s\n", title);
   for (const auto& [kind, list] : kinds) {
-    Scores m;
-    for (const Scores& s : list) {
+    RoomScores m;
+    for (const RoomScores& s : list) {
       const double n = static_cast<double>(list.size());
       m.precision += s.precision / n, m.recall += s.recall / n, m.mcc += s.mcc / n,
           m.f1 += s.f1 / n;
@@ -332,6 +269,19 @@ void print(const char* title, const std::vector<Example>& examples,
                 m.mcc, m.f1);
   }
   std::fflush(stdout);
+}
+
+/// What would become of the scores if pairs were joined more, or less, easily.
+void tryLeaning(const std::vector<Example>& examples,
+                const std::map<std::string, BoostedTrees>& models, const Options& options) {
+  for (const double lean : options.leans) {
+    std::vector<RoomScores> scores;
+    scores.reserve(examples.size());
+    for (const Example& e : examples)
+      scores.push_back(run(e, &models.at(e.building), options, nullptr, lean));
+    print(("building left out, odds changed by " + std::to_string(lean)).c_str(), examples, scores,
+          false);
+  }
 }
 
 void write(const std::string& folder, const BoostedTrees& model) {
@@ -359,6 +309,8 @@ int main(int argc, char** argv) {
   app.add_option("--plans", options.plans, "generated floors besides");
   app.add_option("--plan-weight", options.plan_weight, "of generated floors");
   app.add_option("--without", options.without, "features")->delimiter(',');
+  app.add_option("--leans", options.leans, "changes of the odds that are tried at the end")
+      ->delimiter(',');
   app.add_option("--trees", options.boosting.trees);
   app.add_option("--leaves", options.boosting.leaves);
   app.add_option("--rate", options.boosting.rate);
@@ -383,7 +335,7 @@ int main(int argc, char** argv) {
       all = fit(examples, samples, "", options);
       for (const std::string& b : buildings) models[b] = fit(examples, samples, b, options);
       PerExample met(examples.size());
-      std::vector<Scores> seen, unseen;
+      std::vector<RoomScores> seen, unseen;
       for (std::size_t i = 0; i < examples.size(); ++i) {
         seen.push_back(run(examples[i], &all, options, &met[i]));
         unseen.push_back(run(examples[i], &models[examples[i].building], options, &met[i]));
@@ -393,6 +345,7 @@ int main(int argc, char** argv) {
       std::printf("round %d, %zu borders\n", round + 1, count);
       print("seen", examples, seen, false);
       print("building left out", examples, unseen, each && last);
+      if (last) tryLeaning(examples, models, options);
       for (std::size_t i = 0; i < examples.size(); ++i) {
         Samples& s = samples[i];
         s.values.insert(s.values.end(), met[i].values.begin(), met[i].values.end());
