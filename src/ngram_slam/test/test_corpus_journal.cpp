@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <functional>
 #include <thread>
 
 #include "hyselam_common/errors.hpp"
@@ -134,6 +135,31 @@ TEST(CorpusJournal, refusesDamageAndTellsWhere) {
   writeFile(folder / "c", "no corpus");
   EXPECT_NE(messageOf<InputError>([&] { CorpusJournal(folder / "c").load(); }).find("no corpus"),
             std::string::npos);
+}
+
+TEST(CorpusJournal, isWrittenWholeWhereTheDiskIsNotAsItWasLeft) {
+  const auto afterwards =
+      [](const std::function<void(const TemporaryDirectory&, Growing&)>& meddle) {
+        const TemporaryDirectory folder;
+        Growing g(folder);
+        g.save(100);
+        g.save(150);
+        meddle(folder, g);
+        g.save(170);
+        const auto loaded = CorpusJournal(folder / "c").load();
+        EXPECT_EQ(loaded.remark, "");
+        return bytesOf(loaded.corpus, folder) == bytesOf(g.corpus, folder);
+      };
+  EXPECT_TRUE(afterwards([](const TemporaryDirectory& folder, Growing&) {
+    ::unlink((folder / "c").c_str());
+  })) << "the file removed";
+  EXPECT_TRUE(afterwards([](const TemporaryDirectory& folder, Growing&) {
+    ::unlink((folder / "c.journal").c_str());
+  })) << "the journal removed";
+  EXPECT_TRUE(afterwards([](const TemporaryDirectory& folder, Growing& g) {
+    CorpusJournal(folder / "./c")
+        .saveWhole(g.corpus.observations, g.corpus.classes, g.corpus.histogram);
+  })) << "saved by another name";
 }
 
 TEST(CorpusJournal, isNotUsedWithAnotherFile) {

@@ -38,6 +38,7 @@ class CorpusJournal {
   /// than at its end.
   Loaded load();
   /// Makes the disk equal to this corpus, which must have grown from the one loaded or saved last.
+  /// Where file or journal are no longer what was left there, the file is written anew.
   /// @throws hyselam::InputError if it cannot be written; what was saved before is still there
   /// then.
   void save(const ObservationStore& observations, const DensityClasses& classes,
@@ -58,6 +59,7 @@ class CorpusJournal {
  private:
   std::uint32_t readJournal(Loaded& loaded);
   void noteFile();
+  bool asItWasLeft() const;
 
   std::string path_;
   bool known_ = false;  // what is on the disk

@@ -34,6 +34,12 @@ bool exists(const std::string& path) {
   return ::stat(path.c_str(), &info) == 0;
 }
 
+/// [bytes]; 0 if there is none.
+std::uint64_t sizeOf(const std::string& path) {
+  struct stat info {};
+  return ::stat(path.c_str(), &info) == 0 ? static_cast<std::uint64_t>(info.st_size) : 0;
+}
+
 /// A file of the system that is closed in any case.
 class File {
  public:
@@ -73,6 +79,14 @@ void folderToDisk(const std::string& path) {
   if (fd < 0) return;
   ::fsync(fd);
   ::close(fd);
+}
+
+/// The last bytes of the file of a corpus: the checksum of all that matters. 0 if there is none.
+std::uint32_t checksumOf(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(4, '\0');
+  if (!in.seekg(-4, std::ios::end) || !in.read(&bytes[0], 4)) return 0;
+  return Reader(bytes).get<std::uint32_t>();
 }
 
 double orNan(const std::optional<double>& value) {
@@ -165,18 +179,16 @@ void addBlock(const std::string& body, Corpus& corpus) {
 
 CorpusJournal::CorpusJournal(std::string path) : path_(std::move(path)) {}
 
-/// The last bytes of a file of this kind are the checksum of all that matters.
 void CorpusJournal::noteFile() {
-  file_bytes_ = 0;
-  file_checksum_ = 0;
-  std::ifstream in(path_, std::ios::binary | std::ios::ate);
-  if (!in) return;
-  file_bytes_ = static_cast<std::uint64_t>(in.tellg());
-  if (file_bytes_ < 4) return;
-  in.seekg(-4, std::ios::end);
-  std::string bytes(4, '\0');
-  in.read(&bytes[0], 4);
-  file_checksum_ = Reader(bytes).get<std::uint32_t>();
+  file_bytes_ = sizeOf(path_);
+  file_checksum_ = checksumOf(path_);
+}
+
+/// Whether what a block would be appended to is still there: someone may have removed or replaced
+/// the file or the journal, or saved to it by another name.
+bool CorpusJournal::asItWasLeft() const {
+  return known_ && file_bytes_ > 0 && sizeOf(path_) == file_bytes_ &&
+         checksumOf(path_) == file_checksum_ && sizeOf(journalPath()) >= journal_bytes_;
 }
 
 CorpusJournal::Loaded CorpusJournal::load() {
@@ -253,8 +265,9 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
 
 void CorpusJournal::save(const ObservationStore& observations, const DensityClasses& classes,
                          const Histogram& histogram) {
-  if (known_ && observations.size() == saved_ && file_bytes_ > 0) return;
-  const bool append = known_ && file_bytes_ > 0 && observations.size() > saved_ &&
+  const bool as_left = asItWasLeft();
+  if (as_left && observations.size() == saved_) return;
+  const bool append = as_left && observations.size() > saved_ &&
                       journal_bytes_ <= std::max(file_bytes_, kSmallJournal);
   if (!append) {
     saveWhole(observations, classes, histogram);

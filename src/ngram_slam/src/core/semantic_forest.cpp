@@ -109,7 +109,7 @@ SemanticForest SemanticForest::load(const std::string& path) {
   expected << kMagic << ", " << kSemanticFeatures << " features, crc32 ";
   if (head.compare(0, expected.str().size(), expected.str()) != 0)
     throw hyselam::InputError(path, "line 1",
-                              "was made for other features: train it again with train_semantics");
+                              "was made for other features: train it again with train_semantic");
   if (head != expected.str() + checksum(body))
     throw hyselam::InputError(path, "", "is damaged or cut off: its checksum is wrong");
   auto model = std::make_unique<Model>();
