@@ -146,8 +146,14 @@ TEST(Ways, GoAroundCornersAndStayInThePlace) {
   }
   grid.places = {7, 9};
   const auto at = [&](double x, double y) { return grid.geometry.origin * Point2{x, y}; };
-  const auto ways =
-      waysWithin(grid, 7, {at(0.25, 0.25), at(0.25, 2.25), at(-5.0, 0.25)}, at(4.25, 0.25));
+  const auto boxes = placeBoxes(grid);
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes.at(9).x_begin, 4);
+  EXPECT_EQ(boxes.at(9).y_begin, 1);
+  EXPECT_EQ(boxes.at(9).x_end, 5);
+  EXPECT_EQ(boxes.at(9).y_end, 2);
+  const auto ways = waysWithin(grid, 7, boxes.at(7),
+                               {at(0.25, 0.25), at(0.25, 2.25), at(-5.0, 0.25)}, at(4.25, 0.25));
   ASSERT_EQ(ways.size(), 3u);
   EXPECT_GE(ways[0].size(), 4u);
   EXPECT_GT(lengthOf(ways[0]), 5.5);  // 4 m as the crow flies
@@ -159,7 +165,7 @@ TEST(Ways, GoAroundCornersAndStayInThePlace) {
       EXPECT_EQ(grid.placeOf(grid.geometry.cellAt(corner)), 7u);
     }
   }
-  EXPECT_TRUE(waysWithin(grid, 8, {at(1, 1)}, at(2, 1))[0].empty());
+  EXPECT_TRUE(waysWithin(grid, 8, boxes.at(7), {at(1, 1)}, at(2, 1))[0].empty());
 }
 
 TEST(TopologicalMap, NormaliseOrdersAndTurnsDoors) {

@@ -186,11 +186,14 @@ void drawGraph(const AugmentedTopologicalMap& map, Canvas& canvas, int thin) {
   for (const Edge& edge : map.edges)
     for (const Door& door : edge.doors)
       for (const Id id : {edge.a, edge.b}) doors[id].push_back({door.position.x, door.position.y});
+  if (!map.grid) return;
+  const std::map<Id, CellBox> boxes = placeBoxes(*map.grid);
   for (const Place& place : map.places) {
-    if (!place.centre || !map.grid) continue;
+    const auto box = boxes.find(place.id);
+    if (!place.centre || box == boxes.end()) continue;
     const Point2 centre{place.centre->x, place.centre->y};
     const std::vector<Point2>& goals = doors[place.id];
-    const auto ways = waysWithin(*map.grid, place.id, goals, centre);
+    const auto ways = waysWithin(*map.grid, place.id, box->second, goals, centre);
     for (std::size_t k = 0; k < ways.size(); ++k) {
       Point2 from = goals[k];
       for (const Point2& to : ways[k]) {

@@ -19,31 +19,16 @@ constexpr int kNone = -1;
 /// The part of the grid around a place.
 class Window {
  public:
-  Window(const PlaceGrid& grid, Id place) : grid_(grid) {
-    std::vector<bool> wanted(65536, false);
-    for (std::size_t k = 0; k < grid.places.size() && k < 65535; ++k) {
-      wanted[k + 1] = grid.places[k] == place;
-    }
-    const auto& g = grid.geometry;
-    int x1 = kNone, y1 = kNone;
-    x0_ = g.width;
-    y0_ = g.height;
-    for (int y = 0; y < g.height; ++y) {
-      const std::uint16_t* row = &grid.labels[g.index({0, y})];
-      for (int x = 0; x < g.width; ++x) {
-        if (!wanted[row[x]]) continue;
-        x0_ = std::min(x0_, x);
-        y0_ = std::min(y0_, y);
-        x1 = std::max(x1, x);
-        y1 = std::max(y1, y);
-      }
-    }
-    width_ = std::max(0, x1 - x0_ + 1);
-    height_ = std::max(0, y1 - y0_ + 1);
+  Window(const PlaceGrid& grid, Id place, const CellBox& box)
+      : grid_(grid),
+        x0_(box.x_begin),
+        y0_(box.y_begin),
+        width_(box.x_end - box.x_begin),
+        height_(box.y_end - box.y_begin) {
     inside_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     for (int i = 0; i < static_cast<int>(inside_.size()); ++i) {
       const Cell c = cell(i);
-      inside_[static_cast<std::size_t>(i)] = wanted[grid.labels[g.index({c.x + x0_, c.y + y0_})]];
+      inside_[static_cast<std::size_t>(i)] = grid.placeOf({c.x + x0_, c.y + y0_}) == place;
     }
   }
 
@@ -90,7 +75,7 @@ class Window {
 
  private:
   const PlaceGrid& grid_;
-  int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;
+  int x0_, y0_, width_, height_;
   std::vector<bool> inside_;
 };
 
@@ -148,10 +133,30 @@ std::vector<Cell> pulledTaut(const Window& window, const std::vector<Cell>& way)
 
 }  // namespace
 
-std::vector<std::vector<Point2>> waysWithin(const PlaceGrid& grid, Id place,
+std::map<Id, CellBox> placeBoxes(const PlaceGrid& grid) {
+  const auto& g = grid.geometry;
+  std::map<Id, CellBox> boxes;
+  for (int y = 0; y < g.height; ++y) {
+    const std::uint16_t* row = &grid.labels[g.index({0, y})];
+    for (int x = 0; x < g.width;) {
+      const int begin = x;
+      const std::uint16_t label = row[x];
+      while (x < g.width && row[x] == label) ++x;
+      const Id place = grid.placeOf({begin, y});
+      if (place == 0) continue;
+      CellBox& box = boxes.insert({place, {begin, y, x, y + 1}}).first->second;
+      box.x_begin = std::min(box.x_begin, begin);
+      box.x_end = std::max(box.x_end, x);
+      box.y_end = y + 1;
+    }
+  }
+  return boxes;
+}
+
+std::vector<std::vector<Point2>> waysWithin(const PlaceGrid& grid, Id place, const CellBox& box,
                                             const std::vector<Point2>& points, Point2 goal) {
   std::vector<std::vector<Point2>> ways(points.size());
-  const Window window(grid, place);
+  const Window window(grid, place, box);
   const int end = window.nearest(goal);
   if (end == kNone) return ways;
   const std::vector<int> next = nextTo(window, end);

@@ -243,7 +243,8 @@ void addDoors(const AugmentedTopologicalMap& map, Markers* markers) {
 }
 
 /// From all doors of a place to its centre, around its corners if the map has a grid.
-void addWays(const AugmentedTopologicalMap& map, const Place& place, Marker* lines) {
+void addWays(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& boxes,
+             const Place& place, Marker* lines) {
   const Point2 centre{place.centre->x, place.centre->y};
   std::vector<Point2> doors;
   for (const Edge& edge : map.edges) {
@@ -255,7 +256,8 @@ void addWays(const AugmentedTopologicalMap& map, const Place& place, Marker* lin
     }
   }
   std::vector<std::vector<Point2>> ways(doors.size());
-  if (map.grid) ways = waysWithin(*map.grid, place.id, doors, centre);
+  const auto box = boxes.find(place.id);
+  if (box != boxes.end()) ways = waysWithin(*map.grid, place.id, box->second, doors, centre);
   for (std::size_t k = 0; k < doors.size(); ++k) {
     Point2 from = doors[k];
     for (const Point2& corner : ways[k]) {
@@ -276,8 +278,9 @@ void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
       spheres.points.push_back(at({place.centre->x, place.centre->y}, kGraphHeight));
     }
   }
+  const auto boxes = map.grid ? placeBoxes(*map.grid) : std::map<Id, CellBox>{};
   for (const Place& place : map.places) {
-    if (place.centre) addWays(map, place, &lines);
+    if (place.centre) addWays(map, boxes, place, &lines);
   }
   markers->put(std::move(spheres));
   markers->put(std::move(lines));
