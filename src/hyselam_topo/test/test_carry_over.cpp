@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -293,6 +294,16 @@ TEST(CarryOver, IdsAreNeverUsedAgain) {
     map = next;
   }
   EXPECT_FALSE(gone.empty());
+}
+
+TEST(CarryOver, RefusesWhatItHasNoIdsFor) {
+  auto full = known();
+  full.next_wall_id = full.next_door_id = full.next_place_id = std::numeric_limits<Id>::max();
+  checkMap(full, "full");
+  EXPECT_EQ(carryOver(full, drawn(kThreeRooms)).places.size(), full.places.size());
+  Drawing more = kThreeRooms;
+  for (std::string& row : more) row += "zzzz";
+  EXPECT_THROW(carryOver(full, drawn(more)), hyselam::InputError);
 }
 
 TEST(CarryOver, RefusesWhatCannotBeCompared) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "hyselam_common/errors.hpp"
@@ -111,6 +112,14 @@ class CarryOver {
   }
 
  private:
+  /// Ids are never used again, and the next one must be a number as well.
+  static Id take(Id* next) {
+    if (*next == std::numeric_limits<Id>::max()) {
+      throw hyselam::InputError("old map", "", "it has no ids left for new places, walls or doors");
+    }
+    return (*next)++;
+  }
+
   /// The id in the result of a place of the fresh map; 0 if it has none.
   Id newId(Id fresh_id) const {
     const auto it = new_id_.find(fresh_id);
@@ -133,7 +142,7 @@ class CarryOver {
       Place place = fresh;
       const auto ancestors = matching_.ancestors.find(fresh.id);
       if (ancestors == matching_.ancestors.end()) {
-        place.id = map_.next_place_id++;
+        place.id = take(&map_.next_place_id);
         report->created.push_back(place.id);
         const auto touching = matching_.touching.find(fresh.id);
         if (touching != matching_.touching.end()) {
@@ -226,7 +235,7 @@ class CarryOver {
                     unite(from.extras, &to.extras);
                   });
     for (Wall* wall : new_walls) {
-      if (wall->id == 0) wall->id = map_.next_wall_id++;
+      if (wall->id == 0) wall->id = take(&map_.next_wall_id);
     }
     for (std::size_t i = 0; i < old_walls.size(); ++i) {
       const Id place = successor(owner[i]);
@@ -290,7 +299,7 @@ class CarryOver {
                     unite(from.extras, &to.extras);
                   });
     for (Door* door : new_doors) {
-      if (door->id == 0) door->id = map_.next_door_id++;
+      if (door->id == 0) door->id = take(&map_.next_door_id);
     }
   }
 

@@ -239,9 +239,14 @@ const Gr2ToResult& Gr2ToUpdater::update(const OccupancyGrid& grid, const Gr2ToPa
       way_ = Way::kUnchanged;
       return *result_;
     }
-    if (updatePart(grid, changed)) {
-      way_ = Way::kPartial;
-      return *result_;
+    try {
+      if (updatePart(grid, changed)) {
+        way_ = Way::kPartial;
+        return *result_;
+      }
+    } catch (...) {
+      result_.reset();  // labels, doors and places may no longer fit each other
+      throw;
     }
   }
   way_ = Way::kFromScratch;

@@ -33,6 +33,13 @@ std::string frameOf(const std::string& frame_id) {
   return frame.empty() ? "map" : frame;
 }
 
+/// A map from a file; what no message can carry is refused before it takes another map's place.
+AugmentedTopologicalMap loadToPublish(const std::string& path) {
+  AugmentedTopologicalMap map = loadXml(path);
+  if (map.stamp != 0.0) hyselam::toRosTime(map.stamp, path);
+  return map;
+}
+
 bool hasExtension(const std::string& path, const char* extension) {
   return std::filesystem::path(path).extension() == extension;
 }
@@ -51,7 +58,7 @@ Gr2ToServer::Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
       background_([this](const BackgroundGr2To::Outcome& outcome) { onOutcome(outcome); },
                   std::move(pipeline)) {
   if (!params_.map_file.empty()) {
-    background_.replace(loadXml(params_.map_file), params_.map_file);
+    background_.replace(loadToPublish(params_.map_file), params_.map_file);
     publish(background_.current());
     ROS_INFO_STREAM(who_ << " begins with " << counts(*background_.current()) << " of "
                          << params_.map_file);
@@ -141,11 +148,17 @@ void Gr2ToServer::onOutcome(const BackgroundGr2To::Outcome& outcome) {
   }
   tell(outcome, before.get());
   if (!outcome.map || outcome.unchanged) return;
-  if (projected_publisher_) {
-    projected_publisher_.publish(
-        hyselam::toMsg(*outcome.grid, outcome.map->frame_id, ros::Time(outcome.map->stamp)));
+  try {
+    if (projected_publisher_) {
+      projected_publisher_.publish(
+          hyselam::toMsg(*outcome.grid, outcome.map->frame_id, ros::Time(outcome.map->stamp)));
+    }
+    publish(outcome.map);
+  } catch (const std::exception& e) {  // no memory for the messages; the thread must live on
+    ROS_ERROR_STREAM(who_ << " this map is not published: " << e.what());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.error = e.what();
   }
-  publish(outcome.map);
 }
 
 void Gr2ToServer::tell(const BackgroundGr2To::Outcome& outcome,
@@ -238,7 +251,7 @@ bool Gr2ToServer::onSave(hyselam_msgs::TopologicalMapPath::Request& request,
 bool Gr2ToServer::onLoad(hyselam_msgs::TopologicalMapPath::Request& request,
                          hyselam_msgs::TopologicalMapPath::Response& response) {
   try {
-    background_.replace(loadXml(request.path), request.path);
+    background_.replace(loadToPublish(request.path), request.path);
     const BackgroundGr2To::MapPtr map = background_.current();
     publish(map);
     response.success = true;
