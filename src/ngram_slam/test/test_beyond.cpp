@@ -146,6 +146,29 @@ TEST(ObservationSensor, looksBackLaterButAtTheSameSpots) {
   EXPECT_EQ(told + sensor.finish().size(), now.size());
 }
 
+TEST(ObservationSensor, keepsWhatWaitsWhenTheScanAfterAJumpIsRefused) {
+  ObservationSensorParams params;
+  params.look_back = 3.0;
+  const auto drive = [&](bool refused) {
+    ObservationSensor sensor(params);
+    std::size_t told = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Pose2 pose{2.05 + 0.1 * i, 2.05, 0.0};
+      told += sensor.add(scanFrom(pose, 0.1 * i), pose).size();
+    }
+    const Pose2 far{20.05, 12.05, 0.0};
+    hyselam::LaserScan bad = scanFrom(far, 3.0);
+    bad.ranges.clear();
+    if (refused) {
+      EXPECT_THROW(sensor.add(bad, far), hyselam::InputError);
+    }
+    told += sensor.add(scanFrom(far, 3.1), far).size();
+    return told + sensor.finish().size();
+  };
+  EXPECT_EQ(drive(false), 21u);
+  EXPECT_EQ(drive(true), 21u);
+}
+
 TEST(ObservationSensor, refusesWhatIsNoLookBack) {
   ObservationSensorParams params;
   for (double bad : {-1.0, 21.0, std::nan("")}) {

@@ -198,6 +198,7 @@ TEST_F(Tools, refuseWhatTheyCannotUseInOneLine) {
   writeFile(d / "file", "");
   expectRefused("words_offline " + d / "r.bag" + " --out " + d / "file/x", "file/x");
   expectRefused("words_offline " + d / "r.bag" + " --levels 0 --out " + d / "x", "levels");
+  expectRefused("words_offline " + d / "r.bag" + " --levels 2000000000 --out " + d / "x", "levels");
   expectRefused("words_offline " + d / "r.bag" + " --min-n 0 --out " + d / "x", "min_n");
   expectRefused("words_offline " + d / "r.bag" + " --step 0 --out " + d / "x", "step");
   expectRefused("evaluate_recognition " + d / "r.bag" + " --reference " + d / "file", "file");

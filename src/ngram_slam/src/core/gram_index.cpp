@@ -9,14 +9,16 @@ namespace ngram_slam {
 namespace {
 constexpr Position kFirstReach = 4096;
 constexpr std::size_t kPart = 1024;  // entries of a part, about
+constexpr std::uint32_t kMostAngleBuckets = 64;
 }  // namespace
 
 GramIndex::GramIndex(const Text& text, const WordTolerance& tolerance, int n, int bits,
                      bool backwards)
     : text_(text), tolerance_(tolerance), n_(n), shift_(64 - bits), backwards_(backwards) {
   log_width_ = -2.0 * std::log1p(-tolerance.size);
-  angle_buckets_ =
-      std::max(1u, static_cast<std::uint32_t>(hyselam::kPi / tolerance.angle));  // width >= 2 eps_a
+  // Of a width >= 2 eps_a, and no more than a key tells apart.
+  angle_buckets_ = static_cast<std::uint32_t>(
+      std::clamp(hyselam::kPi / tolerance.angle, 1.0, static_cast<double>(kMostAngleBuckets)));
   heads_.assign(std::size_t{1} << bits, 0);
   pool_.push_back(0);  // chunk 0 means none
 }
@@ -36,7 +38,7 @@ std::uint32_t wrapped(int bucket, std::uint32_t buckets) {
   return static_cast<std::uint32_t>(((bucket % n) + n) % n);
 }
 std::uint32_t pack(int density_class, std::uint32_t size, std::uint32_t angle) {
-  return (static_cast<std::uint32_t>(density_class) << 16 | size) * 64u + angle % 64u;
+  return (static_cast<std::uint32_t>(density_class) << 16 | size) * kMostAngleBuckets + angle;
 }
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hyselam_common/errors.hpp"
 
@@ -51,10 +52,19 @@ ObservationSensor::ObservationSensor(const ObservationSensorParams& params)
 std::vector<Observation> ObservationSensor::add(const hyselam::LaserScan& scan,
                                                 const Pose2& base_in_odom) {
   std::vector<Observation> complete;
+  std::deque<Waiting> held_back;
   // After a jump of the odometry the map no longer shows what waits.
-  if (params_.look_back > 0.0 && sampler_.jumps(base_in_odom))
+  const bool jump = params_.look_back > 0.0 && sampler_.jumps(base_in_odom);
+  if (jump) {
+    held_back = waiting_;
     complete = release(std::numeric_limits<double>::max());
-  sensor_.integrate(scan, base_in_odom);
+  }
+  try {
+    sensor_.integrate(scan, base_in_odom);
+  } catch (const hyselam::InputError&) {
+    if (jump) waiting_ = std::move(held_back);
+    throw;
+  }
   const std::vector<Pose2> due = sampler_.due(base_in_odom);
   if (due.empty()) return complete;
   const fsd_localization::FsdReading reading = sensor_.observe().readings[0];

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/tool.hpp"
@@ -67,6 +69,7 @@ struct RecognitionOptions {
   /// The parameters, completed. @throws hyselam::ParameterError
   RecogniserParams params() const {
     RecogniserParams p = recogniser;
+    const Text level_check(p.levels);
     p.word_density = full_density ? WordDensity::kFull : WordDensity::kSoft;
     p.matcher.tolerance.angle = hyselam::radians(angle_deg);
     p.matcher.min_n = min_n;
@@ -76,30 +79,37 @@ struct RecognitionOptions {
       p.reverse = better.reverse;
       p.with_probability = better.with_probability;
       if (p.min_probability == 0.0) p.min_probability = better.min_probability;
-      if (min_n.empty() && p.levels > 0)
+      if (min_n.empty())
         p.matcher.min_n.assign(static_cast<std::size_t>(p.levels), better.matcher.min_n.front());
     }
     for (int l = static_cast<int>(p.matcher.min_n.size()); l < p.levels; ++l)
       p.matcher.min_n.push_back(l == 0 ? 7 : p.matcher.min_n.back() + 3);
-    p.matcher.min_n.resize(static_cast<std::size_t>(p.levels > 0 ? p.levels : 1));
+    p.matcher.min_n.resize(static_cast<std::size_t>(p.levels));
     p.validate();
     return p;
   }
 };
 
-/// The observations of one log.
+/// The observations of one log, at least one.
 struct Run {
   std::vector<Observation> observations;
 };
 
+/// @throws hyselam::InputError for a log that cannot be read or of which no scan can be used.
 inline std::vector<Run> readRuns(const RecognitionOptions& options) {
   std::vector<Run> runs;
   for (const std::string& path : options.logs) {
     const hyselam::RobotLog log = hyselam::readRobotLog(path);
     hyselam::Progress progress("densities of " + path, log.scans.size());
-    runs.push_back({observationsOf(log, options.observationParams(), [&](std::size_t done) {
-                      progress.update(done);
-                    }).observations});
+    LogObservations seen = observationsOf(log, options.observationParams(),
+                                          [&](std::size_t done) { progress.update(done); });
+    if (seen.observations.empty())
+      throw hyselam::InputError(path, "",
+                                "gives no observations: of " + std::to_string(log.scans.size()) +
+                                    " scans " + std::to_string(seen.scans_without_odometry) +
+                                    " have no odometry, " + std::to_string(seen.scans_refused) +
+                                    " cannot be used");
+    runs.push_back({std::move(seen.observations)});
   }
   return runs;
 }
