@@ -69,6 +69,7 @@ TEST(G2oFile, RefusesWhatItCannotRead) {
   EXPECT_NE(complaint("EDGE_SE2 1 2 1 0 0 1 5 0 1 0 1\n").find("positive semidefinite"),
             std::string::npos);
   EXPECT_NE(complaint("EDGE_SE2 1 2 1 0 0 1 0 0 1 0\n").find("too few"), std::string::npos);
+  EXPECT_NE(complaint("\x1b[2J 1\n").find("'?[2J'"), std::string::npos);
   EXPECT_NE(complaint(std::string("\x1f\x8b\x08 not gzip")), "");
   EXPECT_THROW(readG2o("/nowhere/graph.g2o"), hyselam::InputError);
 }

@@ -214,14 +214,6 @@ bool numbered(std::string_view tag, std::string_view name) {
          std::isdigit(static_cast<unsigned char>(tag.back())) != 0;
 }
 
-std::string printable(std::string_view text) {
-  std::string out;
-  for (const char c : text.substr(0, 20)) {
-    out += std::isprint(static_cast<unsigned char>(c)) != 0 ? c : '?';
-  }
-  return out + (text.size() > 20 ? "..." : "");
-}
-
 }  // namespace
 
 std::optional<CarmenLine> parseCarmenLine(std::string_view text,

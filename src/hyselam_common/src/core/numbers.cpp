@@ -3,6 +3,7 @@
 #include <locale.h>
 #include <stdlib.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <locale>
@@ -46,6 +47,13 @@ void splitFields(std::string_view line, std::vector<std::string_view>* fields) {
     while (i < line.size() && !blank(i)) ++i;
     if (i > begin) fields->push_back(line.substr(begin, i - begin));
   }
+}
+
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char c : text.substr(0, 20))
+    out += std::isprint(static_cast<unsigned char>(c)) != 0 ? c : '?';
+  return out + (text.size() > 20 ? "..." : "");
 }
 
 }  // namespace hyselam

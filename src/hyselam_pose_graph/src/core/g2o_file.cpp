@@ -48,7 +48,7 @@ class Reader {
     } else if (tag == "FIX") {
       for (std::size_t i = 1; i < fields_.size(); ++i) id(i);
     } else {
-      fail("'" + std::string(tag.substr(0, 40)) +
+      fail("'" + hyselam::printable(tag) +
            "' is none of VERTEX_SE2, EDGE_SE2, FIX: only graphs of the plane can be read");
     }
   }
@@ -85,13 +85,13 @@ class Reader {
       fail(std::string(fields_[0]) + " has " + std::to_string(fields_.size() - 1) +
            " numbers, too few");
     const std::optional<double> v = hyselam::parseNumber(fields_[field]);
-    if (!v) fail("'" + std::string(fields_[field].substr(0, 40)) + "' is not a finite number");
+    if (!v) fail("'" + hyselam::printable(fields_[field]) + "' is not a finite number");
     return *v;
   }
   std::int64_t id(std::size_t field) const {
     const double v = number(field);
     if (v != std::floor(v) || std::abs(v) > 9e15)
-      fail("'" + std::string(fields_[field].substr(0, 40)) + "' is not the number of a pose");
+      fail("'" + hyselam::printable(fields_[field]) + "' is not the number of a pose");
     return static_cast<std::int64_t>(v);
   }
   /// N numbers after `names` names of poses, and nothing else.
