@@ -82,8 +82,9 @@ bool operator==(const DescribedRelation& a, const DescribedRelation& b);
 bool operator==(const DescribedBuilding& a, const DescribedBuilding& b);
 
 /// Throws hyselam::InputError with `source` and the part that is wrong, unless: ids are there and
-/// unique, names and aliases not empty, sizes finite and > 0, parts >= 1, connections and relations
-/// join different places of the description, two places are connected at most once.
+/// unique, names and aliases are not empty, UTF-8 and without control characters, sizes finite and
+/// > 0, parts >= 1, connections and relations join different places of the description, two places
+/// are connected at most once.
 void checkDescription(const DescribedBuilding& building, const std::string& source);
 
 }  // namespace hyselam_topo

@@ -1,5 +1,3 @@
-#include <tinyxml2.h>
-
 #include <algorithm>
 #include <stdexcept>
 
@@ -7,30 +5,11 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
 #include "packed_bytes.hpp"
-#include "text.hpp"
-#include "xml_element.hpp"
+#include "xml_document.hpp"
 #include "xml_format.hpp"
 
 namespace hyselam_topo {
 namespace {
-
-/// A part that may stand only once.
-template <typename T>
-class Once {
- public:
-  void set(XmlElement& element, T value) {
-    if (value_) element.fail("this element stands twice");
-    value_ = std::move(value);
-  }
-  T take(const XmlElement& parent, const char* name) {
-    if (!value_) parent.fail("the element <" + std::string(name) + "> is missing");
-    return std::move(*value_);
-  }
-  std::optional<T> takeIfThere() { return std::move(value_); }
-
- private:
-  std::optional<T> value_;
-};
 
 class Reader {
  public:
@@ -349,60 +328,12 @@ class Reader {
   const XmlLimits& limits_;
 };
 
-/// Refuses what would take memory or time out of proportion before anything is parsed.
-void checkText(const std::string& text, const std::string& source, const XmlLimits& limits) {
-  const auto refuse = [&](const std::string& reason) {
-    throw hyselam::InputError(source, "", reason);
-  };
-  const auto count = [&](char c) {
-    return static_cast<std::size_t>(std::count(text.begin(), text.end(), c));
-  };
-  if (text.size() > limits.max_bytes) {
-    refuse("it has " + std::to_string(text.size()) + " bytes, more than " +
-           std::to_string(limits.max_bytes));
-  }
-  if (text.find('\0') != std::string::npos || !isUtf8(text)) refuse("this is not UTF-8 text");
-  if (text.find("<!DOCTYPE") != std::string::npos || text.find("<!ENTITY") != std::string::npos) {
-    refuse("a document type declaration or entities are not allowed");
-  }
-  // Every element has a tag, most have two.
-  if (count('<') > 2 * limits.max_elements) {
-    refuse("it has more than " + std::to_string(limits.max_elements) + " elements");
-  }
-  if (count('=') > limits.max_attributes) {
-    refuse("it has more than " + std::to_string(limits.max_attributes) + " attributes");
-  }
-}
-
-void checkDepth(const tinyxml2::XMLElement& element, const std::string& source, int left) {
-  if (left == 0) {
-    throw hyselam::InputError(source, "line " + std::to_string(element.GetLineNum()),
-                              "elements are nested too deeply");
-  }
-  for (auto* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    checkDepth(*child, source, left - 1);
-  }
-}
-
 }  // namespace
 
 AugmentedTopologicalMap fromXml(const std::string& text, const std::string& source,
                                 const XmlLimits& limits) {
-  checkText(text, source, limits);
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    const std::string place = "line " + std::to_string(document.ErrorLineNum());
-    throw hyselam::InputError(source, place,
-                              std::string("this is no XML: ") + document.ErrorName());
-  }
-  const tinyxml2::XMLElement* root = document.RootElement();
-  if (root == nullptr || root->NextSiblingElement() != nullptr) {
-    throw hyselam::InputError(source, "", "this is no XML: there must be one outermost element");
-  }
-  checkDepth(*root, source, limits.max_depth);
-  XmlElement element(*root, source);
-  AugmentedTopologicalMap map = Reader(limits).map(element);
+  AugmentedTopologicalMap map;
+  readXmlDocument(text, source, limits, [&](XmlElement& root) { map = Reader(limits).map(root); });
   checkMap(map, source);
   return map;
 }

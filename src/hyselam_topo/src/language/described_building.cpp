@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "text.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -15,6 +16,9 @@ namespace {
 constexpr std::array<const char*, 5> kSides{"unknown", "front", "left", "back", "right"};
 constexpr std::array<const char*, 5> kRelations{"next_to", "opposite", "between", "at_end_of",
                                                 "inside"};
+
+/// More than anybody tells of one side; a file can carry it as a whole number.
+constexpr std::size_t kMaxOrder = 1000000;
 
 template <typename Enum, std::size_t N>
 std::optional<Enum> numberOf(const std::array<const char*, N>& names, const std::string& text) {
@@ -76,8 +80,12 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     require(place.id != 0, "a place has the id 0");
     require(ids.insert(place.id).second, who + " stands there twice");
     require(!place.name.empty(), who + " has no name");
+    const std::string wrong = whatIsWrongWithWord(place.name);
+    require(wrong.empty(), who + ": the name " + wrong);
     for (const std::string& alias : place.aliases) {
       require(!alias.empty(), who + " has an empty alias");
+      const std::string wrong_alias = whatIsWrongWithWord(alias);
+      require(wrong_alias.empty(), who + ": an alias " + wrong_alias);
     }
     for (const auto& size : {place.length, place.width, place.area}) {
       require(!size || (std::isfinite(*size) && *size > 0.0), who + " has a size that is not > 0");
@@ -93,6 +101,8 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     known(connection.from, "a connection");
     known(connection.to, "a connection");
     require(connection.from != connection.to, "a connection joins a place with itself");
+    require(connection.order < kMaxOrder,
+            "a connection is beyond the " + std::to_string(kMaxOrder) + "th of its side");
     require(joined.insert(std::minmax(connection.from, connection.to)).second,
             "places " + std::to_string(connection.from) + " and " + std::to_string(connection.to) +
                 " are connected twice");
