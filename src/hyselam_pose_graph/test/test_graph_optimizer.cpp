@@ -8,6 +8,7 @@
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "hyselam_pose_graph/graph_optimizer.hpp"
+#include "published_graphs.hpp"
 #include "random_graphs.hpp"
 
 namespace {
@@ -234,14 +235,9 @@ TEST(GraphOptimizer, RefusesBrokenGraphsAndParameters) {
   EXPECT_THROW(GraphOptimizer(known.graph).optimize(params), hyselam::ParameterError);
 }
 
-struct Published {
-  const char* name;
-  double cost;
-};
-class PublishedGraph : public testing::TestWithParam<Published> {};
+class PublishedGraph : public testing::TestWithParam<published_graphs::Published> {};
 
 TEST_P(PublishedGraph, BestKnownCostIsReached) {
-  const auto folder = hyselam::testing::dataDirectory();
   HYSELAM_NEED_DATA(data);
   const OptimizeResult r =
       GraphOptimizer(readG2o(data + "/posegraphs/" + GetParam().name + ".g2o.gz")).optimize();
@@ -249,17 +245,7 @@ TEST_P(PublishedGraph, BestKnownCostIsReached) {
   EXPECT_LT(r.final_cost, GetParam().cost * 1.0001);
 }
 
-// Costs by Gauss-Newton from certified optima of the relaxed problem.
-INSTANTIATE_TEST_SUITE_P(
-    All, PublishedGraph,
-    testing::Values(Published{"M3500", 137.91295}, Published{"M3500a", 912.11501},
-                    Published{"M3500c", 2554.7324}, Published{"manhattanOlson3500", 146.07661},
-                    Published{"manhattan_sesync", 3549.0368}, Published{"city10000", 511.98516},
-                    Published{"intel", 45.004696}, Published{"input_INTEL", 215.83024},
-                    Published{"MITb", 41.163269}, Published{"CSAIL", 40.555129},
-                    Published{"FR079", 37.598468}, Published{"ring", 11.163101},
-                    Published{"ais2klinik", 172.81558}, Published{"kitti_00", 98.322012},
-                    Published{"kitti_02", 78.764327}),
-    [](const auto& published) { return published.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, PublishedGraph, testing::ValuesIn(published_graphs::kGraphs),
+                         [](const auto& published) { return published.param.name; });
 
 }  // namespace
