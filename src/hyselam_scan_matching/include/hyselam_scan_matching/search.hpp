@@ -36,12 +36,22 @@ class SearchGrid {
   /// The best pose of the window around `guess`, nothing if its score is below `least_score`.
   /// The same scan, map and guess give the same pose.
   std::optional<Found> search(const SurfacePoints& scan, const hyselam::Pose2& guess) const;
+  /// The best pose of the window that is farther than `apart` [m] from `best`, nothing if its score
+  /// is below `least_score`: whether the scan could as well lie elsewhere.
+  std::optional<Found> rival(const SurfacePoints& scan, const hyselam::Pose2& guess,
+                             const hyselam::Pose2& best, double apart, double least_score) const;
 
  private:
   struct Level {
     std::vector<std::uint8_t> cells;  ///< maximum of the 2^level cells to the right and up
   };
+  /// Positions that do not count [cells from the guess].
+  struct Apart {
+    double x, y, radius;
+  };
   std::uint8_t at(int level, int x, int y) const;
+  std::optional<Found> search(const SurfacePoints& scan, const hyselam::Pose2& guess,
+                              double least_score, const Apart* apart) const;
 
   SearchParams params_;
   double x0_ = 0.0, y0_ = 0.0;

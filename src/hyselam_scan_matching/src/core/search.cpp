@@ -113,6 +113,19 @@ std::uint8_t SearchGrid::at(int level, int x, int y) const {
 
 std::optional<Found> SearchGrid::search(const SurfacePoints& scan,
                                         const hyselam::Pose2& guess) const {
+  return search(scan, guess, params_.least_score, nullptr);
+}
+
+std::optional<Found> SearchGrid::rival(const SurfacePoints& scan, const hyselam::Pose2& guess,
+                                       const hyselam::Pose2& best, double apart,
+                                       double least_score) const {
+  const Apart zone{(best.x - guess.x) / params_.resolution, (best.y - guess.y) / params_.resolution,
+                   apart / params_.resolution};
+  return search(scan, guess, least_score, &zone);
+}
+
+std::optional<Found> SearchGrid::search(const SurfacePoints& scan, const hyselam::Pose2& guess,
+                                        double least_score, const Apart* apart) const {
   if (scan.empty() || levels_.empty()) return std::nullopt;
   const double r = params_.resolution;
   double far = 1.0;
@@ -142,6 +155,13 @@ std::optional<Found> SearchGrid::search(const SurfacePoints& scan,
     if (a.heading != b.heading) return a.heading < b.heading;
     return a.dy != b.dy ? a.dy < b.dy : a.dx < b.dx;
   };
+  // All positions of a square are too near if its four corners are.
+  const auto within = [](const Apart& zone, int of_level, const Candidate& c) {
+    const int side = (1 << of_level) - 1;
+    const double dx = std::max(std::abs(c.dx - zone.x), std::abs(c.dx + side - zone.x));
+    const double dy = std::max(std::abs(c.dy - zone.y), std::abs(c.dy + side - zone.y));
+    return std::hypot(dx, dy) <= zone.radius;
+  };
   int level = 0;
   while (level + 1 < kLevels && (1 << (level + 1)) <= cells) ++level;
   std::vector<Candidate> first;
@@ -155,7 +175,7 @@ std::optional<Found> SearchGrid::search(const SurfacePoints& scan,
   std::sort(first.begin(), first.end(), better);
 
   const auto points = static_cast<double>(scan.size());
-  int best_sum = static_cast<int>(std::ceil(params_.least_score * points * kFull)) - 1;
+  int best_sum = static_cast<int>(std::ceil(least_score * points * kFull)) - 1;
   std::optional<Candidate> best;
   struct Open {
     int level;
@@ -169,6 +189,7 @@ std::optional<Found> SearchGrid::search(const SurfacePoints& scan,
       const Open open = stack.back();
       stack.pop_back();
       if (open.candidate.bound <= best_sum) continue;
+      if (apart != nullptr && within(*apart, open.level, open.candidate)) continue;
       if (open.level == 0) {
         best_sum = open.candidate.bound;
         best = open.candidate;
