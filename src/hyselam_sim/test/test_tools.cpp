@@ -65,6 +65,46 @@ TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {
   EXPECT_FALSE(a == content(file("c.bag")));
 }
 
+TEST_F(Tools, FilmsARun) {
+  ASSERT_EQ(simulate("--route small --out " + file("run.bag").string()), 0);
+  const std::string options = " --route small --rate 0.5 --width 64 --height 48 --bag " +
+                              file("run.bag").string();
+  for (const char* name : {"a", "b"}) {
+    ASSERT_EQ(run(HYSELAM_FILM, options + " --jpeg 90 --out " +
+                                    file(std::string(name) + ".bag").string() + " --images " +
+                                    file(name).string() + " --json " + file("j.json").string()),
+              0)
+        << content(file("stderr"));
+  }
+  EXPECT_TRUE(content(file("a.bag")) == content(file("b.bag")));
+  const std::string rows = content(file("a/labels.csv"));
+  EXPECT_TRUE(rows == content(file("b/labels.csv")));
+  EXPECT_EQ(rows.rfind("image_path,place,depth_path,stamp,x,y,theta,scan_0,", 0), 0U);
+  EXPECT_NE(rows.find("rgb/00000.jpg,left room,depth/00000.png,"), std::string::npos);
+  EXPECT_TRUE(fs::exists(file("a/rgb/00000.jpg")));
+  EXPECT_TRUE(fs::exists(file("a/depth/00000.png")));
+  // The run itself is still there, byte for byte.
+  const hyselam::RobotLog run_log = hyselam::readBag(file("run.bag").string());
+  const hyselam::RobotLog filmed = hyselam::readBag(file("a.bag").string());
+  ASSERT_EQ(run_log.scans.size(), filmed.scans.size());
+  EXPECT_EQ(run_log.scans.back().ranges, filmed.scans.back().ranges);
+  EXPECT_EQ(run_log.ground_truth.size(), filmed.ground_truth.size());
+  const auto json = nlohmann::json::parse(content(file("j.json")));
+  EXPECT_GT(json["pictures"], 10);
+}
+
+TEST_F(Tools, RefusesToFilmWhatCannotBeFilmed) {
+  expectError(run(HYSELAM_FILM, "--route small --bag " + file("none.bag").string() + " --out " +
+                                    file("o.bag").string()),
+              "none.bag");
+  ASSERT_EQ(simulate("--route small --out " + file("run.bag").string()), 0);
+  expectError(run(HYSELAM_FILM, "--route small --bag " + file("run.bag").string()), "--out");
+  expectError(run(HYSELAM_FILM, "--route small --width 3 --bag " + file("run.bag").string() +
+                                    " --out " + file("o.bag").string()),
+              "width");
+  EXPECT_FALSE(fs::exists(file("o.bag")));
+}
+
 TEST_F(Tools, WritesBagMapPictureAndJson) {
   ASSERT_EQ(simulate("--route small --out " + file("o.bag").string() + " --map " +
                      file("m.yaml").string() + " --resolution 0.05 --picture " +

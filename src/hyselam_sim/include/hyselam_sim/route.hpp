@@ -47,6 +47,9 @@ struct Person {
   std::optional<Point2> at(double time) const;
 };
 
+/// People make room for the robot: where someone stands who would otherwise be at `person`.
+Point2 makeRoom(Point2 person, Point2 robot);
+
 struct Route {
   std::string name;
   std::string source;  ///< file, for messages

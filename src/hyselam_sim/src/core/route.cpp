@@ -103,6 +103,15 @@ Person readPerson(const YamlMap& map) {
 
 }  // namespace
 
+Point2 makeRoom(Point2 person, Point2 robot) {
+  constexpr double kPersonalSpace = 0.75;  // [m]
+  const Point2 off = person - robot;
+  const double d = length(off);
+  if (d >= kPersonalSpace) return person;
+  if (d < 1e-9) return robot + Point2{0.0, kPersonalSpace};
+  return robot + (kPersonalSpace / d) * off;
+}
+
 std::optional<Point2> Person::at(double time) const {
   const double total =
       polylineLength(points) + (mode == Mode::kLoop ? length(points.front() - points.back()) : 0.0);

@@ -18,7 +18,6 @@ constexpr double kPlannerResolution = 0.05;
 constexpr double kPlanAhead = 2.0;                     // [m] before the end of a leg
 constexpr double kTurnBack = hyselam::radians(100.0);  // sharper turns are made on the spot
 constexpr double kPlaceRadius = 1.2;                   // who comes this near passes a place [m]
-constexpr double kPersonalSpace = 0.75;                // people step aside within this [m]
 constexpr double kExactBelow = 0.1;  // the grid's clearance is checked exactly below radius + this
 
 std::string text(Point2 p) {
@@ -283,19 +282,10 @@ class Run {
     if (ticks_ > 0 && due(tick) <= due(tick - 1.0)) return;
     std::vector<Disc> people;
     for (const Person& person : route_.people) {
-      if (auto at = person.at(time())) people.push_back({aside(*at), person.radius});
+      if (auto at = person.at(time())) people.push_back({makeRoom(*at, position()), person.radius});
     }
     result_.log.scans.push_back(
         takeScan(params_.laser, world_->rays, people, robot_.pose(), stamp(), laser_rng_));
-  }
-
-  // People make room for the robot.
-  Point2 aside(Point2 p) const {
-    const Point2 off = p - position();
-    const double d = length(off);
-    if (d >= kPersonalSpace) return p;
-    if (d < 1e-9) return position() + Point2{0.0, kPersonalSpace};
-    return position() + (kPersonalSpace / d) * off;
   }
 
   void tick(double speed, double turn_rate, std::size_t step) {

@@ -1,0 +1,394 @@
+#include "hyselam_sim/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hyselam_common/errors.hpp"
+#include "texture.hpp"
+
+namespace hyselam_sim {
+namespace {
+
+constexpr double kNear = 0.05;     // [m]
+constexpr double kInFront = 0.15;  // how far before a wall its room and light are looked up [m]
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr Colour kLampShine{2.4f, 2.1f, 1.7f};
+
+void check(const CameraParams& p) {
+  using hyselam::ParameterError;
+  if (p.width < 16 || p.width > 4096) throw ParameterError("width", p.width, "16 .. 4096");
+  if (p.height < 16 || p.height > 4096) throw ParameterError("height", p.height, "16 .. 4096");
+  if (!(p.view > 0.0 && p.view <= hyselam::radians(170.0))) {
+    throw ParameterError("view", p.view, "within (0, 2.967] rad");
+  }
+  if (!(p.above_floor > 0.0 && p.above_floor < 100.0)) {
+    throw ParameterError("above_floor", p.above_floor, "within (0, 100)");
+  }
+  if (!(p.range > 1.0 && p.range <= 1000.0)) throw ParameterError("range", p.range, "1 .. 1000");
+  if (!(p.depth_min >= 0.0 && p.depth_max > p.depth_min && p.depth_max <= 65.0)) {
+    throw ParameterError("depth_max", p.depth_max, "above depth_min, up to 65");
+  }
+  for (const auto& [name, value] : {std::pair<const char*, double>{"depth_sigma", p.depth_sigma},
+                                    {"noise", p.noise},
+                                    {"exposure", p.exposure},
+                                    {"white_balance", p.white_balance}}) {
+    if (!(value >= 0.0 && value <= 1.0)) throw ParameterError(name, value, "0 .. 1");
+  }
+}
+
+/// A part of a column that belongs to one face.
+struct Span {
+  const Body* body = nullptr;
+  enum class Face { kSide, kTop, kUnderside } face = Face::kSide;
+  float along = 0.0f;  // of a side: where on its edge [m]
+  const Surface* surface = nullptr;
+  Colour light{};  // of a side
+  Point2 front;    // of a side: a point before it
+};
+
+struct Crossing {
+  float depth = 0.0f;
+  float along = 0.0f;
+  Point2 out;  // unit normal of the edge, away from the body
+};
+
+/// Paints one picture, column by column, each with its own depth buffer.
+class Painter {
+ public:
+  Painter(const CameraParams& params, const Scene& scene, const LightParams& light,
+          const Pose2& base)
+      : params_(params),
+        scene_(scene),
+        sky_(light),
+        focal_(params.focalLength()),
+        eye_(base * params.camera_in_base),
+        origin_{eye_.x, eye_.y},
+        forward_{std::cos(eye_.theta), std::sin(eye_.theta)},
+        right_{forward_.y, -forward_.x},
+        colour_(params.height, params.width, CV_32FC3),
+        depth_(params.height, params.width, CV_32FC1),
+        owner_(params.height, params.width, CV_32SC1),
+        nearest_(static_cast<std::size_t>(params.height)),
+        span_of_(static_cast<std::size_t>(params.height)),
+        columns_(static_cast<std::size_t>(params.width)) {}
+
+  void add(const std::vector<Body>& bodies) {
+    for (const Body& body : bodies) add(body);
+  }
+
+  void paint() {
+    for (int u = 0; u < params_.width; ++u) paintColumn(u);
+  }
+
+  const cv::Mat& colour() const { return colour_; }
+  const cv::Mat& depth() const { return depth_; }
+  const cv::Mat& owner() const { return owner_; }
+
+ private:
+  // Notes the body in the columns that it may cover.
+  void add(const Body& body) {
+    double least = std::numeric_limits<double>::infinity(), most = -least, nearest = least,
+           farthest = -least;
+    bool behind = false;
+    for (const Point2& p : body.outline) {
+      const double z = dot(p - origin_, forward_), x = dot(p - origin_, right_);
+      nearest = std::min(nearest, z);
+      farthest = std::max(farthest, z);
+      if (z < kNear) {
+        behind = true;
+        continue;
+      }
+      least = std::min(least, x / z);
+      most = std::max(most, x / z);
+    }
+    if (farthest < kNear || nearest > params_.range) return;
+    int from = 0, to = params_.width - 1;
+    if (!behind) {
+      const double middle = 0.5 * params_.width;
+      if (middle + focal_ * most < 0.0 || middle + focal_ * least > params_.width) return;
+      from = std::max(0, static_cast<int>(std::floor(middle + focal_ * least - 1.0)));
+      to = std::min(to, static_cast<int>(std::ceil(middle + focal_ * most + 1.0)));
+    }
+    for (int u = from; u <= to; ++u) columns_[static_cast<std::size_t>(u)].push_back(&body);
+  }
+
+  // Where the column's plane crosses the outline: entry and exit.
+  bool cross(const Body& body, Point2 direction, Crossing* in, Crossing* out) const {
+    in->depth = kInfinite;
+    out->depth = -kInfinite;
+    const std::size_t n = body.outline.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Point2 a = body.outline[i], e = body.outline[(i + 1) % n] - a;
+      const double det = hyselam_sim::cross(direction, e);
+      if (std::abs(det) < 1e-12) continue;
+      const Point2 to_a = a - origin_;
+      const double depth = hyselam_sim::cross(to_a, e) / det;
+      const double share = hyselam_sim::cross(to_a, direction) / det;
+      if (share < 0.0 || share > 1.0) continue;
+      const double l = length(e);
+      Point2 normal = (1.0 / l) * Point2{e.y, -e.x};
+      if (dot(normal, direction) > 0.0) normal = -1.0 * normal;
+      const Crossing crossing{static_cast<float>(depth), static_cast<float>(share * l), normal};
+      if (crossing.depth < in->depth) *in = crossing;
+      if (crossing.depth > out->depth) *out = crossing;
+    }
+    return in->depth > static_cast<float>(kNear) && in->depth < static_cast<float>(params_.range);
+  }
+
+  double rowOf(double z, double depth) const {
+    return 0.5 * params_.height + focal_ * (params_.above_floor - z) / depth;
+  }
+
+  // Rows whose centres lie within [top, bottom).
+  template <typename Paint>
+  void rows(double top, double bottom, Paint paint) {
+    const int from = std::max(0, static_cast<int>(std::ceil(std::min(top, 1e6) - 0.5)));
+    const int to =
+        std::min(params_.height - 1, static_cast<int>(std::ceil(std::min(bottom, 1e6) - 0.5)) - 1);
+    for (int v = from; v <= to; ++v) paint(v);
+  }
+
+  void cover(int v, float depth, int span) {
+    float& nearest = nearest_[static_cast<std::size_t>(v)];
+    if (depth >= nearest) return;
+    nearest = depth;
+    span_of_[static_cast<std::size_t>(v)] = span;
+  }
+
+  // Depth of a level plane in a row; infinite where the row does not meet it.
+  float planeDepth(double z, int v) const {
+    const double down = v + 0.5 - 0.5 * params_.height;
+    const double depth = focal_ * (params_.above_floor - z) / down;
+    return depth > 0.0 ? static_cast<float>(depth) : kInfinite;
+  }
+
+  void paintColumn(int u) {
+    const double x = (u + 0.5 - 0.5 * params_.width) / focal_;
+    const Point2 direction = forward_ + x * right_;
+    std::fill(nearest_.begin(), nearest_.end(), kInfinite);
+    std::fill(span_of_.begin(), span_of_.end(), -1);
+    spans_.clear();
+    for (const Body* body : columns_[static_cast<std::size_t>(u)]) {
+      Crossing in, out;
+      if (cross(*body, direction, &in, &out)) addSpans(*body, in, out, direction);
+    }
+    for (int v = 0; v < params_.height; ++v) paintPixel(u, v, direction);
+  }
+
+  void addSpans(const Body& body, const Crossing& in, const Crossing& out, Point2 direction) {
+    const double eye = params_.above_floor;
+    Span span;
+    span.body = &body;
+    span.along = in.along;
+    span.front = origin_ + static_cast<double>(in.depth) * direction + kInFront * in.out;
+    span.surface = body.painted ? &scene_.paint(scene_.regions().roomAt(span.front)) : &body.side;
+    span.light = sideLight(span.front, in.out);
+    const int side = static_cast<int>(spans_.size());
+    spans_.push_back(span);
+    rows(rowOf(body.to, static_cast<double>(in.depth)),
+         rowOf(body.from, static_cast<double>(in.depth)), [&](int v) { cover(v, in.depth, side); });
+    for (const bool top : {true, false}) {
+      const double z = top ? body.to : body.from;
+      if (top ? eye <= z : eye >= z) continue;
+      span.face = top ? Span::Face::kTop : Span::Face::kUnderside;
+      span.surface = &body.top;
+      const int level = static_cast<int>(spans_.size());
+      spans_.push_back(span);
+      const double a = rowOf(z, static_cast<double>(in.depth));
+      const double b = rowOf(z, static_cast<double>(out.depth));
+      rows(std::min(a, b), std::max(a, b), [&](int v) { cover(v, planeDepth(z, v), level); });
+    }
+  }
+
+  Colour sideLight(Point2 front, Point2 out) const {
+    Colour light = scene_.light().at(front, sky_);
+    // Sides of a room differ a little in brightness, as they do where light comes from one side.
+    const auto shade = static_cast<float>(0.9 + 0.1 * dot(out, Point2{0.8, 0.6}));
+    for (float& channel : light) channel *= shade;
+    return light;
+  }
+
+  void paintPixel(int u, int v, Point2 direction) {
+    const auto row = static_cast<std::size_t>(v);
+    float depth = nearest_[row];
+    Colour colour{};
+    std::uint32_t owner = 0;
+    const bool down = 2 * v + 1 > params_.height;
+    const float level = planeDepth(down ? 0.0 : scene_.ceiling(), v);
+    if (span_of_[row] >= 0 && depth <= level) {
+      const Span& span = spans_[static_cast<std::size_t>(span_of_[row])];
+      owner = span.body->owner;
+      colour = span.face == Span::Face::kSide ? sideColour(span, depth, v)
+                                              : levelColour(span, depth, direction);
+    } else {
+      depth = level;
+      if (static_cast<double>(depth) > 4.0 * params_.range) depth = kInfinite;
+      if (depth < kInfinite) {
+        const Point2 p = origin_ + static_cast<double>(depth) * direction;
+        const int room = scene_.regions().roomAt(p);
+        const Surface& surface = down ? scene_.floor(room) : scene_.ceilingSurface(room);
+        colour = lit(textureAt(surface, static_cast<float>(p.x), static_cast<float>(p.y),
+                               levelBlur(depth, down ? 0.0 : scene_.ceiling()), 0.0f),
+                     scene_.light().at(p, sky_), down ? 1.0f : 0.7f);
+      }
+    }
+    depth_.at<float>(v, u) = depth;
+    owner_.at<std::int32_t>(v, u) = static_cast<std::int32_t>(owner);
+    colour_.at<cv::Vec3f>(v, u) = {colour[2], colour[1], colour[0]};
+  }
+
+  static Colour lit(const Colour& albedo, const Colour& light, float share) {
+    Colour out;
+    for (std::size_t i = 0; i < 3; ++i) out[i] = share * albedo[i] * light[i];
+    return out;
+  }
+
+  // What one pixel covers of a level plane, seen at a flat angle.
+  float levelBlur(float depth, double z) const {
+    const double drop = std::max(0.05, std::abs(params_.above_floor - z));
+    const double d = static_cast<double>(depth);
+    return static_cast<float>(d / focal_ * std::min(6.0, std::max(1.0, 0.5 * d / drop)));
+  }
+
+  Colour sideColour(const Span& span, float depth, int v) const {
+    const double z = params_.above_floor -
+                     (v + 0.5 - 0.5 * params_.height) * static_cast<double>(depth) / focal_;
+    const auto height = static_cast<float>(span.body->to - span.body->from);
+    const auto up = static_cast<float>(z - span.body->from);
+    switch (span.surface->material) {
+      case Material::kWindow:
+        return windowColour(span, up / height);
+      case Material::kLamp:
+        if (scene_.light().lampsShine(span.front, sky_)) return kLampShine;
+        break;
+      default:
+        break;
+    }
+    const auto blur = static_cast<float>(static_cast<double>(depth) / focal_);
+    return lit(textureAt(*span.surface, span.along, up, blur, height), span.light, 1.0f);
+  }
+
+  // Sky above, a dull ground below; a bar in the middle. Windows shine towards the point in front.
+  Colour windowColour(const Span& span, float up) const {
+    const Point2 way = span.body->outline[3] - span.body->outline[0];
+    const Colour passed = sky_.through((1.0 / length(way)) * way);
+    const double width = length(span.body->outline[1] - span.body->outline[0]);
+    if (std::abs(static_cast<double>(span.along) - 0.5 * width) < 0.025) {
+      return lit({0.8f, 0.8f, 0.78f}, span.light, 1.0f);
+    }
+    const float shine = up > 0.35f ? 1.6f : 0.5f;
+    Colour out;
+    for (std::size_t i = 0; i < 3; ++i) out[i] = shine * passed[i] + 0.03f * span.light[i];
+    return out;
+  }
+
+  Colour levelColour(const Span& span, float depth, Point2 direction) const {
+    const Point2 p = origin_ + static_cast<double>(depth) * direction;
+    if (span.surface->material == Material::kLamp && scene_.light().lampsShine(p, sky_)) {
+      return kLampShine;
+    }
+    const bool top = span.face == Span::Face::kTop;
+    const Colour albedo = textureAt(*span.surface, static_cast<float>(p.x), static_cast<float>(p.y),
+                                    levelBlur(depth, top ? span.body->to : span.body->from), 0.0f);
+    return lit(albedo, scene_.light().at(p, sky_), top ? 1.1f : 0.5f);
+  }
+
+  const CameraParams& params_;
+  const Scene& scene_;
+  Sky sky_;
+  double focal_;
+  Pose2 eye_;
+  Point2 origin_, forward_, right_;
+  cv::Mat colour_, depth_, owner_;
+  std::vector<float> nearest_;  // depth of each row of the current column
+  std::vector<int> span_of_;
+  std::vector<Span> spans_;
+  std::vector<std::vector<const Body*>> columns_;
+};
+
+// In (-1, 1), mean 0, standard deviation 0.41: two bytes of a hash.
+float triangular(std::uint64_t bits, int at) {
+  const auto a = static_cast<float>((bits >> (16 * at)) & 0xffu);
+  const auto b = static_cast<float>((bits >> (16 * at + 8)) & 0xffu);
+  return (a - b) * (1.0f / 255.0f);
+}
+
+// From light to bytes: exposure, white balance, noise, gamma.
+cv::Mat develop(const CameraParams& params, const cv::Mat& light, std::uint64_t seed) {
+  const cv::Scalar mean = cv::mean(light);
+  const double luminance = std::max(1e-6, 0.114 * mean[0] + 0.587 * mean[1] + 0.299 * mean[2]);
+  constexpr double kTarget = 0.24, kUsual = 0.3;
+  const double gain = kTarget / kUsual * std::pow(kUsual / luminance, params.exposure);
+  std::array<float, 3> gains{};
+  for (int c = 0; c < 3; ++c) {
+    const double grey = luminance / std::max(1e-6, mean[c]);
+    gains[static_cast<std::size_t>(c)] =
+        static_cast<float>(gain * std::pow(std::clamp(grey, 0.3, 3.0), params.white_balance));
+  }
+  // Dark pictures are noisier; 2.45 makes the draws' standard deviation 1.
+  const auto noise = static_cast<float>(2.45 * params.noise * std::clamp(gain / 4.0, 0.15, 1.5));
+  std::array<std::uint8_t, 4097> gamma{};
+  for (std::size_t i = 0; i < gamma.size(); ++i) {
+    const double x = static_cast<double>(i) / 4096.0;
+    gamma[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::pow(x, 1.0 / 2.2)));
+  }
+  cv::Mat out(light.size(), CV_8UC3);
+  for (int v = 0; v < light.rows; ++v) {
+    const auto* in = light.ptr<cv::Vec3f>(v);
+    auto* bytes = out.ptr<cv::Vec3b>(v);
+    for (int u = 0; u < light.cols; ++u) {
+      const std::uint64_t bits =
+          hyselam::mix(seed, static_cast<std::uint64_t>(v) * 65536u + static_cast<unsigned>(u));
+      for (int c = 0; c < 3; ++c) {
+        float x = in[u][c] * gains[static_cast<std::size_t>(c)];
+        x = x / (1.0f + 0.25f * x) * 1.12f;  // highlights bend instead of clipping
+        x += noise * std::sqrt(x + 0.02f) * triangular(bits, c);
+        bytes[u][c] = gamma[static_cast<std::size_t>(std::clamp(x, 0.0f, 1.0f) * 4096.0f)];
+      }
+    }
+  }
+  return out;
+}
+
+cv::Mat measureDepth(const CameraParams& params, const cv::Mat& depth, std::uint64_t seed) {
+  cv::Mat out(depth.size(), CV_16UC1);
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      const float d = depth.at<float>(v, u);
+      const std::uint64_t bits =
+          hyselam::mix(seed, static_cast<std::uint64_t>(v) * 65536u + static_cast<unsigned>(u));
+      const float measured =
+          d + 2.45f * static_cast<float>(params.depth_sigma) * d * d * triangular(bits, 3);
+      const bool seen = measured >= static_cast<float>(params.depth_min) &&
+                        measured <= static_cast<float>(params.depth_max);
+      out.at<std::uint16_t>(v, u) =
+          seen ? static_cast<std::uint16_t>(std::lround(1000.0f * measured)) : std::uint16_t{0};
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+double CameraParams::focalLength() const {
+  return 0.5 * width / std::tan(0.5 * view);
+}
+
+CameraFrame takePicture(const CameraParams& params, const Scene& scene, const LightParams& light,
+                        const std::vector<Person>& people, const Pose2& base, double time,
+                        hyselam::Rng& rng) {
+  check(params);
+  const std::vector<Body> doors = scene.doors(time),
+                          persons = scene.people(people, time, {base.x, base.y});
+  Painter painter(params, scene, light, base);
+  painter.add(scene.bodies());
+  painter.add(doors);
+  painter.add(persons);
+  painter.paint();
+  const std::uint64_t seed = rng();
+  return {develop(params, painter.colour(), seed), measureDepth(params, painter.depth(), seed),
+          painter.owner().clone()};
+}
+
+}  // namespace hyselam_sim
