@@ -15,7 +15,6 @@ import math
 import os
 import statistics
 import sys
-import tempfile
 import time
 
 RUNS = 5
@@ -25,15 +24,28 @@ class Graph:
     def __init__(self, path):
         opened = gzip.open(path, "rt") if path.endswith(".gz") else open(path)
         with opened as f:
-            self.text = f.read()
+            lines = f.read().splitlines()
         self.poses, self.edges = {}, []
-        for line in self.text.splitlines():
+        for line in lines:
             w = line.split()
             if w and w[0] == "VERTEX_SE2":
                 self.poses[int(w[1])] = tuple(map(float, w[2:5]))
             elif w and w[0] == "EDGE_SE2":
                 self.edges.append((int(w[1]), int(w[2]), tuple(map(float, w[3:6])), tuple(map(float, w[6:12]))))
+        if not self.poses:
+            self.compose()
         self.first = min(self.poses)
+
+    def compose(self):
+        """Poses along the edges between neighbours, for files without poses."""
+        steps = {(a, b): z for a, b, z, _ in self.edges}
+        key = min(min(a, b) for a, b, _, _ in self.edges)
+        self.poses[key] = (0.0, 0.0, 0.0)
+        while (key, key + 1) in steps:
+            (x, y, t), (dx, dy, dt) = self.poses[key], steps[key, key + 1]
+            c, s = math.cos(t), math.sin(t)
+            key += 1
+            self.poses[key] = (x + c * dx - s * dy, y + s * dx + c * dy, math.remainder(t + dt, 2 * math.pi))
 
     def cost(self, poses):
         total = 0.0
@@ -45,6 +57,12 @@ class Graph:
             ex, ey, et = c * px + s * py, -s * px + c * py, math.remainder(bt - at - zt, 2 * math.pi)
             total += xx * ex * ex + yy * ey * ey + tt * et * et + 2 * (xy * ex * ey + xt * ex * et + yt * ey * et)
         return total
+
+
+def matrix(upper):
+    import numpy
+    xx, xy, xt, yy, yt, tt = upper
+    return numpy.array([[xx, xy, xt], [xy, yy, yt], [xt, yt, tt]])
 
 
 def timed(setting, once):
@@ -66,10 +84,12 @@ def run_gtsam(graph):
         import gtsam
     except ImportError as error:
         return f"not installed ({error})"
-    with tempfile.NamedTemporaryFile("w", suffix=".g2o") as plain:
-        plain.write(graph.text)
-        plain.flush()
-        factors, guess = gtsam.readG2o(plain.name, False)
+    factors, guess = gtsam.NonlinearFactorGraph(), gtsam.Values()
+    for key, pose in graph.poses.items():
+        guess.insert(key, gtsam.Pose2(*pose))
+    for a, b, z, information in graph.edges:
+        noise = gtsam.noiseModel.Gaussian.Information(matrix(information), True)
+        factors.add(gtsam.BetweenFactorPose2(a, b, gtsam.Pose2(*z), noise))
     hold = gtsam.noiseModel.Isotropic.Sigma(3, 1e-6)
     factors.add(gtsam.PriorFactorPose2(graph.first, guess.atPose2(graph.first), hold))
 
@@ -95,7 +115,6 @@ def run_gtsam(graph):
 def run_g2o(graph, best):
     try:
         import g2o
-        import numpy
     except ImportError as error:
         return f"not installed ({error})"
 
@@ -110,12 +129,12 @@ def run_g2o(graph, best):
             vertex.set_fixed(key == graph.first)
             optimizer.add_vertex(vertex)
             vertices[key] = vertex
-        for a, b, z, (xx, xy, xt, yy, yt, tt) in graph.edges:
+        for a, b, z, information in graph.edges:
             edge = g2o.EdgeSE2()
             edge.set_vertex(0, vertices[a])
             edge.set_vertex(1, vertices[b])
             edge.set_measurement(g2o.SE2(*z))
-            edge.set_information(numpy.array([[xx, xy, xt], [xy, yy, yt], [xt, yt, tt]]))
+            edge.set_information(matrix(information))
             optimizer.add_edge(edge)
         return optimizer, vertices
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 
+#include "false_loops.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
@@ -146,6 +147,42 @@ TEST(GraphOptimizer, FalseLoopsAreRefused) {
     EXPECT_LT(worst(r.poses, clean.poses), 0.05) << seed;
     EXPECT_GT(worst(GraphOptimizer(known.graph).optimize().poses, clean.poses), 0.5)
         << "the false loops do no harm: the test shows nothing";
+  }
+}
+
+TEST(GraphOptimizer, FalseLoopsInCompanyAreRefused) {
+  // Two streets that look the same: a row of false loops, each confirming the next.
+  auto known = random_graphs::streets(300, 0.01, 2);
+  const OptimizeResult clean = GraphOptimizer(known.graph).optimize();
+  const std::size_t true_edges = known.graph.edges.size();
+  hyselam::Rng rng(7);
+  for (int k = 0; k < 6; ++k) {
+    PoseEdge e = random_graphs::measured(60 + k, 200 + k, known.truth, 0.01, &rng);
+    // 60 + k is taken for a place beside 200 + k that moves along with it.
+    e.measured = between(known.truth[200], known.truth[static_cast<std::size_t>(200 + k)]);
+    e.measured = between(known.truth[60], known.truth[static_cast<std::size_t>(60 + k)]).inverse() *
+                 Pose2{0.3, 0.2, 0.1} * e.measured;
+    known.graph.edges.push_back(e);
+  }
+  OptimizeParams params;
+  params.robust = GraphRobust::kGnc;
+  const OptimizeResult r = GraphOptimizer(known.graph).optimize(params);
+  for (std::size_t k = true_edges; k < r.weights.size(); ++k) EXPECT_LT(r.weights[k], 0.01) << k;
+  EXPECT_LT(worst(r.poses, clean.poses), 0.05);
+}
+
+TEST(GraphOptimizer, HalfAsManyFalseLoopsAsTrueOnesChangeNothing) {
+  HYSELAM_NEED_DATA(data);
+  for (const std::string name : {"M3500", "intel"}) {
+    const PoseGraph graph = readG2o(data + "/posegraphs/" + name + ".g2o.gz");
+    const std::vector<Pose2> clean = GraphOptimizer(graph).optimize().poses;
+    PoseGraph lying = graph;
+    false_loops::add(&lying, 0.5, 1);
+    OptimizeParams params;
+    params.robust = GraphRobust::kGnc;
+    const OptimizeResult r = GraphOptimizer(lying).optimize(params);
+    // Of the clean graph's own error of 0.72 m on M3500, where the truth is known, 5 % are 0.036 m.
+    EXPECT_LT(false_loops::trajectoryError(r.poses, clean), 0.01) << name;
   }
 }
 
