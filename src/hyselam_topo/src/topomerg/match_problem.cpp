@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_topo/topomerg_problem.hpp"
+#include "merge_terms.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::InputError;
+
+double areaOf(const Place& place) {
+  if (place.area > 0.0) return place.area;
+  double twice = 0.0;
+  for (std::size_t k = 0; k < place.outline.size(); ++k) {
+    const auto& p = place.outline[k];
+    const auto& q = place.outline[(k + 1) % place.outline.size()];
+    twice += p.x * q.y - q.x * p.y;
+  }
+  return 0.5 * std::abs(twice);
+}
+
+double middleOf(Side side) {
+  switch (side) {
+    case Side::kLeft:
+      return 0.5 * merging::kPi;
+    case Side::kRight:
+      return -0.5 * merging::kPi;
+    case Side::kBack:
+      return merging::kPi;
+    case Side::kFront:
+    case Side::kUnknown:
+      break;
+  }
+  return 0.0;
+}
+
+class Numbers {
+ public:
+  Numbers(const std::vector<Id>& ids, const char* what, const char* whose)
+      : what_(what), whose_(whose) {
+    for (std::size_t k = 0; k < ids.size(); ++k) number_[ids[k]] = static_cast<int>(k);
+  }
+  int operator()(Id id, const std::string& source) const {
+    const auto found = number_.find(id);
+    if (found == number_.end())
+      throw InputError(source, std::string(what_) + " " + std::to_string(id),
+                       std::string("there is no such place in the ") + whose_);
+    return found->second;
+  }
+
+ private:
+  std::map<Id, int> number_;
+  const char* what_;
+  const char* whose_;
+};
+
+void addSides(const DescribedBuilding& building, const Numbers& name, MatchProblem* out) {
+  // The places on one side of a place, in the order told.
+  std::map<std::pair<Id, Side>, std::vector<const DescribedConnection*>> rows;
+  for (const DescribedConnection& c : building.connections)
+    if (c.side != Side::kUnknown) rows[{c.from, c.side}].push_back(&c);
+  for (auto& [key, row] : rows) {
+    std::stable_sort(row.begin(), row.end(),
+                     [](const auto* a, const auto* b) { return a->order < b->order; });
+    const double count = static_cast<double>(row.size());
+    const double middle = middleOf(key.second);
+    // The first is nearest to the back: on the right hand that is the smallest angle. Front and
+    // back are told from left to right.
+    const double sign = key.second == Side::kRight || key.second == Side::kBack ? -1.0 : 1.0;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const double offset =
+          (0.5 * (count - 1.0) - static_cast<double>(k)) * merging::kPi / (2 * count);
+      out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
+                            merging::wrapped(middle + sign * offset)});
+    }
+  }
+}
+
+void addConstraints(const MatchConstraints& constraints, const Numbers& name, const Numbers& vertex,
+                    MatchProblem* out) {
+  PlaceSet all;
+  for (std::size_t v = 0; v < out->vertexCount(); ++v) all.insert(v);
+  out->allowed.assign(out->nameCount(), all);
+  out->fixed.assign(out->vertexCount(), -1);
+  for (const auto& [place, told] : constraints.confirmed) {
+    const int v = vertex(place, "constraints");
+    const int i = name(told, "constraints");
+    int& fixed = out->fixed[static_cast<std::size_t>(v)];
+    if (fixed >= 0 && fixed != i)
+      throw InputError("constraints", "place " + std::to_string(place),
+                       "is confirmed to have two names");
+    fixed = i;
+  }
+  for (const Id place : constraints.unnamed) {
+    const auto v = static_cast<std::size_t>(vertex(place, "constraints"));
+    for (PlaceSet& allowed : out->allowed) allowed.erase(v);
+  }
+  for (const auto& [place, told] : constraints.excluded) {
+    const auto v = static_cast<std::size_t>(vertex(place, "constraints"));
+    out->allowed[static_cast<std::size_t>(name(told, "constraints"))].erase(v);
+  }
+  for (std::size_t v = 0; v < out->vertexCount(); ++v) {
+    if (out->fixed[v] < 0) continue;
+    const auto i = static_cast<std::size_t>(out->fixed[v]);
+    if (!out->allowed[i].contains(v))
+      throw InputError("constraints", "place " + std::to_string(out->vertices[v]),
+                       "a name is both confirmed and excluded");
+    for (std::size_t j = 0; j < out->nameCount(); ++j)
+      if (j != i) out->allowed[j].erase(v);
+  }
+}
+
+}  // namespace
+
+MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopologicalMap& map,
+                          const MatchObserver& observer, const MatchConstraints& constraints,
+                          const std::vector<MatchEvidence>& evidence) {
+  checkDescription(building, "description");
+  checkMap(map, "map");
+  if (building.places.size() > PlaceSet::kCapacity || map.places.size() > PlaceSet::kCapacity)
+    throw InputError(building.places.size() > PlaceSet::kCapacity ? "description" : "map", "",
+                     "has more than " + std::to_string(PlaceSet::kCapacity) + " places");
+  if (observer.heading && !std::isfinite(*observer.heading))
+    throw InputError("observer", "heading", "is no number");
+
+  MatchProblem out;
+  for (const DescribedPlace& place : building.places) {
+    out.names.push_back(place.id);
+    double area = place.area.value_or(0.0);
+    if (area <= 0.0 && place.length && place.width) area = *place.length * *place.width;
+    out.told.push_back({area, place.parts.value_or(0), place.kind});
+  }
+  for (const Place& place : map.places) {
+    out.vertices.push_back(place.id);
+    out.area.push_back(areaOf(place));
+    out.kind.push_back(place.kind);
+    out.x.push_back(place.centre ? place.centre->x : 0.0);
+    out.y.push_back(place.centre ? place.centre->y : 0.0);
+  }
+  const std::size_t n = out.nameCount(), m = out.vertexCount();
+  // Large places say where the middle of several is; without all sizes each counts the same.
+  const bool weighed =
+      std::all_of(out.area.begin(), out.area.end(), [](double a) { return a > 0.0; });
+  for (std::size_t v = 0; v < m; ++v)
+    out.weight.push_back(!map.places[v].centre ? 0.0 : weighed ? out.area[v] : 1.0);
+
+  const Numbers name(out.names, "place", "description"), vertex(out.vertices, "place", "map");
+  out.neighbours.resize(m);
+  for (const Edge& edge : map.edges) {
+    const auto a = static_cast<std::size_t>(vertex(edge.a, "map"));
+    const auto b = static_cast<std::size_t>(vertex(edge.b, "map"));
+    out.neighbours[a].insert(b);
+    out.neighbours[b].insert(a);
+  }
+  out.joined.assign(n * n, 0);
+  for (const DescribedConnection& c : building.connections) {
+    const auto a = static_cast<std::size_t>(name(c.from, "description"));
+    const auto b = static_cast<std::size_t>(name(c.to, "description"));
+    out.joined[a * n + b] = out.joined[b * n + a] = 1;
+  }
+  addSides(building, name, &out);
+  for (const DescribedRelation& r : building.relations)
+    out.relations.push_back({r.kind, name(r.a, "description"), name(r.b, "description"),
+                             r.kind == RelationKind::kBetween ? name(r.c, "description") : -1});
+
+  MatchConstraints all = constraints;
+  if (observer.place) {
+    vertex(*observer.place, "observer");
+    if (building.robot_place) all.confirmed.emplace_back(*observer.place, *building.robot_place);
+  }
+  addConstraints(all, name, vertex, &out);
+  if (observer.heading) out.heading = std::remainder(*observer.heading, 2.0 * merging::kPi);
+
+  for (const MatchEvidence& e : evidence) {
+    const auto i = static_cast<std::size_t>(name(e.name, "evidence"));
+    const auto v = static_cast<std::size_t>(vertex(e.place, "evidence"));
+    if (!(e.value >= 0.0 && e.value <= 1.0))
+      throw InputError("evidence", "place " + std::to_string(e.place), "is not within 0 .. 1");
+    if (out.evidence.empty()) out.evidence.assign(n * m, 0.0);
+    out.evidence[i * m + v] = e.value;
+  }
+  return out;
+}
+
+void checkFitnessParams(const FitnessParams& params) {
+  const std::pair<const char*, double> weights[] = {
+      {"vertices", params.vertices},   {"areas", params.areas},
+      {"edges", params.edges},         {"orientations", params.orientations},
+      {"relations", params.relations}, {"parts", params.parts},
+      {"kinds", params.kinds},         {"evidence", params.evidence}};
+  for (const auto& [weight_name, value] : weights)
+    if (!(value >= 0.0 && std::isfinite(value)))
+      throw hyselam::ParameterError(weight_name, value, "a number >= 0");
+  if (!(params.vertices + params.areas + params.edges + params.orientations > 0.0))
+    throw hyselam::ParameterError("vertices", params.vertices,
+                                  "> 0 if areas, edges and orientations are 0");
+  if (!(params.forgotten_edge >= 0.0 && params.forgotten_edge <= 1.0))
+    throw hyselam::ParameterError("forgotten_edge", params.forgotten_edge, "within 0 .. 1");
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,106 @@
+// The terms of the fitness as losses: 1 - f is a sum over names, pairs of names and relations, so
+// that a part of an answer has a loss of its own and more of the answer only adds to it.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "hyselam_topo/topomerg_problem.hpp"
+
+namespace hyselam_topo::merging {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// To -pi .. pi, for angles within -3 pi .. 3 pi.
+inline double wrapped(double angle) {
+  if (angle > kPi) return angle - 2.0 * kPi;
+  if (angle < -kPi) return angle + 2.0 * kPi;
+  return angle;
+}
+
+/// The vertices that one name means, and what follows from them.
+struct Vertices {
+  PlaceSet members;
+  PlaceSet around;      ///< neighbours of the members in the map, without the members
+  double area = 0.0;    ///< [m^2]
+  double weight = 0.0;  ///< of all positions
+  double sx = 0.0;      ///< sum of weight * x
+  double sy = 0.0;
+  int count = 0;
+
+  bool empty() const { return count == 0; }
+  bool hasCentre() const { return weight > 0.0; }
+  double x() const { return sx / weight; }
+  double y() const { return sy / weight; }
+  bool touches(const Vertices& other) const { return around.intersects(other.members); }
+  void add(const MatchProblem& problem, std::size_t vertex);
+};
+
+/// The robot's heading, known up to `slack`: angles count as right within it.
+struct Heading {
+  double value = 0.0;
+  double slack = 0.0;
+};
+
+class Terms {
+ public:
+  Terms(const MatchProblem& problem, const FitnessParams& params);
+
+  const MatchProblem& problem;
+  double empty_name = 0.0;      ///< loss of a name without vertices
+  double area = 0.0;            ///< the most one wrong size costs
+  double missing_edge = 0.0;    ///< told, not in the map
+  double forgotten_edge = 0.0;  ///< in the map, not told
+  double side = 0.0;            ///< the most one wrong side costs
+  double relation = 0.0;
+  double parts = 0.0;
+  double kind = 0.0;
+  double evidence = 0.0;
+  std::vector<std::vector<int>> sides_of;      ///< of each name, numbers in problem.sides
+  std::vector<std::vector<int>> relations_of;  ///< the same of problem.relations
+  std::vector<char> has_evidence;              ///< of each name
+
+  /// What a name alone loses.
+  double alone(int name, const Vertices& v) const;
+  /// Of two names: joined as told or not.
+  double edge(int i, int j, bool touching) const {
+    const bool told = problem.areJoined(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+    return told == touching ? 0.0 : told ? missing_edge : forgotten_edge;
+  }
+  /// Difference of what was told and a bearing in the map, 0 .. pi.
+  double deviation(const MatchProblem::ToldSide& told, double bearing, Heading heading) const {
+    const double off =
+        std::abs(wrapped(wrapped(bearing - told.angle) - heading.value)) - heading.slack;
+    return off > 0.0 ? off : 0.0;
+  }
+  /// Whether a side can be compared: both are there, joined, and have positions.
+  static bool comparable(const Vertices& from, const Vertices& to) {
+    return from.hasCentre() && to.hasCentre() && from.touches(to);
+  }
+  static double bearing(const Vertices& from, const Vertices& to) {
+    return std::atan2(to.y() - from.y(), to.x() - from.x());
+  }
+  double sideLoss(const MatchProblem::ToldSide& told, const Vertices& from, const Vertices& to,
+                  Heading heading) const {
+    if (!comparable(from, to)) return side;
+    return side * deviation(told, bearing(from, to), heading) / kPi;
+  }
+  /// `c` only of kBetween.
+  double relationLoss(const MatchProblem::Relation& r, const Vertices& a, const Vertices& b,
+                      const Vertices* c) const;
+
+ private:
+  double relationValue(RelationKind kind, const Vertices& a, const Vertices& b,
+                       const Vertices* c) const;
+};
+
+/// The vertices of each name.
+std::vector<Vertices> verticesOf(const MatchProblem& problem, const Assignment& assignment);
+
+/// Fitness of a whole answer and the heading that it holds for.
+double evaluate(const Terms& terms, const std::vector<Vertices>& names, double* heading);
+
+/// Whether places of each name hang together as MatchParams::connected asks.
+bool hangTogether(const MatchProblem& problem, const PlaceSet& members);
+
+}  // namespace hyselam_topo::merging

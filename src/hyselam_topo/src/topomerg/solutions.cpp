@@ -1,0 +1,73 @@
+#include "solutions.hpp"
+
+#include <algorithm>
+
+#include "hyselam_common/errors.hpp"
+
+namespace hyselam_topo {
+namespace merging {
+
+bool preferred(const MatchSolution& a, const MatchSolution& b) {
+  if (a.vertices != b.vertices) return a.vertices < b.vertices;
+  return a.assignment < b.assignment;
+}
+
+void Solutions::offer(MatchSolution solution) {
+  if (solution.fitness < needed()) return;
+  const bool better = !any() || solution.fitness > best_ + kEqualFitness;
+  if (better) fewest_ = solution.vertices;
+  // Within kEqualFitness the largest value leads, so that the order of arrival does not matter.
+  best_ = any() ? std::max(best_, solution.fitness) : solution.fitness;
+  floor_ = std::max(floor_, best_);
+  if (!better && solution.fitness >= best_ - kEqualFitness)
+    fewest_ = std::min(fewest_, solution.vertices);
+  kept_.push_back(std::move(solution));
+  if (better) {
+    full_ = false;
+    more_ = more_ && params_.keep_within > 0.0;
+  }
+  if (better || kept_.size() >= 2 * params_.max_solutions) trim();
+  if (kept_.size() >= params_.max_solutions) full_ = true;
+}
+
+void Solutions::trim() {
+  kept_.erase(std::remove_if(kept_.begin(), kept_.end(),
+                             [this](const MatchSolution& s) { return s.fitness < needed(); }),
+              kept_.end());
+  const auto equal = std::partition(kept_.begin(), kept_.end(), [this](const MatchSolution& s) {
+    return s.fitness >= best_ - kEqualFitness;
+  });
+  std::sort(kept_.begin(), equal, preferred);
+  std::sort(equal, kept_.end(), [](const MatchSolution& a, const MatchSolution& b) {
+    return a.fitness != b.fitness ? a.fitness > b.fitness : preferred(a, b);
+  });
+  if (kept_.size() > params_.max_solutions) {
+    more_ = true;
+    kept_.resize(params_.max_solutions);
+  }
+}
+
+Match Solutions::finish() {
+  trim();
+  Match match;
+  match.equal = static_cast<std::size_t>(
+      std::count_if(kept_.begin(), kept_.end(),
+                    [this](const MatchSolution& s) { return s.fitness >= best_ - kEqualFitness; }));
+  match.solutions = kept_;
+  match.more = more_ || full_;
+  return match;
+}
+
+}  // namespace merging
+
+void checkMatchParams(const MatchParams& params) {
+  checkFitnessParams(params.fitness);
+  if (!(params.time_limit >= 0.0))
+    throw hyselam::ParameterError("time_limit", params.time_limit, "a number >= 0");
+  if (params.max_solutions < 1)
+    throw hyselam::ParameterError("max_solutions", params.max_solutions, ">= 1");
+  if (!(params.keep_within >= 0.0 && params.keep_within <= 1.0))
+    throw hyselam::ParameterError("keep_within", params.keep_within, "within 0 .. 1");
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,58 @@
+// The answers that are worth keeping, the best first.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "hyselam_topo/topomerg.hpp"
+#include "merge_terms.hpp"
+
+namespace hyselam_topo::merging {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Fewer places first, then in the order of the assignments.
+bool preferred(const MatchSolution& a, const MatchSolution& b);
+
+class Solutions {
+ public:
+  explicit Solutions(const MatchParams& params) : params_(params) {}
+
+  bool any() const { return !kept_.empty(); }
+  double best() const { return best_; }
+  /// An answer that is worse than this is of no use.
+  double needed() const { return floor_ - params_.keep_within - kEqualFitness; }
+  /// An answer of this fitness is known to exist, and will be offered if nothing better comes.
+  void expect(double fitness) { floor_ = std::max(floor_, fitness); }
+  /// No further answer is needed that is only as good as the best and names as many places.
+  bool full() const { return full_; }
+  std::size_t fewest() const { return fewest_; }
+  const std::vector<MatchSolution>& kept() const { return kept_; }
+
+  /// Takes an answer if it is good enough; each answer may come once only.
+  void offer(MatchSolution solution);
+  /// What is left, in order.
+  Match finish();
+
+ private:
+  void trim();
+
+  const MatchParams params_;
+  std::vector<MatchSolution> kept_;
+  double best_ = -1.0;
+  double floor_ = -1.0;  ///< >= best_
+  std::size_t fewest_ = 0;
+  bool full_ = false;
+  bool more_ = false;
+};
+
+}  // namespace hyselam_topo::merging
