@@ -185,6 +185,9 @@ bool operator==(const Place& a, const Place& b);
 bool operator==(const PlaceGrid& a, const PlaceGrid& b);
 bool operator==(const AugmentedTopologicalMap& a, const AugmentedTopologicalMap& b);
 
+/// How people call a place: its first confirmed word, else its first word, else "room 3".
+std::string nameOf(const Place& place);
+
 /// "room", "corridor", "virtual" and back; nothing for another word.
 const char* toString(PlaceKind kind);
 std::optional<PlaceKind> placeKindOf(const std::string& text);

@@ -147,6 +147,14 @@ bool operator==(const AugmentedTopologicalMap& a, const AugmentedTopologicalMap&
   return all(a) == all(b);
 }
 
+std::string nameOf(const Place& place) {
+  const auto confirmed = std::find_if(place.words.begin(), place.words.end(),
+                                      [](const Word& word) { return word.confirmed; });
+  if (confirmed != place.words.end()) return confirmed->text;
+  if (!place.words.empty()) return place.words.front().text;
+  return std::string(toString(place.kind)) + " " + std::to_string(place.id);
+}
+
 const char* toString(PlaceKind kind) {
   return nameOf(kPlaceKinds, kind);
 }

@@ -288,14 +288,6 @@ void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
 
 }  // namespace
 
-std::string nameOf(const Place& place) {
-  const auto confirmed = std::find_if(place.words.begin(), place.words.end(),
-                                      [](const Word& word) { return word.confirmed; });
-  if (confirmed != place.words.end()) return confirmed->text;
-  if (!place.words.empty()) return place.words.front().text;
-  return std::string(toString(place.kind)) + " " + std::to_string(place.id);
-}
-
 visualization_msgs::MarkerArray mapMarkers(const AugmentedTopologicalMap& map,
                                            const MapMarkerParams& params) {
   Markers markers(map.frame_id);

@@ -21,7 +21,4 @@ struct MapMarkerParams {
 visualization_msgs::MarkerArray mapMarkers(const AugmentedTopologicalMap& map,
                                            const MapMarkerParams& params = {});
 
-/// How people call a place: its first confirmed word, else its first word, else "room 3".
-std::string nameOf(const Place& place);
-
 }  // namespace hyselam_topo
