@@ -65,7 +65,7 @@ nlohmann::json run(const Options& o) {
             row["error_m"] = error;
             row["clean_error_m"] = clean_error;
           }
-          std::cerr << row.dump() << "\n";
+
           rows.push_back(row);
         }
       }

@@ -6,6 +6,8 @@
 // `bench/run pose_graph`; held equal to it in test_graph_optimizer.
 #pragma once
 
+#include <algorithm>
+#include <map>
 #include <vector>
 
 #include "hyselam_pose_graph/cholesky_pattern.hpp"
@@ -87,6 +89,26 @@ class BlockCholesky {
     }
     for (std::size_t i = 0; i < b->size(); ++i)
       (*b)[i] = x[static_cast<std::size_t>(p.position[i])];
+  }
+
+  /// The columns of x = L^-1 b that are not zero when b is zero but for one variable: the way up
+  /// the tree of elimination. x comes in the order of `visit(const Vector&)`.
+  template <class Visit>
+  void solveLowerFrom(int variable, const Vector& b, const Visit& visit) const {
+    const CholeskyPattern& p = *pattern_;
+    std::map<int, Vector> x;  // few of many columns
+    x[p.position[static_cast<std::size_t>(variable)]] = b;
+    while (!x.empty()) {
+      const int c = x.begin()->first;
+      Vector at = x.begin()->second;
+      x.erase(x.begin());
+      const int begin = p.column_begin[static_cast<std::size_t>(c)];
+      const int end = p.column_begin[static_cast<std::size_t>(c) + 1];
+      entry(begin).solveLower(at);
+      visit(at);
+      for (int q = begin + 1; q < end; ++q)
+        entry(q).subtractTimes(at, x[p.row[static_cast<std::size_t>(q)]]);
+    }
   }
 
  private:

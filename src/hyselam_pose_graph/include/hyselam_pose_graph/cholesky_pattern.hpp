@@ -31,6 +31,8 @@ struct CholeskyPattern {
     bool transposed;  ///< the entry holds A(b, a), not A(a, b)
   };
   Slot slot(int a, int b) const;
+  /// Whether L has room for a block of two different variables.
+  bool holds(int a, int b) const;
 };
 
 /// `couplings`: pairs of different variables with a block in A, each at least once.

@@ -63,24 +63,30 @@ class GraphOptimizer {
  public:
   /// @throws std::invalid_argument as PoseGraph::validate does.
   explicit GraphOptimizer(PoseGraph graph);
+  /// The same with the pattern of an earlier optimiser, where all edges fit into it.
+  GraphOptimizer(PoseGraph graph, const GraphOptimizer& earlier);
   ~GraphOptimizer();
   GraphOptimizer(GraphOptimizer&&) noexcept;
   GraphOptimizer& operator=(GraphOptimizer&&) noexcept;
 
   const PoseGraph& graph() const { return graph_; }
+  /// The pattern was taken from an earlier optimiser.
+  bool reusesPattern() const;
 
   /// The first pose of each connected part stays where it is.
   /// @throws hyselam::ParameterError
   OptimizeResult optimize(const OptimizeParams& params = {}) const;
 
   /// Covariance of (x, y, theta) of some poses, given the first of their part, at `poses`; in the
-  /// frame of the graph. Zero for a first pose.
+  /// frame of the graph. Zero for a first pose. `weights`: as optimize() tells them; none: all 1.
   /// @throws std::invalid_argument for an index out of range, std::runtime_error when the edges do
   /// not determine the poses.
   std::vector<Eigen::Matrix3d> covariances(const std::vector<hyselam::Pose2>& poses,
-                                           const std::vector<int>& of) const;
+                                           const std::vector<int>& of,
+                                           const std::vector<double>& weights = {}) const;
 
  private:
+  friend class IncrementalGraph;
   PoseGraph graph_;
   std::unique_ptr<PoseSystem> system_;
 };

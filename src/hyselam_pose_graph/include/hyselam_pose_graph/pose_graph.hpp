@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
@@ -29,6 +30,10 @@ struct PoseGraph {
   /// or whose information is not symmetric positive semidefinite.
   void validate() const;
 };
+
+/// @throws std::invalid_argument, beginning with `name`, for an edge that PoseGraph::validate
+/// refuses in a graph of `poses` poses.
+void validateEdge(const PoseEdge& edge, std::size_t poses, const std::string& name);
 
 /// An edge between poses that follow each other in the list: odometry, as opposed to a loop.
 inline bool isOdometry(const PoseEdge& e) {

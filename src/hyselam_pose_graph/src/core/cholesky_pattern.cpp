@@ -57,6 +57,14 @@ CholeskyPattern::Slot CholeskyPattern::slot(int a, int b) const {
   return {static_cast<int>(it - row.begin()), pa < pb};
 }
 
+bool CholeskyPattern::holds(int a, int b) const {
+  const int pa = position[static_cast<std::size_t>(a)], pb = position[static_cast<std::size_t>(b)];
+  const int column = std::min(pa, pb), wanted = std::max(pa, pb);
+  return std::binary_search(row.begin() + column_begin[static_cast<std::size_t>(column)],
+                            row.begin() + column_begin[static_cast<std::size_t>(column) + 1],
+                            wanted);
+}
+
 CholeskyPattern analysePattern(int variables, const std::vector<std::pair<int, int>>& couplings) {
   const auto n = static_cast<std::size_t>(variables);
   const Adjacency a = adjacency(variables, couplings);

@@ -8,6 +8,7 @@
 #include "gnc.hpp"
 #include "hyselam_common/errors.hpp"
 #include "lifted_rotations.hpp"
+#include "marginals.hpp"
 #include "pose_system.hpp"
 #include "robust_weights.hpp"
 
@@ -92,9 +93,18 @@ GraphOptimizer::GraphOptimizer(PoseGraph graph) : graph_(std::move(graph)) {
   graph_.validate();
   system_ = std::make_unique<PoseSystem>(graph_);
 }
+GraphOptimizer::GraphOptimizer(PoseGraph graph, const GraphOptimizer& earlier)
+    : graph_(std::move(graph)) {
+  graph_.validate();
+  system_ = std::make_unique<PoseSystem>(graph_, earlier.system_.get());
+}
 GraphOptimizer::~GraphOptimizer() = default;
 GraphOptimizer::GraphOptimizer(GraphOptimizer&&) noexcept = default;
 GraphOptimizer& GraphOptimizer::operator=(GraphOptimizer&&) noexcept = default;
+
+bool GraphOptimizer::reusesPattern() const {
+  return system_->reusesPattern();
+}
 
 OptimizeResult GraphOptimizer::optimize(const OptimizeParams& params) const {
   params.validate();
@@ -106,28 +116,15 @@ OptimizeResult GraphOptimizer::optimize(const OptimizeParams& params) const {
 }
 
 std::vector<Eigen::Matrix3d> GraphOptimizer::covariances(const std::vector<hyselam::Pose2>& poses,
-                                                         const std::vector<int>& of) const {
+                                                         const std::vector<int>& of,
+                                                         const std::vector<double>& weights) const {
   if (poses.size() != graph_.poses.size())
     throw std::invalid_argument("covariances: as many poses as the graph has, please");
-  BlockCholesky<Block3> h(system_->pattern());
-  std::vector<PoseSystem::Vector> b;
-  system_->linearise(PoseSystem::system(poses), {}, 0.0, &h, &b);
-  if (!factorPoses(&h)) throw std::runtime_error("the edges do not determine the poses");
+  if (!weights.empty() && weights.size() != graph_.edges.size())
+    throw std::invalid_argument("covariances: as many weights as the graph has edges, please");
+  const Marginals marginals(*system_, poses, weights);
   std::vector<Eigen::Matrix3d> result;
-  for (const int pose : of) {
-    if (pose < 0 || pose >= static_cast<int>(poses.size()))
-      throw std::invalid_argument("covariances: no pose " + std::to_string(pose));
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    const int row = system_->row(pose);
-    for (int k = 0; k < 3 && row >= 0; ++k) {
-      std::vector<PoseSystem::Vector> unit(static_cast<std::size_t>(system_->rows()));
-      std::fill(unit.begin(), unit.end(), PoseSystem::Vector{});
-      unit[static_cast<std::size_t>(row)][k] = 1.0;
-      h.solve(&unit);
-      for (int r = 0; r < 3; ++r) covariance(r, k) = unit[static_cast<std::size_t>(row)][r];
-    }
-    result.push_back(covariance);
-  }
+  for (const int pose : of) result.push_back(marginals.covariance(pose));
   return result;
 }
 

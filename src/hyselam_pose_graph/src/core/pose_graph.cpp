@@ -38,6 +38,17 @@ bool isInformation(const Eigen::Matrix3d& m) {
 
 }  // namespace
 
+void validateEdge(const PoseEdge& e, std::size_t poses, const std::string& name) {
+  const int n = static_cast<int>(poses);
+  if (e.from < 0 || e.from >= n || e.to < 0 || e.to >= n)
+    throw std::invalid_argument(name + " refers to a pose that is not there");
+  if (e.from == e.to) throw std::invalid_argument(name + " ties a pose to itself");
+  if (!e.measured.isFinite()) throw std::invalid_argument(name + " is not finite");
+  if (!isInformation(e.information))
+    throw std::invalid_argument(name +
+                                ": information is not a symmetric positive semidefinite matrix");
+}
+
 void PoseGraph::validate() const {
   if (ids.size() != poses.size())
     throw std::invalid_argument("a pose graph of " + std::to_string(poses.size()) + " poses has " +
@@ -45,18 +56,8 @@ void PoseGraph::validate() const {
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (!poses[i].isFinite())
       throw std::invalid_argument("pose " + std::to_string(ids[i]) + " is not finite");
-  const int n = static_cast<int>(poses.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const PoseEdge& e = edges[i];
-    const std::string name = "edge " + std::to_string(i);
-    if (e.from < 0 || e.from >= n || e.to < 0 || e.to >= n)
-      throw std::invalid_argument(name + " refers to a pose that is not there");
-    if (e.from == e.to) throw std::invalid_argument(name + " ties a pose to itself");
-    if (!e.measured.isFinite()) throw std::invalid_argument(name + " is not finite");
-    if (!isInformation(e.information))
-      throw std::invalid_argument(name +
-                                  ": information is not a symmetric positive semidefinite matrix");
-  }
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    validateEdge(edges[i], poses.size(), "edge " + std::to_string(i));
 }
 
 Eigen::Vector3d edgeError(const PoseEdge& edge, const Pose2& from, const Pose2& to) {

@@ -38,7 +38,7 @@ double squared(const Residual& r) {
 
 }  // namespace
 
-PoseSystem::PoseSystem(const PoseGraph& graph)
+PoseSystem::PoseSystem(const PoseGraph& graph, const PoseSystem* earlier)
     : row_(graph.poses.size(), -1), part_(connectedParts(graph)) {
   int rows = 0, parts = 0;
   for (std::size_t i = 0; i < row_.size(); ++i) {
@@ -52,7 +52,11 @@ PoseSystem::PoseSystem(const PoseGraph& graph)
   for (const PoseEdge& edge : graph.edges)
     if (row(edge.from) >= 0 && row(edge.to) >= 0)
       couplings.emplace_back(row(edge.from), row(edge.to));
-  pattern_ = analysePattern(rows, couplings);
+  reuses_pattern_ = earlier != nullptr && earlier->row_ == row_ &&
+                    std::all_of(couplings.begin(), couplings.end(), [&](const auto& pair) {
+                      return earlier->pattern_.holds(pair.first, pair.second);
+                    });
+  pattern_ = reuses_pattern_ ? earlier->pattern_ : analysePattern(rows, couplings);
   diagonal_.resize(static_cast<std::size_t>(rows));
   for (int i = 0; i < rows; ++i) diagonal_[static_cast<std::size_t>(i)] = pattern_.diagonal(i);
 

@@ -30,8 +30,11 @@ class PoseSystem {
  public:
   using Vector = Block3::Vector;
 
-  /// Holds the first pose of each connected part fast.
-  explicit PoseSystem(const PoseGraph& graph);
+  /// Holds the first pose of each connected part fast. `earlier`: where all edges fit into its
+  /// pattern, that is used.
+  explicit PoseSystem(const PoseGraph& graph, const PoseSystem* earlier = nullptr);
+  /// The pattern is that of an earlier system.
+  bool reusesPattern() const { return reuses_pattern_; }
 
   const CholeskyPattern& pattern() const { return pattern_; }
   const std::vector<SystemEdge>& edges() const { return edges_; }
@@ -87,6 +90,7 @@ class PoseSystem {
   std::vector<int> diagonal_;  ///< entry of each row's diagonal block
   std::vector<SystemEdge> edges_;
   CholeskyPattern pattern_;
+  bool reuses_pattern_ = false;
 };
 
 }  // namespace hyselam_pose_graph

@@ -1,0 +1,123 @@
+#include "hyselam_pose_graph/incremental_graph.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <stdexcept>
+
+#include "marginals.hpp"
+
+namespace hyselam_pose_graph {
+
+using hyselam::Pose2;
+
+IncrementalGraph::IncrementalGraph(const OptimizeParams& params) : params_(params) {
+  params_.validate();
+  params_.start = GraphStart::kGiven;
+}
+
+IncrementalGraph::IncrementalGraph(PoseGraph graph, const OptimizeParams& params)
+    : IncrementalGraph(params) {
+  graph.validate();
+  graph_ = std::move(graph);
+  appended_by_.assign(graph_.poses.size(), -1);
+  pending_ = !graph_.edges.empty();
+}
+
+IncrementalGraph::~IncrementalGraph() = default;
+IncrementalGraph::IncrementalGraph(IncrementalGraph&&) noexcept = default;
+IncrementalGraph& IncrementalGraph::operator=(IncrementalGraph&&) noexcept = default;
+
+int IncrementalGraph::addPose(const Pose2& pose) {
+  if (!pose.isFinite()) throw std::invalid_argument("a pose that is not finite");
+  std::int64_t id = 0;
+  if (!graph_.ids.empty()) id = graph_.ids.back() + 1;
+  graph_.ids.push_back(id);
+  graph_.poses.push_back(pose);
+  appended_by_.push_back(-1);
+  return static_cast<int>(graph_.poses.size()) - 1;
+}
+
+int IncrementalGraph::append(const Pose2& measured, const Eigen::Matrix3d& information) {
+  if (graph_.poses.empty()) throw std::invalid_argument("there is no pose to append to");
+  PoseEdge edge;
+  edge.from = static_cast<int>(graph_.poses.size()) - 1;
+  edge.to = edge.from + 1;
+  edge.measured = measured;
+  edge.information = information;
+  validateEdge(edge, graph_.poses.size() + 1, "odometry");
+  addPose(graph_.poses.back() * measured);
+  appended_by_.back() = static_cast<int>(graph_.edges.size());
+  graph_.edges.push_back(edge);
+  return edge.to;
+}
+
+void IncrementalGraph::addEdge(const PoseEdge& edge) {
+  validateEdge(edge, graph_.poses.size(), "edge");
+  graph_.edges.push_back(edge);
+  pending_ = true;
+}
+
+OptimizeResult IncrementalGraph::optimise() {
+  marginals_.reset();  // refers to the system that goes
+  optimizer_ = optimizer_ ? GraphOptimizer(graph_, *optimizer_) : GraphOptimizer(graph_);
+  analyses_ += optimizer_->reusesPattern() ? 0 : 1;
+  OptimizeResult result = optimizer_->optimize(params_);
+  if (params_.robust == GraphRobust::kNone) {
+    double turn = 0.0;
+    for (const PoseEdge& e : graph_.edges) {
+      const Pose2 &from = result.poses[static_cast<std::size_t>(e.from)],
+                  &to = result.poses[static_cast<std::size_t>(e.to)];
+      turn = std::max(turn, std::abs(edgeError(e, from, to)[2]));
+    }
+    if (turn > params_.doubtful_turn) {
+      OptimizeParams anew = params_;
+      anew.start = GraphStart::kBest;
+      OptimizeResult other = optimizer_->optimize(anew);
+      const int iterations = result.iterations + other.iterations;
+      if (other.final_cost < result.final_cost) result = std::move(other);
+      result.iterations = iterations;
+    }
+  }
+  graph_.poses = result.poses;
+  weights_ = result.weights;
+  pending_ = false;
+  return result;
+}
+
+Eigen::Matrix3d IncrementalGraph::covariance(int pose) const {
+  if (pose < 0 || pose >= static_cast<int>(graph_.poses.size()))
+    throw std::invalid_argument("covariance: no pose " + std::to_string(pose));
+  const int known = optimizer_ ? static_cast<int>(optimizer_->graph().poses.size()) : 0;
+  if (pose >= known) {
+    if (pose == 0) return Eigen::Matrix3d::Zero();  // where the frame is
+    const int made_by = appended_by_[static_cast<std::size_t>(pose)];
+    if (made_by < 0)
+      throw std::invalid_argument("covariance: pose " + std::to_string(pose) +
+                                  " is not optimised yet");
+    // An error of the pose before carries over, its turn by the lever of the step; odometry adds
+    // its own.
+    const PoseEdge& edge = graph_.edges[static_cast<std::size_t>(made_by)];
+    const Pose2 &from = graph_.poses[static_cast<std::size_t>(pose) - 1],
+                &to = graph_.poses[static_cast<std::size_t>(pose)];
+    const Eigen::LDLT<Eigen::Matrix3d> information(edge.information);
+    if (!(information.vectorD().minCoeff() > 0.0))
+      throw std::runtime_error("the edges do not determine the poses");
+    Eigen::Matrix3d carry = Eigen::Matrix3d::Identity(), turn = carry;
+    carry(0, 2) = from.y - to.y;
+    carry(1, 2) = to.x - from.x;
+    const double c = std::cos(to.theta), s = std::sin(to.theta);
+    turn.topLeftCorner<2, 2>() << c, -s, s, c;
+    return carry * covariance(pose - 1) * carry.transpose() +
+           turn * information.solve(Eigen::Matrix3d::Identity()) * turn.transpose();
+  }
+  if (!marginals_)
+    marginals_ = std::make_unique<Marginals>(*optimizer_->system_, optimizerPoses(), weights_);
+  return marginals_->covariance(pose);
+}
+
+std::vector<Pose2> IncrementalGraph::optimizerPoses() const {
+  const auto n = static_cast<std::ptrdiff_t>(optimizer_->graph().poses.size());
+  return {graph_.poses.begin(), graph_.poses.begin() + n};
+}
+
+}  // namespace hyselam_pose_graph

@@ -1,0 +1,25 @@
+// Covariances of single poses.
+#pragma once
+
+#include "pose_system.hpp"
+
+namespace hyselam_pose_graph {
+
+/// One factorisation, then any pose for the price of a way up the tree of elimination.
+class Marginals {
+ public:
+  /// `system` must outlive this. @throws std::runtime_error when the edges do not determine the
+  /// poses.
+  Marginals(const PoseSystem& system, const std::vector<hyselam::Pose2>& poses,
+            const std::vector<double>& weights);
+  /// Of (x, y, theta), in the frame of the graph, given the first pose of its part.
+  /// @throws std::invalid_argument for an index out of range.
+  Eigen::Matrix3d covariance(int pose) const;
+
+ private:
+  const PoseSystem& system_;
+  int poses_;
+  BlockCholesky<Block3> factor_;
+};
+
+}  // namespace hyselam_pose_graph
