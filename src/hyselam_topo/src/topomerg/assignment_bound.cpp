@@ -5,7 +5,6 @@
 namespace hyselam_topo::merging {
 
 void AssignmentBound::reset(int rows, int columns) {
-  rows_ = rows;
   columns_ = columns;
   const auto r = static_cast<std::size_t>(rows);
   const auto c = static_cast<std::size_t>(columns);
@@ -18,15 +17,6 @@ void AssignmentBound::reset(int rows, int columns) {
   distance_.resize(c);
   before_.resize(c);
   done_.resize(c);
-}
-
-double AssignmentBound::solve(double enough) {
-  double sum = 0.0;
-  for (int row = 0; row < rows_; ++row) {
-    sum += addRow(row);
-    if (sum > enough) return sum;
-  }
-  return sum;
 }
 
 double AssignmentBound::addRow(int row) {

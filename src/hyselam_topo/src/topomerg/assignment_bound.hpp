@@ -18,10 +18,11 @@ class AssignmentBound {
   double& without(int row) { return without_[static_cast<std::size_t>(row)]; }
   double without(int row) const { return without_[static_cast<std::size_t>(row)]; }
 
-  /// The least sum of costs, which are >= 0; a value above `enough` as soon as it is known to be.
-  double solve(double enough);
+  /// Adds a row, whose costs (>= 0) are set; rows come in their order. Returns by how much the
+  /// least sum of costs of all rows so far grows.
+  double addRow(int row);
 
-  /// After solve(): how much more it costs at least if this row takes this column, or none.
+  /// After the last row: how much more it costs at least if this row takes this column, or none.
   double reduced(int row, int column, double cost) const {
     return cost - u_[static_cast<std::size_t>(row)] - v_[static_cast<std::size_t>(column)];
   }
@@ -34,9 +35,6 @@ class AssignmentBound {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
   }
-  double addRow(int row);
-
-  int rows_ = 0;
   int columns_ = 0;
   std::vector<double> cost_, without_;
   std::vector<double> u_, v_;  ///< dual values of rows and columns, v <= 0

@@ -12,8 +12,10 @@
 namespace hyselam_topo::merging {
 namespace {
 
-/// Pieces of the free map up to this are listed set by set.
-constexpr std::size_t kListedPiece = 6;
+/// No more vertices than these have all their sets listed.
+constexpr std::size_t kMostListed = 8;
+/// The sets of a piece of the free map that has only now become so small are listed.
+constexpr std::size_t kExtraPiece = 3;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -31,6 +33,10 @@ double ExactSearch::relationsLoss(int name, const Vertices& vertices) const {
     loss += terms_.relationLoss(r, of(r.a), of(r.b), r.c >= 0 ? &of(r.c) : nullptr);
   }
   return loss;
+}
+
+double ExactSearch::pairLoss(int i, int j) const {
+  return terms_.missing_edge + (sideBetween(i, j) >= 0 ? terms_.side : 0.0);
 }
 
 double ExactSearch::exactLoss(int name, const Vertices& vertices) const {
@@ -175,73 +181,41 @@ double ExactSearch::emptyLoss(int name, const Growth* growth) const {
   return loss + relationsLoss(name, none);
 }
 
-double ExactSearch::candidateLoss(const Node& node, int name, const CandidateSet& set,
-                                  const Growth* growth) const {
-  const Vertices& v = set.vertices;
-  if (!problem_.allowed[at(name)].containsAll(v.members)) return kNever;
-  double loss = terms_.alone(name, v) + terms_.missing_edge * told_closed_[at(name)];
-  for (int t = set.touch_begin; t < set.touch_end; ++t)
-    loss += problem_.areJoined(at(name), at(node.touches[at(t)].name)) ? -terms_.missing_edge
-                                                                       : terms_.forgotten_edge;
-  if (growth != nullptr) {
-    if (problem_.areJoined(at(name), at(growth->name))) {
-      if (!set.touches_grown && !set.may_touch_grown) loss += terms_.missing_edge;
-    } else if (set.touches_grown) {
-      loss += terms_.forgotten_edge;
-    }
-  }
-  for (const int number : terms_.sides_of[at(name)]) {
-    const auto& s = problem_.sides[at(number)];
-    const int other = s.from == name ? s.to : s.from;
-    if (is_closed_[at(other)]) {
-      int t = set.touch_begin;
-      while (t < set.touch_end && node.touches[at(t)].name != other) ++t;
-      if (t == set.touch_end || !v.hasCentre() || !closed_[at(other)].hasCentre()) {
-        loss += terms_.side;
-        continue;
-      }
-      const double to_other = node.touches[at(t)].bearing;
-      const double bearing = s.from == name ? to_other : turned(to_other);
-      loss += terms_.side * terms_.deviation(s, bearing, heading_) / kPi;
-    } else if (growth != nullptr && growth->name == other) {
-      if (!v.hasCentre() || !(set.touches_grown || set.may_touch_grown)) {
-        loss += terms_.side;
-        continue;
-      }
-      const Sight see = sight(v.x(), v.y(), *growth);
-      const double bearing = s.from == name ? see.bearing : turned(see.bearing);
-      loss += terms_.side *
-              terms_.deviation(s, bearing, {heading_.value, heading_.slack + see.slack}) / kPi;
-    }
-  }
-  return terms_.relations_of[at(name)].empty() ? loss : loss + relationsLoss(name, v);
+double ExactSearch::grownPairLoss(int name, const Vertices& v, const Growth& g) const {
+  const bool touches = g.has.around.intersects(v.members);
+  if (!problem_.areJoined(at(name), at(g.name))) return touches ? terms_.forgotten_edge : 0.0;
+  if (!touches && !v.around.intersects(g.open)) return pairLoss(name, g.name);
+  const int number = sideBetween(name, g.name);
+  if (number < 0) return 0.0;
+  if (!v.hasCentre()) return terms_.side;
+  const auto& told = problem_.sides[at(number)];
+  const Sight see = sight(v.x(), v.y(), g);
+  const double bearing = told.from == name ? see.bearing : turned(see.bearing);
+  return terms_.side *
+         terms_.deviation(told, bearing, {heading_.value, heading_.slack + see.slack}) / kPi;
 }
 
-double ExactSearch::looseLoss(int name, int vertex, const PlaceSet& component,
-                              double component_area, const Growth* growth) const {
-  const auto v = at(vertex);
+double ExactSearch::extraLoss(int name, const Vertices& v, const Growth* growth) const {
+  if (!problem_.allowed[at(name)].containsAll(v.members)) return kNever;
+  return exactLoss(name, v) + (growth != nullptr ? grownPairLoss(name, v, *growth) : 0.0);
+}
+
+double ExactSearch::looseLoss(int name, const LooseAnchor& loose, const Growth* growth) const {
+  const std::size_t v = at(loose.anchor);
+  const PlaceSet& component = loose.piece;
   if (!problem_.allowed[at(name)].contains(v)) return kNever;
   double loss = 0.0;
   const double told = problem_.told[at(name)].area;
   if (told > 0.0) {
     if (problem_.area[v] > told)
       loss += terms_.area * (problem_.area[v] - told) / problem_.area[v];
-    else if (component_area < told)
-      loss += terms_.area * (told - component_area) / told;
+    else if (loose.area < told)
+      loss += terms_.area * (told - loose.area) / told;
   }
-  PlaceSet self;
-  self.insert(v);
-  const auto side = [&](int other) {
-    for (const int number : terms_.sides_of[at(name)]) {
-      const auto& s = problem_.sides[at(number)];
-      if (s.from == other || s.to == other) return terms_.side;
-    }
-    return 0.0;
-  };
   for (const int k : closed_list_) {
     const PlaceSet& around = closed_[at(k)].around;
     if (problem_.areJoined(at(name), at(k))) {
-      if (!around.intersects(component)) loss += terms_.missing_edge + side(k);
+      if (!around.intersects(component)) loss += pairLoss(name, k);
     } else if (around.contains(v)) {
       loss += terms_.forgotten_edge;
     }
@@ -251,95 +225,97 @@ double ExactSearch::looseLoss(int name, int vertex, const PlaceSet& component,
     if (!problem_.areJoined(at(name), at(growth->name))) {
       if (around.contains(v)) loss += terms_.forgotten_edge;
     } else if (!around.intersects(component) && !component.intersects(growth->open)) {
-      loss += terms_.missing_edge + side(growth->name);
+      loss += pairLoss(name, growth->name);
     }
   }
   return loss;
 }
 
-void ExactSearch::addSet(Node* node, const Vertices& vertices, const Growth* growth) {
-  CandidateSet set;
-  set.vertices = vertices;
-  int anchor = -1;
-  vertices.members.forEach([&](std::size_t v) {
-    if (anchor < 0 || size_rank_[v] < size_rank_[at(anchor)]) anchor = static_cast<int>(v);
-  });
-  set.anchor = anchor;
-  set.touch_begin = static_cast<int>(node->touches.size());
-  for (const int k : closed_list_) {
-    const Vertices& other = closed_[at(k)];
-    if (!other.around.intersects(vertices.members)) continue;
-    const bool needed =
-        vertices.hasCentre() && other.hasCentre() && !terms_.sides_of[at(k)].empty();
-    node->touches.push_back({k, needed ? Terms::bearing(vertices, other) : 0.0});
+PlaceSet ExactSearch::piece(std::size_t anchor, const PlaceSet& of) const {
+  const PlaceSet below = of & lower_[anchor];
+  if (!params_.connected) {
+    PlaceSet all = below;
+    all.insert(anchor);
+    return all;
   }
-  set.touch_end = static_cast<int>(node->touches.size());
-  if (growth != nullptr) {
-    set.touches_grown = growth->has.around.intersects(vertices.members);
-    set.may_touch_grown = vertices.around.intersects(growth->open);
+  PlaceSet reached, front;
+  front.insert(anchor);
+  while (!front.empty()) {
+    reached |= front;
+    PlaceSet next;
+    front.forEach([&](std::size_t v) { next |= problem_.neighbours[v]; });
+    front = (next & below) - reached;
   }
-  node->sets.push_back(set);
+  return reached;
 }
 
-void ExactSearch::listSets(Node* node, const PlaceSet& available, const Growth* growth) {
-  node->sets.clear();
-  node->touches.clear();
-  node->loose.assign(at(m_), 0);
-  node->pieces.clear();
-  PlaceSet rest = available;
-  while (!rest.empty()) {
-    PlaceSet piece;
-    if (params_.connected) {
-      PlaceSet front;
-      front.insert(rest.first());
-      while (!front.empty()) {
-        piece |= front;
-        PlaceSet next;
-        front.forEach([&](std::size_t v) { next |= problem_.neighbours[v]; });
-        front = (next & rest) - piece;
-      }
-    } else {
-      piece = rest;
-    }
-    rest -= piece;
-    std::array<std::size_t, kListedPiece> members{};
-    std::size_t count = 0;
-    double area = 0.0;
-    piece.forEach([&](std::size_t v) {
-      if (count < kListedPiece) members[count] = v;
-      ++count;
-      area += problem_.area[v];
-    });
-    if (count > kListedPiece) {
-      piece.forEach([&](std::size_t v) {
-        Vertices single;
-        single.add(problem_, v);
-        addSet(node, single, growth);
-        node->loose[v] = 1;
-      });
-      node->pieces.push_back({piece, area});
-      continue;
-    }
-    std::array<unsigned, kListedPiece> beside{};
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = 0; j < count; ++j)
-        if (problem_.neighbours[members[i]].contains(members[j])) beside[i] |= 1u << j;
-    for (unsigned mask = 1; mask < 1u << count; ++mask) {
-      if (params_.connected) {
-        unsigned reached = mask & (~mask + 1u), front = reached;
-        while (front != 0) {
-          unsigned next = 0;
-          for (std::size_t i = 0; i < count; ++i)
-            if ((front >> i & 1u) != 0) next |= beside[i];
-          front = next & mask & ~reached;
-          reached |= front;
-        }
-        if (reached != mask) continue;
-      }
-      Vertices vertices;
+bool ExactSearch::forEachSet(std::size_t anchor, const PlaceSet& piece, std::size_t limit,
+                             const std::function<void(const Vertices&)>& visit) const {
+  std::array<std::size_t, kMostListed> members{};
+  std::size_t count = 0;
+  members[count++] = anchor;
+  piece.forEach([&](std::size_t v) {
+    if (v == anchor) return;
+    if (count < kMostListed) members[count] = v;
+    ++count;
+  });
+  if (count > limit) return false;
+  std::array<unsigned, kMostListed> beside{};
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      if (problem_.neighbours[members[i]].contains(members[j])) beside[i] |= 1u << j;
+  for (unsigned mask = 1; mask < 1u << count; mask += 2) {
+    unsigned reached = params_.connected ? 1u : mask, front = 1;
+    while (reached != mask && front != 0) {
+      unsigned next = 0;
       for (std::size_t i = 0; i < count; ++i)
-        if ((mask >> i & 1u) != 0) vertices.add(problem_, members[i]);
-      addSet(node, vertices, growth);
+        if ((front >> i & 1u) != 0) next |= beside[i];
+      front = next & mask & ~reached;
+      reached |= front;
+    }
+    if (reached != mask) continue;
+    Vertices vertices;
+    for (std::size_t i = 0; i < count; ++i)
+      if ((mask >> i & 1u) != 0) vertices.add(problem_, members[i]);
+    visit(vertices);
+  }
+  return true;
+}
+
+void ExactSearch::listSets(Node* node) const {
+  const PlaceSet& available = node->available;
+  node->alive.clear();
+  for (std::size_t s = 0; s < listed_.size(); ++s)
+    if (available.containsAll(listed_[s].vertices.members))
+      node->alive.push_back(static_cast<int>(s));
+  node->extra.clear();
+  node->loose.clear();
+  for (const int v : not_always_listed_) {
+    if (!available.contains(at(v))) continue;
+    const PlaceSet reach = piece(at(v), available);
+    if (forEachSet(at(v), reach, kExtraPiece, [&](const Vertices& vertices) {
+          node->extra.push_back({vertices, v});
+        }))
+      continue;
+    double area = 0.0;
+    reach.forEach([&](std::size_t w) { area += problem_.area[w]; });
+    node->loose.push_back({v, reach, area});
+  }
+  node->column_of.assign(at(m_), -1);
+  int columns = 0;
+  available.forEach([&](std::size_t v) { node->column_of[v] = columns++; });
+}
+
+void ExactSearch::listRows(Node* node, int near) const {
+  node->rows.clear();
+  node->row_of.assign(at(n_), -1);
+  // Those first whose losses have just become known: they tell soonest that a node is hopeless.
+  for (const bool joined : {true, false}) {
+    for (int i = 0; i < n_; ++i) {
+      if (is_closed_[at(i)] || has_fixed_[at(i)] || i == near) continue;
+      if ((near >= 0 && problem_.areJoined(at(i), at(near))) != joined) continue;
+      node->row_of[at(i)] = static_cast<int>(node->rows.size());
+      node->rows.push_back(i);
     }
   }
 }
@@ -350,44 +326,130 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
   node->rows.clear();
   const double enough = 1.0 - solutions_.needed();
   if (node->base > enough) return node->bound;
-  node->row_of.assign(at(n_), -1);
-  for (int i = 0; i < n_; ++i) {
-    if (is_closed_[at(i)] || has_fixed_[at(i)] || (growth != nullptr && growth->name == i))
-      continue;
-    node->row_of[at(i)] = static_cast<int>(node->rows.size());
-    node->rows.push_back(i);
-  }
-  PlaceSet available = free_ - fixed_;
-  if (growth != nullptr) available -= growth->has.members;
-  listSets(node, available, growth);
+  node->available = free_ - fixed_;
+  if (growth != nullptr) node->available -= growth->has.members;
+  listSets(node);
+  const std::size_t level = closed_list_.size();
+  const int last = level > 0 ? closed_list_.back() : -1;
+  listRows(node, growth != nullptr ? growth->name : last);
 
-  node->column_of.assign(at(m_), -1);
-  int columns = 0;
-  available.forEach([&](std::size_t v) { node->column_of[v] = columns++; });
+  const std::size_t alive = node->alive.size();
+  touches_.resize(alive);
+  bearings_.resize(alive);
+  lonely_.resize(node->setCount());
+  for (std::size_t s = 0; s < node->setCount(); ++s)
+    lonely_[s] = !setOf(*node, s).around.intersects(node->available);
+  if (growth == nullptr && last >= 0) {
+    const Vertices& other = closed_[at(last)];
+    const bool sides = other.hasCentre() && !terms_.sides_of[at(last)].empty();
+    for (std::size_t s = 0; s < alive; ++s) {
+      const Vertices& v = setOf(*node, s);
+      touches_[s] = other.around.intersects(v.members);
+      if (touches_[s] && sides && v.hasCentre()) bearings_[s] = Terms::bearing(v, other);
+    }
+  }
+  if (losses_.size() <= level) losses_.resize(level + 1);
+  std::vector<double>& losses = losses_[level];
+  if (level > 0 && growth == nullptr) losses.resize(losses_[0].size());
+
   AssignmentBound& table = node->table;
-  table.reset(static_cast<int>(node->rows.size()), columns);
-  node->cost.resize(node->rows.size() * node->sets.size());
-  double* cost = node->cost.data();
+  table.reset(static_cast<int>(node->rows.size()), static_cast<int>(node->available.size()));
+  node->cost.resize(node->rows.size() * node->setCount());
   for (std::size_t r = 0; r < node->rows.size(); ++r) {
     const int row = static_cast<int>(r);
-    table.without(row) = emptyLoss(node->rows[r], growth);
-    for (const CandidateSet& set : node->sets) {
-      *cost = candidateLoss(*node, node->rows[r], set, growth);
-      double& least = table.cost(row, node->column_of[at(set.anchor)]);
-      least = std::min(least, *cost);
-      ++cost;
+    const int name = node->rows[r];
+    double* cost = node->cost.data() + r * node->setCount();
+    double* now = losses.data() + at(name) * listed_.size();
+    if (growth == nullptr && last >= 0) {
+      const double* before = losses_[level - 1].data() + at(name) * listed_.size();
+      addLast(*node, name, last, before, now);
     }
-    for (const Node::Piece& piece : node->pieces) {
-      piece.vertices.forEach([&](std::size_t v) {
-        double& least = table.cost(row, node->column_of[v]);
-        least = std::min(least, looseLoss(node->rows[r], static_cast<int>(v), piece.vertices,
-                                          piece.area, growth));
-      });
+    for (std::size_t s = 0; s < alive; ++s) {
+      cost[s] = now[node->alive[s]];
+      if (growth != nullptr && cost[s] < kNever)
+        cost[s] += grownPairLoss(name, listed_[at(node->alive[s])].vertices, *growth);
+    }
+    for (std::size_t s = alive; s < node->setCount(); ++s)
+      cost[s] = extraLoss(name, setOf(*node, s), growth);
+    // What the name loses if it cannot be joined to those that have no vertices yet.
+    double waiting = 0.0;
+    for (const int other : node->rows)
+      if (problem_.areJoined(at(name), at(other)) && leads(other, name))
+        waiting += pairLoss(name, other);
+    for (std::size_t s = 0; s < node->setCount(); ++s) {
+      if (lonely_[s]) cost[s] += waiting;
+      double& least = table.cost(row, node->column_of[at(anchorOf(*node, s))]);
+      least = std::min(least, cost[s]);
+    }
+    for (const LooseAnchor& loose : node->loose)
+      table.cost(row, node->column_of[at(loose.anchor)]) = looseLoss(name, loose, growth);
+    table.without(row) = emptyLoss(name, growth) + waiting;
+    node->bound += table.addRow(row);
+    if (node->bound > enough) return node->bound;
+  }
+  return node->bound;
+}
+
+void ExactSearch::addLast(const Node& node, int name, int last, const double* before,
+                          double* now) const {
+  const std::size_t alive = node.alive.size();
+  if (problem_.areJoined(at(name), at(last))) {
+    const double apart = pairLoss(name, last);
+    const int number = sideBetween(name, last);
+    for (std::size_t s = 0; s < alive; ++s) {
+      const int set = node.alive[s];
+      double loss = apart;
+      if (touches_[s]) {
+        loss = 0.0;
+        if (number >= 0) {
+          const auto& told = problem_.sides[at(number)];
+          const bool known = listed_[at(set)].vertices.hasCentre() && closed_[at(last)].hasCentre();
+          const double bearing = told.from == name ? bearings_[s] : turned(bearings_[s]);
+          loss =
+              known ? terms_.side * terms_.deviation(told, bearing, heading_) / kPi : terms_.side;
+        }
+      }
+      now[set] = before[set] + loss;
+    }
+  } else {
+    for (std::size_t s = 0; s < alive; ++s)
+      now[node.alive[s]] = before[node.alive[s]] + (touches_[s] ? terms_.forgotten_edge : 0.0);
+  }
+  for (const int number : terms_.relations_of[at(name)]) {
+    const MatchProblem::Relation& r = problem_.relations[at(number)];
+    if (r.a != last && r.b != last && r.c != last) continue;
+    const auto known = [&](int i) { return i < 0 || i == name || is_closed_[at(i)] != 0; };
+    if (!known(r.a) || !known(r.b) || !known(r.c)) continue;
+    for (const int set : node.alive) {
+      const auto of = [&](int i) -> const Vertices& {
+        return i == name ? listed_[at(set)].vertices : closed_[at(i)];
+      };
+      now[set] += terms_.relationLoss(r, of(r.a), of(r.b), r.c >= 0 ? &of(r.c) : nullptr);
     }
   }
-  node->assigned = table.solve(enough - node->base);
-  node->bound = node->base + node->assigned;
-  return node->bound;
+}
+
+void ExactSearch::listOnce() {
+  for (std::size_t s = 0; s < problem_.sides.size(); ++s) {
+    const auto& told = problem_.sides[s];
+    side_between_[at(told.from * n_ + told.to)] = static_cast<int>(s);
+    side_between_[at(told.to * n_ + told.from)] = static_cast<int>(s);
+  }
+  const PlaceSet all = free_ - fixed_;
+  const std::size_t limit = m_ <= 128 ? 5 : 2;
+  all.forEach([&](std::size_t v) {
+    const int anchor = static_cast<int>(v);
+    if (!forEachSet(v, piece(v, all), limit, [&](const Vertices& vertices) {
+          listed_.push_back({vertices, anchor});
+        }))
+      not_always_listed_.push_back(anchor);
+  });
+  losses_.resize(1);
+  for (int i = 0; i < n_; ++i)
+    for (const CandidateSet& set : listed_)
+      losses_[0].push_back(problem_.allowed[at(i)].containsAll(set.vertices.members)
+                               ? terms_.alone(i, set.vertices)
+                               : kNever);
 }
 
 }  // namespace hyselam_topo::merging

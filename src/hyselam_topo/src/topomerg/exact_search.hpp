@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "assignment_bound.hpp"
@@ -13,19 +15,10 @@
 
 namespace hyselam_topo::merging {
 
-/// A set of free vertices that a name may take as a whole.
+/// A set of vertices that a name may take as a whole.
 struct CandidateSet {
   Vertices vertices;
-  int anchor = 0;       ///< its largest vertex
-  int touch_begin = 0;  ///< of the names that have got theirs and touch it
-  int touch_end = 0;
-  bool touches_grown = false;  ///< the vertices of the name that is being built
-  bool may_touch_grown = false;
-};
-
-struct Touch {
-  int name = 0;
-  double bearing = 0.0;  ///< from the set to the name
+  int anchor = 0;  ///< its first vertex by rank
 };
 
 /// The vertices of the name that is being built: those it has, and those that it may get.
@@ -37,24 +30,28 @@ struct Growth {
   double x = 0.0, y = 0.0, radius = 0.0;
 };
 
+/// A vertex with too many sets to list them.
+struct LooseAnchor {
+  int anchor = 0;
+  PlaceSet piece;  ///< that its sets are made of
+  double area = 0.0;
+};
+
 /// What is known at one node of the search.
 struct Node {
-  struct Piece {
-    PlaceSet vertices;
-    double area = 0.0;
-  };
-  double base = 0.0;   ///< lost among the names that have got their vertices
-  double bound = 0.0;  ///< lost at least by any answer from here
-  std::vector<CandidateSet> sets;
-  std::vector<Touch> touches;
+  double base = 0.0;                ///< lost among the names that have got their vertices
+  double bound = 0.0;               ///< lost at least by any answer from here
+  PlaceSet available;               ///< to names that have none and are not confirmed
+  std::vector<int> alive;           ///< always-listed sets of available vertices
+  std::vector<CandidateSet> extra;  ///< sets that are listed here only
+  std::vector<LooseAnchor> loose;
   std::vector<int> rows;       ///< names of the rows of the table
   std::vector<int> row_of;     ///< of each name, -1: none
   std::vector<int> column_of;  ///< of each vertex, -1: none
-  std::vector<double> cost;    ///< rows x sets
-  std::vector<Piece> pieces;   ///< of the free map that are too large to list their sets
-  std::vector<char> loose;     ///< of each vertex: not all of its sets are listed
-  AssignmentBound table;       ///< rows x vertices
-  double assigned = 0.0;       ///< the table's least sum
+  std::vector<double> cost;    ///< rows x (alive, then extra)
+  AssignmentBound table;       ///< rows x available vertices
+
+  std::size_t setCount() const { return alive.size() + extra.size(); }
 };
 
 class ExactSearch {
@@ -66,7 +63,7 @@ class ExactSearch {
   struct Choice {
     double bound = 0.0;
     int set = -1;   ///< in the node's list, or
-    int seed = -1;  ///< the largest vertex of sets that are not listed; both -1: no vertices
+    int seed = -1;  ///< the anchor of sets that are not listed; both -1: no vertices
   };
 
   void runSector();
@@ -80,14 +77,38 @@ class ExactSearch {
 
   /// Fills the node and returns its bound; at least `base`. `growth` may be null.
   double bound(Node* node, const Growth* growth);
-  void listSets(Node* node, const PlaceSet& available, const Growth* growth);
-  void addSet(Node* node, const Vertices& vertices, const Growth* growth);
+  void listOnce();
+  void listSets(Node* node) const;
+  void addLast(const Node& node, int name, int last, const double* before, double* now) const;
+  void listRows(Node* node, int near) const;
   double grownLoss(const Growth& growth) const;
-  double candidateLoss(const Node& node, int name, const CandidateSet& set,
-                       const Growth* growth) const;
   double emptyLoss(int name, const Growth* growth) const;
-  double looseLoss(int name, int vertex, const PlaceSet& component, double component_area,
-                   const Growth* growth) const;
+  double extraLoss(int name, const Vertices& vertices, const Growth* growth) const;
+  double looseLoss(int name, const LooseAnchor& loose, const Growth* growth) const;
+  double grownPairLoss(int name, const Vertices& vertices, const Growth& growth) const;
+  /// What is lost of two names that are told to be joined and are not.
+  double pairLoss(int i, int j) const;
+  PlaceSet piece(std::size_t anchor, const PlaceSet& of) const;
+  bool forEachSet(std::size_t anchor, const PlaceSet& piece, std::size_t limit,
+                  const std::function<void(const Vertices&)>& visit) const;
+  int sideBetween(int i, int j) const {
+    return side_between_[static_cast<std::size_t>(i * n_ + j)];
+  }
+  const Vertices& setOf(const Node& node, std::size_t number) const {
+    return number < node.alive.size()
+               ? listed_[static_cast<std::size_t>(node.alive[number])].vertices
+               : node.extra[number - node.alive.size()].vertices;
+  }
+  int anchorOf(const Node& node, std::size_t number) const {
+    return number < node.alive.size() ? listed_[static_cast<std::size_t>(node.alive[number])].anchor
+                                      : node.extra[number - node.alive.size()].anchor;
+  }
+  /// Of two names that have no vertices yet, the other one bears the loss if they are not joined.
+  bool leads(int i, int j) const {
+    const int a = told_edges_[static_cast<std::size_t>(i)];
+    const int b = told_edges_[static_cast<std::size_t>(j)];
+    return a != b ? a > b : i < j;
+  }
   void locate(Growth* growth) const;
   void keepReachable(Growth* growth) const;
   double exactLoss(int name, const Vertices& vertices) const;
@@ -105,7 +126,11 @@ class ExactSearch {
   const Terms terms_;
   const int n_;
   const int m_;
-  std::vector<int> size_rank_;  ///< of each vertex, 0 is the largest
+  // Vertices are ranked, those with most neighbours first: sets without the few that lead to many
+  // are small pieces of the map. The first vertex of a set by rank is its anchor.
+  std::vector<PlaceSet> lower_;  ///< of each vertex, those ranked below
+  std::vector<CandidateSet> listed_;
+  std::vector<int> not_always_listed_;  ///< anchors with too many sets
   std::vector<char> has_fixed_;
   PlaceSet fixed_;
   Heading heading_;
@@ -116,11 +141,21 @@ class ExactSearch {
   std::vector<Vertices> closed_;
   std::vector<char> is_closed_;
   std::vector<int> closed_list_;
-  std::vector<int> owner_;        ///< of each vertex, -1: free
+  std::vector<int> owner_;         ///< of each vertex, -1: free
+  std::vector<int> told_edges_;    ///< of each name
+  std::vector<int> side_between_;  ///< names x names, number in problem.sides or -1
+  /// Names x listed sets, for each number of names that have got their vertices: what the name
+  /// would lose with that set, alone and with them.
+  std::vector<std::vector<double>> losses_;
   std::vector<int> told_closed_;  ///< of each name: told to be joined to as many closed ones
   PlaceSet free_;
   std::size_t taken_ = 0;
   double base_ = 0.0;
+
+  // Of the node whose bound is computed, of each set:
+  std::vector<char> touches_;     ///< the name that has last got its vertices
+  std::vector<double> bearings_;  ///< from the set to that name
+  std::vector<char> lonely_;      ///< touches no available vertex
 
   std::deque<Node> nodes_;
   Solutions solutions_;
