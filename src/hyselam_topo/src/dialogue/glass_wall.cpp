@@ -1,0 +1,292 @@
+#include "hyselam_topo/glass_wall.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_topo/map_geometry.hpp"
+#include "plane.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::Cell;
+using hyselam::OccupancyGrid;
+using hyselam::Point2;
+
+/// Two glass walls are the same if their ends are within this [m].
+constexpr double kSame = 0.3;
+
+void require(const char* name, double value, bool good, const char* allowed) {
+  if (!good) throw hyselam::ParameterError(name, value, allowed);
+}
+
+bool same(const GlassWall& a, const GlassWall& b) {
+  const double straight = std::max(distanceBetween(a.a, b.a), distanceBetween(a.b, b.b));
+  const double crossed = std::max(distanceBetween(a.a, b.b), distanceBetween(a.b, b.a));
+  return std::min(straight, crossed) <= kSame;
+}
+
+double directionOf(Side side) {
+  switch (side) {
+    case Side::kFront:
+      return 0.0;
+    case Side::kLeft:
+      return 0.5 * hyselam::kPi;
+    case Side::kBack:
+      return hyselam::kPi;
+    case Side::kRight:
+      return -0.5 * hyselam::kPi;
+    case Side::kUnknown:
+      break;
+  }
+  throw hyselam::InputError("glass wall", "side", "it is not told");
+}
+
+/// A grid map with occupied cells, in coordinates of cells.
+struct Walls {
+  const OccupancyGrid& grid;
+  int occupied_min;
+
+  bool occupied(Cell c) const { return grid.valueOr(c) >= occupied_min; }
+
+  /// The first occupied cell from `from` in a direction (in the grid's frame); nothing within
+  /// `range` cells. `end` gets where the beam ends.
+  std::optional<Cell> hit(Point2 from, double angle, double range, Point2* end) const {
+    const double dx = std::cos(angle), dy = std::sin(angle);
+    constexpr double kStep = 0.25;
+    for (double r = 0.0; r <= range; r += kStep) {
+      *end = {from.x + r * dx, from.y + r * dy};
+      const Cell c{static_cast<int>(std::floor(end->x)), static_cast<int>(std::floor(end->y))};
+      if (occupied(c)) return c;
+    }
+    return std::nullopt;
+  }
+
+  /// The corner test: a beam of `radius` cells turns around the cell; free of walls is the angle
+  /// between the last one on the right and the first one on the left of the direction to the robot.
+  /// More than a half turn there are convex corners; 0 for a lone spot, which is no post that could
+  /// hold a wall of glass.
+  double freeAngle(Cell cell, Point2 robot, int radius) const {
+    const int steps = 16 * radius;  // more than there are cells on the circle
+    const double to_robot = std::atan2(robot.y - (cell.y + 0.5), robot.x - (cell.x + 0.5));
+    const auto wallAt = [&](int step) {
+      const double angle = to_robot + 2.0 * hyselam::kPi * step / steps;
+      for (const double r : {static_cast<double>(radius), radius - 1.0}) {
+        const Cell c{static_cast<int>(std::floor(cell.x + 0.5 + r * std::cos(angle))),
+                     static_cast<int>(std::floor(cell.y + 0.5 + r * std::sin(angle)))};
+        if (occupied(c)) return true;
+      }
+      return false;
+    };
+    int left = 0, right = 0;
+    while (left < steps && !wallAt(left)) ++left;
+    while (right < steps && !wallAt(-right)) ++right;
+    return left == steps ? 0.0 : 2.0 * hyselam::kPi * (left + right - 1) / steps;
+  }
+
+  /// No occupied cell between two corners; their own posts do not count.
+  bool nothingBetween(Cell a, Cell b, double post) const {
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    for (double r = post; r <= length - post; r += 0.25) {
+      const double t = r / length;
+      const Cell c{static_cast<int>(std::floor(a.x + 0.5 + t * (b.x - a.x))),
+                   static_cast<int>(std::floor(a.y + 0.5 + t * (b.y - a.y)))};
+      if (occupied(c)) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+void checkGlassWallParams(const GlassWallParams& p) {
+  require("aperture", p.aperture, p.aperture > 0.0 && p.aperture <= 2.0 * hyselam::kPi,
+          "in (0, 2 pi]");
+  require("range", p.range, p.range > 0.0 && p.range <= 1000.0, "in (0, 1000]");
+  require("corner_cells", p.corner_cells, p.corner_cells >= 2 && p.corner_cells <= 100,
+          "in [2, 100]");
+  require("corner_angle", p.corner_angle, p.corner_angle > 0.0 && p.corner_angle < hyselam::kPi,
+          "in (0, pi)");
+  require("min_length", p.min_length, p.min_length > 0.0, "> 0");
+  require("max_length", p.max_length, p.max_length > p.min_length, "> min_length");
+  require("occupied_min", p.occupied_min, p.occupied_min >= 1 && p.occupied_min <= 100,
+          "in [1, 100]");
+}
+
+double GlassWall::length() const {
+  return distanceBetween(a, b);
+}
+
+double GlassWall::distanceTo(Point2 point) const {
+  return distanceToSegment(point, a, b);
+}
+
+bool operator==(const GlassWall& a, const GlassWall& b) {
+  return a.a.x == b.a.x && a.a.y == b.a.y && a.b.x == b.b.x && a.b.y == b.b.y;
+}
+
+GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2& robot, Side side,
+                                 const GlassWallParams& params)
+    : robot_(robot), side_(side), params_(params) {
+  checkGlassWallParams(params);
+  const double direction = directionOf(side);
+  const auto& g = grid.geometry;
+  if (!robot.isFinite()) throw hyselam::InputError("glass wall", "pose", "it is not finite");
+  const hyselam::Pose2 in_grid = g.origin.inverse() * robot;
+  const Point2 from{in_grid.x / g.resolution, in_grid.y / g.resolution};
+  if (!(from.x >= 0.0 && from.y >= 0.0 && from.x < g.width && from.y < g.height)) {
+    throw hyselam::InputError("glass wall", "pose", "the robot is outside of the map");
+  }
+  const Walls walls{grid, params.occupied_min};
+  const double range = params.range / g.resolution;
+  // At its far end two neighbouring beams are a cell apart.
+  const int beams = 1 + static_cast<int>(std::ceil(params.aperture * range));
+  const double first = in_grid.theta + direction - 0.5 * params.aperture;
+  struct Corner {
+    Cell cell;
+    double free = 0.0;
+    double nearness = 0.0;
+  };
+  std::vector<Corner> found;
+  for (int i = 0; i < beams; ++i) {
+    const double angle = first + params.aperture * i / (beams - 1);
+    Point2 end = from;
+    const auto hit = walls.hit(from, angle, range, &end);
+    seen_.push_back(g.origin * Point2{end.x * g.resolution, end.y * g.resolution});
+    if (!hit) continue;
+    const bool known =
+        std::any_of(found.begin(), found.end(), [&](const Corner& o) { return o.cell == *hit; });
+    if (known) continue;
+    const double free = walls.freeAngle(*hit, from, params.corner_cells);
+    if (free - hyselam::kPi > params.corner_angle) {
+      found.push_back({*hit, free, std::hypot(hit->x + 0.5 - from.x, hit->y + 0.5 - from.y)});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Corner& a, const Corner& b) { return a.nearness < b.nearness; });
+  // The faces of one post pass the test in many cells: the sharpest one stands for it.
+  std::vector<std::vector<Corner>> posts;
+  for (const Corner& c : found) {
+    const auto post = std::find_if(posts.begin(), posts.end(), [&](const auto& p) {
+      return std::hypot(c.cell.x - p[0].cell.x, c.cell.y - p[0].cell.y) <= params.corner_cells;
+    });
+    if (post == posts.end()) {
+      posts.push_back({c});
+    } else {
+      post->push_back(c);
+    }
+  }
+  std::vector<Cell> corners;
+  for (const auto& p : posts) {
+    const auto sharpest = std::max_element(
+        p.begin(), p.end(), [](const Corner& a, const Corner& b) { return a.free < b.free; });
+    corners.push_back(sharpest->cell);
+    corners_.push_back(g.centre(sharpest->cell));
+  }
+  const double post = 0.5 * params.corner_cells + 1.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    std::vector<std::size_t> partners;
+    for (std::size_t j = 0; j < corners.size(); ++j) {
+      const double length = distanceBetween(corners_[i], corners_[j]);
+      if (j == i || length < params.min_length || length > params.max_length) continue;
+      if (walls.nothingBetween(corners[i], corners[j], post)) partners.push_back(j);
+    }
+    std::stable_sort(partners.begin(), partners.end(), [&](std::size_t a, std::size_t b) {
+      return distanceBetween(corners_[i], corners_[a]) < distanceBetween(corners_[i], corners_[b]);
+    });
+    for (const std::size_t j : partners) {
+      const GlassWall wall{corners_[i], corners_[j]};
+      const bool known = std::any_of(pairs_.begin(), pairs_.end(), [&](const GlassWall& o) {
+        return o == GlassWall{wall.b, wall.a};
+      });
+      if (!known) pairs_.push_back(wall);
+    }
+  }
+}
+
+bool GlassWallSearch::rejected(const GlassWall& wall) const {
+  return std::any_of(rejected_.begin(), rejected_.end(),
+                     [&](const GlassWall& other) { return same(wall, other); });
+}
+
+std::optional<GlassWall> GlassWallSearch::likeliest() const {
+  for (const GlassWall& wall : pairs_) {
+    if (!rejected(wall)) return wall;
+  }
+  return std::nullopt;
+}
+
+std::optional<GlassWall> GlassWallSearch::ofLength(double length) const {
+  const GlassWall* best = nullptr;
+  for (const bool again : {false, true}) {
+    for (const GlassWall& wall : pairs_) {
+      if (!again && rejected(wall)) continue;
+      if (best == nullptr ||
+          std::abs(wall.length() - length) < std::abs(best->length() - length) - 1e-9) {
+        best = &wall;
+      }
+    }
+    if (best != nullptr) return *best;
+  }
+  return std::nullopt;
+}
+
+void GlassWallSearch::reject(const GlassWall& wall) {
+  rejected_.push_back(wall);
+}
+
+void drawGlassWalls(const std::vector<GlassWall>& walls, OccupancyGrid* grid) {
+  const auto& g = grid->geometry;
+  const auto draw = [&](int x, int y) {
+    if (g.contains({x, y})) grid->at({x, y}) = OccupancyGrid::kOccupied;
+  };
+  for (const GlassWall& wall : walls) {
+    const Point2 a = g.origin.inverse() * wall.a, b = g.origin.inverse() * wall.b;
+    const double length = wall.length() / g.resolution;
+    if (!std::isfinite(length) || length > 1e6) continue;
+    const int steps = std::max(1, static_cast<int>(std::ceil(4.0 * length)));
+    std::optional<Cell> last;
+    for (int i = 0; i <= steps; ++i) {
+      const double t = static_cast<double>(i) / steps;
+      const double fx = (a.x + t * (b.x - a.x)) / g.resolution;
+      const double fy = (a.y + t * (b.y - a.y)) / g.resolution;
+      if (!(std::abs(fx) < 1e9 && std::abs(fy) < 1e9)) continue;
+      const Cell c{static_cast<int>(std::floor(fx)), static_cast<int>(std::floor(fy))};
+      draw(c.x, c.y);
+      // Across a corner of a cell a way of 8 neighbours would slip through.
+      if (last && last->x != c.x && last->y != c.y) draw(last->x, c.y);
+      last = c;
+    }
+  }
+}
+
+void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map) {
+  for (const GlassWall& glass : walls) {
+    if (!(glass.length() > 0.0)) continue;
+    std::vector<Id> done;
+    for (const bool turned : {false, true}) {
+      const Point2 a = turned ? glass.b : glass.a, b = turned ? glass.a : glass.b;
+      Wall wall = straightWall(a, b);
+      wall.kind = WallKind::kGlass;
+      constexpr double kBeside = 0.3;  // beyond posts and drawn cells [m]
+      const Point2 beside{wall.position.x + kBeside * wall.normal.x,
+                          wall.position.y + kBeside * wall.normal.y};
+      const auto at = placeAt(*map, beside, kBeside);
+      if (!at || std::find(done.begin(), done.end(), at->place) != done.end()) continue;
+      done.push_back(at->place);
+      Place* place = map->findPlace(at->place);
+      const bool known = std::any_of(place->walls.begin(), place->walls.end(), [&](const Wall& w) {
+        const auto line = polyline(w);
+        return w.kind == WallKind::kGlass && same({line.front(), line.back()}, glass);
+      });
+      if (known) continue;
+      wall.id = map->next_wall_id++;
+      place->walls.push_back(wall);
+    }
+  }
+}
+
+}  // namespace hyselam_topo
