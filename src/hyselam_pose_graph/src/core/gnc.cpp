@@ -19,8 +19,8 @@ constexpr int kRounds = 6;
 constexpr int kReach = 10;  // poses between loops that keep each other company
 /// Edges are rarely worth just what they say. Where company shows them better, the limit of what
 /// may be true is tighter, with this to spare: little for those that decide where all begins, more
-/// for the others, whose errors have long tails. (M3500 and intel end the same from 30 to 100.)
-constexpr double kSpareFirst = 2.0, kSpare = 50.0;
+/// for the others, whose errors have long tails. (M3500 and intel end the same from 25 to 50.)
+constexpr double kSpareFirst = 2.0, kSpare = 25.0;
 /// The 99.9 % quantile of chi^2 with one degree of freedom beside that with three.
 constexpr double kTurnShare = 10.828 / 16.266;
 
