@@ -25,6 +25,16 @@ struct Readings {
   std::array<double, 3> magnetic{{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}};
 };
 
+/// What a descriptor needs beside the image.
+struct ReadingNeeds {
+  bool ranges = false, scan = false, heading = false, magnetic = false;
+};
+/// By the descriptor's name.
+ReadingNeeds needsOf(const std::string& descriptor);
+
+/// So many distances are taken from a depth image where a list or topic has no others.
+constexpr int kDepthColumns = 20;
+
 /// Distances across a depth image (16-bit, millimetres along the optical axis, 0 none): the nearest
 /// tenth of each of `n` column bands in the rows about the horizon. Throws std::invalid_argument.
 std::vector<float> rangesOfDepth(const cv::Mat& depth, int n);

@@ -29,6 +29,9 @@ std::vector<LabelledFrame> readLabels(const std::string& path);
 /// decoders would fill in grey. Throws hyselam::InputError.
 cv::Mat readImage(const std::string& path);
 
+/// The same from the bytes of a file; `source` begins the message.
+cv::Mat decodeImage(const std::string& bytes, const std::string& source);
+
 /// The frame's readings, with distances taken from its depth image if it has one and no ranges.
 /// Throws hyselam::InputError.
 Readings readingsOf(const LabelledFrame& frame);

@@ -154,6 +154,21 @@ std::unique_ptr<Descriptor> makeDescriptor(const std::string& name,
   return std::make_unique<Joined>(std::move(terms));
 }
 
+ReadingNeeds needsOf(const std::string& descriptor) {
+  ReadingNeeds needs;
+  for (std::size_t begin = 0; begin <= descriptor.size();) {
+    const std::size_t end = std::min(descriptor.find('+', begin), descriptor.size());
+    const std::string term = plainSpelling(descriptor.substr(begin, end - begin));
+    needs.scan |= term == "scan";
+    needs.heading |= term == "psi";
+    needs.magnetic |= term == "[psi]";
+    needs.ranges |= term.compare(0, 4, "sLBP") == 0 ||
+                    (term.size() > 1 && term[0] == 'A' && term[1] >= '0' && term[1] <= '9');
+    begin = end + 1;
+  }
+  return needs;
+}
+
 std::vector<std::string> descriptorNames() {
   std::vector<std::string> names;
   for (const char* base :

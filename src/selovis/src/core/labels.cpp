@@ -15,7 +15,6 @@ namespace selovis {
 namespace {
 
 constexpr std::size_t kMaxColumns = 4096;
-constexpr int kDepthColumns = 20;  // distances taken from a depth image
 
 std::vector<std::string> split(std::string line) {
   if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -150,7 +149,10 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
 }
 
 cv::Mat readImage(const std::string& path) {
-  const std::string bytes = hyselam::readTextFile(path, std::size_t{256} << 20);
+  return decodeImage(hyselam::readTextFile(path, std::size_t{256} << 20), path);
+}
+
+cv::Mat decodeImage(const std::string& bytes, const std::string& path) {
   if (bytes.empty()) throw hyselam::InputError(path, "", "is empty");
   const bool jpeg = bytes.compare(0, 2, "\xFF\xD8") == 0, png = bytes.compare(0, 4, "\x89PNG") == 0;
   if ((jpeg && !endsWithin(bytes, "\xFF\xD9", 2, 4096)) ||

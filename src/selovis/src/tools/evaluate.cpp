@@ -11,6 +11,7 @@
 #include "options.hpp"
 #include "plots.hpp"
 #include "selovis/recogniser.hpp"
+#include "selovis/topology.hpp"
 
 namespace {
 
@@ -67,7 +68,7 @@ nlohmann::json run(Options& o) {
   PlaceGraph graph = model.graph;
   std::vector<std::string> not_on_map;
   if (!o.topology.empty()) {
-    graph = reordered(readPlaceGraph(o.topology), model.graph.places, &not_on_map);
+    graph = reordered(readTopology(o.topology), model.graph.places, &not_on_map);
   }
   try {
     o.recogniser.filter.kind = filterKind(o.filter);
@@ -200,7 +201,7 @@ int main(int argc, char** argv) {
   app.add_option("--labels", o.labels, "CSV: image_path,place[,sensor columns], in time order")
       ->required();
   app.add_option("--topology", o.topology,
-                 "places and transitions, JSON or CSV; default: those seen in training");
+                 "places and transitions: topo.xml, JSON or CSV; default: those seen in training");
   app.add_option("--filter", o.filter = "markov", "none, lowpass, markov or bayes")
       ->capture_default_str();
   app.add_option("--images", o.images = "none", "images passed over: none, or by sift or corners")

@@ -1,0 +1,81 @@
+// Tours through simulated buildings as the robot's camera and laser see them, kept in memory.
+#pragma once
+
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hyselam_sim/film.hpp"
+#include "hyselam_sim/simulation.hpp"
+#include "selovis/model.hpp"
+
+namespace selovis {
+namespace bench {
+
+struct FilmedFrame {
+  double stamp = 0.0;  ///< [s]
+  hyselam::Pose2 base;
+  int place = -1;                   ///< index into the plan's places; -1: none
+  std::vector<unsigned char> jpeg;  ///< as a camera driver would hand it out, quality 92
+  std::vector<float> scan;
+
+  cv::Mat image() const { return cv::imdecode(jpeg, cv::IMREAD_COLOR); }
+  Readings readings() const {
+    Readings r;
+    r.scan = scan;
+    return r;
+  }
+};
+
+struct FilmedTour {
+  std::vector<FilmedFrame> frames;  ///< those in a place
+  hyselam_sim::Simulation run;
+};
+
+inline hyselam_sim::FilmParams filmParams(double hour, double rate) {
+  hyselam_sim::FilmParams params;
+  params.camera.width = 320;
+  params.camera.height = 240;
+  params.light.hour = hour;
+  params.rate = rate;
+  return params;
+}
+
+/// Drives and films the route; its people are there if `with_people`.
+inline FilmedTour filmTour(const hyselam_sim::Scene& scene, hyselam_sim::Route route,
+                           std::uint64_t seed, const hyselam_sim::FilmParams& params,
+                           bool with_people) {
+  if (!with_people) route.people.clear();
+  FilmedTour tour;
+  tour.run = hyselam_sim::simulate(scene.plan(), route, seed);
+  const auto& scans = tour.run.log.scans;
+  std::size_t at = 0;
+  hyselam_sim::film(
+      scene, tour.run.log, route.people, seed, params, [&](const hyselam_sim::FilmFrame& f) {
+        if (f.place < 0) return;
+        while (at + 1 < scans.size() && scans[at + 1].stamp <= f.stamp + 1e-6) ++at;
+        FilmedFrame frame{f.stamp, f.base, f.place, {}, scans[at].ranges};
+        cv::imencode(".jpg", f.picture.colour, frame.jpeg, {cv::IMWRITE_JPEG_QUALITY, 92});
+        tour.frames.push_back(std::move(frame));
+      });
+  return tour;
+}
+
+/// Trains on filmed tours.
+inline Model trainOn(const std::vector<FilmedTour>& tours,
+                     const std::vector<hyselam_sim::Place>& places,
+                     const TrainingOptions& options) {
+  std::vector<std::size_t> sizes;
+  for (const auto& tour : tours) sizes.push_back(tour.frames.size());
+  return train(
+      sizes,
+      [&](std::size_t t, std::size_t i) -> TrainingFrame {
+        const FilmedFrame& f = tours[t].frames[i];
+        return {f.image(), f.readings(), places[static_cast<std::size_t>(f.place)].name};
+      },
+      options);
+}
+
+}  // namespace bench
+}  // namespace selovis
