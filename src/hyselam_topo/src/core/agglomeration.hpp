@@ -28,4 +28,8 @@ PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const Segmentat
 /// The trees that come with the package; train_borders makes them.
 const BoostedTrees& borderModel();
 
+/// Log-odds by the trees, as a mean over lengths and clearances around those measured: a cell more
+/// or less, or a building a tenth larger, should not decide.
+double oddsOfOnePlace(const BoostedTrees& model, const BorderFeatures& border);
+
 }  // namespace hyselam_topo

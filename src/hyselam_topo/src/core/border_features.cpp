@@ -82,4 +82,13 @@ BorderFeatures describeBorder(const PlaceGraph& graph, int a, int b) {
           border.open / large->perimeter};
 }
 
+BorderFeatures resized(BorderFeatures border, double lengths, double saddle) {
+  for (std::size_t i = 0; i < 5; ++i) border[i] += saddle;
+  border[17] -= saddle;  // the open border beside the clearance
+  border[0] += lengths;
+  border[5] += 2.0 * lengths;  // areas
+  border[6] += 2.0 * lengths;
+  return border;
+}
+
 }  // namespace hyselam_topo

@@ -26,6 +26,10 @@ double length(cv::Point2d p) {
   return std::hypot(p.x, p.y);
 }
 
+double squared(cv::Point2d p) {
+  return p.x * p.x + p.y * p.y;
+}
+
 // Lengths in cells, positions in cells from the outer corner of cell (0, 0).
 class DoorFinder {
  public:
@@ -142,7 +146,8 @@ class DoorFinder {
       if (x < x0 || y < y0 || x >= x0 + side || y >= y0 + side) return;
       char& known = seen[static_cast<std::size_t>((y - y0) * side + x - x0)];
       const cv::Point2d p{x + 0.5, y + 0.5};
-      if (known != 0 || length(p - at) > limit || length(p - at) > length(p - other)) return;
+      const double off = squared(p - at);
+      if (known != 0 || off > limit * limit || off > squared(p - other)) return;
       known = 1;
       if (surface(x, y)) out.push_back({x, y});
     };
@@ -174,8 +179,10 @@ class DoorFinder {
       std::vector<std::tuple<double, Cell, Cell>> pairs;
       for (const Cell& p : left) {
         for (const Cell& q : right) {
+          const cv::Point2d way(q.x - p.x, q.y - p.y);
+          if (squared(way) > (least + 1.0) * (least + 1.0)) continue;  // most pairs
           const double moved = length(middle(p, q) - start);
-          const double cost = std::hypot(p.x - q.x, p.y - q.y) + kPerMove * moved;
+          const double cost = length(way) + kPerMove * moved;
           if (cost > least + 1.0 || moved > reach || !clear(p, q)) continue;
           least = std::min(least, cost);
           pairs.push_back({cost, p, q});

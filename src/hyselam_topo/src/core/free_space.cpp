@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -45,16 +46,35 @@ Masks cutOut(const hyselam::OccupancyGrid& grid, int free_max, int margin, cv::P
   return masks;
 }
 
+void findPieces(FreeSpace& space) {
+  const CellRuns cells = connectedRuns(space.free, 255, true);
+  space.pieces.resize(static_cast<std::size_t>(cells.pieces));
+  std::vector<std::size_t> counts(space.pieces.size(), 0);
+  for (const CellRun& run : cells.runs) {
+    const auto piece = static_cast<std::size_t>(run.piece);
+    ++counts[piece];
+    space.pieces[piece].cells += run.last - run.first + 1;
+    space.pieces[piece].box |= cv::Rect(run.first, run.y, run.last - run.first + 1, 1);
+  }
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    space.pieces[i].begin = space.pieces[i].end = next;
+    next += counts[i];
+  }
+  space.solid.resize(next);
+  for (const CellRun& run : cells.runs)
+    space.solid[space.pieces[static_cast<std::size_t>(run.piece)].end++] = run;
+}
+
 /// Pieces of furniture up to `clutter` across, standing free, are seen through.
 void seeThroughClutter(FreeSpace& space, double clutter) {
-  cv::Mat solid, centres;
-  cv::bitwise_not(space.free, solid);
-  const int n = cv::connectedComponentsWithStats(solid, space.pieces, space.boxes, centres, 8);
-  for (int i = 1; i < n; ++i) {
-    const cv::Rect box = space.boxOf(i);
-    if (std::hypot(box.width, box.height) * space.resolution > clutter) continue;
-    cv::Mat part = space.free(box);
-    part.setTo(255, space.pieces(box) == i);
+  for (const SolidPiece& piece : space.pieces) {
+    if (std::hypot(piece.box.width, piece.box.height) * space.resolution > clutter) continue;
+    for (std::size_t i = piece.begin; i < piece.end; ++i) {
+      const CellRun& run = space.solid[i];
+      std::uint8_t* row = space.free.ptr<std::uint8_t>(run.y);
+      std::fill(row + run.first, row + run.last + 1, std::uint8_t{255});
+    }
   }
 }
 
@@ -112,6 +132,7 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
   }
   space.free = masks.free;
   clean(space, masks.occupied);
+  findPieces(space);
   seeThroughClutter(space, params.clutter);
   return space;
 }
@@ -129,6 +150,13 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
     if (row < 0 || row >= labels.rows) continue;
     const int* from = labels.ptr<int>(row);
     std::uint16_t* to = out.ptr<std::uint16_t>(y);
+    if (space.split == 1 && space.joined == 1) {  // most maps, worth a loop of its own
+      const int begin = std::max(0, space.origin.x);
+      const int end = std::min(width, labels.cols + space.origin.x);
+      for (int x = begin; x < end; ++x)
+        to[x] = static_cast<std::uint16_t>(from[x - space.origin.x]);
+      continue;
+    }
     for (int x = 0; x < width; ++x) {
       const int column = columns[static_cast<std::size_t>(x)];
       if (column >= 0 && column < labels.cols) to[x] = static_cast<std::uint16_t>(from[column]);

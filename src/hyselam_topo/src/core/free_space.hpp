@@ -2,13 +2,21 @@
 // that the later steps are made for. Clutter is seen through, leaks are cut off.
 #pragma once
 
+#include <cstddef>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
+#include <vector>
 
+#include "cell_runs.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_topo/segmentation.hpp"
 
 namespace hyselam_topo {
+
+struct SolidPiece {
+  cv::Rect box;
+  int cells = 0;
+  std::size_t begin = 0, end = 0;
+};
 
 struct FreeSpace {
   cv::Mat free;             ///< CV_8U, 255 free, 0 not; the outermost cells are never free
@@ -16,16 +24,10 @@ struct FreeSpace {
   int joined = 1;           ///< so many cells of the grid, along each axis, make one cell
   int split = 1;            ///< ... or one cell of the grid makes so many; one of the two is 1
   cv::Point origin;  ///< working cell at (0, 0) of `free`; grid cell (0, 0) starts cell (0, 0)
-  /// CV_32S, the connected pieces that were not free before clutter was seen through, from 1, and
-  /// the statistics of cv::connectedComponentsWithStats() about them.
-  cv::Mat pieces;
-  cv::Mat boxes;
-
-  cv::Rect boxOf(int piece) const {
-    const int* row = boxes.ptr<int>(piece);
-    return {row[cv::CC_STAT_LEFT], row[cv::CC_STAT_TOP], row[cv::CC_STAT_WIDTH],
-            row[cv::CC_STAT_HEIGHT]};
-  }
+  /// The connected pieces that were not free before clutter was seen through, and their cells: of
+  /// a piece those from `begin` to before `end`.
+  std::vector<SolidPiece> pieces;
+  std::vector<CellRun> solid;
 };
 
 /// Empty `free` if the grid has no free cell.

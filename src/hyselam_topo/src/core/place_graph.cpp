@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/pose2.hpp"
@@ -14,16 +15,35 @@ constexpr double kThinWall = 0.45;  // [m] from either side: thicker things do n
 constexpr double kWallProbe = 0.8;  // [m] behind the ends of a chord
 constexpr int kChords = 36;         // tried directions
 
+/// Calls `found(x)` for every x of a row that is marked with 1: few, and the marks are made in
+/// loops without branches.
+template <typename Found>
+void eachMarked(const std::vector<std::uint8_t>& marks, Found found) {
+  const std::uint8_t* const begin = marks.data();
+  const std::uint8_t* const end = begin + marks.size();
+  const auto next = [&](const std::uint8_t* from) {
+    return static_cast<const std::uint8_t*>(
+        std::memchr(from, 1, static_cast<std::size_t>(end - from)));
+  };
+  for (const std::uint8_t* at = next(begin); at != nullptr; at = next(at + 1))
+    found(static_cast<int>(at - begin));
+}
+
 /// Solid cells near free ones get the label of the nearest, so that labels meet within thin walls.
 cv::Mat reachIntoWalls(const cv::Mat& labels, int steps) {
   cv::Mat out = labels.clone();
   int* cells = out.ptr<int>();
-  const int stride = labels.cols, total = static_cast<int>(labels.total());
+  const int stride = labels.cols;
   std::vector<int> front, next;
-  for (int i = stride; i + stride < total; ++i)
-    if (cells[i] != 0 && (cells[i - 1] == 0 || cells[i + 1] == 0 || cells[i - stride] == 0 ||
-                          cells[i + stride] == 0))
-      front.push_back(i);
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(stride), 0);
+  for (int y = 1; y + 1 < labels.rows; ++y) {
+    const int* row = cells + y * stride;
+    for (int x = 1; x + 1 < stride; ++x)
+      marks[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(
+          (row[x] != 0) & ((row[x - 1] == 0) | (row[x + 1] == 0) | (row[x - stride] == 0) |
+                           (row[x + stride] == 0)));
+    eachMarked(marks, [&](int x) { front.push_back(y * stride + x); });
+  }
   for (int step = 0; step < steps; ++step) {
     next.clear();
     // Straight and slanting steps in turn: an octagon, near enough to a circle.
@@ -131,13 +151,16 @@ void PlaceGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
     for (int x = 0; x < labels.cols;) {
       const int label = row[x];
       const int start = x;
+      if (label == 0) {
+        while (x < labels.cols && row[x] == 0) ++x;
+        continue;
+      }
       double sum = 0.0;
       float peak = 0.0f;
       for (; x < labels.cols && row[x] == label; ++x) {
         sum += heights[x];
         peak = std::max(peak, heights[x]);
       }
-      if (label == 0) continue;
       PlaceNode& node = at(label);
       node.area += (x - start) * cell;
       node.clearances += sum * resolution_ * cell;
@@ -151,7 +174,7 @@ void PlaceGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
 
 void PlaceGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
                                 const cv::Mat& reach) {
-  const int stride = labels.cols, total = static_cast<int>(labels.total());
+  const int stride = labels.cols;
   const int* cells = labels.ptr<int>();
   const int* near = reach.ptr<int>();
   const float* heights = clearance.ptr<float>();
@@ -174,9 +197,19 @@ void PlaceGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
     if (near[i] != near[j] && near[i] != 0 && near[j] != 0)
       between(near[i], near[j]).wall += resolution_;
   };
-  for (int i = 0; i + stride < total; ++i) {
-    if (near[i] != near[i + 1] || cells[i] != cells[i + 1]) meet(i, i + 1);
-    if (near[i] != near[i + stride] || cells[i] != cells[i + stride]) meet(i, i + stride);
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(stride), 0);
+  for (int y = 0; y + 1 < labels.rows; ++y) {
+    const int* own = cells + y * stride;
+    const int* reached = near + y * stride;
+    for (int x = 0; x + 1 < stride; ++x)
+      marks[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(
+          (own[x] != own[x + 1]) | (own[x] != own[x + stride]) | (reached[x] != reached[x + 1]) |
+          (reached[x] != reached[x + stride]));
+    eachMarked(marks, [&](int x) {
+      const int i = y * stride + x;
+      if (near[i] != near[i + 1] || cells[i] != cells[i + 1]) meet(i, i + 1);
+      if (near[i] != near[i + stride] || cells[i] != cells[i + stride]) meet(i, i + stride);
+    });
   }
 }
 

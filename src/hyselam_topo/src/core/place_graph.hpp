@@ -73,4 +73,8 @@ using BorderFeatures = std::array<double, kBorderFeatures>;
 /// list.
 BorderFeatures describeBorder(const PlaceGraph& graph, int a, int b);
 
+/// The same border, were all lengths longer by a factor and, besides, the clearance at its widest
+/// point. Logarithms of both.
+BorderFeatures resized(BorderFeatures border, double lengths, double saddle);
+
 }  // namespace hyselam_topo

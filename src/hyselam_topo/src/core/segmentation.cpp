@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "agglomeration.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/doors.hpp"
+#include "number_places.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -59,129 +58,29 @@ constexpr double kFurniture = 2.0;
 void fillFurniture(cv::Mat& labels, const FreeSpace& space) {
   const double most = kFurniture / (space.resolution * space.resolution);
   const cv::Rect inner(1, 1, labels.cols - 2, labels.rows - 2);
-  for (int i = 1; i < space.boxes.rows; ++i) {
-    const cv::Rect box = space.boxOf(i);
-    if (space.boxes.at<int>(i, cv::CC_STAT_AREA) > most || (box & inner) != box) continue;
+  for (const SolidPiece& piece : space.pieces) {
+    if (piece.cells > most || (piece.box & inner) != piece.box) continue;
     int around = 0;
     bool one = true;
-    for (int y = box.y; y < box.br().y && one; ++y)
-      for (int x = box.x; x < box.br().x && one; ++x) {
-        if (space.pieces.at<int>(y, x) != i) continue;
-        for (const cv::Point d :
-             {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
-          const int label = labels.at<int>(y + d.y, x + d.x);
-          if (label == 0 || label == around) continue;
-          one = around == 0;
-          around = label;
-        }
-      }
-    if (one && around != 0) labels(box).setTo(around, space.pieces(box) == i);
-  }
-}
-
-struct Run {
-  int first, last;  // columns, both in it
-  int label;
-  int piece;
-};
-
-/// Each label keeps its largest 4-connected piece; other pieces get the label of a neighbour they
-/// touch, or none. Then the places are numbered 1 .. n in the order of their first cells.
-int number(cv::Mat& labels) {
-  std::vector<std::vector<Run>> rows(static_cast<std::size_t>(labels.rows));
-  std::vector<int> parents;
-  const auto find = [&](int i) {
-    while (parents[static_cast<std::size_t>(i)] != i) {
-      int& p = parents[static_cast<std::size_t>(i)];
-      p = parents[static_cast<std::size_t>(p)];
-      i = p;
-    }
-    return i;
-  };
-  for (int y = 0; y < labels.rows; ++y) {
-    const std::uint16_t* cells = labels.ptr<std::uint16_t>(y);
-    std::vector<Run>& runs = rows[static_cast<std::size_t>(y)];
-    for (int x = 0; x < labels.cols;) {
-      const int start = x, label = cells[x];
-      while (x < labels.cols && cells[x] == label) ++x;
-      if (label == 0) continue;
-      runs.push_back({start, x - 1, label, static_cast<int>(parents.size())});
-      parents.push_back(static_cast<int>(parents.size()));
-    }
-    if (y == 0) continue;
-    const std::vector<Run>& before = rows[static_cast<std::size_t>(y) - 1];
-    std::size_t k = 0;
-    for (const Run& run : runs) {
-      while (k < before.size() && before[k].last < run.first) ++k;
-      for (std::size_t j = k; j < before.size() && before[j].first <= run.last; ++j) {
-        if (before[j].label != run.label) continue;
-        const int a = find(before[j].piece), b = find(run.piece);
-        parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      }
-    }
-  }
-  std::vector<int> sizes(parents.size(), 0);
-  for (const auto& runs : rows)
-    for (const Run& run : runs)
-      sizes[static_cast<std::size_t>(find(run.piece))] += run.last - run.first + 1;
-  std::vector<int> largest(std::numeric_limits<std::uint16_t>::max() + std::size_t{1}, -1);
-  for (const auto& runs : rows)
-    for (const Run& run : runs) {
-      const int piece = find(run.piece);
-      int& best = largest[static_cast<std::size_t>(run.label)];
-      if (best < 0 ||
-          sizes[static_cast<std::size_t>(piece)] > sizes[static_cast<std::size_t>(best)])
-        best = piece;
-    }
-  // What is not a largest piece looks for a neighbour that is, until nothing changes: such pieces
-  // are few and small.
-  std::vector<int> becomes(parents.size(), 0);
-  bool torn = false;
-  for (const auto& runs : rows)
-    for (const Run& run : runs) {
-      const int piece = find(run.piece);
-      const bool kept = largest[static_cast<std::size_t>(run.label)] == piece;
-      becomes[static_cast<std::size_t>(piece)] = kept ? run.label : 0;
-      torn = torn || !kept;
-    }
-  for (bool changed = torn; changed;) {
-    changed = false;
-    const auto touch = [&](const Run& run, const Run& other) {
-      int& own = becomes[static_cast<std::size_t>(find(run.piece))];
-      const int theirs = becomes[static_cast<std::size_t>(find(other.piece))];
-      if (own == 0 && theirs != 0) own = theirs, changed = true;
+    const auto look = [&](int label) {
+      if (label == 0 || label == around) return;
+      one = one && around == 0;
+      around = label;
     };
-    for (std::size_t y = 0; y < rows.size(); ++y)
-      for (std::size_t i = 0; i < rows[y].size(); ++i) {
-        const Run& run = rows[y][i];
-        if (i > 0 && rows[y][i - 1].last + 1 == run.first) {
-          touch(run, rows[y][i - 1]);
-          touch(rows[y][i - 1], run);
-        }
-        if (y == 0) continue;
-        for (const Run& other : rows[y - 1]) {
-          if (other.last < run.first || other.first > run.last) continue;
-          touch(run, other);
-          touch(other, run);
-        }
-      }
-  }
-  std::vector<int> names(largest.size(), 0);
-  int count = 0;
-  for (std::size_t y = 0; y < rows.size(); ++y) {
-    std::uint16_t* cells = labels.ptr<std::uint16_t>(static_cast<int>(y));
-    for (const Run& run : rows[y]) {
-      const int label = becomes[static_cast<std::size_t>(find(run.piece))];
-      int name = 0;
-      if (label != 0) {
-        int& slot = names[static_cast<std::size_t>(label)];
-        if (slot == 0) slot = ++count;
-        name = slot;
-      }
-      std::fill(cells + run.first, cells + run.last + 1, static_cast<std::uint16_t>(name));
+    for (std::size_t i = piece.begin; i < piece.end && one; ++i) {
+      const CellRun& run = space.solid[i];
+      const int* row = labels.ptr<int>(run.y);
+      const int *below = labels.ptr<int>(run.y - 1), *above = labels.ptr<int>(run.y + 1);
+      look(row[run.first - 1]);
+      look(row[run.last + 1]);
+      for (int x = run.first; x <= run.last; ++x) look(row[x]), look(below[x]), look(above[x]);
+    }
+    if (!one || around == 0) continue;
+    for (std::size_t i = piece.begin; i < piece.end; ++i) {
+      int* row = labels.ptr<int>(space.solid[i].y);
+      std::fill(row + space.solid[i].first, row + space.solid[i].last + 1, around);
     }
   }
-  return count;
 }
 
 }  // namespace
@@ -197,8 +96,7 @@ Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid, const Segmentatio
   PlaceGraph graph(prepared.clearance, prepared.basins, resolution);
   const BoostedTrees& model = borderModel();
   agglomerate(graph, [&model](const PlaceGraph& g, int a, int b) {
-    const BorderFeatures features = describeBorder(g, a, b);
-    return model(features.data());
+    return oddsOfOnePlace(model, describeBorder(g, a, b));
   });
   absorbSmall(graph, params.smallest_place);
 
@@ -219,7 +117,7 @@ Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid, const Segmentatio
 
   const int reach = static_cast<int>(std::ceil(kReach / grid.geometry.resolution));
   result.labels = toGrid(labels, prepared.space, grid, params.free_max, reach);
-  result.places = number(result.labels);
+  result.places = numberPlaces(result.labels);
   return result;
 }
 

@@ -213,7 +213,7 @@ RoomScores run(const Example& example, const BoostedTrees* model, const Options&
         samples->weights.push_back(std::min(small, 3.0) / 3.0 + 0.05);
       }
     }
-    if (model != nullptr) return (*model)(f.data()) + lean;
+    if (model != nullptr) return oddsOfOnePlace(*model, f) + lean;
     return f[1] - std::log(0.75);
   });
   now(graph);
