@@ -2,6 +2,7 @@
 // index follow from them and are built again after loading.
 #pragma once
 
+#include <ostream>
 #include <string>
 
 #include "ngram_slam/observation.hpp"
@@ -32,6 +33,11 @@ class CorpusFile {
   /// @throws hyselam::InputError, naming the place and the reason, for a file that is no corpus, of
   /// another version, cut off, damaged, or that holds values out of range.
   static Corpus load(const std::string& path);
+
+  /// The same as part of another file; `name` begins the errors of parse().
+  static void write(std::ostream& out, const ObservationStore& observations,
+                    const DensityClasses& classes, const Histogram& histogram);
+  static Corpus parse(const std::string& text, const std::string& name);
 };
 
 }  // namespace ngram_slam

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
+#include "ngram_slam/seen_space.hpp"
 #include "ngram_slam/slam_params.hpp"
 #include "ngram_slam/slam_types.hpp"
 
@@ -13,8 +13,12 @@ namespace ngram_slam {
 
 /// A question that can be answered without the engine, on any thread.
 struct LoopTask {
-  using Stretch = std::vector<
-      std::pair<hyselam::Pose2, std::shared_ptr<const hyselam_scan_matching::SurfacePoints>>>;
+  struct Seen {
+    hyselam::Pose2 pose;                                                 ///< of the base
+    std::shared_ptr<const hyselam_scan_matching::SurfacePoints> points;  ///< in the base frame
+    hyselam::Point2 laser;                                               ///< in the base frame
+  };
+  using Stretch = std::vector<Seen>;
 
   int older = 0, newer = 0;  ///< keyframes
   LoopSource source = LoopSource::kProximity;
@@ -31,6 +35,7 @@ struct LoopAnswer {
   bool verified = false;
   SlamLoop loop;
   double score = 0.0;  ///< of the search, 0..1
+  Overlap new_in_old, old_in_new;
   double rival = 0.0;  ///< of the best pose elsewhere, 0 if not asked or below all bounds
 };
 

@@ -23,40 +23,46 @@ void CorpusFile::save(const std::string& path, const Corpus& corpus) {
 
 void CorpusFile::save(const std::string& path, const ObservationStore& o,
                       const DensityClasses& classes, const Histogram& histogram) {
-  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    Writer w(out);
-    w.putText(kMagic, 8);
-    w.put(kVersion);
-    w.put(o.runs());
-    w.put(o.size());
-    w.put(static_cast<std::uint32_t>(classes.list().size()));
-    w.put(static_cast<std::uint32_t>(histogram.size()));
-    w.putChecksum();
-    for (const auto& run : o.runs_) {
-      w.put(run.begin);
-      w.put(run.x);
-      w.put(run.y);
-    }
-    for (const DensityClass& c : classes.list()) {
-      w.put(static_cast<std::uint32_t>(c.id));
-      w.put(c.mode);
-      w.put(c.upper);
-    }
-    w.putAll(histogram);
-    w.putAll(o.stamps_);
-    w.putAll(o.x_);
-    w.putAll(o.y_);
-    w.putAll(o.theta_);
-    w.putAll(o.soft_);
-    w.putAll(o.hard_);
-    w.putAll(o.full_);
-    w.putAll(o.frontiers_);
-    w.putChecksum();
-  });
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) { write(out, o, classes, histogram); });
+}
+
+void CorpusFile::write(std::ostream& out, const ObservationStore& o, const DensityClasses& classes,
+                       const Histogram& histogram) {
+  Writer w(out);
+  w.putText(kMagic, 8);
+  w.put(kVersion);
+  w.put(o.runs());
+  w.put(o.size());
+  w.put(static_cast<std::uint32_t>(classes.list().size()));
+  w.put(static_cast<std::uint32_t>(histogram.size()));
+  w.putChecksum();
+  for (const auto& run : o.runs_) {
+    w.put(run.begin);
+    w.put(run.x);
+    w.put(run.y);
+  }
+  for (const DensityClass& c : classes.list()) {
+    w.put(static_cast<std::uint32_t>(c.id));
+    w.put(c.mode);
+    w.put(c.upper);
+  }
+  w.putAll(histogram);
+  w.putAll(o.stamps_);
+  w.putAll(o.x_);
+  w.putAll(o.y_);
+  w.putAll(o.theta_);
+  w.putAll(o.soft_);
+  w.putAll(o.hard_);
+  w.putAll(o.full_);
+  w.putAll(o.frontiers_);
+  w.putChecksum();
 }
 
 Corpus CorpusFile::load(const std::string& path) {
-  const std::string text = hyselam::readTextFile(path);
+  return parse(hyselam::readTextFile(path), path);
+}
+
+Corpus CorpusFile::parse(const std::string& text, const std::string& path) {
   const auto refuse = [&](const std::string& place, const std::string& reason) {
     throw InputError(path, place, reason);
   };

@@ -55,8 +55,7 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
     if (old.run == here.run && here.way - old.way < params.least_way) break;
     const double way = ways[static_cast<std::size_t>(k)];
     if (!std::isfinite(way)) continue;
-    const double reach =
-        std::min(params.most_uncertainty, params.uncertainty + params.uncertainty_growth * way);
+    const double reach = std::min(params.most_uncertainty, params.reach(way));
     const double d = distance(old.pose, here.pose);
     // Two metres beside the old way its surfaces are still seen.
     if (d >= reach + 2.0) continue;

@@ -12,6 +12,7 @@ namespace {
 using namespace hyselam_scan_matching;  // NOLINT: their words are this file's
 
 constexpr std::size_t kNearPoints = 80, kFarPoints = 250, kRefinedPoints = 1000;
+constexpr double kSpaceSide = 100.0;  // [m]
 
 /// Every n-th point, so that about `most` remain.
 SurfacePoints thinned(const SurfacePoints& points, std::size_t most) {
@@ -23,9 +24,15 @@ SurfacePoints thinned(const SurfacePoints& points, std::size_t most) {
 
 SurfaceMap mapOf(const LoopTask::Stretch& stretch, double cell) {
   SurfaceMap map(cell);
-  for (const auto& [pose, points] : stretch) map.insert(pose, *points);
+  for (const LoopTask::Seen& s : stretch) map.insert(s.pose, *s.points);
   map.finish();
   return map;
+}
+
+SeenSpace spaceOf(const LoopTask::Stretch& stretch, double cell) {
+  SeenSpace space(kSpaceSide, cell);
+  for (const LoopTask::Seen& s : stretch) space.insert(s.pose, *s.points, s.laser);
+  return space;
 }
 
 }  // namespace
@@ -45,7 +52,7 @@ LoopAnswer verifyLoop(const LoopTask& task, const SlamParams& params) {
     points = mapOf(task.new_stretch, 0.5 * p.far_resolution).points();
     scans = task.new_stretch.size();
   } else if (!task.new_stretch.empty()) {
-    points = transformed(task.new_stretch[0].first, *task.new_stretch[0].second);
+    points = transformed(task.new_stretch[0].pose, *task.new_stretch[0].points);
   }
   if (points.empty() || old_map.empty()) return answer;
 
@@ -80,7 +87,16 @@ LoopAnswer verifyLoop(const LoopTask& task, const SlamParams& params) {
           : 1.0;
   loop.information = params.scan_information * share * r.information + Eigen::Matrix3d::Identity();
   loop.information = (0.5 * (loop.information + loop.information.transpose())).eval();
-  answer.verified = r.matched >= (task.far ? p.far_matched : p.near_matched);
+  const double least_matched = task.far ? p.far_matched : p.near_matched;
+  if (r.matched < least_matched) return answer;
+  // Either may not stand where the other saw that nothing is.
+  answer.new_in_old = spaceOf(task.old_stretch, p.far_resolution).overlap(r.pose, points);
+  answer.old_in_new =
+      spaceOf(task.new_stretch, p.far_resolution).overlap(r.pose.inverse(), old_map.points());
+  const auto fits = [&](const Overlap& o, double least_known) {
+    return o.known >= least_known && o.fit >= (task.far ? p.far_fit : p.near_fit);
+  };
+  answer.verified = fits(answer.new_in_old, p.least_known) && fits(answer.old_in_new, 0.0);
   return answer;
 }
 

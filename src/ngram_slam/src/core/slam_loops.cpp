@@ -17,8 +17,8 @@ constexpr double kDoubted = 0.3;     // a loop of less weight is no way
 constexpr double kWordsApart = 5.0;  // [m] of old way: matches closer than this are one question
 constexpr int kWordsMost = 4;        // questions for one new word
 
-double reachOf(double way, const LoopParams& p) {
-  return p.uncertainty + p.uncertainty_growth * way;
+hyselam::Point2 laserOf(const SlamKeyframe& k) {
+  return {k.scan->laser_in_base.x, k.scan->laser_in_base.y};
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ LoopTask::Stretch SlamEngine::stretchAround(int keyframe, double half, double no
   for (int k = first; k < n && belongs(k); ++k) {
     const SlamKeyframe& other = state_.keyframes[static_cast<std::size_t>(k)];
     if (other.way > not_after) break;
-    stretch.push_back({between(middle.pose, other.pose), other.points});
+    stretch.push_back({between(middle.pose, other.pose), other.points, laserOf(other)});
   }
   return stretch;
 }
@@ -71,7 +71,7 @@ void SlamEngine::ask(int older, int newer, bool far, LoopSource source, const Po
   if (far)
     task.new_stretch = stretchAround(newer, p.far_half, std::numeric_limits<double>::infinity());
   else
-    task.new_stretch.push_back({Pose2{}, to.points});
+    task.new_stretch.push_back({Pose2{}, to.points, laserOf(to)});
   if (match >= 0) {
     SlamMatch& m = state_.matches[static_cast<std::size_t>(match)];
     m.tried = true;
@@ -172,10 +172,10 @@ void SlamEngine::takeWords(WordPlaces::Update update) {
     const double way = ways[static_cast<std::size_t>(m.keyframe_older)];
     const Pose2 known = between(older.pose, newer.pose);
     const bool same_place = std::hypot(known.x, known.y) <= p.word_window;
-    if (reachOf(way, p) <= p.near_window) {
+    if (p.reach(way) <= p.near_window) {
       // The graph knows better; the scans say whether words were right.
       if (same_place)
-        ask(m.keyframe_older, m.keyframe_newer, false, LoopSource::kNgram, known, reachOf(way, p),
+        ask(m.keyframe_older, m.keyframe_newer, false, LoopSource::kNgram, known, p.reach(way),
             p.near_turn, index);
       else
         kept.tried = true;
@@ -225,7 +225,7 @@ void SlamEngine::takeFar(const SlamLoop& loop) {
   const double way = ways_.from(loop.newer)[static_cast<std::size_t>(loop.older)];
   const Pose2 known = between(state_.keyframes[static_cast<std::size_t>(loop.older)].pose,
                               state_.keyframes[static_cast<std::size_t>(loop.newer)].pose);
-  if (std::isfinite(way) && distance(known, loop.measured) > 2.0 * reachOf(way, p) + 1.0) return;
+  if (std::isfinite(way) && distance(known, loop.measured) > p.reach(way) + 2.0) return;
 
   const auto admit = [&](SlamLoop l) {
     SlamCounters::Loops& count =

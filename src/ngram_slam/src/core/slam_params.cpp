@@ -55,6 +55,8 @@ const char* nameOf(SlamLoops loops) {
 SlamParams::SlamParams() : words(RecogniserParams::improved()) {
   surface.spacing = 0.03;
   observations.look_back = observations.bandwidth + 0.5;
+  // The scans are asked afterwards: words need not be sure.
+  words.min_probability = 0.2;
 }
 
 void SlamParams::validate() const {
@@ -95,6 +97,9 @@ void SlamParams::validate() const {
   above("loop.far_resolution", loop.far_resolution);
   share("loop.far_score", loop.far_score);
   share("loop.far_matched", loop.far_matched);
+  share("loop.near_fit", loop.near_fit);
+  share("loop.least_known", loop.least_known);
+  share("loop.far_fit", loop.far_fit);
   above("loop.word_window", loop.word_window);
   angle("loop.word_turn", loop.word_turn);
   above("loop.rival_apart", loop.rival_apart);
@@ -102,6 +107,7 @@ void SlamParams::validate() const {
   above("loop.least_way", loop.least_way);
   above("loop.uncertainty", loop.uncertainty);
   atLeast0("loop.uncertainty_growth", loop.uncertainty_growth);
+  atLeast0("loop.uncertainty_bend", loop.uncertainty_bend);
   above("loop.most_uncertainty", loop.most_uncertainty);
   atLeast0("loop.turn_growth", loop.turn_growth);
   atLeast1("loop.company", loop.company);

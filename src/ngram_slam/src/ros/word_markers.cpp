@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "hyselam_common/ros/conversions.hpp"
+#include "marker_parts.hpp"
 
 namespace ngram_slam {
 
@@ -13,56 +14,11 @@ using visualization_msgs::Marker;
 
 namespace {
 
-std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
-  std_msgs::ColorRGBA c;
-  c.r = static_cast<float>(r);
-  c.g = static_cast<float>(g);
-  c.b = static_cast<float>(b);
-  c.a = static_cast<float>(a);
-  return c;
-}
-
-std_msgs::ColorRGBA colourOf(SemanticClass c) {
-  switch (c) {
-    case SemanticClass::kBifurcation:
-      return colour(0.95, 0.75, 0.10);
-    case SemanticClass::kCorner:
-      return colour(0.90, 0.35, 0.10);
-    case SemanticClass::kCorridor:
-      return colour(0.45, 0.65, 0.90);
-    case SemanticClass::kDeadEnd:
-      return colour(0.55, 0.30, 0.70);
-    case SemanticClass::kHall:
-      return colour(0.35, 0.75, 0.40);
-  }
-  return colour(0.6, 0.6, 0.6);
-}
-
 /// From blue (narrow) over green to red (wide), for densities 0..1.
 std_msgs::ColorRGBA colourOf(double density) {
   const double x = std::clamp(density, 0.0, 1.0);
   return colour(std::clamp(2.0 * x - 0.6, 0.0, 1.0), 1.0 - std::abs(2.0 * x - 1.0),
                 std::clamp(1.2 - 2.4 * x, 0.0, 1.0));
-}
-
-geometry_msgs::Point at(const hyselam::Pose2& pose, double z) {
-  geometry_msgs::Point p;
-  p.x = pose.x;
-  p.y = pose.y;
-  p.z = z;
-  return p;
-}
-
-Marker marker(const std_msgs::Header& header, const char* name, int type, double width) {
-  Marker m;
-  m.header = header;
-  m.ns = name;
-  m.type = type;
-  m.action = Marker::ADD;
-  m.pose.orientation.w = 1.0;
-  m.scale.x = width;
-  m.color = colour(0.1, 0.1, 0.1);
-  return m;
 }
 
 /// Beside the way at an observation, `aside` metres to its left.

@@ -1,0 +1,35 @@
+// What SLAM knows as messages.
+#pragma once
+
+#include <hyselam_msgs/RegionGraph.h>
+#include <hyselam_msgs/WordMatch.h>
+#include <nav_msgs/Path.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <vector>
+
+#include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/region_graph.hpp"
+#include "ngram_slam/slam_types.hpp"
+
+namespace ngram_slam {
+
+/// @param step way between observations [m]. @param header map frame.
+hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const ObservationStore& observations,
+                                double step, const std_msgs::Header& header);
+
+/// The keyframes of the newest run.
+nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msgs::Header& header);
+
+/// A match as SLAM keeps it: words by the observations, chance and alignment not known.
+hyselam_msgs::WordMatch matchMsg(const Recogniser& recogniser, const SlamMatch& match);
+
+/// Namespaces: "way", lines between keyframes; "loops", green by proximity, magenta by words, red
+/// where they contradict others; "regions", one ball per region coloured by class; "region_links",
+/// lines between them, those of loops in magenta; "region_names".
+visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
+                                            const std::vector<SlamLoop>& loops,
+                                            const RegionGraph& graph,
+                                            const std_msgs::Header& header);
+
+}  // namespace ngram_slam

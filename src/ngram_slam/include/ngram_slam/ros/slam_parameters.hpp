@@ -1,0 +1,36 @@
+// Parameters of the nodelet NgramSlam; README.md holds the table.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "fsd_localization/ros/parameters.hpp"
+#include "hyselam_common/occupancy_mapper.hpp"
+#include "hyselam_common/ros/params.hpp"
+#include "ngram_slam/semantic_segmenter.hpp"
+#include "ngram_slam/slam_params.hpp"
+
+namespace ngram_slam {
+
+struct SlamServerParams {
+  fsd_localization::ScanInputParams input;
+  std::string global_frame_id = "map";
+  SlamParams slam;
+  SemanticParams semantic;
+  hyselam::OccupancyMapperParameters map;
+  double map_update_interval = 2.0;        ///< between maps [s] of the data; 0: no map is drawn
+  bool tf_broadcast = true;
+  double transform_publish_period = 0.05;  ///< of map -> odom [s] of wall time; 0: at scans only
+  double transform_tolerance = 0.1;        ///< map -> odom is dated this far into the future [s]
+  std::string state;         ///< file gone on with at the start and saved; empty: none
+  double save_period = 60.0;               ///< [s] of wall time; 0: only at the end and when asked
+  double start_window = 2.0;  ///< around the pose where a run starts in a known map [m]
+  double start_turn = 0.5;    ///< [rad]
+  std::optional<fsd_localization::InitialPose> initial_pose;
+  double diagnostic_period = 1.0;  ///< [s]
+};
+
+/// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.
+SlamServerParams loadSlamParams(hyselam::ParamLoader& loader);
+
+}  // namespace ngram_slam

@@ -1,0 +1,162 @@
+#include "ngram_slam/ros/slam_messages.hpp"
+
+#include <algorithm>
+
+#include "hyselam_common/ros/conversions.hpp"
+#include "marker_parts.hpp"
+
+namespace ngram_slam {
+
+using visualization_msgs::Marker;
+
+namespace {
+
+geometry_msgs::Pose2D pose2d(const hyselam::Pose2& p) {
+  geometry_msgs::Pose2D out;
+  out.x = p.x;
+  out.y = p.y;
+  out.theta = p.theta;
+  return out;
+}
+
+/// The real word that an observation belongs to; the last one for observations without word yet.
+std::uint32_t wordAt(const Text& text, std::uint32_t observation) {
+  Position low = 0, high = text.positions();
+  while (low + 1 < high) {
+    const Position middle = low + (high - low) / 2;
+    if (text.observationBegin(text.realWord(middle)) <= observation)
+      low = middle;
+    else
+      high = middle;
+  }
+  return text.positions() > 0 ? static_cast<std::uint32_t>(text.realWord(low)) : 0;
+}
+
+void addLine(Marker* m, const hyselam::Pose2& a, const hyselam::Pose2& b, double z,
+             const std_msgs::ColorRGBA& c) {
+  for (const hyselam::Pose2* p : {&a, &b}) {
+    m->points.push_back(at(*p, z));
+    m->colors.push_back(c);
+  }
+}
+
+}  // namespace
+
+hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const ObservationStore& observations,
+                                double step, const std_msgs::Header& header) {
+  hyselam_msgs::RegionGraph msg;
+  msg.header = header;
+  for (const RegionNode& node : graph.nodes) {
+    hyselam_msgs::RegionNode n;
+    n.id = static_cast<std::uint32_t>(msg.nodes.size());
+    n.semantic_class = static_cast<std::uint8_t>(indexOf(node.region.semantic_class));
+    n.class_name = nameOf(node.region.semantic_class);
+    n.confidence = static_cast<float>(node.region.confidence);
+    n.run = node.run;
+    n.pose = pose2d(node.pose);
+    n.length = static_cast<float>(step * (node.region.last - node.region.first + 1));
+    n.stamp_begin = hyselam::toRosTime(observations.stamp(node.region.first));
+    n.stamp_end = hyselam::toRosTime(observations.stamp(node.region.last));
+    msg.nodes.push_back(n);
+  }
+  for (const RegionLink& link : graph.links) {
+    hyselam_msgs::RegionEdge e;
+    e.a = static_cast<std::uint32_t>(link.a);
+    e.b = static_cast<std::uint32_t>(link.b);
+    e.kind = link.loop ? hyselam_msgs::RegionEdge::LOOP : hyselam_msgs::RegionEdge::WAY;
+    msg.edges.push_back(e);
+  }
+  return msg;
+}
+
+nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msgs::Header& header) {
+  nav_msgs::Path path;
+  path.header = header;
+  for (const SlamKeyframe& k : keyframes) {
+    if (k.run != keyframes.back().run) continue;
+    geometry_msgs::PoseStamped p;
+    p.header.frame_id = header.frame_id;
+    p.header.stamp = hyselam::toRosTime(k.stamp);
+    p.pose = hyselam::toPoseMsg(k.pose);
+    path.poses.push_back(p);
+  }
+  return path;
+}
+
+hyselam_msgs::WordMatch matchMsg(const Recogniser& recogniser, const SlamMatch& match) {
+  const ObservationStore& observations = recogniser.observations();
+  hyselam_msgs::WordMatch msg;
+  msg.newer = wordAt(recogniser.text(), match.newer);
+  msg.older = wordAt(recogniser.text(), match.older);
+  msg.level = static_cast<std::uint8_t>(match.level);
+  msg.n = static_cast<std::uint16_t>(std::clamp(match.n, 0, 65535));
+  msg.direction = match.direction == Direction::kSame ? hyselam_msgs::WordMatch::SAME
+                                                      : hyselam_msgs::WordMatch::REVERSE;
+  msg.chance = -1.0;
+  msg.probability = match.probability;
+  msg.stamp_newer = hyselam::toRosTime(match.stamp_newer);
+  msg.stamp_older = hyselam::toRosTime(match.stamp_older);
+  msg.run_newer = observations.runOf(match.newer);
+  msg.run_older = observations.runOf(match.older);
+  msg.newer_in_odom = pose2d(observations.pose(match.newer));
+  msg.older_in_odom = pose2d(observations.pose(match.older));
+  msg.alignment_rms = -1.0f;
+  return msg;
+}
+
+visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
+                                            const std::vector<SlamLoop>& loops,
+                                            const RegionGraph& graph,
+                                            const std_msgs::Header& header) {
+  visualization_msgs::MarkerArray array;
+  Marker clear;
+  clear.header = header;
+  clear.action = Marker::DELETEALL;
+  array.markers.push_back(clear);
+  const auto add = [&](Marker m) {
+    if (!m.points.empty()) array.markers.push_back(std::move(m));
+  };
+
+  Marker way = marker(header, "way", Marker::LINE_LIST, 0.06);
+  for (std::size_t i = 1; i < keyframes.size(); ++i)
+    if (keyframes[i].run == keyframes[i - 1].run)
+      addLine(&way, keyframes[i - 1].pose, keyframes[i].pose, 0.05,
+              keyframes[i].run == keyframes.back().run ? colour(0.15, 0.35, 0.85)
+                                                       : colour(0.55, 0.55, 0.6));
+  add(std::move(way));
+
+  Marker lines = marker(header, "loops", Marker::LINE_LIST, 0.05);
+  for (const SlamLoop& l : loops)
+    addLine(&lines, keyframes[static_cast<std::size_t>(l.older)].pose,
+            keyframes[static_cast<std::size_t>(l.newer)].pose, 0.1,
+            l.weight < 0.5                      ? colour(0.9, 0.1, 0.1)
+            : l.source == LoopSource::kNgram ? colour(0.85, 0.1, 0.75)
+                                                : colour(0.1, 0.65, 0.25));
+  add(std::move(lines));
+
+  Marker links = marker(header, "region_links", Marker::LINE_LIST, 0.08);
+  for (const RegionLink& link : graph.links)
+    addLine(&links, graph.nodes[link.a].pose, graph.nodes[link.b].pose, 1.0,
+            link.loop ? colour(0.85, 0.1, 0.75, 0.6) : colour(0.25, 0.25, 0.25, 0.6));
+  add(std::move(links));
+
+  Marker balls = marker(header, "regions", Marker::SPHERE_LIST, 0.6);
+  balls.scale.y = balls.scale.z = 0.6;
+  for (const RegionNode& node : graph.nodes) {
+    balls.points.push_back(at(node.pose, 1.0));
+    balls.colors.push_back(colourOf(node.region.semantic_class));
+  }
+  add(std::move(balls));
+
+  Marker name = marker(header, "region_names", Marker::TEXT_VIEW_FACING, 0.0);
+  name.scale.z = 0.5;
+  for (const RegionNode& node : graph.nodes) {
+    name.id = static_cast<int>(&node - graph.nodes.data());
+    name.pose.position = at(node.pose * hyselam::Pose2{0.0, 0.6, 0.0}, 1.3);
+    name.text = nameOf(node.region.semantic_class);
+    array.markers.push_back(name);
+  }
+  return array;
+}
+
+}  // namespace ngram_slam

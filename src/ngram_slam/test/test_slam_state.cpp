@@ -1,0 +1,211 @@
+// What SLAM keeps in a file: the same after as before, and nothing but that.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "ngram_slam/slam_engine.hpp"
+#include "ngram_slam/slam_state_io.hpp"
+
+namespace {
+
+using namespace ngram_slam;  // NOLINT: a test
+using hyselam::Pose2;
+using hyselam::testing::messageOf;
+using hyselam::testing::TemporaryDirectory;
+
+/// What a laser sees in a corridor of 24 m by 3 m with niches, from x metres along it.
+hyselam::LaserScan corridor(double x, double stamp) {
+  hyselam::LaserScan scan;
+  scan.stamp = stamp;
+  scan.angle_min = -hyselam::kPi / 2.0;
+  scan.angle_increment = hyselam::kPi / 180.0;
+  scan.range_min = 0.05;
+  scan.range_max = 20.0;
+  for (int i = 0; i <= 180; ++i) {
+    const double a = scan.angle_min + i * scan.angle_increment;
+    double r = 25.0;
+    for (double t = 0.1; t < 20.0; t += 0.01) {
+      const double px = x + t * std::cos(a), py = t * std::sin(a);
+      const bool niche = std::fmod(px + 100.0, 6.0) < 1.0 && px < 15.0;
+      if (std::abs(py) > (niche ? 2.2 : 1.5) || px > 24.0) {
+        r = t;
+        break;
+      }
+    }
+    scan.ranges.push_back(static_cast<float>(r));
+  }
+  scan.ranges[7] = std::numeric_limits<float>::infinity();
+  scan.ranges[8] = std::numeric_limits<float>::quiet_NaN();
+  return scan;
+}
+
+SlamEngine engineAfter(int scans) {
+  SlamEngine engine;
+  for (int i = 0; i < scans; ++i) {
+    engine.add(corridor(0.1 * i, 100.0 + i), {0.1 * i, 0.0, 0.0});
+    while (auto job = engine.takeJob()) engine.apply(runJob(*job));
+  }
+  return engine;
+}
+
+SlamState fullState() {
+  SlamState s = engineAfter(60).state();
+  // What a short way does not bring about.
+  SlamLoop loop;
+  loop.older = 1;
+  loop.newer = 5;
+  loop.measured = {1.0, 0.25, -0.5};
+  loop.information << 3, 1, 0, 1, 4, 0.5, 0, 0.5, 5;
+  loop.source = LoopSource::kNgram;
+  loop.far = true;
+  loop.matched = 0.75;
+  loop.weight = 0.5;
+  s.loops.push_back(loop);
+  loop.source = LoopSource::kProximity;
+  s.waiting.push_back(loop);
+  SlamMatch match;
+  match.newer = 9;
+  match.older = 3;
+  match.n = 4;
+  match.level = 1;
+  match.direction = Direction::kReverse;
+  match.probability = 0.875;
+  match.keyframe_newer = 5;
+  match.keyframe_older = 1;
+  match.tried = match.verified = true;
+  s.matches.push_back(match);
+  s.counters.words.accepted = 17;
+  return s;
+}
+
+void expectSame(const SlamState& a, const SlamState& b) {
+  ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
+  for (std::size_t i = 0; i < a.keyframes.size(); ++i) {
+    const SlamKeyframe &x = a.keyframes[i], &y = b.keyframes[i];
+    EXPECT_EQ(x.stamp, y.stamp);
+    EXPECT_EQ(x.pose.x, y.pose.x);
+    EXPECT_EQ(x.odometry.theta, y.odometry.theta);
+    EXPECT_EQ(x.way, y.way);
+    EXPECT_EQ(x.run, y.run);
+    ASSERT_EQ(x.scan->ranges.size(), y.scan->ranges.size());
+    for (std::size_t k = 0; k < x.scan->ranges.size(); ++k)
+      EXPECT_TRUE(x.scan->ranges[k] == y.scan->ranges[k] ||
+                  (std::isnan(x.scan->ranges[k]) && std::isnan(y.scan->ranges[k])));
+    ASSERT_EQ(x.points->size(), y.points->size());
+    for (std::size_t k = 0; k < x.points->size(); ++k)
+      EXPECT_EQ((*x.points)[k].nx, (*y.points)[k].nx);
+  }
+  ASSERT_EQ(a.scans.size(), b.scans.size());
+  EXPECT_EQ(a.scans.back().base_in_keyframe.x, b.scans.back().base_in_keyframe.x);
+  ASSERT_EQ(a.odometry.size(), b.odometry.size());
+  EXPECT_EQ(a.odometry.back().information, b.odometry.back().information);
+  ASSERT_EQ(a.loops.size(), b.loops.size());
+  EXPECT_EQ(a.loops.back().information, b.loops.back().information);
+  EXPECT_EQ(a.loops.back().source, b.loops.back().source);
+  EXPECT_EQ(a.loops.back().far, b.loops.back().far);
+  EXPECT_EQ(a.loops.back().weight, b.loops.back().weight);
+  ASSERT_EQ(a.waiting.size(), b.waiting.size());
+  ASSERT_EQ(a.matches.size(), b.matches.size());
+  EXPECT_EQ(a.matches.back().direction, b.matches.back().direction);
+  EXPECT_EQ(a.matches.back().probability, b.matches.back().probability);
+  EXPECT_EQ(a.matches.back().verified, b.matches.back().verified);
+  EXPECT_EQ(a.matches.back().accepted, b.matches.back().accepted);
+  EXPECT_EQ(a.counters.words.accepted, b.counters.words.accepted);
+  EXPECT_EQ(a.counters.scans, b.counters.scans);
+  EXPECT_EQ(a.keyframe_of_observation, b.keyframe_of_observation);
+  EXPECT_EQ(a.corpus.observations.size(), b.corpus.observations.size());
+}
+
+TEST(SlamStateFile, IsTheSameAfterwards) {
+  TemporaryDirectory folder;
+  const SlamState state = fullState();
+  ASSERT_GT(state.keyframes.size(), 10u);
+  ASSERT_GT(state.corpus.observations.size(), 10u);
+  SlamStateFile::save(folder / "map.slam", state);
+  expectSame(state, SlamStateFile::load(folder / "map.slam"));
+  EXPECT_EQ(folder.fileCount(), 1u);
+  SlamStateFile::save(folder / "again.slam", SlamStateFile::load(folder / "map.slam"));
+  EXPECT_EQ(hyselam::testing::fileBytes(folder / "map.slam"),
+            hyselam::testing::fileBytes(folder / "again.slam"));
+}
+
+TEST(SlamStateFile, NothingIsAStateToo) {
+  TemporaryDirectory folder;
+  SlamStateFile::save(folder / "map.slam", SlamState{});
+  EXPECT_TRUE(SlamStateFile::load(folder / "map.slam").keyframes.empty());
+}
+
+TEST(SlamStateFile, SlamGoesOnInIt) {
+  TemporaryDirectory folder;
+  SlamEngine first = engineAfter(100);
+  SlamStateFile::save(folder / "map.slam", first.state());
+  SlamEngine second(first.params(), SlamStateFile::load(folder / "map.slam"));
+  // The robot was moved half a metre while it was off, and its odometry begins at 0.
+  second.startRun(first.pose(), 1.5, 0.5);
+  const double x = 0.1 * 99 + 0.5;
+  const SlamUpdate u = second.add(corridor(x, 500.0), {0.0, 0.0, 0.0});
+  EXPECT_NEAR(u.base_in_map.x, x, 0.05);
+  EXPECT_NEAR(u.base_in_map.y, 0.0, 0.05);
+  for (int i = 1; i < 30; ++i) second.add(corridor(x + 0.1 * i, 500.0 + i), {0.1 * i, 0.0, 0.0});
+  EXPECT_NEAR(second.pose().x, x + 2.9, 0.1);
+  EXPECT_EQ(second.keyframes().back().run, 1u);
+}
+
+TEST(SlamStateFile, AnyDamageIsRefused) {
+  TemporaryDirectory folder;
+  SlamStateFile::save(folder / "map.slam", fullState());
+  const std::string whole = hyselam::testing::fileBytes(folder / "map.slam");
+  const auto refusal = [&](const std::string& bytes) {
+    hyselam::testing::writeFile(folder / "bad.slam", bytes);
+    return messageOf<hyselam::InputError>([&] { SlamStateFile::load(folder / "bad.slam"); });
+  };
+  for (std::size_t n = 0; n < whole.size(); n += n < 64 ? 1 : whole.size() / 97)
+    EXPECT_NE(refusal(whole.substr(0, n)), "") << n;
+  EXPECT_NE(refusal(whole.substr(0, whole.size() - 1)).find("truncated"), std::string::npos);
+  EXPECT_NE(refusal(whole + "x").find("bytes instead of"), std::string::npos);
+  for (std::size_t n = 0; n < whole.size(); n += whole.size() / 211) {
+    std::string bad = whole;
+    bad[n] = static_cast<char>(bad[n] ^ 0x10);
+    EXPECT_NE(refusal(bad), "") << n;
+  }
+  EXPECT_NE(refusal("P5 200 100 255 ").find("is no state of SLAM"), std::string::npos);
+  EXPECT_NE(refusal("").find("bad.slam"), std::string::npos);
+  EXPECT_THROW(SlamStateFile::load(folder / "none.slam"), hyselam::InputError);
+}
+
+TEST(SlamStateFile, AnotherVersionIsNamed) {
+  TemporaryDirectory folder;
+  SlamStateFile::save(folder / "map.slam", SlamState{});
+  std::string bytes = hyselam::testing::fileBytes(folder / "map.slam");
+  bytes[8] = 7;
+  // With the checksum that goes with it, as another version would write.
+  hyselam::testing::writeFile(folder / "map.slam", bytes);
+  const std::string damaged =
+      messageOf<hyselam::InputError>([&] { SlamStateFile::load(folder / "map.slam"); });
+  EXPECT_NE(damaged.find("version"), std::string::npos) << damaged;
+}
+
+TEST(SlamStateFile, PartsThatDoNotFitAreRefused) {
+  TemporaryDirectory folder;
+  for (int part = 0; part < 4; ++part) {
+    SlamState s = fullState();
+    if (part == 0) s.loops.back().newer = 1000;
+    if (part == 1) s.scans.back().keyframe = -1;
+    if (part == 2) s.keyframe_of_observation.pop_back();
+    if (part == 3) s.keyframes[3].pose.x = std::nan("");
+    SlamStateFile::save(folder / "map.slam", s);
+    EXPECT_NE(messageOf<hyselam::InputError>([&] { SlamStateFile::load(folder / "map.slam"); }), "")
+        << part;
+  }
+}
+
+TEST(SlamStateFile, AFailedSavingLeavesTheOldFile) {
+  TemporaryDirectory folder;
+  EXPECT_THROW(SlamStateFile::save(folder / "no/such/folder/map.slam", SlamState{}),
+               hyselam::InputError);
+}
+
+}  // namespace
