@@ -184,7 +184,8 @@ int room(const std::vector<int>& cells) {
 /// Samples of one example, apart, so that a building can be left out.
 using PerExample = std::vector<Samples>;
 
-/// `lean`: added to the odds.
+/// With `samples`, the trees' own odds lead to the borders that are met; without, and for the
+/// scores, they are taken as the segmentation does. `lean`: added to the odds.
 RoomScores run(const Example& example, const BoostedTrees* model, const Options& options,
                Samples* samples, double lean = 0.0) {
   PlaceGraph graph = example.graph;
@@ -213,7 +214,8 @@ RoomScores run(const Example& example, const BoostedTrees* model, const Options&
         samples->weights.push_back(std::min(small, 3.0) / 3.0 + 0.05);
       }
     }
-    if (model != nullptr) return oddsOfOnePlace(*model, f) + lean;
+    if (model != nullptr)
+      return (samples != nullptr ? (*model)(f.data()) : oddsOfOnePlace(*model, f)) + lean;
     return f[1] - std::log(0.75);
   });
   now(graph);
@@ -337,8 +339,11 @@ int main(int argc, char** argv) {
       PerExample met(examples.size());
       std::vector<RoomScores> seen, unseen;
       for (std::size_t i = 0; i < examples.size(); ++i) {
-        seen.push_back(run(examples[i], &all, options, &met[i]));
-        unseen.push_back(run(examples[i], &models[examples[i].building], options, &met[i]));
+        const BoostedTrees& other = models[examples[i].building];
+        run(examples[i], &all, options, &met[i]);
+        run(examples[i], &other, options, &met[i]);
+        seen.push_back(run(examples[i], &all, options, nullptr));
+        unseen.push_back(run(examples[i], &other, options, nullptr));
       }
       std::size_t count = 0;
       for (const Samples& s : samples) count += s.size();
