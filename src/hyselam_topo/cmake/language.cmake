@@ -1,22 +1,73 @@
 # What people say (hyselam_language): descriptions of buildings. Sees no ROS header, no grid map.
-add_library(hyselam_language
+find_package(yaml-cpp REQUIRED)
+
+# The grammars are data; the library carries the shipped ones, so that it needs no path to them.
+set(HYSELAM_SHIPPED_GRAMMARS "")
+foreach(language en pt)
+  set(grammar_file ${PROJECT_SOURCE_DIR}/grammar/${language}.yaml)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${grammar_file})
+  file(READ ${grammar_file} grammar_text)
+  # A literal may not be too long for all compilers: in pieces of at most 8000 characters.
+  string(LENGTH "${grammar_text}" grammar_length)
+  set(grammar_literal "")
+  set(grammar_at 0)
+  while(grammar_at LESS grammar_length)
+    string(SUBSTRING "${grammar_text}" ${grammar_at} 8000 grammar_piece)
+    string(APPEND grammar_literal "\n     R\"grammar(${grammar_piece})grammar\"")
+    math(EXPR grammar_at "${grammar_at} + 8000")
+  endwhile()
+  string(APPEND HYSELAM_SHIPPED_GRAMMARS "    {\"${language}\",${grammar_literal}},\n")
+endforeach()
+set(HYSELAM_LANGUAGE_GENERATED ${PROJECT_BINARY_DIR}/language)
+configure_file(src/language/shipped_grammars.hpp.in
+               ${HYSELAM_LANGUAGE_GENERATED}/shipped_grammars.hpp @ONLY)
+
+set(HYSELAM_LANGUAGE_SOURCES
+  src/language/compiled_grammar.cpp
+  src/language/describe_building.cpp
   src/language/described_building.cpp
-  src/language/description_xml.cpp)
-target_include_directories(hyselam_language PRIVATE src/core)
-target_include_directories(hyselam_language SYSTEM PRIVATE ${TINYXML2_INCLUDE_DIR})
-target_link_libraries(hyselam_language PUBLIC hyselam_topo PRIVATE ${TINYXML2_LIBRARY})
+  src/language/description_builder.cpp
+  src/language/description_xml.cpp
+  src/language/grammar.cpp
+  src/language/grammar_reader.cpp
+  src/language/letters.cpp
+  src/language/matcher.cpp
+  src/language/measures.cpp
+  src/language/name_finder.cpp
+  src/language/pattern.cpp
+  src/language/place_names.cpp
+  src/language/tokens.cpp
+  src/language/topo_parser.cpp
+  src/language/utterance.cpp)
+add_library(hyselam_language ${HYSELAM_LANGUAGE_SOURCES})
+target_include_directories(hyselam_language PRIVATE src/core ${HYSELAM_LANGUAGE_GENERATED})
+target_include_directories(hyselam_language SYSTEM PRIVATE ${TINYXML2_INCLUDE_DIR}
+                                                           ${YAML_CPP_INCLUDE_DIR})
+target_link_libraries(hyselam_language PUBLIC hyselam_topo
+                                       PRIVATE ${TINYXML2_LIBRARY} ${YAML_CPP_LIBRARIES})
 hyselam_target(hyselam_language)
 install(TARGETS hyselam_language
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+install(DIRECTORY grammar DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+
+add_executable(${PROJECT_NAME}_parse_description src/tools/parse_description.cpp)
+set_target_properties(${PROJECT_NAME}_parse_description PROPERTIES OUTPUT_NAME parse_description)
+target_link_libraries(${PROJECT_NAME}_parse_description hyselam_language)
+hyselam_target(${PROJECT_NAME}_parse_description)
+install(TARGETS ${PROJECT_NAME}_parse_description
+        RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
 if(CATKIN_ENABLE_TESTING)
-  foreach(test description_xml)
+  foreach(test description_xml language_corpus)
     hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_language)
     if(TARGET ${PROJECT_NAME}_test_${test})
       target_compile_definitions(${PROJECT_NAME}_test_${test}
                                  PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     endif()
   endforeach()
+  if(TARGET ${PROJECT_NAME}_test_language_corpus)
+    target_link_libraries(${PROJECT_NAME}_test_language_corpus ${YAML_CPP_LIBRARIES})
+  endif()
 endif()

@@ -40,6 +40,7 @@ class RandomDescriptions {
     if (count > 0 && pick(2) == 0) {
       building.robot_place = building.places[static_cast<std::size_t>(pick(count))].id;
     }
+    if (pick(3) == 0) building.place_count = 1 + pick(20);
     return building;
   }
 

@@ -35,6 +35,7 @@ DescribedBuilding flat() {
   building.connections = {{1, 2, Side::kLeft, 0}, {1, 4, Side::kUnknown, 3}};
   building.relations = {{RelationKind::kBetween, 2, 1, 4}, {RelationKind::kNextTo, 1, 2, 0}};
   building.robot_place = 1;
+  building.place_count = 3;
   return building;
 }
 
@@ -163,6 +164,7 @@ TEST(DescriptionXml, PartsThatMeanNothingAreRefused) {
   expectError(errorWith("length=\"6\"", "length=\"0\""), {"place 2", "not > 0"});
   expectError(errorWith("length=\"6\"", "length=\"nan\""), {"<place>", "no finite number"});
   expectError(errorWith("parts=\"6\"", "parts=\"0\""), {"place 4", "fewer than one part"});
+  expectError(errorWith("place_count=\"3\"", "place_count=\"0\""), {"fewer than one place"});
   expectError(errorWith("name=\"house\"", "name=\"\""), {"place 4 has no name"});
   expectError(errorWith("name=\"house\"", "name=\"a&#7;b\""), {"place 4", "control character"});
   expectError(errorWith("<alias name=\"John", "<alias name=\"&#2;John"), {"an alias", "control"});

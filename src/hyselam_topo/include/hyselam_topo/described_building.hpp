@@ -71,6 +71,8 @@ struct DescribedBuilding {
   std::vector<DescribedConnection> connections;  ///< at most one between two places, as told
   std::vector<DescribedRelation> relations;
   std::optional<Id> robot_place;  ///< where the robot was told that it is, the last time
+  /// "This house is divided into six rooms": of how many places, corridors among them, it is made.
+  std::optional<int> place_count;
 
   const DescribedPlace* findPlace(Id id) const;
   DescribedPlace* findPlace(Id id);

@@ -1,15 +1,13 @@
 #include "text.hpp"
 
-#include <cstddef>
-#include <cstdint>
-
 namespace hyselam_topo {
 namespace {
 
 constexpr std::size_t kMaxWordBytes = 1000;
 
-/// The length of the character that begins at `i`, 0 if it is none; `*code` gets its number.
-std::size_t characterAt(const std::string& bytes, std::size_t i, std::uint32_t* code) {
+}  // namespace
+
+std::size_t utf8CharacterAt(const std::string& bytes, std::size_t i, std::uint32_t* code) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(bytes[k]); };
   const unsigned char first = byte(i);
   std::size_t length = 1;
@@ -36,12 +34,10 @@ std::size_t characterAt(const std::string& bytes, std::size_t i, std::uint32_t* 
   return overlong || surrogate || *code > 0x10ffff ? 0 : length;
 }
 
-}  // namespace
-
 bool isUtf8(const std::string& bytes) {
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < bytes.size();) {
-    const std::size_t length = characterAt(bytes, i, &code);
+    const std::size_t length = utf8CharacterAt(bytes, i, &code);
     if (length == 0) return false;
     i += length;
   }
@@ -55,7 +51,7 @@ std::string whatIsWrongWithWord(const std::string& word) {
   }
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < word.size();) {
-    const std::size_t length = characterAt(word, i, &code);
+    const std::size_t length = utf8CharacterAt(word, i, &code);
     if (length == 0) return "is not UTF-8";
     if (code < 0x20 || (code >= 0x7f && code < 0xa0)) return "holds a control character";
     // XML cannot carry these two.

@@ -66,8 +66,8 @@ bool operator==(const DescribedRelation& a, const DescribedRelation& b) {
 }
 
 bool operator==(const DescribedBuilding& a, const DescribedBuilding& b) {
-  return std::tie(a.places, a.connections, a.relations, a.robot_place) ==
-         std::tie(b.places, b.connections, b.relations, b.robot_place);
+  return std::tie(a.places, a.connections, a.relations, a.robot_place, a.place_count) ==
+         std::tie(b.places, b.connections, b.relations, b.robot_place, b.place_count);
 }
 
 void checkDescription(const DescribedBuilding& building, const std::string& source) {
@@ -116,6 +116,8 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     require(relation.a != relation.b && relation.a != relation.c && relation.b != relation.c,
             "a relation names a place twice");
   }
+  require(!building.place_count || *building.place_count >= 1,
+          "it is made of fewer than one place");
   if (building.robot_place) known(*building.robot_place, "the robot's place");
 }
 

@@ -21,6 +21,7 @@ class Writer {
     attribute("xmlns", kNamespace);
     attribute("version", kVersion);
     if (building.robot_place) attribute("robot_place", *building.robot_place);
+    if (building.place_count) attribute("place_count", std::to_string(*building.place_count));
     for (const DescribedPlace& place : building.places) write(place);
     for (const DescribedConnection& connection : building.connections) write(connection);
     for (const DescribedRelation& relation : building.relations) write(relation);
@@ -136,6 +137,7 @@ DescribedBuilding readDescription(XmlElement& e) {
   }
   DescribedBuilding building;
   if (e.has("robot_place")) building.robot_place = e.id("robot_place");
+  if (e.has("place_count")) building.place_count = e.integer("place_count");
   e.children([&](XmlElement& child) {
     if (child.name() == "place") {
       building.places.push_back(readPlace(child));

@@ -1,0 +1,70 @@
+#include "compiled_grammar.hpp"
+
+#include <algorithm>
+
+#include "letters.hpp"
+#include "matching_costs.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+int Vocabulary::add(const std::string& word) {
+  const std::string lower = lowered(word);
+  const auto [at, is_new] = by_lower_.emplace(lower, static_cast<int>(entries_.size()));
+  if (is_new) {
+    entries_.push_back({lower, folded(word)});
+    by_folded_.emplace(entries_.back().folded, at->second);
+  }
+  return at->second;
+}
+
+std::vector<Vocabulary::Match> Vocabulary::matches(const Token& token, bool may_be_misspelt) const {
+  std::vector<Match> found;
+  if (token.kind != TokenKind::kWord) return found;
+  const auto [begin, end] = by_folded_.equal_range(token.folded);
+  for (auto each = begin; each != end; ++each) {
+    const bool exact = entries_[static_cast<std::size_t>(each->second)].lower == token.lower;
+    found.push_back({each->second, exact ? 0 : kAccentCost});
+  }
+  if (!found.empty() || !may_be_misspelt || token.folded.size() < kShortestMisspelt - 1) {
+    return found;
+  }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const std::string& word = entries_[i].folded;
+    if (word.size() >= kShortestMisspelt && isOneSlipApart(token.folded, word)) {
+      found.push_back({static_cast<int>(i), kSlipCost});
+    }
+  }
+  return found;
+}
+
+const NameType* CompiledGrammar::nameType(const std::string& name) const {
+  const auto found = std::find_if(name_types.begin(), name_types.end(),
+                                  [&](const NameType& type) { return type.name == name; });
+  return found == name_types.end() ? nullptr : &*found;
+}
+
+TokenRules CompiledGrammar::tokenRules() const {
+  TokenRules rules;
+  rules.is_unit = [this](const std::string& word) { return unit_words.count(word) != 0; };
+  rules.is_abbreviation = [this](const std::string& word) {
+    return abbreviations.count(word) != 0;
+  };
+  rules.expansion = [this](const std::string& word) -> const Words* {
+    const auto found = contractions.find(word);
+    return found == contractions.end() ? nullptr : &found->second;
+  };
+  return rules;
+}
+
+std::string CompiledGrammar::reason(const std::string& code, const std::string& word) const {
+  const auto found = reasons.find(code);
+  if (found == reasons.end()) return code;
+  std::string text = found->second;
+  const std::size_t at = text.find("{word}");
+  if (at != std::string::npos) text.replace(at, 6, word);
+  return text;
+}
+
+}  // namespace language
+}  // namespace hyselam_topo

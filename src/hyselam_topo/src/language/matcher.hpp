@@ -1,0 +1,23 @@
+// The engine: finds the cheapest way to read a sentence as clauses, each of them a pattern of the
+// grammar.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiled_grammar.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// What a sentence says: its clauses, or one utterance that was not understood.
+std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
+                                    const Sentence& sentence,
+                                    const std::set<std::string>& expected);
+
+/// See Grammar::isPlainName().
+bool isPlainName(const CompiledGrammar& grammar, const std::string& name, const std::string& type);
+
+}  // namespace language
+}  // namespace hyselam_topo

@@ -1,0 +1,190 @@
+#include "name_finder.hpp"
+
+#include <algorithm>
+
+#include "letters.hpp"
+#include "matching_costs.hpp"
+#include "text.hpp"
+
+namespace hyselam_topo {
+namespace language {
+namespace {
+
+constexpr char kMarksInNames[] = "-/#+_";
+constexpr std::size_t kLongestNoun = 3;  // words
+
+bool isMarkOfNames(const Token& token) {
+  return token.kind == TokenKind::kMark && token.text.size() == 1 &&
+         std::string(kMarksInNames).find(token.text) != std::string::npos;
+}
+
+bool isWordLike(const Token& token) {
+  return token.kind == TokenKind::kWord || token.kind == TokenKind::kNumber;
+}
+
+std::string singleSpaced(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
+    if (!space) {
+      out += c;
+    } else if (!out.empty() && out.back() != ' ') {
+      out += ' ';
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+NameFinder::NameFinder(const CompiledGrammar& grammar, const std::string& text,
+                       const std::vector<Token>& tokens)
+    : grammar_(grammar),
+      text_(text),
+      tokens_(tokens),
+      cache_(tokens.size() * grammar.name_types.size()) {}
+
+const std::vector<FoundName>& NameFinder::namesAt(std::size_t at, std::size_t type) {
+  Cached& cached = cache_[at * grammar_.name_types.size() + type];
+  if (!cached.known) {
+    cached.known = true;
+    cached.names = find(at, grammar_.name_types[type]);
+  }
+  return cached.names;
+}
+
+bool NameFinder::mayBeArticle(std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  if (token.kind != TokenKind::kWord || !type.isArticle(token.folded)) return false;
+  // "room A", but "A kitchen is on your left".
+  return !(token.starts_upper && token.text.size() == 1 && at > 0);
+}
+
+std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
+  std::vector<FoundName> found;
+  std::size_t begin = at;
+  bool indefinite = false;
+  if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
+    const Token& next = tokens_[at + 1];
+    const bool goes_on =
+        next.kind == TokenKind::kQuoted || (isWordLike(next) && type.stop.count(next.folded) == 0);
+    if (goes_on) {
+      indefinite = type.indefinite.count(tokens_[at].folded) != 0 &&
+                   type.definite.count(tokens_[at].folded) == 0;
+      ++begin;
+    }
+  }
+  std::size_t words = 0;
+  for (std::size_t k = begin; k < tokens_.size() && words < type.max_words; ++k) {
+    const Token& token = tokens_[k];
+    bool is_last = false, may_end = true;
+    if (token.kind == TokenKind::kQuoted) {
+      is_last = true;
+    } else if (isMarkOfNames(token) && k > begin) {
+      may_end = false;
+    } else if (!isWordLike(token)) {
+      break;
+    } else if (type.stop.count(token.folded) != 0) {
+      break;
+    } else if (k > begin && mayBeArticle(k, type)) {
+      const std::string& before = tokens_[k - 1].folded;
+      if (type.joiners.count(before) != 0) {
+        may_end = false;
+      } else if (token.folded.size() == 1 && type.titles.count(before) != 0) {
+        is_last = true;  // "room a"
+      } else {
+        break;
+      }
+    } else if (k == begin && mayBeArticle(k, type) && token.folded.size() > 1) {
+      break;
+    }
+    ++words;
+    if (may_end) {
+      const std::string wrong = whatIsWrong(begin, k + 1, indefinite, type);
+      if (wrong.empty()) {
+        found.push_back(
+            {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1)});
+      } else {
+        failures_.push_back({begin, wrong});
+      }
+    }
+    if (is_last) break;
+  }
+  return found;
+}
+
+bool NameFinder::hasNoun(std::size_t begin, std::size_t end, const NameType& type) const {
+  for (std::size_t i = begin; i < end; ++i) {
+    std::string phrase;
+    for (std::size_t k = i; k < std::min(end, i + kLongestNoun); ++k) {
+      phrase += (k > i ? " " : "") + tokens_[k].folded;
+      if (type.nouns.count(phrase) != 0) return true;
+    }
+  }
+  return false;
+}
+
+bool NameFinder::mayBeMisspelt(std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  const bool plain = token.only_lower_letters || (at == 0 && token.kind == TokenKind::kWord);
+  if (!plain || token.folded.size() < 2 || grammar_.known_words.count(token.folded) != 0) {
+    return false;
+  }
+  return std::any_of(type.stop.begin(), type.stop.end(), [&](const std::string& stop) {
+    return stop.size() >= 2 && isOneSlipApart(stop, token.folded);
+  });
+}
+
+std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
+                                    const NameType& type) {
+  const Token& first = tokens_[begin];
+  const Token& last = tokens_[end - 1];
+  const bool has_noun = hasNoun(begin, end, type);
+  const bool quoted = last.kind == TokenKind::kQuoted;
+  if (end - begin > 1) {
+    // A quotation may follow "room", nothing else.
+    for (std::size_t k = begin; quoted && k + 1 < end; ++k) {
+      const std::string& word = tokens_[k].folded;
+      const bool noun = type.nouns.count(word) != 0 || type.titles.count(word) != 0;
+      if (!noun && type.generic.count(word) == 0) return "no_name";
+    }
+  }
+  const std::string& name = nameOf(begin, end).text;
+  if (!whatIsWrongWithWord(name).empty() || name.size() > kMaxNameBytes) return "no_name";
+  if (quoted) return "";
+  const bool number_word =
+      first.kind == TokenKind::kWord && grammar_.number_words.count(first.folded) != 0;
+  const bool small_number =
+      end - begin == 1 && first.kind == TokenKind::kNumber && first.text.size() < 3;
+  if (number_word || small_number || type.quantities.count(first.folded) != 0) return "quantity";
+  bool only_generic = true;
+  for (std::size_t k = begin; k < end; ++k) {
+    const auto forbidden = type.forbidden.find(tokens_[k].folded);
+    if (forbidden != type.forbidden.end() && !has_noun) return forbidden->second;
+    only_generic = only_generic && type.generic.count(tokens_[k].folded) != 0;
+  }
+  if (only_generic) return "no_name";
+  if (mayBeMisspelt(begin, type) || mayBeMisspelt(end - 1, type)) return "misspelt";
+  if (!has_noun && (type.needs_noun || (indefinite && type.indefinite_needs_noun))) {
+    return "not_a_known_kind";
+  }
+  return "";
+}
+
+SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
+  SaidName name;
+  name.range = {tokens_[begin].range.begin, tokens_[end - 1].range.end};
+  const Token& last = tokens_[end - 1];
+  if (last.kind == TokenKind::kQuoted) {
+    name.quoted = true;
+    const std::string before = text_.substr(name.range.begin, last.range.begin - name.range.begin);
+    name.text = singleSpaced(before + " " + last.text);
+    if (name.text.compare(0, 1, " ") == 0) name.text.erase(0, 1);
+  } else {
+    name.text = singleSpaced(text_.substr(name.range.begin, name.range.end - name.range.begin));
+  }
+  return name;
+}
+
+}  // namespace language
+}  // namespace hyselam_topo

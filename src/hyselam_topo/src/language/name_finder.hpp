@@ -1,0 +1,58 @@
+// Which words of a sentence may be a name: a run of words that mean nothing else, without article,
+// or a quotation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiled_grammar.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// A name that begins at some token.
+struct FoundName {
+  std::size_t end = 0;  ///< the token behind it
+  int cost = 0;
+  SaidName name;
+};
+
+/// Why words are no name.
+struct NameFailure {
+  std::size_t at = 0;  ///< token
+  std::string code;
+};
+
+class NameFinder {
+ public:
+  NameFinder(const CompiledGrammar& grammar, const std::string& text,
+             const std::vector<Token>& tokens);
+
+  /// All names of a type that begin at token `at`, the shortest first.
+  const std::vector<FoundName>& namesAt(std::size_t at, std::size_t type);
+  /// The reasons met so far.
+  const std::vector<NameFailure>& failures() const { return failures_; }
+
+ private:
+  struct Cached {
+    bool known = false;
+    std::vector<FoundName> names;
+  };
+  std::vector<FoundName> find(std::size_t at, const NameType& type);
+  bool mayBeArticle(std::size_t at, const NameType& type) const;
+  /// "" if tokens [begin, end) are a name.
+  std::string whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
+                          const NameType& type);
+  bool hasNoun(std::size_t begin, std::size_t end, const NameType& type) const;
+  bool mayBeMisspelt(std::size_t at, const NameType& type) const;
+  SaidName nameOf(std::size_t begin, std::size_t end) const;
+
+  const CompiledGrammar& grammar_;
+  const std::string& text_;
+  const std::vector<Token>& tokens_;
+  std::vector<Cached> cache_;
+  std::vector<NameFailure> failures_;
+};
+
+}  // namespace language
+}  // namespace hyselam_topo

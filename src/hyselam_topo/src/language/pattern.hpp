@@ -1,0 +1,38 @@
+// Sentence patterns: "[there] (is|are) {places:place+} <side>" into automata.
+//
+//   word               that word
+//   ( a | b )  [ a ]   one of them; perhaps
+//   <name>             a macro or a word class
+//   {slot:type}        a name, "count", "number", a quantity, or a word class, captured
+//   {slot:type+}       a list of names
+//   {slot=value}       the slot gets a value, nothing is said
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "compiled_grammar.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// What patterns may refer to.
+struct PatternContext {
+  /// Alternatives of each macro.
+  std::map<std::string, std::vector<std::string>> macros;
+  /// Entries of each word class with their alternatives.
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> classes;
+  /// What stands between the names of a list.
+  std::vector<std::string> list_separators;
+  /// Patterns for references of a name type: type -> word ("here") -> alternatives.
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> references;
+};
+
+/// Throws std::invalid_argument with the reason. Adds words and values to the grammar.
+Automaton compilePattern(const std::string& pattern, const PatternContext& context,
+                         CompiledGrammar* grammar);
+
+}  // namespace language
+}  // namespace hyselam_topo

@@ -1,0 +1,93 @@
+#include "hyselam_topo/topo_parser.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "compiled_grammar.hpp"
+#include "hyselam_common/errors.hpp"
+#include "matcher.hpp"
+#include "text.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using language::CompiledGrammar;
+
+std::vector<Grammar> allShipped() {
+  std::vector<Grammar> grammars;
+  for (const std::string& each : Grammar::shippedLanguages()) {
+    grammars.push_back(Grammar::shipped(each));
+  }
+  return grammars;
+}
+
+ParsedText parseWith(const Grammar& grammar, const std::string& text,
+                     const std::set<std::string>& expected) {
+  const CompiledGrammar& compiled = grammar.compiled();
+  ParsedText parsed;
+  parsed.language = grammar.language();
+  bool corrects = false;
+  for (const language::Sentence& sentence : language::splitSentences(text, compiled.tokenRules())) {
+    for (Utterance& utterance : language::readSentence(compiled, text, sentence, expected)) {
+      if (corrects && utterance.kind == UtteranceKind::kStatement) utterance.correction = true;
+      const auto intent =
+          std::find_if(compiled.intents.begin(), compiled.intents.end(),
+                       [&](const auto& each) { return each.name == utterance.intent; });
+      corrects = intent != compiled.intents.end() && intent->corrects_next;
+      parsed.utterances.push_back(std::move(utterance));
+    }
+  }
+  return parsed;
+}
+
+ParsedText refused(const Grammar& grammar, const std::string& text, const std::string& code) {
+  ParsedText parsed;
+  parsed.language = grammar.language();
+  Utterance utterance;
+  utterance.range = utterance.culprit = {0, text.size()};
+  utterance.reason_code = code;
+  utterance.reason = grammar.compiled().reason(code);
+  parsed.utterances.push_back(std::move(utterance));
+  return parsed;
+}
+
+}  // namespace
+
+std::size_t ParsedText::misunderstood() const {
+  return static_cast<std::size_t>(std::count_if(
+      utterances.begin(), utterances.end(), [](const Utterance& u) { return !u.understood(); }));
+}
+
+TopoParser::TopoParser() : TopoParser(allShipped()) {}
+
+TopoParser::TopoParser(std::vector<Grammar> grammars) : grammars_(std::move(grammars)) {
+  if (grammars_.empty()) throw hyselam::ParameterError("grammars", 0, "at least one");
+}
+
+const Grammar& TopoParser::grammar(const std::string& language) const {
+  std::string known;
+  for (const Grammar& each : grammars_) {
+    if (each.language() == language) return each;
+    known += (known.empty() ? "" : ", ") + each.language();
+  }
+  throw hyselam::ParameterError("language", language, "auto, " + known);
+}
+
+ParsedText TopoParser::parse(const std::string& text, const ParseOptions& options) const {
+  const bool any = options.language == "auto";
+  const Grammar& first = any ? grammars_.front() : grammar(options.language);
+  if (text.size() > options.max_bytes) return refused(first, text, "too_long");
+  if (text.find('\0') != std::string::npos || !isUtf8(text)) {
+    return refused(first, text, "not_text");
+  }
+  if (!any) return parseWith(first, text, options.expected);
+  std::optional<ParsedText> best;
+  for (const Grammar& each : grammars_) {
+    ParsedText parsed = parseWith(each, text, options.expected);
+    if (!best || parsed.misunderstood() < best->misunderstood()) best = std::move(parsed);
+    if (best->misunderstood() == 0) break;
+  }
+  return *best;
+}
+
+}  // namespace hyselam_topo

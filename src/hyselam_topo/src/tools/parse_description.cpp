@@ -1,0 +1,191 @@
+// parse_description (TEXT | -) --out HUMAN.xml: what people tell about a building, as a graph.
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_topo/description_builder.hpp"
+#include "hyselam_topo/description_xml.hpp"
+#include "hyselam_topo/topo_parser.hpp"
+
+namespace {
+
+using hyselam_topo::DescribedBuilding;
+using hyselam_topo::DescriptionIssue;
+using hyselam_topo::Slot;
+using hyselam_topo::TextRange;
+using hyselam_topo::Utterance;
+using nlohmann::json;
+
+constexpr std::size_t kMaxBytes = 1u << 20;
+
+struct Input {
+  std::string name;  ///< for errors
+  std::string text;
+};
+
+Input inputOf(const std::string& argument) {
+  if (argument == "-") {
+    std::string text(std::istreambuf_iterator<char>(std::cin), {});
+    return {"stdin", std::move(text)};
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(argument, ignored)) {
+    return {argument, hyselam::readTextFile(argument, kMaxBytes)};
+  }
+  return {"text", argument};
+}
+
+json rangeOf(TextRange range) {
+  return {range.begin, range.end};
+}
+
+template <typename T>
+json maybe(const std::optional<T>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+json placesOf(const DescribedBuilding& building) {
+  json all = json::array();
+  for (const auto& place : building.places) {
+    all.push_back({{"id", place.id},
+                   {"name", place.name},
+                   {"aliases", place.aliases},
+                   {"kind", place.kind ? json(toString(*place.kind)) : json(nullptr)},
+                   {"length", maybe(place.length)},
+                   {"width", maybe(place.width)},
+                   {"area", maybe(place.area)},
+                   {"parts", maybe(place.parts)}});
+  }
+  return all;
+}
+
+json slotOf(const Slot& slot) {
+  json value = {{"type", slot.type}, {"range", rangeOf(slot.range)}};
+  if (!slot.names.empty()) {
+    value["names"] = json::array();
+    for (const auto& name : slot.names) {
+      if (name.reference.empty()) {
+        value["names"].push_back(name.text);
+      } else {
+        value["names"].push_back({{"reference", name.reference}});
+      }
+    }
+  }
+  if (slot.number) value["number"] = *slot.number;
+  if (slot.unit_assumed) value["unit_assumed"] = true;
+  if (!slot.word.empty()) value["word"] = slot.word;
+  return value;
+}
+
+json understood(const Utterance& utterance) {
+  json slots = json::object();
+  for (const Slot& slot : utterance.slots) slots[slot.name] = slotOf(slot);
+  json spelling = json::array();
+  for (const auto& each : utterance.spelling) {
+    spelling.push_back({{"said", each.said}, {"taken_as", each.taken_as}});
+  }
+  return {{"text", utterance.text},
+          {"range", rangeOf(utterance.range)},
+          {"kind", toString(utterance.kind)},
+          {"intent", utterance.intent},
+          {"correction", utterance.correction},
+          {"slots", slots},
+          {"spelling", spelling}};
+}
+
+json notUnderstood(const Utterance& utterance) {
+  return {{"text", utterance.text},
+          {"range", rangeOf(utterance.range)},
+          {"reason", utterance.reason},
+          {"code", utterance.reason_code},
+          {"culprit", rangeOf(utterance.culprit)}};
+}
+
+json issueOf(const DescriptionIssue& issue) {
+  return {{"text", issue.text},
+          {"range", rangeOf(issue.range)},
+          {"kind", toString(issue.kind)},
+          {"reason", issue.reason}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Turns what a person tells about a building into a graph of places: names, sizes, sides, "
+      "and where the robot is. Sentences that are not understood are listed with the reason; the "
+      "status is 0 all the same.",
+      "parse_description");
+  std::string argument, out, language = "auto";
+  std::vector<std::string> grammars;
+  app.add_option("TEXT", argument,
+                 "what was said; the file of that name, if there is one; - for the standard input")
+      ->required();
+  app.add_option("--out", out, "XML of the described building")->required();
+  app.add_option("--language", language, "en, pt, or auto: the one that understands most")
+      ->capture_default_str();
+  app.add_option("--grammar", grammars,
+                 "grammar files (YAML) of one language instead of the shipped ones; later ones add "
+                 "to the first");
+
+  return hyselam::runTool(argc, argv, app, [&] {
+    using Clock = std::chrono::steady_clock;
+    const Input input = inputOf(argument);
+    const hyselam_topo::TopoParser parser =
+        grammars.empty() ? hyselam_topo::TopoParser()
+                         : hyselam_topo::TopoParser({hyselam_topo::Grammar::load(grammars)});
+    hyselam_topo::ParseOptions options;
+    options.language = language;
+    options.max_bytes = kMaxBytes;
+    const auto begin = Clock::now();
+    const hyselam_topo::ParsedText parsed = parser.parse(input.text, options);
+    hyselam_topo::DescriptionBuilder builder(parser);
+    const std::vector<DescriptionIssue> issues = builder.add(parsed);
+    const double microseconds =
+        std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+    for (const Utterance& utterance : parsed.utterances) {
+      const bool no_text =
+          utterance.reason_code == "not_text" || utterance.reason_code == "too_long";
+      if (no_text) throw hyselam::InputError(input.name, "", utterance.reason);
+    }
+    const DescribedBuilding& building = builder.building();
+    hyselam_topo::saveXml(out, building);
+
+    json result;
+    result["language"] = parsed.language;
+    result["places"] = placesOf(building);
+    result["connections"] = json::array();
+    for (const auto& each : building.connections) {
+      result["connections"].push_back({{"from", each.from},
+                                       {"to", each.to},
+                                       {"side", toString(each.side)},
+                                       {"order", each.order}});
+    }
+    result["relations"] = json::array();
+    for (const auto& each : building.relations) {
+      json relation = {{"kind", toString(each.kind)}, {"a", each.a}, {"b", each.b}};
+      if (each.c != 0) relation["c"] = each.c;
+      result["relations"].push_back(relation);
+    }
+    result["robot_place"] = maybe(building.robot_place);
+    result["place_count"] = maybe(building.place_count);
+    result["understood"] = json::array();
+    result["not_understood"] = json::array();
+    for (const Utterance& utterance : parsed.utterances) {
+      if (utterance.understood()) {
+        result["understood"].push_back(understood(utterance));
+      } else {
+        result["not_understood"].push_back(notUnderstood(utterance));
+      }
+    }
+    result["issues"] = json::array();
+    for (const DescriptionIssue& issue : issues) result["issues"].push_back(issueOf(issue));
+    result["microseconds"] = microseconds;
+    std::cout << result.dump(2) << '\n';
+    return result;
+  });
+}
