@@ -145,6 +145,24 @@ TEST(Markers, DoorSwingStaysOnItsPosts) {
   }
 }
 
+TEST(Conversions, FramesAsTf2WantsThem) {
+  EXPECT_EQ(frameOf("/map"), "map");
+  EXPECT_EQ(frameOf("floor/1"), "floor/1");
+  EXPECT_EQ(frameOf(""), "map");
+  EXPECT_EQ(frameOf("/"), "map");
+}
+
+TEST(Conversions, LargeOctomapIsRefusedUnread) {
+  octomap_msgs::Octomap msg;
+  msg.id = "no tree at all";
+  msg.data.resize(11);
+  OctoMapLimits limits;
+  limits.max_bytes = 10;
+  const std::string message =
+      messageOf<hyselam::InputError>([&] { fromMsg(msg, "octomap", limits); });
+  EXPECT_NE(message.find("11 bytes"), std::string::npos) << message;
+}
+
 Gr2ToServerParams load(const std::map<std::string, XmlRpc::XmlRpcValue>& values) {
   hyselam::ParamLoader loader(std::make_shared<hyselam::MapParamSource>(values));
   const Gr2ToServerParams params = loadGr2ToParams(loader);

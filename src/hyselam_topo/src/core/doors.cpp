@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topo/borders.hpp"
 
 namespace hyselam_topo {
@@ -17,10 +17,6 @@ using hyselam::OccupancyGrid;
 using hyselam::Point2;
 
 namespace {
-
-void require(bool fine, const char* name, double value, const char* allowed) {
-  if (!fine) throw hyselam::ParameterError(name, value, allowed);
-}
 
 double length(cv::Point2d p) {
   return std::hypot(p.x, p.y);
@@ -289,12 +285,14 @@ void dropChinks(double min_width, std::vector<DoorLine>* doors) {
 
 std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labels,
                                   const DoorParams& params) {
-  require(params.min_width > 0.0, "door_min_width", params.min_width, "> 0 m");
-  require(params.max_width > params.min_width, "door_max_width", params.max_width,
-          "> door_min_width");
-  require(params.search >= 0.0 && params.search <= 10.0, "door_search", params.search, "0 .. 10 m");
-  require(params.jambs > 0.0, "door_jambs", params.jambs, "> 0 m");
-  require(params.depth > 0.0 && params.depth <= 10.0, "door_depth", params.depth, "0 .. 10 m");
+  hyselam::require("door_min_width", params.min_width, params.min_width > 0.0, "> 0 m");
+  hyselam::require("door_max_width", params.max_width, params.max_width > params.min_width,
+                   "> door_min_width");
+  hyselam::require("door_search", params.search, params.search >= 0.0 && params.search <= 10.0,
+                   "0 .. 10 m");
+  hyselam::require("door_jambs", params.jambs, params.jambs > 0.0, "> 0 m");
+  hyselam::require("door_depth", params.depth, params.depth > 0.0 && params.depth <= 10.0,
+                   "0 .. 10 m");
   if (labels.cols != grid.geometry.width || labels.rows != grid.geometry.height) {
     throw std::invalid_argument("the labels do not have the size of the grid");
   }

@@ -7,6 +7,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/require.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -151,22 +152,21 @@ OccupancyGrid withoutLonelyCells(const OccupancyGrid& grid) {
   return result;
 }
 
-void require(const char* name, double value, bool good, const char* allowed) {
-  if (!good) throw hyselam::ParameterError(name, value, allowed);
-}
-
 void check(const CompressionParams& p) {
-  if (p.z_min) require("z_min", *p.z_min, std::isfinite(*p.z_min), "a finite number");
-  if (p.z_max) require("z_max", *p.z_max, std::isfinite(*p.z_max), "a finite number");
-  if (p.z_min && p.z_max) require("z_max", *p.z_max, *p.z_max > *p.z_min, "greater than z_min");
-  require("floor_margin", p.floor_margin, p.floor_margin >= 0.0, ">= 0");
-  require("ceiling_margin", p.ceiling_margin, p.ceiling_margin >= 0.0, ">= 0");
-  require("max_height", p.max_height, p.max_height > 0.0, "> 0");
-  require("max_free_height", p.max_free_height, p.max_free_height >= 0.0, ">= 0");
-  require("min_occupied_height", p.min_occupied_height, p.min_occupied_height >= 0.0, ">= 0");
-  require("free_below", p.free_below, p.free_below >= 0.0 && p.free_below < 1.0, "in [0, 1)");
-  require("occupied_from", p.occupied_from,
-          p.occupied_from > p.free_below && p.occupied_from <= 1.0, "in (free_below, 1]");
+  if (p.z_min) hyselam::require("z_min", *p.z_min, std::isfinite(*p.z_min), "a finite number");
+  if (p.z_max) hyselam::require("z_max", *p.z_max, std::isfinite(*p.z_max), "a finite number");
+  if (p.z_min && p.z_max)
+    hyselam::require("z_max", *p.z_max, *p.z_max > *p.z_min, "greater than z_min");
+  hyselam::require("floor_margin", p.floor_margin, p.floor_margin >= 0.0, ">= 0");
+  hyselam::require("ceiling_margin", p.ceiling_margin, p.ceiling_margin >= 0.0, ">= 0");
+  hyselam::require("max_height", p.max_height, p.max_height > 0.0, "> 0");
+  hyselam::require("max_free_height", p.max_free_height, p.max_free_height >= 0.0, ">= 0");
+  hyselam::require("min_occupied_height", p.min_occupied_height, p.min_occupied_height >= 0.0,
+                   ">= 0");
+  hyselam::require("free_below", p.free_below, p.free_below >= 0.0 && p.free_below < 1.0,
+                   "in [0, 1)");
+  hyselam::require("occupied_from", p.occupied_from,
+                   p.occupied_from > p.free_below && p.occupied_from <= 1.0, "in (free_below, 1]");
 }
 
 std::string list(const std::vector<Storey>& storeys) {

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topo/door_candidates.hpp"
 #include "hyselam_topo/doors.hpp"
 
@@ -20,16 +21,13 @@ namespace {
 
 constexpr std::size_t kMaxPlaces = 65535;  // 16 bit labels
 
-void require(bool fine, const char* name, double value, const char* allowed) {
-  if (!fine) throw hyselam::ParameterError(name, value, allowed);
-}
-
 void check(const ThesisParams& p) {
-  require(p.door_min > 0.0, "door_min", p.door_min, "> 0 m");
-  require(p.door_max > p.door_min, "door_max", p.door_max, "> door_min");
-  require(p.critical_radius > 0.0, "critical_radius", p.critical_radius, "> 0 m");
-  require(p.wall_share >= 0.0 && p.wall_share <= 1.0, "wall_share", p.wall_share, "0 .. 1");
-  require(p.occupied_min > p.free_max, "occupied_min", p.occupied_min, "> free_max");
+  hyselam::require("door_min", p.door_min, p.door_min > 0.0, "> 0 m");
+  hyselam::require("door_max", p.door_max, p.door_max > p.door_min, "> door_min");
+  hyselam::require("critical_radius", p.critical_radius, p.critical_radius > 0.0, "> 0 m");
+  hyselam::require("wall_share", p.wall_share, p.wall_share >= 0.0 && p.wall_share <= 1.0,
+                   "0 .. 1");
+  hyselam::require("occupied_min", p.occupied_min, p.occupied_min > p.free_max, "> free_max");
 }
 
 void check(const OccupancyGrid& grid) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "contour_walls.hpp"
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 #include "wall_fit.hpp"
 
@@ -36,10 +36,6 @@ struct Piece {
 
 double cross(Point2d a, Point2d b) {
   return a.x * b.y - a.y * b.x;
-}
-
-void require(bool fine, const char* name, double value, const char* allowed) {
-  if (!fine) throw hyselam::ParameterError(name, value, allowed);
 }
 
 class WallMaker {
@@ -260,12 +256,13 @@ bool isIsland(const Contour& contour, double resolution, const WallParams& param
 
 std::vector<PlaceWalls> wallsAlong(const std::vector<Contour>& contours, const OccupancyGrid& grid,
                                    const cv::Mat& labels, const WallParams& params) {
-  require(params.tolerance > 0.0, "wall_tolerance", params.tolerance, "> 0 m");
-  require(params.min_length >= 0.0, "wall_min_length", params.min_length, ">= 0 m");
-  require(params.min_island >= 0.0, "wall_min_island", params.min_island, ">= 0 m");
-  require(params.close_gaps >= 0.0, "wall_close_gaps", params.close_gaps, ">= 0 m");
-  require(params.max_radius > 0.0, "wall_max_radius", params.max_radius, "> 0 m");
-  require(params.occupied_min > params.free_max, "occupied_min", params.occupied_min, "> free_max");
+  hyselam::require("wall_tolerance", params.tolerance, params.tolerance > 0.0, "> 0 m");
+  hyselam::require("wall_min_length", params.min_length, params.min_length >= 0.0, ">= 0 m");
+  hyselam::require("wall_min_island", params.min_island, params.min_island >= 0.0, ">= 0 m");
+  hyselam::require("wall_close_gaps", params.close_gaps, params.close_gaps >= 0.0, ">= 0 m");
+  hyselam::require("wall_max_radius", params.max_radius, params.max_radius > 0.0, "> 0 m");
+  hyselam::require("occupied_min", params.occupied_min, params.occupied_min > params.free_max,
+                   "> free_max");
   const WallMaker maker(grid, labels, params);
   std::vector<PlaceWalls> out;
   for (const Contour& contour : contours) {

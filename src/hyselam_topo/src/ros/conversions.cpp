@@ -330,8 +330,18 @@ AugmentedTopologicalMap fromMsg(const hyselam_msgs::AugmentedTopologicalMap& msg
   return map;
 }
 
+std::string frameOf(const std::string& frame_id) {
+  const std::string frame = !frame_id.empty() && frame_id[0] == '/' ? frame_id.substr(1) : frame_id;
+  return frame.empty() ? "map" : frame;
+}
+
 VoxelMap fromMsg(const octomap_msgs::Octomap& msg, const std::string& source,
                  const OctoMapLimits& limits) {
+  if (msg.data.size() > limits.max_bytes) {  // before it is copied
+    throw hyselam::InputError(source, "data",
+                              "has " + std::to_string(msg.data.size()) + " bytes, more than " +
+                                  std::to_string(limits.max_bytes));
+  }
   const std::string data(msg.data.begin(), msg.data.end());
   return octoMapFromData(data, msg.binary != 0, msg.id, msg.resolution, source, limits);
 }

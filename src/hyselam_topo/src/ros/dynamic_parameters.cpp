@@ -28,17 +28,25 @@ class DynamicParameters {
       : server_(server), dynamic_(mutex_, private_nh) {
     // setCallback() calls at once with what the parameter server says: nothing new.
     dynamic_.setCallback([this](Gr2ToConfig& config, std::uint32_t) {
-      if (ready_) apply(config);
+      if (ready_) apply(config);  // what it changes in it is told back
     });
     dynamic_.updateConfig(configOf(server->params()));
     ready_ = true;
   }
 
  private:
-  void apply(const Gr2ToConfig& config) {
+  void apply(Gr2ToConfig& config) {
     Gr2ToServerParams params = server_->params();
-    params.gr2to.mode =
-        config.mode == "thesis" ? Gr2ToParams::Mode::kThesis : Gr2ToParams::Mode::kDefault;
+    // A text may be anything; numbers are clamped to their range before they come here.
+    if (config.mode == "thesis") {
+      params.gr2to.mode = Gr2ToParams::Mode::kThesis;
+    } else if (config.mode == "default") {
+      params.gr2to.mode = Gr2ToParams::Mode::kDefault;
+    } else {
+      const std::string now = configOf(params).mode;
+      ROS_WARN_STREAM("mode '" << config.mode << "' is none of default, thesis: it stays " << now);
+      config.mode = now;
+    }
     params.gr2to.segmentation.free_max = config.free_max;
     params.gr2to.segmentation.working_resolution = config.working_resolution;
     params.gr2to.segmentation.clutter = config.clutter;

@@ -27,15 +27,10 @@ std::string counts(const AugmentedTopologicalMap& map) {
   return std::to_string(map.places.size()) + " places, " + std::to_string(doorsOf(map)) + " doors";
 }
 
-/// Frames as tf2 wants them; a map without one is taken to be in "map".
-std::string frameOf(const std::string& frame_id) {
-  const std::string frame = !frame_id.empty() && frame_id[0] == '/' ? frame_id.substr(1) : frame_id;
-  return frame.empty() ? "map" : frame;
-}
-
 /// A map from a file; what no message can carry is refused before it takes another map's place.
 AugmentedTopologicalMap loadToPublish(const std::string& path) {
   AugmentedTopologicalMap map = loadXml(path);
+  map.frame_id = frameOf(map.frame_id);
   if (map.stamp != 0.0) hyselam::toRosTime(map.stamp, path);
   return map;
 }
@@ -127,7 +122,11 @@ void Gr2ToServer::setParams(const Gr2ToServerParams& params) {
     const std::lock_guard<std::mutex> lock(mutex_);
     marker_params_ = params.markers;
   }
-  startLast();
+  const BackgroundGr2To::MapPtr map = background_.current();
+  if (last_map_ || last_octomap_)
+    startLast();
+  else if (map)  // of a file: as it is, in other colours
+    publish(map);
 }
 
 void Gr2ToServer::onOutcome(const BackgroundGr2To::Outcome& outcome) {

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <sstream>
 
 #include "hyselam_common/atomic_file.hpp"
@@ -58,6 +59,7 @@ int main(int argc, char** argv) {
   Gr2ToParams params;
   OverviewOptions picture;
   CompressionParams octomap;
+  std::optional<std::size_t> max_cells;
   bool graphml = false;
   app.option_defaults()->always_capture_default();
   app.add_option("MAP", map_file, "map_server's MAP.yaml, or an OctoMap, MAP.bt or MAP.ot")
@@ -74,16 +76,19 @@ int main(int argc, char** argv) {
   app.add_option("--storey", octomap.storey, "of an OctoMap, 0 is the lowest");
   app.add_option("--z-min", octomap.z_min, "lowest height of an OctoMap that is used [m]");
   app.add_option("--z-max", octomap.z_max, "highest height of an OctoMap that is used [m]");
+  app.add_option("--max-cells", max_cells, "a larger map is refused");
   app.add_flag("--graphml", graphml, "write topo.graphml too");
 
   return hyselam::runTool(argc, argv, app, [&] {
     params.mode = mode == "thesis" ? Gr2ToParams::Mode::kThesis : Gr2ToParams::Mode::kDefault;
     hyselam::Progress progress("gr2to", 4);
+    hyselam::MapIoOptions limits;
+    if (max_cells) octomap.max_cells = limits.max_cells = *max_cells;
     hyselam::OccupancyGrid grid;
     if (isOctoMap(map_file))
       grid = compress(loadOctoMap(map_file), octomap, map_file).grid;
     else
-      grid = hyselam::loadMap(map_file);
+      grid = hyselam::loadMap(map_file, limits);
     progress.update(1);
     const Gr2ToResult result = gr2to(grid, params);
     progress.update(2);

@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
                  "a column with more free space is free [m]");
   app.add_option("--min-occupied-height", params.min_occupied_height,
                  "else it is occupied with more than this [m]");
+  app.add_option("--max-cells", params.max_cells, "a larger grid map is refused");
   app.add_option("--picture", picture, "PNG: what a planar sensor sees above the pressed map");
 
   return hyselam::runTool(argc, argv, app, [&] {

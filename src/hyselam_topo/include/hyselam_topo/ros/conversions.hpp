@@ -20,6 +20,9 @@ hyselam_msgs::AugmentedTopologicalMap toMsg(const AugmentedTopologicalMap& map);
 AugmentedTopologicalMap fromMsg(const hyselam_msgs::AugmentedTopologicalMap& msg,
                                 const std::string& source);
 
+/// A frame as tf2 wants it, without a slash in front; a map without one is taken to be in "map".
+std::string frameOf(const std::string& frame_id);
+
 /// Throws as octoMapFromData().
 VoxelMap fromMsg(const octomap_msgs::Octomap& msg, const std::string& source,
                  const OctoMapLimits& limits = {});
