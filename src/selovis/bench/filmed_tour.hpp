@@ -42,6 +42,48 @@ inline hyselam_sim::FilmParams filmParams(double hour, double rate) {
   return params;
 }
 
+/// There and back through all places of a made-up plan, with somebody in every third.
+inline hyselam_sim::Route roundTrip(const hyselam_sim::FloorPlan& plan) {
+  hyselam_sim::Route route;
+  route.name = "round trip";
+  route.source = plan.name;
+  route.start.place = plan.places.front().name;
+  const auto go = [&](const hyselam_sim::Place& place) {
+    hyselam_sim::RouteStep step;
+    step.spot.place = place.name;
+    step.where = place.name;
+    route.steps.push_back(step);
+  };
+  for (std::size_t i = 1; i < plan.places.size(); ++i) go(plan.places[i]);
+  for (std::size_t i = plan.places.size(); i-- > 0;) go(plan.places[i]);
+  for (std::size_t i = 0; i < plan.places.size(); i += 3) {
+    const hyselam_sim::Place& place = plan.places[i];
+    if (place.outline.size() < 3) continue;
+    hyselam_sim::Person person;
+    person.name = "somebody in " + place.name;
+    const auto towards = [&](hyselam_sim::Point2 corner) {
+      return hyselam_sim::Point2{place.at.x + 0.5 * (corner.x - place.at.x),
+                                 place.at.y + 0.5 * (corner.y - place.at.y)};
+    };
+    person.points = {towards(place.outline[0]), towards(place.outline[2])};
+    person.speed = 0.8;
+    route.people.push_back(person);
+  }
+  return route;
+}
+
+/// The tour the other way about, for learning: pictures from other poses than those asked for.
+inline hyselam_sim::Route reversed(const hyselam_sim::Route& route) {
+  hyselam_sim::Route back = route;
+  back.steps.clear();
+  for (auto step = route.steps.rbegin(); step != route.steps.rend(); ++step) {
+    if (step->kind == hyselam_sim::RouteStep::Kind::kGo) back.steps.push_back(*step);
+  }
+  back.start = back.steps.front().spot;
+  back.steps.erase(back.steps.begin());
+  return back;
+}
+
 /// Drives and films the route; its people are there if `with_people`.
 inline FilmedTour filmTour(const hyselam_sim::Scene& scene, hyselam_sim::Route route,
                            std::uint64_t seed, const hyselam_sim::FilmParams& params,

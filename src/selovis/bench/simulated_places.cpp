@@ -25,48 +25,6 @@ struct Options {
   double rate = 2.0;
 };
 
-/// There and back through all places of a made-up plan, with somebody in every third.
-Route roundTrip(const FloorPlan& plan) {
-  Route route;
-  route.name = "round trip";
-  route.source = plan.name;
-  route.start.place = plan.places.front().name;
-  const auto go = [&](const Place& place) {
-    RouteStep step;
-    step.spot.place = place.name;
-    step.where = place.name;
-    route.steps.push_back(step);
-  };
-  for (std::size_t i = 1; i < plan.places.size(); ++i) go(plan.places[i]);
-  for (std::size_t i = plan.places.size(); i-- > 0;) go(plan.places[i]);
-  for (std::size_t i = 0; i < plan.places.size(); i += 3) {
-    const Place& place = plan.places[i];
-    if (place.outline.size() < 3) continue;
-    Person person;
-    person.name = "somebody in " + place.name;
-    const auto towards = [&](Point2 corner) {
-      return Point2{place.at.x + 0.5 * (corner.x - place.at.x),
-                    place.at.y + 0.5 * (corner.y - place.at.y)};
-    };
-    person.points = {towards(place.outline[0]), towards(place.outline[2])};
-    person.speed = 0.8;
-    route.people.push_back(person);
-  }
-  return route;
-}
-
-/// The tour the other way about, for learning: pictures from other poses than those asked for.
-Route reversed(const Route& route) {
-  Route back = route;
-  back.steps.clear();
-  for (auto step = route.steps.rbegin(); step != route.steps.rend(); ++step) {
-    if (step->kind == RouteStep::Kind::kGo) back.steps.push_back(*step);
-  }
-  back.start = back.steps.front().spot;
-  back.steps.erase(back.steps.begin());
-  return back;
-}
-
 const char* const kFilters[] = {"none", "lowpass", "markov", "bayes"};
 
 nlohmann::json run(const Options& o) {
@@ -76,7 +34,7 @@ nlohmann::json run(const Options& o) {
     PlanParams params;
     params.furniture = true;
     plan = generatePlan(o.generate, params);
-    route = roundTrip(plan);
+    route = bench::roundTrip(plan);
   } else {
     route = loadRoute(routeFile(o.route));
     plan = loadFloorPlan(planFile(route.plan));
@@ -93,7 +51,7 @@ nlohmann::json run(const Options& o) {
     std::uint64_t seed = 1;
     for (const double hour : o.learn) {
       progress.update(seed - 1);
-      const Route& way = seed == 1 ? route : reversed(route);
+      const Route& way = seed == 1 ? route : bench::reversed(route);
       learnt.push_back(bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
       ++seed;
     }
@@ -109,7 +67,7 @@ nlohmann::json run(const Options& o) {
       TrainingOptions t;
       t.descriptor = descriptor;
       t.classifier.kernel = kernelOf(kernel);
-      if (t.classifier.kernel == Kernel::kExemplar) t.views = {0.0, -0.09, 0.09, -0.18, 0.18};
+      if (t.classifier.kernel == Kernel::kExemplar) t.views = exemplarViews();
       const Model model = bench::trainOn(learnt, plan.places, t);
       nlohmann::json row = {{"plan", plan.name},
                             {"descriptor", descriptor},

@@ -62,6 +62,9 @@ void addTo(Model& model, const std::vector<std::size_t>& frames_of_tours,
            const std::function<TrainingFrame(std::size_t tour, std::size_t i)>& load,
            const TrainingOptions& options);
 
+/// The five sideways shifts that the exemplar kernel learns of each image by default.
+std::vector<double> exemplarViews();
+
 /// The image moved sideways by `shift` widths (positive: its content to the right), its edge drawn
 /// out.
 cv::Mat shifted(const cv::Mat& image, double shift);

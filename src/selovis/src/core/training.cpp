@@ -88,6 +88,10 @@ void checkViews(const std::vector<double>& views) {
 
 }  // namespace
 
+std::vector<double> exemplarViews() {
+  return {0.0, -0.09, 0.09, -0.18, 0.18};
+}
+
 cv::Mat shifted(const cv::Mat& image, double shift) {
   const int pixels = static_cast<int>(std::lround(shift * image.cols));
   if (pixels == 0 || std::abs(pixels) >= image.cols) return image;

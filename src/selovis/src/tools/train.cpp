@@ -47,10 +47,9 @@ nlohmann::json run(Options& o) {
   try {
     t.classifier.kernel = kernelOf(o.kernel);
     const bool exemplar = t.classifier.kernel == Kernel::kExemplar;
-    t.views = numbersOf(o.views != "auto" ? o.views
-                        : exemplar        ? "0,-0.09,0.09,-0.18,0.18"
-                                          : "0",
-                        "--views");
+    t.views = o.views != "auto" ? numbersOf(o.views, "--views")
+              : exemplar        ? exemplarViews()
+                                : std::vector<double>{0.0};
     const auto learn = [&](const std::string& libsvm_file) {
       t.libsvm_file = libsvm_file;
       if (o.add) {

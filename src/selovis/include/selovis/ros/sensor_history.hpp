@@ -1,0 +1,44 @@
+// The last messages of a sensor, to find the one of an image's time.
+#pragma once
+
+#include <ros/time.h>
+
+#include <cmath>
+#include <deque>
+
+namespace selovis {
+
+/// Messages with a header, in order of time. Not thread safe: for the callbacks of one queue.
+template <typename M>
+class SensorHistory {
+ public:
+  void add(const typename M::ConstPtr& msg) {
+    if (!messages_.empty() && msg->header.stamp < messages_.back()->header.stamp) {
+      messages_.clear();  // time went back: a bag begins again
+    }
+    messages_.push_back(msg);
+    while (messages_.size() > 400) messages_.pop_front();
+  }
+  /// Whether a later message can not lie nearer to that time.
+  bool reaches(const ros::Time& stamp) const {
+    return !messages_.empty() && messages_.back()->header.stamp >= stamp;
+  }
+  /// The nearest within `tolerance` [s]; null if there is none.
+  typename M::ConstPtr nearest(const ros::Time& stamp, double tolerance) const {
+    typename M::ConstPtr best;
+    double least = tolerance;
+    for (const auto& msg : messages_) {
+      const double apart = std::abs((msg->header.stamp - stamp).toSec());
+      if (apart <= least) {
+        least = apart;
+        best = msg;
+      }
+    }
+    return best;
+  }
+
+ private:
+  std::deque<typename M::ConstPtr> messages_;
+};
+
+}  // namespace selovis

@@ -1,0 +1,157 @@
+#include "selovis/ros/pose_supervision.hpp"
+
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <std_msgs/Bool.h>
+#include <std_srvs/Empty.h>
+
+#include <sstream>
+#include <utility>
+
+#include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/diagnostics.hpp"
+
+namespace selovis {
+
+PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
+                                 const SemanticLocalizationParams& params, std::string who)
+    : params_(params),
+      who_(std::move(who)),
+      kidnapped_publisher_(private_nh.advertise<std_msgs::Bool>("kidnapped", 10, true)),
+      initialpose_publisher_(
+          nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("initialpose", 1)),
+      global_localization_(nh.serviceClient<std_srvs::Empty>("global_localization")) {
+  status_subscriber_ = nh.subscribe<hyselam_msgs::LocalizationStatus>(
+      "localization_status", 10,
+      [this](const hyselam_msgs::LocalizationStatus::ConstPtr& status) { status_ = status; });
+  publishKidnapped();
+}
+
+void PoseSupervision::setGraph(const PlaceGraph& graph) {
+  graph_ = graph;
+  supervisor_ =
+      graph.places.empty() ? nullptr : std::make_unique<Supervisor>(graph, params_.supervisor);
+  last_ = Supervision();
+  to_act_ = false;
+  publishKidnapped();
+}
+
+bool PoseSupervision::poseIsMeant(const ros::Time& stamp) {
+  // Part 1 says itself whether its pose deserves trust. Others, amcl among them, do not: after the
+  // pose was set they get time to find it.
+  if (status_) {
+    if (!status_->converged) return false;
+    if (set_at_ && status_->header.stamp <= *set_at_) return false;
+  } else if (set_at_ && stamp >= *set_at_ && (stamp - *set_at_).toSec() < params_.settle) {
+    return false;
+  }
+  if (set_at_) {
+    // From now on the new pose is judged.
+    set_at_.reset();
+    if (supervisor_) supervisor_->reset();
+  }
+  return true;
+}
+
+void PoseSupervision::judge(const std::vector<double>& frame,
+                            const std::optional<hyselam::Pose2>& pose,
+                            const hyselam_topo::AugmentedTopologicalMap& map,
+                            const ros::Time& stamp) {
+  if (!supervisor_) return;
+  std::vector<int> here;
+  pose_places_.clear();
+  if (pose && poseIsMeant(stamp)) {
+    pose_places_ = placesNear(map, {pose->x, pose->y}, params_.reach);
+    for (const auto& name : pose_places_) {
+      const int place = graph_.find(name);
+      if (place >= 0) here.push_back(place);
+    }
+    // The place of the pose was never learnt: what is seen there says nothing about it.
+    if (!pose_places_.empty() && graph_.find(pose_places_.front()) < 0) here.clear();
+  }
+  const bool was = last_.kidnapped;
+  last_ = supervisor_->update(frame, here);
+  judged_ += last_.judged;
+  if (last_.alarm) {
+    ++alarms_;
+    alarm_at_ = stamp;
+    to_act_ = params_.on_kidnap != OnKidnap::kNothing;
+    std::ostringstream text;
+    text << "the pose lies in '" << pose_places_.front() << "', but the camera sees "
+         << (last_.place >= 0 ? "'" + graph_.places[static_cast<std::size_t>(last_.place)] + "'"
+                              : std::string("another place"));
+    last_alarm_ = text.str();
+    ROS_WARN_STREAM(who_ << " kidnapped or diverged: " << last_alarm_);
+  } else if (was && !last_.kidnapped) {
+    ROS_INFO_STREAM(who_ << " the pose and the place seen agree again");
+  }
+  publishKidnapped();
+  if (to_act_ && last_.kidnapped) act(map, stamp);
+}
+
+void PoseSupervision::act(const hyselam_topo::AugmentedTopologicalMap& map,
+                          const ros::Time& stamp) {
+  if (params_.on_kidnap == OnKidnap::kPlace) {
+    const auto spread = last_.place >= 0
+                            ? spreadOf(map, graph_.places[static_cast<std::size_t>(last_.place)])
+                            : std::optional<PlaceSpread>();
+    if (!spread && (stamp - alarm_at_).toSec() < params_.patience) return;  // it may become known
+    if (spread) {
+      geometry_msgs::PoseWithCovarianceStamped msg;
+      msg.header.stamp = stamp;
+      msg.header.frame_id = map.frame_id;
+      msg.pose.pose = hyselam::toPoseMsg(spread->mean);
+      msg.pose.covariance[0] = spread->stddev.x * spread->stddev.x;
+      msg.pose.covariance[7] = spread->stddev.y * spread->stddev.y;
+      msg.pose.covariance[35] = spread->stddev.theta * spread->stddev.theta;
+      initialpose_publisher_.publish(msg);
+      ++poses_set_;
+      ROS_INFO_STREAM(who_ << " localisation begins again in '"
+                           << graph_.places[static_cast<std::size_t>(last_.place)] << "'");
+    } else {
+      searchEverywhere();
+    }
+  } else {
+    searchEverywhere();
+  }
+  to_act_ = false;
+  set_at_ = stamp;
+}
+
+void PoseSupervision::searchEverywhere() {
+  std_srvs::Empty empty;
+  ++searches_;
+  if (global_localization_.call(empty)) {
+    ROS_INFO_STREAM(who_ << " localisation begins again on the whole map");
+  } else {
+    ROS_WARN_STREAM(who_ << " the service " << global_localization_.getService()
+                         << " does not answer");
+  }
+}
+
+void PoseSupervision::publishKidnapped() {
+  if (published_ && *published_ == last_.kidnapped) return;
+  published_ = last_.kidnapped;
+  std_msgs::Bool msg;
+  msg.data = last_.kidnapped;
+  kidnapped_publisher_.publish(msg);
+}
+
+void PoseSupervision::report(diagnostic_msgs::DiagnosticStatus& status) const {
+  using hyselam::addRemark;
+  using hyselam::addValue;
+  if (last_.kidnapped) {
+    addRemark(status, diagnostic_msgs::DiagnosticStatus::WARN,
+              "kidnapped or diverged: " + last_alarm_);
+  }
+  addValue(status, "pose judged", last_.judged);
+  addValue(status, "pose lies in", pose_places_.empty() ? "" : pose_places_.front());
+  addValue(status, "evidence against the pose [nats]", last_.evidence);
+  addValue(status, "kidnapped", last_.kidnapped);
+  addValue(status, "frames judged", judged_);
+  addValue(status, "alarms", alarms_);
+  addValue(status, "poses set", poses_set_);
+  addValue(status, "global localisations", searches_);
+  addValue(status, "last alarm", last_alarm_);
+}
+
+}  // namespace selovis

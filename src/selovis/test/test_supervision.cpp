@@ -1,0 +1,317 @@
+// The topological map, learning while driving, and the test of the pose by the place seen.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_topo/topological_map_xml.hpp"
+#include "selovis/learner.hpp"
+#include "selovis/recogniser.hpp"
+#include "selovis/supervisor.hpp"
+#include "selovis/topology.hpp"
+
+namespace selovis {
+namespace {
+
+using hyselam::testing::messageOf;
+using hyselam::testing::TemporaryDirectory;
+using hyselam::testing::writeFile;
+
+/// Four rooms of 2 m x 2 m in a row; the first and the last are both called "store".
+hyselam_topo::AugmentedTopologicalMap row() {
+  hyselam_topo::AugmentedTopologicalMap map;
+  hyselam_topo::PlaceGrid grid;
+  grid.geometry = {40, 10, 0.2, {1.0, -1.0, 0.0}};
+  const char* const names[] = {"store", "kitchen", "", "store"};
+  for (hyselam_topo::Id id = 1; id <= 4; ++id) {
+    hyselam_topo::Place place;
+    place.id = id;
+    if (*names[id - 1] != '\0') place.words.push_back({names[id - 1], id == 1});
+    place.centre = hyselam_topo::Point3{2.0 * id, 0.0, 0.0};
+    grid.places.push_back(id);
+    map.places.push_back(place);
+    if (id > 1) {
+      hyselam_topo::Edge edge;
+      edge.a = id - 1;
+      edge.b = id;
+      map.edges.push_back(edge);
+    }
+  }
+  for (int y = 0; y < 10; ++y) {
+    for (int x = 0; x < 40; ++x) grid.labels.push_back(static_cast<std::uint16_t>(1 + x / 10));
+  }
+  map.grid = grid;
+  hyselam_topo::normalise(&map);
+  return map;
+}
+
+TEST(Topology, PlacesOfOneNameAreOneVertex) {
+  const PlaceGraph g = graphOf(row());
+  EXPECT_EQ(g.places, (std::vector<std::string>{"store", "kitchen", "room 3"}));
+  EXPECT_TRUE(g.connected(0, 1));
+  EXPECT_TRUE(g.connected(1, 2));
+  EXPECT_TRUE(g.connected(2, 0));
+}
+
+TEST(Topology, IsReadFromXmlJsonAndCsv) {
+  TemporaryDirectory folder;
+  hyselam_topo::saveXml(folder / "topo.xml", row());
+  EXPECT_EQ(readTopology(folder / "topo.xml").places, graphOf(row()).places);
+  EXPECT_EQ(readTopology(folder / "topo.xml").transitions, graphOf(row()).transitions);
+  writeFile(folder / "g.csv", "store,kitchen\n");
+  EXPECT_EQ(readTopology(folder / "g.csv").places.size(), 2u);
+  writeFile(folder / "bad.xml", "<topological_map><place></topological_map>");
+  EXPECT_NE(
+      messageOf<hyselam::InputError>([&] { readTopology(folder / "bad.xml"); }).find("bad.xml"),
+      std::string::npos);
+}
+
+TEST(Topology, PlacesNearAPointTheOwnOneFirst) {
+  const auto map = row();
+  EXPECT_EQ(placesNear(map, {2.0, 0.0}, 0.5), std::vector<std::string>{"store"});
+  EXPECT_EQ(placesNear(map, {3.3, 0.0}, 0.5), (std::vector<std::string>{"kitchen", "store"}));
+  EXPECT_EQ(placesNear(map, {6.9, 0.0}, 0.3), (std::vector<std::string>{"room 3", "store"}));
+  EXPECT_TRUE(placesNear(map, {100.0, 0.0}, 0.5).empty());
+  EXPECT_TRUE(placesNear(map, {std::nan(""), 0.0}, 0.5).empty());
+  EXPECT_TRUE(placesNear({}, {0.0, 0.0}, 0.5).empty());
+}
+
+TEST(Topology, SpreadOfAPlaceIsThatOfItsCells) {
+  const auto spread = spreadOf(row(), "kitchen");
+  ASSERT_TRUE(spread);
+  EXPECT_NEAR(spread->mean.x, 4.0, 1e-9);
+  EXPECT_NEAR(spread->mean.y, 0.0, 1e-9);
+  EXPECT_NEAR(spread->stddev.x, 2.0 / std::sqrt(12.0), 0.01);
+  EXPECT_NEAR(spreadOf(row(), "store")->mean.x, 5.0, 1e-9) << "both of that name";
+  EXPECT_FALSE(spreadOf(row(), "cellar"));
+}
+
+/// A row of places; frames that see `seen` with that probability.
+PlaceGraph chain(int n) {
+  PlaceGraph g;
+  for (int i = 0; i < n; ++i) {
+    g.places.push_back("place " + std::to_string(i));
+    if (i > 0) g.transitions.emplace_back(i - 1, i);
+  }
+  return g;
+}
+std::vector<double> sees(int n, int seen, double probability = 0.9) {
+  std::vector<double> p(static_cast<std::size_t>(n), (1.0 - probability) / (n - 1));
+  p[static_cast<std::size_t>(seen)] = probability;
+  return p;
+}
+
+TEST(Supervisor, APoseThatAgreesIsNeverDoubted) {
+  Supervisor s(chain(8), {});
+  for (int i = 0; i < 1000; ++i) {
+    const Supervision r = s.update(sees(8, 3), {3});
+    EXPECT_TRUE(r.judged);
+    EXPECT_FALSE(r.kidnapped);
+    EXPECT_EQ(r.evidence, 0.0);
+  }
+}
+
+TEST(Supervisor, AKidnappedRobotIsNoticedInAFewFramesAndItsPlaceTold) {
+  Supervisor s(chain(8), {});
+  for (int i = 0; i < 50; ++i) s.update(sees(8, 3), {3});
+  int frames = 0;
+  Supervision r;
+  do {
+    r = s.update(sees(8, 6, 0.97), {3});
+    ASSERT_LT(++frames, 8);
+  } while (!r.alarm);
+  EXPECT_GT(frames, 2) << "no single frame is believed";
+  EXPECT_TRUE(r.kidnapped);
+  EXPECT_EQ(r.place, 6);
+  // It stays so, and one alarm is enough; then the pose is set right.
+  EXPECT_FALSE(s.update(sees(8, 6), {3}).alarm);
+  for (int i = 0; i < 40; ++i) r = s.update(sees(8, 6), {6});
+  EXPECT_FALSE(r.kidnapped);
+  EXPECT_EQ(r.evidence, 0.0);
+}
+
+TEST(Supervisor, FramesThatContradictEachOtherRaiseNoAlarm) {
+  // One of four frames sees some other place: a classifier at 75 %, whose mistakes are scattered.
+  hyselam::Rng rng(3);
+  Supervisor s(chain(12), {});
+  for (int i = 0; i < 4000; ++i) {
+    const int seen = i % 4 == 0 ? static_cast<int>(rng.below(12)) : 5;
+    EXPECT_FALSE(s.update(sees(12, seen), {5}).kidnapped) << i;
+  }
+}
+
+TEST(Supervisor, PlacesNextToThePoseCountAsItsOwn) {
+  Supervisor s(chain(5), {});
+  for (int i = 0; i < 200; ++i) EXPECT_FALSE(s.update(sees(5, 2), {1, 2}).kidnapped);
+}
+
+TEST(Supervisor, WithoutAPoseNothingIsJudged) {
+  Supervisor s(chain(5), {});
+  for (int i = 0; i < 200; ++i) {
+    const Supervision r = s.update(sees(5, 2), {});
+    EXPECT_FALSE(r.judged || r.kidnapped);
+  }
+  EXPECT_FALSE(Supervisor(chain(1), {}).update({1.0}, {0}).judged) << "there is no elsewhere";
+  EXPECT_FALSE(s.update(std::vector<double>(5, 0.0), {1}).kidnapped)
+      << "a frame that tells nothing";
+}
+
+TEST(Supervisor, ResetForgets) {
+  Supervisor s(chain(6), {});
+  for (int i = 0; i < 30; ++i) s.update(sees(6, 5), {0});
+  s.reset();
+  const Supervision r = s.update(sees(6, 0), {0});
+  EXPECT_FALSE(r.kidnapped);
+  EXPECT_EQ(r.evidence, 0.0);
+}
+
+TEST(Supervisor, WrongNumbersAreRefused) {
+  Supervisor s(chain(4), {});
+  EXPECT_THROW(s.update({0.5, 0.5}, {0}), std::invalid_argument);
+  EXPECT_THROW(s.update({0.5, -0.5, 0.0, 1.0}, {0}), std::invalid_argument);
+  EXPECT_THROW(s.update({0.5, std::nan(""), 0.0, 1.0}, {0}), std::invalid_argument);
+  EXPECT_THROW(s.update(sees(4, 1), {4}), std::invalid_argument);
+  SupervisorParams p;
+  p.threshold = 0.0;
+  EXPECT_THROW(Supervisor(chain(4), p), hyselam::ParameterError);
+}
+
+// Learning
+
+cv::Mat pictureOf(int place, int i) {
+  cv::Mat image(60, 80, CV_8UC3, cv::Scalar(40 + 60 * place, 160, 90));
+  for (int x = (i * 5) % 13; x < 80; x += 4 + 5 * place) image.col(x).setTo(cv::Scalar::all(10));
+  return image;
+}
+
+std::shared_ptr<const Model> nothingLearnt() {
+  TrainingOptions options;
+  options.descriptor = "LGOP";
+  options.classifier.kernel = Kernel::kExemplar;
+  options.views = {0.0, 0.1};
+  return std::make_shared<Model>(emptyModel(options));
+}
+
+/// A drive through "store" and "kitchen".
+std::unique_ptr<Learner> drive(const std::shared_ptr<const Model>& model) {
+  auto learner = std::make_unique<Learner>(model, LearnerParams());
+  for (int i = 0; i < 40; ++i) {
+    learner->add(pictureOf(i / 20, i), {}, i / 20 ? "kitchen" : "store", {2.0 + 0.1 * i, 0.0, 0.5},
+                 1.2, 10.0 + 0.2 * i);
+  }
+  return learner;
+}
+
+TEST(Learner, KeepsAFrameOncePerWayAndPlace) {
+  const auto model = nothingLearnt();
+  const auto learner = drive(model);
+  EXPECT_NEAR(static_cast<double>(learner->frames().size()), 20.0, 2.0) << "every 0.2 m of 4 m";
+  EXPECT_EQ(learner->frames().front().values.size(), 2u);
+  const std::size_t before = learner->frames().size();
+  EXPECT_FALSE(learner->add(pictureOf(1, 1), {}, "kitchen", {5.95, 0.0, 0.5}, 1.2, 20.0));
+  EXPECT_TRUE(learner->add(pictureOf(1, 1), {}, "kitchen", {5.95, 0.0, 1.0}, 1.2, 20.2))
+      << "turned";
+  EXPECT_EQ(learner->frames().size(), before + 1);
+  EXPECT_THROW(learner->add(cv::Mat(), {}, "hall", {0.0, 0.0, 0.0}, 1.2, 21.0),
+               std::invalid_argument);
+  EXPECT_EQ(learner->frames().size(), before + 1);
+}
+
+TEST(Learner, WhatWasLearntOnTheWayIsRecognised) {
+  const auto model = nothingLearnt();
+  const auto learner = drive(model);
+  Model trained = *model;
+  learn(trained, learner->frames());
+  EXPECT_EQ(trained.graph.places, (std::vector<std::string>{"store", "kitchen"}));
+  EXPECT_TRUE(trained.graph.connected(0, 1));
+  Recogniser recogniser(trained, trained.graph, {});
+  int right = 0;
+  for (int i = 0; i < 40; ++i) {
+    right += recogniser.update(pictureOf(i / 20, i + 3)).frame_place == i / 20;
+  }
+  EXPECT_GE(right, 38);
+  // More on a later drive: no door between the last place of one drive and the first of the next.
+  LearntFrame more = learner->frames().front();
+  more.place = "hall";
+  more.stamp = 5000.0;
+  learn(trained, {more});
+  EXPECT_EQ(trained.graph.find("hall"), 2);
+  EXPECT_FALSE(trained.graph.connected(1, 2));
+}
+
+TEST(Learner, SignaturesGoIntoTheMapAndComeBack) {
+  const auto model = nothingLearnt();
+  const auto learner = drive(model);
+  auto map = row();
+  std::vector<LearntFrame> frames = learner->frames();
+  frames.back().place = "nowhere";
+  EXPECT_EQ(store(frames, *model, {}, &map), 1u);
+  TemporaryDirectory folder;
+  hyselam_topo::saveXml(folder / "topo.xml", map);
+  const auto back = framesOf(hyselam_topo::loadXml(folder / "topo.xml"), *model);
+  ASSERT_EQ(back.size(), frames.size() - 1);
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    EXPECT_EQ(back[i].place, frames[i].place);
+    EXPECT_EQ(back[i].stamp, frames[i].stamp);
+    EXPECT_EQ(back[i].values, frames[i].values);
+    EXPECT_NEAR(back[i].camera.x, frames[i].camera.x, 1e-12);
+    EXPECT_NEAR(back[i].camera.theta, frames[i].camera.theta, 1e-12);
+    EXPECT_EQ(back[i].height, 1.2);
+  }
+  const auto& signature = map.places.front().signatures.at(1);
+  EXPECT_NEAR(*signature.heading, 0.5 + 0.1 * LearnerParams().aperture_x, 1e-9)
+      << "a view shifted to the right is that of a camera turned to the left";
+  Model other = *model;
+  other.descriptor = "GLANCE";
+  EXPECT_TRUE(framesOf(map, other).empty()) << "signatures of another descriptor";
+}
+
+TEST(Learner, TrainsInTheBackground) {
+  const auto model = nothingLearnt();
+  const auto learner = drive(model);
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<BackgroundTraining::Outcome> outcome;
+  const auto done = [&](const BackgroundTraining::Outcome& o) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    outcome = o;
+    changed.notify_all();
+  };
+  BackgroundTraining training;
+  const auto trainOn = [&](std::vector<LearntFrame> frames) {
+    outcome.reset();
+    while (!training.start(model, frames, done)) std::this_thread::yield();
+    std::unique_lock<std::mutex> lock(mutex);
+    changed.wait(lock, [&] { return outcome.has_value(); });
+  };
+  trainOn(learner->frames());
+  ASSERT_TRUE(outcome->model) << outcome->error;
+  EXPECT_EQ(outcome->model->graph.places.size(), 2u);
+  EXPECT_EQ(outcome->frames, learner->frames().size());
+  EXPECT_EQ(model->samples.count(), 0u) << "the model in use is not touched";
+  // One place only; signatures of another length.
+  trainOn({learner->frames().begin(), learner->frames().begin() + 3});
+  EXPECT_FALSE(outcome->model);
+  EXPECT_FALSE(outcome->error.empty());
+  LearntFrame bad = learner->frames().front();
+  bad.values.front().pop_back();
+  trainOn({bad});
+  EXPECT_NE(outcome->error.find("values"), std::string::npos);
+}
+
+TEST(Learner, RefusesWhatCannotBeLearntOnTheWay) {
+  TrainingOptions options;
+  options.descriptor = "BOF-ORB500";
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { emptyModel(options); }).find("dictionary"),
+            std::string::npos);
+  LearnerParams p;
+  p.aperture_x = 0.0;
+  EXPECT_THROW(Learner(nothingLearnt(), p), hyselam::ParameterError);
+}
+
+}  // namespace
+}  // namespace selovis

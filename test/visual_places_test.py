@@ -1,0 +1,429 @@
+#!/usr/bin/env python3
+"""Images into the nodelet SemanticLocalization, places out: the same as offline, with bad images among them; learning
+on the way; the pose watched over."""
+import copy
+import csv
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+import rosbag
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
+from hyselam_msgs.msg import AugmentedTopologicalMap, Place, PlaceEdge, PlaceState, PlaceWord, VisualPlace
+from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from sensor_msgs.msg import CompressedImage, Image, LaserScan
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
+
+from localization_rig import Listener, wait_until, WAIT
+
+COLOR = "/camera/color/image_raw"
+ROOMS = {"left room": (1, 2.0), "right room": (2, 6.0)}  # id, x of the middle; the wall is at x = 4
+
+
+def tool(package, name, *args):
+    done = subprocess.run(["rosrun", package, name, *map(str, args)], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        raise AssertionError(f"{name}: {done.stderr}")
+
+
+def as_ppm(image):
+    """The same pixels as a file that `evaluate` reads without loss."""
+    pixels = bytearray(image.data)
+    pixels[0::3], pixels[2::3] = pixels[2::3], pixels[0::3]
+    return b"P6\n%d %d\n255\n" % (image.width, image.height) + bytes(pixels)
+
+
+class Film:
+    """The plan `small`, filmed raw and as JPEG; lists of both for the offline tools, models of both."""
+
+    def __init__(self):
+        self.folder = tempfile.TemporaryDirectory()
+        at = lambda name: os.path.join(self.folder.name, name)  # noqa: E731
+        tool("hyselam_sim", "simulate", "--route", "small", "--out", at("run.bag"))
+        common = ["--bag", at("run.bag"), "--route", "small", "--rate", 1, "--width", 160, "--height", 120]
+        tool("hyselam_sim", "film", *common, "--out", at("raw.bag"), "--images", at("images"))
+        tool("hyselam_sim", "film", *common, "--out", at("jpeg.bag"), "--jpeg", 90)
+        with open(at("images/labels.csv"), newline="") as file:
+            place = {round(float(row["stamp"]), 3): row["place"] for row in csv.DictReader(file)}
+        self.raw, self.jpeg, self.scans, self.places = [], [], {}, []
+        with rosbag.Bag(at("raw.bag")) as bag:
+            for topic, msg, _ in bag.read_messages(["/scan", COLOR]):
+                if topic == "/scan":
+                    self.scans[round(msg.header.stamp.to_sec(), 3)] = msg
+                elif round(msg.header.stamp.to_sec(), 3) in place:
+                    self.raw.append(msg)
+                    self.places.append(place[round(msg.header.stamp.to_sec(), 3)])
+        with rosbag.Bag(at("jpeg.bag")) as bag:
+            for _, msg, _ in bag.read_messages([COLOR + "/compressed"]):
+                if round(msg.header.stamp.to_sec(), 3) in place:
+                    self.jpeg.append(msg)
+        self.raw_list = self.write("raw", "ppm", self.raw, as_ppm)
+        self.jpeg_list = self.write("jpeg", "jpg", self.jpeg, lambda image: bytes(image.data))
+        self.scan_model, self.model = at("scan_model"), at("model")
+        for labels, model, descriptor in ((self.raw_list, self.scan_model, "GLANCE+scan"),
+                                          (self.jpeg_list, self.model, "GLANCE")):
+            tool("selovis", "train", "--labels", labels, "--descriptor", descriptor, "--kernel", "exemplar",
+                 "--out", model)
+
+    def scan_of(self, image):
+        return self.scans[round(image.header.stamp.to_sec(), 3)]
+
+    def write(self, name, extension, images, content):
+        folder = os.path.join(self.folder.name, name)
+        os.mkdir(folder)
+        beams = len(self.scan_of(images[0]).ranges)
+        with open(os.path.join(folder, "labels.csv"), "w", newline="") as file:
+            rows = csv.writer(file)
+            rows.writerow(["image_path", "place"] + [f"scan_{i}" for i in range(beams)])
+            for i, image in enumerate(images):
+                with open(os.path.join(folder, f"{i:04d}.{extension}"), "wb") as out:
+                    out.write(content(image))
+                rows.writerow([f"{i:04d}.{extension}", self.places[i], *self.scan_of(image).ranges])
+        return os.path.join(folder, "labels.csv")
+
+    def predictions(self, model, labels):
+        path = os.path.join(self.folder.name, "predictions.csv")
+        tool("selovis", "evaluate", model, "--labels", labels, "--filter", "bayes", "--predictions", path)
+        with open(path, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def frame_in(self, place):
+        """A raw frame from the middle of a stay in the place."""
+        at = [i for i, p in enumerate(self.places) if p == place]
+        return self.raw[at[len(at) // 2]]
+
+
+def topological_map(names=tuple(ROOMS)):
+    """The two rooms, each 4 m x 4 m, joined."""
+    msg = AugmentedTopologicalMap()
+    msg.header.frame_id = "map"
+    msg.next_place_id, msg.next_wall_id, msg.next_door_id = 10, 1, 1
+    for name in names:
+        place = Place()
+        place.id = ROOMS[name][0] if name in ROOMS else 3
+        place.words = [PlaceWord(name, True)]
+        place.has_centre = True
+        place.centre.x, place.centre.y = ROOMS.get(name, (3, 6.0))[1], 2.0
+        msg.places.append(place)
+    msg.edges = [PlaceEdge(a=msg.places[0].id, b=msg.places[1].id)] if len(names) > 1 else []
+    msg.has_grid = True
+    msg.grid.width, msg.grid.height, msg.grid.resolution = 80, 40, 0.1
+    msg.grid.places = [p.id for p in msg.places]
+    right = 2 if len(names) > 1 else 0
+    msg.grid.labels = [1 if x < 40 else right for _ in range(40) for x in range(80)]
+    return msg
+
+
+class Rig:
+    """One nodelet in the manager, in a namespace of its own."""
+
+    def __init__(self, name, compressed=False, **params):
+        self.name, self.node, self.sent = name, f"/{name}/visual", 0
+        params.setdefault("diagnostic_period", 0.05)
+        params.setdefault("queue_size", 1000)
+        if compressed:
+            params["image_transport"] = "compressed"
+        for key, value in params.items():
+            rospy.set_param(f"{self.node}/{key}", value)
+        pub = lambda topic, kind, **kw: rospy.Publisher(f"/{name}/{topic}", kind, queue_size=1000, **kw)  # noqa: E731
+        self.image = pub("image/compressed", CompressedImage) if compressed else pub("image", Image)
+        self.scan, self.map, self.place = pub("scan", LaserScan), pub("topological_map", AugmentedTopologicalMap), \
+            pub("place", PlaceState)
+        self.tf = rospy.Publisher("/tf", TFMessage, queue_size=1000)
+        self.seen = Listener(f"/{name}/visual_place", VisualPlace)
+        self.kidnapped = Listener(f"{self.node}/kidnapped", Bool)
+        self.initialpose = Listener(f"/{name}/initialpose", PoseWithCovarianceStamped)
+        self.markers = Listener(f"/{name}/place_markers", MarkerArray)
+        self.diagnostics = Listener(f"/{name}/diagnostics", DiagnosticArray)
+        rospy.wait_for_service("/manager/load_nodelet", WAIT)
+        try:
+            self.loaded = rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
+                self.node, "selovis/SemanticLocalization", ["/diagnostics"], [f"/{name}/diagnostics"], [], "").success
+        except rospy.ServiceException:
+            self.loaded = False
+        if self.loaded:
+            outputs = (self.seen, self.kidnapped, self.initialpose, self.diagnostics, self.markers)
+            wait_until(lambda: all(p.get_num_connections() > 0 for p in (self.image, self.map, self.place, self.tf))
+                       and all(o.subscriber.get_num_connections() > 0 for o in outputs), "no connections")
+
+    def close(self):
+        if self.loaded:
+            rospy.ServiceProxy("/manager/unload_nodelet", NodeletUnload)(self.node)
+        for listener in (self.seen, self.kidnapped, self.initialpose, self.diagnostics, self.markers):
+            listener.close()
+        for publisher in (self.image, self.scan, self.map, self.place, self.tf):
+            publisher.unregister()
+
+    def give(self, image, scan=None):
+        if scan is not None:
+            self.scan.publish(scan)
+        self.image.publish(image)
+        self.sent += 1
+
+    def settle(self):
+        """Waits until every image has been used or dropped."""
+        wait_until(lambda: self.number("images received") == self.sent
+                   and self.number("images used") + self.number("images dropped") == self.sent,
+                   lambda: f"sent {self.sent}: {self.values()}")
+
+    def give_map(self, msg):
+        self.map.publish(msg)
+
+    def status(self):
+        for array in reversed(self.diagnostics.messages):
+            for status in array.status:
+                if status.name == self.node[1:] + ": visual places":
+                    return status
+        return None
+
+    def values(self):
+        status = self.status()
+        return {v.key: v.value for v in status.values} if status else {}
+
+    def number(self, key):
+        return int(self.values().get(key, "-1"))
+
+    def call(self, service):
+        return rospy.ServiceProxy(f"{self.node}/{service}", Trigger)()
+
+
+class VisualPlacesTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.film = Film()
+
+    def rig(self, **params):
+        rig = Rig(self._testMethodName[5:25], **params)
+        self.addCleanup(rig.close)
+        return rig
+
+    def assert_same(self, rig, expected):
+        self.assertEqual(len(rig.seen.messages), len(expected))
+        for got, want in zip(rig.seen.messages, expected):
+            self.assertEqual(got.name, want["predicted"])
+            self.assertEqual(got.frame_name, want["frame_alone"])
+            self.assertAlmostEqual(got.probability, float(want["probability"]), delta=2e-5)
+            self.assertAlmostEqual(got.novelty, float(want["novelty"]), delta=2e-5)
+        return sum(g.name == p for g, p in zip(rig.seen.messages, self.film.places)) / len(expected)
+
+    def test_camera_and_laser_as_offline(self):
+        rig = self.rig(model=self.film.scan_model)
+        wait_until(lambda: rig.scan.get_num_connections() > 0, "the nodelet does not listen to scans")
+        for image in self.film.raw:
+            rig.give(image, self.film.scan_of(image))
+        rig.settle()
+        expected = self.film.predictions(self.film.scan_model, self.film.raw_list)
+        self.assertGreater(self.assert_same(rig, expected), 0.9)
+        self.assertEqual(rig.values()["images dropped"], "0")
+
+    def test_compressed_images_as_offline(self):
+        rig = self.rig(model=self.film.model, compressed=True)
+        for image in self.film.jpeg:
+            rig.give(image)
+        rig.settle()
+        self.assert_same(rig, self.film.predictions(self.film.model, self.film.jpeg_list))
+
+    def test_bad_images_in_mid_stream(self):
+        rig = self.rig(model=self.film.model, images="corners")
+        good = self.film.frame_in("left room")
+
+        def changed(**fields):
+            image = copy.deepcopy(good)
+            for key, value in fields.items():
+                setattr(image, key, value)
+            return image
+        for _ in range(5):
+            rig.give(good)
+        rig.settle()
+        before = rig.seen.wait(5)
+        self.assertEqual(before.name, "left room")
+        bad = {
+            "a grey image": changed(encoding="mono8", step=good.width, data=bytes(good.width * good.height)),
+            "too few bytes": changed(data=good.data[:1000]),
+            "no pixels": changed(width=0, height=0, data=b""),
+            "an unknown encoding": changed(encoding="cmyk"),
+            "depth": changed(encoding="16UC1"),
+        }
+        for what, image in bad.items():
+            if what == "a grey image":
+                continue  # GLANCE needs colour: checked below
+            rig.give(image)
+            rig.settle()
+        self.assertEqual(rig.number("images dropped"), 4)
+        self.assertEqual(len(rig.seen.messages), 5)
+        # In the dark: passed over, the place stays.
+        rig.give(changed(data=bytes(len(good.data))))
+        rig.settle()
+        dark = rig.seen.wait(6)
+        self.assertFalse(dark.descriptive)
+        self.assertEqual((dark.name, dark.probabilities), (before.name, before.probabilities))
+        # Another resolution: half of the rows.
+        rig.give(changed(height=good.height // 2, data=good.data[:len(good.data) // 2]))
+        rig.settle()
+        self.assertEqual(len(rig.seen.messages), 7)
+        rig.give(bad["a grey image"])
+        rig.give(good)
+        rig.settle()
+        self.assertEqual(rig.seen.messages[-1].name, "left room")
+
+    def test_jpeg_cut_short(self):
+        rig = self.rig(model=self.film.model, compressed=True)
+        for image in self.film.jpeg[:3]:
+            rig.give(image)
+        for length in (len(self.film.jpeg[3].data) // 2, 10, 0):
+            cut = copy.deepcopy(self.film.jpeg[3])
+            cut.data = cut.data[:length]
+            rig.give(cut)
+        rig.give(self.film.jpeg[4])
+        rig.settle()
+        self.assertEqual(rig.number("images dropped"), 3)
+        self.assertEqual(len(rig.seen.messages), 4)
+
+    def test_readings_that_do_not_come(self):
+        rig = self.rig(model=self.film.scan_model, sync_wait=0.1)
+        wait_until(lambda: rig.scan.get_num_connections() > 0, "the nodelet does not listen to scans")
+        rig.give(self.film.raw[0])
+        rig.settle()
+        self.assertEqual(rig.number("dropped: no reading"), 1)
+        self.assertIn("no scan", rig.values()["last dropped"])
+        other = copy.deepcopy(self.film.scan_of(self.film.raw[1]))
+        other.ranges = other.ranges[:20]  # too few for 61 groups of beams
+        rig.give(self.film.raw[1], other)
+        rig.settle()
+        rig.give(self.film.raw[2], self.film.scan_of(self.film.raw[2]))
+        rig.settle()
+        self.assertTrue(rig.seen.messages)
+
+    def test_models_that_cannot_be_used(self):
+        cut = os.path.join(self.film.folder.name, "cut")
+        subprocess.run(["cp", "-r", self.film.model, cut], check=True)
+        data = next(f for f in os.listdir(cut) if f.startswith("signatures"))
+        with open(os.path.join(cut, data), "r+b") as file:
+            file.truncate(1000)
+        other = os.path.join(self.film.folder.name, "other")
+        subprocess.run(["cp", "-r", self.film.model, other], check=True)
+        with open(os.path.join(other, "model.json")) as file:
+            manifest = json.load(file)
+        manifest["descriptor"] = "SLBP"
+        with open(os.path.join(other, "model.json"), "w") as file:
+            json.dump(manifest, file)
+        for number, params in enumerate(({"model": "/nowhere"}, {"model": cut}, {"model": other}, {"filter": "magic"},
+                                         {"supervisor_threshold": -1.0}, {"descriptor": "BOF-ORB500"},
+                                         {"descriptor": "no such"})):
+            rig = Rig(f"unusable_{number}", **params)
+            self.addCleanup(rig.close)
+            self.assertFalse(rig.loaded, params)
+        self.assertEqual(list(rospy.ServiceProxy("/manager/list", NodeletList)().nodelets), [])
+
+    def test_map_with_and_without_a_place(self):
+        rig = self.rig(model=self.film.model)
+        rig.give_map(topological_map())
+        wait_until(lambda: rig.values().get("places not on the map") == "0", "the map")
+        for _ in range(3):
+            rig.give(self.film.frame_in("right room"))
+        rig.settle()
+        self.assertEqual((rig.seen.messages[-1].name, rig.seen.messages[-1].place), ("right room", 2))
+        bars = [m for m in rig.markers.wait().markers if m.ns == "bars"]
+        self.assertEqual(sorted(m.id for m in bars), [1, 2])
+        self.assertGreater(max(bars, key=lambda m: m.scale.z).pose.position.x, 4.0)
+        rig.give_map(topological_map(["left room"]))
+        wait_until(lambda: rig.values().get("places not on the map") == "1", "a place is gone")
+        rig.give(self.film.frame_in("right room"))
+        rig.settle()
+        self.assertEqual(rig.seen.messages[-1].place, 0, "it is recognised, and has no id")
+        broken = topological_map()
+        broken.grid.width = 7
+        rig.give_map(broken)
+        wait_until(lambda: "topological_map" in rig.status().message, "a broken map is told")
+        rig.give(self.film.frame_in("right room"))
+        rig.settle()
+
+    def test_learning_on_the_way(self):
+        folder = os.path.join(self.film.folder.name, "learnt")
+        topo = os.path.join(self.film.folder.name, "learnt.xml")
+        rig = self.rig(save_model=folder, save_map=topo, retrain_every=0, min_travel=0.0, min_turn=0.0)
+        self.assertFalse(rig.call("retrain").success)
+        self.assertFalse(rig.call("save").success, "nothing has been learnt")
+        rig.give_map(topological_map())
+        wait_until(lambda: rig.values().get("places not on the map") == "0", "the map")
+        self.assertTrue(rig.call("start_learning").success)
+        for image, name in zip(self.film.raw, self.film.places):
+            state = PlaceState(place=ROOMS[name][0], name=name, confirmed=True)
+            state.header.stamp = image.header.stamp
+            state.header.frame_id = "map"
+            state.pose.x, state.pose.y = ROOMS[name][1], 2.0
+            self.place_then_image(rig, state, image)
+        self.assertIn("frames learnt", rig.call("stop_learning").message)
+        learnt = rig.number("frames learnt")
+        self.assertEqual(learnt, len(self.film.raw))
+        answer = rig.call("retrain")
+        self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: rig.number("frames trained") == learnt, "trained")
+        answer = rig.call("save")
+        self.assertTrue(answer.success, answer.message)
+        begun = len(rig.seen.messages)
+        for image in self.film.raw:
+            rig.give(image)
+        rig.settle()
+        right = sum(g.name == p for g, p in zip(rig.seen.messages[begun:], self.film.places))
+        self.assertGreater(right / len(self.film.places), 0.9)
+        # What was saved is what offline tools read; the map holds the signatures, enough to learn from again.
+        self.assertEqual(len(self.film.predictions(folder, self.film.raw_list)), len(self.film.raw))
+        with open(topo) as file:
+            self.assertEqual(file.read().count("<signature"), 5 * learnt)
+
+    def place_then_image(self, rig, state, image):
+        rig.place.publish(state)
+        rig.give(image)
+        rig.settle()
+
+    def test_a_robot_that_was_carried_away(self):
+        rig = self.rig(model=self.film.model, reach=0.2, settle=0.0)
+        rig.give_map(topological_map())
+        wait_until(lambda: rig.values().get("places not on the map") == "0", "the map")
+        here, there = self.film.frame_in("left room"), self.film.frame_in("right room")
+        clock = [here.header.stamp + rospy.Duration(1000)]
+
+        def look(image, x):
+            clock[0] += rospy.Duration(0, 200000000)
+            pose = TransformStamped()
+            pose.header.stamp, pose.header.frame_id, pose.child_frame_id = clock[0], "map", "base_link"
+            pose.transform.translation.x, pose.transform.translation.y, pose.transform.rotation.w = x, 2.0, 1.0
+            rig.tf.publish(TFMessage([pose]))
+            judged = rig.number("frames judged")
+            frame = copy.deepcopy(image)
+            frame.header.stamp = clock[0]
+            rospy.sleep(0.02)  # tf has a thread of its own
+            rig.give(frame)
+            rig.settle()
+            return rig.number("frames judged") > judged
+        self.assertTrue(any([look(here, 1.5) for _ in range(10)]))
+        self.assertEqual([m.data for m in rig.kidnapped.messages], [False])
+        for frames in range(1, 15):
+            look(there, 1.5)  # the pose still says left
+            if rig.kidnapped.messages[-1].data:
+                break
+        self.assertTrue(rig.kidnapped.messages[-1].data)
+        self.assertLessEqual(frames, 12)
+        guess = rig.initialpose.wait()
+        self.assertEqual(guess.header.frame_id, "map")
+        self.assertGreater(guess.pose.pose.position.x, 4.0)
+        self.assertGreater(guess.pose.covariance[35], 1.0)
+        for _ in range(10):
+            look(there, 6.0)  # the localisation has found it
+        wait_until(lambda: not rig.kidnapped.messages[-1].data, "they agree again")
+        self.assertEqual(rig.values()["alarms"], "1")
+
+
+if __name__ == "__main__":
+    rospy.init_node("visual_places_test")
+    rostest.rosrun("hyselam_bringup", "visual_places_test", VisualPlacesTest)
