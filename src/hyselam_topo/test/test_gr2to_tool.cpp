@@ -129,7 +129,7 @@ TEST_F(Gr2ToTool, SaysWhyNot) {
   expectError(run(map + " --clutter -1 --out " + (folder_ / "out")), "clutter");
   expectError(run(map + " --picture-side 5 --out " + (folder_ / "out")), "side");
   expectError(run(map + " --out " + map), "map.yaml");
-  expectError(run(map + " --max-cells 36399 --out " + (folder_ / "out")), "36400");
+  expectError(run(map + " --max-cells 36399 --out " + (folder_ / "out")), "limit of 36399");
   EXPECT_EQ(0, run(map + " --max-cells 36400 --out " + (folder_ / "out")));
   hyselam::testing::writeFile(folder_ / "bad.yaml", "image: map.pgm\nresolution: zero\n");
   expectError(run((folder_ / "bad.yaml") + " --out " + (folder_ / "out")), "resolution");

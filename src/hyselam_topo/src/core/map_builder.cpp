@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -59,11 +60,10 @@ cv::Mat distancesWithin(const cv::Mat& labels) {
     const auto* row = labels.ptr<std::uint16_t>(y);
     const auto* above = labels.ptr<std::uint16_t>(y + 1);
     auto* out = inner.ptr<std::uint8_t>(y);
-    for (int x = 1; x + 1 < labels.cols; ++x) {
-      out[x] = row[x] != 0 && row[x] == row[x - 1] && row[x] == row[x + 1] && row[x] == below[x] &&
-                       row[x] == above[x]
-                   ? 255
-                   : 0;
+    for (int x = 1; x + 1 < labels.cols; ++x) {  // without branches
+      const bool is_inner = (row[x] != 0) & (row[x] == row[x - 1]) & (row[x] == row[x + 1]) &
+                            (row[x] == below[x]) & (row[x] == above[x]);
+      out[x] = static_cast<std::uint8_t>(is_inner ? 255 : 0);
     }
   }
   cv::Mat distance(labels.size(), CV_32FC1, cv::Scalar(0));
@@ -80,11 +80,24 @@ bool chosen(const std::vector<char>& selection, int label) {
   return selection.empty() || selection[static_cast<std::size_t>(label)] != 0;
 }
 
+// Around all cells that the contours enclose.
+cv::Rect limitsOf(const std::vector<Contour>& contours) {
+  cv::Point low(std::numeric_limits<int>::max(), std::numeric_limits<int>::max()), high(0, 0);
+  for (const Contour& contour : contours) {
+    for (const ContourSide& side : contour.sides) {
+      low = {std::min(low.x, side.from.x), std::min(low.y, side.from.y)};
+      high = {std::max(high.x, side.from.x), std::max(high.y, side.from.y)};
+    }
+  }
+  return contours.empty() ? cv::Rect() : cv::Rect(low, high);
+}
+
 std::vector<Region> measure(const cv::Mat& all_labels, const std::vector<Contour>& contours,
                             int places, double resolution, const WallParams& walls,
                             const PlaceSelection& selection) {
-  const cv::Rect& box = selection.measured_box;
   std::vector<Region> out(static_cast<std::size_t>(places));
+  cv::Rect box = selection.measured_box;
+  if (selection.measured.empty()) box &= limitsOf(contours);  // many maps have wide margins
   if (box.empty()) return out;
   const cv::Mat labels = all_labels(box);
   cv::Mat filled = labels.clone();
