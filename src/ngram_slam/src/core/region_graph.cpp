@@ -2,43 +2,104 @@
 
 #include <algorithm>
 #include <set>
-#include <utility>
+#include <tuple>
+
+#include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
 
-RegionGraph regionGraph(const std::vector<SemanticRegion>& regions,
-                        const std::vector<SlamKeyframe>& keyframes,
-                        const std::vector<SlamLoop>& loops,
-                        const std::vector<std::int32_t>& keyframe_of_observation) {
+namespace {
+
+using hyselam::Pose2;
+
+/// Regions of all runs, in order.
+std::vector<SemanticRegion> regionsOf(const ObservationStore& observations) {
+  SemanticSegmenter segmenter;
+  std::vector<SemanticRegion> all;
+  const auto take = [&](const std::vector<SemanticRegion>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  for (std::uint32_t run = 0; run < observations.runs(); ++run) {
+    for (std::uint32_t i = observations.runBegin(run); i < observations.runEnd(run); ++i)
+      take(segmenter.add(observations[i]));
+    take(segmenter.finish());
+  }
+  return all;
+}
+
+RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>& regions) {
+  const ObservationStore& observations = engine.recogniser().observations();
+  const std::vector<Pose2> poses = observationPoses(engine);
   RegionGraph graph;
-  // The region of each keyframe: one that is on the border of two belongs to the older.
-  std::vector<int> region_of(keyframes.size(), -1);
-  for (const SemanticRegion& region : regions) {
-    if (region.last >= keyframe_of_observation.size() || region.first > region.last) continue;
-    const auto id = static_cast<int>(graph.nodes.size());
-    for (std::uint32_t o = region.first; o <= region.last; ++o) {
-      int& owner = region_of[static_cast<std::size_t>(keyframe_of_observation[o])];
-      if (owner < 0) owner = id;
+  std::vector<std::int32_t> node_of_keyframe(engine.keyframes().size(), -1);
+  std::set<std::tuple<std::uint32_t, std::uint32_t, RegionEdge::Kind>> edges;
+  for (const SemanticRegion& r : regions) {
+    const auto id = static_cast<std::uint32_t>(graph.nodes.size());
+    RegionNode n;
+    n.first = r.first;
+    n.last = r.last;
+    n.stamp_begin = observations.stamp(r.first);
+    n.stamp_end = observations.stamp(r.last);
+    n.run = observations.runOf(r.first);
+    n.pose = poses[r.first + (r.last - r.first) / 2];
+    n.semantic_class = r.semantic_class;
+    n.confidence = r.confidence;
+    for (std::uint32_t i = r.first; i <= r.last; ++i) {
+      if (i > r.first) n.length += distance(observations.pose(i - 1), observations.pose(i));
+      node_of_keyframe[static_cast<std::size_t>(engine.keyframeOfObservation()[i])] =
+          static_cast<std::int32_t>(id);
     }
-    const auto middle = static_cast<std::size_t>(
-        keyframe_of_observation[region.first + (region.last - region.first) / 2]);
-    graph.nodes.push_back({region, keyframes[middle].run, keyframes[middle].pose});
-    if (id == 0) continue;
-    const RegionNode& before = graph.nodes[static_cast<std::size_t>(id) - 1];
-    if (before.run == graph.nodes.back().run)
-      graph.links.push_back({static_cast<std::size_t>(id) - 1, static_cast<std::size_t>(id), false});
+    if (id > 0 && graph.nodes.back().run == n.run)
+      edges.emplace(id - 1, id, RegionEdge::Kind::kWay);
+    graph.nodes.push_back(n);
   }
-  std::set<std::pair<int, int>> known;
-  for (const SlamLoop& loop : loops) {
-    if (loop.weight < 0.5) continue;
-    const int a = region_of[static_cast<std::size_t>(loop.older)];
-    const int b = region_of[static_cast<std::size_t>(loop.newer)];
-    if (a < 0 || b < 0 || a == b) continue;
-    if (known.insert(std::minmax(a, b)).second)
-      graph.links.push_back({static_cast<std::size_t>(std::min(a, b)),
-                             static_cast<std::size_t>(std::max(a, b)), true});
+  constexpr double kDoubted = 0.3;
+  for (const SlamLoop& l : engine.loops()) {
+    const std::int32_t a = node_of_keyframe[static_cast<std::size_t>(l.older)];
+    const std::int32_t b = node_of_keyframe[static_cast<std::size_t>(l.newer)];
+    if (a < 0 || b < 0 || a == b || l.weight < kDoubted) continue;
+    const auto [low, high] =
+        std::minmax(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+    edges.emplace(low, high, RegionEdge::Kind::kLoop);
   }
+  for (const auto& [a, b, kind] : edges) graph.edges.push_back({a, b, kind});
   return graph;
+}
+
+}  // namespace
+
+std::vector<Pose2> observationPoses(const SlamEngine& engine) {
+  std::vector<Pose2> poses;
+  for (const std::int32_t k : engine.keyframeOfObservation())
+    poses.push_back(engine.keyframes()[static_cast<std::size_t>(k)].pose);
+  return poses;
+}
+
+RegionGraph regionGraph(const SlamEngine& engine) {
+  return graphOf(engine, regionsOf(engine.recogniser().observations()));
+}
+
+RegionGraph regionGraph(const SlamEngine& engine, const std::vector<SemanticRegion>& regions) {
+  return graphOf(engine, regions);
+}
+
+RegionGraph spacedGraph(const SlamEngine& engine, double spacing) {
+  if (!(spacing > 0.0)) throw hyselam::ParameterError("spacing", spacing, "above 0");
+  const ObservationStore& observations = engine.recogniser().observations();
+  std::vector<SemanticRegion> pieces;
+  for (const SemanticRegion& r : regionsOf(observations)) {
+    double way = 0.0;
+    SemanticRegion piece = r;
+    for (std::uint32_t i = r.first; i <= r.last; ++i) {
+      if (i > piece.first) way += distance(observations.pose(i - 1), observations.pose(i));
+      if (way < spacing && i < r.last) continue;
+      piece.last = i;
+      pieces.push_back(piece);
+      piece.first = i + 1;
+      way = 0.0;
+    }
+  }
+  return graphOf(engine, pieces);
 }
 
 }  // namespace ngram_slam

@@ -345,6 +345,39 @@ std::optional<SlamJob> SlamEngine::job(bool last) {
   return j;
 }
 
+namespace {
+
+using hyselam_pose_graph::GraphOptimizer;
+using hyselam_pose_graph::GraphRobust;
+using hyselam_pose_graph::GraphStart;
+using hyselam_pose_graph::OptimizeParams;
+using hyselam_pose_graph::OptimizeResult;
+
+std::size_t believed(const OptimizeResult& r) {
+  return static_cast<std::size_t>(
+      std::count_if(r.weights.begin(), r.weights.end(), [](double w) { return w >= 0.3; }));
+}
+
+/// From the poses as they are. A loop that closes after hundreds of metres looks wrong from there,
+/// however right it is: where loops would lose their weight, all are followed first, and the poses
+/// that are found so are kept if more of the loops are believed there.
+OptimizeResult optimise(hyselam_pose_graph::PoseGraph graph, const SlamParams& params) {
+  OptimizeParams p;
+  p.start = GraphStart::kGiven;
+  p.dcs_phi = params.dcs_phi;
+  p.robust = params.loops == SlamLoops::kThesis ? GraphRobust::kNone : GraphRobust::kDcs;
+  OptimizeResult result = GraphOptimizer(graph).optimize(p);
+  if (p.robust == GraphRobust::kNone || believed(result) == graph.edges.size()) return result;
+  OptimizeParams all = p;
+  all.start = GraphStart::kChordal;
+  all.robust = GraphRobust::kNone;
+  graph.poses = GraphOptimizer(graph).optimize(all).poses;
+  OptimizeResult other = GraphOptimizer(std::move(graph)).optimize(p);
+  return believed(other) > believed(result) ? other : result;
+}
+
+}  // namespace
+
 SlamJobResult runJob(const SlamJob& job) {
   SlamJobResult result;
   for (const LoopTask& task : job.tasks) {
@@ -354,14 +387,7 @@ SlamJobResult runJob(const SlamJob& job) {
     asked.new_stretch.clear();
     result.tasks.push_back(std::move(asked));
   }
-  if (job.graph) {
-    hyselam_pose_graph::OptimizeParams p;
-    p.start = hyselam_pose_graph::GraphStart::kGiven;
-    p.robust = job.params.loops == SlamLoops::kThesis ? hyselam_pose_graph::GraphRobust::kNone
-                                                      : hyselam_pose_graph::GraphRobust::kDcs;
-    p.dcs_phi = job.params.dcs_phi;
-    result.optimised = hyselam_pose_graph::GraphOptimizer(*job.graph).optimize(p);
-  }
+  if (job.graph) result.optimised = optimise(*job.graph, job.params);
   return result;
 }
 

@@ -42,7 +42,8 @@ inline geometry_msgs::Point at(const hyselam::Pose2& pose, double z) {
   return p;
 }
 
-inline visualization_msgs::Marker marker(const std_msgs::Header& header, const char* name, int type, double width) {
+inline visualization_msgs::Marker marker(const std_msgs::Header& header, const char* name, int type,
+                                         double width) {
   visualization_msgs::Marker m;
   m.header = header;
   m.ns = name;

@@ -42,28 +42,28 @@ void addLine(Marker* m, const hyselam::Pose2& a, const hyselam::Pose2& b, double
 
 }  // namespace
 
-hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const ObservationStore& observations,
-                                double step, const std_msgs::Header& header) {
+hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header& header) {
   hyselam_msgs::RegionGraph msg;
   msg.header = header;
   for (const RegionNode& node : graph.nodes) {
     hyselam_msgs::RegionNode n;
     n.id = static_cast<std::uint32_t>(msg.nodes.size());
-    n.semantic_class = static_cast<std::uint8_t>(indexOf(node.region.semantic_class));
-    n.class_name = nameOf(node.region.semantic_class);
-    n.confidence = static_cast<float>(node.region.confidence);
+    n.semantic_class = static_cast<std::uint8_t>(indexOf(node.semantic_class));
+    n.class_name = nameOf(node.semantic_class);
+    n.confidence = static_cast<float>(node.confidence);
     n.run = node.run;
     n.pose = pose2d(node.pose);
-    n.length = static_cast<float>(step * (node.region.last - node.region.first + 1));
-    n.stamp_begin = hyselam::toRosTime(observations.stamp(node.region.first));
-    n.stamp_end = hyselam::toRosTime(observations.stamp(node.region.last));
+    n.length = static_cast<float>(node.length);
+    n.stamp_begin = hyselam::toRosTime(node.stamp_begin);
+    n.stamp_end = hyselam::toRosTime(node.stamp_end);
     msg.nodes.push_back(n);
   }
-  for (const RegionLink& link : graph.links) {
+  for (const RegionEdge& edge : graph.edges) {
     hyselam_msgs::RegionEdge e;
-    e.a = static_cast<std::uint32_t>(link.a);
-    e.b = static_cast<std::uint32_t>(link.b);
-    e.kind = link.loop ? hyselam_msgs::RegionEdge::LOOP : hyselam_msgs::RegionEdge::WAY;
+    e.a = edge.a;
+    e.b = edge.b;
+    e.kind = edge.kind == RegionEdge::Kind::kLoop ? hyselam_msgs::RegionEdge::LOOP
+                                                  : hyselam_msgs::RegionEdge::WAY;
     msg.edges.push_back(e);
   }
   return msg;
@@ -129,22 +129,23 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   for (const SlamLoop& l : loops)
     addLine(&lines, keyframes[static_cast<std::size_t>(l.older)].pose,
             keyframes[static_cast<std::size_t>(l.newer)].pose, 0.1,
-            l.weight < 0.5                      ? colour(0.9, 0.1, 0.1)
+            l.weight < 0.5                   ? colour(0.9, 0.1, 0.1)
             : l.source == LoopSource::kNgram ? colour(0.85, 0.1, 0.75)
-                                                : colour(0.1, 0.65, 0.25));
+                                             : colour(0.1, 0.65, 0.25));
   add(std::move(lines));
 
   Marker links = marker(header, "region_links", Marker::LINE_LIST, 0.08);
-  for (const RegionLink& link : graph.links)
+  for (const RegionEdge& link : graph.edges)
     addLine(&links, graph.nodes[link.a].pose, graph.nodes[link.b].pose, 1.0,
-            link.loop ? colour(0.85, 0.1, 0.75, 0.6) : colour(0.25, 0.25, 0.25, 0.6));
+            link.kind == RegionEdge::Kind::kLoop ? colour(0.85, 0.1, 0.75, 0.6)
+                                                 : colour(0.25, 0.25, 0.25, 0.6));
   add(std::move(links));
 
   Marker balls = marker(header, "regions", Marker::SPHERE_LIST, 0.6);
   balls.scale.y = balls.scale.z = 0.6;
   for (const RegionNode& node : graph.nodes) {
     balls.points.push_back(at(node.pose, 1.0));
-    balls.colors.push_back(colourOf(node.region.semantic_class));
+    balls.colors.push_back(colourOf(node.semantic_class));
   }
   add(std::move(balls));
 
@@ -153,7 +154,7 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   for (const RegionNode& node : graph.nodes) {
     name.id = static_cast<int>(&node - graph.nodes.data());
     name.pose.position = at(node.pose * hyselam::Pose2{0.0, 0.6, 0.0}, 1.3);
-    name.text = nameOf(node.region.semantic_class);
+    name.text = nameOf(node.semantic_class);
     array.markers.push_back(name);
   }
   return array;

@@ -6,8 +6,8 @@
 
 namespace ngram_slam {
 
-using hyselam::ParamLoader;
 using hyselam::ParameterError;
+using hyselam::ParamLoader;
 using hyselam::Range;
 
 namespace {

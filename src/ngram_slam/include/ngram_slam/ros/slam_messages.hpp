@@ -14,9 +14,8 @@
 
 namespace ngram_slam {
 
-/// @param step way between observations [m]. @param header map frame.
-hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const ObservationStore& observations,
-                                double step, const std_msgs::Header& header);
+/// @param header map frame.
+hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header& header);
 
 /// The keyframes of the newest run.
 nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msgs::Header& header);

@@ -18,12 +18,12 @@ struct SlamServerParams {
   SlamParams slam;
   SemanticParams semantic;
   hyselam::OccupancyMapperParameters map;
-  double map_update_interval = 2.0;        ///< between maps [s] of the data; 0: no map is drawn
+  double map_update_interval = 2.0;  ///< between maps [s] of the data; 0: no map is drawn
   bool tf_broadcast = true;
   double transform_publish_period = 0.05;  ///< of map -> odom [s] of wall time; 0: at scans only
   double transform_tolerance = 0.1;        ///< map -> odom is dated this far into the future [s]
-  std::string state;         ///< file gone on with at the start and saved; empty: none
-  double save_period = 60.0;               ///< [s] of wall time; 0: only at the end and when asked
+  std::string state;          ///< file gone on with at the start and saved; empty: none
+  double save_period = 60.0;  ///< [s] of wall time; 0: only at the end and when asked
   double start_window = 2.0;  ///< around the pose where a run starts in a known map [m]
   double start_turn = 0.5;    ///< [rad]
   std::optional<fsd_localization::InitialPose> initial_pose;

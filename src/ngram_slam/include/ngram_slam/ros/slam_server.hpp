@@ -1,4 +1,5 @@
-// SLAM of a live robot: scans and tf in; map, map -> odom, words, loops and the topological graph out.
+// SLAM of a live robot: scans and tf in; map, map -> odom, words, loops and the topological graph
+// out.
 #pragma once
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
@@ -27,8 +28,8 @@
 namespace ngram_slam {
 
 /// Topics: in `scan`, tf, `initialpose`; out `map`, `map_metadata`, `region_graph` (latched),
-/// `words`, `word_matches`, `semantic_regions`, `path`, `slam_markers`, tf map -> odom, /diagnostics.
-/// Services: `dynamic_map`, `~save`, `~load`, `~pause`, `~resume`.
+/// `words`, `word_matches`, `semantic_regions`, `path`, `slam_markers`, tf map -> odom,
+/// /diagnostics. Services: `dynamic_map`, `~save`, `~load`, `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
 /// poses optimised on one thread, maps drawn and saved on another, services answered on a third:
@@ -73,7 +74,6 @@ class SlamServer {
   bool onMap(nav_msgs::GetMap::Response& out);
   void optimise();
   void draw();
-  void drawOnce();
   std::string save(const std::string& path);
   void saveNow(const char* when);
   std::string pathOr(const std::string& given) const;

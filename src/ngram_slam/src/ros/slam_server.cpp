@@ -1,0 +1,533 @@
+#include "ngram_slam/ros/slam_server.hpp"
+
+#include <hyselam_msgs/RegionGraph.h>
+#include <hyselam_msgs/SemanticRegionArray.h>
+#include <hyselam_msgs/WordArray.h>
+#include <hyselam_msgs/WordMatchArray.h>
+#include <nav_msgs/Path.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "fsd_localization/ros/initial_pose.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/server_setup.hpp"
+#include "ngram_slam/region_graph.hpp"
+#include "ngram_slam/ros/conversions.hpp"
+#include "ngram_slam/ros/slam_messages.hpp"
+#include "ngram_slam/slam_state_io.hpp"
+
+namespace ngram_slam {
+
+using hyselam::addRemark;
+using hyselam::addValue;
+using hyselam::Pose2;
+using Lock = std::unique_lock<std::mutex>;
+using Status = diagnostic_msgs::DiagnosticStatus;
+
+namespace {
+
+constexpr std::uint32_t kQueue = 1000;
+constexpr double kLookEvery = 0.1;  // [s] of the drawer, for savings
+
+bool exists(const std::string& path) {
+  struct stat info {};
+  return ::stat(path.c_str(), &info) == 0;
+}
+
+double millisecondsSince(const ros::WallTime& begin) {
+  return 1e3 * (ros::WallTime::now() - begin).toSec();
+}
+
+/// Where the robot is when its odometry went on from elsewhere: beside the keyframe of the last run
+/// that was taken nearest by odometry. A bag that begins again and a clock that was set back are
+/// told right alike.
+Pose2 placeByOdometry(const std::vector<SlamKeyframe>& keyframes, const Pose2& odometry) {
+  const SlamKeyframe* nearest = &keyframes.back();
+  for (const SlamKeyframe& k : keyframes)
+    if (k.run == keyframes.back().run &&
+        distance(k.odometry, odometry) < distance(nearest->odometry, odometry))
+      nearest = &k;
+  return nearest->pose * between(nearest->odometry, odometry);
+}
+
+}  // namespace
+
+SlamServer::Mapping::Mapping(const SlamServerParams& params, SlamState state)
+    : engine(params.slam, std::move(state)), segmenter(params.semantic) {
+  segment();
+  told_words = engine.recogniser().text().words();
+  told_matches = engine.matches().size();
+  requantisations = engine.recogniser().requantisations();
+  saved_scans = engine.counters().scans;
+}
+
+std::vector<SemanticRegion> SlamServer::Mapping::segment() {
+  const ObservationStore& observations = engine.recogniser().observations();
+  std::vector<SemanticRegion> fresh;
+  const auto take = [&](const std::vector<SemanticRegion>& found) {
+    fresh.insert(fresh.end(), found.begin(), found.end());
+  };
+  for (; segmented < observations.size(); ++segmented) {
+    if (segmented > 0 && observations.runOf(segmented) != observations.runOf(segmented - 1))
+      take(segmenter.finish());
+    take(segmenter.add(observations[segmented]));
+  }
+  regions.insert(regions.end(), fresh.begin(), fresh.end());
+  return fresh;
+}
+
+SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
+    : who_(hyselam::logName(private_nh)),
+      params_(hyselam::loadAndTell(private_nh, loadSlamParams)),
+      pending_(params_.initial_pose),
+      map_rate_(params_.map_update_interval > 0.0 ? 1.0 / params_.map_update_interval : -1.0) {
+  SlamState state;
+  if (!params_.state.empty() && exists(params_.state)) {
+    state = SlamStateFile::load(params_.state, params_.slam.surface);
+    ROS_INFO_STREAM(who_ << " goes on with " << params_.state << ": " << state.keyframes.size()
+                         << " keyframes, " << state.loops.size() << " loops");
+  }
+  mapping_ = std::make_unique<Mapping>(params_, std::move(state));
+  if (!mapping_->engine.keyframes().empty()) next_ = Next::kAfterPause;
+  map_due_ = !mapping_->engine.keyframes().empty();
+
+  map_publisher_ = nh.advertise<nav_msgs::OccupancyGrid>("map", 1, true);
+  metadata_publisher_ = nh.advertise<nav_msgs::MapMetaData>("map_metadata", 1, true);
+  word_publisher_ = nh.advertise<hyselam_msgs::WordArray>("words", kQueue);
+  match_publisher_ = nh.advertise<hyselam_msgs::WordMatchArray>("word_matches", kQueue);
+  region_publisher_ = nh.advertise<hyselam_msgs::SemanticRegionArray>("semantic_regions", kQueue);
+  graph_publisher_ = nh.advertise<hyselam_msgs::RegionGraph>("region_graph", 1, true);
+  path_publisher_ = nh.advertise<nav_msgs::Path>("path", 1, true);
+  marker_publisher_ = nh.advertise<visualization_msgs::MarkerArray>("slam_markers", 1, true);
+
+  ros::NodeHandle service_nh(nh), private_service_nh(private_nh);
+  service_nh.setCallbackQueue(&service_queue_);
+  private_service_nh.setCallbackQueue(&service_queue_);
+  save_service_ = private_service_nh.advertiseService("save", &SlamServer::onSave, this);
+  load_service_ = private_service_nh.advertiseService("load", &SlamServer::onLoad, this);
+  using std_srvs::Trigger;
+  const auto switchTo = [&](const char* name, bool pause) {
+    return private_service_nh.advertiseService<Trigger::Request, Trigger::Response>(
+        name,
+        [this, pause](Trigger::Request&, Trigger::Response& out) { return onPause(pause, out); });
+  };
+  pause_service_ = switchTo("pause", true);
+  resume_service_ = switchTo("resume", false);
+  using nav_msgs::GetMap;
+  map_service_ = service_nh.advertiseService<GetMap::Request, GetMap::Response>(
+      "dynamic_map", [this](GetMap::Request&, GetMap::Response& out) { return onMap(out); });
+
+  input_ = std::make_unique<fsd_localization::ScanInput>(
+      nh, params_.input, who_,
+      [this](const hyselam::LaserScan& scan, const Pose2& base_in_odom, const ros::Time& stamp) {
+        return onScan(scan, base_in_odom, stamp);
+      },
+      [this] { onTimeBack(); });
+  initial_pose_subscriber_ = nh.subscribe("initialpose", 2, &SlamServer::onInitialPose, this);
+  if (params_.tf_broadcast && params_.transform_publish_period > 0.0)
+    tf_timer_ = nh.createWallTimer(ros::WallDuration(params_.transform_publish_period),
+                                   [this](const ros::WallTimerEvent&) {
+                                     if (!told_tf_.isZero()) broadcast(ros::Time::now());
+                                   });
+  diagnostics_ = std::make_unique<hyselam::Diagnostics>(
+      nh, private_nh.getNamespace().substr(1) + ": SLAM", params_.diagnostic_period,
+      [this](Status& status) { report(status); });
+  service_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &service_queue_);
+  service_spinner_->start();
+  optimiser_ = std::thread([this] { optimise(); });
+  drawer_ = std::thread([this] { draw(); });
+}
+
+SlamServer::~SlamServer() {
+  service_spinner_->stop();
+  {
+    const Lock lock(mutex_);
+    ending_ = true;
+  }
+  work_.notify_all();
+  optimiser_.join();
+  drawer_.join();
+  saveNow("at the end");
+}
+
+// ---- scans
+
+bool SlamServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odom,
+                        const ros::Time& stamp) {
+  const ros::WallTime begin = ros::WallTime::now();
+  {
+    const Lock lock(mutex_);
+    if (paused_) {
+      ++paused_scans_;
+      return false;
+    }
+    SlamEngine& engine = mapping_->engine;
+    try {
+      if (pending_ || next_ != Next::kGoOn) startRun(base_in_odom);
+      const SlamUpdate update = engine.add(scan, base_in_odom);
+      if (update.leap) ROS_WARN_STREAM(who_ << " the odometry leapt; the robot is taken to stand");
+      weak_ += update.weak ? 1 : 0;
+      mapping_->localised = true;
+      last_odometry_ = base_in_odom;
+      stamp_ = stamp;
+      tell();
+    } catch (const hyselam::InputError&) {
+      throw;  // a refused scan
+    } catch (const std::exception& e) {
+      throw hyselam::InputError("scan", std::to_string(scan.stamp) + " s", e.what());
+    }
+    if (params_.map_update_interval > 0.0 && map_rate_.pass(stamp)) map_due_ = true;
+    scan_ms_ = millisecondsSince(begin);
+    worst_scan_ms_ = std::max(worst_scan_ms_, scan_ms_);
+  }
+  work_.notify_all();
+  if (params_.tf_broadcast) broadcast(stamp);
+  return true;
+}
+
+/// The next scan begins a run: where, is known more or less. With mutex_ held.
+void SlamServer::startRun(const Pose2& base_in_odom) {
+  SlamEngine& engine = mapping_->engine;
+  const bool fresh = engine.keyframes().empty();
+  Pose2 at = engine.pose();
+  double window = params_.start_window, turn = params_.start_turn;
+  if (pending_) {
+    at = pending_->base_in_map;
+    window = std::max(window, 2.0 * std::max(pending_->stddev.x, pending_->stddev.y));
+    turn = std::min(hyselam::kPi, std::max(turn, 2.0 * pending_->stddev.theta));
+  } else if (!fresh && next_ == Next::kAfterJump) {
+    at = placeByOdometry(engine.keyframes(), base_in_odom);
+  } else if (!fresh && mapping_->localised) {  // paused: it may have been driven meanwhile
+    at = engine.odomInMap() * base_in_odom;
+    window = std::max(window, 0.1 * distance(last_odometry_, base_in_odom));
+  }
+  if (!fresh || pending_) {
+    ROS_INFO_STREAM(who_ << " a run begins at x " << at.x << " m, y " << at.y << " m, "
+                         << hyselam::degrees(at.theta) << " deg, searched within " << window
+                         << " m");
+    engine.startRun(at, window, turn);
+  }
+  pending_.reset();
+  next_ = Next::kGoOn;
+}
+
+void SlamServer::onTimeBack() {
+  const Lock lock(mutex_);
+  mapping_->engine.endRun();
+  next_ = Next::kAfterJump;
+  told_tf_ = ros::Time();
+}
+
+void SlamServer::onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
+  fsd_localization::InitialPose pose;
+  try {
+    pose = fsd_localization::fromMsg(*msg, params_.global_frame_id,
+                                     initial_pose_subscriber_.getTopic());
+  } catch (const hyselam::InputError& e) {
+    ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
+    return;
+  }
+  // The robot may have moved on while a person pointed at the map.
+  if (!msg->header.stamp.isZero())
+    if (const auto motion = input_->motionSince(msg->header.stamp))
+      pose.base_in_map = pose.base_in_map * *motion;
+  const Lock lock(mutex_);
+  pending_ = pose;
+}
+
+void SlamServer::broadcast(const ros::Time& stamp) {
+  const ros::Time dated = stamp + ros::Duration(params_.transform_tolerance);
+  geometry_msgs::TransformStamped transform;
+  {
+    const Lock lock(mutex_);
+    if (!mapping_->localised || dated <= told_tf_) return;
+    told_tf_ = dated;
+    transform.transform = hyselam::toTransformMsg(mapping_->engine.odomInMap());
+  }
+  transform.header.stamp = dated;
+  transform.header.frame_id = params_.global_frame_id;
+  transform.child_frame_id = params_.input.odom_frame_id;
+  tf_.sendTransform(transform);
+}
+
+std_msgs::Header SlamServer::header(const std::string& frame) const {
+  std_msgs::Header h;
+  h.stamp = stamp_;
+  h.frame_id = frame;
+  return h;
+}
+
+/// Words, matches and regions that are new. With mutex_ held.
+void SlamServer::tell() {
+  Mapping& m = *mapping_;
+  const Recogniser& recogniser = m.engine.recogniser();
+  const bool anew = recogniser.requantisations() != m.requantisations;
+  m.requantisations = recogniser.requantisations();
+  if (anew) m.told_words = m.told_matches = 0;
+  m.told_matches = std::min(m.told_matches, m.engine.matches().size());
+  const std_msgs::Header in_odom = header(params_.input.odom_frame_id);
+  const std::size_t words = recogniser.text().words();
+  if (words > m.told_words || anew) {
+    hyselam_msgs::WordArray msg;
+    msg.header = in_odom;
+    msg.anew = anew;
+    for (; m.told_words < words; ++m.told_words)
+      msg.words.push_back(wordMsg(recogniser, static_cast<WordIndex>(m.told_words)));
+    word_publisher_.publish(msg);
+    hyselam_msgs::WordMatchArray matches;
+    matches.header = in_odom;
+    matches.anew = anew;
+    for (; m.told_matches < m.engine.matches().size(); ++m.told_matches)
+      matches.matches.push_back(matchMsg(recogniser, m.engine.matches()[m.told_matches]));
+    match_publisher_.publish(matches);
+  }
+  const std::vector<SemanticRegion> regions = m.segment();
+  if (regions.empty()) return;
+  hyselam_msgs::SemanticRegionArray msg;
+  msg.header = in_odom;
+  for (const SemanticRegion& region : regions)
+    msg.regions.push_back(
+        regionMsg(recogniser.observations(), region, params_.slam.observations.step));
+  region_publisher_.publish(msg);
+}
+
+// ---- loops and optimisation
+
+void SlamServer::optimise() {
+  Lock lock(mutex_);
+  while (!ending_) {
+    const auto job = mapping_->engine.takeJob();
+    if (!job) {
+      work_.wait(lock);
+      continue;
+    }
+    const long epoch = epoch_;
+    lock.unlock();
+    const ros::WallTime begin = ros::WallTime::now();
+    SlamJobResult result;
+    std::string error;
+    try {
+      result = runJob(*job);
+    } catch (const std::exception& e) {
+      error = e.what();
+      ROS_ERROR_STREAM(who_ << " loops are not taken in: " << error);
+    }
+    lock.lock();
+    if (epoch != epoch_) continue;
+    try {
+      mapping_->engine.apply(result);
+    } catch (const std::exception& e) {
+      error = e.what();
+      ROS_ERROR_STREAM(who_ << " loops are not taken in: " << error);
+    }
+    job_error_ = error;
+    job_ms_ = millisecondsSince(begin);
+  }
+}
+
+// ---- the map
+
+void SlamServer::draw() {
+  KeyframeMapper mapper(params_.map);
+  long epoch = -1;
+  ros::WallTime saved = ros::WallTime::now();
+  while (true) {
+    std::vector<SlamKeyframe> keyframes;
+    std::vector<SlamLoop> loops;
+    RegionGraph graph;
+    std_msgs::Header in_map;
+    long revision = 0;
+    {
+      Lock lock(mutex_);
+      work_.wait_for(lock, std::chrono::duration<double>(kLookEvery),
+                     [this] { return map_due_ || ending_; });
+      if (ending_) return;
+      if (map_due_) {
+        map_due_ = false;
+        const SlamEngine& engine = mapping_->engine;
+        keyframes = engine.keyframes();
+        loops = engine.loops();
+        revision = engine.revision();
+        graph = regionGraph(engine, mapping_->regions);
+        in_map = header(params_.global_frame_id);
+        if (epoch != epoch_) mapper = KeyframeMapper(params_.map);
+        epoch = epoch_;
+      }
+    }
+    if (!keyframes.empty()) {
+      const ros::WallTime begin = ros::WallTime::now();
+      std::string error;
+      try {
+        mapper.update(keyframes, revision);
+      } catch (const std::exception& e) {
+        error = e.what();
+        ROS_ERROR_STREAM_THROTTLE(10.0, who_ << " the map is not complete: " << error);
+      }
+      nav_msgs::OccupancyGrid map = hyselam::toMsg(mapper.grid(), in_map.frame_id, in_map.stamp);
+      map.info.map_load_time = in_map.stamp;
+      map_publisher_.publish(map);
+      metadata_publisher_.publish(map.info);
+      {
+        const Lock lock(map_mutex_);
+        map_ = std::move(map);
+      }
+      graph_publisher_.publish(toMsg(graph, in_map));
+      path_publisher_.publish(pathMsg(keyframes, in_map));
+      marker_publisher_.publish(slamMarkers(keyframes, loops, graph, in_map));
+      const Lock lock(mutex_);
+      map_error_ = error;
+      map_ms_ = millisecondsSince(begin);
+    }
+    if (!params_.state.empty() && params_.save_period > 0.0 &&
+        (ros::WallTime::now() - saved).toSec() >= params_.save_period) {
+      saveNow("now and then");
+      saved = ros::WallTime::now();
+    }
+  }
+}
+
+bool SlamServer::onMap(nav_msgs::GetMap::Response& out) {
+  const Lock lock(map_mutex_);
+  if (map_) out.map = *map_;
+  return map_.has_value();
+}
+
+// ---- states
+
+/// @returns what was written. @throws hyselam::InputError
+std::string SlamServer::save(const std::string& path) {
+  const Lock saving(save_mutex_);
+  SlamState state;
+  long epoch = 0;
+  {
+    const Lock lock(mutex_);
+    state = mapping_->engine.state();
+    epoch = epoch_;
+  }
+  const ros::WallTime begin = ros::WallTime::now();
+  SlamStateFile::save(path, state);
+  const Lock lock(mutex_);
+  save_ms_ = millisecondsSince(begin);
+  if (epoch == epoch_ && path == params_.state) mapping_->saved_scans = state.counters.scans;
+  return path + ": " + std::to_string(state.keyframes.size()) + " keyframes, " +
+         std::to_string(state.loops.size()) + " loops";
+}
+
+void SlamServer::saveNow(const char* when) {
+  if (params_.state.empty()) return;
+  {
+    const Lock lock(mutex_);
+    if (mapping_->saved_scans == mapping_->engine.counters().scans) return;
+  }
+  std::string error;
+  try {
+    save(params_.state);
+  } catch (const std::exception& e) {
+    error = e.what();
+    ROS_ERROR_STREAM(who_ << " not saved (" << when << "): " << error);
+  }
+  const Lock lock(mutex_);
+  save_error_ = error;
+}
+
+std::string SlamServer::pathOr(const std::string& given) const {
+  if (given.empty() && params_.state.empty())
+    throw hyselam::InputError("path", "", "none given, and the parameter state is empty");
+  return given.empty() ? params_.state : given;
+}
+
+bool SlamServer::onSave(hyselam_msgs::StatePath::Request& request,
+                        hyselam_msgs::StatePath::Response& out) {
+  try {
+    out.message = save(pathOr(request.path));
+    out.success = true;
+  } catch (const std::exception& e) {
+    out.success = false;
+    out.message = e.what();
+    ROS_ERROR_STREAM(who_ << " not saved: " << e.what());
+  }
+  return true;
+}
+
+bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
+                        hyselam_msgs::StatePath::Response& out) {
+  try {
+    const std::string path = pathOr(request.path);
+    auto mapping =
+        std::make_unique<Mapping>(params_, SlamStateFile::load(path, params_.slam.surface));
+    out.message = path + ": " + std::to_string(mapping->engine.keyframes().size()) +
+                  " keyframes, " + std::to_string(mapping->engine.loops().size()) + " loops";
+    {
+      const Lock lock(mutex_);
+      std::swap(mapping_, mapping);
+      ++epoch_;
+      next_ = Next::kAfterPause;
+      pending_.reset();
+      map_due_ = true;
+    }
+    work_.notify_all();
+    out.success = true;
+    ROS_INFO_STREAM(who_ << " loaded " << out.message);
+  } catch (const std::exception& e) {
+    out.success = false;
+    out.message = e.what();
+    ROS_ERROR_STREAM(who_ << " not loaded: " << e.what());
+  }
+  return true;
+}
+
+bool SlamServer::onPause(bool pause, std_srvs::Trigger::Response& out) {
+  const Lock lock(mutex_);
+  out.success = true;
+  out.message = paused_ == pause ? (pause ? "paused already" : "was not paused")
+                                 : (pause ? "paused" : "goes on");
+  if (paused_ && !pause && next_ == Next::kGoOn && mapping_->localised) next_ = Next::kAfterPause;
+  if (paused_ != pause) ROS_INFO_STREAM(who_ << ' ' << out.message);
+  paused_ = pause;
+  return true;
+}
+
+// ---- diagnostics
+
+void SlamServer::report(Status& status) {
+  input_->checkClock();
+  {
+    const Lock lock(mutex_);
+    const SlamEngine& engine = mapping_->engine;
+    const SlamCounters& c = engine.counters();
+    addRemark(status, Status::OK,
+              std::to_string(engine.keyframes().size()) + " keyframes, " +
+                  std::to_string(engine.loops().size()) + " loops");
+    if (paused_) addRemark(status, Status::WARN, "paused");
+    if (!job_error_.empty()) addRemark(status, Status::ERROR, "optimisation: " + job_error_);
+    if (!map_error_.empty()) addRemark(status, Status::ERROR, "map: " + map_error_);
+    if (!save_error_.empty()) addRemark(status, Status::ERROR, "not saved: " + save_error_);
+    addValue(status, "paused", paused_);
+    addValue(status, "scans while paused", paused_scans_);
+    addValue(status, "publishing tf", params_.tf_broadcast && mapping_->localised);
+    addValue(status, "runs", engine.keyframes().empty() ? 0 : engine.keyframes().back().run + 1);
+    addValue(status, "keyframes", engine.keyframes().size());
+    addValue(status, "loops", engine.loops().size());
+    addValue(status, "loops by words", c.words.accepted);
+    addValue(status, "matches of words", engine.matches().size());
+    addValue(status, "regions", mapping_->regions.size());
+    addValue(status, "optimisations", c.optimisations);
+    addValue(status, "scans that hardly matched", weak_);
+    addValue(status, "odometry leapt", c.leaps);
+    addValue(status, "last scan [ms]", scan_ms_);
+    addValue(status, "slowest scan [ms]", worst_scan_ms_);
+    addValue(status, "last loops and optimisation [ms]", job_ms_);
+    addValue(status, "last map [ms]", map_ms_);
+    if (!params_.state.empty()) {
+      addValue(status, "state", params_.state);
+      addValue(status, "scans not saved", c.scans - mapping_->saved_scans);
+      addValue(status, "last saving [ms]", save_ms_);
+    }
+  }
+  input_->report(status);
+}
+
+}  // namespace ngram_slam

@@ -1,0 +1,331 @@
+// slam_offline: a recorded run through the same SLAM as the nodelet, without a master.
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/occupancy_mapper.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+#include "hyselam_pose_graph/g2o_file.hpp"
+#include "ngram_slam/semantic_regions_io.hpp"
+#include "ngram_slam/slam_score.hpp"
+#include "slam_report.hpp"
+
+namespace {
+
+using namespace ngram_slam;  // NOLINT: a program, not a header
+using hyselam::Pose2;
+
+struct Options {
+  std::string bag, carmen, out, reference, loops = "all";
+  int levels = 3;
+  std::uint64_t seed = 1;
+  double noise = 0.0, resolution = 0.05;
+  bool side_by_side = false, raw_odometry = false;
+};
+
+double cpuSeconds() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(use.ru_utime) + seconds(use.ru_stime);
+}
+
+double peakMegabytes() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return static_cast<double>(use.ru_maxrss) / 1024.0;
+}
+
+hyselam::RobotLog readLog(const Options& o) {
+  if (o.bag.empty() == o.carmen.empty())
+    throw hyselam::InputError("slam_offline", "", "needs either --bag or --carmen");
+  return o.bag.empty() ? hyselam::readCarmenLog(o.carmen) : hyselam::readBag(o.bag);
+}
+
+/// Adds errors to each motion: deviations of `factor` times 1 % of the way in both directions, and
+/// of 1 % of the turn and 0.01 rad a metre in heading.
+void spoil(std::vector<hyselam::StampedPose2>* odometry, double factor, std::uint64_t seed) {
+  hyselam::Rng rng(seed);
+  Pose2 true_last, spoilt;
+  for (std::size_t i = 0; i < odometry->size(); ++i) {
+    Pose2& pose = (*odometry)[i].pose;
+    if (i == 0) {
+      true_last = spoilt = pose;
+      continue;
+    }
+    Pose2 step = between(true_last, pose);
+    true_last = pose;
+    const double way = std::hypot(step.x, step.y), turn = std::abs(step.theta);
+    // White along the way: variances of steps add up to that of a metre.
+    const double share = 0.01 * factor * std::sqrt(way);
+    step.x += rng.gaussian(0.0, share);
+    step.y += rng.gaussian(0.0, share);
+    step.theta += rng.gaussian(0.0, share + 0.01 * factor * turn);
+    spoilt = spoilt * step;
+    pose = spoilt;
+  }
+}
+
+SlamLoops loopsOf(const std::string& name) {
+  for (const SlamLoops l : {SlamLoops::kNone, SlamLoops::kProximity, SlamLoops::kNgrams,
+                            SlamLoops::kAll, SlamLoops::kThesis})
+    if (name == nameOf(l)) return l;
+  throw hyselam::ParameterError("loops", name, "none, proximity, ngrams, all or thesis");
+}
+
+struct Run {
+  std::unique_ptr<SlamEngine> engine;
+  std::size_t without_odometry = 0, refused = 0;
+  double cpu = 0.0;
+};
+
+Run runSlam(const hyselam::RobotLog& log, const SlamParams& params, const std::string& label) {
+  const double begin = cpuSeconds();
+  Run run;
+  run.engine = std::make_unique<SlamEngine>(params);
+  hyselam::Progress progress(label, log.scans.size());
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    progress.update(i + 1);
+    const auto odometry = hyselam::poseAt(log.odometry, log.scans[i].stamp, 0.2);
+    if (!odometry) {
+      ++run.without_odometry;
+      continue;
+    }
+    try {
+      run.engine->add(log.scans[i], *odometry);
+    } catch (const hyselam::InputError&) {
+      ++run.refused;
+    }
+    while (const auto job = run.engine->takeJob()) run.engine->apply(runJob(*job));
+  }
+  run.engine->endRun();
+  while (const auto job = run.engine->takeLastJob()) run.engine->apply(runJob(*job));
+  run.cpu = cpuSeconds() - begin;
+  return run;
+}
+
+hyselam::OccupancyGrid mapOf(const SlamEngine& engine, double resolution) {
+  hyselam::OccupancyMapperParameters p;
+  p.resolution = resolution;
+  hyselam::OccupancyMapper mapper(p);
+  for (const SlamKeyframe& k : engine.keyframes()) mapper.insert(k.pose, *k.scan);
+  return mapper.grid();
+}
+
+void writeWords(const std::string& path, const Recogniser& r) {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
+    out << std::setprecision(15)
+        << "word,level,first,last,stamp_begin,stamp_end,class,size,angle\n";
+    const Text& text = r.text();
+    for (WordIndex i = 0; i < text.words(); ++i) {
+      const Word w = text.word(i);
+      out << i << ',' << w.level << ',' << w.first << ',' << w.last << ','
+          << r.observations().stamp(text.observationBegin(i)) << ','
+          << r.observations().stamp(text.observationEnd(i) - 1) << ',' << w.syllables.density_class
+          << ',' << w.syllables.size << ',' << std::setprecision(6) << w.syllables.angle
+          << std::setprecision(15) << '\n';
+    }
+  });
+}
+
+/// x, y, theta: where the newer observation was made, in the frame of the older one; verified ones
+/// by the scans, the others as words have it: the same place.
+void writeMatches(const std::string& path, const std::vector<SlamMatch>& matches) {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
+    out << "stamp_a,stamp_b,level,n,direction,x,y,theta,verified,probability,tried,in_graph\n";
+    for (const SlamMatch& m : matches)
+      out << std::setprecision(15) << m.stamp_newer << ',' << m.stamp_older << ','
+          << std::setprecision(6) << m.level << ',' << m.n << ','
+          << (m.direction == Direction::kReverse ? "reverse" : "same") << ',' << m.measured.x << ','
+          << m.measured.y << ',' << m.measured.theta << ',' << (m.verified ? 1 : 0) << ','
+          << m.probability << ',' << (m.tried ? 1 : 0) << ',' << (m.accepted ? 1 : 0) << '\n';
+  });
+}
+
+void writeSemanticRegions(const std::string& path, const SlamEngine& engine) {
+  std::vector<SemanticRegion> regions;
+  for (const RegionNode& n : regionGraph(engine).nodes) {
+    SemanticRegion r;
+    r.first = n.first;
+    r.last = n.last;
+    r.semantic_class = n.semantic_class;
+    r.confidence = n.confidence;
+    regions.push_back(r);
+  }
+  const ObservationStore& observations = engine.recogniser().observations();
+  std::vector<double> stamps;
+  for (std::uint32_t i = 0; i < observations.size(); ++i) stamps.push_back(observations.stamp(i));
+  writeRegions(path, regions, stamps);
+}
+
+nlohmann::json toJson(const SlamCounters::Loops& l) {
+  return {{"tried", l.tried}, {"verified", l.verified}, {"accepted", l.accepted}};
+}
+
+nlohmann::json errorOf(const SlamEngine& engine,
+                       const std::vector<hyselam::StampedPose2>& reference) {
+  const TrajectoryError e = trajectoryError(engine.trajectory(), reference);
+  std::size_t doubted = 0, near = 0, far = 0, words = 0, matches = 0;
+  for (const SlamLoop& l : engine.loops()) {
+    doubted += l.weight < 0.3 ? 1U : 0U;
+    if (!loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
+                   engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured, reference)
+             .isFalse())
+      continue;
+    ++(l.source == LoopSource::kNgram ? words : l.far ? far : near);
+  }
+  for (const SlamMatch& m : engine.matches())
+    if (m.verified && loopError(engine.keyframes()[static_cast<std::size_t>(m.keyframe_older)],
+                                engine.keyframes()[static_cast<std::size_t>(m.keyframe_newer)],
+                                m.measured, reference)
+                          .isFalse())
+      ++matches;
+  return {{"poses", e.poses},
+          {"mean_m", e.mean},
+          {"rms_m", e.rms},
+          {"largest_m", e.largest},
+          {"mean_deg", hyselam::degrees(e.mean_turn)},
+          {"mean_of_1_m_m", e.mean_step},
+          {"mean_of_1_m_deg", hyselam::degrees(e.mean_step_turn)},
+          {"false_loops_near", near},
+          {"false_loops_far", far},
+          {"false_loops_by_words", words},
+          {"false_verified_matches", matches},
+          {"loops_without_weight", doubted}};
+}
+
+nlohmann::json summaryOf(const Run& run, double log_seconds) {
+  const SlamEngine& e = *run.engine;
+  const SlamCounters& c = e.counters();
+  const auto& keyframes = e.keyframes();
+  nlohmann::json j = {{"scans", c.scans},
+                      {"scans_without_odometry", run.without_odometry},
+                      {"scans_refused", run.refused},
+                      {"keyframes", keyframes.size()},
+                      {"way_m", keyframes.empty() ? 0.0 : keyframes.back().way},
+                      {"observations", e.recogniser().observations().size()},
+                      {"words", e.recogniser().text().words()},
+                      {"matches", e.matches().size()},
+                      {"loops", e.loops().size()},
+                      {"loops_near", toJson(c.near)},
+                      {"loops_far", toJson(c.far)},
+                      {"loops_by_words", toJson(c.words)},
+                      {"optimisations", c.optimisations},
+                      {"scans_searched", c.searched},
+                      {"scans_weak", c.weak},
+                      {"odometry_leaps", c.leaps},
+                      {"log_seconds", log_seconds},
+                      {"cpu_seconds", run.cpu},
+                      {"times_real_time", run.cpu > 0.0 ? log_seconds / run.cpu : 0.0},
+                      {"peak_memory_mb", peakMegabytes()}};
+  return j;
+}
+
+nlohmann::json run(const Options& o) {
+  SlamParams params;
+  params.loops = loopsOf(o.loops);
+  params.refine_odometry = !o.raw_odometry;
+  params.words.levels = o.levels;
+  params.words.matcher.min_n.assign(static_cast<std::size_t>(std::max(0, o.levels)),
+                                    params.words.matcher.min_n.front());
+  if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
+  params.validate();
+  hyselam::RobotLog log = readLog(o);
+  const std::string name = o.bag.empty() ? o.carmen : o.bag;
+  if (o.noise > 0.0) spoil(&log.odometry, o.noise, o.seed);
+  std::vector<hyselam::StampedPose2> reference;
+  if (!o.reference.empty()) {
+    const hyselam::PoseFile file = hyselam::readPoses(o.reference);
+    reference = file.poses;
+    // Tables count scans: their times may be another clock's.
+    if (file.one_per_scan)
+      for (std::size_t i = 0; i < reference.size() && i < log.scans.size(); ++i)
+        reference[i].stamp = log.scans[i].stamp;
+  } else if (!log.ground_truth.empty()) {
+    reference = log.ground_truth;
+  }
+  std::error_code error;
+  std::filesystem::create_directories(o.out, error);
+  if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
+
+  const Run main_run = runSlam(log, params, "SLAM of " + name);
+  const SlamEngine& engine = *main_run.engine;
+  if (engine.keyframes().empty())
+    throw hyselam::InputError(name, "",
+                              "gives no map: of " + std::to_string(log.scans.size()) + " scans " +
+                                  std::to_string(main_run.without_odometry) +
+                                  " have no odometry, " + std::to_string(main_run.refused) +
+                                  " cannot be used");
+  const auto span = hyselam::timeSpan(log);
+  const double log_seconds = span ? span->end - span->begin : 0.0;
+  nlohmann::json summary = summaryOf(main_run, log_seconds);
+  summary["loops_mode"] = o.loops;
+  if (!reference.empty()) summary["errors"] = errorOf(engine, reference);
+
+  const hyselam::OccupancyGrid grid = mapOf(engine, o.resolution);
+  hyselam::writeTum(o.out + "/trajectory.tum", engine.trajectory());
+  hyselam::writeTum(o.out + "/odometry.tum", log.odometry);
+  hyselam_pose_graph::writeG2o(o.out + "/graph.g2o", engine.graph());
+  hyselam::saveMap(o.out + "/map.yaml", grid);
+  writeWords(o.out + "/words.csv", engine.recogniser());
+  writeSemanticRegions(o.out + "/regions.csv", engine);
+  writeMatches(o.out + "/matches.csv", engine.matches());
+
+  std::vector<SlamPicture> pictures{pictureOf("loops: " + o.loops, engine, grid)};
+  if (o.side_by_side)
+    for (const SlamLoops other : {SlamLoops::kNone, SlamLoops::kThesis}) {
+      if (other == params.loops) continue;
+      SlamParams p = params;
+      p.loops = other;
+      const std::string label = std::string("loops: ") + nameOf(other);
+      const Run r = runSlam(log, p, label);
+      nlohmann::json s = {{"loops", r.engine->loops().size()}, {"cpu_seconds", r.cpu}};
+      if (!reference.empty()) s.update(errorOf(*r.engine, reference));
+      hyselam::writeTum(o.out + "/trajectory_" + nameOf(other) + ".tum", r.engine->trajectory());
+      summary[std::string("side_by_side_") + nameOf(other)] = s;
+      pictures.push_back(pictureOf(label, *r.engine, mapOf(*r.engine, o.resolution)));
+    }
+  writeReport(o.out + "/report.html", name, engine, pictures, summary);
+  hyselam::writeFileAtomically(o.out + "/summary.json",
+                               [&](std::ostream& out) { out << summary.dump(2) << "\n"; });
+  std::cout << summary.dump(2) << "\n";
+  return summary;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Map, way, words and recognised places of a recorded run.", "slam_offline");
+  Options o;
+  app.option_defaults()->always_capture_default();
+  auto* bag = app.add_option("--bag", o.bag, "bag with scans and odometry");
+  auto* carmen = app.add_option("--carmen", o.carmen, "CARMEN log, plain or gzip");
+  bag->excludes(carmen);
+  app.add_option("--out", o.out, "folder for what is written")->required();
+  app.add_option("--levels", o.levels, "levels of words");
+  app.add_option("--seed", o.seed, "of the errors of --odometry-noise");
+  app.add_option("--loops", o.loops,
+                 "none, proximity, ngrams (far places by words only), all, or thesis (words "
+                 "believed as they are)");
+  app.add_option("--reference", o.reference,
+                 "poses to compare with: TUM, or a table with one pose for each scan");
+  app.add_option("--resolution", o.resolution, "of the map [m]");
+  app.add_option("--odometry-noise", o.noise,
+                 "spoil the odometry: this many per cent of way and turn, and as many "
+                 "centiradians a metre");
+  app.add_flag("--raw-odometry", o.raw_odometry, "do not refine the odometry by scans");
+  app.add_flag("--side-by-side", o.side_by_side,
+               "the same without loops and in thesis mode too, for the report");
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+}
