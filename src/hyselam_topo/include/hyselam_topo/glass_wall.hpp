@@ -82,8 +82,12 @@ class GlassWallSearch {
 /// a copy.
 void drawGlassWalls(const std::vector<GlassWall>& walls, hyselam::OccupancyGrid* grid);
 
-/// Puts the walls into the topological map as WallKind::kGlass, each into the place that it limits
-/// (by the nearest cells on its two sides; into both if they differ), unless it is there.
-void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map);
+/// Puts the walls into the topological map, as glass or as virtual walls, each into the place that
+/// it limits (by the nearest cells on its two sides; into both if they differ), unless it is there.
+void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map,
+                   WallKind kind = WallKind::kGlass);
+
+/// Whether two walls are one: their ends are within 0.3 m.
+bool sameWall(const GlassWall& a, const GlassWall& b);
 
 }  // namespace hyselam_topo

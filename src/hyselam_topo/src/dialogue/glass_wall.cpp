@@ -23,12 +23,6 @@ void require(const char* name, double value, bool good, const char* allowed) {
   if (!good) throw hyselam::ParameterError(name, value, allowed);
 }
 
-bool same(const GlassWall& a, const GlassWall& b) {
-  const double straight = std::max(distanceBetween(a.a, b.a), distanceBetween(a.b, b.b));
-  const double crossed = std::max(distanceBetween(a.a, b.b), distanceBetween(a.b, b.a));
-  return std::min(straight, crossed) <= kSame;
-}
-
 double directionOf(Side side) {
   switch (side) {
     case Side::kFront:
@@ -124,6 +118,12 @@ double GlassWall::distanceTo(Point2 point) const {
   return distanceToSegment(point, a, b);
 }
 
+bool sameWall(const GlassWall& a, const GlassWall& b) {
+  const double straight = std::max(distanceBetween(a.a, b.a), distanceBetween(a.b, b.b));
+  const double crossed = std::max(distanceBetween(a.a, b.b), distanceBetween(a.b, b.a));
+  return std::min(straight, crossed) <= kSame;
+}
+
 bool operator==(const GlassWall& a, const GlassWall& b) {
   return a.a.x == b.a.x && a.a.y == b.a.y && a.b.x == b.b.x && a.b.y == b.b.y;
 }
@@ -209,7 +209,7 @@ GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2
 
 bool GlassWallSearch::rejected(const GlassWall& wall) const {
   return std::any_of(rejected_.begin(), rejected_.end(),
-                     [&](const GlassWall& other) { return same(wall, other); });
+                     [&](const GlassWall& other) { return sameWall(wall, other); });
 }
 
 std::optional<GlassWall> GlassWallSearch::likeliest() const {
@@ -263,14 +263,15 @@ void drawGlassWalls(const std::vector<GlassWall>& walls, OccupancyGrid* grid) {
   }
 }
 
-void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map) {
+void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map,
+                   WallKind kind) {
   for (const GlassWall& glass : walls) {
     if (!(glass.length() > 0.0)) continue;
     std::vector<Id> done;
     for (const bool turned : {false, true}) {
       const Point2 a = turned ? glass.b : glass.a, b = turned ? glass.a : glass.b;
       Wall wall = straightWall(a, b);
-      wall.kind = WallKind::kGlass;
+      wall.kind = kind;
       constexpr double kBeside = 0.3;  // beyond posts and drawn cells [m]
       const Point2 beside{wall.position.x + kBeside * wall.normal.x,
                           wall.position.y + kBeside * wall.normal.y};
@@ -280,7 +281,7 @@ void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap*
       Place* place = map->findPlace(at->place);
       const bool known = std::any_of(place->walls.begin(), place->walls.end(), [&](const Wall& w) {
         const auto line = polyline(w);
-        return w.kind == WallKind::kGlass && same({line.front(), line.back()}, glass);
+        return w.kind == kind && sameWall({line.front(), line.back()}, glass);
       });
       if (known) continue;
       wall.id = map->next_wall_id++;

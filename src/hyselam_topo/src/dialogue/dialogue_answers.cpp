@@ -1,0 +1,276 @@
+// Ways, and questions about the building.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "dialogue_turn.hpp"
+#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/map_geometry.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+std::vector<Id> neighboursOf(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
+  std::set<Id> all;
+  for (const Edge& edge : map.edges) {
+    for (const Id place : places) {
+      if (edge.a == place) all.insert(edge.b);
+      if (edge.b == place) all.insert(edge.a);
+    }
+  }
+  for (const Id place : places) all.erase(place);
+  return {all.begin(), all.end()};
+}
+
+bool hasClosedDoor(const AugmentedTopologicalMap& map, const RouteLeg& leg) {
+  for (const Edge& edge : map.edges) {
+    for (const Door& door : edge.doors) {
+      if (door.state == DoorState::kClosed &&
+          std::find(leg.doors.begin(), leg.doors.end(), door.id) != leg.doors.end()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+// ---- Going ----
+
+void Dialogue::goTo(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const std::vector<SaidName> near = u.names("near");
+  std::vector<Id> beside;
+  if (!near.empty()) {
+    beside = resolve(near.front(), out);
+    if (beside.empty()) return;
+  }
+  for (const SaidName& name : u.names("places")) {
+    std::vector<Id> found = resolve(name, out);
+    if (found.empty()) continue;
+    if (!beside.empty()) {
+      const std::vector<Id> good = neighboursOf(places_.map(), beside);
+      std::vector<Id> both;
+      for (const Id id : found) {
+        if (std::count(good.begin(), good.end(), id) > 0) both.push_back(id);
+      }
+      if (!both.empty()) found = both;
+    }
+    turn->goals.emplace_back(name.text, std::move(found));
+  }
+}
+
+void Dialogue::setOut(Turn* turn) {
+  if (turn->goals.empty()) return;
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const auto goals = std::move(turn->goals);
+  turn->goals.clear();
+  if (!robot().has_pose) {
+    out->sentences.push_back(p.say("at_unknown"));
+    return;
+  }
+  DialogueAction action;
+  action.kind = DialogueAction::Kind::kGo;
+  hyselam::Pose2 from = robot().pose;
+  std::vector<Id> stops;
+  bool closed = false;
+  for (const auto& [name, places] : goals) {
+    const auto leg = planRoute(places_.map(), from, places, params_.route);
+    if (!leg) {
+      out->sentences.push_back(p.say("no_way", {{"place", name}}));
+      return;
+    }
+    from = leg->waypoints.back();
+    stops.push_back(leg->places.back());
+    closed = closed || hasClosedDoor(places_.map(), *leg);
+    action.legs.push_back(*leg);
+  }
+  out->sentences.push_back(p.say("going", {{"places", p.list(labels(stops))}}));
+  if (closed) out->sentences.push_back(p.say("door_closed"));
+  out->actions.push_back(std::move(action));
+}
+
+// ---- Questions ----
+
+void Dialogue::whereAreYou(Reply* out) {
+  const Phrases& p = phrases();
+  const Id here = robot().place;
+  if (here == 0) {
+    out->sentences.push_back(p.say("at_unknown"));
+    return;
+  }
+  subject_ = here;
+  const Place& place = *places_.map().findPlace(here);
+  const std::string code = codeOf(place);
+  if (nameStateOf(place) == NameState::kConfirmed) {
+    out->sentences.push_back(
+        p.say("at_named", {{"code", code}, {"names", p.list(namesOf(place))}}));
+  } else {
+    out->sentences.push_back(p.say("at_code", {{"code", code}}));
+  }
+  if (robot().in_doorway) out->sentences.push_back(p.say("in_doorway"));
+  if (nameStateOf(place) == NameState::kUnconfirmed) askConfirm(here, out);
+}
+
+void Dialogue::whereIs(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const std::vector<Id> found = resolve(u, "place", out);
+  if (found.empty()) return;
+  const std::string name = shortName(found.front());
+  if (std::count(found.begin(), found.end(), robot().place) > 0) {
+    out->sentences.push_back(
+        p.say("where_is_here",
+              {{"name", name}, {"code", codeOf(*places_.map().findPlace(robot().place))}}));
+    return;
+  }
+  const auto leg = robot().has_pose ? planRoute(places_.map(), robot().pose, found, params_.route)
+                                    : std::optional<RouteLeg>();
+  const Id nearest = leg ? leg->places.back() : found.front();
+  const std::string code = codeOf(*places_.map().findPlace(nearest));
+  if (leg) {
+    out->sentences.push_back(
+        p.say("where_is", {{"name", name}, {"code", code}, {"length", p.number(leg->length, 0)}}));
+  } else {
+    out->sentences.push_back(p.say("where_is_no_way", {{"name", name}, {"code", code}}));
+  }
+}
+
+void Dialogue::wayTo(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const std::vector<Id> goals = resolve(u, "place", out);
+  if (goals.empty()) return;
+  std::optional<hyselam::Pose2> from;
+  if (robot().has_pose) from = robot().pose;
+  if (!u.names("from").empty()) {
+    const std::vector<Id> starts = resolve(u, "from", out);
+    if (starts.empty()) return;
+    const auto pose = placePose(places_.map(), starts.front());
+    from = pose ? std::optional<hyselam::Pose2>(pose->pose) : std::nullopt;
+  }
+  const auto leg =
+      from ? planRoute(places_.map(), *from, goals, params_.route) : std::optional<RouteLeg>();
+  const std::string place = shortName(goals.front());
+  if (!leg) {
+    out->sentences.push_back(p.say("no_way", {{"place", place}}));
+    return;
+  }
+  out->sentences.push_back(p.say("way", {{"place", place},
+                                         {"length", p.number(leg->length, 0)},
+                                         {"places", p.list(labels(leg->places))}}));
+  if (hasClosedDoor(places_.map(), *leg)) out->sentences.push_back(p.say("door_closed"));
+}
+
+void Dialogue::nextTo(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const std::vector<Id> found = resolve(u, "place", out);
+  if (found.empty()) return;
+  const std::vector<Id> neighbours = neighboursOf(places_.map(), found);
+  const std::string place = shortName(found.front());
+  if (neighbours.empty()) {
+    out->sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
+  } else {
+    out->sentences.push_back(
+        p.say("next_to", {{"place", place}, {"places", p.list(labels(neighbours))}}));
+  }
+}
+
+/// What has been told; geometry would not know what people take for opposite.
+void Dialogue::opposite(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const auto names = textsOf(u.names("place"));
+  std::vector<std::string> told;
+  if (!names.empty()) {
+    const std::vector<Id> found = builder_.find(names.front());
+    for (const DescribedRelation& r : builder_.building().relations) {
+      if (r.kind != RelationKind::kOpposite) continue;
+      for (const Id id : found) {
+        const Id other = r.a == id ? r.b : r.b == id ? r.a : 0;
+        if (other != 0) told.push_back(builder_.building().findPlace(other)->name);
+      }
+    }
+  }
+  const std::string place = names.empty() ? "" : names.front();
+  if (told.empty()) {
+    out->sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
+  } else {
+    out->sentences.push_back(p.say("opposite", {{"place", place}, {"places", p.list(told)}}));
+  }
+}
+
+void Dialogue::onSide(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const auto side = sideOf(u.word("side"));
+  if (!side || *side == Side::kUnknown || robot().place == 0) {
+    out->sentences.push_back(p.say("at_unknown"));
+    return;
+  }
+  const double direction = *side == Side::kLeft    ? 0.5 * hyselam::kPi
+                           : *side == Side::kRight ? -0.5 * hyselam::kPi
+                           : *side == Side::kBack  ? hyselam::kPi
+                                                   : 0.0;
+  std::vector<std::pair<double, Id>> seen;
+  for (const Edge& edge : places_.map().edges) {
+    if (edge.a != robot().place && edge.b != robot().place) continue;
+    const Id other = edge.a == robot().place ? edge.b : edge.a;
+    for (const Door& door : edge.doors) {
+      const hyselam::Point2 at =
+          robot().pose.inverse() * hyselam::Point2{door.position.x, door.position.y};
+      const double off = hyselam::normalizeAngle(std::atan2(at.y, at.x) - direction);
+      if (std::abs(off) <= 0.25 * hyselam::kPi) seen.emplace_back(std::hypot(at.x, at.y), other);
+    }
+  }
+  std::sort(seen.begin(), seen.end());
+  std::vector<Id> places;
+  for (const auto& [distance, id] : seen) {
+    if (std::count(places.begin(), places.end(), id) == 0) places.push_back(id);
+  }
+  if (places.empty()) {
+    out->sentences.push_back(p.say("nothing_on_side", {{"side", p.side(*side)}}));
+  } else {
+    out->sentences.push_back(
+        p.say("on_side", {{"side", p.side(*side)}, {"places", p.list(labels(places))}}));
+  }
+}
+
+void Dialogue::size(const Utterance& u, Turn* turn) {
+  Reply* out = &turn->reply;
+  const Phrases& p = phrases();
+  const std::vector<Id> found = resolve(u, "place", out);
+  if (found.empty()) return;
+  double area = 0.0;
+  for (const Id id : found) area += places_.map().findPlace(id)->area;
+  const std::string place = shortName(found.front());
+  if (area > 0.0) {
+    out->sentences.push_back(p.say("size", {{"place", place}, {"area", p.number(area, 1)}}));
+  } else {
+    out->sentences.push_back(p.say("size_unknown", {{"place", place}}));
+  }
+}
+
+void Dialogue::whichPlaces(Reply* out) {
+  const Phrases& p = phrases();
+  std::vector<Id> named;
+  for (const Place& place : places_.map().places) {
+    if (!place.words.empty()) named.push_back(place.id);
+  }
+  const std::size_t count = places_.map().places.size();
+  if (count == 0) {
+    out->sentences.push_back(p.say("no_map"));
+    return;
+  }
+  if (named.empty()) {
+    for (const Place& place : places_.map().places) named.push_back(place.id);
+  }
+  out->sentences.push_back(
+      p.say("places", {{"count", std::to_string(count)}, {"places", p.list(labels(named))}}));
+}
+
+}  // namespace hyselam_topo

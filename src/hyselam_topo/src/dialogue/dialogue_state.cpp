@@ -1,0 +1,127 @@
+#include "hyselam_topo/dialogue_state.hpp"
+
+#include <zlib.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_topo/description_xml.hpp"
+#include "hyselam_topo/topological_map_xml.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::InputError;
+using nlohmann::json;
+
+constexpr char kFormat[] = "hyselam_dialogue";
+constexpr int kVersion = 1;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
+
+unsigned long crcOf(const std::string& bytes) {
+  unsigned long crc = crc32(0L, nullptr, 0);
+  std::size_t at = 0;
+  while (at < bytes.size()) {
+    const std::size_t piece = std::min<std::size_t>(bytes.size() - at, 1u << 30);
+    crc = crc32(crc, reinterpret_cast<const Bytef*>(bytes.data() + at), static_cast<uInt>(piece));
+    at += piece;
+  }
+  return crc;
+}
+
+double numberAt(const json& j, const char* key) {
+  if (!j.is_object() || !j.contains(key) || !j.at(key).is_number()) {
+    throw std::runtime_error(std::string("'") + key + "' must be a number");
+  }
+  return j.at(key).get<double>();
+}
+
+}  // namespace
+
+std::string toText(const DialogueState& state) {
+  json j;
+  j["language"] = state.language;
+  j["map"] = state.places.map.places.empty() ? "" : toXml(state.places.map, "map");
+  j["description"] =
+      state.description.places.empty() ? "" : toXml(state.description, "description");
+  if (state.heading) j["heading"] = *state.heading;
+  j["walls"] = json::array();
+  for (const ToldWall& wall : state.places.walls) {
+    j["walls"].push_back({{"ax", wall.line.a.x},
+                          {"ay", wall.line.a.y},
+                          {"bx", wall.line.b.x},
+                          {"by", wall.line.b.y},
+                          {"existence", existence(wall.kind)}});
+  }
+  j["rejected"] = json::array();
+  for (const auto& [place, name] : state.places.rejected) {
+    j["rejected"].push_back({{"place", place}, {"name", name}});
+  }
+  const std::string body = j.dump(1) + "\n";
+  char head[80];
+  std::snprintf(head, sizeof head, "%s %d %08lx %zu\n", kFormat, kVersion, crcOf(body),
+                body.size());
+  return head + body;
+}
+
+DialogueState dialogueStateFromText(const std::string& text, const std::string& source) {
+  std::istringstream head(text.substr(0, text.find('\n')));
+  std::string format;
+  int version = 0;
+  unsigned long crc = 0;
+  std::size_t size = 0;
+  head >> format >> version >> std::hex >> crc >> std::dec >> size;
+  if (format != kFormat) throw InputError(source, "line 1", "this is no state of a dialogue");
+  if (version != kVersion) {
+    throw InputError(source, "line 1",
+                     "only version 1 can be read, not " + std::to_string(version));
+  }
+  const std::size_t begin = text.find('\n') + 1;
+  if (head.fail() || text.find('\n') == std::string::npos || text.size() - begin != size) {
+    throw InputError(source, "", "it is not complete");
+  }
+  const std::string body = text.substr(begin);
+  if (crcOf(body) != crc) throw InputError(source, "", "it is damaged: the checksum is wrong");
+  DialogueState state;
+  try {
+    const json j = json::parse(body);
+    state.language = j.at("language").get<std::string>();
+    const auto map = j.at("map").get<std::string>();
+    if (!map.empty()) state.places.map = fromXml(map, source + ": map");
+    const auto description = j.at("description").get<std::string>();
+    if (!description.empty()) {
+      state.description = descriptionFromXml(description, source + ": description");
+    }
+    if (j.contains("heading")) state.heading = numberAt(j, "heading");
+    for (const json& w : j.at("walls")) {
+      ToldWall wall;
+      wall.line = {{numberAt(w, "ax"), numberAt(w, "ay")}, {numberAt(w, "bx"), numberAt(w, "by")}};
+      const auto kind = wallKindOf(numberAt(w, "existence"));
+      if (!kind) throw std::runtime_error("the existence of a wall is 0 or 0.5");
+      wall.kind = *kind;
+      state.places.walls.push_back(wall);
+    }
+    for (const json& r : j.at("rejected")) {
+      state.places.rejected.emplace_back(r.at("place").get<Id>(), r.at("name").get<std::string>());
+    }
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw InputError(source, "", e.what());
+  }
+  return state;
+}
+
+void saveDialogueState(const std::string& path, const DialogueState& state) {
+  const std::string text = toText(state);
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << text; });
+}
+
+DialogueState loadDialogueState(const std::string& path) {
+  return dialogueStateFromText(hyselam::readTextFile(path, kMaxBytes), path);
+}
+
+}  // namespace hyselam_topo

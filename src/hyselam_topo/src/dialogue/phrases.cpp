@@ -1,0 +1,245 @@
+#include "hyselam_topo/phrases.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <stdexcept>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "shipped_phrases.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::InputError;
+
+/// All phrases and what may be filled into them.
+const std::map<std::string, std::set<std::string>>& knownPhrases() {
+  static const std::map<std::string, std::set<std::string>> kKnown{
+      {"at_unknown", {}},
+      {"at_code", {"code"}},
+      {"at_named", {"code", "names"}},
+      {"in_doorway", {}},
+      {"perhaps", {"name"}},
+      {"ask_confirm", {"names"}},
+      {"ask_confirm_there", {"code", "names"}},
+      {"ask_name", {}},
+      {"ask_name_there", {"code"}},
+      {"named", {"code", "names"}},
+      {"moved_name", {"code"}},
+      {"rejected", {"names"}},
+      {"forgot_names", {"places"}},
+      {"no_names", {"places"}},
+      {"forgot_all", {}},
+      {"no_place_here", {}},
+      {"wait", {}},
+      {"done", {}},
+      {"found", {"found", "told"}},
+      {"not_found", {"names"}},
+      {"several", {"number", "names"}},
+      {"no_map", {}},
+      {"cannot_match", {"reason"}},
+      {"issue", {"text", "reason"}},
+      {"notice", {"text", "reason"}},
+      {"taken_down", {}},
+      {"ask_wall", {"wall", "distance", "side", "length"}},
+      {"ask_wall_length", {"wall"}},
+      {"no_corners", {"side", "wall"}},
+      {"wall_added", {"wall"}},
+      {"wall_forgotten", {"wall"}},
+      {"no_wall", {}},
+      {"no_grid", {}},
+      {"ask_radius", {}},
+      {"virtual_added", {"code"}},
+      {"not_possible", {"reason"}},
+      {"going", {"places"}},
+      {"no_way", {"place"}},
+      {"door_closed", {}},
+      {"unknown_place", {"name"}},
+      {"no_previous", {}},
+      {"following", {}},
+      {"stopped", {}},
+      {"turning", {"side"}},
+      {"cancelled", {}},
+      {"where_is", {"name", "code", "length"}},
+      {"where_is_here", {"name", "code"}},
+      {"where_is_no_way", {"name", "code"}},
+      {"way", {"place", "length", "places"}},
+      {"next_to", {"place", "places"}},
+      {"next_to_nothing", {"place"}},
+      {"opposite", {"place", "places"}},
+      {"on_side", {"side", "places"}},
+      {"nothing_on_side", {"side"}},
+      {"size", {"place", "area"}},
+      {"size_unknown", {"place"}},
+      {"places", {"count", "places"}},
+      {"help", {}},
+      {"hello", {}},
+      {"welcome", {}},
+      {"not_understood", {"text", "reason"}},
+      {"nothing_asked", {}},
+      {"cannot_do", {}}};
+  return kKnown;
+}
+
+/// The words in braces. Throws with the reason if a brace is left open.
+std::set<std::string> slotsOf(const std::string& text) {
+  std::set<std::string> slots;
+  for (std::size_t i = text.find('{'); i != std::string::npos; i = text.find('{', i + 1)) {
+    const std::size_t end = text.find('}', i);
+    if (end == std::string::npos) throw std::invalid_argument("a brace is not closed");
+    slots.insert(text.substr(i + 1, end - i - 1));
+  }
+  return slots;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& source, const std::string& yaml) : source_(source) {
+    try {
+      root_ = YAML::Load(yaml);
+    } catch (const YAML::Exception& e) {
+      throw InputError(source, "line " + std::to_string(e.mark.line + 1), e.msg);
+    }
+    if (!root_.IsMap()) throw InputError(source, "", "it is no YAML map");
+  }
+
+  std::string text(const YAML::Node& node, const std::string& key) const {
+    const YAML::Node value = node[key];
+    if (!value || !value.IsScalar()) fail(key, "it must be there and be a text");
+    return value.Scalar();
+  }
+  std::string text(const std::string& key) const { return text(root_, key); }
+
+  /// All texts of a map, whose keys must be those known.
+  std::map<std::string, std::string> texts(const std::string& key,
+                                           const std::set<std::string>& known) const {
+    const YAML::Node node = root_[key];
+    if (!node || !node.IsMap()) fail(key, "it must be there and be a map");
+    std::map<std::string, std::string> all;
+    for (const auto& entry : node) {
+      const auto name = entry.first.as<std::string>("");
+      if (known.count(name) == 0) fail(key + "/" + name, "I know no such key");
+      all[name] = text(node, name);
+    }
+    for (const std::string& name : known) {
+      if (all.count(name) == 0) fail(key + "/" + name, "it is missing");
+    }
+    return all;
+  }
+
+  void onlyKnows(const std::set<std::string>& keys) const {
+    for (const auto& entry : root_) {
+      const auto name = entry.first.as<std::string>("");
+      if (keys.count(name) == 0) fail(name, "I know no such key");
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& key, const std::string& reason) const {
+    throw InputError(source_, "key '" + key + "'", reason);
+  }
+
+ private:
+  std::string source_;
+  YAML::Node root_;
+};
+
+}  // namespace
+
+Phrases Phrases::fromYaml(const std::string& source, const std::string& yaml) {
+  const Reader reader(source, yaml);
+  reader.onlyKnows({"format", "version", "language", "decimal_point", "comma", "and", "sides",
+                    "walls", "phrases"});
+  if (reader.text("format") != "hyselam_phrases")
+    reader.fail("format", "it is not hyselam_phrases");
+  if (reader.text("version") != "1") reader.fail("version", "only version 1 can be read");
+  Phrases result;
+  result.language_ = reader.text("language");
+  if (result.language_.empty()) reader.fail("language", "it is empty");
+  result.decimal_point_ = reader.text("decimal_point");
+  result.comma_ = reader.text("comma");
+  result.and_ = reader.text("and");
+  result.sides_ = reader.texts("sides", {"front", "left", "back", "right"});
+  result.walls_ = reader.texts("walls", {"glass", "virtual"});
+  std::set<std::string> keys;
+  for (const auto& [key, slots] : knownPhrases()) keys.insert(key);
+  result.phrases_ = reader.texts("phrases", keys);
+  for (const auto& [key, text] : result.phrases_) {
+    try {
+      for (const std::string& slot : slotsOf(text)) {
+        if (knownPhrases().at(key).count(slot) == 0) {
+          throw std::invalid_argument("nothing is known for '{" + slot + "}'");
+        }
+      }
+    } catch (const std::invalid_argument& e) {
+      reader.fail("phrases/" + key, e.what());
+    }
+  }
+  return result;
+}
+
+Phrases Phrases::load(const std::string& path) {
+  return fromYaml(path, hyselam::readTextFile(path, std::size_t{1} << 20));
+}
+
+Phrases Phrases::shipped(const std::string& language) {
+  for (const ShippedPhrases& phrases : kShippedPhrases) {
+    if (language == phrases.language) return fromYaml("phrases " + language, phrases.yaml);
+  }
+  throw InputError("phrases", "", "none are shipped for the language '" + language + "'");
+}
+
+std::vector<std::string> Phrases::shippedLanguages() {
+  std::vector<std::string> all;
+  for (const ShippedPhrases& phrases : kShippedPhrases) all.emplace_back(phrases.language);
+  return all;
+}
+
+std::string Phrases::say(const std::string& key, const Values& values) const {
+  const std::string& text = phrases_.at(key);
+  std::string out;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t open = text.find('{', at);
+    if (open == std::string::npos) break;
+    const std::size_t close = text.find('}', open);
+    out += text.substr(at, open - at);
+    const std::string slot = text.substr(open + 1, close - open - 1);
+    const auto value =
+        std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == slot; });
+    if (value != values.end()) out += value->second;
+    at = close + 1;
+  }
+  return out + text.substr(std::min(at, text.size()));
+}
+
+std::string Phrases::list(const std::vector<std::string>& items) const {
+  std::string out;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) out += i + 1 == items.size() ? and_ : comma_;
+    out += items[i];
+  }
+  return out;
+}
+
+std::string Phrases::number(double value, int decimals) const {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  std::string out = text;
+  const std::size_t point = out.find_first_of(".,");
+  if (point != std::string::npos) out.replace(point, 1, decimal_point_);
+  return out;
+}
+
+const std::string& Phrases::side(Side side) const {
+  return sides_.at(toString(side));
+}
+
+const std::string& Phrases::wall(WallKind kind) const {
+  return walls_.at(kind == WallKind::kGlass ? "glass" : "virtual");
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,384 @@
+#include "hyselam_topo/place_man.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_topo/map_geometry.hpp"
+#include "plane.hpp"
+#include "text.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::InputError;
+using hyselam::Point2;
+
+constexpr double kMaxRadius = 100.0;  // of a virtual place [m]
+
+bool isFinite(Point2 p) {
+  return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
+void checkWall(const ToldWall& wall) {
+  if (!isFinite(wall.line.a) || !isFinite(wall.line.b) || !(wall.line.length() > 0.0)) {
+    throw InputError("wall", "", "its ends must be two different, finite points");
+  }
+  if (wall.kind == WallKind::kSolid) {
+    throw InputError("wall", "kind", "walls that people tell of are of glass or virtual");
+  }
+}
+
+bool hasConfirmed(const Place& place) {
+  return std::any_of(place.words.begin(), place.words.end(),
+                     [](const Word& word) { return word.confirmed; });
+}
+
+}  // namespace
+
+std::string codeOf(const Place& place) {
+  const char* kind = place.kind == PlaceKind::kCorridor  ? "CC"
+                     : place.kind == PlaceKind::kVirtual ? "VV"
+                                                         : "SS";
+  char text[24];
+  std::snprintf(text, sizeof text, "%s%02u", kind, static_cast<unsigned>(place.id));
+  return text;
+}
+
+NameState nameStateOf(const Place& place) {
+  if (place.words.empty()) return NameState::kNone;
+  return hasConfirmed(place) ? NameState::kConfirmed : NameState::kUnconfirmed;
+}
+
+std::vector<std::string> namesOf(const Place& place) {
+  const bool confirmed = hasConfirmed(place);
+  std::vector<std::string> names;
+  for (const Word& word : place.words) {
+    if (word.confirmed == confirmed) names.push_back(word.text);
+  }
+  return names;
+}
+
+bool operator==(const ToldWall& a, const ToldWall& b) {
+  return a.line == b.line && a.kind == b.kind;
+}
+
+PlaceMan::PlaceMan(PlaceNames names) : names_(std::move(names)) {}
+
+void PlaceMan::restore(State state) {
+  if (!state.map.places.empty()) checkMap(state.map, "kept map");
+  for (const ToldWall& wall : state.walls) checkWall(wall);
+  state_ = std::move(state);
+}
+
+Place& PlaceMan::at(Id id) {
+  Place* place = state_.map.findPlace(id);
+  if (place == nullptr) {
+    throw InputError("places", "id " + std::to_string(id), "there is no such place in the map");
+  }
+  return *place;
+}
+
+CarryOverReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
+  checkMap(fresh, "new map");
+  CarryOverReport report;
+  if (!hasMap() || state_.map.frame_id != fresh.frame_id || !state_.map.grid || !fresh.grid) {
+    AugmentedTopologicalMap map = fresh;
+    for (const Place& place : state_.map.places) report.lost.push_back(place.id);
+    for (const Place& place : map.places) report.created.push_back(place.id);
+    state_.map = std::move(map);
+  } else {
+    state_.map = carryOver(state_.map, fresh, {}, &report);
+  }
+  drawVirtualPlaces();
+  putWalls();
+  auto& rejected = state_.rejected;
+  rejected.erase(
+      std::remove_if(rejected.begin(), rejected.end(),
+                     [&](const auto& r) { return state_.map.findPlace(r.first) == nullptr; }),
+      rejected.end());
+  return report;
+}
+
+// ---- Names ----
+
+void PlaceMan::dropWord(Place* place, const std::string& name) {
+  auto& words = place->words;
+  words.erase(std::remove_if(words.begin(), words.end(),
+                             [&](const Word& word) { return sameName(word.text, name); }),
+              words.end());
+}
+
+std::vector<Id> PlaceMan::confirm(Id id, const std::vector<std::string>& names) {
+  Place& place = at(id);
+  for (const std::string& name : names) {
+    const std::string wrong = whatIsWrongWithWord(name);
+    if (!wrong.empty()) throw InputError("name", "", "it " + wrong);
+  }
+  std::vector<Id> losers;
+  for (Place& other : state_.map.places) {
+    if (other.id == id) continue;
+    // Rooms may be cut into several places: those side by side may have one name.
+    const bool beside = state_.map.findEdge(id, other.id) != nullptr;
+    for (const std::string& name : names) {
+      const bool had = std::any_of(other.words.begin(), other.words.end(), [&](const Word& word) {
+        return word.confirmed && sameName(word.text, name);
+      });
+      if (had && beside) continue;
+      if (had) losers.push_back(other.id);
+      dropWord(&other, name);
+    }
+  }
+  auto& words = place.words;
+  words.erase(
+      std::remove_if(words.begin(), words.end(), [](const Word& word) { return !word.confirmed; }),
+      words.end());
+  for (const std::string& name : names) {
+    const bool known = std::any_of(words.begin(), words.end(),
+                                   [&](const Word& word) { return word.text == name; });
+    if (!known) words.push_back({name, true});
+  }
+  auto& rejected = state_.rejected;
+  rejected.erase(std::remove_if(rejected.begin(), rejected.end(),
+                                [&](const auto& r) {
+                                  return r.first == id &&
+                                         std::any_of(
+                                             names.begin(), names.end(),
+                                             [&](const auto& n) { return sameName(r.second, n); });
+                                }),
+                 rejected.end());
+  std::sort(losers.begin(), losers.end());
+  losers.erase(std::unique(losers.begin(), losers.end()), losers.end());
+  return losers;
+}
+
+bool PlaceMan::confirmGuesses(Id id) {
+  const Place& place = at(id);
+  if (nameStateOf(place) != NameState::kUnconfirmed) return false;
+  confirm(id, namesOf(place));
+  return true;
+}
+
+void PlaceMan::reject(Id id, const std::vector<std::string>& names) {
+  Place& place = at(id);
+  for (const std::string& name : names) {
+    dropWord(&place, name);
+    if (!isRejected(id, name)) state_.rejected.emplace_back(id, name);
+  }
+}
+
+bool PlaceMan::isRejected(Id id, const std::string& name) const {
+  return std::any_of(state_.rejected.begin(), state_.rejected.end(),
+                     [&](const auto& r) { return r.first == id && sameName(r.second, name); });
+}
+
+void PlaceMan::guess(const std::vector<std::pair<Id, std::vector<std::string>>>& guesses) {
+  for (Place& place : state_.map.places) {
+    auto& words = place.words;
+    words.erase(std::remove_if(words.begin(), words.end(),
+                               [](const Word& word) { return !word.confirmed; }),
+                words.end());
+  }
+  for (const auto& [id, names] : guesses) {
+    Place& place = at(id);
+    if (hasConfirmed(place)) continue;
+    for (const std::string& name : names) {
+      if (!isRejected(id, name)) place.words.push_back({name, false});
+    }
+  }
+}
+
+bool PlaceMan::forget(Id id) {
+  Place& place = at(id);
+  const bool had = !place.words.empty();
+  place.words.clear();
+  return had;
+}
+
+std::vector<Id> PlaceMan::forgetName(const std::string& name) {
+  std::vector<Id> had;
+  for (Place& place : state_.map.places) {
+    const std::size_t before = place.words.size();
+    dropWord(&place, name);
+    if (place.words.size() != before) had.push_back(place.id);
+  }
+  return had;
+}
+
+void PlaceMan::forgetAllNames() {
+  for (Place& place : state_.map.places) place.words.clear();
+}
+
+void PlaceMan::rename(Id id, const std::string& name) {
+  const std::vector<Word> before = at(id).words;
+  at(id).words.clear();
+  try {
+    confirm(id, {name});
+  } catch (const InputError&) {
+    at(id).words = before;
+    throw;
+  }
+}
+
+std::vector<Id> PlaceMan::find(const std::string& name) const {
+  for (const bool confirmed : {true, false}) {
+    std::vector<std::vector<std::string>> lists;
+    for (const Place& place : state_.map.places) {
+      lists.emplace_back();
+      if (confirmed) lists.back().push_back(codeOf(place));
+      for (const Word& word : place.words) {
+        if (word.confirmed == confirmed) lists.back().push_back(word.text);
+      }
+    }
+    std::vector<Id> found;
+    for (const std::size_t i : names_.find(name, lists)) {
+      found.push_back(state_.map.places[i].id);
+    }
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+bool PlaceMan::sameName(const std::string& a, const std::string& b) const {
+  return a == b || compare(names_.key(a), names_.key(b)) != SameName::kNo;
+}
+
+// ---- Virtual places and walls ----
+
+Id PlaceMan::addVirtualPlace(Point2 centre, double radius, const std::vector<std::string>& names) {
+  if (!(radius > 0.0 && radius <= kMaxRadius)) {
+    throw InputError("virtual place", "radius", "it must be in (0, 100] m");
+  }
+  const auto around = placeAt(state_.map, centre);
+  if (!around) throw InputError("virtual place", "centre", "there is no place at this point");
+  AugmentedTopologicalMap& map = state_.map;
+  Place place;
+  place.id = map.next_place_id++;
+  place.kind = PlaceKind::kVirtual;
+  place.area = hyselam::kPi * radius * radius;
+  place.centre = Point3{centre.x, centre.y, 0.0};
+  constexpr int kCorners = 24;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2.0 * hyselam::kPi * i / kCorners;
+    place.outline.push_back(
+        {centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
+  }
+  Wall wall;  // its limit is a circle, which it lies within
+  wall.id = map.next_wall_id++;
+  wall.kind = WallKind::kVirtual;
+  wall.position = *place.centre;
+  wall.length = 2.0 * hyselam::kPi * radius * (1.0 - 1e-9);  // never more than the full circle
+  wall.curvature = 1.0 / radius;
+  place.walls.push_back(wall);
+  Edge edge;
+  edge.a = around->place;
+  edge.b = place.id;
+  const Id id = place.id;
+  map.places.push_back(std::move(place));
+  map.edges.push_back(std::move(edge));
+  normalise(&map);
+  drawVirtualPlaces();
+  if (!names.empty()) confirm(id, names);
+  return id;
+}
+
+bool PlaceMan::removeVirtualPlace(Id id) {
+  AugmentedTopologicalMap& map = state_.map;
+  const Place* place = map.findPlace(id);
+  if (place == nullptr || place->kind != PlaceKind::kVirtual) return false;
+  Id around = 0;
+  for (const Edge& edge : map.edges) {
+    if (edge.a == id || edge.b == id) around = edge.a == id ? edge.b : edge.a;
+  }
+  map.edges.erase(std::remove_if(map.edges.begin(), map.edges.end(),
+                                 [&](const Edge& e) { return e.a == id || e.b == id; }),
+                  map.edges.end());
+  map.places.erase(std::remove_if(map.places.begin(), map.places.end(),
+                                  [&](const Place& p) { return p.id == id; }),
+                   map.places.end());
+  if (map.grid) {
+    // Two labels may mean one place.
+    for (Id& meant : map.grid->places) {
+      if (meant == id) meant = around;
+    }
+  }
+  return true;
+}
+
+void PlaceMan::drawVirtualPlaces() {
+  AugmentedTopologicalMap& map = state_.map;
+  if (!map.grid) return;
+  PlaceGrid& grid = *map.grid;
+  for (const Place& place : map.places) {
+    if (place.kind != PlaceKind::kVirtual || place.outline.size() < 3) continue;
+    if (std::find(grid.places.begin(), grid.places.end(), place.id) != grid.places.end()) continue;
+    if (grid.places.size() >= std::numeric_limits<std::uint16_t>::max()) return;
+    // Only what belongs to the place around its middle: no circle reaches through a wall.
+    const auto cell = place.centre ? grid.geometry.cellAt({place.centre->x, place.centre->y})
+                                   : hyselam::Cell{-1, -1};
+    const Id around = grid.placeOf(cell);
+    if (around == 0) continue;
+    const auto label = static_cast<std::uint16_t>(grid.places.size() + 1);
+    bool any = false;
+    for (int y = 0; y < grid.geometry.height; ++y) {
+      for (int x = 0; x < grid.geometry.width; ++x) {
+        if (grid.placeOf({x, y}) != around) continue;
+        if (!contains(place.outline, grid.geometry.centre({x, y}))) continue;
+        grid.labels[grid.geometry.index({x, y})] = label;
+        any = true;
+      }
+    }
+    if (any) grid.places.push_back(place.id);
+    if (map.findEdge(place.id, around) == nullptr) {
+      Edge edge;
+      edge.a = std::min(place.id, around);
+      edge.b = std::max(place.id, around);
+      map.edges.push_back(edge);
+    }
+  }
+  normalise(&map);
+}
+
+void PlaceMan::putWalls() {
+  for (const ToldWall& wall : state_.walls) addGlassWalls({wall.line}, &state_.map, wall.kind);
+}
+
+void PlaceMan::addWall(const ToldWall& wall) {
+  checkWall(wall);
+  const bool known = std::any_of(state_.walls.begin(), state_.walls.end(), [&](const ToldWall& w) {
+    return w.kind == wall.kind && sameWall(w.line, wall.line);
+  });
+  if (known) return;
+  state_.walls.push_back(wall);
+  putWalls();
+}
+
+bool PlaceMan::removeWall(std::size_t index) {
+  if (index >= state_.walls.size()) return false;
+  const ToldWall gone = state_.walls[index];
+  state_.walls.erase(state_.walls.begin() + static_cast<std::ptrdiff_t>(index));
+  for (Place& place : state_.map.places) {
+    auto& walls = place.walls;
+    walls.erase(std::remove_if(walls.begin(), walls.end(),
+                               [&](const Wall& wall) {
+                                 if (wall.kind != gone.kind || wall.curvature != 0.0) return false;
+                                 const auto line = polyline(wall);
+                                 return sameWall({line.front(), line.back()}, gone.line);
+                               }),
+                walls.end());
+  }
+  return true;
+}
+
+hyselam::OccupancyGrid PlaceMan::withWalls(const hyselam::OccupancyGrid& grid) const {
+  hyselam::OccupancyGrid copy = grid;
+  std::vector<GlassWall> lines;
+  for (const ToldWall& wall : state_.walls) lines.push_back(wall.line);
+  drawGlassWalls(lines, &copy);
+  return copy;
+}
+
+}  // namespace hyselam_topo
