@@ -260,15 +260,16 @@ void drawLegend(const Gr2ToResult& result, Canvas& canvas, double pixels_per_met
 
   const int key_y = middle + 2 * line;
   const auto key = [&](const char* words, const auto& draw) {
-    const int wide = Canvas::sizeOf(words, size).width + static_cast<int>(60 * size) + 44;
+    const int wide = Canvas::sizeOf(words, size).width + static_cast<int>(60 * size) + 52;
     if (x + wide > canvas.image.cols) return;  // a small picture shows the first ones
     const double sample = 40.0 * size + 10.0;
     draw(cv::Point2d(x, key_y), cv::Point2d(x + sample, key_y));
-    canvas.text(words, {x + static_cast<int>(sample) + 10, key_y + line / 6}, size, kInk);
+    canvas.text(words, {x + static_cast<int>(sample) + 14, key_y + line / 6}, size, kInk);
     x += wide;
   };
   key("corridor", [&](cv::Point2d a, cv::Point2d b) {
-    canvas.line(a, b, cv::Scalar(kCorridor[0], kCorridor[1], kCorridor[2]), line / 2);
+    const cv::Point2d cap(0.25 * line, 0.0);  // thick lines end round
+    canvas.line(a + cap, b - cap, cv::Scalar(kCorridor[0], kCorridor[1], kCorridor[2]), line / 2);
   });
   key("wall", [&](cv::Point2d a, cv::Point2d b) { canvas.line(a, b, kSolid, thick); });
   key("door", [&](cv::Point2d a, cv::Point2d b) { canvas.line(a, b, kDoor, 2 * thick); });

@@ -15,6 +15,9 @@ using hyselam::Cell;
 using hyselam::Point2;
 
 constexpr int kNone = -1;
+constexpr float kDiagonal = 1.41421356f;
+constexpr double kRoom = 0.8;    // [m] from the limits of the place nothing is gained any more
+constexpr float kAtWall = 4.0f;  // a step along a wall is so many times as long
 
 /// The part of the grid around a place.
 class Window {
@@ -30,6 +33,7 @@ class Window {
       const Cell c = cell(i);
       inside_[static_cast<std::size_t>(i)] = grid.placeOf({c.x + x0_, c.y + y0_}) == place;
     }
+    weigh();
   }
 
   std::size_t size() const { return inside_.size(); }
@@ -60,29 +64,63 @@ class Window {
     return best;
   }
 
-  /// Whether the straight line between two cells stays in the place.
-  bool sees(Cell a, Cell b) const {
-    const int dx = std::abs(b.x - a.x), dy = std::abs(b.y - a.y);
-    const int steps = std::max(dx, dy);
-    for (int i = 1; i < steps; ++i) {
+  /// How much longer than it is a step to this cell counts.
+  float weight(int index) const { return weights_[static_cast<std::size_t>(index)]; }
+
+  /// What the straight line between two cells costs; infinite if it leaves the place.
+  float straight(Cell a, Cell b) const {
+    const int dx = b.x - a.x, dy = b.y - a.y;
+    const int steps = std::max(std::abs(dx), std::abs(dy));
+    float sum = 0.0f;
+    for (int i = 1; i <= steps; ++i) {
       const double share = static_cast<double>(i) / steps;
-      const Cell c{static_cast<int>(std::lround(a.x + share * (b.x - a.x))),
-                   static_cast<int>(std::lround(a.y + share * (b.y - a.y)))};
-      if (!inside(c)) return false;
+      const Cell c{static_cast<int>(std::lround(a.x + share * dx)),
+                   static_cast<int>(std::lround(a.y + share * dy))};
+      if (!inside(c)) return std::numeric_limits<float>::infinity();
+      sum += weight(index(c));
     }
-    return true;
+    return sum * static_cast<float>(std::hypot(dx, dy) / std::max(1, steps));
   }
 
  private:
+  /// From the distance to the nearest cell that is not in the place, in two passes.
+  void weigh() {
+    const float room = static_cast<float>(std::max(1.0, kRoom / grid_.geometry.resolution));
+    weights_.assign(inside_.size(), 0.0f);
+    const auto distance = [&](int x, int y) {
+      return inside({x, y}) ? weights_[static_cast<std::size_t>(index({x, y}))] : 0.0f;
+    };
+    const auto pass = [&](int x, int y, int before) {
+      if (!inside({x, y})) return;
+      float& own = weights_[static_cast<std::size_t>(index({x, y}))];
+      own = std::min({before < 0 ? room : own, distance(x + before, y) + 1.0f,
+                      distance(x, y + before) + 1.0f, distance(x - 1, y + before) + kDiagonal,
+                      distance(x + 1, y + before) + kDiagonal});
+    };
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x) pass(x, y, -1);
+    for (int y = height_ - 1; y >= 0; --y)
+      for (int x = width_ - 1; x >= 0; --x) pass(x, y, 1);
+    for (float& w : weights_) w = 1.0f + (kAtWall - 1.0f) * (1.0f - w / room);
+  }
+
   const PlaceGrid& grid_;
   int x0_, y0_, width_, height_;
   std::vector<bool> inside_;
+  std::vector<float> weights_;
 };
 
-/// For each cell the next one on the shortest way to the goal (eight neighbours).
-std::vector<int> nextTo(const Window& window, int goal) {
-  std::vector<float> distance(window.size(), std::numeric_limits<float>::infinity());
-  std::vector<int> next(window.size(), kNone);
+/// For each cell the next one on the cheapest way to the goal (eight neighbours), and its cost.
+struct WaysTo {
+  std::vector<int> next;
+  std::vector<float> cost;
+};
+
+WaysTo waysTo(const Window& window, int goal) {
+  WaysTo ways{std::vector<int>(window.size(), kNone),
+              std::vector<float>(window.size(), std::numeric_limits<float>::infinity())};
+  std::vector<int>& next = ways.next;
+  std::vector<float>& distance = ways.cost;
   using Entry = std::pair<float, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
   distance[static_cast<std::size_t>(goal)] = 0.0f;
@@ -98,7 +136,8 @@ std::vector<int> nextTo(const Window& window, int goal) {
         const Cell n{c.x + dx, c.y + dy};
         if ((dx == 0 && dy == 0) || !window.inside(n)) continue;
         const auto i = static_cast<std::size_t>(window.index(n));
-        const float through = d + (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
+        const float step = dx != 0 && dy != 0 ? kDiagonal : 1.0f;
+        const float through = d + step * window.weight(index);
         if (through < distance[i]) {
           distance[i] = through;
           next[i] = index;
@@ -107,18 +146,26 @@ std::vector<int> nextTo(const Window& window, int goal) {
       }
     }
   }
-  return next;
+  return ways;
 }
 
-/// The corners that remain when a way of cells is pulled taut.
-std::vector<Cell> pulledTaut(const Window& window, const std::vector<Cell>& way) {
+/// The corners that remain when a way of cells is pulled taut, where that makes it no costlier.
+std::vector<Cell> pulledTaut(const Window& window, const WaysTo& ways,
+                             const std::vector<Cell>& way) {
+  constexpr float kRounding = 1.02f;
+  const auto cost = [&](std::size_t i) {
+    return ways.cost[static_cast<std::size_t>(window.index(way[i]))];
+  };
+  const auto sees = [&](std::size_t i, std::size_t j) {
+    return window.straight(way[i], way[j]) <= kRounding * (cost(i) - cost(j)) + 1.0f;
+  };
   std::vector<Cell> corners{way.front()};
   std::size_t from = 0;
   while (from + 1 < way.size()) {
     // What is seen first and hidden later is seldom seen again: halve, then creep.
     std::size_t seen = from + 1, step = 1;
     while (step > 0) {
-      if (seen + step < way.size() && window.sees(way[from], way[seen + step])) {
+      if (seen + step < way.size() && sees(from, seen + step)) {
         seen += step;
         step *= 2;
       } else {
@@ -159,7 +206,8 @@ std::vector<std::vector<Point2>> waysWithin(const PlaceGrid& grid, Id place, con
   const Window window(grid, place, box);
   const int end = window.nearest(goal);
   if (end == kNone) return ways;
-  const std::vector<int> next = nextTo(window, end);
+  const WaysTo to_end = waysTo(window, end);
+  const std::vector<int>& next = to_end.next;
   for (std::size_t k = 0; k < points.size(); ++k) {
     int at = window.nearest(points[k]);
     if (next[static_cast<std::size_t>(at)] == kNone) continue;
@@ -168,7 +216,7 @@ std::vector<std::vector<Point2>> waysWithin(const PlaceGrid& grid, Id place, con
       at = next[static_cast<std::size_t>(at)];
       way.push_back(window.cell(at));
     }
-    for (const Cell c : pulledTaut(window, way)) ways[k].push_back(window.centre(c));
+    for (const Cell c : pulledTaut(window, to_end, way)) ways[k].push_back(window.centre(c));
   }
   return ways;
 }
