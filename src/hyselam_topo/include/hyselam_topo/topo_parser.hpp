@@ -14,9 +14,10 @@ namespace hyselam_topo {
 
 struct ParseOptions {
   /// A language of the parser, or "auto": the one that understands most of the text, of several the
-  /// first.
+  /// one that knows more of its words, of several the first.
   std::string language = "auto";
-  /// Intents that are understood only after a question: "name_answer" for a bare "Kitchen.".
+  /// Intents of answers to a question that was asked: preferred where a sentence may mean several
+  /// things, and needed for some, as "name_answer" for a bare "Kitchen.".
   std::set<std::string> expected;
   std::size_t max_bytes = 1u << 16;  ///< longer texts are not understood
 };

@@ -50,6 +50,11 @@ TokenRules CompiledGrammar::tokenRules() const {
   rules.is_abbreviation = [this](const std::string& word) {
     return abbreviations.count(word) != 0;
   };
+  rules.may_begin = [this](const std::string& word) {
+    return vocabulary.contains(word) &&
+           std::none_of(name_types.begin(), name_types.end(),
+                        [&](const NameType& type) { return type.nouns.count(word) != 0; });
+  };
   rules.expansion = [this](const std::string& word) -> const Words* {
     const auto found = contractions.find(word);
     return found == contractions.end() ? nullptr : &found->second;

@@ -32,6 +32,7 @@ class Vocabulary {
   std::vector<Match> matches(const Token& token, bool may_be_misspelt) const;
   const std::string& text(int word) const { return entries_[static_cast<std::size_t>(word)].lower; }
   std::size_t size() const { return entries_.size(); }
+  bool contains(const std::string& folded_word) const { return by_folded_.count(folded_word) != 0; }
 
  private:
   struct Entry {
@@ -82,6 +83,7 @@ struct IntentInfo {
   UtteranceKind kind = UtteranceKind::kStatement;
   std::string refuse;          ///< code of the reason; "" for what is understood
   bool only_expected = false;  ///< tried only when asked for
+  int cost = 0;                ///< more than other intents, where two fit equally well
   bool corrects_next = false;  ///< "no.": the next statement is a correction
   std::vector<std::string> examples;
   std::vector<Automaton> patterns;

@@ -94,6 +94,15 @@ void addFolded(const std::vector<std::string>& words, std::set<std::string>* set
   for (const std::string& word : words) set->insert(folded(word));
 }
 
+/// Without accents, long words mean the same ("tambem"), short ones do not: "dá", "da".
+void addStops(const std::vector<std::string>& words, std::set<std::string>* set) {
+  constexpr std::size_t kLong = 4;
+  for (const std::string& word : words) {
+    set->insert(lowered(word));
+    if (folded(word).size() >= kLong) set->insert(folded(word));
+  }
+}
+
 class Reader {
  public:
   std::shared_ptr<const CompiledGrammar> read(const std::vector<GrammarSource>& sources) {
@@ -304,7 +313,7 @@ class Reader {
       } else if (key == "joiners") {
         addFolded(value.texts(), &type.joiners);
       } else if (key == "stop") {
-        addFolded(value.texts(), &type.stop);
+        addStops(value.texts(), &type.stop);
       } else if (key == "generic") {
         addFolded(value.texts(), &type.generic);
       } else if (key == "quantities") {
@@ -384,6 +393,10 @@ class Reader {
           value.fail("there is no reason '" + intent.refuse + "'");
         }
         has_kind = true;
+      } else if (key == "cost") {
+        const double cost = value.number();
+        if (!(cost >= 0.0 && cost <= 100.0)) value.fail("must be 0 .. 100");
+        intent.cost = static_cast<int>(cost);
       } else if (key == "only_expected") {
         intent.only_expected = value.truth();
       } else if (key == "corrects_next") {

@@ -25,6 +25,7 @@ struct Clause {
   std::size_t end = 0;
   int cost = 0;
   bool correction = false;
+  bool tied = false;  ///< where one name ends and the next begins cannot be told
   std::vector<Slot> slots;
   std::vector<Spelling> spelling;
 
@@ -187,6 +188,7 @@ class SentenceReader {
     int from_state = -1;
     int edge = -1;  ///< -1: something skipped
     std::size_t from_at = 0;
+    bool tied = false;  ///< names may be told apart in several ways that cost the same
   };
 
   template <typename F>
@@ -204,8 +206,10 @@ class SentenceReader {
           clause.intent = &intent;
           clause.begin = entry.at;
           clause.end = end;
-          clause.cost = cost;
+          clause.cost =
+              cost + intent.cost - (expected_.count(intent.name) != 0 ? kExpectedBonus : 0);
           clause.correction = entry.correction;
+          clause.tied = cell(pattern, end, pattern.accept).tied;
           if (trace(pattern, end, &clause)) f(clause);
         });
       }
@@ -230,6 +234,16 @@ class SentenceReader {
 
   void reach(const Automaton& pattern, std::size_t at, int state, const Cell& from) {
     Cell& c = cell(pattern, at, state);
+    const auto isName = [&](const Cell& way) {
+      return way.edge >= 0 && pattern.states[static_cast<std::size_t>(way.from_state)]
+                                            [static_cast<std::size_t>(way.edge)]
+                                                .kind == EdgeKind::kName;
+    };
+    const bool tie = from.cost == c.cost && from.from_at != c.from_at && isName(c) && isName(from);
+    if (tie && !c.tied) {
+      c.tied = true;
+      active_[at].push_back(state);
+    }
     if (from.cost >= c.cost) return;
     c = from;
     c.generation = generation_;
@@ -246,20 +260,21 @@ class SentenceReader {
     }
     active_.resize(n + 1);
     for (auto& states : active_) states.clear();
-    reach(pattern, begin, 0, {generation_, 0, -1, -1, begin});
+    reach(pattern, begin, 0, {generation_, 0, -1, -1, begin, false});
     for (std::size_t at = begin; at <= n; ++at) {
       // States are put behind the list again when a cheaper way to them is found.
       for (std::size_t i = 0; i < active_[at].size(); ++i) {
         const int state = active_[at][i];
         const int cost = cell(pattern, at, state).cost;
+        const bool tied = cell(pattern, at, state).tied;
         if (at > begin && at < n && mayBeSkipped(at)) {
           const bool comma = tokens_[at].kind == TokenKind::kComma;
           reach(pattern, at + 1, state,
-                {generation_, cost + (comma ? kCommaCost : kInnerCost), state, -1, at});
+                {generation_, cost + (comma ? kCommaCost : kInnerCost), state, -1, at, tied});
         }
         const auto& edges = pattern.states[static_cast<std::size_t>(state)];
         for (std::size_t e = 0; e < edges.size(); ++e) {
-          follow(pattern, edges[e], at, {generation_, cost, state, static_cast<int>(e), at});
+          follow(pattern, edges[e], at, {generation_, cost, state, static_cast<int>(e), at, tied});
         }
       }
       const int cost = cell(pattern, at, pattern.accept).cost;
@@ -470,6 +485,7 @@ class SentenceReader {
       if (!clause.intent->refuse.empty()) {
         return {refusal(clause.intent->refuse, range, textOf(range))};
       }
+      if (clause.tied) return {refusal("ambiguous", range, textOf(range))};
       if (reading->ambiguous) {
         const Clause& other = clauses_[static_cast<std::size_t>(reading->other)];
         return {refusal("ambiguous", range, clause.intent->name + ", " + other.intent->name)};

@@ -22,6 +22,17 @@ bool isWordLike(const Token& token) {
   return token.kind == TokenKind::kWord || token.kind == TokenKind::kNumber;
 }
 
+bool isStop(const Token& token, const NameType& type) {
+  return type.stop.count(token.lower) != 0 ||
+         (token.lower != token.folded && token.folded.size() > 3 &&
+          type.stop.count(token.folded) != 0);
+}
+
+/// Nothing but letters a .. z.
+bool isAscii(const std::string& word) {
+  return std::all_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+}
+
 std::string singleSpaced(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -67,7 +78,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
   if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
     const Token& next = tokens_[at + 1];
     const bool goes_on =
-        next.kind == TokenKind::kQuoted || (isWordLike(next) && type.stop.count(next.folded) == 0);
+        next.kind == TokenKind::kQuoted || (isWordLike(next) && !isStop(next, type));
     if (goes_on) {
       indefinite = type.indefinite.count(tokens_[at].folded) != 0 &&
                    type.definite.count(tokens_[at].folded) == 0;
@@ -84,8 +95,8 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       may_end = false;
     } else if (!isWordLike(token)) {
       break;
-    } else if (type.stop.count(token.folded) != 0) {
-      break;
+    } else if (isStop(token, type)) {
+      if (!isLetterOfTitle(begin, k, type)) break;
     } else if (k > begin && mayBeArticle(k, type)) {
       const std::string& before = tokens_[k - 1].folded;
       if (type.joiners.count(before) != 0) {
@@ -99,6 +110,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       break;
     }
     ++words;
+    if (type.joiners.count(token.folded) != 0) may_end = false;
     if (may_end) {
       const std::string wrong = whatIsWrong(begin, k + 1, indefinite, type);
       if (wrong.empty()) {
@@ -111,6 +123,12 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     if (is_last) break;
   }
   return found;
+}
+
+bool NameFinder::isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const {
+  if (at == begin || tokens_[at].folded.size() != 1) return false;
+  if (type.titles.count(tokens_[at - 1].folded) == 0) return false;
+  return at + 1 == tokens_.size() || tokens_[at + 1].kind != TokenKind::kWord;
 }
 
 bool NameFinder::hasNoun(std::size_t begin, std::size_t end, const NameType& type) const {
@@ -126,7 +144,7 @@ bool NameFinder::hasNoun(std::size_t begin, std::size_t end, const NameType& typ
 
 bool NameFinder::mayBeMisspelt(std::size_t at, const NameType& type) const {
   const Token& token = tokens_[at];
-  const bool plain = token.only_lower_letters || (at == 0 && token.kind == TokenKind::kWord);
+  const bool plain = token.only_lower_letters || (at == 0 && isAscii(token.folded));
   if (!plain || token.folded.size() < 2 || grammar_.known_words.count(token.folded) != 0) {
     return false;
   }
@@ -171,6 +189,16 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   return "";
 }
 
+bool NameFinder::isCommonNoun(const std::string& word) const {
+  return std::any_of(
+      grammar_.name_types.begin(), grammar_.name_types.end(), [&](const NameType& type) {
+        if (type.titles.count(word) != 0) return true;
+        const auto noun = type.nouns.lower_bound(word);
+        return noun != type.nouns.end() &&
+               (noun->first == word || noun->first.compare(0, word.size() + 1, word + " ") == 0);
+      });
+}
+
 SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
   SaidName name;
   name.range = {tokens_[begin].range.begin, tokens_[end - 1].range.end};
@@ -183,6 +211,12 @@ SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
   } else {
     name.text = singleSpaced(text_.substr(name.range.begin, name.range.end - name.range.begin));
   }
+  // "Room A" at the beginning of a sentence is "room A".
+  const Token& first = tokens_[begin];
+  const bool common = begin == 0 && first.starts_upper && first.kind == TokenKind::kWord &&
+                      isCommonNoun(first.folded) && first.text.substr(1) == first.lower.substr(1) &&
+                      first.text[0] >= 'A' && first.text[0] <= 'Z';
+  if (common) name.text[0] = static_cast<char>(name.text[0] - 'A' + 'a');
   return name;
 }
 

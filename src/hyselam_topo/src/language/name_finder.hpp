@@ -39,12 +39,16 @@ class NameFinder {
     std::vector<FoundName> names;
   };
   std::vector<FoundName> find(std::size_t at, const NameType& type);
+  /// "room i 110": a letter that is a word elsewhere.
+  bool isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const;
   bool mayBeArticle(std::size_t at, const NameType& type) const;
   /// "" if tokens [begin, end) are a name.
   std::string whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
                           const NameType& type);
   bool hasNoun(std::size_t begin, std::size_t end, const NameType& type) const;
   bool mayBeMisspelt(std::size_t at, const NameType& type) const;
+  /// Whether it is a noun of places, or begins one: "living".
+  bool isCommonNoun(const std::string& word) const;
   SaidName nameOf(std::size_t begin, std::size_t end) const;
 
   const CompiledGrammar& grammar_;

@@ -251,7 +251,9 @@ bool isInnerStop(const std::string& text, std::size_t i, std::size_t begin,
     const std::uint32_t after = codeAt(text, i + 1 + length, text.size());
     const bool begins_sentence =
         isUpper(next) && isLetterOrDigit(after) && !isUpper(after) && !isDigit(after);
-    return !begins_sentence || before.size() < 2 || rules.is_abbreviation(lowered(before));
+    if (!begins_sentence || rules.is_abbreviation(lowered(before))) return true;
+    const std::size_t end = wordEnd(text, i + 1, text.size());
+    return before.size() < 2 && !rules.may_begin(folded(text.substr(i + 1, end - i - 1)));
   }
   return isSpace(next) && rules.is_abbreviation(lowered(before));
 }

@@ -37,6 +37,8 @@ struct TokenRules {
   std::function<bool(const std::string& folded)> is_unit;
   /// Whether a full stop behind this word (lower case) does not end the sentence.
   std::function<bool(const std::string& lower)> is_abbreviation;
+  /// Whether a sentence may begin with this word, though no space stands before it.
+  std::function<bool(const std::string& folded)> may_begin;
   /// What a word stands for: "you're" gives "you are"; nothing for most.
   std::function<const std::vector<std::string>*(const std::string& lower)> expansion;
 };

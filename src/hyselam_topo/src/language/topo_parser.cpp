@@ -40,6 +40,14 @@ ParsedText parseWith(const Grammar& grammar, const std::string& text,
   return parsed;
 }
 
+std::size_t knownWords(const Grammar& grammar, const std::string& text) {
+  const CompiledGrammar& compiled = grammar.compiled();
+  const auto tokens = language::tokenize(text, {0, text.size()}, compiled.tokenRules());
+  return static_cast<std::size_t>(std::count_if(tokens.begin(), tokens.end(), [&](const auto& t) {
+    return compiled.known_words.count(t.folded) != 0;
+  }));
+}
+
 ParsedText refused(const Grammar& grammar, const std::string& text, const std::string& code) {
   ParsedText parsed;
   parsed.language = grammar.language();
@@ -81,8 +89,16 @@ ParsedText TopoParser::parse(const std::string& text, const ParseOptions& option
     return refused(first, text, "not_text");
   }
   if (!any) return parseWith(first, text, options.expected);
+  // The language of most of its words first.
+  std::vector<std::pair<std::size_t, std::size_t>> order;
+  for (std::size_t i = 0; i < grammars_.size(); ++i) {
+    order.emplace_back(grammars_.size() > 1 ? knownWords(grammars_[i], text) : 0, i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::optional<ParsedText> best;
-  for (const Grammar& each : grammars_) {
+  for (const auto& [known, index] : order) {
+    const Grammar& each = grammars_[index];
     ParsedText parsed = parseWith(each, text, options.expected);
     if (!best || parsed.misunderstood() < best->misunderstood()) best = std::move(parsed);
     if (best->misunderstood() == 0) break;
