@@ -1,0 +1,374 @@
+// The SLAM engine on simulated buildings with loops, and the parts that it is made of.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hyselam_common/carmen_log.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+#include "hyselam_sim/generate_corridors.hpp"
+#include "hyselam_sim/simulation.hpp"
+#include "ngram_slam/region_graph.hpp"
+#include "ngram_slam/slam_engine.hpp"
+#include "ngram_slam/slam_score.hpp"
+
+namespace ngram_slam {
+namespace {
+
+using hyselam::Pose2;
+
+/// A round through corridors with odometry that is off by metres in the end.
+const hyselam::RobotLog& building() {
+  static const hyselam::RobotLog log = [] {
+    hyselam_sim::CorridorParams corridors;
+    corridors.lines = 3;
+    corridors.loops = 1.0;
+    corridors.legs = 26;
+    const auto made = hyselam_sim::generateCorridors(5, corridors);
+    hyselam_sim::SimulationParams params;
+    params.scan_rate = 5.0;
+    params.odometry.sigma = 0.01;
+    params.odometry.base_scale = 1.03;
+    return hyselam_sim::simulate(made.plan, made.route, 3, params).log;
+  }();
+  return log;
+}
+
+void feed(SlamEngine* engine, const hyselam::RobotLog& log, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < std::min(end, log.scans.size()); ++i) {
+    engine->add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
+    while (const auto job = engine->takeJob()) engine->apply(runJob(*job));
+  }
+}
+
+void finish(SlamEngine* engine) {
+  engine->endRun();
+  while (const auto job = engine->takeLastJob()) engine->apply(runJob(*job));
+}
+
+SlamEngine mapped(SlamLoops loops, std::size_t scans = 100000) {
+  SlamParams params;
+  params.loops = loops;
+  SlamEngine engine(params);
+  feed(&engine, building(), 0, scans);
+  finish(&engine);
+  return engine;
+}
+
+const SlamEngine& withAllLoops() {
+  static const SlamEngine engine = mapped(SlamLoops::kAll);
+  return engine;
+}
+
+TEST(SlamEngine, mapsABuildingFarBetterThanOdometry) {
+  const SlamEngine& engine = withAllLoops();
+  const TrajectoryError slam = trajectoryError(engine.trajectory(), building().ground_truth);
+  const TrajectoryError odometry = trajectoryError(building().odometry, building().ground_truth);
+  EXPECT_EQ(engine.trajectory().size(), building().scans.size());
+  EXPECT_LT(slam.rms, 0.15);
+  EXPECT_LT(10.0 * slam.rms, odometry.rms);
+  EXPECT_GT(engine.loops().size(), 10U);
+}
+
+TEST(SlamEngine, believesNoFalseLoop) {
+  const SlamEngine& engine = withAllLoops();
+  for (const SlamLoop& l : engine.loops()) {
+    const LoopError e = loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
+                                  engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured,
+                                  building().ground_truth);
+    EXPECT_FALSE(e.isFalse()) << l.older << " and " << l.newer << ": " << e.distance << " m, "
+                              << hyselam::degrees(e.turn) << " deg";
+  }
+}
+
+TEST(SlamEngine, theSameInputGivesTheSameMap) {
+  const SlamEngine a = mapped(SlamLoops::kAll, 900), b = mapped(SlamLoops::kAll, 900);
+  ASSERT_EQ(a.keyframes().size(), b.keyframes().size());
+  ASSERT_EQ(a.loops().size(), b.loops().size());
+  for (std::size_t i = 0; i < a.keyframes().size(); ++i) {
+    EXPECT_EQ(a.keyframes()[i].pose.x, b.keyframes()[i].pose.x);
+    EXPECT_EQ(a.keyframes()[i].pose.y, b.keyframes()[i].pose.y);
+    EXPECT_EQ(a.keyframes()[i].pose.theta, b.keyframes()[i].pose.theta);
+  }
+}
+
+TEST(SlamEngine, thesisModeBelievesWordsAsTheyAre) {
+  const SlamEngine engine = mapped(SlamLoops::kThesis);
+  std::size_t edges = 0;
+  for (const SlamLoop& l : engine.loops()) {
+    EXPECT_EQ(l.source, LoopSource::kNgram);
+    EXPECT_EQ(l.measured.x, 0.0);
+    EXPECT_EQ(l.measured.y, 0.0);
+    EXPECT_TRUE(l.measured.theta == 0.0 || l.measured.theta == hyselam::kPi);
+    EXPECT_EQ(l.information, engine.loops().front().information);
+    ++edges;
+  }
+  EXPECT_GT(edges, 0U);
+  EXPECT_EQ(engine.counters().near.tried + engine.counters().far.tried, 0U);
+}
+
+TEST(SlamEngine, withoutLoopsTheGraphIsAChain) {
+  const SlamEngine engine = mapped(SlamLoops::kNone, 600);
+  EXPECT_TRUE(engine.loops().empty());
+  EXPECT_EQ(engine.graph().edges.size() + 1, engine.keyframes().size());
+  EXPECT_NO_THROW(engine.graph().validate());
+}
+
+TEST(SlamEngine, goesOnFromAStateInTheSameMap) {
+  SlamParams params;
+  SlamEngine first(params);
+  const std::size_t half = 700;
+  feed(&first, building(), 0, half);
+  finish(&first);
+  SlamEngine second(params, first.state());
+  EXPECT_EQ(second.keyframes().size(), first.keyframes().size());
+  EXPECT_EQ(second.recogniser().observations().size(), first.recogniser().observations().size());
+  feed(&second, building(), half, half + 300);
+  EXPECT_EQ(second.keyframes().back().run, 1U);
+  const TrajectoryError e = trajectoryError(second.trajectory(), building().ground_truth);
+  EXPECT_LT(e.rms, 0.15);
+  EXPECT_LT(e.largest, 0.5);
+}
+
+TEST(SlamEngine, refusesAStateWhosePartsDoNotFit) {
+  SlamEngine engine = mapped(SlamLoops::kAll, 100);
+  SlamState state = engine.state();
+  state.scans.push_back({1e6, 100000, {}});
+  EXPECT_THROW(SlamEngine(SlamParams{}, state), std::invalid_argument);
+  state = engine.state();
+  state.keyframe_of_observation.push_back(0);
+  EXPECT_THROW(SlamEngine(SlamParams{}, state), std::invalid_argument);
+  state = engine.state();
+  state.keyframes[3].scan.reset();
+  EXPECT_THROW(SlamEngine(SlamParams{}, state), std::invalid_argument);
+}
+
+TEST(SlamEngine, refusesScansThatCannotBeUsedAndLivesOn) {
+  SlamEngine engine;
+  feed(&engine, building(), 0, 50);
+  const std::size_t keyframes = engine.keyframes().size();
+  const auto& scan = building().scans[60];
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(engine.add(building().scans[20], engine.pose()), hyselam::InputError);
+  EXPECT_THROW(engine.add(scan, Pose2{nan, 0, 0}), hyselam::InputError);
+  hyselam::LaserScan bad = scan;
+  bad.angle_increment = 0.0;
+  EXPECT_THROW(engine.add(bad, engine.pose()), hyselam::InputError);
+  bad = scan;
+  bad.stamp = nan;
+  EXPECT_THROW(engine.add(bad, engine.pose()), hyselam::InputError);
+  EXPECT_EQ(engine.counters().scans, 50U);
+  EXPECT_EQ(engine.keyframes().size(), keyframes);
+  feed(&engine, building(), 50, 120);
+  EXPECT_EQ(engine.counters().scans, 120U);
+}
+
+TEST(SlamEngine, standsWhenTheOdometryLeaps) {
+  SlamEngine engine;
+  feed(&engine, building(), 0, 50);
+  const Pose2 before = engine.pose();
+  const auto& scan = building().scans[50];
+  const SlamUpdate update =
+      engine.add(scan, *hyselam::poseAt(building().odometry, scan.stamp) * Pose2{50.0, 0.0, 0.0});
+  EXPECT_TRUE(update.leap);
+  EXPECT_LT(distance(before, engine.pose()), 1.0);
+}
+
+TEST(SlamEngine, emptyScansAndAnEmptyLog) {
+  SlamEngine nothing;
+  finish(&nothing);
+  EXPECT_TRUE(nothing.trajectory().empty());
+  EXPECT_TRUE(nothing.graph().poses.empty());
+  SlamEngine blind;
+  hyselam::LaserScan scan = building().scans[0];
+  for (int i = 0; i < 100; ++i) {
+    scan.stamp = 1.0 + i;
+    scan.ranges.assign(scan.ranges.size(), std::numeric_limits<float>::infinity());
+    blind.add(scan, Pose2{0.1 * i, 0.0, 0.0});
+  }
+  finish(&blind);
+  EXPECT_NEAR(blind.pose().x, 9.9, 1e-6);  // odometry alone
+}
+
+TEST(SlamEngine, mapToOdomUndoesTheDrift) {
+  const SlamEngine& engine = withAllLoops();
+  const auto& last = building().scans.back();
+  const Pose2 pose = engine.odomInMap() * *hyselam::poseAt(building().odometry, last.stamp, 1.0);
+  EXPECT_NEAR(distance(pose, engine.pose()), 0.0, 1e-9);
+}
+
+TEST(SlamEngine, jobsRunWhileScansComeIn) {
+  // A job is out for many scans; what is applied late must not tear the way apart.
+  SlamEngine engine;
+  std::optional<SlamJob> job;
+  const auto& log = building();
+  for (std::size_t i = 0; i < 1500 && i < log.scans.size(); ++i) {
+    engine.add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
+    if (!job) {
+      job = engine.takeJob();
+    } else if (i % 25 == 0) {
+      EXPECT_FALSE(engine.takeJob());  // one at a time
+      engine.apply(runJob(*job));
+      job.reset();
+    }
+  }
+  if (job) engine.apply(runJob(*job));
+  finish(&engine);
+  EXPECT_LT(trajectoryError(engine.trajectory(), log.ground_truth).rms, 0.15);
+}
+
+TEST(RegionGraph, holdsEveryObservationAndTiesLoops) {
+  const SlamEngine& engine = withAllLoops();
+  const RegionGraph graph = regionGraph(engine);
+  ASSERT_FALSE(graph.nodes.empty());
+  std::uint32_t next = 0;
+  for (const RegionNode& n : graph.nodes) {
+    EXPECT_EQ(n.first, next);
+    next = n.last + 1;
+  }
+  EXPECT_EQ(next, engine.recogniser().observations().size());
+  std::size_t loops = 0;
+  for (const RegionEdge& e : graph.edges) {
+    EXPECT_LT(e.a, e.b);
+    EXPECT_LT(e.b, graph.nodes.size());
+    if (e.kind == RegionEdge::Kind::kLoop) ++loops;
+  }
+  EXPECT_GT(loops, 0U);
+  const RegionGraph spaced = spacedGraph(engine, 2.0);
+  EXPECT_GT(spaced.nodes.size(), graph.nodes.size());
+  for (const RegionNode& n : spaced.nodes) EXPECT_LT(n.length, 2.5);
+  EXPECT_THROW(spacedGraph(engine, 0.0), hyselam::ParameterError);
+}
+
+TEST(VerifyLoop, refusesAnotherCorridor) {
+  // The true place of the last keyframe against all places far from it, guessed to be the same.
+  const SlamEngine& engine = withAllLoops();
+  const auto& keyframes = engine.keyframes();
+  SlamParams params;
+  const auto stretch = [&](int middle, int half) {
+    LoopTask::Stretch s;
+    for (int k = std::max(0, middle - half);
+         k <= std::min(static_cast<int>(keyframes.size()) - 1, middle + half); ++k)
+      s.push_back({between(keyframes[static_cast<std::size_t>(middle)].pose,
+                           keyframes[static_cast<std::size_t>(k)].pose),
+                   keyframes[static_cast<std::size_t>(k)].points,
+                   {}});
+    return s;
+  };
+  int verified = 0, tried = 0;
+  const auto middle = static_cast<int>(keyframes.size()) / 2;
+  for (int k = 20; k < static_cast<int>(keyframes.size()); k += 40) {
+    if (distance(keyframes[static_cast<std::size_t>(k)].pose,
+                 keyframes[static_cast<std::size_t>(middle)].pose) < 8.0)
+      continue;
+    LoopTask task;
+    task.older = k;
+    task.newer = middle;
+    task.far = true;
+    task.window = 3.0;
+    task.old_stretch = stretch(k, 40);
+    task.new_stretch = stretch(middle, 16);
+    ++tried;
+    verified += verifyLoop(task, params).verified ? 1 : 0;
+  }
+  EXPECT_GT(tried, 3);
+  EXPECT_EQ(verified, 0);
+  LoopTask same;
+  same.older = middle - 4;
+  same.newer = middle;
+  same.far = true;
+  same.old_stretch = stretch(middle - 4, 40);
+  same.new_stretch = stretch(middle, 16);
+  const LoopAnswer answer = verifyLoop(same, params);
+  EXPECT_TRUE(answer.verified);
+  EXPECT_LT(
+      distance(answer.loop.measured, between(keyframes[static_cast<std::size_t>(middle - 4)].pose,
+                                             keyframes[static_cast<std::size_t>(middle)].pose)),
+      0.1);
+}
+
+TEST(SeenSpace, tellsWhatStandsWhereNothingIs) {
+  SeenSpace space(20.0, 0.1);
+  hyselam_scan_matching::SurfacePoints wall;
+  for (int i = -20; i <= 20; ++i) wall.push_back({5.0, 0.1 * i, -1.0, 0.0});
+  space.insert({}, wall, {});
+  EXPECT_EQ(space.overlap({}, wall).fit, 1.0);
+  EXPECT_EQ(space.overlap({}, wall).known, 1.0);
+  EXPECT_EQ(space.overlap({-1.0, 0.0, 0.0}, wall).fit, 0.0);    // in the free space before it
+  EXPECT_EQ(space.overlap({3.0, 0.0, 0.0}, wall).known, 0.0);   // behind it
+  EXPECT_EQ(space.overlap({50.0, 0.0, 0.0}, wall).known, 0.0);  // off the square
+  EXPECT_THROW(SeenSpace(0.0, 0.1), hyselam::ParameterError);
+}
+
+TEST(GraphWays, goThroughLoops) {
+  GraphWays ways;
+  for (int i = 0; i < 100; ++i) ways.add(i, i + 1, 1.0);
+  EXPECT_NEAR(ways.from(100)[0], 100.0, 1e-6);
+  ways.add(0, 90, 0.5);
+  EXPECT_NEAR(ways.from(100)[0], 10.5, 1e-6);
+  EXPECT_TRUE(std::isinf(ways.from(150)[0]));
+}
+
+TEST(Company, loopsAgreeOrNot) {
+  std::vector<SlamKeyframe> keyframes(40);
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    keyframes[i].way = static_cast<double>(i);
+    keyframes[i].pose = {static_cast<double>(i), 0.0, 0.0};
+  }
+  SlamLoop a, b;
+  a.older = 2;
+  a.newer = 30;
+  a.measured = {0.3, 0.0, 0.0};
+  b.older = 4;
+  b.newer = 32;
+  b.measured = {0.35, 0.05, 0.0};
+  EXPECT_EQ(agreeing(a, {b}, keyframes, LoopParams{}).size(), 1U);
+  b.measured = {1.5, 0.0, 0.0};
+  EXPECT_TRUE(agreeing(a, {b}, keyframes, LoopParams{}).empty());
+  b.measured = {0.35, 0.05, 0.5};
+  EXPECT_TRUE(agreeing(a, {b}, keyframes, LoopParams{}).empty());
+}
+
+TEST(TrajectoryError, forgetsTheFrame) {
+  std::vector<hyselam::StampedPose2> a, b;
+  const Pose2 moved{3.0, -2.0, 1.0};
+  for (int i = 0; i < 50; ++i) {
+    const Pose2 p{0.3 * i, std::sin(0.2 * i), 0.1 * i};
+    a.push_back({1.0 * i, p});
+    b.push_back({1.0 * i, moved * p});
+  }
+  const TrajectoryError e = trajectoryError(a, b);
+  EXPECT_EQ(e.poses, 50U);
+  EXPECT_NEAR(e.rms, 0.0, 1e-9);
+  EXPECT_NEAR(e.mean_turn, 0.0, 1e-9);
+  EXPECT_EQ(trajectoryError({}, b).poses, 0U);
+}
+
+TEST(SlamParams, namesTheParameterOutOfRange) {
+  SlamParams p;
+  p.keyframe_step = -1.0;
+  EXPECT_NE(hyselam::testing::messageOf<hyselam::ParameterError>([&] {
+              SlamEngine engine(p);
+            }).find("keyframe_step"),
+            std::string::npos);
+  p = {};
+  p.loop.far_fit = 2.0;
+  EXPECT_THROW(p.validate(), hyselam::ParameterError);
+}
+
+TEST(SlamEngine, realLogsGoWell) {
+  HYSELAM_NEED_DATA(data);
+  hyselam::RobotLog log = hyselam::readCarmenLog(data + "/laser/intel/intel.log.gz");
+  log.scans.resize(3500);
+  SlamEngine engine;
+  feed(&engine, log, 0, log.scans.size());
+  finish(&engine);
+  const auto reference = hyselam::readReferenceTable(data + "/laser/intel/intel.reference.txt.gz");
+  EXPECT_LT(trajectoryError(engine.trajectory(), reference).rms, 0.15);
+  EXPECT_GT(trajectoryError(log.odometry, reference).rms, 0.5);
+}
+
+}  // namespace
+}  // namespace ngram_slam
