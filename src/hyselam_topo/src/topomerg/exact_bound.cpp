@@ -100,12 +100,6 @@ void ExactSearch::locate(Growth* growth) const {
 
 namespace {
 
-/// A side between a place at (px, py) and one within a circle: bearing and how much it may be off.
-struct Sight {
-  double bearing = 0.0;  ///< from the place to the middle of the circle
-  double slack = kPi;
-};
-
 Sight sight(double px, double py, const Growth& g) {
   const double dx = g.x - px, dy = g.y - py;
   const double d = std::hypot(dx, dy);
@@ -181,23 +175,27 @@ double ExactSearch::emptyLoss(int name, const Growth* growth) const {
   return loss + relationsLoss(name, none);
 }
 
-double ExactSearch::grownPairLoss(int name, const Vertices& v, const Growth& g) const {
-  const bool touches = g.has.around.intersects(v.members);
-  if (!problem_.areJoined(at(name), at(g.name))) return touches ? terms_.forgotten_edge : 0.0;
-  if (!touches && !v.around.intersects(g.open)) return pairLoss(name, g.name);
+GrownView ExactSearch::viewOf(const Vertices& v, const Growth& g) const {
+  GrownView view;
+  view.touches = g.has.around.intersects(v.members);
+  view.may_touch = view.touches || v.around.intersects(g.open);
+  view.placed = v.hasCentre();
+  if (view.may_touch && view.placed && !terms_.sides_of[at(g.name)].empty())
+    view.see = sight(v.x(), v.y(), g);
+  return view;
+}
+
+double ExactSearch::grownPairLoss(int name, const GrownView& view, const Growth& g) const {
+  if (!problem_.areJoined(at(name), at(g.name))) return view.touches ? terms_.forgotten_edge : 0.0;
+  if (!view.may_touch) return pairLoss(name, g.name);
   const int number = sideBetween(name, g.name);
   if (number < 0) return 0.0;
-  if (!v.hasCentre()) return terms_.side;
+  if (!view.placed) return terms_.side;
   const auto& told = problem_.sides[at(number)];
-  const Sight see = sight(v.x(), v.y(), g);
+  const Sight& see = view.see;
   const double bearing = told.from == name ? see.bearing : turned(see.bearing);
   return terms_.side *
          terms_.deviation(told, bearing, {heading_.value, heading_.slack + see.slack}) / kPi;
-}
-
-double ExactSearch::extraLoss(int name, const Vertices& v, const Growth* growth) const {
-  if (!problem_.allowed[at(name)].containsAll(v.members)) return kNever;
-  return exactLoss(name, v) + (growth != nullptr ? grownPairLoss(name, v, *growth) : 0.0);
 }
 
 double ExactSearch::looseLoss(int name, const LooseAnchor& loose, const Growth* growth) const {
@@ -306,14 +304,23 @@ void ExactSearch::listSets(Node* node) const {
   available.forEach([&](std::size_t v) { node->column_of[v] = columns++; });
 }
 
-void ExactSearch::listRows(Node* node, int near) const {
+bool ExactSearch::untouched(const Group& group, const Growth* growth) const {
+  return std::none_of(group.names.begin(), group.names.end(), [&](int i) {
+    return is_closed_[at(i)] || (growth != nullptr && growth->name == i);
+  });
+}
+
+void ExactSearch::listRows(Node* node, int near, const std::vector<char>& late) const {
   node->rows.clear();
   node->row_of.assign(at(n_), -1);
   // Those first whose losses have just become known: they tell soonest that a node is hopeless.
-  for (const bool joined : {true, false}) {
+  const auto turn = [&](int i) {
+    if (late[at(i)]) return 2;
+    return near >= 0 && problem_.areJoined(at(i), at(near)) ? 0 : 1;
+  };
+  for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < n_; ++i) {
-      if (is_closed_[at(i)] || has_fixed_[at(i)] || i == near) continue;
-      if ((near >= 0 && problem_.areJoined(at(i), at(near))) != joined) continue;
+      if (is_closed_[at(i)] || has_fixed_[at(i)] || i == near || turn(i) != k) continue;
       node->row_of[at(i)] = static_cast<int>(node->rows.size());
       node->rows.push_back(i);
     }
@@ -331,7 +338,19 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
   listSets(node);
   const std::size_t level = closed_list_.size();
   const int last = level > 0 ? closed_list_.back() : -1;
-  listRows(node, growth != nullptr ? growth->name : last);
+  // Names of a group of which nothing is known yet lose at least what the group does.
+  late_.assign(at(n_), 0);
+  double groups = 0.0;
+  std::size_t late = 0;
+  for (Group& group : *groups_) {
+    if (!untouched(group, growth)) continue;
+    PlaceSet taken = busy_ - free_;
+    if (growth != nullptr) taken |= busy_ & growth->has.members;
+    groups += leastOf(&group, taken);
+    late += group.names.size();
+    for (const int i : group.names) late_[at(i)] = 1;
+  }
+  listRows(node, growth != nullptr ? growth->name : last, late_);
 
   const std::size_t alive = node->alive.size();
   touches_.resize(alive);
@@ -339,6 +358,10 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
   lonely_.resize(node->setCount());
   for (std::size_t s = 0; s < node->setCount(); ++s)
     lonely_[s] = !setOf(*node, s).around.intersects(node->available);
+  if (growth != nullptr) {
+    views_.resize(node->setCount());
+    for (std::size_t s = 0; s < node->setCount(); ++s) views_[s] = viewOf(setOf(*node, s), *growth);
+  }
   if (growth == nullptr && last >= 0) {
     const Vertices& other = closed_[at(last)];
     const bool sides = other.hasCentre() && !terms_.sides_of[at(last)].empty();
@@ -355,9 +378,14 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
   AssignmentBound& table = node->table;
   table.reset(static_cast<int>(node->rows.size()), static_cast<int>(node->available.size()));
   node->cost.resize(node->rows.size() * node->setCount());
+  double sum = node->base;
   for (std::size_t r = 0; r < node->rows.size(); ++r) {
     const int row = static_cast<int>(r);
     const int name = node->rows[r];
+    if (r + late == node->rows.size()) {
+      node->bound = std::max(node->bound, sum + groups);
+      if (node->bound > enough) return node->bound;
+    }
     double* cost = node->cost.data() + r * node->setCount();
     double* now = losses.data() + at(name) * listed_.size();
     if (growth == nullptr && last >= 0) {
@@ -366,11 +394,14 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
     }
     for (std::size_t s = 0; s < alive; ++s) {
       cost[s] = now[node->alive[s]];
-      if (growth != nullptr && cost[s] < kNever)
-        cost[s] += grownPairLoss(name, listed_[at(node->alive[s])].vertices, *growth);
     }
-    for (std::size_t s = alive; s < node->setCount(); ++s)
-      cost[s] = extraLoss(name, setOf(*node, s), growth);
+    for (std::size_t s = alive; s < node->setCount(); ++s) {
+      const Vertices& v = setOf(*node, s);
+      cost[s] = problem_.allowed[at(name)].containsAll(v.members) ? exactLoss(name, v) : kNever;
+    }
+    if (growth != nullptr)
+      for (std::size_t s = 0; s < node->setCount(); ++s)
+        cost[s] += grownPairLoss(name, views_[s], *growth);
     // What the name loses if it cannot be joined to those that have no vertices yet.
     double waiting = 0.0;
     for (const int other : node->rows)
@@ -384,9 +415,11 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
     for (const LooseAnchor& loose : node->loose)
       table.cost(row, node->column_of[at(loose.anchor)]) = looseLoss(name, loose, growth);
     table.without(row) = emptyLoss(name, growth) + waiting;
-    node->bound += table.addRow(row);
-    if (node->bound > enough) return node->bound;
+    sum += table.addRow(row);
+    node->bound = std::max(node->bound, sum);
+    if (sum > enough) return node->bound;
   }
+  node->table_bound = sum;
   return node->bound;
 }
 

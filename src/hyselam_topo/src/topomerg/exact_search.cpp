@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "improve.hpp"
+
 namespace hyselam_topo {
 namespace merging {
 namespace {
@@ -15,16 +17,64 @@ constexpr std::uint64_t kClockEvery = 16;
 /// Of the quick first answer where the heading is not known or time is short.
 constexpr std::size_t kFirstRevisits = 20;
 
+/// A name with so many joined to it is worth a look at how well it fits with them.
+constexpr int kHubEdges = 3;
+/// Whoever takes a vertex with as many neighbours is in the way of such names.
+constexpr std::size_t kBusy = 3;
+/// Nodes of such a look.
+constexpr std::uint64_t kGroupNodes = 1000;
+/// Nodes before the search goes about it step by step.
+constexpr std::uint64_t kFirstNodes = 40;
+/// The first step is to look for answers that lose less than this; each next one more by a factor.
+constexpr double kFirstLoss = 0.02;
+constexpr double kDeeper = 1.15;
+/// Names times vertices from which a first answer is made better before.
+constexpr int kLarge = 1000;
+constexpr double kLongest = 4.0;  ///< [s]
+constexpr double kAnyHeading = 10.0;
+
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
+/// The problem with these names only, without relations.
+MatchProblem restricted(const MatchProblem& problem, const std::vector<int>& names) {
+  const std::size_t n = problem.nameCount(), m = problem.vertexCount(), k = names.size();
+  MatchProblem part = problem;
+  part.names.clear();
+  part.told.clear();
+  part.allowed.clear();
+  part.relations.clear();
+  part.sides.clear();
+  part.evidence.clear();
+  part.joined.assign(k * k, 0);
+  std::vector<int> number(n, -1);
+  for (std::size_t i = 0; i < k; ++i) {
+    const std::size_t name = at(names[i]);
+    number[name] = static_cast<int>(i);
+    part.names.push_back(problem.names[name]);
+    part.told.push_back(problem.told[name]);
+    part.allowed.push_back(problem.allowed[name]);
+    for (std::size_t j = 0; j < k; ++j)
+      part.joined[i * k + j] = problem.joined[name * n + at(names[j])];
+    if (!problem.evidence.empty())
+      part.evidence.insert(part.evidence.end(),
+                           problem.evidence.begin() + static_cast<std::ptrdiff_t>(name * m),
+                           problem.evidence.begin() + static_cast<std::ptrdiff_t>((name + 1) * m));
+  }
+  for (const MatchProblem::ToldSide& s : problem.sides)
+    if (number[at(s.from)] >= 0 && number[at(s.to)] >= 0)
+      part.sides.push_back({number[at(s.from)], number[at(s.to)], s.angle});
+  for (int& fixed : part.fixed) fixed = fixed >= 0 ? number[at(fixed)] : -1;
+  return part;
+}
+
 }  // namespace
 
-ExactSearch::ExactSearch(const MatchProblem& problem, const MatchParams& params)
+ExactSearch::ExactSearch(const MatchProblem& problem, const MatchParams& params, const Terms& terms)
     : problem_(problem),
       params_(params),
-      terms_(problem, params.fitness),
+      terms_(terms),
       n_(static_cast<int>(problem.nameCount())),
       m_(static_cast<int>(problem.vertexCount())),
       lower_(problem.vertexCount()),
@@ -52,6 +102,7 @@ ExactSearch::ExactSearch(const MatchProblem& problem, const MatchParams& params)
   }
   for (int v = 0; v < m_; ++v) {
     free_.insert(at(v));
+    if (problem.neighbours[at(v)].size() >= kBusy) busy_.insert(at(v));
     if (problem.fixed[at(v)] < 0) continue;
     fixed_.insert(at(v));
     has_fixed_[at(problem.fixed[at(v)])] = 1;
@@ -65,6 +116,7 @@ Node& ExactSearch::node(std::size_t depth) {
 }
 
 bool ExactSearch::stopped() {
+  if (visited_ > max_nodes_) stopped_ = true;
   if (!stopped_ && visited_ % kClockEvery == 0 && std::isfinite(params_.time_limit))
     stopped_ = watch_.seconds() > params_.time_limit;
   return stopped_;
@@ -78,7 +130,7 @@ bool ExactSearch::hopeless(double bound, std::size_t at_least) const {
 
 std::size_t ExactSearch::taken(const Node& here) const {
   std::size_t more = 0;
-  const double room = 1.0 - solutions_.needed() - here.bound;
+  const double room = 1.0 - solutions_.needed() - here.table_bound;
   for (std::size_t r = 0; r < here.rows.size(); ++r)
     more += here.table.reducedWithout(static_cast<int>(r)) > room;
   return taken_ + more;
@@ -90,7 +142,7 @@ void ExactSearch::leaf() {
   s.assignment = owner_;
   s.fitness = evaluate(terms_, verticesOf(problem_, owner_), &s.heading);
   s.vertices = taken_;
-  if (sectors_ && !(s.heading >= sector_low_ && s.heading < sector_high_)) return;
+  if (!problem_.heading && !(s.heading >= sector_low_ && s.heading < sector_high_)) return;
   solutions_.offer(std::move(s));
 }
 
@@ -148,7 +200,7 @@ int ExactSearch::nextName(const Node& here) const {
     }
   }
   if (best >= 0) return best;
-  const double room = 1.0 - solutions_.needed() - here.bound;
+  const double room = 1.0 - solutions_.needed() - here.table_bound;
   int fewest = std::numeric_limits<int>::max();
   for (std::size_t r = 0; r < here.rows.size(); ++r) {
     const int row = static_cast<int>(r);
@@ -175,7 +227,7 @@ std::vector<ExactSearch::Choice> ExactSearch::choicesOf(const Node& here, int na
   std::vector<Choice> out;
   const int row = here.row_of[at(name)];
   const auto add = [&](double reduced, int set, int seed, std::size_t vertices) {
-    const Choice c{here.bound + std::max(0.0, reduced), set, seed};
+    const Choice c{std::max(here.bound, here.table_bound + std::max(0.0, reduced)), set, seed};
     if (!hopeless(c.bound, taken_ + vertices)) out.push_back(c);
   };
   for (std::size_t s = 0; s < here.setCount(); ++s) {
@@ -279,42 +331,160 @@ void ExactSearch::grow(const Growth& growth, std::size_t depth, double known) {
   }
 }
 
-void ExactSearch::runSector() {
-  search(0, 0.0);
+Group::Least ExactSearch::leastLoss(std::uint64_t max_nodes, double known) {
+  listSectors(0.0);
+  Group::Least least;
+  least.loss = known;
+  max_nodes_ = max_nodes;
+  for (double loss = std::max(kFirstLoss, 1.25 * known); loss < 1.0; loss *= 1.25) {
+    solutions_.restart(1.0 - loss);
+    if (!searchAll()) break;
+    least.loss = loss;
+    if (!solutions_.any()) continue;
+    least.loss = std::max(0.0, 1.0 - solutions_.best() - kEqualFitness);
+    least.exact = true;
+    const Assignment& best = solutions_.kept().front().assignment;
+    for (int v = 0; v < m_; ++v)
+      if (best[at(v)] >= 0) least.used.insert(at(v));
+    break;
+  }
+  return least;
+}
+
+std::vector<Group> ExactSearch::findGroups() const {
+  std::vector<Group> groups;
+  std::vector<int> group_of(at(n_), -1);
+  for (int i = 0; i < n_; ++i) {
+    if (told_edges_[at(i)] < kHubEdges || has_fixed_[at(i)]) continue;
+    group_of[at(i)] = static_cast<int>(groups.size());
+    groups.push_back({i, {i}, {}});
+  }
+  for (int i = 0; i < n_; ++i) {
+    if (told_edges_[at(i)] >= kHubEdges || has_fixed_[at(i)]) continue;
+    int best = -1;
+    for (int j = 0; j < n_; ++j)
+      if (problem_.areJoined(at(i), at(j)) && group_of[at(j)] >= 0 &&
+          told_edges_[at(j)] >= kHubEdges &&
+          (best < 0 || told_edges_[at(j)] > told_edges_[at(best)]))
+        best = j;
+    if (best >= 0) groups[at(group_of[at(best)])].names.push_back(i);
+  }
+  // A group that is all there is would be the problem itself.
+  if (groups.size() == 1 && groups[0].names.size() == at(n_)) groups.clear();
+  return groups;
+}
+
+double ExactSearch::leastOf(Group* group, const PlaceSet& taken) const {
+  double known = 0.0;
+  for (const Group::Least& least : group->least) {
+    if (least.taken == taken) return least.loss;
+    if (!taken.containsAll(least.taken)) continue;
+    // What is possible with fewer vertices is possible with more.
+    known = std::max(known, least.loss);
+    if (!least.exact || least.used.intersects(taken)) continue;
+    Group::Least same = least;
+    same.taken = taken;
+    group->least.push_back(same);
+    return same.loss;
+  }
+  MatchParams params = params_;
+  params.dummy = true;
+  params.max_solutions = 1;
+  params.keep_within = 0.0;
+  params.time_limit = std::max(0.0, params_.time_limit - watch_.seconds());
+  MatchProblem part = restricted(problem_, group->names);
+  part.heading = heading_.value;
+  for (PlaceSet& allowed : part.allowed) allowed -= taken;
+  Terms terms(part, params.fitness);
+  terms.weighAs(terms_);
+  ExactSearch search(part, params, terms);
+  search.slack_ = heading_.slack;
+  group->least.push_back(search.leastLoss(kGroupNodes, known));
+  group->least.back().taken = taken;
+  return group->least.back().loss;
+}
+
+void ExactSearch::listSectors(double start) {
+  if (problem_.heading || problem_.sides.empty()) {
+    all_sectors_ = {{{problem_.heading.value_or(0.0), slack_}, -kAnyHeading, kAnyHeading, {}}};
+    return;
+  }
+  const double width = 2.0 * kPi / kSectors;
+  const auto edge = [&](int k) { return -kPi + k * width; };
+  for (int k = 0; k < kSectors; ++k)
+    // Each heading belongs to one sector, the ends of the circle too.
+    all_sectors_.push_back({{edge(k) + 0.5 * width, 0.5 * width + 1e-9},
+                            k == 0 ? -kAnyHeading : edge(k),
+                            k + 1 == kSectors ? kAnyHeading : edge(k + 1),
+                            {}});
+  std::stable_sort(all_sectors_.begin(), all_sectors_.end(), [&](const Sector& a, const Sector& b) {
+    return std::abs(wrapped(a.heading.value - start)) < std::abs(wrapped(b.heading.value - start));
+  });
+}
+
+bool ExactSearch::searchAll() {
+  unexplored_ = std::numeric_limits<double>::infinity();
+  for (Sector& sector : all_sectors_) {
+    heading_ = sector.heading;
+    sector_low_ = sector.low;
+    sector_high_ = sector.high;
+    groups_ = &sector.groups;
+    if (stopped_)
+      note(proven_);
+    else
+      search(0, proven_);
+  }
+  return !stopped_;
+}
+
+void ExactSearch::deepen(double known_fitness) {
+  // All that may lose less than so much, then than more, until the best answers are among it: so
+  // little time is lost on what a bad first answer would let pass.
+  const double known = std::min(1.0, 1.0 - known_fitness);
+  for (Sector& sector : all_sectors_) sector.groups = findGroups();
+  for (double loss = kFirstLoss; !stopped_; loss *= kDeeper) {
+    const bool last = loss >= known;
+    const double limit = std::min(loss, known);
+    solutions_.restart(1.0 - limit);
+    const bool all = searchAll();
+    const double found = solutions_.any() ? 1.0 - solutions_.best() : 1.0;
+    if (!all) {
+      proven_ = std::max(proven_, std::min(unexplored_, limit));
+      return;
+    }
+    proven_ = std::min(limit, found);
+    if (last || found <= limit + kEqualFitness) return;
+    if (found < 1.0) loss = found / kDeeper;  // within keep_within of the limit: once more
+  }
 }
 
 Match ExactSearch::run() {
   Match first;
-  if (getenv("HINT")) solutions_.expect(atof(getenv("HINT")) - 1e-9);
-  if (problem_.heading || problem_.sides.empty()) {
-    heading_ = {problem_.heading.value_or(0.0), 0.0};
-    runSector();
-  } else {
+  if (!problem_.heading && !problem_.sides.empty()) {
     first = treeSearch(problem_, params_, kFirstRevisits);
     if (first.found()) solutions_.expect(first.best().fitness);
-    const double start = first.found() ? first.best().heading : 0.0;
-    const double width = 2.0 * kPi / kSectors;
-    const auto edge = [&](int k) { return -kPi + k * width; };
-    std::vector<int> order(kSectors);
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return std::abs(wrapped(edge(a) + 0.5 * width - start)) <
-             std::abs(wrapped(edge(b) + 0.5 * width - start));
-    });
-    sectors_ = true;
-    for (const int k : order) {
-      heading_ = {edge(k) + 0.5 * width, 0.5 * width + 1e-9};
-      // Each heading belongs to one sector, the ends of the circle too.
-      sector_low_ = k == 0 ? -2.0 * kPi : edge(k);
-      sector_high_ = k + 1 == kSectors ? 2.0 * kPi : edge(k + 1);
-      if (stopped_)
-        note(0.0);
-      else
-        runSector();
-    }
   }
-  if (first.found() && first.best().fitness > solutions_.best() + kEqualFitness)
+  listSectors(first.found() ? first.best().heading : 0.0);
+  max_nodes_ = kFirstNodes;
+  if (!searchAll()) {
+    stopped_ = watch_.seconds() > params_.time_limit;
+    max_nodes_ = std::numeric_limits<std::uint64_t>::max();
+    for (const MatchSolution& s : solutions_.kept())
+      if (!first.found() || s.fitness > first.best().fitness) first.solutions = {s};
+    // In large problems the first answers are far from good.
+    if (!first.found()) first = treeSearch(problem_, params_, 0);
+    if (first.found() && n_ * m_ > kLarge)
+      first.solutions[0] = improved(problem_, params_, terms_, first.best(),
+                                    0.25 * std::min(params_.time_limit, kLongest));
+    if (first.found()) solutions_.expect(first.best().fitness);
+    const double known = first.found() ? first.best().fitness : -1.0;
+    deepen(known);
+    unexplored_ = proven_;
+  }
+  if (first.found() && first.best().fitness > solutions_.best() + kEqualFitness) {
+    solutions_.restart(first.best().fitness);
     solutions_.offer(first.best());
+  }
   Match match = solutions_.finish();
   match.optimal = !stopped_;
   if (stopped_)
@@ -330,7 +500,8 @@ Match ExactSearch::run() {
 
 Match solveExact(const MatchProblem& problem, const MatchParams& params) {
   checkMatchParams(params);
-  return merging::ExactSearch(problem, params).run();
+  const merging::Terms terms(problem, params.fitness);
+  return merging::ExactSearch(problem, params, terms).run();
 }
 
 }  // namespace hyselam_topo

@@ -30,6 +30,20 @@ struct Growth {
   double x = 0.0, y = 0.0, radius = 0.0;
 };
 
+/// A place's view of the centre of what is being built.
+struct Sight {
+  double bearing = 0.0;  ///< to the middle of the circle
+  double slack = kPi;    ///< either way to its rim
+};
+
+/// What a set of vertices has to do with the name that is being built.
+struct GrownView {
+  bool touches = false;
+  bool may_touch = false;
+  bool placed = false;  ///< the set has a position
+  Sight see;
+};
+
 /// A vertex with too many sets to list them.
 struct LooseAnchor {
   int anchor = 0;
@@ -41,6 +55,7 @@ struct LooseAnchor {
 struct Node {
   double base = 0.0;                ///< lost among the names that have got their vertices
   double bound = 0.0;               ///< lost at least by any answer from here
+  double table_bound = 0.0;         ///< the same as the table tells it; at most `bound`
   PlaceSet available;               ///< to names that have none and are not confirmed
   std::vector<int> alive;           ///< always-listed sets of available vertices
   std::vector<CandidateSet> extra;  ///< sets that are listed here only
@@ -54,10 +69,26 @@ struct Node {
   std::size_t setCount() const { return alive.size() + extra.size(); }
 };
 
+/// A name that several others are joined to, and those of them that are not such a name themselves.
+struct Group {
+  int hub = 0;
+  std::vector<int> names;  ///< with the hub
+  /// Lost among them in any answer, if those of the busy vertices are taken by others.
+  struct Least {
+    PlaceSet taken;
+    double loss = 0.0;
+    bool exact = false;  ///< an answer that loses so little ...
+    PlaceSet used;       ///< ... is made of these
+  };
+  std::vector<Least> least;
+};
+
 class ExactSearch {
  public:
-  ExactSearch(const MatchProblem& problem, const MatchParams& params);
+  ExactSearch(const MatchProblem& problem, const MatchParams& params, const Terms& terms);
   Match run();
+  /// What any answer loses, as far as so many nodes can tell; at least `known`.
+  Group::Least leastLoss(std::uint64_t max_nodes, double known);
 
  private:
   struct Choice {
@@ -66,7 +97,18 @@ class ExactSearch {
     int seed = -1;  ///< the anchor of sets that are not listed; both -1: no vertices
   };
 
-  void runSector();
+  bool searchAll();
+  void deepen(double known_fitness);
+  std::vector<Group> findGroups() const;
+  double leastOf(Group* group, const PlaceSet& taken) const;
+  bool untouched(const Group& group, const Growth* growth) const;
+  struct Sector {
+    Heading heading;
+    double low = 0.0;  ///< answers whose best heading is not within low .. high are left to others
+    double high = 0.0;
+    std::vector<Group> groups;
+  };
+  void listSectors(double start);
   void search(std::size_t depth, double known);
   void branch(Node* here, int name, std::size_t depth);
   void startFrom(int name, const Vertices& has, PlaceSet open, std::size_t depth, double known);
@@ -80,12 +122,12 @@ class ExactSearch {
   void listOnce();
   void listSets(Node* node) const;
   void addLast(const Node& node, int name, int last, const double* before, double* now) const;
-  void listRows(Node* node, int near) const;
+  void listRows(Node* node, int near, const std::vector<char>& late) const;
   double grownLoss(const Growth& growth) const;
   double emptyLoss(int name, const Growth* growth) const;
-  double extraLoss(int name, const Vertices& vertices, const Growth* growth) const;
+  GrownView viewOf(const Vertices& vertices, const Growth& growth) const;
   double looseLoss(int name, const LooseAnchor& loose, const Growth* growth) const;
-  double grownPairLoss(int name, const Vertices& vertices, const Growth& growth) const;
+  double grownPairLoss(int name, const GrownView& view, const Growth& growth) const;
   /// What is lost of two names that are told to be joined and are not.
   double pairLoss(int i, int j) const;
   PlaceSet piece(std::size_t anchor, const PlaceSet& of) const;
@@ -123,20 +165,22 @@ class ExactSearch {
 
   const MatchProblem& problem_;
   const MatchParams& params_;
-  const Terms terms_;
+  const Terms& terms_;
   const int n_;
   const int m_;
   // Vertices are ranked, those with most neighbours first: sets without the few that lead to many
   // are small pieces of the map. The first vertex of a set by rank is its anchor.
   std::vector<PlaceSet> lower_;  ///< of each vertex, those ranked below
   std::vector<CandidateSet> listed_;
+  PlaceSet busy_;                       ///< vertices with many neighbours
   std::vector<int> not_always_listed_;  ///< anchors with too many sets
   std::vector<char> has_fixed_;
   PlaceSet fixed_;
   Heading heading_;
-  double sector_low_ = 0.0;  ///< answers whose best heading lies elsewhere are left to others
+  double slack_ = 0.0;  ///< of a heading that is known
+  std::vector<Sector> all_sectors_;
+  double sector_low_ = 0.0;
   double sector_high_ = 0.0;
-  bool sectors_ = false;
 
   std::vector<Vertices> closed_;
   std::vector<char> is_closed_;
@@ -153,15 +197,20 @@ class ExactSearch {
   double base_ = 0.0;
 
   // Of the node whose bound is computed, of each set:
+  std::vector<char> late_;        ///< of each name: of an untouched group
   std::vector<char> touches_;     ///< the name that has last got its vertices
   std::vector<double> bearings_;  ///< from the set to that name
-  std::vector<char> lonely_;      ///< touches no available vertex
+  std::vector<GrownView> views_;
+  std::vector<char> lonely_;  ///< touches no available vertex
 
   std::deque<Node> nodes_;
+  std::vector<Group>* groups_ = nullptr;  ///< of the sector
   Solutions solutions_;
+  std::uint64_t max_nodes_ = std::numeric_limits<std::uint64_t>::max();
   Stopwatch watch_;
   std::uint64_t visited_ = 0;
   bool stopped_ = false;
+  double proven_ = 0.0;  ///< no answer loses less
   double unexplored_ = std::numeric_limits<double>::infinity();
 };
 

@@ -88,6 +88,18 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
   evidence = share(7);
 }
 
+void Terms::weighAs(const Terms& whole) {
+  empty_name = whole.empty_name;
+  area = whole.area;
+  missing_edge = whole.missing_edge;
+  forgotten_edge = whole.forgotten_edge;
+  side = whole.side;
+  relation = whole.relation;
+  parts = whole.parts;
+  kind = whole.kind;
+  evidence = whole.evidence;
+}
+
 double Terms::alone(int name, const Vertices& v) const {
   const auto i = static_cast<std::size_t>(name);
   const MatchProblem::Told& told = problem.told[i];

@@ -46,6 +46,9 @@ class Terms {
  public:
   Terms(const MatchProblem& problem, const FitnessParams& params);
 
+  /// The weights of another problem, of which this one is a part.
+  void weighAs(const Terms& whole);
+
   const MatchProblem& problem;
   double empty_name = 0.0;      ///< loss of a name without vertices
   double area = 0.0;            ///< the most one wrong size costs

@@ -30,6 +30,14 @@ void Solutions::offer(MatchSolution solution) {
   if (kept_.size() >= params_.max_solutions) full_ = true;
 }
 
+void Solutions::restart(double fitness) {
+  kept_.clear();
+  best_ = -1.0;
+  floor_ = fitness;
+  fewest_ = 0;
+  full_ = more_ = false;
+}
+
 void Solutions::trim() {
   kept_.erase(std::remove_if(kept_.begin(), kept_.end(),
                              [this](const MatchSolution& s) { return s.fitness < needed(); }),

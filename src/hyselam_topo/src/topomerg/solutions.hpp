@@ -40,6 +40,8 @@ class Solutions {
 
   /// Takes an answer if it is good enough; each answer may come once only.
   void offer(MatchSolution solution);
+  /// Forgets all answers; those that come must be about as good as `fitness`.
+  void restart(double fitness);
   /// What is left, in order.
   Match finish();
 

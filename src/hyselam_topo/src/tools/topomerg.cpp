@@ -1,0 +1,156 @@
+// topomerg HUMAN.xml TOPO.xml --out MERGED.xml: gives the places of a map the names that a person
+// has told.
+#include "hyselam_topo/topomerg.hpp"
+
+#include <cmath>
+#include <iostream>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_topo/description_xml.hpp"
+#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topo/topomerg_names.hpp"
+
+namespace {
+
+using namespace hyselam_topo;  // NOLINT: a program, not a header
+
+/// "PLACE=NAME": the id of a place of the map and a name, or its id, of the description.
+std::pair<Id, Id> namedPlace(const std::string& option, const std::string& text,
+                             const DescribedBuilding& building) {
+  const std::size_t sign = text.find('=');
+  if (sign == std::string::npos || sign == 0)
+    throw hyselam::InputError(option, text, "is not PLACE=NAME");
+  Id place = 0;
+  for (const char c : text.substr(0, sign)) {
+    if (c < '0' || c > '9' || place > 100000000)
+      throw hyselam::InputError(option, text, "does not begin with the id of a place");
+    place = place * 10 + static_cast<Id>(c - '0');
+  }
+  const std::string name = text.substr(sign + 1);
+  for (const DescribedPlace& p : building.places) {
+    bool same = p.name == name || std::to_string(p.id) == name;
+    for (const std::string& alias : p.aliases) same = same || alias == name;
+    if (same) return {place, p.id};
+  }
+  throw hyselam::InputError(option, text, "there is no such name in the description");
+}
+
+nlohmann::json assignmentOf(const MatchProblem& problem, const DescribedBuilding& building,
+                            const MatchSolution& solution) {
+  nlohmann::json out = nlohmann::json::array();
+  for (std::size_t i = 0; i < problem.nameCount(); ++i) {
+    nlohmann::json places = nlohmann::json::array();
+    for (std::size_t v = 0; v < problem.vertexCount(); ++v)
+      if (solution.assignment[v] == static_cast<int>(i)) places.push_back(problem.vertices[v]);
+    out.push_back({{"id", problem.names[i]},
+                   {"name", building.findPlace(problem.names[i])->name},
+                   {"places", places}});
+  }
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Gives the places of a topological map the names that a person has told.",
+               "topomerg");
+  std::string human_file, map_file, out, solver = "exact";
+  MatchParams params;
+  MatchObserver observer;
+  double limit = 0.0, heading = 0.0;
+  Id robot_place = 0;
+  bool no_dummy = false, scattered = false, uncertainties = true;
+  std::vector<std::string> confirmed, excluded;
+  app.option_defaults()->always_capture_default();
+  app.add_option("HUMAN", human_file, "description (XML), as parse_description writes it")
+      ->required();
+  app.add_option("MAP", map_file, "topological map (XML), as gr2to writes it")->required();
+  app.add_option("--out", out, "the map with the names, unconfirmed")->required();
+  app.add_option("--solver", solver, "how the best answer is found")
+      ->check(CLI::IsMember({"exact", "treesearch", "explorer"}));
+  CLI::Option* place_option =
+      app.add_option("--robot-place", robot_place,
+                     "id of the robot's place in the map: it has the name of the "
+                     "robot's place in the description");
+  CLI::Option* heading_option =
+      app.add_option("--robot-heading", heading,
+                     "of the robot while the person spoke [rad]; without it the best one is taken");
+  app.add_option("--confirmed", confirmed, "PLACE=NAME: this place of the map has that name");
+  app.add_option("--excluded", excluded, "PLACE=NAME: this place of the map has another name");
+  CLI::Option* limit_option =
+      app.add_option("--time-limit", limit, "of the exact solver [s]; without it there is none")
+          ->check(CLI::NonNegativeNumber);
+  app.add_flag("--no-dummy", no_dummy, "every place of the map has a name (k_s = 0)");
+  app.add_flag("--scattered", scattered, "places of one name need not hang together");
+  app.add_option("--max-solutions", params.max_solutions, "as many equally good answers are kept");
+  app.add_option("--weight-vertices", params.fitness.vertices, "gamma_v");
+  app.add_option("--weight-areas", params.fitness.areas, "gamma_a");
+  app.add_option("--weight-edges", params.fitness.edges, "gamma_e");
+  app.add_option("--weight-orientations", params.fitness.orientations, "gamma_d");
+  app.add_option("--weight-relations", params.fitness.relations, "next to, opposite, ...");
+  app.add_option("--weight-parts", params.fitness.parts, "numbers of rooms");
+  app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
+  app.add_option("--forgotten-edge", params.fitness.forgotten_edge,
+                 "0: doors that nobody told of count as mistakes; 1: not at all");
+  app.add_option("--uncertainties", uncertainties, "of the names; takes some more searches");
+
+  return hyselam::runTool(argc, argv, app, [&] {
+    const DescribedBuilding building = loadDescription(human_file);
+    const AugmentedTopologicalMap map = loadXml(map_file);
+    hyselam::Progress progress("topomerg", 3);
+    if (place_option->count() > 0) observer.place = robot_place;
+    if (heading_option->count() > 0) observer.heading = heading;
+    if (limit_option->count() > 0) params.time_limit = limit;
+    params.dummy = !no_dummy;
+    params.connected = !scattered;
+    MatchConstraints constraints;
+    for (const std::string& text : confirmed)
+      constraints.confirmed.push_back(namedPlace("--confirmed", text, building));
+    for (const std::string& text : excluded)
+      constraints.excluded.push_back(namedPlace("--excluded", text, building));
+    const MatchProblem problem = compileMatch(building, map, observer, constraints);
+    progress.update(1);
+    const Match match = solver == "explorer"     ? exploreAll(problem, params)
+                        : solver == "treesearch" ? treeSearch(problem, params)
+                                                 : solveExact(problem, params);
+    if (!match.found())
+      throw hyselam::InputError(map_file, "",
+                                "no answer satisfies what is confirmed, or none was found in time");
+    progress.update(2);
+    saveXml(out, withNames(map, building, problem, match.best()));
+
+    nlohmann::json result{{"fitness", match.best().fitness},
+                          {"solutions_equal", match.equal},
+                          {"more_solutions", match.more},
+                          {"optimal", match.optimal},
+                          {"gap", match.gap},
+                          {"solver", solver},
+                          {"names", problem.nameCount()},
+                          {"places", problem.vertexCount()},
+                          {"heading", match.best().heading},
+                          {"assignment", assignmentOf(problem, building, match.best())},
+                          {"microseconds", match.microseconds},
+                          {"nodes_expanded", match.nodes}};
+    if (uncertainties) {
+      nlohmann::json list = nlohmann::json::array();
+      for (const NameUncertainty& u : nameUncertainties(problem, params, match))
+        list.push_back({{"id", u.name},
+                        {"name", building.findPlace(u.name)->name},
+                        {"place", u.place},
+                        {"drop", u.drop}});
+      result["uncertainties"] = list;
+    }
+    if (const auto question = mostInformativeQuestion(problem, match))
+      result["question"] = {{"place", question->place},
+                            {"name", question->name},
+                            {"probability", question->probability},
+                            {"bits", question->bits}};
+    progress.update(3);
+    std::cout << "fitness " << match.best().fitness << ", " << match.equal
+              << (match.more ? "+" : "") << " equally good, " << match.nodes << " nodes, "
+              << std::lround(match.microseconds) << " us -> " << out << '\n';
+    return result;
+  });
+}

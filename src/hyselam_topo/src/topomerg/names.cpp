@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_topo/topomerg_names.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+/// The largest vertex of a name; nothing if it has none.
+std::optional<std::size_t> mainVertex(const MatchProblem& problem, const Assignment& assignment,
+                                      std::size_t name) {
+  std::optional<std::size_t> best;
+  for (std::size_t v = 0; v < assignment.size(); ++v) {
+    if (assignment[v] != static_cast<int>(name)) continue;
+    if (!best || problem.area[v] > problem.area[*best]) best = v;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
+                                               const MatchParams& params, const Match& match) {
+  std::vector<NameUncertainty> out;
+  if (!match.found()) return out;
+  const MatchSolution& best = match.best();
+  MatchParams again = params;
+  again.keep_within = 0.0;
+  again.max_solutions = 1;
+  for (std::size_t i = 0; i < problem.nameCount(); ++i) {
+    NameUncertainty u;
+    u.name = problem.names[i];
+    const auto main = mainVertex(problem, best.assignment, i);
+    if (main) u.place = problem.vertices[*main];
+    if (main && problem.fixed[*main] == static_cast<int>(i)) {
+      u.drop = 1.0;
+      out.push_back(u);
+      continue;
+    }
+    // Some answer that is kept may have the name elsewhere.
+    double other = -1.0;
+    for (const MatchSolution& s : match.solutions) {
+      const bool elsewhere = main ? s.assignment[*main] != static_cast<int>(i)
+                                  : std::find(s.assignment.begin(), s.assignment.end(),
+                                              static_cast<int>(i)) != s.assignment.end();
+      if (elsewhere) other = std::max(other, s.fitness);
+    }
+    if (other < best.fitness - kEqualFitness && main) {
+      MatchProblem without = problem;
+      without.allowed[i].erase(*main);
+      const Match second = solveExact(without, again);
+      if (second.found()) other = std::max(other, second.best().fitness);
+    }
+    u.drop = other < 0.0 ? best.fitness : std::max(0.0, best.fitness - other);
+    out.push_back(u);
+  }
+  return out;
+}
+
+std::optional<MatchQuestion> mostInformativeQuestion(const MatchProblem& problem,
+                                                     const Match& match,
+                                                     const QuestionParams& params) {
+  if (!(params.tolerance > 0.0))
+    throw hyselam::ParameterError("tolerance", params.tolerance, "> 0");
+  if (!match.found()) return std::nullopt;
+  std::vector<double> likely;
+  double sum = 0.0;
+  for (const MatchSolution& s : match.solutions) {
+    likely.push_back(std::exp((s.fitness - match.best().fitness) / params.tolerance));
+    sum += likely.back();
+  }
+  std::optional<MatchQuestion> best;
+  for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+    if (problem.fixed[v] >= 0) continue;
+    std::map<int, double> share;
+    for (std::size_t k = 0; k < likely.size(); ++k)
+      share[match.solutions[k].assignment[v]] += likely[k] / sum;
+    double bits = 0.0;
+    for (const auto& [name, p] : share) bits -= p * std::log2(p);
+    if (bits < 1e-9 || (best && bits <= best->bits + 1e-12)) continue;
+    const auto top = std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    });
+    best = MatchQuestion{problem.vertices[v],
+                         top->first < 0 ? 0 : problem.names[static_cast<std::size_t>(top->first)],
+                         top->second, bits};
+  }
+  return best;
+}
+
+AugmentedTopologicalMap withNames(const AugmentedTopologicalMap& map,
+                                  const DescribedBuilding& building, const MatchProblem& problem,
+                                  const MatchSolution& solution) {
+  AugmentedTopologicalMap out = map;
+  for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+    const int i = solution.assignment[v];
+    Place* place = out.findPlace(problem.vertices[v]);
+    const DescribedPlace* told =
+        i < 0 ? nullptr : building.findPlace(problem.names[static_cast<std::size_t>(i)]);
+    if (place == nullptr || told == nullptr) continue;
+    const bool confirmed = problem.fixed[v] >= 0;
+    std::vector<Word>& words = place->words;
+    words.erase(std::remove_if(words.begin(), words.end(),
+                               [](const Word& word) { return !word.confirmed; }),
+                words.end());
+    std::vector<std::string> texts{told->name};
+    texts.insert(texts.end(), told->aliases.begin(), told->aliases.end());
+    for (const std::string& text : texts) {
+      const bool has = std::any_of(words.begin(), words.end(),
+                                   [&](const Word& word) { return word.text == text; });
+      if (!has) words.push_back({text, confirmed});
+    }
+  }
+  return out;
+}
+
+}  // namespace hyselam_topo
