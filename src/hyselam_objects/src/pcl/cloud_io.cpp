@@ -1,0 +1,134 @@
+#include "hyselam_objects/pcl/cloud_io.hpp"
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/console/print.h>
+#include <pcl/io/pcd_io.h>
+
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+
+namespace hyselam_objects {
+namespace {
+
+using hyselam::InputError;
+
+constexpr std::uint64_t kMaxPoints = 50000000;
+
+const pcl::PCLPointField* find(const pcl::PCLPointCloud2& cloud, const std::string& name) {
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    if (field.name == name) return &field;
+  }
+  return nullptr;
+}
+
+template <typename T>
+T valueAt(const pcl::PCLPointCloud2& cloud, std::size_t i, const pcl::PCLPointField& field) {
+  T value;
+  std::memcpy(&value, &cloud.data[i * cloud.point_step + field.offset], sizeof value);
+  return value;
+}
+
+}  // namespace
+
+CloudFile readPcd(const std::string& path) {
+  if (!std::ifstream(path)) throw InputError(path, "", "cannot be read");
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  pcl::PCLPointCloud2 raw;
+  pcl::PCDReader reader;
+  Eigen::Vector4f origin;
+  Eigen::Quaternionf orientation;
+  int version = 0, type = 0;
+  unsigned int start = 0;
+  try {
+    if (reader.readHeader(path, raw, origin, orientation, version, type, start) < 0) {
+      throw InputError(path, "header", "is not that of a PCD file");
+    }
+    const std::uint64_t points = std::uint64_t{raw.width} * raw.height;
+    if (points == 0) throw InputError(path, "header", "announces no points");
+    if (points > kMaxPoints)
+      throw InputError(path, "header", "announces more than 50 million points");
+    if (reader.read(path, raw) < 0) throw InputError(path, "data", "is cut short or damaged");
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw InputError(path, "", std::string("is no usable PCD file: ") + e.what());
+  }
+  const std::size_t size = std::size_t{raw.width} * raw.height;
+  if (raw.point_step == 0 || raw.data.size() < size * raw.point_step) {
+    throw InputError(path, "data", "is cut short");
+  }
+  CloudFile out;
+  out.cloud.width = static_cast<int>(raw.width);
+  out.cloud.height = static_cast<int>(raw.height);
+  const pcl::PCLPointField* axes[3] = {find(raw, "x"), find(raw, "y"), find(raw, "z")};
+  for (int a = 0; a < 3; ++a) {
+    if (axes[a] == nullptr || axes[a]->datatype != pcl::PCLPointField::FLOAT32) {
+      throw InputError(path, std::string("field ") + "xyz"[a], "is missing or no 32-bit float");
+    }
+  }
+  const pcl::PCLPointField* colour = find(raw, "rgba");
+  if (colour == nullptr) colour = find(raw, "rgb");
+  const pcl::PCLPointField* label = find(raw, "label");
+  out.cloud.points.resize(size);
+  if (colour != nullptr) out.cloud.colours.resize(size);
+  if (label != nullptr) out.labels.resize(size);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 0; i < size; ++i) {
+    Point p(valueAt<float>(raw, i, *axes[0]), valueAt<float>(raw, i, *axes[1]),
+            valueAt<float>(raw, i, *axes[2]));
+    out.cloud.points[i] = p.allFinite() ? p : Point(nan, nan, nan);
+    if (colour != nullptr) {
+      out.cloud.colours[i] = valueAt<std::uint32_t>(raw, i, *colour) & 0xffffffu;
+    }
+    if (label != nullptr) out.labels[i] = valueAt<std::uint32_t>(raw, i, *label);
+  }
+  return out;
+}
+
+void writePcd(const std::string& path, const OrganisedCloud& cloud,
+              const std::vector<std::uint32_t>& labels) {
+  const bool coloured = !cloud.colours.empty();
+  pcl::PCLPointCloud2 raw;
+  raw.width = static_cast<std::uint32_t>(cloud.width);
+  raw.height = static_cast<std::uint32_t>(cloud.height);
+  raw.is_dense = false;
+  const auto add = [&raw](const char* name, std::uint8_t type) {
+    pcl::PCLPointField field;
+    field.name = name;
+    field.offset = raw.point_step;
+    field.datatype = type;
+    field.count = 1;
+    raw.fields.push_back(field);
+    raw.point_step += 4;
+  };
+  for (const char* axis : {"x", "y", "z"}) add(axis, pcl::PCLPointField::FLOAT32);
+  if (coloured) add("rgb", pcl::PCLPointField::FLOAT32);
+  add("label", pcl::PCLPointField::UINT32);
+  raw.row_step = raw.point_step * raw.width;
+  raw.data.resize(cloud.size() * raw.point_step);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::uint8_t* at = &raw.data[i * raw.point_step];
+    for (int a = 0; a < 3; ++a, at += 4) std::memcpy(at, &cloud.points[i][a], 4);
+    if (coloured) {
+      std::memcpy(at, &cloud.colours[i], 4);
+      at += 4;
+    }
+    std::memcpy(at, &labels.at(i), 4);
+  }
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  hyselam::replaceFileAtomically(path, [&](const std::string& temporary) {
+    try {
+      if (pcl::PCDWriter().writeBinaryCompressed(temporary, raw) < 0) {
+        throw InputError(path, "", "cannot be written");
+      }
+    } catch (const pcl::PCLException& e) {
+      throw InputError(path, "", std::string("cannot be written: ") + e.what());
+    }
+  });
+}
+
+}  // namespace hyselam_objects
