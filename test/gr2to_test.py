@@ -331,7 +331,9 @@ class Gr2ToTest(unittest.TestCase):
         place = text.index(f'<place id="{left}"')
         end = text.index(">", place) + 1
         with open(path, "w") as file:
-            file.write(text[:end] + '<word text="kitchen" confirmed="true"/>' + text[end:])
+            text = text[:end] + '<word text="kitchen" confirmed="true"/>' + text[end:]
+            self.assertIn('frame_id="map"', text)
+            file.write(text.replace('frame_id="map"', 'frame_id="/map"'))  # tf2 wants it without the slash
         answer = rig.service("load_topological_map", TopologicalMapPath)(path)
         self.assertTrue(answer.success, answer.message)
         self.assertEqual(rig.place_at(*LEFT).word, "kitchen")
@@ -347,7 +349,8 @@ class Gr2ToTest(unittest.TestCase):
         self.assertEqual(self.assert_two_rooms(rig), (left, right))
         # Another node begins with the file.
         other = self.rig(map_file=path)
-        self.assertEqual(other.place_at(*LEFT).word, "kitchen")
+        self.assertEqual(other.place_at(*LEFT, frame="map").word, "kitchen")
+        self.assertEqual(other.maps.wait().header.frame_id, "map")
         other.give(grid)
         self.assertEqual(other.place_at(*LEFT).word, "kitchen")
 
@@ -428,6 +431,17 @@ class Gr2ToTest(unittest.TestCase):
         wait_until(lambda: any(abs(m.color.a - 0.9) < 1e-6 for m in rig.markers.messages[-1].markers
                                if m.ns == "places"), "markers in the new colour")
         self.assert_two_rooms(rig)
+        self.assertEqual(client.update_configuration({"mode": "magic"})["mode"], "default")
+        client.close()
+        # The map of a file has no input to be segmented again, its markers change all the same.
+        path = os.path.join(self.temporary(), "map.xml")
+        self.assertTrue(rig.service("save_topological_map", TopologicalMapPath)(path).success)
+        other = self.rig(map_file=path)
+        client = Client(other.node, timeout=WAIT)
+        client.update_configuration({"marker_alpha": 0.8})
+        wait_until(lambda: other.markers.messages and any(
+            abs(m.color.a - 0.8) < 1e-6 for m in other.markers.messages[-1].markers if m.ns == "places"),
+            "markers of the file in the new colour")
         client.close()
 
 
