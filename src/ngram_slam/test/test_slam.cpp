@@ -242,51 +242,60 @@ TEST(RegionGraph, holdsEveryObservationAndTiesLoops) {
   EXPECT_THROW(spacedGraph(engine, 0.0), hyselam::ParameterError);
 }
 
-TEST(VerifyLoop, refusesAnotherCorridor) {
-  // The true place of the last keyframe against all places far from it, guessed to be the same.
-  const SlamEngine& engine = withAllLoops();
-  const auto& keyframes = engine.keyframes();
-  SlamParams params;
-  const auto stretch = [&](int middle, int half) {
-    LoopTask::Stretch s;
-    for (int k = std::max(0, middle - half);
-         k <= std::min(static_cast<int>(keyframes.size()) - 1, middle + half); ++k)
-      s.push_back({between(keyframes[static_cast<std::size_t>(middle)].pose,
-                           keyframes[static_cast<std::size_t>(k)].pose),
-                   keyframes[static_cast<std::size_t>(k)].points,
-                   {}});
-    return s;
-  };
-  int verified = 0, tried = 0;
-  const auto middle = static_cast<int>(keyframes.size()) / 2;
-  for (int k = 20; k < static_cast<int>(keyframes.size()); k += 40) {
-    if (distance(keyframes[static_cast<std::size_t>(k)].pose,
-                 keyframes[static_cast<std::size_t>(middle)].pose) < 8.0)
-      continue;
-    LoopTask task;
-    task.older = k;
-    task.newer = middle;
-    task.far = true;
-    task.window = 3.0;
-    task.old_stretch = stretch(k, 40);
-    task.new_stretch = stretch(middle, 16);
-    ++tried;
-    verified += verifyLoop(task, params).verified ? 1 : 0;
+/// Points along a wall that is seen from the origin's side.
+void addWall(hyselam_scan_matching::SurfacePoints* points, double x0, double y0, double x1,
+             double y1) {
+  const double length = std::hypot(x1 - x0, y1 - y0), ux = (x1 - x0) / length,
+               uy = (y1 - y0) / length;
+  const double side = (0.0 - x0) * -uy + (0.0 - y0) * ux > 0.0 ? 1.0 : -1.0;
+  for (double t = 0.0; t < length; t += 0.04)
+    points->push_back({x0 + t * ux, y0 + t * uy, -side * uy, side * ux});
+}
+
+LoopTask taskOf(const hyselam_scan_matching::SurfacePoints& old_points,
+                const hyselam_scan_matching::SurfacePoints& new_points) {
+  LoopTask task;
+  task.older = 0;
+  task.newer = 1;
+  task.far = true;
+  task.window = 2.0;
+  task.old_stretch.push_back(
+      {{}, std::make_shared<const hyselam_scan_matching::SurfacePoints>(old_points), {}});
+  task.new_stretch.push_back(
+      {{}, std::make_shared<const hyselam_scan_matching::SurfacePoints>(new_points), {}});
+  return task;
+}
+
+TEST(VerifyLoop, findsTheSameRoomAndNoOther) {
+  hyselam_scan_matching::SurfacePoints room, divided, corridor;
+  for (auto* points : {&room, &divided}) {
+    addWall(points, -4.0, -2.0, 4.0, -2.0);
+    addWall(points, 4.0, -2.0, 4.0, 3.0);
+    addWall(points, 4.0, 3.0, -4.0, 3.0);
+    addWall(points, -4.0, 3.0, -4.0, -2.0);
   }
-  EXPECT_GT(tried, 3);
-  EXPECT_EQ(verified, 0);
-  LoopTask same;
-  same.older = middle - 4;
-  same.newer = middle;
-  same.far = true;
-  same.old_stretch = stretch(middle - 4, 40);
-  same.new_stretch = stretch(middle, 16);
-  const LoopAnswer answer = verifyLoop(same, params);
-  EXPECT_TRUE(answer.verified);
-  EXPECT_LT(
-      distance(answer.loop.measured, between(keyframes[static_cast<std::size_t>(middle - 4)].pose,
-                                             keyframes[static_cast<std::size_t>(middle)].pose)),
-      0.1);
+  // Stand in the middle of what the room's scan saw free.
+  addWall(&divided, 2.0, -2.0, 2.0, 3.0);
+  addWall(&divided, -2.0, -2.0, -2.0, 3.0);
+  addWall(&corridor, -15.0, -1.0, 15.0, -1.0);
+  addWall(&corridor, -15.0, 1.0, 15.0, 1.0);
+  const SlamParams params;
+  const Pose2 moved{0.7, -0.4, 0.2};  // of the room's origin in the new scan's frame
+  const LoopAnswer same = verifyLoop(taskOf(room, transformed(moved, room)), params);
+  EXPECT_TRUE(same.verified);
+  const Pose2 off = moved * same.loop.measured;
+  EXPECT_LT(std::hypot(off.x, off.y), 0.02);
+  EXPECT_LT(std::abs(off.theta), 0.01);
+  EXPECT_FALSE(verifyLoop(taskOf(room, divided), params).verified);
+  EXPECT_FALSE(verifyLoop(taskOf(divided, room), params).verified);
+  // The corridor looks the same everywhere: nobody can tell where along it this is.
+  hyselam_scan_matching::SurfacePoints part;
+  addWall(&part, -5.0, -1.0, 5.0, -1.0);
+  addWall(&part, -5.0, 1.0, 5.0, 1.0);
+  const LoopAnswer anywhere = verifyLoop(taskOf(corridor, part), params);
+  EXPECT_FALSE(anywhere.verified);
+  EXPECT_GT(anywhere.rival, 0.0);
+  EXPECT_FALSE(verifyLoop(taskOf(room, {}), params).verified);
 }
 
 TEST(SeenSpace, tellsWhatStandsWhereNothingIs) {

@@ -58,9 +58,8 @@ RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>&
     const std::int32_t a = node_of_keyframe[static_cast<std::size_t>(l.older)];
     const std::int32_t b = node_of_keyframe[static_cast<std::size_t>(l.newer)];
     if (a < 0 || b < 0 || a == b || l.weight < kDoubted) continue;
-    const auto [low, high] =
-        std::minmax(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
-    edges.emplace(low, high, RegionEdge::Kind::kLoop);
+    edges.emplace(static_cast<std::uint32_t>(std::min(a, b)),
+                  static_cast<std::uint32_t>(std::max(a, b)), RegionEdge::Kind::kLoop);
   }
   for (const auto& [a, b, kind] : edges) graph.edges.push_back({a, b, kind});
   return graph;
