@@ -59,6 +59,9 @@ hyselam_target(${PROJECT_NAME}_parse_description)
 install(TARGETS ${PROJECT_NAME}_parse_description
         RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
+hyselam_benchmark(${PROJECT_NAME}_topo_parser_benchmark bench/language_benchmark.cpp
+                  LIBRARIES hyselam_language)
+
 if(CATKIN_ENABLE_TESTING)
   foreach(test description_xml language_corpus)
     hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_language)

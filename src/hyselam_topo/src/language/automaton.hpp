@@ -41,6 +41,9 @@ struct Automaton {
   std::vector<SlotType> slots;
   /// Words one of which must come first; empty if a name or number may.
   std::vector<int> first_words;
+  /// Words one of which must come somewhere; empty if names and numbers alone may fit. Sorted, as
+  /// are the first words.
+  std::vector<int> needed_words;
 };
 
 }  // namespace language

@@ -217,10 +217,28 @@ class SentenceReader {
   }
 
   bool mayBegin(const Automaton& pattern, std::size_t at) const {
-    if (pattern.first_words.empty()) return true;
-    return std::any_of(matches_[at].begin(), matches_[at].end(), [&](const auto& match) {
-      return std::binary_search(pattern.first_words.begin(), pattern.first_words.end(), match.word);
-    });
+    const auto isOneOf = [&](std::size_t token, const std::vector<int>& words) {
+      return std::any_of(matches_[token].begin(), matches_[token].end(), [&](const auto& match) {
+        return std::binary_search(words.begin(), words.end(), match.word);
+      });
+    };
+    if (!pattern.first_words.empty()) return isOneOf(at, pattern.first_words);
+    if (pattern.needed_words.empty()) return true;
+    for (std::size_t token = at; token < tokens_.size(); ++token) {
+      if (isOneOf(token, pattern.needed_words)) return true;
+    }
+    return false;
+  }
+
+  /// Where the name proper begins that an edge took.
+  std::size_t nameBegin(const Automaton& pattern, const Cell& way, std::size_t end) {
+    const Edge& edge =
+        pattern
+            .states[static_cast<std::size_t>(way.from_state)][static_cast<std::size_t>(way.edge)];
+    for (const FoundName& name : names_.namesAt(way.from_at, static_cast<std::size_t>(edge.b))) {
+      if (name.end == end) return name.name.range.begin;
+    }
+    return 0;
   }
 
   Cell& cell(const Automaton& pattern, std::size_t at, int state) {
@@ -239,7 +257,8 @@ class SentenceReader {
                                             [static_cast<std::size_t>(way.edge)]
                                                 .kind == EdgeKind::kName;
     };
-    const bool tie = from.cost == c.cost && from.from_at != c.from_at && isName(c) && isName(from);
+    const bool tie = from.cost == c.cost && from.from_at != c.from_at && isName(c) &&
+                     isName(from) && nameBegin(pattern, c, at) != nameBegin(pattern, from, at);
     if (tie && !c.tied) {
       c.tied = true;
       active_[at].push_back(state);

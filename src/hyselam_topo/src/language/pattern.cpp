@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "letters.hpp"
 
@@ -25,6 +26,7 @@ class Compiler {
     automaton_.accept = end;
     if (reachableByNothing(0, end)) throw std::invalid_argument("it matches nothing at all");
     findFirstWords();
+    findNeededWords();
     return std::move(automaton_);
   }
 
@@ -211,6 +213,7 @@ class Compiler {
       // consumed.
       const int begin = step(state, EdgeKind::kSkip);
       const int end = oneName(number, index, begin, depth);
+      const std::size_t before = automaton_.states.size();
       for (const std::string& separator : context_.list_separators) {
         const int behind = whole(separator, step(end, EdgeKind::kSkip), depth + 1);
         if (reachableByNothing(end, behind)) {
@@ -218,6 +221,7 @@ class Compiler {
         }
         edge(behind, {EdgeKind::kSkip, begin, -1, -1});
       }
+      separators_.emplace_back(before, automaton_.states.size());
       edge(end, {EdgeKind::kComma, begin, -1, -1});
       return step(end, EdgeKind::kSkip);
     }
@@ -273,9 +277,65 @@ class Compiler {
     automaton_.first_words.assign(words.begin(), words.end());
   }
 
+  /// Whether states with this number were made for what stands between the names of a list.
+  bool isSeparator(int state) const {
+    return std::any_of(separators_.begin(), separators_.end(), [state](const auto& range) {
+      const auto number = static_cast<std::size_t>(state);
+      return number >= range.first && number < range.second;
+    });
+  }
+
+  /// Whether the pattern can be gone through without these words; those of lists do not count.
+  bool canDoWithout(const std::set<int>& words) const {
+    std::vector<int> open{0};
+    std::vector<bool> seen(automaton_.states.size(), false);
+    while (!open.empty()) {
+      const int state = open.back();
+      open.pop_back();
+      if (state == automaton_.accept) return true;
+      if (seen[static_cast<std::size_t>(state)]) continue;
+      seen[static_cast<std::size_t>(state)] = true;
+      const bool in_list = isSeparator(state);
+      for (const Edge& e : automaton_.states[static_cast<std::size_t>(state)]) {
+        if (e.kind != EdgeKind::kWord || in_list || words.count(e.a) == 0) open.push_back(e.to);
+      }
+    }
+    return false;
+  }
+
+  /// "room", "door": words that names hold, too.
+  bool isCommon(int word) const {
+    const std::string text = folded(grammar_->vocabulary.text(word));
+    const auto& types = grammar_->name_types;
+    return std::any_of(types.begin(), types.end(), [&](const NameType& type) {
+      return type.nouns.count(text) != 0 || type.generic.count(text) != 0 ||
+             type.titles.count(text) != 0;
+    });
+  }
+
+  /// The words outside of lists, if there is no way around all of them; of those that names may
+  /// hold no more than needed.
+  void findNeededWords() {
+    if (!automaton_.first_words.empty()) return;
+    std::set<int> words;
+    for (std::size_t state = 0; state < automaton_.states.size(); ++state) {
+      for (const Edge& e : automaton_.states[state]) {
+        if (e.kind == EdgeKind::kWord && !isSeparator(static_cast<int>(state))) words.insert(e.a);
+      }
+    }
+    if (canDoWithout(words)) return;
+    for (const int word : std::set<int>(words)) {
+      if (!isCommon(word)) continue;
+      words.erase(word);
+      if (canDoWithout(words)) words.insert(word);
+    }
+    automaton_.needed_words.assign(words.begin(), words.end());
+  }
+
   const PatternContext& context_;
   CompiledGrammar* grammar_;
   Automaton automaton_;
+  std::vector<std::pair<std::size_t, std::size_t>> separators_;  ///< states [first, second)
 };
 
 }  // namespace
