@@ -17,8 +17,29 @@ install(TARGETS hyselam_topomerg
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
 
+# ---- tool, benchmark, tests
 add_executable(${PROJECT_NAME}_topomerg src/tools/topomerg.cpp)
 set_target_properties(${PROJECT_NAME}_topomerg PROPERTIES OUTPUT_NAME topomerg)
 target_link_libraries(${PROJECT_NAME}_topomerg hyselam_topomerg)
 hyselam_target(${PROJECT_NAME}_topomerg)
 install(TARGETS ${PROJECT_NAME}_topomerg RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+hyselam_benchmark(${PROJECT_NAME}_topomerg_benchmark bench/topomerg_benchmark.cpp
+                  LIBRARIES hyselam_topomerg)
+if(TARGET ${PROJECT_NAME}_topomerg_benchmark)
+  target_compile_definitions(${PROJECT_NAME}_topomerg_benchmark
+                             PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+endif()
+
+if(CATKIN_ENABLE_TESTING)
+  foreach(test topomerg topomerg_tool)
+    hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_topomerg)
+    if(TARGET ${PROJECT_NAME}_test_${test})
+      target_compile_definitions(${PROJECT_NAME}_test_${test}
+        PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                HYSELAM_TOPO_TOOLS="${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION}")
+    endif()
+  endforeach()
+  if(TARGET ${PROJECT_NAME}_test_topomerg_tool)
+    add_dependencies(${PROJECT_NAME}_test_topomerg_tool ${PROJECT_NAME}_topomerg)
+  endif()
+endif()

@@ -1,0 +1,103 @@
+// TopoMerg's solvers: the thesis' problem, floors of 20 names in 30 places and 40 in 60. One
+// thread.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "../test/random_matches.hpp"
+#include "hyselam_topo/description_xml.hpp"
+#include "hyselam_topo/topological_map_xml.hpp"
+
+namespace {
+
+using namespace random_matches;  // NOLINT: a bench, not a header
+
+MatchProblem scenario() {
+  const std::string data = std::string(HYSELAM_TOPO_SOURCE_DIR) + "/test/data/";
+  return compileMatch(loadDescription(data + "scenario_532_human.xml"),
+                      hyselam_topo::loadXml(data + "scenario_532_map.xml"), {4, 0.0});
+}
+
+MatchParams thesis(bool connected) {
+  MatchParams params;
+  params.dummy = false;
+  params.connected = connected;
+  return params;
+}
+
+void explorer(benchmark::State& state) {
+  const MatchProblem problem = scenario();
+  for (auto _ : state) benchmark::DoNotOptimize(exploreAll(problem, thesis(false)).best().fitness);
+}
+BENCHMARK(explorer)->Name("TopoMerg/7x8/explorer")->Unit(benchmark::kMicrosecond);
+
+void tree(benchmark::State& state) {
+  const MatchProblem problem = scenario();
+  for (auto _ : state) benchmark::DoNotOptimize(treeSearch(problem, thesis(true)).best().fitness);
+  state.SetLabel("baseline=TopoMerg/7x8/explorer");
+}
+BENCHMARK(tree)->Name("TopoMerg/7x8/treesearch")->Unit(benchmark::kMicrosecond);
+
+void exact(benchmark::State& state, bool connected) {
+  const MatchProblem problem = scenario();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(solveExact(problem, thesis(connected)).best().fitness);
+  state.SetLabel("baseline=TopoMerg/7x8/explorer");
+}
+BENCHMARK_CAPTURE(exact, connected, true)
+    ->Name("TopoMerg/7x8/exact")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(exact, scattered, false)
+    ->Name("TopoMerg/7x8/exact_any_sets")
+    ->Unit(benchmark::kMicrosecond);
+
+/// Floors 1 .. 21: 60 % of the sizes are told, every tenth of them half or twice what it is.
+std::vector<MatchProblem> floors(int names, int places) {
+  std::vector<MatchProblem> out;
+  FloorOptions options;
+  options.wrong_size = 0.1;
+  for (std::uint64_t seed = 1; seed <= 21; ++seed)
+    out.push_back(compile(floor(seed, names, places, options)));
+  return out;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+/// One iteration solves all floors; the counters tell the median floor.
+void many(benchmark::State& state, int names, int places, double limit) {
+  const std::vector<MatchProblem> problems = floors(names, places);
+  MatchParams params;
+  if (limit > 0.0) params.time_limit = limit;
+  std::vector<double> ms, gaps;
+  double proven = 0.0;
+  for (auto _ : state) {
+    ms.clear();
+    gaps.clear();
+    proven = 0.0;
+    for (const MatchProblem& problem : problems) {
+      const Match match = solveExact(problem, params);
+      ms.push_back(match.microseconds * 1e-3);
+      gaps.push_back(match.gap);
+      proven += match.optimal ? 1.0 : 0.0;
+    }
+  }
+  state.counters["median_ms"] = median(ms);
+  state.counters["slowest_ms"] = *std::max_element(ms.begin(), ms.end());
+  state.counters["median_gap"] = median(gaps);
+  state.counters["proven_best_percent"] = 100.0 * proven / static_cast<double>(problems.size());
+}
+BENCHMARK_CAPTURE(many, floors_20x30, 20, 30, 2.0)
+    ->Name("TopoMerg/20x30/exact")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(many, floors_40x60, 40, 60, 0.1)
+    ->Name("TopoMerg/40x60/exact_100ms")
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
