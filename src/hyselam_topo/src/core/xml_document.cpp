@@ -1,4 +1,4 @@
-#include "xml_document.hpp"
+#include "hyselam_topo/xml_document.hpp"
 
 #include <tinyxml2.h>
 

@@ -1,4 +1,6 @@
-#include "xml_element.hpp"
+#include "hyselam_topo/xml_element.hpp"
+
+#include <tinyxml2.h>
 
 #include <cmath>
 #include <limits>

@@ -4,8 +4,8 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topo/xml_document.hpp"
 #include "packed_bytes.hpp"
-#include "xml_document.hpp"
 #include "xml_format.hpp"
 
 namespace hyselam_topo {

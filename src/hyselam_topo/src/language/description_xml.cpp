@@ -5,7 +5,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
-#include "xml_document.hpp"
+#include "hyselam_topo/xml_document.hpp"
 
 namespace hyselam_topo {
 namespace {

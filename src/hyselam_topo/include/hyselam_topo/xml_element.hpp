@@ -2,14 +2,17 @@
 // refused; errors name the line and the element.
 #pragma once
 
-#include <tinyxml2.h>
-
 #include <functional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hyselam_topo/topological_map.hpp"
+
+namespace tinyxml2 {
+class XMLElement;
+}
 
 namespace hyselam_topo {
 

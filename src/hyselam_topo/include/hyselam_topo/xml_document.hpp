@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "hyselam_topo/topological_map_xml.hpp"
-#include "xml_element.hpp"
+#include "hyselam_topo/xml_element.hpp"
 
 namespace hyselam_topo {
 
