@@ -33,6 +33,7 @@ nlohmann::json run(const Options& o) {
   if (o.generate > 0) {
     PlanParams params;
     params.furniture = true;
+    params.min_door = 0.9;  // that the robot comes through
     plan = generatePlan(o.generate, params);
     route = bench::roundTrip(plan);
   } else {
@@ -51,8 +52,9 @@ nlohmann::json run(const Options& o) {
     std::uint64_t seed = 1;
     for (const double hour : o.learn) {
       progress.update(seed - 1);
-      const Route& way = seed == 1 ? route : bench::reversed(route);
-      learnt.push_back(bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
+      for (const Route& way : {route, bench::reversed(route)}) {
+        learnt.push_back(bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
+      }
       ++seed;
     }
     for (const double hour : o.ask) {
