@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "fsd_localization/ros/initial_pose.hpp"
@@ -30,7 +31,9 @@ using Status = diagnostic_msgs::DiagnosticStatus;
 namespace {
 
 constexpr std::uint32_t kQueue = 1000;
-constexpr double kLookEvery = 0.1;  // [s] of the drawer, for savings
+constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry tells the start
+constexpr double kOdometryDrift = 0.1;   // [m/m], [rad/m]
+constexpr double kLookEvery = 0.1;       // [s] of the drawer, for savings
 
 bool exists(const std::string& path) {
   struct stat info {};
@@ -194,6 +197,12 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
   const bool fresh = engine.keyframes().empty();
   Pose2 at = engine.pose();
   double window = params_.start_window, turn = params_.start_turn;
+  // Odometry that went on tells more than a search that one scan decides.
+  const auto follow = [&](const Pose2& guess, double driven) {
+    at = guess;
+    window = std::min(window, kOdometryWindow + kOdometryDrift * driven);
+    turn = std::min(turn, kOdometryWindow + kOdometryDrift * driven);
+  };
   if (pending_) {
     at = pending_->base_in_map;
     window = std::max(window, 2.0 * std::max(pending_->stddev.x, pending_->stddev.y));
@@ -201,8 +210,14 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
   } else if (!fresh && next_ == Next::kAfterJump) {
     at = placeByOdometry(engine.keyframes(), base_in_odom);
   } else if (!fresh && mapping_->localised) {  // paused: it may have been driven meanwhile
-    at = engine.odomInMap() * base_in_odom;
-    window = std::max(window, 0.1 * distance(last_odometry_, base_in_odom));
+    follow(engine.odomInMap() * base_in_odom, distance(last_odometry_, base_in_odom));
+  } else if (!fresh) {
+    // A state was loaded. Where odometry is still near to what it was then, it was not interrupted.
+    const SlamKeyframe& last = engine.keyframes().back();
+    const Pose2 driven = between(last.odometry, base_in_odom);
+    const double metres = std::hypot(driven.x, driven.y);
+    if (metres <= params_.start_window && std::abs(driven.theta) <= params_.start_turn)
+      follow(last.pose * driven, metres);
   }
   if (!fresh || pending_) {
     ROS_INFO_STREAM(who_ << " a run begins at x " << at.x << " m, y " << at.y << " m, "
