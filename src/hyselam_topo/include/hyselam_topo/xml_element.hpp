@@ -23,14 +23,14 @@ class XmlElement {
 
   [[noreturn]] void fail(const std::string& reason) const;
 
-  std::string name() const { return element_.Name(); }
+  std::string name() const;
   /// Throw InputError if the attribute is missing or not what it should be.
   std::string text(const char* attribute);
   double number(const char* attribute);
   int integer(const char* attribute);
   Id id(const char* attribute);
   bool truth(const char* attribute);
-  bool has(const char* attribute) const { return element_.Attribute(attribute) != nullptr; }
+  bool has(const char* attribute) const;
 
   /// The text between the tags; no elements may stand there.
   const char* content() const;
