@@ -43,3 +43,14 @@ if(CATKIN_ENABLE_TESTING)
     add_dependencies(${PROJECT_NAME}_test_topomerg_tool ${PROJECT_NAME}_topomerg)
   endif()
 endif()
+
+# Floors from the plan to the names, for bench/merge.
+if(hyselam_sim_FOUND)
+  add_executable(${PROJECT_NAME}_merge_floors bench/merge_floors.cpp)
+  set_target_properties(${PROJECT_NAME}_merge_floors PROPERTIES OUTPUT_NAME merge_floors)
+  target_link_libraries(${PROJECT_NAME}_merge_floors hyselam_topomerg hyselam_gr2to
+                                                     ${hyselam_sim_LIBRARIES})
+  hyselam_target(${PROJECT_NAME}_merge_floors)
+  install(TARGETS ${PROJECT_NAME}_merge_floors
+          RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+endif()

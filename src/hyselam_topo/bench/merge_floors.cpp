@@ -1,0 +1,298 @@
+// merge_floors: made-up floors from the plan to the names. Each plan becomes a grid map, gr2to
+// finds its places, a person who knows the plan describes it from where the robot stands, TopoMerg
+// gives the names. Counted: names that are right at once, and questions until all are.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "../test/random_matches.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_sim/generate_plan.hpp"
+#include "hyselam_sim/plan_geometry.hpp"
+#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_topo/gr2to.hpp"
+#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg_names.hpp"
+
+namespace {
+
+using namespace hyselam_topo;  // NOLINT: a program, not a header
+using hyselam::Cell;
+using hyselam::OccupancyGrid;
+using hyselam::Point2;
+using random_matches::Dice;
+
+struct Speaker {
+  double told_sizes = 0.6;
+  double wrong_sizes = 0.0;
+  int confused_sides = 0;
+};
+
+double areaOf(const hyselam_sim::Polygon& outline) {
+  double twice = 0.0;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point2& p = outline[k];
+    const Point2& q = outline[(k + 1) % outline.size()];
+    twice += p.x * q.y - q.x * p.y;
+  }
+  return 0.5 * std::abs(twice);
+}
+
+/// Place k of the plan has the id k + 1; 0: none.
+Id placeAt(const hyselam_sim::FloorPlan& plan, Point2 p) {
+  for (std::size_t k = 0; k < plan.places.size(); ++k)
+    if (hyselam_sim::contains(plan.places[k].outline, p)) return static_cast<Id>(k + 1);
+  return 0;
+}
+
+struct Passage {
+  Id a = 0, b = 0;
+  Point2 at, normal;  ///< the normal from a to b
+};
+
+std::vector<Passage> passages(const hyselam_sim::FloorPlan& plan) {
+  std::vector<Passage> out;
+  for (const auto& door : plan.doors) {
+    const Point2 n{-door.along.y, door.along.x};
+    const auto beside = [&](double sign) {
+      for (const double d : {0.2, 0.4, 0.7})
+        if (const Id id = placeAt(plan, {door.at.x + sign * d * n.x, door.at.y + sign * d * n.y}))
+          return id;
+      return Id{0};
+    };
+    const Id a = beside(-1.0), b = beside(1.0);
+    if (a != 0 && b != 0 && a != b) out.push_back({a, b, door.at, n});
+  }
+  return out;
+}
+
+/// What a person who stands in the place with most doors and looks along it tells, from there on.
+DescribedBuilding describe(const hyselam_sim::FloorPlan& plan, const Speaker& speaker, Dice* dice,
+                           double* heading) {
+  const std::vector<Passage> doors = passages(plan);
+  std::map<Id, int> count;
+  for (const Passage& d : doors) {
+    ++count[d.a];
+    ++count[d.b];
+  }
+  Id root = 1;
+  for (const auto& [id, n] : count)
+    if (n > count[root]) root = id;
+  const auto& outline = plan.places[root - 1].outline;
+  double longest = 0.0;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Point2& p = outline[k];
+    const Point2& q = outline[(k + 1) % outline.size()];
+    const double length = std::hypot(q.x - p.x, q.y - p.y);
+    if (length <= longest) continue;
+    longest = length;
+    *heading = std::atan2(q.y - p.y, q.x - p.x);
+  }
+
+  DescribedBuilding out;
+  out.robot_place = root;
+  for (std::size_t k = 0; k < plan.places.size(); ++k) {
+    DescribedPlace place;
+    place.id = static_cast<Id>(k + 1);
+    place.name = plan.places[k].name;
+    if (place.name.find("corridor") != std::string::npos) place.kind = PlaceKind::kCorridor;
+    if (dice->chance(speaker.told_sizes)) {
+      place.area = areaOf(plan.places[k].outline) * dice->real(0.92, 1.08);
+      if (dice->chance(speaker.wrong_sizes)) *place.area *= dice->chance(0.5) ? 2.0 : 0.5;
+    }
+    out.places.push_back(place);
+  }
+  // Place by place outwards; along each side in the direction that the robot looks.
+  std::set<Id> known{root};
+  std::vector<Id> waiting{root};
+  std::set<std::pair<Id, Id>> told;
+  for (std::size_t w = 0; w < waiting.size(); ++w) {
+    const Id from = waiting[w];
+    std::map<Side, std::vector<std::pair<double, Id>>> rows;
+    for (const Passage& d : doors) {
+      if (d.a != from && d.b != from) continue;
+      const Id to = d.a == from ? d.b : d.a;
+      if (!told.insert({std::min(from, to), std::max(from, to)}).second) continue;
+      const double sign = d.a == from ? 1.0 : -1.0;
+      const double turn =
+          std::remainder(std::atan2(sign * d.normal.y, sign * d.normal.x) - *heading, 2 * M_PI);
+      const Side side = std::abs(turn) < M_PI / 4       ? Side::kFront
+                        : std::abs(turn) > 3 * M_PI / 4 ? Side::kBack
+                        : turn > 0                      ? Side::kLeft
+                                                        : Side::kRight;
+      const bool across = side == Side::kFront || side == Side::kBack;
+      const double along = across ? std::sin(*heading) * d.at.x - std::cos(*heading) * d.at.y
+                                  : std::cos(*heading) * d.at.x + std::sin(*heading) * d.at.y;
+      rows[side].emplace_back(along, to);
+      if (known.insert(to).second) waiting.push_back(to);
+    }
+    for (auto& [side, row] : rows) {
+      std::sort(row.begin(), row.end());
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        DescribedConnection c;
+        c.from = from;
+        c.to = row[k].second;
+        c.side = side;
+        c.order = k;
+        out.connections.push_back(c);
+      }
+    }
+  }
+  for (int k = 0; k < speaker.confused_sides && !out.connections.empty(); ++k) {
+    auto& c = out.connections[static_cast<std::size_t>(
+        dice->whole(0, static_cast<int>(out.connections.size()) - 1))];
+    c.side = c.side == Side::kLeft    ? Side::kRight
+             : c.side == Side::kRight ? Side::kLeft
+             : c.side == Side::kFront ? Side::kBack
+                                      : Side::kFront;
+  }
+  return out;
+}
+
+/// The place of the plan that most cells of each place of the map lie in.
+std::map<Id, Id> truthOf(const hyselam_sim::FloorPlan& plan, const Gr2ToResult& found) {
+  std::map<Id, std::map<Id, int>> votes;
+  const PlaceGrid& grid = *found.map.grid;
+  for (int y = 0; y < grid.geometry.height; ++y)
+    for (int x = 0; x < grid.geometry.width; ++x)
+      if (const Id id = grid.placeOf({x, y}))
+        if (const Id plan_id = placeAt(plan, grid.geometry.centre({x, y}))) ++votes[id][plan_id];
+  std::map<Id, Id> out;
+  for (const auto& [id, counts] : votes)
+    out[id] = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+                return a.second < b.second;
+              })->first;
+  return out;
+}
+
+/// Names whose largest place is theirs.
+std::vector<bool> rightNames(const MatchProblem& problem, const Match& match,
+                             const std::map<Id, Id>& truth) {
+  std::vector<bool> out;
+  for (std::size_t i = 0; i < problem.nameCount(); ++i) {
+    double most = -1.0;
+    bool right = false;
+    for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+      if (match.best().assignment[v] != static_cast<int>(i) || problem.area[v] <= most) continue;
+      most = problem.area[v];
+      const auto found = truth.find(problem.vertices[v]);
+      right = found != truth.end() && found->second == problem.names[i];
+    }
+    out.push_back(right);
+  }
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures how many names are right on made-up floors.", "merge_floors");
+  int floors = 12;
+  std::uint64_t first = 1;
+  Speaker speaker;
+  MatchParams params;
+  params.time_limit = 1.0;
+  params.keep_within = 0.01;
+  bool know_heading = true;
+  app.option_defaults()->always_capture_default();
+  app.add_option("--floors", floors, "number of floors");
+  app.add_option("--seed", first, "of the first floor");
+  app.add_option("--told-sizes", speaker.told_sizes, "share of the sizes that are told");
+  app.add_option("--wrong-sizes", speaker.wrong_sizes, "share of those that are half or twice");
+  app.add_option("--confused-sides", speaker.confused_sides, "left for right, front for back");
+  app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
+  app.add_option("--forgotten-edge", params.fitness.forgotten_edge, "as of topomerg");
+  app.add_option("--time-limit", params.time_limit, "of each search [s]");
+  app.add_option("--know-heading", know_heading, "the robot knows where it looks");
+  return hyselam::runTool(argc, argv, app, [&] {
+    hyselam::Progress progress("merge_floors", static_cast<std::size_t>(floors));
+    nlohmann::json records = nlohmann::json::array();
+    std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0;
+    for (int k = 0; k < floors; ++k) {
+      const std::uint64_t seed = first + static_cast<std::uint64_t>(k);
+      Dice dice(seed);
+      const auto plan = hyselam_sim::generatePlan(seed);
+      const OccupancyGrid grid = hyselam_sim::rasterise(plan, 0.05, 0.0);
+      const Gr2ToResult found = gr2to(grid);
+      const std::map<Id, Id> truth = truthOf(plan, found);
+      double heading = 0.0;
+      const DescribedBuilding building = describe(plan, speaker, &dice, &heading);
+      MatchObserver observer;
+      double largest = 0.0;
+      for (const Place& place : found.map.places) {
+        const auto is = truth.find(place.id);
+        if (is == truth.end() || is->second != *building.robot_place || place.area <= largest)
+          continue;
+        largest = place.area;
+        observer.place = place.id;
+      }
+      if (know_heading) observer.heading = heading;
+      std::set<Id> in_map;
+      for (const auto& [place, name] : truth) in_map.insert(name);
+
+      MatchConstraints constraints;
+      std::size_t questions = 0, right_at_once = 0;
+      double fitness_at_once = 0.0;
+      while (true) {
+        const MatchProblem problem = compileMatch(building, found.map, observer, constraints);
+        const Match match = solveExact(problem, params);
+        if (!match.found()) break;
+        const std::vector<bool> right = rightNames(problem, match, truth);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < right.size(); ++i)
+          count += right[i] && in_map.count(problem.names[i]) > 0;
+        if (questions == 0) {
+          right_at_once = count;
+          fitness_at_once = match.best().fitness;
+        }
+        if (count == in_map.size() || questions == found.map.places.size()) break;
+        // The place that tells most; if all answers agree, the largest that nobody has confirmed.
+        Id place = 0;
+        if (const auto question = mostInformativeQuestion(problem, match)) {
+          place = question->place;
+        } else {
+          double area = -1.0;
+          for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+            if (problem.fixed[v] >= 0 || problem.area[v] <= area) continue;
+            area = problem.area[v];
+            place = problem.vertices[v];
+          }
+        }
+        if (place == 0) break;
+        ++questions;
+        const auto answer = truth.find(place);
+        if (answer == truth.end())
+          constraints.unnamed.push_back(place);
+        else
+          constraints.confirmed.emplace_back(place, answer->second);
+      }
+      names += in_map.size();
+      at_once += right_at_once;
+      all_questions += questions;
+      whole += questions == 0;
+      records.push_back({{"seed", seed},
+                         {"told", building.places.size()},
+                         {"places", found.map.places.size()},
+                         {"in_map", in_map.size()},
+                         {"right_at_once", right_at_once},
+                         {"questions", questions},
+                         {"fitness", fitness_at_once}});
+      progress.update(static_cast<std::size_t>(k + 1));
+    }
+    std::cout << floors << " floors, " << names << " names: " << at_once << " right at once ("
+              << std::lround(1000.0 * static_cast<double>(at_once) /
+                             static_cast<double>(std::max<std::size_t>(1, names))) /
+                     10.0
+              << " %), " << whole << " floors without a question, " << all_questions
+              << " questions until all are right\n";
+    return nlohmann::json{{"names", names},
+                          {"right_at_once", at_once},
+                          {"questions", all_questions},
+                          {"floors_without_question", whole},
+                          {"floors", records}};
+  });
+}
