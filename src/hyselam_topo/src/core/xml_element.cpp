@@ -28,14 +28,6 @@ bool XmlElement::has(const char* attribute) const {
   return element_.Attribute(attribute) != nullptr;
 }
 
-std::string XmlElement::name() const {
-  return element_.Name();
-}
-
-bool XmlElement::has(const char* attribute_name) const {
-  return element_.Attribute(attribute_name) != nullptr;
-}
-
 void XmlElement::fail(const std::string& reason) const {
   throw hyselam::InputError(
       source_, "line " + std::to_string(element_.GetLineNum()) + ", <" + name() + ">", reason);
