@@ -147,6 +147,18 @@ TEST(Segmentation, ChairLegsDoNotPartARoom) {
   EXPECT_EQ(5, s.places);
 }
 
+TEST(Segmentation, DeskAcrossARoomDoesNotPartIt) {
+  OccupancyGrid grid = gridOf(7, 10, 0.05, OccupancyGrid::kUnknown);
+  fill(grid, 0.5, 0.5, 5.7, 9.0, OccupancyGrid::kOccupied);
+  fill(grid, 0.7, 0.7, 5.5, 2.7, OccupancyGrid::kFree);  // a corridor
+  fill(grid, 2.0, 2.7, 2.9, 2.9, OccupancyGrid::kFree);  // a door
+  fill(grid, 0.7, 2.9, 5.5, 8.8, OccupancyGrid::kFree);  // the room
+  fill(grid, 1.8, 6.1, 4.4, 7.2, OccupancyGrid::kOccupied);
+  const Segmentation s = segment(grid);
+  expectValid(s, grid);
+  EXPECT_EQ(2, s.places);
+}
+
 TEST(Segmentation, RaysThroughAWindowAreOutside) {
   OccupancyGrid grid = gridOf(30, 30, 0.05, OccupancyGrid::kUnknown);
   fill(grid, 1, 1, 11, 11, OccupancyGrid::kOccupied);

@@ -52,6 +52,47 @@ void absorbSmall(PlaceGraph& graph, double smallest) {
   }
 }
 
+// A desk across a room: [m] up to so wide, and [m^2] up to so much room behind it.
+constexpr double kDesk = 3.0;
+constexpr double kBehindDesk = 8.0;
+
+/// The roots around a solid piece; empty if it is at the rim or was seen through.
+std::vector<int> rootsAround(const SolidPiece& piece, const PlaceGraph& graph,
+                             const cv::Mat& basins, const FreeSpace& space) {
+  std::vector<int> roots;
+  const cv::Rect inner(1, 1, basins.cols - 2, basins.rows - 2);
+  const CellRun& first = space.solid[piece.begin];
+  if ((piece.box & inner) != piece.box || basins.at<int>(first.y, first.first) != 0) return roots;
+  const auto look = [&](int basin) {
+    if (basin == 0) return;
+    const int root = graph.root(basin);
+    if (std::find(roots.begin(), roots.end(), root) == roots.end()) roots.push_back(root);
+  };
+  for (std::size_t i = piece.begin; i < piece.end; ++i) {
+    const CellRun& run = space.solid[i];
+    const int* row = basins.ptr<int>(run.y);
+    const int *below = basins.ptr<int>(run.y - 1), *above = basins.ptr<int>(run.y + 1);
+    look(row[run.first - 1]);
+    look(row[run.last + 1]);
+    for (int x = run.first; x <= run.last; ++x) look(below[x]), look(above[x]);
+  }
+  return roots;
+}
+
+/// What lies behind a desk, with a way past it on either side, is part of the room before it.
+void joinAroundDesks(PlaceGraph& graph, const cv::Mat& basins, const FreeSpace& space) {
+  for (const SolidPiece& piece : space.pieces) {
+    if (std::max(piece.box.width, piece.box.height) * space.resolution > kDesk) continue;
+    const std::vector<int> roots = rootsAround(piece, graph, basins, space);
+    if (roots.size() != 2) continue;
+    const auto [a, b] = std::minmax(roots[0], roots[1]);
+    if (std::min(graph.node(a).area, graph.node(b).area) > kBehindDesk) continue;
+    const auto border = graph.node(a).borders.find(b);
+    if (border == graph.node(a).borders.end() || graph.border(border->second).open <= 0.0) continue;
+    graph.merge(a, b);
+  }
+}
+
 /// Solid pieces within one place - its furniture - up to this area belong to it [m^2].
 constexpr double kFurniture = 2.0;
 
@@ -99,6 +140,7 @@ Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid, const Segmentatio
     return oddsOfOnePlace(model, describeBorder(g, a, b));
   });
   absorbSmall(graph, params.smallest_place);
+  joinAroundDesks(graph, prepared.basins.labels, prepared.space);
 
   std::vector<int> names(static_cast<std::size_t>(graph.size()) + 1, 0);
   int used = 0;
