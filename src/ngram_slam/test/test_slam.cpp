@@ -106,6 +106,10 @@ TEST(SlamEngine, thesisModeBelievesWordsAsTheyAre) {
     ++edges;
   }
   EXPECT_GT(edges, 0U);
+  const SlamParams thesis = SlamParams::thesis(2);
+  EXPECT_EQ(thesis.loops, SlamLoops::kThesis);
+  EXPECT_EQ(thesis.words.matcher.min_n, (std::vector<int>{7, 10}));
+  EXPECT_NO_THROW(thesis.validate());
   EXPECT_EQ(engine.counters().near.tried + engine.counters().far.tried, 0U);
 }
 

@@ -92,6 +92,8 @@ struct LoopParams {
 
 struct SlamParams {
   SlamParams();
+  /// As the thesis has it: its own words, which have to be sure, and loops of kThesis.
+  static SlamParams thesis(int levels = 3);
 
   hyselam_scan_matching::SurfaceParams surface;
   hyselam_scan_matching::RefineParams refine;

@@ -59,6 +59,17 @@ SlamParams::SlamParams() : words(RecogniserParams::improved()) {
   words.min_probability = 0.2;
 }
 
+SlamParams SlamParams::thesis(int levels) {
+  SlamParams p;
+  p.loops = SlamLoops::kThesis;
+  p.observations.look_back = 0.0;
+  p.words = RecogniserParams{};
+  p.words.levels = levels;
+  p.words.matcher.min_n.clear();
+  for (int l = 0; l < levels; ++l) p.words.matcher.min_n.push_back(7 + 3 * l);
+  return p;
+}
+
 void SlamParams::validate() const {
   surface.validate();
   refine.validate();

@@ -232,15 +232,24 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
   return j;
 }
 
-nlohmann::json run(const Options& o) {
+SlamParams paramsOf(const Options& o, SlamLoops loops) {
   SlamParams params;
-  params.loops = loopsOf(o.loops);
+  if (loops == SlamLoops::kThesis) {
+    params = SlamParams::thesis(o.levels);
+  } else {
+    params.words.levels = o.levels;
+    params.words.matcher.min_n.assign(static_cast<std::size_t>(std::max(0, o.levels)),
+                                      params.words.matcher.min_n.front());
+  }
+  params.loops = loops;
   params.refine_odometry = !o.raw_odometry;
-  params.words.levels = o.levels;
-  params.words.matcher.min_n.assign(static_cast<std::size_t>(std::max(0, o.levels)),
-                                    params.words.matcher.min_n.front());
-  if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
   params.validate();
+  return params;
+}
+
+nlohmann::json run(const Options& o) {
+  const SlamParams params = paramsOf(o, loopsOf(o.loops));
+  if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
   hyselam::RobotLog log = readLog(o);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
   if (o.noise > 0.0) spoil(&log.odometry, o.noise, o.seed);
@@ -286,10 +295,8 @@ nlohmann::json run(const Options& o) {
   if (o.side_by_side)
     for (const SlamLoops other : {SlamLoops::kNone, SlamLoops::kThesis}) {
       if (other == params.loops) continue;
-      SlamParams p = params;
-      p.loops = other;
       const std::string label = std::string("loops: ") + nameOf(other);
-      const Run r = runSlam(log, p, label);
+      const Run r = runSlam(log, paramsOf(o, other), label);
       nlohmann::json s = {{"loops", r.engine->loops().size()}, {"cpu_seconds", r.cpu}};
       if (!reference.empty()) s.update(errorOf(*r.engine, reference));
       hyselam::writeTum(o.out + "/trajectory_" + nameOf(other) + ".tum", r.engine->trajectory());
