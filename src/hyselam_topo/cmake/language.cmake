@@ -63,14 +63,21 @@ hyselam_benchmark(${PROJECT_NAME}_topo_parser_benchmark bench/language_benchmark
                   LIBRARIES hyselam_language)
 
 if(CATKIN_ENABLE_TESTING)
-  foreach(test description_xml language_corpus)
-    hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_language)
+  hyselam_gtest(${PROJECT_NAME}_test_description_xml test/test_description_xml.cpp
+                LIBRARIES hyselam_language)
+  hyselam_gtest(${PROJECT_NAME}_test_language test/test_language.cpp fuzz/targets.cpp
+                LIBRARIES hyselam_language)
+  hyselam_gtest(${PROJECT_NAME}_test_language_corpus test/test_language_corpus.cpp
+                LIBRARIES hyselam_language ${YAML_CPP_LIBRARIES})
+  foreach(test description_xml language language_corpus)
     if(TARGET ${PROJECT_NAME}_test_${test})
-      target_compile_definitions(${PROJECT_NAME}_test_${test}
-                                 PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+      target_compile_definitions(${PROJECT_NAME}_test_${test} PRIVATE
+        HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+        HYSELAM_TOPO_TOOLS="${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION}")
     endif()
   endforeach()
-  if(TARGET ${PROJECT_NAME}_test_language_corpus)
-    target_link_libraries(${PROJECT_NAME}_test_language_corpus ${YAML_CPP_LIBRARIES})
+  if(TARGET ${PROJECT_NAME}_test_language)
+    target_include_directories(${PROJECT_NAME}_test_language PRIVATE fuzz)
+    add_dependencies(${PROJECT_NAME}_test_language ${PROJECT_NAME}_parse_description)
   endif()
 endif()

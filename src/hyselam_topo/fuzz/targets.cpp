@@ -1,0 +1,99 @@
+#include "targets.hpp"
+
+#include <cstdlib>
+#include <string>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_topo/describe_building.hpp"
+#include "hyselam_topo/description_builder.hpp"
+#include "hyselam_topo/description_xml.hpp"
+#include "hyselam_topo/topological_map_xml.hpp"
+
+namespace hyselam_topo {
+namespace fuzz {
+namespace {
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+/// Small, so that a bomb shows as a crash of the fuzzer's memory limit.
+XmlLimits limits() {
+  XmlLimits limits;
+  limits.max_bytes = 1u << 20;
+  limits.max_grid_cells = 1u << 20;
+  limits.max_appearance_values = 1u << 20;
+  return limits;
+}
+
+void checkRange(const TextRange& range, std::size_t size) {
+  require(range.begin <= range.end && range.end <= size);
+}
+
+void checkUtterance(const Utterance& utterance, std::size_t size) {
+  checkRange(utterance.range, size);
+  checkRange(utterance.culprit, size);
+  require(utterance.understood() != utterance.intent.empty());
+  require(utterance.understood() != !utterance.reason.empty());
+  for (const Slot& slot : utterance.slots) {
+    checkRange(slot.range, size);
+    for (const SaidName& name : slot.names) {
+      checkRange(name.range, size);
+      require(!name.text.empty());
+    }
+  }
+}
+
+}  // namespace
+
+void parser(const std::uint8_t* data, std::size_t size) {
+  static const TopoParser kParser;
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  ParseOptions options;
+  if (size > 0 && data[0] % 4 == 0) options.expected = {"name_answer", "number_answer"};
+  const ParsedText parsed = kParser.parse(text, options);
+  DescriptionBuilder builder(kParser);
+  for (const Utterance& utterance : parsed.utterances) {
+    checkUtterance(utterance, size);
+    builder.add(utterance);
+  }
+  const DescribedBuilding& building = builder.building();
+  checkDescription(building, "told");
+  require(descriptionFromXml(toXml(building)) == building);
+  for (const Grammar& grammar : kParser.grammars()) {
+    try {
+      describeBuilding(building, grammar);
+    } catch (const hyselam::InputError&) {
+    }
+  }
+}
+
+void descriptionXml(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try {
+    const DescribedBuilding building = descriptionFromXml(text, "fuzz", limits());
+    require(descriptionFromXml(toXml(building)) == building);
+  } catch (const hyselam::InputError&) {
+  }
+}
+
+void mapXml(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  AugmentedTopologicalMap map;
+  try {
+    map = fromXml(text, "fuzz", limits());
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  checkMap(map, "read");
+  // Extras may hold XML that is written otherwise; everything else must stay.
+  try {
+    const AugmentedTopologicalMap again = fromXml(toXml(map));
+    require(again.places.size() == map.places.size() && again.edges == map.edges &&
+            again.grid == map.grid);
+  } catch (const hyselam::InputError&) {
+  }
+}
+
+}  // namespace fuzz
+}  // namespace hyselam_topo
