@@ -40,6 +40,10 @@ class SlamRig(Rig):
         super().__init__(name, recording, kind="Slam", **params)
         self.map_heard = Listener(f"/{name}/map", OccupancyGrid)
 
+    @classmethod
+    def set_clock(cls, seconds):
+        Rig.set_clock(seconds)  # one clock for all kinds of rigs
+
     def load(self, kind):
         if self.process_wanted:
             self.start()
@@ -85,7 +89,7 @@ class SlamRig(Rig):
         """Distance [m] and angle [deg] of the robot from where it is in truth, in a map that began at scan `start`."""
         first = self.recording.scans[start].header.stamp.to_sec()
         stamp = self.recording.scans[self.next - 1].header.stamp.to_sec()
-        wait_until(lambda: self.odom_in_map(), "no transform")
+        wait_until(lambda: self.odom_in_map(), lambda: f"no transform: {self.values()}")
         pose = compose(self.odom_in_map()[-1][1], self.odometry_at(stamp))
         # The map begins where odometry is.
         truth = compose(self.odometry_at(first), compose(inverse(self.recording.truth_at(first)),
@@ -119,7 +123,7 @@ class SlamInputTest(unittest.TestCase):
                                            ("state", "/no/such/folder/map.slam"), ("save_period", -1.0))):
             rig = self.rig(name=str(i), **{name: value})
             self.assertFalse(rig.loaded, name)
-            rig.wait_said(name, str(value).split("/")[-1], level=Log.FATAL)
+            rig.wait_said(name, f"{value:g}" if isinstance(value, float) else value, level=Log.FATAL)
         rig = self.rig(name="good")
         rig.feed(3)
         self.assertEqual(rig.value("scans used"), "3")
@@ -173,6 +177,7 @@ class SlamInputTest(unittest.TestCase):
         answer = rig.call("save", StatePath, "")
         self.assertTrue(answer.success, answer.message)
         self.assertIn(path, answer.message)
+        self.assert_right(rig)
         rig.feed(10)  # lost
         keyframes = int(rig.value("keyframes"))
         rig.kill()
@@ -184,10 +189,13 @@ class SlamInputTest(unittest.TestCase):
         rig.start()
         wait_until(lambda: rig.scan.get_num_connections() > 0 and Rig.tf.get_num_connections() > 1, "not connected")
         rig.map_heard.wait(maps + 1)  # that of the state, before the first scan
-        rig.feed(100)
+        rig.feed(40)
+        self.assert_right(rig)
+        rig.feed(60)
         self.assertEqual(rig.value("runs"), "2")
         self.assertGreater(int(rig.value("keyframes")), keyframes)
-        self.assert_right(rig)
+        # Loops between the runs: in a room of four metres some views hardly tell where along a wall they are.
+        self.assertLess(rig.error()[0], 0.25)
         # The end saves as well; a damaged file stops the start with the reason.
         rig.process.terminate()
         self.assertEqual(rig.process.wait(), 0)
