@@ -38,8 +38,45 @@ install(TARGETS hyselam_dialogue
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
 install(DIRECTORY dialogue DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 
+# ---- ROS face: nodelet TopoEngine, console chat ------------------------------------------------------
+# Driving by the action move_base, where its messages are.
+find_package(actionlib QUIET)
+find_package(move_base_msgs QUIET)
+add_library(hyselam_topo_engine
+  src/ros/dialogue_markers.cpp
+  src/ros/goal_driver.cpp
+  src/ros/topo_engine_parameters.cpp
+  src/ros/topo_engine_server.cpp
+  src/ros/topo_engine_services.cpp)
+target_link_libraries(hyselam_topo_engine PUBLIC hyselam_dialogue hyselam_topo_ros)
+if(actionlib_FOUND AND move_base_msgs_FOUND)
+  target_compile_definitions(hyselam_topo_engine PRIVATE HYSELAM_HAVE_MOVE_BASE)
+  target_include_directories(hyselam_topo_engine SYSTEM PRIVATE ${actionlib_INCLUDE_DIRS}
+                                                                ${move_base_msgs_INCLUDE_DIRS})
+  target_link_libraries(hyselam_topo_engine PRIVATE ${actionlib_LIBRARIES})
+else()
+  message(STATUS "${PROJECT_NAME}: actionlib or move_base_msgs not found, ways are published only")
+endif()
+add_dependencies(hyselam_topo_engine ${catkin_EXPORTED_TARGETS})
+hyselam_target(hyselam_topo_engine)
+target_sources(hyselam_topo_nodelets PRIVATE src/nodelets/topo_engine_nodelet.cpp)
+target_link_libraries(hyselam_topo_nodelets hyselam_topo_engine)
+install(TARGETS hyselam_topo_engine
+  ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+catkin_install_python(PROGRAMS scripts/chat DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+
 if(CATKIN_ENABLE_TESTING)
   foreach(test topo_state glass_wall place_man route)
     hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_dialogue)
   endforeach()
+  if(hyselam_sim_FOUND)
+    hyselam_gtest(${PROJECT_NAME}_test_dialogue test/test_dialogue.cpp
+                  LIBRARIES hyselam_dialogue hyselam_gr2to ${hyselam_sim_LIBRARIES})
+    if(TARGET ${PROJECT_NAME}_test_dialogue)
+      target_compile_definitions(${PROJECT_NAME}_test_dialogue
+                                 PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    endif()
+  endif()
 endif()

@@ -34,15 +34,16 @@ struct DialogueParams {
     kAlways        ///< also for the name of a place without one
   };
   Ask ask = Ask::kUnconfirmed;
-  /// After a description with several equally good answers it asks about the place that leaves the
-  /// fewest of them, wherever that is; by code word.
+  /// After a description it asks for the name that tells apart best what fits about as well,
+  /// wherever the place is (by its code word).
   bool ask_from_afar = false;
   MatchParams match = defaultMatch();
   GlassWallParams glass;
   RouteParams route;
   TopoStateParams state;
 
-  static MatchParams defaultMatch();  ///< those of MatchParams, with a time limit of 2 s
+  /// Those of MatchParams, with a time limit of 2 s and answers kept that are worse by up to 0.03.
+  static MatchParams defaultMatch();
 };
 
 /// Throws hyselam::ParameterError for a parameter out of range or a language without phrases.
@@ -162,7 +163,7 @@ class Dialogue {
   void nameHere(Id place, const std::vector<std::string>& names, Reply* reply);
   void askConfirm(Id place, Reply* reply);
   void askName(Id place, Reply* reply);
-  void askFromAfar(Reply* reply);
+  void askFromAfar(const MatchProblem& problem, Reply* reply);
   void notConfirmed(Reply* reply);
   void placeEntered(Reply* reply);
   void answer(const Utterance& u, Turn* turn);

@@ -53,7 +53,7 @@ class GlassWallSearch {
   /// it has none, the second nearest, and so on. Not one that was rejected.
   std::optional<GlassWall> likeliest() const;
   /// The one whose length is nearest to what was told [m]; of equal ones the nearest to the robot.
-  /// Not one that was rejected, unless all are.
+  /// Not one that was rejected, unless it fits better by more than 0.3 m.
   std::optional<GlassWall> ofLength(double length) const;
   /// A person has said that there is none.
   void reject(const GlassWall& wall);

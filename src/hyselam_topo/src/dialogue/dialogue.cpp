@@ -32,6 +32,7 @@ std::map<std::string, Phrases> byLanguage(std::vector<Phrases> phrases) {
 MatchParams DialogueParams::defaultMatch() {
   MatchParams params;
   params.time_limit = 2.0;
+  params.keep_within = 0.03;
   return params;
 }
 

@@ -216,6 +216,10 @@ void Dialogue::onSide(const Utterance& u, Turn* turn) {
                            : *side == Side::kRight ? -0.5 * hyselam::kPi
                            : *side == Side::kBack  ? hyselam::kPi
                                                    : 0.0;
+  // Down a corridor most doors are rather ahead than beside, and yet people call them left or
+  // right.
+  const bool across = *side == Side::kLeft || *side == Side::kRight;
+  const double reach = hyselam::radians(across ? 70.0 : 20.0);
   std::vector<std::pair<double, Id>> seen;
   for (const Edge& edge : places_.map().edges) {
     if (edge.a != robot().place && edge.b != robot().place) continue;
@@ -224,7 +228,7 @@ void Dialogue::onSide(const Utterance& u, Turn* turn) {
       const hyselam::Point2 at =
           robot().pose.inverse() * hyselam::Point2{door.position.x, door.position.y};
       const double off = hyselam::normalizeAngle(std::atan2(at.y, at.x) - direction);
-      if (std::abs(off) <= 0.25 * hyselam::kPi) seen.emplace_back(std::hypot(at.x, at.y), other);
+      if (std::abs(off) <= reach) seen.emplace_back(std::hypot(at.x, at.y), other);
     }
   }
   std::sort(seen.begin(), seen.end());

@@ -1,11 +1,11 @@
 // Names of places: told one by one, by descriptions, and by answers to questions.
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/topomerg_names.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -15,6 +15,8 @@ std::vector<std::string> allNamesOf(const DescribedPlace& place) {
   names.insert(names.end(), place.aliases.begin(), place.aliases.end());
   return names;
 }
+
+constexpr double kWorthAsking = 0.2;  // [bits] that an answer must be worth to bother people
 
 /// How a match names a place: the number of the name, -1 for none.
 int nameAt(const MatchSolution& solution, std::size_t vertex) {
@@ -122,9 +124,11 @@ void Dialogue::solve(Reply* out, bool tell) {
   MatchObserver observer;
   observer.heading = heading_;
   // Where the robot stood is confirmed as a name, not as an observer: it may have gone elsewhere.
+  std::optional<MatchProblem> problem_to_ask;
   try {
     const MatchProblem problem = compileMatch(building, places_.map(), observer, constraints());
     match_ = solveExact(problem, params_.match);
+    if (tell && params_.ask_from_afar && match_->found()) problem_to_ask = problem;
     if (match_->found()) {
       std::vector<std::pair<Id, std::vector<std::string>>> guesses;
       for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
@@ -142,7 +146,7 @@ void Dialogue::solve(Reply* out, bool tell) {
     return;
   }
   if (tell) tellMatch(out);
-  if (tell && params_.ask_from_afar) askFromAfar(out);
+  if (problem_to_ask) askFromAfar(*problem_to_ask, out);
 }
 
 void Dialogue::tellMatch(Reply* out) const {
@@ -178,28 +182,20 @@ void Dialogue::tellMatch(Reply* out) const {
   out->sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
 }
 
-/// The place whose name would leave the fewest equally good answers, on the average.
-void Dialogue::askFromAfar(Reply* out) {
-  if (!match_ || match_->equal < 2 || question_.kind != Question::Kind::kNone) return;
-  const std::size_t known = std::min(match_->equal, match_->solutions.size());
-  std::size_t best = 0;
-  double least = static_cast<double>(known * known);
-  for (std::size_t v = 0; v < match_->best().assignment.size(); ++v) {
-    std::map<int, double> answers;
-    for (std::size_t s = 0; s < known; ++s) answers[nameAt(match_->solutions[s], v)] += 1.0;
-    double left = 0.0;
-    for (const auto& [name, count] : answers) left += count * count;
-    if (left >= least) continue;
-    least = left;
-    best = v;
-  }
-  if (least >= static_cast<double>(known * known)) return;
-  const Id place = places_.map().places[best].id;
-  question_ = {};
-  question_.kind = Question::Kind::kName;
-  question_.place = place;
+/// The question that tells the answers that fit about as well apart best.
+void Dialogue::askFromAfar(const MatchProblem& problem, Reply* out) {
+  if (question_.kind != Question::Kind::kNone) return;
+  const auto best = mostInformativeQuestion(problem, *match_);
+  if (!best || best->bits < kWorthAsking) return;
+  const Place& place = *places_.map().findPlace(best->place);
+  question_.place = place.id;
+  const bool guessed = nameStateOf(place) == NameState::kUnconfirmed;
+  question_.kind = guessed ? Question::Kind::kConfirmName : Question::Kind::kName;
+  if (guessed) question_.names = namesOf(place);
   out->sentences.push_back(
-      phrases().say("ask_name_there", {{"code", codeOf(*places_.map().findPlace(place))}}));
+      guessed ? phrases().say("ask_confirm_there",
+                              {{"code", codeOf(place)}, {"names", phrases().list(question_.names)}})
+              : phrases().say("ask_name_there", {{"code", codeOf(place)}}));
 }
 
 // ---- One name ----

@@ -220,18 +220,18 @@ std::optional<GlassWall> GlassWallSearch::likeliest() const {
 }
 
 std::optional<GlassWall> GlassWallSearch::ofLength(double length) const {
-  const GlassWall* best = nullptr;
-  for (const bool again : {false, true}) {
-    for (const GlassWall& wall : pairs_) {
-      if (!again && rejected(wall)) continue;
-      if (best == nullptr ||
-          std::abs(wall.length() - length) < std::abs(best->length() - length) - 1e-9) {
-        best = &wall;
-      }
-    }
-    if (best != nullptr) return *best;
+  const auto error = [&](const GlassWall& wall) { return std::abs(wall.length() - length); };
+  const GlassWall* best = nullptr;  // of those that were not rejected
+  const GlassWall* of_all = nullptr;
+  for (const GlassWall& wall : pairs_) {
+    if (of_all == nullptr || error(wall) < error(*of_all) - 1e-9) of_all = &wall;
+    if (rejected(wall)) continue;
+    if (best == nullptr || error(wall) < error(*best) - 1e-9) best = &wall;
   }
-  return std::nullopt;
+  if (of_all == nullptr) return std::nullopt;
+  // A person may say no by mistake: a rejected wall that fits much better is asked about again.
+  if (best == nullptr || error(*of_all) + kSame < error(*best)) best = of_all;
+  return *best;
 }
 
 void GlassWallSearch::reject(const GlassWall& wall) {

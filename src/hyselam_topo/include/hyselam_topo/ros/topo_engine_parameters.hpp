@@ -1,0 +1,28 @@
+// Parameters of the nodelet TopoEngine: names, ranges and meaning are in README.md.
+#pragma once
+
+#include <string>
+
+#include "hyselam_common/ros/params.hpp"
+#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/ros/map_markers.hpp"
+
+namespace hyselam_topo {
+
+struct TopoEngineParams {
+  DialogueParams dialogue;
+  std::string base_frame = "base_link";
+  double rate = 5.0;             ///< of looking for the robot's pose [Hz]
+  double pose_timeout = 1.0;     ///< an older pose is none [s]
+  std::string state_file;        ///< kept across restarts; empty: nothing is kept
+  bool use_move_base = true;     ///< drive by the action `move_base`, where it is there
+  int max_map_cells = 50000000;  ///< a larger map is refused
+  int max_text_bytes = 65536;    ///< a longer text is refused
+  MapMarkerParams markers;
+  double diagnostic_period = 1.0;  ///< [s]
+};
+
+/// @throws hyselam::ParameterError.
+TopoEngineParams loadTopoEngineParams(hyselam::ParamLoader& loader);
+
+}  // namespace hyselam_topo

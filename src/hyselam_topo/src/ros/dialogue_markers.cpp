@@ -1,0 +1,127 @@
+#include "hyselam_topo/ros/dialogue_markers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hyselam_topo {
+namespace {
+
+using visualization_msgs::Marker;
+
+std_msgs::ColorRGBA colour(double r, double g, double b) {
+  std_msgs::ColorRGBA c;
+  c.r = static_cast<float>(r);
+  c.g = static_cast<float>(g);
+  c.b = static_cast<float>(b);
+  c.a = 1.0f;
+  return c;
+}
+
+std_msgs::ColorRGBA colourOf(NameState state) {
+  switch (state) {
+    case NameState::kNone:
+      return colour(0.0, 0.45, 0.1);
+    case NameState::kUnconfirmed:
+      return colour(0.75, 0.05, 0.05);
+    case NameState::kConfirmed:
+      break;
+  }
+  return colour(0.05, 0.15, 0.75);
+}
+
+geometry_msgs::Point at(double x, double y, double z) {
+  geometry_msgs::Point point;
+  point.x = x;
+  point.y = y;
+  point.z = z;
+  return point;
+}
+
+Marker make(const std::string& frame, const std::string& ns, int id, int type) {
+  Marker m;
+  m.header.frame_id = frame;
+  m.ns = ns;
+  m.id = id;
+  m.type = type;
+  m.action = Marker::ADD;
+  m.pose.orientation.w = 1.0;
+  m.scale.x = m.scale.y = m.scale.z = 0.06;
+  return m;
+}
+
+Marker ring(const AugmentedTopologicalMap& map, const Place& place) {
+  constexpr int kPieces = 24;
+  constexpr double kRadius = 0.3, kHeight = 0.12;  // [m]
+  Marker m = make(map.frame_id, "name_states", static_cast<int>(place.id), Marker::LINE_STRIP);
+  m.color = colourOf(nameStateOf(place));
+  for (int i = 0; i <= kPieces; ++i) {
+    const double angle = 2.0 * hyselam::kPi * i / kPieces;
+    m.points.push_back(at(place.centre->x + kRadius * std::cos(angle),
+                          place.centre->y + kRadius * std::sin(angle), kHeight));
+  }
+  return m;
+}
+
+Marker text(const AugmentedTopologicalMap& map, const Place& place) {
+  Marker m = make(map.frame_id, "names", static_cast<int>(place.id), Marker::TEXT_VIEW_FACING);
+  m.scale.z = std::clamp(0.1 * std::sqrt(place.area), 0.35, 0.6);
+  m.pose.position = at(place.centre->x, place.centre->y + 0.4 + m.scale.z, 0.3);
+  m.color = colourOf(nameStateOf(place));
+  m.text = codeOf(place);
+  const std::vector<std::string> names = namesOf(place);
+  if (!names.empty()) m.text += "\n" + names.front();
+  return m;
+}
+
+}  // namespace
+
+visualization_msgs::MarkerArray namedMapMarkers(const AugmentedTopologicalMap& map,
+                                                const MapMarkerParams& params) {
+  MapMarkerParams without_names = params;
+  without_names.names = false;
+  visualization_msgs::MarkerArray array = mapMarkers(map, without_names);
+  for (const Place& place : map.places) {
+    if (!place.centre) continue;
+    array.markers.push_back(ring(map, place));
+    if (params.names) array.markers.push_back(text(map, place));
+  }
+  return array;
+}
+
+visualization_msgs::MarkerArray questionMarkers(const Question& question,
+                                                const std::string& frame_id) {
+  constexpr double kHeight = 0.15;
+  visualization_msgs::MarkerArray array;
+  Marker all = make(frame_id, "glass_wall", 0, Marker::CUBE);
+  all.action = Marker::DELETEALL;
+  array.markers.push_back(all);
+  if (!question.search) return array;
+  Marker seen = make(frame_id, "glass_wall", 1, Marker::LINE_STRIP);
+  seen.scale.x = 0.03;
+  seen.color = colour(0.2, 0.8, 0.2);
+  const hyselam::Pose2& robot = question.search->robot();
+  seen.points.push_back(at(robot.x, robot.y, kHeight));
+  for (const auto& p : question.search->seen()) seen.points.push_back(at(p.x, p.y, kHeight));
+  seen.points.push_back(at(robot.x, robot.y, kHeight));
+  array.markers.push_back(seen);
+  if (!question.search->corners().empty()) {
+    Marker corners = make(frame_id, "glass_wall", 2, Marker::CUBE_LIST);
+    corners.scale.x = corners.scale.y = 0.15;
+    corners.color = colour(0.9, 0.1, 0.1);
+    for (const auto& p : question.search->corners()) {
+      corners.points.push_back(at(p.x, p.y, kHeight));
+    }
+    array.markers.push_back(corners);
+  }
+  if (question.kind == Question::Kind::kWall) {
+    Marker wall = make(frame_id, "glass_wall", 3, Marker::LINE_STRIP);
+    wall.scale.x = 0.12;
+    wall.color = colour(0.1, 0.3, 0.95);
+    wall.points.push_back(at(question.wall.line.a.x, question.wall.line.a.y, kHeight));
+    wall.points.push_back(at(question.wall.line.b.x, question.wall.line.b.y, kHeight));
+    array.markers.push_back(wall);
+  }
+  return array;
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,334 @@
+// The talk of section 7.3.1 and others, in a simulated building.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_sim/floor_plan.hpp"
+#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue_state.hpp"
+#include "hyselam_topo/gr2to.hpp"
+#include "hyselam_topo/map_geometry.hpp"
+
+using hyselam::InputError;
+using hyselam::Point2;
+using hyselam::Pose2;
+using hyselam_topo::Dialogue;
+using hyselam_topo::DialogueAction;
+using hyselam_topo::DialogueParams;
+using hyselam_topo::Id;
+using hyselam_topo::Question;
+using hyselam_topo::Reply;
+
+namespace {
+
+bool has(const Reply& reply, const std::string& text) {
+  return reply.text().find(text) != std::string::npos;
+}
+
+const hyselam_sim::FloorPlan& plan() {
+  static const auto kPlan = hyselam_sim::loadFloorPlan(std::string(HYSELAM_TOPO_SOURCE_DIR) +
+                                                       "/test/data/glass_building.yaml");
+  return kPlan;
+}
+
+const hyselam::OccupancyGrid& grid() {
+  static const auto kGrid = hyselam_sim::rasterise(plan(), 0.05, 0.0);
+  return kGrid;
+}
+
+/// A robot in the building with a person beside it.
+struct Visit {
+  Dialogue dialogue;
+  double time = 0.0;
+  bool aloud = std::getenv("HYSELAM_ALOUD") != nullptr;
+
+  explicit Visit(const DialogueParams& params = {}) : dialogue(params) { dialogue.setGrid(grid()); }
+  Reply at(double x, double y, double theta) {
+    return tell(dialogue.setPose(time += 1.0, {x, y, theta}));
+  }
+  Reply say(const std::string& text) {
+    if (aloud) std::cout << "Human " << text << '\n';
+    return tell(dialogue.hear(text));
+  }
+  /// The topological map from the grid map with the walls told so far.
+  Reply segment() {
+    return tell(dialogue.setMap(hyselam_topo::gr2to(*dialogue.gridWithWalls()).map));
+  }
+  Reply tell(Reply reply) const {
+    if (aloud && !reply.sentences.empty()) std::cout << "Robot " << reply.text() << '\n';
+    return reply;
+  }
+  /// The place at a place of the plan.
+  Id truth(const std::string& name) const {
+    const auto found = hyselam_topo::placeAt(dialogue.map(), plan().place(name).at, 0.3);
+    return found ? found->place : 0;
+  }
+  std::vector<std::string> names(Id id) const {
+    return hyselam_topo::namesOf(*dialogue.map().findPlace(id));
+  }
+};
+
+/// What the walls of glass are in truth: the ends of the openings.
+std::pair<Point2, Point2> glassOf(const std::string& name) {
+  for (const auto& door : plan().doors) {
+    if (door.name != name) continue;
+    const double half = 0.5 * door.width;
+    return {{door.at.x - half, door.at.y}, {door.at.x + half, door.at.y}};
+  }
+  throw InputError("plan", name, "there is none");
+}
+
+void expectAt(const hyselam_topo::GlassWall& wall, const std::string& name) {
+  const auto [a, b] = glassOf(name);
+  const bool turned = wall.a.x > wall.b.x;
+  const Point2 wa = turned ? wall.b : wall.a, wb = turned ? wall.a : wall.b;
+  EXPECT_LT(std::hypot(wa.x - a.x, wa.y - a.y), 0.2) << name;
+  EXPECT_LT(std::hypot(wb.x - b.x, wb.y - b.y), 0.2) << name;
+}
+
+void tellOfGlass(Visit* v) {
+  v->at(5.6, 1.2, 0.0);
+  EXPECT_TRUE(has(v->say("Stop. Robot, on your right there is a glass wall."),
+                  "Is this information correct?"));
+  v->say("Yes.");
+  v->at(8.6, 1.2, 0.0);
+  v->say("Robot, at your right there is a glass wall.");
+  v->say("Yes.");
+  v->at(10.3, 1.2, 0.0);
+  v->say("Robot, at your left there is a glass wall.");
+  v->say("Yes.");
+  v->at(16.7, 1.2, 0.0);
+  v->say("Robot, at your right there is a glass wall.");
+  v->say("Yes.");
+}
+
+const char kDescription[] =
+    "Robot, you are in the corridor. On your left you have room i-109, then i-110 and i-111. You "
+    "are "
+    "in the corridor. On your right you have room i-108. You are in the corridor. Behind you are "
+    "the "
+    "stairs. You are in the corridor. In front of you is the Hall. Room i-108 is also known as "
+    "robosoccer room. Room i-110 is also known as industrial robotics room. Room i-109 is also "
+    "known "
+    "as mobile robotics room. Finally, room i-108 has 15 by 6 meters.";
+
+/// Walls of glass told, map made, building described from the beginning of the corridor.
+void describe(Visit* v) {
+  tellOfGlass(v);
+  v->segment();
+  v->at(1.0, 1.2, 0.0);
+  v->say(kDescription);
+}
+
+}  // namespace
+
+TEST(Dialogue, TheConversationOfSection731) {
+  Visit v;
+  EXPECT_TRUE(v.say("Robot, follow me.").has(DialogueAction::Kind::kFollow));
+  tellOfGlass(&v);
+  const auto& walls = v.dialogue.places().walls();
+  ASSERT_EQ(walls.size(), 4u);
+  expectAt(walls[0].line, "glass right 1");
+  expectAt(walls[1].line, "glass right 2");
+  expectAt(walls[2].line, "glass left 1");
+  expectAt(walls[3].line, "glass right 3");
+
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  const Id corridor = v.truth("corridor");
+  ASSERT_NE(corridor, 0u);
+  const std::string code = hyselam_topo::codeOf(*v.dialogue.map().findPlace(corridor));
+  EXPECT_EQ(v.say("Robot, where are you?").text(), "I am at " + code + ".");
+  const Reply told = v.say(kDescription);
+  EXPECT_EQ(told.sentences.at(0), "Wait please, I am processing that information.");
+  EXPECT_EQ(told.sentences.at(1), "Ok, it is done.");
+  EXPECT_TRUE(told.has(DialogueAction::Kind::kMap));
+  EXPECT_EQ(v.say("Robot, where are you?").text(), "I am at " + code + ", corridor.");
+  for (const std::string name : {"i-108", "i-109", "i-110", "i-111", "stairs", "hall"}) {
+    const Id place = v.truth(name);
+    ASSERT_NE(place, 0u) << name;
+    ASSERT_FALSE(v.names(place).empty()) << name;
+    EXPECT_TRUE(v.dialogue.places().sameName(v.names(place)[0], name)) << name << v.names(place)[0];
+    EXPECT_EQ(hyselam_topo::nameStateOf(*v.dialogue.map().findPlace(place)),
+              hyselam_topo::NameState::kUnconfirmed);
+  }
+
+  const Reply entered = v.at(3.0, 6.0, 0.0);
+  EXPECT_TRUE(has(entered, "Can you please confirm the name")) << entered.text();
+  const Reply where = v.say("Robot, Stop. Robot, where are you?");
+  EXPECT_TRUE(has(where,
+                  "Can you please confirm the name room i-109 and mobile robotics room, as "
+                  "the name of this place?"))
+      << where.text();
+  EXPECT_TRUE(has(v.say("Yes."), "Thank you."));
+  EXPECT_EQ(hyselam_topo::nameStateOf(*v.dialogue.map().findPlace(v.truth("i-109"))),
+            hyselam_topo::NameState::kConfirmed);
+
+  const Reply go = v.say("Robot, go to I-110 and then go to the corridor.");
+  const auto action = std::find_if(go.actions.begin(), go.actions.end(), [](const auto& a) {
+    return a.kind == DialogueAction::Kind::kGo;
+  });
+  ASSERT_NE(action, go.actions.end()) << go.text();
+  ASSERT_EQ(action->legs.size(), 2u);
+  const auto& legs = action->legs;
+  EXPECT_EQ(legs[0].places, (std::vector<Id>{v.truth("i-109"), corridor, v.truth("i-110")}));
+  EXPECT_EQ(legs[1].places, (std::vector<Id>{v.truth("i-110"), corridor}));
+  ASSERT_EQ(legs[0].waypoints.size(), 3u);
+  EXPECT_NEAR(legs[0].waypoints[0].x, 3.5, 0.3);
+  EXPECT_NEAR(legs[0].waypoints[0].y, 2.5, 0.3);
+  EXPECT_NEAR(legs[0].waypoints[1].x, 7.0, 0.3);
+  EXPECT_NEAR(legs[0].waypoints[1].y, 2.5, 0.3);
+  for (const auto& leg : legs) {
+    for (const Pose2& pose : leg.path) {
+      EXPECT_LT(grid().valueOr(grid().geometry.cellAt({pose.x, pose.y})), 50);
+    }
+  }
+}
+
+TEST(Dialogue, NoToAGlassWallAsksForItsSize) {
+  Visit v;
+  v.at(7.2, 1.2, 0.0);  // the door of i-110 is nearer than the glass
+  const Reply first = v.say("On your left there is a glass wall.");
+  EXPECT_TRUE(has(first, "0.9")) << first.text();
+  EXPECT_EQ(v.dialogue.question().kind, Question::Kind::kWall);
+  EXPECT_TRUE(has(v.say("No."), "What is the size of this glass wall?"));
+  EXPECT_TRUE(has(v.say("It is 3.6 meters."), "3.60 meters long"));
+  v.say("Yes, that is right.");
+  ASSERT_EQ(v.dialogue.places().walls().size(), 1u);
+  expectAt(v.dialogue.places().walls()[0].line, "glass left 1");
+  EXPECT_TRUE(has(v.say("Forget the last wall."), "forgotten"));
+  EXPECT_TRUE(v.dialogue.places().walls().empty());
+  EXPECT_TRUE(has(v.say("Forget the last wall."), "no such wall"));
+}
+
+TEST(Dialogue, NoToANameAsksForTheRightOne) {
+  Visit v;
+  describe(&v);
+  v.at(9.0, 6.0, 0.0);
+  ASSERT_EQ(v.dialogue.question().kind, Question::Kind::kConfirmName);
+  v.say("No.");
+  EXPECT_NE(v.dialogue.question().kind, Question::Kind::kNone);
+  const Reply named = v.say("This is the music room.");
+  EXPECT_TRUE(has(named, "music room")) << named.text();
+  EXPECT_EQ(v.names(v.truth("i-110")), std::vector<std::string>{"music room"});
+}
+
+TEST(Dialogue, AnswersQuestions) {
+  Visit v;
+  EXPECT_EQ(v.say("Where are you?").text(), "I do not know where I am.");
+  EXPECT_TRUE(has(v.say("Go to the kitchen."), "I do not know the place kitchen."));
+  EXPECT_TRUE(has(v.say("Yes."), "I have not asked anything."));
+  describe(&v);
+  EXPECT_TRUE(has(v.say("What is next to the stairs?"), "corridor"));
+  EXPECT_TRUE(has(v.say("Where is I-111?"), "meters from here"));
+  EXPECT_TRUE(has(v.say("How do I get to the hall?"), "corridor"));
+  EXPECT_TRUE(has(v.say("What is on your left?"), "i-109"));
+  EXPECT_TRUE(has(v.say("How big is room i-108?"), "9"));
+  EXPECT_TRUE(has(v.say("Which places do you know?"), "Hall"));
+  EXPECT_TRUE(has(v.say("Flurb the gnarl of sqwox."), "I did not understand"));
+}
+
+TEST(Dialogue, VirtualPlacesAreAddedAndNamed) {
+  Visit v;
+  describe(&v);
+  v.at(12.0, -3.0, 0.0);
+  v.say("Yes.");
+  const Id room = v.dialogue.robot().place;
+  EXPECT_TRUE(has(v.say("You are in a virtual place, with 1 meter of radius."), "VV"));
+  const Id here = v.dialogue.robot().place;
+  EXPECT_NE(here, room);
+  EXPECT_EQ(v.dialogue.question().kind, Question::Kind::kName);
+  EXPECT_TRUE(has(v.say("The charging station."), "Thank you."));
+  EXPECT_EQ(v.dialogue.places().find("charging station"), std::vector<Id>{here});
+  v.at(1.0, 1.2, 0.0);
+  EXPECT_TRUE(v.say("Go to the charging station.").has(DialogueAction::Kind::kGo));
+}
+
+TEST(Dialogue, GoesOnAfterARestart) {
+  hyselam::testing::TemporaryDirectory directory;
+  const std::string path = directory / "state";
+  Visit v;
+  describe(&v);
+  v.at(3.0, 6.0, 0.0);
+  v.say("Yes.");
+  hyselam_topo::saveDialogueState(path, v.dialogue.state());
+  Visit again;
+  again.dialogue.restore(hyselam_topo::loadDialogueState(path));
+  EXPECT_EQ(hyselam_topo::toText(again.dialogue.state()), hyselam_topo::toText(v.dialogue.state()));
+  EXPECT_TRUE(again.dialogue.map() == v.dialogue.map());
+  again.segment();
+  again.at(3.0, 6.0, 0.0);
+  EXPECT_TRUE(has(again.say("Where are you?"), "room i-109"));
+  EXPECT_TRUE(has(again.say("What is next to I-109?"), "corridor"));
+
+  // Damaged, cut, from somewhere else.
+  const std::string good = hyselam::testing::fileBytes(path);
+  const auto messageOf = [&](const std::string& text) {
+    return hyselam::testing::messageOf<InputError>(
+        [&] { hyselam_topo::dialogueStateFromText(text, "f"); });
+  };
+  std::string bad = good;
+  bad[good.size() / 2] ^= 1;
+  EXPECT_EQ(messageOf(bad), "f: it is damaged: the checksum is wrong");
+  EXPECT_EQ(messageOf(good.substr(0, good.size() - 9)), "f: it is not complete");
+  EXPECT_EQ(messageOf("<xml/>"), "f: line 1: this is no state of a dialogue");
+  EXPECT_EQ(messageOf(""), "f: line 1: this is no state of a dialogue");
+  EXPECT_EQ(messageOf("hyselam_dialogue 2 0 0\n"), "f: line 1: only version 1 can be read, not 2");
+}
+
+TEST(Dialogue, SpeaksAsItIsSpokenTo) {
+  Visit v;
+  describe(&v);
+  v.at(3.0, 6.0, 0.0);
+  const Reply where = v.say("Onde estás?");
+  EXPECT_EQ(where.language, "pt");
+  EXPECT_TRUE(has(where, "Estou em")) << where.text();
+  EXPECT_TRUE(has(v.say("Sim."), "Obrigado."));
+  EXPECT_TRUE(has(v.say("Where are you?"), "I am at"));
+}
+
+TEST(Dialogue, AnythingHeardIsAnswered) {
+  Visit v;
+  describe(&v);
+  for (const std::string& text :
+       {std::string(), std::string("\xff\xfe"), std::string(100000, 'a'), std::string("yes no yes"),
+        std::string("go to"), std::string("forget all names"), std::string("Rename it to x."),
+        std::string("You are in a virtual place."), std::string("The radius is 500 meters."),
+        std::string("There is a glass wall behind you."), std::string("cancel")}) {
+    EXPECT_NO_THROW(v.say(text)) << text.substr(0, 30);
+  }
+  DialogueParams params;
+  params.language = "tlh";
+  EXPECT_THROW(Dialogue{params}, hyselam::ParameterError);
+}
+
+TEST(Phrases, RefuseFilesWithMistakes) {
+  const auto messageOf = [](const std::string& yaml) {
+    return hyselam::testing::messageOf<InputError>(
+        [&] { hyselam_topo::Phrases::fromYaml("f", yaml); });
+  };
+  const std::string good =
+      hyselam::testing::fileBytes(std::string(HYSELAM_TOPO_SOURCE_DIR) + "/dialogue/en.yaml");
+  const auto with = [&](const std::string& a, const std::string& b) {
+    std::string text = good;
+    text.replace(text.find(a), a.size(), b);
+    return text;
+  };
+  EXPECT_EQ(messageOf(good), "");
+  EXPECT_EQ(messageOf("["), messageOf("["));
+  EXPECT_NE(messageOf("[").find("f: line"), std::string::npos);
+  EXPECT_EQ(messageOf("x"), "f: it is no YAML map");
+  EXPECT_EQ(messageOf(with("hyselam_phrases", "other")),
+            "f: key 'format': it is not hyselam_phrases");
+  EXPECT_EQ(messageOf(with("  hello:", "  hullo:")), "f: key 'phrases/hullo': I know no such key");
+  EXPECT_EQ(messageOf(with("  hello: \"Hello.\"\n", "")), "f: key 'phrases/hello': it is missing");
+  EXPECT_EQ(messageOf(with("I am at {code}.", "I am at {place}.")),
+            "f: key 'phrases/at_code': nothing is known for '{place}'");
+  EXPECT_EQ(messageOf(with("I am at {code}.", "I am at {code.")),
+            "f: key 'phrases/at_code': a brace is not closed");
+}
