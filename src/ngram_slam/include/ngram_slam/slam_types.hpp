@@ -57,7 +57,7 @@ struct SlamMatch {
   hyselam::Pose2 measured;
   bool tried = false;     ///< the scans were compared
   bool verified = false;  ///< the scans fit
-  bool accepted = false;  ///< and it stands in the graph, or another loop says the same
+  bool accepted = false;  ///< and it stands in the graph: places beside it say the same
 };
 
 /// How often what happened.

@@ -139,17 +139,18 @@ void writeWords(const std::string& path, const Recogniser& r) {
   });
 }
 
-/// x, y, theta: where the newer observation was made, in the frame of the older one; verified ones
-/// by the scans, the others as words have it: the same place.
+/// x, y, theta: where the newer observation was made, in the frame of the older one; by the scans
+/// where they fit, else as words have it: the same place. Verified: the scans fit, and other places
+/// beside it say the same.
 void writeMatches(const std::string& path, const std::vector<SlamMatch>& matches) {
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    out << "stamp_a,stamp_b,level,n,direction,x,y,theta,verified,probability,tried,in_graph\n";
+    out << "stamp_a,stamp_b,level,n,direction,x,y,theta,verified,probability,tried,scans_fit\n";
     for (const SlamMatch& m : matches)
       out << std::setprecision(15) << m.stamp_newer << ',' << m.stamp_older << ','
           << std::setprecision(6) << m.level << ',' << m.n << ','
           << (m.direction == Direction::kReverse ? "reverse" : "same") << ',' << m.measured.x << ','
-          << m.measured.y << ',' << m.measured.theta << ',' << (m.verified ? 1 : 0) << ','
-          << m.probability << ',' << (m.tried ? 1 : 0) << ',' << (m.accepted ? 1 : 0) << '\n';
+          << m.measured.y << ',' << m.measured.theta << ',' << (m.accepted ? 1 : 0) << ','
+          << m.probability << ',' << (m.tried ? 1 : 0) << ',' << (m.verified ? 1 : 0) << '\n';
   });
 }
 
@@ -186,7 +187,7 @@ nlohmann::json errorOf(const SlamEngine& engine,
     ++(l.source == LoopSource::kNgram ? words : l.far ? far : near);
   }
   for (const SlamMatch& m : engine.matches())
-    if (m.verified && loopError(engine.keyframes()[static_cast<std::size_t>(m.keyframe_older)],
+    if (m.accepted && loopError(engine.keyframes()[static_cast<std::size_t>(m.keyframe_older)],
                                 engine.keyframes()[static_cast<std::size_t>(m.keyframe_newer)],
                                 m.measured, reference)
                           .isFalse())

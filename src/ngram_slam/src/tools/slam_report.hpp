@@ -194,7 +194,7 @@ inline std::string matchFigure(const SlamEngine& engine) {
   };
   for (const SlamLoop& l : engine.loops()) dot(l.newer, l.older, "#2ca02c", 1.5);
   for (const SlamMatch& m : engine.matches())
-    dot(m.keyframe_newer, m.keyframe_older, m.verified ? "#ff7f0e" : "#d62728", 3.0);
+    dot(m.keyframe_newer, m.keyframe_older, m.accepted ? "#ff7f0e" : "#d62728", 3.0);
   out << "<text x=\"300\" y=\"622\" text-anchor=\"middle\" font-size=\"16\">way 0 .. "
       << fixed(end, 0) << " m; upwards: the earlier way</text></svg>\n";
   return out.str();
@@ -244,7 +244,7 @@ inline void writeReport(const std::string& path, const std::string& log, const S
            "wide.</p>\n"
         << wordStrip(engine) << "<h2>The same places</h2>\n<p>"
         << "<i style=\"background:#2ca02c\"></i>loops of the graph"
-        << "<i style=\"background:#ff7f0e\"></i>matches of words that the scans confirm"
+        << "<i style=\"background:#ff7f0e\"></i>verified matches of words"
         << "<i style=\"background:#d62728\"></i>other matches of words</p>\n"
         << matchFigure(engine) << "</body></html>\n";
   });
