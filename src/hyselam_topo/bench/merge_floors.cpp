@@ -250,16 +250,16 @@ int main(int argc, char** argv) {
           fitness_at_once = match.best().fitness;
         }
         if (count == in_map.size() || questions == found.map.places.size()) break;
-        // The place that tells most; if all answers agree, the largest that nobody has confirmed.
+        // The place that tells most; if all answers agree, that of the least certain name.
         Id place = 0;
         if (const auto question = mostInformativeQuestion(problem, match)) {
           place = question->place;
         } else {
-          double area = -1.0;
-          for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
-            if (problem.fixed[v] >= 0 || problem.area[v] <= area) continue;
-            area = problem.area[v];
-            place = problem.vertices[v];
+          double least = 1.0;
+          for (const NameUncertainty& u : nameUncertainties(problem, params, match)) {
+            if (u.place == 0 || u.drop >= least) continue;
+            least = u.drop;
+            place = u.place;
           }
         }
         if (place == 0) break;
