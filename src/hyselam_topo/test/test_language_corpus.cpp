@@ -150,6 +150,10 @@ TEST(LanguageCorpus, WhatMustBeRefusedIsRefused) {
   expectGood("refused", 1.0);
 }
 
+TEST(LanguageCorpus, SecondHoldOut) {
+  expectGood("holdout_2", 0.97);
+}
+
 TEST(LanguageCorpus, HoldOut) {
   expectGood("holdout", 0.97);
 }
