@@ -1,0 +1,655 @@
+#include "hyselam_objects/fill_map.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "object_words.hpp"
+
+namespace hyselam_objects {
+
+using hyselam_topo::SaidName;
+using hyselam_topo::UtteranceKind;
+
+/// Where something is said to be.
+struct FillMap::Target {
+  Id place = 0;
+  std::optional<RelationWord> word;
+  Id landmark = 0;
+};
+
+const char* toString(ReplyKind kind) {
+  constexpr std::array<const char*, 4> kNames{"done", "answer", "question", "not understood"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+FillMap::FillMap(const ObjectParser* parser, ObjectMap* map) : parser_(*parser), map_(*map) {}
+
+std::vector<ObjectReply> FillMap::say(const std::string& text) {
+  std::set<std::string> expected;
+  if (pending_ && pending_->for_place) expected.insert("place_answer");
+  std::vector<ObjectReply> replies;
+  for (const ObjectStatement& statement : parser_.parse(text, expected)) {
+    replies.push_back(take(statement));
+  }
+  return replies;
+}
+
+ObjectReply FillMap::take(const ObjectStatement& statement) {
+  switch (statement.kind) {
+    case UtteranceKind::kNotUnderstood:
+      return reply(ReplyKind::kNotUnderstood, "not_understood",
+                   {{"text", statement.text}, {"reason", statement.reason}});
+    case UtteranceKind::kAnswer:
+      return answer(statement);
+    case UtteranceKind::kQuestion:
+      return ask(statement);
+    default:
+      break;
+  }
+  pending_.reset();
+  if (statement.intent == "forget_object") return forget(statement);
+  if (statement.intent == "this_is") {
+    ObjectReply out = reply(ReplyKind::kDone, "shown", {{"what", statement.objects.front().kind}});
+    return out;
+  }
+  if (statement.intent == "is_like") return describe(statement);
+  return tell(statement);
+}
+
+// ---- Statements ----
+
+ObjectReply FillMap::tell(const ObjectStatement& statement) {
+  // Everything is found before anything is changed.
+  Target target;
+  target.word = statement.relation;
+  if (statement.place) {
+    const std::string said = placeName(*statement.place);
+    if (said.empty()) return askBack(statement, "which_place", {}, true);
+    target.place = findPlace(said);
+  }
+  const bool has_place = statement.place.has_value();
+  std::vector<Id> landmarks;
+  if (statement.landmark) {
+    if (statement.landmark->count_said && statement.landmark->count > 1) {
+      return askBack(statement, "which_one",
+                     {{"count", std::to_string(statement.landmark->count)},
+                      {"what", statement.landmark->kind}});
+    }
+    landmarks = resolve(*statement.landmark, has_place ? target.place : place_);
+    if (has_place && landmarks.size() == 1 && statement.landmark->reference.empty() &&
+        map_.placeOf(landmarks.front()) != 0 && map_.placeOf(landmarks.front()) != target.place) {
+      landmarks.clear();  // "on the table in the kitchen": not that in the office
+    }
+    if (landmarks.size() > 1) {
+      return askBack(
+          statement, "which_one",
+          {{"count", std::to_string(landmarks.size())}, {"what", statement.landmark->text}});
+    }
+    if (landmarks.empty() && !statement.landmark->reference.empty()) {
+      return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", statement.landmark->text}});
+    }
+    if (!has_place && !landmarks.empty()) target.place = map_.placeOf(landmarks.front());
+  }
+  const bool refers = statement.objects.front().definite;
+  if (!has_place && target.place == 0) {
+    target.place = place_ != 0 ? place_ : here_.empty() ? 0 : findPlace(here_);
+  }
+  const bool place_is_new = has_place && target.place == 0;
+  const bool here_is_new = !has_place && target.place == 0 && !here_.empty();
+
+  // What each phrase means: known ones, and how many are to be added.
+  struct Meant {
+    const ObjectPhrase* said;
+    std::vector<Id> known;
+    int missing = 0;
+    bool related = true;
+  };
+  std::vector<Meant> all;
+  bool landmark_told = false;
+  for (const ObjectPhrase& said : statement.objects) {
+    Meant meant{&said, {}, 0, true};
+    const bool is_landmark = statement.landmark && said.reference.empty() &&
+                             statement.landmark->reference.empty() &&
+                             said.kind == statement.landmark->kind && said.count == 1 &&
+                             said.properties == statement.landmark->properties;
+    if (is_landmark && statement.objects.size() == 1) {
+      return reply(ReplyKind::kQuestion, "itself", {{"word", toString(*statement.relation)}});
+    }
+    if (is_landmark) {
+      for (Meant& before : all) before.related = false;
+      landmark_told = true;
+      continue;
+    }
+    if (said.plural && !said.count_said && said.reference.empty() &&
+        !(said.definite && !candidates(said).empty())) {
+      return askBack(statement, "how_many", {{"what", said.text}});
+    }
+    const Id near_place = statement.intent == "is_at" && refers ? 0 : target.place;
+    if (said.definite) {
+      meant.known = resolve(said, near_place != 0 ? near_place : place_);
+      if (meant.known.empty() && !said.reference.empty()) {
+        return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", said.text}});
+      }
+      const bool many = said.plural || said.reference == "them";
+      if (many && said.count_said && static_cast<int>(meant.known.size()) != said.count &&
+          !meant.known.empty()) {
+        return askBack(statement, "which_one",
+                       {{"count", std::to_string(meant.known.size())}, {"what", said.text}});
+      }
+      if (!many && meant.known.size() > 1) {
+        // "The pen is on the table": perhaps one of them is known to lie there.
+        std::vector<Id> fitting;
+        for (const Id id : meant.known) {
+          Target wanted = target;
+          wanted.landmark = landmarks.empty() ? 0 : landmarks.front();
+          const bool there = target.place != 0 && map_.placeOf(id) == target.place;
+          if (there && contradiction(id, wanted).empty()) fitting.push_back(id);
+        }
+        if (fitting.size() != 1) {
+          return askBack(statement, "which_one",
+                         {{"count", std::to_string(meant.known.size())}, {"what", said.text}});
+        }
+        meant.known = fitting;
+      }
+      if (meant.known.empty()) meant.missing = said.count;
+    } else if (said.another) {
+      meant.missing = said.count;
+    } else {
+      Target wanted = target;
+      wanted.landmark = landmarks.empty() ? 0 : landmarks.front();
+      std::vector<Id> same, perhaps;
+      for (const Id id : candidates(said)) {
+        if (target.place == 0 || map_.placeOf(id) != target.place) continue;
+        if (wanted.landmark == id) continue;
+        bool related = !wanted.word;
+        for (const ObjectRelation* r : map_.relationsOf(id)) {
+          related = related || (wanted.word && r->word == *wanted.word &&
+                                r->other == wanted.landmark && r->other != 0);
+        }
+        if (related) {
+          same.push_back(id);
+        } else if (!(wanted.word && statement.landmark && landmarks.empty()) &&
+                   contradiction(id, wanted).empty()) {
+          perhaps.push_back(id);
+        }
+      }
+      const int known = static_cast<int>(same.size());
+      if (said.count_said && known > 0 && known != said.count && !statement.correction) {
+        return askBack(statement, "count_contradiction",
+                       {{"count", std::to_string(known)},
+                        {"what", said.kind},
+                        {"said", std::to_string(said.count)}});
+      }
+      same.insert(same.end(), perhaps.begin(), perhaps.end());
+      for (const Id id : same) {
+        if (static_cast<int>(meant.known.size()) < said.count) meant.known.push_back(id);
+      }
+      meant.missing = said.count - static_cast<int>(meant.known.size());
+      // Corrected to fewer: the surplus goes.
+      for (int i = said.count; statement.correction && said.count_said && i < known; ++i) {
+        map_.remove(same[static_cast<std::size_t>(i)]);
+      }
+    }
+    all.push_back(std::move(meant));
+  }
+
+  const bool anything_placed =
+      target.place != 0 || place_is_new || here_is_new ||
+      std::all_of(all.begin(), all.end(), [&](const Meant& m) {
+        return m.missing == 0 && std::all_of(m.known.begin(), m.known.end(),
+                                             [&](Id id) { return map_.placeOf(id) != 0; });
+      });
+  if (!anything_placed) return askBack(statement, "which_place", {}, true);
+  if (!has_place && !all.empty() && !all.front().known.empty() && refers && landmarks.empty()) {
+    target.place = map_.placeOf(all.front().known.front());  // "the pen is on a book": where it is
+  }
+  if (!statement.correction) {
+    for (const Meant& meant : all) {
+      for (const Id id : meant.known) {
+        Target wanted = target;
+        wanted.landmark = landmarks.empty() ? 0 : landmarks.front();
+        if (!meant.related) wanted.word.reset();
+        if (place_is_new) wanted.place = map_.next_place_id;
+        std::string known = contradiction(id, wanted);
+        if (known.empty() && statement.landmark && landmarks.empty() && wanted.word &&
+            isSupport(*wanted.word)) {
+          wanted.landmark = map_.next_object_id;
+          known = contradiction(id, wanted);
+        }
+        if (!known.empty()) {
+          return askBack(statement, "contradiction", {{"known", known}, {"said", statement.text}});
+        }
+      }
+    }
+  }
+
+  // ---- Now the map changes. ----
+  const ObjectMap before = map_;
+  if (place_is_new) target.place = map_.addPlace(placeName(*statement.place));
+  if (here_is_new) target.place = map_.addPlace(here_);
+  if (statement.landmark) {
+    Target at;
+    at.place = target.place;
+    target.landmark = landmarks.empty() ? add(*statement.landmark, at) : landmarks.front();
+    if (map_.placeOf(target.landmark) == 0) put(target.landmark, at);
+  } else if (landmark_told) {
+    target.word.reset();
+  }
+  subjects_.clear();
+  ObjectReply out;
+  std::vector<std::string> told;
+  for (const Meant& meant : all) {
+    Target to = target;
+    if (!meant.related) {
+      to.word.reset();
+      to.landmark = 0;
+    }
+    std::vector<Id> ids = meant.known;
+    for (const Id id : ids) {
+      map_.find(id)->properties.insert(meant.said->properties.begin(),
+                                       meant.said->properties.end());
+      map_.find(id)->told = true;
+      put(id, to);
+    }
+    for (int i = 0; i < meant.missing; ++i) ids.push_back(add(*meant.said, to));
+    subjects_.insert(subjects_.end(), ids.begin(), ids.end());
+    for (const Id id : ids) told.push_back(name(id) + " " + whereIs(id));
+  }
+  if (subjects_.empty() && target.landmark != 0) subjects_ = {target.landmark};
+  place_ = target.place;
+  if (!subjects_.empty() && map_.placeOf(subjects_.front()) != 0) {
+    place_ = map_.placeOf(subjects_.front());
+  }
+  if (map_ == before) {
+    out = reply(ReplyKind::kDone, "known");
+  } else {
+    map_.stamp = std::max(map_.stamp, stamp_);
+    out = reply(ReplyKind::kDone, "done", {{"what", list(told)}});
+  }
+  out.objects = subjects_;
+  if (place_ != 0) out.places = {place_};
+  return out;
+}
+
+ObjectReply FillMap::describe(const ObjectStatement& statement) {
+  std::vector<Id> all;
+  for (const ObjectPhrase& said : statement.objects) {
+    const std::vector<Id> ids = resolve(said, place_);
+    if (ids.empty()) {
+      return reply(ReplyKind::kQuestion, said.reference.empty() ? "unknown" : "no_antecedent",
+                   {{"what", said.text}});
+    }
+    const bool many = said.plural || said.reference == "them";
+    if (!many && ids.size() > 1) {
+      return askBack(statement, "which_one",
+                     {{"count", std::to_string(ids.size())}, {"what", said.text}});
+    }
+    all.insert(all.end(), ids.begin(), ids.end());
+  }
+  for (const Id id : all) {
+    for (const auto& [key, value] : statement.properties) {
+      const auto& known = map_.find(id)->properties;
+      const auto found = known.find(key);
+      if (found != known.end() && found->second != value && !statement.correction) {
+        return askBack(statement, "contradiction",
+                       {{"known", name(id) + " " + whereIs(id)}, {"said", statement.text}});
+      }
+    }
+  }
+  std::vector<std::string> told;
+  for (const Id id : all) {
+    for (const auto& [key, value] : statement.properties) map_.find(id)->properties[key] = value;
+    told.push_back(name(id));
+  }
+  subjects_ = all;
+  map_.stamp = std::max(map_.stamp, stamp_);
+  ObjectReply out = reply(ReplyKind::kDone, "done", {{"what", list(told)}});
+  out.objects = all;
+  return out;
+}
+
+ObjectReply FillMap::forget(const ObjectStatement& statement) {
+  std::vector<Id> all;
+  std::vector<std::string> names;
+  for (const ObjectPhrase& said : statement.objects) {
+    const std::vector<Id> ids = resolve(said, place_);
+    if (ids.empty()) return reply(ReplyKind::kQuestion, "unknown", {{"what", said.text}});
+    if (ids.size() > 1 && !said.plural && said.reference != "them") {
+      return askBack(statement, "which_one",
+                     {{"count", std::to_string(ids.size())}, {"what", said.text}});
+    }
+    all.insert(all.end(), ids.begin(), ids.end());
+  }
+  for (const Id id : all) {
+    names.push_back(name(id));
+    map_.remove(id);
+  }
+  subjects_.clear();
+  map_.stamp = std::max(map_.stamp, stamp_);
+  return reply(ReplyKind::kDone, "forgotten", {{"what", list(names)}});
+}
+
+ObjectReply FillMap::answer(const ObjectStatement& statement) {
+  if (!pending_) return reply(ReplyKind::kDone, "nothing_asked");
+  const Pending pending = std::move(*pending_);
+  pending_.reset();
+  if (statement.intent == "place_answer") {
+    ObjectStatement again = pending.statements.front();
+    again.place = statement.place;
+    return tell(again);
+  }
+  if (statement.intent == "yes" && !pending.for_place) {
+    ObjectStatement again = pending.statements.front();
+    again.correction = true;
+    return again.intent == "is_like" ? describe(again) : tell(again);
+  }
+  return reply(ReplyKind::kDone, "kept");
+}
+
+// ---- What is meant ----
+
+std::string FillMap::placeName(const SaidName& said) const {
+  if (said.reference.empty()) return said.text;
+  if (said.reference == "there" && place_ != 0) return map_.findPlace(place_)->name;
+  return said.reference == "here" ? here_ : "";
+}
+
+Id FillMap::findPlace(const std::string& said) const {
+  for (const ObjectPlace& place : map_.places) {
+    if (lowerCase(place.name) == lowerCase(said)) return place.id;
+  }
+  return 0;
+}
+
+bool FillMap::fits(const ObjectInstance& object, const ObjectPhrase& said) const {
+  if (object.kind != said.kind) return false;
+  return std::all_of(said.properties.begin(), said.properties.end(), [&](const auto& property) {
+    const auto found = object.properties.find(property.first);
+    // "the red pen" is not just any pen, "a red pen" may be the one whose colour nobody has told.
+    return found == object.properties.end() ? !said.definite : found->second == property.second;
+  });
+}
+
+std::vector<Id> FillMap::candidates(const ObjectPhrase& said) const {
+  std::vector<Id> ids;
+  for (const ObjectInstance& object : map_.objects) {
+    if (fits(object, said)) ids.push_back(object.id);
+  }
+  return ids;
+}
+
+std::vector<Id> FillMap::resolve(const ObjectPhrase& said, Id place) const {
+  if (!said.reference.empty()) {
+    if (said.reference == "it" && subjects_.size() != 1) return {};
+    return subjects_;
+  }
+  const std::vector<Id> all = candidates(said);
+  if (all.size() <= 1) return all;
+  std::vector<Id> mentioned, here;
+  for (const Id id : all) {
+    if (std::find(subjects_.begin(), subjects_.end(), id) != subjects_.end()) {
+      mentioned.push_back(id);
+    }
+    if (place != 0 && map_.placeOf(id) == place) here.push_back(id);
+  }
+  if (said.plural) return !mentioned.empty() ? mentioned : !here.empty() ? here : all;
+  if (mentioned.size() == 1) return mentioned;
+  return here.empty() ? all : here;
+}
+
+bool FillMap::restsOn(Id object, Id other) const {
+  std::set<Id> seen;
+  std::vector<Id> open{object};
+  while (!open.empty()) {
+    const Id id = open.back();
+    open.pop_back();
+    if (id == other) return true;
+    if (!seen.insert(id).second) continue;
+    for (const ObjectRelation* r : map_.relationsOf(id)) {
+      if (isSupport(r->word) && r->other != 0) open.push_back(r->other);
+    }
+  }
+  return false;
+}
+
+std::string FillMap::contradiction(Id object, const Target& target) const {
+  const Id place = map_.placeOf(object);
+  bool against = place != 0 && target.place != 0 && place != target.place;
+  if (target.word && target.landmark != 0) {
+    if (target.landmark == object ||
+        (isSupport(*target.word) && restsOn(target.landmark, object))) {
+      against = true;
+    }
+    for (const ObjectRelation* r : map_.relationsOf(object)) {
+      if (r->other == 0) continue;
+      if (isSupport(r->word) && isSupport(*target.word)) {
+        const bool same = r->other == target.landmark;
+        const bool below = *target.word == RelationWord::kUnder;
+        against = against || (same ? (r->word == RelationWord::kUnder) != below
+                                   : !restsOn(object, target.landmark) || below);
+      }
+      const bool opposite =
+          r->other == target.landmark &&
+          ((r->word == RelationWord::kLeft && *target.word == RelationWord::kRight) ||
+           (r->word == RelationWord::kRight && *target.word == RelationWord::kLeft));
+      against = against || opposite;
+    }
+  }
+  return against ? name(object) + " " + whereIs(object) : "";
+}
+
+// ---- Changes ----
+
+void FillMap::put(Id object, const Target& target) {
+  auto& all = map_.relations;
+  const Id place = map_.placeOf(object);
+  if (target.place != 0 && place != target.place) {
+    // It has gone somewhere else, and with it what rests on it.
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const ObjectRelation& r) {
+                               return r.object == object ||
+                                      (r.other == object && !isSupport(r.word));
+                             }),
+              all.end());
+    ObjectRelation at;
+    at.object = object;
+    at.place = target.place;
+    at.told = true;
+    map_.relate(at);
+    std::vector<Id> carried;
+    for (const ObjectRelation& r : all) {
+      if (r.other == object && isSupport(r.word)) carried.push_back(r.object);
+    }
+    for (const Id id : carried) {
+      for (ObjectRelation& r : all) {
+        if (r.object == id && r.place != 0) r.place = target.place;
+      }
+    }
+  }
+  if (!target.word || target.landmark == 0 || target.landmark == object) return;
+  const auto gives_way = [&](const ObjectRelation& r) {
+    if (r.object != object || r.other == 0) return false;
+    const bool opposite =
+        r.other == target.landmark &&
+        ((r.word == RelationWord::kLeft && *target.word == RelationWord::kRight) ||
+         (r.word == RelationWord::kRight && *target.word == RelationWord::kLeft));
+    const bool rests = isSupport(r.word) && isSupport(*target.word) && r.other != target.landmark;
+    return opposite || (rests && !restsOn(r.other, target.landmark));
+  };
+  bool has = false;  // "over the table" adds nothing to "on the table"
+  all.erase(std::remove_if(all.begin(), all.end(), gives_way), all.end());
+  for (const ObjectRelation& r : all) {
+    has = has || (r.object == object && isSupport(r.word) && isSupport(*target.word) &&
+                  (r.word == RelationWord::kUnder) == (*target.word == RelationWord::kUnder) &&
+                  restsOn(object, target.landmark));
+  }
+  if (has) return;
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const ObjectRelation& r) {
+                             return r.object == object && r.other == target.landmark &&
+                                    isSupport(r.word) && isSupport(*target.word);
+                           }),
+            all.end());
+  ObjectRelation relation;
+  relation.object = object;
+  relation.word = *target.word;
+  relation.other = target.landmark;
+  relation.told = true;
+  map_.relate(relation);
+}
+
+Id FillMap::add(const ObjectPhrase& said, const Target& target) {
+  const Id id = map_.addObject(said.kind);
+  ObjectInstance& object = *map_.find(id);
+  object.properties = said.properties;
+  object.told = true;
+  put(id, target);
+  return id;
+}
+
+// ---- Questions ----
+
+ObjectReply FillMap::ask(const ObjectStatement& statement) {
+  Id place = 0;
+  if (statement.place) {
+    const std::string said = placeName(*statement.place);
+    place = said.empty() ? 0 : findPlace(said);
+    if (place == 0) return reply(ReplyKind::kAnswer, "nothing");
+  }
+  std::vector<Id> landmarks;
+  if (statement.landmark) {
+    landmarks = statement.landmark->reference.empty() ? candidates(*statement.landmark)
+                                                      : resolve(*statement.landmark, place_);
+    if (landmarks.empty()) {
+      return reply(ReplyKind::kAnswer, "unknown", {{"what", statement.landmark->text}});
+    }
+  }
+  const auto wanted = [&](const ObjectInstance& object) {
+    if (!statement.objects.empty()) {
+      const ObjectPhrase& said = statement.objects.front();
+      if (said.reference.empty()
+              ? !fits(object, said)
+              : std::find(subjects_.begin(), subjects_.end(), object.id) == subjects_.end()) {
+        return false;
+      }
+    }
+    if (place != 0 && map_.placeOf(object.id) != place) return false;
+    if (!statement.landmark) return true;
+    for (const ObjectRelation* r : map_.relationsOf(object.id)) {
+      if (std::find(landmarks.begin(), landmarks.end(), r->other) == landmarks.end()) continue;
+      const bool lies = isSupport(*statement.relation) &&
+                        *statement.relation != RelationWord::kUnder && isSupport(r->word) &&
+                        r->word != RelationWord::kUnder;
+      if (r->word == *statement.relation || lies) return true;
+    }
+    return false;
+  };
+  ObjectReply out;
+  for (const ObjectInstance& object : map_.objects) {
+    if (wanted(object)) out.objects.push_back(object.id);
+  }
+  std::set<Id> places;
+  for (const Id id : out.objects) {
+    if (map_.placeOf(id) != 0) places.insert(map_.placeOf(id));
+  }
+  out.places.assign(places.begin(), places.end());
+  std::vector<std::string> items;
+  ObjectReply text;
+  if (statement.intent == "how_many") {
+    text = reply(ReplyKind::kAnswer, "how_many_answer",
+                 {{"count", std::to_string(out.objects.size())}});
+  } else if (out.objects.empty()) {
+    text = statement.objects.empty()
+               ? reply(ReplyKind::kAnswer, "nothing")
+               : reply(ReplyKind::kAnswer, "unknown", {{"what", statement.objects.front().text}});
+  } else if (statement.intent == "which_rooms") {
+    for (const Id id : out.places) items.push_back(map_.findPlace(id)->name);
+    text = reply(ReplyKind::kAnswer, "rooms", {{"places", list(items)}});
+  } else if (statement.intent == "where_is") {
+    for (const Id id : out.objects) {
+      items.push_back(phrase("where", {{"what", name(id)}, {"where", whereIs(id)}}));
+    }
+    text = reply(ReplyKind::kAnswer, "where");
+    text.text.clear();
+    for (const std::string& each : items) text.text += (text.text.empty() ? "" : " ") + each;
+  } else {
+    for (const Id id : out.objects) items.push_back(name(id));
+    text = reply(ReplyKind::kAnswer, "what", {{"what", list(items)}});
+  }
+  text.objects = out.objects;
+  text.places = out.places;
+  return text;
+}
+
+std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionary) const {
+  std::set<std::string> kinds;
+  for (const ObjectInstance& object : map_.objects) {
+    const GenericObject* known = dictionary.find(object.kind);
+    if (known == nullptr || known->classifier.views.empty()) kinds.insert(object.kind);
+  }
+  return {kinds.begin(), kinds.end()};
+}
+
+std::string FillMap::askToShow(const std::string& kind) const {
+  return phrase("show_me", {{"what", kind}});
+}
+
+// ---- Words ----
+
+std::string FillMap::phrase(const std::string& key,
+                            const std::vector<std::pair<std::string, std::string>>& values) const {
+  std::string text = parser_.grammar().say(key);
+  for (const auto& [name, value] : values) {
+    const std::size_t at = text.find("{" + name + "}");
+    if (at != std::string::npos) text.replace(at, name.size() + 2, value);
+  }
+  return text;
+}
+
+ObjectReply FillMap::reply(ReplyKind kind, const std::string& key,
+                           const std::vector<std::pair<std::string, std::string>>& values) const {
+  ObjectReply out;
+  out.kind = kind;
+  out.code = key;
+  out.text = phrase(key, values);
+  return out;
+}
+
+ObjectReply FillMap::askBack(const ObjectStatement& statement, const std::string& key,
+                             const std::vector<std::pair<std::string, std::string>>& values,
+                             bool for_place) {
+  const bool yes_or_no = key == "contradiction" || key == "count_contradiction";
+  if (yes_or_no || for_place) pending_ = Pending{{statement}, for_place};
+  return reply(ReplyKind::kQuestion, key, values);
+}
+
+std::string FillMap::list(const std::vector<std::string>& items) const {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += phrase(i + 1 == items.size() ? "and" : "comma");
+    text += items[i];
+  }
+  return text;
+}
+
+std::string FillMap::name(Id object) const {
+  const ObjectInstance* found = map_.find(object);
+  if (found == nullptr) return "";
+  std::string text;
+  for (const auto& [key, value] : found->properties) {
+    text += key == "owner" ? value + "'s " : value + " ";
+  }
+  return text + found->kind;
+}
+
+std::string FillMap::whereIs(Id object) const {
+  std::vector<std::string> items;
+  for (const ObjectRelation* r : map_.relationsOf(object)) {
+    if (r->other != 0) items.push_back(std::string(toString(r->word)) + " " + name(r->other));
+  }
+  const ObjectPlace* place = map_.findPlace(map_.placeOf(object));
+  if (place != nullptr) items.push_back(phrase("at", {{"place", place->name}}));
+  return list(items);
+}
+
+}  // namespace hyselam_objects

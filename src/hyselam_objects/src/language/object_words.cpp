@@ -1,0 +1,119 @@
+#include "object_words.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+
+#include "hyselam_common/errors.hpp"
+
+namespace hyselam_objects {
+namespace {
+
+constexpr char kFormat[] = "hyselam_object_words";
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+std::string lowerCase(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
+  ObjectWords words;
+  try {
+    const YAML::Node root = YAML::Load(source.yaml);
+    if (!root.IsMap() || root["format"].as<std::string>("") != kFormat ||
+        root["version"].as<std::string>("") != "1") {
+      throw hyselam::InputError(source.name, "key 'format'",
+                                "must be " + std::string(kFormat) + ", version 1");
+    }
+    words.language = root["language"].as<std::string>("");
+    for (const auto& each : root["numbers"]) {
+      words.numbers[lowerCase(each.first.Scalar())] = each.second.as<int>();
+    }
+    for (const auto& each : root["another"]) words.another.insert(lowerCase(each.Scalar()));
+    for (const auto& [key, property] :
+         {std::pair<const char*, const char*>{"colours", "colour"}, {"sizes", "size"}}) {
+      for (const auto& value : root[key]) {
+        for (const auto& word : value.second) {
+          words.properties[lowerCase(word.Scalar())] = {property, value.first.Scalar()};
+        }
+      }
+    }
+    for (const auto& each : root["plurals"]) {
+      words.plurals[lowerCase(each.first.Scalar())] = each.second.Scalar();
+    }
+    for (const auto& each : root["same"]) {
+      for (const auto& word : each.second) {
+        words.same[lowerCase(word.Scalar())] = each.first.Scalar();
+      }
+      words.same[lowerCase(each.first.Scalar())] = each.first.Scalar();
+    }
+    for (const auto& each : root["nouns"]) words.nouns.push_back(each.Scalar());
+  } catch (const YAML::Exception& e) {
+    throw hyselam::InputError(source.name, "line " + std::to_string(e.mark.line + 1), e.msg);
+  }
+  return words;
+}
+
+std::string ObjectWords::singular(const std::string& word, bool* plural) const {
+  const auto given = plurals.find(lowerCase(word));
+  if (given != plurals.end()) {
+    *plural = given->second != given->first;
+    return given->second;
+  }
+  *plural =
+      endsWith(word, "s") && !endsWith(word, "ss") && !endsWith(word, "us") && word.size() > 3;
+  // "a PC", "two PCs"
+  if (!*plural && word.size() == 3 && endsWith(word, "s") && word[0] >= 'A' && word[0] <= 'Z') {
+    *plural = true;
+  }
+  if (!*plural) return word;
+  for (const char* end : {"ches", "shes", "sses", "xes"}) {
+    if (endsWith(word, end)) return word.substr(0, word.size() - 2);
+  }
+  if (endsWith(word, "ies")) return word.substr(0, word.size() - 3) + "y";
+  return word.substr(0, word.size() - 1);
+}
+
+hyselam_topo::GrammarSource ObjectWords::grammar() const {
+  YAML::Node root;
+  root["format"] = "hyselam_grammar";
+  root["version"] = "1";
+  root["language"] = language;
+  std::set<std::string> generic, names;
+  for (const std::string& noun : nouns) {
+    names.insert(lowerCase(noun));
+    names.insert(lowerCase(noun) + "s");
+  }
+  for (const auto& [word, kept] : same) names.insert(word);
+  for (const auto& [word, kept] : plurals) names.insert(word);
+  for (const auto& [word, number] : numbers) generic.insert(word);
+  for (const auto& [word, property] : properties) generic.insert(word);
+  generic.insert(another.begin(), another.end());
+  YAML::Node object = root["names"]["object"], known = root["names"]["known_object"],
+             property = root["names"]["property"];
+  for (const std::string& noun : names) {
+    object["nouns"]["object"].push_back(noun);
+    known["nouns"]["object"].push_back(noun);
+    generic.erase(noun);
+  }
+  for (const std::string& word : generic) {
+    object["generic"].push_back(word);
+    known["generic"].push_back(word);
+  }
+  property["max_words"] = 1;
+  property["needs_noun"] = true;
+  for (const auto& [word, value] : properties) property["nouns"]["property"].push_back(word);
+  YAML::Emitter out;
+  out << root;
+  return {"words of objects", out.c_str()};
+}
+
+}  // namespace hyselam_objects

@@ -1,0 +1,64 @@
+// describe_objects (TEXT | -) --map OBJECTS.xml: tells the object map what people say, and asks it.
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_objects/fill_map.hpp"
+#include "hyselam_objects/link_places.hpp"
+#include "hyselam_topo/topological_map_xml.hpp"
+
+namespace {
+
+bool exists(const std::string& path) {
+  return std::ifstream(path).good();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Takes down in an object map what is told of objects, and answers questions about them.",
+      "describe_objects");
+  std::string text, map_path, topology_path, dictionary_path, place;
+  app.add_option("TEXT", text, "sentences; - reads them from the standard input")->required();
+  app.add_option("--map", map_path, "object map to begin with, if it is there, and to write")
+      ->required();
+  app.add_option("--topology", topology_path, "topological map whose places are meant");
+  app.add_option("--dictionary", dictionary_path, "object dictionary: tells which kinds are known");
+  app.add_option("--here", place, "the place where the robot is");
+
+  return hyselam::runTool(argc, argv, app, [&] {
+    if (text == "-") text.assign(std::istreambuf_iterator<char>(std::cin), {});
+    hyselam_objects::ObjectMap map;
+    if (exists(map_path)) map = hyselam_objects::loadObjectMap(map_path);
+    hyselam_objects::ObjectDictionary dictionary;
+    if (!dictionary_path.empty()) dictionary = hyselam_objects::loadDictionary(dictionary_path);
+    const hyselam_objects::ObjectParser parser = hyselam_objects::ObjectParser::shipped();
+    hyselam_objects::FillMap fill(&parser, &map);
+    fill.setPlace(place);
+    nlohmann::json replies = nlohmann::json::array();
+    for (const hyselam_objects::ObjectReply& reply : fill.say(text)) {
+      std::cout << reply.text << "\n";
+      replies.push_back({{"kind", toString(reply.kind)},
+                         {"code", reply.code},
+                         {"text", reply.text},
+                         {"objects", reply.objects},
+                         {"places", reply.places}});
+    }
+    nlohmann::json unlinked = nullptr;
+    if (!topology_path.empty()) {
+      unlinked = hyselam_objects::linkPlaces(&map, hyselam_topo::loadXml(topology_path));
+    }
+    const std::vector<std::string> unknown = fill.unknownKinds(dictionary);
+    if (!dictionary_path.empty()) {
+      for (const std::string& kind : unknown) std::cout << fill.askToShow(kind) << "\n";
+    }
+    hyselam_objects::saveXml(map_path, map);
+    return nlohmann::json{{"replies", replies},
+                          {"objects", hyselam_objects::tellObjects(map)},
+                          {"unknown_kinds", unknown},
+                          {"places_without_topology", unlinked}};
+  });
+}
