@@ -52,9 +52,8 @@ nlohmann::json run(const Options& o) {
     std::uint64_t seed = 1;
     for (const double hour : o.learn) {
       progress.update(seed - 1);
-      for (const Route& way : {route, bench::reversed(route)}) {
-        learnt.push_back(bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
-      }
+      const Route& way = seed == 1 ? route : bench::reversed(route);
+      learnt.push_back(bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
       ++seed;
     }
     for (const double hour : o.ask) {

@@ -49,10 +49,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
       supervision_(nh, private_nh, params_, who_),
       place_publisher_(nh.advertise<hyselam_msgs::VisualPlace>("visual_place", 10)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("place_markers", 1, true)),
-      transport_(nh),
-      diagnostics_(nh, private_nh.getNamespace().substr(1) + ": visual places",
-                   params_.diagnostic_period,
-                   [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }) {
+      transport_(nh) {
   const auto first = firstModel(params_);
   needs_ = needsOf(first->descriptor);
   learner_ = std::make_unique<Learner>(first, params_.learner);
@@ -110,6 +107,9 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
     takeTrained();
     serveWaiting();
   });
+  diagnostics_ = std::make_unique<hyselam::Diagnostics>(
+      nh, private_nh.getNamespace().substr(1) + ": visual places", params_.diagnostic_period,
+      [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
 }
 
 // What comes in.

@@ -117,8 +117,9 @@ class SemanticLocalizationServer {
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer timer_;
-  hyselam::Diagnostics diagnostics_;
-  BackgroundTraining training_;  // last: its thread ends first
+  /// Last: a nodelet's queue is served while its constructor still runs.
+  std::unique_ptr<hyselam::Diagnostics> diagnostics_;
+  BackgroundTraining training_;  // its thread ends first
 };
 
 }  // namespace selovis
