@@ -197,7 +197,7 @@ class SlamInputTest(unittest.TestCase):
         # Loops between the runs: in a room of four metres some views hardly tell where along a wall they are.
         self.assertLess(rig.error()[0], 0.25)
         # The end saves as well; a damaged file stops the start with the reason.
-        rig.process.terminate()
+        rig.process.send_signal(signal.SIGINT)
         self.assertEqual(rig.process.wait(), 0)
         with open(path, "rb") as file:
             self.assertGreater(len(file.read()), len(saved))

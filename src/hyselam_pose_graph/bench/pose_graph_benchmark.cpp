@@ -13,6 +13,7 @@
 #include "../test/published_graphs.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "hyselam_pose_graph/graph_optimizer.hpp"
+#include "hyselam_pose_graph/incremental_graph.hpp"
 #include "peer.hpp"
 
 namespace {
@@ -145,6 +146,52 @@ void runOurs(benchmark::State& state, const Published& graph) {
   if (baseline) state.SetLabel("baseline=" + *baseline);
 }
 
+// ---- a graph that grows: M3500 without its last loop
+
+struct Growing {
+  IncrementalGraph graph;
+  PoseEdge loop;
+};
+
+Growing almostWhole() {
+  PoseGraph whole = readG2o(folder() + "M3500.g2o.gz");
+  whole.poses = GraphOptimizer(whole).optimize().poses;
+  Growing g{IncrementalGraph{}, whole.edges.back()};
+  whole.edges.pop_back();
+  g.graph = IncrementalGraph(std::move(whole));
+  g.graph.optimise();
+  return g;
+}
+
+void appendPose(benchmark::State& state) {
+  Growing g = almostWhole();
+  for (auto _ : state) g.graph.append({1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity());
+}
+
+void takeLoop(benchmark::State& state) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    Growing g = almostWhole();
+    state.ResumeTiming();
+    g.graph.addEdge(g.loop);
+    benchmark::DoNotOptimize(g.graph.optimise());
+  }
+  state.SetLabel("baseline=pose_graph_incremental/batch");
+}
+
+void solveBatch(benchmark::State& state) {
+  const PoseGraph whole = readG2o(folder() + "M3500.g2o.gz");
+  for (auto _ : state) benchmark::DoNotOptimize(GraphOptimizer(whole).optimize());
+}
+
+void oneCovariance(benchmark::State& state) {
+  Growing g = almostWhole();
+  g.graph.covariance(1);  // the factorisation
+  const int n = static_cast<int>(g.graph.graph().poses.size());
+  int i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(g.graph.covariance(i = (i + 619) % n));
+}
+
 [[maybe_unused]] const bool registered = [] {
   if (!std::filesystem::is_directory(folder())) {
     benchmark::RegisterBenchmark("pose_graph", [](benchmark::State& state) {
@@ -154,6 +201,16 @@ void runOurs(benchmark::State& state, const Published& graph) {
     });
     return true;
   }
+  const std::string growing = "pose_graph_incremental/";
+  benchmark::RegisterBenchmark((growing + "batch").c_str(), solveBatch)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark((growing + "append").c_str(), appendPose)
+      ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark((growing + "loop").c_str(), takeLoop)
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(20);
+  benchmark::RegisterBenchmark((growing + "covariance").c_str(), oneCovariance)
+      ->Unit(benchmark::kMicrosecond);
   for (const Published& graph : published_graphs::kGraphs) {
     for (const std::string peer : kPeers)
       benchmark::RegisterBenchmark(
