@@ -310,6 +310,13 @@ TEST(ParseDescriptionTool, WritesTheGraph) {
   EXPECT_EQ(loadDescription(dir / "h.xml").places.at(0).name, "corredor");
   ASSERT_EQ(status("-" + out + " < " + (dir / "t.txt")), 0);
   EXPECT_EQ(status("--help"), 0);
+  // One sentence without an end does not spoil the others.
+  std::string text = "You are in the hall. On your left";
+  for (int i = 0; i < 500; ++i) text += " and";
+  hyselam::testing::writeFile(dir / "t.txt", text);
+  ASSERT_EQ(status((dir / "t.txt") + out + json), 0);
+  EXPECT_EQ(loadDescription(dir / "h.xml").places.at(0).name, "hall");
+  expectParts(hyselam::testing::fileBytes(dir / "h.json"), {"\"code\": \"too_long\""});
 }
 
 TEST(ParseDescriptionTool, WhatCannotBeUsedEndsWithTwo) {

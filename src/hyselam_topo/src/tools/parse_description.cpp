@@ -147,11 +147,10 @@ int main(int argc, char** argv) {
     const std::vector<DescriptionIssue> issues = builder.add(parsed);
     const double microseconds =
         std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-    for (const Utterance& utterance : parsed.utterances) {
-      const bool no_text =
-          utterance.reason_code == "not_text" || utterance.reason_code == "too_long";
-      if (no_text) throw hyselam::InputError(input.name, "", utterance.reason);
-    }
+    const bool unusable =
+        !parsed.utterances.empty() &&
+        (parsed.utterances[0].reason_code == "not_text" || input.text.size() > options.max_bytes);
+    if (unusable) throw hyselam::InputError(input.name, "", parsed.utterances[0].reason);
     const DescribedBuilding& building = builder.building();
     hyselam_topo::saveXml(out, building);
 
