@@ -160,6 +160,7 @@ class Dialogue {
   void thisIs(const Utterance& u, Turn* turn);
   void forgetNames(const Utterance& u, Turn* turn);
   void rename(const Utterance& u, Turn* turn);
+  /// Throws hyselam::InputError for names that cannot be.
   void nameHere(Id place, const std::vector<std::string>& names, Reply* reply);
   void askConfirm(Id place, Reply* reply);
   void askName(Id place, Reply* reply);

@@ -156,6 +156,13 @@ Reply Dialogue::hear(const std::string& text) {
   Turn turn;
   turn.reply = reply();
   std::vector<std::string> not_understood;
+  const auto possibly = [&](auto&& act) {
+    try {
+      act();
+    } catch (const hyselam::InputError& e) {
+      turn.reply.sentences.push_back(phrases().say("not_possible", {{"reason", e.what()}}));
+    }
+  };
   for (const Utterance& u : parsed.utterances) {
     if (!u.understood()) {
       not_understood.push_back(
@@ -166,11 +173,13 @@ Reply Dialogue::hear(const std::string& text) {
       statement(u, &turn);
       continue;
     }
-    takeDown(&turn);
+    possibly([&] { takeDown(&turn); });
     if (u.intent != "go_to") setOut(&turn);
-    if (!understands(u, &turn)) turn.reply.sentences.push_back(phrases().say("cannot_do"));
+    possibly([&] {
+      if (!understands(u, &turn)) turn.reply.sentences.push_back(phrases().say("cannot_do"));
+    });
   }
-  takeDown(&turn);
+  possibly([&] { takeDown(&turn); });
   setOut(&turn);
   auto& sentences = turn.reply.sentences;
   // Questions come last, where they are answered.

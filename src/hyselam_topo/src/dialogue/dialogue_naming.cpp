@@ -202,13 +202,7 @@ void Dialogue::askFromAfar(const MatchProblem& problem, Reply* out) {
 
 void Dialogue::nameHere(Id place, const std::vector<std::string>& names, Reply* out) {
   const Phrases& p = phrases();
-  std::vector<Id> losers;
-  try {
-    losers = places_.confirm(place, names);
-  } catch (const hyselam::InputError& e) {
-    out->sentences.push_back(p.say("not_possible", {{"reason", e.what()}}));
-    return;
-  }
+  const std::vector<Id> losers = places_.confirm(place, names);
   const Place& named = *places_.map().findPlace(place);
   out->sentences.push_back(
       p.say("named", {{"code", codeOf(named)}, {"names", p.list(namesOf(named))}}));

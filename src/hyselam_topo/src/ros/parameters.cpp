@@ -51,6 +51,8 @@ Gr2ToServerParams loadGr2ToParams(ParamLoader& loader) {
   loader.get("smallest_place", segmentation.smallest_place, Range::between(0.0, 100.0), "[m^2]");
   loader.get("use_octomap", p.use_octomap, "input from the topic octomap, else from map");
   loadOctomap(loader, p.octomap);
+  loader.get("partial_updates", p.partial_updates, Range::between(0, 1e6),
+             "around changes only, before everything is looked at again; 0: always everything");
   loader.get("max_map_cells", p.max_map_cells, Range::between(1, 1e9), "a larger map is refused");
   p.octomap.max_cells = static_cast<std::size_t>(p.max_map_cells);
   loader.get("map_file", p.map_file, "topological map to begin with; empty: none");

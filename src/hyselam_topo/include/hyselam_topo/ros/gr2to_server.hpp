@@ -22,9 +22,10 @@ namespace hyselam_topo {
 class Gr2ToServer {
  public:
   /// Reads and checks the parameters of `private_nh`, before anything is subscribed.
+  /// Without a pipeline it is BackgroundGr2To::updating() with the parameter `partial_updates`.
   /// @throws hyselam::ParameterError; hyselam::InputError for `map_file`.
   Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
-              BackgroundGr2To::Pipeline pipeline = BackgroundGr2To::updating());
+              BackgroundGr2To::Pipeline pipeline = nullptr);
 
   const Gr2ToServerParams& params() const { return params_; }
   /// Other parameters from now on: the last input is segmented again.

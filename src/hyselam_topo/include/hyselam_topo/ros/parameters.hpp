@@ -14,6 +14,7 @@ struct Gr2ToServerParams {
   Gr2ToParams gr2to;
   bool use_octomap = false;  ///< input from the topic `octomap`, else from `map`
   CompressionParams octomap;
+  int partial_updates = 50;      ///< around changes, before everything is looked at
   int max_map_cells = 50000000;  ///< a larger map is refused
   std::string map_file;          ///< a topological map to begin with; empty: none
   MapMarkerParams markers;
