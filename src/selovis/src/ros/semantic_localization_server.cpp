@@ -511,6 +511,7 @@ void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& statu
   addValue(status, "descriptor", model_->descriptor);
   addValue(status, "places", model_->graph.places.size());
   addValue(status, "signatures", model_->samples.count());
+  addValue(status, "places of the map", map_ ? map_->places.size() : 0);
   addValue(status, "places not on the map", not_on_map_.size());
   addValue(status, "images received", received_);
   addValue(status, "images used", used_);
