@@ -55,6 +55,8 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
     if (old.run == here.run && here.way - old.way < params.least_way) break;
     const double way = ways[static_cast<std::size_t>(k)];
     if (!std::isfinite(way)) continue;
+    // A run that has only begun beside an old one: its views may have little in common with those.
+    if (old.run != here.run && way < params.least_way) continue;
     const double reach = std::min(params.most_uncertainty, params.reach(way));
     const double d = distance(old.pose, here.pose);
     // Two metres beside the old way its surfaces are still seen.
