@@ -187,6 +187,43 @@ std::vector<bool> rightNames(const MatchProblem& problem, const Match& match,
   return out;
 }
 
+/// The true name of each place of the map; -1: none.
+Assignment trueNames(const MatchProblem& problem, const std::map<Id, Id>& truth) {
+  Assignment out;
+  for (const Id place : problem.vertices) {
+    const auto is = truth.find(place);
+    int name = -1;
+    for (std::size_t i = 0; is != truth.end() && i < problem.nameCount(); ++i)
+      if (problem.names[i] == is->second) name = static_cast<int>(i);
+    out.push_back(name);
+  }
+  return out;
+}
+
+/// What was told, what is true and what was found, name by name.
+void show(std::ostream& out, const DescribedBuilding& building, const MatchProblem& problem,
+          const FitnessParams& params, const Match& match, const std::map<Id, Id>& truth) {
+  const Assignment is = trueNames(problem, truth);
+  const auto places = [&](const Assignment& names, std::size_t i) {
+    std::string text;
+    for (std::size_t v = 0; v < names.size(); ++v)
+      if (names[v] == static_cast<int>(i)) text += " " + std::to_string(problem.vertices[v]);
+    return text.empty() ? std::string(" none") : text;
+  };
+  out << "fitness " << match.best().fitness << ", of the truth " << fitness(problem, params, is)
+      << ", equally good answers " << match.equal << '\n';
+  for (std::size_t i = 0; i < problem.nameCount(); ++i) {
+    const Id id = problem.names[i];
+    out << (places(is, i) == places(match.best().assignment, i) ? "  " : "* ")
+        << building.findPlace(id)->name << " (" << problem.told[i].area << " m2)";
+    for (const DescribedConnection& c : building.connections)
+      if (c.to == id)
+        out << ", " << toString(c.side) << ' ' << c.order << " of "
+            << building.findPlace(c.from)->name;
+    out << ": is" << places(is, i) << ", found" << places(match.best().assignment, i) << '\n';
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -197,7 +234,7 @@ int main(int argc, char** argv) {
   MatchParams params;
   params.time_limit = 1.0;
   params.keep_within = 0.01;
-  bool know_heading = true;
+  bool thesis_sides = false, know_heading = true, show_names = false;
   app.option_defaults()->always_capture_default();
   app.add_option("--floors", floors, "number of floors");
   app.add_option("--seed", first, "of the first floor");
@@ -205,10 +242,14 @@ int main(int argc, char** argv) {
   app.add_option("--wrong-sizes", speaker.wrong_sizes, "share of those that are half or twice");
   app.add_option("--confused-sides", speaker.confused_sides, "left for right, front for back");
   app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
+  app.add_option("--weight-orders", params.fitness.orders, "A, then B");
   app.add_option("--forgotten-edge", params.fitness.forgotten_edge, "as of topomerg");
+  app.add_flag("--thesis-sides", thesis_sides, "of centres, spread in the order told (Eq. 5.7)");
   app.add_option("--time-limit", params.time_limit, "of each search [s]");
   app.add_option("--know-heading", know_heading, "the robot knows where it looks");
+  app.add_flag("--show", show_names, "names told, true and found of each floor, to standard error");
   return hyselam::runTool(argc, argv, app, [&] {
+    if (thesis_sides) params.fitness.sides = SideRule::kCentres;
     hyselam::Progress progress("merge_floors", static_cast<std::size_t>(floors));
     nlohmann::json records = nlohmann::json::array();
     std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0;
@@ -248,6 +289,10 @@ int main(int argc, char** argv) {
         if (questions == 0) {
           right_at_once = count;
           fitness_at_once = match.best().fitness;
+          if (show_names) {
+            std::cerr << "floor " << seed << ": ";
+            show(std::cerr, building, problem, params.fitness, match, truth);
+          }
         }
         if (count == in_map.size() || questions == found.map.places.size()) break;
         // The place that tells most; if all answers agree, that of the least certain name.

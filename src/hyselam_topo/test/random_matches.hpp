@@ -55,6 +55,23 @@ inline Edge mapEdge(Id a, Id b) {
   return e;
 }
 
+/// `bearing` is that through it, from place a of its edge to place b.
+inline Door mapDoor(double x, double y, double bearing) {
+  Door d;
+  d.position = {x, y, 1.0};
+  d.normal = {std::cos(bearing), std::sin(bearing), 0.0};
+  d.width = 0.9;
+  return d;
+}
+
+/// Numbers the doors, sorts the rest.
+inline void finish(AugmentedTopologicalMap* map) {
+  Id id = 0;
+  for (Edge& edge : map->edges)
+    for (Door& door : edge.doors) door.id = ++id;
+  normalise(map);
+}
+
 /// Anything goes: graphs, sizes and sides have little to do with each other.
 inline Instance wild(std::uint64_t seed, int names, int places) {
   Dice dice(seed);
@@ -88,11 +105,15 @@ inline Instance wild(std::uint64_t seed, int names, int places) {
     if (v > 1 && !dice.chance(0.05))
       out.map.edges.push_back(mapEdge(static_cast<Id>(dice.whole(1, v - 1)), static_cast<Id>(v)));
   }
+  if (dice.chance(0.5))
+    for (Edge& edge : out.map.edges)
+      for (int k = dice.whole(0, 2); k > 0; --k)
+        edge.doors.push_back(mapDoor(dice.real(0, 12), dice.real(0, 12), dice.real(-3.1, 3.1)));
   for (int k = 0; k < places / 3; ++k) {
     const Id a = static_cast<Id>(dice.whole(1, places)), b = static_cast<Id>(dice.whole(1, places));
     if (a != b && out.map.findEdge(a, b) == nullptr) out.map.edges.push_back(mapEdge(a, b));
   }
-  normalise(&out.map);
+  finish(&out.map);
   out.building.robot_place = 1;
   if (dice.chance(0.8)) out.observer.place = static_cast<Id>(dice.whole(1, places));
   if (dice.chance(0.75)) out.observer.heading = dice.real(-3.0, 3.0);
@@ -108,6 +129,7 @@ struct FloorOptions {
   double lost_side = 0.0;   ///< connections without a side
   double forgotten = 0.0;   ///< doors between rooms that nobody tells of
   bool know_heading = true;
+  bool doors = true;  ///< of the map have a place and a direction
 };
 
 /// Corridors with rooms on both sides, told from the robot's corridor outwards; the map has more
@@ -125,8 +147,10 @@ inline Instance floor(std::uint64_t seed, int names, int places, const FloorOpti
     of[name].push_back(static_cast<int>(pieces.size()));
     pieces.push_back({x, y, area, name});
   };
-  const auto connect = [&](int a, int b) {
+  const auto connect = [&](int a, int b, double x = 0.0, double y = 0.0, double bearing = 9.0) {
     out.map.edges.push_back(mapEdge(static_cast<Id>(a + 1), static_cast<Id>(b + 1)));
+    if (options.doors && bearing < 9.0)
+      out.map.edges.back().doors.push_back(mapDoor(x, y, a < b ? bearing : bearing + M_PI));
   };
   const auto tell = [&](Id id, double area, PlaceKind kind) {
     DescribedPlace p;
@@ -167,7 +191,7 @@ inline Instance floor(std::uint64_t seed, int names, int places, const FloorOpti
       if (p > 0) connect(static_cast<int>(pieces.size()) - 2, static_cast<int>(pieces.size()) - 1);
     }
     if (k > 0) {
-      connect(of[corridor - 1].front(), of[corridor].front());
+      connect(of[corridor - 1].front(), of[corridor].front(), 0.5, y0 - 1.25, 0.5 * M_PI);
       join(corridor - 1, corridor, Side::kLeft);
     }
     double at[2] = {0.0, 0.0};
@@ -197,7 +221,7 @@ inline Instance floor(std::uint64_t seed, int names, int places, const FloorOpti
       } else {
         addPiece(x, y, width * depth, room);
       }
-      connect(hub, first);
+      connect(hub, first, x, y0 + (side == 0 ? 1.25 : -1.25), side == 0 ? 0.5 * M_PI : -0.5 * M_PI);
       if (previous[side] >= 0 && dice.chance(options.forgotten)) connect(previous[side], first);
       previous[side] = static_cast<int>(pieces.size()) - 1;
     }
@@ -213,7 +237,7 @@ inline Instance floor(std::uint64_t seed, int names, int places, const FloorOpti
         pieces[p].name <= static_cast<Id>(corridors) ? PlaceKind::kCorridor : PlaceKind::kRoom));
     out.truth.push_back(pieces[p].name);
   }
-  normalise(&out.map);
+  finish(&out.map);
   std::sort(out.building.places.begin(), out.building.places.end(),
             [](const auto& a, const auto& b) { return a.id < b.id; });
   out.building.robot_place = 1;

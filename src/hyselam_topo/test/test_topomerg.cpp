@@ -39,6 +39,7 @@ MatchParams tableRun(double e, double v, double d, double a) {
   params.fitness.vertices = v;
   params.fitness.orientations = d;
   params.fitness.areas = a;
+  params.fitness.sides = SideRule::kCentres;
   return params;
 }
 
@@ -263,7 +264,7 @@ TEST(TopoMergExact, EqualsTheExplorer) {
     const int names = dice.whole(2, 7), places = dice.whole(3, 9);
     Instance in = dice.chance(0.5) ? wild(seed, names, places)
                                    : floor(seed, std::min(names, places), places,
-                                           {0.6, 0.2, 0.1, 0.1, dice.chance(0.7)});
+                                           {0.6, 0.2, 0.1, 0.1, dice.chance(0.7), seed % 3 != 0});
     MatchParams params;
     params.dummy = dice.chance(0.5);
     params.connected = dice.chance(0.5);
@@ -271,6 +272,7 @@ TEST(TopoMergExact, EqualsTheExplorer) {
     params.fitness.forgotten_edge = dice.chance(0.3) ? 0.5 : 0.0;
     params.fitness.kinds = dice.chance(0.3) ? 0.25 : 0.0;
     params.keep_within = dice.chance(0.2) ? 0.01 : 0.0;
+    if (seed % 5 == 0) params.fitness.sides = SideRule::kCentres;
     MatchProblem problem;
     try {
       problem = compile(in);
@@ -414,7 +416,9 @@ TEST(TopoMergBadInput, ParametersOutOfRange) {
   };
   refused([](MatchParams* m) { m->fitness.areas = -1; });
   refused([](MatchParams* m) { m->fitness.kinds = std::nan(""); });
-  refused([](MatchParams* m) { m->fitness = {0, 0, 0, 0, 1, 1, 1, 1, 0}; });
+  refused([](MatchParams* m) {
+    m->fitness.vertices = m->fitness.areas = m->fitness.edges = m->fitness.orientations = 0;
+  });
   refused([](MatchParams* m) { m->fitness.forgotten_edge = 1.5; });
   refused([](MatchParams* m) { m->time_limit = -1; });
   refused([](MatchParams* m) { m->max_solutions = 0; });

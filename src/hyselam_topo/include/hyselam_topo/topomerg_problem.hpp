@@ -41,9 +41,23 @@ struct MatchEvidence {
 /// Both graphs by number: name i is places[i] of the description, vertex v is places[v] of the map.
 struct MatchProblem {
   struct ToldSide {
-    int from = 0;        ///< number of the name that the side is seen from
-    int to = 0;          ///< and of the one that lies there
-    double angle = 0.0;  ///< seen by the robot, left > 0
+    int from = 0;         ///< number of the name that the side is seen from
+    int to = 0;           ///< and of the one that lies there
+    double angle = 0.0;   ///< seen by the robot, left > 0, spread in the order told
+    double middle = 0.0;  ///< of the side, not spread
+  };
+  /// "A, then B" on one side of a place.
+  struct ToldOrder {
+    int from = 0;  ///< numbers of the names: of the place that both are seen from, ...
+    int first = 0;
+    int then = 0;
+    double turn = 0.0;  ///< from the direction through their doors to that from first to then
+  };
+  /// A way out of a vertex.
+  struct Passage {
+    std::size_t to = 0;    ///< the vertex behind it
+    double bearing = 0.0;  ///< through it
+    double x = 0.0, y = 0.0;
   };
   struct Relation {
     RelationKind kind = RelationKind::kNextTo;
@@ -62,6 +76,7 @@ struct MatchProblem {
   std::vector<Told> told;    ///< of each name
   std::vector<char> joined;  ///< names x names: told to be connected
   std::vector<ToldSide> sides;
+  std::vector<ToldOrder> orders;
   std::vector<Relation> relations;
 
   std::vector<double> area;          ///< of each vertex; 0: not known
@@ -69,7 +84,10 @@ struct MatchProblem {
   std::vector<double> weight;        ///< of its centre in a common centre; 0: it has no position
   std::vector<PlaceKind> kind;       ///< of each vertex
   std::vector<PlaceSet> neighbours;  ///< of each vertex in the map
-  std::vector<double> evidence;      ///< names x vertices, empty: none
+  /// Of each vertex: through each door; through edges without doors on the line of the centres.
+  std::vector<std::vector<Passage>> passages;
+  bool has_doors = false;        ///< any edge has a door
+  std::vector<double> evidence;  ///< names x vertices, empty: none
 
   std::vector<int> fixed;         ///< name of each vertex, -1: not known
   std::vector<PlaceSet> allowed;  ///< vertices that may have name i
@@ -83,6 +101,7 @@ struct MatchProblem {
 /// Both graphs, constraints and observer in numbers. Sides become angles (section 5.3.2 with
 /// ERRATA): front 0, left pi/2, back pi, right -pi/2; n places on one side of a place are pi/(2n)
 /// apart around it, the first one nearest to the back (on the front and back: the left one first).
+/// With doors (SideRule) they are not spread, but come one after the other.
 /// A place without area counts with that of its outline.
 ///
 /// Throws hyselam::InputError for a description or map that is none, with more than
@@ -93,6 +112,14 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
                           const MatchConstraints& constraints = {},
                           const std::vector<MatchEvidence>& evidence = {});
 
+/// What the side of a place is in the map.
+enum class SideRule {
+  /// The direction through its door, as people who pass it see it; of several doors the one that
+  /// fits best. The order told counts on its own. A map without any doors goes by centres.
+  kDoors,
+  kCentres  ///< Eq. 5.7: the bearing of its centre, spread in the order told
+};
+
 /// Weights of the fitness. Each is shared equally by what has been told of its kind; what has not
 /// been told at all drops out and the others are scaled to a sum of 1. So the values of relations
 /// do nothing where no relation has been told.
@@ -101,10 +128,12 @@ struct FitnessParams {
   double areas = 0.25;         ///< gamma_a: of the right size
   double edges = 0.25;         ///< gamma_e: joined as told
   double orientations = 0.25;  ///< gamma_d: on the side that was told
-  double relations = 0.25;     ///< next to, opposite, between, at the end of, inside
-  double parts = 0.25;         ///< "divided into six rooms"
-  double kinds = 0.0;          ///< corridor or room; also guessed from names, so 0 unless wanted
-  double evidence = 0.25;      ///< of objects and pictures
+  SideRule sides = SideRule::kDoors;
+  double orders = 0.25;     ///< "A, then B", only with doors
+  double relations = 0.25;  ///< next to, opposite, between, at the end of, inside
+  double parts = 0.25;      ///< "divided into six rooms"
+  double kinds = 0.0;       ///< corridor or room; also guessed from names, so 0 unless wanted
+  double evidence = 0.25;   ///< of objects and pictures
   /// C of two places that are joined in the map although nobody has said so, 0 .. 1: 0 as if it
   /// had been told wrongly, 1 as if people forgot such things all the time.
   double forgotten_edge = 0.0;

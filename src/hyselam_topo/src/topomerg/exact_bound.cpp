@@ -25,12 +25,12 @@ std::size_t at(int i) {
 
 double ExactSearch::relationsLoss(int name, const Vertices& vertices) const {
   double loss = 0.0;
-  for (const int number : terms_.relations_of[at(name)]) {
-    const MatchProblem::Relation& r = problem_.relations[at(number)];
+  for (const int number : terms_.clauses_of[at(name)]) {
+    const Terms::Clause& r = terms_.clauses[at(number)];
     const auto known = [&](int i) { return i < 0 || i == name || is_closed_[at(i)] != 0; };
     if (!known(r.a) || !known(r.b) || !known(r.c)) continue;
     const auto of = [&](int i) -> const Vertices& { return i == name ? vertices : closed_[at(i)]; };
-    loss += terms_.relationLoss(r, of(r.a), of(r.b), r.c >= 0 ? &of(r.c) : nullptr);
+    loss += terms_.clauseLoss(r, of);
   }
   return loss;
 }
@@ -150,6 +150,12 @@ double ExactSearch::grownLoss(const Growth& g) const {
     const int other = s.from == g.name ? s.to : s.from;
     if (!is_closed_[at(other)]) continue;
     const Vertices& v = closed_[at(other)];
+    if (terms_.by_doors) {
+      const PlaceSet reach = g.has.members | g.open;
+      loss += s.from == other ? terms_.doorLoss(s, v.members, reach, heading_)
+                              : terms_.doorLoss(s, reach, v.members, heading_);
+      continue;
+    }
     if (!v.hasCentre() || !(v.around.intersects(g.open) || g.has.touches(v))) {
       loss += terms_.side;
       continue;
@@ -180,7 +186,8 @@ GrownView ExactSearch::viewOf(const Vertices& v, const Growth& g) const {
   view.touches = g.has.around.intersects(v.members);
   view.may_touch = view.touches || v.around.intersects(g.open);
   view.placed = v.hasCentre();
-  if (view.may_touch && view.placed && !terms_.sides_of[at(g.name)].empty())
+  if (terms_.by_doors) view.members = v.members;
+  if (!terms_.by_doors && view.may_touch && view.placed && !terms_.sides_of[at(g.name)].empty())
     view.see = sight(v.x(), v.y(), g);
   return view;
 }
@@ -190,8 +197,13 @@ double ExactSearch::grownPairLoss(int name, const GrownView& view, const Growth&
   if (!view.may_touch) return pairLoss(name, g.name);
   const int number = sideBetween(name, g.name);
   if (number < 0) return 0.0;
-  if (!view.placed) return terms_.side;
   const auto& told = problem_.sides[at(number)];
+  if (terms_.by_doors) {
+    const PlaceSet reach = g.has.members | g.open;
+    return told.from == name ? terms_.doorLoss(told, view.members, reach, heading_)
+                             : terms_.doorLoss(told, reach, view.members, heading_);
+  }
+  if (!view.placed) return terms_.side;
   const Sight& see = view.see;
   const double bearing = told.from == name ? see.bearing : turned(see.bearing);
   return terms_.side *
@@ -436,6 +448,14 @@ void ExactSearch::addLast(const Node& node, int name, int last, const double* be
         loss = 0.0;
         if (number >= 0) {
           const auto& told = problem_.sides[at(number)];
+          if (terms_.by_doors) {
+            const PlaceSet& own = listed_[at(set)].vertices.members;
+            const PlaceSet& other = closed_[at(last)].members;
+            now[set] =
+                before[set] + (told.from == name ? terms_.doorLoss(told, own, other, heading_)
+                                                 : terms_.doorLoss(told, other, own, heading_));
+            continue;
+          }
           const bool known = listed_[at(set)].vertices.hasCentre() && closed_[at(last)].hasCentre();
           const double bearing = told.from == name ? bearings_[s] : turned(bearings_[s]);
           loss =
@@ -448,8 +468,8 @@ void ExactSearch::addLast(const Node& node, int name, int last, const double* be
     for (std::size_t s = 0; s < alive; ++s)
       now[node.alive[s]] = before[node.alive[s]] + (touches_[s] ? terms_.forgotten_edge : 0.0);
   }
-  for (const int number : terms_.relations_of[at(name)]) {
-    const MatchProblem::Relation& r = problem_.relations[at(number)];
+  for (const int number : terms_.clauses_of[at(name)]) {
+    const Terms::Clause& r = terms_.clauses[at(number)];
     if (r.a != last && r.b != last && r.c != last) continue;
     const auto known = [&](int i) { return i < 0 || i == name || is_closed_[at(i)] != 0; };
     if (!known(r.a) || !known(r.b) || !known(r.c)) continue;
@@ -457,7 +477,7 @@ void ExactSearch::addLast(const Node& node, int name, int last, const double* be
       const auto of = [&](int i) -> const Vertices& {
         return i == name ? listed_[at(set)].vertices : closed_[at(i)];
       };
-      now[set] += terms_.relationLoss(r, of(r.a), of(r.b), r.c >= 0 ? &of(r.c) : nullptr);
+      now[set] += terms_.clauseLoss(r, of);
     }
   }
 }

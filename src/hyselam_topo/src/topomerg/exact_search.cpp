@@ -46,6 +46,7 @@ MatchProblem restricted(const MatchProblem& problem, const std::vector<int>& nam
   part.allowed.clear();
   part.relations.clear();
   part.sides.clear();
+  part.orders.clear();
   part.evidence.clear();
   part.joined.assign(k * k, 0);
   std::vector<int> number(n, -1);
@@ -64,7 +65,7 @@ MatchProblem restricted(const MatchProblem& problem, const std::vector<int>& nam
   }
   for (const MatchProblem::ToldSide& s : problem.sides)
     if (number[at(s.from)] >= 0 && number[at(s.to)] >= 0)
-      part.sides.push_back({number[at(s.from)], number[at(s.to)], s.angle});
+      part.sides.push_back({number[at(s.from)], number[at(s.to)], s.angle, s.middle});
   for (int& fixed : part.fixed) fixed = fixed >= 0 ? number[at(fixed)] : -1;
   return part;
 }

@@ -42,6 +42,7 @@ struct GrownView {
   bool may_touch = false;
   bool placed = false;  ///< the set has a position
   Sight see;
+  PlaceSet members;  ///< of the set
 };
 
 /// A vertex with too many sets to list them.

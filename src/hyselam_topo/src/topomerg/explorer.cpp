@@ -47,8 +47,8 @@ class Ledger {
     double sum = 0.0;
     for (int i = 0; i < n_; ++i)
       for (int j = i; j < n_; ++j) sum += pairs_[at(i, j)].loss;
-    for (const auto& r : terms_.problem.relations)
-      sum += terms_.relationLoss(r, of(r.a), of(r.b), r.c >= 0 ? &of(r.c) : nullptr);
+    for (const Terms::Clause& clause : terms_.clauses)
+      sum += terms_.clauseLoss(clause, [this](int i) -> const Vertices& { return of(i); });
     return sum;
   }
 

@@ -76,8 +76,30 @@ void addSides(const DescribedBuilding& building, const Numbers& name, MatchProbl
       const double offset =
           (0.5 * (count - 1.0) - static_cast<double>(k)) * merging::kPi / (2 * count);
       out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
-                            merging::wrapped(middle + sign * offset)});
+                            merging::wrapped(middle + sign * offset), middle});
+      // Forwards along the left and the right, from left to right on the front and back.
+      if (k > 0 && row[k - 1]->order < row[k]->order)
+        out->orders.push_back({out->sides.back().from, name(row[k - 1]->to, "description"),
+                               out->sides.back().to, sign * -0.5 * merging::kPi});
     }
+  }
+}
+
+void addPassages(const AugmentedTopologicalMap& map, const Numbers& vertex, MatchProblem* out) {
+  out->passages.resize(out->vertexCount());
+  for (const Edge& edge : map.edges) {
+    const auto a = static_cast<std::size_t>(vertex(edge.a, "map"));
+    const auto b = static_cast<std::size_t>(vertex(edge.b, "map"));
+    const auto add = [&](double dx, double dy, double x, double y) {
+      out->passages[a].push_back({b, std::atan2(dy, dx), x, y});
+      out->passages[b].push_back({a, std::atan2(-dy, -dx), x, y});
+    };
+    for (const Door& door : edge.doors)
+      add(door.normal.x, door.normal.y, door.position.x, door.position.y);
+    out->has_doors = out->has_doors || !edge.doors.empty();
+    if (edge.doors.empty() && map.findPlace(edge.a)->centre && map.findPlace(edge.b)->centre)
+      add(out->x[b] - out->x[a], out->y[b] - out->y[a], 0.5 * (out->x[a] + out->x[b]),
+          0.5 * (out->y[a] + out->y[b]));
   }
 }
 
@@ -157,6 +179,7 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     out.neighbours[a].insert(b);
     out.neighbours[b].insert(a);
   }
+  addPassages(map, vertex, &out);
   out.joined.assign(n * n, 0);
   for (const DescribedConnection& c : building.connections) {
     const auto a = static_cast<std::size_t>(name(c.from, "description"));
@@ -189,10 +212,11 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
 
 void checkFitnessParams(const FitnessParams& params) {
   const std::pair<const char*, double> weights[] = {
-      {"vertices", params.vertices},   {"areas", params.areas},
-      {"edges", params.edges},         {"orientations", params.orientations},
-      {"relations", params.relations}, {"parts", params.parts},
-      {"kinds", params.kinds},         {"evidence", params.evidence}};
+      {"vertices", params.vertices}, {"areas", params.areas},
+      {"edges", params.edges},       {"orientations", params.orientations},
+      {"orders", params.orders},     {"relations", params.relations},
+      {"parts", params.parts},       {"kinds", params.kinds},
+      {"evidence", params.evidence}};
   for (const auto& [weight_name, value] : weights)
     if (!(value >= 0.0 && std::isfinite(value)))
       throw hyselam::ParameterError(weight_name, value, "a number >= 0");

@@ -5,6 +5,11 @@
 namespace hyselam_topo::merging {
 namespace {
 
+/// Doors whose directions add up to less than this (of 2) are not on the same side.
+constexpr double kSameSide = 0.5;
+/// A door that lies as far behind another is certainly behind it [m].
+constexpr double kClearlyAhead = 0.5;
+
 double distance(const Vertices& a, const Vertices& b) {
   return std::hypot(a.x() - b.x(), a.y() - b.y());
 }
@@ -38,7 +43,7 @@ void Vertices::add(const MatchProblem& problem, std::size_t vertex) {
 Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
     : problem(problem_in),
       sides_of(problem_in.nameCount()),
-      relations_of(problem_in.nameCount()),
+      clauses_of(problem_in.nameCount()),
       has_evidence(problem_in.nameCount(), 0) {
   const std::size_t n = problem.nameCount();
   const std::size_t m = problem.vertexCount();
@@ -56,9 +61,17 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
     sides_of[static_cast<std::size_t>(problem.sides[s].from)].push_back(static_cast<int>(s));
     sides_of[static_cast<std::size_t>(problem.sides[s].to)].push_back(static_cast<int>(s));
   }
-  for (std::size_t r = 0; r < problem.relations.size(); ++r)
-    for (const int i : {problem.relations[r].a, problem.relations[r].b, problem.relations[r].c})
-      if (i >= 0) relations_of[static_cast<std::size_t>(i)].push_back(static_cast<int>(r));
+  by_doors = params.sides == SideRule::kDoors && problem.has_doors;
+  for (const MatchProblem::Relation& r : problem.relations)
+    clauses.push_back({r.kind, r.a, r.b, r.c, false, 0.0});
+  const std::size_t orders = by_doors && params.orders > 0.0 ? problem.orders.size() : 0;
+  for (std::size_t k = 0; k < orders; ++k) {
+    const MatchProblem::ToldOrder& o = problem.orders[k];
+    clauses.push_back({RelationKind::kNextTo, o.first, o.then, o.from, true, o.turn});
+  }
+  for (std::size_t k = 0; k < clauses.size(); ++k)
+    for (const int i : {clauses[k].a, clauses[k].b, clauses[k].c})
+      if (i >= 0) clauses_of[static_cast<std::size_t>(i)].push_back(static_cast<int>(k));
 
   const std::size_t pairs = n * (n - (n > 0 ? 1 : 0)) / 2;  // N_e
   const std::pair<double, std::size_t> kinds_of_terms[] = {
@@ -69,7 +82,8 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
       {params.relations, problem.relations.size()},
       {params.parts, told_parts},
       {params.kinds, kinds},
-      {params.evidence, with_evidence}};
+      {params.evidence, with_evidence},
+      {params.orders, orders}};
   double sum = 0.0;
   for (const auto& [weight, count] : kinds_of_terms)
     if (count > 0) sum += weight;
@@ -86,6 +100,7 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
   parts = share(5);
   kind = share(6);
   evidence = share(7);
+  order = share(8);
 }
 
 void Terms::weighAs(const Terms& whole) {
@@ -98,6 +113,7 @@ void Terms::weighAs(const Terms& whole) {
   parts = whole.parts;
   kind = whole.kind;
   evidence = whole.evidence;
+  order = whole.order;
 }
 
 double Terms::alone(int name, const Vertices& v) const {
@@ -157,9 +173,41 @@ double Terms::relationValue(RelationKind what, const Vertices& a, const Vertices
   return 0.0;
 }
 
-double Terms::relationLoss(const MatchProblem::Relation& r, const Vertices& a, const Vertices& b,
-                           const Vertices* c) const {
-  return relation * (1.0 - relationValue(r.kind, a, b, c));
+double Terms::doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
+                       Heading heading) const {
+  double least = kPi;
+  forEachPassage(from, to, [&](double through, double, double) {
+    least = std::min(least, deviation(told, through, heading));
+  });
+  return side * least / kPi;
+}
+
+double Terms::orderValue(const Clause& clause, const Vertices& first, const Vertices& then,
+                         const Vertices& from) const {
+  struct Doors {
+    double x = 0.0, y = 0.0, dx = 0.0, dy = 0.0;
+    int count = 0;
+  };
+  const auto doorsInto = [&](const Vertices& to) {
+    Doors d;
+    forEachPassage(from.members, to.members, [&d](double bearing, double x, double y) {
+      d.x += x;
+      d.y += y;
+      d.dx += std::cos(bearing);
+      d.dy += std::sin(bearing);
+      ++d.count;
+    });
+    return d;
+  };
+  const Doors a = doorsInto(first), b = doorsInto(then);
+  if (a.count == 0 || b.count == 0) return 0.0;
+  const double dx = a.dx / a.count + b.dx / b.count, dy = a.dy / a.count + b.dy / b.count;
+  const double length = std::hypot(dx, dy);
+  if (length < kSameSide) return 0.5;  // doors that face each other: no matter which way
+  const double c = std::cos(clause.turn) / length, s = std::sin(clause.turn) / length;
+  const double on = (c * dx - s * dy) * (b.x / b.count - a.x / a.count) +
+                    (s * dx + c * dy) * (b.y / b.count - a.y / a.count);
+  return std::clamp(0.5 + 0.5 * on / kClearlyAhead, 0.0, 1.0);
 }
 
 std::vector<Vertices> verticesOf(const MatchProblem& problem, const Assignment& assignment) {
@@ -177,8 +225,7 @@ double evaluate(const Terms& terms, const std::vector<Vertices>& names, double* 
   for (int i = 0; i < n; ++i) loss += terms.alone(i, of(i));
   for (int i = 0; i < n; ++i)
     for (int j = i + 1; j < n; ++j) loss += terms.edge(i, j, of(i).touches(of(j)));
-  for (const MatchProblem::Relation& r : problem.relations)
-    loss += terms.relationLoss(r, of(r.a), of(r.b), r.c >= 0 ? &of(r.c) : nullptr);
+  for (const Terms::Clause& clause : terms.clauses) loss += terms.clauseLoss(clause, of);
 
   if (problem.heading) {
     for (const MatchProblem::ToldSide& s : problem.sides)
@@ -187,20 +234,34 @@ double evaluate(const Terms& terms, const std::vector<Vertices>& names, double* 
   } else {
     // The sum of deviations is piecewise linear in the heading and bends upwards only where one of
     // them is 0: the best heading is there.
-    std::vector<double> exact;
+    std::vector<std::vector<double>> exact;  // of each side: headings where it is right
     for (const MatchProblem::ToldSide& s : problem.sides) {
-      if (Terms::comparable(of(s.from), of(s.to)))
-        exact.push_back(wrapped(Terms::bearing(of(s.from), of(s.to)) - s.angle));
-      else
+      std::vector<double> right;
+      if (terms.by_doors)
+        terms.forEachPassage(
+            of(s.from).members, of(s.to).members,
+            [&](double bearing, double, double) { right.push_back(wrapped(bearing - s.middle)); });
+      else if (Terms::comparable(of(s.from), of(s.to)))
+        right.push_back(wrapped(Terms::bearing(of(s.from), of(s.to)) - s.angle));
+      if (right.empty())
         loss += terms.side;
+      else
+        exact.push_back(std::move(right));
     }
     double least = 0.0, at = 0.0;
-    for (std::size_t k = 0; k < exact.size(); ++k) {
-      double sum = 0.0;
-      for (const double other : exact) sum += std::abs(wrapped(other - exact[k]));
-      if (k == 0 || sum < least - 1e-12) {
+    bool first = true;
+    for (const std::vector<double>& tried : exact) {
+      for (const double value : tried) {
+        double sum = 0.0;
+        for (const std::vector<double>& others : exact) {
+          double off = kPi;
+          for (const double other : others) off = std::min(off, std::abs(wrapped(other - value)));
+          sum += off;
+        }
+        if (!first && !(sum < least - 1e-12)) continue;
+        first = false;
         least = sum;
-        at = exact[k];
+        at = value;
       }
     }
     loss += terms.side * least / kPi;

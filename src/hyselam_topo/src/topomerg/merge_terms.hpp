@@ -44,6 +44,14 @@ struct Heading {
 
 class Terms {
  public:
+  /// A relation, or an order told: about two or three names.
+  struct Clause {
+    RelationKind kind = RelationKind::kNextTo;
+    int a = 0, b = 0, c = -1;  ///< of an order: first, then, seen from
+    bool order = false;
+    double turn = 0.0;  ///< of an order
+  };
+
   Terms(const MatchProblem& problem, const FitnessParams& params);
 
   /// The weights of another problem, of which this one is a part.
@@ -56,12 +64,15 @@ class Terms {
   double forgotten_edge = 0.0;  ///< in the map, not told
   double side = 0.0;            ///< the most one wrong side costs
   double relation = 0.0;
+  double order = 0.0;
+  bool by_doors = false;
   double parts = 0.0;
   double kind = 0.0;
   double evidence = 0.0;
-  std::vector<std::vector<int>> sides_of;      ///< of each name, numbers in problem.sides
-  std::vector<std::vector<int>> relations_of;  ///< the same of problem.relations
-  std::vector<char> has_evidence;              ///< of each name
+  std::vector<std::vector<int>> sides_of;  ///< of each name, numbers in problem.sides
+  std::vector<Clause> clauses;
+  std::vector<std::vector<int>> clauses_of;  ///< of each name, numbers in `clauses`
+  std::vector<char> has_evidence;            ///< of each name
 
   /// What a name alone loses.
   double alone(int name, const Vertices& v) const;
@@ -72,8 +83,8 @@ class Terms {
   }
   /// Difference of what was told and a bearing in the map, 0 .. pi.
   double deviation(const MatchProblem::ToldSide& told, double bearing, Heading heading) const {
-    const double off =
-        std::abs(wrapped(wrapped(bearing - told.angle) - heading.value)) - heading.slack;
+    const double said = by_doors ? told.middle : told.angle;
+    const double off = std::abs(wrapped(wrapped(bearing - said) - heading.value)) - heading.slack;
     return off > 0.0 ? off : 0.0;
   }
   /// Whether a side can be compared: both are there, joined, and have positions.
@@ -85,14 +96,32 @@ class Terms {
   }
   double sideLoss(const MatchProblem::ToldSide& told, const Vertices& from, const Vertices& to,
                   Heading heading) const {
+    if (by_doors) return doorLoss(told, from.members, to.members, heading);
     if (!comparable(from, to)) return side;
     return side * deviation(told, bearing(from, to), heading) / kPi;
   }
-  /// `c` only of kBetween.
-  double relationLoss(const MatchProblem::Relation& r, const Vertices& a, const Vertices& b,
-                      const Vertices* c) const;
+  /// Of the door that fits best; less if there are more of them.
+  double doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
+                  Heading heading) const;
+  /// All passages from one set into the other: visit(bearing, x, y).
+  template <typename Visit>
+  void forEachPassage(const PlaceSet& from, const PlaceSet& to, Visit&& visit) const {
+    from.forEach([&](std::size_t v) {
+      for (const MatchProblem::Passage& p : problem.passages[v])
+        if (to.contains(p.to)) visit(p.bearing, p.x, p.y);
+    });
+  }
+  /// `of` gives the vertices of a name.
+  template <typename Of>
+  double clauseLoss(const Clause& clause, Of&& of) const {
+    const Vertices* c = clause.c >= 0 ? &of(clause.c) : nullptr;
+    if (clause.order) return order * (1.0 - orderValue(clause, of(clause.a), of(clause.b), *c));
+    return relation * (1.0 - relationValue(clause.kind, of(clause.a), of(clause.b), c));
+  }
 
  private:
+  double orderValue(const Clause& clause, const Vertices& first, const Vertices& then,
+                    const Vertices& from) const;
   double relationValue(RelationKind kind, const Vertices& a, const Vertices& b,
                        const Vertices* c) const;
 };
