@@ -15,6 +15,7 @@ namespace {
 
 std::vector<std::string> texts(const YAML::Node& node) {
   std::vector<std::string> out;
+  if (!node.IsDefined()) return out;
   if (node.IsScalar()) out.push_back(node.Scalar());
   for (const auto& each : node) out.push_back(each.Scalar());
   return out;

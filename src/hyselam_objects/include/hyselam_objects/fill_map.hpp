@@ -82,7 +82,8 @@ class FillMap {
   bool fits(const ObjectInstance& object, const ObjectPhrase& said) const;
   std::vector<Id> candidates(const ObjectPhrase& said) const;
   /// Those that a definite phrase means; empty: none is known; several: it is not clear.
-  std::vector<Id> resolve(const ObjectPhrase& said, Id place) const;
+  /// `only_there`: of several those at the place, which was told.
+  std::vector<Id> resolve(const ObjectPhrase& said, Id place, bool only_there = false) const;
   std::string contradiction(Id object, const Target& target) const;
   bool restsOn(Id object, Id other) const;
   void put(Id object, const Target& target);

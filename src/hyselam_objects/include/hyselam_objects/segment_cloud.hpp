@@ -56,9 +56,11 @@ struct Segmentation {
   std::optional<Plane> support;  ///< nothing: no plane was found, everything is background
 };
 
-/// Segments one frame. The same arguments give the same labels. Throws hyselam::InputError for a
-/// cloud whose sizes do not fit together or that is larger than 50 million points,
-/// hyselam::ParameterError for a parameter out of range.
+/// Throws hyselam::InputError for a cloud whose sizes do not fit together or that is larger than 50
+/// million points, hyselam::ParameterError for a parameter out of range.
+void checkSegment(const OrganisedCloud& cloud, const SegmentParams& params);
+
+/// Segments one frame. The same arguments give the same labels. Throws as checkSegment().
 Segmentation segmentCloud(const OrganisedCloud& cloud, const SegmentParams& params = {});
 
 }  // namespace hyselam_objects

@@ -15,43 +15,6 @@ namespace {
 
 constexpr int kNone = Patches::kNone;
 
-void check(const OrganisedCloud& cloud, const SegmentParams& p) {
-  using hyselam::InputError;
-  using hyselam::ParameterError;
-  const auto size = static_cast<std::size_t>(std::max(0, cloud.width)) *
-                    static_cast<std::size_t>(std::max(0, cloud.height));
-  if (cloud.width < 0 || cloud.height < 0 || cloud.points.size() != size ||
-      (!cloud.colours.empty() && cloud.colours.size() != size)) {
-    throw InputError("cloud", "", "has not as many points as its width and height say");
-  }
-  if (size > 50000000) throw InputError("cloud", "", "has more than 50 million points");
-  if (p.reduce < 1 || p.reduce > 8) throw ParameterError("reduce", p.reduce, "1 .. 8");
-  if (p.normal_window < 1 || p.normal_window > 20) {
-    throw ParameterError("normal_window", p.normal_window, "1 .. 20");
-  }
-  for (const auto& [name, value] : {std::pair<const char*, double>{"noise_floor", p.noise_floor},
-                                    {"noise_growth", p.noise_growth},
-                                    {"smooth_angle", p.smooth_angle},
-                                    {"flat", p.flat},
-                                    {"support_distance", p.support_distance},
-                                    {"tallest", p.tallest},
-                                    {"convex_share", p.convex_share},
-                                    {"concave_tolerance", p.concave_tolerance},
-                                    {"step", p.step},
-                                    {"meeting_share", p.meeting_share},
-                                    {"border_share", p.border_share},
-                                    {"hollow", p.hollow},
-                                    {"splinter_gap", p.splinter_gap},
-                                    {"hollow_share", p.hollow_share},
-                                    {"bridge_length", p.bridge_length},
-                                    {"bridge_angle", p.bridge_angle},
-                                    {"bridge_distance", p.bridge_distance}}) {
-    if (!(value >= 0.0 && value <= 10.0)) throw ParameterError(name, value, "0 .. 10");
-  }
-  if (p.splinter < 0) throw ParameterError("splinter", p.splinter, ">= 0");
-  if (p.smallest < 1) throw ParameterError("smallest", p.smallest, ">= 1");
-}
-
 /// The plane that most of the surface lies in.
 std::optional<Plane> findSupport(const SurfaceGrid& grid, const SegmentParams& params) {
   std::vector<std::size_t> valid;
@@ -121,8 +84,45 @@ std::vector<bool> above(const SurfaceGrid& grid, const Plane& support,
 
 }  // namespace
 
+void checkSegment(const OrganisedCloud& cloud, const SegmentParams& p) {
+  using hyselam::InputError;
+  using hyselam::ParameterError;
+  const auto size = static_cast<std::size_t>(std::max(0, cloud.width)) *
+                    static_cast<std::size_t>(std::max(0, cloud.height));
+  if (cloud.width < 0 || cloud.height < 0 || cloud.points.size() != size ||
+      (!cloud.colours.empty() && cloud.colours.size() != size)) {
+    throw InputError("cloud", "", "has not as many points as its width and height say");
+  }
+  if (size > 50000000) throw InputError("cloud", "", "has more than 50 million points");
+  if (p.reduce < 1 || p.reduce > 8) throw ParameterError("reduce", p.reduce, "1 .. 8");
+  if (p.normal_window < 1 || p.normal_window > 20) {
+    throw ParameterError("normal_window", p.normal_window, "1 .. 20");
+  }
+  for (const auto& [name, value] : {std::pair<const char*, double>{"noise_floor", p.noise_floor},
+                                    {"noise_growth", p.noise_growth},
+                                    {"smooth_angle", p.smooth_angle},
+                                    {"flat", p.flat},
+                                    {"support_distance", p.support_distance},
+                                    {"tallest", p.tallest},
+                                    {"convex_share", p.convex_share},
+                                    {"concave_tolerance", p.concave_tolerance},
+                                    {"step", p.step},
+                                    {"meeting_share", p.meeting_share},
+                                    {"border_share", p.border_share},
+                                    {"hollow", p.hollow},
+                                    {"splinter_gap", p.splinter_gap},
+                                    {"hollow_share", p.hollow_share},
+                                    {"bridge_length", p.bridge_length},
+                                    {"bridge_angle", p.bridge_angle},
+                                    {"bridge_distance", p.bridge_distance}}) {
+    if (!(value >= 0.0 && value <= 10.0)) throw ParameterError(name, value, "0 .. 10");
+  }
+  if (p.splinter < 0) throw ParameterError("splinter", p.splinter, ">= 0");
+  if (p.smallest < 1) throw ParameterError("smallest", p.smallest, ">= 1");
+}
+
 Segmentation segmentCloud(const OrganisedCloud& cloud, const SegmentParams& params) {
-  check(cloud, params);
+  checkSegment(cloud, params);
   Segmentation out;
   out.labels.assign(cloud.size(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {

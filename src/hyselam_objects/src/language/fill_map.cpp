@@ -75,7 +75,7 @@ ObjectReply FillMap::tell(const ObjectStatement& statement) {
                      {{"count", std::to_string(statement.landmark->count)},
                       {"what", statement.landmark->kind}});
     }
-    landmarks = resolve(*statement.landmark, has_place ? target.place : place_);
+    landmarks = resolve(*statement.landmark, has_place ? target.place : place_, has_place);
     if (has_place && landmarks.size() == 1 && statement.landmark->reference.empty() &&
         map_.placeOf(landmarks.front()) != 0 && map_.placeOf(landmarks.front()) != target.place) {
       landmarks.clear();  // "on the table in the kitchen": not that in the office
@@ -168,9 +168,10 @@ ObjectReply FillMap::tell(const ObjectStatement& statement) {
         }
         if (related) {
           same.push_back(id);
-        } else if (!(wanted.word && statement.landmark && landmarks.empty()) &&
-                   contradiction(id, wanted).empty()) {
-          perhaps.push_back(id);
+        } else {
+          // A landmark that is new is none of those that anything rests on.
+          if (statement.landmark && landmarks.empty()) wanted.landmark = map_.next_object_id;
+          if (contradiction(id, wanted).empty()) perhaps.push_back(id);
         }
       }
       const int known = static_cast<int>(same.size());
@@ -378,7 +379,7 @@ std::vector<Id> FillMap::candidates(const ObjectPhrase& said) const {
   return ids;
 }
 
-std::vector<Id> FillMap::resolve(const ObjectPhrase& said, Id place) const {
+std::vector<Id> FillMap::resolve(const ObjectPhrase& said, Id place, bool only_there) const {
   if (!said.reference.empty()) {
     if (said.reference == "it" && subjects_.size() != 1) return {};
     return subjects_;
@@ -392,6 +393,7 @@ std::vector<Id> FillMap::resolve(const ObjectPhrase& said, Id place) const {
     }
     if (place != 0 && map_.placeOf(id) == place) here.push_back(id);
   }
+  if (only_there) return here;
   if (said.plural) return !mentioned.empty() ? mentioned : !here.empty() ? here : all;
   if (mentioned.size() == 1) return mentioned;
   return here.empty() ? all : here;

@@ -98,10 +98,11 @@ hyselam_topo::GrammarSource ObjectWords::grammar() const {
   for (const auto& [word, property] : properties) generic.insert(word);
   generic.insert(another.begin(), another.end());
   YAML::Node object = root["names"]["object"], known = root["names"]["known_object"],
-             property = root["names"]["property"];
+             property = root["names"]["property"], place = root["names"]["place"];
   for (const std::string& noun : names) {
     object["nouns"]["object"].push_back(noun);
     known["nouns"]["object"].push_back(noun);
+    place["forbidden"]["object"].push_back(noun);
     generic.erase(noun);
   }
   for (const std::string& word : generic) {

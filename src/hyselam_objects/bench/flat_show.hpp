@@ -1,0 +1,234 @@
+// The show: learn the kinds of things, map the flat in two tours, compare with the truth.
+#pragma once
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+
+#include "simulated_flat.hpp"
+
+namespace hyselam_objects {
+namespace simulated {
+
+struct FlatScores {
+  double precision = 0.0, recall = 0.0;  ///< of objects, within 15 cm (furniture 25 cm)
+  double kinds = 0.0;                    ///< share of the found things with the right name
+  double relation_precision = 0.0, relation_recall = 0.0;
+  int objects = 0;              ///< true ones
+  int refound = 0;              ///< moved ones that kept their id
+  double movability_auc = 0.0;  ///< moved against unmoved small things
+  double milliseconds = 0.0;    ///< of detection and mapping, of one frame
+  std::vector<std::string> faults;
+};
+
+/// Things shown one by one in the middle of an empty room, from all around.
+inline ObjectDictionary learnKinds() {
+  const char* plan = R"(
+plan: show
+description: an empty room with a table
+origin: [-0.5, -0.5]
+size: [7.0, 7.0]
+wall_thickness: 0.15
+walls:
+  - {name: outer, closed: true, points: [[0, 0], [6, 0], [6, 6], [0, 6]]}
+furniture:
+  - {name: table, box: [3.0, 3.0, 0.9, 0.9, 0], height: 0.7}
+places:
+  - {name: room, at: [1.0, 1.0], polygon: [[0.1, 0.1], [5.9, 0.1], [5.9, 5.9], [0.1, 5.9]]}
+)";
+  ObjectDictionary dictionary;
+  std::uint64_t seed = 100;
+  for (const char* kind :
+       {"cup", "bottle", "cereal box", "book", "PC", "lamp", "plant pot", "bin", "bowl"}) {
+    std::vector<std::vector<float>> views;
+    std::vector<Eigen::Vector3d> sizes;
+    for (const bool low : {false, true}) {
+      hyselam_sim::FloorPlan room = hyselam_sim::parseFloorPlan(plan, "show");
+      if (low) room.furniture.clear();
+      const Flat flat(room, {at(thing(kind, 1), 3.0, 3.0, low ? 0.0 : 0.7, 15.0)});
+      for (int i = 0; i < 16; ++i) {
+        const double angle = 0.3 + i * hyselam::kPi / 8.0, away = (low ? 2.5 : 1.5) + 0.2 * (i % 4);
+        const hyselam::Pose2 base{3.0 - away * std::cos(angle), 3.0 - away * std::sin(angle),
+                                  angle};
+        const Frame frame = flat.take(base, 0.0, ++seed);
+        for (const DetectedObject& seen : detectObjects(frame.cloud, frame.camera.in_map)) {
+          const Point3 c = seen.centre();
+          if (seen.furniture || seen.cut || std::hypot(c.x - 3.0, c.y - 3.0) > 0.25) continue;
+          views.push_back(seen.descriptor);
+          sizes.emplace_back(seen.high.x - seen.low.x, seen.high.y - seen.low.y,
+                             seen.high.z - seen.low.z);
+        }
+      }
+    }
+    if (!views.empty()) dictionary.put(learnObject(kind, views, sizes));
+  }
+  return dictionary;
+}
+
+class FlatShow {
+ public:
+  FlatShow(const std::string& plan_file, const ObjectDictionary& dictionary, int every = 1)
+      : plan_(hyselam_sim::loadFloorPlan(plan_file)),
+        before_(plan_, things(false)),
+        after_(plan_, things(true)),
+        every_(every),
+        mapper_(&map_, dictionary) {
+    mapper_.setPlaces([this](double x, double y) { return before_.placeAt(x, y); });
+  }
+
+  FlatScores run() {
+    drive(before_, 0.0);
+    const ObjectMap first = map_;
+    std::vector<std::string> first_names;
+    const ObjectMap first_truth = before_.truth(&first_names);
+    const auto first_pairs = match(first, first_truth);
+    drive(after_, 10000.0);
+    FlatScores scores = compare();
+    // The ids that the moved things had before and have now.
+    std::vector<std::string> names;
+    const ObjectMap truth = after_.truth(&names);
+    const auto pairs = match(map_, truth);
+    std::vector<double> of_moved, of_unmoved;
+    for (const auto& [id, true_id] : pairs) {
+      const std::string& name = names[true_id - 1];
+      const bool was_moved = moved().count(name) != 0;
+      if (map_.find(id)->properties.count("furniture") == 0) {
+        (was_moved ? of_moved : of_unmoved).push_back(movability(map_, id));
+      }
+      if (!was_moved) continue;
+      const auto old = first_pairs.find(id);
+      const bool same = old != first_pairs.end() && first_names[old->second - 1] == name;
+      scores.refound += same;
+      if (!same) scores.faults.push_back("moved and not found again: " + name);
+    }
+    double better = 0.0;
+    for (const double a : of_moved) {
+      for (const double b : of_unmoved) better += a > b ? 1.0 : a == b ? 0.5 : 0.0;
+    }
+    const auto all = static_cast<double>(of_moved.size() * of_unmoved.size());
+    scores.movability_auc = all > 0.0 ? better / all : 0.0;
+    scores.milliseconds = frames_ > 0 ? 1e3 * seconds_ / frames_ : 0.0;
+    return scores;
+  }
+
+  const ObjectMap& map() const { return map_; }
+
+ private:
+  void drive(const Flat& flat, double stamp) {
+    const std::vector<hyselam::Pose2> way = flat.tour();
+    for (std::size_t i = 0; i < way.size(); i += static_cast<std::size_t>(every_)) {
+      const Frame frame = flat.take(way[i], stamp + static_cast<double>(i), i + 1);
+      const std::clock_t begin = std::clock();
+      const auto seen = detectObjects(frame.cloud, frame.camera.in_map);
+      mapper_.update(frame.cloud, frame.camera, seen, frame.stamp);
+      seconds_ += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      ++frames_;
+    }
+    mapper_.finish();
+  }
+
+  static std::map<Id, Id> match(const ObjectMap& map, const ObjectMap& truth) {
+    struct Pair {
+      double away;
+      Id a, b;
+    };
+    std::vector<Pair> pairs;
+    for (const ObjectInstance& a : map.objects) {
+      if (!a.pose || a.existence < 0.5) continue;
+      for (const ObjectInstance& b : truth.objects) {
+        const bool furniture = b.kind == "furniture";
+        if (furniture != (a.properties.count("furniture") != 0)) continue;
+        const Point3 &p = a.pose->position, &q = b.pose->position;
+        const double away = std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
+        if (away < (furniture ? 0.25 : 0.15)) pairs.push_back({away, a.id, b.id});
+      }
+    }
+    std::sort(pairs.begin(), pairs.end(),
+              [](const Pair& x, const Pair& y) { return x.away < y.away; });
+    std::map<Id, Id> of;
+    std::set<Id> taken;
+    for (const Pair& pair : pairs) {
+      if (of.count(pair.a) != 0 || !taken.insert(pair.b).second) continue;
+      of[pair.a] = pair.b;
+    }
+    return of;
+  }
+
+  FlatScores compare() const {
+    FlatScores scores;
+    std::vector<std::string> names;
+    const ObjectMap truth = after_.truth(&names);
+    const std::map<Id, Id> of = match(map_, truth);
+    std::set<Id> found;
+    int believed = 0, named = 0, things_found = 0;
+    for (const ObjectInstance& object : map_.objects) {
+      if (!object.pose || object.existence < 0.5) continue;
+      ++believed;
+      const auto pair = of.find(object.id);
+      if (pair == of.end()) {
+        const Point3& p = object.pose->position;
+        scores.faults.push_back("not there: " + object.kind + " at " + std::to_string(p.x) + " " +
+                                std::to_string(p.y) + " " + std::to_string(p.z) + " seen " +
+                                std::to_string(object.seen) + " missed " +
+                                std::to_string(object.missed));
+        continue;
+      }
+      found.insert(pair->second);
+      const std::string& kind = truth.find(pair->second)->kind;
+      if (kind == "furniture") continue;
+      ++things_found;
+      named += object.kind == kind;
+      if (object.kind != kind) {
+        scores.faults.push_back("is called " + object.kind + ": " + names[pair->second - 1]);
+      }
+    }
+    scores.objects = static_cast<int>(truth.objects.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (found.count(static_cast<Id>(i + 1)) == 0)
+        scores.faults.push_back("not found: " + names[i]);
+    }
+    scores.precision = static_cast<double>(found.size()) / std::max(1, believed);
+    scores.recall = static_cast<double>(found.size()) / std::max(1, scores.objects);
+    scores.kinds = static_cast<double>(named) / std::max(1, things_found);
+
+    std::set<std::string> wanted, made;
+    const auto tell = [](const std::string& a, const char* word, const std::string& b) {
+      return a + " " + word + " " + b;
+    };
+    for (const ObjectRelation& r : truth.relations) {
+      wanted.insert(tell(names[r.object - 1], toString(r.word),
+                         r.place != 0 ? truth.findPlace(r.place)->name : names[r.other - 1]));
+    }
+    for (const ObjectRelation& r : map_.relations) {
+      const auto name = [&](Id id) {
+        const auto pair = of.find(id);
+        return pair == of.end() ? "?" + std::to_string(id) : names[pair->second - 1];
+      };
+      if (map_.find(r.object)->existence < 0.5) continue;
+      made.insert(tell(name(r.object), toString(r.word),
+                       r.place != 0 ? map_.findPlace(r.place)->name : name(r.other)));
+    }
+    int right = 0;
+    for (const std::string& each : made) {
+      right += static_cast<int>(wanted.count(each));
+      if (wanted.count(each) == 0) scores.faults.push_back("not so: " + each);
+    }
+    for (const std::string& each : wanted) {
+      if (made.count(each) == 0) scores.faults.push_back("not told: " + each);
+    }
+    scores.relation_precision = right / std::max(1.0, static_cast<double>(made.size()));
+    scores.relation_recall = right / std::max(1.0, static_cast<double>(wanted.size()));
+    return scores;
+  }
+
+  hyselam_sim::FloorPlan plan_;
+  Flat before_, after_;
+  int every_;
+  ObjectMap map_;
+  ObjectMapper mapper_;
+  double seconds_ = 0.0;
+  int frames_ = 0;
+};
+
+}  // namespace simulated
+}  // namespace hyselam_objects

@@ -1,0 +1,263 @@
+// A flat with furniture and small things, two tours through it with a camera, and the truth.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hyselam_objects/object_descriptor.hpp"
+#include "hyselam_objects/object_mapper.hpp"
+#include "hyselam_sim/camera.hpp"
+#include "hyselam_sim/floor_plan.hpp"
+
+namespace hyselam_objects {
+namespace simulated {
+
+using hyselam_sim::Thing;
+
+inline Thing thing(const std::string& kind, int number) {
+  Thing t;
+  t.kind = kind;
+  t.name = kind + " " + std::to_string(number);
+  const auto make = [&t](Thing::Shape shape, std::array<double, 3> size,
+                         hyselam_sim::Colour colour) {
+    t.shape = shape;
+    t.size = size;
+    t.colour = colour;
+  };
+  const auto box = Thing::Shape::kBox, round = Thing::Shape::kCylinder;
+  if (kind == "cup") make(round, {0.10, 0.10, 0.12}, {0.75f, 0.05f, 0.05f});
+  if (kind == "bottle") make(round, {0.09, 0.09, 0.30}, {0.05f, 0.45f, 0.08f});
+  if (kind == "cereal box") make(box, {0.20, 0.08, 0.30}, {0.80f, 0.65f, 0.05f});
+  if (kind == "book") make(box, {0.24, 0.17, 0.07}, {0.05f, 0.10f, 0.65f});
+  if (kind == "PC") make(box, {0.40, 0.18, 0.38}, {0.03f, 0.03f, 0.03f});
+  if (kind == "lamp") make(round, {0.20, 0.20, 0.36}, {0.80f, 0.80f, 0.78f});
+  if (kind == "plant pot") make(round, {0.26, 0.26, 0.28}, {0.60f, 0.25f, 0.06f});
+  if (kind == "bin") make(round, {0.30, 0.30, 0.40}, {0.30f, 0.06f, 0.50f});
+  if (kind == "bowl") make(round, {0.22, 0.22, 0.10}, {0.05f, 0.55f, 0.60f});
+  return t;
+}
+
+inline Thing at(Thing t, double x, double y, double z, double turn = 0.0) {
+  t.pose = {x, y, hyselam::radians(turn)};
+  t.z = z;
+  return t;
+}
+
+/// 27 things on 8 pieces of furniture and on the floor; `later`: five of them have been moved.
+inline std::vector<Thing> things(bool later) {
+  std::vector<Thing> all;
+  const auto put = [&](const char* kind, int number, double x, double y, double z,
+                       double turn = 0) { all.push_back(at(thing(kind, number), x, y, z, turn)); };
+  // kitchen
+  put("cup", 1, 2.1, 1.9, 0.75);
+  put("cereal box", 1, 2.5, 2.1, 0.75, 20);
+  put("bowl", 1, 2.9, 1.85, 0.75);
+  put("bottle", 1, 0.5, 0.7, 0.90);
+  put("bowl", 2, 0.5, 1.2, 0.90);
+  put("cup", 2, 0.5, 1.7, 0.90);
+  put("bin", 1, 3.9, 0.9, 0.0);
+  // office
+  put("PC", 1, 7.15, 2.1, 0.72, 0);
+  put("lamp", 1, 8.1, 2.15, 0.72);
+  put("cup", 3, 7.7, 1.8, 0.72);
+  put("book", 1, 9.4, 0.8, 0.60, 90);
+  put("book", 2, 9.4, 1.25, 0.60, 80);
+  put("plant pot", 1, 9.4, 1.65, 0.60);
+  put("bin", 2, 6.2, 0.9, 0.0);
+  // lounge
+  put("book", 3, 2.2, 6.05, 0.45, 10);
+  put("bottle", 2, 2.6, 5.9, 0.45);
+  put("cup", 4, 2.9, 6.15, 0.45);
+  put("lamp", 2, 0.5, 6.1, 0.80);
+  put("cereal box", 2, 0.5, 6.6, 0.80, 90);
+  put("plant pot", 2, 0.5, 7.1, 0.80);
+  put("plant pot", 3, 3.9, 7.1, 0.0);
+  // bedroom
+  put("PC", 2, 7.5, 6.6, 0.50, 30);
+  put("book", 4, 7.6, 5.6, 0.50, 0);
+  put("lamp", 3, 9.4, 7.0, 0.55);
+  put("bottle", 3, 7.8, 6.1, 0.50);
+  put("bin", 3, 6.1, 7.1, 0.0);
+  // what stands on something small
+  put("cup", 5, 2.2, 6.05, 0.52);
+  if (!later) return all;
+  const auto move = [&](const char* kind, int number, double x, double y, double z) {
+    const std::string name = std::string(kind) + " " + std::to_string(number);
+    for (Thing& t : all) {
+      if (t.name == name) t = at(t, x, y, z, hyselam::degrees(t.pose.theta));
+    }
+  };
+  move("cup", 1, 0.5, 7.5, 0.80);          // to the sideboard
+  move("cereal box", 1, 7.5, 2.05, 0.72);  // to the desk
+  move("bottle", 2, 9.3, 1.0, 0.60);       // to the low shelf
+  move("bin", 2, 9.0, 3.2, 0.0);           // across the office
+  move("bowl", 2, 7.4, 5.9, 0.50);         // to the bed
+  return all;
+}
+
+inline std::set<std::string> moved() {
+  return {"cup 1", "cereal box 1", "bottle 2", "bin 2", "bowl 2"};
+}
+
+struct Frame {
+  OrganisedCloud cloud;
+  PinholeCamera camera;
+  double stamp = 0.0;
+};
+
+class Flat {
+ public:
+  Flat(const hyselam_sim::FloorPlan& plan, std::vector<Thing> all)
+      : plan_(plan), things_(std::move(all)), scene_(make()) {}
+
+  const hyselam_sim::FloorPlan& plan() const { return plan_; }
+  const std::vector<Thing>& allThings() const { return things_; }
+
+  /// Looks around each piece of furniture and each thing on the floor.
+  std::vector<hyselam::Pose2> tour() const {
+    std::vector<hyselam::Pose2> way;
+    const auto look = [&](double x, double y, double tx, double ty) {
+      way.push_back({x, y, std::atan2(ty - y, tx - x)});
+    };
+    for (int side = 0; side < 2; ++side) {    // west, east
+      for (int half = 0; half < 2; ++half) {  // south, north
+        const double ox = side * 5.0, oy = half * 4.0;
+        for (const auto& [x, y] : {std::pair<double, double>{1.3, 0.8},
+                                   {1.3, 3.3},
+                                   {3.9, 3.3},
+                                   {4.2, 1.6},
+                                   {2.5, 0.7},
+                                   {2.5, 3.4}}) {
+          for (const auto& [tx, ty] : {std::pair<double, double>{2.5, 2.0},
+                                       {0.5, 1.3},
+                                       {0.5, 2.6},
+                                       {4.4, 1.2},
+                                       {4.4, 3.0},
+                                       {3.9, 0.9}}) {
+            if (std::hypot(tx - x, ty - y) < 1.0) continue;
+            look(ox + x, oy + y, ox + tx, oy + ty);
+          }
+        }
+      }
+    }
+    std::vector<hyselam::Pose2> free;
+    for (const hyselam::Pose2& pose : way) {
+      bool inside = false;
+      for (const auto& body : scene_.bodies()) {
+        inside = inside || hyselam_sim::contains(body.outline, {pose.x, pose.y});
+      }
+      if (!inside) free.push_back(pose);
+    }
+    return free;
+  }
+
+  Frame take(const hyselam::Pose2& base, double stamp, std::uint64_t seed) const {
+    hyselam_sim::CameraParams camera;
+    camera.noise = 0.01;
+    hyselam_sim::LightParams light;
+    light.lamps = hyselam_sim::LightParams::Lamps::kOn;
+    hyselam::Rng rng(seed);
+    const auto picture = hyselam_sim::takePicture(camera, scene_, light, {}, base, stamp, rng);
+    Frame frame;
+    frame.stamp = stamp;
+    frame.camera.focal_length = camera.focalLength();
+    frame.camera.cx = 0.5 * camera.width - 0.5;
+    frame.camera.cy = 0.5 * camera.height - 0.5;
+    const hyselam::Pose2 at = base * camera.camera_in_base;
+    frame.camera.in_map.translation() = {at.x, at.y, camera.above_floor};
+    Eigen::Matrix3d optical;
+    optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    frame.camera.in_map.linear() =
+        Eigen::AngleAxisd(at.theta, Eigen::Vector3d::UnitZ()).toRotationMatrix() * optical;
+    OrganisedCloud& cloud = frame.cloud;
+    cloud.width = camera.width;
+    cloud.height = camera.height;
+    for (int v = 0; v < camera.height; ++v) {
+      for (int u = 0; u < camera.width; ++u) {
+        const float z = 0.001f * picture.depth.at<std::uint16_t>(v, u);
+        const auto& bgr = picture.colour.at<cv::Vec3b>(v, u);
+        cloud.colours.push_back(static_cast<std::uint32_t>(bgr[2] << 16 | bgr[1] << 8 | bgr[0]));
+        if (z <= 0.0f) {
+          cloud.points.emplace_back(NAN, NAN, NAN);
+          continue;
+        }
+        const auto f = static_cast<float>(frame.camera.focal_length);
+        cloud.points.emplace_back(
+            (static_cast<float>(u) - static_cast<float>(frame.camera.cx)) * z / f,
+            (static_cast<float>(v) - static_cast<float>(frame.camera.cy)) * z / f, z);
+      }
+    }
+    return frame;
+  }
+
+  std::optional<std::pair<std::string, Point3>> placeAt(double x, double y) const {
+    for (const auto& place : plan_.places) {
+      if (!hyselam_sim::contains(place.outline, {x, y})) continue;
+      Point3 middle;
+      for (const auto& p : place.outline) {
+        middle.x += p.x / static_cast<double>(place.outline.size());
+        middle.y += p.y / static_cast<double>(place.outline.size());
+      }
+      return std::make_pair(place.name, middle);
+    }
+    return std::nullopt;
+  }
+
+  /// The map that a perfect detector would make.
+  ObjectMap truth(std::vector<std::string>* names) const {
+    ObjectMap map;
+    const auto add = [&](const std::string& name, const std::string& kind, double x, double y,
+                         double z, double lx, double ly, double lz) {
+      const Id id = map.addObject(kind);
+      ObjectInstance& object = *map.find(id);
+      object.existence = 1.0;
+      object.pose = ObjectPose{{x, y, z + 0.5 * lz}, {lx, ly, lz}, 0.0, {}};
+      names->push_back(name);
+      const auto here = placeAt(x, y);
+      if (!here) return;
+      ObjectRelation relation;
+      relation.object = id;
+      for (const ObjectPlace& place : map.places) {
+        if (place.name == here->first) relation.place = place.id;
+      }
+      if (relation.place == 0) relation.place = map.addPlace(here->first);
+      relation.vector = Point3{x - here->second.x, y - here->second.y, z + 0.5 * lz};
+      map.relate(relation);
+    };
+    for (const auto& piece : plan_.furniture) {
+      double lx = 1e9, hx = -1e9, ly = 1e9, hy = -1e9;
+      for (const auto& p : piece.outline) {
+        lx = std::min(lx, p.x), hx = std::max(hx, p.x);
+        ly = std::min(ly, p.y), hy = std::max(hy, p.y);
+      }
+      add(piece.name, "furniture", 0.5 * (lx + hx), 0.5 * (ly + hy), 0.0, hx - lx, hy - ly,
+          piece.height);
+    }
+    for (const Thing& t : things_) {
+      const double c = std::abs(std::cos(t.pose.theta)), s = std::abs(std::sin(t.pose.theta));
+      const bool round = t.shape == Thing::Shape::kCylinder;
+      const double lx = round ? t.size[0] : c * t.size[0] + s * t.size[1];
+      const double ly = round ? t.size[0] : s * t.size[0] + c * t.size[1];
+      add(t.name, t.kind, t.pose.x, t.pose.y, t.z, lx, ly, t.size[2]);
+    }
+    updateRelations(&map);
+    return map;
+  }
+
+ private:
+  hyselam_sim::Scene make() const {
+    hyselam_sim::SceneParams params;
+    params.things = things_;
+    return hyselam_sim::Scene(plan_, params);
+  }
+
+  hyselam_sim::FloorPlan plan_;
+  std::vector<Thing> things_;
+  hyselam_sim::Scene scene_;
+};
+
+}  // namespace simulated
+}  // namespace hyselam_objects

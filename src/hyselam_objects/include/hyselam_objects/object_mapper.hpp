@@ -1,0 +1,74 @@
+// ObjectDetector's second half: what was seen in one frame and what the map has become one.
+//
+// A detection belongs to the instance that is nearest in place and looks; what fits none is new.
+// Instances that should have been seen and were not lose evidence. One that is gone and one of the
+// same looks that is new elsewhere are the same thing, moved.
+#pragma once
+
+#include <functional>
+
+#include "hyselam_objects/detect_objects.hpp"
+#include "hyselam_objects/object_dictionary.hpp"
+#include "hyselam_objects/object_map.hpp"
+#include "hyselam_objects/object_relations.hpp"
+
+namespace hyselam_objects {
+
+struct MapperParams {
+  double gate = 0.25;            ///< a thing and its instance are nearer than this [m]
+  double look = 0.5;             ///< ... and their descriptors nearer than this
+  double refind_look = 0.35;     ///< the same for things that have moved
+  double seen_if_there = 0.85;   ///< probability to detect what is in view
+  double seen_if_not = 0.1;      ///< and to detect something there that is not
+  double sigma = 0.03;           ///< of a detection's position [m]
+  int confirm = 2;               ///< views before something new is in the map
+  double visible_margin = 0.06;  ///< share of the frame at each border that is not trusted
+  double depth_margin = 0.12;    ///< what is seen this far behind something looks through it [m]
+  RelationParams relations;
+  MovabilityParams movability;
+};
+
+/// The camera of a frame.
+struct PinholeCamera {
+  Eigen::Isometry3d in_map = Eigen::Isometry3d::Identity();
+  double focal_length = 500.0;  ///< [pixel]
+  double cx = 319.5, cy = 239.5;
+};
+
+class ObjectMapper {
+ public:
+  using PlaceAt = std::function<std::optional<std::pair<std::string, Point3>>(double x, double y)>;
+
+  /// `map` must outlive this. `dictionary` tells kinds; others are "thing".
+  ObjectMapper(ObjectMap* map, ObjectDictionary dictionary, const MapperParams& params = {});
+
+  /// Name and middle of the place at a position; nothing: none is known there.
+  void setPlaces(PlaceAt place_at) { place_at_ = std::move(place_at); }
+  void setDictionary(ObjectDictionary dictionary) { dictionary_ = std::move(dictionary); }
+
+  /// One frame at a time [s]. Throws as checkSegment().
+  void update(const OrganisedCloud& cloud, const PinholeCamera& camera,
+              const std::vector<DetectedObject>& detections, double stamp);
+
+  /// After a tour: joins moved things, drops what was seen too seldom, makes relations anew.
+  void finish();
+
+ private:
+  std::vector<int> associate(const std::vector<DetectedObject>& detections) const;
+  void take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
+            double stamp);
+  void missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
+              const std::vector<Id>& matched);
+  bool looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera,
+                    const ObjectPose& pose) const;
+  void place(Id object);
+  void joinMoved();
+  void merge(Id gone, Id found);
+
+  ObjectMap& map_;
+  ObjectDictionary dictionary_;
+  MapperParams params_;
+  PlaceAt place_at_;
+};
+
+}  // namespace hyselam_objects

@@ -1,0 +1,310 @@
+#include "hyselam_objects/object_mapper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hyselam_common/require.hpp"
+#include "hyselam_objects/object_descriptor.hpp"
+
+namespace hyselam_objects {
+namespace {
+
+constexpr char kUnknown[] = "thing";
+constexpr char kFurniture[] = "furniture";
+// A stay is left when nothing was seen there for so long: then it is another visit [s].
+constexpr double kAbsence = 60.0;
+
+double distance(const Point3& a, const Point3& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+/// Share of the smaller one's ground that two boxes have in common.
+double overlap(const ObjectPose& a, const DetectedObject& b) {
+  const auto common = [](double low1, double high1, double low2, double high2) {
+    return std::max(0.0, std::min(high1, high2) - std::max(low1, low2));
+  };
+  const double x =
+      common(a.position.x - 0.5 * a.size[0], a.position.x + 0.5 * a.size[0], b.low.x, b.high.x);
+  const double y =
+      common(a.position.y - 0.5 * a.size[1], a.position.y + 0.5 * a.size[1], b.low.y, b.high.y);
+  const double least = std::min(a.size[0] * a.size[1], (b.high.x - b.low.x) * (b.high.y - b.low.y));
+  return least > 0.0 ? x * y / least : 0.0;
+}
+
+double updated(double p, bool positive, const MapperParams& params) {
+  const double there = positive ? params.seen_if_there : 1.0 - params.seen_if_there;
+  const double not_there = positive ? params.seen_if_not : 1.0 - params.seen_if_not;
+  const double q = p * there / (p * there + (1.0 - p) * not_there);
+  return std::clamp(q, 0.001, 0.999);
+}
+
+bool isFurniture(const ObjectInstance& object) {
+  return object.properties.count("furniture") != 0;
+}
+
+}  // namespace
+
+ObjectMapper::ObjectMapper(ObjectMap* map, ObjectDictionary dictionary, const MapperParams& params)
+    : map_(*map), dictionary_(std::move(dictionary)), params_(params) {
+  using hyselam::require;
+  require("gate", params.gate, params.gate > 0.0, "> 0");
+  require("look", params.look, params.look > 0.0, "> 0");
+  require("refind_look", params.refind_look, params.refind_look > 0.0, "> 0");
+  require("seen_if_there", params.seen_if_there,
+          params.seen_if_there > params.seen_if_not && params.seen_if_there < 1.0,
+          "above seen_if_not and below 1");
+  require("seen_if_not", params.seen_if_not, params.seen_if_not > 0.0, "> 0");
+  require("sigma", params.sigma, params.sigma > 0.0, "> 0");
+  require("confirm", params.confirm, params.confirm >= 1, ">= 1");
+}
+
+std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& detections) const {
+  struct Pair {
+    double cost;
+    std::size_t object, detection;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t o = 0; o < map_.objects.size(); ++o) {
+    const ObjectInstance& object = map_.objects[o];
+    if (!object.pose) continue;
+    for (std::size_t d = 0; d < detections.size(); ++d) {
+      const DetectedObject& seen = detections[d];
+      if (isFurniture(object) != seen.furniture) continue;
+      if (seen.furniture) {
+        const double height = object.pose->position.z + 0.5 * object.pose->size[2];
+        if (std::abs(height - seen.high.z) > 0.06 || overlap(*object.pose, seen) < 0.3) continue;
+        pairs.push_back({1.0 - overlap(*object.pose, seen), o, d});
+        continue;
+      }
+      const double away = distance(object.pose->position, seen.centre());
+      const double look = viewDistance(object.descriptor, seen.descriptor);
+      if (away > params_.gate || look > params_.look) continue;
+      pairs.push_back({away / params_.gate + look / params_.look, o, d});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
+  std::vector<int> of(detections.size(), -1);
+  std::vector<char> taken(map_.objects.size(), 0);
+  for (const Pair& pair : pairs) {
+    if (taken[pair.object] != 0 || of[pair.detection] >= 0) continue;
+    taken[pair.object] = 1;
+    of[pair.detection] = static_cast<int>(pair.object);
+  }
+  return of;
+}
+
+void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
+                        double stamp) {
+  const std::array<double, 3> size{seen.high.x - seen.low.x, seen.high.y - seen.low.y,
+                                   seen.high.z - seen.low.z};
+  const double variance = params_.sigma * params_.sigma;
+  if (!object->pose) {
+    object->pose = ObjectPose{seen.centre(), size, 0.0, {}};
+    for (const std::size_t i : {0u, 4u, 8u}) object->pose->covariance[i] = variance;
+    object->descriptor = seen.descriptor;
+  } else if (seen.furniture) {
+    // Each view shows a part.
+    ObjectPose& pose = *object->pose;
+    const std::array<double, 3> low{seen.low.x, seen.low.y, seen.low.z},
+        high{seen.high.x, seen.high.y, seen.high.z};
+    std::array<double*, 3> middle{&pose.position.x, &pose.position.y, &pose.position.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double a = std::min(*middle[k] - 0.5 * pose.size[k], low[k]);
+      const double b = std::max(*middle[k] + 0.5 * pose.size[k], high[k]);
+      *middle[k] = 0.5 * (a + b);
+      pose.size[k] = b - a;
+    }
+  } else {
+    ObjectPose& pose = *object->pose;
+    const double gain = pose.covariance[0] / (pose.covariance[0] + variance);
+    const Point3 c = seen.centre();
+    pose.position.x += gain * (c.x - pose.position.x);
+    pose.position.y += gain * (c.y - pose.position.y);
+    pose.position.z += gain * (c.z - pose.position.z);
+    for (std::size_t k = 0; k < 3; ++k) pose.size[k] += gain * (size[k] - pose.size[k]);
+    // Views are not independent: never surer than a third of one view.
+    for (const std::size_t i : {0u, 4u, 8u}) {
+      pose.covariance[i] = std::max((1.0 - gain) * pose.covariance[i], variance / 9.0);
+    }
+    for (std::size_t i = 0; i < object->descriptor.size() && i < seen.descriptor.size(); ++i) {
+      object->descriptor[i] +=
+          static_cast<float>(std::max(gain, 0.1)) * (seen.descriptor[i] - object->descriptor[i]);
+    }
+  }
+  if (!kind.empty() && (object->kind == kUnknown || object->kind == kFurniture))
+    object->kind = kind;
+  if (!seen.colour.empty()) object->properties.emplace("colour", seen.colour);
+  ++object->seen;
+  object->existence = updated(object->existence, true, params_);
+  if (object->history.empty() || stamp - object->history.back().until > kAbsence) {
+    object->history.push_back({stamp, stamp, object->pose->position});
+  }
+  object->history.back().until = std::max(object->history.back().until, stamp);
+  object->history.back().position = object->pose->position;
+  object->last_seen = std::max(object->last_seen, stamp);
+}
+
+void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& camera,
+                          const std::vector<DetectedObject>& detections, double stamp) {
+  checkSegment(cloud, SegmentParams{});
+  const std::vector<int> of = associate(detections);
+  std::vector<Id> matched;
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    const DetectedObject& seen = detections[d];
+    const bool whole = !seen.cut || seen.furniture;
+    const auto known = recognise(seen.descriptor, dictionary_);
+    const std::string kind = known ? known->name : "";
+    if (of[d] >= 0) {
+      ObjectInstance& object = map_.objects[static_cast<std::size_t>(of[d])];
+      matched.push_back(object.id);
+      if (whole) take(&object, seen, kind, stamp);
+      continue;
+    }
+    if (!whole) continue;
+    // Told of, but not seen yet: the same kind at the same place.
+    Id id = 0;
+    if (!kind.empty() && place_at_) {
+      const auto here = place_at_(seen.centre().x, seen.centre().y);
+      for (const ObjectInstance& object : map_.objects) {
+        const ObjectPlace* place = map_.findPlace(map_.placeOf(object.id));
+        if (id == 0 && object.told && !object.pose && object.kind == kind && here &&
+            place != nullptr && place->name == here->first) {
+          id = object.id;
+        }
+      }
+    }
+    if (id == 0) id = map_.addObject(seen.furniture ? kFurniture : kUnknown);
+    ObjectInstance& object = *map_.find(id);
+    if (seen.furniture) object.properties["furniture"] = "yes";
+    take(&object, seen, kind, stamp);
+    place(id);
+    matched.push_back(id);
+  }
+  missed(cloud, camera, matched);
+  map_.stamp = std::max(map_.stamp, stamp);
+}
+
+bool ObjectMapper::looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera,
+                                const ObjectPose& pose) const {
+  const Eigen::Isometry3d map_in_camera = camera.in_map.inverse();
+  int through = 0, all = 0;
+  const double mx = params_.visible_margin * cloud.width,
+               my = params_.visible_margin * cloud.height;
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int side = -1; side <= 1; ++side) {
+      const Eigen::Vector3d middle(pose.position.x, pose.position.y,
+                                   pose.position.z + 0.3 * dz * pose.size[2]);
+      Eigen::Vector3d p = map_in_camera * middle;
+      p.x() += 0.25 * side * std::min(pose.size[0], pose.size[1]);
+      if (p.z() < 0.5 || p.z() > 3.2) return false;
+      const double u = camera.focal_length * p.x() / p.z() + camera.cx;
+      const double v = camera.focal_length * p.y() / p.z() + camera.cy;
+      if (u < mx || v < my || u > cloud.width - mx || v > cloud.height - my) return false;
+      const Point& measured =
+          cloud.points[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) +
+                       static_cast<std::size_t>(u)];
+      ++all;
+      through += measured.allFinite() && measured.z() > p.z() + params_.depth_margin;
+    }
+  }
+  return through >= 7 && all == 9;
+}
+
+void ObjectMapper::missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
+                          const std::vector<Id>& matched) {
+  for (ObjectInstance& object : map_.objects) {
+    if (!object.pose || isFurniture(object)) continue;
+    if (std::find(matched.begin(), matched.end(), object.id) != matched.end()) continue;
+    if (!looksThrough(cloud, camera, *object.pose)) continue;
+    ++object.missed;
+    object.existence = updated(object.existence, false, params_);
+  }
+}
+
+void ObjectMapper::place(Id id) {
+  if (!place_at_) return;
+  const ObjectInstance& object = *map_.find(id);
+  const Point3& p = object.pose->position;
+  const auto here = place_at_(p.x, p.y);
+  auto& all = map_.relations;
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [id](const auto& r) { return r.object == id && r.place != 0; }),
+            all.end());
+  if (!here) return;
+  ObjectRelation at;
+  at.object = id;
+  for (const ObjectPlace& each : map_.places) {
+    if (each.name == here->first) at.place = each.id;
+  }
+  if (at.place == 0) at.place = map_.addPlace(here->first);
+  at.vector = Point3{p.x - here->second.x, p.y - here->second.y, p.z - here->second.z};
+  at.told = object.told;
+  map_.relate(at);
+}
+
+void ObjectMapper::merge(Id gone, Id found) {
+  ObjectInstance& old = *map_.find(gone);
+  ObjectInstance& now = *map_.find(found);
+  now.history.insert(now.history.begin(), old.history.begin(), old.history.end());
+  now.seen += old.seen;
+  now.told = now.told || old.told;
+  if (now.kind == kUnknown) now.kind = old.kind;
+  now.properties.insert(old.properties.begin(), old.properties.end());
+  // The id that others know stays.
+  ObjectInstance kept = now;
+  kept.id = gone;
+  map_.remove(found);
+  auto& all = map_.relations;
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const auto& r) { return r.object == gone || r.other == gone; }),
+            all.end());
+  *map_.find(gone) = std::move(kept);
+}
+
+void ObjectMapper::joinMoved() {
+  struct Pair {
+    double look;
+    Id gone, found;
+  };
+  std::vector<Pair> pairs;
+  for (const ObjectInstance& old : map_.objects) {
+    if (!old.pose || old.existence > 0.3 || old.seen < params_.confirm || isFurniture(old))
+      continue;
+    for (const ObjectInstance& now : map_.objects) {
+      if (now.id == old.id || !now.pose || now.existence < 0.5 || isFurniture(now)) continue;
+      if (now.history.empty() || now.history.front().from <= old.last_seen) continue;
+      const double look = viewDistance(old.descriptor, now.descriptor);
+      const bool other_kind = old.kind != now.kind && old.kind != kUnknown && now.kind != kUnknown;
+      if (look < params_.refind_look && !other_kind) pairs.push_back({look, old.id, now.id});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.look < b.look; });
+  for (const Pair& pair : pairs) {
+    if (map_.find(pair.found) == nullptr || map_.find(pair.gone)->existence > 0.3) continue;
+    merge(pair.gone, pair.found);
+  }
+}
+
+void ObjectMapper::finish() {
+  joinMoved();
+  std::vector<Id> dropped;
+  for (const ObjectInstance& object : map_.objects) {
+    if (!object.pose || object.told) continue;
+    const bool weak = object.seen < params_.confirm;
+    const bool doubtful = object.missed > object.seen && object.existence < 0.5;
+    if (weak || doubtful) dropped.push_back(object.id);
+  }
+  for (const Id id : dropped) map_.remove(id);
+  for (const ObjectInstance& object : map_.objects) {
+    if (object.pose) place(object.id);
+  }
+  updateRelations(&map_, params_.relations);
+  for (ObjectRelation& relation : map_.relations) {
+    relation.movability = movability(map_, relation.object, params_.movability);
+  }
+}
+
+}  // namespace hyselam_objects
