@@ -167,7 +167,7 @@ class Flat {
     frame.camera.cx = 0.5 * camera.width - 0.5;
     frame.camera.cy = 0.5 * camera.height - 0.5;
     const hyselam::Pose2 at = base * camera.camera_in_base;
-    frame.camera.in_map.translation() = {at.x, at.y, camera.above_floor};
+    frame.camera.in_map.translation() = Eigen::Vector3d(at.x, at.y, camera.above_floor);
     Eigen::Matrix3d optical;
     optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     frame.camera.in_map.linear() =
