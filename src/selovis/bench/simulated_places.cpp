@@ -32,8 +32,7 @@ nlohmann::json run(const Options& o) {
   FloorPlan plan;
   if (o.generate > 0) {
     PlanParams params;
-    params.furniture = true;
-    params.min_door = 0.9;  // that the robot comes through
+    params.min_door = 0.9;  // that the robot comes through; furniture may bar its way
     plan = generatePlan(o.generate, params);
     route = bench::roundTrip(plan);
   } else {

@@ -57,9 +57,9 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     text.type = Marker::TEXT_VIEW_FACING;
     text.scale.x = text.scale.y = 0.0;
     text.scale.z = here ? 1.3 * kTextHeight : kTextHeight;
-    // Beside the bar as seen from above, over it as seen from the side.
-    text.pose.position.y -= 0.5 * kWidth + 0.6 * text.scale.z;
-    text.pose.position.z = bar.scale.z + 0.3;
+    // In front of the bar's foot, so that neither hides the other.
+    text.pose.position.y -= 0.5 * kWidth + 0.8 * text.scale.z;
+    text.pose.position.z = 0.3;
     text.color = here ? bar.color : colour(0.1f, 0.1f, 0.1f, 1.0f);
     text.color.a = 1.0f;
     const long percent = std::lround(100.0 * probabilities[i]);
