@@ -80,6 +80,13 @@ visualization_msgs::MarkerArray namedMapMarkers(const AugmentedTopologicalMap& m
   MapMarkerParams without_names = params;
   without_names.names = false;
   visualization_msgs::MarkerArray array = mapMarkers(map, without_names);
+  for (visualization_msgs::Marker& marker : array.markers) {
+    // Drawn into the grid map, glass is found as a solid wall, too: it shall lie above that one.
+    if (marker.ns == "walls" && marker.id == static_cast<int>(WallKind::kGlass)) {
+      marker.pose.position.z = 0.06;
+      marker.scale.x = 0.16;
+    }
+  }
   for (const Place& place : map.places) {
     if (!place.centre) continue;
     array.markers.push_back(ring(map, place));

@@ -32,6 +32,7 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
       driver_(nh) {
   using Self = TopoEngineServer;
   text_publisher_ = nh.advertise<std_msgs::String>("robot_text", 20);
+  talk_publisher_ = nh.advertise<std_msgs::String>("conversation", 100);
   place_publisher_ = nh.advertise<hyselam_msgs::PlaceState>("place", 1, true);
   map_publisher_ = nh.advertise<hyselam_msgs::AugmentedTopologicalMap>("named_map", 1, true);
   marker_publisher_ = nh.advertise<visualization_msgs::MarkerArray>("named_markers", 1, true);
@@ -129,8 +130,8 @@ void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
     ROS_ERROR_STREAM(who_ << " this text is not used: " << error_);
     return;
   }
-  ++texts_;
   lookForRobot();
+  heard(msg->data);
   act(dialogue_.hear(msg->data));
 }
 
@@ -170,7 +171,16 @@ void TopoEngineServer::say(const std::string& sentence) {
   std_msgs::String msg;
   msg.data = sentence;
   text_publisher_.publish(msg);
+  msg.data = "robot: " + sentence;
+  talk_publisher_.publish(msg);
   ROS_INFO_STREAM(who_ << " says: " << sentence);
+}
+
+void TopoEngineServer::heard(const std::string& text) {
+  ++texts_;
+  std_msgs::String msg;
+  msg.data = "human: " + text;
+  talk_publisher_.publish(msg);
 }
 
 void TopoEngineServer::act(const Reply& reply) {

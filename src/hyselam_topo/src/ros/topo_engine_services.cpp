@@ -39,8 +39,8 @@ bool TopoEngineServer::onTell(hyselam_msgs::TellRobot::Request& request,
     response.answers = {"the text has more than max_text_bytes"};
     return true;
   }
-  ++texts_;
   lookForRobot();
+  heard(request.text);
   const Reply reply = dialogue_.hear(request.text);
   act(reply);
   response.language = reply.language;

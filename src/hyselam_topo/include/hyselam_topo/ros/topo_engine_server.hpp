@@ -46,6 +46,8 @@ class TopoEngineServer {
   /// Says what is to be said and does what is to be done.
   void act(const Reply& reply);
   void say(const std::string& sentence);
+  /// Takes down what a person has said, in the order with what the robot says.
+  void heard(const std::string& text);
   void go(const std::vector<RouteLeg>& legs);
   void turn(double angle);
   void halt();
@@ -101,7 +103,7 @@ class TopoEngineServer {
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
   GoalDriver driver_;
-  ros::Publisher text_publisher_, place_publisher_, map_publisher_, marker_publisher_,
+  ros::Publisher text_publisher_, talk_publisher_, place_publisher_, map_publisher_, marker_publisher_,
       question_publisher_, grid_publisher_, path_publisher_, poses_publisher_, pose_publisher_,
       follow_publisher_, names_publisher_;
   std::vector<ros::Subscriber> subscribers_;
