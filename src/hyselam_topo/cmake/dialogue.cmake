@@ -65,7 +65,8 @@ install(TARGETS hyselam_topo_engine
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-catkin_install_python(PROGRAMS scripts/chat DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS scripts/chat scripts/listen scripts/speak
+                      DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
 if(CATKIN_ENABLE_TESTING)
   foreach(test topo_state glass_wall place_man route)
@@ -78,5 +79,7 @@ if(CATKIN_ENABLE_TESTING)
       target_compile_definitions(${PROJECT_NAME}_test_dialogue
                                  PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     endif()
+    hyselam_gtest(${PROJECT_NAME}_test_dialogue_floors test/test_dialogue_floors.cpp
+                  LIBRARIES hyselam_dialogue hyselam_gr2to ${hyselam_sim_LIBRARIES})
   endif()
 endif()
