@@ -305,6 +305,48 @@ class ConversationTest(unittest.TestCase):
         self.assertIn("the checksum is wrong", answer.message)
         self.assertFalse(robot.service("save_dialogue", StatePath)("/nowhere/state").success)
 
+    def test_waypoints_are_driven_by_move_base(self):
+        try:
+            import actionlib
+            from move_base_msgs.msg import MoveBaseAction
+        except ImportError:
+            self.skipTest("python3-actionlib or python3-move-base-msgs is not installed")
+        robot = self.robot(self.grid)
+        wait_until(lambda: robot.maps.messages, "no map")
+        goals, refuse = [], []
+
+        def drive(goal):
+            position = goal.target_pose.pose.position
+            goals.append((goal.target_pose.header.frame_id, position.x, position.y))
+            if len(goals) in refuse:
+                server.set_aborted()
+            else:
+                server.set_succeeded()
+        server = actionlib.SimpleActionServer(f"/{robot.name}/move_base", MoveBaseAction, drive, False)
+        server.start()
+        wait_until(lambda: server.action_server.goal_sub.get_num_connections() > 0, "no client")
+        rospy.sleep(1.0)  # the client looks for the other topics and the server's status, too
+        robot.stand(*MIDDLE["i-109"])
+        robot.service("name_place", NamePlace)(robot.place_at("stairs").id, PointStamped(), ["stairs"])
+        self.assertIn("I am going to", robot.say("Go to the stairs."))
+        wait_until(lambda: robot.status_value("driving") == "arrived", lambda: f"{goals} {robot.status()}")
+        self.assertEqual(len(goals), 3)  # the two doors, the stairs
+        self.assertEqual(goals[0][0], "map")
+        self.assertLess(math.hypot(goals[0][1] - 3.5, goals[0][2] - 2.5), 0.3)
+        self.assertLess(math.hypot(goals[1][1] + 0.1, goals[1][2] - 1.2), 0.3)
+        del goals[:]
+        refuse.append(2)
+        robot.say("Go to the stairs.")
+        wait_until(lambda: robot.status_value("driving") == "ABORTED at 2 of 3", lambda: str(robot.status()))
+
+    def test_chat_in_a_console(self):
+        robot = self.robot()
+        said = subprocess.run(["rosrun", "hyselam_topo", "chat", "--wait", "10", f"human_text:=/{robot.name}/human_text",
+                               f"robot_text:=/{robot.name}/robot_text", f"known_names:=/{robot.name}/known_names"],
+                              input="Where are you?\n\nhello\n", stdout=subprocess.PIPE, check=True, text=True).stdout
+        self.assertEqual(said.splitlines(), ["You:   Where are you?", "Robot: I do not know where I am.", "You:   hello",
+                                             "Robot: Hello."])
+
     def test_bad_input_is_refused_aloud(self):
         robot = self.robot()
         publisher = rospy.Publisher(f"/{robot.name}/topological_map", AugmentedTopologicalMap, queue_size=1)

@@ -13,7 +13,7 @@ namespace hyselam_topo {
 
 class GoalDriver::Client {
  public:
-  explicit Client(ros::NodeHandle nh) : action_(nh, "move_base", false) {}
+  explicit Client(ros::NodeHandle nh) : nh_(nh), action_(nh, "move_base", false) {}
 
   bool connected() const { return action_.isServerConnected(); }
 
@@ -54,10 +54,19 @@ class GoalDriver::Client {
         return;
       }
       ++next_;
-      sendNext();
+      // Not at once: the client takes a goal that is sent within this call for done when it
+      // returns.
+      timer_ = nh_.createWallTimer(
+          ros::WallDuration(0.01),
+          [this, run](const ros::WallTimerEvent&) {
+            if (run == run_) sendNext();
+          },
+          true);
     });
   }
 
+  ros::NodeHandle nh_;
+  ros::WallTimer timer_;
   actionlib::SimpleActionClient<move_base_msgs::MoveBaseAction> action_;
   std::vector<hyselam::Pose2> goals_;
   std::string frame_id_;

@@ -29,7 +29,8 @@ class Gr2ToServer {
 
   const Gr2ToServerParams& params() const { return params_; }
   /// Other parameters from now on: the last input is segmented again.
-  /// `use_octomap`, `map_file`, `max_map_cells` and `diagnostic_period` stay as they are.
+  /// `use_octomap`, `map_file`, `max_map_cells`, `partial_updates` and `diagnostic_period` stay as
+  /// they are.
   void setParams(const Gr2ToServerParams& params);
 
  private:
