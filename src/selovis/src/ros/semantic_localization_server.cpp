@@ -9,7 +9,6 @@
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_topo/ros/conversions.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
 #include "selovis/ros/place_markers.hpp"
 #include "selovis/ros/sensor_images.hpp"
 
@@ -19,7 +18,6 @@ namespace {
 constexpr double kPollEvery = 0.02;  // [s] of wall time: images that wait, training that ends
 constexpr double kClockSlack = 0.5;  // [s] an image older than the last by more: a bag begins again
 constexpr double kPoseAge = 0.5;     // [s] a pose so old is still that of the image
-constexpr double kPlaceAge = 3.0;    // [s] the same for PlaceState
 constexpr int kRangeColumns = 40;    // distances taken from a laser scan
 
 std::shared_ptr<const Model> firstModel(const SemanticLocalizationParams& params) {
@@ -356,134 +354,6 @@ void SemanticLocalizationServer::rebuild() {
   graph_ = graph;
   recogniser_ = std::make_unique<Recogniser>(*model_, graph_, params_.recogniser);
   supervision_.setGraph(graph_);
-}
-
-// Learning.
-
-std::string SemanticLocalizationServer::labelOf(const std::optional<hyselam::Pose2>& base) const {
-  if (place_ && std::abs((place_->header.stamp - last_image_).toSec()) <= kPlaceAge) {
-    if (place_->place == 0 || place_->in_doorway) return "";
-    if (!place_->name.empty()) return place_->name;
-    const auto* place = map_ ? map_->findPlace(place_->place) : nullptr;
-    return place != nullptr ? hyselam_topo::nameOf(*place) : "";
-  }
-  if (!map_ || !base) return "";
-  const auto near = placesNear(*map_, {base->x, base->y}, params_.border);
-  return near.size() == 1 ? near.front() : "";
-}
-
-void SemanticLocalizationServer::keep(const cv::Mat& image, const Readings& readings,
-                                      const std_msgs::Header& header) {
-  if (supervision_.kidnapped()) return;  // what the pose says is not believed
-  const auto base = poseInMap(params_.base_frame_id, header.stamp);
-  const std::string label = labelOf(base);
-  if (label.empty()) return;
-  double height = 0.0;
-  auto camera = poseInMap(header.frame_id, header.stamp, &height);
-  if (!camera) camera = base;
-  if (!camera && place_)
-    camera = hyselam::Pose2{place_->pose.x, place_->pose.y, place_->pose.theta};
-  if (!camera) return;
-  if (!learner_->add(image, readings, label, *camera, height, header.stamp.toSec())) return;
-  if (params_.retrain_every > 0 && learner_->frames().size() - trained_frames_ >=
-                                       static_cast<std::size_t>(params_.retrain_every)) {
-    startTraining(nullptr);
-  }
-}
-
-bool SemanticLocalizationServer::startTraining(std::string* message) {
-  const auto& all = learner_->frames();
-  std::vector<LearntFrame> fresh(all.begin() + static_cast<std::ptrdiff_t>(trained_frames_),
-                                 all.end());
-  const auto tell = [&](const std::string& text) {
-    if (message != nullptr) *message = text;
-  };
-  if (fresh.empty()) {
-    tell("no frames have been learnt since the last training");
-    return false;
-  }
-  const std::size_t count = fresh.size();
-  if (!training_.start(model_, std::move(fresh), [this](const BackgroundTraining::Outcome& o) {
-        const std::lock_guard<std::mutex> lock(trained_mutex_);
-        trained_ = o;
-      })) {
-    tell("training is under way");
-    return false;
-  }
-  training_frames_ = trained_frames_ + count;
-  tell("training with " + std::to_string(count) + " new frames");
-  return true;
-}
-
-void SemanticLocalizationServer::takeTrained() {
-  std::optional<BackgroundTraining::Outcome> outcome;
-  {
-    const std::lock_guard<std::mutex> lock(trained_mutex_);
-    outcome.swap(trained_);
-  }
-  if (!outcome) return;
-  training_error_ = outcome->error;
-  if (!outcome->model) {
-    ROS_WARN_STREAM(who_ << " not trained: " << outcome->error);
-    return;
-  }
-  trained_frames_ = training_frames_;
-  ++trainings_;
-  useModel(outcome->model);
-  ROS_INFO_STREAM(who_ << " trained with " << outcome->frames
-                       << " new frames: " << model_->graph.places.size() << " places");
-}
-
-bool SemanticLocalizationServer::onStartLearning(Trigger::Request&, Trigger::Response& response) {
-  learning_ = true;
-  response.success = true;
-  response.message = "learning";
-  return true;
-}
-
-bool SemanticLocalizationServer::onStopLearning(Trigger::Request&, Trigger::Response& response) {
-  learning_ = false;
-  response.success = true;
-  response.message = std::to_string(learner_->frames().size()) + " frames learnt";
-  return true;
-}
-
-bool SemanticLocalizationServer::onRetrain(Trigger::Request&, Trigger::Response& response) {
-  response.success = startTraining(&response.message);
-  return true;
-}
-
-bool SemanticLocalizationServer::onSave(Trigger::Request&, Trigger::Response& response) {
-  try {
-    const std::string directory = params_.save_model.empty() ? params_.model : params_.save_model;
-    if (directory.empty() && params_.save_map.empty()) {
-      throw hyselam::InputError("parameter 'save_model'", "", "is empty: nowhere to save");
-    }
-    if (!directory.empty()) {
-      if (model_->samples.count() == 0) {
-        throw hyselam::InputError(directory, "", "nothing has been learnt");
-      }
-      saveModel(*model_, directory);
-      response.message =
-          std::to_string(model_->graph.places.size()) + " places written to " + directory;
-    }
-    if (!params_.save_map.empty()) {
-      if (!map_) throw hyselam::InputError(params_.save_map, "", "no topological map has come");
-      hyselam_topo::AugmentedTopologicalMap map = *map_;
-      const std::size_t lost = store(learner_->frames(), *model_, params_.learner, &map);
-      hyselam_topo::saveXml(params_.save_map, map);
-      response.message += (response.message.empty() ? "" : "; ") +
-                          std::to_string(learner_->frames().size() - lost) + " frames written to " +
-                          params_.save_map;
-    }
-    response.success = true;
-    ROS_INFO_STREAM(who_ << " " << response.message);
-  } catch (const std::exception& e) {
-    response.success = false;
-    response.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not saved: " << e.what());
-  }
-  return true;
 }
 
 void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {

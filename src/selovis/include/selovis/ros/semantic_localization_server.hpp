@@ -96,6 +96,7 @@ class SemanticLocalizationServer {
   std::unique_ptr<Learner> learner_;
   std::size_t trained_frames_ = 0;  // of the learner's, in the model or in training
   std::size_t training_frames_ = 0;
+  std::size_t tried_frames_ = 0;  ///< when training began last, whatever became of it
   std::mutex trained_mutex_;
   std::optional<BackgroundTraining::Outcome> trained_;  // from the other thread
   std::string training_error_;
