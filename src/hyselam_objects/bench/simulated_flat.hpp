@@ -90,9 +90,9 @@ inline std::vector<Thing> things(bool later) {
       if (t.name == name) t = at(t, x, y, z, hyselam::degrees(t.pose.theta));
     }
   };
-  move("cup", 1, 0.5, 7.5, 0.80);          // to the sideboard
+  move("cup", 1, 0.62, 6.35, 0.80);        // to the sideboard
   move("cereal box", 1, 7.5, 2.05, 0.72);  // to the desk
-  move("bottle", 2, 9.3, 1.0, 0.60);       // to the low shelf
+  move("bottle", 2, 9.3, 1.02, 0.60);      // to the low shelf
   move("bin", 2, 9.0, 3.2, 0.0);           // across the office
   move("bowl", 2, 7.4, 5.9, 0.50);         // to the bed
   return all;
@@ -130,7 +130,8 @@ class Flat {
                                    {3.9, 3.3},
                                    {4.2, 1.6},
                                    {2.5, 0.7},
-                                   {2.5, 3.4}}) {
+                                   {2.5, 3.4},
+                                   {1.0, 2.4}}) {
           for (const auto& [tx, ty] : {std::pair<double, double>{2.5, 2.0},
                                        {0.5, 1.3},
                                        {0.5, 2.6},

@@ -16,9 +16,9 @@ namespace hyselam_objects {
 
 struct DetectParams {
   SegmentParams segment;          ///< `support_distance` and `tallest` hold above furniture
-  double range = 3.5;             ///< what is farther is not looked at [m], > 0
+  double range = 4.0;             ///< what is farther is not looked at [m], > 0
   double level = 0.35;            ///< normals of level surfaces differ by less from upright [rad]
-  double surface_area = 0.08;     ///< of furniture [m^2], > 0
+  double surface_area = 0.15;     ///< of furniture [m^2], > 0
   double surface_height = 0.2;    ///< lower ones are no furniture [m], > 0
   double tallest = 1.2;           ///< thing on the floor [m], > 0
   double floor_clearance = 0.03;  ///< what is lower is floor [m], > 0

@@ -34,6 +34,7 @@ struct ObjectReply {
   std::string code;         ///< of the phrase: "contradiction", "which_one", ...
   std::vector<Id> objects;  ///< what it is about
   std::vector<Id> places;
+  std::string kind_of_object;  ///< of "this is a cup": what is shown
 };
 
 class FillMap {
@@ -54,6 +55,11 @@ class FillMap {
   std::vector<std::string> unknownKinds(const ObjectDictionary& dictionary) const;
   /// "I do not know what a pen looks like: show me one."
   std::string askToShow(const std::string& kind) const;
+  /// "Now I know what a pen looks like."
+  std::string learnt(const std::string& kind) const;
+
+  /// The map is another one: nothing was spoken of.
+  void forgetContext();
 
  private:
   struct Target;

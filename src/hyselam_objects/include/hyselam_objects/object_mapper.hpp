@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "hyselam_objects/detect_objects.hpp"
 #include "hyselam_objects/object_dictionary.hpp"
@@ -50,18 +51,20 @@ class ObjectMapper {
   void update(const OrganisedCloud& cloud, const PinholeCamera& camera,
               const std::vector<DetectedObject>& detections, double stamp);
 
-  /// After a tour: joins moved things, drops what was seen too seldom, makes relations anew.
-  void finish();
+  /// After a tour, or now and then: joins moved things and parts of furniture, drops what was seen
+  /// too seldom, and last before `weak_before` [s], makes relations anew.
+  void finish(double weak_before = std::numeric_limits<double>::infinity());
 
  private:
   std::vector<int> associate(const std::vector<DetectedObject>& detections) const;
   void take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
             double stamp);
   void missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
-              const std::vector<Id>& matched);
+              const std::vector<Id>& matched, double stamp);
   bool looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera,
                     const ObjectPose& pose) const;
   void place(Id object);
+  void joinFurniture();
   void joinMoved();
   void merge(Id gone, Id found);
 

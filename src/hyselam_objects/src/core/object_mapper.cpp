@@ -39,6 +39,36 @@ double updated(double p, bool positive, const MapperParams& params) {
   return std::clamp(q, 0.001, 0.999);
 }
 
+/// Whether something lies in the body of a piece of furniture: a part of it that was not told from
+/// it.
+bool isPartOf(const ObjectPose& furniture, const Point3& p) {
+  constexpr double kMargin = 0.08, kBelowTop = 0.03;
+  return std::abs(p.x - furniture.position.x) < 0.5 * furniture.size[0] + kMargin &&
+         std::abs(p.y - furniture.position.y) < 0.5 * furniture.size[1] + kMargin &&
+         p.z < furniture.position.z + 0.5 * furniture.size[2] - kBelowTop;
+}
+
+/// Two parts of one top: of the same height, overlapping or hardly apart.
+bool isOneTop(const ObjectPose& a, const ObjectPose& b) {
+  constexpr double kStep = 0.04, kGap = 0.15;
+  const double height = a.position.z + 0.5 * a.size[2] - b.position.z - 0.5 * b.size[2];
+  return std::abs(height) < kStep &&
+         std::abs(a.position.x - b.position.x) < 0.5 * (a.size[0] + b.size[0]) + kGap &&
+         std::abs(a.position.y - b.position.y) < 0.5 * (a.size[1] + b.size[1]) + kGap;
+}
+
+/// Makes the first box large enough for both.
+void unite(ObjectPose* a, const ObjectPose& b) {
+  const std::array<double, 3> other{b.position.x, b.position.y, b.position.z};
+  const std::array<double*, 3> middle{&a->position.x, &a->position.y, &a->position.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double low = std::min(*middle[k] - 0.5 * a->size[k], other[k] - 0.5 * b.size[k]);
+    const double high = std::max(*middle[k] + 0.5 * a->size[k], other[k] + 0.5 * b.size[k]);
+    *middle[k] = 0.5 * (low + high);
+    a->size[k] = high - low;
+  }
+}
+
 bool isFurniture(const ObjectInstance& object) {
   return object.properties.count("furniture") != 0;
 }
@@ -106,16 +136,7 @@ void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, cons
     object->descriptor = seen.descriptor;
   } else if (seen.furniture) {
     // Each view shows a part.
-    ObjectPose& pose = *object->pose;
-    const std::array<double, 3> low{seen.low.x, seen.low.y, seen.low.z},
-        high{seen.high.x, seen.high.y, seen.high.z};
-    std::array<double*, 3> middle{&pose.position.x, &pose.position.y, &pose.position.z};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double a = std::min(*middle[k] - 0.5 * pose.size[k], low[k]);
-      const double b = std::max(*middle[k] + 0.5 * pose.size[k], high[k]);
-      *middle[k] = 0.5 * (a + b);
-      pose.size[k] = b - a;
-    }
+    unite(&*object->pose, ObjectPose{seen.centre(), size, 0.0, {}});
   } else {
     ObjectPose& pose = *object->pose;
     const double gain = pose.covariance[0] / (pose.covariance[0] + variance);
@@ -162,7 +183,11 @@ void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& came
       if (whole) take(&object, seen, kind, stamp);
       continue;
     }
-    if (!whole) continue;
+    const bool part = !seen.furniture &&
+                      std::any_of(map_.objects.begin(), map_.objects.end(), [&](const auto& o) {
+                        return o.pose && isFurniture(o) && isPartOf(*o.pose, seen.centre());
+                      });
+    if (!whole || part) continue;
     // Told of, but not seen yet: the same kind at the same place.
     Id id = 0;
     if (!kind.empty() && place_at_) {
@@ -182,7 +207,7 @@ void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& came
     place(id);
     matched.push_back(id);
   }
-  missed(cloud, camera, matched);
+  missed(cloud, camera, matched, stamp);
   map_.stamp = std::max(map_.stamp, stamp);
 }
 
@@ -213,11 +238,14 @@ bool ObjectMapper::looksThrough(const OrganisedCloud& cloud, const PinholeCamera
 }
 
 void ObjectMapper::missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
-                          const std::vector<Id>& matched) {
+                          const std::vector<Id>& matched, double stamp) {
+  constexpr double kLongAgo = 0.8;  // what was there at the last visit may have gone since
   for (ObjectInstance& object : map_.objects) {
     if (!object.pose || isFurniture(object)) continue;
     if (std::find(matched.begin(), matched.end(), object.id) != matched.end()) continue;
     if (!looksThrough(cloud, camera, *object.pose)) continue;
+    if (stamp - object.last_seen > kAbsence)
+      object.existence = std::min(object.existence, kLongAgo);
     ++object.missed;
     object.existence = updated(object.existence, false, params_);
   }
@@ -288,12 +316,33 @@ void ObjectMapper::joinMoved() {
   }
 }
 
-void ObjectMapper::finish() {
+void ObjectMapper::joinFurniture() {
+  for (std::size_t i = 0; i < map_.objects.size(); ++i) {
+    for (std::size_t j = i + 1; j < map_.objects.size();) {
+      ObjectInstance &a = map_.objects[i], &b = map_.objects[j];
+      if (!a.pose || !b.pose || !isFurniture(a) || !isFurniture(b) || !isOneTop(*a.pose, *b.pose)) {
+        ++j;
+        continue;
+      }
+      unite(&*a.pose, *b.pose);
+      a.seen += b.seen;
+      map_.remove(b.id);
+      j = i + 1;
+    }
+  }
+}
+
+void ObjectMapper::finish(double weak_before) {
+  joinFurniture();
   joinMoved();
   std::vector<Id> dropped;
   for (const ObjectInstance& object : map_.objects) {
     if (!object.pose || object.told) continue;
-    const bool weak = object.seen < params_.confirm;
+    bool weak = object.seen < params_.confirm && object.last_seen < weak_before;
+    for (const ObjectInstance& other : map_.objects) {
+      weak = weak || (other.pose && isFurniture(other) && !isFurniture(object) &&
+                      isPartOf(*other.pose, object.pose->position));
+    }
     const bool doubtful = object.missed > object.seen && object.existence < 0.5;
     if (weak || doubtful) dropped.push_back(object.id);
   }

@@ -25,6 +25,10 @@ const char* toString(ReplyKind kind) {
 FillMap::FillMap(const ObjectParser* parser, ObjectMap* map) : parser_(*parser), map_(*map) {}
 
 std::vector<ObjectReply> FillMap::say(const std::string& text) {
+  // The detector may have joined or dropped some in the meantime.
+  subjects_.erase(std::remove_if(subjects_.begin(), subjects_.end(),
+                                 [this](Id id) { return map_.find(id) == nullptr; }),
+                  subjects_.end());
   std::set<std::string> expected;
   if (pending_ && pending_->for_place) expected.insert("place_answer");
   std::vector<ObjectReply> replies;
@@ -50,6 +54,7 @@ ObjectReply FillMap::take(const ObjectStatement& statement) {
   if (statement.intent == "forget_object") return forget(statement);
   if (statement.intent == "this_is") {
     ObjectReply out = reply(ReplyKind::kDone, "shown", {{"what", statement.objects.front().kind}});
+    out.kind_of_object = statement.objects.front().kind;
     return out;
   }
   if (statement.intent == "is_like") return describe(statement);
@@ -594,6 +599,16 @@ std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionar
 
 std::string FillMap::askToShow(const std::string& kind) const {
   return phrase("show_me", {{"what", kind}});
+}
+
+std::string FillMap::learnt(const std::string& kind) const {
+  return phrase("learnt", {{"what", kind}});
+}
+
+void FillMap::forgetContext() {
+  subjects_.clear();
+  place_ = 0;
+  pending_.reset();
 }
 
 // ---- Words ----

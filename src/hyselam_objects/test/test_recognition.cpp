@@ -1,0 +1,109 @@
+// Recognition: descriptors of views of simulated things, and a real model found in a real scene.
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <limits>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_objects/object_descriptor.hpp"
+#include "hyselam_objects/pcl/cloud_io.hpp"
+#include "hyselam_objects/pcl/find_model.hpp"
+
+using namespace hyselam_objects;
+
+namespace {
+
+/// The two sides of a box that somebody sees who looks at one of its edges.
+std::vector<Eigen::Vector3f> boxView(Eigen::Vector3f size, double turn, hyselam::Rng* rng) {
+  std::vector<Eigen::Vector3f> points;
+  const Eigen::AngleAxisf rotation(static_cast<float>(turn), Eigen::Vector3f::UnitZ());
+  for (int i = 0; i < 600; ++i) {
+    const auto u = static_cast<float>(rng->uniform()), v = static_cast<float>(rng->uniform());
+    Eigen::Vector3f p = i % 2 == 0 ? Eigen::Vector3f(u * size.x(), 0.0f, v * size.z())
+                                   : Eigen::Vector3f(0.0f, u * size.y(), v * size.z());
+    p += 0.002f * Eigen::Vector3f(static_cast<float>(rng->gaussian()),
+                                  static_cast<float>(rng->gaussian()),
+                                  static_cast<float>(rng->gaussian()));
+    points.push_back(rotation * p);
+  }
+  return points;
+}
+
+std::vector<float> view(Eigen::Vector3f size, std::uint32_t colour, double turn,
+                        std::uint64_t seed) {
+  hyselam::Rng rng(seed);
+  const auto points = boxView(size, turn, &rng);
+  return describeView(points, std::vector<std::uint32_t>(points.size(), colour));
+}
+
+ObjectDictionary twoBoxes() {
+  ObjectDictionary dictionary;
+  std::vector<std::vector<float>> carton, brick;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    carton.push_back(view({0.2f, 0.08f, 0.3f}, 0xd0c020, 0.5 * static_cast<double>(i), i));
+    brick.push_back(view({0.24f, 0.11f, 0.07f}, 0xb03020, 0.5 * static_cast<double>(i), 100 + i));
+  }
+  dictionary.put(learnObject("carton", carton, {{0.08, 0.2, 0.3}}));
+  dictionary.put(learnObject("brick", brick, {}));
+  return dictionary;
+}
+
+}  // namespace
+
+TEST(Recognition, NewViewsAreKnownAndOtherThingsAreNot) {
+  const ObjectDictionary dictionary = twoBoxes();
+  checkDictionary(dictionary, "learnt");
+  EXPECT_DOUBLE_EQ(dictionary.find("carton")->shape.size[0], 0.2) << "the longer side first";
+  int right = 0;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const double turn = 0.3 * static_cast<double>(i) + 0.1;
+    const auto a = recognise(view({0.2f, 0.08f, 0.3f}, 0xd0c020, turn, 500 + i), dictionary);
+    const auto b = recognise(view({0.24f, 0.11f, 0.07f}, 0xb03020, turn, 600 + i), dictionary);
+    right += (a && a->name == "carton") + (b && b->name == "brick");
+    EXPECT_FALSE(recognise(view({0.5f, 0.5f, 0.6f}, 0x2040c0, turn, 700 + i), dictionary));
+  }
+  EXPECT_GE(right, 38);
+}
+
+TEST(Recognition, TheDictionaryGoesToAnotherRobotAsAFile) {
+  const ObjectDictionary other = dictionaryFromXml(toXml(twoBoxes()));
+  const auto found = recognise(view({0.2f, 0.08f, 0.3f}, 0xd0c020, 0.7, 900), other);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->name, "carton");
+}
+
+TEST(Recognition, WhatCannotBeLearntIsRefused) {
+  EXPECT_THROW(learnObject("cup", {}, {}), hyselam::InputError);
+  EXPECT_THROW(learnObject("cup", {{1.0f, 2.0f}}, {}), hyselam::InputError);
+  EXPECT_TRUE(describeView({}, {}).empty());
+  EXPECT_FALSE(recognise({}, twoBoxes()));
+  EXPECT_FALSE(recognise(view({0.2f, 0.1f, 0.3f}, 0, 0.0, 1), {}));
+}
+
+TEST(Recognition, TheMilkCartonIsFoundInTheScene) {
+  HYSELAM_NEED_DATA(data);
+  const std::string folder = data + "/objects/pcl_tutorials/";
+  const CloudFile model = readPcd(folder + "milk.pcd");
+  const CloudFile scene = readPcd(folder + "milk_cartoon_all_small_clorox.pcd");
+  const auto found = findModel(model.cloud, scene.cloud);
+  ASSERT_FALSE(found.empty());
+  std::cout << found.size() << " found; best: " << found.front().correspondences
+            << " correspondences, " << 100.0 * found.front().covered << " % of the model covered\n";
+  EXPECT_GE(found.front().covered, 0.5);
+  // It is not found where it is not: the scene without it.
+  OrganisedCloud rest = scene.cloud;
+  const Eigen::Isometry3f pose = found.front().model_in_scene.cast<float>();
+  Point low = pose * model.cloud.points.front(), high = low;
+  for (const Point& p : model.cloud.points) {
+    low = low.cwiseMin(pose * p);
+    high = high.cwiseMax(pose * p);
+  }
+  for (Point& p : rest.points) {
+    const bool inside = ((p - low).array() > -0.02f).all() && ((high - p).array() > -0.02f).all();
+    if (inside) p.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  const auto none = findModel(model.cloud, rest);
+  EXPECT_TRUE(none.empty() || none.front().covered < 0.3) << none.front().covered;
+}
