@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Every launch file of the stack can be started: it is found by name, its arguments resolve, its programs
 and nodelet classes exist, and the packages that it uses are declared by the bringup."""
+import itertools
 import os
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -15,6 +16,8 @@ from roslib.packages import find_node
 PACKAGE = "hyselam_bringup"
 # Required arguments; the files need not exist to resolve a launch file.
 ARGUMENTS = ["bag:=/nowhere/x.bag", "map:=/nowhere/x.yaml"]
+# The layers that hyselam.launch can switch; `objects` joins them as soon as its launch file is there.
+LAYERS = ["fsd", "words", "places", "dialogue", "vision"]
 
 
 def nodelet_classes():
@@ -46,6 +49,82 @@ class LaunchFilesTest(unittest.TestCase):
             found = resolve_launch_arguments([PACKAGE, name])[0]
             for arguments in variants:
                 yield name, roslaunch.config.load_config_default([(found, arguments)], None, verbose=False)
+
+    def whole(self, *arguments, name="hyselam.launch"):
+        """What hyselam.launch starts: full name of each node -> its configuration."""
+        config = roslaunch.config.load_config_default([(os.path.join(self.folder, name), list(arguments))], None, verbose=False)
+        self.assertEqual(config.config_errors, [], arguments)
+        nodes = {n.namespace + n.name: n for n in config.nodes}
+        self.assertEqual(len(nodes), len(config.nodes), f"{arguments}: two nodes of one name")
+        return nodes, config
+
+    def test_every_combination_of_layers(self):
+        declared = nodelet_classes()
+        layers = LAYERS + (["objects"] if "objects.launch" in self.files else [])
+        poses = [("slam", False)] + list(itertools.product(("localization", "other"), (False, True)))
+        for pose, known in poses:
+            for on in itertools.product((False, True), repeat=len(layers)):
+                switch = dict(zip(layers, on))
+                arguments = [f"pose:={pose}"] + (["map:=/nowhere/x.yaml"] if known else [])
+                arguments += [f"{layer}:={str(value).lower()}" for layer, value in switch.items()]
+                nodes, _ = self.whole(*arguments)
+                expected = {"/hyselam_manager"}
+                expected |= {"/slam"} if pose == "slam" else set()
+                expected |= {"/localization"} if pose == "localization" else set()
+                expected |= {"/map_server"} if known and pose != "slam" else set()
+                expected |= {"/fsd"} if switch["fsd"] else set()
+                expected |= {"/words", "/words_fsd"} if switch["words"] and pose != "slam" else set()
+                expected |= {"/gr2to"} if switch["places"] or switch["dialogue"] else set()
+                expected |= {"/topo_engine"} if switch["dialogue"] else set()
+                expected |= {"/semantic_localization"} if switch["vision"] else set()
+                found = set(nodes)
+                self.assertTrue(expected <= found, f"{arguments}: without {expected - found}")
+                if not switch.get("objects"):
+                    self.assertEqual(found, expected, arguments)
+                for name, node in nodes.items():
+                    words = node.args.split()
+                    if node.type == "nodelet" and words[0] != "manager":
+                        # One manager: messages pass between the layers without a copy.
+                        self.assertEqual([words[0], words[2]], ["load", "hyselam_manager"], f"{arguments}: {name}")
+                        self.assertIn(words[1], declared)
+
+    def test_the_pose_is_chosen_by_the_map(self):
+        self.assertIn("/slam", self.whole("rviz:=true")[0])
+        self.assertIn("/rviz", self.whole("rviz:=true")[0])
+        self.assertIn("/localization", self.whole("map:=/nowhere/x.yaml")[0])
+
+    def test_work_dir_reaches_every_layer(self):
+        params = self.whole("work_dir:=/w", "pose:=localization")[1].params
+        self.assertEqual(params["/words/corpus"].value, "/w/words.corpus")
+        self.assertEqual(params["/topo_engine/state_file"].value, "/w/dialogue.state")
+        self.assertEqual(self.whole("work_dir:=/w")[1].params["/slam/state"].value, "/w/slam.state")
+        self.assertEqual(self.whole()[1].params["/slam/state"].value, "")
+
+    def test_frames_and_topics_reach_every_layer(self):
+        for pose in ("slam", "localization"):
+            nodes, config = self.whole(f"pose:={pose}", "vision:=true", "scan:=base_scan", "map_frame:=m", "odom_frame:=o",
+                                       "base_frame:=b", "image:=eye")
+            for name, key, value in (("slam", "global_frame_id", "m"), ("localization", "global_frame_id", "m"),
+                                     ("fsd", "odom_frame_id", "o"), ("fsd", "base_frame_id", "b"),
+                                     ("topo_engine", "base_frame", "b"), ("semantic_localization", "base_frame_id", "b"),
+                                     ("semantic_localization", "global_frame_id", "m")):
+                if "/" + name in nodes:
+                    self.assertEqual(config.params[f"/{name}/{key}"].value, value, f"{name} {key}")
+            for name in ("slam", "localization", "fsd", "words", "semantic_localization"):
+                if "/" + name in nodes:
+                    self.assertIn(["scan", "base_scan"], [list(r) for r in nodes["/" + name].remap_args], name)
+            self.assertIn(["image", "eye"], [list(r) for r in nodes["/semantic_localization"].remap_args])
+
+    def test_robots_share_nothing_but_the_master(self):
+        nodes, config = self.whole("first:=a", "second:=b", "work_dir:=/w", name="two_robots.launch")
+        of = {robot: {n[len(robot) + 2:] for n in nodes if n.startswith(f"/{robot}/")} for robot in "ab"}
+        self.assertEqual(of["a"], of["b"])
+        self.assertEqual(len(of["a"]) + len(of["b"]), len(nodes))
+        self.assertEqual(config.params["/a/slam/state"].value, "/w/a/slam.state")
+        self.assertEqual(config.params["/b/slam/global_frame_id"].value, "b/map")
+        for node in nodes.values():
+            for source, target in node.remap_args:
+                self.assertFalse(target.startswith("/"), f"{node.name}: {source} -> {target}")
 
     def test_there_are_launch_files(self):
         self.assertIn("localization.launch", self.files)
