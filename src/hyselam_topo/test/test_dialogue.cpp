@@ -233,6 +233,67 @@ TEST(Dialogue, AnswersQuestions) {
   EXPECT_TRUE(has(v.say("Flurb the gnarl of sqwox."), "I did not understand"));
 }
 
+TEST(Dialogue, AsksByItselfAsItsParametersSay) {
+  DialogueParams params;
+  params.ask = DialogueParams::Ask::kAlways;
+  Visit always(params);
+  always.segment();
+  EXPECT_TRUE(has(always.at(-2.0, 1.0, 0.0), "What is the name of this place?"));
+  EXPECT_TRUE(always.at(-2.1, 1.0, 0.0).sentences.empty()) << "once per stay";
+  always.at(24.0, 1.0, 0.0);
+  EXPECT_EQ(always.dialogue.question().place, always.truth("hall"))
+      << "leaving takes the question back, entering asks the next one";
+  EXPECT_TRUE(has(always.say("The lobby."), "Thank you."));
+  EXPECT_EQ(always.names(always.truth("hall")), std::vector<std::string>{"lobby"});
+  always.at(-2.0, 1.0, 0.0);
+  EXPECT_TRUE(has(always.say("I do not know."), "All right."));
+  EXPECT_EQ(always.dialogue.question().kind, Question::Kind::kNone);
+
+  params.ask = DialogueParams::Ask::kNever;
+  Visit never(params);
+  describe(&never);
+  EXPECT_TRUE(never.at(3.0, 6.0, 0.0).sentences.empty());
+}
+
+TEST(Dialogue, AsksForWhatTellsEqualAnswersApart) {
+  DialogueParams params;
+  params.ask_from_afar = true;
+  Visit v(params);
+  tellOfGlass(&v);
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  // Three rooms of one size on no side that was told: who could know?
+  Reply told = v.say(
+      "You are in the corridor. The corridor is connected to room A. The corridor is connected to "
+      "room "
+      "B. The corridor is connected to room C.");
+  EXPECT_TRUE(has(told, "answers fit equally well")) << told.text();
+  ASSERT_NE(v.dialogue.question().kind, Question::Kind::kNone) << told.text();
+  const std::size_t before = v.dialogue.match()->equal;
+  const Id asked = v.dialogue.question().place;
+  EXPECT_TRUE(has(told, hyselam_topo::codeOf(*v.dialogue.map().findPlace(asked))));
+  v.say("Room B.");
+  EXPECT_EQ(v.names(asked), std::vector<std::string>{"room B"});
+  EXPECT_LT(v.dialogue.match()->equal, before);
+}
+
+TEST(Dialogue, CorrectionsReplaceWhatWasTold) {
+  Visit v;
+  tellOfGlass(&v);
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  v.say(
+      "You are in the corridor. On your left you have the kitchen. The kitchen is 15 by 6 meters.");
+  v.say("No, the kitchen is on your right.");
+  EXPECT_EQ(v.dialogue.places().find("kitchen"), std::vector<Id>{v.truth("i-108")});
+  EXPECT_TRUE(has(v.say("Forget the name kitchen."), "I have forgotten"));
+  EXPECT_TRUE(v.dialogue.places().find("kitchen").empty());
+  v.at(11.0, -3.0, 0.0);
+  v.say("This is the gym.");
+  v.say("Rename the gym to arena.");
+  EXPECT_EQ(v.names(v.truth("i-108")), std::vector<std::string>{"arena"});
+}
+
 TEST(Dialogue, VirtualPlacesAreAddedAndNamed) {
   Visit v;
   describe(&v);

@@ -162,23 +162,27 @@ void Dialogue::tellMatch(Reply* out) const {
       "found", {{"found", std::to_string(all - missing.size())}, {"told", std::to_string(all)}}));
   if (!missing.empty()) out->sentences.push_back(p.say("not_found", {{"names", p.list(missing)}}));
   if (!match_ || match_->equal < 2) return;
-  // The names that equally good answers put in different places.
+  // The names that equally good answers put in different places. Answers that only give a name more
+  // places say less than the one with the fewest, which is taken.
   const std::size_t known = std::min(match_->equal, match_->solutions.size());
+  std::size_t equal = 0;
   std::set<int> unsure;
-  for (std::size_t v = 0; v < match_->best().assignment.size(); ++v) {
-    for (std::size_t s = 1; s < known; ++s) {
+  for (std::size_t s = 0; s < known; ++s) {
+    if (match_->solutions[s].vertices != match_->best().vertices) continue;
+    ++equal;
+    for (std::size_t v = 0; v < match_->best().assignment.size(); ++v) {
       const int here = nameAt(match_->best(), v), there = nameAt(match_->solutions[s], v);
-      if (here != there) {
-        unsure.insert(here);
-        unsure.insert(there);
-      }
+      if (here == there) continue;
+      unsure.insert(here);
+      unsure.insert(there);
     }
   }
+  if (equal < 2) return;
   std::vector<std::string> names;
   for (const int name : unsure) {
     if (name >= 0) names.push_back(building.places[static_cast<std::size_t>(name)].name);
   }
-  const std::string number = std::to_string(known) + (match_->more ? "+" : "");
+  const std::string number = std::to_string(equal) + (match_->more ? "+" : "");
   out->sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
 }
 
