@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""A table with a red box on it, seen and told of: the nodelet ObjectEngine with good and bad input."""
+import math
+import os
+import struct
+import tempfile
+import unittest
+
+import rospy
+import rostest
+import tf2_ros
+from geometry_msgs.msg import TransformStamped
+from hyselam_msgs.msg import ObjectMap, PlaceState
+from hyselam_msgs.srv import ObjectMapPath, QueryObjects
+from nodelet.srv import NodeletLoad, NodeletUnload
+from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import String
+from visualization_msgs.msg import Marker, MarkerArray
+
+from localization_rig import Listener, WAIT
+from localization_rig import wait_until as wait_for
+
+WIDTH, HEIGHT, FOCAL, CAMERA = 320, 240, 230.0, 1.2  # the camera looks along x, 1.2 m above the floor
+BOXES = [((1.6, -0.6, 0.0), (2.4, 0.6, 0.7), (120, 90, 60)),    # table
+         ((1.8, -0.1, 0.7), (1.95, 0.1, 0.95), (200, 20, 20))]  # red box
+
+
+def wait_until(condition, what="what was waited for"):
+    wait_for(condition, what)
+
+
+def hit(direction, low, high):
+    """Distance along the ray from the camera to the box; None: it misses."""
+    near, far = 0.0, math.inf
+    for o, d, a, b in zip((0.0, 0.0, CAMERA), direction, low, high):
+        if abs(d) < 1e-12:
+            if not a <= o <= b:
+                return None
+            continue
+        t1, t2 = sorted(((a - o) / d, (b - o) / d))
+        near, far = max(near, t1), min(far, t2)
+    return near if 0 < near <= far else None
+
+
+def picture(boxes):
+    """Depth [mm] and colours of boxes on a grey floor with a wall behind."""
+    depth, colour = bytearray(), bytearray()
+    scene = boxes + [((-9, -9, -0.1), (9, 9, 0.0), (150, 150, 150)), ((5, -9, 0), (5.2, 9, 3), (220, 220, 210))]
+    for v in range(HEIGHT):
+        for u in range(WIDTH):
+            ray = (1.0, (WIDTH / 2 - 0.5 - u) / FOCAL, (HEIGHT / 2 - 0.5 - v) / FOCAL)
+            hits = [(t, rgb) for t, rgb in ((hit(ray, low, high), rgb) for low, high, rgb in scene) if t]
+            z, (r, g, b) = min(hits) if hits else (0.0, (0, 0, 0))
+            depth += struct.pack("<H", round(1000 * z))
+            colour += bytes((b, g, r))
+    return bytes(depth), bytes(colour)
+
+
+class ObjectEngineTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.load = rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)
+        cls.unload = rospy.ServiceProxy("/manager/unload_nodelet", NodeletUnload)
+        cls.load.wait_for_service(WAIT)
+        broadcaster = tf2_ros.StaticTransformBroadcaster()
+        t = TransformStamped()
+        t.header.frame_id, t.child_frame_id = "map", "camera_optical_frame"
+        t.transform.translation.z = CAMERA
+        q = t.transform.rotation
+        q.x, q.y, q.z, q.w = -0.5, 0.5, -0.5, 0.5
+        broadcaster.sendTransform(t)
+        cls.broadcaster = broadcaster
+        cls.seen = picture(BOXES)
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.name = "/" + self.id().split(".")[-1]
+        self.maps = Listener(self.name + "/object_map", ObjectMap)
+        self.markers = Listener(self.name + "/object_markers", MarkerArray)
+        self.replies = Listener(self.name + "/robot_text", String)
+        self.loaded = False
+
+    def tearDown(self):
+        if self.loaded:
+            self.unload(name=self.name + "/engine")
+        self.folder.cleanup()
+
+    def start(self, **params):
+        params = dict({"publish_period": 0.2, "period": 0.0}, **params)
+        for key, value in params.items():
+            rospy.set_param(self.name + "/engine/" + key, value)
+        topics = ["camera/depth/image_raw", "camera/depth/camera_info", "camera/color/image_raw", "object_map",
+                  "object_markers", "object_text", "robot_text", "place", "topological_map", "save_object_map",
+                  "load_object_map", "query_objects"]
+        self.loaded = self.load(name=self.name + "/engine", type="hyselam_objects/ObjectEngine",
+                                remap_source_args=["/" + t for t in topics] + ["/diagnostics"],
+                                remap_target_args=[self.name + "/" + t for t in topics] + [self.name + "/diagnostics"]
+                                ).success
+        if self.loaded:
+            wait_until(lambda: self.maps.messages)
+        return self.loaded
+
+    def publisher(self, topic, kind):
+        publisher = rospy.Publisher(self.name + "/" + topic, kind, queue_size=20)
+        wait_until(lambda: publisher.get_num_connections() > 0)
+        return publisher
+
+    def camera(self):
+        return (self.publisher("camera/depth/camera_info", CameraInfo),
+                self.publisher("camera/depth/image_raw", Image), self.publisher("camera/color/image_raw", Image))
+
+    def show(self, camera, stamp, **changes):
+        info = CameraInfo(width=WIDTH, height=HEIGHT)
+        info.K = [FOCAL, 0, WIDTH / 2 - 0.5, 0, FOCAL, HEIGHT / 2 - 0.5, 0, 0, 1]
+        depth = Image(width=WIDTH, height=HEIGHT, encoding="16UC1", step=2 * WIDTH, data=self.seen[0])
+        colour = Image(width=WIDTH, height=HEIGHT, encoding="bgr8", step=3 * WIDTH, data=self.seen[1])
+        for key, value in changes.items():
+            setattr(depth, key, value)
+        for publisher, msg in zip(camera, (info, depth, colour)):
+            msg.header.frame_id = changes.get("frame", "camera_optical_frame")
+            msg.header.stamp = rospy.Time(stamp)
+            publisher.publish(msg)
+
+    def kinds(self):
+        return [o.kind for o in self.maps.messages[-1].objects] if self.maps.messages else []
+
+    def see(self, camera, first=1000):
+        stamp = [first]
+
+        def seen():
+            stamp[0] += 1
+            self.show(camera, stamp[0])
+            rospy.sleep(0.2)
+            return sorted(self.kinds()) == ["furniture", "thing"]
+        wait_until(seen)
+
+    def test_seen_objects_with_relations_and_markers(self):
+        self.assertTrue(self.start())
+        self.see(self.camera())
+        newest = self.maps.messages[-1]
+        box, = [o for o in newest.objects if o.kind == "thing"]
+        table, = [o for o in newest.objects if o.kind == "furniture"]
+        self.assertAlmostEqual(box.pose.position.x, 1.87, delta=0.08)
+        self.assertAlmostEqual(box.pose.position.z, 0.83, delta=0.05)
+        self.assertEqual(dict(zip(box.property_names, box.property_values))["colour"], "red")
+        self.assertAlmostEqual(table.pose.position.z, 0.35, delta=0.03)
+        wait_until(lambda: any(r.object == box.id and r.word == "on" and r.other == table.id
+                               for r in self.maps.messages[-1].relations))
+        wait_until(lambda: {m.ns for m in self.markers.messages[-1].markers} >= {"boxes", "names", "relations"})
+        self.assertEqual(self.markers.messages[-1].markers[0].action, Marker.DELETEALL)
+
+    def test_told_objects_questions_files(self):
+        self.assertTrue(self.start())
+        text = self.publisher("object_text", String)
+        place = self.publisher("place", PlaceState)
+        place.publish(PlaceState(name="kitchen"))
+        rospy.sleep(0.3)
+        text.publish("There is a cup on the table. It is red.")
+        wait_until(lambda: self.replies.messages)
+        self.assertIn("cup", self.replies.messages[0].data)
+        self.assertIn("show me one", self.replies.messages[0].data)
+        ask = rospy.ServiceProxy(self.name + "/query_objects", QueryObjects)
+        answer = ask("Where is the red cup?")
+        self.assertTrue(answer.understood)
+        self.assertEqual(answer.places, ["kitchen"])
+        self.assertFalse(ask("Blah blah blah.").understood)
+        path = os.path.join(self.folder.name, "objects.xml")
+        save = rospy.ServiceProxy(self.name + "/save_object_map", ObjectMapPath)
+        load = rospy.ServiceProxy(self.name + "/load_object_map", ObjectMapPath)
+        self.assertTrue(save(path).success)
+        ask("Forget the cup.")
+        self.assertIn("know of no", ask("Where is the cup?").reply)
+        self.assertTrue(load(path).success)
+        self.assertIn("kitchen", ask("Where is the cup?").reply)
+        self.assertFalse(load(os.path.join(self.folder.name, "none.xml")).success)
+        with open(path, "w") as out:
+            out.write("<object_map>")
+        self.assertFalse(load(path).success)
+        self.assertFalse(save("/does/not/exist/objects.xml").success)
+        self.assertIn("kitchen", ask("Where is the cup?").reply, "what was there stays")
+
+    def test_a_shown_object_is_learnt(self):
+        path = os.path.join(self.folder.name, "dictionary.xml")
+        self.assertTrue(self.start(dictionary_file=path, views_to_learn=3))
+        ask = rospy.ServiceProxy(self.name + "/query_objects", QueryObjects)
+        ask.wait_for_service(WAIT)
+        ask("This is a milk carton.")
+        camera = self.camera()
+        stamp = [2000]
+
+        def learnt():
+            stamp[0] += 1
+            self.show(camera, stamp[0])
+            rospy.sleep(0.2)
+            return "milk carton" in self.kinds()
+        wait_until(learnt)
+        self.assertTrue(any("Now I know" in m.data for m in self.replies.messages))
+        with open(path) as file:
+            self.assertIn("milk carton", file.read())
+
+    def test_bad_frames_are_refused_and_the_next_is_used(self):
+        self.assertTrue(self.start())
+        camera = self.camera()
+        for number, changes in enumerate([{"encoding": "8UC1"}, {"data": b"123"}, {"step": 1}, {"width": 0},
+                                          {"frame": "nowhere"}, {"is_bigendian": 1}, {"height": 99999}]):
+            self.show(camera, 10 + number, **changes)
+        camera[0].publish(CameraInfo())
+        self.see(camera)
+
+    def test_bad_parameters_and_files_do_not_load(self):
+        bad = os.path.join(self.folder.name, "bad.xml")
+        with open(bad, "w") as out:
+            out.write("no XML")
+        for number, params in enumerate([{"period": -1.0}, {"gate": 0.0}, {"map_file": bad}, {"dictionary_file": bad}]):
+            self.name += str(number)
+            self.assertFalse(self.start(**params), params)
+
+
+if __name__ == "__main__":
+    rospy.init_node("object_engine_test")
+    rostest.rosrun("hyselam_bringup", "object_engine", ObjectEngineTest)
