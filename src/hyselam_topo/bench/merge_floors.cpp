@@ -252,7 +252,8 @@ int main(int argc, char** argv) {
     if (thesis_sides) params.fitness.sides = SideRule::kCentres;
     hyselam::Progress progress("merge_floors", static_cast<std::size_t>(floors));
     nlohmann::json records = nlohmann::json::array();
-    std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0;
+    std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0, lost = 0;
+    std::size_t whole_map_names = 0, whole_map_right = 0;
     for (int k = 0; k < floors; ++k) {
       const std::uint64_t seed = first + static_cast<std::uint64_t>(k);
       Dice dice(seed);
@@ -319,6 +320,12 @@ int main(int argc, char** argv) {
       at_once += right_at_once;
       all_questions += questions;
       whole += questions == 0;
+      // Rooms that the map has no place for, because gr2to joined them to another.
+      lost += building.places.size() - in_map.size();
+      if (building.places.size() == in_map.size()) {
+        whole_map_names += in_map.size();
+        whole_map_right += right_at_once;
+      }
       records.push_back({{"seed", seed},
                          {"told", building.places.size()},
                          {"places", found.map.places.size()},
@@ -336,6 +343,9 @@ int main(int argc, char** argv) {
               << " questions until all are right\n";
     return nlohmann::json{{"names", names},
                           {"right_at_once", at_once},
+                          {"names_without_place", lost},
+                          {"names_in_whole_maps", whole_map_names},
+                          {"right_in_whole_maps", whole_map_right},
                           {"questions", all_questions},
                           {"floors_without_question", whole},
                           {"floors", records}};

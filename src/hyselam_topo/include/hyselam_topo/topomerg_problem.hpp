@@ -45,6 +45,9 @@ struct MatchProblem {
     int to = 0;           ///< and of the one that lies there
     double angle = 0.0;   ///< seen by the robot, left > 0, spread in the order told
     double middle = 0.0;  ///< of the side, not spread
+    double turn = 0.0;    ///< from the direction through the doors to that of the order told
+    int before = 0;       ///< as many others were told before it on that side, ...
+    int after = 0;        ///< and as many after it
   };
   /// "A, then B" on one side of a place.
   struct ToldOrder {
@@ -56,7 +59,8 @@ struct MatchProblem {
   /// A way out of a vertex.
   struct Passage {
     std::size_t to = 0;    ///< the vertex behind it
-    double bearing = 0.0;  ///< through it
+    double bearing = 0.0;  ///< through it, and the same as a vector
+    double dx = 1.0, dy = 0.0;
     double x = 0.0, y = 0.0;
   };
   struct Relation {

@@ -36,7 +36,8 @@ double ExactSearch::relationsLoss(int name, const Vertices& vertices) const {
 }
 
 double ExactSearch::pairLoss(int i, int j) const {
-  return terms_.missing_edge + (sideBetween(i, j) >= 0 ? terms_.side : 0.0);
+  const int s = sideBetween(i, j);
+  return terms_.missing_edge + (s >= 0 ? terms_.lostSide(problem_.sides[at(s)]) : 0.0);
 }
 
 double ExactSearch::exactLoss(int name, const Vertices& vertices) const {
@@ -174,7 +175,8 @@ double ExactSearch::emptyLoss(int name, const Growth* growth) const {
   for (const int number : terms_.sides_of[at(name)]) {
     const auto& s = problem_.sides[at(number)];
     const int other = s.from == name ? s.to : s.from;
-    if (is_closed_[at(other)] || (growth != nullptr && growth->name == other)) loss += terms_.side;
+    if (is_closed_[at(other)] || (growth != nullptr && growth->name == other))
+      loss += terms_.lostSide(s);
   }
   if (growth != nullptr && problem_.areJoined(at(name), at(growth->name)))
     loss += terms_.missing_edge;
@@ -449,11 +451,11 @@ void ExactSearch::addLast(const Node& node, int name, int last, const double* be
         if (number >= 0) {
           const auto& told = problem_.sides[at(number)];
           if (terms_.by_doors) {
-            const PlaceSet& own = listed_[at(set)].vertices.members;
-            const PlaceSet& other = closed_[at(last)].members;
+            const Vertices& own = listed_[at(set)].vertices;
+            const Vertices& other = closed_[at(last)];
             now[set] =
-                before[set] + (told.from == name ? terms_.doorLoss(told, own, other, heading_)
-                                                 : terms_.doorLoss(told, other, own, heading_));
+                before[set] + (told.from == name ? terms_.sideLoss(told, own, other, heading_)
+                                                 : terms_.sideLoss(told, other, own, heading_));
             continue;
           }
           const bool known = listed_[at(set)].vertices.hasCentre() && closed_[at(last)].hasCentre();

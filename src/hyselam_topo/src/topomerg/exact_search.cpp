@@ -65,7 +65,8 @@ MatchProblem restricted(const MatchProblem& problem, const std::vector<int>& nam
   }
   for (const MatchProblem::ToldSide& s : problem.sides)
     if (number[at(s.from)] >= 0 && number[at(s.to)] >= 0)
-      part.sides.push_back({number[at(s.from)], number[at(s.to)], s.angle, s.middle});
+      part.sides.push_back(
+          {number[at(s.from)], number[at(s.to)], s.angle, s.middle, s.turn, s.before, s.after});
   for (int& fixed : part.fixed) fixed = fixed >= 0 ? number[at(fixed)] : -1;
   return part;
 }

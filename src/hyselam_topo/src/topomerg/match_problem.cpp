@@ -75,12 +75,20 @@ void addSides(const DescribedBuilding& building, const Numbers& name, MatchProbl
     for (std::size_t k = 0; k < row.size(); ++k) {
       const double offset =
           (0.5 * (count - 1.0) - static_cast<double>(k)) * merging::kPi / (2 * count);
-      out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
-                            merging::wrapped(middle + sign * offset), middle});
+      const auto before = [&](const auto* a, const auto* b) { return a->order < b->order; };
+      int earlier = 0, later = 0;
+      for (const DescribedConnection* other : row) {
+        earlier += before(other, row[k]);
+        later += before(row[k], other);
+      }
       // Forwards along the left and the right, from left to right on the front and back.
-      if (k > 0 && row[k - 1]->order < row[k]->order)
+      const double turn = sign * -0.5 * merging::kPi;
+      out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
+                            merging::wrapped(middle + sign * offset), middle, turn, earlier,
+                            later});
+      if (k > 0 && before(row[k - 1], row[k]))
         out->orders.push_back({out->sides.back().from, name(row[k - 1]->to, "description"),
-                               out->sides.back().to, sign * -0.5 * merging::kPi});
+                               out->sides.back().to, turn});
     }
   }
 }
@@ -91,8 +99,10 @@ void addPassages(const AugmentedTopologicalMap& map, const Numbers& vertex, Matc
     const auto a = static_cast<std::size_t>(vertex(edge.a, "map"));
     const auto b = static_cast<std::size_t>(vertex(edge.b, "map"));
     const auto add = [&](double dx, double dy, double x, double y) {
-      out->passages[a].push_back({b, std::atan2(dy, dx), x, y});
-      out->passages[b].push_back({a, std::atan2(-dy, -dx), x, y});
+      const double bearing = std::atan2(dy, dx);
+      const double c = std::cos(bearing), s = std::sin(bearing);
+      out->passages[a].push_back({b, bearing, c, s, x, y});
+      out->passages[b].push_back({a, std::atan2(-dy, -dx), -c, -s, x, y});
     };
     for (const Door& door : edge.doors)
       add(door.normal.x, door.normal.y, door.position.x, door.position.y);

@@ -6,7 +6,11 @@ namespace hyselam_topo::merging {
 namespace {
 
 /// Doors whose directions add up to less than this (of 2) are not on the same side.
-constexpr double kSameSide = 0.5;
+constexpr double kSameSide = 1.6;
+/// Of the vectors through doors on the same side, their product is more than this.
+constexpr double kParallel = 0.8;
+/// Doors that are less apart are counted as neither before nor behind each other [m].
+constexpr double kBeside = 0.3;
 /// A door that lies as far behind another is certainly behind it [m].
 constexpr double kClearlyAhead = 0.5;
 
@@ -64,7 +68,11 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
   by_doors = params.sides == SideRule::kDoors && problem.has_doors;
   for (const MatchProblem::Relation& r : problem.relations)
     clauses.push_back({r.kind, r.a, r.b, r.c, false, 0.0});
-  const std::size_t orders = by_doors && params.orders > 0.0 ? problem.orders.size() : 0;
+  std::size_t orders = 0, ranks = 0;
+  if (by_doors && params.orders > 0.0) {
+    orders = problem.orders.size();
+    for (const MatchProblem::ToldSide& s : problem.sides) ranks += s.before + s.after > 0;
+  }
   for (std::size_t k = 0; k < orders; ++k) {
     const MatchProblem::ToldOrder& o = problem.orders[k];
     clauses.push_back({RelationKind::kNextTo, o.first, o.then, o.from, true, o.turn});
@@ -83,7 +91,8 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
       {params.parts, told_parts},
       {params.kinds, kinds},
       {params.evidence, with_evidence},
-      {params.orders, orders}};
+      {0.5 * params.orders, orders},
+      {0.5 * params.orders, ranks}};
   double sum = 0.0;
   for (const auto& [weight, count] : kinds_of_terms)
     if (count > 0) sum += weight;
@@ -101,6 +110,7 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
   kind = share(6);
   evidence = share(7);
   order = share(8);
+  rank = share(9);
 }
 
 void Terms::weighAs(const Terms& whole) {
@@ -114,6 +124,7 @@ void Terms::weighAs(const Terms& whole) {
   kind = whole.kind;
   evidence = whole.evidence;
   order = whole.order;
+  rank = whole.rank;
 }
 
 double Terms::alone(int name, const Vertices& v) const {
@@ -176,10 +187,31 @@ double Terms::relationValue(RelationKind what, const Vertices& a, const Vertices
 double Terms::doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
                        Heading heading) const {
   double least = kPi;
-  forEachPassage(from, to, [&](double through, double, double) {
-    least = std::min(least, deviation(told, through, heading));
+  forEachPassage(from, to, [&](const MatchProblem::Passage& p) {
+    least = std::min(least, deviation(told, p.bearing, heading));
   });
   return side * least / kPi;
+}
+
+double Terms::rankLoss(const MatchProblem::ToldSide& told, const PlaceSet& from,
+                       const PlaceSet& to) const {
+  if (told.before + told.after == 0 || rank <= 0.0) return 0.0;
+  const double c = std::cos(told.turn), s = std::sin(told.turn);
+  int least = told.before + told.after;
+  forEachPassage(from, to, [&](const MatchProblem::Passage& own) {
+    const double ax = c * own.dx - s * own.dy, ay = s * own.dx + c * own.dy;
+    int before = 0, after = 0;
+    from.forEach([&](std::size_t v) {
+      for (const MatchProblem::Passage& other : problem.passages[v]) {
+        if (from.contains(other.to) || other.dx * own.dx + other.dy * own.dy < kParallel) continue;
+        const double ahead = ax * (other.x - own.x) + ay * (other.y - own.y);
+        before += ahead < -kBeside;
+        after += ahead > kBeside;
+      }
+    });
+    least = std::min(least, std::max(0, told.before - before) + std::max(0, told.after - after));
+  });
+  return rank * least / (told.before + told.after);
 }
 
 double Terms::orderValue(const Clause& clause, const Vertices& first, const Vertices& then,
@@ -190,11 +222,11 @@ double Terms::orderValue(const Clause& clause, const Vertices& first, const Vert
   };
   const auto doorsInto = [&](const Vertices& to) {
     Doors d;
-    forEachPassage(from.members, to.members, [&d](double bearing, double x, double y) {
-      d.x += x;
-      d.y += y;
-      d.dx += std::cos(bearing);
-      d.dy += std::sin(bearing);
+    forEachPassage(from.members, to.members, [&d](const MatchProblem::Passage& p) {
+      d.x += p.x;
+      d.y += p.y;
+      d.dx += p.dx;
+      d.dy += p.dy;
       ++d.count;
     });
     return d;
@@ -203,7 +235,7 @@ double Terms::orderValue(const Clause& clause, const Vertices& first, const Vert
   if (a.count == 0 || b.count == 0) return 0.0;
   const double dx = a.dx / a.count + b.dx / b.count, dy = a.dy / a.count + b.dy / b.count;
   const double length = std::hypot(dx, dy);
-  if (length < kSameSide) return 0.5;  // doors that face each other: no matter which way
+  if (length < kSameSide) return 0.5;
   const double c = std::cos(clause.turn) / length, s = std::sin(clause.turn) / length;
   const double on = (c * dx - s * dy) * (b.x / b.count - a.x / a.count) +
                     (s * dx + c * dy) * (b.y / b.count - a.y / a.count);
@@ -238,15 +270,18 @@ double evaluate(const Terms& terms, const std::vector<Vertices>& names, double* 
     for (const MatchProblem::ToldSide& s : problem.sides) {
       std::vector<double> right;
       if (terms.by_doors)
-        terms.forEachPassage(
-            of(s.from).members, of(s.to).members,
-            [&](double bearing, double, double) { right.push_back(wrapped(bearing - s.middle)); });
+        terms.forEachPassage(of(s.from).members, of(s.to).members,
+                             [&](const MatchProblem::Passage& p) {
+                               right.push_back(wrapped(p.bearing - s.middle));
+                             });
       else if (Terms::comparable(of(s.from), of(s.to)))
         right.push_back(wrapped(Terms::bearing(of(s.from), of(s.to)) - s.angle));
-      if (right.empty())
-        loss += terms.side;
-      else
-        exact.push_back(std::move(right));
+      if (right.empty()) {
+        loss += terms.lostSide(s);
+        continue;
+      }
+      if (terms.by_doors) loss += terms.rankLoss(s, of(s.from).members, of(s.to).members);
+      exact.push_back(std::move(right));
     }
     double least = 0.0, at = 0.0;
     bool first = true;

@@ -64,7 +64,8 @@ class Terms {
   double forgotten_edge = 0.0;  ///< in the map, not told
   double side = 0.0;            ///< the most one wrong side costs
   double relation = 0.0;
-  double order = 0.0;
+  double order = 0.0;  ///< of two neighbours in a row told
+  double rank = 0.0;   ///< of one place in a row told
   bool by_doors = false;
   double parts = 0.0;
   double kind = 0.0;
@@ -96,19 +97,28 @@ class Terms {
   }
   double sideLoss(const MatchProblem::ToldSide& told, const Vertices& from, const Vertices& to,
                   Heading heading) const {
-    if (by_doors) return doorLoss(told, from.members, to.members, heading);
-    if (!comparable(from, to)) return side;
+    if (by_doors)
+      return doorLoss(told, from.members, to.members, heading) +
+             rankLoss(told, from.members, to.members);
+    if (!comparable(from, to)) return lostSide(told);
     return side * deviation(told, bearing(from, to), heading) / kPi;
   }
   /// Of the door that fits best; less if there are more of them.
   double doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
                   Heading heading) const;
-  /// All passages from one set into the other: visit(bearing, x, y).
+  /// Of the order told: as many doors as told must lie before and behind on that side of `from`.
+  double rankLoss(const MatchProblem::ToldSide& told, const PlaceSet& from,
+                  const PlaceSet& to) const;
+  /// What is lost of a side that cannot be compared.
+  double lostSide(const MatchProblem::ToldSide& told) const {
+    return side + (told.before + told.after > 0 ? rank : 0.0);
+  }
+  /// All passages from one set into the other: visit(passage).
   template <typename Visit>
   void forEachPassage(const PlaceSet& from, const PlaceSet& to, Visit&& visit) const {
     from.forEach([&](std::size_t v) {
       for (const MatchProblem::Passage& p : problem.passages[v])
-        if (to.contains(p.to)) visit(p.bearing, p.x, p.y);
+        if (to.contains(p.to)) visit(p);
     });
   }
   /// `of` gives the vertices of a name.
