@@ -25,6 +25,7 @@ add_library(hyselam_dialogue
   src/dialogue/place_pose.cpp
   src/dialogue/route.cpp
   src/dialogue/topo_state.cpp)
+#catkin_lint: ignore_once missing_directory
 target_include_directories(hyselam_dialogue PRIVATE src/core ${HYSELAM_DIALOGUE_GENERATED})
 target_include_directories(hyselam_dialogue SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS}
                                                            ${YAML_CPP_INCLUDE_DIR})

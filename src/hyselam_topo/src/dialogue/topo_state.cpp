@@ -12,7 +12,7 @@ namespace hyselam_topo {
 namespace {
 
 /// From a point to the nearest opening of two places, or of any door of the first if `b` is 0.
-double distanceToDoors(const AugmentedTopologicalMap& map, Id a, Id b, hyselam::Point2 point) {
+double doorDistance(const AugmentedTopologicalMap& map, Id a, Id b, hyselam::Point2 point) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Edge& edge : map.edges) {
     const bool touches = edge.a == a || edge.b == a;
@@ -82,12 +82,12 @@ bool TopoState::update(const AugmentedTopologicalMap& map, double stamp,
   if (!here) {
     // Thresholds may belong to no place: a held place ends where its doors are no longer near.
     const bool at_door =
-        held != 0 && !jumped && distanceToDoors(map, held, 0, point) <= params_.inside;
+        held != 0 && !jumped && doorDistance(map, held, 0, point) <= params_.inside;
     candidate_ = 0;
     return set(at_door ? held : 0, at_door);
   }
   const Id now = here->place;
-  const bool near_door = distanceToDoors(map, now, 0, point) <= params_.inside;
+  const bool near_door = doorDistance(map, now, 0, point) <= params_.inside;
   if (now == held || held == 0 || jumped || map.findPlace(held) == nullptr) {
     candidate_ = 0;
     return set(now, near_door);
@@ -98,7 +98,7 @@ bool TopoState::update(const AugmentedTopologicalMap& map, double stamp,
   }
   // Without a door on record the robot came through an opening that is not: there is none to be
   // near to, so the place changes at once.
-  const bool between = distanceToDoors(map, now, held, point) <= params_.inside;
+  const bool between = doorDistance(map, now, held, point) <= params_.inside;
   if (between && stamp - candidate_since_ < params_.settle) return set(held, true);
   return set(now, near_door);
 }

@@ -50,9 +50,9 @@ Gr2ToServer::Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
           nh.advertise<hyselam_msgs::AugmentedTopologicalMap>("topological_map", 1, true)),
       marker_publisher_(
           nh.advertise<visualization_msgs::MarkerArray>("topological_markers", 1, true)),
-      background_([this](const BackgroundGr2To::Outcome& outcome) { onOutcome(outcome); },
-                  pipeline ? std::move(pipeline)
-                           : BackgroundGr2To::updating(params_.partial_updates)) {
+      background_(
+          [this](const BackgroundGr2To::Outcome& outcome) { onOutcome(outcome); },
+          pipeline ? std::move(pipeline) : BackgroundGr2To::updating(params_.partial_updates)) {
   if (!params_.map_file.empty()) {
     background_.replace(loadToPublish(params_.map_file), params_.map_file);
     publish(background_.current());

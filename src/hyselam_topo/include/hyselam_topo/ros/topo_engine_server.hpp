@@ -103,9 +103,9 @@ class TopoEngineServer {
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
   GoalDriver driver_;
-  ros::Publisher text_publisher_, talk_publisher_, place_publisher_, map_publisher_, marker_publisher_,
-      question_publisher_, grid_publisher_, path_publisher_, poses_publisher_, pose_publisher_,
-      follow_publisher_, names_publisher_;
+  ros::Publisher text_publisher_, talk_publisher_, place_publisher_, map_publisher_,
+      marker_publisher_, question_publisher_, grid_publisher_, path_publisher_, poses_publisher_,
+      pose_publisher_, follow_publisher_, names_publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer timer_;
