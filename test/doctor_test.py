@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""The doctor at robots that are well and robots that are not: each ill is told by name, the healthy are let go."""
+import copy
+import json
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rospy
+import rostest
+from nav_msgs.msg import OccupancyGrid
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+from geometry_msgs.msg import TransformStamped
+
+from localization_rig import Recording, wait_until
+
+
+def transform(parent, child, stamp, rotation=(0.0, 0.0, 0.0, 1.0)):
+    t = TransformStamped()
+    t.header.frame_id, t.child_frame_id, t.header.stamp = parent, child, stamp
+    r = t.transform.rotation
+    r.x, r.y, r.z, r.w = rotation
+    return t
+
+
+def upside_down(scan):
+    """What the same laser sees when it hangs upside down: its beams go round the other way."""
+    scan = copy.deepcopy(scan)
+    scan.angle_min, scan.angle_max = -scan.angle_max, -scan.angle_min
+    scan.ranges = scan.ranges[::-1]
+    return scan
+
+
+class DoctorTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.recording = Recording("small")
+        cls.folder = tempfile.TemporaryDirectory()
+
+    def setUp(self):
+        rospy.set_param("/use_sim_time", True)
+        self.sent = {"/clock": 0, "/tf": 0, "/scan": 0}
+
+    def call(self, play, *arguments, uri=None):
+        """The doctor's exit status and findings; `play` feeds the robot meanwhile."""
+        path = os.path.join(self.folder.name, "findings.json")
+        environment = dict(os.environ, ROS_MASTER_URI=uri) if uri else None
+        doctor = subprocess.Popen(["rosrun", "hyselam_bringup", "doctor", "--seconds", "4", "--json", path, *arguments],
+                                  env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if play:
+            play(doctor)
+        self.said, _ = doctor.communicate(timeout=60)
+        with open(path) as file:
+            return doctor.returncode, json.load(file)["findings"]
+
+    def wrong(self, findings, name):
+        return " | ".join(f"{f['text']} {f['hint']}" for f in findings if f["name"] == name and f["level"] == "WRONG")
+
+    def robot(self, scan_of=lambda s: s, static=None, topic="scan", odom="odom", pose=True, grid=True, back=False, clock=True):
+        """A player of the recording: clock, scans, tf, a map and a pose in it."""
+        def play(doctor):
+            publish = {
+                "clock": rospy.Publisher("/clock", Clock, queue_size=1000),
+                "tf": rospy.Publisher("/tf", TFMessage, queue_size=5000),
+                "static": rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True),
+                "scan": rospy.Publisher(topic, LaserScan, queue_size=1000),
+                "map": rospy.Publisher("map", OccupancyGrid, queue_size=2, latch=True)}
+            if not clock:
+                publish.pop("clock").unregister()
+            try:
+                # The doctor has to know of the publishers when it asks the master; then it subscribes.
+                publish["static"].publish(TFMessage(self.recording.static if static is None else static))
+                if grid:
+                    publish["map"].publish(self.recording.map if grid is True else grid)
+                wait_until(lambda: publish["tf"].get_num_connections() > 0 or doctor.poll() is not None, "the doctor does not listen")
+                time.sleep(0.3)
+                moving = self.recording.scans[:250]
+                transforms = iter(self.recording.transforms)
+                next_tf = next(transforms)
+                for i, scan in enumerate(moving):
+                    if doctor.poll() is not None:
+                        break
+                    stamp = scan.header.stamp
+                    if clock:
+                        publish["clock"].publish(Clock(stamp - rospy.Duration(20 if back and i == 200 else 0)))
+                    while next_tf.header.stamp <= stamp + rospy.Duration(0.1):
+                        t = copy.deepcopy(next_tf)
+                        if t.header.frame_id == "odom":
+                            t.header.frame_id = odom
+                        publish["tf"].publish(TFMessage([t]))
+                        next_tf = next(transforms)
+                    if pose:
+                        publish["tf"].publish(TFMessage([transform("map", odom, stamp)]))
+                    publish["scan"].publish(scan_of(scan))
+                    time.sleep(0.01)
+                doctor.wait(30)
+            finally:
+                for publisher in publish.values():
+                    publisher.unregister()
+        return play
+
+    def test_no_master(self):
+        status, findings = self.call(None, uri="http://localhost:9")
+        self.assertEqual(status, 1)
+        self.assertIn("no ROS master answers at http://localhost:9", self.wrong(findings, "master"))
+
+    def test_nothing_runs(self):
+        status, findings = self.call(None)
+        self.assertEqual(status, 1)
+        self.assertIn("nobody publishes /scan", self.wrong(findings, "scan"))
+        self.assertIn("nobody publishes /map", self.wrong(findings, "map"))
+        self.assertIn("tf has no frame odom and no frame base_link", self.wrong(findings, "tf"))
+        self.assertIn("nobody publishes /clock: time stands still", self.wrong(findings, "clock"))
+
+    def test_a_healthy_robot_is_let_go(self):
+        status, findings = self.call(self.robot())
+        self.assertEqual(status, 0, self.said)
+        self.assertIn("mounted as tf says", " ".join(f["text"] for f in findings if f["name"] == "laser" and f["level"] == "ok"))
+
+    def test_a_laser_upside_down(self):
+        status, findings = self.call(self.robot(scan_of=upside_down))
+        self.assertEqual(status, 1)
+        self.assertIn("mounted upside down:", self.wrong(findings, "laser"), self.said)
+
+    def test_a_laser_upside_down_that_tf_knows_of(self):
+        static = copy.deepcopy(self.recording.static)
+        for t in static:
+            t.transform.rotation.x, t.transform.rotation.w = 1.0, 0.0
+        status, _ = self.call(self.robot(scan_of=upside_down, static=static))
+        self.assertEqual(status, 0, self.said)
+
+    def test_a_laser_backwards(self):
+        static = copy.deepcopy(self.recording.static)
+        for t in static:
+            t.transform.rotation.z, t.transform.rotation.w = 1.0, 0.0
+        status, findings = self.call(self.robot(static=static))
+        self.assertEqual(status, 1)
+        self.assertIn("mounted backwards:", self.wrong(findings, "laser"), self.said)
+
+    def test_wrong_frame_no_pose_and_no_free_map(self):
+        grid = copy.deepcopy(self.recording.map)
+        grid.data = [-1] * len(grid.data)
+        status, findings = self.call(self.robot(odom="odom_combined", pose=False, grid=grid))
+        self.assertEqual(status, 1)
+        self.assertIn("tf has no frame odom; it has base_link", self.wrong(findings, "tf"), self.said)
+        self.assertIn("it has no free cell", self.wrong(findings, "map"))
+
+    def test_no_mount_and_no_pose(self):
+        _, findings = self.call(self.robot(static=[], pose=False))
+        self.assertIn("static_transform_publisher", self.wrong(findings, "tf"), self.said)
+        self.assertIn("nobody publishes map -> odom", self.wrong(findings, "tf"))
+
+    def test_other_topic_other_type_time_goes_back(self):
+        wrong = rospy.Publisher("floor", String, queue_size=1, latch=True)
+        try:
+            _, findings = self.call(self.robot(topic="base_scan", back=True), "map:=floor")
+        finally:
+            wrong.unregister()
+        self.assertIn("start with scan:=/base_scan", self.wrong(findings, "scan"), self.said)
+        self.assertIn("/floor is a std_msgs/String", self.wrong(findings, "map"))
+        self.assertIn("the time of /clock went back by", self.wrong(findings, "clock"))
+
+    def test_an_old_bag_without_clock_and_a_blind_laser(self):
+        rospy.set_param("/use_sim_time", False)
+
+        def blind(scan):
+            scan = copy.deepcopy(scan)
+            scan.ranges = [float("inf")] * len(scan.ranges)
+            return scan
+        _, findings = self.call(self.robot(scan_of=blind, clock=False))
+        self.assertIn("s ago a bag needs use_sim_time", self.wrong(findings, "clock"), self.said)
+        self.assertIn("no beam ever returns", self.wrong(findings, "scan"))
+
+    def test_two_localisations(self):
+        other = subprocess.Popen(["rosrun", "tf2_ros", "static_transform_publisher", "0", "0", "0", "0", "0", "0", "map", "odom"],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            _, findings = self.call(self.robot())
+        finally:
+            other.terminate()
+            other.wait()
+        self.assertIn("map -> odom is published by", self.wrong(findings, "tf"), self.said)
+
+    def test_usage(self):
+        done = subprocess.run(["rosrun", "hyselam_bringup", "doctor", "--seconds", "0"], stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--seconds", done.stderr)
+
+
+if __name__ == "__main__":
+    rospy.init_node("doctor_test")
+    rostest.rosrun("hyselam_bringup", "doctor_test", DoctorTest)
