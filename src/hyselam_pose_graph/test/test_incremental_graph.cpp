@@ -95,6 +95,14 @@ TEST(IncrementalGraph, CovariancesEqualTheBatchBeforeAndAfterALoop) {
   compare();
 }
 
+TEST(IncrementalGraph, CovariancesReachAcrossALongWayWithoutLoops) {
+  IncrementalGraph graph;
+  graph.addPose({});
+  constexpr int kSteps = 200000;
+  for (int i = 0; i < kSteps; ++i) graph.append({}, 4.0 * Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(graph.covariance(kSteps)(2, 2), 0.25 * kSteps, 1e-6 * kSteps);
+}
+
 TEST(IncrementalGraph, PatternIsReusedWhenALoopFitsIntoIt) {
   const auto known = random_graphs::streets(200, 0.02, 3);
   IncrementalGraph graph(known.graph);

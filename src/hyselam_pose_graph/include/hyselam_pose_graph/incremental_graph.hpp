@@ -23,7 +23,8 @@ class IncrementalGraph {
   IncrementalGraph(IncrementalGraph&&) noexcept;
   IncrementalGraph& operator=(IncrementalGraph&&) noexcept;
 
-  /// A pose that nothing ties to the others yet; its index, which is its id too.
+  /// A pose that nothing ties to the others yet; its index. Its id is one more than that of the
+  /// pose before it, 0 for the first.
   int addPose(const hyselam::Pose2& pose);
   /// The pose after the newest one, where odometry has it; `information` as in PoseEdge.
   /// @throws std::invalid_argument without a first pose, and as PoseGraph::validate does; nothing
@@ -42,7 +43,8 @@ class IncrementalGraph {
   OptimizeResult optimise();
   /// Covariance of (x, y, theta) of a pose given the first one, in the frame of the graph, as of
   /// the last optimise(); poses appended since then add their odometry's. The first one asked for
-  /// after optimise() costs a factorisation, the others little.
+  /// after optimise() costs a factorisation, the others little: a pose of the graph optimised last
+  /// a way up the tree of elimination, one appended since a product for each pose in between.
   /// @throws std::invalid_argument for a pose that is not there or was not tied to a pose before it
   /// by append() since the last optimise(); std::runtime_error when edges do not determine poses.
   Eigen::Matrix3d covariance(int pose) const;
@@ -52,6 +54,7 @@ class IncrementalGraph {
 
  private:
   std::vector<hyselam::Pose2> optimizerPoses() const;
+  Eigen::Matrix3d carriedOver(const Eigen::Matrix3d& before, int pose) const;
 
   OptimizeParams params_;
   PoseGraph graph_;

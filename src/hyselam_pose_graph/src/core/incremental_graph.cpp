@@ -88,31 +88,37 @@ Eigen::Matrix3d IncrementalGraph::covariance(int pose) const {
   if (pose < 0 || pose >= static_cast<int>(graph_.poses.size()))
     throw std::invalid_argument("covariance: no pose " + std::to_string(pose));
   const int known = optimizer_ ? static_cast<int>(optimizer_->graph().poses.size()) : 0;
-  if (pose >= known) {
-    if (pose == 0) return Eigen::Matrix3d::Zero();  // where the frame is
-    const int made_by = appended_by_[static_cast<std::size_t>(pose)];
-    if (made_by < 0)
-      throw std::invalid_argument("covariance: pose " + std::to_string(pose) +
+  int from = pose;  // the newest pose up to it whose covariance is known
+  for (; from > 0 && from >= known; --from)
+    if (appended_by_[static_cast<std::size_t>(from)] < 0)
+      throw std::invalid_argument("covariance: pose " + std::to_string(from) +
                                   " is not optimised yet");
-    // An error of the pose before carries over, its turn by the lever of the step; odometry adds
-    // its own.
-    const PoseEdge& edge = graph_.edges[static_cast<std::size_t>(made_by)];
-    const Pose2 &from = graph_.poses[static_cast<std::size_t>(pose) - 1],
-                &to = graph_.poses[static_cast<std::size_t>(pose)];
-    const Eigen::LDLT<Eigen::Matrix3d> information(edge.information);
-    if (!(information.vectorD().minCoeff() > 0.0))
-      throw std::runtime_error("the edges do not determine the poses");
-    Eigen::Matrix3d carry = Eigen::Matrix3d::Identity(), turn = carry;
-    carry(0, 2) = from.y - to.y;
-    carry(1, 2) = to.x - from.x;
-    const double c = std::cos(to.theta), s = std::sin(to.theta);
-    turn.topLeftCorner<2, 2>() << c, -s, s, c;
-    return carry * covariance(pose - 1) * carry.transpose() +
-           turn * information.solve(Eigen::Matrix3d::Identity()) * turn.transpose();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of pose 0: where the frame is
+  if (from < known) {
+    if (!marginals_)
+      marginals_ = std::make_unique<Marginals>(*optimizer_->system_, optimizerPoses(), weights_);
+    covariance = marginals_->covariance(from);
   }
-  if (!marginals_)
-    marginals_ = std::make_unique<Marginals>(*optimizer_->system_, optimizerPoses(), weights_);
-  return marginals_->covariance(pose);
+  while (from < pose) covariance = carriedOver(covariance, ++from);
+  return covariance;
+}
+
+/// An error of the pose before carries over, its turn by the lever of the step; odometry adds its
+/// own.
+Eigen::Matrix3d IncrementalGraph::carriedOver(const Eigen::Matrix3d& before, int pose) const {
+  const auto at = static_cast<std::size_t>(pose);
+  const PoseEdge& edge = graph_.edges[static_cast<std::size_t>(appended_by_[at])];
+  const Pose2 &from = graph_.poses[at - 1], &to = graph_.poses[at];
+  const Eigen::LDLT<Eigen::Matrix3d> information(edge.information);
+  if (!(information.vectorD().minCoeff() > 0.0))
+    throw std::runtime_error("the edges do not determine the poses");
+  Eigen::Matrix3d carry = Eigen::Matrix3d::Identity(), turn = carry;
+  carry(0, 2) = from.y - to.y;
+  carry(1, 2) = to.x - from.x;
+  const double c = std::cos(to.theta), s = std::sin(to.theta);
+  turn.topLeftCorner<2, 2>() << c, -s, s, c;
+  return carry * before * carry.transpose() +
+         turn * information.solve(Eigen::Matrix3d::Identity()) * turn.transpose();
 }
 
 std::vector<Pose2> IncrementalGraph::optimizerPoses() const {
