@@ -12,9 +12,10 @@ namespace hyselam_scan_matching {
 
 struct SearchParams {
   double resolution = 0.05;  ///< of positions and of the grid [m], > 0
-  double reach = 0.15;  ///< a point counts less with its distance from a surface, up to here [m]
-  double window = 3.0;  ///< positions this far from the guess, each axis [m], > 0
-  double turn = 0.5;    ///< headings this far from the guess, 0..pi [rad]
+  /// A point counts less with its distance from a surface, up to here [m], > 0.
+  double reach = 0.15;
+  double window = 3.0;       ///< positions this far from the guess, each axis [m], > 0
+  double turn = 0.5;         ///< headings this far from the guess, 0..pi [rad]
   double least_score = 0.5;  ///< below this nothing is found, 0..1
 
   /// @throws hyselam::ParameterError

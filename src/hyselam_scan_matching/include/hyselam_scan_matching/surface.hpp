@@ -22,7 +22,8 @@ struct SurfaceParams {
   double spacing = 0.05;       ///< points nearer to the last one kept are left out [m], >= 0
   double normal_reach = 0.15;  ///< a normal is a line through the neighbours this near [m], > 0
   double normal_reach_per_m = 0.03;  ///< or this part of the range, where beams lie apart, >= 0
-  double normal_bend = 0.3;  ///< neighbours off the line by more than this part of its length: none
+  /// Neighbours off the line by more than this part of its length: no normal, > 0.
+  double normal_bend = 0.3;
 
   /// @throws hyselam::ParameterError
   void validate() const;
