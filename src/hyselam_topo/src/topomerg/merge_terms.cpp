@@ -187,9 +187,15 @@ double Terms::relationValue(RelationKind what, const Vertices& a, const Vertices
 double Terms::doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
                        Heading heading) const {
   double least = kPi;
-  forEachPassage(from, to, [&](const MatchProblem::Passage& p) {
-    least = std::min(least, deviation(told, p.bearing, heading));
-  });
+  // Seen from the smaller set: it has fewer passages.
+  if (from.size() <= to.size())
+    forEachPassage(from, to, [&](const MatchProblem::Passage& p) {
+      least = std::min(least, deviation(told, p.bearing, heading));
+    });
+  else
+    forEachPassage(to, from, [&](const MatchProblem::Passage& p) {
+      least = std::min(least, deviation(told, wrapped(p.bearing + kPi), heading));
+    });
   return side * least / kPi;
 }
 
