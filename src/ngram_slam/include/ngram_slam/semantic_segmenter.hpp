@@ -82,4 +82,8 @@ class SemanticSegmenter {
   bool open_ = false;                // its last part was a gap: what follows joins it
 };
 
+/// The regions of all runs, in order, by the decision tree. @throws hyselam::ParameterError
+std::vector<SemanticRegion> semanticRegions(const ObservationStore& observations,
+                                            const SemanticParams& params = {});
+
 }  // namespace ngram_slam

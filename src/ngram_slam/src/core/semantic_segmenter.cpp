@@ -108,4 +108,19 @@ void SemanticSegmenter::tell(std::vector<SemanticRegion>& out) {
   open_ = false;
 }
 
+std::vector<SemanticRegion> semanticRegions(const ObservationStore& observations,
+                                            const SemanticParams& params) {
+  SemanticSegmenter segmenter(params);
+  std::vector<SemanticRegion> all;
+  const auto take = [&](const std::vector<SemanticRegion>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  for (std::uint32_t run = 0; run < observations.runs(); ++run) {
+    for (std::uint32_t i = observations.runBegin(run); i < observations.runEnd(run); ++i)
+      take(segmenter.add(observations[i]));
+    take(segmenter.finish());
+  }
+  return all;
+}
+
 }  // namespace ngram_slam

@@ -8,6 +8,7 @@
 #include "ngram_slam/match_place.hpp"
 #include "ngram_slam/semantic_regions_io.hpp"
 #include "recognition_options.hpp"
+#include "word_tables.hpp"
 
 namespace {
 
@@ -17,23 +18,6 @@ struct Options {
   RecognitionOptions recognition;
   std::string out, corpus;
 };
-
-void writeWords(const std::string& path, const Recogniser& r) {
-  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    out << std::setprecision(15)
-        << "word,level,first,last,run,stamp_begin,stamp_end,class,size,angle\n";
-    const Text& text = r.text();
-    for (WordIndex i = 0; i < text.words(); ++i) {
-      const Word w = text.word(i);
-      const std::uint32_t begin = text.observationBegin(i), end = text.observationEnd(i);
-      out << i << ',' << w.level << ',' << w.first << ',' << w.last << ','
-          << r.observations().runOf(begin) << ',' << r.observations().stamp(begin) << ','
-          << r.observations().stamp(end - 1) << ',' << w.syllables.density_class << ','
-          << w.syllables.size << ',' << std::setprecision(6) << w.syllables.angle
-          << std::setprecision(15) << '\n';
-    }
-  });
-}
 
 struct PlacedMatch {
   Match match;
@@ -60,21 +44,6 @@ void writeMatches(const std::string& path, const Recogniser& r,
   });
 }
 
-/// Kinds of regions, from the observations as they are kept.
-std::vector<SemanticRegion> regionsOf(const ObservationStore& observations) {
-  SemanticSegmenter segmenter;
-  std::vector<SemanticRegion> all;
-  const auto take = [&](const std::vector<SemanticRegion>& more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
-  for (std::uint32_t run = 0; run < observations.runs(); ++run) {
-    for (std::uint32_t i = observations.runBegin(run); i < observations.runEnd(run); ++i)
-      take(segmenter.add(observations[i]));
-    take(segmenter.finish());
-  }
-  return all;
-}
-
 nlohmann::json run(const Options& o) {
   Recogniser r(o.recognition.params());
   std::error_code error;
@@ -89,7 +58,7 @@ nlohmann::json run(const Options& o) {
   });
   writeWords(o.out + "/words.csv", r);
   writeMatches(o.out + "/matches.csv", r, matches);
-  const std::vector<SemanticRegion> regions = regionsOf(r.observations());
+  const std::vector<SemanticRegion> regions = semanticRegions(r.observations());
   std::vector<double> stamps;
   for (std::uint32_t i = 0; i < r.observations().size(); ++i)
     stamps.push_back(r.observations().stamp(i));
