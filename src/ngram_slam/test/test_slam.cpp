@@ -161,6 +161,10 @@ TEST(SlamEngine, refusesScansThatCannotBeUsedAndLivesOn) {
   bad.angle_increment = 0.0;
   EXPECT_THROW(engine.add(bad, engine.pose()), hyselam::InputError);
   bad = scan;
+  bad.laser_in_base.x = 6.0;  // not on the map that words are measured on
+  EXPECT_THROW(engine.add(bad, engine.pose()), hyselam::InputError);
+  EXPECT_THROW(engine.add(scan, Pose2{1e9, 0, 0}), hyselam::InputError);
+  bad = scan;
   bad.stamp = nan;
   EXPECT_THROW(engine.add(bad, engine.pose()), hyselam::InputError);
   EXPECT_EQ(engine.counters().scans, 50U);
@@ -201,6 +205,15 @@ TEST(SlamEngine, mapToOdomUndoesTheDrift) {
   const auto& last = building().scans.back();
   const Pose2 pose = engine.odomInMap() * *hyselam::poseAt(building().odometry, last.stamp, 1.0);
   EXPECT_NEAR(distance(pose, engine.pose()), 0.0, 1e-9);
+  // The map begins where odometry is at the first scan.
+  const auto& first = building().scans.front();
+  const auto truth = [](double stamp) {
+    return *hyselam::poseAt(building().ground_truth, stamp, 1.0);
+  };
+  const Pose2 expected = *hyselam::poseAt(building().odometry, first.stamp, 1.0) *
+                         between(truth(first.stamp), truth(last.stamp));
+  EXPECT_LT(distance(pose, expected), 0.5);
+  EXPECT_GT(distance(*hyselam::poseAt(building().odometry, last.stamp, 1.0), expected), 1.0);
 }
 
 TEST(SlamEngine, jobsRunWhileScansComeIn) {
@@ -221,6 +234,78 @@ TEST(SlamEngine, jobsRunWhileScansComeIn) {
   if (job) engine.apply(runJob(*job));
   finish(&engine);
   EXPECT_LT(trajectoryError(engine.trajectory(), log.ground_truth).rms, 0.15);
+}
+
+TEST(SlamEngine, weightsGoToTheirLoopsThoughARunBeganMeanwhile) {
+  SlamEngine engine;
+  const auto& log = building();
+  std::optional<SlamJob> job;
+  std::size_t i = 0;
+  const auto add = [&] {
+    engine.add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
+    ++i;
+  };
+  while (i + 1 < log.scans.size() && !(job && job->graph)) {
+    if (job) engine.apply(runJob(*job));
+    add();
+    job = engine.takeJob();
+  }
+  ASSERT_TRUE(job && job->graph);
+  const std::size_t loops = engine.loops().size();
+  engine.endRun();
+  add();
+  ASSERT_EQ(engine.loops().size(), loops + 1);  // the tie to the run before
+  SlamJobResult result = runJob(*job);
+  // Each edge its own weight.
+  std::vector<double>& weights = result.optimised->weights;
+  ASSERT_EQ(weights.size(), job->graph->edges.size());
+  for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 + 1e-6 * static_cast<double>(k);
+  engine.apply(result);
+  for (std::size_t k = 0; k < loops; ++k)
+    EXPECT_EQ(engine.loops()[k].weight, weights[weights.size() - loops + k]);
+  EXPECT_EQ(engine.loops().back().weight, 1.0);  // nobody has weighed it yet
+}
+
+TEST(SlamEngine, anAnswerComesTooLateForMatchesThatWereFoundAnew) {
+  SlamEngine engine;
+  feed(&engine, building(), 0, 300);
+  const auto k = static_cast<int>(engine.keyframes().size()) - 1;
+  SlamState state = engine.state();
+  SlamMatch match;
+  match.keyframe_older = 1;
+  match.keyframe_newer = k;
+  state.matches.assign(1, match);
+  SlamEngine second(engine.params(), state);
+  SlamJobResult late;
+  LoopTask task;
+  task.source = LoopSource::kNgram;
+  task.match = 0;
+  task.older = 2;
+  task.newer = k;
+  LoopAnswer answer;
+  answer.verified = true;
+  answer.loop.older = task.older;
+  answer.loop.newer = task.newer;
+  answer.loop.information.setIdentity();
+  late.tasks.push_back(task);
+  late.answers.push_back(answer);
+  second.apply(late);
+  EXPECT_FALSE(second.matches().front().verified);
+  late.tasks.front().older = late.answers.front().loop.older = 1;
+  second.apply(late);
+  EXPECT_TRUE(second.matches().front().verified);
+}
+
+TEST(SlamEngine, refusesStartsThatCannotBeSearched) {
+  SlamEngine engine;
+  feed(&engine, building(), 0, 50);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(engine.startRun({nan, 0, 0}), hyselam::ParameterError);
+  EXPECT_THROW(engine.startRun({}, 0.0), hyselam::ParameterError);
+  EXPECT_THROW(engine.startRun({}, 1e6), hyselam::ParameterError);
+  EXPECT_THROW(engine.startRun({}, 1.0, 4.0), hyselam::ParameterError);
+  feed(&engine, building(), 50, 60);
+  EXPECT_EQ(engine.keyframes().back().run, 0U);  // the run went on
 }
 
 TEST(RegionGraph, holdsEveryObservationAndTiesLoops) {
@@ -368,6 +453,9 @@ TEST(SlamParams, namesTheParameterOutOfRange) {
             std::string::npos);
   p = {};
   p.loop.far_fit = 2.0;
+  EXPECT_THROW(p.validate(), hyselam::ParameterError);
+  p = {};
+  p.loop.far_resolution = 0.01;  // SeenSpace would have too many cells
   EXPECT_THROW(p.validate(), hyselam::ParameterError);
 }
 

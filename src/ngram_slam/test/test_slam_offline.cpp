@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "hyselam_common/map_io.hpp"
@@ -81,6 +82,7 @@ TEST_F(SlamOffline, writesWhatWasAgreed) {
             0u);
   EXPECT_EQ(fileBytes(out + "/regions.csv").rfind("first,last,stamp_begin,stamp_end,class", 0), 0u);
   EXPECT_GT(lines(out + "/words.csv"), 5U);
+  EXPECT_EQ(fileBytes(out + "/words.csv").rfind("word,level,first,last,run,stamp_begin", 0), 0u);
   EXPECT_NE(fileBytes(out + "/graph.g2o").find("EDGE_SE2"), std::string::npos);
   const std::string report = fileBytes(out + "/report.html");
   EXPECT_NE(report.find("data:image/png;base64,"), std::string::npos);
@@ -108,6 +110,10 @@ TEST_F(SlamOffline, refusesWhatCannotBeUsed) {
   expectRefused("--bag " + d / "none.bag" + " --out " + d / "x", "none.bag");
   expectRefused("--bag " + d / "run.bag" + " --loops some --out " + d / "x", "loops");
   expectRefused("--bag " + d / "run.bag" + " --levels 0 --out " + d / "x", "levels");
+  expectRefused("--bag " + d / "run.bag" + " --levels 2000000000 --loops thesis --out " + d / "x",
+                "levels");
+  expectRefused("--bag " + d / "run.bag" + " --resolution 0 --out " + d / "y", "resolution");
+  EXPECT_FALSE(std::filesystem::exists(d / "y"));  // refused before anything is made
   expectRefused("--bag " + d / "late.bag" + " --out " + d / "x", "no odometry");
   writeFile(d / "empty.log", "");
   expectRefused("--carmen " + d / "empty.log" + " --out " + d / "x", "empty.log");

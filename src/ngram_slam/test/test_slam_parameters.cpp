@@ -96,6 +96,8 @@ TEST(SlamParameters, OutOfRangeNamesParameterAndValue) {
   };
   for (const char* name : {"resolution", "keyframe_step", "max_range", "longest_step"})
     EXPECT_NE(refusal(name, -1.0).find(name), std::string::npos) << name;
+  for (const double window : {0.0, 51.0})
+    EXPECT_NE(refusal("start_window", window).find("start_window"), std::string::npos) << window;
   EXPECT_NE(refusal("loops", "maybe").find("maybe"), std::string::npos);
   EXPECT_NE(refusal("global_frame_id", "odom").find("global_frame_id"), std::string::npos);
   EXPECT_NE(refusal("state", "/no/such/folder/x").find("existing folder"), std::string::npos);

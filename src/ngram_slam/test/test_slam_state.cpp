@@ -136,6 +136,16 @@ TEST(SlamStateFile, IsTheSameAfterwards) {
             hyselam::testing::fileBytes(folder / "again.slam"));
 }
 
+TEST(SlamStateFile, AScanWithoutALargestRangeComesBack) {
+  SlamEngine engine;
+  hyselam::LaserScan scan = corridor(0.0, 100.0);
+  scan.range_max = std::numeric_limits<double>::infinity();
+  engine.add(scan, {});
+  TemporaryDirectory folder;
+  SlamStateFile::save(folder / "map.slam", engine.state());
+  EXPECT_EQ(load(folder / "map.slam").keyframes.front().scan->range_max, scan.range_max);
+}
+
 TEST(SlamStateFile, NothingIsAStateToo) {
   TemporaryDirectory folder;
   SlamStateFile::save(folder / "map.slam", SlamState{});
@@ -185,7 +195,7 @@ TEST(SlamStateFile, AnotherVersionIsNamed) {
   SlamStateFile::save(folder / "map.slam", SlamState{});
   std::string bytes = hyselam::testing::fileBytes(folder / "map.slam");
   bytes[8] = 7;
-  // With the checksum that goes with it, as another version would write.
+  // Looked at before the checksum, which another version may form otherwise.
   hyselam::testing::writeFile(folder / "map.slam", bytes);
   const std::string damaged = messageOf<hyselam::InputError>([&] { load(folder / "map.slam"); });
   EXPECT_NE(damaged.find("version"), std::string::npos) << damaged;
@@ -193,12 +203,14 @@ TEST(SlamStateFile, AnotherVersionIsNamed) {
 
 TEST(SlamStateFile, PartsThatDoNotFitAreRefused) {
   TemporaryDirectory folder;
-  for (int part = 0; part < 4; ++part) {
+  for (int part = 0; part < 6; ++part) {
     SlamState s = fullState();
     if (part == 0) s.loops.back().newer = 1000;
     if (part == 1) s.scans.back().keyframe = -1;
     if (part == 2) s.keyframe_of_observation.pop_back();
     if (part == 3) s.keyframes[3].pose.x = std::nan("");
+    if (part == 4) s.matches.back().newer = 1000000;
+    if (part == 5) s.matches.back().keyframe_older = -1;
     SlamStateFile::save(folder / "map.slam", s);
     EXPECT_NE(messageOf<hyselam::InputError>([&] { load(folder / "map.slam"); }), "") << part;
   }

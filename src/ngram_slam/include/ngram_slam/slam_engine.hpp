@@ -48,6 +48,8 @@ struct SlamUpdate {
 /// result: both calls cost little. At most one job is out at a time.
 class SlamEngine {
  public:
+  static constexpr double kMaxStartWindow = 50.0;  ///< of startRun() [m]
+
   /// @throws hyselam::ParameterError
   explicit SlamEngine(const SlamParams& params = {});
   /// Goes on in a building that is known: what comes next is another run, see startRun().
@@ -56,13 +58,14 @@ class SlamEngine {
 
   /// Takes a scan in; `odometry`: base in odom at its time.
   /// @throws hyselam::InputError for a stamp that is not after the last one of the run or not
-  /// finite, a pose or geometry that is not finite; nothing is changed then.
+  /// finite, a pose or geometry that is not finite or absurdly far away; nothing is changed then.
   SlamUpdate add(const hyselam::LaserScan& scan, const hyselam::Pose2& odometry);
   /// Ends the run: its last words are matched. The next scan starts another run.
   void endRun();
   /// Ends the run and tells where the robot stands now; without it a next run is taken to start
   /// where the last one ended. The first scan is matched within `window` [m] and `turn` [rad] of
-  /// it.
+  /// it. @throws hyselam::ParameterError, before anything is changed, for a pose that is not
+  /// finite, a window outside of 0 (excluded) to kMaxStartWindow, a turn outside of 0 to pi.
   void startRun(const hyselam::Pose2& base_in_map, double window = 1.0, double turn = 0.5);
 
   /// Loops to verify and, if it is time, a graph to optimise; nothing if there is nothing to do or
@@ -141,6 +144,7 @@ class SlamEngine {
   std::optional<Start> start_;
   bool dirty_ = false, urgent_ = false;
   int optimised_keyframes_ = 0;
+  std::size_t job_odometry_ = 0;  // edges of odometry in the graph that is out
   int revision_ = 0;
 };
 

@@ -25,7 +25,7 @@ struct OdometryNoise {
 enum class SlamLoops {
   kNone,
   kProximity,  ///< where the poses say so, verified by the scans
-  kNgrams,     ///< where words say so, verified by the scans
+  kNgrams,     ///< near ones as kProximity; far ones where words say so, verified by the scans
   kAll,        ///< both
   kThesis      ///< where words say so, not verified: the same pose, with fixed information (5.2.4)
 };
@@ -51,7 +51,7 @@ struct LoopParams {
   int far_most = 2;             ///< places tried in a search, >= 1
   double far_stretch = 10.0;    ///< of old way each side [m], > 0
   double far_half = 4.0;        ///< of new way each side [m], > 0
-  double far_resolution = 0.1;  ///< of the search [m], > 0
+  double far_resolution = 0.1;  ///< of the search and of SeenSpace [m], 0.02..1
   double far_score = 0.5;       ///< least score of the search, 0..1
   double far_matched = 0.35;    ///< least part of the points on known surfaces, 0..1
   double far_fit =
@@ -107,7 +107,8 @@ struct SlamParams {
   double keyframe_turn = 0.2;   ///< [rad], > 0
   int local_keyframes = 40;     ///< that make the local map, >= 1
   double local_cell = 0.03;     ///< of the local map [m], > 0
-  double lost = 0.5;  ///< below this part of a scan on known surfaces the neighbourhood is searched
+  /// Below this part of a scan on known surfaces, 0..1, the neighbourhood is searched.
+  double lost = 0.5;
   /// Points of a scan are not independent: the part of a match's information that is believed,
   /// (0, 1].
   double scan_information = 0.1;

@@ -33,6 +33,9 @@ struct PlacedScan {
 
 enum class LoopSource : std::uint8_t { kProximity, kNgram };
 
+/// A loop of less weight contradicts the others so much that nothing is concluded from it.
+constexpr double kDoubtedWeight = 0.3;
+
 /// A measurement between keyframes that do not follow each other.
 struct SlamLoop {
   int older = 0, newer = 0;                               ///< keyframes
@@ -74,7 +77,8 @@ struct SlamCounters {
 };
 
 /// All that outlives the process. Together with SlamParams it makes the engine what it was; only
-/// the observations of the last few metres that still wait for their second look are lost.
+/// the observations of the last few metres that still wait for their second look are lost, and the
+/// loops that wait for a job.
 struct SlamState {
   std::vector<SlamKeyframe> keyframes;
   std::vector<PlacedScan> scans;  ///< all scans of all runs, keyframes' own too
@@ -85,6 +89,10 @@ struct SlamState {
   Corpus corpus;
   std::vector<std::int32_t> keyframe_of_observation;
   SlamCounters counters;
+
+  /// @throws std::invalid_argument for parts that refer to what is not there, and for a keyframe
+  /// without scan or finite pose.
+  void validate() const;
 };
 
 }  // namespace ngram_slam

@@ -12,21 +12,6 @@ namespace {
 
 using hyselam::Pose2;
 
-/// Regions of all runs, in order.
-std::vector<SemanticRegion> regionsOf(const ObservationStore& observations) {
-  SemanticSegmenter segmenter;
-  std::vector<SemanticRegion> all;
-  const auto take = [&](const std::vector<SemanticRegion>& more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
-  for (std::uint32_t run = 0; run < observations.runs(); ++run) {
-    for (std::uint32_t i = observations.runBegin(run); i < observations.runEnd(run); ++i)
-      take(segmenter.add(observations[i]));
-    take(segmenter.finish());
-  }
-  return all;
-}
-
 RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>& regions) {
   const ObservationStore& observations = engine.recogniser().observations();
   const std::vector<Pose2> poses = observationPoses(engine);
@@ -53,11 +38,10 @@ RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>&
       edges.emplace(id - 1, id, RegionEdge::Kind::kWay);
     graph.nodes.push_back(n);
   }
-  constexpr double kDoubted = 0.3;
   for (const SlamLoop& l : engine.loops()) {
     const std::int32_t a = node_of_keyframe[static_cast<std::size_t>(l.older)];
     const std::int32_t b = node_of_keyframe[static_cast<std::size_t>(l.newer)];
-    if (a < 0 || b < 0 || a == b || l.weight < kDoubted) continue;
+    if (a < 0 || b < 0 || a == b || l.weight < kDoubtedWeight) continue;
     edges.emplace(static_cast<std::uint32_t>(std::min(a, b)),
                   static_cast<std::uint32_t>(std::max(a, b)), RegionEdge::Kind::kLoop);
   }
@@ -75,7 +59,7 @@ std::vector<Pose2> observationPoses(const SlamEngine& engine) {
 }
 
 RegionGraph regionGraph(const SlamEngine& engine) {
-  return graphOf(engine, regionsOf(engine.recogniser().observations()));
+  return graphOf(engine, semanticRegions(engine.recogniser().observations()));
 }
 
 RegionGraph regionGraph(const SlamEngine& engine, const std::vector<SemanticRegion>& regions) {
@@ -86,7 +70,7 @@ RegionGraph spacedGraph(const SlamEngine& engine, double spacing) {
   if (!(spacing > 0.0)) throw hyselam::ParameterError("spacing", spacing, "above 0");
   const ObservationStore& observations = engine.recogniser().observations();
   std::vector<SemanticRegion> pieces;
-  for (const SemanticRegion& r : regionsOf(observations)) {
+  for (const SemanticRegion& r : semanticRegions(observations)) {
     double way = 0.0;
     SemanticRegion piece = r;
     for (std::uint32_t i = r.first; i <= r.last; ++i) {

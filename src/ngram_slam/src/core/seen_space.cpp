@@ -40,7 +40,7 @@ void SeenSpace::insert(const Pose2& pose, const SurfacePoints& points, const Poi
   for (const SurfacePoint& p : points) {
     const Point2 q = pose * Point2{p.x, p.y};
     const double dx = q.x - eye.x, dy = q.y - eye.y, range = std::hypot(dx, dy);
-    // Half a cell a step; not as far as the surface, which is marked below and may be uneven.
+    // Less than a cell a step; not as far as the surface, which is marked below and may be uneven.
     const double step = 0.7 * cell_;
     const int steps = static_cast<int>((range - 2.0 * cell_) / step);
     int cx = 0, cy = 0;

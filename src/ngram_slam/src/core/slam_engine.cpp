@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -22,37 +21,23 @@ using hyselam_scan_matching::SurfacePoints;
 
 namespace {
 
+constexpr double kFarthest = 0.99e7;    // [m] cells beyond 10^7 m have no number in the local maps
+constexpr double kFarthestLaser = 5.0;  // [m] it must lie on the local map of the words' sensor
+
 void check(const hyselam::LaserScan& scan, const Pose2& odometry) {
   const std::string place = "scan at " + std::to_string(scan.stamp) + " s";
   if (!std::isfinite(scan.stamp)) throw hyselam::InputError("scan", "", "its time is not finite");
   if (!odometry.isFinite()) throw hyselam::InputError("odometry", place, "is not finite");
+  if (std::max(std::abs(odometry.x), std::abs(odometry.y)) > kFarthest)
+    throw hyselam::InputError("odometry", place, "is more than 10000 km from its origin");
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) ||
       !std::isfinite(scan.range_min) || std::isnan(scan.range_max) ||
       !scan.laser_in_base.isFinite())
     throw hyselam::InputError("scan", place, "its geometry is not finite");
+  if (std::hypot(scan.laser_in_base.x, scan.laser_in_base.y) > kFarthestLaser)
+    throw hyselam::InputError("scan", place, "the laser is more than 5 m from the base");
   if (!scan.ranges.empty() && scan.angle_increment == 0.0)
     throw hyselam::InputError("scan", place, "all beams have one bearing: angle_increment is 0");
-}
-
-void checkState(const SlamState& s) {
-  const auto n = static_cast<int>(s.keyframes.size());
-  const auto known = [n](int k) { return k >= 0 && k < n; };
-  for (const SlamKeyframe& k : s.keyframes)
-    if (!k.scan || !k.points || !k.pose.isFinite() || !k.odometry.isFinite())
-      throw std::invalid_argument("SLAM state: a keyframe lacks its scan or pose");
-  for (const PlacedScan& p : s.scans)
-    if (!known(p.keyframe)) throw std::invalid_argument("SLAM state: a scan has no keyframe");
-  for (const auto* loops : {&s.loops, &s.waiting})
-    for (const SlamLoop& l : *loops)
-      if (!known(l.older) || !known(l.newer) || l.older == l.newer)
-        throw std::invalid_argument("SLAM state: a loop without keyframes");
-  for (const PoseEdge& e : s.odometry)
-    if (!known(e.from) || !known(e.to))
-      throw std::invalid_argument("SLAM state: an edge without keyframes");
-  if (s.keyframe_of_observation.size() != s.corpus.observations.size())
-    throw std::invalid_argument("SLAM state: observations and their keyframes differ in number");
-  for (const std::int32_t k : s.keyframe_of_observation)
-    if (!known(k)) throw std::invalid_argument("SLAM state: an observation has no keyframe");
 }
 
 SlamParams checked(const SlamParams& p) {
@@ -66,7 +51,7 @@ SlamEngine::SlamEngine(const SlamParams& params) : SlamEngine(params, SlamState{
 
 SlamEngine::SlamEngine(const SlamParams& params, SlamState state)
     : params_(checked(params)),
-      state_((checkState(state), std::move(state))),
+      state_((state.validate(), std::move(state))),
       words_(params.observations, params.words, std::move(state_.corpus)),
       local_(params.local_cell) {
   state_.corpus = {};
@@ -198,6 +183,10 @@ hyselam_scan_matching::Refined SlamEngine::matchLocally(const SurfacePoints& poi
 
 void SlamEngine::startRun(const Pose2& base_in_map, double window, double turn) {
   if (!base_in_map.isFinite()) throw hyselam::ParameterError("base_in_map", "not finite", "finite");
+  if (!(window > 0.0 && window <= kMaxStartWindow))
+    throw hyselam::ParameterError("window", window, "above 0, at most 50 m");
+  if (!(turn >= 0.0 && turn <= hyselam::kPi))
+    throw hyselam::ParameterError("turn", turn, "from 0 to pi");
   endRun();
   start_ = Start{base_in_map, window, turn};
 }
@@ -210,7 +199,6 @@ void SlamEngine::endRun() {
 
 void SlamEngine::startAt(const hyselam::LaserScan& scan, const Pose2& odometry) {
   const auto points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
-  run_open_ = true;
   odometry_ = matched_odometry_ = odometry;
   smooth_ = odometry;
   first_of_run_ = static_cast<int>(state_.keyframes.size());
@@ -258,6 +246,7 @@ void SlamEngine::startAt(const hyselam::LaserScan& scan, const Pose2& odometry) 
   }
   matched_pose_ = pose_;
   start_.reset();
+  run_open_ = true;
   if (usesWords()) takeWords(words_.add(scan, smooth_));
 }
 
@@ -318,101 +307,6 @@ std::vector<hyselam::StampedPose2> SlamEngine::trajectory() const {
     out.push_back({s.stamp, state_.keyframes[static_cast<std::size_t>(s.keyframe)].pose *
                                 s.base_in_keyframe});
   return out;
-}
-
-std::optional<SlamJob> SlamEngine::takeJob() {
-  return job(false);
-}
-std::optional<SlamJob> SlamEngine::takeLastJob() {
-  return job(true);
-}
-
-std::optional<SlamJob> SlamEngine::job(bool last) {
-  if (job_out_) return std::nullopt;
-  SlamJob j;
-  const auto n = static_cast<int>(state_.keyframes.size());
-  if (!tasks_.empty()) {
-    j.tasks.swap(tasks_);
-  } else if (dirty_ && (last || urgent_ || n - optimised_keyframes_ >= params_.optimise_every)) {
-    j.graph = graph();
-    dirty_ = urgent_ = false;
-    optimised_keyframes_ = n;
-  } else {
-    return std::nullopt;
-  }
-  j.params = params_;
-  job_out_ = true;
-  return j;
-}
-
-namespace {
-
-using hyselam_pose_graph::GraphOptimizer;
-using hyselam_pose_graph::GraphRobust;
-using hyselam_pose_graph::GraphStart;
-using hyselam_pose_graph::OptimizeParams;
-using hyselam_pose_graph::OptimizeResult;
-
-std::size_t believed(const OptimizeResult& r) {
-  return static_cast<std::size_t>(
-      std::count_if(r.weights.begin(), r.weights.end(), [](double w) { return w >= 0.3; }));
-}
-
-/// From the poses as they are. A loop that closes after hundreds of metres looks wrong from there,
-/// however right it is: where loops would lose their weight, all are followed first, and the poses
-/// that are found so are kept if more of the loops are believed there.
-OptimizeResult optimise(hyselam_pose_graph::PoseGraph graph, const SlamParams& params) {
-  OptimizeParams p;
-  p.start = GraphStart::kGiven;
-  p.dcs_phi = params.dcs_phi;
-  p.robust = params.loops == SlamLoops::kThesis ? GraphRobust::kNone : GraphRobust::kDcs;
-  OptimizeResult result = GraphOptimizer(graph).optimize(p);
-  if (p.robust == GraphRobust::kNone || believed(result) == graph.edges.size()) return result;
-  OptimizeParams all = p;
-  all.start = GraphStart::kChordal;
-  all.robust = GraphRobust::kNone;
-  graph.poses = GraphOptimizer(graph).optimize(all).poses;
-  OptimizeResult other = GraphOptimizer(std::move(graph)).optimize(p);
-  return believed(other) > believed(result) ? other : result;
-}
-
-}  // namespace
-
-SlamJobResult runJob(const SlamJob& job) {
-  SlamJobResult result;
-  for (const LoopTask& task : job.tasks) {
-    result.answers.push_back(verifyLoop(task, job.params));
-    LoopTask asked = task;
-    asked.old_stretch.clear();
-    asked.new_stretch.clear();
-    result.tasks.push_back(std::move(asked));
-  }
-  if (job.graph) result.optimised = optimise(*job.graph, job.params);
-  return result;
-}
-
-void SlamEngine::apply(const SlamJobResult& result) {
-  job_out_ = false;
-  for (std::size_t i = 0; i < result.tasks.size() && i < result.answers.size(); ++i)
-    takeAnswer(result.tasks[i], result.answers[i]);
-  if (!result.optimised || result.optimised->poses.empty()) return;
-  const auto& optimised = *result.optimised;
-  const std::size_t n = optimised.poses.size();
-  // What came since moves along with the last pose that was optimised.
-  const Pose2 moved = optimised.poses[n - 1] * state_.keyframes[n - 1].pose.inverse();
-  for (std::size_t i = 0; i < state_.keyframes.size(); ++i) {
-    Pose2& pose = state_.keyframes[i].pose;
-    pose = i < n ? optimised.poses[i] : moved * pose;
-  }
-  pose_ = moved * pose_;
-  matched_pose_ = moved * matched_pose_;
-  for (std::size_t i = state_.odometry.size() - (state_.keyframes.size() - n), l = 0;
-       l < state_.loops.size() && i < optimised.weights.size(); ++i, ++l)
-    state_.loops[l].weight = optimised.weights[i];
-  relearnWays();
-  rebuildLocalMap();
-  ++state_.counters.optimisations;
-  ++revision_;
 }
 
 }  // namespace ngram_slam

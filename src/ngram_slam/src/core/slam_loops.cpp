@@ -13,7 +13,6 @@ using hyselam::Pose2;
 namespace {
 
 constexpr double kLoopWay = 0.5;     // [m] of GraphWays through a loop
-constexpr double kDoubted = 0.3;     // a loop of less weight is no way
 constexpr double kWordsApart = 5.0;  // [m] of old way: matches closer than this are one question
 constexpr int kWordsMost = 4;        // questions for one new word
 
@@ -28,7 +27,7 @@ void SlamEngine::relearnWays() {
   for (const auto& e : state_.odometry)
     ways_.add(e.from, e.to, std::hypot(e.measured.x, e.measured.y));
   for (const SlamLoop& l : state_.loops)
-    if (l.weight >= kDoubted) ways_.add(l.older, l.newer, kLoopWay);
+    if (l.weight >= kDoubtedWeight) ways_.add(l.older, l.newer, kLoopWay);
 }
 
 LoopTask::Stretch SlamEngine::stretchAround(int keyframe, double half, double not_after) const {
@@ -191,15 +190,19 @@ void SlamEngine::takeWords(WordPlaces::Update update) {
 }
 
 void SlamEngine::takeAnswer(const LoopTask& task, const LoopAnswer& answer) {
-  SlamCounters::Loops& count = task.match >= 0 ? state_.counters.words
-                               : task.far      ? state_.counters.far
-                                               : state_.counters.near;
+  SlamCounters::Loops& count = task.source == LoopSource::kNgram ? state_.counters.words
+                               : task.far                        ? state_.counters.far
+                                                                 : state_.counters.near;
   if (!answer.verified) return;
   ++count.verified;
   SlamMatch* match =
       task.match >= 0 && task.match < static_cast<std::int64_t>(state_.matches.size())
           ? &state_.matches[static_cast<std::size_t>(task.match)]
           : nullptr;
+  // Matches may have been found anew while the task was out.
+  if (match != nullptr &&
+      (match->keyframe_newer != task.newer || match->keyframe_older != task.older))
+    match = nullptr;
   if (match != nullptr) {
     match->verified = true;
     match->measured = answer.loop.measured;
@@ -239,7 +242,7 @@ void SlamEngine::takeFar(const SlamLoop& loop) {
   };
   std::vector<SlamLoop> standing;
   for (const SlamLoop& l : state_.loops)
-    if (l.far && l.weight >= kDoubted) standing.push_back(l);
+    if (l.far && l.weight >= kDoubtedWeight) standing.push_back(l);
   if (!agreeing(loop, standing, state_.keyframes, p).empty()) {
     admit(loop);
     return;

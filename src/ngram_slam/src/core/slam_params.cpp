@@ -105,7 +105,8 @@ void SlamParams::validate() const {
   atLeast1("loop.far_most", loop.far_most);
   above("loop.far_stretch", loop.far_stretch);
   above("loop.far_half", loop.far_half);
-  above("loop.far_resolution", loop.far_resolution);
+  if (!(loop.far_resolution >= 0.02 && loop.far_resolution <= 1.0))
+    throw hyselam::ParameterError("loop.far_resolution", loop.far_resolution, "from 0.02 to 1");
   share("loop.far_score", loop.far_score);
   share("loop.far_matched", loop.far_matched);
   share("loop.near_fit", loop.near_fit);

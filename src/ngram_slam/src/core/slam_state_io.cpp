@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 #include "binary_io.hpp"
 #include "hyselam_common/atomic_file.hpp"
@@ -13,7 +14,6 @@ namespace {
 
 using hyselam::InputError;
 using hyselam::Pose2;
-using hyselam_pose_graph::PoseEdge;
 
 constexpr char kMagic[] = "NGRAMSLM";
 constexpr std::size_t kHeaderBytes = 20;
@@ -89,6 +89,15 @@ void matrix(Io& io, M& m) {
     for (int c = 0; c < 3; ++c) io.number(m(r, c));
 }
 
+void rangeMax(Out& io, const hyselam::LaserScan& s) {
+  io.number(s.range_max);
+}
+void rangeMax(In& io, hyselam::LaserScan& s) {
+  io.anything(true);  // a laser may name no limit: infinite
+  io.number(s.range_max);
+  io.anything(false);
+  if (std::isnan(s.range_max)) io.refuse("holds a scan whose largest range is not a number");
+}
 void ranges(Out& io, const hyselam::LaserScan& s) {
   for (const float r : s.ranges) io.number(r);
 }
@@ -104,7 +113,7 @@ void scan(Io& io, Scan& s) {
   io.number(s.angle_min);
   io.number(s.angle_increment);
   io.number(s.range_min);
-  io.number(s.range_max);
+  rangeMax(io, s);
   pose(io, s.laser_in_base);
   io.size(s.ranges, sizeof(float));
   ranges(io, s);
@@ -191,25 +200,6 @@ void rest(Io& io, State& s) {
   for (auto& k : s.keyframe_of_observation) io.number(k);
 }
 
-/// What the engine relies on.
-void checkParts(const SlamState& s, const std::string& path) {
-  const auto n = static_cast<int>(s.keyframes.size());
-  const auto demand = [&](bool holds, const char* what) {
-    if (!holds) throw InputError(path, what, "refers to a keyframe that is not there");
-  };
-  const auto known = [n](int k) { return k >= 0 && k < n; };
-  for (const PlacedScan& p : s.scans) demand(known(p.keyframe), "a scan");
-  for (const PoseEdge& e : s.odometry) demand(known(e.from) && known(e.to), "an edge");
-  for (const auto* loops : {&s.loops, &s.waiting})
-    for (const SlamLoop& l : *loops)
-      demand(known(l.older) && known(l.newer) && l.older != l.newer, "a loop");
-  for (const SlamMatch& m : s.matches)
-    demand(known(m.keyframe_newer) && known(m.keyframe_older), "a match");
-  for (const int k : s.keyframe_of_observation) demand(known(k), "an observation");
-  if (s.keyframe_of_observation.size() != s.corpus.observations.size())
-    throw InputError(path, "corpus", "has another number of observations than the map");
-}
-
 }  // namespace
 
 void SlamStateFile::save(const std::string& path, const SlamState& state) {
@@ -260,7 +250,7 @@ SlamState SlamStateFile::load(const std::string& path,
   if (header.get<std::uint32_t>() != checksum(text, 0, kHeaderBytes))
     refuse("header", "is damaged (wrong checksum)");
   const std::size_t begin = kHeaderBytes + 4, expected = begin + length + 4;
-  if (text.size() != expected)
+  if (length > text.size() || text.size() != expected)
     refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
                       std::to_string(expected) + (text.size() < expected ? " (truncated)" : ""));
   Reader tail(text);
@@ -285,7 +275,11 @@ SlamState SlamStateFile::load(const std::string& path,
   in.number(corpus_bytes);
   if (corpus_bytes != in.left()) in.refuse("the corpus has a wrong length");
   state.corpus = CorpusFile::parse(body.substr(in.at()), path);
-  checkParts(state, path);
+  try {
+    state.validate();
+  } catch (const std::invalid_argument& e) {
+    throw InputError(path, "", e.what());
+  }
   return state;
 }
 

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "hyselam_common/errors.hpp"
+#include "ngram_slam/slam_engine.hpp"
 
 namespace ngram_slam {
 
@@ -58,7 +59,7 @@ void loadState(ParamLoader& loader, SlamServerParams& p) {
     throw ParameterError("state", p.state, "a file in an existing folder");
   loader.get("save_period", p.save_period, Range::between(0.0, 1e6),
              "[s] of wall time between savings; 0: only at the end and when asked");
-  loader.get("start_window", p.start_window, Range::between(0.0, 50.0),
+  loader.get("start_window", p.start_window, {0.0, SlamEngine::kMaxStartWindow, true, false},
              "[m] searched around the pose where a run starts in a known map");
   loader.get("start_turn", p.start_turn, Range::between(0.0, hyselam::kPi), "[rad]");
   const bool given = loader.isSet("initial_pose_x") || loader.isSet("initial_pose_y") ||

@@ -19,6 +19,7 @@
 #include "ngram_slam/ros/conversions.hpp"
 #include "ngram_slam/ros/slam_messages.hpp"
 #include "ngram_slam/slam_state_io.hpp"
+#include "wall_milliseconds.hpp"
 
 namespace ngram_slam {
 
@@ -31,15 +32,10 @@ namespace {
 constexpr std::uint32_t kQueue = 1000;
 constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry tells the start
 constexpr double kOdometryDrift = 0.1;   // [m/m], [rad/m]
-constexpr double kLookEvery = 0.1;       // [s] of the drawer, for savings
 
 bool exists(const std::string& path) {
   struct stat info {};
   return ::stat(path.c_str(), &info) == 0;
-}
-
-double millisecondsSince(const ros::WallTime& begin) {
-  return 1e3 * (ros::WallTime::now() - begin).toSec();
 }
 
 /// Where the robot is when its odometry went on from elsewhere: beside the keyframe of the last run
@@ -93,7 +89,7 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
   }
   mapping_ = std::make_unique<Mapping>(params_, std::move(state));
   if (!mapping_->engine.keyframes().empty()) next_ = Next::kAfterPause;
-  map_due_ = !mapping_->engine.keyframes().empty();
+  map_due_ = drawsMaps() && !mapping_->engine.keyframes().empty();
 
   map_publisher_ = nh.advertise<nav_msgs::OccupancyGrid>("map", 1, true);
   metadata_publisher_ = nh.advertise<nav_msgs::MapMetaData>("map_metadata", 1, true);
@@ -143,6 +139,10 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
 }
 
 SlamServer::~SlamServer() {
+  // No scan comes any more: what is saved is all.
+  diagnostics_.reset();
+  initial_pose_subscriber_.shutdown();
+  input_.reset();
   service_spinner_->stop();
   {
     const Lock lock(mutex_);
@@ -180,7 +180,7 @@ bool SlamServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odo
     } catch (const std::exception& e) {
       throw hyselam::InputError("scan", std::to_string(scan.stamp) + " s", e.what());
     }
-    if (params_.map_update_interval > 0.0 && map_rate_.pass(stamp)) map_due_ = true;
+    if (drawsMaps() && map_rate_.pass(stamp)) map_due_ = true;
     scan_ms_ = millisecondsSince(begin);
     worst_scan_ms_ = std::max(worst_scan_ms_, scan_ms_);
   }
@@ -203,7 +203,8 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
   };
   if (pending_) {
     at = pending_->base_in_map;
-    window = std::max(window, 2.0 * std::max(pending_->stddev.x, pending_->stddev.y));
+    window = std::min(SlamEngine::kMaxStartWindow,
+                      std::max(window, 2.0 * std::max(pending_->stddev.x, pending_->stddev.y)));
     turn = std::min(hyselam::kPi, std::max(turn, 2.0 * pending_->stddev.theta));
   } else if (!fresh && next_ == Next::kAfterJump) {
     at = placeByOdometry(engine.keyframes(), base_in_odom);
@@ -305,101 +306,6 @@ void SlamServer::tell() {
     msg.regions.push_back(
         regionMsg(recogniser.observations(), region, params_.slam.observations.step));
   region_publisher_.publish(msg);
-}
-
-// ---- loops and optimisation
-
-void SlamServer::optimise() {
-  Lock lock(mutex_);
-  while (!ending_) {
-    const auto job = mapping_->engine.takeJob();
-    if (!job) {
-      work_.wait(lock);
-      continue;
-    }
-    const long epoch = epoch_;
-    lock.unlock();
-    const ros::WallTime begin = ros::WallTime::now();
-    SlamJobResult result;
-    std::string error;
-    try {
-      result = runJob(*job);
-    } catch (const std::exception& e) {
-      error = e.what();
-      ROS_ERROR_STREAM(who_ << " loops are not taken in: " << error);
-    }
-    lock.lock();
-    if (epoch != epoch_) continue;
-    try {
-      mapping_->engine.apply(result);
-    } catch (const std::exception& e) {
-      error = e.what();
-      ROS_ERROR_STREAM(who_ << " loops are not taken in: " << error);
-    }
-    job_error_ = error;
-    job_ms_ = millisecondsSince(begin);
-  }
-}
-
-// ---- the map
-
-void SlamServer::draw() {
-  KeyframeMapper mapper(params_.map);
-  long epoch = -1;
-  ros::WallTime saved = ros::WallTime::now();
-  while (true) {
-    std::vector<SlamKeyframe> keyframes;
-    std::vector<SlamLoop> loops;
-    RegionGraph graph;
-    std_msgs::Header in_map;
-    long revision = 0;
-    {
-      Lock lock(mutex_);
-      work_.wait_for(lock, std::chrono::duration<double>(kLookEvery),
-                     [this] { return map_due_ || ending_; });
-      if (ending_) return;
-      if (map_due_) {
-        map_due_ = false;
-        const SlamEngine& engine = mapping_->engine;
-        keyframes = engine.keyframes();
-        loops = engine.loops();
-        revision = engine.revision();
-        graph = regionGraph(engine, mapping_->regions);
-        in_map = header(params_.global_frame_id);
-        if (epoch != epoch_) mapper = KeyframeMapper(params_.map);
-        epoch = epoch_;
-      }
-    }
-    if (!keyframes.empty()) {
-      const ros::WallTime begin = ros::WallTime::now();
-      std::string error;
-      try {
-        mapper.update(keyframes, revision);
-      } catch (const std::exception& e) {
-        error = e.what();
-        ROS_ERROR_STREAM_THROTTLE(10.0, who_ << " the map is not complete: " << error);
-      }
-      nav_msgs::OccupancyGrid map = hyselam::toMsg(mapper.grid(), in_map.frame_id, in_map.stamp);
-      map.info.map_load_time = in_map.stamp;
-      map_publisher_.publish(map);
-      metadata_publisher_.publish(map.info);
-      {
-        const Lock lock(map_mutex_);
-        map_ = std::move(map);
-      }
-      graph_publisher_.publish(toMsg(graph, in_map));
-      path_publisher_.publish(pathMsg(keyframes, in_map));
-      marker_publisher_.publish(slamMarkers(keyframes, loops, graph, in_map));
-      const Lock lock(mutex_);
-      map_error_ = error;
-      map_ms_ = millisecondsSince(begin);
-    }
-    if (!params_.state.empty() && params_.save_period > 0.0 &&
-        (ros::WallTime::now() - saved).toSec() >= params_.save_period) {
-      saveNow("now and then");
-      saved = ros::WallTime::now();
-    }
-  }
 }
 
 }  // namespace ngram_slam

@@ -5,6 +5,7 @@
 #include "hyselam_common/errors.hpp"
 #include "ngram_slam/ros/slam_server.hpp"
 #include "ngram_slam/slam_state_io.hpp"
+#include "wall_milliseconds.hpp"
 
 namespace ngram_slam {
 
@@ -32,7 +33,7 @@ std::string SlamServer::save(const std::string& path) {
   const ros::WallTime begin = ros::WallTime::now();
   SlamStateFile::save(path, state);
   const Lock lock(mutex_);
-  save_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
+  save_ms_ = millisecondsSince(begin);
   if (epoch == epoch_ && path == params_.state) mapping_->saved_scans = state.counters.scans;
   return path + ": " + std::to_string(state.keyframes.size()) + " keyframes, " +
          std::to_string(state.loops.size()) + " loops";
@@ -88,7 +89,7 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
       ++epoch_;
       next_ = Next::kAfterPause;
       pending_.reset();
-      map_due_ = true;
+      map_due_ = drawsMaps();
     }
     work_.notify_all();
     out.success = true;

@@ -18,6 +18,7 @@
 #include "ngram_slam/semantic_regions_io.hpp"
 #include "ngram_slam/slam_score.hpp"
 #include "slam_report.hpp"
+#include "word_tables.hpp"
 
 namespace {
 
@@ -115,28 +116,16 @@ Run runSlam(const hyselam::RobotLog& log, const SlamParams& params, const std::s
   return run;
 }
 
-hyselam::OccupancyGrid mapOf(const SlamEngine& engine, double resolution) {
+hyselam::OccupancyMapper emptyMap(double resolution) {
   hyselam::OccupancyMapperParameters p;
   p.resolution = resolution;
-  hyselam::OccupancyMapper mapper(p);
-  for (const SlamKeyframe& k : engine.keyframes()) mapper.insert(k.pose, *k.scan);
-  return mapper.grid();
+  return hyselam::OccupancyMapper(p);
 }
 
-void writeWords(const std::string& path, const Recogniser& r) {
-  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    out << std::setprecision(15)
-        << "word,level,first,last,stamp_begin,stamp_end,class,size,angle\n";
-    const Text& text = r.text();
-    for (WordIndex i = 0; i < text.words(); ++i) {
-      const Word w = text.word(i);
-      out << i << ',' << w.level << ',' << w.first << ',' << w.last << ','
-          << r.observations().stamp(text.observationBegin(i)) << ','
-          << r.observations().stamp(text.observationEnd(i) - 1) << ',' << w.syllables.density_class
-          << ',' << w.syllables.size << ',' << std::setprecision(6) << w.syllables.angle
-          << std::setprecision(15) << '\n';
-    }
-  });
+hyselam::OccupancyGrid mapOf(const SlamEngine& engine, double resolution) {
+  hyselam::OccupancyMapper mapper = emptyMap(resolution);
+  for (const SlamKeyframe& k : engine.keyframes()) mapper.insert(k.pose, *k.scan);
+  return mapper.grid();
 }
 
 /// x, y, theta: where the newer observation was made, in the frame of the older one; by the scans
@@ -179,7 +168,7 @@ nlohmann::json errorOf(const SlamEngine& engine,
   const TrajectoryError e = trajectoryError(engine.trajectory(), reference);
   std::size_t doubted = 0, near = 0, far = 0, words = 0, matches = 0;
   for (const SlamLoop& l : engine.loops()) {
-    doubted += l.weight < 0.3 ? 1U : 0U;
+    doubted += l.weight < kDoubtedWeight ? 1U : 0U;
     if (!loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
                    engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured, reference)
              .isFalse())
@@ -234,12 +223,15 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
 }
 
 SlamParams paramsOf(const Options& o, SlamLoops loops) {
+  if (o.levels < 1 || o.levels > Text::kMaxLevels)
+    throw hyselam::ParameterError("levels", o.levels,
+                                  "from 1 to " + std::to_string(Text::kMaxLevels));
   SlamParams params;
   if (loops == SlamLoops::kThesis) {
     params = SlamParams::thesis(o.levels);
   } else {
     params.words.levels = o.levels;
-    params.words.matcher.min_n.assign(static_cast<std::size_t>(std::max(0, o.levels)),
+    params.words.matcher.min_n.assign(static_cast<std::size_t>(o.levels),
                                       params.words.matcher.min_n.front());
   }
   params.loops = loops;
@@ -251,6 +243,7 @@ SlamParams paramsOf(const Options& o, SlamLoops loops) {
 nlohmann::json run(const Options& o) {
   const SlamParams params = paramsOf(o, loopsOf(o.loops));
   if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
+  emptyMap(o.resolution);  // refused before the work, not after it
   hyselam::RobotLog log = readLog(o);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
   if (o.noise > 0.0) spoil(&log.odometry, o.noise, o.seed);

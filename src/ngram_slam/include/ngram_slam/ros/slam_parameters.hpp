@@ -24,8 +24,8 @@ struct SlamServerParams {
   double transform_tolerance = 0.1;        ///< map -> odom is dated this far into the future [s]
   std::string state;          ///< file gone on with at the start and saved; empty: none
   double save_period = 60.0;  ///< [s] of wall time; 0: only at the end and when asked
-  double start_window = 2.0;  ///< around the pose where a run starts in a known map [m]
-  double start_turn = 1.0;    ///< [rad]
+  double start_window = 2.0;  ///< around the pose where a run starts in a known map [m], (0, 50]
+  double start_turn = 1.0;    ///< [rad], 0..pi
   std::optional<fsd_localization::InitialPose> initial_pose;
   double diagnostic_period = 1.0;  ///< [s]
 };

@@ -22,6 +22,7 @@
 #include "fsd_localization/ros/scan_input.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "ngram_slam/keyframe_mapper.hpp"
+#include "ngram_slam/region_graph.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
 #include "ngram_slam/slam_engine.hpp"
 
@@ -72,8 +73,12 @@ class SlamServer {
   bool onLoad(hyselam_msgs::StatePath::Request& request, hyselam_msgs::StatePath::Response& out);
   bool onPause(bool pause, std_srvs::Trigger::Response& out);
   bool onMap(nav_msgs::GetMap::Response& out);
+  bool drawsMaps() const { return params_.map_update_interval > 0.0; }
   void optimise();
   void draw();
+  void publish(const hyselam::OccupancyGrid& grid, const std::vector<SlamKeyframe>& keyframes,
+               const std::vector<SlamLoop>& loops, const RegionGraph& graph,
+               const std_msgs::Header& in_map);
   std::string save(const std::string& path);
   void saveNow(const char* when);
   std::string pathOr(const std::string& given) const;
