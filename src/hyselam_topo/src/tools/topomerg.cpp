@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   MatchObserver observer;
   double limit = 0.0, heading = 0.0;
   Id robot_place = 0;
-  bool no_dummy = false, scattered = false, uncertainties = true;
+  bool no_dummy = false, scattered = false, uncertainties = true, thesis_sides = false;
   std::vector<std::string> confirmed, excluded;
   app.option_defaults()->always_capture_default();
   app.add_option("HUMAN", human_file, "description (XML), as parse_description writes it")
@@ -89,6 +89,10 @@ int main(int argc, char** argv) {
   app.add_option("--weight-areas", params.fitness.areas, "gamma_a");
   app.add_option("--weight-edges", params.fitness.edges, "gamma_e");
   app.add_option("--weight-orientations", params.fitness.orientations, "gamma_d");
+  app.add_option("--weight-orders", params.fitness.orders, "A, then B; with doors only");
+  app.add_flag("--thesis-sides", thesis_sides,
+               "sides by the centres of places, spread in the order told (Eq. 5.7); without it by "
+               "doors");
   app.add_option("--weight-relations", params.fitness.relations, "next to, opposite, ...");
   app.add_option("--weight-parts", params.fitness.parts, "numbers of rooms");
   app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
@@ -104,6 +108,7 @@ int main(int argc, char** argv) {
     if (heading_option->count() > 0) observer.heading = heading;
     if (limit_option->count() > 0) params.time_limit = limit;
     params.dummy = !no_dummy;
+    if (thesis_sides) params.fitness.sides = SideRule::kCentres;
     params.connected = !scattered;
     MatchConstraints constraints;
     for (const std::string& text : confirmed)
