@@ -134,6 +134,28 @@ TEST(TopoMergFitness, SidesAreSpreadInTheOrderTold) {
   EXPECT_NEAR(kPi, std::abs(angle[5]), 1e-12);
 }
 
+TEST(TopoMergFitness, SidesByDoorsAndTheirOrder) {
+  // A long corridor to the east; both rooms on the left, their doors one behind the other. Seen
+  // from its centre the first room lies rather behind.
+  DescribedBuilding b;
+  b.places = {told(1, "corridor"), told(2, "a"), told(3, "b")};
+  b.connections = {connection(1, 2, Side::kLeft, 0), connection(1, 3, Side::kLeft, 1)};
+  b.robot_place = 1;
+  AugmentedTopologicalMap map;
+  map.places = {mapPlace(1, 10, 0, 40), mapPlace(2, 1, 3, 10), mapPlace(3, 19, 3, 10)};
+  map.edges = {mapEdge(1, 2), mapEdge(1, 3)};
+  map.edges[0].doors = {mapDoor(1, 1, kPi / 2)};
+  map.edges[1].doors = {mapDoor(19, 1, kPi / 2)};
+  finish(&map);
+  const MatchProblem p = compileMatch(b, map, {1, 0.0});
+  EXPECT_NEAR(1.0, fitness(p, {}, {0, 1, 2}), 1e-12);
+  // Exchanged: the sides are right, of the four weights the one of the order is lost.
+  EXPECT_NEAR(0.75, fitness(p, {}, {0, 2, 1}), 1e-12);
+  FitnessParams thesis;
+  thesis.sides = SideRule::kCentres;
+  EXPECT_LT(fitness(p, thesis, {0, 1, 2}), 0.99);
+}
+
 TEST(TopoMergFitness, OneNameForSeveralPlaces) {
   Small s;
   s.map.places.push_back(mapPlace(4, 2, 4, 2));  // a piece of the left room
