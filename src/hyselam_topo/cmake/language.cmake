@@ -40,6 +40,7 @@ set(HYSELAM_LANGUAGE_SOURCES
   src/language/topo_parser.cpp
   src/language/utterance.cpp)
 add_library(hyselam_language ${HYSELAM_LANGUAGE_SOURCES})
+#catkin_lint: ignore_once missing_directory
 target_include_directories(hyselam_language PRIVATE src/core ${HYSELAM_LANGUAGE_GENERATED})
 target_include_directories(hyselam_language SYSTEM PRIVATE ${TINYXML2_INCLUDE_DIR}
                                                            ${YAML_CPP_INCLUDE_DIR})
