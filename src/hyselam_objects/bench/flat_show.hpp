@@ -46,8 +46,8 @@ places:
       hyselam_sim::FloorPlan room = hyselam_sim::parseFloorPlan(plan, "show");
       if (low) room.furniture.clear();
       const Flat flat(room, {at(thing(kind, 1), 3.0, 3.0, low ? 0.0 : 0.7, 15.0)});
-      for (int i = 0; i < 16; ++i) {
-        const double angle = 0.3 + i * hyselam::kPi / 8.0, away = (low ? 2.5 : 1.5) + 0.2 * (i % 4);
+      for (int i = 0; i < 10; ++i) {
+        const double angle = 0.3 + i * hyselam::kPi / 5.0, away = (low ? 2.5 : 1.5) + 0.2 * (i % 4);
         const hyselam::Pose2 base{3.0 - away * std::cos(angle), 3.0 - away * std::sin(angle),
                                   angle};
         const Frame frame = flat.take(base, 0.0, ++seed);

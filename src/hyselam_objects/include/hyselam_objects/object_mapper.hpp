@@ -56,7 +56,9 @@ class ObjectMapper {
   void finish(double weak_before = std::numeric_limits<double>::infinity());
 
  private:
-  std::vector<int> associate(const std::vector<DetectedObject>& detections) const;
+  std::vector<DetectedObject> apart(const std::vector<DetectedObject>& all, double stamp,
+                                    std::vector<Id>* matched) const;
+  std::vector<int> associate(const std::vector<DetectedObject>& detections, double stamp) const;
   void take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
             double stamp);
   void missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
@@ -64,7 +66,9 @@ class ObjectMapper {
   bool looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera,
                     const ObjectPose& pose) const;
   void place(Id object);
+  bool isShadow(const ObjectInstance& object) const;
   void joinFurniture();
+  void joinTwins();
   void joinMoved();
   void merge(Id gone, Id found);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <set>
+#include <utility>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/require.hpp"
@@ -79,6 +81,7 @@ class Detector {
 
   std::vector<DetectedObject> run() {
     findSurfaces();
+    findWalls();
     std::vector<bool> on_furniture(grid_.size(), false), on_floor(grid_.size(), false);
     std::vector<std::vector<std::size_t>> bodies(surfaces_.size());
     for (std::size_t i = 0; i < grid_.size(); ++i) {
@@ -148,6 +151,25 @@ class Detector {
                      [](const Surface& a, const Surface& b) { return a.height > b.height; });
   }
 
+  // Where something upright is taller than things are; what stands there in the plane is a part of
+  // it. Else the walls of a room would be the inside of a bowl, and a thing before them its
+  // outside.
+  void findWalls() {
+    for (std::size_t i = 0; i < grid_.size(); ++i) {
+      if (!isNear(i) || std::abs(up_[i]) > 0.5f || points_[i].z() < params_.tallest) continue;
+      const auto [x, y] = cellOf(points_[i]);
+      for (int dx = -1; dx <= 1; ++dx) {
+        for (int dy = -1; dy <= 1; ++dy) walls_.insert({x + dx, y + dy});
+      }
+    }
+  }
+
+  static std::pair<int, int> cellOf(const Eigen::Vector3f& p) {
+    constexpr float kCell = 0.08f;  // [m]
+    return {static_cast<int>(std::floor(p.x() / kCell)),
+            static_cast<int>(std::floor(p.y() / kCell))};
+  }
+
   // What things on a table cut in two.
   static void join(std::vector<Surface>* pieces) {
     constexpr double kGap = 0.25, kStep = 0.02;
@@ -189,7 +211,7 @@ class Detector {
         return;
       }
     }
-    (*on_floor)[i] = true;
+    (*on_floor)[i] = p.z() < params_.tallest && walls_.count(cellOf(p)) == 0;
   }
 
   void split(const std::vector<bool>& marked, bool floor,
@@ -206,7 +228,7 @@ class Detector {
     for (const auto& each : pixels) {
       if (each.size() < static_cast<std::size_t>(params_.smallest)) continue;
       DetectedObject object = describe(each, 0.02);
-      if (floor && (object.high.z > params_.tallest || object.low.z > 0.15)) continue;
+      if (floor && (object.high.z > 0.98 * params_.tallest || object.low.z > 0.15)) continue;
       // Edges of what is behind: thin shreds without a body.
       const double wide = std::max(object.high.x - object.low.x, object.high.y - object.low.y);
       if (wide < 0.02 || wide > 1.5) continue;
@@ -262,6 +284,7 @@ class Detector {
   std::vector<Eigen::Vector3f> points_;  // in the map frame
   std::vector<float> up_;                // z of the normal in the map frame
   std::vector<Surface> surfaces_;        // the highest first
+  std::set<std::pair<int, int>> walls_;  // cells of the plane
 };
 
 }  // namespace

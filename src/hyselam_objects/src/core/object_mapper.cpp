@@ -14,6 +14,8 @@ constexpr char kUnknown[] = "thing";
 constexpr char kFurniture[] = "furniture";
 // A stay is left when nothing was seen there for so long: then it is another visit [s].
 constexpr double kAbsence = 60.0;
+// Less likely than this to be where it was: it may be what is new elsewhere.
+constexpr double kGone = 0.45;
 
 double distance(const Point3& a, const Point3& b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
@@ -69,6 +71,32 @@ void unite(ObjectPose* a, const ObjectPose& b) {
   }
 }
 
+ObjectPose boxOf(const DetectedObject& seen) {
+  return {seen.centre(),
+          {seen.high.x - seen.low.x, seen.high.y - seen.low.y, seen.high.z - seen.low.z},
+          0.0,
+          {}};
+}
+
+/// Whether a point lies in the box of a thing, seen from above.
+bool isOn(const ObjectPose& box, const Point3& p) {
+  constexpr double kMargin = 0.02;
+  return std::abs(p.x - box.position.x) < 0.5 * box.size[0] + kMargin &&
+         std::abs(p.y - box.position.y) < 0.5 * box.size[1] + kMargin;
+}
+
+bool isIn(const ObjectPose& box, const Point3& p) {
+  return isOn(box, p) && std::abs(p.z - box.position.z) < 0.5 * box.size[2];
+}
+
+/// Whether two boxes are so much in one spot that they must be of one thing, or of a part of it.
+bool isSameSpot(const ObjectPose& a, const ObjectPose& b) {
+  const double low = std::max(a.position.z - 0.5 * a.size[2], b.position.z - 0.5 * b.size[2]);
+  const double high = std::min(a.position.z + 0.5 * a.size[2], b.position.z + 0.5 * b.size[2]);
+  return isOn(a, b.position) && isOn(b, a.position) &&
+         high - low > 0.5 * std::min(a.size[2], b.size[2]);
+}
+
 bool isFurniture(const ObjectInstance& object) {
   return object.properties.count("furniture") != 0;
 }
@@ -89,7 +117,8 @@ ObjectMapper::ObjectMapper(ObjectMap* map, ObjectDictionary dictionary, const Ma
   require("confirm", params.confirm, params.confirm >= 1, ">= 1");
 }
 
-std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& detections) const {
+std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& detections,
+                                         double stamp) const {
   struct Pair {
     double cost;
     std::size_t object, detection;
@@ -109,8 +138,11 @@ std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& dete
       }
       const double away = distance(object.pose->position, seen.centre());
       const double look = viewDistance(object.descriptor, seen.descriptor);
-      if (away > params_.gate || look > params_.look) continue;
-      pairs.push_back({away / params_.gate + look / params_.look, o, d});
+      // Where one thing is there is no other: a part of it looks different.
+      const bool same_visit = std::abs(stamp - object.last_seen) < kAbsence;
+      const bool same_spot = same_visit && isSameSpot(*object.pose, boxOf(seen));
+      if (away > params_.gate || (look > params_.look && !same_spot)) continue;
+      pairs.push_back({away / params_.gate + std::min(1.0, look / params_.look), o, d});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
@@ -136,9 +168,13 @@ void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, cons
     object->descriptor = seen.descriptor;
   } else if (seen.furniture) {
     // Each view shows a part.
-    unite(&*object->pose, ObjectPose{seen.centre(), size, 0.0, {}});
-  } else {
+    unite(&*object->pose, boxOf(seen));
+  } else if (size[2] > 0.7 * object->pose->size[2]) {  // less: only a part was seen
     ObjectPose& pose = *object->pose;
+    // What was known was only a part.
+    if (size[2] > 1.4 * pose.size[2]) {
+      for (const std::size_t i : {0u, 4u, 8u}) pose.covariance[i] = 100.0 * variance;
+    }
     const double gain = pose.covariance[0] / (pose.covariance[0] + variance);
     const Point3 c = seen.centre();
     pose.position.x += gain * (c.x - pose.position.x);
@@ -167,11 +203,45 @@ void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, cons
   object->last_seen = std::max(object->last_seen, stamp);
 }
 
+// Without those that are several known things in one.
+std::vector<DetectedObject> ObjectMapper::apart(const std::vector<DetectedObject>& all,
+                                                double stamp, std::vector<Id>* matched) const {
+  std::vector<DetectedObject> out;
+  for (const DetectedObject& seen : all) {
+    std::vector<Id> within;
+    const ObjectPose box = boxOf(seen);
+    for (const ObjectInstance& object : map_.objects) {
+      if (!seen.furniture && object.pose && !isFurniture(object) &&
+          object.seen >= params_.confirm && object.existence > 0.5 &&
+          std::abs(stamp - object.last_seen) < kAbsence && isIn(box, object.pose->position)) {
+        within.push_back(object.id);
+      }
+    }
+    if (within.size() < 2) {
+      out.push_back(seen);
+    } else {
+      matched->insert(matched->end(), within.begin(), within.end());
+    }
+  }
+  return out;
+}
+
 void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& camera,
-                          const std::vector<DetectedObject>& detections, double stamp) {
+                          const std::vector<DetectedObject>& all, double stamp) {
   checkSegment(cloud, SegmentParams{});
-  const std::vector<int> of = associate(detections);
   std::vector<Id> matched;
+  const std::vector<DetectedObject> detections = apart(all, stamp, &matched);
+  const std::vector<int> of = associate(detections, stamp);
+  // What was taken for one thing from afar turns out to be several.
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    for (std::size_t e = 0; e < detections.size() && of[d] < 0; ++e) {
+      if (of[e] < 0 || detections[d].furniture || detections[e].furniture) continue;
+      ObjectInstance& object = map_.objects[static_cast<std::size_t>(of[e])];
+      const bool two = object.pose && isIn(*object.pose, detections[d].centre()) &&
+                       isIn(*object.pose, detections[e].centre());
+      if (two && !detections[e].cut) object.pose.reset();
+    }
+  }
   for (std::size_t d = 0; d < detections.size(); ++d) {
     const DetectedObject& seen = detections[d];
     const bool whole = !seen.cut || seen.furniture;
@@ -223,7 +293,7 @@ bool ObjectMapper::looksThrough(const OrganisedCloud& cloud, const PinholeCamera
                                    pose.position.z + 0.3 * dz * pose.size[2]);
       Eigen::Vector3d p = map_in_camera * middle;
       p.x() += 0.25 * side * std::min(pose.size[0], pose.size[1]);
-      if (p.z() < 0.5 || p.z() > 3.2) return false;
+      if (p.z() < 0.5 || p.z() > 3.8) return false;
       const double u = camera.focal_length * p.x() / p.z() + camera.cx;
       const double v = camera.focal_length * p.y() / p.z() + camera.cy;
       if (u < mx || v < my || u > cloud.width - mx || v > cloud.height - my) return false;
@@ -298,7 +368,7 @@ void ObjectMapper::joinMoved() {
   };
   std::vector<Pair> pairs;
   for (const ObjectInstance& old : map_.objects) {
-    if (!old.pose || old.existence > 0.3 || old.seen < params_.confirm || isFurniture(old))
+    if (!old.pose || old.existence > kGone || old.seen < params_.confirm || isFurniture(old))
       continue;
     for (const ObjectInstance& now : map_.objects) {
       if (now.id == old.id || !now.pose || now.existence < 0.5 || isFurniture(now)) continue;
@@ -311,7 +381,7 @@ void ObjectMapper::joinMoved() {
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const Pair& a, const Pair& b) { return a.look < b.look; });
   for (const Pair& pair : pairs) {
-    if (map_.find(pair.found) == nullptr || map_.find(pair.gone)->existence > 0.3) continue;
+    if (map_.find(pair.found) == nullptr || map_.find(pair.gone)->existence > kGone) continue;
     merge(pair.gone, pair.found);
   }
 }
@@ -332,13 +402,59 @@ void ObjectMapper::joinFurniture() {
   }
 }
 
+// Two views that were too different to be taken for one thing.
+void ObjectMapper::joinTwins() {
+  for (std::size_t i = 0; i < map_.objects.size(); ++i) {
+    for (std::size_t j = i + 1; j < map_.objects.size();) {
+      ObjectInstance &a = map_.objects[i], &b = map_.objects[j];
+      const bool things = a.pose && b.pose && !isFurniture(a) && !isFurniture(b);
+      if (!things || std::abs(a.last_seen - b.last_seen) > kAbsence ||
+          !isSameSpot(*a.pose, *b.pose)) {
+        ++j;
+        continue;
+      }
+      const bool second = b.pose->size[2] > 1.4 * a.pose->size[2] || b.seen > 2 * a.seen;
+      if (second) {
+        a.pose = b.pose;
+        a.descriptor = b.descriptor;
+        if (b.kind != kUnknown) a.kind = b.kind;
+      }
+      if (a.kind == kUnknown) a.kind = b.kind;
+      a.seen += b.seen;
+      a.last_seen = std::max(a.last_seen, b.last_seen);
+      a.existence = std::max(a.existence, b.existence);
+      a.told = a.told || b.told;
+      map_.remove(b.id);
+      j = i + 1;
+    }
+  }
+}
+
+// Parts of a thing, and several things in one, that were seen now and then.
+bool ObjectMapper::isShadow(const ObjectInstance& object) const {
+  constexpr double kMargin = 0.03;
+  int within = 0;
+  for (const ObjectInstance& other : map_.objects) {
+    if (other.id == object.id || !other.pose || isFurniture(other) || isFurniture(object)) continue;
+    if (2 * object.seen > other.seen || other.existence < 0.5) continue;
+    const double away = std::abs(object.pose->position.z - other.pose->position.z);
+    if (isOn(*other.pose, object.pose->position) && away < 0.5 * other.pose->size[2] + kMargin) {
+      return true;
+    }
+    within += isIn(*object.pose, other.pose->position);
+  }
+  return within >= 2;
+}
+
 void ObjectMapper::finish(double weak_before) {
   joinFurniture();
+  joinTwins();
   joinMoved();
   std::vector<Id> dropped;
   for (const ObjectInstance& object : map_.objects) {
     if (!object.pose || object.told) continue;
-    bool weak = object.seen < params_.confirm && object.last_seen < weak_before;
+    bool weak =
+        (object.seen < params_.confirm && object.last_seen < weak_before) || isShadow(object);
     for (const ObjectInstance& other : map_.objects) {
       weak = weak || (other.pose && isFurniture(other) && !isFurniture(object) &&
                       isPartOf(*other.pose, object.pose->position));

@@ -2,6 +2,7 @@
 
 #include <sensor_msgs/image_encodings.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -2,12 +2,15 @@
 
 #include <tf2/exceptions.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_objects/link_places.hpp"
+#include "hyselam_objects/object_descriptor.hpp"
 #include "hyselam_topo/ros/conversions.hpp"
 
 namespace hyselam_objects {

@@ -1,0 +1,163 @@
+// Detections become a map: association, evidence, moved things, relations, movability.
+#include <gtest/gtest.h>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_objects/object_descriptor.hpp"
+#include "hyselam_objects/object_mapper.hpp"
+
+using namespace hyselam_objects;
+
+namespace {
+
+DetectedObject seen(double x, double y, double z, std::array<double, 3> size, std::uint32_t colour,
+                    bool furniture = false) {
+  DetectedObject object;
+  object.furniture = furniture;
+  object.low = {x - 0.5 * size[0], y - 0.5 * size[1], z};
+  object.high = {x + 0.5 * size[0], y + 0.5 * size[1], z + size[2]};
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 400; ++i) {
+    points.emplace_back(static_cast<float>(size[0] * (i % 7) / 6.0),
+                        static_cast<float>(size[1] * (i % 11) / 10.0),
+                        static_cast<float>(size[2] * (i % 13) / 12.0));
+  }
+  object.descriptor = describeView(points, std::vector<std::uint32_t>(points.size(), colour));
+  object.colour = colourName(std::vector<std::uint32_t>(1, colour));
+  object.points = points.size();
+  return object;
+}
+
+constexpr std::array<double, 3> kTable{1.2, 0.8, 0.75}, kCup{0.1, 0.1, 0.12},
+    kBook{0.24, 0.17, 0.05};
+constexpr std::uint32_t kBrown = 0x805030, kRed = 0xc01010, kBlue = 0x1020b0;
+
+/// Looks along x from 1.2 m above the origin; nothing is nearer than 9 m.
+class Room : public ::testing::Test {
+ protected:
+  Room() : mapper_(&map_, {}) {
+    cloud_.width = 320;
+    cloud_.height = 240;
+    cloud_.points.assign(320 * 240, Point(0.0f, 0.0f, 9.0f));
+    camera_.focal_length = 230.0;
+    camera_.cx = 159.5;
+    camera_.cy = 119.5;
+    camera_.in_map.translation() = Eigen::Vector3d(0.0, 0.0, 1.2);
+    Eigen::Matrix3d optical;
+    optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    camera_.in_map.linear() = optical;
+    mapper_.setPlaces([](double, double) { return std::make_pair("room", Point3{0.0, 0.0, 0.0}); });
+  }
+  void look(const std::vector<DetectedObject>& all, double stamp, int times = 4) {
+    for (int i = 0; i < times; ++i) mapper_.update(cloud_, camera_, all, stamp + i);
+  }
+  const ObjectInstance* find(const std::string& colour) const {
+    for (const ObjectInstance& object : map_.objects) {
+      const auto found = object.properties.find("colour");
+      if (found != object.properties.end() && found->second == colour) return &object;
+    }
+    return nullptr;
+  }
+  bool isSaid(Id a, RelationWord word, Id b) const {
+    for (const ObjectRelation* r : map_.relationsOf(a)) {
+      if (r->word == word && r->other == b) return true;
+    }
+    return false;
+  }
+
+  OrganisedCloud cloud_;
+  PinholeCamera camera_;
+  ObjectMap map_;
+  ObjectMapper mapper_;
+  const DetectedObject table_ = seen(2.0, 0.0, 0.0, kTable, kBrown, true);
+};
+
+}  // namespace
+
+TEST_F(Room, ThingsAreOneOverViewsAndStandOnTheTable) {
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
+  look({table_, seen(1.92, 0.11, 0.75, kCup, kRed), seen(2.1, -0.28, 0.75, kBook, kBlue)}, 10.0);
+  mapper_.finish();
+  checkMap(map_, "map");
+  ASSERT_EQ(map_.objects.size(), 3u);
+  const Id table = map_.objects[0].id, cup = find("red")->id, book = find("blue")->id;
+  EXPECT_TRUE(isSaid(cup, RelationWord::kOn, table));
+  EXPECT_TRUE(isSaid(book, RelationWord::kOn, table));
+  EXPECT_TRUE(isSaid(cup, RelationWord::kNear, book));
+  EXPECT_TRUE(isSaid(cup, RelationWord::kLeft, book)) << "seen from the middle of the place";
+  EXPECT_TRUE(isSaid(book, RelationWord::kRight, cup));
+  EXPECT_GT(find("red")->existence, 0.95);
+  EXPECT_EQ(map_.placeOf(cup), 1u);
+}
+
+TEST_F(Room, WhatIsSeenOnceIsDropped) {
+  look({table_}, 1.0);
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed)}, 10.0, 1);
+  mapper_.finish();
+  EXPECT_EQ(map_.objects.size(), 1u);
+}
+
+TEST_F(Room, AMovedThingKeepsItsIdAndIsMoreMovable) {
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
+  mapper_.finish();
+  const Id cup = find("red")->id, book = find("blue")->id;
+  look({table_, seen(2.3, -0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1000.0);
+  mapper_.finish();
+  ASSERT_EQ(map_.objects.size(), 3u);
+  EXPECT_EQ(find("red")->id, cup);
+  EXPECT_NEAR(find("red")->pose->position.y, -0.3, 0.02);
+  EXPECT_EQ(find("red")->history.size(), 2u);
+  EXPECT_GT(movability(map_, cup), movability(map_, book));
+  EXPECT_LT(movability(map_, map_.objects[0].id), movability(map_, book));
+}
+
+TEST_F(Room, WhatIsGoneLosesEvidenceAndWhatIsHiddenDoesNot) {
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed)}, 1.0);
+  mapper_.finish();
+  const double before = find("red")->existence;
+  cloud_.points.assign(cloud_.points.size(), Point(0.0f, 0.0f, 1.0f));  // something in front
+  look({table_}, 1000.0);
+  EXPECT_EQ(find("red")->existence, before);
+  cloud_.points.assign(cloud_.points.size(), Point(0.0f, 0.0f, 9.0f));
+  look({table_}, 1010.0);
+  EXPECT_LT(find("red")->existence, 0.1);
+  EXPECT_GE(find("red")->missed, 3);
+}
+
+TEST_F(Room, WhatCarriesSomethingIsLessMovable) {
+  look({table_, seen(1.9, 0.1, 0.75, kBook, kBlue)}, 1.0);
+  mapper_.finish();
+  const double alone = movability(map_, find("blue")->id);
+  look({table_, seen(1.9, 0.1, 0.75, kBook, kBlue), seen(1.9, 0.1, 0.80, kCup, kRed)}, 5.0);
+  mapper_.finish();
+  EXPECT_TRUE(isSaid(find("red")->id, RelationWord::kOn, find("blue")->id));
+  EXPECT_NEAR(movability(map_, find("blue")->id), 0.6 * alone, 1e-9);
+}
+
+TEST_F(Room, AToldThingIsFoundWhereItWasTold) {
+  const Id told = map_.addObject("cup");
+  map_.find(told)->told = true;
+  ObjectRelation at;
+  at.object = told;
+  at.place = map_.addPlace("room");
+  at.told = true;
+  map_.relate(at);
+  ObjectDictionary dictionary;
+  const DetectedObject cup = seen(1.9, 0.1, 0.75, kCup, kRed);
+  dictionary.put(learnObject("cup", {cup.descriptor}, {}));
+  mapper_.setDictionary(dictionary);
+  look({table_, cup}, 1.0);
+  mapper_.finish();
+  EXPECT_EQ(map_.objects.size(), 2u);
+  ASSERT_TRUE(map_.find(told)->pose);
+  EXPECT_EQ(map_.find(told)->kind, "cup");
+}
+
+TEST_F(Room, BadInputIsRefused) {
+  MapperParams params;
+  params.gate = 0.0;
+  EXPECT_THROW(ObjectMapper(&map_, {}, params), hyselam::ParameterError);
+  cloud_.points.pop_back();
+  EXPECT_THROW(mapper_.update(cloud_, camera_, {}, 1.0), hyselam::InputError);
+  EXPECT_THROW(detectObjects(cloud_, camera_.in_map), hyselam::InputError);
+  EXPECT_TRUE(map_.objects.empty());
+}
