@@ -1,10 +1,11 @@
 # Thin: each target calls one script, which explains itself at its top.
 .DEFAULT_GOAL := build
-.PHONY: deps build demo test bench lint sanitize install clean
+.PHONY: deps build demo demo-localization test bench lint sanitize install clean
 
 deps:     ; @scripts/deps
 build:    ; @scripts/build
 demo:     ; @scripts/demo
+demo-localization: ; @scripts/demo_localization
 test:     ; @scripts/test
 bench:    ; @bench/run --json out/bench.json
 lint:     ; @scripts/lint

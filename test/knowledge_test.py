@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""What a robot knows is saved into one directory and comes back from it as a whole; a damaged directory is refused by
+the name of its file, and a layer that fails leaves everything as it was."""
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import Point, PointStamped
+from hyselam_msgs.msg import AugmentedTopologicalMap
+from hyselam_msgs.srv import NamePlace, StatePath, StatePathResponse
+from nav_msgs.msg import OccupancyGrid
+from std_msgs.msg import Header
+
+from localization_rig import Listener, Recording, wait_until, WAIT
+
+
+class FakeSlam:
+    """A SLAM that knows one text, and can be told to fail."""
+
+    def __init__(self):
+        self.text, self.fails = "first", ""
+        self.services = [rospy.Service("slam/save", StatePath, self.save), rospy.Service("slam/load", StatePath, self.load)]
+
+    def save(self, request):
+        if self.fails == "save":
+            return StatePathResponse(False, "the disk is full")
+        with open(request.path, "w") as file:
+            file.write(self.text)
+        return StatePathResponse(True, "")
+
+    def load(self, request):
+        with open(request.path) as file:
+            text = file.read()
+        if self.fails == "load" and text != self.text:
+            return StatePathResponse(False, "of another building")
+        self.text = text
+        return StatePathResponse(True, "")
+
+    def stop(self):
+        for service in self.services:
+            service.shutdown()
+
+
+class KnowledgeTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.map_publisher = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
+        cls.map_publisher.publish(Recording("small").map)
+        cls.named = Listener("named_map", AugmentedTopologicalMap)
+        cls.named.wait()
+        rospy.wait_for_service("name_place", WAIT)
+        rospy.wait_for_service("words/save", WAIT)
+        rospy.wait_for_service("save_topological_map", WAIT)
+
+    def setUp(self):
+        self.slam = FakeSlam()
+        self.addCleanup(self.slam.stop)
+        self.path = os.path.join(self.folder.name, self.id())
+
+    def run_tool(self, command, path=None, **environment):
+        done = subprocess.run(["rosrun", "hyselam_bringup", "knowledge", command, path or self.path], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=60, env=dict(os.environ, **environment))
+        self.out, self.err = done.stdout, done.stderr
+        return done.returncode
+
+    def refused(self, command, status, text, path=None):
+        self.assertEqual(self.run_tool(command, path), status, self.out + self.err)
+        self.assertIn(text, self.err)
+        self.assertEqual(self.err.count("error: "), 1)
+
+    def left_over(self):
+        return [f for f in os.listdir(self.folder.name) if f.startswith(".")]
+
+    def name(self, *names):
+        point = PointStamped(Header(frame_id="map"), Point(1.5, 2.0, 0.0))
+        answer = rospy.ServiceProxy("name_place", NamePlace)(0, point, list(names))
+        self.assertTrue(answer.success, answer.message)
+
+    def names(self):
+        places = self.named.messages[-1].places if self.named.messages else []
+        return {word.text for place in places for word in place.words}
+
+    def test_all_layers_there_and_back(self):
+        self.name("Kitchen")
+        wait_until(lambda: "Kitchen" in self.names(), lambda: f"the name; there are {self.names()}")
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.assertIn("saved map, slam, words, places, dialogue", self.out)
+        self.assertEqual(self.run_tool("check", ROS_MASTER_URI="http://localhost:9"), 0, self.err)
+        with open(os.path.join(self.path, "manifest.json")) as file:
+            self.assertEqual(sorted(json.load(file)["files"]),
+                             ["dialogue.state", "map.pgm", "map.yaml", "slam.state", "topo.xml", "words.corpus"])
+        self.name("Library")
+        self.slam.text = "second"
+        wait_until(lambda: "Library" in self.names(), "the other name")
+        # Knowledge moves: nothing in it tells of the place where it was saved.
+        moved = self.path + "_moved"
+        shutil.move(self.path, moved)
+        self.assertEqual(self.run_tool("load", moved), 0, self.err)
+        self.assertIn("loaded slam, words, places, dialogue; not running: map", self.out)
+        self.assertEqual(self.slam.text, "first")
+        wait_until(lambda: "Kitchen" in self.names() and "Library" not in self.names(), lambda: f"{self.names()}")
+        self.assertEqual(self.left_over(), [])
+
+    def test_damage_is_named(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        for name in ("dialogue.state", "map.pgm", "slam.state", "topo.xml"):
+            path = os.path.join(self.path, name)
+            with open(path, "rb") as file:
+                good = file.read()
+            with open(path, "wb") as file:
+                file.write(bytes([good[0] ^ 1]) + good[1:])
+            self.slam.text = "present"
+            self.refused("check", 2, f"{path}: is damaged")
+            self.refused("load", 2, f"{path}: is damaged")
+            with open(path, "wb") as file:
+                file.write(good[:-1])
+            self.refused("load", 2, f"{path}: has {len(good) - 1} bytes")
+            os.remove(path)
+            self.refused("load", 2, f"{path}: is missing")
+            # Nor is a damaged directory written over, as if what it held of other layers did not matter.
+            self.refused("save", 2, f"{path}: is missing")
+            with open(path, "wb") as file:
+                file.write(good)
+        self.assertEqual(self.slam.text, "present")
+        self.assertEqual(self.run_tool("check"), 0, self.err)
+
+    def test_manifests_that_cannot_be(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        path = os.path.join(self.path, "manifest.json")
+        with open(path) as file:
+            good = json.load(file)
+        outside = {**good["files"], "../secret": {"bytes": 1, "sha256": ""}}
+        for bad, text in (({**good, "version": 2}, "version 2, this program reads 1"), ({**good, "format": "x"}, "this is no hyselam knowledge"),
+                          ({**good, "files": outside}, "outside of the directory"), ({**good, "layers": {"slam": ["gone"]}}, "slam lacks gone"),
+                          ([], "is damaged"), ({}, "is damaged")):
+            with open(path, "w") as file:
+                json.dump(bad, file)
+            self.refused("load", 2, text)
+        os.remove(path)
+        self.refused("check", 2, f"{path}: cannot be read")
+        # A directory with other things in it is nobody's to replace.
+        self.refused("save", 2, "nothing is overwritten")
+
+    def test_a_layer_that_fails_leaves_what_was(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.slam.fails, self.slam.text = "save", "second"
+        self.refused("save", 1, "slam: the disk is full")
+        self.assertEqual(self.run_tool("check"), 0, self.err)
+        with open(os.path.join(self.path, "slam.state")) as file:
+            self.assertEqual(file.read(), "first")
+        self.slam.fails = "load"
+        self.refused("load", 1, "slam: of another building; all layers know what they knew before")
+        self.assertEqual(self.slam.text, "second")
+        self.assertEqual(self.left_over(), [])
+
+    def test_layers_that_do_not_run_are_kept(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.slam.stop()
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.assertIn("kept slam", self.out)
+        with open(os.path.join(self.path, "slam.state")) as file:
+            self.assertEqual(file.read(), "first")
+        self.assertEqual(self.run_tool("check"), 0, self.err)
+
+    def test_usage_and_no_master(self):
+        self.assertEqual(self.run_tool("save", ROS_MASTER_URI="http://localhost:9"), 2)
+        self.assertIn("no ROS master at http://localhost:9", self.err)
+        self.assertEqual(self.run_tool("forget"), 2)
+        self.assertEqual(self.run_tool("save", ROS_NAMESPACE="nobody"), 1)
+        self.assertIn("no layer runs here", self.err)
+        self.assertEqual(self.left_over(), [])
+
+
+if __name__ == "__main__":
+    rospy.init_node("knowledge_test")
+    rostest.rosrun("hyselam_bringup", "knowledge_test", KnowledgeTest)
