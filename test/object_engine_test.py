@@ -92,10 +92,13 @@ class ObjectEngineTest(unittest.TestCase):
         topics = ["camera/depth/image_raw", "camera/depth/camera_info", "camera/color/image_raw", "object_map",
                   "object_markers", "object_text", "robot_text", "place", "topological_map", "save_object_map",
                   "load_object_map", "query_objects"]
-        self.loaded = self.load(name=self.name + "/engine", type="hyselam_objects/ObjectEngine",
-                                remap_source_args=["/" + t for t in topics] + ["/diagnostics"],
-                                remap_target_args=[self.name + "/" + t for t in topics] + [self.name + "/diagnostics"]
-                                ).success
+        try:
+            self.loaded = self.load(
+                name=self.name + "/engine", type="hyselam_objects/ObjectEngine",
+                remap_source_args=["/" + t for t in topics] + ["/diagnostics"],
+                remap_target_args=[self.name + "/" + t for t in topics] + [self.name + "/diagnostics"]).success
+        except rospy.ServiceException:
+            self.loaded = False
         if self.loaded:
             wait_until(lambda: self.maps.messages)
         return self.loaded
@@ -114,10 +117,11 @@ class ObjectEngineTest(unittest.TestCase):
         info.K = [FOCAL, 0, WIDTH / 2 - 0.5, 0, FOCAL, HEIGHT / 2 - 0.5, 0, 0, 1]
         depth = Image(width=WIDTH, height=HEIGHT, encoding="16UC1", step=2 * WIDTH, data=self.seen[0])
         colour = Image(width=WIDTH, height=HEIGHT, encoding="bgr8", step=3 * WIDTH, data=self.seen[1])
+        frame = changes.pop("frame", "camera_optical_frame")
         for key, value in changes.items():
             setattr(depth, key, value)
         for publisher, msg in zip(camera, (info, depth, colour)):
-            msg.header.frame_id = changes.get("frame", "camera_optical_frame")
+            msg.header.frame_id = frame
             msg.header.stamp = rospy.Time(stamp)
             publisher.publish(msg)
 

@@ -74,8 +74,8 @@ class Room : public ::testing::Test {
 }  // namespace
 
 TEST_F(Room, ThingsAreOneOverViewsAndStandOnTheTable) {
-  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
-  look({table_, seen(1.92, 0.11, 0.75, kCup, kRed), seen(2.1, -0.28, 0.75, kBook, kBlue)}, 10.0);
+  look({table_, seen(2.05, 0.1, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
+  look({table_, seen(2.06, 0.11, 0.75, kCup, kRed), seen(2.1, -0.28, 0.75, kBook, kBlue)}, 10.0);
   mapper_.finish();
   checkMap(map_, "map");
   ASSERT_EQ(map_.objects.size(), 3u);
