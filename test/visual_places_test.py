@@ -375,7 +375,13 @@ class VisualPlacesTest(unittest.TestCase):
         for image in self.film.raw:
             rig.give(image)
         rig.settle()
-        right = sum(g.name == p for g, p in zip(rig.seen.messages[begun:], self.film.places))
+
+        def told():  # what was said of each image after the training, by its time
+            return {g.header.stamp: g.name for g in rig.seen.messages[begun:]}
+
+        wait_until(lambda: all(image.header.stamp in told() for image in self.film.raw), "all images")
+        right = sum(told()[image.header.stamp] == place
+                    for image, place in zip(self.film.raw, self.film.places))
         self.assertGreater(right / len(self.film.places), 0.9)
         # What was saved is what offline tools read; the map holds the signatures, enough to learn from again.
         self.assertEqual(len(self.film.predictions(folder, self.film.raw_list)), len(self.film.raw))

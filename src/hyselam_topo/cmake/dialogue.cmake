@@ -80,7 +80,13 @@ if(CATKIN_ENABLE_TESTING)
       target_compile_definitions(${PROJECT_NAME}_test_dialogue
                                  PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     endif()
-    hyselam_gtest(${PROJECT_NAME}_test_dialogue_floors test/test_dialogue_floors.cpp
-                  LIBRARIES hyselam_dialogue hyselam_gr2to ${hyselam_sim_LIBRARIES})
+    foreach(test dialogue_floors told_buildings)
+      hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp
+                    LIBRARIES hyselam_dialogue hyselam_gr2to ${hyselam_sim_LIBRARIES})
+    endforeach()
+    if(TARGET ${PROJECT_NAME}_test_told_buildings)
+      target_compile_definitions(${PROJECT_NAME}_test_told_buildings
+                                 PRIVATE HYSELAM_TOPO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    endif()
   endif()
 endif()
