@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/require.hpp"
@@ -68,6 +69,7 @@ std::vector<FoundModel> findModel(const OrganisedCloud& model, const OrganisedCl
   require("descriptor_radius", params.descriptor_radius, params.descriptor_radius > 0.0, "> 0");
   require("consistency", params.consistency, params.consistency > 0.0, "> 0");
   require("least", params.least, params.least >= 3, ">= 3");
+  require("candidates", params.candidates, params.candidates >= 1, ">= 1");
   require("touch", params.touch, params.touch > 0.0, "> 0");
   const Described a = describe(model, "model", params.model_sampling, params.descriptor_radius);
   const Described b = describe(scene, "scene", params.scene_sampling, params.descriptor_radius);
@@ -97,7 +99,13 @@ std::vector<FoundModel> findModel(const OrganisedCloud& model, const OrganisedCl
   pcl::KdTreeFLANN<pcl::PointXYZ> on_scene;
   on_scene.setInputCloud(b.all);
   std::vector<FoundModel> found;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  std::vector<std::size_t> order(poses.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
+    return groups[x].size() > groups[y].size();
+  });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(params.candidates)));
+  for (const std::size_t i : order) {
     Cloud::Ptr placed(new Cloud), refined(new Cloud);
     pcl::transformPointCloud(*a.keys, *placed, poses[i]);
     pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;

@@ -174,9 +174,10 @@ visualization_msgs::MarkerArray objectMarkers(const ObjectMap& map) {
     arrow.type = visualization_msgs::Marker::ARROW;
     arrow.points.push_back(poseMsg(*a->pose).position);
     arrow.points.push_back(poseMsg(*b->pose).position);
-    if (isSupport(relation.word)) {
-      arrow.points[1] = arrow.points[0];
-      arrow.points[1].z = b->pose->position.z + 0.5 * b->pose->size[2];
+    if (!isSupport(relation.word)) {  // over both, where the boxes do not hide it
+      const double top = std::max(a->pose->position.z + 0.5 * a->pose->size[2],
+                                  b->pose->position.z + 0.5 * b->pose->size[2]);
+      arrow.points[0].z = arrow.points[1].z = top + 0.03;
     }
     arrow.scale.x = 0.015;
     arrow.scale.y = 0.04;

@@ -15,6 +15,7 @@ struct FindModelParams {
   double descriptor_radius = 0.03;  ///< [m], > 0
   double consistency = 0.01;  ///< two correspondences agree if their lengths differ by less [m]
   int least = 5;              ///< correspondences of a pose, >= 3
+  int candidates = 3;         ///< poses with most correspondences that are refined, >= 1
   double touch = 0.01;        ///< a point of the model lies on the scene within this [m]
 };
 
@@ -24,8 +25,8 @@ struct FoundModel {
   double covered = 0.0;  ///< share of the model's points that lie on the scene, 0 .. 1
 };
 
-/// All poses, the one that covers most first. Throws hyselam::InputError for clouds without 100
-/// usable points, hyselam::ParameterError for parameters out of range.
+/// The poses refined, the one that covers most first. Throws hyselam::InputError for clouds without
+/// 100 usable points, hyselam::ParameterError for parameters out of range.
 std::vector<FoundModel> findModel(const OrganisedCloud& model, const OrganisedCloud& scene,
                                   const FindModelParams& params = {});
 
