@@ -2,6 +2,7 @@
 // has told.
 #include "hyselam_topo/topomerg.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -17,6 +18,9 @@ namespace {
 using namespace hyselam_topo;  // NOLINT: a program, not a header
 
 /// "PLACE=NAME": the id of a place of the map and a name, or its id, of the description.
+/// Of the search that tells how sure one name is [s].
+constexpr double kUncertaintyLimit = 0.5;
+
 std::pair<Id, Id> namedPlace(const std::string& option, const std::string& text,
                              const DescribedBuilding& building) {
   const std::size_t sign = text.find('=');
@@ -59,7 +63,7 @@ int main(int argc, char** argv) {
   std::string human_file, map_file, out, solver = "exact";
   MatchParams params;
   MatchObserver observer;
-  double limit = 0.0, heading = 0.0;
+  double limit = 10.0, heading = 0.0;
   Id robot_place = 0;
   bool no_dummy = false, scattered = false, uncertainties = true, thesis_sides = false;
   std::vector<std::string> confirmed, excluded;
@@ -79,9 +83,9 @@ int main(int argc, char** argv) {
                      "of the robot while the person spoke [rad]; without it the best one is taken");
   app.add_option("--confirmed", confirmed, "PLACE=NAME: this place of the map has that name");
   app.add_option("--excluded", excluded, "PLACE=NAME: this place of the map has another name");
-  CLI::Option* limit_option =
-      app.add_option("--time-limit", limit, "of the exact solver [s]; without it there is none")
-          ->check(CLI::NonNegativeNumber);
+  app.add_option("--time-limit", limit,
+                 "of the exact solver [s]; then the best so far is taken and its gap told")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--no-dummy", no_dummy, "every place of the map has a name (k_s = 0)");
   app.add_flag("--scattered", scattered, "places of one name need not hang together");
   app.add_option("--max-solutions", params.max_solutions, "as many equally good answers are kept");
@@ -98,7 +102,10 @@ int main(int argc, char** argv) {
   app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
   app.add_option("--forgotten-edge", params.fitness.forgotten_edge,
                  "0: doors that nobody told of count as mistakes; 1: not at all");
-  app.add_option("--uncertainties", uncertainties, "of the names; takes some more searches");
+  app.add_option(
+      "--uncertainties", uncertainties,
+      "of the names; one more search for each, of half a second at most: what it has not "
+      "found by then may be as good as the answer");
 
   return hyselam::runTool(argc, argv, app, [&] {
     const DescribedBuilding building = loadDescription(human_file);
@@ -106,7 +113,7 @@ int main(int argc, char** argv) {
     hyselam::Progress progress("topomerg", 3);
     if (place_option->count() > 0) observer.place = robot_place;
     if (heading_option->count() > 0) observer.heading = heading;
-    if (limit_option->count() > 0) params.time_limit = limit;
+    params.time_limit = limit;
     params.dummy = !no_dummy;
     if (thesis_sides) params.fitness.sides = SideRule::kCentres;
     params.connected = !scattered;
@@ -139,6 +146,7 @@ int main(int argc, char** argv) {
                           {"microseconds", match.microseconds},
                           {"nodes_expanded", match.nodes}};
     if (uncertainties) {
+      params.time_limit = std::min(limit, kUncertaintyLimit);
       nlohmann::json list = nlohmann::json::array();
       for (const NameUncertainty& u : nameUncertainties(problem, params, match))
         list.push_back({{"id", u.name},
