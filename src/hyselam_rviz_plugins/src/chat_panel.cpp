@@ -7,6 +7,7 @@
 #include <QPushButton>
 #include <QTextBrowser>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <pluginlib/class_list_macros.hpp>
 
 namespace hyselam_rviz_plugins {
