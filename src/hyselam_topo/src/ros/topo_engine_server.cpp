@@ -77,6 +77,11 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
 }
 
 TopoEngineServer::~TopoEngineServer() {
+  // No callback may change the dialogue while it is written.
+  timer_.stop();
+  diagnostics_.reset();
+  subscribers_.clear();
+  services_.clear();
   saved_ = ros::WallTime();
   autosave();
 }
@@ -92,11 +97,11 @@ void TopoEngineServer::onTopologicalMap(
   try {
     const Reply reply = dialogue_.setMap(fromMsg(*msg, "topological_map"));
     ++maps_;
-    error_.clear();
+    map_error_.clear();
     act(reply);
   } catch (const std::exception& e) {
     ++refused_;
-    error_ = e.what();
+    map_error_ = e.what();
     ROS_ERROR_STREAM(who_ << " this map is not used: " << e.what());
   }
 }
@@ -113,11 +118,11 @@ void TopoEngineServer::onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg) {
     dialogue_.setGrid(hyselam::fromMsg(*msg, "map"));
     grid_frame_ = frameOf(msg->header.frame_id);
     grid_stamp_ = msg->header.stamp;
-    error_.clear();
+    grid_error_.clear();
     publishWalls();
   } catch (const std::exception& e) {
     ++refused_;
-    error_ = e.what();
+    grid_error_ = e.what();
     ROS_ERROR_STREAM(who_ << " this map is not used: " << e.what());
   }
 }
@@ -125,11 +130,12 @@ void TopoEngineServer::onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg) {
 void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
   if (msg->data.size() > static_cast<std::size_t>(params_.max_text_bytes)) {
     ++refused_;
-    error_ = "human_text: it has " + std::to_string(msg->data.size()) +
-             " bytes, more than max_text_bytes, " + std::to_string(params_.max_text_bytes);
-    ROS_ERROR_STREAM(who_ << " this text is not used: " << error_);
+    text_error_ = "human_text: it has " + std::to_string(msg->data.size()) +
+                  " bytes, more than max_text_bytes, " + std::to_string(params_.max_text_bytes);
+    ROS_ERROR_STREAM(who_ << " this text is not used: " << text_error_);
     return;
   }
+  text_error_.clear();
   lookForRobot();
   heard(msg->data);
   act(dialogue_.hear(msg->data));
@@ -270,7 +276,7 @@ void TopoEngineServer::publishMap() {
     map_publisher_.publish(toMsg(dialogue_.map()));
     marker_publisher_.publish(namedMapMarkers(dialogue_.map(), params_.markers));
   } catch (const std::exception& e) {
-    error_ = e.what();
+    map_error_ = e.what();
     ROS_ERROR_STREAM(who_ << " the map is not published: " << e.what());
   }
   std_msgs::String names;
@@ -350,8 +356,9 @@ void TopoEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   using diagnostic_msgs::DiagnosticStatus;
   using hyselam::addRemark;
   using hyselam::addValue;
-  if (!error_.empty()) addRemark(status, DiagnosticStatus::ERROR, error_);
-  if (!file_error_.empty()) addRemark(status, DiagnosticStatus::ERROR, file_error_);
+  for (const std::string* error : {&map_error_, &grid_error_, &text_error_, &file_error_}) {
+    if (!error->empty()) addRemark(status, DiagnosticStatus::ERROR, *error);
+  }
   const bool long_ago = (ros::WallTime::now() - begun_).toSec() > kPatience;
   std::size_t confirmed = 0, guessed = 0;
   for (const Place& place : dialogue_.map().places) {

@@ -24,7 +24,7 @@ class GoalDriver {
   /// Gives up what is driven.
   void stop();
 
-  /// "", "driving", "arrived", "aborted at 2 of 5", ...
+  /// "", "driving", "arrived", "ABORTED at 2 of 5", ...
   const std::string& status() const;
 
  private:

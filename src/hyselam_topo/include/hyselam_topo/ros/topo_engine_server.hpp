@@ -93,7 +93,8 @@ class TopoEngineServer {
   bool changed_ = false;  // since the state was saved
 
   std::size_t maps_ = 0, texts_ = 0, refused_ = 0;
-  std::string error_;       // of the last input that was refused; empty: the last one was used
+  // Of the last input of a topic that was refused; empty: the last one was used.
+  std::string map_error_, grid_error_, text_error_;
   std::string file_error_;  // of the state file
   std::string pose_error_;
   ros::WallTime begun_ = ros::WallTime::now();
