@@ -154,7 +154,8 @@ Id DescriptionBuilder::place(const SaidName& name) {
     return ids.front();
   }
   DescribedPlace made;
-  made.id = building_.places.empty() ? 1 : building_.places.back().id + 1;
+  for (const DescribedPlace& other : building_.places) made.id = std::max(made.id, other.id);
+  ++made.id;  // descriptions from files come in any order
   made.name = name.text;
   made.kind = names_.kindOf(name.text);
   building_.places.push_back(made);
