@@ -146,6 +146,9 @@ TEST(PlaceMan, RefusesWhatCannotBe) {
   EXPECT_THROW(man.addVirtualPlace({50.0, 0.0}, 1.0, {}), InputError);
   EXPECT_THROW(man.addVirtualPlace({1.0, 1.0}, 0.0, {}), InputError);
   EXPECT_THROW(man.addVirtualPlace({1.0, 1.0}, std::nan(""), {}), InputError);
+  const std::size_t places = man.map().places.size();
+  EXPECT_THROW(man.addVirtualPlace({1.0, 1.0}, 0.5, {"\xff"}), InputError);
+  EXPECT_EQ(man.map().places.size(), places);
   const double infinite = std::numeric_limits<double>::infinity();
   EXPECT_THROW(man.addWall({{{0.0, 0.0}, {infinite, 0.0}}, WallKind::kGlass}), InputError);
   EXPECT_THROW(man.addWall({{{1.0, 0.0}, {1.0, 0.0}}, WallKind::kGlass}), InputError);

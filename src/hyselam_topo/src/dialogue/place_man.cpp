@@ -32,6 +32,13 @@ void checkWall(const ToldWall& wall) {
   }
 }
 
+void checkNames(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const std::string wrong = whatIsWrongWithWord(name);
+    if (!wrong.empty()) throw InputError("name", "", "it " + wrong);
+  }
+}
+
 bool hasConfirmed(const Place& place) {
   return std::any_of(place.words.begin(), place.words.end(),
                      [](const Word& word) { return word.confirmed; });
@@ -114,10 +121,7 @@ void PlaceMan::dropWord(Place* place, const std::string& name) {
 
 std::vector<Id> PlaceMan::confirm(Id id, const std::vector<std::string>& names) {
   Place& place = at(id);
-  for (const std::string& name : names) {
-    const std::string wrong = whatIsWrongWithWord(name);
-    if (!wrong.empty()) throw InputError("name", "", "it " + wrong);
-  }
+  checkNames(names);
   std::vector<Id> losers;
   for (Place& other : state_.map.places) {
     if (other.id == id) continue;
@@ -252,6 +256,7 @@ Id PlaceMan::addVirtualPlace(Point2 centre, double radius, const std::vector<std
   if (!(radius > 0.0 && radius <= kMaxRadius)) {
     throw InputError("virtual place", "radius", "it must be in (0, 100] m");
   }
+  checkNames(names);  // nothing is added when they are refused
   const auto around = placeAt(state_.map, centre);
   if (!around) throw InputError("virtual place", "centre", "there is no place at this point");
   AugmentedTopologicalMap& map = state_.map;
