@@ -64,6 +64,7 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
     if (place == nullptr) return std::nullopt;
     return std::make_pair(nameOf(*place), place->centre.value_or(Point3{x, y, 0.0}));
   });
+  publish();  // now: a nodelet's queue is served while its constructor still runs
   save_ = nh.advertiseService("save_object_map", &ObjectEngineServer::onSave, this);
   load_ = nh.advertiseService("load_object_map", &ObjectEngineServer::onLoad, this);
   query_ = nh.advertiseService("query_objects", &ObjectEngineServer::onQuery, this);
@@ -85,7 +86,6 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": objects",
                        params_.diagnostic_period,
                        [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
-  publish();
 }
 
 void ObjectEngineServer::onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg) {
@@ -190,9 +190,10 @@ void ObjectEngineServer::learn(const std::vector<DetectedObject>& seen,
   learnt.put(learnObject(shown_, shown_views_, shown_sizes_));
   dictionary_ = merged(dictionary_, learnt);
   mapper_.setDictionary(dictionary_);
-  if (!params_.dictionary_file.empty()) saveXml(params_.dictionary_file, dictionary_);
   say(fill_.learnt(shown_));
   shown_.clear();
+  // Last: a file that cannot be written must not make it learn the same again and again.
+  if (!params_.dictionary_file.empty()) saveXml(params_.dictionary_file, dictionary_);
 }
 
 void ObjectEngineServer::refuse(const std::string& reason) {
@@ -284,6 +285,7 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
                                 "is '" + map.frame_id + "', not '" + params_.map_frame + "'");
     }
     hyselam::toRosTime(map.stamp, path);  // what no message can hold is refused
+    toMsg(map);                           // the times of its objects, too
     map_ = std::move(map);
     fill_.forgetContext();
     if (topology_) linkPlaces(&map_, *topology_);
