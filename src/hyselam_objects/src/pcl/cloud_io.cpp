@@ -73,6 +73,12 @@ CloudFile readPcd(const std::string& path) {
   const pcl::PCLPointField* colour = find(raw, "rgba");
   if (colour == nullptr) colour = find(raw, "rgb");
   const pcl::PCLPointField* label = find(raw, "label");
+  for (const pcl::PCLPointField* field : {colour, label}) {
+    if (field != nullptr && (field->datatype < pcl::PCLPointField::INT32 ||
+                             field->datatype > pcl::PCLPointField::FLOAT32)) {
+      throw InputError(path, "field " + field->name, "has not 32 bits");
+    }
+  }
   out.cloud.points.resize(size);
   if (colour != nullptr) out.cloud.colours.resize(size);
   if (label != nullptr) out.labels.resize(size);

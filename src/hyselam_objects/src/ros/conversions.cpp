@@ -258,7 +258,7 @@ OrganisedCloud cloudOf(const sensor_msgs::PointCloud2& msg) {
   }
   std::array<std::size_t, 3> offset{};
   const std::array<const char*, 3> names{"x", "y", "z"};
-  const auto inside = [&](std::uint32_t at) { return at + 4 <= msg.point_step; };
+  const auto inside = [&](std::uint32_t at) { return at + std::size_t{4} <= msg.point_step; };
   for (std::size_t k = 0; k < 3; ++k) {
     const sensor_msgs::PointField* field = findField(msg, names[k]);
     if (field == nullptr || field->datatype != sensor_msgs::PointField::FLOAT32 ||
