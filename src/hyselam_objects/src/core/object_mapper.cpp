@@ -296,7 +296,7 @@ bool ObjectMapper::looksThrough(const OrganisedCloud& cloud, const PinholeCamera
       if (p.z() < 0.5 || p.z() > 3.8) return false;
       const double u = camera.focal_length * p.x() / p.z() + camera.cx;
       const double v = camera.focal_length * p.y() / p.z() + camera.cy;
-      if (u < mx || v < my || u > cloud.width - mx || v > cloud.height - my) return false;
+      if (u < mx || v < my || u >= cloud.width - mx || v >= cloud.height - my) return false;
       const Point& measured =
           cloud.points[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) +
                        static_cast<std::size_t>(u)];
