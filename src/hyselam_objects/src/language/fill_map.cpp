@@ -110,6 +110,7 @@ ObjectReply FillMap::tell(const ObjectStatement& statement) {
     bool related = true;
   };
   std::vector<Meant> all;
+  std::vector<Id> surplus;
   bool landmark_told = false;
   for (const ObjectPhrase& said : statement.objects) {
     Meant meant{&said, {}, 0, true};
@@ -193,7 +194,7 @@ ObjectReply FillMap::tell(const ObjectStatement& statement) {
       meant.missing = said.count - static_cast<int>(meant.known.size());
       // Corrected to fewer: the surplus goes.
       for (int i = said.count; statement.correction && said.count_said && i < known; ++i) {
-        map_.remove(same[static_cast<std::size_t>(i)]);
+        surplus.push_back(same[static_cast<std::size_t>(i)]);
       }
     }
     all.push_back(std::move(meant));
@@ -230,6 +231,12 @@ ObjectReply FillMap::tell(const ObjectStatement& statement) {
   }
 
   // ---- Now the map changes. ----
+  for (const Id id : surplus) {
+    const bool meant = std::any_of(all.begin(), all.end(), [id](const Meant& m) {
+      return std::find(m.known.begin(), m.known.end(), id) != m.known.end();
+    });
+    if (!meant) map_.remove(id);  // another phrase may mean it
+  }
   const ObjectMap before = map_;
   if (place_is_new) target.place = map_.addPlace(placeName(*statement.place));
   if (here_is_new) target.place = map_.addPlace(here_);
