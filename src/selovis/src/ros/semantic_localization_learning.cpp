@@ -124,7 +124,12 @@ bool SemanticLocalizationServer::onSave(Trigger::Request&, Trigger::Response& re
     if (!params_.save_map.empty()) {
       if (!map_) throw hyselam::InputError(params_.save_map, "", "no topological map has come");
       hyselam_topo::AugmentedTopologicalMap map = *map_;
-      const std::size_t lost = store(learner_->frames(), *model_, params_.learner, &map);
+      LearnerParams taken_with = params_.learner;
+      if (aperture_) {
+        taken_with.aperture_x = *aperture_;
+        taken_with.aperture_y = aperture_y_;
+      }
+      const std::size_t lost = store(learner_->frames(), *model_, taken_with, &map);
       hyselam_topo::saveXml(params_.save_map, map);
       response.message += (response.message.empty() ? "" : "; ") +
                           std::to_string(learner_->frames().size() - lost) + " frames written to " +

@@ -320,14 +320,15 @@ void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalM
   }
   if (model_->samples.count() == 0 && !tried_map_) {
     std::vector<LearntFrame> frames = framesOf(*map_, *model_);
-    if (!frames.empty()) {
+    const std::size_t count = frames.size();
+    if (count > 0 &&
+        training_.start(model_, std::move(frames), [this](const BackgroundTraining::Outcome& o) {
+          const std::lock_guard<std::mutex> lock(trained_mutex_);
+          trained_ = o;
+        })) {
       tried_map_ = true;
       training_frames_ = trained_frames_;
-      ROS_INFO_STREAM(who_ << " learning from " << frames.size() << " signatures of the map");
-      training_.start(model_, std::move(frames), [this](const BackgroundTraining::Outcome& o) {
-        const std::lock_guard<std::mutex> lock(trained_mutex_);
-        trained_ = o;
-      });
+      ROS_INFO_STREAM(who_ << " learning from " << count << " signatures of the map");
     }
   }
 }
