@@ -143,9 +143,9 @@ class Painter {
   // Rows whose centres lie within [top, bottom).
   template <typename Paint>
   void rows(double top, double bottom, Paint paint) {
-    const int from = std::max(0, static_cast<int>(std::ceil(std::min(top, 1e6) - 0.5)));
-    const int to =
-        std::min(params_.height - 1, static_cast<int>(std::ceil(std::min(bottom, 1e6) - 0.5)) - 1);
+    const int from = std::max(0, static_cast<int>(std::ceil(std::clamp(top, -1e6, 1e6) - 0.5)));
+    const int to = std::min(params_.height - 1,
+                            static_cast<int>(std::ceil(std::clamp(bottom, -1e6, 1e6) - 0.5)) - 1);
     for (int v = from; v <= to; ++v) paint(v);
   }
 

@@ -162,8 +162,13 @@ class FilmedFiles {
     std::snprintf(number, sizeof number, "%05zu", count_++);
     const std::string rgb = std::string("rgb/") + number + ".jpg";
     const std::string depth = std::string("depth/") + number + ".png";
-    cv::imwrite(directory_ + "/" + rgb, frame.picture.colour, {cv::IMWRITE_JPEG_QUALITY, 92});
-    cv::imwrite(directory_ + "/" + depth, frame.picture.depth);
+    for (const bool colour : {true, false}) {
+      const std::string path = directory_ + "/" + (colour ? rgb : depth);
+      const bool written =
+          colour ? cv::imwrite(path, frame.picture.colour, {cv::IMWRITE_JPEG_QUALITY, 92})
+                 : cv::imwrite(path, frame.picture.depth);
+      if (!written) throw hyselam::InputError(path, "", "cannot be written");
+    }
     rows_ << rgb << "," << plan_.places[static_cast<std::size_t>(frame.place)].name << "," << depth
           << "," << std::to_string(frame.stamp) << "," << frame.base.x << "," << frame.base.y << ","
           << frame.base.theta;
