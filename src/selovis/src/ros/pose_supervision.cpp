@@ -36,6 +36,7 @@ void PoseSupervision::setGraph(const PlaceGraph& graph) {
 }
 
 bool PoseSupervision::poseIsMeant(const ros::Time& stamp) {
+  if (set_at_ && (*set_at_ - stamp).toSec() > 1.0) set_at_.reset();  // time went back
   // Part 1 says itself whether its pose deserves trust. Others, amcl among them, do not: after the
   // pose was set they get time to find it.
   if (status_) {
