@@ -83,7 +83,7 @@ TEST(Camera, MeasuresTheDepthsThatRaysMeasure) {
   EXPECT_GT(compared, 1000u);
 }
 
-TEST(Camera, SeesFloorAndCeilingWhereTheyAre) {
+TEST(Camera, SeesTheFloorWhereItIs) {
   const Scene scene(twoRooms());
   CameraParams params;
   params.depth_sigma = 0.0;
