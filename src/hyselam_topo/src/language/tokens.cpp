@@ -58,8 +58,9 @@ std::optional<Quoted> quotedAt(const std::string& text, std::size_t i, std::size
     if (quotes.open[0] == '\'' && i > 0 && isLetterOrDigit(codeAt(text, i - 1, end))) continue;
     const std::size_t begin = i + std::strlen(quotes.open);
     const std::size_t limit = std::min(end, begin + kMaxQuoted);
-    for (std::size_t at = text.find(quotes.close, begin); at < limit;
-         at = text.find(quotes.close, at + 1)) {
+    // Not to the end of a long text for each mark that is never closed.
+    for (std::size_t at = begin; at < limit; ++at) {
+      if (!startsWith(text, at, quotes.close)) continue;
       const std::size_t after = at + std::strlen(quotes.close);
       // An apostrophe within a word closes nothing.
       if (std::strcmp(quotes.close, "\"") != 0 && isLetterOrDigit(codeAt(text, after, end))) {
