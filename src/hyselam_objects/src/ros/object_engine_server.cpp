@@ -14,6 +14,21 @@
 #include "hyselam_topo/ros/conversions.hpp"
 
 namespace hyselam_objects {
+namespace {
+
+/// An object map that messages can hold, in that frame. Throws hyselam::InputError.
+ObjectMap loadMapIn(const std::string& frame_id, const std::string& path) {
+  ObjectMap map = loadObjectMap(path);
+  if (map.frame_id != frame_id) {
+    throw hyselam::InputError(path, "frame_id",
+                              "is '" + map.frame_id + "', not '" + frame_id + "'");
+  }
+  hyselam::toRosTime(map.stamp, path);  // what no message can hold is refused
+  toMsg(map);                           // the times of its objects, too
+  return map;
+}
+
+}  // namespace
 
 ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
   using hyselam::Range;
@@ -50,7 +65,7 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
       text_publisher_(nh.advertise<std_msgs::String>("robot_text", 20)) {
   map_.frame_id = params_.map_frame;
   if (!params_.map_file.empty() && std::filesystem::exists(params_.map_file)) {
-    map_ = loadObjectMap(params_.map_file);
+    map_ = loadMapIn(params_.map_frame, params_.map_file);
   }
   if (!params_.dictionary_file.empty() && std::filesystem::exists(params_.dictionary_file)) {
     dictionary_ = loadDictionary(params_.dictionary_file);
@@ -279,14 +294,7 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
                                 hyselam_msgs::ObjectMapPath::Response& response) {
   const std::string path = request.path.empty() ? params_.map_file : request.path;
   try {
-    ObjectMap map = loadObjectMap(path);
-    if (map.frame_id != params_.map_frame) {
-      throw hyselam::InputError(path, "frame_id",
-                                "is '" + map.frame_id + "', not '" + params_.map_frame + "'");
-    }
-    hyselam::toRosTime(map.stamp, path);  // what no message can hold is refused
-    toMsg(map);                           // the times of its objects, too
-    map_ = std::move(map);
+    map_ = loadMapIn(params_.map_frame, path);
     fill_.forgetContext();
     if (topology_) linkPlaces(&map_, *topology_);
     publish();
