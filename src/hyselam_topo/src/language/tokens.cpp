@@ -24,6 +24,9 @@ constexpr std::array<Quotes, 6> kQuotes{{{"\xe2\x80\x9c", "\xe2\x80\x9d"},
                                          {"\"", "\""},
                                          {"'", "'"}}};
 constexpr std::size_t kMaxQuoted = 200;
+// Longer words are no measures and no abbreviations: texts of one word take no longer than others.
+constexpr std::size_t kMaxMeasure = 200;
+constexpr std::size_t kMaxAbbreviation = 64;
 
 bool startsWith(const std::string& text, std::size_t at, const char* what) {
   return text.compare(at, std::strlen(what), what) == 0;
@@ -199,6 +202,7 @@ class Tokenizer {
 
   /// "6", "1,5", "6m", "6x8", "6x8m": adds the tokens; false if it is something else ("3B").
   bool measures(const std::string& word) {
+    if (word.size() > kMaxMeasure) return false;
     std::vector<Token> parts;
     std::size_t i = 0;
     while (true) {
@@ -243,7 +247,10 @@ class Tokenizer {
 bool isInnerStop(const std::string& text, std::size_t i, std::size_t begin,
                  const TokenRules& rules) {
   std::size_t word = i;
-  while (word > begin && !isSpace(static_cast<unsigned char>(text[word - 1]))) --word;
+  while (word > begin && i - word <= kMaxAbbreviation &&
+         !isSpace(static_cast<unsigned char>(text[word - 1]))) {
+    --word;
+  }
   const std::string before = text.substr(word, i - word);
   std::size_t length = 0;
   const std::uint32_t next = codeAt(text, i + 1, text.size(), &length);
@@ -253,8 +260,9 @@ bool isInnerStop(const std::string& text, std::size_t i, std::size_t begin,
     const bool begins_sentence =
         isUpper(next) && isLetterOrDigit(after) && !isUpper(after) && !isDigit(after);
     if (!begins_sentence || rules.is_abbreviation(lowered(before))) return true;
+    if (before.size() >= 2) return false;
     const std::size_t end = wordEnd(text, i + 1, text.size());
-    return before.size() < 2 && !rules.may_begin(folded(text.substr(i + 1, end - i - 1)));
+    return !rules.may_begin(folded(text.substr(i + 1, end - i - 1)));
   }
   return isSpace(next) && rules.is_abbreviation(lowered(before));
 }
