@@ -5,10 +5,10 @@
 #include <regex>
 #include <set>
 
-#include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
+#include "written_parameters.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::MapParamSource;
@@ -17,10 +17,6 @@ using Values = std::map<std::string, XmlRpc::XmlRpcValue>;
 
 namespace {
 
-std::string written(const std::string& file) {
-  return hyselam::readTextFile(std::string(NGRAM_SLAM_SOURCE_DIR) + "/" + file);
-}
-
 SlamServerParams load(const Values& values, std::string* table = nullptr) {
   ParamLoader loader(std::make_shared<MapParamSource>(values));
   const SlamServerParams p = loadSlamParams(loader);
@@ -28,15 +24,11 @@ SlamServerParams load(const Values& values, std::string* table = nullptr) {
   return p;
 }
 
-/// Names and defaults, out of the table that the server logs.
+/// Names and defaults.
 std::map<std::string, std::string> defaults() {
-  static const std::regex row(R"(\n  (\w+) = ('[^']*'|\S+)  \()");
   std::string table;
   load({}, &table);
-  std::map<std::string, std::string> all;
-  for (std::sregex_iterator i(table.begin(), table.end(), row), end; i != end; ++i)
-    all[(*i)[1]] = std::regex_replace((*i)[2].str(), std::regex("'"), "");
-  return all;
+  return valuesOf(table);
 }
 
 }  // namespace
