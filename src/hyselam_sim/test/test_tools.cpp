@@ -67,8 +67,8 @@ TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {
 
 TEST_F(Tools, FilmsARun) {
   ASSERT_EQ(simulate("--route small --out " + file("run.bag").string()), 0);
-  const std::string options = " --route small --rate 0.5 --width 64 --height 48 --bag " +
-                              file("run.bag").string();
+  const std::string options =
+      " --route small --rate 0.5 --width 64 --height 48 --bag " + file("run.bag").string();
   for (const char* name : {"a", "b"}) {
     ASSERT_EQ(run(HYSELAM_FILM, options + " --jpeg 90 --out " +
                                     file(std::string(name) + ".bag").string() + " --images " +

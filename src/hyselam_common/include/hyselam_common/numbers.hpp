@@ -18,7 +18,8 @@ std::string formatNumber(double value);
 /// Splits at spaces, tabs and carriage returns; the views point into `line`.
 void splitFields(std::string_view line, std::vector<std::string_view>* fields);
 
-/// The first 20 characters of something read, fit for a message: '?' for what a terminal might obey.
+/// The first 20 characters of something read, fit for a message: '?' for what a terminal might
+/// obey.
 std::string printable(std::string_view text);
 
 /// Calls f(line number from 1, line without its end) for each line of a text.
