@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -153,6 +154,19 @@ DescribedBuilding describe(const hyselam_sim::FloorPlan& plan, const Speaker& sp
   return out;
 }
 
+/// Shuts as many doors: rooms behind them are on the map, but no way leads into them.
+void shutDoors(hyselam_sim::FloorPlan* plan, int count, std::uint64_t seed) {
+  Dice dice(seed ^ 0x5A5A5A5Au);
+  std::vector<std::size_t> open(plan->doors.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  for (; count > 0 && !open.empty(); --count) {
+    const auto k = open.begin() + dice.whole(0, static_cast<int>(open.size()) - 1);
+    plan->doors[*k].initially_open = false;
+    plan->doors[*k].schedule.clear();
+    open.erase(k);
+  }
+}
+
 /// The place of the plan that most cells of each place of the map lie in.
 std::map<Id, Id> truthOf(const hyselam_sim::FloorPlan& plan, const Gr2ToResult& found) {
   std::map<Id, std::map<Id, int>> votes;
@@ -235,6 +249,7 @@ int main(int argc, char** argv) {
   params.time_limit = 1.0;
   params.keep_within = 0.01;
   bool thesis_sides = false, know_heading = true, show_names = false;
+  int shut_doors = 0;
   app.option_defaults()->always_capture_default();
   app.add_option("--floors", floors, "number of floors");
   app.add_option("--seed", first, "of the first floor");
@@ -244,6 +259,8 @@ int main(int argc, char** argv) {
   app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
   app.add_option("--weight-orders", params.fitness.orders, "A, then B");
   app.add_option("--forgotten-edge", params.fitness.forgotten_edge, "as of topomerg");
+  app.add_option("--shut-door", params.fitness.shut_door, "as of topomerg");
+  app.add_option("--shut-doors", shut_doors, "doors that are shut when the robot maps the floor");
   app.add_flag("--thesis-sides", thesis_sides, "of centres, spread in the order told (Eq. 5.7)");
   app.add_option("--time-limit", params.time_limit, "of each search [s]");
   app.add_option("--know-heading", know_heading, "the robot knows where it looks");
@@ -257,7 +274,8 @@ int main(int argc, char** argv) {
     for (int k = 0; k < floors; ++k) {
       const std::uint64_t seed = first + static_cast<std::uint64_t>(k);
       Dice dice(seed);
-      const auto plan = hyselam_sim::generatePlan(seed);
+      auto plan = hyselam_sim::generatePlan(seed);
+      shutDoors(&plan, shut_doors, seed);
       const OccupancyGrid grid = hyselam_sim::rasterise(plan, 0.05, 0.0);
       const Gr2ToResult found = gr2to(grid);
       const std::map<Id, Id> truth = truthOf(plan, found);

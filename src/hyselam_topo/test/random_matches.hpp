@@ -246,6 +246,27 @@ inline Instance floor(std::uint64_t seed, int names, int places, const FloorOpti
   return out;
 }
 
+/// Places that no edge joins share walls here and there, wherever they are.
+inline void addWalls(std::uint64_t seed, AugmentedTopologicalMap* map) {
+  Dice dice(seed ^ 0xA5A5A5A5u);
+  for (std::size_t a = 0; a < map->places.size(); ++a) {
+    for (std::size_t b = a + 1; b < map->places.size(); ++b) {
+      Place &one = map->places[a], &other = map->places[b];
+      if (map->findEdge(one.id, other.id) != nullptr || !dice.chance(0.4)) continue;
+      const double bearing = dice.real(-3.1, 3.1);
+      Wall wall;
+      wall.position = {dice.real(0, 12), dice.real(0, 12), 1.0};
+      wall.normal = {std::cos(bearing), std::sin(bearing), 0.0};
+      wall.length = 2.0;
+      wall.id = map->next_wall_id++;
+      one.walls.push_back(wall);
+      wall.normal = {-wall.normal.x, -wall.normal.y, 0.0};
+      wall.id = map->next_wall_id++;
+      other.walls.push_back(wall);
+    }
+  }
+}
+
 inline MatchProblem compile(const Instance& instance) {
   return compileMatch(instance.building, instance.map, instance.observer, instance.constraints);
 }

@@ -178,6 +178,59 @@ TEST(TopoMergFitness, ForgottenDoorsMayCostLess) {
   EXPECT_NEAR((1.0 + 0.8 + 2.5 / 3 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
 }
 
+/// A corridor (1) along x with doors to rooms 2 and 3 on its left; room 4 has a wall on its right,
+/// but no door, and 5 is far away.
+TEST(TopoMergFitness, WallsMayHideShutDoors) {
+  AugmentedTopologicalMap map;
+  map.places = {mapPlace(1, 5, 0, 20), mapPlace(2, 2, 3, 12), mapPlace(3, 6, 3, 12),
+                mapPlace(4, 3, -3, 12), mapPlace(5, 30, 3, 12)};
+  map.edges = {mapEdge(1, 2), mapEdge(1, 3)};
+  map.edges[0].doors = {mapDoor(2, 1, kPi / 2)};
+  map.edges[1].doors = {mapDoor(6, 1, kPi / 2)};
+  const auto addWall = [&](std::size_t place, double x, double y, double ny, double length) {
+    Wall wall;
+    wall.id = map.next_wall_id++;
+    wall.position = {x, y, 1.0};
+    wall.normal = {0.0, ny, 0.0};
+    wall.length = length;
+    map.places[place].walls.push_back(wall);
+  };
+  addWall(0, 5.0, -1.0, 1.0, 10.0);
+  addWall(3, 3.0, -1.2, -1.0, 4.0);
+  finish(&map);
+
+  DescribedBuilding building;
+  building.places = {told(1, "corridor"), told(2, "office")};
+  building.connections = {{1, 2, Side::kRight}};
+  building.robot_place = 1;
+  MatchParams params;
+  const MatchProblem problem = compileMatch(building, map, {1, 0.0});
+  ASSERT_EQ(problem.walls.size(), 5u);
+  ASSERT_EQ(problem.walls[0].size(), 1u);
+  EXPECT_NEAR(problem.walls[0][0].bearing, -kPi / 2, 1e-9);
+  EXPECT_NEAR(problem.walls[0][0].x, 3.0, 1e-9);
+  EXPECT_NEAR(problem.walls[0][0].y, -1.1, 1e-9);
+  ASSERT_EQ(problem.walls[3].size(), 1u);
+  EXPECT_NEAR(problem.walls[3][0].bearing, kPi / 2, 1e-9);
+
+  // Names count 1/3, the edge 1/3, the side 1/3: 0.3 of the last two is left at the wall.
+  const auto value = [&](Assignment assignment) {
+    return fitness(problem, params.fitness, assignment);
+  };
+  EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3 + 0.3 * 2.0 / 3, 1e-12);
+  EXPECT_NEAR(value({0, -1, -1, -1, 1}), 1.0 / 3, 1e-12);
+  EXPECT_NEAR(value({0, 1, -1, -1, -1}), 2.0 / 3, 1e-12);
+  params.fitness.shut_door = 0.8;
+  EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3 + 0.8 * 2.0 / 3, 1e-12);
+  EXPECT_EQ(solveExact(problem, params).best().assignment, (Assignment{0, -1, -1, 1, -1}));
+  // The thesis knows no such doors.
+  params.fitness.shut_door = 0.0;
+  EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3, 1e-12);
+  params.fitness.shut_door = 0.8;
+  params.fitness.sides = SideRule::kCentres;
+  EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3, 1e-12);
+}
+
 TEST(TopoMergFitness, RelationsPreferWhereTheyHold) {
   // Five rooms in a row on one side of a corridor, one across.
   AugmentedTopologicalMap map;
@@ -295,6 +348,8 @@ TEST(TopoMergExact, EqualsTheExplorer) {
     params.fitness.kinds = dice.chance(0.3) ? 0.25 : 0.0;
     params.keep_within = dice.chance(0.2) ? 0.01 : 0.0;
     if (seed % 5 == 0) params.fitness.sides = SideRule::kCentres;
+    if (seed % 4 < 2) addWalls(seed, &in.map);
+    if (seed % 8 == 1) params.fitness.shut_door = 0.8;
     MatchProblem problem;
     try {
       problem = compile(in);
@@ -442,6 +497,7 @@ TEST(TopoMergBadInput, ParametersOutOfRange) {
     m->fitness.vertices = m->fitness.areas = m->fitness.edges = m->fitness.orientations = 0;
   });
   refused([](MatchParams* m) { m->fitness.forgotten_edge = 1.5; });
+  refused([](MatchParams* m) { m->fitness.shut_door = -0.1; });
   refused([](MatchParams* m) { m->time_limit = -1; });
   refused([](MatchParams* m) { m->max_solutions = 0; });
   refused([](MatchParams* m) { m->keep_within = 2; });

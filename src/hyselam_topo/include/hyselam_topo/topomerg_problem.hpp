@@ -56,7 +56,7 @@ struct MatchProblem {
     int then = 0;
     double turn = 0.0;  ///< from the direction through their doors to that from first to then
   };
-  /// A way out of a vertex.
+  /// A way out of a vertex, or a wall where a shut door may be one.
   struct Passage {
     std::size_t to = 0;    ///< the vertex behind it
     double bearing = 0.0;  ///< through it, and the same as a vector
@@ -90,7 +90,10 @@ struct MatchProblem {
   std::vector<PlaceSet> neighbours;  ///< of each vertex in the map
   /// Of each vertex: through each door; through edges without doors on the line of the centres.
   std::vector<std::vector<Passage>> passages;
-  bool has_doors = false;        ///< any edge has a door
+  bool has_doors = false;  ///< any edge has a door
+  /// Of each vertex: walls between it and others that it has no edge to; empty: none are known.
+  std::vector<std::vector<Passage>> walls;
+  std::vector<PlaceSet> behind;  ///< of each vertex: the others behind these walls
   std::vector<double> evidence;  ///< names x vertices, empty: none
 
   std::vector<int> fixed;         ///< name of each vertex, -1: not known
@@ -106,7 +109,8 @@ struct MatchProblem {
 /// ERRATA): front 0, left pi/2, back pi, right -pi/2; n places on one side of a place are pi/(2n)
 /// apart around it, the first one nearest to the back (on the front and back: the left one first).
 /// With doors (SideRule) they are not spread, but come one after the other.
-/// A place without area counts with that of its outline.
+/// A place without area counts with that of its outline. Where walls of two places without an edge
+/// lie back to back for at least the width of a door, a shut door may be in them.
 ///
 /// Throws hyselam::InputError for a description or map that is none, with more than
 /// PlaceSet::kCapacity places, for constraints and evidence about places that do not exist, that
@@ -141,10 +145,14 @@ struct FitnessParams {
   /// C of two places that are joined in the map although nobody has said so, 0 .. 1: 0 as if it
   /// had been told wrongly, 1 as if people forgot such things all the time.
   double forgotten_edge = 0.0;
+  /// So much of the value of C and D is left where two places were told to be joined and are not
+  /// in the map, but share a wall: 0 .. 1. A door may be there that was shut when the robot passed.
+  /// Only with doors (SideRule).
+  double shut_door = 0.3;
 };
 
 /// Throws hyselam::ParameterError unless all weights are finite and >= 0, one of the first four is
-/// > 0, and `forgotten_edge` lies in 0 .. 1.
+/// > 0, and `forgotten_edge` and `shut_door` lie in 0 .. 1.
 void checkFitnessParams(const FitnessParams& params);
 
 /// Name of each vertex, -1: none.

@@ -102,6 +102,9 @@ int main(int argc, char** argv) {
   app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
   app.add_option("--forgotten-edge", params.fitness.forgotten_edge,
                  "0: doors that nobody told of count as mistakes; 1: not at all");
+  app.add_option("--shut-door", params.fitness.shut_door,
+                 "so much is left of a door that was told and is not on the map, if the two places "
+                 "share a wall");
   app.add_option(
       "--uncertainties", uncertainties,
       "of the names; one more search for each, of half a second at most: what it has not "

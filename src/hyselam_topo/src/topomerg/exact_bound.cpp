@@ -40,9 +40,21 @@ double ExactSearch::pairLoss(int i, int j) const {
   return terms_.missing_edge + (s >= 0 ? terms_.lostSide(problem_.sides[at(s)]) : 0.0);
 }
 
+double ExactSearch::wallLoss(int i, int j) const {
+  return terms_.toldEdge(Contact::kWall) + (sideBetween(i, j) >= 0 ? terms_.throughWall(0.0) : 0.0);
+}
+
+bool ExactSearch::mayShareWall(const PlaceSet& a, const PlaceSet& b) const {
+  if (!(terms_.shut_door > 0.0)) return false;
+  bool any = false;
+  a.forEach([&](std::size_t v) { any = any || problem_.behind[v].intersects(b); });
+  return any;
+}
+
 double ExactSearch::exactLoss(int name, const Vertices& vertices) const {
   double loss = terms_.alone(name, vertices);
-  for (const int k : closed_list_) loss += terms_.edge(name, k, vertices.touches(closed_[at(k)]));
+  for (const int k : closed_list_)
+    loss += terms_.edge(name, k, terms_.contact(vertices, closed_[at(k)]));
   for (const int number : terms_.sides_of[at(name)]) {
     const auto& told = problem_.sides[at(number)];
     const int other = told.from == name ? told.to : told.from;
@@ -143,8 +155,11 @@ double ExactSearch::grownLoss(const Growth& g) const {
     const bool is_told = problem_.areJoined(at(g.name), at(k));
     const bool touches = g.has.touches(closed_[at(k)]);
     if (!is_told && touches) loss += terms_.forgotten_edge;
-    if (is_told && !touches && !closed_[at(k)].around.intersects(g.open))
-      loss += terms_.missing_edge;
+    if (is_told && !touches && !closed_[at(k)].around.intersects(g.open)) {
+      const bool wall = terms_.shut_door > 0.0 && (g.has.sharesWall(closed_[at(k)]) ||
+                                                   closed_[at(k)].behind.intersects(g.open));
+      loss += terms_.toldEdge(wall ? Contact::kWall : Contact::kNone);
+    }
   }
   for (const int number : terms_.sides_of[at(g.name)]) {
     const auto& s = problem_.sides[at(number)];
@@ -153,8 +168,8 @@ double ExactSearch::grownLoss(const Growth& g) const {
     const Vertices& v = closed_[at(other)];
     if (terms_.by_doors) {
       const PlaceSet reach = g.has.members | g.open;
-      loss += s.from == other ? terms_.doorLoss(s, v.members, reach, heading_)
-                              : terms_.doorLoss(s, reach, v.members, heading_);
+      loss += s.from == other ? terms_.leastDoorLoss(s, v.members, reach, heading_)
+                              : terms_.leastDoorLoss(s, reach, v.members, heading_);
       continue;
     }
     if (!v.hasCentre() || !(v.around.intersects(g.open) || g.has.touches(v))) {
@@ -187,6 +202,8 @@ GrownView ExactSearch::viewOf(const Vertices& v, const Growth& g) const {
   GrownView view;
   view.touches = g.has.around.intersects(v.members);
   view.may_touch = view.touches || v.around.intersects(g.open);
+  view.may_share_wall =
+      terms_.shut_door > 0.0 && (g.has.sharesWall(v) || v.behind.intersects(g.open));
   view.placed = v.hasCentre();
   if (terms_.by_doors) view.members = v.members;
   if (!terms_.by_doors && view.may_touch && view.placed && !terms_.sides_of[at(g.name)].empty())
@@ -196,14 +213,15 @@ GrownView ExactSearch::viewOf(const Vertices& v, const Growth& g) const {
 
 double ExactSearch::grownPairLoss(int name, const GrownView& view, const Growth& g) const {
   if (!problem_.areJoined(at(name), at(g.name))) return view.touches ? terms_.forgotten_edge : 0.0;
-  if (!view.may_touch) return pairLoss(name, g.name);
+  if (!view.may_touch && !view.may_share_wall) return pairLoss(name, g.name);
+  const double edge = view.may_touch ? 0.0 : terms_.toldEdge(Contact::kWall);
   const int number = sideBetween(name, g.name);
-  if (number < 0) return 0.0;
+  if (number < 0) return edge;
   const auto& told = problem_.sides[at(number)];
   if (terms_.by_doors) {
     const PlaceSet reach = g.has.members | g.open;
-    return told.from == name ? terms_.doorLoss(told, view.members, reach, heading_)
-                             : terms_.doorLoss(told, reach, view.members, heading_);
+    return edge + (told.from == name ? terms_.leastDoorLoss(told, view.members, reach, heading_)
+                                     : terms_.leastDoorLoss(told, reach, view.members, heading_));
   }
   if (!view.placed) return terms_.side;
   const Sight& see = view.see;
@@ -227,7 +245,10 @@ double ExactSearch::looseLoss(int name, const LooseAnchor& loose, const Growth* 
   for (const int k : closed_list_) {
     const PlaceSet& around = closed_[at(k)].around;
     if (problem_.areJoined(at(name), at(k))) {
-      if (!around.intersects(component)) loss += pairLoss(name, k);
+      if (!around.intersects(component))
+        loss += terms_.shut_door > 0.0 && closed_[at(k)].behind.intersects(component)
+                    ? wallLoss(name, k)
+                    : pairLoss(name, k);
     } else if (around.contains(v)) {
       loss += terms_.forgotten_edge;
     }
@@ -237,7 +258,9 @@ double ExactSearch::looseLoss(int name, const LooseAnchor& loose, const Growth* 
     if (!problem_.areJoined(at(name), at(growth->name))) {
       if (around.contains(v)) loss += terms_.forgotten_edge;
     } else if (!around.intersects(component) && !component.intersects(growth->open)) {
-      loss += pairLoss(name, growth->name);
+      loss += mayShareWall(component, growth->has.members | growth->open)
+                  ? wallLoss(name, growth->name)
+                  : pairLoss(name, growth->name);
     }
   }
   return loss;
@@ -367,11 +390,15 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
   listRows(node, growth != nullptr ? growth->name : last, late_);
 
   const std::size_t alive = node->alive.size();
-  touches_.resize(alive);
+  contacts_.resize(alive);
   bearings_.resize(alive);
   lonely_.resize(node->setCount());
-  for (std::size_t s = 0; s < node->setCount(); ++s)
-    lonely_[s] = !setOf(*node, s).around.intersects(node->available);
+  for (std::size_t s = 0; s < node->setCount(); ++s) {
+    const Vertices& v = setOf(*node, s);
+    lonely_[s] = v.around.intersects(node->available)                             ? 0
+                 : terms_.shut_door > 0.0 && v.behind.intersects(node->available) ? 1
+                                                                                  : 2;
+  }
   if (growth != nullptr) {
     views_.resize(node->setCount());
     for (std::size_t s = 0; s < node->setCount(); ++s) views_[s] = viewOf(setOf(*node, s), *growth);
@@ -381,8 +408,9 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
     const bool sides = other.hasCentre() && !terms_.sides_of[at(last)].empty();
     for (std::size_t s = 0; s < alive; ++s) {
       const Vertices& v = setOf(*node, s);
-      touches_[s] = other.around.intersects(v.members);
-      if (touches_[s] && sides && v.hasCentre()) bearings_[s] = Terms::bearing(v, other);
+      contacts_[s] = terms_.contact(other, v);
+      if (contacts_[s] == Contact::kJoined && sides && v.hasCentre())
+        bearings_[s] = Terms::bearing(v, other);
     }
   }
   if (losses_.size() <= level) losses_.resize(level + 1);
@@ -417,12 +445,14 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
       for (std::size_t s = 0; s < node->setCount(); ++s)
         cost[s] += grownPairLoss(name, views_[s], *growth);
     // What the name loses if it cannot be joined to those that have no vertices yet.
-    double waiting = 0.0;
-    for (const int other : node->rows)
-      if (problem_.areJoined(at(name), at(other)) && leads(other, name))
-        waiting += pairLoss(name, other);
+    double waiting = 0.0, by_wall = 0.0;
+    for (const int other : node->rows) {
+      if (!problem_.areJoined(at(name), at(other)) || !leads(other, name)) continue;
+      waiting += pairLoss(name, other);
+      by_wall += wallLoss(name, other);
+    }
     for (std::size_t s = 0; s < node->setCount(); ++s) {
-      if (lonely_[s]) cost[s] += waiting;
+      if (lonely_[s] != 0) cost[s] += lonely_[s] == 1 ? by_wall : waiting;
       double& least = table.cost(row, node->column_of[at(anchorOf(*node, s))]);
       least = std::min(least, cost[s]);
     }
@@ -446,21 +476,21 @@ void ExactSearch::addLast(const Node& node, int name, int last, const double* be
     for (std::size_t s = 0; s < alive; ++s) {
       const int set = node.alive[s];
       double loss = apart;
-      if (touches_[s]) {
-        loss = 0.0;
+      if (contacts_[s] != Contact::kNone) {
+        loss = terms_.toldEdge(contacts_[s]);
         if (number >= 0) {
           const auto& told = problem_.sides[at(number)];
           if (terms_.by_doors) {
             const Vertices& own = listed_[at(set)].vertices;
             const Vertices& other = closed_[at(last)];
-            now[set] =
-                before[set] + (told.from == name ? terms_.sideLoss(told, own, other, heading_)
-                                                 : terms_.sideLoss(told, other, own, heading_));
+            now[set] = before[set] + loss +
+                       (told.from == name ? terms_.sideLoss(told, own, other, heading_)
+                                          : terms_.sideLoss(told, other, own, heading_));
             continue;
           }
           const bool known = listed_[at(set)].vertices.hasCentre() && closed_[at(last)].hasCentre();
           const double bearing = told.from == name ? bearings_[s] : turned(bearings_[s]);
-          loss =
+          loss +=
               known ? terms_.side * terms_.deviation(told, bearing, heading_) / kPi : terms_.side;
         }
       }
@@ -468,7 +498,8 @@ void ExactSearch::addLast(const Node& node, int name, int last, const double* be
     }
   } else {
     for (std::size_t s = 0; s < alive; ++s)
-      now[node.alive[s]] = before[node.alive[s]] + (touches_[s] ? terms_.forgotten_edge : 0.0);
+      now[node.alive[s]] =
+          before[node.alive[s]] + (contacts_[s] == Contact::kJoined ? terms_.forgotten_edge : 0.0);
   }
   for (const int number : terms_.clauses_of[at(name)]) {
     const Terms::Clause& r = terms_.clauses[at(number)];

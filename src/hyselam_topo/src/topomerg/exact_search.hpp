@@ -40,6 +40,7 @@ struct Sight {
 struct GrownView {
   bool touches = false;
   bool may_touch = false;
+  bool may_share_wall = false;
   bool placed = false;  ///< the set has a position
   Sight see;
   PlaceSet members;  ///< of the set
@@ -131,6 +132,9 @@ class ExactSearch {
   double grownPairLoss(int name, const GrownView& view, const Growth& growth) const;
   /// What is lost of two names that are told to be joined and are not.
   double pairLoss(int i, int j) const;
+  /// The least of it if they share a wall.
+  double wallLoss(int i, int j) const;
+  bool mayShareWall(const PlaceSet& a, const PlaceSet& b) const;
   PlaceSet piece(std::size_t anchor, const PlaceSet& of) const;
   bool forEachSet(std::size_t anchor, const PlaceSet& piece, std::size_t limit,
                   const std::function<void(const Vertices&)>& visit) const;
@@ -198,11 +202,11 @@ class ExactSearch {
   double base_ = 0.0;
 
   // Of the node whose bound is computed, of each set:
-  std::vector<char> late_;        ///< of each name: of an untouched group
-  std::vector<char> touches_;     ///< the name that has last got its vertices
-  std::vector<double> bearings_;  ///< from the set to that name
+  std::vector<char> late_;         ///< of each name: of an untouched group
+  std::vector<Contact> contacts_;  ///< with the name that has last got its vertices
+  std::vector<double> bearings_;   ///< from the set to that name
   std::vector<GrownView> views_;
-  std::vector<char> lonely_;  ///< touches no available vertex
+  std::vector<char> lonely_;  ///< touches no available vertex: 1 but shares a wall with one, 2 none
 
   std::deque<Node> nodes_;
   std::vector<Group>* groups_ = nullptr;  ///< of the sector

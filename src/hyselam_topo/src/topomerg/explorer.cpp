@@ -62,7 +62,7 @@ class Ledger {
   }
   const Vertices& of(int i) const { return names_[static_cast<std::size_t>(i)]; }
   double pairLoss(int i, int j) const {
-    double loss = terms_.edge(i, j, of(i).touches(of(j)));
+    double loss = terms_.edge(i, j, terms_.contact(of(i), of(j)));
     for (const int s : {pairs_[at(i, j)].side, pairs_[at(j, i)].side}) {
       if (s < 0) continue;
       const auto& side = terms_.problem.sides[static_cast<std::size_t>(s)];

@@ -27,11 +27,11 @@ double areaOf(const Place& place) {
 double middleOf(Side side) {
   switch (side) {
     case Side::kLeft:
-      return 0.5 * merging::kPi;
+      return 0.5 * hyselam::kPi;
     case Side::kRight:
-      return -0.5 * merging::kPi;
+      return -0.5 * hyselam::kPi;
     case Side::kBack:
-      return merging::kPi;
+      return hyselam::kPi;
     case Side::kFront:
     case Side::kUnknown:
       break;
@@ -74,7 +74,7 @@ void addSides(const DescribedBuilding& building, const Numbers& name, MatchProbl
     const double sign = key.second == Side::kRight || key.second == Side::kBack ? -1.0 : 1.0;
     for (std::size_t k = 0; k < row.size(); ++k) {
       const double offset =
-          (0.5 * (count - 1.0) - static_cast<double>(k)) * merging::kPi / (2 * count);
+          (0.5 * (count - 1.0) - static_cast<double>(k)) * hyselam::kPi / (2 * count);
       const auto before = [&](const auto* a, const auto* b) { return a->order < b->order; };
       int earlier = 0, later = 0;
       for (const DescribedConnection* other : row) {
@@ -82,7 +82,7 @@ void addSides(const DescribedBuilding& building, const Numbers& name, MatchProbl
         later += before(row[k], other);
       }
       // Forwards along the left and the right, from left to right on the front and back.
-      const double turn = sign * -0.5 * merging::kPi;
+      const double turn = sign * -0.5 * hyselam::kPi;
       out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
                             merging::wrapped(middle + sign * offset), middle, turn, earlier,
                             later});
@@ -111,6 +111,56 @@ void addPassages(const AugmentedTopologicalMap& map, const Numbers& vertex, Matc
       add(out->x[b] - out->x[a], out->y[b] - out->y[a], 0.5 * (out->x[a] + out->x[b]),
           0.5 * (out->y[a] + out->y[b]));
   }
+}
+
+/// Walls of two places that may be the two faces of one lie back to back, ...
+constexpr double kBackToBack = -0.9;  ///< product of their normals, at most
+constexpr double kThickest = 0.6;     ///< as far apart at most [m]
+/// ... and a door has room where they do.
+constexpr double kDoorWidth = 0.7;  ///< [m]
+
+/// Where wall `a` could have a door to what lies behind wall `b`: the middle of their common
+/// stretch.
+std::optional<hyselam::Point2> commonStretch(const Wall& a, const Wall& b) {
+  if (a.kind == WallKind::kVirtual || b.kind == WallKind::kVirtual) return std::nullopt;
+  if (a.normal.x * b.normal.x + a.normal.y * b.normal.y > kBackToBack) return std::nullopt;
+  const double dx = b.position.x - a.position.x, dy = b.position.y - a.position.y;
+  const double behind = -(a.normal.x * dx + a.normal.y * dy);
+  if (behind < -0.5 * kThickest || behind > kThickest) return std::nullopt;
+  const double offset = a.normal.x * dy - a.normal.y * dx;
+  const double low = std::max(-0.5 * a.length, offset - 0.5 * b.length);
+  const double high = std::min(0.5 * a.length, offset + 0.5 * b.length);
+  if (high - low < kDoorWidth) return std::nullopt;
+  const double along = 0.5 * (low + high);
+  return hyselam::Point2{a.position.x - along * a.normal.y - 0.5 * behind * a.normal.x,
+                         a.position.y + along * a.normal.x - 0.5 * behind * a.normal.y};
+}
+
+void addWalls(const AugmentedTopologicalMap& map, MatchProblem* out) {
+  std::vector<std::vector<MatchProblem::Passage>> walls(out->vertexCount());
+  std::vector<PlaceSet> behind(out->vertexCount());
+  bool any = false;
+  for (std::size_t a = 0; a < map.places.size(); ++a) {
+    for (std::size_t b = a + 1; b < map.places.size(); ++b) {
+      if (out->neighbours[a].contains(b)) continue;
+      for (const Wall& wall : map.places[a].walls) {
+        for (const Wall& other : map.places[b].walls) {
+          const auto at = commonStretch(wall, other);
+          if (!at) continue;
+          const double bearing = std::atan2(-wall.normal.y, -wall.normal.x);
+          const double c = std::cos(bearing), s = std::sin(bearing);
+          walls[a].push_back({b, bearing, c, s, at->x, at->y});
+          walls[b].push_back({a, std::atan2(-s, -c), -c, -s, at->x, at->y});
+          behind[a].insert(b);
+          behind[b].insert(a);
+          any = true;
+        }
+      }
+    }
+  }
+  if (!any) return;
+  out->walls = std::move(walls);
+  out->behind = std::move(behind);
 }
 
 void addConstraints(const MatchConstraints& constraints, const Numbers& name, const Numbers& vertex,
@@ -190,6 +240,7 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     out.neighbours[b].insert(a);
   }
   addPassages(map, vertex, &out);
+  addWalls(map, &out);
   out.joined.assign(n * n, 0);
   for (const DescribedConnection& c : building.connections) {
     const auto a = static_cast<std::size_t>(name(c.from, "description"));
@@ -207,7 +258,7 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     if (building.robot_place) all.confirmed.emplace_back(*observer.place, *building.robot_place);
   }
   addConstraints(all, name, vertex, &out);
-  if (observer.heading) out.heading = std::remainder(*observer.heading, 2.0 * merging::kPi);
+  if (observer.heading) out.heading = std::remainder(*observer.heading, 2.0 * hyselam::kPi);
 
   for (const MatchEvidence& e : evidence) {
     const auto i = static_cast<std::size_t>(name(e.name, "evidence"));
@@ -235,6 +286,8 @@ void checkFitnessParams(const FitnessParams& params) {
                                   "> 0 if areas, edges and orientations are 0");
   if (!(params.forgotten_edge >= 0.0 && params.forgotten_edge <= 1.0))
     throw hyselam::ParameterError("forgotten_edge", params.forgotten_edge, "within 0 .. 1");
+  if (!(params.shut_door >= 0.0 && params.shut_door <= 1.0))
+    throw hyselam::ParameterError("shut_door", params.shut_door, "within 0 .. 1");
 }
 
 }  // namespace hyselam_topo

@@ -9,6 +9,8 @@ namespace {
 constexpr double kSameSide = 1.6;
 /// Of the vectors through doors on the same side, their product is more than this.
 constexpr double kParallel = 0.8;
+/// More than any deviation.
+constexpr double kNoDoor = 4.0;
 /// Doors that are less apart are counted as neither before nor behind each other [m].
 constexpr double kBeside = 0.3;
 /// A door that lies as far behind another is certainly behind it [m].
@@ -37,6 +39,10 @@ void Vertices::add(const MatchProblem& problem, std::size_t vertex) {
   members.insert(vertex);
   around |= problem.neighbours[vertex];
   around -= members;
+  if (!problem.behind.empty()) {
+    behind |= problem.behind[vertex];
+    behind -= members;
+  }
   area += problem.area[vertex];
   weight += problem.weight[vertex];
   sx += problem.weight[vertex] * problem.x[vertex];
@@ -66,6 +72,7 @@ Terms::Terms(const MatchProblem& problem_in, const FitnessParams& params)
     sides_of[static_cast<std::size_t>(problem.sides[s].to)].push_back(static_cast<int>(s));
   }
   by_doors = params.sides == SideRule::kDoors && problem.has_doors;
+  if (by_doors && !problem.behind.empty()) shut_door = params.shut_door;
   for (const MatchProblem::Relation& r : problem.relations)
     clauses.push_back({r.kind, r.a, r.b, r.c, false, 0.0});
   std::size_t orders = 0, ranks = 0;
@@ -186,17 +193,29 @@ double Terms::relationValue(RelationKind what, const Vertices& a, const Vertices
 
 double Terms::doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
                        Heading heading) const {
-  double least = kPi;
+  double least = kNoDoor;
   // Seen from the smaller set: it has fewer passages.
-  if (from.size() <= to.size())
-    forEachPassage(from, to, [&](const MatchProblem::Passage& p) {
-      least = std::min(least, deviation(told, p.bearing, heading));
-    });
-  else
-    forEachPassage(to, from, [&](const MatchProblem::Passage& p) {
-      least = std::min(least, deviation(told, wrapped(p.bearing + kPi), heading));
-    });
-  return side * least / kPi;
+  const bool turned = from.size() > to.size();
+  const PlaceSet &here = turned ? to : from, &there = turned ? from : to;
+  const auto look = [&](const MatchProblem::Passage& p) {
+    const double bearing = turned ? wrapped(p.bearing + kPi) : p.bearing;
+    least = std::min(least, deviation(told, bearing, heading));
+  };
+  forEachPassage(here, there, look);
+  if (least < kNoDoor) return throughDoor(least);
+  forEachWall(here, there, look);
+  return least < kNoDoor ? throughWall(least) : side;
+}
+
+double Terms::leastDoorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from,
+                            const PlaceSet& to, Heading heading) const {
+  const double doors = doorLoss(told, from, to, heading);
+  if (!(shut_door > 0.0)) return doors;
+  double least = kNoDoor;
+  forEachWall(from, to, [&](const MatchProblem::Passage& p) {
+    least = std::min(least, deviation(told, p.bearing, heading));
+  });
+  return least < kNoDoor ? std::min(doors, throughWall(least)) : doors;
 }
 
 double Terms::rankLoss(const MatchProblem::ToldSide& told, const PlaceSet& from,
@@ -204,7 +223,7 @@ double Terms::rankLoss(const MatchProblem::ToldSide& told, const PlaceSet& from,
   if (told.before + told.after == 0 || rank <= 0.0) return 0.0;
   const double c = std::cos(told.turn), s = std::sin(told.turn);
   int least = told.before + told.after;
-  forEachPassage(from, to, [&](const MatchProblem::Passage& own) {
+  forEachDoor(from, to, [&](const MatchProblem::Passage& own) {
     const double ax = c * own.dx - s * own.dy, ay = s * own.dx + c * own.dy;
     int before = 0, after = 0;
     from.forEach([&](std::size_t v) {
@@ -228,7 +247,7 @@ double Terms::orderValue(const Clause& clause, const Vertices& first, const Vert
   };
   const auto doorsInto = [&](const Vertices& to) {
     Doors d;
-    forEachPassage(from.members, to.members, [&d](const MatchProblem::Passage& p) {
+    forEachDoor(from.members, to.members, [&d](const MatchProblem::Passage& p) {
       d.x += p.x;
       d.y += p.y;
       d.dx += p.dx;
@@ -262,7 +281,7 @@ double evaluate(const Terms& terms, const std::vector<Vertices>& names, double* 
   double loss = 0.0;
   for (int i = 0; i < n; ++i) loss += terms.alone(i, of(i));
   for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) loss += terms.edge(i, j, of(i).touches(of(j)));
+    for (int j = i + 1; j < n; ++j) loss += terms.edge(i, j, terms.contact(of(i), of(j)));
   for (const Terms::Clause& clause : terms.clauses) loss += terms.clauseLoss(clause, of);
 
   if (problem.heading) {
@@ -272,32 +291,38 @@ double evaluate(const Terms& terms, const std::vector<Vertices>& names, double* 
   } else {
     // The sum of deviations is piecewise linear in the heading and bends upwards only where one of
     // them is 0: the best heading is there.
-    std::vector<std::vector<double>> exact;  // of each side: headings where it is right
+    struct Right {
+      std::vector<double> headings;  ///< where the side is right
+      double share = 1.0;            ///< of its value, that it has there
+    };
+    std::vector<Right> exact;  // of each side
     for (const MatchProblem::ToldSide& s : problem.sides) {
-      std::vector<double> right;
+      Right right;
       if (terms.by_doors)
-        terms.forEachPassage(of(s.from).members, of(s.to).members,
-                             [&](const MatchProblem::Passage& p) {
-                               right.push_back(wrapped(p.bearing - s.middle));
-                             });
+        right.share = terms.forEachDoor(of(s.from).members, of(s.to).members,
+                                        [&](const MatchProblem::Passage& p) {
+                                          right.headings.push_back(wrapped(p.bearing - s.middle));
+                                        });
       else if (Terms::comparable(of(s.from), of(s.to)))
-        right.push_back(wrapped(Terms::bearing(of(s.from), of(s.to)) - s.angle));
-      if (right.empty()) {
+        right.headings.push_back(wrapped(Terms::bearing(of(s.from), of(s.to)) - s.angle));
+      if (right.headings.empty()) {
         loss += terms.lostSide(s);
         continue;
       }
       if (terms.by_doors) loss += terms.rankLoss(s, of(s.from).members, of(s.to).members);
+      loss += terms.side * (1.0 - right.share);
       exact.push_back(std::move(right));
     }
     double least = 0.0, at = 0.0;
     bool first = true;
-    for (const std::vector<double>& tried : exact) {
-      for (const double value : tried) {
+    for (const Right& tried : exact) {
+      for (const double value : tried.headings) {
         double sum = 0.0;
-        for (const std::vector<double>& others : exact) {
+        for (const Right& others : exact) {
           double off = kPi;
-          for (const double other : others) off = std::min(off, std::abs(wrapped(other - value)));
-          sum += off;
+          for (const double other : others.headings)
+            off = std::min(off, std::abs(wrapped(other - value)));
+          sum += others.share * off;
         }
         if (!first && !(sum < least - 1e-12)) continue;
         first = false;

@@ -5,13 +5,15 @@
 #include <cmath>
 #include <vector>
 
+#include "hyselam_common/pose2.hpp"
 #include "hyselam_topo/topomerg_problem.hpp"
 
 namespace hyselam_topo::merging {
 
-constexpr double kPi = 3.14159265358979323846;
+using hyselam::kPi;
 
-/// To -pi .. pi, for angles within -3 pi .. 3 pi.
+/// To -pi .. pi, for angles within -3 pi .. 3 pi: the search does this all the time, and
+/// hyselam::wrapAngle() divides.
 inline double wrapped(double angle) {
   if (angle > kPi) return angle - 2.0 * kPi;
   if (angle < -kPi) return angle + 2.0 * kPi;
@@ -28,12 +30,22 @@ struct Vertices {
   double sy = 0.0;
   int count = 0;
 
+  PlaceSet behind;  ///< what shares a wall with the members, without the members
+
   bool empty() const { return count == 0; }
   bool hasCentre() const { return weight > 0.0; }
   double x() const { return sx / weight; }
   double y() const { return sy / weight; }
   bool touches(const Vertices& other) const { return around.intersects(other.members); }
+  bool sharesWall(const Vertices& other) const { return behind.intersects(other.members); }
   void add(const MatchProblem& problem, std::size_t vertex);
+};
+
+/// How two names lie to each other in the map.
+enum class Contact {
+  kNone,
+  kWall,  ///< no way, but a wall that may hide a shut door
+  kJoined
 };
 
 /// The robot's heading, known up to `slack`: angles count as right within it.
@@ -67,6 +79,7 @@ class Terms {
   double order = 0.0;  ///< of two neighbours in a row told
   double rank = 0.0;   ///< of one place in a row told
   bool by_doors = false;
+  double shut_door = 0.0;  ///< of the value of an edge and its side, left where a wall is shared
   double parts = 0.0;
   double kind = 0.0;
   double evidence = 0.0;
@@ -77,10 +90,21 @@ class Terms {
 
   /// What a name alone loses.
   double alone(int name, const Vertices& v) const;
+  Contact contact(const Vertices& a, const Vertices& b) const {
+    if (a.touches(b)) return Contact::kJoined;
+    return shut_door > 0.0 && a.sharesWall(b) ? Contact::kWall : Contact::kNone;
+  }
   /// Of two names: joined as told or not.
-  double edge(int i, int j, bool touching) const {
+  double edge(int i, int j, Contact is) const {
     const bool told = problem.areJoined(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-    return told == touching ? 0.0 : told ? missing_edge : forgotten_edge;
+    if (!told) return is == Contact::kJoined ? forgotten_edge : 0.0;
+    return toldEdge(is);
+  }
+  /// Of two names that are told to be joined.
+  double toldEdge(Contact is) const {
+    return is == Contact::kJoined ? 0.0
+           : is == Contact::kWall ? (1.0 - shut_door) * missing_edge
+                                  : missing_edge;
   }
   /// Difference of what was told and a bearing in the map, 0 .. pi.
   double deviation(const MatchProblem::ToldSide& told, double bearing, Heading heading) const {
@@ -103,9 +127,12 @@ class Terms {
     if (!comparable(from, to)) return lostSide(told);
     return side * deviation(told, bearing(from, to), heading) / kPi;
   }
-  /// Of the door that fits best; less if there are more of them.
+  /// Of the door that fits best, or the wall where there is no door.
   double doorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
                   Heading heading) const;
+  /// The same of any parts of these sets: doors and walls, whatever fits best.
+  double leastDoorLoss(const MatchProblem::ToldSide& told, const PlaceSet& from, const PlaceSet& to,
+                       Heading heading) const;
   /// Of the order told: as many doors as told must lie before and behind on that side of `from`.
   double rankLoss(const MatchProblem::ToldSide& told, const PlaceSet& from,
                   const PlaceSet& to) const;
@@ -120,6 +147,30 @@ class Terms {
       for (const MatchProblem::Passage& p : problem.passages[v])
         if (to.contains(p.to)) visit(p);
     });
+  }
+  /// Of the sides' loss through a door, or through a wall that may hide one.
+  double throughDoor(double off) const { return side * off / kPi; }
+  double throughWall(double off) const { return side * (1.0 - shut_door * (1.0 - off / kPi)); }
+  /// The same of walls that shut doors may be in.
+  template <typename Visit>
+  void forEachWall(const PlaceSet& from, const PlaceSet& to, Visit&& visit) const {
+    if (!(shut_door > 0.0)) return;
+    from.forEach([&](std::size_t v) {
+      if (!problem.behind[v].intersects(to)) return;
+      for (const MatchProblem::Passage& p : problem.walls[v])
+        if (to.contains(p.to)) visit(p);
+    });
+  }
+  /// Passages, and walls if there are none; tells which: `shut_door`, or 1 for passages.
+  template <typename Visit>
+  double forEachDoor(const PlaceSet& from, const PlaceSet& to, Visit&& visit) const {
+    bool any = false;
+    forEachPassage(from, to, [&](const MatchProblem::Passage& p) {
+      any = true;
+      visit(p);
+    });
+    if (!any) forEachWall(from, to, visit);
+    return any ? 1.0 : shut_door;
   }
   /// `of` gives the vertices of a name.
   template <typename Of>
