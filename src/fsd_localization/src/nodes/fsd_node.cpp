@@ -1,17 +1,8 @@
 // The server of the nodelet fsd_localization/Fsd as a node of its own. Exit 2 if a parameter cannot
 // be used.
-#include <iostream>
-
 #include "fsd_localization/ros/fsd_server.hpp"
+#include "hyselam_common/ros/server_node.hpp"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "fsd");
-  try {
-    const fsd_localization::FsdServer server(ros::NodeHandle(), ros::NodeHandle("~"));
-    ros::spin();
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 2;
-  }
-  return 0;
+  return hyselam::runServer<fsd_localization::FsdServer>(argc, argv, "fsd");
 }

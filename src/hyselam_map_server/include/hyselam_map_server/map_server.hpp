@@ -25,6 +25,9 @@ class MapServer {
  public:
   /// Throws hyselam::InputError if the file cannot be used; nothing is advertised then.
   MapServer(ros::NodeHandle nh, const MapServerParameters& parameters);
+  /// With the parameters that `private_nh` has.
+  MapServer(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
+      : MapServer(nh, loadParameters(private_nh)) {}
 
  private:
   void use(const nav_msgs::OccupancyGrid& map);

@@ -1,17 +1,8 @@
 // The server of the nodelet ngram_slam/Words as a node of its own. Exit 2 if a parameter or the
 // corpus cannot be used.
-#include <iostream>
-
+#include "hyselam_common/ros/server_node.hpp"
 #include "ngram_slam/ros/words_server.hpp"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "words");
-  try {
-    const ngram_slam::WordsServer server(ros::NodeHandle(), ros::NodeHandle("~"));
-    ros::spin();
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 2;
-  }
-  return 0;
+  return hyselam::runServer<ngram_slam::WordsServer>(argc, argv, "words");
 }
