@@ -1,14 +1,15 @@
 # Thin: each target calls one script, which explains itself at its top.
 .DEFAULT_GOAL := build
-.PHONY: deps build demo demo-localization test bench lint sanitize install clean
+.PHONY: deps build demo demo-localization docs test bench lint sanitize install clean
 
 deps:     ; @scripts/deps
 build:    ; @scripts/build
 demo:     ; @scripts/demo
 demo-localization: ; @scripts/demo_localization
 test:     ; @scripts/test
+docs:     ; @scripts/docs
 bench:    ; @bench/run --json out/bench.json
 lint:     ; @scripts/lint
 sanitize: ; @scripts/sanitize address
 install:  ; @scripts/build install
-clean:    ; rm -rf build build_address build_thread devel install out
+clean:    ; rm -rf build build_address build_thread build_docs devel install out
