@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/ros/markers.hpp"
+
 namespace hyselam_topo {
 namespace {
 
+using hyselam::at;
+using hyselam::colour;
 using visualization_msgs::Marker;
-
-std_msgs::ColorRGBA colour(double r, double g, double b) {
-  std_msgs::ColorRGBA c;
-  c.r = static_cast<float>(r);
-  c.g = static_cast<float>(g);
-  c.b = static_cast<float>(b);
-  c.a = 1.0f;
-  return c;
-}
 
 std_msgs::ColorRGBA colourOf(NameState state) {
   switch (state) {
@@ -29,22 +24,8 @@ std_msgs::ColorRGBA colourOf(NameState state) {
   return colour(0.05, 0.15, 0.75);
 }
 
-geometry_msgs::Point at(double x, double y, double z) {
-  geometry_msgs::Point point;
-  point.x = x;
-  point.y = y;
-  point.z = z;
-  return point;
-}
-
 Marker make(const std::string& frame, const std::string& ns, int id, int type) {
-  Marker m;
-  m.header.frame_id = frame;
-  m.ns = ns;
-  m.id = id;
-  m.type = type;
-  m.action = Marker::ADD;
-  m.pose.orientation.w = 1.0;
+  Marker m = hyselam::marker(frame, ns, id, type);
   m.scale.x = m.scale.y = m.scale.z = 0.06;
   return m;
 }

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <map>
 
+#include "hyselam_common/ros/markers.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 #include "hyselam_topo/place_paths.hpp"
 
 namespace hyselam_topo {
 namespace {
 
+using hyselam::colour;
 using hyselam::Point2;
 using visualization_msgs::Marker;
 
@@ -19,15 +21,6 @@ constexpr double kWallHeight = 0.05;
 constexpr double kGraphHeight = 0.08;
 constexpr double kDoorHeight = 0.1;
 constexpr double kNameHeight = 0.3;
-
-std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
-  std_msgs::ColorRGBA c;
-  c.r = static_cast<float>(r);
-  c.g = static_cast<float>(g);
-  c.b = static_cast<float>(b);
-  c.a = static_cast<float>(a);
-  return c;
-}
 
 /// A light colour for each id; ids that follow each other differ most (golden section of the hues).
 /// Corridors are pale.
@@ -43,11 +36,7 @@ std_msgs::ColorRGBA placeColour(const Place* place, Id id, double alpha) {
 }
 
 geometry_msgs::Point at(Point2 p, double z) {
-  geometry_msgs::Point point;
-  point.x = p.x;
-  point.y = p.y;
-  point.z = z;
-  return point;
+  return hyselam::at(p.x, p.y, z);
 }
 
 class Markers {
@@ -59,15 +48,7 @@ class Markers {
   }
 
   Marker make(const std::string& ns, int id, int type) const {
-    Marker m;
-    m.header.frame_id = frame_;
-    m.ns = ns;
-    m.id = id;
-    m.type = type;
-    m.action = Marker::ADD;
-    m.pose.orientation.w = 1.0;
-    m.scale.x = m.scale.y = m.scale.z = 1.0;
-    return m;
+    return hyselam::marker(frame_, ns, id, type);
   }
 
   /// A list of lines of one width.

@@ -2,21 +2,14 @@
 #pragma once
 
 #include <std_msgs/Header.h>
-#include <visualization_msgs/Marker.h>
 
 #include "hyselam_common/pose2.hpp"
+#include "hyselam_common/ros/markers.hpp"
 #include "ngram_slam/semantic_class.hpp"
 
 namespace ngram_slam {
 
-inline std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
-  std_msgs::ColorRGBA c;
-  c.r = static_cast<float>(r);
-  c.g = static_cast<float>(g);
-  c.b = static_cast<float>(b);
-  c.a = static_cast<float>(a);
-  return c;
-}
+using hyselam::colour;
 
 inline std_msgs::ColorRGBA colourOf(SemanticClass c) {
   switch (c) {
@@ -35,22 +28,15 @@ inline std_msgs::ColorRGBA colourOf(SemanticClass c) {
 }
 
 inline geometry_msgs::Point at(const hyselam::Pose2& pose, double z) {
-  geometry_msgs::Point p;
-  p.x = pose.x;
-  p.y = pose.y;
-  p.z = z;
-  return p;
+  return hyselam::at(pose.x, pose.y, z);
 }
 
 inline visualization_msgs::Marker marker(const std_msgs::Header& header, const char* name, int type,
                                          double width) {
-  visualization_msgs::Marker m;
+  visualization_msgs::Marker m = hyselam::marker(header.frame_id, name, 0, type);
   m.header = header;
-  m.ns = name;
-  m.type = type;
-  m.action = visualization_msgs::Marker::ADD;
-  m.pose.orientation.w = 1.0;
   m.scale.x = width;
+  m.scale.y = m.scale.z = 0.0;
   m.color = colour(0.1, 0.1, 0.1);
   return m;
 }

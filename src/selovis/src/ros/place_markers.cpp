@@ -3,22 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/ros/markers.hpp"
+
 namespace selovis {
 namespace {
 
+using hyselam::colour;
 using visualization_msgs::Marker;
 
 constexpr double kWidth = 0.5;        // of a bar [m]
 constexpr double kTextHeight = 0.45;  // [m]
-
-std_msgs::ColorRGBA colour(float r, float g, float b, float a) {
-  std_msgs::ColorRGBA c;
-  c.r = r;
-  c.g = g;
-  c.b = b;
-  c.a = a;
-  return c;
-}
 
 }  // namespace
 
@@ -37,20 +31,15 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     if (at == names.end()) continue;
     const auto i = static_cast<std::size_t>(at - names.begin());
     const bool here = static_cast<int>(i) == likeliest;
-    Marker bar;
-    bar.header.frame_id = map.frame_id;
-    bar.ns = "bars";
-    bar.id = static_cast<int>(place.id);
-    bar.type = Marker::CUBE;
-    bar.pose.orientation.w = 1.0;
+    Marker bar = hyselam::marker(map.frame_id, "bars", static_cast<int>(place.id), Marker::CUBE);
     bar.scale.x = bar.scale.y = kWidth;
     bar.scale.z = std::max(0.02, height * probabilities[i]);
     bar.pose.position.x = place.centre->x;
     bar.pose.position.y = place.centre->y;
     bar.pose.position.z = 0.5 * bar.scale.z;
-    bar.color = !here       ? colour(0.25f, 0.45f, 0.9f, 0.85f)
-                : kidnapped ? colour(1.0f, 0.45f, 0.05f, 0.95f)
-                            : colour(0.1f, 0.7f, 0.25f, 0.95f);
+    bar.color = !here       ? colour(0.25, 0.45, 0.9, 0.85)
+                : kidnapped ? colour(1.0, 0.45, 0.05, 0.95)
+                            : colour(0.1, 0.7, 0.25, 0.95);
     array.markers.push_back(bar);
     Marker text = bar;
     text.ns = "names";
@@ -60,7 +49,7 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     // In front of the bar's foot, so that neither hides the other.
     text.pose.position.y -= 0.5 * kWidth + 0.8 * text.scale.z;
     text.pose.position.z = 0.3;
-    text.color = here ? bar.color : colour(0.1f, 0.1f, 0.1f, 1.0f);
+    text.color = here ? bar.color : colour(0.1, 0.1, 0.1, 1.0);
     text.color.a = 1.0f;
     const long percent = std::lround(100.0 * probabilities[i]);
     text.text = names[i] + (percent > 0 ? " " + std::to_string(percent) + " %" : "");
