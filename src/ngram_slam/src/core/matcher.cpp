@@ -5,20 +5,9 @@
 #include <functional>
 #include <utility>
 
-#include "hyselam_common/errors.hpp"
+#include "matcher_parts.hpp"
 
 namespace ngram_slam {
-namespace {
-std::uint16_t oneMore(std::uint16_t n) {
-  return static_cast<std::uint16_t>(n == 65535 ? n : n + 1);
-}
-constexpr std::size_t kMostTried = 4;  // candidates, by what may be followed
-constexpr std::size_t kAhead = 16;     // words that are being fetched
-int gramOf(const MatcherParams& p) {
-  p.validate();
-  return std::min(p.index_gram, *std::min_element(p.min_n.begin(), p.min_n.end()));
-}
-}  // namespace
 
 void MatcherParams::validate() const {
   tolerance.validate();
@@ -42,10 +31,7 @@ Matcher::Matcher(const Text& text, const MatcherParams& params)
       // An alternative word of the highest level L - 1 that ends at p starts after row p - L - 1.
       rows_(static_cast<std::size_t>(text.levels()) + 2),
       found_(static_cast<std::size_t>(text.levels()) + 1) {
-  if (passes_ != static_cast<std::size_t>(text.levels()))
-    throw hyselam::ParameterError(
-        "number of entries of min_n", passes_,
-        "the number of levels of the text, " + std::to_string(text.levels()));
+  requirePassForEachLevel(passes_, text);
   alternatives_.push_back({});  // 0 means none
 }
 

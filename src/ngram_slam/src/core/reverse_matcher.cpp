@@ -3,22 +3,10 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
-#include <string>
 
-#include "hyselam_common/errors.hpp"
+#include "matcher_parts.hpp"
 
 namespace ngram_slam {
-namespace {
-constexpr std::size_t kMostTried = 4;  // candidates, by what may be followed
-constexpr std::size_t kAhead = 16;     // words that are being fetched
-std::uint16_t oneMore(std::uint16_t n) {
-  return static_cast<std::uint16_t>(n == 65535 ? n : n + 1);
-}
-int gramOf(const MatcherParams& p) {
-  p.validate();
-  return std::min(p.index_gram, *std::min_element(p.min_n.begin(), p.min_n.end()));
-}
-}  // namespace
 
 ReverseMatcher::ReverseMatcher(const Text& text, const MatcherParams& params)
     : text_(text),
@@ -27,10 +15,7 @@ ReverseMatcher::ReverseMatcher(const Text& text, const MatcherParams& params)
       gram_(gramOf(params)),
       index_(text, params.tolerance, gram_, params.index_bits, true),
       rows_(static_cast<std::size_t>(text.levels()) + 2) {
-  if (passes_ != static_cast<std::size_t>(text.levels()))
-    throw hyselam::ParameterError(
-        "number of entries of min_n", passes_,
-        "the number of levels of the text, " + std::to_string(text.levels()));
+  requirePassForEachLevel(passes_, text);
 }
 
 const std::vector<Match>& ReverseMatcher::update() {
