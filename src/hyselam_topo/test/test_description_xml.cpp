@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <limits>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_topo/description_xml.hpp"
 #include "random_descriptions.hpp"
+#include "xml_testing.hpp"
 #ifdef HYSELAM_HAVE_RAPIDCHECK
 #include "hyselam_common/testing/properties.hpp"
 #endif
@@ -16,6 +16,7 @@ namespace {
 
 using hyselam::testing::messageOf;
 using hyselam::testing::TemporaryDirectory;
+using testing::expectError;
 
 DescribedBuilding flat() {
   DescribedBuilding building;
@@ -45,16 +46,7 @@ std::string errorOf(const std::string& text, const XmlLimits& limits = {}) {
 
 /// The error of reading the flat with one thing changed.
 std::string errorWith(const std::string& from, const std::string& to) {
-  std::string text = toXml(flat());
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << "'" << from << "' is not in\n" << text;
-  return at == std::string::npos ? "" : errorOf(text.replace(at, from.size(), to));
-}
-
-void expectError(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) {
-    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
-  }
+  return errorOf(testing::replaced(toXml(flat()), from, to));
 }
 
 TEST(DescriptionXml, DescriptionComesBackAsItWas) {
@@ -74,24 +66,8 @@ TEST(DescriptionXml, RandomDescriptionsComeBackAsTheyWere) {
 #ifdef HYSELAM_HAVE_RAPIDCHECK
 // Whatever a file says: it is read or refused.
 RC_GTEST_PROP(DescriptionXml, DamagedFilesNeverCrash, (unsigned seed)) {
-  std::string text = toXml(testing::RandomDescriptions(seed).description());
-  std::mt19937 rng(seed);
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t at = rng() % text.size();
-    switch (rng() % 4) {
-      case 0:
-        text[at] = static_cast<char>(rng());
-        break;
-      case 1:
-        text.erase(at, rng() % 40);
-        break;
-      case 2:
-        text.insert(at, text.substr(rng() % text.size(), rng() % 40));
-        break;
-      default:
-        text.insert(at, 1, "<>&\"='/ 0-"[rng() % 10]);
-    }
-  }
+  const std::string text =
+      testing::damaged(toXml(testing::RandomDescriptions(seed).description()), seed);
   try {
     checkDescription(descriptionFromXml(text), "damaged");
   } catch (const hyselam::InputError&) {
@@ -100,14 +76,9 @@ RC_GTEST_PROP(DescriptionXml, DamagedFilesNeverCrash, (unsigned seed)) {
 #endif
 
 TEST(DescriptionXml, WhatIsWrittenFollowsTheSchema) {
-  if (std::system("xmllint --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no xmllint here";
-  const TemporaryDirectory dir;
-  const auto valid = [&](const std::string& text) {
-    hyselam::testing::writeFile(dir / "h.xml", text);
-    return std::system(("xmllint --noout --schema '" HYSELAM_TOPO_SOURCE_DIR
-                        "/xsd/description.xsd' '" +
-                        (dir / "h.xml") + "' > /dev/null 2>&1")
-                           .c_str()) == 0;
+  if (!testing::haveXmllint()) GTEST_SKIP() << "no xmllint here";
+  const auto valid = [](const std::string& text) {
+    return testing::follows("description.xsd", text);
   };
   const std::string text = toXml(flat());
   EXPECT_TRUE(valid(text)) << text;
@@ -115,9 +86,7 @@ TEST(DescriptionXml, WhatIsWrittenFollowsTheSchema) {
        {std::make_pair("side=\"left\"", "side=\"up\""), std::make_pair("to=\"4\"", "to=\"5\""),
         std::make_pair("length=\"6\"", "length=\"-6\""),
         std::make_pair("name=\"house\"", "name=\"\"")}) {
-    std::string bad = text;
-    bad.replace(bad.find(from), std::string(from).size(), to);
-    EXPECT_FALSE(valid(bad)) << bad;
+    EXPECT_FALSE(valid(testing::replaced(text, from, to))) << from << " as " << to;
   }
   for (unsigned seed = 0; seed < 20; ++seed) {
     const std::string random = toXml(testing::RandomDescriptions(seed).description());
@@ -142,10 +111,7 @@ TEST(DescriptionXml, WhatIsNoDescriptionIsRefused) {
   limits = {};
   limits.max_elements = 3;
   expectError(errorOf(toXml(flat()), limits), {"more than 3 elements"});
-  std::string deep;
-  for (int i = 0; i < 40; ++i) deep += "<a>";
-  for (int i = 0; i < 40; ++i) deep += "</a>";
-  expectError(errorOf(deep), {"nested too deeply"});
+  expectError(errorOf(testing::nested(40)), {"nested too deeply"});
 }
 
 TEST(DescriptionXml, PartsThatMeanNothingAreRefused) {

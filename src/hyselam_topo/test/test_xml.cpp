@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <limits>
 #include <locale>
 
@@ -9,6 +8,7 @@
 #include "hyselam_topo/map_geometry.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
 #include "random_maps.hpp"
+#include "xml_testing.hpp"
 #ifdef HYSELAM_HAVE_RAPIDCHECK
 #include "hyselam_common/testing/properties.hpp"
 #endif
@@ -18,6 +18,8 @@ namespace {
 
 using hyselam::testing::messageOf;
 using hyselam::testing::TemporaryDirectory;
+using testing::expectError;
+using testing::replaced;
 
 AugmentedTopologicalMap twoRooms() {
   AugmentedTopologicalMap map;
@@ -52,22 +54,10 @@ AugmentedTopologicalMap twoRooms() {
   return map;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << "'" << from << "' is not in\n" << text;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
-
 /// The error of reading the map of two rooms with one thing changed.
 std::string errorWith(const std::string& from, const std::string& to) {
   const std::string text = replaced(toXml(twoRooms()), from, to);
   return messageOf<hyselam::InputError>([&] { fromXml(text, "m.xml"); });
-}
-
-void expectError(const std::string& message, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) {
-    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
-  }
 }
 
 TEST(Xml, MapComesBackAsItWas) {
@@ -92,26 +82,8 @@ RC_GTEST_PROP(Xml, EveryMapComesBackAsItWas, (unsigned seed)) {
 
 // Whatever a file says: it is read or refused.
 RC_GTEST_PROP(Xml, DamagedFilesNeverCrash, (unsigned seed)) {
-  std::string text = toXml(testing::RandomMaps(seed).map());
-  std::mt19937 rng(seed);
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t at = rng() % text.size();
-    switch (rng() % 4) {
-      case 0:
-        text[at] = static_cast<char>(rng());
-        break;
-      case 1:
-        text.erase(at, rng() % 40);
-        break;
-      case 2:
-        text.insert(at, text.substr(rng() % text.size(), rng() % 40));
-        break;
-      default:
-        text.insert(at, 1, "<>&\"='/ 0-"[rng() % 10]);
-    }
-  }
   try {
-    checkMap(fromXml(text), "damaged");
+    checkMap(fromXml(testing::damaged(toXml(testing::RandomMaps(seed).map()), seed)), "damaged");
   } catch (const hyselam::InputError&) {
   }
 }
@@ -137,14 +109,9 @@ TEST(Xml, TextDoesNotDependOnTheLocale) {
 }
 
 TEST(Xml, WhatIsWrittenFollowsTheSchema) {
-  if (std::system("xmllint --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no xmllint here";
-  const TemporaryDirectory dir;
-  const auto valid = [&](const std::string& text) {
-    hyselam::testing::writeFile(dir / "m.xml", text);
-    return std::system(("xmllint --noout --schema '" HYSELAM_TOPO_SOURCE_DIR
-                        "/xsd/topological_map.xsd' '" +
-                        (dir / "m.xml") + "' > /dev/null 2>&1")
-                           .c_str()) == 0;
+  if (!testing::haveXmllint()) GTEST_SKIP() << "no xmllint here";
+  const auto valid = [](const std::string& text) {
+    return testing::follows("topological_map.xsd", text);
   };
   const std::string text = toXml(twoRooms());
   EXPECT_TRUE(valid(text));
@@ -233,10 +200,8 @@ TEST(Xml, TooMuchIsRefused) {
   limits.max_grid_cells = 5;
   expectError(error(text, limits), {"line", "<grid>", "6 values, more than 5"});
 
-  std::string deep;
-  for (int i = 0; i < 40; ++i) deep += "<a>";
-  for (int i = 0; i < 40; ++i) deep += "</a>";
-  expectError(error(replaced(text, "<place", deep + "<place"), {}), {"nested too deeply"});
+  expectError(error(replaced(text, "<place", testing::nested(40) + "<place"), {}),
+              {"nested too deeply"});
   std::string deeper;
   for (int i = 0; i < 100000; ++i) deeper += "<a>";
   EXPECT_NE(error(replaced(text, "<place", deeper + "<place"), {}), "");
