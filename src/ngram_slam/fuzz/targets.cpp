@@ -1,0 +1,75 @@
+#include "targets.hpp"
+
+#include <sstream>
+
+#include "binary_io.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/fuzz_file.hpp"
+#include "ngram_slam/corpus.hpp"
+#include "ngram_slam/slam_state_io.hpp"
+
+namespace ngram_slam {
+namespace fuzz {
+namespace {
+
+using hyselam::testing::require;
+
+void putSum(std::string& text, std::size_t at, std::size_t begin, std::size_t end) {
+  const std::uint32_t sum = checksum(text, begin, end);
+  for (int i = 0; i < 4; ++i) text[at + i] = static_cast<char>(sum >> 8 * i & 0xff);
+}
+
+/// Puts the checksum of the `header` bytes behind them, and that of the rest into the last four.
+void putSums(std::string& text, std::size_t header) {
+  if (text.size() < header + 8) return;
+  putSum(text, header, 0, header);
+  putSum(text, text.size() - 4, header + 4, text.size() - 4);
+}
+
+/// The corpus within a state is a file of its own: where it begins, its sums are put right as well.
+void putSumsOfPart(std::string& text) {
+  const std::size_t begin = text.find("NGRAMTXT");
+  if (begin == std::string::npos || text.size() < begin + 4) return;
+  std::string part = text.substr(begin, text.size() - 4 - begin);
+  putSums(part, 28);
+  text.replace(begin, part.size(), part);
+}
+
+}  // namespace
+
+void corpus(const std::uint8_t* data, std::size_t size) {
+  std::string text = hyselam::testing::textOf(data, size);
+  putSums(text, 28);
+  Corpus read;
+  try {
+    read = CorpusFile::parse(text, "fuzz");
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  std::ostringstream out;
+  CorpusFile::write(out, read.observations, read.classes, read.histogram);
+  require(out.str() == text);
+}
+
+void slamState(const std::uint8_t* data, std::size_t size) {
+  static const hyselam::testing::FuzzFolder folder;
+  const hyselam_scan_matching::SurfaceParams surface;
+  std::string text = hyselam::testing::textOf(data, size);
+  putSumsOfPart(text);
+  putSums(text, 20);
+  SlamState state;
+  try {
+    state = SlamStateFile::load(folder.put("slam.state", text), surface);
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  const std::string again = folder.path("again.state");
+  SlamStateFile::save(again, state);
+  const SlamState same = SlamStateFile::load(again, surface);
+  require(same.keyframes.size() == state.keyframes.size() &&
+          same.scans.size() == state.scans.size() && same.loops.size() == state.loops.size() &&
+          same.matches.size() == state.matches.size());
+}
+
+}  // namespace fuzz
+}  // namespace ngram_slam
