@@ -93,6 +93,7 @@ class DescriptionBuilder {
   DescribedBuilding building_;
   std::map<Id, std::vector<std::string>> variants_;  ///< what places were called besides
   std::vector<Id> subjects_;                         ///< what "it" may mean
+  std::optional<Side> side_;                         ///< what "the same side" may mean
   bool correction_ = false;
   bool corrected_ = false;  ///< the correction has found something to replace
   const Utterance* current_ = nullptr;

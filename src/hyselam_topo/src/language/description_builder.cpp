@@ -205,6 +205,7 @@ void DescriptionBuilder::fail(IssueKind issue, const std::string& reason) {
 
 void DescriptionBuilder::robotIn(const Utterance& u) {
   const Id id = place(u, "place");
+  if (building_.robot_place != id) side_.reset();
   building_.robot_place = id;
   subjects_ = {id};
   addAliases(u, id);
@@ -252,7 +253,9 @@ void DescriptionBuilder::checkCount(const Utterance& u, std::size_t named) {
 }
 
 void DescriptionBuilder::neighbours(const Utterance& u) {
-  const auto side = sideOf(u.word("side"));
+  const bool same = u.word("side") == "same";
+  if (same && !side_) fail(IssueKind::kNoContext, "no side was told before");
+  const auto side = same ? side_ : sideOf(u.word("side"));
   if (u.find("from") == nullptr && !building_.robot_place) {
     fail(IssueKind::kNoContext, "where the robot is was not told");
   }
@@ -264,6 +267,7 @@ void DescriptionBuilder::neighbours(const Utterance& u) {
   }
   const std::vector<Id> ids = places(u, "places");
   checkCount(u, ids.size());
+  side_ = side && *side != Side::kUnknown ? side : std::nullopt;
   for (const Id id : ids) connect(from, id, side.value_or(Side::kUnknown), std::nullopt);
   subjects_ = ids;
 }
@@ -272,7 +276,8 @@ void DescriptionBuilder::nthNeighbour(const Utterance& u) {
   if (!building_.robot_place) fail(IssueKind::kNoContext, "where the robot is was not told");
   const Id id = place(u, "place");
   const auto nth = hyselam::parseNumber(u.word("nth")).value_or(1.0);
-  connect(*building_.robot_place, id, sideOf(u.word("side")).value_or(Side::kUnknown),
+  side_ = sideOf(u.word("side"));
+  connect(*building_.robot_place, id, side_.value_or(Side::kUnknown),
           static_cast<std::size_t>(nth) - 1);
   subjects_ = {id};
 }

@@ -120,6 +120,36 @@ bool isUpper(std::uint32_t c) {
   return isLetterOrDigit(c) && lower(c) != c;
 }
 
+std::uint32_t codeAt(const std::string& text, std::size_t i, std::size_t end, std::size_t* length) {
+  std::uint32_t code = 0;
+  std::size_t bytes = 0;
+  if (i < end) {
+    bytes = utf8CharacterAt(text, i, &code);
+    if (bytes == 0 || i + bytes > end) {
+      bytes = 1;
+      code = '?';
+    }
+  }
+  if (length != nullptr) *length = bytes;
+  return code;
+}
+
+std::string singleSpaced(const std::string& text) {
+  std::string out;
+  std::size_t length = 0;
+  bool space = false;
+  for (std::size_t i = 0; i < text.size(); i += length) {
+    if (isSpace(codeAt(text, i, text.size(), &length))) {
+      space = true;
+      continue;
+    }
+    if (space && !out.empty()) out += ' ';
+    space = false;
+    out.append(text, i, length);
+  }
+  return out;
+}
+
 std::string lowered(const std::string& text) {
   return changed(text, append);
 }

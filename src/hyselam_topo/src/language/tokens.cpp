@@ -32,22 +32,6 @@ bool startsWith(const std::string& text, std::size_t at, const char* what) {
   return text.compare(at, std::strlen(what), what) == 0;
 }
 
-/// The number of the character at `i`, 0 behind the end; broken bytes count as signs.
-std::uint32_t codeAt(const std::string& text, std::size_t i, std::size_t end,
-                     std::size_t* length = nullptr) {
-  std::uint32_t code = 0;
-  std::size_t bytes = 0;
-  if (i < end) {
-    bytes = utf8CharacterAt(text, i, &code);
-    if (bytes == 0 || i + bytes > end) {
-      bytes = 1;
-      code = '?';
-    }
-  }
-  if (length != nullptr) *length = bytes;
-  return code;
-}
-
 /// The quotation that opens at `i`: the range between the marks and its end behind them.
 struct Quoted {
   TextRange inside;
@@ -74,22 +58,6 @@ std::optional<Quoted> quotedAt(const std::string& text, std::size_t i, std::size
     }
   }
   return std::nullopt;
-}
-
-std::string singleSpaced(const std::string& text) {
-  std::string out;
-  std::size_t length = 0;
-  bool space = false;
-  for (std::size_t i = 0; i < text.size(); i += length) {
-    if (isSpace(codeAt(text, i, text.size(), &length))) {
-      space = true;
-      continue;
-    }
-    if (space && !out.empty()) out += ' ';
-    space = false;
-    out.append(text, i, length);
-  }
-  return out;
 }
 
 /// The end of the word that begins at `i`: letters and digits, with single - ' . / _ between them.

@@ -184,7 +184,14 @@ int main(int argc, char** argv) {
     result["issues"] = json::array();
     for (const DescriptionIssue& issue : issues) result["issues"].push_back(issueOf(issue));
     result["microseconds"] = microseconds;
-    std::cout << result.dump(2) << '\n';
+    std::cout << parsed.language << ": " << building.places.size() << " places, "
+              << building.connections.size() << " connections, " << building.relations.size()
+              << " relations -> " << out << '\n';
+    for (const Utterance& utterance : parsed.utterances)
+      if (!utterance.understood())
+        std::cout << "not understood: " << utterance.text << " (" << utterance.reason << ")\n";
+    for (const DescriptionIssue& issue : issues)
+      std::cout << "not taken down: " << issue.text << " (" << issue.reason << ")\n";
     return result;
   });
 }
