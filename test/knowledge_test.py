@@ -12,9 +12,10 @@ import rospy
 import rostest
 from geometry_msgs.msg import Point, PointStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap
-from hyselam_msgs.srv import NamePlace, StatePath, StatePathResponse
+from hyselam_msgs.srv import NamePlace, QueryObjects, StatePath, StatePathResponse
 from nav_msgs.msg import OccupancyGrid
 from std_msgs.msg import Header
+from std_srvs.srv import Trigger, TriggerResponse
 
 from localization_rig import Listener, Recording, wait_until, WAIT
 
@@ -46,6 +47,29 @@ class FakeSlam:
             service.shutdown()
 
 
+class FakeCamera:
+    """Visual places that are one text in a directory."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.learn("first")
+        rospy.set_param("semantic_localization/save_model", folder)
+        self.service = rospy.Service("semantic_localization/save", Trigger, lambda _: TriggerResponse(True, ""))
+
+    def learn(self, text):
+        os.makedirs(self.folder, exist_ok=True)
+        with open(os.path.join(self.folder, "model.json"), "w") as file:
+            file.write(text)
+
+    def knows(self):
+        with open(os.path.join(self.folder, "model.json")) as file:
+            return file.read()
+
+    def stop(self):
+        self.service.shutdown()
+        rospy.delete_param("semantic_localization/save_model")
+
+
 class KnowledgeTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -57,11 +81,17 @@ class KnowledgeTest(unittest.TestCase):
         rospy.wait_for_service("name_place", WAIT)
         rospy.wait_for_service("words/save", WAIT)
         rospy.wait_for_service("save_topological_map", WAIT)
+        rospy.wait_for_service("query_objects", WAIT)
 
     def setUp(self):
         self.slam = FakeSlam()
         self.addCleanup(self.slam.stop)
         self.path = os.path.join(self.folder.name, self.id())
+        self.camera = FakeCamera(self.path + "_model")
+        self.addCleanup(self.camera.stop)
+        self.dictionary = self.path + "_dictionary.xml"
+        self.show("first")
+        rospy.set_param("object_engine/dictionary_file", self.dictionary)
 
     def run_tool(self, command, path=None, **environment):
         done = subprocess.run(["rosrun", "hyselam_bringup", "knowledge", command, path or self.path], stdout=subprocess.PIPE,
@@ -73,6 +103,17 @@ class KnowledgeTest(unittest.TestCase):
         self.assertEqual(self.run_tool(command, path), status, self.out + self.err)
         self.assertIn(text, self.err)
         self.assertEqual(self.err.count("error: "), 1)
+
+    def show(self, text):
+        with open(self.dictionary, "w") as file:
+            file.write(text)
+
+    def shown(self):
+        with open(self.dictionary) as file:
+            return file.read()
+
+    def ask(self, text):
+        return rospy.ServiceProxy("query_objects", QueryObjects)(text).reply
 
     def left_over(self):
         return [f for f in os.listdir(self.folder.name) if f.startswith(".")]
@@ -89,27 +130,35 @@ class KnowledgeTest(unittest.TestCase):
     def test_all_layers_there_and_back(self):
         self.name("Kitchen")
         wait_until(lambda: "Kitchen" in self.names(), lambda: f"the name; there are {self.names()}")
+        self.ask("There is a pen in the kitchen.")
         self.assertEqual(self.run_tool("save"), 0, self.err)
-        self.assertIn("saved map, slam, words, places, dialogue", self.out)
+        self.assertIn("saved map, slam, words, places, dialogue, objects, vision, dictionary", self.out)
         self.assertEqual(self.run_tool("check", ROS_MASTER_URI="http://localhost:9"), 0, self.err)
         with open(os.path.join(self.path, "manifest.json")) as file:
             self.assertEqual(sorted(json.load(file)["files"]),
-                             ["dialogue.state", "map.pgm", "map.yaml", "slam.state", "topo.xml", "words.corpus"])
+                             ["dialogue.state", "dictionary.xml", "map.pgm", "map.yaml", "objects.xml", "slam.state", "topo.xml",
+                              "visual_places/model.json", "words.corpus"])
         self.name("Library")
         self.slam.text = "second"
+        self.camera.learn("second")
+        self.show("second")
+        self.ask("There is a cup in the kitchen.")
         wait_until(lambda: "Library" in self.names(), "the other name")
         # Knowledge moves: nothing in it tells of the place where it was saved.
         moved = self.path + "_moved"
         shutil.move(self.path, moved)
         self.assertEqual(self.run_tool("load", moved), 0, self.err)
-        self.assertIn("loaded slam, words, places, dialogue; not running: map", self.out)
-        self.assertEqual(self.slam.text, "first")
+        self.assertIn("loaded slam, words, places, dialogue, objects; put in place for the next start: dictionary, vision; "
+                      "not running: map", self.out)
+        self.assertEqual([self.slam.text, self.camera.knows(), self.shown()], ["first"] * 3)
+        self.assertIn("kitchen", self.ask("Where is the pen?"))
+        self.assertNotIn("kitchen", self.ask("Where is the cup?"))
         wait_until(lambda: "Kitchen" in self.names() and "Library" not in self.names(), lambda: f"{self.names()}")
         self.assertEqual(self.left_over(), [])
 
     def test_damage_is_named(self):
         self.assertEqual(self.run_tool("save"), 0, self.err)
-        for name in ("dialogue.state", "map.pgm", "slam.state", "topo.xml"):
+        for name in ("dialogue.state", "map.pgm", "slam.state", "topo.xml", "objects.xml", "dictionary.xml", "visual_places/model.json"):
             path = os.path.join(self.path, name)
             with open(path, "rb") as file:
                 good = file.read()
@@ -155,8 +204,10 @@ class KnowledgeTest(unittest.TestCase):
         with open(os.path.join(self.path, "slam.state")) as file:
             self.assertEqual(file.read(), "first")
         self.slam.fails = "load"
+        self.camera.learn("second")
+        self.show("second")
         self.refused("load", 1, "slam: of another building; all layers know what they knew before")
-        self.assertEqual(self.slam.text, "second")
+        self.assertEqual([self.slam.text, self.camera.knows(), self.shown()], ["second"] * 3)
         self.assertEqual(self.left_over(), [])
 
     def test_layers_that_do_not_run_are_kept(self):

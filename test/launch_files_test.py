@@ -99,18 +99,30 @@ class LaunchFilesTest(unittest.TestCase):
 
     def test_frames_and_topics_reach_every_layer(self):
         for pose in ("slam", "localization"):
-            nodes, config = self.whole(f"pose:={pose}", "vision:=true", "scan:=base_scan", "map_frame:=m", "odom_frame:=o",
+            nodes, config = self.whole(f"pose:={pose}", "vision:=true", "objects:=true", "scan:=base_scan", "map_frame:=m", "odom_frame:=o",
                                        "base_frame:=b", "image:=eye")
             for name, key, value in (("slam", "global_frame_id", "m"), ("localization", "global_frame_id", "m"),
                                      ("fsd", "odom_frame_id", "o"), ("fsd", "base_frame_id", "b"),
                                      ("topo_engine", "base_frame", "b"), ("semantic_localization", "base_frame_id", "b"),
-                                     ("semantic_localization", "global_frame_id", "m")):
+                                     ("semantic_localization", "global_frame_id", "m"),
+                                     ("object_engine", "map_frame", "m")):
                 if "/" + name in nodes:
                     self.assertEqual(config.params[f"/{name}/{key}"].value, value, f"{name} {key}")
             for name in ("slam", "localization", "fsd", "words", "semantic_localization"):
                 if "/" + name in nodes:
                     self.assertIn(["scan", "base_scan"], [list(r) for r in nodes["/" + name].remap_args], name)
             self.assertIn(["image", "eye"], [list(r) for r in nodes["/semantic_localization"].remap_args])
+
+    def test_cameras_know_places_by_the_names_that_people_gave(self):
+        for dialogue, topic in (("true", "named_map"), ("false", "topological_map")):
+            nodes, _ = self.whole("vision:=true", "objects:=true", f"dialogue:={dialogue}")
+            for name in ("/semantic_localization", "/object_engine"):
+                self.assertIn(["topological_map", topic], [list(r) for r in nodes[name].remap_args], name)
+
+    def test_the_demo_waits_if_told_to(self):
+        player = lambda *more: self.whole("bag:=/nowhere/x.bag", *more, name="demo.launch")[0]["/player"].args.split()  # noqa: E731
+        self.assertIn("--pause", player("paused:=true"))
+        self.assertNotIn("--pause", player())
 
     def test_robots_share_nothing_but_the_master(self):
         nodes, config = self.whole("first:=a", "second:=b", "work_dir:=/w", name="two_robots.launch")

@@ -10,6 +10,7 @@
 #include "hyselam_sim/film.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/ray_caster.hpp"
+#include "hyselam_sim/things.hpp"
 
 namespace hyselam_sim {
 namespace {
@@ -121,6 +122,47 @@ TEST(Camera, ThingsStandWhereTheyArePut) {
   ASSERT_GT(cv::countNonZero(mask), 50);
   const double depth = cv::mean(frame.depth, mask)[0] * 0.001;
   EXPECT_NEAR(depth, 7.7 - 6.15, 0.05);
+}
+
+TEST(Things, AreReadFromAFile) {
+  const auto things = parseThings(R"(things:
+  - {name: cup 1, kind: cup, shape: cylinder, at: [1, 2], above_floor: 0.7, size: [0.1, 0.1, 0.12]}
+  - {name: PC, at: [3, 4], turn: 90, colour: [0, 0.5, 1]}
+)",
+                                  "things.yaml");
+  ASSERT_EQ(things.size(), 2u);
+  EXPECT_EQ(things[0].kind, "cup");
+  EXPECT_EQ(things[0].shape, Thing::Shape::kCylinder);
+  EXPECT_EQ(things[0].z, 0.7);
+  EXPECT_EQ(things[0].size[2], 0.12);
+  EXPECT_EQ(things[1].kind, "PC");
+  EXPECT_EQ(things[1].shape, Thing::Shape::kBox);
+  EXPECT_NEAR(things[1].pose.theta, 0.5 * M_PI, 1e-12);
+  EXPECT_EQ(things[1].colour[1], 0.5f);
+}
+
+TEST(Things, RefusesWhatCannotBe) {
+  for (const auto& [text, reason] :
+       {std::pair<const char*, const char*>{"things: [{at: [1, 2]}]", "name"},
+        {"things: [{name: a}]", "at"},
+        {"things: [{name: a, at: [1, 2], size: [0, 1, 1]}]", "size"},
+        {"things: [{name: a, at: [1, 2], size: [1, 1]}]", "three numbers"},
+        {"things: [{name: a, at: [1, 2], colour: [0, 0, 2]}]", "colour"},
+        {"things: [{name: a, at: [1, .nan]}]", "at"},
+        {"things: [{name: a, at: [1, 2], shape: ball}]", "shape"},
+        {"things: [{name: a, at: [1, 2], hue: 1}]", "hue"},
+        {"things: [{name: a, at: [1, 2]}, {name: a, at: [3, 2]}]", "given before"},
+        {"things: {", "things.yaml"},
+        {"[]", "things.yaml"}}) {
+    try {
+      parseThings(text, "things.yaml");
+      FAIL() << text;
+    } catch (const hyselam::InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(reason), std::string::npos) << e.what();
+      EXPECT_EQ(std::string(e.what()).find("things.yaml"), 0u) << e.what();
+    }
+  }
+  EXPECT_THROW(loadThings("none.yaml"), hyselam::InputError);
 }
 
 TEST(Camera, DoorsShutByTheClock) {

@@ -24,6 +24,7 @@
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
+#include "hyselam_sim/things.hpp"
 
 namespace {
 
@@ -203,7 +204,7 @@ int main(int argc, char** argv) {
       "ground truth of a bag, by the hour of the day, and writes it into a new bag, as files with "
       "the places' names, or both.",
       "film");
-  std::string bag_in, plan_name, route_name, bag_out, images;
+  std::string bag_in, plan_name, route_name, things, bag_out, images;
   std::uint64_t seed = 1;
   int jpeg = 0;
   hyselam_sim::FilmParams params;
@@ -214,6 +215,7 @@ int main(int argc, char** argv) {
   app.add_option("--bag", bag_in, "run to film, from `simulate`")->required();
   app.add_option("--route", route_name, "route of the run: tells who walks about");
   app.add_option("--plan", plan_name, "floor plan; the route's own if not given");
+  app.add_option("--things", things, "file of things that stand about");
   app.add_option("--out", bag_out, "bag to write: the run with /camera/color, /camera/depth");
   app.add_option("--images", images, "directory for rgb/, depth/ and labels.csv");
   app.add_option("--rate", params.rate, "pictures per second");
@@ -249,6 +251,7 @@ int main(int argc, char** argv) {
       throw hyselam::InputError(bag_in, "/ground_truth", "has no messages: nothing to film along");
     }
     params.start_time = log.ground_truth.front().stamp;
+    if (!things.empty()) look.things = hyselam_sim::loadThings(things);
     const hyselam_sim::Scene scene(plan, look);
 
     std::size_t frames = 0;
