@@ -10,13 +10,26 @@
 
 #include <QInputDialog>
 #include <QMessageBox>
+#include <chrono>
 #include <pluginlib/class_list_macros.hpp>
+#include <thread>
+#include <utility>
 
 namespace hyselam_rviz_plugins {
 namespace {
 
 constexpr char kService[] = "name_place";
 constexpr double kPatience = 1.0;  // until the service must be there [s]
+constexpr int kLookAgain = 100;    // for an answer [ms]
+
+/// Calls the service; tells what went wrong.
+QString tell(ros::NodeHandle nh, hyselam_msgs::NamePlace call) {
+  auto client = nh.serviceClient<hyselam_msgs::NamePlace>(kService);
+  if (!client.waitForExistence(ros::Duration(kPatience)) || !client.call(call))
+    return QString("Nobody offers the service %1.")
+        .arg(QString::fromStdString(nh.resolveName(kService)));
+  return call.response.success ? QString() : QString::fromStdString(call.response.message);
+}
 
 }  // namespace
 
@@ -26,6 +39,7 @@ NamePlaceTool::NamePlaceTool() {
 
 void NamePlaceTool::onInitialize() {
   setName("Name Place");
+  connect(&timer_, &QTimer::timeout, this, [this] { showAnswers(); });
 }
 
 void NamePlaceTool::activate() {
@@ -41,30 +55,43 @@ int NamePlaceTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   return Finished;
 }
 
-bool NamePlaceTool::nameAt(double x, double y) {
-  QWidget* window = context_->getWindowManager() != nullptr
-                        ? context_->getWindowManager()->getParentWindow()
-                        : nullptr;
+QWidget* NamePlaceTool::window() const {
+  return context_->getWindowManager() != nullptr ? context_->getWindowManager()->getParentWindow()
+                                                 : nullptr;
+}
+
+void NamePlaceTool::nameAt(double x, double y) {
   bool accepted = false;
   const QString name = QInputDialog::getText(
-      window, "Name of the place", "Name (empty: forget those it has):", QLineEdit::Normal,
+      window(), "Name of the place", "Name (empty: forget those it has):", QLineEdit::Normal,
       QString(), &accepted);
-  if (!accepted) return false;
+  if (!accepted) return;
   hyselam_msgs::NamePlace call;
   call.request.point.header.frame_id = context_->getFixedFrame().toStdString();
   call.request.point.point.x = x;
   call.request.point.point.y = y;
   if (!name.trimmed().isEmpty()) call.request.names = {name.trimmed().toStdString()};
-  auto client = nh_.serviceClient<hyselam_msgs::NamePlace>(kService);
-  QString problem;
-  if (!client.waitForExistence(ros::Duration(kPatience)) || !client.call(call)) {
-    problem = QString("Nobody offers the service %1.")
-                  .arg(QString::fromStdString(nh_.resolveName(kService)));
-  } else if (!call.response.success) {
-    problem = QString::fromStdString(call.response.message);
+  // On its own: a robot that does not answer must not hold up the display. The thread may outlive
+  // this tool; nothing of it is used there.
+  std::packaged_task<QString()> task([nh = nh_, call] { return tell(nh, call); });
+  answers_.push_back(task.get_future());
+  std::thread(std::move(task)).detach();
+  timer_.start(kLookAgain);
+}
+
+void NamePlaceTool::showAnswers() {
+  std::vector<QString> problems;
+  for (auto answer = answers_.begin(); answer != answers_.end();) {
+    if (answer->wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+      ++answer;
+      continue;
+    }
+    problems.push_back(answer->get());
+    answer = answers_.erase(answer);
   }
-  if (!problem.isEmpty()) QMessageBox::warning(window, "The place is not named", problem);
-  return problem.isEmpty();
+  if (answers_.empty()) timer_.stop();
+  for (const QString& problem : problems)
+    if (!problem.isEmpty()) QMessageBox::warning(window(), "The place is not named", problem);
 }
 
 }  // namespace hyselam_rviz_plugins

@@ -4,6 +4,10 @@
 #include <ros/ros.h>
 #include <rviz/tool.h>
 
+#include <QTimer>
+#include <future>
+#include <vector>
+
 namespace hyselam_rviz_plugins {
 
 class NamePlaceTool : public rviz::Tool {
@@ -18,10 +22,15 @@ class NamePlaceTool : public rviz::Tool {
   int processMouseEvent(rviz::ViewportMouseEvent& event) override;
 
  private:
-  /// Asks for the name and tells the robot. False if it was cancelled.
-  bool nameAt(double x, double y);
+  /// Asks for the name and tells the robot, who answers some time later.
+  void nameAt(double x, double y);
+  /// Shows what went wrong with the names that were told.
+  void showAnswers();
+  QWidget* window() const;
 
   ros::NodeHandle nh_;
+  std::vector<std::future<QString>> answers_;  ///< what was wrong; empty: nothing
+  QTimer timer_;                               ///< looks for answers while some are missing
 };
 
 }  // namespace hyselam_rviz_plugins
