@@ -46,6 +46,7 @@ find_package(move_base_msgs QUIET)
 add_library(hyselam_topo_engine
   src/ros/dialogue_markers.cpp
   src/ros/goal_driver.cpp
+  src/ros/object_talk.cpp
   src/ros/topo_engine_parameters.cpp
   src/ros/topo_engine_server.cpp
   src/ros/topo_engine_services.cpp)

@@ -100,6 +100,7 @@ class FillMap {
 
   const ObjectParser& parser_;
   ObjectMap& map_;
+  std::string language_;  ///< last spoken
   std::string here_;
   double stamp_ = 0.0;
   std::vector<Id> subjects_;  ///< last spoken of

@@ -51,6 +51,9 @@ class ObjectMapper {
   void update(const OrganisedCloud& cloud, const PinholeCamera& camera,
               const std::vector<DetectedObject>& detections, double stamp);
 
+  /// Stamp of the last frame [s].
+  double time() const { return time_; }
+
   /// After a tour, or now and then: joins moved things and parts of furniture, drops what was seen
   /// too seldom, and last before `weak_before` [s], makes relations anew.
   void finish(double weak_before = std::numeric_limits<double>::infinity());
@@ -71,11 +74,13 @@ class ObjectMapper {
   void joinTwins();
   void joinMoved();
   void merge(Id gone, Id found);
+  void keepTold(Id from, Id to);
 
   ObjectMap& map_;
   ObjectDictionary dictionary_;
   MapperParams params_;
   PlaceAt place_at_;
+  double time_ = 0.0;
 };
 
 }  // namespace hyselam_objects

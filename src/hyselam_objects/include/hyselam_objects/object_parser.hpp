@@ -37,18 +37,24 @@ struct ObjectStatement {
   std::optional<hyselam_topo::SaidName> place;
   std::map<std::string, std::string> properties;  ///< of "is_like"
   bool correction = false;
+  std::string language;
   std::string text;
   std::string reason;  ///< why it was not understood
 };
 
+/// The texts of a grammar and of its list of words.
+struct ObjectLanguage {
+  hyselam_topo::GrammarSource grammar;
+  hyselam_topo::GrammarSource words;
+};
+
 class ObjectParser {
  public:
-  /// The shipped grammar of a language: "en". Throws hyselam::InputError for others.
-  static ObjectParser shipped(const std::string& language = "en");
-  /// From the texts of a grammar and of a list of words; throws hyselam::InputError for text that
-  /// is none.
-  ObjectParser(const hyselam_topo::GrammarSource& grammar,
-               const hyselam_topo::GrammarSource& words);
+  /// The shipped grammar of a language: "en", "pt"; "": all, each text in the one that fits best.
+  /// Throws hyselam::InputError for others.
+  static ObjectParser shipped(const std::string& language = "");
+  /// Throws hyselam::InputError for text that is none.
+  explicit ObjectParser(const std::vector<ObjectLanguage>& languages);
   ~ObjectParser();
   ObjectParser(ObjectParser&&) noexcept;
 
@@ -56,13 +62,18 @@ class ObjectParser {
   /// `expected`: intents of answers to a question that was asked.
   std::vector<ObjectStatement> parse(const std::string& text,
                                      const std::set<std::string>& expected = {}) const;
-  const hyselam_topo::Grammar& grammar() const;
-  /// "cups" is "cup" and `*plural`; words for the same thing become one.
+  /// The first one for a language that is not known, as "".
+  const hyselam_topo::Grammar& grammar(const std::string& language = "") const;
+  /// The word for a colour or size of the map: "red", "vermelho".
+  std::string propertyIn(const std::string& language, const std::string& value) const;
+  /// In the first language: "cups" is "cup" and `*plural`; words for the same thing become one.
   std::string kindOf(const std::string& noun, bool* plural = nullptr) const;
 
  private:
   struct Words;
-  std::unique_ptr<const Words> words_;
+  std::size_t indexOf(const std::string& language) const;
+
+  std::vector<std::unique_ptr<const Words>> words_;  ///< in the order of the grammars
   std::unique_ptr<const hyselam_topo::TopoParser> parser_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "assign.hpp"
 #include "hyselam_common/require.hpp"
 #include "hyselam_objects/object_descriptor.hpp"
 
@@ -195,12 +196,13 @@ void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, cons
   if (!seen.colour.empty()) object->properties.emplace("colour", seen.colour);
   ++object->seen;
   object->existence = updated(object->existence, true, params_);
-  if (object->history.empty() || stamp - object->history.back().until > kAbsence) {
+  // Time may go back, as when a bag begins again.
+  if (object->history.empty() || std::abs(stamp - object->history.back().until) > kAbsence) {
     object->history.push_back({stamp, stamp, object->pose->position});
   }
   object->history.back().until = std::max(object->history.back().until, stamp);
   object->history.back().position = object->pose->position;
-  object->last_seen = std::max(object->last_seen, stamp);
+  object->last_seen = stamp;
 }
 
 // Without those that are several known things in one.
@@ -229,6 +231,7 @@ std::vector<DetectedObject> ObjectMapper::apart(const std::vector<DetectedObject
 void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& camera,
                           const std::vector<DetectedObject>& all, double stamp) {
   checkSegment(cloud, SegmentParams{});
+  time_ = stamp;
   std::vector<Id> matched;
   const std::vector<DetectedObject> detections = apart(all, stamp, &matched);
   const std::vector<int> of = associate(detections, stamp);
@@ -350,39 +353,62 @@ void ObjectMapper::merge(Id gone, Id found) {
   now.told = now.told || old.told;
   if (now.kind == kUnknown) now.kind = old.kind;
   now.properties.insert(old.properties.begin(), old.properties.end());
-  // The id that others know stays.
+  // The id that others know stays; what was told of where it was does not hold any more.
   ObjectInstance kept = now;
   kept.id = gone;
-  map_.remove(found);
   auto& all = map_.relations;
   all.erase(std::remove_if(all.begin(), all.end(),
                            [&](const auto& r) { return r.object == gone || r.other == gone; }),
             all.end());
+  keepTold(found, gone);
+  map_.remove(found);
   *map_.find(gone) = std::move(kept);
 }
 
+// What people have told of one is told of the other.
+void ObjectMapper::keepTold(Id from, Id to) {
+  std::vector<ObjectRelation> told;
+  for (const ObjectRelation& r : map_.relations) {
+    if (r.told && (r.object == from || r.other == from)) told.push_back(r);
+  }
+  for (ObjectRelation& r : told) {
+    if (r.object == from) r.object = to;
+    if (r.other == from) r.other = to;
+    const bool place_known = r.place != 0 && map_.placeOf(to) != 0;
+    if (r.object != r.other && !place_known) map_.relate(r);
+  }
+}
+
+// Of things that look alike it cannot be told which is which; that as many are gone as are new can.
+// All are paired at once: the looks of all pairs together decide, then the shortest ways.
 void ObjectMapper::joinMoved() {
-  struct Pair {
-    double look;
-    Id gone, found;
-  };
-  std::vector<Pair> pairs;
-  for (const ObjectInstance& old : map_.objects) {
-    if (!old.pose || old.existence > kGone || old.seen < params_.confirm || isFurniture(old))
-      continue;
-    for (const ObjectInstance& now : map_.objects) {
-      if (now.id == old.id || !now.pose || now.existence < 0.5 || isFurniture(now)) continue;
-      if (now.history.empty() || now.history.front().from <= old.last_seen) continue;
-      const double look = viewDistance(old.descriptor, now.descriptor);
+  constexpr double kPerMetre = 1e-3;  // between things that look the same
+  std::vector<Id> gone, found;
+  for (const ObjectInstance& each : map_.objects) {
+    if (!each.pose || isFurniture(each)) continue;
+    if (each.existence <= kGone && each.seen >= params_.confirm) gone.push_back(each.id);
+    if (each.existence >= 0.5 && !each.history.empty()) found.push_back(each.id);
+  }
+  if (gone.empty() || found.empty()) return;
+  std::vector<std::vector<double>> cost;
+  for (const Id id : gone) {
+    const ObjectInstance& old = *map_.find(id);
+    cost.emplace_back();
+    for (const Id other : found) {
+      const ObjectInstance& now = *map_.find(other);
+      const bool later = now.history.front().from > old.last_seen;
       const bool other_kind = old.kind != now.kind && old.kind != kUnknown && now.kind != kUnknown;
-      if (look < params_.refind_look && !other_kind) pairs.push_back({look, old.id, now.id});
+      const double look = viewDistance(old.descriptor, now.descriptor);
+      const bool possible = later && !other_kind && look < params_.refind_look;
+      cost.back().push_back(possible ? look + kPerMetre *
+                                                  distance(old.pose->position, now.pose->position)
+                                     : std::numeric_limits<double>::infinity());
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.look < b.look; });
-  for (const Pair& pair : pairs) {
-    if (map_.find(pair.found) == nullptr || map_.find(pair.gone)->existence > kGone) continue;
-    merge(pair.gone, pair.found);
+  const double without = 2.0 * params_.refind_look;  // any pair is better than none
+  const std::vector<int> of = assignRows(cost, without);
+  for (std::size_t i = 0; i < gone.size(); ++i) {
+    if (of[i] >= 0) merge(gone[i], found[static_cast<std::size_t>(of[i])]);
   }
 }
 
@@ -396,6 +422,8 @@ void ObjectMapper::joinFurniture() {
       }
       unite(&*a.pose, *b.pose);
       a.seen += b.seen;
+      a.told = a.told || b.told;
+      keepTold(b.id, a.id);
       map_.remove(b.id);
       j = i + 1;
     }
@@ -424,6 +452,7 @@ void ObjectMapper::joinTwins() {
       a.last_seen = std::max(a.last_seen, b.last_seen);
       a.existence = std::max(a.existence, b.existence);
       a.told = a.told || b.told;
+      keepTold(b.id, a.id);
       map_.remove(b.id);
       j = i + 1;
     }

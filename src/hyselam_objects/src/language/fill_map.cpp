@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <set>
 
-#include "object_words.hpp"
+#include "fill_map_target.hpp"
 
 namespace hyselam_objects {
 
 using hyselam_topo::SaidName;
 using hyselam_topo::UtteranceKind;
-
-/// Where something is said to be.
-struct FillMap::Target {
-  Id place = 0;
-  std::optional<RelationWord> word;
-  Id landmark = 0;
-};
 
 const char* toString(ReplyKind kind) {
   constexpr std::array<const char*, 4> kNames{"done", "answer", "question", "not understood"};
@@ -39,6 +32,9 @@ std::vector<ObjectReply> FillMap::say(const std::string& text) {
 }
 
 ObjectReply FillMap::take(const ObjectStatement& statement) {
+  if (statement.kind != UtteranceKind::kNotUnderstood || language_.empty()) {
+    language_ = statement.language;
+  }
   switch (statement.kind) {
     case UtteranceKind::kNotUnderstood:
       return reply(ReplyKind::kNotUnderstood, "not_understood",
@@ -51,6 +47,7 @@ ObjectReply FillMap::take(const ObjectStatement& statement) {
       break;
   }
   pending_.reset();
+  if (statement.intent == "go_to") return ask(statement);
   if (statement.intent == "forget_object") return forget(statement);
   if (statement.intent == "this_is") {
     ObjectReply out = reply(ReplyKind::kDone, "shown", {{"what", statement.objects.front().kind}});
@@ -357,323 +354,6 @@ ObjectReply FillMap::answer(const ObjectStatement& statement) {
     return again.intent == "is_like" ? describe(again) : tell(again);
   }
   return reply(ReplyKind::kDone, "kept");
-}
-
-// ---- What is meant ----
-
-std::string FillMap::placeName(const SaidName& said) const {
-  if (said.reference.empty()) return said.text;
-  if (said.reference == "there" && place_ != 0) return map_.findPlace(place_)->name;
-  return said.reference == "here" ? here_ : "";
-}
-
-Id FillMap::findPlace(const std::string& said) const {
-  for (const ObjectPlace& place : map_.places) {
-    if (lowerCase(place.name) == lowerCase(said)) return place.id;
-  }
-  return 0;
-}
-
-bool FillMap::fits(const ObjectInstance& object, const ObjectPhrase& said) const {
-  if (object.kind != said.kind) return false;
-  return std::all_of(said.properties.begin(), said.properties.end(), [&](const auto& property) {
-    const auto found = object.properties.find(property.first);
-    // "the red pen" is not just any pen, "a red pen" may be the one whose colour nobody has told.
-    return found == object.properties.end() ? !said.definite : found->second == property.second;
-  });
-}
-
-std::vector<Id> FillMap::candidates(const ObjectPhrase& said) const {
-  std::vector<Id> ids;
-  for (const ObjectInstance& object : map_.objects) {
-    if (fits(object, said)) ids.push_back(object.id);
-  }
-  return ids;
-}
-
-std::vector<Id> FillMap::resolve(const ObjectPhrase& said, Id place, bool only_there) const {
-  if (!said.reference.empty()) {
-    if (said.reference == "it" && subjects_.size() != 1) return {};
-    return subjects_;
-  }
-  const std::vector<Id> all = candidates(said);
-  if (all.size() <= 1) return all;
-  std::vector<Id> mentioned, here;
-  for (const Id id : all) {
-    if (std::find(subjects_.begin(), subjects_.end(), id) != subjects_.end()) {
-      mentioned.push_back(id);
-    }
-    if (place != 0 && map_.placeOf(id) == place) here.push_back(id);
-  }
-  if (only_there) return here;
-  if (said.plural) return !mentioned.empty() ? mentioned : !here.empty() ? here : all;
-  if (mentioned.size() == 1) return mentioned;
-  return here.empty() ? all : here;
-}
-
-bool FillMap::restsOn(Id object, Id other) const {
-  std::set<Id> seen;
-  std::vector<Id> open{object};
-  while (!open.empty()) {
-    const Id id = open.back();
-    open.pop_back();
-    if (id == other) return true;
-    if (!seen.insert(id).second) continue;
-    for (const ObjectRelation* r : map_.relationsOf(id)) {
-      if (isSupport(r->word) && r->other != 0) open.push_back(r->other);
-    }
-  }
-  return false;
-}
-
-std::string FillMap::contradiction(Id object, const Target& target) const {
-  const Id place = map_.placeOf(object);
-  bool against = place != 0 && target.place != 0 && place != target.place;
-  if (target.word && target.landmark != 0) {
-    if (target.landmark == object ||
-        (isSupport(*target.word) && restsOn(target.landmark, object))) {
-      against = true;
-    }
-    for (const ObjectRelation* r : map_.relationsOf(object)) {
-      if (r->other == 0) continue;
-      if (isSupport(r->word) && isSupport(*target.word)) {
-        const bool same = r->other == target.landmark;
-        const bool below = *target.word == RelationWord::kUnder;
-        against = against || (same ? (r->word == RelationWord::kUnder) != below
-                                   : !restsOn(object, target.landmark) || below);
-      }
-      const bool opposite =
-          r->other == target.landmark &&
-          ((r->word == RelationWord::kLeft && *target.word == RelationWord::kRight) ||
-           (r->word == RelationWord::kRight && *target.word == RelationWord::kLeft));
-      against = against || opposite;
-    }
-  }
-  return against ? name(object) + " " + whereIs(object) : "";
-}
-
-// ---- Changes ----
-
-void FillMap::put(Id object, const Target& target) {
-  auto& all = map_.relations;
-  const Id place = map_.placeOf(object);
-  if (target.place != 0 && place != target.place) {
-    // It has gone somewhere else, and with it what rests on it.
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const ObjectRelation& r) {
-                               return r.object == object ||
-                                      (r.other == object && !isSupport(r.word));
-                             }),
-              all.end());
-    ObjectRelation at;
-    at.object = object;
-    at.place = target.place;
-    at.told = true;
-    map_.relate(at);
-    std::vector<Id> carried;
-    for (const ObjectRelation& r : all) {
-      if (r.other == object && isSupport(r.word)) carried.push_back(r.object);
-    }
-    for (const Id id : carried) {
-      for (ObjectRelation& r : all) {
-        if (r.object == id && r.place != 0) r.place = target.place;
-      }
-    }
-  }
-  if (!target.word || target.landmark == 0 || target.landmark == object) return;
-  const auto gives_way = [&](const ObjectRelation& r) {
-    if (r.object != object || r.other == 0) return false;
-    const bool opposite =
-        r.other == target.landmark &&
-        ((r.word == RelationWord::kLeft && *target.word == RelationWord::kRight) ||
-         (r.word == RelationWord::kRight && *target.word == RelationWord::kLeft));
-    const bool rests = isSupport(r.word) && isSupport(*target.word) && r.other != target.landmark;
-    return opposite || (rests && !restsOn(r.other, target.landmark));
-  };
-  bool has = false;  // "over the table" adds nothing to "on the table"
-  all.erase(std::remove_if(all.begin(), all.end(), gives_way), all.end());
-  for (const ObjectRelation& r : all) {
-    has = has || (r.object == object && isSupport(r.word) && isSupport(*target.word) &&
-                  (r.word == RelationWord::kUnder) == (*target.word == RelationWord::kUnder) &&
-                  restsOn(object, target.landmark));
-  }
-  if (has) return;
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [&](const ObjectRelation& r) {
-                             return r.object == object && r.other == target.landmark &&
-                                    isSupport(r.word) && isSupport(*target.word);
-                           }),
-            all.end());
-  ObjectRelation relation;
-  relation.object = object;
-  relation.word = *target.word;
-  relation.other = target.landmark;
-  relation.told = true;
-  map_.relate(relation);
-}
-
-Id FillMap::add(const ObjectPhrase& said, const Target& target) {
-  const Id id = map_.addObject(said.kind);
-  ObjectInstance& object = *map_.find(id);
-  object.properties = said.properties;
-  object.told = true;
-  put(id, target);
-  return id;
-}
-
-// ---- Questions ----
-
-ObjectReply FillMap::ask(const ObjectStatement& statement) {
-  Id place = 0;
-  if (statement.place) {
-    const std::string said = placeName(*statement.place);
-    place = said.empty() ? 0 : findPlace(said);
-    if (place == 0) return reply(ReplyKind::kAnswer, "nothing");
-  }
-  std::vector<Id> landmarks;
-  if (statement.landmark) {
-    landmarks = statement.landmark->reference.empty() ? candidates(*statement.landmark)
-                                                      : resolve(*statement.landmark, place_);
-    if (landmarks.empty()) {
-      return reply(ReplyKind::kAnswer, "unknown", {{"what", statement.landmark->text}});
-    }
-  }
-  const auto wanted = [&](const ObjectInstance& object) {
-    if (!statement.objects.empty()) {
-      const ObjectPhrase& said = statement.objects.front();
-      if (said.reference.empty()
-              ? !fits(object, said)
-              : std::find(subjects_.begin(), subjects_.end(), object.id) == subjects_.end()) {
-        return false;
-      }
-    }
-    if (place != 0 && map_.placeOf(object.id) != place) return false;
-    if (!statement.landmark) return true;
-    for (const ObjectRelation* r : map_.relationsOf(object.id)) {
-      if (std::find(landmarks.begin(), landmarks.end(), r->other) == landmarks.end()) continue;
-      const bool lies = isSupport(*statement.relation) &&
-                        *statement.relation != RelationWord::kUnder && isSupport(r->word) &&
-                        r->word != RelationWord::kUnder;
-      if (r->word == *statement.relation || lies) return true;
-    }
-    return false;
-  };
-  ObjectReply out;
-  for (const ObjectInstance& object : map_.objects) {
-    if (wanted(object)) out.objects.push_back(object.id);
-  }
-  std::set<Id> places;
-  for (const Id id : out.objects) {
-    if (map_.placeOf(id) != 0) places.insert(map_.placeOf(id));
-  }
-  out.places.assign(places.begin(), places.end());
-  std::vector<std::string> items;
-  ObjectReply text;
-  if (statement.intent == "how_many") {
-    text = reply(ReplyKind::kAnswer, "how_many_answer",
-                 {{"count", std::to_string(out.objects.size())}});
-  } else if (out.objects.empty()) {
-    text = statement.objects.empty()
-               ? reply(ReplyKind::kAnswer, "nothing")
-               : reply(ReplyKind::kAnswer, "unknown", {{"what", statement.objects.front().text}});
-  } else if (statement.intent == "which_rooms") {
-    for (const Id id : out.places) items.push_back(map_.findPlace(id)->name);
-    text = reply(ReplyKind::kAnswer, "rooms", {{"places", list(items)}});
-  } else if (statement.intent == "where_is") {
-    for (const Id id : out.objects) {
-      items.push_back(phrase("where", {{"what", name(id)}, {"where", whereIs(id)}}));
-    }
-    text = reply(ReplyKind::kAnswer, "where");
-    text.text.clear();
-    for (const std::string& each : items) text.text += (text.text.empty() ? "" : " ") + each;
-  } else {
-    for (const Id id : out.objects) items.push_back(name(id));
-    text = reply(ReplyKind::kAnswer, "what", {{"what", list(items)}});
-  }
-  text.objects = out.objects;
-  text.places = out.places;
-  return text;
-}
-
-std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionary) const {
-  std::set<std::string> kinds;
-  for (const ObjectInstance& object : map_.objects) {
-    const GenericObject* known = dictionary.find(object.kind);
-    if (known == nullptr || known->classifier.views.empty()) kinds.insert(object.kind);
-  }
-  return {kinds.begin(), kinds.end()};
-}
-
-std::string FillMap::askToShow(const std::string& kind) const {
-  return phrase("show_me", {{"what", kind}});
-}
-
-std::string FillMap::learnt(const std::string& kind) const {
-  return phrase("learnt", {{"what", kind}});
-}
-
-void FillMap::forgetContext() {
-  subjects_.clear();
-  place_ = 0;
-  pending_.reset();
-}
-
-// ---- Words ----
-
-std::string FillMap::phrase(const std::string& key,
-                            const std::vector<std::pair<std::string, std::string>>& values) const {
-  std::string text = parser_.grammar().say(key);
-  for (const auto& [name, value] : values) {
-    const std::size_t at = text.find("{" + name + "}");
-    if (at != std::string::npos) text.replace(at, name.size() + 2, value);
-  }
-  return text;
-}
-
-ObjectReply FillMap::reply(ReplyKind kind, const std::string& key,
-                           const std::vector<std::pair<std::string, std::string>>& values) const {
-  ObjectReply out;
-  out.kind = kind;
-  out.code = key;
-  out.text = phrase(key, values);
-  return out;
-}
-
-ObjectReply FillMap::askBack(const ObjectStatement& statement, const std::string& key,
-                             const std::vector<std::pair<std::string, std::string>>& values,
-                             bool for_place) {
-  const bool yes_or_no = key == "contradiction" || key == "count_contradiction";
-  if (yes_or_no || for_place) pending_ = Pending{{statement}, for_place};
-  return reply(ReplyKind::kQuestion, key, values);
-}
-
-std::string FillMap::list(const std::vector<std::string>& items) const {
-  std::string text;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i > 0) text += phrase(i + 1 == items.size() ? "and" : "comma");
-    text += items[i];
-  }
-  return text;
-}
-
-std::string FillMap::name(Id object) const {
-  const ObjectInstance* found = map_.find(object);
-  if (found == nullptr) return "";
-  std::string text;
-  for (const auto& [key, value] : found->properties) {
-    text += key == "owner" ? value + "'s " : value + " ";
-  }
-  return text + found->kind;
-}
-
-std::string FillMap::whereIs(Id object) const {
-  std::vector<std::string> items;
-  for (const ObjectRelation* r : map_.relationsOf(object)) {
-    if (r->other != 0) items.push_back(std::string(toString(r->word)) + " " + name(r->other));
-  }
-  const ObjectPlace* place = map_.findPlace(map_.placeOf(object));
-  if (place != nullptr) items.push_back(phrase("at", {{"place", place->name}}));
-  return list(items);
 }
 
 }  // namespace hyselam_objects

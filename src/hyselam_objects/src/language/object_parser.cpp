@@ -46,9 +46,15 @@ struct ObjectParser::Words : ObjectWords {
       out.definite = true;
       return out;
     }
-    const std::string before = wordBefore(text, name.range.begin);
-    out.definite = before == "the" || before == "this" || before == "that";
+    out.definite = definite.count(wordBefore(text, name.range.begin)) != 0;
     std::vector<std::string> rest = split(name.text);
+    if (properties_after) {  // "copo vermelho pequeno"
+      for (; rest.size() > 1; rest.pop_back()) {
+        const auto property = properties.find(lowerCase(rest.back()));
+        if (property == properties.end()) break;
+        out.properties[property->second.first] = property->second.second;
+      }
+    }
     bool leading = true;
     std::vector<std::string> noun;
     for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -89,9 +95,17 @@ struct ObjectParser::Words : ObjectWords {
     if (kept != same.end()) return kept->second;
     std::string kind;
     const std::vector<std::string> words = split(noun);
+    // The word that is made plural: the last one, or that before "of".
+    std::size_t head = head_first || words.empty() ? 0 : words.size() - 1;
+    for (std::size_t i = 1; i < words.size() && !head_first; ++i) {
+      if (of.count(lowerCase(words[i])) != 0) {
+        head = i - 1;
+        break;
+      }
+    }
     for (std::size_t i = 0; i < words.size(); ++i) {
       std::string word = isCapitals(words[i]) ? words[i] : lowerCase(words[i]);
-      if (i + 1 == words.size()) word = singular(word, plural);
+      if (i == head) word = singular(word, plural);
       kind += (kind.empty() ? "" : " ") + word;
     }
     const auto again = same.find(lowerCase(kind));
@@ -114,6 +128,9 @@ struct ObjectParser::Words : ObjectWords {
       out.place = here;
     }
     if (!u.word("relation").empty()) out.relation = relationWordOf(u.word("relation"));
+    // Where one word means both: what is "na mesa" lies on the table.
+    const bool on_top = out.landmark && tops.count(out.landmark->kind) != 0;
+    if (on_top && out.relation == RelationWord::kIn) out.relation = RelationWord::kOn;
     for (const SaidName& name : u.names("properties")) {
       const auto found = properties.find(lowerCase(name.text));
       if (found != properties.end()) out.properties.insert(found->second);
@@ -123,19 +140,30 @@ struct ObjectParser::Words : ObjectWords {
 };
 
 ObjectParser ObjectParser::shipped(const std::string& language) {
+  std::vector<ObjectLanguage> all;
+  std::string known;
   for (const ShippedWords& each : kShippedWords) {
-    if (language == each.language) {
-      return ObjectParser({"objects_" + language, each.grammar}, {"words_" + language, each.words});
-    }
+    const std::string name = each.language;
+    known += (known.empty() ? "" : ", ") + name;
+    if (!language.empty() && language != name) continue;
+    all.push_back({{"objects_" + name, each.grammar}, {"words_" + name, each.words}});
   }
-  throw hyselam::InputError("language", language, "objects are not spoken of in this language: en");
+  if (all.empty()) {
+    throw hyselam::InputError("language", language,
+                              "objects are not spoken of in this language: " + known);
+  }
+  return ObjectParser(all);
 }
 
-ObjectParser::ObjectParser(const hyselam_topo::GrammarSource& grammar,
-                           const hyselam_topo::GrammarSource& words)
-    : words_(std::make_unique<Words>(ObjectWords::fromYaml(words))) {
-  parser_ = std::make_unique<hyselam_topo::TopoParser>(std::vector<hyselam_topo::Grammar>{
-      hyselam_topo::Grammar::fromYaml({grammar, words_->grammar()})});
+ObjectParser::ObjectParser(const std::vector<ObjectLanguage>& languages) {
+  if (languages.empty()) throw hyselam::InputError("languages", "", "there is none");
+  std::vector<hyselam_topo::Grammar> grammars;
+  for (const ObjectLanguage& each : languages) {
+    auto words = std::make_unique<const Words>(ObjectWords::fromYaml(each.words));
+    grammars.push_back(hyselam_topo::Grammar::fromYaml({each.grammar, words->grammar()}));
+    words_.push_back(std::move(words));
+  }
+  parser_ = std::make_unique<hyselam_topo::TopoParser>(std::move(grammars));
 }
 
 ObjectParser::~ObjectParser() = default;
@@ -145,20 +173,36 @@ std::vector<ObjectStatement> ObjectParser::parse(const std::string& text,
                                                  const std::set<std::string>& expected) const {
   hyselam_topo::ParseOptions options;
   options.expected = expected;
+  const hyselam_topo::ParsedText parsed = parser_->parse(text, options);
+  const Words& words = *words_[indexOf(parsed.language)];
   std::vector<ObjectStatement> out;
-  for (const Utterance& utterance : parser_->parse(text, options).utterances) {
-    out.push_back(words_->statement(utterance, text));
+  for (const Utterance& utterance : parsed.utterances) {
+    out.push_back(words.statement(utterance, text));
+    out.back().language = words.language;
   }
   return out;
 }
 
-std::string ObjectParser::kindOf(const std::string& noun, bool* plural) const {
-  bool ignored = false;
-  return words_->kindOf(noun, plural != nullptr ? plural : &ignored);
+std::size_t ObjectParser::indexOf(const std::string& language) const {
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    if (words_[i]->language == language) return i;
+  }
+  return 0;
 }
 
-const hyselam_topo::Grammar& ObjectParser::grammar() const {
-  return parser_->grammars().front();
+std::string ObjectParser::kindOf(const std::string& noun, bool* plural) const {
+  bool ignored = false;
+  return words_.front()->kindOf(noun, plural != nullptr ? plural : &ignored);
+}
+
+std::string ObjectParser::propertyIn(const std::string& language, const std::string& value) const {
+  const auto& said = words_[indexOf(language)]->said;
+  const auto found = said.find(value);
+  return found == said.end() ? value : found->second;
+}
+
+const hyselam_topo::Grammar& ObjectParser::grammar(const std::string& language) const {
+  return parser_->grammars()[indexOf(language)];
 }
 
 }  // namespace hyselam_objects

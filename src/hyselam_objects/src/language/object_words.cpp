@@ -43,8 +43,17 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
       for (const auto& value : root[key]) {
         for (const auto& word : value.second) {
           words.properties[lowerCase(word.Scalar())] = {property, value.first.Scalar()};
+          words.said.emplace(value.first.Scalar(), word.Scalar());
         }
       }
+    }
+    for (const auto& each : root["definite"]) words.definite.insert(lowerCase(each.Scalar()));
+    for (const auto& each : root["of"]) words.of.insert(lowerCase(each.Scalar()));
+    for (const auto& each : root["tops"]) words.tops.insert(each.Scalar());
+    words.head_first = root["head"].as<std::string>("last") == "first";
+    words.properties_after = root["properties"].as<std::string>("before") == "after";
+    for (const auto& each : root["plural_endings"]) {
+      words.plural_endings.emplace_back(each[0].as<std::string>(), each[1].as<std::string>());
     }
     for (const auto& each : root["plurals"]) {
       words.plurals[lowerCase(each.first.Scalar())] = each.second.Scalar();
@@ -68,18 +77,18 @@ std::string ObjectWords::singular(const std::string& word, bool* plural) const {
     *plural = given->second != given->first;
     return given->second;
   }
-  *plural =
-      endsWith(word, "s") && !endsWith(word, "ss") && !endsWith(word, "us") && word.size() > 3;
   // "a PC", "two PCs"
-  if (!*plural && word.size() == 3 && endsWith(word, "s") && word[0] >= 'A' && word[0] <= 'Z') {
+  if (word.size() == 3 && endsWith(word, "s") && word[0] >= 'A' && word[0] <= 'Z') {
     *plural = true;
+    return word.substr(0, 2);
   }
-  if (!*plural) return word;
-  for (const char* end : {"ches", "shes", "sses", "xes"}) {
-    if (endsWith(word, end)) return word.substr(0, word.size() - 2);
+  for (const auto& [end, one] : plural_endings) {
+    if (word.size() <= 3 || !endsWith(word, end)) continue;
+    *plural = one != end;
+    return word.substr(0, word.size() - end.size()) + one;
   }
-  if (endsWith(word, "ies")) return word.substr(0, word.size() - 3) + "y";
-  return word.substr(0, word.size() - 1);
+  *plural = false;
+  return word;
 }
 
 hyselam_topo::GrammarSource ObjectWords::grammar() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "hyselam_common/errors.hpp"
@@ -63,6 +64,8 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
       map_publisher_(nh.advertise<hyselam_msgs::ObjectMap>("object_map", 1, true)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("object_markers", 1, true)),
       text_publisher_(nh.advertise<std_msgs::String>("robot_text", 20)) {
+  talk_publisher_ = nh.advertise<std_msgs::String>("conversation", 100);
+  answer_publisher_ = nh.advertise<hyselam_msgs::ObjectAnswer>("object_answer", 20);
   map_.frame_id = params_.map_frame;
   if (!params_.map_file.empty() && std::filesystem::exists(params_.map_file)) {
     map_ = loadMapIn(params_.map_frame, params_.map_file);
@@ -83,6 +86,7 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
   save_ = nh.advertiseService("save_object_map", &ObjectEngineServer::onSave, this);
   load_ = nh.advertiseService("load_object_map", &ObjectEngineServer::onLoad, this);
   query_ = nh.advertiseService("query_objects", &ObjectEngineServer::onQuery, this);
+  request_ = nh.subscribe("object_request", 20, &ObjectEngineServer::onRequest, this);
   text_ = nh.subscribe("object_text", 20, &ObjectEngineServer::onText, this);
   place_ = nh.subscribe("place", 5, &ObjectEngineServer::onPlace, this);
   topology_subscriber_ = nh.subscribe("topological_map", 1, &ObjectEngineServer::onTopology, this);
@@ -137,16 +141,30 @@ void ObjectEngineServer::onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg)
     PinholeCamera camera;
     camera.cx = 0.5 * cloud.width - 0.5;
     camera.cy = 0.5 * cloud.height - 0.5;
-    std::vector<double> focal;
+    std::vector<double> across, down;
     for (std::size_t i = 0; i < cloud.size(); i += 17) {
       const Point& p = cloud.points[i];
+      if (!cloud.isValid(i)) continue;
       const double u = static_cast<double>(i % static_cast<std::size_t>(cloud.width)) - camera.cx;
-      if (cloud.isValid(i) && std::abs(p.x()) > 0.05f) focal.push_back(u * p.z() / p.x());
+      const double v = static_cast<double>(i / static_cast<std::size_t>(cloud.width)) - camera.cy;
+      if (std::abs(p.x()) > 0.05f) across.push_back(u * p.z() / p.x());
+      if (std::abs(p.y()) > 0.05f) down.push_back(v * p.z() / p.y());
     }
-    if (focal.size() < 20) throw hyselam::InputError("points", "", "hardly a point is valid");
-    std::nth_element(focal.begin(), focal.begin() + static_cast<std::ptrdiff_t>(focal.size() / 2),
-                     focal.end());
-    camera.focal_length = focal[focal.size() / 2];
+    if (across.size() < 20 || down.size() < 20) {
+      throw hyselam::InputError("points", "", "hardly a point is valid");
+    }
+    const auto median = [](std::vector<double>* all) {
+      const auto middle = all->begin() + static_cast<std::ptrdiff_t>(all->size() / 2);
+      std::nth_element(all->begin(), middle, all->end());
+      return *middle;
+    };
+    camera.focal_length = median(&across);
+    const double other = median(&down);
+    if (!(camera.focal_length > 0.0 && other > 0.0 && std::isfinite(camera.focal_length))) {
+      throw hyselam::InputError("points", "",
+                                "they are not in the order of a camera's picture: x does not grow "
+                                "to the right, or y not downwards");
+    }
     look(cloud, camera, msg->header);
   } catch (const std::exception& e) {
     refuse(e.what());
@@ -170,6 +188,7 @@ void ObjectEngineServer::look(const OrganisedCloud& cloud, PinholeCamera camera,
       Eigen::Translation3d(t.x, t.y, t.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
   const ros::WallTime begin = ros::WallTime::now();
   const std::vector<DetectedObject> seen = detectObjects(cloud, camera.in_map, params_.detect);
+  landmarks_ = watch_.add(map_, seen);  // before the map takes over what is wrong
   mapper_.update(cloud, camera, seen, hyselam::toSeconds(header.stamp));
   fill_.setTime(map_.stamp);
   learn(seen, camera);
@@ -217,36 +236,57 @@ void ObjectEngineServer::refuse(const std::string& reason) {
   ROS_WARN_STREAM_THROTTLE(5.0, who_ << " a frame is not used: " << reason);
 }
 
-void ObjectEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
-  hyselam_msgs::QueryObjects::Request request;
-  hyselam_msgs::QueryObjects::Response response;
-  request.text = msg->data;
-  onQuery(request, response);
-  say(response.reply);
-}
-
-bool ObjectEngineServer::onQuery(hyselam_msgs::QueryObjects::Request& request,
-                                 hyselam_msgs::QueryObjects::Response& response) {
+hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
+  hyselam_msgs::ObjectAnswer out;
   const std::vector<std::string> before = fill_.unknownKinds(dictionary_);
-  response.understood = true;
-  for (const ObjectReply& reply : fill_.say(request.text)) {
-    response.reply += (response.reply.empty() ? "" : " ") + reply.text;
-    response.objects.insert(response.objects.end(), reply.objects.begin(), reply.objects.end());
-    for (const Id id : reply.places) response.places.push_back(map_.findPlace(id)->name);
-    response.understood = response.understood && reply.kind != ReplyKind::kNotUnderstood;
+  std::size_t understood = 0;
+  const std::vector<ObjectReply> replies = fill_.say(text);
+  for (const ObjectReply& reply : replies) {
+    out.reply += (out.reply.empty() ? "" : " ") + reply.text;
+    out.objects.insert(out.objects.end(), reply.objects.begin(), reply.objects.end());
+    for (const Id id : reply.places) {
+      out.places.push_back(map_.findPlace(id)->name);
+      out.topological.push_back(map_.findPlace(id)->topological);
+    }
+    understood += reply.kind != ReplyKind::kNotUnderstood;
+    out.asks = reply.kind == ReplyKind::kQuestion;
+    if (reply.code == "going") out.go = 1;
     if (reply.code == "shown") {
       shown_ = reply.kind_of_object;
       shown_views_.clear();
       shown_sizes_.clear();
     }
   }
+  // A part that is not understood is told of in the reply.
+  out.understood = understood > 0;
   // NewObject: what is new and cannot be recognised is asked for.
   for (const std::string& kind : fill_.unknownKinds(dictionary_)) {
     if (std::find(before.begin(), before.end(), kind) == before.end()) {
-      response.reply += " " + fill_.askToShow(kind);
+      out.reply += " " + fill_.askToShow(kind);
     }
   }
+  all_understood_ = understood == replies.size();
   publish();
+  return out;
+}
+
+void ObjectEngineServer::onRequest(const hyselam_msgs::ObjectRequest::ConstPtr& msg) {
+  hyselam_msgs::ObjectAnswer out = answer(msg->text);
+  out.id = msg->id;
+  answer_publisher_.publish(out);
+}
+
+void ObjectEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
+  say(answer(msg->data).reply);
+}
+
+bool ObjectEngineServer::onQuery(hyselam_msgs::QueryObjects::Request& request,
+                                 hyselam_msgs::QueryObjects::Response& response) {
+  const hyselam_msgs::ObjectAnswer out = answer(request.text);
+  response.understood = all_understood_;
+  response.reply = out.reply;
+  response.objects = out.objects;
+  response.places = out.places;
   return true;
 }
 
@@ -254,6 +294,8 @@ void ObjectEngineServer::say(const std::string& text) {
   std_msgs::String msg;
   msg.data = text;
   text_publisher_.publish(msg);
+  msg.data = "robot: " + text;
+  talk_publisher_.publish(msg);
 }
 
 void ObjectEngineServer::onPlace(const hyselam_msgs::PlaceState::ConstPtr& msg) {
@@ -296,6 +338,7 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
   try {
     map_ = loadMapIn(params_.map_frame, path);
     fill_.forgetContext();
+    watch_.clear();
     if (topology_) linkPlaces(&map_, *topology_);
     publish();
     response.success = true;
@@ -309,7 +352,7 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
 
 void ObjectEngineServer::publish() {
   constexpr double kWeakFor = 20.0;  // what was seen once has so long to be seen again [s]
-  mapper_.finish(map_.stamp - kWeakFor);
+  mapper_.finish(mapper_.time() - kWeakFor);
   map_publisher_.publish(toMsg(map_));
   marker_publisher_.publish(objectMarkers(map_));
 }
@@ -319,6 +362,20 @@ void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   if (!error_.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, error_);
   hyselam::addRemark(status, DiagnosticStatus::OK,
                      std::to_string(map_.objects.size()) + " objects in the map");
+  if (landmarks_.verdict == LandmarkVerdict::kDisplaced) {
+    char text[120];
+    std::snprintf(
+        text, sizeof(text),
+        "the robot seems to be elsewhere: things that do not move are off by %.2f, %.2f m",
+        landmarks_.x, landmarks_.y);
+    hyselam::addRemark(status, DiagnosticStatus::WARN, text);
+  }
+  hyselam::addValue(status, "landmarks", toString(landmarks_.verdict));
+  hyselam::addValue(status, "landmarks compared", landmarks_.compared);
+  hyselam::addValue(status, "landmarks fitting", landmarks_.fitting);
+  hyselam::addValue(status, "landmarks chi2", landmarks_.chi2);
+  hyselam::addValue(status, "offset x [m]", landmarks_.x);
+  hyselam::addValue(status, "offset y [m]", landmarks_.y);
   hyselam::addValue(status, "frames used", frames_);
   hyselam::addValue(status, "frames refused", refused_);
   hyselam::addValue(status, "frames without a pose", without_pose_);

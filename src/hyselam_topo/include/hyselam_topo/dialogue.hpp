@@ -63,13 +63,33 @@ struct DialogueAction {
   double angle = 0.0;  ///< [rad], left > 0
 };
 
+/// A sentence for somebody else, who knows more than places.
+struct PassedOn {
+  std::string text;
+  /// Said if nobody else understands it either; empty: the dialogue is to hear it after all.
+  std::string refusal;
+  bool of_a_thing = false;  ///< it was refused because it names an object: others know better why
+};
+
 struct Reply {
   std::string language;
   std::vector<std::string> sentences;
   std::vector<DialogueAction> actions;
+  std::vector<PassedOn> passed_on;
+  bool unknown_name = false;  ///< a place was named that nobody knows
 
   std::string text() const;  ///< the sentences, a blank between
   bool has(DialogueAction::Kind kind) const;
+};
+
+struct HearOptions {
+  /// Somebody else listens: what is not understood, or names a place that nobody knows, comes back
+  /// in Reply::passed_on instead of being refused.
+  bool pass_on = false;
+  /// Things were spoken of last: that "it", or what is no place, is in a room is of a thing.
+  bool of_things = false;
+  /// Somebody else has asked last: answers are for them.
+  bool others_asked = false;
 };
 
 /// What the robot has asked and waits for.
@@ -115,7 +135,9 @@ class Dialogue {
 
   // ---- What it is told ----
   /// Any text. Never throws for what it says.
-  Reply hear(const std::string& text);
+  Reply hear(const std::string& text, const HearOptions& options = {});
+  /// Drives to the nearest of the places; says so if there is none or no way. `name`: of them.
+  Reply goTo(const std::string& name, const std::vector<Id>& places);
   /// "This place is called ..." of any place, as by a click on the map. Throws as PlaceMan.
   Reply name(Id place, const std::vector<std::string>& names);
   Reply forget(Id place);
@@ -135,6 +157,8 @@ class Dialogue {
   std::optional<hyselam::OccupancyGrid> gridWithWalls() const;
   /// All names that mean something, confirmed, guessed or only told of, sorted.
   std::vector<std::string> knownNames() const;
+  /// What the robot says when those do not answer that a sentence was passed on to.
+  std::string nobodyAnswers() const;
   /// The pose in the nearest of the places that have a name or code word; nothing for unknown ones.
   std::optional<std::pair<Id, PlacePose>> poseOf(const std::string& name) const;
 
@@ -148,6 +172,7 @@ class Dialogue {
   const Phrases& phrases() const;
   Reply reply() const;
   bool understands(const Utterance& u, Turn* turn);
+  bool isOfThing(const Utterance& u) const;
 
   // describing
   void statement(const Utterance& u, Turn* turn);

@@ -139,17 +139,30 @@ void Dialogue::placeEntered(Reply* out) {
 
 // ---- What it is told ----
 
-Reply Dialogue::hear(const std::string& text) {
-  ParseOptions options;
+/// That something is in a room: no place that was ever heard of.
+bool Dialogue::isOfThing(const Utterance& u) const {
+  if (u.intent != "contains") return false;
+  const std::vector<std::string> known = knownNames();
+  const std::vector<SaidName> names = u.names("places");
+  return std::all_of(names.begin(), names.end(), [&](const SaidName& name) {
+    if (!name.reference.empty()) return true;
+    return places_.find(name.text).empty() &&
+           std::none_of(known.begin(), known.end(),
+                        [&](const std::string& each) { return places_.sameName(each, name.text); });
+  });
+}
+
+Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
+  ParseOptions parse_options;
   switch (question_.kind) {
     case Question::Kind::kName:
     case Question::Kind::kConfirmName:
-      options.expected = {"name_answer"};
+      parse_options.expected = {"name_answer"};
       break;
     default:
       break;
   }
-  const ParsedText parsed = parser_.parse(text, options);
+  const ParsedText parsed = parser_.parse(text, parse_options);
   if (parsed.misunderstood() < parsed.utterances.size() && phrases_.count(parsed.language) != 0) {
     language_ = parsed.language;
   }
@@ -163,21 +176,65 @@ Reply Dialogue::hear(const std::string& text) {
       turn.reply.sentences.push_back(phrases().say("not_possible", {{"reason", e.what()}}));
     }
   };
+  std::vector<PassedOn>& passed_on = turn.reply.passed_on;
+  // With what stands before it: "No, the pen ...".
+  std::size_t end = 0;
+  const auto pass = [&](const Utterance& u, const std::string& refusal) {
+    const std::size_t begin = std::min(end, u.range.begin);
+    const std::string whole = text.substr(begin, std::max(u.range.end, begin) - begin);
+    passed_on.push_back({u.correction ? whole : u.text, refusal, u.reason_code == "object"});
+  };
   for (const Utterance& u : parsed.utterances) {
+    const auto next = [&] { end = std::min(text.size(), u.range.end); };
     if (!u.understood()) {
-      not_understood.push_back(
-          phrases().say("not_understood", {{"text", u.text}, {"reason", u.reason}}));
+      const std::string refusal =
+          phrases().say("not_understood", {{"text", u.text}, {"reason", u.reason}});
+      if (options.pass_on) {
+        pass(u, refusal);
+      } else {
+        not_understood.push_back(refusal);
+      }
+      next();
+      continue;
+    }
+    const bool for_others = (options.others_asked && u.kind == UtteranceKind::kAnswer) ||
+                            (options.of_things && isOfThing(u));
+    if (options.pass_on && for_others) {
+      pass(u, "");
+      next();
       continue;
     }
     if (u.intent != "this_is" && DescriptionBuilder::handles(u.intent)) {
       statement(u, &turn);
+      next();
       continue;
     }
     possibly([&] { takeDown(&turn); });
     if (u.intent != "go_to") setOut(&turn);
+    Reply& out = turn.reply;
+    const std::size_t said = out.sentences.size(), done = out.actions.size(),
+                      goals = turn.goals.size();
+    out.unknown_name = false;
     possibly([&] {
-      if (!understands(u, &turn)) turn.reply.sentences.push_back(phrases().say("cannot_do"));
+      if (!understands(u, &turn)) out.sentences.push_back(phrases().say("cannot_do"));
     });
+    const bool nothing_done = out.actions.size() == done && turn.goals.size() == goals;
+    if (options.pass_on && out.unknown_name && nothing_done && out.sentences.size() == said + 1) {
+      pass(u, out.sentences.back());
+      out.sentences.pop_back();
+    }
+    next();
+  }
+  // All of it: as it was said.
+  if (parsed.utterances.size() > 1 && passed_on.size() == parsed.utterances.size() &&
+      std::none_of(passed_on.begin(), passed_on.end(),
+                   [](const PassedOn& each) { return each.refusal.empty(); })) {
+    PassedOn whole{text, "", true};
+    for (const PassedOn& each : passed_on) {
+      whole.refusal += (whole.refusal.empty() ? "" : " ") + each.refusal;
+      whole.of_a_thing = whole.of_a_thing && each.of_a_thing;
+    }
+    passed_on = {whole};
   }
   possibly([&] { takeDown(&turn); });
   setOut(&turn);
@@ -265,7 +322,23 @@ bool Dialogue::understands(const Utterance& u, Turn* turn) {
   return true;
 }
 
+Reply Dialogue::goTo(const std::string& name, const std::vector<Id>& places) {
+  Turn turn;
+  turn.reply = reply();
+  if (places.empty()) {
+    turn.reply.sentences.push_back(phrases().say("unknown_place", {{"name", name}}));
+    return turn.reply;
+  }
+  turn.goals.emplace_back(name, places);
+  setOut(&turn);
+  return turn.reply;
+}
+
 // ---- What it knows ----
+
+std::string Dialogue::nobodyAnswers() const {
+  return phrases().say("nobody_answers");
+}
 
 std::optional<hyselam::OccupancyGrid> Dialogue::gridWithWalls() const {
   if (!grid_) return std::nullopt;
@@ -369,11 +442,13 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply* out) {
     if (subject_ != 0 && places_.map().findPlace(subject_) != nullptr) found.push_back(subject_);
     if (found.empty()) {
       out->sentences.push_back(phrases().say("unknown_place", {{"name", "'" + name.text + "'"}}));
+      out->unknown_name = true;
     }
   } else {
     found = places_.find(name.text);
     if (found.empty()) {
       out->sentences.push_back(phrases().say("unknown_place", {{"name", name.text}}));
+      out->unknown_name = true;
     }
   }
   if (!found.empty()) subject_ = found.front();

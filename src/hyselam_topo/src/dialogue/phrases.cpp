@@ -81,6 +81,7 @@ const std::map<std::string, std::set<std::string>>& knownPhrases() {
       {"welcome", {}},
       {"not_understood", {"text", "reason"}},
       {"nothing_asked", {}},
+      {"nobody_answers", {}},
       {"cannot_do", {}}};
   return kKnown;
 }

@@ -46,6 +46,8 @@ TopoEngineParams loadTopoEngineParams(ParamLoader& loader) {
   loader.get("max_map_cells", p.max_map_cells, Range::between(1, 1e9), "a larger map is refused");
   loader.get("max_text_bytes", p.max_text_bytes, Range::between(100, 1e7),
              "a longer text is refused");
+  loader.get("object_patience", p.object_patience, Range::between(0.1, 60.0),
+             "[s] for the answer to a sentence about objects");
   loader.get("marker_alpha", p.markers.alpha, Range::between(0.0, 1.0), "of the places");
   loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");
   if (p.base_frame.empty()) throw hyselam::ParameterError("base_frame", "''", "a frame");

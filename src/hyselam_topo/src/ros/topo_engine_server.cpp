@@ -66,6 +66,10 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
                nh.advertiseService("add_glass_wall", &Self::onGlassWall, this),
                nh.advertiseService("save_dialogue", &Self::onSave, this),
                nh.advertiseService("load_dialogue", &Self::onLoad, this)};
+  objects_.emplace(nh, params_.object_patience,
+                   [this](const PassedOn& sentence, const hyselam_msgs::ObjectAnswer* answer) {
+                     answered(sentence, answer);
+                   });
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": dialogue",
                        params_.diagnostic_period,
                        [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
@@ -82,6 +86,7 @@ TopoEngineServer::~TopoEngineServer() {
   diagnostics_.reset();
   subscribers_.clear();
   services_.clear();
+  objects_.reset();
   saved_ = ros::WallTime();
   autosave();
 }
@@ -136,9 +141,54 @@ void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
     return;
   }
   text_error_.clear();
+  hear(msg->data);
+}
+
+Reply TopoEngineServer::hear(const std::string& text) {
   lookForRobot();
-  heard(msg->data);
-  act(dialogue_.hear(msg->data));
+  heard(text);
+  HearOptions options;
+  options.pass_on = objects_->isThere();
+  options.of_things = of_things_;
+  options.others_asked = objects_asked_;
+  const Reply reply = dialogue_.hear(text, options);
+  if (dialogue_.question().kind != Question::Kind::kNone && !reply.sentences.empty()) {
+    objects_asked_ = false;
+  }
+  if (reply.passed_on.empty()) of_things_ = false;
+  act(reply);
+  for (const PassedOn& sentence : reply.passed_on) objects_->pass(sentence);
+  return reply;
+}
+
+void TopoEngineServer::answered(const PassedOn& sentence,
+                                const hyselam_msgs::ObjectAnswer* answer) {
+  if (answer != nullptr && answer->understood) {
+    of_things_ = true;
+    objects_asked_ = answer->asks != 0;
+    say(answer->reply);
+    if (answer->go == 0) return;
+    std::vector<Id> goals;
+    for (std::size_t i = 0; i < answer->places.size(); ++i) {
+      const Id id = i < answer->topological.size() ? answer->topological[i] : 0;
+      if (id != 0 && dialogue_.map().findPlace(id) != nullptr) {
+        goals.push_back(id);
+      } else {
+        const std::vector<Id> named = dialogue_.places().find(answer->places[i]);
+        goals.insert(goals.end(), named.begin(), named.end());
+      }
+    }
+    const std::string name = answer->places.empty() ? "" : answer->places.front();
+    if (goals.empty() && name.empty()) return;  // the reply has told why
+    act(dialogue_.goTo(name, goals));
+    return;
+  }
+  if (sentence.refusal.empty()) {
+    act(dialogue_.hear(sentence.text));
+  } else {
+    say(answer != nullptr && sentence.of_a_thing ? answer->reply : sentence.refusal);
+  }
+  if (answer == nullptr) say(dialogue_.nobodyAnswers());
 }
 
 void TopoEngineServer::lookForRobot() {
@@ -163,6 +213,7 @@ void TopoEngineServer::lookForRobot() {
 
 void TopoEngineServer::onTimer() {
   lookForRobot();
+  objects_->giveUp();
   const RobotPlace& robot = dialogue_.robot();
   const bool changed = robot.place != last_place_.place || robot.previous != last_place_.previous ||
                        robot.in_doorway != (last_place_.in_doorway != 0);

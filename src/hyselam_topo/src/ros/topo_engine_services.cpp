@@ -39,10 +39,7 @@ bool TopoEngineServer::onTell(hyselam_msgs::TellRobot::Request& request,
     response.answers = {"the text has more than max_text_bytes"};
     return true;
   }
-  lookForRobot();
-  heard(request.text);
-  const Reply reply = dialogue_.hear(request.text);
-  act(reply);
+  const Reply reply = hear(request.text);
   response.language = reply.language;
   response.answers = reply.sentences;
   return true;

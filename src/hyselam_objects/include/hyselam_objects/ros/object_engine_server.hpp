@@ -2,7 +2,9 @@
 #pragma once
 
 #include <hyselam_msgs/AugmentedTopologicalMap.h>
+#include <hyselam_msgs/ObjectAnswer.h>
 #include <hyselam_msgs/ObjectMapPath.h>
+#include <hyselam_msgs/ObjectRequest.h>
 #include <hyselam_msgs/PlaceState.h>
 #include <hyselam_msgs/QueryObjects.h>
 #include <message_filters/subscriber.h>
@@ -18,6 +20,7 @@
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/params.hpp"
 #include "hyselam_objects/fill_map.hpp"
+#include "hyselam_objects/landmark_check.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
 
 namespace hyselam_objects {
@@ -52,6 +55,8 @@ class ObjectEngineServer {
   void onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg);
   void onImages(const Image::ConstPtr& depth, const Image::ConstPtr& colour);
   void onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg);
+  hyselam_msgs::ObjectAnswer answer(const std::string& text);
+  void onRequest(const hyselam_msgs::ObjectRequest::ConstPtr& msg);
   void onText(const std_msgs::String::ConstPtr& msg);
   void onPlace(const hyselam_msgs::PlaceState::ConstPtr& msg);
   void onTopology(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg);
@@ -77,10 +82,13 @@ class ObjectEngineServer {
   ObjectParser parser_;
   FillMap fill_;
   ObjectMapper mapper_;
+  LandmarkWatch watch_;
+  LandmarkCheck landmarks_;  ///< of the last frames
   std::optional<hyselam_topo::AugmentedTopologicalMap> topology_;
   std::optional<PinholeCamera> camera_;
 
-  std::string shown_;  ///< kind that is being shown; empty: none
+  bool all_understood_ = true;  ///< of the last text
+  std::string shown_;           ///< kind that is being shown; empty: none
   std::vector<std::vector<float>> shown_views_;
   std::vector<Eigen::Vector3d> shown_sizes_;
 
@@ -91,8 +99,9 @@ class ObjectEngineServer {
 
   tf2_ros::Buffer tf_buffer_;
   tf2_ros::TransformListener tf_listener_;
-  ros::Publisher map_publisher_, marker_publisher_, text_publisher_;
-  ros::Subscriber info_, points_, text_, place_, topology_subscriber_;
+  ros::Publisher map_publisher_, marker_publisher_, text_publisher_, talk_publisher_,
+      answer_publisher_;
+  ros::Subscriber info_, points_, text_, request_, place_, topology_subscriber_;
   std::unique_ptr<message_filters::Subscriber<Image>> depth_, colour_;
   std::unique_ptr<message_filters::TimeSynchronizer<Image, Image>> images_;
   ros::ServiceServer save_, load_, query_;

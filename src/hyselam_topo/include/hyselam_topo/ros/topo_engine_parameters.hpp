@@ -18,6 +18,7 @@ struct TopoEngineParams {
   bool use_move_base = true;     ///< drive by the action `move_base`, where it is there
   int max_map_cells = 50000000;  ///< a larger map is refused
   int max_text_bytes = 65536;    ///< a longer text is refused
+  double object_patience = 3.0;  ///< for the answer to a sentence about objects [s]
   MapMarkerParams markers;
   double diagnostic_period = 1.0;  ///< [s]
 };

@@ -23,6 +23,7 @@
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_topo/dialogue.hpp"
 #include "hyselam_topo/ros/goal_driver.hpp"
+#include "hyselam_topo/ros/object_talk.hpp"
 #include "hyselam_topo/ros/topo_engine_parameters.hpp"
 
 namespace hyselam_topo {
@@ -43,6 +44,9 @@ class TopoEngineServer {
   void onTimer();
   void lookForRobot();
 
+  /// Any text of a person: answers what it is for, passes on what is for others.
+  Reply hear(const std::string& text);
+  void answered(const PassedOn& sentence, const hyselam_msgs::ObjectAnswer* answer);
   /// Says what is to be said and does what is to be done.
   void act(const Reply& reply);
   void say(const std::string& sentence);
@@ -104,6 +108,9 @@ class TopoEngineServer {
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
   GoalDriver driver_;
+  std::optional<ObjectTalk> objects_;
+  bool of_things_ = false;      // objects were spoken of last
+  bool objects_asked_ = false;  // and the last question was about them
   ros::Publisher text_publisher_, talk_publisher_, place_publisher_, map_publisher_,
       marker_publisher_, question_publisher_, grid_publisher_, path_publisher_, poses_publisher_,
       pose_publisher_, follow_publisher_, names_publisher_;

@@ -1,0 +1,74 @@
+#include "targets.hpp"
+
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_objects/fill_map.hpp"
+#include "hyselam_objects/object_dictionary.hpp"
+#include "hyselam_objects/object_map.hpp"
+#include "hyselam_objects/object_relations.hpp"
+
+namespace hyselam_objects {
+namespace fuzz {
+namespace {
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace
+
+void objectText(const std::uint8_t* data, std::size_t size) {
+  static const ObjectParser kParser = ObjectParser::shipped();
+  std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));
+  ObjectMap map;
+  FillMap fill(&kParser, &map);
+  if (size > 0 && data[0] % 2 == 0) fill.setPlace("studio");
+  int lines = 0;
+  for (std::string line; ++lines <= 20 && std::getline(text, line);) {
+    for (const ObjectReply& reply : fill.say(line)) {
+      require(!reply.text.empty());
+      for (const Id id : reply.objects) require(map.find(id) != nullptr);
+      for (const Id id : reply.places) require(map.findPlace(id) != nullptr);
+    }
+    checkMap(map, "told");
+  }
+  require(objectMapFromXml(toXml(map)) == map);
+  fill.unknownKinds(ObjectDictionary{});
+}
+
+void objectMapXml(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  ObjectMap map;
+  try {
+    map = objectMapFromXml(text, "fuzz");
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  checkMap(map, "read");
+  require(objectMapFromXml(toXml(map)) == map);
+  for (const ObjectInstance& object : map.objects) {
+    const double share = movability(map, object.id);
+    require(share >= 0.0 && share <= 1.0);
+  }
+  tellObjects(map);
+  updateRelations(&map);
+  checkMap(map, "related");
+}
+
+void objectDictionaryXml(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  ObjectDictionary dictionary;
+  try {
+    dictionary = dictionaryFromXml(text, "fuzz");
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  require(dictionaryFromXml(toXml(dictionary)) == dictionary);
+  require(merged(dictionary, dictionary).objects.size() == dictionary.objects.size());
+}
+
+}  // namespace fuzz
+}  // namespace hyselam_objects
