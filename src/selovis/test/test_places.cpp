@@ -366,6 +366,49 @@ TEST(Models, SurviveTheDiskBitForBit) {
   }
 }
 
+TEST(Models, PosesSurviveTheDiskAndServeTheFilter) {
+  TemporaryDirectory folder;
+  TrainingOptions o;
+  o.descriptor = "LGOP";
+  o.classifier.kernel = Kernel::kExemplar;
+  o.views = {0.0, 0.1};
+  o.aperture = 1.0;
+  const auto withPose = [](std::size_t, std::size_t i) {
+    TrainingFrame f = frameOf(int(i) / 10, int(i));
+    if (i != 3) f.pose = {0.3 * double(i), 1.0, 0.2};
+    return f;
+  };
+  const Model model = train({30}, withPose, o);
+  saveModel(model, folder / "m");
+  const Model again = loadModel(folder / "m");
+  EXPECT_EQ(again.aperture, 1.0);
+  ASSERT_EQ(again.samples.poses.size(), 60u);
+  EXPECT_FALSE(again.samples.poses[6].isFinite()) << "one frame had no pose";
+  EXPECT_EQ(again.samples.poses[9].x, 0.3 * 4.0);
+  EXPECT_NEAR(again.samples.poses[9].theta, 0.3, 1e-12) << "the second view is turned by 0.1 rad";
+  RecogniserParams params;
+  params.filter.kind = FilterKind::kPoses;
+  Recogniser r(again, again.graph, params);
+  int right = 0;
+  for (int i = 0; i < 30; ++i) {
+    Readings readings;
+    readings.stamp = i;
+    readings.odometry = hyselam::Pose2{0.3 * i, 0.0, 0.0};
+    right += r.update(frameOf(i / 10, i).image, readings).estimate.place == i / 10;
+  }
+  EXPECT_GE(right, 24);
+  std::string poses;
+  for (const auto& f : std::filesystem::directory_iterator(folder / "m")) {
+    if (f.path().filename().string().compare(0, 6, "poses-") == 0) poses = f.path().string();
+  }
+  writeFile(poses, hyselam::testing::fileBytes(poses).substr(0, 50));
+  EXPECT_NE(messageOf<InputError>([&] { loadModel(folder / "m"); }).find("cut short"),
+            std::string::npos);
+  const Model without = smallModel(Kernel::kExemplar), svm = smallModel(Kernel::kLinear);
+  EXPECT_THROW(Recogniser(without, without.graph, params), std::invalid_argument);
+  EXPECT_THROW(Recogniser(svm, svm.graph, params), std::invalid_argument);
+}
+
 TEST(Models, PlacesCanBeAdded) {
   for (const Kernel kernel : {Kernel::kLinear, Kernel::kExemplar}) {
     Model model = smallModel(kernel, 2);
@@ -375,7 +418,9 @@ TEST(Models, PlacesCanBeAdded) {
     ASSERT_EQ(model.graph.places.size(), 3u);
     PlaceFilterParams none;
     none.kind = FilterKind::kNone;
-    Recogniser r(model, model.graph, {{}, none, 0.0});
+    RecogniserParams params;
+    params.filter = none;
+    Recogniser r(model, model.graph, params);
     for (int place = 0; place < 3; ++place) {
       EXPECT_EQ(r.update(frameOf(place, 3).image).estimate.place, place) << nameOf(kernel);
     }
@@ -508,6 +553,95 @@ TEST(Recogniser, APlaceTakenOffTheMapKeepsItsClassWithoutTransitions) {
   for (int i = 0; i < 20; ++i) r.update(frameOf(2, i).image);
   EXPECT_EQ(r.update(frameOf(2, 1).image).estimate.place, 2);
   EXPECT_THROW(Recogniser(model, left, {}), std::invalid_argument);
+}
+
+/// A ring road of radius 5 m with four places, learnt by driving round it twice. Opposite places
+/// look alike, each its own half way round.
+struct Ring {
+  Ring() {
+    samples.size = 2;
+    for (int i = 0; i < 200; ++i) {
+      const float at[2] = {look(angle(i), 0), look(angle(i), 1)};
+      samples.add(at, placeAt(angle(i)), i, pose(i));
+    }
+  }
+  static double angle(double i) { return 2.0 * hyselam::kPi * i / 100.0; }
+  static int placeAt(double angle) {
+    return static_cast<int>(std::fmod(angle, 2.0 * hyselam::kPi) / (0.5 * hyselam::kPi));
+  }
+  static float look(double angle, int axis) {
+    // Twice the angle: the far side of the ring looks the same, but for a quarter of it.
+    if (std::fmod(angle, 2.0 * hyselam::kPi) < 0.5 * hyselam::kPi) return axis == 0 ? 3.0f : 3.0f;
+    return static_cast<float>(1.0 +
+                              0.5 * (axis == 0 ? std::cos(2.0 * angle) : std::sin(2.0 * angle)));
+  }
+  static hyselam::Pose2 pose(double i) {
+    return {5.0 * std::cos(angle(i)), 5.0 * std::sin(angle(i)), angle(i) + 0.5 * hyselam::kPi};
+  }
+  /// Drives round once from step 5 and tells the share of frames in the right place after the first
+  /// quarter; `drift` of the odometry's frame against the map.
+  double drive(PoseFilter& filter, bool odometry) const {
+    ClassifierParams params;
+    params.kernel = Kernel::kExemplar;
+    params.power = 1.0;
+    const auto classifier = trainClassifier(samples, 4, params, nullptr);
+    const hyselam::Pose2 frame{3.0, -7.0, 1.0};
+    std::vector<double> p(4);
+    int right = 0;
+    for (int i = 5; i < 105; ++i) {
+      const float at[2] = {look(angle(i), 0), look(angle(i), 1)};
+      classifier->predict(at, p.data());
+      filter.update(*classifier->distances(),
+                    odometry ? std::optional<hyselam::Pose2>(frame * pose(i)) : std::nullopt);
+      const auto& state = filter.probabilities();
+      const int place =
+          static_cast<int>(std::max_element(state.begin(), state.end()) - state.begin());
+      if (i >= 30) right += place == placeAt(angle(i));
+    }
+    return right / 75.0;
+  }
+  Samples samples;
+};
+
+TEST(PoseFilter, OdometryTellsPlacesThatLookAlikeApart) {
+  const Ring ring;
+  PoseFilterParams params;
+  params.jump = 0.0;
+  PoseFilter filter(ring.samples, 4, params);
+  EXPECT_GT(ring.drive(filter, true), 0.9);
+  double sum = 0.0;
+  for (const double p : filter.probabilities()) sum += p;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+}
+
+TEST(PoseFilter, IsTheSameEveryTimeAndAfterReset) {
+  const Ring ring;
+  PoseFilter a(ring.samples, 4, {}), b(ring.samples, 4, {});
+  ring.drive(a, true);
+  ring.drive(b, true);
+  EXPECT_EQ(a.probabilities(), b.probabilities());
+  const std::vector<double> first = a.probabilities();
+  a.reset();
+  EXPECT_EQ(a.probabilities(), std::vector<double>(4, 0.25));
+  ring.drive(a, true);
+  EXPECT_EQ(a.probabilities(), first);
+  ring.drive(a, false);  // without odometry it only has to live on
+  for (const double p : a.probabilities()) EXPECT_TRUE(p >= 0.0 && p <= 1.0);
+}
+
+TEST(PoseFilter, RefusesWhatItCannotUse) {
+  Ring ring;
+  PoseFilterParams params;
+  params.particles = 1;
+  EXPECT_THROW(PoseFilter(ring.samples, 4, params), hyselam::ParameterError);
+  PoseFilter filter(ring.samples, 4, {});
+  EXPECT_THROW(filter.update(std::vector<float>(3, 1.0f), {}), std::invalid_argument);
+  ring.samples.poses.back().x = 1e9;
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { PoseFilter(ring.samples, 4, {}); }).find("5 km"),
+            std::string::npos);
+  std::fill(ring.samples.poses.begin(), ring.samples.poses.end(), kNoPose);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { PoseFilter(ring.samples, 4, {}); }).find("pose"),
+            std::string::npos);
 }
 
 TEST(DescriptiveFilter, CountsCornersAndSift) {

@@ -305,6 +305,15 @@ TEST(Learner, TrainsInTheBackground) {
   EXPECT_NE(outcome->error.find("values"), std::string::npos);
 }
 
+TEST(Learner, ATrainingWhoseOutcomeNobodyTakesEndsLikeAnyOther) {
+  const auto model = nothingLearnt();
+  BackgroundTraining training;
+  ASSERT_TRUE(training.start(
+      model, {}, [](const BackgroundTraining::Outcome&) { throw std::runtime_error("gone"); }));
+  while (training.busy()) std::this_thread::yield();
+  EXPECT_TRUE(training.start(model, {}, [](const BackgroundTraining::Outcome&) {}));
+}
+
 TEST(Learner, RefusesWhatCannotBeLearntOnTheWay) {
   TrainingOptions options;
   options.descriptor = "BOF-ORB500";

@@ -165,6 +165,26 @@ TEST(Labels, ColumnsByNameAndWithoutAHeader) {
   EXPECT_EQ(b[1].readings.ranges[1], 2.5f);
 }
 
+TEST(Labels, PosesOdometryAndNamesWithCommas) {
+  TemporaryDirectory f;
+  writeFile(f / "a.csv",
+            "image_path,place,stamp,x,y,theta,odom_x,odom_y,odom_theta\n"
+            "1.jpg,\"hall, east \"\"wing\"\"\",7.5,1,2,0.5,4,5,6\n"
+            "\"2,3.jpg\",hall,,,,,,,\n");
+  const auto a = readLabels(f / "a.csv");
+  ASSERT_EQ(a.size(), 2u);
+  EXPECT_EQ(a[0].place, "hall, east \"wing\"");
+  EXPECT_EQ(csvCell(a[0].place), "\"hall, east \"\"wing\"\"\"");
+  EXPECT_EQ(csvCell("hall"), "hall");
+  EXPECT_EQ(a[0].readings.stamp, 7.5);
+  EXPECT_EQ(a[0].pose.y, 2.0);
+  ASSERT_TRUE(a[0].readings.odometry);
+  EXPECT_EQ(a[0].readings.odometry->theta, 6.0);
+  EXPECT_EQ(a[1].image, f / "2,3.jpg");
+  EXPECT_FALSE(a[1].pose.isFinite());
+  EXPECT_FALSE(a[1].readings.odometry);
+}
+
 TEST(Labels, BadListsAreNamedWithTheLine) {
   TemporaryDirectory f;
   const std::pair<std::string, const char*> cases[] = {
@@ -176,6 +196,8 @@ TEST(Labels, BadListsAreNamedWithTheLine) {
       {"a.jpg,hall\n,hall\n", "line 2: has no image"},
       {"a.jpg,hall,1.5\nb.jpg,hall,x\n", "'x' is no number"},
       {std::string("a.jpg,ha\0ll\n", 12), "is no text"},
+      {"a.jpg,hall\nb.jpg,\"hall\n", "line 2: has a quotation mark that is not closed"},
+      {"a.jpg,\"hall\"s\n", "line 1: has text after a closing quotation mark"},
       {"a,b" + std::string(5000, ','), "too many columns"}};
   for (const auto& c : cases) {
     writeFile(f / "l.csv", c.first);

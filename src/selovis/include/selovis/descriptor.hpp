@@ -5,9 +5,11 @@
 #include <limits>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "hyselam_common/pose2.hpp"
 #include "selovis/lbp.hpp"
 
 namespace selovis {
@@ -23,6 +25,10 @@ struct Readings {
   double heading = std::numeric_limits<double>::quiet_NaN();
   /// Magnetic field in the camera's frame [T], or any unit, always the same.
   std::array<double, 3> magnetic{{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}};
+  /// Of the camera, in a frame that drifts but does not jump. For filters over time.
+  std::optional<hyselam::Pose2> odometry;
+  /// Time of the image [s].
+  double stamp = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What a descriptor needs beside the image.

@@ -86,7 +86,8 @@ class BackgroundTraining {
   };
 
   ~BackgroundTraining();
-  /// Begins; false if one is still running. `done` is called in the other thread.
+  /// Begins; false if one is still running, or no thread can be had. `done` is called in the other
+  /// thread, before busy() ends; what it throws is lost.
   bool start(std::shared_ptr<const Model> model, std::vector<LearntFrame> frames,
              std::function<void(const Outcome&)> done);
   bool busy() const;

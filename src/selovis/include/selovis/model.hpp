@@ -14,14 +14,18 @@
 
 namespace selovis {
 
+/// Of a camera of which nothing else is told: 70 degrees [rad].
+constexpr double kAperture = 70.0 * hyselam::kPi / 180.0;
+
 struct Model {
   std::string descriptor;
   DescriptorParams descriptor_params;
   ClassifierParams classifier;
   PlaceGraph graph;  ///< places in the order of the classes; transitions seen in training
   std::vector<double> views{
-      0.0};                   ///< sideways shifts, in image widths, that each training image gave
-  std::vector<float> learnt;  ///< of the descriptor (a dictionary)
+      0.0};                     ///< sideways shifts, in image widths, that each training image gave
+  double aperture = kAperture;  ///< opening angle of the camera across the image [rad]
+  std::vector<float> learnt;    ///< of the descriptor (a dictionary)
   Samples samples;
   std::string state;  ///< of an SVM
 
@@ -35,6 +39,7 @@ struct TrainingFrame {
   cv::Mat image;
   Readings readings;
   std::string place;
+  hyselam::Pose2 pose = kNoPose;  ///< of the camera in the map
 };
 
 struct TrainingOptions {
@@ -42,6 +47,7 @@ struct TrainingOptions {
   DescriptorParams descriptor_params;
   ClassifierParams classifier;
   std::vector<double> views{0.0};
+  double aperture = kAperture;  ///< of the camera [rad], 0.01 to 2 pi
   bool grid_search = false;
   GridSearch grid;
   std::uint64_t seed = 1;
@@ -64,6 +70,10 @@ void addTo(Model& model, const std::vector<std::size_t>& frames_of_tours,
 
 /// The five sideways shifts that the exemplar kernel learns of each image by default.
 std::vector<double> exemplarViews();
+
+/// Of a camera that would have seen a view: what is shifted to the right, one turned to the left
+/// sees.
+hyselam::Pose2 poseOfView(const hyselam::Pose2& camera, double shift, double aperture);
 
 /// The image moved sideways by `shift` widths (positive: its content to the right), its edge drawn
 /// out.

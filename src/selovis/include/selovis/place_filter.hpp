@@ -9,9 +9,15 @@
 
 namespace selovis {
 
-enum class FilterKind { kNone, kLowPass, kMarkov, kBayes };
+enum class FilterKind {
+  kNone,
+  kLowPass,
+  kMarkov,
+  kBayes,
+  kPoses  ///< PoseFilter: of a Recogniser, not of a PlaceFilter
+};
 
-/// "none", "lowpass", "markov", "bayes"; throws std::invalid_argument.
+/// "none", "lowpass", "markov", "bayes", "poses"; throws std::invalid_argument.
 FilterKind filterKind(const std::string& name);
 
 struct PlaceFilterParams {
@@ -38,6 +44,10 @@ struct PlaceEstimate {
   double probability = 0.0;
 };
 
+/// The likeliest place of a distribution, with a transition's other place.
+PlaceEstimate estimateOf(const std::vector<double>& probabilities, const PlaceGraph& graph,
+                         const PlaceFilterParams& params);
+
 /// Keeps a probability per place, always a distribution.
 class PlaceFilter {
  public:
@@ -53,7 +63,7 @@ class PlaceFilter {
   void reset();
 
   const std::vector<double>& probabilities() const { return state_; }
-  PlaceEstimate estimate() const;
+  PlaceEstimate estimate() const { return estimateOf(state_, graph_, params_); }
 
   /// Transition probabilities p_k(to, from) of the last update of the chain, row `to`.
   const std::vector<double>& transition() const { return transition_; }

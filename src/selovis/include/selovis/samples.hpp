@@ -2,9 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
+#include "hyselam_common/pose2.hpp"
+
 namespace selovis {
+
+/// A pose that is not known.
+constexpr hyselam::Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
 
 struct Samples {
   std::size_t size = 0;       ///< length of one signature
@@ -12,12 +18,15 @@ struct Samples {
   std::vector<int> places;    ///< class of each, from 0 on
   std::vector<int> frames;    ///< frame that each was taken from, ascending; views of one share it
 
+  std::vector<hyselam::Pose2> poses;  ///< of the camera in the map, turned as the view is; kNoPose
+
   std::size_t count() const { return places.size(); }
   const float* row(std::size_t i) const { return values.data() + i * size; }
-  void add(const float* signature, int place, int frame) {
+  void add(const float* signature, int place, int frame, const hyselam::Pose2& pose = kNoPose) {
     values.insert(values.end(), signature, signature + size);
     places.push_back(place);
     frames.push_back(frame);
+    poses.push_back(pose);
   }
 };
 

@@ -92,36 +92,115 @@ std::vector<int> foldsOf(const Samples& samples, int folds) {
   return fold;
 }
 
-double validateOnce(const Samples& samples, int places, const ClassifierParams& params,
-                    const std::vector<int>& fold, int folds) {
-  std::size_t right = 0, all = 0;
+/// How many of the samples of each fold are told rightly by what the other folds teach.
+double validateExemplars(const Samples& samples, int places, const ClassifierParams& params,
+                         const std::vector<int>& fold, int folds) {
+  std::size_t right = 0;
+  std::vector<double> p(static_cast<std::size_t>(places));
   for (int f = 0; f < folds; ++f) {
-    std::vector<std::size_t> train, test;
-    for (std::size_t i = 0; i < samples.count(); ++i) (fold[i] == f ? test : train).push_back(i);
-    if (train.empty() || test.empty()) continue;
-    if (params.kernel == Kernel::kExemplar) {
-      Samples part;
-      part.size = samples.size;
-      for (const std::size_t i : train)
-        part.add(samples.row(i), samples.places[i], samples.frames[i]);
-      Exemplars exemplars(part, places, params);
-      std::vector<double> p(static_cast<std::size_t>(places));
-      for (const std::size_t i : test) {
-        exemplars.predict(samples.row(i), p.data());
-        right += std::max_element(p.begin(), p.end()) - p.begin() == samples.places[i];
-      }
-    } else {
-      const double scale = learnScale(samples, params.power);
-      const Problem problem(samples, train, params.power, scale);
-      const Problem held(samples, test, params.power, scale);
-      const ModelPtr model = trainLibsvm(problem, params, false);
-      for (std::size_t i = 0; i < test.size(); ++i) {
-        right += svm_predict(model.get(), held.starts[i]) == held.labels[i];
+    Samples part;
+    part.size = samples.size;
+    for (std::size_t i = 0; i < samples.count(); ++i) {
+      if (fold[i] != f) part.add(samples.row(i), samples.places[i], samples.frames[i]);
+    }
+    if (part.count() == 0 || part.count() == samples.count()) continue;
+    Exemplars exemplars(part, places, params);
+    for (std::size_t i = 0; i < samples.count(); ++i) {
+      if (fold[i] != f) continue;
+      exemplars.predict(samples.row(i), p.data());
+      right += std::max_element(p.begin(), p.end()) - p.begin() == samples.places[i];
+    }
+  }
+  return static_cast<double>(right) / static_cast<double>(samples.count());
+}
+
+/// The kernel between all pairs of samples: the products are the same for every cost and gamma, so
+/// a grid search makes them once and not in each of its trainings.
+class KernelTable {
+ public:
+  KernelTable(const Samples& samples, double power)
+      : labels_(samples.places.begin(), samples.places.end()),
+        products_(samples.count() * samples.count()),
+        nodes_(samples.count() * (samples.count() + 1)) {
+    const std::size_t n = samples.count();
+    const double scale = learnScale(samples, power);
+    std::vector<float> rows(samples.values.size());
+    for (std::size_t i = 0; i < n; ++i) {
+      transform(samples.row(i), samples.size, power, scale, rows.data() + i * samples.size);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        products_[i * n + j] = products_[j * n + i] =
+            dot(rows.data() + i * samples.size, rows.data() + j * samples.size, samples.size);
       }
     }
-    all += test.size();
   }
-  return all > 0 ? static_cast<double>(right) / static_cast<double>(all) : 0.0;
+
+  void fill(const ClassifierParams& params) {
+    const std::size_t n = labels_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      svm_node* row = nodes_.data() + i * (n + 1);
+      row[0] = {0, static_cast<double>(i + 1)};
+      for (std::size_t j = 0; j < n; ++j) {
+        const double product = products_[i * n + j];
+        double value = product;
+        if (params.kernel == Kernel::kPoly) {
+          value = (params.gamma * product + 1.0) * (params.gamma * product + 1.0);
+        } else if (params.kernel == Kernel::kRbf) {
+          value = std::exp(-params.gamma *
+                           (products_[i * n + i] + products_[j * n + j] - 2.0 * product));
+        }
+        row[j + 1] = {static_cast<int>(j + 1), value};
+      }
+    }
+  }
+
+  double validate(const ClassifierParams& params, const std::vector<int>& fold, int folds) {
+    const std::size_t n = labels_.size();
+    svm_parameter parameter = libsvmParameter(params, false);
+    parameter.kernel_type = PRECOMPUTED;
+    std::size_t right = 0;
+    for (int f = 0; f < folds; ++f) {
+      std::vector<svm_node*> rows;
+      std::vector<double> labels;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (fold[i] == f) continue;
+        rows.push_back(nodes_.data() + i * (n + 1));
+        labels.push_back(labels_[i]);
+      }
+      if (rows.empty() || rows.size() == n) continue;
+      svm_problem problem{};
+      problem.l = static_cast<int>(rows.size());
+      problem.y = labels.data();
+      problem.x = rows.data();
+      svm_set_print_string_function(silent);
+      const ModelPtr model(svm_train(&problem, &parameter));
+      for (std::size_t i = 0; i < n; ++i) {
+        if (fold[i] != f) continue;
+        right += svm_predict(model.get(), nodes_.data() + i * (n + 1)) == labels_[i];
+      }
+    }
+    return static_cast<double>(right) / static_cast<double>(n);
+  }
+
+ private:
+  std::vector<double> labels_;
+  std::vector<float> products_;
+  std::vector<svm_node> nodes_;  // a row per sample: its number, then the kernel with each
+};
+
+/// Every so manieth sample, so that a table of kernels stays within 400 MB.
+constexpr std::size_t kMaxTable = 5000;
+
+Samples thinned(const Samples& samples) {
+  const std::size_t step = (samples.count() + kMaxTable - 1) / kMaxTable;
+  if (step <= 1) return samples;
+  Samples part;
+  part.size = samples.size;
+  for (std::size_t i = 0; i < samples.count(); i += step) {
+    part.add(samples.row(i), samples.places[i], samples.frames[i]);
+  }
+  return part;
 }
 
 }  // namespace
@@ -197,27 +276,38 @@ double searchGrid(const Samples& samples, int places, const GridSearch& grid,
                   const std::function<void(std::size_t, std::size_t)>& progress) {
   requireClasses(samples, places);
   if (grid.folds < 2) throw hyselam::ParameterError("folds", grid.folds, "2 or more");
-  const std::vector<int> fold = foldsOf(samples, grid.folds);
+  const bool exemplar = params.kernel == Kernel::kExemplar;
+  const Samples searched = exemplar ? samples : thinned(samples);
+  const std::vector<int> fold = foldsOf(searched, grid.folds);
   std::vector<ClassifierParams> candidates;
-  if (params.kernel == Kernel::kExemplar) {
+  if (exemplar) {
     for (const double beta : {3.0, 10.0, 30.0}) {
       candidates.push_back(params);
       candidates.back().beta = beta;
     }
   } else {
-    for (const double cost : grid.costs) {
-      for (const double gamma :
-           params.kernel == Kernel::kLinear ? std::vector<double>{params.gamma} : grid.gammas) {
+    for (const double gamma :
+         params.kernel == Kernel::kLinear ? std::vector<double>{params.gamma} : grid.gammas) {
+      for (const double cost : grid.costs) {
         candidates.push_back(params);
         candidates.back().cost = cost;
         candidates.back().gamma = gamma;
       }
     }
   }
-  double best = -1.0;
+  std::unique_ptr<KernelTable> table;
+  if (!exemplar) table = std::make_unique<KernelTable>(searched, params.power);
+  double best = -1.0, gamma = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (progress) progress(i, candidates.size());
-    const double accuracy = validateOnce(samples, places, candidates[i], fold, grid.folds);
+    double accuracy = 0.0;
+    if (exemplar) {
+      accuracy = validateExemplars(searched, places, candidates[i], fold, grid.folds);
+    } else {
+      if (candidates[i].gamma != gamma) table->fill(candidates[i]);
+      gamma = candidates[i].gamma;
+      accuracy = table->validate(candidates[i], fold, grid.folds);
+    }
     if (accuracy > best) {
       best = accuracy;
       params = candidates[i];

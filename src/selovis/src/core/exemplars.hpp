@@ -18,6 +18,7 @@ class Exemplars : public Classifier {
   int places() const override { return places_; }
   void predict(const float* signature, double* probabilities) override;
   double novelty() const override { return novelty_; }
+  const std::vector<float>* distances() const override { return &distances_; }
 
  private:
   double typicalDistance(const Samples& samples) const;

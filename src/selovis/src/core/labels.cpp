@@ -16,19 +16,56 @@ namespace {
 
 constexpr std::size_t kMaxColumns = 4096;
 
-std::vector<std::string> split(std::string line) {
+/// Cells of a line of CSV (RFC 4180, without line breaks in cells).
+std::vector<std::string> split(std::string line, const std::string& path,
+                               const std::string& where) {
   if (!line.empty() && line.back() == '\r') line.pop_back();
   std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',')
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted) {
+      if (c != '"') {
+        cells.back() += c;
+      } else if (i + 1 < line.size() && line[i + 1] == '"') {
+        cells.back() += line[++i];
+      } else {
+        quoted = false;
+        if (i + 1 < line.size() && line[i + 1] != ',') {
+          throw hyselam::InputError(path, where, "has text after a closing quotation mark");
+        }
+      }
+    } else if (c == ',') {
       cells.emplace_back();
-    else
+    } else if (c == '"' && (i == 0 || line[i - 1] == ',')) {
+      quoted = true;
+    } else {
       cells.back() += c;
+    }
   }
+  if (quoted) throw hyselam::InputError(path, where, "has a quotation mark that is not closed");
   return cells;
 }
 
-enum class Column { kSkip, kImage, kPlace, kDepth, kHeading, kMagX, kMagY, kMagZ, kRange, kScan };
+enum class Column {
+  kSkip,
+  kImage,
+  kPlace,
+  kDepth,
+  kHeading,
+  kMagX,
+  kMagY,
+  kMagZ,
+  kRange,
+  kScan,
+  kStamp,
+  kX,
+  kY,
+  kTheta,
+  kOdomX,
+  kOdomY,
+  kOdomTheta
+};
 
 Column columnOf(const std::string& name) {
   if (name == "image_path" || name == "image" || name == "file" || name == "path")
@@ -39,6 +76,13 @@ Column columnOf(const std::string& name) {
   if (name == "mag_x") return Column::kMagX;
   if (name == "mag_y") return Column::kMagY;
   if (name == "mag_z") return Column::kMagZ;
+  if (name == "stamp") return Column::kStamp;
+  if (name == "x") return Column::kX;
+  if (name == "y") return Column::kY;
+  if (name == "theta") return Column::kTheta;
+  if (name == "odom_x") return Column::kOdomX;
+  if (name == "odom_y") return Column::kOdomY;
+  if (name == "odom_theta") return Column::kOdomTheta;
   if (name.compare(0, 6, "range_") == 0) return Column::kRange;
   if (name.compare(0, 5, "scan_") == 0) return Column::kScan;
   return Column::kSkip;
@@ -54,8 +98,8 @@ double number(const std::string& cell, const std::string& path, const std::strin
   return value;
 }
 
-void put(LabelledFrame& frame, Column column, const std::string& cell, const std::string& folder,
-         const std::string& path, const std::string& where) {
+void put(LabelledFrame& frame, hyselam::Pose2& odometry, Column column, const std::string& cell,
+         const std::string& folder, const std::string& path, const std::string& where) {
   const auto file = [&]() {
     return (std::filesystem::path(folder) / cell).lexically_normal().string();
   };
@@ -83,6 +127,27 @@ void put(LabelledFrame& frame, Column column, const std::string& cell, const std
     case Column::kMagZ:
       frame.readings.magnetic[2] = number(cell, path, where);
       break;
+    case Column::kStamp:
+      frame.readings.stamp = number(cell, path, where);
+      break;
+    case Column::kX:
+      frame.pose.x = number(cell, path, where);
+      break;
+    case Column::kY:
+      frame.pose.y = number(cell, path, where);
+      break;
+    case Column::kTheta:
+      frame.pose.theta = number(cell, path, where);
+      break;
+    case Column::kOdomX:
+      odometry.x = number(cell, path, where);
+      break;
+    case Column::kOdomY:
+      odometry.y = number(cell, path, where);
+      break;
+    case Column::kOdomTheta:
+      odometry.theta = number(cell, path, where);
+      break;
     case Column::kRange:
       frame.readings.ranges.push_back(static_cast<float>(number(cell, path, where)));
       break;
@@ -105,12 +170,12 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
   std::vector<LabelledFrame> frames;
   std::vector<Column> columns;
   std::string line;
-  bool header = false;
+  bool header = false, poses = true;
   for (std::size_t n = 1; std::getline(in, line); ++n) {
     const std::string where = "line " + std::to_string(n);
     if (line.empty() || line == "\r" || line.front() == '#') continue;
     if (line.find('\0') != std::string::npos) throw hyselam::InputError(path, where, "is no text");
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = split(line, path, where);
     if (cells.size() > kMaxColumns) throw hyselam::InputError(path, where, "has too many columns");
     if (columns.empty()) {
       std::vector<Column> named;
@@ -118,6 +183,9 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
       header = std::count(named.begin(), named.end(), Column::kPlace) == 1 &&
                std::count(named.begin(), named.end(), Column::kImage) == 1;
       if (header) {
+        for (const Column c : {Column::kX, Column::kY, Column::kTheta}) {
+          poses = poses && std::count(named.begin(), named.end(), c) == 1;
+        }
         columns = named;
         continue;
       }
@@ -135,9 +203,13 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
     }
     LabelledFrame frame;
     frame.line = n;
+    hyselam::Pose2 odometry{kNoPose.x, kNoPose.x, kNoPose.x};
+    frame.pose = odometry;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      put(frame, columns[i], cells[i], folder, path, where);
+      put(frame, odometry, columns[i], cells[i], folder, path, where);
     }
+    if (!poses) frame.pose = kNoPose;
+    if (odometry.isFinite()) frame.readings.odometry = odometry;
     if (frame.place.empty()) throw hyselam::InputError(path, where, "has no place");
     if (frame.image.empty() || cells[0].empty()) {
       throw hyselam::InputError(path, where, "has no image");
@@ -146,6 +218,15 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
   }
   if (frames.empty()) throw hyselam::InputError(path, "", "lists no frames");
   return frames;
+}
+
+std::string csvCell(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos && text.find('\r') == std::string::npos) {
+    return text;
+  }
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
 }
 
 cv::Mat readImage(const std::string& path) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -42,6 +43,7 @@ Model emptyModel(const TrainingOptions& options) {
   model.descriptor_params = options.descriptor_params;
   model.classifier = options.classifier;
   model.views = options.views;
+  model.aperture = options.aperture;
   const auto descriptor = makeDescriptor(options.descriptor, options.descriptor_params);
   if (descriptor->needsTraining()) {
     throw std::invalid_argument("descriptor '" + options.descriptor +
@@ -70,13 +72,16 @@ void learn(Model& model, const std::vector<LearntFrame>& frames) {
       model.graph.transitions.emplace_back(std::min(place, last_place),
                                            std::max(place, last_place));
     }
-    for (const auto& values : frame.values) {
+    for (std::size_t v = 0; v < frame.values.size(); ++v) {
+      const auto& values = frame.values[v];
       if (values.size() != model.samples.size) {
         throw std::invalid_argument("a signature has " + std::to_string(values.size()) +
                                     " values, but the model's have " +
                                     std::to_string(model.samples.size));
       }
-      model.samples.add(values.data(), place, number);
+      const double shift = v < model.views.size() ? model.views[v] : 0.0;
+      model.samples.add(values.data(), place, number,
+                        poseOfView(frame.camera, shift, model.aperture));
     }
     ++number;
     last = &frame;
@@ -103,7 +108,7 @@ std::size_t store(const std::vector<LearntFrame>& frames, const Model& model,
       signature.position = {frame.camera.x, frame.camera.y, frame.height};
       // What is seen farther right is seen by a camera turned to the left.
       const double shift = v < model.views.size() ? model.views[v] : 0.0;
-      signature.heading = hyselam::normalizeAngle(frame.camera.theta + shift * params.aperture_x);
+      signature.heading = poseOfView(frame.camera, shift, params.aperture_x).theta;
       signature.aperture_x = params.aperture_x;
       signature.aperture_y = params.aperture_y;
       signature.stamp = frame.stamp;
@@ -187,21 +192,32 @@ bool BackgroundTraining::start(std::shared_ptr<const Model> model, std::vector<L
     busy_ = true;
   }
   if (thread_.joinable()) thread_.join();
-  thread_ = std::thread(
-      [this, model = std::move(model), frames = std::move(frames), done = std::move(done)] {
-        Outcome outcome;
-        outcome.frames = frames.size();
-        try {
-          auto trained = std::make_shared<Model>(*model);
-          learn(*trained, frames);
-          outcome.model = std::move(trained);
-        } catch (const std::exception& e) {
-          outcome.error = e.what();
-        }
-        done(outcome);
-        const std::lock_guard<std::mutex> lock(mutex_);
-        busy_ = false;
-      });
+  const auto run = [this, model = std::move(model), frames = std::move(frames),
+                    done = std::move(done)] {
+    Outcome outcome;
+    outcome.frames = frames.size();
+    try {
+      auto trained = std::make_shared<Model>(*model);
+      learn(*trained, frames);
+      outcome.model = std::move(trained);
+    } catch (const std::exception& e) {
+      outcome.error = e.what();
+    }
+    try {
+      done(outcome);
+    } catch (const std::exception&) {
+      // Nobody is left to be told.
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    busy_ = false;
+  };
+  try {
+    thread_ = std::thread(run);
+  } catch (const std::system_error&) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    busy_ = false;
+    return false;
+  }
   return true;
 }
 

@@ -181,8 +181,15 @@ void saveModel(const Model& model, const std::string& directory) {
   j["places"] = model.graph.places;
   j["transitions"] = model.graph.transitions;
   j["views"] = model.views;
+  j["aperture"] = model.aperture;
   j["signature_size"] = model.samples.size;
   j["signatures"] = saveData(directory, "signatures", samplesToBytes(model));
+  const auto& poses = model.samples.poses;
+  if (std::any_of(poses.begin(), poses.end(), [](const auto& p) { return p.isFinite(); })) {
+    BinaryWriter out;
+    out.values(poses);
+    j["poses"] = saveData(directory, "poses", out.bytes());
+  }
   if (!model.state.empty()) j["svm"] = saveData(directory, "svm", model.state);
   hyselam::writeFileAtomically(pathIn(directory, "model.json"),
                                [&](std::ostream& out) { out << j.dump(1) << '\n'; });
@@ -190,9 +197,11 @@ void saveModel(const Model& model, const std::string& directory) {
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
     const bool data = entry.path().extension() == ".bin" &&
-                      (name.compare(0, 11, "signatures-") == 0 || name.compare(0, 4, "svm-") == 0);
-    const bool used =
-        name == j["signatures"]["file"] || (j.count("svm") && name == j["svm"]["file"]);
+                      (name.compare(0, 11, "signatures-") == 0 ||
+                       name.compare(0, 6, "poses-") == 0 || name.compare(0, 4, "svm-") == 0);
+    const bool used = name == j["signatures"]["file"] ||
+                      (j.count("poses") && name == j["poses"]["file"]) ||
+                      (j.count("svm") && name == j["svm"]["file"]);
     if (data && !used) std::filesystem::remove(entry.path(), error);
   }
 }
@@ -217,6 +226,22 @@ Model loadModel(const std::string& directory) {
     reading = pathIn(directory, signatures.at("file").get<std::string>());
     samplesFromBytes(samples, model);
     reading = manifest;
+    model.aperture = j.value("aperture", kAperture);
+    if (!(model.aperture >= 0.01 && model.aperture <= 2.0 * hyselam::kPi)) {
+      throw InputError(manifest, "aperture", "is not 0.01 to 2 pi");
+    }
+    model.samples.poses.assign(model.samples.count(), kNoPose);
+    if (j.count("poses")) {
+      const std::string poses = loadData(directory, "poses", j.at("poses"));
+      reading = pathIn(directory, j.at("poses").at("file").get<std::string>());
+      BinaryReader in(poses);
+      model.samples.poses = in.values<hyselam::Pose2>();
+      in.end();
+      if (model.samples.poses.size() != model.samples.count()) {
+        throw std::invalid_argument("has not one pose for each signature");
+      }
+      reading = manifest;
+    }
     // Also tells a descriptor that this version does not know, and a dictionary that does not fit.
     const int size = model.makeDescriptor()->size();
     if (static_cast<std::size_t>(size) != model.samples.size) {

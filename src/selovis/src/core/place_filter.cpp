@@ -30,8 +30,9 @@ FilterKind filterKind(const std::string& name) {
   if (name == "lowpass") return FilterKind::kLowPass;
   if (name == "markov") return FilterKind::kMarkov;
   if (name == "bayes") return FilterKind::kBayes;
+  if (name == "poses") return FilterKind::kPoses;
   throw std::invalid_argument("no filter is called '" + name +
-                              "': there are none, lowpass, markov, bayes");
+                              "': there are none, lowpass, markov, bayes, poses");
 }
 
 void validate(const PlaceFilterParams& p) {
@@ -101,6 +102,7 @@ void PlaceFilter::update(const double* observed) {
       markov(observed);
       break;
     case FilterKind::kBayes:
+    case FilterKind::kPoses:
       bayes(observed);
       break;
   }
@@ -163,19 +165,20 @@ void PlaceFilter::bayes(const double* observed) {
   normalise(state_);
 }
 
-PlaceEstimate PlaceFilter::estimate() const {
+PlaceEstimate estimateOf(const std::vector<double>& state, const PlaceGraph& graph,
+                         const PlaceFilterParams& params) {
   PlaceEstimate result;
-  const auto best = std::max_element(state_.begin(), state_.end());
+  const auto best = std::max_element(state.begin(), state.end());
   result.probability = *best;
-  const int place = static_cast<int>(best - state_.begin());
-  if (*best < params_.unknown_below) return result;
+  const int place = static_cast<int>(best - state.begin());
+  if (*best < params.unknown_below) return result;
   result.place = place;
   int second = -1;
-  for (int i = 0; i < static_cast<int>(state_.size()); ++i) {
-    if (i != place && (second < 0 || state_[i] > state_[second])) second = i;
+  for (int i = 0; i < static_cast<int>(state.size()); ++i) {
+    if (i != place && (second < 0 || state[i] > state[second])) second = i;
   }
-  if (second >= 0 && *best > params_.transition_min && state_[second] > params_.transition_min &&
-      graph_.connected(place, second)) {
+  if (second >= 0 && *best > params.transition_min && state[second] > params.transition_min &&
+      graph.connected(place, second)) {
     result.second = second;
   }
   return result;

@@ -57,7 +57,7 @@ void describe(Model& model, Descriptor& descriptor, const std::vector<std::size_
       for (const double view : model.views) {
         descriptor.compute(view == 0.0 ? f.image : shifted(f.image, view), f.readings,
                            signature.data());
-        model.samples.add(signature.data(), place, frame);
+        model.samples.add(signature.data(), place, frame, poseOfView(f.pose, view, model.aperture));
       }
     }
     for (const auto& edge : graphOfTours(model.graph.places, {tour}).transitions) {
@@ -90,6 +90,10 @@ void checkViews(const std::vector<double>& views) {
 
 std::vector<double> exemplarViews() {
   return {0.0, -0.09, 0.09, -0.18, 0.18};
+}
+
+hyselam::Pose2 poseOfView(const hyselam::Pose2& camera, double shift, double aperture) {
+  return {camera.x, camera.y, hyselam::normalizeAngle(camera.theta + shift * aperture)};
 }
 
 cv::Mat shifted(const cv::Mat& image, double shift) {
@@ -125,6 +129,7 @@ Model train(const std::vector<std::size_t>& frames_of_tours, const Load& load,
   model.descriptor_params = options.descriptor_params;
   model.classifier = options.classifier;
   model.views = options.views;
+  model.aperture = options.aperture;
   auto descriptor = makeDescriptor(options.descriptor, options.descriptor_params);
   if (descriptor->needsTraining()) {
     learnDictionary(*descriptor, frames_of_tours, load, options);

@@ -17,7 +17,8 @@ SemanticLocalizationParams loadParams(hyselam::ParamLoader& loader) {
                              {{"none", FilterKind::kNone},
                               {"lowpass", FilterKind::kLowPass},
                               {"markov", FilterKind::kMarkov},
-                              {"bayes", FilterKind::kBayes}},
+                              {"bayes", FilterKind::kBayes},
+                              {"poses", FilterKind::kPoses}},
                              "over time");
   loader.get("alpha", f.alpha, Range::between(0.0, 1e6), "of the low-pass filter (Eq. 6.15)");
   loader.get("rho1", f.rho1, Range::between(1e-6, 1e6), "of the chain (Eq. 6.23)");
@@ -42,6 +43,17 @@ SemanticLocalizationParams loadParams(hyselam::ParamLoader& loader) {
   loader.get("queue_size", p.queue_size, Range::between(1, 10000), "images");
   loader.get("global_frame_id", p.global_frame_id, "frame of the map");
   loader.get("base_frame_id", p.base_frame_id, "frame of the robot");
+  loader.get("odom_frame_id", p.odom_frame_id, "filter poses: frame of odometry; empty: without");
+  PoseFilterParams& pose = p.recogniser.poses;
+  loader.get("particles", pose.particles, Range::between(10, 100000), "of the filter poses");
+  loader.get("pose_beta", pose.beta, Range::between(0.0, 1000.0), "fall of likeness");
+  loader.get("pose_trust", pose.trust, Range::between(1e-3, 10.0), "of one second of frames");
+  loader.get("pose_reach", pose.reach, Range::between(0.05, 20.0), "[m]");
+  loader.get("pose_turn", pose.turn, Range::between(0.02, hyselam::kPi), "[rad]");
+  loader.get("pose_doubt", pose.doubt, Range::between(1e-6, 1e6), "frames");
+  loader.get("pose_jump", pose.jump, Range::between(0.0, 1.0), "share a second");
+  loader.get("max_speed", pose.max_speed, Range::between(0.0, 10.0), "[m/s] without odometry");
+  loader.get("max_turn", pose.max_turn, Range::between(0.0, 10.0), "[rad/s] without odometry");
 
   loader.get("learn", p.learn, "from the start");
   loader.get("min_travel", p.learner.min_travel, Range::between(0.0, 100.0), "[m]");

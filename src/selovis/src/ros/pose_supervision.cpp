@@ -4,6 +4,7 @@
 #include <std_msgs/Bool.h>
 #include <std_srvs/Empty.h>
 
+#include <chrono>
 #include <sstream>
 #include <utility>
 
@@ -58,6 +59,7 @@ void PoseSupervision::judge(const std::vector<double>& frame,
                             const hyselam_topo::AugmentedTopologicalMap& map,
                             const ros::Time& stamp) {
   if (!supervisor_) return;
+  tellSearch();
   std::vector<int> here;
   pose_places_.clear();
   if (pose && poseIsMeant(stamp)) {
@@ -119,9 +121,20 @@ void PoseSupervision::act(const hyselam_topo::AugmentedTopologicalMap& map,
 }
 
 void PoseSupervision::searchEverywhere() {
-  std_srvs::Empty empty;
+  tellSearch();
+  if (search_.valid()) return;  // the last one has not been answered
   ++searches_;
-  if (global_localization_.call(empty)) {
+  search_ = std::async(std::launch::async, [client = global_localization_]() mutable {
+    std_srvs::Empty empty;
+    return client.call(empty);
+  });
+}
+
+void PoseSupervision::tellSearch() {
+  if (!search_.valid() || search_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return;
+  }
+  if (search_.get()) {
     ROS_INFO_STREAM(who_ << " localisation begins again on the whole map");
   } else {
     ROS_WARN_STREAM(who_ << " the service " << global_localization_.getService()

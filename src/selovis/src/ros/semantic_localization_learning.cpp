@@ -13,8 +13,9 @@ constexpr double kPlaceAge = 3.0;  // [s] a PlaceState so old is still that of t
 
 }  // namespace
 
-std::string SemanticLocalizationServer::labelOf(const std::optional<hyselam::Pose2>& base) const {
-  if (place_ && std::abs((place_->header.stamp - last_image_).toSec()) <= kPlaceAge) {
+std::string SemanticLocalizationServer::labelOf(const std::optional<hyselam::Pose2>& base,
+                                                const ros::Time& stamp) const {
+  if (place_ && std::abs((place_->header.stamp - stamp).toSec()) <= kPlaceAge) {
     if (place_->place == 0 || place_->in_doorway) return "";
     if (!place_->name.empty()) return place_->name;
     const auto* place = map_ ? map_->findPlace(place_->place) : nullptr;
@@ -29,7 +30,7 @@ void SemanticLocalizationServer::keep(const cv::Mat& image, const Readings& read
                                       const std_msgs::Header& header) {
   if (supervision_.kidnapped()) return;  // what the pose says is not believed
   const auto base = poseInMap(params_.base_frame_id, header.stamp);
-  const std::string label = labelOf(base);
+  const std::string label = labelOf(base, header.stamp);
   if (label.empty()) return;
   double height = 0.0;
   auto camera = poseInMap(header.frame_id, header.stamp, &height);
@@ -63,6 +64,7 @@ bool SemanticLocalizationServer::startTraining(std::string* message) {
     tell("training is under way");
     return false;
   }
+  timer_.start();
   training_frames_ = trained_frames_ + count;
   tried_frames_ = training_frames_;
   tell("training with " + std::to_string(count) + " new frames");

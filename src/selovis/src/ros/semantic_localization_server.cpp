@@ -16,7 +16,6 @@ namespace selovis {
 namespace {
 
 constexpr double kPollEvery = 0.02;  // [s] of wall time: images that wait, training that ends
-constexpr double kClockSlack = 0.5;  // [s] an image older than the last by more: a bag begins again
 constexpr double kPoseAge = 0.5;     // [s] a pose so old is still that of the image
 constexpr int kRangeColumns = 40;    // distances taken from a laser scan
 
@@ -51,7 +50,18 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
   const auto first = firstModel(params_);
   needs_ = needsOf(first->descriptor);
   learner_ = std::make_unique<Learner>(first, params_.learner);
-  useModel(first);
+  if (params_.recogniser.filter.kind == FilterKind::kPoses &&
+      first->classifier.kernel != Kernel::kExemplar) {
+    throw hyselam::InputError("parameter 'filter'", "",
+                              "'poses' needs a model with the exemplar kernel");
+  }
+  try {
+    useModel(first);
+  } catch (const hyselam::ParameterError&) {
+    throw;
+  } catch (const std::invalid_argument& e) {
+    throw hyselam::InputError("parameter 'model'", params_.model, e.what());
+  }
 
   const auto queue = static_cast<std::uint32_t>(params_.queue_size);
   if (params_.image_transport == "compressed") {
@@ -104,10 +114,24 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
   timer_ = nh.createWallTimer(ros::WallDuration(kPollEvery), [this](const ros::WallTimerEvent&) {
     takeTrained();
     serveWaiting();
+    restIfIdle();
   });
   diagnostics_ = std::make_unique<hyselam::Diagnostics>(
       nh, private_nh.getNamespace().substr(1) + ": visual places", params_.diagnostic_period,
       [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
+}
+
+SemanticLocalizationServer::~SemanticLocalizationServer() {
+  timer_.stop();
+  image_subscriber_.shutdown();
+  for (auto& subscriber : subscribers_) subscriber.shutdown();
+  for (auto& service : services_) service.shutdown();
+}
+
+void SemanticLocalizationServer::restIfIdle() {
+  if (!waiting_.empty() || training_.busy()) return;
+  const std::lock_guard<std::mutex> lock(trained_mutex_);
+  if (!trained_) timer_.stop();
 }
 
 // What comes in.
@@ -128,6 +152,7 @@ void SemanticLocalizationServer::onImage(Waiting image) {
     waiting_.pop_front();
   }
   serveWaiting();
+  if (!waiting_.empty()) timer_.start();
 }
 
 void SemanticLocalizationServer::serveWaiting() {
@@ -212,7 +237,17 @@ void SemanticLocalizationServer::serve(const Waiting& image, const Readings& rea
                                     : fromMsg(*image.compressed, image_topic_ + "/compressed");
   const ros::WallTime begin = ros::WallTime::now();
   if (recogniser_) {
-    const Recognition recognition = recogniser_->update(picture, readings);
+    Readings with_motion = readings;
+    with_motion.stamp = image.header.stamp.toSec();
+    if (params_.recogniser.filter.kind == FilterKind::kPoses) {
+      with_motion.odometry =
+          poseIn(params_.odom_frame_id, image.header.frame_id, image.header.stamp);
+      if (!with_motion.odometry) {
+        with_motion.odometry =
+            poseIn(params_.odom_frame_id, params_.base_frame_id, image.header.stamp);
+      }
+    }
+    const Recognition recognition = recogniser_->update(picture, with_motion);
     frame_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
     if (map_ && recognition.descriptive && !recognition.novel) {
       supervision_.judge(recogniser_->frameProbabilities(),
@@ -273,7 +308,14 @@ void SemanticLocalizationServer::drop(const std::string& reason, const std::stri
 std::optional<hyselam::Pose2> SemanticLocalizationServer::poseInMap(const std::string& child,
                                                                     const ros::Time& stamp,
                                                                     double* height) const {
-  const std::string& map = params_.global_frame_id;
+  return poseIn(params_.global_frame_id, child, stamp, height);
+}
+
+std::optional<hyselam::Pose2> SemanticLocalizationServer::poseIn(const std::string& map,
+                                                                 const std::string& child,
+                                                                 const ros::Time& stamp,
+                                                                 double* height) const {
+  if (map.empty() || child.empty()) return {};
   try {
     geometry_msgs::TransformStamped found;
     if (tf_.canTransform(map, child, stamp)) {
@@ -326,6 +368,7 @@ void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalM
           const std::lock_guard<std::mutex> lock(trained_mutex_);
           trained_ = o;
         })) {
+      timer_.start();
       tried_map_ = true;
       training_frames_ = trained_frames_;
       ROS_INFO_STREAM(who_ << " learning from " << count << " signatures of the map");

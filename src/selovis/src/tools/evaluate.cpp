@@ -41,13 +41,15 @@ double median(std::vector<double> values) {
 
 void writePredictions(const std::string& path, const Tours& tours, const std::vector<Row>& rows,
                       const std::vector<std::string>& places) {
-  const auto name = [&](int place) { return place < 0 ? std::string("unknown") : places[place]; };
+  const auto name = [&](int place) {
+    return csvCell(place < 0 ? std::string("unknown") : places[place]);
+  };
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
     out << std::setprecision(6)
         << "image_path,place,predicted,second,probability,frame_alone,descriptive,novelty\n";
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Recognition& r = rows[i].recognition;
-      out << tours.frame(0, i).image << ',' << tours.frame(0, i).place << ','
+      out << csvCell(tours.frame(0, i).image) << ',' << csvCell(tours.frame(0, i).place) << ','
           << name(r.estimate.place) << ',' << (r.estimate.second < 0 ? "" : name(r.estimate.second))
           << ',' << r.estimate.probability << ',' << name(r.frame_place) << ',' << r.descriptive
           << ',' << r.novelty << '\n';
@@ -76,7 +78,15 @@ nlohmann::json run(Options& o) {
   } catch (const std::invalid_argument& e) {
     throw hyselam::InputError("command line", "", e.what());
   }
-  Recogniser recogniser(model, graph, o.recogniser);
+  std::unique_ptr<Recogniser> made;
+  try {
+    made = std::make_unique<Recogniser>(model, graph, o.recogniser);
+  } catch (const hyselam::ParameterError&) {
+    throw;
+  } catch (const std::invalid_argument& e) {
+    throw hyselam::InputError(o.model, "", e.what());
+  }
+  Recogniser& recogniser = *made;
   std::vector<std::pair<std::string, PlaceFilter>> filters;  // all of them, for comparison
   for (const char* name : {"none", "lowpass", "markov", "bayes"}) {
     PlaceFilterParams params = o.recogniser.filter;
@@ -147,6 +157,7 @@ nlohmann::json run(Options& o) {
   }
   const double all = static_cast<double>(rows.size());
   nlohmann::json by_filter;
+  if (o.recogniser.filter.kind == FilterKind::kPoses) by_filter["poses"] = right / all;
   for (std::size_t k = 0; k < filters.size(); ++k) by_filter[filters[k].first] = right_by[k] / all;
   const nlohmann::json result = {{"accuracy", right / all},
                                  {"accuracy_frame_alone", right_alone / all},
@@ -202,7 +213,7 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--topology", o.topology,
                  "places and transitions: topo.xml, JSON or CSV; default: those seen in training");
-  app.add_option("--filter", o.filter = "markov", "none, lowpass, markov or bayes")
+  app.add_option("--filter", o.filter = "markov", "none, lowpass, markov, bayes or poses")
       ->capture_default_str();
   app.add_option("--images", o.images = "none", "images passed over: none, or by sift or corners")
       ->capture_default_str();
@@ -215,6 +226,18 @@ int main(int argc, char** argv) {
   app.add_option("--stay-min", f.stay_min, "least probability of staying")->capture_default_str();
   app.add_option("--stay", f.stay, "of the Bayes filter")->capture_default_str();
   app.add_option("--trust", f.trust, "of the Bayes filter")->capture_default_str();
+  PoseFilterParams& p = o.recogniser.poses;
+  app.add_option("--particles", p.particles, "of the filter over poses")->capture_default_str();
+  app.add_option("--pose-beta", p.beta, "poses: fall of likeness")->capture_default_str();
+  app.add_option("--pose-trust", p.trust, "poses: exponent of a second of frames")
+      ->capture_default_str();
+  app.add_option("--pose-reach", p.reach, "poses: a frame looks like those so near [m]")
+      ->capture_default_str();
+  app.add_option("--pose-turn", p.turn, "poses: and turned by less [rad]")->capture_default_str();
+  app.add_option("--pose-doubt", p.doubt, "poses: weight of the likeness of no pose")
+      ->capture_default_str();
+  app.add_option("--pose-jump", p.jump, "poses: share set anew, a second")->capture_default_str();
+  app.add_option("--pose-seed", p.seed, "poses: of the particles")->capture_default_str();
   app.add_option("--unknown-below", f.unknown_below, "probability below which a place is unknown")
       ->capture_default_str();
   app.add_option("--novelty-max", o.recogniser.novelty_max,

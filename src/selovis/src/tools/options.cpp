@@ -19,7 +19,7 @@ std::vector<std::size_t> Tours::sizes() const {
 
 TrainingFrame Tours::load(std::size_t tour, std::size_t i) const {
   const LabelledFrame& f = frame(tour, i);
-  return {readImage(f.image), readingsOf(f), f.place};
+  return {readImage(f.image), readingsOf(f), f.place, f.pose};
 }
 
 std::vector<double> numbersOf(const std::string& text, const std::string& option) {

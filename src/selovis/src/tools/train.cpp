@@ -104,6 +104,8 @@ int main(int argc, char** argv) {
   app.add_option("--views", o.views = "auto",
                  "sideways shifts of each image, in widths; auto: five for exemplar, else one")
       ->capture_default_str();
+  app.add_option("--aperture", t.aperture, "opening angle of the camera across the image [rad]")
+      ->capture_default_str();
   app.add_option("--heading-weight", t.descriptor_params.heading_weight, "of psi and [psi]")
       ->capture_default_str();
   app.add_option("--range-weight", t.descriptor_params.range_weight, "of An and scan")

@@ -28,6 +28,7 @@ struct SemanticLocalizationParams {
   int queue_size = 10;          ///< images that may wait; the oldest is dropped first
   std::string global_frame_id = "map";
   std::string base_frame_id = "base_link";
+  std::string odom_frame_id = "odom";  ///< of the filter `poses`; empty: without odometry
 
   LearnerParams learner;
   bool learn = false;       ///< from the start, not only when asked

@@ -5,6 +5,7 @@
 #include <hyselam_msgs/LocalizationStatus.h>
 #include <ros/ros.h>
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,7 +38,9 @@ class PoseSupervision {
   /// Whether the localisation believes in its pose, as far as it is known.
   bool poseIsMeant(const ros::Time& stamp);
   void act(const hyselam_topo::AugmentedTopologicalMap& map, const ros::Time& stamp);
+  /// In a thread of its own: the service may take its time. One search at a time.
   void searchEverywhere();
+  void tellSearch();
   void publishKidnapped();
 
   SemanticLocalizationParams params_;
@@ -56,6 +59,7 @@ class PoseSupervision {
   ros::Publisher kidnapped_publisher_, initialpose_publisher_;
   ros::ServiceClient global_localization_;
   ros::Subscriber status_subscriber_;
+  std::future<bool> search_;
 };
 
 }  // namespace selovis

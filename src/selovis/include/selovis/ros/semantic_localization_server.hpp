@@ -35,6 +35,8 @@ class SemanticLocalizationServer {
   /// Reads and checks the parameters of `private_nh` and the model, before anything is subscribed.
   /// @throws hyselam::ParameterError; hyselam::InputError for the model.
   SemanticLocalizationServer(ros::NodeHandle nh, ros::NodeHandle private_nh);
+  /// Ends the callbacks, then the training.
+  ~SemanticLocalizationServer();
 
  private:
   struct Waiting {
@@ -52,7 +54,9 @@ class SemanticLocalizationServer {
   void serve(const Waiting& image, const Readings& readings);
   void publish(const Recognition& recognition, const std_msgs::Header& header);
   void keep(const cv::Mat& image, const Readings& readings, const std_msgs::Header& header);
-  std::string labelOf(const std::optional<hyselam::Pose2>& base) const;
+  std::string labelOf(const std::optional<hyselam::Pose2>& base, const ros::Time& stamp) const;
+  /// Nothing waits and nothing trains: the timer may rest.
+  void restIfIdle();
   void drop(const std::string& reason, const std::string& detail);
 
   void onMap(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg);
@@ -70,6 +74,8 @@ class SemanticLocalizationServer {
   /// Of `child` in the map at that time, or half a second about it.
   std::optional<hyselam::Pose2> poseInMap(const std::string& child, const ros::Time& stamp,
                                           double* height = nullptr) const;
+  std::optional<hyselam::Pose2> poseIn(const std::string& parent, const std::string& child,
+                                       const ros::Time& stamp, double* height = nullptr) const;
 
   std::string who_;
   std::string image_topic_;

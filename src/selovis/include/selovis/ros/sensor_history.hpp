@@ -5,18 +5,24 @@
 
 #include <cmath>
 #include <deque>
+#include <iterator>
 
 namespace selovis {
+
+constexpr double kClockSlack = 0.5;  // [s] older than the last by more: a bag begins again
 
 /// Messages with a header, in order of time. Not thread safe: for the callbacks of one queue.
 template <typename M>
 class SensorHistory {
  public:
   void add(const typename M::ConstPtr& msg) {
-    if (!messages_.empty() && msg->header.stamp < messages_.back()->header.stamp) {
+    if (!messages_.empty() &&
+        (messages_.back()->header.stamp - msg->header.stamp).toSec() > kClockSlack) {
       messages_.clear();  // time went back: a bag begins again
     }
-    messages_.push_back(msg);
+    auto at = messages_.end();
+    while (at != messages_.begin() && msg->header.stamp < (*std::prev(at))->header.stamp) --at;
+    messages_.insert(at, msg);  // one that is late takes its place
     while (messages_.size() > 400) messages_.pop_front();
   }
   /// Whether a later message can not lie nearer to that time.

@@ -1,0 +1,176 @@
+// places_table: one descriptor's rows of a table of kernels and filters. The signatures are made
+// once; every kernel learns from them and is asked with them.
+#include <ctime>
+#include <iostream>
+
+#include "../src/tools/options.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/tool.hpp"
+#include "selovis/recogniser.hpp"
+
+namespace {
+
+using namespace selovis;  // NOLINT: a program, not a header
+
+struct Options {
+  std::vector<std::string> learn, ask;
+  std::string descriptor = "LBPbyHSV-U8N";
+  std::vector<std::string> kernels{"linear",    "poly",     "rbf",     "linear:grid",
+                                   "poly:grid", "rbf:grid", "exemplar"};
+};
+
+const char* const kFilters[] = {"none", "lowpass", "markov", "bayes"};
+
+double cpuMilliseconds() {
+  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+struct Asked {
+  std::vector<std::vector<float>> signatures;
+  std::vector<Readings> readings;  // what the filter over poses needs
+  std::vector<std::string> places;
+};
+
+/// The filter over poses on the same frames, with and without odometry.
+void addPoses(const Model& model, const Asked& tour, nlohmann::json* shares) {
+  if (model.classifier.kernel != Kernel::kExemplar || !model.samples.poses.front().isFinite()) {
+    return;
+  }
+  for (const bool odometry : {false, true}) {
+    if (odometry && !tour.readings.front().odometry) return;
+    RecogniserParams params;
+    params.filter.kind = FilterKind::kPoses;
+    Recogniser recogniser(model, model.graph, params);
+    int right = 0;
+    for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
+      Readings readings = tour.readings[i];
+      if (!odometry) readings.odometry.reset();
+      const Recognition r = recogniser.updateWithSignature(tour.signatures[i].data(), readings);
+      right += r.estimate.place == model.graph.find(tour.places[i]);
+    }
+    (*shares)[odometry ? "poses, odometry" : "poses"] =
+        right / static_cast<double>(tour.signatures.size());
+  }
+}
+
+Model learn(const Options& o, const std::string& kernel, bool grid, const Model* described) {
+  TrainingOptions t;
+  t.descriptor = o.descriptor;
+  t.classifier.kernel = kernelOf(kernel);
+  t.grid_search = grid;
+  if (t.classifier.kernel == Kernel::kExemplar) t.views = exemplarViews();
+  if (described != nullptr) {
+    Model model = *described;
+    model.classifier = t.classifier;
+    addTo(model, {}, {}, t);  // no new frames: trained anew on the signatures that are there
+    return model;
+  }
+  const Tours tours(o.learn);
+  hyselam::Progress progress("learning", 1);
+  return train(
+      tours.sizes(), [&](std::size_t tour, std::size_t i) { return tours.load(tour, i); }, t);
+}
+
+nlohmann::json rowOf(const Model& model, const std::vector<Asked>& asked,
+                     std::vector<double>* frame_ms) {
+  nlohmann::json row = nlohmann::json::array();
+  for (const Asked& tour : asked) {
+    std::vector<PlaceFilter> filters;
+    for (const char* name : kFilters) {
+      PlaceFilterParams params;
+      params.kind = filterKind(name);
+      filters.emplace_back(model.graph, params);
+    }
+    RecogniserParams params;
+    Recogniser recogniser(model, model.graph, params);
+    std::vector<int> right(filters.size(), 0);
+    for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
+      const double start = cpuMilliseconds();
+      recogniser.updateWithSignature(tour.signatures[i].data());
+      frame_ms->push_back(cpuMilliseconds() - start);
+      for (std::size_t f = 0; f < filters.size(); ++f) {
+        filters[f].update(recogniser.frameProbabilities());
+        right[f] += filters[f].estimate().place == model.graph.find(tour.places[i]);
+      }
+    }
+    nlohmann::json shares;
+    for (std::size_t f = 0; f < filters.size(); ++f) {
+      shares[kFilters[f]] = right[f] / static_cast<double>(tour.signatures.size());
+    }
+    addPoses(model, tour, &shares);
+    row.push_back({{"frames", tour.signatures.size()}, {"accuracy_by_filter", shares}});
+  }
+  return row;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+nlohmann::json run(const Options& o) {
+  nlohmann::json rows = nlohmann::json::array();
+  std::unique_ptr<Model> described;  // the signatures of the SVMs: one view of each image
+  std::vector<Asked> asked;
+  double descriptor_ms = 0.0;
+  for (const auto& name : o.kernels) {
+    const std::string kernel = name.substr(0, name.find(':'));
+    const bool grid = name.find(":grid") != std::string::npos;
+    const bool exemplar = kernelOf(kernel) == Kernel::kExemplar;
+    // A dictionary depends on the training images only: it is the same for all kernels.
+    Model model = learn(o, kernel, grid, exemplar ? nullptr : described.get());
+    if (!exemplar && !described) described = std::make_unique<Model>(model);
+    if (asked.empty()) {
+      const auto descriptor = model.makeDescriptor();
+      std::vector<double> ms;
+      for (const auto& list : o.ask) {
+        const Tours tours({list});
+        Asked tour;
+        hyselam::Progress progress("describing", tours.sizes().front());
+        for (std::size_t i = 0; i < tours.sizes().front(); ++i) {
+          progress.update(i);
+          const TrainingFrame frame = tours.load(0, i);
+          const double start = cpuMilliseconds();
+          tour.signatures.push_back(descriptor->compute(frame.image, frame.readings));
+          ms.push_back(cpuMilliseconds() - start);
+          Readings kept;
+          kept.odometry = frame.readings.odometry;
+          kept.stamp = frame.readings.stamp;
+          tour.readings.push_back(kept);
+          tour.places.push_back(frame.place);
+        }
+        asked.push_back(std::move(tour));
+      }
+      descriptor_ms = median(ms);
+    }
+    std::vector<double> frame_ms;
+    const nlohmann::json tours = rowOf(model, asked, &frame_ms);
+    rows.push_back({{"descriptor", o.descriptor},
+                    {"kernel", name},
+                    {"cost", model.classifier.cost},
+                    {"gamma", model.classifier.gamma},
+                    {"size", model.samples.size},
+                    {"asked", tours},
+                    {"descriptor_ms", descriptor_ms},
+                    {"frame_ms", descriptor_ms + median(frame_ms)}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Learns tours with one descriptor and several kernels, asks for the places of others.",
+      "places_table"};
+  Options o;
+  app.option_defaults()->always_capture_default();
+  app.add_option("--learn", o.learn, "lists of labelled images, as of train")->required();
+  app.add_option("--ask", o.ask, "lists to be asked for")->required();
+  app.add_option("--descriptor", o.descriptor, "name");
+  app.add_option("--kernels", o.kernels, "names; with :grid cost and gamma by cross-validation")
+      ->delimiter(',');
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+}
