@@ -93,9 +93,9 @@ class Pictures:
     """One rviz for all pictures; without them nothing happens."""
 
     def __init__(self, out, wanted, size="1600x760"):
-        self.out, self.server = out / "live", None
+        self.out, self.wanted, self.server = out / "live", wanted, None
         self.out.mkdir(exist_ok=True)
-        if wanted:
+        if wanted and size:
             self.server = subprocess.Popen(
                 [ROOT / "scripts/rviz_shot", ROOT / "rviz/hyselam.rviz", self.out, "--serve", "--size", size, "--fit-map",
                  "map_metadata", "--settle", "2", "--frame-rate", "3", "--hide", "Camera image"],
@@ -112,6 +112,12 @@ class Pictures:
         if self.server:
             tool(ROOT / "scripts/rviz_shot", ROOT / "rviz/hyselam.rviz", self.out / f"{name}.png", "--size", "1200x760",
                  "--look-at", x, y, z, distance, "--settle", "2", "--frame-rate", "3", "--hide", "Camera image", "--hide", "Visual places")
+
+    def take_fresh(self, name, size):
+        """By an rviz of its own: the map has grown meanwhile."""
+        if self.wanted:
+            tool(ROOT / "scripts/rviz_shot", ROOT / "rviz/hyselam.rviz", self.out / f"{name}.png", "--size", size, "--fit-map", "map_metadata",
+                 "--settle", "3", "--frame-rate", "3", "--hide", "Camera image", "--hide", "SLAM and words")
 
     def close(self):
         if self.server:
