@@ -408,6 +408,16 @@ TEST(TopoMergExact, StopsInTimeAndTellsTheGap) {
   EXPECT_GE(match.best().fitness + match.gap, fitness(problem, {}, truth) - 1e-9);
 }
 
+TEST(TopoMergTreeSearch, TriesNothingAgainWhenTimeIsUp) {
+  const Scenario s;
+  MatchParams params = tableRun(1.0, 1.0, 0.0, 0.0);  // many equally good choices
+  const Match all = treeSearch(s.problem, params);
+  params.time_limit = 0.0;
+  const Match first = treeSearch(s.problem, params);
+  ASSERT_TRUE(first.found());
+  EXPECT_LT(first.nodes, all.nodes);
+}
+
 TEST(TopoMergExact, SameInputSameAnswer) {
   const MatchProblem problem = compile(floor(5, 10, 15, {}));
   MatchParams params;
@@ -531,6 +541,17 @@ TEST(TopoMergNames, UncertaintyIsTheDropOfTheBestOtherAnswer) {
     EXPECT_NEAR(match.best().fitness - other.best().fitness, u.drop, 1e-9);
     EXPECT_GT(u.drop, 0.0);
   }
+}
+
+TEST(TopoMergNames, WithoutTimeNothingIsSure) {
+  const MatchProblem problem = compile(floor(1, 6, 8));
+  MatchParams params;
+  const Match match = solveExact(problem, params);
+  params.time_limit = 0.0;
+  const auto none = nameUncertainties(problem, params, match);
+  const auto all = nameUncertainties(problem, {}, match);
+  ASSERT_EQ(none.size(), all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_LE(none[k].drop, all[k].drop + 1e-9);
 }
 
 TEST(TopoMergNames, AsksWhereAnswersDiffer) {

@@ -20,7 +20,8 @@ struct MatchParams {
   /// False: any places, as TopoMergExplorer (Alg. 2) tries them. Places that are confirmed need not
   /// hang together with each other.
   bool connected = true;
-  /// The exact solver stops after this and tells its best answer with the gap [s].
+  /// The exact solver stops after this and tells its best answer with the gap; the tree search
+  /// tries nothing again after it [s].
   double time_limit = std::numeric_limits<double>::infinity();
   /// As many equally good answers are kept, >= 1.
   std::size_t max_solutions = 1000;

@@ -17,10 +17,10 @@ namespace {
 
 using namespace hyselam_topo;  // NOLINT: a program, not a header
 
-/// "PLACE=NAME": the id of a place of the map and a name, or its id, of the description.
-/// Of the search that tells how sure one name is [s].
-constexpr double kUncertaintyLimit = 0.5;
+/// Of the searches that tell how sure the names are, all together [s].
+constexpr double kUncertaintyLimit = 2.0;
 
+/// "PLACE=NAME": the id of a place of the map and a name, or its id, of the description.
 std::pair<Id, Id> namedPlace(const std::string& option, const std::string& text,
                              const DescribedBuilding& building) {
   const std::size_t sign = text.find('=');
@@ -107,8 +107,8 @@ int main(int argc, char** argv) {
                  "share a wall");
   app.add_option(
       "--uncertainties", uncertainties,
-      "of the names; one more search for each, of half a second at most: what it has not "
-      "found by then may be as good as the answer");
+      "of the names; one more search for each, of two seconds at most for all: what they have "
+      "not ruled out by then may be as good as the answer");
 
   return hyselam::runTool(argc, argv, app, [&] {
     const DescribedBuilding building = loadDescription(human_file);

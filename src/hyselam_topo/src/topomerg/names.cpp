@@ -4,6 +4,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/topomerg_names.hpp"
+#include "solutions.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -29,6 +30,7 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
   MatchParams again = params;
   again.keep_within = 0.0;
   again.max_solutions = 1;
+  const merging::Stopwatch watch;
   for (std::size_t i = 0; i < problem.nameCount(); ++i) {
     NameUncertainty u;
     u.name = problem.names[i];
@@ -50,8 +52,13 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
     if (other < best.fitness - kEqualFitness && main) {
       MatchProblem without = problem;
       without.allowed[i].erase(*main);
+      again.time_limit = std::max(0.0, params.time_limit - watch.seconds()) /
+                         static_cast<double>(problem.nameCount() - i);
       const Match second = solveExact(without, again);
       if (second.found()) other = std::max(other, second.best().fitness);
+      // What was not looked at in time may be as good as the gap says.
+      if (!second.optimal)
+        other = std::max(other, second.gap + (second.found() ? second.best().fitness : 0.0));
     }
     u.drop = other < 0.0 ? best.fitness : std::max(0.0, best.fitness - other);
     out.push_back(u);

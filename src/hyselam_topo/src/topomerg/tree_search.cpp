@@ -28,6 +28,7 @@ class TreeSearch {
     merging::Solutions best(params_);
     std::vector<State> waiting{first()};
     for (std::size_t round = 0; !waiting.empty() && round <= max_revisits; ++round) {
+      if (round > 0 && watch.seconds() > params_.time_limit) break;
       State state = std::move(waiting.back());
       waiting.pop_back();
       finish(&state, &waiting);
