@@ -1,7 +1,5 @@
 #include "hyselam_objects/ros/object_engine_server.hpp"
 
-#include <tf2/exceptions.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +14,9 @@
 
 namespace hyselam_objects {
 namespace {
+
+constexpr double kTimeBack = 0.5;     // [s] a smaller step back is a late frame
+constexpr double kRetryEvery = 0.01;  // [s] while a frame waits for its pose
 
 /// An object map that messages can hold, in that frame. Throws hyselam::InputError.
 ObjectMap loadMapIn(const std::string& frame_id, const std::string& path) {
@@ -100,6 +101,9 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
         std::make_unique<message_filters::TimeSynchronizer<Image, Image>>(*depth_, *colour_, 10);
     images_->registerCallback(&ObjectEngineServer::onImages, this);
   }
+  pose_timer_ = nh.createWallTimer(
+      ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); }, false,
+      false);
   timer_ = nh.createWallTimer(ros::WallDuration(params_.publish_period),
                               [this](const ros::WallTimerEvent&) { publish(); });
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": objects",
@@ -117,6 +121,12 @@ void ObjectEngineServer::onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg) {
 
 bool ObjectEngineServer::isDue(const std_msgs::Header& header) {
   const bool back = header.stamp < last_frame_;  // a bag begins again
+  if ((last_frame_ - header.stamp).toSec() > kTimeBack) {
+    // A transform of before, received after the listener forgot them, would make it refuse all new
+    // ones.
+    tf_buffer_.clear();
+    waiting_.reset();
+  }
   if (!back && !last_frame_.isZero() && (header.stamp - last_frame_).toSec() < params_.period) {
     return false;
   }
@@ -126,16 +136,14 @@ bool ObjectEngineServer::isDue(const std_msgs::Header& header) {
 
 void ObjectEngineServer::onImages(const Image::ConstPtr& depth, const Image::ConstPtr& colour) {
   if (!camera_ || !isDue(depth->header)) return;
-  try {
-    look(cloudOf(*depth, colour.get(), *camera_), *camera_, depth->header);
-  } catch (const std::exception& e) {
-    refuse(e.what());
-  }
+  await(depth->header, [this, depth, colour, camera = *camera_](const Eigen::Isometry3d& in_map) {
+    look(cloudOf(*depth, colour.get(), camera), camera, in_map, depth->header.stamp);
+  });
 }
 
 void ObjectEngineServer::onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg) {
   if (!isDue(msg->header)) return;
-  try {
+  await(msg->header, [this, msg](const Eigen::Isometry3d& in_map) {
     const OrganisedCloud cloud = cloudOf(*msg);
     // The focal length follows from the points themselves: u - cx = f x / z.
     PinholeCamera camera;
@@ -165,31 +173,58 @@ void ObjectEngineServer::onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg)
                                 "they are not in the order of a camera's picture: x does not grow "
                                 "to the right, or y not downwards");
     }
-    look(cloud, camera, msg->header);
-  } catch (const std::exception& e) {
-    refuse(e.what());
+    look(cloud, camera, in_map, msg->header.stamp);
+  });
+}
+
+// Waiting must not block: it would hold up the other nodelets of the manager, and for ever while
+// the clock stands.
+void ObjectEngineServer::await(const std_msgs::Header& header, UseFrame use) {
+  if (waiting_) refuseWithoutPose("a newer frame has come");
+  waiting_ = {header, std::move(use), ros::WallTime::now()};
+  serveWaiting();
+}
+
+void ObjectEngineServer::serveWaiting() {
+  if (!waiting_) return;
+  const std_msgs::Header& header = waiting_->header;
+  std::string why;
+  if (tf_buffer_.canTransform(map_.frame_id, header.frame_id, header.stamp, &why)) {
+    const Waiting frame = std::move(*waiting_);
+    waiting_.reset();
+    pose_timer_.stop();
+    try {
+      const geometry_msgs::Transform pose =
+          tf_buffer_.lookupTransform(map_.frame_id, frame.header.frame_id, frame.header.stamp)
+              .transform;
+      const auto& t = pose.translation;
+      const auto& q = pose.rotation;
+      frame.use(Eigen::Translation3d(t.x, t.y, t.z) *
+                Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized());
+    } catch (const std::exception& e) {
+      refuse(e.what());
+    }
+  } else if ((ros::WallTime::now() - waiting_->since).toSec() >= params_.tf_patience) {
+    refuseWithoutPose(why);
+  } else {
+    pose_timer_.start();
   }
 }
 
+void ObjectEngineServer::refuseWithoutPose(const std::string& why) {
+  waiting_.reset();
+  pose_timer_.stop();
+  ++without_pose_;
+  refuse("the camera's pose is not known: " + why);
+}
+
 void ObjectEngineServer::look(const OrganisedCloud& cloud, PinholeCamera camera,
-                              const std_msgs::Header& header) {
-  geometry_msgs::TransformStamped pose;
-  try {
-    pose = tf_buffer_.lookupTransform(map_.frame_id, header.frame_id, header.stamp,
-                                      ros::Duration(params_.tf_patience));
-  } catch (const tf2::TransformException& e) {
-    ++without_pose_;
-    refuse(std::string("the camera's pose is not known: ") + e.what());
-    return;
-  }
-  const auto& t = pose.transform.translation;
-  const auto& q = pose.transform.rotation;
-  camera.in_map =
-      Eigen::Translation3d(t.x, t.y, t.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+                              const Eigen::Isometry3d& camera_in_map, const ros::Time& stamp) {
+  camera.in_map = camera_in_map;
   const ros::WallTime begin = ros::WallTime::now();
   const std::vector<DetectedObject> seen = detectObjects(cloud, camera.in_map, params_.detect);
   landmarks_ = watch_.add(map_, seen);  // before the map takes over what is wrong
-  mapper_.update(cloud, camera, seen, hyselam::toSeconds(header.stamp));
+  mapper_.update(cloud, camera, seen, hyselam::toSeconds(stamp));
   fill_.setTime(map_.stamp);
   learn(seen, camera);
   seconds_ = (ros::WallTime::now() - begin).toSec();

@@ -14,6 +14,7 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -68,7 +69,12 @@ class ObjectEngineServer {
                hyselam_msgs::QueryObjects::Response& response);
 
   bool isDue(const std_msgs::Header& header);
-  void look(const OrganisedCloud& cloud, PinholeCamera camera, const std_msgs::Header& header);
+  using UseFrame = std::function<void(const Eigen::Isometry3d& camera_in_map)>;
+  void await(const std_msgs::Header& header, UseFrame use);
+  void serveWaiting();
+  void refuseWithoutPose(const std::string& why);
+  void look(const OrganisedCloud& cloud, PinholeCamera camera,
+            const Eigen::Isometry3d& camera_in_map, const ros::Time& stamp);
   void learn(const std::vector<DetectedObject>& seen, const PinholeCamera& camera);
   void refuse(const std::string& reason);
   void publish();
@@ -92,6 +98,12 @@ class ObjectEngineServer {
   std::vector<std::vector<float>> shown_views_;
   std::vector<Eigen::Vector3d> shown_sizes_;
 
+  struct Waiting {
+    std_msgs::Header header;
+    UseFrame use;
+    ros::WallTime since;
+  };
+  std::optional<Waiting> waiting_;  // for the camera's pose
   ros::Time last_frame_;
   std::size_t frames_ = 0, refused_ = 0, without_pose_ = 0, detections_ = 0;
   double seconds_ = 0.0;
@@ -105,7 +117,7 @@ class ObjectEngineServer {
   std::unique_ptr<message_filters::Subscriber<Image>> depth_, colour_;
   std::unique_ptr<message_filters::TimeSynchronizer<Image, Image>> images_;
   ros::ServiceServer save_, load_, query_;
-  ros::WallTimer timer_;
+  ros::WallTimer pose_timer_, timer_;
   std::optional<hyselam::Diagnostics> diagnostics_;
 };
 
