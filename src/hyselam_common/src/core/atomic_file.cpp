@@ -97,10 +97,10 @@ std::string readTextFile(const std::string& path, std::size_t max_bytes) {
   errno = 0;
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) throw InputError(path, "", "cannot be read: " + errnoText());
-  gzbuffer(file.get(), 1 << 17);
+  gzbuffer(file.get(), 1 << 16);
 
   std::string text;
-  constexpr unsigned kChunk = 1 << 20;
+  constexpr unsigned kChunk = 1 << 16;  // most files are small
   for (;;) {
     const std::size_t size = text.size();
     text.resize(size + kChunk);
