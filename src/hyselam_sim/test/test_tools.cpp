@@ -102,6 +102,9 @@ TEST_F(Tools, RefusesToFilmWhatCannotBeFilmed) {
   expectError(run(HYSELAM_FILM, "--route small --width 3 --bag " + file("run.bag").string() +
                                     " --out " + file("o.bag").string()),
               "width");
+  expectError(run(HYSELAM_FILM, "--route small --things none.yaml --bag " +
+                                    file("run.bag").string() + " --out " + file("o.bag").string()),
+              "none.yaml");
   EXPECT_FALSE(fs::exists(file("o.bag")));
 }
 
