@@ -29,6 +29,16 @@ def angle_between(a, b):
     return abs(math.remainder(a - b, 2 * math.pi))
 
 
+def compose(a, b):
+    c, s = math.cos(a[2]), math.sin(a[2])
+    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
+
+
+def inverse(a):
+    c, s = math.cos(a[2]), math.sin(a[2])
+    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
+
+
 def wait_until(condition, what):
     deadline = time.monotonic() + WAIT
     while not condition():

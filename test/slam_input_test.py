@@ -19,17 +19,7 @@ from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 
 sys.dont_write_bytecode = True
-from localization_rig import WAIT, Listener, Recording, Rig, angle_between, wait_until
-
-
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
+from localization_rig import WAIT, Listener, Recording, Rig, angle_between, compose, inverse, wait_until
 
 
 class SlamRig(Rig):

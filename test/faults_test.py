@@ -1,0 +1,315 @@
+#!/usr/bin/env python3
+"""A bad day of two robots: what is killed comes back to work, what is missing is told by name, and what was saved stays
+whole. One robot localises on a known map with all layers, the other one makes a map."""
+import glob
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import Point, PointStamped, PoseWithCovarianceStamped
+from hyselam_msgs.msg import AugmentedTopologicalMap
+from hyselam_msgs.srv import CorpusPath, NamePlace, ObjectMapPath, QueryObjects, StatePath, TopologicalMapPath
+from nav_msgs.srv import GetMap, LoadMap
+from rosgraph_msgs.msg import Log
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
+
+sys.dont_write_bytecode = True
+from faults_rig import Driver, FilmedRun, Stack, program, run
+from localization_rig import Listener, planar, wait_until
+
+KNOWN, NEW = "known", "new"  # the robots: one with a map and a camera, one that makes its map
+SAVE = {"slam/save": (NEW, StatePath, "slam.state"), "words/save": (KNOWN, CorpusPath, "words.corpus"),
+        "save_topological_map": (KNOWN, TopologicalMapPath, "topo.xml"), "save_dialogue": (KNOWN, StatePath, "d.state"),
+        "save_object_map": (KNOWN, ObjectMapPath, "objects.xml")}
+
+
+class FaultsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.recording = FilmedRun()
+        for robot in (KNOWN, NEW):
+            os.makedirs(cls.path(robot))
+        frames = lambda robot: {"odom_frame": f"{robot}/odom", "base_frame": f"{robot}/base_link", "work_dir": cls.path(robot)}
+        x, y, yaw = cls.recording.truth[0][1]
+        for axis, value in zip("xya", (x, y, yaw)):
+            rospy.set_param(f"/{KNOWN}/localization/initial_pose_{axis}", value)
+        cls.robots = Driver(cls.recording, [KNOWN, NEW])
+        cls.log = Listener("/rosout", Log)
+        cls.poses = Listener(f"/{KNOWN}/amcl_pose", PoseWithCovarianceStamped)
+        cls.names = Listener(f"/{KNOWN}/named_map", AugmentedTopologicalMap)
+        cls.stack = Stack({
+            KNOWN: {"map": cls.recording.yaml, "pose": "localization", "vision": "true", "objects": "true",
+                    "model": cls.recording.model, "save_model": cls.path(KNOWN, "model"), **frames(KNOWN)},
+            NEW: {"pose": "slam", "map_frame": f"{NEW}/map", **frames(NEW)}})
+        cls.addClassCleanup(cls.stack.close)
+        cls.stack.start_all()
+        cls.saved = cls.path("saved")
+        robots = cls.robots
+        robots.work(KNOWN, cls.stack.layers(KNOWN))
+        robots.work(NEW, cls.stack.layers(NEW))
+
+    def setUp(self):
+        self.assertIn("Kitchen", self.name("Kitchen"))
+        if not os.path.exists(self.saved):
+            code, text = self.knowledge("save")
+            self.assertEqual(code, 0, text)
+
+    def tearDown(self):
+        for robot in (KNOWN, NEW):
+            self.assertTrue(self.stack.alive(robot), f"the manager of {robot} died")
+        code, text = self.knowledge("check")
+        self.assertEqual(code, 0, text)
+
+    # ---- Helpers.
+
+    @classmethod
+    def path(cls, *names):
+        return os.path.join(cls.folder.name, *names)
+
+    def knowledge(self, command, folder=None, robot=KNOWN):
+        return run(program("hyselam_bringup", "knowledge"), command, folder or self.saved, ROS_NAMESPACE=robot)
+
+    def call(self, robot, service, kind, *args):
+        name = f"/{robot}/{service}"
+        rospy.wait_for_service(name, 20.0)
+        return rospy.ServiceProxy(name, kind)(*args)
+
+    def name(self, word):
+        """Names the left room; the names of the map afterwards."""
+        wait_until(lambda: self.names.messages and self.names.messages[-1].places, "no places with names")
+        point = PointStamped(Header(frame_id="map"), Point(1.5, 2.0, 0.0))
+        answer = self.call(KNOWN, "name_place", NamePlace, 0, point, [word])
+        self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: word in self.words(), lambda: f"{word}; there are {self.words()}")
+        return self.words()
+
+    def words(self):
+        return {w.text for p in self.names.messages[-1].places for w in p.words} if self.names.messages else set()
+
+    def works(self):
+        """All layers of both robots have something to do and do it, and the known robot is where it thinks."""
+        self.robots.work(KNOWN, self.stack.layers(KNOWN))
+        self.robots.work(NEW, self.stack.layers(NEW))
+        self.right_pose()
+
+    def right_pose(self):
+        seen = len(self.poses.messages)
+
+        def right():
+            self.robots.feed(5)
+            if len(self.poses.messages) == seen:
+                return False
+            pose = self.poses.messages[-1]
+            at = pose.header.stamp.to_sec() - self.robots.shift
+            (x, y, _), (tx, ty, _) = planar(pose.pose.pose), self.recording.truth_at(at)
+            self.error = abs(x - tx) + abs(y - ty)
+            return self.error < 0.3
+        wait_until(right, lambda: f"the right pose; error {getattr(self, 'error', None)}, " +
+                   str(self.robots.diagnosis(KNOWN, "localization").message))
+
+    def comes_back(self, robot, layer):
+        """What a layer without a count of its input gives again."""
+        if layer == "map_server":
+            self.assertGreater(len(self.call(robot, "static_map", GetMap).map.data), 0)
+        elif layer == "gr2to":
+            self.robots.says(robot, "gr2to", "places", while_doing=lambda: self.robots.feed(2))
+            self.assertGreater(len(rospy.wait_for_message(f"/{robot}/topological_map", AugmentedTopologicalMap, 20).places), 0)
+        elif layer == "topo_engine":
+            map = rospy.wait_for_message(f"/{robot}/named_map", AugmentedTopologicalMap, 20)
+            if robot == KNOWN:
+                wait_until(lambda: "Kitchen" in self.words(), lambda: f"the name; there are {self.words()}")
+            self.assertGreater(len(map.places), 0)
+        else:
+            self.robots.work(robot, [layer])
+
+    # ---- Faults.
+
+    def test_every_nodelet_killed_and_restarted_in_turn(self):
+        for robot in (KNOWN, NEW):
+            for layer in self.stack.layers(robot):
+                with self.subTest(robot=robot, layer=layer):
+                    self.stack.unload(robot, layer)
+                    self.robots.feed(3)
+                    self.robots.heard.pop(f"{robot}/{layer}", None)
+                    self.stack.load(robot, layer)
+                    self.comes_back(robot, layer)
+        self.works()
+
+    def test_manager_killed_with_all_its_nodelets(self):
+        self.assertTrue(self.call(NEW, "slam/save", StatePath, "").success)
+        keyframes = self.robots.count(NEW, "slam", "keyframes")
+        state = self.path(KNOWN, "dialogue.state")
+        wait_until(lambda: os.path.exists(state), "the dialogue is not saved")
+        for robot in (KNOWN, NEW):
+            self.stack.kill(robot)
+            self.robots.heard.clear()
+            self.stack.restart(robot)
+            for layer in self.stack.layers(robot):
+                self.comes_back(robot, layer)
+        self.assertGreaterEqual(self.robots.count(NEW, "slam", "keyframes"), keyframes)
+        self.works()
+
+    def test_bag_looped(self):
+        self.robots.feed(40)
+        self.robots.rewind()
+        self.works()
+        for robot, layer in ((KNOWN, "localization"), (KNOWN, "fsd"), (NEW, "slam")):
+            self.assertGreaterEqual(self.robots.count(robot, layer, "time went back"), 1, layer)
+        self.assertTrue(any("time went back" in m.msg for m in self.log.messages))
+
+    def test_clock_jumps_forward_and_back(self):
+        self.robots.rewind(self.robots.shift + 3600.0)
+        self.works()
+        self.robots.rewind(self.robots.shift - 1800.0)
+        self.works()
+
+    def test_no_odometry_for_5_s(self):
+        self.robots.feed(50, tf=False)
+        # The scans wait their time in the clock, too.
+        for robot, layer in ((KNOWN, "localization"), (NEW, "slam")):
+            self.robots.says(robot, layer, "no transform", f"{robot}/odom -> {robot}/base_link",
+                             while_doing=lambda: self.robots.feed(1, tf=False))
+        self.works()
+
+    def test_no_scans_for_5_s(self):
+        self.robots.feed(50, scans=False)
+        for robot, layer in ((KNOWN, "localization"), (KNOWN, "fsd"), (NEW, "slam")):
+            self.robots.says(robot, layer, "no scans", while_doing=lambda: self.robots.feed(1, scans=False))
+        self.works()
+
+    def test_flood_of_images(self):
+        """A camera that sends what it has kept for minutes, at once: the oldest go, the laser's layers do not wait."""
+        before = self.robots.count(KNOWN, "localization", "scans used")
+        received = self.robots.count(KNOWN, "semantic_localization", "images received")
+        at, messages = next(iter(self.recording.pictures.items()))
+        self.robots.tick(1.0)
+        for i in range(600):
+            self.robots.shift += 0.001
+            self.robots.send_pictures(KNOWN, messages)
+            if i % 60 == 0:
+                self.robots.feed(1, pictures=False)
+        wait_until(lambda: self.robots.count(KNOWN, "semantic_localization", "images received") > received, "no image came")
+        self.robots.work(KNOWN, ["localization"])
+        self.assertGreater(self.robots.count(KNOWN, "localization", "scans used"), before)
+        self.robots.says(KNOWN, "semantic_localization", "images waiting 0", while_doing=lambda: self.robots.feed(2))
+        self.works()
+
+    def test_map_of_another_building(self):
+        other = self.path("other.yaml")
+        if not os.path.exists(other):
+            subprocess.run([program("hyselam_sim", "plan_to_map"), "office", other], check=True,
+                           stdout=subprocess.DEVNULL)
+        places = self.robots.count(KNOWN, "gr2to", "places")
+        answer = self.call(KNOWN, "change_map", LoadMap, other)
+        self.assertEqual(answer.result, 0)
+        wait_until(lambda: self.robots.count(KNOWN, "gr2to", "places") > places + 5, "the places of the other building")
+        self.robots.says(KNOWN, "localization", "not converged", while_doing=lambda: self.robots.feed(2))
+        # Back: everything is as it was saved.
+        code, text = self.knowledge("load")
+        self.assertEqual(code, 0, text)
+        wait_until(lambda: self.robots.count(KNOWN, "gr2to", "places") == places, "the places of before")
+        wait_until(lambda: "Kitchen" in self.words(), lambda: f"the name; there are {self.words()}")
+        self.works()
+
+    def test_disk_full(self):
+        folder = self.path("full")
+        os.makedirs(folder, exist_ok=True)
+        for robot in (KNOWN, NEW):
+            self.stack.limit_files(robot, 16)
+            self.addCleanup(self.stack.limit_files, robot)
+        self.refused(folder, "File too large")
+        # The whole, into a directory that holds something good: it stays.
+        code, text = self.knowledge("save")
+        self.assertEqual(code, 1, text)
+        self.assertIn("error: ", text)
+        self.assertRegex(text, "File too large|disk full")
+        self.assertEqual(glob.glob(self.path(".saved.*")), [])
+        self.robots.feed(20)
+        for robot in (KNOWN, NEW):
+            self.stack.limit_files(robot)
+        code, text = self.knowledge("save")
+        self.assertEqual(code, 0, text)
+        self.works()
+
+    def test_disk_really_full(self):
+        """The same with a disk that is full, where the test may mount one."""
+        folder = self.path("disk")
+        os.makedirs(folder)
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", folder], stderr=subprocess.DEVNULL).returncode:
+            self.skipTest("no right to mount a small disk here; test_disk_full limits the size of files instead")
+        self.addCleanup(subprocess.run, ["umount", "-l", folder])
+        with open(os.path.join(folder, "other"), "wb", buffering=0) as file:
+            try:
+                while file.write(bytes(4096)):
+                    pass
+            except OSError:
+                pass
+        self.refused(folder, "No space left on device")
+        code, text = self.knowledge("save", os.path.join(folder, "saved"))
+        self.assertEqual(code, 1, text)
+        self.assertRegex(text, "No space left on device|disk full")
+        self.assertEqual(sorted(os.listdir(folder)), ["other"])
+        subprocess.run(["mount", "-o", "remount,ro", folder], check=True)
+        self.refused(folder, "Read-only file system")
+        code, text = self.knowledge("save", os.path.join(folder, "saved"))
+        self.assertEqual(code, 1, text)
+        self.assertIn("Read-only file system", text)
+        self.works()
+
+    def test_place_that_cannot_be_written(self):
+        file = self.path("file")
+        with open(file, "w") as out:
+            out.write("no directory")
+        self.refused(file, "Not a directory")
+        code, text = self.knowledge("save", os.path.join(file, "saved"))
+        self.assertEqual(code, 1, text)
+        self.assertIn(file, text)
+        self.works()
+
+    def refused(self, folder, reason):
+        """Every layer says which file it cannot write and why, and leaves nothing."""
+        before = sorted(os.listdir(folder)) if os.path.isdir(folder) else None
+        for service, (robot, kind, name) in SAVE.items():
+            path = os.path.join(folder, name)
+            answer = self.call(robot, service, kind, path)
+            self.assertFalse(answer.success, service)
+            self.assertIn(path, answer.message, service)
+            self.assertRegex(answer.message, f"{reason}|disk full", service)
+        if before is not None:
+            self.assertEqual(sorted(os.listdir(folder)), before)
+
+    def test_robots_in_namespaces_leave_each_other_alone(self):
+        transforms = Listener("/tf", TFMessage)
+        self.addCleanup(transforms.close)
+        self.stack.kill(NEW)
+        before = self.robots.count(KNOWN, "localization", "scans used")
+        self.robots.work(KNOWN, self.stack.layers(KNOWN))
+        self.assertGreater(self.robots.count(KNOWN, "localization", "scans used"), before)
+        # Its map is its own: the other one's names and frames stay out.
+        self.stack.restart(NEW)
+        self.works()
+        wait_until(lambda: any(t.header.frame_id == f"{NEW}/map" for m in transforms.messages for t in m.transforms),
+                   "no transform of the other robot")
+        pairs = {(t.header.frame_id, t.child_frame_id) for m in transforms.messages for t in m.transforms}
+        for parent, child in pairs:
+            if parent.startswith(NEW + "/"):
+                self.assertTrue(child.startswith(NEW + "/"), (parent, child))
+            if child.startswith(KNOWN + "/"):
+                self.assertIn(parent, ("map", KNOWN + "/odom", KNOWN + "/base_link"))
+        other = rospy.wait_for_message(f"/{NEW}/named_map", AugmentedTopologicalMap, 20)
+        self.assertNotIn("Kitchen", {w.text for p in other.places for w in p.words})
+        code, text = self.knowledge("save", self.path("saved_new"), NEW)
+        self.assertEqual(code, 0, text)
+        self.assertIn("slam", text)
+        self.assertNotIn("objects", text)
+
+
+if __name__ == "__main__":
+    rospy.init_node("faults_test")
+    rostest.rosrun("hyselam_bringup", "faults_test", FaultsTest)
