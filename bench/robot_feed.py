@@ -35,8 +35,8 @@ def prepare(folder, pictures_per_second, size, scan_rate=10, seed=1):
     if not (folder / "model" / "model.json").exists() or not (folder / "round.bag").exists():
         say("drives a round and films it")
         drive, width, height = folder / "drive.bag", *size
-        tool("hyselam_sim", "simulate", "--route", "office", "--seed", seed, "--scan-rate", scan_rate, "--out", drive,
-             "--map", folder / "map.yaml", "--resolution", 0.05)
+        tool("hyselam_sim", "simulate", "--route", "office", "--seed", seed, "--scan-rate", scan_rate,
+             "--odometry-rate", max(20, scan_rate), "--out", drive, "--map", folder / "map.yaml", "--resolution", 0.05)
         tool("hyselam_sim", "film", "--bag", drive, "--route", "office", "--rate", pictures_per_second, "--width", width,
              "--height", height, "--images", folder / "pictures", "--out", folder / "round.bag")
         tool("selovis", "train", "--labels", folder / "pictures" / "labels.csv", "--descriptor", "GLANCE+scan", "--kernel",
@@ -145,28 +145,29 @@ def odometry_message(pose, stamp):
 
 
 class Stack:
-    """hyselam.launch with a master of its own."""
+    """hyselam.launch, once or more, with a master of its own."""
 
-    def __init__(self, folder, sim_time, params=(), **arguments):
+    def __init__(self, folder):
         with socket.socket() as s:
             s.bind(("localhost", 0))
             self.port = s.getsockname()[1]
+        self.folder = folder
         os.environ.update(ROS_MASTER_URI=f"http://localhost:{self.port}", ROS_HOSTNAME="localhost",
                           ROS_HOME=str(folder / "ros_home"))
-        lines = [f'<param name="use_sim_time" value="{str(sim_time).lower()}"/>']
-        lines += [f'<param name="{name}" value="{value}"/>' for name, value in params]
-        lines += [self.include(arguments)] if arguments else []
-        self.launch(folder, lines)
 
     @staticmethod
-    def include(arguments, file="hyselam.launch"):
-        inner = "".join(f'<arg name="{name}" value="{value}"/>' for name, value in arguments.items())
-        return f'<include file="$(find hyselam_bringup)/launch/{file}">{inner}</include>'
+    def include(arguments):
+        inner = "".join(Stack.setting("arg", name, value) for name, value in arguments.items())
+        return f'<include file="$(find hyselam_bringup)/launch/hyselam.launch">{inner}</include>'
 
-    def launch(self, folder, lines):
-        path = folder / "stack.launch"
+    @staticmethod
+    def setting(kind, name, value):
+        return f'<{kind} name="{name}" value="{str(value).lower() if isinstance(value, bool) else value}"/>'
+
+    def launch(self, *lines):
+        path = self.folder / "stack.launch"
         path.write_text("<launch>\n" + "\n".join(lines) + "\n</launch>\n")
-        self.log = open(folder / "stack.log", "w")
+        self.log = open(self.folder / "stack.log", "w")
         self.process = subprocess.Popen(["roslaunch", "-p", str(self.port), str(path)], stdout=self.log,
                                         stderr=subprocess.STDOUT, start_new_session=True)
 
