@@ -138,6 +138,12 @@ class LaunchFilesTest(unittest.TestCase):
     def test_there_are_launch_files(self):
         self.assertIn("localization.launch", self.files)
 
+    def test_no_name_is_remapped_twice(self):
+        for name, config in self.configurations():
+            for node in config.nodes:
+                sources = [source for source, _ in node.remap_args]
+                self.assertEqual(len(sources), len(set(sources)), f"{name}: {node.name}")
+
     def test_programs_exist(self):
         for name, config in self.configurations():
             for node in config.nodes:
