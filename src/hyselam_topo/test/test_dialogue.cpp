@@ -255,6 +255,18 @@ TEST(Dialogue, AsksByItselfAsItsParametersSay) {
   EXPECT_TRUE(never.at(3.0, 6.0, 0.0).sentences.empty());
 }
 
+TEST(Dialogue, AsksForThePlaceThatANewMapFindsItIn) {
+  DialogueParams params;
+  params.ask = DialogueParams::Ask::kAlways;
+  Visit visit(params);
+  const Point2 here = plan().places.front().at;
+  visit.at(here.x, here.y, 0.0);  // there is no map yet
+  visit.segment();
+  EXPECT_FALSE(visit.at(here.x, here.y, 0.0).sentences.empty());
+  EXPECT_EQ(visit.dialogue.robot().place, visit.dialogue.question().place);
+  EXPECT_TRUE(visit.at(here.x, here.y, 0.0).sentences.empty());  // once
+}
+
 TEST(Dialogue, AsksForWhatTellsEqualAnswersApart) {
   DialogueParams params;
   params.ask_from_afar = true;

@@ -232,6 +232,7 @@ class Dialogue {
   PlaceMan places_;
   DescriptionBuilder builder_;
   TopoState topo_state_;
+  bool entered_ = false;  ///< another place, or the same on another map; not looked at yet
   std::optional<hyselam::OccupancyGrid> grid_;
   std::optional<Match> match_;
   std::optional<double> heading_;  // when sides were told

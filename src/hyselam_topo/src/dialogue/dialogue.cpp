@@ -91,8 +91,9 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   const bool about_lost_place =
       question_.place != 0 && places_.map().findPlace(question_.place) == nullptr;
   if (about_lost_place) question_ = {};
-  if (robot().has_pose) {
-    topo_state_.update(places_.map(), robot().stamp, robot().pose);
+  // What there is to ask of the place is asked with the next pose: the names may change now.
+  if (robot().has_pose && topo_state_.update(places_.map(), robot().stamp, robot().pose)) {
+    entered_ = true;
   }
   if (!builder_.building().places.empty()) solve(&out, first);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
@@ -105,7 +106,9 @@ void Dialogue::setGrid(hyselam::OccupancyGrid grid) {
 
 Reply Dialogue::setPose(double stamp, const hyselam::Pose2& pose) {
   Reply out = reply();
-  if (!topo_state_.update(places_.map(), stamp, pose)) return out;
+  if (topo_state_.update(places_.map(), stamp, pose)) entered_ = true;
+  if (!entered_) return out;
+  entered_ = false;
   placeEntered(&out);
   return out;
 }

@@ -43,7 +43,11 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
   pose_publisher_ = nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("initialpose", 1);
   follow_publisher_ = nh.advertise<std_msgs::Bool>("follow_person", 1, true);
   names_publisher_ = nh.advertise<std_msgs::String>("known_names", 1, true);
-  if (!params_.state_file.empty() && std::filesystem::exists(params_.state_file)) {
+  // What cannot even be looked at is treated as a file that cannot be read.
+  std::error_code unseen;
+  const bool kept = !params_.state_file.empty() &&
+                    (std::filesystem::exists(params_.state_file, unseen) || unseen);
+  if (kept) {
     try {
       load(params_.state_file);
     } catch (const std::exception& e) {
@@ -377,8 +381,13 @@ void TopoEngineServer::publishPlace() {
 void TopoEngineServer::load(const std::string& path) {
   dialogue_.restore(loadDialogueState(path));
   changed_ = false;
+  // What was shown before is gone, also if the state has no map and no question.
+  if (!dialogue_.places().hasMap())
+    marker_publisher_.publish(namedMapMarkers(dialogue_.map(), params_.markers));
   publishMap();
   publishWalls();
+  publishQuestion();
+  publishPlace();
   ROS_INFO_STREAM(who_ << " goes on with " << dialogue_.map().places.size() << " places of "
                        << path);
 }
