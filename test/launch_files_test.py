@@ -3,6 +3,7 @@
 and nodelet classes exist, and the packages that it uses are declared by the bringup."""
 import itertools
 import os
+import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -134,6 +135,24 @@ class LaunchFilesTest(unittest.TestCase):
         for node in nodes.values():
             for source, target in node.remap_args:
                 self.assertFalse(target.startswith("/"), f"{node.name}: {source} -> {target}")
+
+    def test_values_of_a_params_file_win(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in self.files:
+                path = os.path.join(self.folder, name)
+                root = ElementTree.parse(path).getroot()
+                for rosparam in (r for r in root.findall("rosparam") if r.get("file") == "$(arg params)"):
+                    node = rosparam.get("ns")
+                    load = lambda *more: roslaunch.config.load_config_default([(path, list(more))], None, verbose=False).params
+                    keys = [key for key in load() if key.startswith(f"/{node}/")]
+                    self.assertTrue(keys, name)
+                    with open(os.path.join(folder, "params.yaml"), "w") as file:
+                        file.writelines(f"{key.split('/', 2)[2]}: won\n" for key in keys)
+                    won = load(f"params:={file.name}")
+                    self.assertEqual({won[key].value for key in keys}, {"won"}, name)
+                # Within a node the values of its param tags would win.
+                self.assertFalse([n.get("name") for n in root.findall("node") for r in n.findall("rosparam")
+                                  if r.get("file") == "$(arg params)"], name)
 
     def test_there_are_launch_files(self):
         self.assertIn("localization.launch", self.files)
