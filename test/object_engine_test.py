@@ -9,11 +9,12 @@ import unittest
 import rospy
 import rostest
 import tf2_ros
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TransformStamped
 from hyselam_msgs.msg import ObjectMap, PlaceState
 from hyselam_msgs.srv import ObjectMapPath, QueryObjects
 from nodelet.srv import NodeletLoad, NodeletUnload
-from sensor_msgs.msg import CameraInfo, Image
+from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -91,7 +92,7 @@ class ObjectEngineTest(unittest.TestCase):
             rospy.set_param(self.name + "/engine/" + key, value)
         topics = ["camera/depth/image_raw", "camera/depth/camera_info", "camera/color/image_raw", "object_map",
                   "object_markers", "object_text", "robot_text", "place", "topological_map", "save_object_map",
-                  "load_object_map", "query_objects"]
+                  "load_object_map", "query_objects", "points", "object_request", "object_answer", "conversation"]
         try:
             self.loaded = self.load(
                 name=self.name + "/engine", type="hyselam_objects/ObjectEngine",
@@ -210,6 +211,81 @@ class ObjectEngineTest(unittest.TestCase):
             self.show(camera, 10 + number, **changes)
         camera[0].publish(CameraInfo())
         self.see(camera)
+
+    def look_from(self, x):
+        t = TransformStamped()
+        t.header.frame_id, t.child_frame_id = "map", "camera_optical_frame"
+        t.transform.translation.x, t.transform.translation.z = x, CAMERA
+        q = t.transform.rotation
+        q.x, q.y, q.z, q.w = -0.5, 0.5, -0.5, 0.5
+        self.broadcaster.sendTransform(t)
+
+    def said_of_landmarks(self):
+        return [v.value for array in self.diagnostics.messages for status in array.status
+                for v in status.values if v.key == "landmarks"]
+
+    def test_a_robot_that_is_a_metre_off_is_noticed(self):
+        self.assertTrue(self.start(diagnostic_period=0.05))
+        self.diagnostics = Listener(self.name + "/diagnostics", DiagnosticArray)
+        self.addCleanup(self.diagnostics.close)
+        camera = self.camera()
+        self.see(camera)
+        stamp = [1100]  # another visit
+
+        def seen_until(wanted):
+            def looked():
+                stamp[0] += 1
+                self.show(camera, stamp[0])
+                rospy.sleep(0.2)
+                return wanted in self.said_of_landmarks()
+            wait_until(looked, lambda: str(set(self.said_of_landmarks())))
+        seen_until("consistent")
+        self.assertNotIn("displaced", self.said_of_landmarks())
+        self.addCleanup(lambda: self.look_from(0.0))
+        self.look_from(1.0)
+        seen_until("displaced")
+        self.assertTrue(any("seems to be elsewhere" in status.message for array in self.diagnostics.messages
+                            for status in array.status))
+
+    def test_clouds_that_no_camera_sees_are_refused(self):
+        self.assertTrue(self.start(use_points=True, diagnostic_period=0.05))
+        self.diagnostics = Listener(self.name + "/diagnostics", DiagnosticArray)
+        self.addCleanup(self.diagnostics.close)
+        points = self.publisher("points", PointCloud2)
+        depth = struct.unpack("<%dH" % (WIDTH * HEIGHT), self.seen[0])
+
+        def cloud(flip_x, flip_y):
+            data = bytearray()
+            for v in range(HEIGHT):
+                for u in range(WIDTH):
+                    z = 0.001 * depth[v * WIDTH + u] or math.nan
+                    data += struct.pack("<4f", flip_x * (u - WIDTH / 2 + 0.5) / FOCAL * z,
+                                        flip_y * (v - HEIGHT / 2 + 0.5) / FOCAL * z, z, 0.0)
+            msg = PointCloud2(width=WIDTH, height=HEIGHT, point_step=16, row_step=16 * WIDTH, data=bytes(data))
+            msg.fields = [PointField(name=n, offset=4 * i, datatype=PointField.FLOAT32, count=1)
+                          for i, n in enumerate(("x", "y", "z", "rgb"))]
+            msg.header.frame_id = "camera_optical_frame"
+            return msg
+        stamp = [3000]
+
+        def sent_until(msg, condition):
+            def sent():
+                stamp[0] += 1
+                msg.header.stamp = rospy.Time(stamp[0])
+                points.publish(msg)
+                rospy.sleep(0.2)
+                return condition()
+            wait_until(sent, "what the cloud leads to")
+
+        def told(text):
+            return any(text in status.message for array in self.diagnostics.messages for status in array.status)
+        for number, flip in enumerate([(-1.0, 1.0), (1.0, -1.0)]):
+            self.diagnostics.messages.clear()
+            sent_until(cloud(*flip), lambda: told("not in the order of a camera's picture"))
+            self.assertEqual(self.kinds(), [], number)
+        self.diagnostics.messages.clear()
+        sent_until(cloud(math.nan, 1.0), lambda: told("hardly a point is valid"))
+        sent_until(cloud(1.0, 1.0), self.kinds)
 
     def test_bad_parameters_and_files_do_not_load(self):
         bad = os.path.join(self.folder.name, "bad.xml")

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <map>
 
+#include "hyselam_objects/landmark_check.hpp"
 #include "simulated_flat.hpp"
 
 namespace hyselam_objects {
@@ -14,10 +15,12 @@ struct FlatScores {
   double precision = 0.0, recall = 0.0;  ///< of objects, within 15 cm (furniture 25 cm)
   double kinds = 0.0;                    ///< share of the found things with the right name
   double relation_precision = 0.0, relation_recall = 0.0;
-  int objects = 0;              ///< true ones
-  int refound = 0;              ///< moved ones that kept their id
-  double movability_auc = 0.0;  ///< moved against unmoved small things
-  double milliseconds = 0.0;    ///< of detection and mapping, of one frame
+  int objects = 0;                     ///< true ones
+  int refound = 0;                     ///< moved ones that kept their id
+  double movability_auc = 0.0;         ///< moved against unmoved small things
+  int noticed = 0, displaced = 0;      ///< looks of a robot that is a metre off; all of them
+  int false_alarms = 0, in_place = 0;  ///< looks of one that is where it believes to be (5 cm)
+  double milliseconds = 0.0;           ///< of detection and mapping, of one frame
   std::vector<std::string> faults;
 };
 
@@ -67,10 +70,10 @@ places:
 
 class FlatShow {
  public:
-  FlatShow(const std::string& plan_file, const ObjectDictionary& dictionary, int every = 1)
-      : plan_(hyselam_sim::loadFloorPlan(plan_file)),
-        before_(plan_, things(false)),
-        after_(plan_, things(true)),
+  FlatShow(Furnished furnished, const ObjectDictionary& dictionary, int every = 1)
+      : furnished_(std::move(furnished)),
+        before_(furnished_.plan, furnished_.before, furnished_.targets),
+        after_(furnished_.plan, furnished_.after, furnished_.targets),
         every_(every),
         mapper_(&map_, dictionary) {
     mapper_.setPlaces([this](double x, double y) { return before_.placeAt(x, y); });
@@ -91,7 +94,7 @@ class FlatShow {
     std::vector<double> of_moved, of_unmoved;
     for (const auto& [id, true_id] : pairs) {
       const std::string& name = names[true_id - 1];
-      const bool was_moved = moved().count(name) != 0;
+      const bool was_moved = furnished_.moved.count(name) != 0;
       if (map_.find(id)->properties.count("furniture") == 0) {
         (was_moved ? of_moved : of_unmoved).push_back(movability(map_, id));
       }
@@ -99,7 +102,17 @@ class FlatShow {
       const auto old = first_pairs.find(id);
       const bool same = old != first_pairs.end() && first_names[old->second - 1] == name;
       scores.refound += same;
-      if (!same) scores.faults.push_back("moved and not found again: " + name);
+      if (same) continue;
+      scores.faults.push_back("moved and not found again: " + name);
+      for (const auto& [before, true_before] : first_pairs) {
+        if (first_names[true_before - 1] != name) continue;
+        const ObjectInstance* left = map_.find(before);
+        scores.faults.push_back(left == nullptr ? "  it was dropped"
+                                                : "  what was left of it: existence " +
+                                                      std::to_string(left->existence) + " seen " +
+                                                      std::to_string(left->seen) + " missed " +
+                                                      std::to_string(left->missed));
+      }
     }
     double better = 0.0;
     for (const double a : of_moved) {
@@ -107,6 +120,7 @@ class FlatShow {
     }
     const auto all = static_cast<double>(of_moved.size() * of_unmoved.size());
     scores.movability_auc = all > 0.0 ? better / all : 0.0;
+    checkPose(&scores);
     scores.milliseconds = frames_ > 0 ? 1e3 * seconds_ / frames_ : 0.0;
     return scores;
   }
@@ -114,6 +128,34 @@ class FlatShow {
   const ObjectMap& map() const { return map_; }
 
  private:
+  /// A third look from each place, six frames at a time, by a robot that is wrong about its pose.
+  void checkPose(FlatScores* scores) const {
+    const std::vector<hyselam::Pose2> way = after_.tour();
+    LandmarkWatch right, wrong;
+    for (std::size_t i = 0; i < way.size(); i += static_cast<std::size_t>(2 * every_)) {
+      if (i % 12 == 0) {
+        right.clear();
+        wrong.clear();
+      }
+      const double angle = static_cast<double>(i / 12) * 0.7;
+      Frame frame = after_.take(way[i], 20000.0 + static_cast<double>(i), 5000 + i);
+      const Eigen::Vector3d aside(std::cos(angle), std::sin(angle), 0.0);
+      frame.camera.in_map.translation() += 0.05 * aside;
+      const auto good = right.add(map_, detectObjects(frame.cloud, frame.camera.in_map));
+      frame.camera.in_map.translation() += 0.95 * aside;
+      const auto bad = wrong.add(map_, detectObjects(frame.cloud, frame.camera.in_map));
+      if (i % 12 < 8) continue;  // the last of six
+      if (good.verdict != LandmarkVerdict::kUnknown) {
+        ++scores->in_place;
+        scores->false_alarms += good.verdict == LandmarkVerdict::kDisplaced;
+      }
+      if (bad.verdict != LandmarkVerdict::kUnknown) {
+        ++scores->displaced;
+        scores->noticed += bad.verdict == LandmarkVerdict::kDisplaced;
+      }
+    }
+  }
+
   void drive(const Flat& flat, double stamp) {
     const std::vector<hyselam::Pose2> way = flat.tour();
     for (std::size_t i = 0; i < way.size(); i += static_cast<std::size_t>(every_)) {
@@ -221,7 +263,7 @@ class FlatShow {
     return scores;
   }
 
-  hyselam_sim::FloorPlan plan_;
+  Furnished furnished_;
   Flat before_, after_;
   int every_;
   ObjectMap map_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -102,6 +104,124 @@ inline std::set<std::string> moved() {
   return {"cup 1", "cereal box 1", "bottle 2", "bin 2", "bowl 2"};
 }
 
+/// A flat, what is in it before and after, and what to look at.
+struct Furnished {
+  hyselam_sim::FloorPlan plan;
+  std::vector<Thing> before, after;
+  std::set<std::string> moved;
+  std::vector<hyselam::Point2> targets;
+};
+
+inline Furnished flatOf(const std::string& plan_file) {
+  return {hyselam_sim::loadFloorPlan(plan_file), things(false), things(true), moved(), {}};
+}
+
+/// The same rooms with other furniture and other things in other places, all drawn: for figures
+/// that nothing was tuned on.
+inline Furnished drawnFlat(const std::string& plan_file, std::uint64_t seed) {
+  Furnished out;
+  out.plan = hyselam_sim::loadFloorPlan(plan_file);
+  hyselam::Rng rng(seed);
+  struct Top {
+    double x, y, lx, ly, height;
+  };
+  std::vector<Top> tops;
+  // Two pieces in each room: one along the outer wall, one in the middle.
+  std::string text =
+      "plan: drawn\ndescription: drawn\norigin: [-0.5, -0.5]\nsize: [11.0, 9.0]\n"
+      "wall_thickness: 0.15\nwalls:\n"
+      "  - {name: outer, closed: true, points: [[0, 0], [10, 0], [10, 8], [0, 8]]}\n"
+      "  - {name: across, points: [[5, 0], [5, 8]]}\n"
+      "  - {name: along, points: [[0, 4], [10, 4]]}\nfurniture:\n";
+  for (int room = 0; room < 4; ++room) {
+    const double ox = room % 2 * 5.0, oy = room / 2 * 4.0;
+    for (int piece = 0; piece < 2; ++piece) {
+      Top top{};
+      top.lx = piece == 0 ? rng.uniform(0.45, 0.6) : rng.uniform(0.9, 1.4);
+      top.ly = piece == 0 ? rng.uniform(1.1, 1.6) : rng.uniform(0.6, 0.9);
+      const double wall = room % 2 == 0 ? 0.15 + 0.5 * top.lx : 9.85 - 0.5 * top.lx;
+      top.x = piece == 0 ? wall : ox + rng.uniform(2.3, 2.7);
+      top.y = oy + (piece == 0 ? rng.uniform(1.2, 2.8) : rng.uniform(1.8, 2.2));
+      top.height = rng.uniform(0.42, 0.92);
+      tops.push_back(top);
+      char line[160];
+      std::snprintf(line, sizeof(line),
+                    "  - {name: piece %d, box: [%.3f, %.3f, %.3f, %.3f, 0], height: %.3f}\n",
+                    2 * room + piece, top.x, top.y, top.lx, top.ly, top.height);
+      text += line;
+      out.targets.push_back({top.x, top.y});
+    }
+  }
+  const hyselam_sim::FloorPlan rooms = std::move(out.plan);
+  text += "places:\n  - {name: none, at: [1.2, 3.3], polygon: [[0.9, 3.1], [1.5, 3.1], [1.5, 3.5], [0.9, 3.5]]}\n";
+  out.plan = hyselam_sim::parseFloorPlan(text, "drawn");
+  out.plan.places = rooms.places;
+  // Things on tops, apart from each other; some on the floor.
+  struct Spot {
+    double x, y;
+  };
+  std::vector<Spot> taken;
+  const auto spotOn = [&](const Top& top, Spot* spot) {
+    for (int i = 0; i < 200; ++i) {
+      *spot = {top.x + rng.uniform(-0.5, 0.5) * (top.lx - 0.3),
+               top.y + rng.uniform(-0.5, 0.5) * (top.ly - 0.3)};
+      bool free = true;
+      for (const Spot& other : taken) {
+        free = free && std::hypot(other.x - spot->x, other.y - spot->y) > 0.36;
+      }
+      if (free) return true;
+    }
+    return false;
+  };
+  std::map<std::string, int> numbers;
+  const auto onATop = [&](const std::string& kind, Thing* t) {
+    for (int i = 0; i < 50; ++i) {
+      const Top& top = tops[static_cast<std::size_t>(rng.uniform(0.0, 7.999))];
+      Spot spot{};
+      if (!spotOn(top, &spot)) continue;
+      taken.push_back(spot);
+      *t = at(thing(kind, numbers[kind]), spot.x, spot.y, top.height, rng.uniform(0.0, 180.0));
+      return true;
+    }
+    return false;
+  };
+  const std::vector<std::string> kinds{"cup", "bottle", "cereal box", "book",
+                                       "PC",  "lamp",   "plant pot",  "bowl"};
+  for (int i = 0; i < 23; ++i) {
+    const std::string& kind = kinds[static_cast<std::size_t>(rng.uniform(0.0, 7.999))];
+    ++numbers[kind];
+    Thing t;
+    if (onATop(kind, &t)) {
+      out.before.push_back(t);
+    } else {
+      --numbers[kind];
+    }
+  }
+  for (int room = 0; room < 4; ++room) {
+    const double ox = room % 2 * 5.0, oy = room / 2 * 4.0;
+    ++numbers["bin"];
+    const double x = ox + (room % 2 == 0 ? rng.uniform(4.0, 4.4) : rng.uniform(0.6, 1.0));
+    const double y = oy + rng.uniform(0.7, 3.3);
+    out.before.push_back(at(thing("bin", numbers["bin"]), x, y, 0.0));
+    out.targets.push_back({x, y});
+  }
+  out.after = out.before;
+  while (out.moved.size() < 5) {
+    Thing& t = out.after[static_cast<std::size_t>(
+        rng.uniform(0.0, static_cast<double>(out.after.size()) - 4.001))];
+    if (out.moved.count(t.name) != 0) continue;
+    const std::string name = t.name;
+    Thing moved = t;
+    if (!onATop(t.kind, &moved)) break;
+    const bool far = std::hypot(moved.pose.x - t.pose.x, moved.pose.y - t.pose.y) > 0.6;
+    if (!far) continue;
+    t.pose = moved.pose;
+    t.z = moved.z;
+    out.moved.insert(name);
+  }
+  return out;
+}
+
 struct Frame {
   OrganisedCloud cloud;
   PinholeCamera camera;
@@ -110,8 +230,10 @@ struct Frame {
 
 class Flat {
  public:
-  Flat(const hyselam_sim::FloorPlan& plan, std::vector<Thing> all)
-      : plan_(plan), things_(std::move(all)), scene_(make()) {}
+  /// `targets`: what to look at on a tour; empty: of the flat of flat.yaml.
+  Flat(const hyselam_sim::FloorPlan& plan, std::vector<Thing> all,
+       std::vector<hyselam::Point2> targets = {})
+      : plan_(plan), things_(std::move(all)), targets_(std::move(targets)), scene_(make()) {}
 
   const hyselam_sim::FloorPlan& plan() const { return plan_; }
   const std::vector<Thing>& allThings() const { return things_; }
@@ -122,8 +244,18 @@ class Flat {
     const auto look = [&](double x, double y, double tx, double ty) {
       way.push_back({x, y, std::atan2(ty - y, tx - x)});
     };
-    for (int side = 0; side < 2; ++side) {    // west, east
-      for (int half = 0; half < 2; ++half) {  // south, north
+    // Around each target, from within its room.
+    for (const hyselam::Point2& target : targets_) {
+      const double side = target.x > 5.0 ? 5.0 : 0.0, half = target.y > 4.0 ? 4.0 : 0.0;
+      for (int i = 0; i < 16; ++i) {
+        const double angle = 2.0 * hyselam::kPi * i / 8.0, away = i < 8 ? 1.3 : 1.9;
+        const double x = target.x + away * std::cos(angle), y = target.y + away * std::sin(angle);
+        const bool within = x > side + 0.4 && x < side + 4.6 && y > half + 0.4 && y < half + 3.6;
+        if (within) look(x, y, target.x, target.y);
+      }
+    }
+    for (int side = 0; side < 2 && targets_.empty(); ++side) {  // west, east
+      for (int half = 0; half < 2; ++half) {                    // south, north
         const double ox = side * 5.0, oy = half * 4.0;
         for (const auto& [x, y] : {std::pair<double, double>{1.3, 0.8},
                                    {1.3, 3.3},
@@ -257,6 +389,7 @@ class Flat {
 
   hyselam_sim::FloorPlan plan_;
   std::vector<Thing> things_;
+  std::vector<hyselam::Point2> targets_;
   hyselam_sim::Scene scene_;
 };
 

@@ -1,6 +1,9 @@
 // Detections become a map: association, evidence, moved things, relations, movability.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+
 #include "hyselam_common/errors.hpp"
 #include "hyselam_objects/object_descriptor.hpp"
 #include "hyselam_objects/object_mapper.hpp"
@@ -108,6 +111,61 @@ TEST_F(Room, AMovedThingKeepsItsIdAndIsMoreMovable) {
   EXPECT_EQ(find("red")->history.size(), 2u);
   EXPECT_GT(movability(map_, cup), movability(map_, book));
   EXPECT_LT(movability(map_, map_.objects[0].id), movability(map_, book));
+}
+
+TEST_F(Room, OfThingsThatLookAlikeAsManyAreFoundAgainAsWereMoved) {
+  look({table_, seen(1.7, 0.3, 0.75, kCup, kRed), seen(1.9, -0.3, 0.75, kCup, kRed),
+        seen(2.2, 0.0, 0.75, kCup, kRed)},
+       1.0);
+  mapper_.finish();
+  std::set<Id> before;
+  for (const ObjectInstance& object : map_.objects) before.insert(object.id);
+  look({table_, seen(1.7, 0.3, 0.75, kCup, kRed), seen(2.3, 0.35, 0.75, kCup, kRed),
+        seen(2.4, -0.35, 0.75, kCup, kRed)},
+       1000.0);
+  mapper_.finish();
+  std::set<Id> after;
+  for (const ObjectInstance& object : map_.objects) after.insert(object.id);
+  EXPECT_EQ(before, after);
+  int moved = 0;
+  for (const ObjectInstance& object : map_.objects) {
+    if (object.properties.count("furniture") != 0) continue;
+    const Point3 &a = object.history.front().position, &b = object.history.back().position;
+    moved += std::hypot(a.x - b.x, a.y - b.y) > 0.2;
+  }
+  EXPECT_EQ(moved, 2);
+}
+
+TEST_F(Room, WhatIsToldOfAThingOutlastsThatItIsFoundAgain) {
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
+  mapper_.finish();
+  const Id cup = find("red")->id, book = find("blue")->id;
+  look({table_, seen(2.3, -0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1000.0);
+  Id now = 0;  // the same cup, not yet known to be
+  for (const ObjectInstance& object : map_.objects) now = std::max(now, object.id);
+  ASSERT_NE(now, cup);
+  ObjectRelation told;
+  told.object = now;
+  told.word = RelationWord::kTop;
+  told.other = book;
+  told.told = true;
+  map_.relate(told);
+  mapper_.finish();
+  checkMap(map_, "map");
+  EXPECT_EQ(map_.find(now), nullptr);
+  EXPECT_TRUE(isSaid(cup, RelationWord::kTop, book));
+}
+
+TEST_F(Room, ABagThatBeginsAgainIsNoLongTimeAgo) {
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 5000.0);
+  mapper_.finish(mapper_.time() - 20.0);
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 10.0);
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.3, -0.3, 0.75, kBook, kBlue)}, 14.0, 1);
+  EXPECT_EQ(mapper_.time(), 14.0);
+  mapper_.finish(mapper_.time() - 20.0);
+  checkMap(map_, "map");
+  EXPECT_EQ(map_.objects.size(), 3u) << "what was seen once just now is kept";
+  EXPECT_EQ(find("red")->last_seen, 14.0);
 }
 
 TEST_F(Room, WhatIsGoneLosesEvidenceAndWhatIsHiddenDoesNot) {

@@ -223,9 +223,20 @@ void ObjectEngineServer::look(const OrganisedCloud& cloud, PinholeCamera camera,
   camera.in_map = camera_in_map;
   const ros::WallTime begin = ros::WallTime::now();
   const std::vector<DetectedObject> seen = detectObjects(cloud, camera.in_map, params_.detect);
-  landmarks_ = watch_.add(map_, seen);  // before the map takes over what is wrong
-  mapper_.update(cloud, camera, seen, hyselam::toSeconds(stamp));
-  fill_.setTime(map_.stamp);
+  // Before the map takes over what is wrong; but if it stays so, it is the map that was.
+  constexpr int kMostHeld = 20;
+  landmarks_ = watch_.add(map_, seen);
+  const bool off = landmarks_.verdict == LandmarkVerdict::kDisplaced ||
+                   landmarks_.verdict == LandmarkVerdict::kDoubtful;
+  held_ = off ? held_ + 1 : 0;
+  if (held_ > kMostHeld) {
+    watch_.clear();
+    held_ = 0;
+  }
+  if (held_ == 0) {
+    mapper_.update(cloud, camera, seen, hyselam::toSeconds(stamp));
+    fill_.setTime(map_.stamp);
+  }
   learn(seen, camera);
   seconds_ = (ros::WallTime::now() - begin).toSec();
   detections_ += seen.size();
@@ -409,6 +420,7 @@ void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   hyselam::addValue(status, "landmarks compared", landmarks_.compared);
   hyselam::addValue(status, "landmarks fitting", landmarks_.fitting);
   hyselam::addValue(status, "landmarks chi2", landmarks_.chi2);
+  hyselam::addValue(status, "frames held back", held_);
   hyselam::addValue(status, "offset x [m]", landmarks_.x);
   hyselam::addValue(status, "offset y [m]", landmarks_.y);
   hyselam::addValue(status, "frames used", frames_);

@@ -90,6 +90,7 @@ class ObjectEngineServer {
   ObjectMapper mapper_;
   LandmarkWatch watch_;
   LandmarkCheck landmarks_;  ///< of the last frames
+  int held_ = 0;             ///< frames in a row that the map has not been given because of them
   std::optional<hyselam_topo::AugmentedTopologicalMap> topology_;
   std::optional<PinholeCamera> camera_;
 
