@@ -153,7 +153,9 @@ inline Furnished drawnFlat(const std::string& plan_file, std::uint64_t seed) {
     }
   }
   const hyselam_sim::FloorPlan rooms = std::move(out.plan);
-  text += "places:\n  - {name: none, at: [1.2, 3.3], polygon: [[0.9, 3.1], [1.5, 3.1], [1.5, 3.5], [0.9, 3.5]]}\n";
+  text +=
+      "places:\n  - {name: none, at: [1.2, 3.3], polygon: [[0.9, 3.1], [1.5, 3.1], [1.5, 3.5], "
+      "[0.9, 3.5]]}\n";
   out.plan = hyselam_sim::parseFloorPlan(text, "drawn");
   out.plan.places = rooms.places;
   // Things on tops, apart from each other; some on the floor.
