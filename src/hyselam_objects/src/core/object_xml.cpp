@@ -202,6 +202,7 @@ GenericClassifier readClassifier(XmlElement& e) {
     classifier.views.push_back(readFloats(child));
     return true;
   });
+  if (classifier.views.empty()) e.fail("it has no <view>");
   return classifier;
 }
 
