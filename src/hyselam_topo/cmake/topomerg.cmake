@@ -31,7 +31,7 @@ if(TARGET ${PROJECT_NAME}_topomerg_benchmark)
 endif()
 
 if(CATKIN_ENABLE_TESTING)
-  foreach(test topomerg topomerg_tool)
+  foreach(test topomerg topomerg_bounds topomerg_tool)
     hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_topomerg)
     if(TARGET ${PROJECT_NAME}_test_${test})
       target_compile_definitions(${PROJECT_NAME}_test_${test}

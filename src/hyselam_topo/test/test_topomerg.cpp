@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "agreement_of_matches.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/description_xml.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
@@ -41,16 +42,6 @@ MatchParams tableRun(double e, double v, double d, double a) {
   params.fitness.areas = a;
   params.fitness.sides = SideRule::kCentres;
   return params;
-}
-
-void expectSame(const Match& a, const Match& b, const std::string& what) {
-  ASSERT_EQ(a.found(), b.found()) << what;
-  ASSERT_EQ(a.solutions.size(), b.solutions.size()) << what;
-  EXPECT_EQ(a.equal, b.equal) << what;
-  for (std::size_t k = 0; k < a.solutions.size(); ++k) {
-    EXPECT_EQ(a.solutions[k].assignment, b.solutions[k].assignment) << what;
-    EXPECT_NEAR(a.solutions[k].fitness, b.solutions[k].fitness, 1e-12) << what;
-  }
 }
 
 DescribedPlace told(Id id, const std::string& name, double area = 0.0) {

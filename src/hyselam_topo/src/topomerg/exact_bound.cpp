@@ -257,7 +257,7 @@ double ExactSearch::looseLoss(int name, const LooseAnchor& loose, const Growth* 
     const PlaceSet& around = growth->has.around;
     if (!problem_.areJoined(at(name), at(growth->name))) {
       if (around.contains(v)) loss += terms_.forgotten_edge;
-    } else if (!around.intersects(component) && !component.intersects(growth->open)) {
+    } else if (!around.intersects(component) && !loose.around.intersects(growth->open)) {
       loss += mayShareWall(component, growth->has.members | growth->open)
                   ? wallLoss(name, growth->name)
                   : pairLoss(name, growth->name);
@@ -333,8 +333,12 @@ void ExactSearch::listSets(Node* node) const {
         }))
       continue;
     double area = 0.0;
-    reach.forEach([&](std::size_t w) { area += problem_.area[w]; });
-    node->loose.push_back({v, reach, area});
+    PlaceSet around;
+    reach.forEach([&](std::size_t w) {
+      area += problem_.area[w];
+      around |= problem_.neighbours[w];
+    });
+    node->loose.push_back({v, reach, around, area});
   }
   node->column_of.assign(at(m_), -1);
   int columns = 0;

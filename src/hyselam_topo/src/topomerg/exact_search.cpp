@@ -142,7 +142,10 @@ void ExactSearch::leaf() {
   if (!params_.dummy && !free_.empty()) return;
   MatchSolution s;
   s.assignment = owner_;
-  s.fitness = evaluate(terms_, verticesOf(problem_, owner_), &s.heading);
+  // With a heading that is only known up to `slack_`, what counts is what no heading in it can
+  // undercut.
+  s.fitness =
+      slack_ > 0.0 ? 1.0 - base_ : evaluate(terms_, verticesOf(problem_, owner_), &s.heading);
   s.vertices = taken_;
   if (!problem_.heading && !(s.heading >= sector_low_ && s.heading < sector_high_)) return;
   solutions_.offer(std::move(s));

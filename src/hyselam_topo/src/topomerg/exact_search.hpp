@@ -49,7 +49,8 @@ struct GrownView {
 /// A vertex with too many sets to list them.
 struct LooseAnchor {
   int anchor = 0;
-  PlaceSet piece;  ///< that its sets are made of
+  PlaceSet piece;   ///< that its sets are made of
+  PlaceSet around;  ///< neighbours of its vertices, also those that are ranked above the anchor
   double area = 0.0;
 };
 
