@@ -15,7 +15,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
-from hyselam_msgs.msg import AugmentedTopologicalMap, Place, PlaceEdge, PlaceState, PlaceWord, VisualPlace
+from hyselam_msgs.msg import AugmentedTopologicalMap, LocalizationStatus, Place, PlaceEdge, PlaceState, PlaceWord, VisualPlace
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 from sensor_msgs.msg import CompressedImage, Image, LaserScan
 from std_msgs.msg import Bool
@@ -155,6 +155,7 @@ class Rig:
         self.scan, self.map, self.place = pub("scan", LaserScan), pub("topological_map", AugmentedTopologicalMap), \
             pub("place", PlaceState)
         self.tf = rospy.Publisher("/tf", TFMessage, queue_size=1000)
+        self.localization = pub("localization_status", LocalizationStatus)
         self.seen = Listener(f"/{name}/visual_place", VisualPlace)
         self.kidnapped = Listener(f"{self.node}/kidnapped", Bool)
         self.initialpose = Listener(f"/{name}/initialpose", PoseWithCovarianceStamped)
@@ -168,7 +169,7 @@ class Rig:
             self.loaded = False
         if self.loaded:
             outputs = (self.seen, self.kidnapped, self.initialpose, self.diagnostics, self.markers)
-            wait_until(lambda: all(p.get_num_connections() > 0 for p in (self.image, self.map, self.place, self.tf))
+            wait_until(lambda: all(p.get_num_connections() > 0 for p in (self.image, self.map, self.place, self.tf, self.localization))
                        and all(o.subscriber.get_num_connections() > 0 for o in outputs), "no connections")
 
     def close(self):
@@ -176,7 +177,7 @@ class Rig:
             rospy.ServiceProxy("/manager/unload_nodelet", NodeletUnload)(self.node)
         for listener in (self.seen, self.kidnapped, self.initialpose, self.diagnostics, self.markers):
             listener.close()
-        for publisher in (self.image, self.scan, self.map, self.place, self.tf):
+        for publisher in (self.image, self.scan, self.map, self.place, self.tf, self.localization):
             publisher.unregister()
 
     def give(self, image, scan=None):
@@ -464,6 +465,56 @@ class VisualPlacesTest(unittest.TestCase):
             look(there, 6.0)  # the localisation has found it
         wait_until(lambda: not rig.kidnapped.messages[-1].data, "they agree again")
         self.assertEqual(rig.values()["alarms"], "1")
+
+    def test_a_localization_that_is_lost_before_the_camera_notices(self):
+        rig = self.rig(model=self.film.model, reach=0.2, patience=1.0, known_from=0.97)  # two frames
+        rig.give_map(topological_map())
+        wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
+        there = self.film.frame_in("right room")
+        clock = [there.header.stamp + rospy.Duration(1000)]
+
+        def tell(phase):
+            msg = LocalizationStatus(phase=phase, converged=phase == LocalizationStatus.TRACKING)
+            msg.header.stamp, msg.header.frame_id = clock[0], "map"
+            rig.localization.publish(msg)
+
+        def look(count=1):
+            for _ in range(count):
+                clock[0] += rospy.Duration(0, 200000000)
+                rig.tf.publish(TFMessage([transform(there, "map", (1.5, 2.0, 0.0))]))
+                frame = copy.deepcopy(there)
+                frame.header.stamp = clock[0]
+                rig.give(frame)
+                rig.settle()
+
+        # It searches from the start on: no place is forced upon it.
+        tell(LocalizationStatus.GLOBAL)
+        rospy.sleep(0.3)
+        look(20)
+        self.assertFalse(rig.kidnapped.messages[-1].data or rig.initialpose.messages)
+        tell(LocalizationStatus.LOST)
+        rospy.sleep(0.3)
+        look(10)
+        guess = rig.initialpose.wait()
+        self.assertGreater(guess.pose.pose.position.x, 4.0)
+        self.assertEqual((rig.values()["alarms"], rig.values()["localisation lost"]), ("0", "1"))
+        look(10)  # the last status still says lost: that was before the pose was set
+        self.assertEqual(len(rig.initialpose.messages), 1)
+        tell(LocalizationStatus.LOST)  # the pose that was set did not do
+        rospy.sleep(0.3)
+        look(10)
+        wait_until(lambda: len(rig.initialpose.messages) == 2, "the place is told again")
+        # It finds itself before the place is known: nothing is set any more.
+        look(10)
+        tell(LocalizationStatus.LOST)
+        rospy.sleep(0.3)
+        look(1)
+        self.assertTrue(rig.kidnapped.messages[-1].data)
+        tell(LocalizationStatus.TRACKING)
+        rospy.sleep(0.3)
+        look(1)
+        wait_until(lambda: not rig.kidnapped.messages[-1].data, "it has found itself")
+        self.assertEqual(len(rig.initialpose.messages), 2)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,11 +20,15 @@ struct FilmedFrame {
   int place = -1;                   ///< index into the plan's places; -1: none
   std::vector<unsigned char> jpeg;  ///< as a camera driver would hand it out, quality 92
   std::vector<float> scan;
+  hyselam::Pose2 camera = kNoPose;         ///< in the plan frame
+  std::optional<hyselam::Pose2> odometry;  ///< of the camera
 
   cv::Mat image() const { return cv::imdecode(jpeg, cv::IMREAD_COLOR); }
   Readings readings() const {
     Readings r;
     r.scan = scan;
+    r.stamp = stamp;
+    r.odometry = odometry;
     return r;
   }
 };
@@ -97,7 +102,14 @@ inline FilmedTour filmTour(const hyselam_sim::Scene& scene, hyselam_sim::Route r
       scene, tour.run.log, route.people, seed, params, [&](const hyselam_sim::FilmFrame& f) {
         if (f.place < 0) return;
         while (at + 1 < scans.size() && scans[at + 1].stamp <= f.stamp + 1e-6) ++at;
-        FilmedFrame frame{f.stamp, f.base, f.place, {}, scans[at].ranges};
+        FilmedFrame frame;
+        frame.stamp = f.stamp;
+        frame.base = f.base;
+        frame.place = f.place;
+        frame.scan = scans[at].ranges;
+        frame.camera = f.base * params.camera.camera_in_base;
+        const auto odometry = hyselam::poseAt(tour.run.log.odometry, f.stamp, 0.1);
+        if (odometry) frame.odometry = *odometry * params.camera.camera_in_base;
         cv::imencode(".jpg", f.picture.colour, frame.jpeg, {cv::IMWRITE_JPEG_QUALITY, 92});
         tour.frames.push_back(std::move(frame));
       });
@@ -114,7 +126,7 @@ inline Model trainOn(const std::vector<FilmedTour>& tours,
       sizes,
       [&](std::size_t t, std::size_t i) -> TrainingFrame {
         const FilmedFrame& f = tours[t].frames[i];
-        return {f.image(), f.readings(), places[static_cast<std::size_t>(f.place)].name};
+        return {f.image(), f.readings(), places[static_cast<std::size_t>(f.place)].name, f.camera};
       },
       options);
 }

@@ -81,7 +81,16 @@ nlohmann::json run(const Options& o) {
           filters.push_back(std::make_unique<PlaceFilter>(model.graph, params));
         }
         Recogniser recogniser(model, model.graph, {});
-        std::vector<int> right(filters.size(), 0);
+        // The filter over poses without and with the odometry of the tour that is asked for.
+        std::vector<std::unique_ptr<Recogniser>> moved;
+        if (model.classifier.kernel == Kernel::kExemplar) {
+          RecogniserParams params;
+          params.filter.kind = FilterKind::kPoses;
+          for (int i = 0; i < 2; ++i) {
+            moved.push_back(std::make_unique<Recogniser>(model, model.graph, params));
+          }
+        }
+        std::vector<int> right(filters.size(), 0), right_moved(moved.size(), 0);
         for (const auto& frame : asked[k].frames) {
           recogniser.update(frame.image(), frame.readings());
           const int truth =
@@ -90,10 +99,21 @@ nlohmann::json run(const Options& o) {
             filters[f]->update(recogniser.frameProbabilities());
             right[f] += filters[f]->estimate().place == truth;
           }
+          for (std::size_t m = 0; m < moved.size(); ++m) {
+            Readings readings = frame.readings();
+            if (m == 0) readings.odometry.reset();
+            right_moved[m] += moved[m]
+                                  ->updateWithSignature(recogniser.signature().data(), readings)
+                                  .estimate.place == truth;
+          }
         }
         nlohmann::json shares;
         for (std::size_t f = 0; f < filters.size(); ++f) {
           shares[kFilters[f]] = right[f] / static_cast<double>(asked[k].frames.size());
+        }
+        for (std::size_t m = 0; m < moved.size(); ++m) {
+          shares[m == 0 ? "poses" : "poses, odometry"] =
+              right_moved[m] / static_cast<double>(asked[k].frames.size());
         }
         row["asked"].push_back(
             {{"hour", o.ask[k]}, {"frames", asked[k].frames.size()}, {"accuracy", shares}});

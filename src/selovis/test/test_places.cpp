@@ -629,6 +629,87 @@ TEST(PoseFilter, IsTheSameEveryTimeAndAfterReset) {
   for (const double p : a.probabilities()) EXPECT_TRUE(p >= 0.0 && p <= 1.0);
 }
 
+/// Distances of step i of the ring to all samples, as the exemplar kernel gives them.
+std::vector<float> distancesAt(const Ring& ring, double i) {
+  std::vector<float> d;
+  for (std::size_t s = 0; s < ring.samples.count(); ++s) {
+    const float x = ring.samples.row(s)[0] - Ring::look(Ring::angle(i), 0),
+                y = ring.samples.row(s)[1] - Ring::look(Ring::angle(i), 1);
+    d.push_back(x * x + y * y + 0.01f);
+  }
+  return d;
+}
+
+/// Drives a quarter round; `odometry(i)` is told at step i, one step a second unless said.
+template <typename F>
+std::vector<double> quarterRound(const Ring& ring, F odometry, double seconds = 1.0) {
+  PoseFilterParams params;
+  params.jump = 0.0;
+  PoseFilter filter(ring.samples, 4, params);
+  for (int i = 5; i < 45; ++i) filter.update(distancesAt(ring, i), odometry(i), seconds);
+  return filter.probabilities();
+}
+
+TEST(PoseFilter, OdometryThatIsNoNumberOrJumpsIsNoOdometry) {
+  const Ring ring;
+  const double nan = std::nan("");
+  using Odometry = std::optional<hyselam::Pose2>;
+  const auto with = [&](const Odometry& odd) {
+    return quarterRound(ring, [&](int i) { return i == 30 ? odd : Odometry(Ring::pose(i)); });
+  };
+  const auto without = with({});
+  EXPECT_GT(without[1], 0.9);
+  EXPECT_EQ(with(hyselam::Pose2{nan, 0.0, 0.0}), without);
+  EXPECT_EQ(with(hyselam::Pose2{0.0, 0.0, nan}), without);
+  // To the other end of the world, and begun again from elsewhere: the places before are kept.
+  for (const double x : {1e300, -1e9, 100.0}) {
+    const auto p = quarterRound(ring, [&](int i) {
+      hyselam::Pose2 pose = Ring::pose(i);
+      if (i >= 30) pose.x += x;
+      return Odometry(pose);
+    });
+    EXPECT_GT(p[1], 0.9) << x;
+  }
+}
+
+TEST(PoseFilter, LivesOnWhenTimeGoesBackOrIsNoNumber) {
+  const Ring ring;
+  for (const double seconds : {-100.0, std::nan(""), 0.0, 1e12}) {
+    for (const bool odometry : {false, true}) {
+      const auto p = quarterRound(
+          ring,
+          [&](int i) {
+            return odometry ? std::optional<hyselam::Pose2>(Ring::pose(i)) : std::nullopt;
+          },
+          seconds);
+      EXPECT_NEAR(p[0] + p[1] + p[2] + p[3], 1.0, 1e-9) << seconds;
+    }
+  }
+}
+
+TEST(PoseFilter, DrivenOutOfAllThatWasLearntItBeginsAgainWithThatFrame) {
+  const Ring ring;
+  PoseFilterParams params;
+  params.jump = 0.0;
+  PoseFilter filter(ring.samples, 4, params), fresh(ring.samples, 4, params);
+  filter.update(distancesAt(ring, 10), hyselam::Pose2{0.0, 0.0, 0.0});
+  filter.update(distancesAt(ring, 10), hyselam::Pose2{900.0, 0.0, 0.0}, 1000.0);
+  fresh.update(distancesAt(ring, 10), {});
+  EXPECT_EQ(filter.probabilities(), fresh.probabilities());
+  EXPECT_GT(filter.probabilities()[0], 0.9);
+}
+
+TEST(PoseFilter, ARobotThatWasCarriedIsFoundAgainAtThirtyFramesASecond) {
+  const Ring ring;
+  PoseFilterParams params;
+  params.particles = 200;  // 0.13 of a particle is set anew in each frame
+  PoseFilter filter(ring.samples, 4, params);
+  const hyselam::Pose2 still;
+  for (int i = 0; i < 300; ++i) filter.update(distancesAt(ring, 60), still, 1.0 / 30.0);
+  for (int i = 0; i < 1800; ++i) filter.update(distancesAt(ring, 12), still, 1.0 / 30.0);
+  EXPECT_GT(filter.probabilities()[0], 0.9);
+}
+
 TEST(PoseFilter, RefusesWhatItCannotUse) {
   Ring ring;
   PoseFilterParams params;

@@ -169,6 +169,26 @@ TEST(Supervisor, ResetForgets) {
   EXPECT_EQ(r.evidence, 0.0);
 }
 
+TEST(Supervisor, ALocalisationThatIsLostIsToldThePlace) {
+  Supervisor s(chain(8), {});
+  for (int i = 0; i < 50; ++i) s.update(sees(8, 3), {});
+  EXPECT_EQ(s.update(sees(8, 3), {}).place, -1) << "nobody asked";
+  s.doubt();
+  int frames = 0;
+  Supervision r;
+  do {
+    r = s.update(sees(8, 6, 0.97), {});
+    EXPECT_TRUE(r.kidnapped);
+    EXPECT_FALSE(r.alarm) << "it has told so itself";
+    ASSERT_LT(++frames, 8);
+  } while (r.place < 0);
+  EXPECT_EQ(r.place, 6);
+  EXPECT_GT(frames, 1) << "no single frame is believed";
+  // It has found itself, and the camera agrees.
+  for (int i = 0; i < 40; ++i) r = s.update(sees(8, 6), {6});
+  EXPECT_FALSE(r.kidnapped);
+}
+
 TEST(Supervisor, WrongNumbersAreRefused) {
   Supervisor s(chain(4), {});
   EXPECT_THROW(s.update({0.5, 0.5}, {0}), std::invalid_argument);
@@ -267,6 +287,12 @@ TEST(Learner, SignaturesGoIntoTheMapAndComeBack) {
   const auto& signature = map.places.front().signatures.at(1);
   EXPECT_NEAR(*signature.heading, 0.5 + 0.1 * LearnerParams().aperture_x, 1e-9)
       << "a view shifted to the right is that of a camera turned to the left";
+  // A signature without a heading has no pose that a filter over poses may use.
+  map.places.front().signatures.front().heading.reset();
+  const double stamp = map.places.front().signatures.front().stamp;
+  for (const auto& frame : framesOf(map, *model)) {
+    EXPECT_EQ(frame.camera.isFinite(), frame.stamp != stamp);
+  }
   Model other = *model;
   other.descriptor = "GLANCE";
   EXPECT_TRUE(framesOf(map, other).empty()) << "signatures of another descriptor";

@@ -39,9 +39,10 @@ class PoseFilter {
   PoseFilter(const Samples& samples, int places, const PoseFilterParams& params);
 
   /// @param distances squared distance of the frame's signature to that of each sample.
-  /// @param odometry of the camera, in any frame that does not jump; none: not known.
-  /// @param seconds since the frame before.
-  void update(const std::vector<float>& distances, const std::optional<hyselam::Pose2>& odometry,
+  /// @param camera its pose by odometry, in any frame; none, or no finite numbers: not known.
+  ///   Where it has jumped, farther than any robot drives, the step counts as not known.
+  /// @param seconds since the frame before; below 0: none.
+  void update(const std::vector<float>& distances, const std::optional<hyselam::Pose2>& camera,
               double seconds = 1.0);
   /// Back to knowing nothing.
   void reset();
@@ -71,6 +72,7 @@ class PoseFilter {
   std::vector<std::uint32_t> bucket_begin_;  // spots_ are sorted by bucket, of `reach` metres each
   hyselam::Rng rng_;
   bool fresh_ = true;
+  double jumps_due_ = 0.0;
   std::optional<hyselam::Pose2> odometry_;
   std::vector<hyselam::Pose2> particles_, next_;
   std::vector<double> weights_, likeness_, state_;

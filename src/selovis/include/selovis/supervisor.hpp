@@ -54,6 +54,10 @@ class Supervisor {
   /// Forgets all evidence: the pose has been set anew.
   void reset();
 
+  /// The localisation itself says that it is lost: as after an alarm, the frames from now on tell
+  /// where the robot is.
+  void doubt();
+
  private:
   void restart(const std::vector<int>& here);
 

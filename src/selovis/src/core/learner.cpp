@@ -134,8 +134,10 @@ std::vector<LearntFrame> framesOf(const hyselam_topo::AugmentedTopologicalMap& m
         LearntFrame frame;
         frame.place = name;
         frame.stamp = signature.stamp;
-        frame.camera = {signature.position.x, signature.position.y,
-                        signature.heading.value_or(0.0)};
+        // Of a heading that nobody wrote down nothing may be thought.
+        frame.camera = signature.heading ? hyselam::Pose2{signature.position.x,
+                                                          signature.position.y, *signature.heading}
+                                         : kNoPose;
         frame.height = signature.position.z;
         frames.push_back(std::move(frame));
       }

@@ -13,6 +13,8 @@ namespace {
 constexpr double kMaxExtent = 5000.0;  // [m]
 constexpr double kKnownTo = 0.8;       // of the reach: farther from all that was learnt is unlikely
 constexpr double kUnknown = 1e-6;      // likelihood of being out of reach of everything
+constexpr double kFastest = 5.0;       // [m/s] odometry that moves faster has jumped
+constexpr double kSlack = 1.0;         // [m] and by more than this
 
 }  // namespace
 
@@ -86,6 +88,7 @@ void PoseFilter::reset() {
   std::fill(state_.begin(), state_.end(), 1.0 / static_cast<double>(state_.size()));
   rng_ = hyselam::Rng(params_.seed);
   odometry_.reset();
+  jumps_due_ = 0.0;
   fresh_ = true;
 }
 
@@ -110,13 +113,16 @@ hyselam::Pose2 PoseFilter::drawn(double total) {
 }
 
 void PoseFilter::move(const std::optional<hyselam::Pose2>& odometry, double seconds) {
-  if (odometry && odometry_) {
-    const hyselam::Pose2 step = hyselam::between(*odometry_, *odometry);
-    const double length = std::hypot(step.x, step.y), turn = std::abs(step.theta);
+  hyselam::Pose2 step;
+  if (odometry && odometry_) step = hyselam::between(*odometry_, *odometry);
+  const double length = std::hypot(step.x, step.y);
+  if (odometry && odometry_ && length <= kSlack + kFastest * seconds) {
+    const double turn = std::abs(step.theta), still = std::sqrt(std::min(1.0, seconds));
     for (auto& p : particles_) {
-      p = p * hyselam::Pose2{step.x + rng_.gaussian(0.0, 0.02 + 0.15 * length),
-                             step.y + rng_.gaussian(0.0, 0.02 + 0.05 * length),
-                             step.theta + rng_.gaussian(0.0, 0.015 + 0.1 * turn + 0.05 * length)};
+      p = p * hyselam::Pose2{
+                  step.x + rng_.gaussian(0.0, 0.02 * still + 0.15 * length),
+                  step.y + rng_.gaussian(0.0, 0.02 * still + 0.05 * length),
+                  step.theta + rng_.gaussian(0.0, 0.015 * still + 0.1 * turn + 0.05 * length)};
     }
     return;
   }
@@ -167,11 +173,15 @@ double PoseFilter::likelihood(const hyselam::Pose2& pose, double unseen, int* pl
 }
 
 void PoseFilter::update(const std::vector<float>& distances,
-                        const std::optional<hyselam::Pose2>& odometry, double seconds) {
+                        const std::optional<hyselam::Pose2>& camera, double seconds) {
+  const std::optional<hyselam::Pose2> odometry =
+      camera && camera->isFinite() ? camera : std::optional<hyselam::Pose2>();
   if (distances.size() != likeness_.size()) {
     throw std::invalid_argument("there are not as many distances as samples");
   }
-  const double pace = std::min(1.0, std::max(0.0, seconds));
+  seconds = std::isfinite(seconds) ? std::max(0.0, seconds) : 1.0;
+  const double pace = std::min(1.0, seconds);
+  const bool first = fresh_;
   double least = 1e300, total = 0.0;
   for (const View& v : views_) least = std::min(least, static_cast<double>(distances[v.sample]));
   least = std::max(1e-9, least);
@@ -184,8 +194,10 @@ void PoseFilter::update(const std::vector<float>& distances,
     for (auto& p : particles_) p = drawn(total);
   } else {
     move(odometry, seconds);
-    const auto jumps = static_cast<std::size_t>(
-        std::lround(params_.jump * pace * static_cast<double>(particles_.size())));
+    // Parts of a particle are carried over: at 30 frames a second they are all there is.
+    jumps_due_ += params_.jump * pace * static_cast<double>(particles_.size());
+    const auto jumps = static_cast<std::size_t>(std::max(0L, std::lround(jumps_due_)));
+    jumps_due_ -= static_cast<double>(jumps);
     // Resampled particles lie in the order of those they come from: taken evenly.
     const std::size_t offset = rng_.below(static_cast<std::uint32_t>(particles_.size()));
     for (std::size_t i = 0; i < jumps; ++i) {
@@ -207,7 +219,8 @@ void PoseFilter::update(const std::vector<float>& distances,
   double known = 0.0;
   for (const double s : state_) known += s;
   if (!(known > 0.0)) {
-    reset();  // driven out of all that was learnt
+    reset();  // driven out of all that was learnt: begun again with this frame
+    if (!first) update(distances, odometry, seconds);
     return;
   }
   for (double& s : state_) s /= known;

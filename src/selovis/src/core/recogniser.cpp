@@ -8,6 +8,11 @@
 #include "hyselam_common/errors.hpp"
 
 namespace selovis {
+namespace {
+
+constexpr double kTimeBack = 0.5;  // [s] frames may be so late
+
+}  // namespace
 
 Recogniser::Recogniser(const Model& model, const PlaceGraph& graph, const RecogniserParams& params)
     : params_(params),
@@ -66,9 +71,11 @@ Recognition Recogniser::updateWithSignature(const float* signature, const Readin
       static_cast<int>(std::max_element(frame_.begin(), frame_.end()) - frame_.begin());
   if (poses_) {
     const double seconds = readings.stamp - last_stamp_;
+    if (seconds < -kTimeBack) poses_->reset();  // another drive
     poses_->update(*classifier_->distances(), readings.odometry,
                    std::isfinite(seconds) ? seconds : 1.0);
-    last_stamp_ = readings.stamp;
+    // A late frame's time is no step back: the next would count twice.
+    if (!(seconds < 0.0 && seconds >= -kTimeBack)) last_stamp_ = readings.stamp;
   } else {
     filter_.update(frame_.data());
   }

@@ -40,6 +40,12 @@ void Supervisor::reset() {
   restart({});
 }
 
+void Supervisor::doubt() {
+  evidence_ = params_.threshold;
+  kidnapped_ = true;
+  restart({});
+}
+
 void Supervisor::restart(const std::vector<int>& here) {
   elsewhere_.assign(next_.size(), 1.0);
   for (const int place : here) elsewhere_[static_cast<std::size_t>(place)] = 0.0;

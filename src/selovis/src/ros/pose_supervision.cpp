@@ -4,6 +4,7 @@
 #include <std_msgs/Bool.h>
 #include <std_srvs/Empty.h>
 
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <utility>
@@ -12,6 +13,11 @@
 #include "hyselam_common/ros/diagnostics.hpp"
 
 namespace selovis {
+namespace {
+
+constexpr double kArrival = 1.0;  // [s] from setting a pose to the localisation's answer, at most
+
+}  // namespace
 
 PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
                                  const SemanticLocalizationParams& params, std::string who)
@@ -32,12 +38,36 @@ void PoseSupervision::setGraph(const PlaceGraph& graph) {
   supervisor_ =
       graph.places.empty() ? nullptr : std::make_unique<Supervisor>(graph, params_.supervisor);
   last_ = Supervision();
-  to_act_ = false;
+  to_act_ = by_laser_ = false;
   publishKidnapped();
 }
 
+void PoseSupervision::heedLost(const ros::Time& stamp) {
+  const bool lost = params_.on_kidnap == OnKidnap::kPlace && status_ &&
+                    status_->phase == hyselam_msgs::LocalizationStatus::LOST &&
+                    (status_->header.stamp - stamp).toSec() < 1.0;  // else time went back
+  if (by_laser_ && !lost) {
+    // It has found itself, or was told from elsewhere: a place would only disturb it now.
+    by_laser_ = to_act_ = false;
+    supervisor_->reset();
+    last_ = Supervision();
+    return;
+  }
+  if (!lost || to_act_) return;
+  // What was set needs a moment to arrive.
+  if (set_at_ &&
+      (status_->header.stamp - *set_at_).toSec() < std::max(kArrival, params_.patience)) {
+    return;
+  }
+  supervisor_->doubt();
+  by_laser_ = to_act_ = true;
+  alarm_at_ = stamp;
+  ++lost_;
+  last_alarm_ = "the localisation says that it is lost";
+  ROS_WARN_STREAM(who_ << " " << last_alarm_ << ": looking for the place");
+}
+
 bool PoseSupervision::poseIsMeant(const ros::Time& stamp) {
-  if (set_at_ && (*set_at_ - stamp).toSec() > 1.0) set_at_.reset();  // time went back
   // Part 1 says itself whether its pose deserves trust. Others, amcl among them, do not: after the
   // pose was set they get time to find it.
   if (status_) {
@@ -60,6 +90,8 @@ void PoseSupervision::judge(const std::vector<double>& frame,
                             const ros::Time& stamp) {
   if (!supervisor_) return;
   tellSearch();
+  if (set_at_ && (*set_at_ - stamp).toSec() > 1.0) set_at_.reset();  // time went back
+  heedLost(stamp);
   std::vector<int> here;
   pose_places_.clear();
   if (pose && poseIsMeant(stamp)) {
@@ -78,6 +110,7 @@ void PoseSupervision::judge(const std::vector<double>& frame,
     ++alarms_;
     alarm_at_ = stamp;
     to_act_ = params_.on_kidnap != OnKidnap::kNothing;
+    by_laser_ = false;
     std::ostringstream text;
     text << "the pose lies in '" << pose_places_.front() << "', but the camera sees "
          << (last_.place >= 0 ? "'" + graph_.places[static_cast<std::size_t>(last_.place)] + "'"
@@ -87,8 +120,9 @@ void PoseSupervision::judge(const std::vector<double>& frame,
   } else if (was && !last_.kidnapped) {
     ROS_INFO_STREAM(who_ << " the pose and the place seen agree again");
   }
+  if (!last_.kidnapped) to_act_ = by_laser_ = false;
   publishKidnapped();
-  if (to_act_ && last_.kidnapped) act(map, stamp);
+  if (to_act_) act(map, stamp);
 }
 
 void PoseSupervision::act(const hyselam_topo::AugmentedTopologicalMap& map,
@@ -97,6 +131,7 @@ void PoseSupervision::act(const hyselam_topo::AugmentedTopologicalMap& map,
     const auto spread = last_.place >= 0
                             ? spreadOf(map, graph_.places[static_cast<std::size_t>(last_.place)])
                             : std::optional<PlaceSpread>();
+    if (!spread && by_laser_) return;  // it searches the whole map by itself
     if (!spread && (stamp - alarm_at_).toSec() < params_.patience) return;  // it may become known
     if (spread) {
       geometry_msgs::PoseWithCovarianceStamped msg;
@@ -116,7 +151,7 @@ void PoseSupervision::act(const hyselam_topo::AugmentedTopologicalMap& map,
   } else {
     searchEverywhere();
   }
-  to_act_ = false;
+  to_act_ = by_laser_ = false;
   set_at_ = stamp;
 }
 
@@ -163,6 +198,7 @@ void PoseSupervision::report(diagnostic_msgs::DiagnosticStatus& status) const {
   addValue(status, "kidnapped", last_.kidnapped);
   addValue(status, "frames judged", judged_);
   addValue(status, "alarms", alarms_);
+  addValue(status, "localisation lost", lost_);
   addValue(status, "poses set", poses_set_);
   addValue(status, "global localisations", searches_);
   addValue(status, "last alarm", last_alarm_);

@@ -35,6 +35,8 @@ class PoseSupervision {
   void report(diagnostic_msgs::DiagnosticStatus& status) const;
 
  private:
+  /// A localisation that says that it is lost is told the place, once that is known.
+  void heedLost(const ros::Time& stamp);
   /// Whether the localisation believes in its pose, as far as it is known.
   bool poseIsMeant(const ros::Time& stamp);
   void act(const hyselam_topo::AugmentedTopologicalMap& map, const ros::Time& stamp);
@@ -50,11 +52,12 @@ class PoseSupervision {
   Supervision last_;
   std::optional<bool> published_;
   hyselam_msgs::LocalizationStatus::ConstPtr status_;
-  bool to_act_ = false;  // an alarm waits for the place to be known
+  bool to_act_ = false;    // an alarm waits for the place to be known
+  bool by_laser_ = false;  // it is the localisation's own
   ros::Time alarm_at_;
   std::optional<ros::Time> set_at_;  // when the pose was set anew
   std::vector<std::string> pose_places_;
-  std::size_t judged_ = 0, alarms_ = 0, poses_set_ = 0, searches_ = 0;
+  std::size_t judged_ = 0, alarms_ = 0, poses_set_ = 0, searches_ = 0, lost_ = 0;
   std::string last_alarm_;
   ros::Publisher kidnapped_publisher_, initialpose_publisher_;
   ros::ServiceClient global_localization_;
