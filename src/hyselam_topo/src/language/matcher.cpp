@@ -150,6 +150,7 @@ class SentenceReader {
       for (const Phrase& phrase : grammar_.corrections) {
         const int phrase_cost = phraseCost(phrase, to, matches_);
         if (phrase_cost < 0 || phrase_cost >= kSlipCost) continue;
+        if (deniesWhatFollows(to, to + phrase.size())) continue;
         followPhrases(to + phrase.size(), cost + kFillerCost + phrase_cost, grammar_.fillers_before,
                       kFillerCost, 0,
                       [&](std::size_t behind, int more) { note(behind, more, true); });
@@ -158,6 +159,19 @@ class SentenceReader {
     std::vector<Entry> entries;
     for (const auto& [key, cost] : cheapest) entries.push_back({key.first, cost, key.second});
     return entries;
+  }
+
+  /// "Não, há uma cozinha ..." corrects what was told, "não há cozinha ..." denies: a word that does
+  /// both corrects only before a comma or a definite article.
+  bool deniesWhatFollows(std::size_t begin, std::size_t end) const {
+    if (end != begin + 1 || end >= tokens_.size() || tokens_[end].kind == TokenKind::kComma) {
+      return false;
+    }
+    const auto code = grammar_.refusing_words.find(tokens_[begin].folded);
+    if (code == grammar_.refusing_words.end() || code->second != "denial") return false;
+    return std::none_of(
+        grammar_.name_types.begin(), grammar_.name_types.end(),
+        [&](const NameType& type) { return type.definite.count(tokens_[end].folded) != 0; });
   }
 
   std::vector<std::pair<std::size_t, int>> exitsAt(std::size_t at) const {
