@@ -55,6 +55,7 @@ TEST_F(TopoMergTool, NamesTheVirtualScenario) {
   EXPECT_EQ(7u, result.at("assignment").size());
   EXPECT_EQ("kitchen", result.at("assignment")[3].at("name"));
   EXPECT_EQ(nlohmann::json({5, 6}), result.at("assignment")[3].at("places"));
+  EXPECT_NE(std::string::npos, fileBytes(folder_ / "stdout").find("\nkitchen: place 5, 6"));
   EXPECT_EQ(7u, result.at("uncertainties").size());
   const auto map = hyselam_topo::loadXml(folder_ / "merged.xml");
   ASSERT_EQ(1u, map.places[0].words.size());

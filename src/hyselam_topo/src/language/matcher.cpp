@@ -161,8 +161,8 @@ class SentenceReader {
     return entries;
   }
 
-  /// "Não, há uma cozinha ..." corrects what was told, "não há cozinha ..." denies: a word that does
-  /// both corrects only before a comma or a definite article.
+  /// "Não, há uma cozinha ..." corrects what was told, "não há cozinha ..." denies: a word that
+  /// does both corrects only before a comma or a definite article.
   bool deniesWhatFollows(std::size_t begin, std::size_t end) const {
     if (end != begin + 1 || end >= tokens_.size() || tokens_[end].kind == TokenKind::kComma) {
       return false;

@@ -55,6 +55,25 @@ nlohmann::json assignmentOf(const MatchProblem& problem, const DescribedBuilding
   return out;
 }
 
+/// What a person wants to know: which place has which name, and what to ask.
+void print(const nlohmann::json& result) {
+  for (const nlohmann::json& name : result.at("assignment")) {
+    std::cout << name.at("name").get<std::string>() << ": ";
+    if (name.at("places").empty()) std::cout << "no place";
+    const char* before = "place ";
+    for (const nlohmann::json& place : name.at("places")) {
+      std::cout << before << place;
+      before = ", ";
+    }
+    for (const nlohmann::json& each : result.value("uncertainties", nlohmann::json::array()))
+      if (each.at("id") == name.at("id") && each.at("drop") <= 0.0) std::cout << " (unsure)";
+    std::cout << '\n';
+  }
+  if (!result.contains("question")) return;
+  const nlohmann::json& question = result.at("question");
+  std::cout << "would ask: what is place " << question.at("place") << "?\n";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -167,6 +186,7 @@ int main(int argc, char** argv) {
     std::cout << "fitness " << match.best().fitness << ", " << match.equal
               << (match.more ? "+" : "") << " equally good, " << match.nodes << " nodes, "
               << std::lround(match.microseconds) << " us -> " << out << '\n';
+    print(result);
     return result;
   });
 }
