@@ -1,6 +1,9 @@
 // The tools as a shell sees them: exit codes, one line of error, byte-identical bags.
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 #include <sys/wait.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -91,6 +94,34 @@ TEST_F(Tools, FilmsARun) {
   EXPECT_EQ(run_log.ground_truth.size(), filmed.ground_truth.size());
   const auto json = nlohmann::json::parse(content(file("j.json")));
   EXPECT_GT(json["pictures"], 10);
+}
+
+TEST_F(Tools, TellsWhereTheCameraIsThoughTheRunTellsOfNoMounts) {
+  ASSERT_EQ(simulate("--route small --out " + file("run.bag").string()), 0);
+  {
+    rosbag::Bag run(file("run.bag").string()),
+        bare(file("bare.bag").string(), rosbag::bagmode::Write);
+    for (const auto& message : rosbag::View(run)) {
+      if (message.getTopic() == "/tf_static") continue;
+      bare.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    }
+  }
+  for (const char* name : {"run", "bare"}) {
+    ASSERT_EQ(run(HYSELAM_FILM, "--route small --rate 0.1 --width 64 --height 48 --bag " +
+                                    file(std::string(name) + ".bag").string() + " --out " +
+                                    file("filmed.bag").string()),
+              0)
+        << content(file("stderr"));
+    rosbag::Bag filmed(file("filmed.bag").string());
+    int found = 0;
+    for (const auto& message : rosbag::View(filmed, rosbag::TopicQuery("/tf_static"))) {
+      const auto fixed = message.instantiate<tf2_msgs::TFMessage>();
+      ASSERT_TRUE(fixed);
+      EXPECT_EQ(message.getConnectionHeader()->at("latching"), "1");
+      for (const auto& t : fixed->transforms) found += t.child_frame_id == "camera_optical_frame";
+    }
+    EXPECT_EQ(found, 1) << name;
+  }
 }
 
 TEST_F(Tools, RefusesToFilmWhatCannotBeFilmed) {

@@ -32,6 +32,7 @@ using hyselam_sim::CameraParams;
 using hyselam_sim::FilmFrame;
 
 constexpr const char* kFrame = "camera_optical_frame";
+constexpr const char* kFixed = "/tf_static";
 
 geometry_msgs::TransformStamped cameraOnBase(const CameraParams& camera, const ros::Time& stamp) {
   geometry_msgs::TransformStamped t;
@@ -86,6 +87,19 @@ class FilmedBag {
     in_.open(in, rosbag::bagmode::Read);
     view_.addQuery(in_);
     next_ = view_.begin();
+    for (const auto* connection : view_.getConnections()) fixed_ |= connection->topic == kFixed;
+    if (!fixed_) {  // a run that others recorded: the camera's place is told all the same
+      using Traits = tf2_msgs::TFMessage;
+      const auto header = boost::make_shared<ros::M_string>(
+          ros::M_string{{"topic", kFixed},
+                        {"type", ros::message_traits::datatype<Traits>()},
+                        {"md5sum", ros::message_traits::md5sum<Traits>()},
+                        {"message_definition", ros::message_traits::definition<Traits>()},
+                        {"latching", "1"}});
+      tf2_msgs::TFMessage fixed;
+      fixed.transforms.push_back(cameraOnBase(camera_, view_.getBeginTime()));
+      out_.write(kFixed, view_.getBeginTime(), fixed, header);
+    }
   }
 
   void write(const FilmFrame& frame) {
@@ -118,13 +132,13 @@ class FilmedBag {
  private:
   void copyUntil(const ros::Time& time) {
     for (; next_ != view_.end() && next_->getTime() <= time + ros::Duration(0, 9); ++next_) {
-      if (next_->getTopic() == "/tf_static") {
+      if (next_->getTopic() == kFixed) {
         auto fixed = next_->instantiate<tf2_msgs::TFMessage>();
         if (fixed) {
           fixed->transforms.push_back(
               cameraOnBase(camera_, fixed->transforms.empty() ? next_->getTime()
                                                               : fixed->transforms[0].header.stamp));
-          out_.write("/tf_static", next_->getTime(), *fixed, next_->getConnectionHeader());
+          out_.write(kFixed, next_->getTime(), *fixed, next_->getConnectionHeader());
           continue;
         }
       }
@@ -137,6 +151,7 @@ class FilmedBag {
   rosbag::Bag in_, out_;
   rosbag::View view_;
   rosbag::View::iterator next_;
+  bool fixed_ = false;  // the run tells where sensors are mounted
 };
 
 /// Pictures as files with a list of what they show: image_path, place, depth_path, truth, the scan.
