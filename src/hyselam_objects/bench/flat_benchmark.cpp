@@ -21,6 +21,8 @@ void run(benchmark::State& state, const Furnished& furnished) {
   state.counters["objects"] = scores.objects;
   state.counters["precision"] = scores.precision;
   state.counters["recall"] = scores.recall;
+  state.counters["hidden"] = scores.hidden;
+  state.counters["recall_of_seen"] = scores.recall_of_seen;
   state.counters["kinds_right"] = scores.kinds;
   state.counters["relation_precision"] = scores.relation_precision;
   state.counters["relation_recall"] = scores.relation_recall;
@@ -46,6 +48,6 @@ void BM_ObjectsOfADrawnFlat(benchmark::State& state) {
   run(state, hyselam_objects::simulated::drawnFlat(HYSELAM_FLAT_PLAN,
                                                    static_cast<std::uint64_t>(state.range(0))));
 }
-BENCHMARK(BM_ObjectsOfADrawnFlat)->Arg(1)->Arg(2)->Unit(benchmark::kSecond)->Iterations(1);
+BENCHMARK(BM_ObjectsOfADrawnFlat)->DenseRange(1, 5)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace

@@ -228,6 +228,7 @@ struct Frame {
   OrganisedCloud cloud;
   PinholeCamera camera;
   double stamp = 0.0;
+  std::map<std::string, int> pixels;  ///< of each thing and piece of furniture in it
 };
 
 class Flat {
@@ -249,8 +250,9 @@ class Flat {
     // Around each target, from within its room.
     for (const hyselam::Point2& target : targets_) {
       const double side = target.x > 5.0 ? 5.0 : 0.0, half = target.y > 4.0 ? 4.0 : 0.0;
-      for (int i = 0; i < 16; ++i) {
-        const double angle = 2.0 * hyselam::kPi * i / 8.0, away = i < 8 ? 1.3 : 1.9;
+      for (int i = 0; i < 24; ++i) {
+        // The camera is level: what stands on the floor is seen whole from 2.3 m on.
+        const double angle = 2.0 * hyselam::kPi * i / 8.0, away = i < 8 ? 1.3 : i < 16 ? 1.9 : 2.7;
         const double x = target.x + away * std::cos(angle), y = target.y + away * std::sin(angle);
         const bool within = x > side + 0.4 && x < side + 4.6 && y > half + 0.4 && y < half + 3.6;
         if (within) look(x, y, target.x, target.y);
@@ -310,6 +312,13 @@ class Flat {
     OrganisedCloud& cloud = frame.cloud;
     cloud.width = camera.width;
     cloud.height = camera.height;
+    std::map<std::int32_t, int> owners;
+    for (int i = 0; i < picture.owner.rows; ++i) {
+      for (int j = 0; j < picture.owner.cols; ++j) ++owners[picture.owner.at<std::int32_t>(i, j)];
+    }
+    for (const auto& [owner, pixels] : owners) {
+      frame.pixels[scene_.ownerName(static_cast<std::uint32_t>(owner))] = pixels;
+    }
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const float z = 0.001f * picture.depth.at<std::uint16_t>(v, u);

@@ -136,6 +136,49 @@ TEST_F(Room, OfThingsThatLookAlikeAsManyAreFoundAgainAsWereMoved) {
   EXPECT_EQ(moved, 2);
 }
 
+TEST_F(Room, WhatWasThereInTheVisitInWhichAnotherWasLastSeenIsNotThatOneMoved) {
+  const auto hidden = std::vector<Point>(cloud_.points.size(), Point(0.0f, 0.0f, 1.0f));
+  const std::vector<Point> open = cloud_.points;
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 1.0);
+  const Id first = find("red")->id;
+  cloud_.points = hidden;  // the next room: a cup that is just like it
+  look({seen(2.3, -0.3, 0.75, kCup, kRed)}, 20.0);
+  mapper_.finish();
+  ASSERT_EQ(map_.objects.size(), 3u);
+  const Id second = map_.objects.back().id;
+  look({seen(2.3, -0.3, 0.75, kCup, kRed)}, 1000.0);
+  cloud_.points = open;
+  look({table_, seen(2.2, 0.35, 0.75, kCup, kRed)}, 1010.0);
+  map_.find(second)->existence = 0.99;  // the frames above look at nothing but the first table
+  mapper_.finish();
+  ASSERT_NE(map_.find(first), nullptr);
+  ASSERT_NE(map_.find(second), nullptr);
+  EXPECT_NEAR(map_.find(first)->pose->position.x, 2.2, 0.02);
+  EXPECT_NEAR(map_.find(second)->pose->position.x, 2.3, 0.02);
+}
+
+TEST_F(Room, ALowThingThatIsGoneIsMissedThoughTheTableIsCloseBehind) {
+  look({table_, seen(1.9, 0.1, 0.75, kBook, kBlue)}, 1.0);
+  for (int v = 120; v < cloud_.height; ++v) {  // the table's plane
+    for (int u = 0; u < cloud_.width; ++u) {
+      const auto depth = static_cast<float>(0.45 * 230.0 / (v - 119.5));
+      cloud_.points[static_cast<std::size_t>(v * cloud_.width + u)] =
+          Point(0.0f, 0.0f, std::min(depth, 9.0f));
+    }
+  }
+  look({table_}, 1000.0);
+  EXPECT_LT(find("blue")->existence, 0.1);
+}
+
+TEST_F(Room, TheTopsOfThingsOnATableAreNoFurniture) {
+  const DetectedObject tops = seen(2.0, 0.0, 0.0, {0.6, 0.4, 1.1}, kRed, true);
+  look({tops}, 1.0);
+  look({tops, table_}, 10.0);
+  mapper_.finish();
+  ASSERT_EQ(map_.objects.size(), 1u);
+  EXPECT_NEAR(map_.objects[0].pose->size[2], 0.75, 0.01);
+}
+
 TEST_F(Room, WhatIsToldOfAThingOutlastsThatItIsFoundAgain) {
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
   mapper_.finish();

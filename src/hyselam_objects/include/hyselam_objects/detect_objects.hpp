@@ -28,8 +28,9 @@ struct DetectParams {
 /// One thing in one frame. Boxes have the directions of the map's axes.
 struct DetectedObject {
   bool furniture = false;  ///< it has a level top
-  bool cut = false;        ///< by the border of the frame: it may be larger
-  Point3 low, high;        ///< corners of the box around it, map frame
+  /// By the border of the frame, or its foot is hidden (nothing seen carries it): it may be larger.
+  bool cut = false;
+  Point3 low, high;  ///< corners of the box around it, map frame
   std::vector<float> descriptor;
   std::string colour;
   std::size_t points = 0;

@@ -16,7 +16,7 @@
 namespace hyselam_objects {
 
 struct MapperParams {
-  double gate = 0.25;            ///< a thing and its instance are nearer than this [m]
+  double gate = 0.25;            ///< a thing and its instance are nearer than this at most [m]
   double look = 0.5;             ///< ... and their descriptors nearer than this
   double refind_look = 0.35;     ///< the same for things that have moved
   double seen_if_there = 0.85;   ///< probability to detect what is in view
@@ -24,7 +24,7 @@ struct MapperParams {
   double sigma = 0.03;           ///< of a detection's position [m]
   int confirm = 2;               ///< views before something new is in the map
   double visible_margin = 0.06;  ///< share of the frame at each border that is not trusted
-  double depth_margin = 0.12;    ///< what is seen this far behind something looks through it [m]
+  double depth_margin = 0.02;    ///< what is seen this far behind something looks through it [m]
   RelationParams relations;
   MovabilityParams movability;
 };
@@ -62,6 +62,7 @@ class ObjectMapper {
   std::vector<DetectedObject> apart(const std::vector<DetectedObject>& all, double stamp,
                                     std::vector<Id>* matched) const;
   std::vector<int> associate(const std::vector<DetectedObject>& detections, double stamp) const;
+  double gateOf(const ObjectPose& pose) const;
   void take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
             double stamp);
   void missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
@@ -70,7 +71,10 @@ class ObjectMapper {
                     const ObjectPose& pose) const;
   void place(Id object);
   bool isShadow(const ObjectInstance& object) const;
+  bool isOnFurniture(const ObjectPose& top, Id except) const;
+  void dropTopsOfThings();
   void joinFurniture();
+  bool areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b) const;
   void joinTwins();
   void joinMoved();
   void merge(Id gone, Id found);

@@ -68,14 +68,17 @@ struct Surface {
 class Detector {
  public:
   Detector(const OrganisedCloud& cloud, const Eigen::Isometry3d& camera, const DetectParams& params)
-      : cloud_(cloud), params_(params), grid_(cloud, params.segment) {
+      : cloud_(cloud),
+        params_(params),
+        grid_(cloud, params.segment),
+        eye_(camera.translation().cast<float>()) {
     const Eigen::Isometry3f pose = camera.cast<float>();
     points_.resize(grid_.size());
     up_.assign(grid_.size(), 0.0f);
     for (std::size_t i = 0; i < grid_.size(); ++i) {
-      if (!isNear(i)) continue;
+      if (!grid_.isValid(i)) continue;
       points_[i] = pose * grid_.point(i);
-      if (grid_.hasNormal(i)) up_[i] = (pose.linear() * grid_.normal(i)).z();
+      if (isNear(i) && grid_.hasNormal(i)) up_[i] = (pose.linear() * grid_.normal(i)).z();
     }
   }
 
@@ -149,6 +152,24 @@ class Detector {
     }
     std::stable_sort(surfaces_.begin(), surfaces_.end(),
                      [](const Surface& a, const Surface& b) { return a.height > b.height; });
+    surfaces_.erase(std::remove_if(surfaces_.begin(), surfaces_.end(),
+                                   [this](const Surface& s) {
+                                     return std::any_of(surfaces_.begin(), surfaces_.end(),
+                                                        [&](const Surface& below) {
+                                                          return isTopOfThings(s, below);
+                                                        });
+                                   }),
+                    surfaces_.end());
+  }
+
+  // What stands on furniture and is not taller than things are is no furniture, however large.
+  bool isTopOfThings(const Surface& surface, const Surface& below) const {
+    const double step = surface.height - below.height;
+    if (step < 0.03 || step > params_.segment.tallest) return false;
+    if (areaOf(surface.hull) > 0.7 * areaOf(below.hull)) return false;
+    const auto within = std::count_if(surface.hull.begin(), surface.hull.end(),
+                                      [&](const auto& p) { return outside(below.hull, p) < 0.05; });
+    return 5 * within > 4 * static_cast<std::ptrdiff_t>(surface.hull.size());
   }
 
   // Where something upright is taller than things are; what stands there in the plane is a part of
@@ -170,8 +191,31 @@ class Detector {
             static_cast<int>(std::floor(p.y() / kCell))};
   }
 
+  // Whether the camera sees through the plane between two pieces at more than what hides it: then
+  // they are the tops of two things, not one top with something on it.
+  bool isGapOpen(const Surface& a, const Surface& b,
+                 const std::vector<Eigen::Vector2f>& both) const {
+    constexpr double kBetween = 0.03, kOpen = 0.3;
+    const auto height = static_cast<float>(0.5 * (a.height + b.height));
+    if (eye_.z() < height + 0.05f) return false;
+    std::size_t open = 0, all = 0;
+    for (std::size_t i = 0; i < grid_.size(); ++i) {
+      // A ray that ends above the plane may go through it behind what it ends on.
+      if (!grid_.isValid(i) || points_[i].z() > eye_.z() - 0.05f) continue;
+      const Eigen::Vector3f ray = points_[i] - eye_;
+      const Eigen::Vector2f at = (eye_ + ray * ((height - eye_.z()) / ray.z())).head<2>();
+      if (outside(both, at) > 0.0 || outside(a.hull, at) < kBetween ||
+          outside(b.hull, at) < kBetween) {
+        continue;
+      }
+      ++all;
+      open += points_[i].z() < height - 0.03f - 2.0f * grid_.sigma(i);
+    }
+    return static_cast<double>(open) > kOpen * static_cast<double>(all);
+  }
+
   // What things on a table cut in two.
-  static void join(std::vector<Surface>* pieces) {
+  void join(std::vector<Surface>* pieces) const {
     constexpr double kGap = 0.25, kStep = 0.02;
     for (std::size_t i = 0; i < pieces->size(); ++i) {
       for (std::size_t j = i + 1; j < pieces->size();) {
@@ -182,13 +226,18 @@ class Detector {
           ++j;
           continue;
         }
+        std::vector<Eigen::Vector2f> both = a.hull;
+        both.insert(both.end(), b.hull.begin(), b.hull.end());
+        both = hullOf(std::move(both));
+        if (isGapOpen(a, b, both)) {
+          ++j;
+          continue;
+        }
         const auto na = static_cast<double>(a.pixels.size()),
                    nb = static_cast<double>(b.pixels.size());
         a.height = (na * a.height + nb * b.height) / (na + nb);
         a.pixels.insert(a.pixels.end(), b.pixels.begin(), b.pixels.end());
-        std::vector<Eigen::Vector2f> both = a.hull;
-        both.insert(both.end(), b.hull.begin(), b.hull.end());
-        a.hull = hullOf(std::move(both));
+        a.hull = std::move(both);
         pieces->erase(pieces->begin() + static_cast<std::ptrdiff_t>(j));
         j = i + 1;
       }
@@ -225,6 +274,7 @@ class Detector {
       if (pixels.size() <= number) pixels.resize(number + 1);
       pixels[number].push_back(i);
     }
+    const std::size_t first = found->size();
     for (const auto& each : pixels) {
       if (each.size() < static_cast<std::size_t>(params_.smallest)) continue;
       DetectedObject object = describe(each, 0.02);
@@ -234,6 +284,60 @@ class Detector {
       if (wide < 0.02 || wide > 1.5) continue;
       found->push_back(std::move(object));
     }
+    if (floor) return;
+    // What goes on to the greatest height of things is something taller: a wall, a window.
+    found->erase(std::remove_if(found->begin() + static_cast<std::ptrdiff_t>(first), found->end(),
+                                [this](const DetectedObject& object) { return isTaller(object); }),
+                 found->end());
+    std::vector<bool> floats;
+    for (std::size_t i = first; i < found->size(); ++i) {
+      floats.push_back(isFloating((*found)[i], *found, first));
+    }
+    for (std::size_t i = first; i < found->size(); ++i) {
+      (*found)[i].cut = (*found)[i].cut || floats[i - first];
+    }
+  }
+
+  bool isTaller(const DetectedObject& object) const {
+    const Point3 c = object.centre();
+    for (const Surface& surface : surfaces_) {  // the highest first
+      const Eigen::Vector2f middle(static_cast<float>(c.x), static_cast<float>(c.y));
+      if (surface.height > c.z || outside(surface.hull, middle) > 0.1) continue;
+      return object.high.z > surface.height + 0.95 * params_.segment.tallest;
+    }
+    return false;
+  }
+
+  // Nothing stands in the air: the lower part of what seems to is hidden, or it hangs at a wall.
+  bool isFloating(const DetectedObject& object, const std::vector<DetectedObject>& all,
+                  std::size_t first) const {
+    constexpr double kContact = 0.02, kAside = 0.02;
+    const Point3 c = object.centre();
+    const Eigen::Vector3f middle(static_cast<float>(c.x), static_cast<float>(c.y),
+                                 static_cast<float>(c.z));
+    const double noise = 2.0 * sigmaAt((middle - eye_).norm()) + params_.segment.support_distance;
+    for (const Surface& surface : surfaces_) {
+      const double air = object.low.z - surface.height;
+      if (air > -kContact && air < kContact + noise &&
+          outside(surface.hull, middle.head<2>()) < kAside) {
+        return false;
+      }
+    }
+    // On another thing; what is as thin as the noise there is that thing's own top.
+    for (std::size_t i = first; i < all.size(); ++i) {
+      if (object.high.z - object.low.z < kContact + noise) break;
+      const DetectedObject& below = all[i];
+      if (&below == &object || below.centre().z > c.z) continue;
+      const bool over = c.x > below.low.x - kAside && c.x < below.high.x + kAside &&
+                        c.y > below.low.y - kAside && c.y < below.high.y + kAside;
+      if (over && std::abs(object.low.z - below.high.z) < kContact + noise) return false;
+    }
+    return true;
+  }
+
+  double sigmaAt(float depth) const {
+    const double more = std::max(0.0, static_cast<double>(depth) - 0.4);
+    return params_.segment.noise_floor + params_.segment.noise_growth * more * more;
   }
 
   /// `trim`: share of the points that lie outside of the box on each side.
@@ -281,6 +385,7 @@ class Detector {
   const OrganisedCloud& cloud_;
   const DetectParams& params_;
   const SurfaceGrid grid_;
+  const Eigen::Vector3f eye_;            // in the map frame
   std::vector<Eigen::Vector3f> points_;  // in the map frame
   std::vector<float> up_;                // z of the normal in the map frame
   std::vector<Surface> surfaces_;        // the highest first

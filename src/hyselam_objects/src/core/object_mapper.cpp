@@ -98,8 +98,35 @@ bool isSameSpot(const ObjectPose& a, const ObjectPose& b) {
          high - low > 0.5 * std::min(a.size[2], b.size[2]);
 }
 
+/// Share of the first box's volume that lies in the second one.
+double shareWithin(const ObjectPose& a, const ObjectPose& b) {
+  const std::array<double, 3> p{a.position.x, a.position.y, a.position.z},
+      q{b.position.x, b.position.y, b.position.z};
+  double share = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double low = std::max(p[k] - 0.5 * a.size[k], q[k] - 0.5 * b.size[k]);
+    const double high = std::min(p[k] + 0.5 * a.size[k], q[k] + 0.5 * b.size[k]);
+    share *= std::max(0.0, high - low) / std::max(a.size[k], 1e-6);
+  }
+  return share;
+}
+
 bool isFurniture(const ObjectInstance& object) {
   return object.properties.count("furniture") != 0;
+}
+
+/// Whether a level surface is that of things on a piece of furniture, not of another piece.
+bool isTopOfThings(const ObjectPose& top, const ObjectPose& furniture) {
+  constexpr double kTallest = 0.6, kMargin = 0.05;  // as in SegmentParams
+  const double step =
+      top.position.z + 0.5 * top.size[2] - furniture.position.z - 0.5 * furniture.size[2];
+  if (step < 0.03 || step > kTallest) return false;
+  if (top.size[0] * top.size[1] > 0.7 * furniture.size[0] * furniture.size[1]) return false;
+  ObjectPose ground = top, body = furniture;  // the share of the ground
+  body.size[0] += 2.0 * kMargin, body.size[1] += 2.0 * kMargin;
+  ground.position.z = body.position.z = 0.0;
+  ground.size[2] = body.size[2] = 1.0;
+  return shareWithin(ground, body) > 0.8;
 }
 
 }  // namespace
@@ -120,11 +147,9 @@ ObjectMapper::ObjectMapper(ObjectMap* map, ObjectDictionary dictionary, const Ma
 
 std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& detections,
                                          double stamp) const {
-  struct Pair {
-    double cost;
-    std::size_t object, detection;
-  };
-  std::vector<Pair> pairs;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  std::vector<std::vector<double>> cost(detections.size(),
+                                        std::vector<double>(map_.objects.size(), kNever));
   for (std::size_t o = 0; o < map_.objects.size(); ++o) {
     const ObjectInstance& object = map_.objects[o];
     if (!object.pose) continue;
@@ -134,7 +159,7 @@ std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& dete
       if (seen.furniture) {
         const double height = object.pose->position.z + 0.5 * object.pose->size[2];
         if (std::abs(height - seen.high.z) > 0.06 || overlap(*object.pose, seen) < 0.3) continue;
-        pairs.push_back({1.0 - overlap(*object.pose, seen), o, d});
+        cost[d][o] = 1.0 - overlap(*object.pose, seen);
         continue;
       }
       const double away = distance(object.pose->position, seen.centre());
@@ -142,20 +167,19 @@ std::vector<int> ObjectMapper::associate(const std::vector<DetectedObject>& dete
       // Where one thing is there is no other: a part of it looks different.
       const bool same_visit = std::abs(stamp - object.last_seen) < kAbsence;
       const bool same_spot = same_visit && isSameSpot(*object.pose, boxOf(seen));
-      if (away > params_.gate || (look > params_.look && !same_spot)) continue;
-      pairs.push_back({away / params_.gate + std::min(1.0, look / params_.look), o, d});
+      if (away > gateOf(*object.pose) || (look > params_.look && !same_spot)) continue;
+      cost[d][o] = away / params_.gate + std::min(1.0, look / params_.look);
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
-  std::vector<int> of(detections.size(), -1);
-  std::vector<char> taken(map_.objects.size(), 0);
-  for (const Pair& pair : pairs) {
-    if (taken[pair.object] != 0 || of[pair.detection] >= 0) continue;
-    taken[pair.object] = 1;
-    of[pair.detection] = static_cast<int>(pair.object);
-  }
-  return of;
+  return assignRows(cost, 2.0);  // no pair that is possible costs more
+}
+
+// Three standard deviations; and a view shows one side, so its middle may be off by half of the
+// thing.
+double ObjectMapper::gateOf(const ObjectPose& pose) const {
+  const double variance = pose.covariance[0] + params_.sigma * params_.sigma;
+  const double half = 0.5 * std::max({pose.size[0], pose.size[1], pose.size[2]});
+  return std::min(params_.gate, 3.0 * std::sqrt(variance) + half);
 }
 
 void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
@@ -205,13 +229,32 @@ void ObjectMapper::take(ObjectInstance* object, const DetectedObject& seen, cons
   object->last_seen = stamp;
 }
 
-// Without those that are several known things in one.
+bool ObjectMapper::isOnFurniture(const ObjectPose& top, Id except) const {
+  return std::any_of(map_.objects.begin(), map_.objects.end(), [&](const auto& o) {
+    return o.id != except && o.pose && isFurniture(o) && isTopOfThings(top, *o.pose);
+  });
+}
+
+// Tops of things that were taken for furniture while that which carries them was out of view.
+void ObjectMapper::dropTopsOfThings() {
+  std::vector<Id> dropped;
+  for (const ObjectInstance& object : map_.objects) {
+    if (object.pose && !object.told && isFurniture(object) &&
+        isOnFurniture(*object.pose, object.id)) {
+      dropped.push_back(object.id);
+    }
+  }
+  for (const Id id : dropped) map_.remove(id);
+}
+
+// Without those that are several known things in one, and tops of things on known furniture.
 std::vector<DetectedObject> ObjectMapper::apart(const std::vector<DetectedObject>& all,
                                                 double stamp, std::vector<Id>* matched) const {
   std::vector<DetectedObject> out;
   for (const DetectedObject& seen : all) {
     std::vector<Id> within;
     const ObjectPose box = boxOf(seen);
+    if (seen.furniture && isOnFurniture(box, 0)) continue;
     for (const ObjectInstance& object : map_.objects) {
       if (!seen.furniture && object.pose && !isFurniture(object) &&
           object.seen >= params_.confirm && object.existence > 0.5 &&
@@ -232,6 +275,7 @@ void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& came
                           const std::vector<DetectedObject>& all, double stamp) {
   checkSegment(cloud, SegmentParams{});
   time_ = stamp;
+  dropTopsOfThings();
   std::vector<Id> matched;
   const std::vector<DetectedObject> detections = apart(all, stamp, &matched);
   const std::vector<int> of = associate(detections, stamp);
@@ -284,30 +328,56 @@ void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& came
   map_.stamp = std::max(map_.stamp, stamp);
 }
 
+// Rays of pixels through the middle part of its box: its place is free if nearly all of them end
+// behind it. A low thing hides little of what is behind it, so how far behind is not asked, only
+// that it is beyond the box by more than the noise. One that is hidden is not missed.
 bool ObjectMapper::looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera,
                                 const ObjectPose& pose) const {
+  constexpr double kInner = 0.35;  // of the size: corners of a box around a turned thing are empty
+  constexpr int kRays = 24, kLeast = 20;
+  constexpr double kFree = 0.8, kInFrame = 0.6, kNearest = 0.5, kFarthest = 3.8;
+  const Eigen::Vector3d middle(pose.position.x, pose.position.y, pose.position.z);
+  const Eigen::Vector3d half(kInner * pose.size[0], kInner * pose.size[1], kInner * pose.size[2]);
   const Eigen::Isometry3d map_in_camera = camera.in_map.inverse();
-  int through = 0, all = 0;
+  double low_u = 1e9, high_u = -1e9, low_v = 1e9, high_v = -1e9;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1);
+    const Eigen::Vector3d p = map_in_camera * (middle + half.cwiseProduct(sign)).eval();
+    if (p.z() < kNearest || p.z() > kFarthest) return false;
+    const double u = camera.focal_length * p.x() / p.z() + camera.cx;
+    const double v = camera.focal_length * p.y() / p.z() + camera.cy;
+    low_u = std::min(low_u, u), high_u = std::max(high_u, u);
+    low_v = std::min(low_v, v), high_v = std::max(high_v, v);
+  }
   const double mx = params_.visible_margin * cloud.width,
                my = params_.visible_margin * cloud.height;
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int side = -1; side <= 1; ++side) {
-      const Eigen::Vector3d middle(pose.position.x, pose.position.y,
-                                   pose.position.z + 0.3 * dz * pose.size[2]);
-      Eigen::Vector3d p = map_in_camera * middle;
-      p.x() += 0.25 * side * std::min(pose.size[0], pose.size[1]);
-      if (p.z() < 0.5 || p.z() > 3.8) return false;
-      const double u = camera.focal_length * p.x() / p.z() + camera.cx;
-      const double v = camera.focal_length * p.y() / p.z() + camera.cy;
-      if (u < mx || v < my || u >= cloud.width - mx || v >= cloud.height - my) return false;
+  const Eigen::Vector3d eye = camera.in_map.translation() - middle;
+  int rays = 0, in_frame = 0, through = 0;
+  for (int row = 0; row < kRays; ++row) {
+    for (int column = 0; column < kRays; ++column) {
+      const double u = low_u + (column + 0.5) / kRays * (high_u - low_u);
+      const double v = low_v + (row + 0.5) / kRays * (high_v - low_v);
+      const Eigen::Vector3d way =
+          camera.in_map.linear() * Eigen::Vector3d((u - camera.cx) / camera.focal_length,
+                                                   (v - camera.cy) / camera.focal_length, 1.0);
+      double enter = 0.0, leave = 1e9;  // depths
+      for (int k = 0; k < 3; ++k) {
+        const double step = std::abs(way[k]) > 1e-9 ? way[k] : 1e-9;
+        const double one = (-half[k] - eye[k]) / step, two = (half[k] - eye[k]) / step;
+        enter = std::max(enter, std::min(one, two));
+        leave = std::min(leave, std::max(one, two));
+      }
+      if (enter >= leave) continue;
+      ++rays;
+      if (u < mx || v < my || u >= cloud.width - mx || v >= cloud.height - my) continue;
+      ++in_frame;
       const Point& measured =
           cloud.points[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) +
                        static_cast<std::size_t>(u)];
-      ++all;
-      through += measured.allFinite() && measured.z() > p.z() + params_.depth_margin;
+      through += measured.allFinite() && measured.z() > leave + params_.depth_margin;
     }
   }
-  return through >= 7 && all == 9;
+  return rays >= kLeast && in_frame > kInFrame * rays && through > kFree * in_frame;
 }
 
 void ObjectMapper::missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
@@ -380,9 +450,12 @@ void ObjectMapper::keepTold(Id from, Id to) {
 }
 
 // Of things that look alike it cannot be told which is which; that as many are gone as are new can.
-// All are paired at once: the looks of all pairs together decide, then the shortest ways.
+// All are paired at once: the looks of all pairs together decide, then the shortest ways. What was
+// seen for the first time soon after the other one was seen for the last time, in a long while that
+// nobody looked, was there already: it takes time to be moved.
 void ObjectMapper::joinMoved() {
-  constexpr double kPerMetre = 1e-3;  // between things that look the same
+  constexpr double kPerMetre = 1e-3;   // between things that look the same
+  constexpr double kLeastShare = 0.2;  // of the time in which it may have been moved
   std::vector<Id> gone, found;
   for (const ObjectInstance& each : map_.objects) {
     if (!each.pose || isFurniture(each)) continue;
@@ -396,7 +469,8 @@ void ObjectMapper::joinMoved() {
     cost.emplace_back();
     for (const Id other : found) {
       const ObjectInstance& now = *map_.find(other);
-      const bool later = now.history.front().from > old.last_seen;
+      const bool later = now.history.front().from - old.last_seen >
+                         kLeastShare * std::max(0.0, time_ - old.last_seen);
       const bool other_kind = old.kind != now.kind && old.kind != kUnknown && now.kind != kUnknown;
       const double look = viewDistance(old.descriptor, now.descriptor);
       const bool possible = later && !other_kind && look < params_.refind_look;
@@ -430,16 +504,38 @@ void ObjectMapper::joinFurniture() {
   }
 }
 
+// Whether two things of one kind touch and are together no larger than one of that kind.
+bool ObjectMapper::areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b) const {
+  constexpr double kGap = 0.03, kDeviations = 3.0;
+  if (a.kind != b.kind) return false;
+  const GenericObject* kind = dictionary_.find(a.kind);
+  if (kind == nullptr || !(kind->shape.size[0] > 0.0)) return false;
+  ObjectPose both = *a.pose;
+  unite(&both, *b.pose);
+  const double most = std::max(both.size[0], both.size[1]);
+  if (most > kind->shape.size[0] + kDeviations * kind->shape.spread[0] + params_.sigma ||
+      both.size[2] > kind->shape.size[2] + kDeviations * kind->shape.spread[2] + params_.sigma) {
+    return false;
+  }
+  return both.size[0] < a.pose->size[0] + b.pose->size[0] + kGap &&
+         both.size[1] < a.pose->size[1] + b.pose->size[1] + kGap;
+}
+
 // Two views that were too different to be taken for one thing.
 void ObjectMapper::joinTwins() {
   for (std::size_t i = 0; i < map_.objects.size(); ++i) {
     for (std::size_t j = i + 1; j < map_.objects.size();) {
       ObjectInstance &a = map_.objects[i], &b = map_.objects[j];
       const bool things = a.pose && b.pose && !isFurniture(a) && !isFurniture(b);
+      const bool faces = things && areFacesOfOne(a, b);
       if (!things || std::abs(a.last_seen - b.last_seen) > kAbsence ||
-          !isSameSpot(*a.pose, *b.pose)) {
+          (!faces && !isSameSpot(*a.pose, *b.pose))) {
         ++j;
         continue;
+      }
+      if (faces) {
+        unite(&*a.pose, *b.pose);
+        b.pose = a.pose;
       }
       const bool second = b.pose->size[2] > 1.4 * a.pose->size[2] || b.seen > 2 * a.seen;
       if (second) {
@@ -465,7 +561,14 @@ bool ObjectMapper::isShadow(const ObjectInstance& object) const {
   int within = 0;
   for (const ObjectInstance& other : map_.objects) {
     if (other.id == object.id || !other.pose || isFurniture(other) || isFurniture(object)) continue;
-    if (2 * object.seen > other.seen || other.existence < 0.5) continue;
+    if (other.existence < 0.5) continue;
+    // Two bodies are not in one place: of the same kind, one is a face of the other.
+    const bool alike = object.kind == other.kind || object.kind == kUnknown;
+    if (alike && object.seen <= other.seen && shareWithin(*object.pose, *other.pose) > 0.8 &&
+        shareWithin(*other.pose, *object.pose) < 0.8) {
+      return true;
+    }
+    if (2 * object.seen > other.seen) continue;
     const double away = std::abs(object.pose->position.z - other.pose->position.z);
     if (isOn(*other.pose, object.pose->position) && away < 0.5 * other.pose->size[2] + kMargin) {
       return true;
@@ -477,6 +580,7 @@ bool ObjectMapper::isShadow(const ObjectInstance& object) const {
 
 void ObjectMapper::finish(double weak_before) {
   joinFurniture();
+  dropTopsOfThings();
   joinTwins();
   joinMoved();
   std::vector<Id> dropped;
