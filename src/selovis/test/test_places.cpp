@@ -710,6 +710,35 @@ TEST(PoseFilter, ARobotThatWasCarriedIsFoundAgainAtThirtyFramesASecond) {
   EXPECT_GT(filter.probabilities()[0], 0.9);
 }
 
+TEST(Recogniser, TimeThatGoesBackBeginsThePosesAnew) {
+  TrainingOptions options;
+  options.descriptor = "LGOP";
+  options.classifier.kernel = Kernel::kExemplar;
+  const Model model = train(
+      {24},
+      [&](std::size_t, std::size_t i) {
+        TrainingFrame f = frameOf(static_cast<int>(i / 8), static_cast<int>(i));
+        f.pose = {0.5 * static_cast<double>(i), 0.0, 0.0};
+        return f;
+      },
+      options);
+  RecogniserParams params;
+  params.filter.kind = FilterKind::kPoses;
+  const auto at = [&](Recogniser& r, int i, double stamp) {
+    Readings readings;
+    readings.stamp = stamp;
+    readings.odometry = hyselam::Pose2{0.5 * i, 0.0, 0.0};
+    r.updateWithSignature(model.samples.row(static_cast<std::size_t>(i)), readings);
+    return r.probabilities();
+  };
+  Recogniser again(model, model.graph, params), fresh(model, model.graph, params);
+  for (int i = 0; i < 12; ++i) at(again, i, 100.0 + i);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(at(again, i, 50.0 + i), at(fresh, i, 50.0 + i)) << i;
+  // Late by less: the same drive, not one of its own.
+  Recogniser other(model, model.graph, params);
+  EXPECT_NE(at(again, 5, 54.8), at(other, 5, 54.8));
+}
+
 TEST(PoseFilter, RefusesWhatItCannotUse) {
   Ring ring;
   PoseFilterParams params;
