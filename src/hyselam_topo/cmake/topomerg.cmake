@@ -2,7 +2,12 @@
 add_library(hyselam_topomerg
   src/topomerg/assignment_bound.cpp
   src/topomerg/exact_bound.cpp
+  src/topomerg/exact_groups.cpp
+  src/topomerg/exact_growth.cpp
+  src/topomerg/exact_losses.cpp
+  src/topomerg/exact_run.cpp
   src/topomerg/exact_search.cpp
+  src/topomerg/exact_sets.cpp
   src/topomerg/explorer.cpp
   src/topomerg/improve.cpp
   src/topomerg/match_problem.cpp
@@ -12,6 +17,8 @@ add_library(hyselam_topomerg
   src/topomerg/tree_search.cpp)
 target_link_libraries(hyselam_topomerg PUBLIC hyselam_language)
 hyselam_target(hyselam_topomerg)
+# The solver's many small functions may be inlined although the library is position independent.
+target_compile_options(hyselam_topomerg PRIVATE -fno-semantic-interposition)
 install(TARGETS hyselam_topomerg
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}

@@ -23,8 +23,7 @@ class PlaceSet {
   bool containsAll(const PlaceSet& o) const { return (o - *this).empty(); }
   std::size_t size() const {
     std::size_t n = 0;
-    for (const std::uint64_t word : words_)
-      n += static_cast<std::size_t>(__builtin_popcountll(word));
+    for (const std::uint64_t word : words_) n += bitCount(word);
     return n;
   }
   PlaceSet& operator|=(const PlaceSet& o) {
@@ -60,6 +59,13 @@ class PlaceSet {
   }
 
  private:
+  /// The builtin is a call where the processor's instruction may not be assumed.
+  static std::size_t bitCount(std::uint64_t word) {
+    word -= word >> 1 & 0x5555555555555555u;
+    word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+    word = (word + (word >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
+    return static_cast<std::size_t>(word * 0x0101010101010101u >> 56);
+  }
   static std::size_t lowestBit(std::uint64_t word) {
     return static_cast<std::size_t>(__builtin_ctzll(word));
   }

@@ -16,18 +16,55 @@ void AssignmentBound::reset(int rows, int columns) {
   column_of_.assign(r, -1);
   distance_.resize(c);
   before_.resize(c);
-  done_.resize(c);
+  price_.resize(c);
+}
+
+// Loops without branches: they are most of the work.
+void AssignmentBound::start(int row) {
+  const double* costs = cost_.data() + index(row, 0);
+  const auto columns = static_cast<std::size_t>(columns_);
+  for (std::size_t c = 0; c < columns; ++c) {
+    price_[c] = v_[c];
+    distance_[c] = costs[c] - v_[c];
+    before_[c] = row;
+  }
+}
+
+void AssignmentBound::goOn(int from, double so_far) {
+  const double* costs = cost_.data() + index(from, 0);
+  const double u = u_[static_cast<std::size_t>(from)];
+  const auto columns = static_cast<std::size_t>(columns_);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const double d = so_far + costs[c] - u - price_[c];
+    const bool nearer = d < distance_[c];
+    distance_[c] = nearer ? d : distance_[c];
+    before_[c] = nearer ? from : before_[c];
+  }
+}
+
+int AssignmentBound::nearestColumn() const {
+  const auto columns = static_cast<std::size_t>(columns_);
+  const double* d = distance_.data();
+  double a = std::numeric_limits<double>::infinity(), b = a;
+  std::size_t c = 0;
+  for (; c + 1 < columns; c += 2) {
+    a = std::min(a, d[c]);
+    b = std::min(b, d[c + 1]);
+  }
+  if (c < columns) a = std::min(a, d[c]);
+  const double least = std::min(a, b);
+  if (least == std::numeric_limits<double>::infinity()) return -1;
+  return static_cast<int>(std::find(d, d + columns, least) - d);
 }
 
 double AssignmentBound::addRow(int row) {
   // Shortest path from the new row to a free column, or to a row that goes without.
-  std::fill(distance_.begin(), distance_.end(), std::numeric_limits<double>::infinity());
-  std::fill(done_.begin(), done_.end(), 0);
   double best = std::numeric_limits<double>::infinity();  // of the ends that are known
   int best_row = -1;                                      // goes without
   int last = -1;                                          // free column
   int from = row;
   double so_far = 0.0;
+  done_.clear();
   while (true) {
     const auto f = static_cast<std::size_t>(from);
     const double alone = so_far + without_[f] - u_[f];
@@ -35,42 +72,34 @@ double AssignmentBound::addRow(int row) {
       best = alone;
       best_row = from;
     }
-    const double* costs = cost_.data() + index(from, 0);
-    double nearest = std::numeric_limits<double>::infinity();
-    int next = -1;
-    for (int c = 0; c < columns_; ++c) {
-      const auto k = static_cast<std::size_t>(c);
-      if (done_[k]) continue;
-      const double d = so_far + costs[c] - u_[f] - v_[k];
-      if (d < distance_[k]) {
-        distance_[k] = d;
-        before_[k] = from;
-      }
-      if (distance_[k] < nearest) {
-        nearest = distance_[k];
-        next = c;
-      }
-    }
-    if (next < 0 || nearest >= best) break;
+    if (from == row)
+      start(row);
+    else
+      goOn(from, so_far);
+    const int next = nearestColumn();
+    if (next < 0) break;
     const auto k = static_cast<std::size_t>(next);
+    const double nearest = distance_[k];
+    if (nearest >= best) break;
     if (row_of_[k] < 0) {
       best = nearest;
       best_row = -1;
       last = next;
       break;
     }
-    done_[k] = 1;
+    // Its distance is final: no other path leads to it.
+    done_.push_back({k, nearest});
+    distance_[k] = std::numeric_limits<double>::infinity();
+    price_[k] = -std::numeric_limits<double>::infinity();
     so_far = nearest;
     from = row_of_[k];
   }
   // New dual values.
   u_[static_cast<std::size_t>(row)] += best;
-  for (int c = 0; c < columns_; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    if (!done_[k]) continue;
-    const double slack = best - distance_[k];
-    u_[static_cast<std::size_t>(row_of_[k])] += slack;
-    v_[k] -= slack;
+  for (const Done& column : done_) {
+    const double slack = best - column.distance;
+    u_[static_cast<std::size_t>(row_of_[column.number])] += slack;
+    v_[column.number] -= slack;
   }
   // Turn the path around.
   int column = last;

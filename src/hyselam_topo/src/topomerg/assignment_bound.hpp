@@ -40,9 +40,20 @@ class AssignmentBound {
   std::vector<double> u_, v_;  ///< dual values of rows and columns, v <= 0
   std::vector<int> row_of_;    ///< of each column, -1: free
   // Of one search for a path:
-  std::vector<double> distance_;
-  std::vector<int> before_;  ///< row from which a column was reached
-  std::vector<char> done_;
+  struct Done {
+    std::size_t number;
+    double distance;
+  };
+  /// Distances of all columns from the row that is added, ...
+  void start(int row);
+  /// ... shortened by ways through another row, which is so far away.
+  void goOn(int from, double so_far);
+  int nearestColumn() const;
+
+  std::vector<double> distance_;  ///< infinite for columns that are done
+  std::vector<double> price_;     ///< v, minus infinity for columns that are done
+  std::vector<int> before_;       ///< row from which a column was reached
+  std::vector<Done> done_;
   std::vector<int> column_of_;  ///< of each row, -1: none
 };
 

@@ -15,6 +15,10 @@
 
 namespace hyselam_topo::merging {
 
+inline std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
 /// A set of vertices that a name may take as a whole.
 struct CandidateSet {
   Vertices vertices;
@@ -124,24 +128,33 @@ class ExactSearch {
   double bound(Node* node, const Growth* growth);
   void listOnce();
   void listSets(Node* node) const;
-  void addLast(const Node& node, int name, int last, const double* before, double* now) const;
+  void addLast(const Node& node, int name, int last, const double* before, double* now);
   void listRows(Node* node, int near, const std::vector<char>& late) const;
   double grownLoss(const Growth& growth) const;
   double emptyLoss(int name, const Growth* growth) const;
   GrownView viewOf(const Vertices& vertices, const Growth& growth) const;
   double looseLoss(int name, const LooseAnchor& loose, const Growth* growth) const;
-  double grownPairLoss(int name, const GrownView& view, const Growth& growth) const;
+  /// Of two names that are told to be joined, one of which is being built.
+  double grownPairLoss(int name, std::size_t set, const Growth& growth);
+  void addGrowth(int name, const Growth& growth, double* cost);
   /// What is lost of two names that are told to be joined and are not.
-  double pairLoss(int i, int j) const;
+  double pairLoss(int i, int j) const { return pair_loss_[at(i * n_ + j)]; }
   /// The least of it if they share a wall.
-  double wallLoss(int i, int j) const;
+  double wallLoss(int i, int j) const { return wall_loss_[at(i * n_ + j)]; }
+  /// What a set of the node loses of a side through its doors: the same for all names that were
+  /// told on the same side, so it is computed once.
+  template <typename Compute>
+  double rememberedDoors(int side, bool from_set, std::size_t set, Compute&& compute) {
+    const std::size_t row = 2 * at(middle_of_[at(side)]) + (from_set ? 1 : 0);
+    double& loss = door_losses_[row * sets_ + set];
+    if (loss < 0.0) loss = compute();
+    return loss;
+  }
   bool mayShareWall(const PlaceSet& a, const PlaceSet& b) const;
   PlaceSet piece(std::size_t anchor, const PlaceSet& of) const;
   bool forEachSet(std::size_t anchor, const PlaceSet& piece, std::size_t limit,
                   const std::function<void(const Vertices&)>& visit) const;
-  int sideBetween(int i, int j) const {
-    return side_between_[static_cast<std::size_t>(i * n_ + j)];
-  }
+  int sideBetween(int i, int j) const { return side_between_[at(i * n_ + j)]; }
   const Vertices& setOf(const Node& node, std::size_t number) const {
     return number < node.alive.size()
                ? listed_[static_cast<std::size_t>(node.alive[number])].vertices
@@ -191,9 +204,13 @@ class ExactSearch {
   std::vector<Vertices> closed_;
   std::vector<char> is_closed_;
   std::vector<int> closed_list_;
-  std::vector<int> owner_;         ///< of each vertex, -1: free
-  std::vector<int> told_edges_;    ///< of each name
-  std::vector<int> side_between_;  ///< names x names, number in problem.sides or -1
+  std::vector<int> owner_;                     ///< of each vertex, -1: free
+  std::vector<int> told_edges_;                ///< of each name
+  std::vector<int> side_between_;              ///< names x names, number in problem.sides or -1
+  std::vector<double> pair_loss_, wall_loss_;  ///< names x names, of those told to be joined
+  std::vector<std::vector<int>> led_by_;       ///< of each name: see leads()
+  std::vector<int> middle_of_;                 ///< of each side: number of its direction as told
+  std::size_t middles_ = 0;                    ///< different directions
   /// Names x listed sets, for each number of names that have got their vertices: what the name
   /// would lose with that set, alone and with them.
   std::vector<std::vector<double>> losses_;
@@ -207,6 +224,11 @@ class ExactSearch {
   std::vector<Contact> contacts_;  ///< with the name that has last got its vertices
   std::vector<double> bearings_;   ///< from the set to that name
   std::vector<GrownView> views_;
+  std::vector<double> touch_costs_;  ///< of a name that is not told to be joined to what grows
+  std::vector<int> columns_;         ///< of the table
+  std::vector<double>
+      door_losses_;  ///< (2 x directions) x sets, see rememberedDoors(); -1: not yet
+  std::size_t sets_ = 0;
   std::vector<char> lonely_;  ///< touches no available vertex: 1 but shares a wall with one, 2 none
 
   std::deque<Node> nodes_;

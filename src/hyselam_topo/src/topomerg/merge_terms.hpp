@@ -20,6 +20,11 @@ inline double wrapped(double angle) {
   return angle;
 }
 
+/// The same line seen from its other end.
+inline double turned(double bearing) {
+  return bearing > 0.0 ? bearing - kPi : bearing + kPi;
+}
+
 /// The vertices that one name means, and what follows from them.
 struct Vertices {
   PlaceSet members;
