@@ -30,8 +30,9 @@ void objectText(const std::uint8_t* data, std::size_t size) {
   for (std::string line; ++lines <= 20 && std::getline(text, line);) {
     for (const ObjectReply& reply : fill.say(line)) {
       require(!reply.text.empty());
-      for (const Id id : reply.objects) require(map.find(id) != nullptr);
-      for (const Id id : reply.places) require(map.findPlace(id) != nullptr);
+      // A later sentence of the same line may have had some of them forgotten.
+      for (const Id id : reply.objects) require(id > 0 && id < map.next_object_id);
+      for (const Id id : reply.places) require(id > 0 && id < map.next_place_id);
     }
     checkMap(map, "told");
   }

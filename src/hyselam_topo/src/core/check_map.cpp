@@ -4,8 +4,8 @@
 #include <unordered_set>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_topo/text.hpp"
 #include "hyselam_topo/topological_map.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -1,4 +1,4 @@
-#include "text.hpp"
+#include "hyselam_topo/text.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "hyselam_common/errors.hpp"
-#include "text.hpp"
+#include "hyselam_topo/text.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/text.hpp"
 #include "plane.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
-#include "text.hpp"
+#include "hyselam_topo/text.hpp"
 
 namespace hyselam_topo {
 namespace {

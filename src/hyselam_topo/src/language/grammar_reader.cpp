@@ -9,9 +9,9 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_topo/text.hpp"
 #include "letters.hpp"
 #include "pattern.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace language {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "text.hpp"
+#include "hyselam_topo/text.hpp"
 
 namespace hyselam_topo {
 namespace language {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "hyselam_topo/text.hpp"
 #include "letters.hpp"
 #include "matching_costs.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace language {

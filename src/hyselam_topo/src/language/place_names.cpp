@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "compiled_grammar.hpp"
+#include "hyselam_topo/text.hpp"
 #include "letters.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_topo/text.hpp"
 #include "letters.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace language {

@@ -5,8 +5,8 @@
 
 #include "compiled_grammar.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_topo/text.hpp"
 #include "matcher.hpp"
-#include "text.hpp"
 
 namespace hyselam_topo {
 namespace {
