@@ -41,6 +41,9 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
                 : kidnapped ? colour(1.0, 0.45, 0.05, 0.95)
                             : colour(0.1, 0.7, 0.25, 0.95);
     array.markers.push_back(bar);
+    // The map's own markers name the others.
+    const long percent = std::lround(100.0 * probabilities[i]);
+    if (percent == 0) continue;
     Marker text = bar;
     text.ns = "names";
     text.type = Marker::TEXT_VIEW_FACING;
@@ -51,8 +54,7 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     text.pose.position.z = 0.3;
     text.color = here ? bar.color : colour(0.1, 0.1, 0.1, 1.0);
     text.color.a = 1.0f;
-    const long percent = std::lround(100.0 * probabilities[i]);
-    text.text = names[i] + (percent > 0 ? " " + std::to_string(percent) + " %" : "");
+    text.text = names[i] + " " + std::to_string(percent) + " %";
     array.markers.push_back(text);
   }
   return array;
