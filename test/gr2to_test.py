@@ -180,6 +180,7 @@ class Gr2ToTest(unittest.TestCase):
         return folder.name
 
     def assert_two_rooms(self, rig, transform=lambda x, y: (x, y)):
+        rig.maps.wait()  # the map may come after the diagnosis that tells of it
         msg = rig.maps.messages[-1]
         self.assertEqual(len(msg.places), 2)
         self.assertEqual([len(e.doors) for e in msg.edges], [1])
