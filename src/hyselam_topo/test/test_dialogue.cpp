@@ -404,3 +404,37 @@ TEST(Phrases, RefuseFilesWithMistakes) {
   EXPECT_EQ(messageOf(with("I am at {code}.", "I am at {code.")),
             "f: key 'phrases/at_code': a brace is not closed");
 }
+
+TEST(Dialogue, AsksBeforeAPlaceWithANameGetsAnother) {
+  Visit v;
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  v.say("You are in the corridor.");
+  const Id here = v.truth("corridor");
+  ASSERT_EQ(v.names(here), (std::vector<std::string>{"corridor"}));
+  const Reply asked = v.say("You are in room 1.");
+  EXPECT_TRUE(has(asked, "Is it also known as room 1?")) << asked.text();
+  EXPECT_EQ(v.names(here), (std::vector<std::string>{"corridor"}));
+  v.say("No.");
+  EXPECT_EQ(v.names(here), (std::vector<std::string>{"corridor"}));
+  v.say("You are in room 1.");
+  v.say("Yes.");
+  EXPECT_EQ(v.names(here), (std::vector<std::string>{"corridor", "room 1"}));
+  v.say("You are in room 2.");
+  v.say("Rename this place to room 2.");
+  EXPECT_EQ(v.names(here), (std::vector<std::string>{"room 2"}));
+}
+
+TEST(Dialogue, RefusesInTheLanguageOfTheSentence) {
+  Visit v;
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  EXPECT_TRUE(has(v.say("Onde estás?"), "Estou em"));
+  const Reply english = v.say("The door of the kitchen is on your left.");
+  EXPECT_TRUE(has(english, "I did not understand")) << english.text();
+  EXPECT_TRUE(has(english, "is a part of a place")) << english.text();
+  const Reply portuguese = v.say("A porta da cozinha fica à sua esquerda.");
+  EXPECT_TRUE(has(portuguese, "é uma parte de um lugar")) << portuguese.text();
+  // What fits no language better stays in that of the talk.
+  EXPECT_EQ(v.say("Xyzzy.").language, "pt");
+}

@@ -69,6 +69,7 @@ class DescriptionBuilder {
   void alias(const Utterance& u);
   void kind(const Utterance& u);
   void size(const Utterance& u);
+  void sizeOf(Id id, const Utterance& u);
   void parts(const Utterance& u);
   void buildingCount(const Utterance& u);
   void exists(const Utterance& u);

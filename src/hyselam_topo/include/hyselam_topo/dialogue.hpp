@@ -97,6 +97,7 @@ struct Question {
   enum class Kind {
     kNone,
     kConfirmName,  ///< has `place` the names?
+    kAlsoName,     ///< has `place`, which has other names, the names as well?
     kName,         ///< what is the name of `place`?
     kWall,         ///< is `wall` right?
     kWallLength,   ///< how long is the wall?
@@ -186,6 +187,10 @@ class Dialogue {
   void forgetNames(const Utterance& u, Turn* turn);
   void rename(const Utterance& u, Turn* turn);
   /// Throws hyselam::InputError for names that cannot be.
+  /// Whether a place is confirmed to have names, and none of these.
+  bool isNamedOtherwise(Id place, const std::vector<std::string>& names) const;
+  /// Asks whether a place with other names has these as well.
+  void askAlso(Id place, const std::vector<std::string>& names, Reply* out);
   void nameHere(Id place, const std::vector<std::string>& names, Reply* reply);
   void askConfirm(Id place, Reply* reply);
   void askName(Id place, Reply* reply);

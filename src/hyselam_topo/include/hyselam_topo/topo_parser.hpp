@@ -16,6 +16,8 @@ struct ParseOptions {
   /// A language of the parser, or "auto": the one that understands most of the text, of several the
   /// one that knows more of its words, of several the first.
   std::string language = "auto";
+  /// Of "auto": the language of what fits several equally well; "" for the first of the parser.
+  std::string preferred;
   /// Intents of answers to a question that was asked: preferred where a sentence may mean several
   /// things, and needed for some, as "name_answer" for a bare "Kitchen.".
   std::set<std::string> expected;

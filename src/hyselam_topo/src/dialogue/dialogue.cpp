@@ -123,8 +123,9 @@ void Dialogue::placeEntered(Reply* out) {
   const Id here = robot().place;
   if (here != asked_) {
     asked_ = 0;
-    const bool about_name =
-        question_.kind == Question::Kind::kConfirmName || question_.kind == Question::Kind::kName;
+    const bool about_name = question_.kind == Question::Kind::kConfirmName ||
+                            question_.kind == Question::Kind::kAlsoName ||
+                            question_.kind == Question::Kind::kName;
     // The robot has left the place that it asked about.
     if (about_name && question_.place != here) question_ = {};
   }
@@ -165,10 +166,10 @@ Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
     default:
       break;
   }
+  // Answered in the language of the sentence, understood or not: its reason is in that, too.
+  parse_options.preferred = language_;
   const ParsedText parsed = parser_.parse(text, parse_options);
-  if (parsed.misunderstood() < parsed.utterances.size() && phrases_.count(parsed.language) != 0) {
-    language_ = parsed.language;
-  }
+  if (phrases_.count(parsed.language) != 0) language_ = parsed.language;
   Turn turn;
   turn.reply = reply();
   std::vector<std::string> not_understood;

@@ -66,13 +66,15 @@ void Dialogue::takeDown(Turn* turn) {
     out->sentences.push_back(p.say("no_map"));
     return;
   }
+  const bool named_otherwise =
+      !here.empty() && robot().place != 0 && isNamedOtherwise(robot().place, here);
   if (!here.empty() && robot().place != 0) {
-    if (turn->beyond_here) {
+    if (question_.place == robot().place) question_ = {};
+    if (!named_otherwise && turn->beyond_here) {
       places_.confirm(robot().place, here);
-    } else {
+    } else if (!named_otherwise) {
       nameHere(robot().place, here, out);
     }
-    if (question_.place == robot().place) question_ = {};
     subject_ = robot().place;
   } else if (!here.empty() && !turn->beyond_here) {
     out->sentences.push_back(p.say("no_place_here"));
@@ -83,6 +85,7 @@ void Dialogue::takeDown(Turn* turn) {
   }
   turn->beyond_here = false;
   turn->sides = false;
+  if (named_otherwise) askAlso(robot().place, here, out);
 }
 
 MatchConstraints Dialogue::constraints() const {
@@ -204,6 +207,36 @@ void Dialogue::askFromAfar(const MatchProblem& problem, Reply* out) {
 
 // ---- One name ----
 
+bool Dialogue::isNamedOtherwise(Id place, const std::vector<std::string>& names) const {
+  const Place& p = *places_.map().findPlace(place);
+  if (nameStateOf(p) != NameState::kConfirmed) return false;
+  std::vector<std::string> known = namesOf(p);
+  const auto isKnown = [&](const std::string& name) {
+    return std::any_of(known.begin(), known.end(),
+                       [&](const std::string& each) { return places_.sameName(each, name); });
+  };
+  if (std::any_of(names.begin(), names.end(), isKnown)) return false;
+  // Told as another name of it.
+  for (const std::string& name : names) {
+    for (const Id id : builder_.find(name)) {
+      const std::vector<std::string> all = allNamesOf(*builder_.building().findPlace(id));
+      if (std::any_of(all.begin(), all.end(), isKnown)) return false;
+    }
+  }
+  return true;
+}
+
+void Dialogue::askAlso(Id place, const std::vector<std::string>& names, Reply* out) {
+  const Phrases& p = phrases();
+  question_ = {};
+  question_.kind = Question::Kind::kAlsoName;
+  question_.place = place;
+  question_.names = names;
+  const std::vector<std::string> known = namesOf(*places_.map().findPlace(place));
+  out->sentences.push_back(p.say(
+      "ask_also", {{"known", p.list(known)}, {"names", p.list(names)}, {"name", names.front()}}));
+}
+
 void Dialogue::nameHere(Id place, const std::vector<std::string>& names, Reply* out) {
   const Phrases& p = phrases();
   const std::vector<Id> losers = places_.confirm(place, names);
@@ -249,7 +282,12 @@ void Dialogue::thisIs(const Utterance& u, Turn* turn) {
   names.insert(names.end(), aliases.begin(), aliases.end());
   // "The name of this place is ..." right after a question about another place answers that.
   const Id place = question_.kind == Question::Kind::kName ? question_.place : robot().place;
-  if (!names.empty()) nameHere(place, names, out);
+  if (names.empty()) return;
+  if (isNamedOtherwise(place, names)) {
+    askAlso(place, names, out);
+  } else {
+    nameHere(place, names, out);
+  }
 }
 
 void Dialogue::forgetNames(const Utterance& u, Turn* turn) {
@@ -352,7 +390,8 @@ void Dialogue::answer(const Utterance& u, Turn* turn) {
     } else {
       out->sentences.push_back(p.say("nothing_asked"));
     }
-  } else if (u.intent == "yes" && question_.kind == Kind::kConfirmName) {
+  } else if (u.intent == "yes" &&
+             (question_.kind == Kind::kConfirmName || question_.kind == Kind::kAlsoName)) {
     const Question asked = question_;
     nameHere(asked.place, asked.names, out);
   } else if (u.intent == "yes" && question_.kind == Kind::kWall) {
@@ -369,6 +408,15 @@ void Dialogue::answer(const Utterance& u, Turn* turn) {
     question_.search->reject(question_.wall.line);
     out->sentences.push_back(p.say("ask_wall_length", {{"wall", p.wall(question_.wall.kind)}}));
   } else if (u.intent == "no") {
+    if (question_.kind == Kind::kAlsoName) {
+      // What was described from here is told of the place that it is.
+      if (builder_.building().robot_place) {
+        builder_.setRobotPlace(namesOf(*places_.map().findPlace(question_.place)).front());
+      }
+      out->sentences.push_back(p.say(
+          "at_named", {{"code", codeOf(*places_.map().findPlace(question_.place))},
+                       {"names", p.list(namesOf(*places_.map().findPlace(question_.place)))}}));
+    }
     question_ = {};
     out->sentences.push_back(p.say("cancelled"));
   } else {

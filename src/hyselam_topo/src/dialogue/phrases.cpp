@@ -26,6 +26,7 @@ const std::map<std::string, std::set<std::string>>& knownPhrases() {
       {"perhaps", {"name"}},
       {"ask_confirm", {"names"}},
       {"ask_confirm_there", {"code", "names"}},
+      {"ask_also", {"known", "names", "name"}},
       {"ask_name", {}},
       {"ask_name_there", {"code"}},
       {"named", {"code", "names"}},

@@ -270,6 +270,7 @@ void DescriptionBuilder::neighbours(const Utterance& u) {
   side_ = side && *side != Side::kUnknown ? side : std::nullopt;
   for (const Id id : ids) connect(from, id, side.value_or(Side::kUnknown), std::nullopt);
   subjects_ = ids;
+  if (ids.size() == 1 && u.number("length")) sizeOf(ids.front(), u);
 }
 
 void DescriptionBuilder::nthNeighbour(const Utterance& u) {
@@ -393,7 +394,10 @@ void DescriptionBuilder::setSize(std::optional<double>* member, const std::optio
 }
 
 void DescriptionBuilder::size(const Utterance& u) {
-  const Id id = place(u, "place");
+  sizeOf(place(u, "place"), u);
+}
+
+void DescriptionBuilder::sizeOf(Id id, const Utterance& u) {
   DescribedPlace& place = *building_.findPlace(id);
   subjects_ = {id};
   const auto length = u.number("length"), width = u.number("width"), area = u.number("area");

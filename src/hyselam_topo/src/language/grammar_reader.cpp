@@ -332,6 +332,16 @@ class Reader {
         value.each([&](const std::string& title, const Node& words) {
           for (const std::string& word : words.texts()) type.titles[folded(word)] = title;
         });
+      } else if (key == "plurals") {
+        value.each([&](const std::string& title, const Node& words) {
+          for (const std::string& word : words.texts()) type.plurals[folded(word)] = title;
+        });
+      } else if (key == "between") {
+        addFolded(value.texts(), &type.between);
+      } else if (key == "parts") {
+        addFolded(value.texts(), &type.parts);
+      } else if (key == "part_joiners") {
+        addFolded(value.texts(), &type.part_joiners);
       } else if (key == "references") {
         value.each([&](const std::string& word, const Node& texts) {
           context_.references[name][word] = texts.texts();
@@ -429,13 +439,13 @@ class Reader {
     for (const auto& [word, value] : g().number_words) known.insert(word);
     for (const NameType& type : g().name_types) {
       for (const auto& words :
-           {type.definite, type.indefinite, type.stop, type.generic, type.quantities}) {
+           {type.definite, type.indefinite, type.stop, type.generic, type.quantities, type.parts}) {
         known.insert(words.begin(), words.end());
       }
       for (const auto& [phrase_text, kind] : type.nouns) {
         for (const std::string& word : splitWords(phrase_text)) known.insert(word);
       }
-      for (const auto& words : {type.forbidden, type.titles}) {
+      for (const auto& words : {type.forbidden, type.titles, type.plurals}) {
         for (const auto& [word, meaning] : words) known.insert(word);
       }
     }

@@ -521,7 +521,7 @@ class SentenceReader {
       if (clause.tied) return {refusal("ambiguous", range, textOf(range))};
       if (reading->ambiguous) {
         const Clause& other = clauses_[static_cast<std::size_t>(reading->other)];
-        return {refusal("ambiguous", range, clause.intent->name + ", " + other.intent->name)};
+        return {refusal("ambiguous", range, examplesOf(*clause.intent, *other.intent, range))};
       }
       Utterance utterance;
       utterance.kind = clause.intent->kind;
@@ -537,6 +537,12 @@ class SentenceReader {
     }
     std::reverse(utterances.begin(), utterances.end());
     return utterances;
+  }
+
+  /// What people may say instead: a sentence of each kind.
+  std::string examplesOf(const IntentInfo& a, const IntentInfo& b, TextRange range) const {
+    if (&a == &b || a.examples.empty() || b.examples.empty()) return textOf(range);
+    return "\"" + a.examples.front() + "\", \"" + b.examples.front() + "\"";
   }
 
   std::string textOf(TextRange range) const {
@@ -564,15 +570,29 @@ class SentenceReader {
         return refusal(code->second, token.range, token.text);
       }
     }
+    for (std::size_t k = 0; k + 1 < tokens_.size(); ++k) {
+      const Token &sign = tokens_[k], &number = tokens_[k + 1];
+      const bool apart = k == 0 || tokens_[k - 1].range.end < sign.range.begin;
+      if (apart && sign.text == "-" && number.kind == TokenKind::kNumber &&
+          sign.range.end == number.range.begin) {
+        const TextRange range{sign.range.begin, number.range.end};
+        return refusal("negative", range, textOf(range));
+      }
+    }
     // The reason that lies furthest on: there the sentence could not be followed any more.
+    constexpr char kPart[] = "part_of_place";
     const NameFailure* failure = nullptr;
     for (const NameFailure& each : names_.failures()) {
-      if (each.at + 2 < furthest_) continue;
+      if (each.at + 2 < furthest_ && each.code != kPart) continue;
       if (failure == nullptr || each.at >= failure->at) failure = &each;
     }
     const std::size_t at = std::min(furthest_, tokens_.size() - 1);
     if (failure != nullptr) {
       const Token& token = tokens_[failure->at];
+      if (failure->code == kPart) {
+        const TextRange range{token.range.begin, tokens_[failure->end - 1].range.end};
+        return refusal(failure->code, range, textOf(range));
+      }
       return refusal(failure->code, token.range, token.text);
     }
     const TextRange rest{tokens_[at].range.begin, tokens_.back().range.end};

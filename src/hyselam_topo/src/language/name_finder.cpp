@@ -58,8 +58,77 @@ bool NameFinder::mayBeArticle(std::size_t at, const NameType& type) const {
   return !(token.starts_upper && token.text.size() == 1 && at > 0);
 }
 
+std::size_t NameFinder::codeEnd(std::size_t at) const {
+  const auto isCode = [&](std::size_t k) {
+    if (k >= tokens_.size()) return false;
+    const Token& token = tokens_[k];
+    if (token.kind == TokenKind::kNumber) return true;
+    return token.kind == TokenKind::kWord &&
+           ((token.text.size() == 1 && token.starts_upper) ||
+            std::any_of(token.text.begin(), token.text.end(),
+                        [](char c) { return c >= '0' && c <= '9'; }));
+  };
+  if (!isCode(at)) return 0;
+  std::size_t end = at + 1;
+  while (end + 1 < tokens_.size() && isMarkOfNames(tokens_[end]) && isCode(end + 1)) end += 2;
+  return end;
+}
+
+std::string NameFinder::titleOfRow(std::size_t at, const NameType& type) const {
+  for (std::size_t k = at; k > 0;) {
+    const auto plural = type.plurals.find(tokens_[k - 1].folded);
+    if (plural != type.plurals.end()) {
+      // "two rooms A and B" counts, and names A and B.
+      const bool counted = k > 1 && (tokens_[k - 2].kind == TokenKind::kNumber ||
+                                     grammar_.number_words.count(tokens_[k - 2].folded) != 0);
+      return counted ? "" : plural->second;
+    }
+    std::size_t behind = k;
+    while (behind > 0 && (tokens_[behind - 1].kind == TokenKind::kComma ||
+                          type.between.count(tokens_[behind - 1].lower) != 0)) {
+      --behind;
+    }
+    if (behind == k) return "";
+    std::size_t begin = behind;
+    while (begin > 0 && codeEnd(begin - 1) == behind) --begin;
+    if (begin == behind) return "";
+    k = begin;
+  }
+  return "";
+}
+
+std::optional<FoundName> NameFinder::inRow(std::size_t at, const NameType& type) const {
+  std::size_t begin = at;
+  if (mayBeArticle(begin, type)) ++begin;
+  if (begin < tokens_.size() && type.plurals.count(tokens_[begin].folded) != 0) {
+    ++begin;
+  } else {
+    begin = at;
+  }
+  const std::size_t end = codeEnd(begin);
+  if (end == 0) return std::nullopt;
+  const std::string title = titleOfRow(begin, type);
+  if (title.empty()) return std::nullopt;
+  SaidName name = nameOf(begin, end);
+  name.text = title + " " + name.text;
+  return FoundName{end, kNameCost + kNameWordCost, name};
+}
+
+bool NameFinder::isPart(std::size_t begin, std::size_t end, const NameType& type) const {
+  for (std::size_t k = begin; k + 1 < end; ++k) {
+    if (type.parts.count(tokens_[k].folded) != 0 &&
+        type.part_joiners.count(tokens_[k + 1].folded) != 0) {
+      return true;
+    }
+  }
+  const std::string& last = tokens_[end - 1].folded;
+  return !type.head_first && type.parts.count(last) != 0 && type.nouns.count(last) == 0 &&
+         hasNoun(begin, end - 1, type);
+}
+
 std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
   std::vector<FoundName> found;
+  if (const auto in_row = inRow(at, type)) return {*in_row};
   std::size_t begin = at;
   bool indefinite = false;
   if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
@@ -104,7 +173,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
         found.push_back(
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1)});
       } else {
-        failures_.push_back({begin, wrong});
+        failures_.push_back({begin, wrong, k + 1});
       }
     }
     if (is_last) break;
@@ -157,6 +226,7 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   const std::string& name = nameOf(begin, end).text;
   if (!whatIsWrongWithWord(name).empty() || name.size() > kMaxNameBytes) return "no_name";
   if (quoted) return "";
+  if (isPart(begin, end, type)) return "part_of_place";
   const bool number_word =
       first.kind == TokenKind::kWord && grammar_.number_words.count(first.folded) != 0;
   const bool small_number =

@@ -2,6 +2,7 @@
 // or a quotation.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct FoundName {
 struct NameFailure {
   std::size_t at = 0;  ///< token
   std::string code;
+  std::size_t end = 0;  ///< behind the last token
 };
 
 class NameFinder {
@@ -39,6 +41,13 @@ class NameFinder {
     std::vector<FoundName> names;
   };
   std::vector<FoundName> find(std::size_t at, const NameType& type);
+  /// "rooms 1, 2 and 3": the end of the code at a token, 0 for none.
+  std::size_t codeEnd(std::size_t at) const;
+  /// "room", if the code at a token belongs to such a row; "" otherwise.
+  std::string titleOfRow(std::size_t at, const NameType& type) const;
+  std::optional<FoundName> inRow(std::size_t at, const NameType& type) const;
+  /// "the door of the kitchen", "the kitchen door".
+  bool isPart(std::size_t begin, std::size_t end, const NameType& type) const;
   /// "room i 110": a letter that is a word elsewhere.
   bool isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const;
   bool mayBeArticle(std::size_t at, const NameType& type) const;

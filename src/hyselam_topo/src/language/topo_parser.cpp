@@ -83,7 +83,12 @@ const Grammar& TopoParser::grammar(const std::string& language) const {
 
 ParsedText TopoParser::parse(const std::string& text, const ParseOptions& options) const {
   const bool any = options.language == "auto";
-  const Grammar& first = any ? grammars_.front() : grammar(options.language);
+  const auto preferred = std::find_if(grammars_.begin(), grammars_.end(), [&](const Grammar& each) {
+    return each.language() == options.preferred;
+  });
+  const Grammar& first = !any                           ? grammar(options.language)
+                         : preferred == grammars_.end() ? grammars_.front()
+                                                        : *preferred;
   if (text.size() > options.max_bytes) return refused(first, text, "too_long");
   if (text.find('\0') != std::string::npos || !isUtf8(text)) {
     return refused(first, text, "not_text");
@@ -93,6 +98,10 @@ ParsedText TopoParser::parse(const std::string& text, const ParseOptions& option
   std::vector<std::pair<std::size_t, std::size_t>> order;
   for (std::size_t i = 0; i < grammars_.size(); ++i) {
     order.emplace_back(grammars_.size() > 1 ? knownWords(grammars_[i], text) : 0, i);
+  }
+  if (preferred != grammars_.end()) {
+    const auto at = order.begin() + (preferred - grammars_.begin());
+    std::rotate(order.begin(), at, at + 1);
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

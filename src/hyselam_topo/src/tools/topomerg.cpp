@@ -38,7 +38,10 @@ std::pair<Id, Id> namedPlace(const std::string& option, const std::string& text,
     for (const std::string& alias : p.aliases) same = same || alias == name;
     if (same) return {place, p.id};
   }
-  throw hyselam::InputError(option, text, "there is no such name in the description");
+  std::string known;
+  for (const DescribedPlace& p : building.places) known += (known.empty() ? "" : ", ") + p.name;
+  throw hyselam::InputError(option, text,
+                            "there is no such name in the description, which has: " + known);
 }
 
 nlohmann::json assignmentOf(const MatchProblem& problem, const DescribedBuilding& building,
