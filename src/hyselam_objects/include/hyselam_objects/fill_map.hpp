@@ -8,6 +8,9 @@
 //   spoken of, then anywhere; several: the robot asks which. None: it is added.
 // - A list related to something ("a PC and a pen over the table") is related to it as a whole,
 //   without what is that thing itself ("a table and a cup on the table").
+// - "cups" without a number: the robot asks how many; "some" or "yes" are at least two, two are
+// taken.
+// - "I moved the pen to the hall" tells of a change: what was known of its place gives way.
 // - The place is the one told, else that of the thing it is related to, else the last one spoken
 //   of, else where the robot is ("here").
 // - A thing is at one place and rests on one thing; it has one colour. What says otherwise is asked
@@ -66,6 +69,7 @@ class FillMap {
   struct Pending {
     std::vector<ObjectStatement> statements;  ///< what waits for an answer
     bool for_place = false;
+    bool for_count = false;
   };
 
   ObjectReply take(const ObjectStatement& statement);

@@ -36,6 +36,7 @@ struct ObjectStatement {
   std::optional<ObjectPhrase> landmark;  ///< what the relation is to
   std::optional<hyselam_topo::SaidName> place;
   std::map<std::string, std::string> properties;  ///< of "is_like"
+  std::optional<int> count;                       ///< of an answer to "how many?"
   bool correction = false;
   std::string language;
   std::string text;
@@ -59,9 +60,11 @@ class ObjectParser {
   ObjectParser(ObjectParser&&) noexcept;
 
   /// Never throws for what a text holds: what is not understood comes back with the reason.
-  /// `expected`: intents of answers to a question that was asked.
+  /// `expected`: intents of answers to a question that was asked; `preferred`: the language of what
+  /// fits several equally well.
   std::vector<ObjectStatement> parse(const std::string& text,
-                                     const std::set<std::string>& expected = {}) const;
+                                     const std::set<std::string>& expected = {},
+                                     const std::string& preferred = "") const;
   /// The first one for a language that is not known, as "".
   const hyselam_topo::Grammar& grammar(const std::string& language = "") const;
   /// The word for a colour or size of the map: "red", "vermelho".

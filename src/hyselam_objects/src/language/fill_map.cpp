@@ -24,17 +24,16 @@ std::vector<ObjectReply> FillMap::say(const std::string& text) {
                   subjects_.end());
   std::set<std::string> expected;
   if (pending_ && pending_->for_place) expected.insert("place_answer");
+  if (pending_ && pending_->for_count) expected.insert("count_answer");
   std::vector<ObjectReply> replies;
-  for (const ObjectStatement& statement : parser_.parse(text, expected)) {
+  for (const ObjectStatement& statement : parser_.parse(text, expected, language_)) {
     replies.push_back(take(statement));
   }
   return replies;
 }
 
 ObjectReply FillMap::take(const ObjectStatement& statement) {
-  if (statement.kind != UtteranceKind::kNotUnderstood || language_.empty()) {
-    language_ = statement.language;
-  }
+  language_ = statement.language;
   switch (statement.kind) {
     case UtteranceKind::kNotUnderstood:
       return reply(ReplyKind::kNotUnderstood, "not_understood",
@@ -125,7 +124,9 @@ ObjectReply FillMap::tell(const ObjectStatement& statement) {
     }
     if (said.plural && !said.count_said && said.reference.empty() &&
         !(said.definite && !candidates(said).empty())) {
-      return askBack(statement, "how_many", {{"what", said.text}});
+      ObjectReply asked = askBack(statement, "how_many", {{"what", said.text}});
+      pending_ = Pending{{statement}, false, true};
+      return asked;
     }
     const Id near_place = statement.intent == "is_at" && refers ? 0 : target.place;
     if (said.definite) {
@@ -346,6 +347,17 @@ ObjectReply FillMap::answer(const ObjectStatement& statement) {
   if (statement.intent == "place_answer") {
     ObjectStatement again = pending.statements.front();
     again.place = statement.place;
+    return tell(again);
+  }
+  if (pending.for_count && (statement.intent == "yes" || statement.count)) {
+    // "Some": at least two, and no more are known of.
+    ObjectStatement again = pending.statements.front();
+    for (ObjectPhrase& said : again.objects) {
+      if (!said.plural || said.count_said || !said.reference.empty()) continue;
+      said.count = statement.count.value_or(2);
+      said.count_said = true;
+      break;
+    }
     return tell(again);
   }
   if (statement.intent == "yes" && !pending.for_place) {

@@ -147,7 +147,7 @@ ObjectReply FillMap::askBack(const ObjectStatement& statement, const std::string
                              const std::vector<std::pair<std::string, std::string>>& values,
                              bool for_place) {
   const bool yes_or_no = key == "contradiction" || key == "count_contradiction";
-  if (yes_or_no || for_place) pending_ = Pending{{statement}, for_place};
+  if (yes_or_no || for_place) pending_ = Pending{{statement}, for_place, false};
   return reply(ReplyKind::kQuestion, key, values);
 }
 

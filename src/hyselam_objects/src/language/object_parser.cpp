@@ -116,7 +116,9 @@ struct ObjectParser::Words : ObjectWords {
     ObjectStatement out;
     out.kind = u.kind;
     out.intent = u.intent;
-    out.correction = u.correction;
+    out.correction = u.correction || u.word("moved") == "yes";
+    if (const auto count = u.number("count")) out.count = static_cast<int>(std::min(*count, 1e3));
+    if (const auto word = hyselam::parseNumber(u.word("some"))) out.count = static_cast<int>(*word);
     out.text = u.text;
     out.reason = u.reason;
     for (const SaidName& name : u.names("objects")) out.objects.push_back(phrase(name, text));
@@ -170,8 +172,10 @@ ObjectParser::~ObjectParser() = default;
 ObjectParser::ObjectParser(ObjectParser&&) noexcept = default;
 
 std::vector<ObjectStatement> ObjectParser::parse(const std::string& text,
-                                                 const std::set<std::string>& expected) const {
+                                                 const std::set<std::string>& expected,
+                                                 const std::string& preferred) const {
   hyselam_topo::ParseOptions options;
+  options.preferred = preferred;
   options.expected = expected;
   const hyselam_topo::ParsedText parsed = parser_->parse(text, options);
   const Words& words = *words_[indexOf(parsed.language)];
