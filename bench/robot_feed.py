@@ -15,6 +15,16 @@ PREFIX = pathlib.Path(os.environ.get("HYSELAM_PREFIX", ROOT / "devel"))
 PICTURES = ("/camera/color/image_raw", "/camera/depth/image_raw", "/camera/color/camera_info", "/camera/depth/camera_info")
 
 
+def enter_workspace():
+    """Begins the program anew with the workspace's environment if that is not around it; ends it if there is none."""
+    if str(PREFIX) in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
+        return
+    if not (PREFIX / "env.sh").exists():
+        print(f"error: {PREFIX} is missing: run 'make build'", file=sys.stderr)
+        sys.exit(2)
+    os.execv(PREFIX / "env.sh", ["env.sh", sys.executable, *sys.argv])
+
+
 def say(text):
     print(text, file=sys.stderr, flush=True)
 

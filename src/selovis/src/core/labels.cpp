@@ -107,7 +107,7 @@ void put(LabelledFrame& frame, hyselam::Pose2& odometry, Column column, const st
     case Column::kSkip:
       break;
     case Column::kImage:
-      frame.image = file();
+      if (!cell.empty()) frame.image = file();
       break;
     case Column::kPlace:
       frame.place = cell;
@@ -211,7 +211,7 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
     if (!poses) frame.pose = kNoPose;
     if (odometry.isFinite()) frame.readings.odometry = odometry;
     if (frame.place.empty()) throw hyselam::InputError(path, where, "has no place");
-    if (frame.image.empty() || cells[0].empty()) {
+    if (frame.image.empty()) {
       throw hyselam::InputError(path, where, "has no image");
     }
     frames.push_back(std::move(frame));

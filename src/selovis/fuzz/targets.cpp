@@ -1,0 +1,112 @@
+#include "targets.hpp"
+
+#include <zlib.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/fuzz_file.hpp"
+#include "selovis/labels.hpp"
+#include "selovis/model.hpp"
+
+namespace selovis {
+namespace fuzz {
+namespace {
+
+using hyselam::testing::FuzzFolder;
+using hyselam::testing::require;
+
+/// A signature of more values makes an input slow and no richer.
+constexpr int kMaxSignature = 100000;
+
+/// The text up to the next mark, which is taken off with it.
+std::string nextPart(std::string& text) {
+  const std::string mark = "\n===\n";
+  const std::size_t at = std::min(text.find(mark), text.size());
+  const std::string part = text.substr(0, at);
+  text.erase(0, std::min(text.size(), at + mark.size()));
+  return part;
+}
+
+/// Writes a data file of the model and says so in its manifest.
+void putData(const FuzzFolder& folder, nlohmann::json& manifest, const std::string& kind,
+             const std::string& bytes) {
+  char sum[16];
+  std::snprintf(
+      sum, sizeof sum, "%08lx",
+      crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
+  const std::string name = kind + "-" + sum + ".bin";
+  folder.put(name, bytes);
+  manifest[kind] = {{"file", name}, {"bytes", bytes.size()}, {"crc32", sum}};
+}
+
+/// Files of the input before are of no use to the next.
+void clear(const std::string& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::filesystem::remove_all(entry.path());
+  }
+}
+
+void requireProbabilities(const Model& model) {
+  const std::vector<float> signature(model.samples.size, 0.5f);
+  std::vector<double> p(model.graph.places.size());
+  model.makeClassifier()->predict(signature.data(), p.data());
+  double sum = 0.0;
+  for (const double each : p) {
+    require(each >= 0.0 && each <= 1.0);
+    sum += each;
+  }
+  require(std::abs(sum - 1.0) < 1e-6);
+}
+
+}  // namespace
+
+void placeModel(const std::uint8_t* data, std::size_t size) {
+  static const FuzzFolder folder;
+  clear(folder.path(""));
+  std::string text = hyselam::testing::textOf(data, size);
+  std::string manifest = nextPart(text);
+  nlohmann::json j = nlohmann::json::parse(manifest, nullptr, false);
+  if (j.is_object()) {
+    putData(folder, j, "signatures", nextPart(text));
+    if (!text.empty()) putData(folder, j, "svm", text);
+    manifest = j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+  folder.put("model.json", manifest);
+  Model model;
+  try {
+    model = loadModel(folder.path(""));
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  if (model.samples.size > kMaxSignature) return;
+  requireProbabilities(model);
+  const std::string again = folder.path("again");
+  saveModel(model, again);
+  const Model same = loadModel(again);
+  require(same.descriptor == model.descriptor && same.graph.places == model.graph.places &&
+          same.graph.transitions == model.graph.transitions && same.learnt == model.learnt &&
+          same.samples.values == model.samples.values && same.state == model.state);
+}
+
+void placeLabels(const std::uint8_t* data, std::size_t size) {
+  static const FuzzFolder folder;
+  std::vector<LabelledFrame> frames;
+  try {
+    frames = readLabels(folder.put("labels.csv", hyselam::testing::textOf(data, size)));
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  require(!frames.empty());
+  for (const LabelledFrame& frame : frames) {
+    require(!frame.place.empty() && frame.image.size() > folder.path("").size());
+    require(frame.pose.isFinite() ||
+            !std::isfinite(frame.pose.x + frame.pose.y + frame.pose.theta));
+  }
+}
+
+}  // namespace fuzz
+}  // namespace selovis
