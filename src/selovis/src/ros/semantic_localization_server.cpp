@@ -15,9 +15,9 @@
 namespace selovis {
 namespace {
 
-constexpr double kPollEvery = 0.02;  // [s] of wall time: images that wait, training that ends
-constexpr double kPoseAge = 0.5;     // [s] a pose so old is still that of the image
-constexpr int kRangeColumns = 40;    // distances taken from a laser scan
+constexpr double kPollEvery = 0.005;  // [s] of wall time: images that wait, training that ends
+constexpr double kPoseAge = 0.5;      // [s] a pose so old is still that of the image
+constexpr int kRangeColumns = 40;     // distances taken from a laser scan
 
 std::shared_ptr<const Model> firstModel(const SemanticLocalizationParams& params) {
   if (!params.model.empty()) return std::make_shared<Model>(loadModel(params.model));
@@ -87,20 +87,22 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
       }));
   if (needs_.scan || needs_.ranges) {
     subscribers_.push_back(nh.subscribe<sensor_msgs::LaserScan>(
-        "scan", 100, [this](const sensor_msgs::LaserScan::ConstPtr& msg) { scans_.add(msg); }));
+        "scan", 100,
+        [this](const sensor_msgs::LaserScan::ConstPtr& msg) { onReading(scans_, msg); }));
   }
   if (needs_.ranges) {
     subscribers_.push_back(nh.subscribe<sensor_msgs::Image>(
-        "depth", queue, [this](const sensor_msgs::Image::ConstPtr& msg) { depths_.add(msg); }));
+        "depth", queue,
+        [this](const sensor_msgs::Image::ConstPtr& msg) { onReading(depths_, msg); }));
   }
   if (needs_.heading) {
     subscribers_.push_back(nh.subscribe<sensor_msgs::Imu>(
-        "imu", 200, [this](const sensor_msgs::Imu::ConstPtr& msg) { imus_.add(msg); }));
+        "imu", 200, [this](const sensor_msgs::Imu::ConstPtr& msg) { onReading(imus_, msg); }));
   }
   if (needs_.magnetic) {
     subscribers_.push_back(nh.subscribe<sensor_msgs::MagneticField>(
         "magnetic_field", 200,
-        [this](const sensor_msgs::MagneticField::ConstPtr& msg) { fields_.add(msg); }));
+        [this](const sensor_msgs::MagneticField::ConstPtr& msg) { onReading(fields_, msg); }));
   }
   subscribers_.push_back(
       nh.subscribe("topological_map", 2, &SemanticLocalizationServer::onMap, this));
@@ -155,6 +157,13 @@ void SemanticLocalizationServer::onImage(Waiting image) {
   if (!waiting_.empty()) timer_.start();
 }
 
+template <typename M>
+void SemanticLocalizationServer::onReading(SensorHistory<M>& history,
+                                           const typename M::ConstPtr& reading) {
+  history.add(reading);
+  serveWaiting();
+}
+
 void SemanticLocalizationServer::serveWaiting() {
   while (!waiting_.empty()) {
     const Waiting image = waiting_.front();
@@ -176,8 +185,9 @@ void SemanticLocalizationServer::serveWaiting() {
 }
 
 std::optional<Readings> SemanticLocalizationServer::readingsFor(const Waiting& image) const {
-  Readings readings;
   const ros::Time& stamp = image.header.stamp;
+  Readings readings;
+  readings.stamp = stamp.toSec();
   const bool waited = (ros::WallTime::now() - image.since).toSec() >= params_.sync_wait;
   const bool by_depth = needs_.ranges && depths_.nearest(stamp, params_.sync_tolerance);
   const auto find = [&](const auto& history, const char* what) {
@@ -229,6 +239,18 @@ std::optional<Readings> SemanticLocalizationServer::readingsFor(const Waiting& i
     if (!field) return {};
     readings.magnetic = {field->magnetic_field.x, field->magnetic_field.y, field->magnetic_field.z};
   }
+  if (recogniser_ && params_.recogniser.filter.kind == FilterKind::kPoses &&
+      !params_.odom_frame_id.empty()) {
+    // tf comes by a way of its own: what is known already may be of a moment before the image.
+    const auto at = [&](const ros::Time& time) {
+      return tf_.canTransform(params_.odom_frame_id, params_.base_frame_id, time);
+    };
+    if (!waited && at(ros::Time(0)) && !at(stamp)) return {};
+    readings.odometry = poseIn(params_.odom_frame_id, image.header.frame_id, stamp);
+    if (!readings.odometry) {
+      readings.odometry = poseIn(params_.odom_frame_id, params_.base_frame_id, stamp);
+    }
+  }
   return readings;
 }
 
@@ -237,17 +259,7 @@ void SemanticLocalizationServer::serve(const Waiting& image, const Readings& rea
                                     : fromMsg(*image.compressed, image_topic_ + "/compressed");
   const ros::WallTime begin = ros::WallTime::now();
   if (recogniser_) {
-    Readings with_motion = readings;
-    with_motion.stamp = image.header.stamp.toSec();
-    if (params_.recogniser.filter.kind == FilterKind::kPoses) {
-      with_motion.odometry =
-          poseIn(params_.odom_frame_id, image.header.frame_id, image.header.stamp);
-      if (!with_motion.odometry) {
-        with_motion.odometry =
-            poseIn(params_.odom_frame_id, params_.base_frame_id, image.header.stamp);
-      }
-    }
-    const Recognition recognition = recogniser_->update(picture, with_motion);
+    const Recognition recognition = recogniser_->update(picture, readings);
     frame_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
     if (map_ && recognition.descriptive && !recognition.novel) {
       supervision_.judge(recogniser_->frameProbabilities(),

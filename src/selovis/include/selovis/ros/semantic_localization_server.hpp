@@ -48,6 +48,9 @@ class SemanticLocalizationServer {
   using Trigger = std_srvs::Trigger;
 
   void onImage(Waiting image);
+  /// A reading may be what an image waits for.
+  template <typename M>
+  void onReading(SensorHistory<M>& history, const typename M::ConstPtr& reading);
   void serveWaiting();
   /// Nothing: not yet. Throws hyselam::InputError for an image whose readings do not come.
   std::optional<Readings> readingsFor(const Waiting& image) const;
