@@ -1,15 +1,12 @@
-#include "targets.hpp"
-
 #include <cmath>
 
 #include "hyselam_common/carmen_log.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
-#include "hyselam_common/testing/fuzz_file.hpp"
+#include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
 namespace hyselam {
-namespace fuzz {
 namespace {
 
 using testing::FuzzFolder;
@@ -47,8 +44,7 @@ void checkMap(const std::string& yaml, const FuzzFolder& folder) {
   require(loadMap(again, options).cells == map.cells);
 }
 
-}  // namespace
-
+/// A CARMEN log: refused, or scans and odometry in order of time with numbers that are numbers.
 void carmenLog(const std::uint8_t* data, std::size_t size) {
   try {
     std::vector<CarmenIssue> issues;
@@ -68,6 +64,7 @@ void carmenLog(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// The YAML file of a map, beside an image of 4 x 3 cells: refused, or saved and read as the same.
 void mapYaml(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
   static const std::string image =
@@ -75,6 +72,7 @@ void mapYaml(const std::uint8_t* data, std::size_t size) {
   checkMap(folder.put("map.yaml", textOf(data, size)), folder);
 }
 
+/// The image of a map, PGM in both forms or whatever OpenCV takes it for: the same.
 void mapImage(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
   static const std::string yaml = folder.put(
@@ -85,6 +83,7 @@ void mapImage(const std::uint8_t* data, std::size_t size) {
   checkMap(yaml, folder);
 }
 
+/// A trajectory, TUM or a table of reference poses: refused, or finite.
 void poses(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
   try {
@@ -93,5 +92,10 @@ void poses(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-}  // namespace fuzz
+}  // namespace
+
+std::vector<testing::FuzzTarget> testing::fuzzTargets() {
+  return {{"carmenLog", carmenLog}, {"mapYaml", mapYaml}, {"mapImage", mapImage}, {"poses", poses}};
+}
+
 }  // namespace hyselam

@@ -1,28 +1,23 @@
-#include "targets.hpp"
-
-#include <cstdlib>
 #include <sstream>
 #include <string>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_objects/fill_map.hpp"
 #include "hyselam_objects/object_dictionary.hpp"
 #include "hyselam_objects/object_map.hpp"
 #include "hyselam_objects/object_relations.hpp"
 
 namespace hyselam_objects {
-namespace fuzz {
 namespace {
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using hyselam::testing::require;
+using hyselam::testing::textOf;
 
-}  // namespace
-
+/// Text, a line at a time, into an object map that stays sound and comes back from XML as it was.
 void objectText(const std::uint8_t* data, std::size_t size) {
   static const ObjectParser kParser = ObjectParser::shipped();
-  std::istringstream text(std::string(reinterpret_cast<const char*>(data), size));
+  std::istringstream text(textOf(data, size));
   ObjectMap map;
   FillMap fill(&kParser, &map);
   if (size > 0 && data[0] % 2 == 0) fill.setPlace("studio");
@@ -40,8 +35,9 @@ void objectText(const std::uint8_t* data, std::size_t size) {
   fill.unknownKinds(ObjectDictionary{});
 }
 
+/// XML of an object map: refused, or read and written to the same again.
 void objectMapXml(const std::uint8_t* data, std::size_t size) {
-  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::string text = textOf(data, size);
   ObjectMap map;
   try {
     map = objectMapFromXml(text, "fuzz");
@@ -59,8 +55,9 @@ void objectMapXml(const std::uint8_t* data, std::size_t size) {
   checkMap(map, "related");
 }
 
+/// XML of an object dictionary: the same, and it can be merged and used.
 void objectDictionaryXml(const std::uint8_t* data, std::size_t size) {
-  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::string text = textOf(data, size);
   ObjectDictionary dictionary;
   try {
     dictionary = dictionaryFromXml(text, "fuzz");
@@ -71,5 +68,12 @@ void objectDictionaryXml(const std::uint8_t* data, std::size_t size) {
   require(merged(dictionary, dictionary).objects.size() == dictionary.objects.size());
 }
 
-}  // namespace fuzz
+}  // namespace
 }  // namespace hyselam_objects
+
+std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
+  using namespace hyselam_objects;  // NOLINT: its own targets
+  return {{"objectText", objectText},
+          {"objectMapXml", objectMapXml},
+          {"objectDictionaryXml", objectDictionaryXml}};
+}

@@ -1,14 +1,13 @@
-#include "targets.hpp"
-
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/testing/fuzz_file.hpp"
+#include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
 
 namespace hyselam_pose_graph {
-namespace fuzz {
+namespace {
 
 using hyselam::testing::require;
 
+/// A pose graph in g2o's format: refused, or sound, and written and read as the same. Aborts else.
 void g2o(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
   PoseGraph graph;
@@ -28,5 +27,10 @@ void g2o(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-}  // namespace fuzz
+}  // namespace
 }  // namespace hyselam_pose_graph
+
+std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
+  using namespace hyselam_pose_graph;  // NOLINT: its own targets
+  return {{"g2o", g2o}};
+}

@@ -5,10 +5,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_common/testing/fuzz_file.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "random_graphs.hpp"
-#include "targets.hpp"
 
 namespace {
 
@@ -106,10 +104,6 @@ TEST(OptimizeGraphTool, SolvesWritesAndTells) {
   const std::string error = hyselam::testing::fileBytes(dir / "err");
   EXPECT_EQ(error.find("error: "), 0u) << error;
   EXPECT_FALSE(std::filesystem::exists(dir / "o.g2o"));
-}
-
-TEST(G2oFile, FuzzSeedsAreRead) {
-  EXPECT_GE(hyselam::testing::feedSeeds(HYSELAM_FUZZ_SEEDS "/g2o", fuzz::g2o), 7);
 }
 
 }  // namespace

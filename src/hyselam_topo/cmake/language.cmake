@@ -23,6 +23,8 @@ configure_file(src/language/shipped_grammars.hpp.in
                ${HYSELAM_LANGUAGE_GENERATED}/shipped_grammars.hpp @ONLY)
 
 set(HYSELAM_LANGUAGE_SOURCES
+  src/language/capture.cpp
+  src/language/clause_borders.cpp
   src/language/compiled_grammar.cpp
   src/language/describe_building.cpp
   src/language/described_building.cpp
@@ -35,7 +37,10 @@ set(HYSELAM_LANGUAGE_SOURCES
   src/language/measures.cpp
   src/language/name_finder.cpp
   src/language/pattern.cpp
+  src/language/pattern_run.cpp
   src/language/place_names.cpp
+  src/language/refusal.cpp
+  src/language/sentence_words.cpp
   src/language/tokens.cpp
   src/language/topo_parser.cpp
   src/language/utterance.cpp)
@@ -66,7 +71,7 @@ hyselam_benchmark(${PROJECT_NAME}_topo_parser_benchmark bench/language_benchmark
 if(CATKIN_ENABLE_TESTING)
   hyselam_gtest(${PROJECT_NAME}_test_description_xml test/test_description_xml.cpp
                 LIBRARIES hyselam_language)
-  hyselam_gtest(${PROJECT_NAME}_test_language test/test_language.cpp fuzz/targets.cpp
+  hyselam_gtest(${PROJECT_NAME}_test_language test/test_language.cpp
                 LIBRARIES hyselam_language)
   hyselam_gtest(${PROJECT_NAME}_test_language_corpus test/test_language_corpus.cpp
                 LIBRARIES hyselam_language ${YAML_CPP_LIBRARIES})
@@ -78,7 +83,7 @@ if(CATKIN_ENABLE_TESTING)
     endif()
   endforeach()
   if(TARGET ${PROJECT_NAME}_test_language)
-    target_include_directories(${PROJECT_NAME}_test_language PRIVATE fuzz)
     add_dependencies(${PROJECT_NAME}_test_language ${PROJECT_NAME}_parse_description)
   endif()
+  hyselam_fuzz_seeds(LIBRARIES hyselam_language)
 endif()

@@ -1,21 +1,17 @@
-#include "targets.hpp"
-
-#include <cstdlib>
 #include <string>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_topo/describe_building.hpp"
 #include "hyselam_topo/description_builder.hpp"
 #include "hyselam_topo/description_xml.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
 
 namespace hyselam_topo {
-namespace fuzz {
 namespace {
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using hyselam::testing::require;
+using hyselam::testing::textOf;
 
 /// Small, so that a bomb shows as a crash of the fuzzer's memory limit.
 XmlLimits limits() {
@@ -44,11 +40,10 @@ void checkUtterance(const Utterance& utterance, std::size_t size) {
   }
 }
 
-}  // namespace
-
+/// Text into utterances and a description, which comes back from XML as it was.
 void parser(const std::uint8_t* data, std::size_t size) {
   static const TopoParser kParser;
-  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::string text = textOf(data, size);
   ParseOptions options;
   if (size > 0 && data[0] % 4 == 0) options.expected = {"name_answer", "number_answer"};
   const ParsedText parsed = kParser.parse(text, options);
@@ -68,8 +63,9 @@ void parser(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// XML of a description: refused, or read and written to the same again.
 void descriptionXml(const std::uint8_t* data, std::size_t size) {
-  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::string text = textOf(data, size);
   try {
     const DescribedBuilding building = descriptionFromXml(text, "fuzz", limits());
     require(descriptionFromXml(toXml(building)) == building);
@@ -77,8 +73,9 @@ void descriptionXml(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// XML of a topological map: the same.
 void mapXml(const std::uint8_t* data, std::size_t size) {
-  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::string text = textOf(data, size);
   AugmentedTopologicalMap map;
   try {
     map = fromXml(text, "fuzz", limits());
@@ -95,5 +92,10 @@ void mapXml(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-}  // namespace fuzz
+}  // namespace
 }  // namespace hyselam_topo
+
+std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
+  using namespace hyselam_topo;  // NOLINT: its own targets
+  return {{"parser", parser}, {"descriptionXml", descriptionXml}, {"mapXml", mapXml}};
+}

@@ -11,7 +11,6 @@
 #include "hyselam_topo/description_xml.hpp"
 #include "language_outlines.hpp"
 #include "random_buildings.hpp"
-#include "targets.hpp"
 #ifdef HYSELAM_HAVE_RAPIDCHECK
 #include "hyselam_common/testing/properties.hpp"
 #endif
@@ -271,23 +270,6 @@ TEST(DescribeBuilding, NamesThatNoMarksCanHoldAreRefused) {
   building.places[0].id = 1;
   building.places[0].name = "\"a\" “b” «c» is";
   EXPECT_THROW(describeBuilding(building, parser().grammars()[0]), hyselam::InputError);
-}
-
-TEST(FuzzCorpus, SeedsAreRead) {
-  namespace fs = std::filesystem;
-  using Target = void (*)(const std::uint8_t*, std::size_t);
-  int files = 0;
-  for (const auto& [folder, target] : {std::pair<const char*, Target>{"parser", fuzz::parser},
-                                       {"description_xml", fuzz::descriptionXml},
-                                       {"map_xml", fuzz::mapXml}}) {
-    for (const auto& entry :
-         fs::directory_iterator(fs::path(HYSELAM_TOPO_SOURCE_DIR "/test/data/fuzz") / folder)) {
-      const std::string bytes = hyselam::testing::fileBytes(entry.path().string());
-      target(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-      ++files;
-    }
-  }
-  EXPECT_GE(files, 30);
 }
 
 int status(const std::string& arguments) {

@@ -1,15 +1,12 @@
-#include "targets.hpp"
-
 #include <sstream>
 
-#include "binary_io.hpp"
+#include "../src/core/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/testing/fuzz_file.hpp"
+#include "hyselam_common/testing/fuzz_target.hpp"
 #include "ngram_slam/corpus.hpp"
 #include "ngram_slam/slam_state_io.hpp"
 
 namespace ngram_slam {
-namespace fuzz {
 namespace {
 
 using hyselam::testing::require;
@@ -35,8 +32,7 @@ void putSumsOfPart(std::string& text) {
   text.replace(begin, part.size(), part);
 }
 
-}  // namespace
-
+/// A corpus of words: refused, or written to the same bytes.
 void corpus(const std::uint8_t* data, std::size_t size) {
   std::string text = hyselam::testing::textOf(data, size);
   putSums(text, 28);
@@ -51,6 +47,7 @@ void corpus(const std::uint8_t* data, std::size_t size) {
   require(out.str() == text);
 }
 
+/// The state of SLAM: refused, or sound, and written and read as the same.
 void slamState(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
   const hyselam_scan_matching::SurfaceParams surface;
@@ -71,5 +68,10 @@ void slamState(const std::uint8_t* data, std::size_t size) {
           same.matches.size() == state.matches.size());
 }
 
-}  // namespace fuzz
+}  // namespace
 }  // namespace ngram_slam
+
+std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
+  using namespace ngram_slam;  // NOLINT: its own targets
+  return {{"corpus", corpus}, {"slamState", slamState}};
+}

@@ -1,5 +1,3 @@
-#include "targets.hpp"
-
 #include <zlib.h>
 
 #include <cmath>
@@ -8,12 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/testing/fuzz_file.hpp"
+#include "hyselam_common/testing/fuzz_target.hpp"
 #include "selovis/labels.hpp"
 #include "selovis/model.hpp"
 
 namespace selovis {
-namespace fuzz {
 namespace {
 
 using hyselam::testing::FuzzFolder;
@@ -62,8 +59,9 @@ void requireProbabilities(const Model& model) {
   require(std::abs(sum - 1.0) < 1e-6);
 }
 
-}  // namespace
-
+/// A model's model.json, its signatures and its SVM, parted by "\n===\n"; names, lengths and
+/// checksums of the parts are put right first. Refused, or it tells probabilities, and is written
+/// and read as the same.
 void placeModel(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
   clear(folder.path(""));
@@ -92,6 +90,7 @@ void placeModel(const std::uint8_t* data, std::size_t size) {
           same.samples.values == model.samples.values && same.state == model.state);
 }
 
+/// A list of images and places: refused, or each frame has an image and a place.
 void placeLabels(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
   std::vector<LabelledFrame> frames;
@@ -108,5 +107,10 @@ void placeLabels(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-}  // namespace fuzz
+}  // namespace
 }  // namespace selovis
+
+std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
+  using namespace selovis;  // NOLINT: its own targets
+  return {{"placeModel", placeModel}, {"placeLabels", placeLabels}};
+}

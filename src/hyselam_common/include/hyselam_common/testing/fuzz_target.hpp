@@ -1,16 +1,38 @@
-// What fuzz targets of file formats need: a file to be read by name, and a check that ends the run.
+// What scripts/fuzz feeds with bytes of all kinds, and the tests with those kept. A package lists
+// its targets in fuzz/targets.cpp; the seeds of target `mapXml` are in test/data/fuzz/map_xml.
 #pragma once
 
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace hyselam {
 namespace testing {
+
+struct FuzzTarget {
+  std::string name;
+  /// Aborts if something holds that must not.
+  void (*feed)(const std::uint8_t* data, std::size_t size);
+};
+
+/// The package's own, defined in its fuzz/targets.cpp.
+std::vector<FuzzTarget> fuzzTargets();
+
+/// Where its seeds are: its name in small letters.
+inline std::string seedsFolder(const FuzzTarget& target) {
+  std::string folder;
+  for (const char c : target.name) {
+    if (std::isupper(static_cast<unsigned char>(c))) folder += '_';
+    folder += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return folder;
+}
 
 /// Ends the process, which the fuzzer and a test both notice.
 inline void require(bool holds) {
@@ -48,19 +70,6 @@ class FuzzFolder {
  private:
   std::filesystem::path path_;
 };
-
-/// Calls `target` with every file of a folder; how many there were.
-template <typename Target>
-int feedSeeds(const std::filesystem::path& folder, Target target) {
-  int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::ifstream in(entry.path(), std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-    target(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-    ++files;
-  }
-  return files;
-}
 
 }  // namespace testing
 }  // namespace hyselam
