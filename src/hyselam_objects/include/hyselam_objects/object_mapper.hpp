@@ -59,26 +59,11 @@ class ObjectMapper {
   void finish(double weak_before = std::numeric_limits<double>::infinity());
 
  private:
-  std::vector<DetectedObject> apart(const std::vector<DetectedObject>& all, double stamp,
-                                    std::vector<Id>* matched) const;
-  std::vector<int> associate(const std::vector<DetectedObject>& detections, double stamp) const;
-  double gateOf(const ObjectPose& pose) const;
-  void take(ObjectInstance* object, const DetectedObject& seen, const std::string& kind,
-            double stamp);
-  void missed(const OrganisedCloud& cloud, const PinholeCamera& camera,
-              const std::vector<Id>& matched, double stamp);
-  bool looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera,
-                    const ObjectPose& pose) const;
+  void forgetGroups(const std::vector<DetectedObject>& detections, const std::vector<int>& of);
+  Id add(const DetectedObject& seen, const std::string& kind, double stamp);
+  Id findTold(const DetectedObject& seen, const std::string& kind) const;
   void place(Id object);
-  bool isShadow(const ObjectInstance& object) const;
-  bool isOnFurniture(const ObjectPose& top, Id except) const;
-  void dropTopsOfThings();
-  void joinFurniture();
-  bool areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b) const;
-  void joinTwins();
-  void joinMoved();
-  void merge(Id gone, Id found);
-  void keepTold(Id from, Id to);
+  void dropDoubtful(double weak_before);
 
   ObjectMap& map_;
   ObjectDictionary dictionary_;
