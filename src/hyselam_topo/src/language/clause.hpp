@@ -1,0 +1,28 @@
+// A part of a sentence that a pattern fits to.
+#pragma once
+
+#include <vector>
+
+#include "compiled_grammar.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// Of the tokens [begin, end).
+struct Clause {
+  const IntentInfo* intent = nullptr;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  int cost = 0;
+  bool correction = false;
+  bool tied = false;  ///< where one name ends and the next begins cannot be told
+  std::vector<Slot> slots;
+  std::vector<Spelling> spelling;
+
+  bool meansTheSameAs(const Clause& other) const {
+    return intent == other.intent && correction == other.correction && slots == other.slots;
+  }
+};
+
+}  // namespace language
+}  // namespace hyselam_topo

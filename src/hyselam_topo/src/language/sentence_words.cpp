@@ -1,0 +1,44 @@
+#include "sentence_words.hpp"
+
+#include <algorithm>
+
+#include "matching_costs.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::string& text_of,
+                             const Sentence& sentence_of)
+    : grammar(grammar_of),
+      text(text_of),
+      sentence(sentence_of),
+      tokens(tokenize(text, sentence.range, grammar.tokenRules())),
+      names(grammar, text, tokens) {
+  if (isTooLong()) return;
+  for (const Token& token : tokens) {
+    const bool known = grammar.known_words.count(token.folded) != 0;
+    const bool letters = std::all_of(token.folded.begin(), token.folded.end(),
+                                     [](char c) { return (c >= 'a' && c <= 'z') || c == '\''; });
+    matches.push_back(grammar.vocabulary.matches(token, !known && letters));
+  }
+}
+
+bool SentenceWords::isTooLong() const {
+  return tokens.size() > kMaxTokens;
+}
+
+std::string SentenceWords::textOf(TextRange range) const {
+  return text.substr(range.begin, range.end - range.begin);
+}
+
+std::vector<FoundNumber> SentenceWords::numbersAt(std::size_t at) const {
+  return language::numbersAt(at, grammar, tokens);
+}
+
+std::vector<FoundMeasure> SentenceWords::measuresAt(std::size_t at, int quantity) const {
+  return language::measuresAt(at, grammar.quantities[static_cast<std::size_t>(quantity)], grammar,
+                              tokens, matches);
+}
+
+}  // namespace language
+}  // namespace hyselam_topo
