@@ -129,6 +129,32 @@ TEST(Markers, ShowEveryPartOnce) {
   EXPECT_EQ(namespaces, (std::set<std::string>{"places", "names", "walls", "doors", "graph"}));
 }
 
+// Above its node there is no room for a name in a corridor of 1.4 m; beside it there is.
+TEST(Markers, NamesLieWithinTheirPlaces) {
+  AugmentedTopologicalMap map;
+  Place place;
+  place.id = 1;
+  place.kind = PlaceKind::kCorridor;
+  place.centre = Point3{4.0, 1.5, 0.0};
+  place.area = 20.0;
+  place.words = {{"corridor", true}};
+  map.places = {place};
+  PlaceGrid grid;
+  grid.geometry = {80, 30, 0.1, {}};
+  for (int i = 0; i < 80 * 30; ++i) grid.labels.push_back(i / 80 >= 8 && i / 80 < 22 ? 1 : 0);
+  grid.places = {1};
+  map.grid = grid;
+  int names = 0;
+  for (const Marker& m : mapMarkers(map).markers) {
+    if (m.ns != "names") continue;
+    ++names;
+    EXPECT_EQ(m.text, "corridor");
+    EXPECT_LE(m.pose.position.y + 0.5 * m.scale.z, 2.2);
+    EXPECT_GE(m.pose.position.y - 0.5 * m.scale.z, 0.8);
+  }
+  EXPECT_EQ(names, 1);
+}
+
 TEST(Markers, EmptyMapOnlyDeletes) {
   EXPECT_EQ(mapMarkers(AugmentedTopologicalMap{}).markers.size(), 1u);
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "hyselam_common/ros/markers.hpp"
+#include "hyselam_topo/place_labels.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -43,14 +45,15 @@ Marker ring(const AugmentedTopologicalMap& map, const Place& place) {
   return m;
 }
 
-Marker text(const AugmentedTopologicalMap& map, const Place& place) {
+Marker text(const AugmentedTopologicalMap& map, const Place& place, const CellBox* box) {
   Marker m = make(map.frame_id, "names", static_cast<int>(place.id), Marker::TEXT_VIEW_FACING);
-  m.scale.z = std::clamp(0.1 * std::sqrt(place.area), 0.35, 0.6);
-  m.pose.position = at(place.centre->x, place.centre->y + 0.4 + m.scale.z, 0.3);
-  m.color = colourOf(nameStateOf(place));
-  m.text = codeOf(place);
   const std::vector<std::string> names = namesOf(place);
-  if (!names.empty()) m.text += "\n" + names.front();
+  const PlaceLabel label =
+      placeLabel(map, place, box, codeOf(place), names.empty() ? std::string() : names.front());
+  m.scale.z = label.height;
+  m.pose.position = at(label.position.x, label.position.y, 0.3);
+  m.color = colourOf(nameStateOf(place));
+  m.text = label.text;
   return m;
 }
 
@@ -68,10 +71,13 @@ visualization_msgs::MarkerArray namedMapMarkers(const AugmentedTopologicalMap& m
       marker.scale.x = 0.16;
     }
   }
+  const auto boxes = params.names && map.grid ? placeBoxes(*map.grid) : std::map<Id, CellBox>{};
   for (const Place& place : map.places) {
     if (!place.centre) continue;
     array.markers.push_back(ring(map, place));
-    if (params.names) array.markers.push_back(text(map, place));
+    if (!params.names) continue;
+    const auto box = boxes.find(place.id);
+    array.markers.push_back(text(map, place, box == boxes.end() ? nullptr : &box->second));
   }
   return array;
 }

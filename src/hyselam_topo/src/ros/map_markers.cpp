@@ -6,6 +6,7 @@
 
 #include "hyselam_common/ros/markers.hpp"
 #include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/place_labels.hpp"
 #include "hyselam_topo/place_paths.hpp"
 
 namespace hyselam_topo {
@@ -132,16 +133,18 @@ void addPlaces(const AugmentedTopologicalMap& map, double alpha, Markers* marker
   }
 }
 
-void addNames(const AugmentedTopologicalMap& map, Markers* markers) {
+void addNames(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& boxes,
+              Markers* markers) {
   for (const Place& place : map.places) {
     if (!place.centre) continue;
     Marker marker = markers->make("names", static_cast<int>(place.id), Marker::TEXT_VIEW_FACING);
-    // Large places bear large names, but a name shall fit its place.
-    marker.scale.z = std::clamp(0.12 * std::sqrt(place.area), 0.4, 0.75);
-    // Beside the dot of the graph.
-    marker.pose.position = at({place.centre->x, place.centre->y + marker.scale.z}, kNameHeight);
+    const auto box = boxes.find(place.id);
+    const PlaceLabel label =
+        placeLabel(map, place, box == boxes.end() ? nullptr : &box->second, "", nameOf(place));
+    marker.scale.z = label.height;
+    marker.pose.position = at(label.position, kNameHeight);
     marker.color = colour(0.05, 0.05, 0.15);
-    marker.text = nameOf(place);
+    marker.text = label.text;
     markers->put(std::move(marker));
   }
 }
@@ -249,7 +252,8 @@ void addWays(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& bo
   }
 }
 
-void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
+void addGraph(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& boxes,
+              Markers* markers) {
   Marker spheres = markers->make("graph", 0, Marker::SPHERE_LIST);
   spheres.scale.x = spheres.scale.y = spheres.scale.z = 0.25;
   spheres.color = colour(0.1, 0.25, 0.6);
@@ -259,7 +263,6 @@ void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
       spheres.points.push_back(at({place.centre->x, place.centre->y}, kGraphHeight));
     }
   }
-  const auto boxes = map.grid ? placeBoxes(*map.grid) : std::map<Id, CellBox>{};
   for (const Place& place : map.places) {
     if (place.centre) addWays(map, boxes, place, &lines);
   }
@@ -272,11 +275,12 @@ void addGraph(const AugmentedTopologicalMap& map, Markers* markers) {
 visualization_msgs::MarkerArray mapMarkers(const AugmentedTopologicalMap& map,
                                            const MapMarkerParams& params) {
   Markers markers(map.frame_id);
+  const auto boxes = map.grid ? placeBoxes(*map.grid) : std::map<Id, CellBox>{};
   if (params.places) addPlaces(map, params.alpha, &markers);
   if (params.walls) addWalls(map, &markers);
-  if (params.graph) addGraph(map, &markers);
+  if (params.graph) addGraph(map, boxes, &markers);
   if (params.doors) addDoors(map, &markers);
-  if (params.names) addNames(map, &markers);
+  if (params.names) addNames(map, boxes, &markers);
   return markers.take();
 }
 
