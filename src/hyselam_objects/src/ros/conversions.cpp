@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
@@ -70,6 +72,41 @@ const sensor_msgs::PointField* findField(const sensor_msgs::PointCloud2& msg,
     if (field.name == name) return &field;
   }
   return nullptr;
+}
+
+/// Over the middle of an object; if others rest on it, over one of its edges, as far from their
+/// names as can be.
+geometry_msgs::Point namePosition(const ObjectMap& map, const ObjectInstance& object) {
+  constexpr double kOver = 0.09;  // [m]
+  constexpr double kInset = 0.8;  // from the middle to an edge
+  std::vector<Point3> resting;
+  for (const ObjectRelation& relation : map.relations) {
+    if (relation.other != object.id || !isSupport(relation.word)) continue;
+    const ObjectInstance* other = map.find(relation.object);
+    if (other != nullptr && other->pose) resting.push_back(other->pose->position);
+  }
+  const ObjectPose& pose = *object.pose;
+  geometry_msgs::Point best = poseMsg(pose).position;
+  best.z += 0.5 * pose.size[2] + kOver;
+  if (resting.empty()) return best;
+  const geometry_msgs::Point middle = best;
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  double farthest = -1.0;
+  for (const auto& [u, v] :
+       {std::pair{0, -1}, std::pair{-1, 0}, std::pair{1, 0}, std::pair{0, 1}}) {
+    const double x = 0.5 * kInset * u * pose.size[0], y = 0.5 * kInset * v * pose.size[1];
+    geometry_msgs::Point p = middle;
+    p.x += c * x - s * y;
+    p.y += s * x + c * y;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Point3& other : resting) {
+      nearest = std::min(nearest, std::hypot(p.x - other.x, p.y - other.y));
+    }
+    if (nearest <= farthest) continue;
+    farthest = nearest;
+    best = p;
+  }
+  return best;
 }
 
 }  // namespace
@@ -155,7 +192,7 @@ visualization_msgs::MarkerArray objectMarkers(const ObjectMap& map) {
     text.id = box.id;
     text.type = visualization_msgs::Marker::TEXT_VIEW_FACING;
     text.pose = box.pose;
-    text.pose.position.z += 0.5 * object.pose->size[2] + 0.09;
+    text.pose.position = namePosition(map, object);
     text.scale.z = 0.12;
     text.color.r = text.color.g = text.color.b = 0.05f;
     text.color.a = 1.0f;
