@@ -111,7 +111,9 @@ class Pictures:
     def take_near(self, name, x, y, z, distance):
         if self.server:
             tool(ROOT / "scripts/rviz_shot", ROOT / "rviz/hyselam.rviz", self.out / f"{name}.png", "--size", "1200x760",
-                 "--look-at", x, y, z, distance, "--settle", "2", "--frame-rate", "3", "--hide", "Camera image", "--hide", "Visual places")
+                 "--look-at", x, y, z, distance, "--settle", "2", "--frame-rate", "3", "--hide", "Camera image", "--hide", "Visual places",
+                 # Names of rooms are made for the whole map: so near they would be larger than the things.
+                 "--hide", "Places with names/names")
 
     def take_fresh(self, name, size):
         """By an rviz of its own: the map has grown meanwhile."""
