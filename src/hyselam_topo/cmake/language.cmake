@@ -31,11 +31,15 @@ set(HYSELAM_LANGUAGE_SOURCES
   src/language/description_builder.cpp
   src/language/description_xml.cpp
   src/language/grammar.cpp
+  src/language/grammar_node.cpp
   src/language/grammar_reader.cpp
+  src/language/intent_reader.cpp
   src/language/letters.cpp
   src/language/matcher.cpp
+  src/language/measure_reader.cpp
   src/language/measures.cpp
   src/language/name_finder.cpp
+  src/language/name_type_reader.cpp
   src/language/pattern.cpp
   src/language/pattern_run.cpp
   src/language/place_names.cpp
@@ -43,7 +47,8 @@ set(HYSELAM_LANGUAGE_SOURCES
   src/language/sentence_words.cpp
   src/language/tokens.cpp
   src/language/topo_parser.cpp
-  src/language/utterance.cpp)
+  src/language/utterance.cpp
+  src/language/word_lists.cpp)
 add_library(hyselam_language ${HYSELAM_LANGUAGE_SOURCES})
 #catkin_lint: ignore_once missing_directory
 target_include_directories(hyselam_language PRIVATE src/core ${HYSELAM_LANGUAGE_GENERATED})

@@ -1,0 +1,29 @@
+// Lists of words and phrases in grammar files.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiled_grammar.hpp"
+#include "grammar_node.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+Words splitWords(const std::string& text);
+
+Phrase phraseOf(const std::string& text, Vocabulary* vocabulary);
+
+/// Adds the phrases of a list, of which none may be empty.
+void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phrase>* phrases);
+
+/// Adds the words of a list without their accents.
+void addFolded(const GrammarNode& node, std::set<std::string>* words);
+
+/// Of lists of words by their meaning: folded word -> meaning.
+void addMeanings(const GrammarNode& node, std::map<std::string, std::string>* meanings);
+
+}  // namespace language
+}  // namespace hyselam_topo
