@@ -1,5 +1,5 @@
 """The whole stack as on robots, in processes that a test may kill: launch files started by hand on the test's master, a
-simulated run with pictures fed message by message, and what each layer says of itself. No test; faults_*_test.py use it."""
+simulated run with pictures fed message by message, and what each layer says of itself. No test; faults*_test.py use it."""
 import copy
 import math
 import os
@@ -7,23 +7,33 @@ import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
+import unittest
+import xmlrpc.client
 
 import rosbag
+import rosgraph
 import roslaunch.config
 import rospkg
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Quaternion, Transform, Vector3
-from nodelet.srv import NodeletLoad, NodeletUnload
+from geometry_msgs.msg import Point, PointStamped, PoseWithCovarianceStamped, Quaternion, Transform, Vector3
+from hyselam_msgs.msg import AugmentedTopologicalMap
+from hyselam_msgs.srv import NamePlace
+from nav_msgs.srv import GetMap
+from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 from roslib.packages import find_node
-from rosgraph_msgs.msg import Clock
+from rosgraph_msgs.msg import Clock, Log
 from sensor_msgs.msg import CameraInfo, Image, LaserScan
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
-from localization_rig import Recording, compose, inverse, wait_until
+from localization_rig import Listener, Recording, compose, inverse, planar, wait_until
+
+KNOWN, NEW = "known", "new"  # the robots: one with a map and a camera, one that makes its map
 
 PICTURES = {"color/image_raw": Image, "depth/image_raw": Image, "color/camera_info": CameraInfo,
             "depth/camera_info": CameraInfo}
@@ -293,3 +303,117 @@ class Driver:
             told = " ".join([status.message] + [f"{v.key} {v.value}" for v in status.values])
             return all(w in told for w in words)
         wait_until(said, lambda: f"{robot}/{layer} to say {words}; it says {self.diagnosis(robot, layer)}")
+
+
+class LaunchedStack(Stack):
+    """The same robots, all of them started by roslaunch as on a robot: what comes back comes back by itself."""
+
+    def start(self, robot, command):
+        config = roslaunch.config.load_config_default([(command[0], command[1:])], None, verbose=False)
+        for node in config.nodes:
+            if node.type == "nodelet" and node.args != "manager":
+                self.nodes[robot, node.name] = node
+                rospy.set_param(f"/{robot}/{node.name}/diagnostic_period", 0.1)
+        self.managers[robot] = subprocess.Popen(["roslaunch", *command], env=dict(os.environ, ROS_NAMESPACE=robot))
+        # One robot after the other, and no test of how fast: many programs start at once.
+        rospy.wait_for_service(f"/{robot}/hyselam_manager/list", 60.0)
+        for name in self.layers(robot):
+            wait_until(lambda: f"/{robot}/{name}" in self.loaded(robot), f"{robot}: {name} is not loaded")
+
+    def kill(self, robot):
+        os.kill(self.process_of(f"/{robot}/hyselam_manager"), signal.SIGKILL)
+
+    @staticmethod
+    def loaded(robot):
+        return rospy.ServiceProxy(f"/{robot}/hyselam_manager/list", NodeletList)().nodelets
+
+    @staticmethod
+    def process_of(node):
+        return xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(node)).getPid("/test")[2]
+
+
+class TwoRobots(unittest.TestCase):
+    """Robots that work and what tells whether they do; the tests derive from it."""
+    stack_kind = Stack
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.recording = FilmedRun()
+        for robot in (KNOWN, NEW):
+            os.makedirs(cls.path(robot))
+        frames = lambda robot: {"odom_frame": f"{robot}/odom", "base_frame": f"{robot}/base_link", "work_dir": cls.path(robot)}
+        x, y, yaw = cls.recording.truth[0][1]
+        for axis, value in zip("xya", (x, y, yaw)):
+            rospy.set_param(f"/{KNOWN}/localization/initial_pose_{axis}", value)
+        cls.robots = Driver(cls.recording, [KNOWN, NEW])
+        cls.log = Listener("/rosout", Log)
+        cls.poses = Listener(f"/{KNOWN}/amcl_pose", PoseWithCovarianceStamped)
+        cls.names = Listener(f"/{KNOWN}/named_map", AugmentedTopologicalMap)
+        cls.stack = cls.stack_kind({
+            KNOWN: {"map": cls.recording.yaml, "pose": "localization", "vision": "true", "objects": "true",
+                    "model": cls.recording.model, "save_model": cls.path(KNOWN, "model"), **frames(KNOWN)},
+            NEW: {"pose": "slam", "map_frame": f"{NEW}/map", **frames(NEW)}})
+        cls.addClassCleanup(cls.stack.close)
+        cls.stack.start_all()
+        cls.saved = cls.path("saved")
+        robots = cls.robots
+        robots.work(KNOWN, cls.stack.layers(KNOWN))
+        robots.work(NEW, cls.stack.layers(NEW))
+
+    @classmethod
+    def path(cls, *names):
+        return os.path.join(cls.folder.name, *names)
+
+    def call(self, robot, service, kind, *args):
+        name = f"/{robot}/{service}"
+        rospy.wait_for_service(name, 20.0)
+        return rospy.ServiceProxy(name, kind)(*args)
+
+    def name(self, word):
+        """Names the left room; the names of the map afterwards."""
+        wait_until(lambda: self.names.messages and self.names.messages[-1].places, "no places with names")
+        point = PointStamped(Header(frame_id="map"), Point(1.5, 2.0, 0.0))
+        answer = self.call(KNOWN, "name_place", NamePlace, 0, point, [word])
+        self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: word in self.words(), lambda: f"{word}; there are {self.words()}")
+        return self.words()
+
+    def words(self):
+        return {w.text for p in self.names.messages[-1].places for w in p.words} if self.names.messages else set()
+
+    def works(self):
+        """All layers of both robots have something to do and do it, and the known robot is where it thinks."""
+        self.robots.work(KNOWN, self.stack.layers(KNOWN))
+        self.robots.work(NEW, self.stack.layers(NEW))
+        self.right_pose()
+
+    def right_pose(self):
+        seen = len(self.poses.messages)
+
+        def right():
+            self.robots.feed(5)
+            if len(self.poses.messages) == seen:
+                return False
+            pose = self.poses.messages[-1]
+            at = pose.header.stamp.to_sec() - self.robots.shift
+            (x, y, _), (tx, ty, _) = planar(pose.pose.pose), self.recording.truth_at(at)
+            self.error = abs(x - tx) + abs(y - ty)
+            return self.error < 0.3
+        wait_until(right, lambda: f"the right pose; error {getattr(self, 'error', None)}, " +
+                   str(self.robots.diagnosis(KNOWN, "localization").message))
+
+    def comes_back(self, robot, layer):
+        """What a layer without a count of its input gives again."""
+        if layer == "map_server":
+            self.assertGreater(len(self.call(robot, "static_map", GetMap).map.data), 0)
+        elif layer == "gr2to":
+            self.robots.says(robot, "gr2to", "places", while_doing=lambda: self.robots.feed(2))
+            self.assertGreater(len(rospy.wait_for_message(f"/{robot}/topological_map", AugmentedTopologicalMap, 20).places), 0)
+        elif layer == "topo_engine":
+            map = rospy.wait_for_message(f"/{robot}/named_map", AugmentedTopologicalMap, 20)
+            if robot == KNOWN:
+                wait_until(lambda: "Kitchen" in self.words(), lambda: f"the name; there are {self.words()}")
+            self.assertGreater(len(map.places), 0)
+        else:
+            self.robots.work(robot, [layer])

@@ -5,55 +5,24 @@ import glob
 import os
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
-from geometry_msgs.msg import Point, PointStamped, PoseWithCovarianceStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap
-from hyselam_msgs.srv import CorpusPath, NamePlace, ObjectMapPath, QueryObjects, StatePath, TopologicalMapPath
-from nav_msgs.srv import GetMap, LoadMap
-from rosgraph_msgs.msg import Log
-from std_msgs.msg import Header
+from hyselam_msgs.srv import CorpusPath, ObjectMapPath, StatePath, TopologicalMapPath
+from nav_msgs.srv import LoadMap
 from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
-from faults_rig import Driver, FilmedRun, Stack, program, run
-from localization_rig import Listener, planar, wait_until
+from faults_rig import KNOWN, NEW, TwoRobots, program, run
+from localization_rig import Listener, wait_until
 
-KNOWN, NEW = "known", "new"  # the robots: one with a map and a camera, one that makes its map
 SAVE = {"slam/save": (NEW, StatePath, "slam.state"), "words/save": (KNOWN, CorpusPath, "words.corpus"),
         "save_topological_map": (KNOWN, TopologicalMapPath, "topo.xml"), "save_dialogue": (KNOWN, StatePath, "d.state"),
         "save_object_map": (KNOWN, ObjectMapPath, "objects.xml")}
 
 
-class FaultsTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.recording = FilmedRun()
-        for robot in (KNOWN, NEW):
-            os.makedirs(cls.path(robot))
-        frames = lambda robot: {"odom_frame": f"{robot}/odom", "base_frame": f"{robot}/base_link", "work_dir": cls.path(robot)}
-        x, y, yaw = cls.recording.truth[0][1]
-        for axis, value in zip("xya", (x, y, yaw)):
-            rospy.set_param(f"/{KNOWN}/localization/initial_pose_{axis}", value)
-        cls.robots = Driver(cls.recording, [KNOWN, NEW])
-        cls.log = Listener("/rosout", Log)
-        cls.poses = Listener(f"/{KNOWN}/amcl_pose", PoseWithCovarianceStamped)
-        cls.names = Listener(f"/{KNOWN}/named_map", AugmentedTopologicalMap)
-        cls.stack = Stack({
-            KNOWN: {"map": cls.recording.yaml, "pose": "localization", "vision": "true", "objects": "true",
-                    "model": cls.recording.model, "save_model": cls.path(KNOWN, "model"), **frames(KNOWN)},
-            NEW: {"pose": "slam", "map_frame": f"{NEW}/map", **frames(NEW)}})
-        cls.addClassCleanup(cls.stack.close)
-        cls.stack.start_all()
-        cls.saved = cls.path("saved")
-        robots = cls.robots
-        robots.work(KNOWN, cls.stack.layers(KNOWN))
-        robots.work(NEW, cls.stack.layers(NEW))
-
+class FaultsTest(TwoRobots):
     def setUp(self):
         self.assertIn("Kitchen", self.name("Kitchen"))
         if not os.path.exists(self.saved):
@@ -68,65 +37,8 @@ class FaultsTest(unittest.TestCase):
 
     # ---- Helpers.
 
-    @classmethod
-    def path(cls, *names):
-        return os.path.join(cls.folder.name, *names)
-
     def knowledge(self, command, folder=None, robot=KNOWN):
         return run(program("hyselam_bringup", "knowledge"), command, folder or self.saved, ROS_NAMESPACE=robot)
-
-    def call(self, robot, service, kind, *args):
-        name = f"/{robot}/{service}"
-        rospy.wait_for_service(name, 20.0)
-        return rospy.ServiceProxy(name, kind)(*args)
-
-    def name(self, word):
-        """Names the left room; the names of the map afterwards."""
-        wait_until(lambda: self.names.messages and self.names.messages[-1].places, "no places with names")
-        point = PointStamped(Header(frame_id="map"), Point(1.5, 2.0, 0.0))
-        answer = self.call(KNOWN, "name_place", NamePlace, 0, point, [word])
-        self.assertTrue(answer.success, answer.message)
-        wait_until(lambda: word in self.words(), lambda: f"{word}; there are {self.words()}")
-        return self.words()
-
-    def words(self):
-        return {w.text for p in self.names.messages[-1].places for w in p.words} if self.names.messages else set()
-
-    def works(self):
-        """All layers of both robots have something to do and do it, and the known robot is where it thinks."""
-        self.robots.work(KNOWN, self.stack.layers(KNOWN))
-        self.robots.work(NEW, self.stack.layers(NEW))
-        self.right_pose()
-
-    def right_pose(self):
-        seen = len(self.poses.messages)
-
-        def right():
-            self.robots.feed(5)
-            if len(self.poses.messages) == seen:
-                return False
-            pose = self.poses.messages[-1]
-            at = pose.header.stamp.to_sec() - self.robots.shift
-            (x, y, _), (tx, ty, _) = planar(pose.pose.pose), self.recording.truth_at(at)
-            self.error = abs(x - tx) + abs(y - ty)
-            return self.error < 0.3
-        wait_until(right, lambda: f"the right pose; error {getattr(self, 'error', None)}, " +
-                   str(self.robots.diagnosis(KNOWN, "localization").message))
-
-    def comes_back(self, robot, layer):
-        """What a layer without a count of its input gives again."""
-        if layer == "map_server":
-            self.assertGreater(len(self.call(robot, "static_map", GetMap).map.data), 0)
-        elif layer == "gr2to":
-            self.robots.says(robot, "gr2to", "places", while_doing=lambda: self.robots.feed(2))
-            self.assertGreater(len(rospy.wait_for_message(f"/{robot}/topological_map", AugmentedTopologicalMap, 20).places), 0)
-        elif layer == "topo_engine":
-            map = rospy.wait_for_message(f"/{robot}/named_map", AugmentedTopologicalMap, 20)
-            if robot == KNOWN:
-                wait_until(lambda: "Kitchen" in self.words(), lambda: f"the name; there are {self.words()}")
-            self.assertGreater(len(map.places), 0)
-        else:
-            self.robots.work(robot, [layer])
 
     # ---- Faults.
 

@@ -3,6 +3,7 @@
 and nodelet classes exist, and the packages that it uses are declared by the bringup."""
 import itertools
 import os
+import subprocess
 import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -68,7 +69,7 @@ class LaunchFilesTest(unittest.TestCase):
                 arguments = [f"pose:={pose}"] + (["map:=/nowhere/x.yaml"] if known else [])
                 arguments += [f"{layer}:={str(value).lower()}" for layer, value in switch.items()]
                 nodes, _ = self.whole(*arguments)
-                expected = {"/hyselam_manager"}
+                expected = {"/hyselam_manager", "/hyselam_manager_keeper"}
                 expected |= {"/slam"} if pose == "slam" else set()
                 expected |= {"/localization"} if pose == "localization" else set()
                 expected |= {"/map_server"} if known and pose != "slam" else set()
@@ -90,6 +91,30 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertIn("/slam", self.whole("rviz:=true")[0])
         self.assertIn("/rviz", self.whole("rviz:=true")[0])
         self.assertIn("/localization", self.whole("map:=/nowhere/x.yaml")[0])
+
+    def test_a_pose_that_there_is_not_is_refused_in_words(self):
+        for name in ("hyselam.launch", "demo.launch"):
+            done = subprocess.run(["roslaunch", os.path.join(self.folder, name), *ARGUMENTS[:len(ARGUMENTS) * (name == "demo.launch")],
+                                   "pose:=amcl"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+            self.assertNotEqual(done.returncode, 0, name)
+            self.assertIn("pose is slam, localization or other, not amcl", done.stdout, name)
+            self.assertNotIn("started", done.stdout, name)
+        told = subprocess.run(["roslaunch", "--ros-args", os.path.join(self.folder, "hyselam.launch")], stdout=subprocess.PIPE,
+                              text=True, timeout=60).stdout
+        self.assertIn("pose (default", told)
+        self.assertNotIn("pose_number", told)
+
+    def test_what_dies_is_started_again_unless_told_otherwise(self):
+        for more, back in (([], True), (["respawn:=false"], False)):
+            for pose in ("slam", "localization"):
+                nodes, _ = self.whole(f"pose:={pose}", "map:=/nowhere/x.yaml", "vision:=true", "objects:=true", *more)
+                self.assertEqual("/hyselam_manager_keeper" in nodes, back)
+                self.assertEqual({n.respawn for n in nodes.values()}, {back}, more)
+        # A manager that somebody else started is somebody else's.
+        self.assertNotIn("/hyselam_manager_keeper", self.whole("start_manager:=false")[0])
+        for name in ("fsd.launch", "topo_engine.launch", "words.launch"):
+            self.assertEqual({n.respawn for n in self.whole(name=name)[0].values()}, {False}, name)
+            self.assertEqual({n.respawn for n in self.whole("respawn:=true", name=name)[0].values()}, {True}, name)
 
     def test_work_dir_reaches_every_layer(self):
         params = self.whole("work_dir:=/w", "pose:=localization")[1].params
