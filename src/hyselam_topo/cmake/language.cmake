@@ -30,6 +30,7 @@ set(HYSELAM_LANGUAGE_SOURCES
   src/language/described_building.cpp
   src/language/description_builder.cpp
   src/language/description_xml.cpp
+  src/language/edit_description.cpp
   src/language/grammar.cpp
   src/language/grammar_node.cpp
   src/language/grammar_reader.cpp
@@ -46,6 +47,8 @@ set(HYSELAM_LANGUAGE_SOURCES
   src/language/refusal.cpp
   src/language/sentence_words.cpp
   src/language/tokens.cpp
+  src/language/told_connections.cpp
+  src/language/told_places.cpp
   src/language/topo_parser.cpp
   src/language/utterance.cpp
   src/language/word_lists.cpp)

@@ -82,8 +82,6 @@ class DescriptionBuilder {
   void checkCount(const Utterance& u, std::size_t named);
   void addAliases(const Utterance& u, Id id);
   void connect(Id from, Id to, Side side, std::optional<std::size_t> order);
-  void removeConnection(std::size_t index);
-  DescribedConnection* connectionOf(Id a, Id b);
   void setSize(std::optional<double>* member, const std::optional<double>& value,
                const std::string& what);
   std::string nameOf(Id id) const;

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "edit_description.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/numbers.hpp"
 
 namespace hyselam_topo {
 namespace {
-
-constexpr double kMaxSize = 10000.0;  // [m]
-constexpr double kMaxArea = 1e8;      // [m^2]
-/// Rounded areas ("about 50 square metres" of 6 by 8) are no contradiction.
-constexpr double kAreaTolerance = 0.1;
 
 const std::map<std::string, RelationKind>& relations() {
   static const std::map<std::string, RelationKind> kRelations{{"next_to", RelationKind::kNextTo},
@@ -22,10 +16,6 @@ const std::map<std::string, RelationKind>& relations() {
                                                               {"at_end_of", RelationKind::kAtEndOf},
                                                               {"part_of", RelationKind::kInside}};
   return kRelations;
-}
-
-std::string shown(double value) {
-  return hyselam::formatNumber(std::round(value * 1000.0) / 1000.0);
 }
 
 }  // namespace
@@ -153,13 +143,7 @@ Id DescriptionBuilder::place(const SaidName& name) {
     }
     return ids.front();
   }
-  DescribedPlace made;
-  for (const DescribedPlace& other : building_.places) made.id = std::max(made.id, other.id);
-  ++made.id;  // descriptions from files come in any order
-  made.name = name.text;
-  made.kind = names_.kindOf(name.text);
-  building_.places.push_back(made);
-  return made.id;
+  return addPlace(name.text, names_.kindOf(name.text), &building_);
 }
 
 Id DescriptionBuilder::place(const Utterance& u, const std::string& slot) {
@@ -199,277 +183,6 @@ void DescriptionBuilder::report(IssueKind issue, const std::string& reason) {
 void DescriptionBuilder::fail(IssueKind issue, const std::string& reason) {
   report(issue, reason);
   throw Failed();
-}
-
-// ---- Statements ----
-
-void DescriptionBuilder::robotIn(const Utterance& u) {
-  const Id id = place(u, "place");
-  if (building_.robot_place != id) side_.reset();
-  building_.robot_place = id;
-  subjects_ = {id};
-  addAliases(u, id);
-}
-
-void DescriptionBuilder::addAliases(const Utterance& u, Id id) {
-  for (const SaidName& name : u.names("aliases")) {
-    if (!name.reference.empty()) fail(IssueKind::kMeaningless, "'" + name.text + "' is no name");
-    const std::vector<Id> ids = find(name.text);
-    if (std::find(ids.begin(), ids.end(), id) != ids.end()) continue;
-    if (!ids.empty()) {
-      fail(IssueKind::kContradiction,
-           "'" + name.text + "' is another place than '" + nameOf(id) + "'");
-    }
-    DescribedPlace* place = building_.findPlace(id);
-    place->aliases.push_back(name.text);
-    if (!place->kind) place->kind = names_.kindOf(name.text);
-  }
-}
-
-void DescriptionBuilder::alias(const Utterance& u) {
-  const auto said = u.names("place");
-  const auto aliases = u.names("aliases");
-  // "The fish tank is also called C12", where only C12 is known.
-  const bool swapped = said.size() == 1 && aliases.size() == 1 && said[0].reference.empty() &&
-                       aliases[0].reference.empty() && find(said[0].text).empty() &&
-                       find(aliases[0].text).size() == 1;
-  if (swapped) {
-    const Id id = find(aliases[0].text).front();
-    building_.findPlace(id)->aliases.push_back(said[0].text);
-    subjects_ = {id};
-    return;
-  }
-  const Id id = place(u, "place");
-  addAliases(u, id);
-  subjects_ = {id};
-}
-
-void DescriptionBuilder::checkCount(const Utterance& u, std::size_t named) {
-  const auto count = u.number("count");
-  if (count && static_cast<std::size_t>(*count) != named) {
-    fail(IssueKind::kMeaningless,
-         shown(*count) + " were announced, " + std::to_string(named) + " named");
-  }
-}
-
-void DescriptionBuilder::neighbours(const Utterance& u) {
-  const bool same = u.word("side") == "same";
-  if (same && !side_) fail(IssueKind::kNoContext, "no side was told before");
-  const auto side = same ? side_ : sideOf(u.word("side"));
-  if (u.find("from") == nullptr && !building_.robot_place) {
-    fail(IssueKind::kNoContext, "where the robot is was not told");
-  }
-  const Id from = u.find("from") != nullptr ? place(u, "from") : *building_.robot_place;
-  if (building_.robot_place && from != *building_.robot_place) {
-    fail(IssueKind::kNoContext, "sides are told as the robot sees them, and it is in '" +
-                                    nameOf(*building_.robot_place) + "', not in '" + nameOf(from) +
-                                    "'");
-  }
-  const std::vector<Id> ids = places(u, "places");
-  checkCount(u, ids.size());
-  side_ = side && *side != Side::kUnknown ? side : std::nullopt;
-  for (const Id id : ids) connect(from, id, side.value_or(Side::kUnknown), std::nullopt);
-  subjects_ = ids;
-  if (ids.size() == 1 && u.number("length")) sizeOf(ids.front(), u);
-}
-
-void DescriptionBuilder::nthNeighbour(const Utterance& u) {
-  if (!building_.robot_place) fail(IssueKind::kNoContext, "where the robot is was not told");
-  const Id id = place(u, "place");
-  const auto nth = hyselam::parseNumber(u.word("nth")).value_or(1.0);
-  side_ = sideOf(u.word("side"));
-  connect(*building_.robot_place, id, side_.value_or(Side::kUnknown),
-          static_cast<std::size_t>(nth) - 1);
-  subjects_ = {id};
-}
-
-void DescriptionBuilder::contains(const Utterance& u) {
-  const Id inside = place(u, "inside");
-  const std::vector<Id> ids = places(u, "places");
-  for (const Id id : ids) connect(inside, id, Side::kUnknown, std::nullopt);
-  subjects_ = ids;
-}
-
-void DescriptionBuilder::joined(const Utterance& u) {
-  const Id a = place(u, "a");
-  const Id b = place(u, "b");
-  connect(a, b, Side::kUnknown, std::nullopt);
-  subjects_ = {a, b};
-}
-
-DescribedConnection* DescriptionBuilder::connectionOf(Id a, Id b) {
-  const auto found = std::find_if(
-      building_.connections.begin(), building_.connections.end(), [&](const auto& connection) {
-        return std::minmax(connection.from, connection.to) == std::minmax(a, b);
-      });
-  return found == building_.connections.end() ? nullptr : &*found;
-}
-
-void DescriptionBuilder::removeConnection(std::size_t index) {
-  const auto at = building_.connections.begin() + static_cast<std::ptrdiff_t>(index);
-  const DescribedConnection gone = *at;
-  building_.connections.erase(at);
-  for (DescribedConnection& other : building_.connections) {
-    const bool same_row = other.from == gone.from && other.side == gone.side;
-    if (same_row && other.order > gone.order) --other.order;
-  }
-}
-
-void DescriptionBuilder::connect(Id from, Id to, Side side, std::optional<std::size_t> order) {
-  if (from == to) {
-    fail(IssueKind::kMeaningless, "'" + nameOf(to) + "' lies beside itself");
-  }
-  if (const DescribedConnection* known = connectionOf(from, to)) {
-    // Nothing new: told already, told without a side, or seen from the other place.
-    if (side == Side::kUnknown) return;
-    const bool seen_from_there = known->from == to && known->side != Side::kUnknown;
-    if (seen_from_there) return;
-    if (known->from == from && known->side == side && (!order || known->order == *order)) return;
-    if (known->side != Side::kUnknown) {
-      if (!correction_) {
-        report(IssueKind::kContradiction, "'" + nameOf(to) + "' was told to be at the " +
-                                              toString(known->side) + ", not at the " +
-                                              toString(side));
-        return;
-      }
-      corrected_ = true;
-    }
-    removeConnection(static_cast<std::size_t>(known - building_.connections.data()));
-  }
-  std::size_t next = 0;
-  bool taken = false;
-  for (const DescribedConnection& other : building_.connections) {
-    if (other.from != from || other.side != side) continue;
-    next = std::max(next, other.order + 1);
-    taken = taken || (order && other.order == *order);
-  }
-  if (taken) {
-    fail(IssueKind::kContradiction, "number " + std::to_string(*order + 1) + " at the " +
-                                        toString(side) + " is another place");
-  }
-  building_.connections.push_back({from, to, side, order.value_or(next)});
-}
-
-void DescriptionBuilder::relation(const Utterance& u, RelationKind kind) {
-  DescribedRelation relation;
-  relation.kind = kind;
-  relation.a = place(u, "a");
-  relation.b = place(u, "b");
-  if (kind == RelationKind::kBetween) relation.c = place(u, "c");
-  if (relation.a == relation.b || relation.a == relation.c || relation.b == relation.c) {
-    fail(IssueKind::kMeaningless, "a place is named twice");
-  }
-  auto& all = building_.relations;
-  if (std::find(all.begin(), all.end(), relation) == all.end()) all.push_back(relation);
-  // Whoever goes to the end of a corridor gets there.
-  if (kind == RelationKind::kAtEndOf) connect(relation.b, relation.a, Side::kUnknown, std::nullopt);
-  subjects_ = {relation.a};
-}
-
-void DescriptionBuilder::kind(const Utterance& u) {
-  const Id id = place(u, "place");
-  building_.findPlace(id)->kind = placeKindOf(u.word("kind"));
-  corrected_ = true;
-  subjects_ = {id};
-}
-
-void DescriptionBuilder::setSize(std::optional<double>* member, const std::optional<double>& value,
-                                 const std::string& what) {
-  if (!value) return;
-  const double limit = what == "area" ? kMaxArea : kMaxSize;
-  if (!(*value > 0.0) || *value > limit) {
-    fail(IssueKind::kMeaningless, "a " + what + " of " + shown(*value) + " is out of range");
-  }
-  const double tolerance = what == "area" ? kAreaTolerance * *value : 1e-9;
-  if (*member && std::abs(**member - *value) > tolerance) {
-    if (!correction_) {
-      fail(IssueKind::kContradiction,
-           "another " + what + " was told: " + shown(**member) + ", not " + shown(*value));
-    }
-    corrected_ = true;
-  } else if (*member) {
-    return;
-  }
-  *member = value;
-}
-
-void DescriptionBuilder::size(const Utterance& u) {
-  sizeOf(place(u, "place"), u);
-}
-
-void DescriptionBuilder::sizeOf(Id id, const Utterance& u) {
-  DescribedPlace& place = *building_.findPlace(id);
-  subjects_ = {id};
-  const auto length = u.number("length"), width = u.number("width"), area = u.number("area");
-  setSize(&place.length, length, "length");
-  setSize(&place.width, width, "width");
-  setSize(&place.area, area, "area");
-  if ((length || width) && place.length && place.width) {
-    const double product = *place.length * *place.width;
-    if (corrected_) place.area.reset();
-    setSize(&place.area, product, "area");
-    place.area = product;
-  }
-  for (const Slot& slot : u.slots) {
-    if (!slot.unit_assumed) continue;
-    report(IssueKind::kNotice, "no unit was said: taken as metres");
-    break;
-  }
-}
-
-void DescriptionBuilder::parts(const Utterance& u) {
-  const Id id = place(u, "place");
-  DescribedPlace& place = *building_.findPlace(id);
-  const int count = static_cast<int>(u.number("count").value_or(1.0));
-  if (place.parts && *place.parts != count) {
-    if (!correction_) {
-      fail(IssueKind::kContradiction, std::to_string(*place.parts) + " parts were told");
-    }
-    corrected_ = true;
-  }
-  place.parts = count;
-  subjects_ = {id};
-}
-
-void DescriptionBuilder::buildingCount(const Utterance& u) {
-  const int count = static_cast<int>(u.number("count").value_or(1.0));
-  if (building_.place_count && *building_.place_count != count) {
-    if (!correction_) {
-      fail(IssueKind::kContradiction, std::to_string(*building_.place_count) + " were told");
-    }
-    corrected_ = true;
-  }
-  building_.place_count = count;
-}
-
-void DescriptionBuilder::exists(const Utterance& u) {
-  subjects_ = places(u, "places");
-}
-
-void DescriptionBuilder::forget(const Utterance& u) {
-  for (const SaidName& name : u.names("place")) {
-    if (name.reference.empty() && find(name.text).empty()) {
-      fail(IssueKind::kNoContext, "'" + name.text + "' was not told of");
-    }
-  }
-  const Id id = place(u, "place");
-  corrected_ = true;
-  for (std::size_t i = building_.connections.size(); i-- > 0;) {
-    const DescribedConnection& each = building_.connections[i];
-    if (each.from == id || each.to == id) removeConnection(i);
-  }
-  auto& all = building_.relations;
-  all.erase(std::remove_if(
-                all.begin(), all.end(),
-                [id](const auto& each) { return each.a == id || each.b == id || each.c == id; }),
-            all.end());
-  auto& list = building_.places;
-  list.erase(
-      std::remove_if(list.begin(), list.end(), [id](const auto& each) { return each.id == id; }),
-      list.end());
-  variants_.erase(id);
-  subjects_.clear();
-  if (building_.robot_place == id) building_.robot_place.reset();
 }
 
 }  // namespace hyselam_topo

@@ -1,0 +1,63 @@
+#include "edit_description.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hyselam_common/numbers.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+template <typename List, typename Goes>
+void eraseIf(List* list, Goes goes) {
+  list->erase(std::remove_if(list->begin(), list->end(), goes), list->end());
+}
+
+}  // namespace
+
+Id addPlace(const std::string& name, const std::optional<PlaceKind>& kind,
+            DescribedBuilding* building) {
+  DescribedPlace made;
+  for (const DescribedPlace& other : building->places) made.id = std::max(made.id, other.id);
+  ++made.id;
+  made.name = name;
+  made.kind = kind;
+  building->places.push_back(made);
+  return made.id;
+}
+
+const DescribedConnection* findConnection(const DescribedBuilding& building, Id a, Id b) {
+  const auto& all = building.connections;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& connection) {
+    return std::minmax(connection.from, connection.to) == std::minmax(a, b);
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+void removeConnection(const DescribedConnection& connection, DescribedBuilding* building) {
+  const DescribedConnection gone = connection;
+  eraseIf(&building->connections,
+          [&](const auto& each) { return each.from == gone.from && each.to == gone.to; });
+  for (DescribedConnection& other : building->connections) {
+    const bool same_row = other.from == gone.from && other.side == gone.side;
+    if (same_row && other.order > gone.order) --other.order;
+  }
+}
+
+void removePlace(Id place, DescribedBuilding* building) {
+  auto& connections = building->connections;
+  for (std::size_t i = connections.size(); i-- > 0;) {
+    const DescribedConnection each = connections[i];
+    if (each.from == place || each.to == place) removeConnection(each, building);
+  }
+  eraseIf(&building->relations,
+          [&](const auto& each) { return each.a == place || each.b == place || each.c == place; });
+  eraseIf(&building->places, [&](const auto& each) { return each.id == place; });
+  if (building->robot_place == place) building->robot_place.reset();
+}
+
+std::string shown(double value) {
+  return hyselam::formatNumber(std::round(value * 1000.0) / 1000.0);
+}
+
+}  // namespace hyselam_topo
