@@ -3,6 +3,7 @@
 import copy
 import json
 import os
+import socket
 import subprocess
 import tempfile
 import time
@@ -10,9 +11,10 @@ import unittest
 
 import rospy
 import rostest
-from nav_msgs.msg import OccupancyGrid
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import Image, LaserScan
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from geometry_msgs.msg import TransformStamped
@@ -34,6 +36,17 @@ def upside_down(scan):
     scan.angle_min, scan.angle_max = -scan.angle_max, -scan.angle_min
     scan.ranges = scan.ranges[::-1]
     return scan
+
+
+def later(recording, seconds):
+    """The same run, begun later."""
+    moved = copy.copy(recording)
+    for name in ("scans", "transforms"):
+        messages = copy.deepcopy(getattr(recording, name))
+        for msg in messages:
+            msg.header.stamp = rospy.Time.from_sec(msg.header.stamp.to_sec() + seconds)
+        setattr(moved, name, messages)
+    return moved
 
 
 class DoctorTest(unittest.TestCase):
@@ -61,20 +74,25 @@ class DoctorTest(unittest.TestCase):
     def wrong(self, findings, name):
         return " | ".join(f"{f['text']} {f['hint']}" for f in findings if f["name"] == name and f["level"] == "WRONG")
 
-    def robot(self, scan_of=lambda s: s, static=None, topic="scan", odom="odom", pose=True, grid=True, back=False, clock=True):
-        """A player of the recording: clock, scans, tf, a map and a pose in it."""
+    def robot(self, scan_of=lambda s: s, static=None, topic="scan", odom="odom", pose=True, grid=True, back=False, clock=True,
+              says=None):
+        """A player of the recording: clock, scans, tf, a map and a pose in it; `says`: what layers tell, by their names."""
         def play(doctor):
             publish = {
                 "clock": rospy.Publisher("/clock", Clock, queue_size=1000),
                 "tf": rospy.Publisher("/tf", TFMessage, queue_size=5000),
                 "static": rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True),
                 "scan": rospy.Publisher(topic, LaserScan, queue_size=1000),
-                "map": rospy.Publisher("map", OccupancyGrid, queue_size=2, latch=True)}
+                "said": rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10, latch=True)}
+            if grid:
+                publish["map"] = rospy.Publisher("map", OccupancyGrid, queue_size=2, latch=True)
             if not clock:
                 publish.pop("clock").unregister()
             try:
                 # The doctor has to know of the publishers when it asks the master; then it subscribes.
                 publish["static"].publish(TFMessage(self.recording.static if static is None else static))
+                publish["said"].publish(DiagnosticArray(status=[DiagnosticStatus(1, name, message, "", [])
+                                                                for name, message in (says or {}).items()]))
                 if grid:
                     publish["map"].publish(self.recording.map if grid is True else grid)
                 wait_until(lambda: publish["tf"].get_num_connections() > 0 or doctor.poll() is not None, "the doctor does not listen")
@@ -116,6 +134,25 @@ class DoctorTest(unittest.TestCase):
         self.assertIn("nobody publishes /map", self.wrong(findings, "map"))
         self.assertIn("tf has no frame odom and no frame base_link", self.wrong(findings, "tf"))
         self.assertIn("nobody publishes /clock: time stands still", self.wrong(findings, "clock"))
+
+    def test_a_master_under_which_nothing_runs(self):
+        with socket.socket() as s:
+            s.bind(("localhost", 0))
+            port = s.getsockname()[1]
+        master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            def answers():
+                with socket.socket() as s:
+                    return s.connect_ex(("localhost", port)) == 0
+            wait_until(answers, "no master")
+            status, findings = self.call(None, uri=f"http://localhost:{port}")
+        finally:
+            master.terminate()
+            master.wait()
+        self.assertEqual(status, 1)
+        self.assertIn(f"nothing runs under the master http://localhost:{port}", self.wrong(findings, "nodes"), self.said)
+        self.assertIn("roslaunch hyselam_bringup hyselam.launch", self.wrong(findings, "nodes"))
+        self.assertEqual(len(findings), 1, "what follows from it is not told")
 
     def test_a_healthy_robot_is_let_go(self):
         status, findings = self.call(self.robot())
@@ -175,6 +212,90 @@ class DoctorTest(unittest.TestCase):
         _, findings = self.call(self.robot(scan_of=blind, clock=False))
         self.assertIn("s ago a bag needs use_sim_time", self.wrong(findings, "clock"), self.said)
         self.assertIn("no beam ever returns", self.wrong(findings, "scan"))
+
+    def test_scans_of_another_time_than_the_clock(self):
+        for shift, text in ((-100, "ago"), (100, "ahead")):
+            def moved(scan):
+                scan = copy.deepcopy(scan)
+                scan.header.stamp = rospy.Time.from_sec(scan.header.stamp.to_sec() + shift)
+                return scan
+            start, self.recording = self.recording, later(self.recording, 1000)
+            try:
+                _, findings = self.call(self.robot(scan_of=moved, says={"slam: SLAM": "0 keyframes"}, pose=False))
+            finally:
+                self.recording = start
+            self.assertRegex(self.wrong(findings, "clock"), rf"scans are stamped (99|100)\.\d s {text}", self.said)
+            self.assertIn("slam runs, but lacks what is told here", self.wrong(findings, "tf"))
+
+    def test_a_bag_played_without_its_clock(self):
+        silent = rospy.Publisher("/clock", Clock, queue_size=1)  # as rosbag announces it
+        try:
+            _, findings = self.call(self.robot(clock=False))
+        finally:
+            silent.unregister()
+        self.assertIn("/clock stands still play the bag with --clock", self.wrong(findings, "clock"), self.said)
+
+    def test_a_mount_that_is_not_latched(self):
+        silent = rospy.Publisher("/tf_static", TFMessage, queue_size=1)
+        try:
+            _, findings = self.call(self.robot(static=[]))
+        finally:
+            silent.unregister()
+        self.assertIn("publishes /tf_static, but nothing of it comes to who listens late: it has to be latched",
+                      self.wrong(findings, "tf"), self.said)
+
+    def test_odometry_without_tf(self):
+        topic = rospy.Publisher("wheels", Odometry, queue_size=1)
+        try:
+            _, findings = self.call(self.robot(odom="odom_combined", pose=False))
+        finally:
+            topic.unregister()
+        self.assertIn("/wheels is there, but the layers read tf", self.wrong(findings, "tf"), self.said)
+
+    def test_frames_as_the_launch_files_take_them(self):
+        status, _ = self.call(self.robot(odom="odom_combined"), "odom_frame:=odom_combined")
+        self.assertEqual(status, 0, self.said)
+
+    def test_no_layer_runs(self):
+        _, findings = self.call(self.robot(pose=False, grid=False))
+        self.assertIn("start SLAM or a localisation: roslaunch hyselam_bringup hyselam.launch", self.wrong(findings, "tf"), self.said)
+        self.assertIn("hyselam.launch map:=/path/map.yaml", self.wrong(findings, "map"))
+        self.assertTrue([f for f in findings if f["name"] == "nodes" and f["level"] == "note"])
+
+    def test_localisation_that_waits(self):
+        """For a map, of which the layers' own grids are none; for a way by which it finds itself."""
+        own = rospy.Publisher("local_map", OccupancyGrid, queue_size=1)
+        try:
+            _, findings = self.call(self.robot(pose=False, grid=False, says={"localization: localisation": "waiting for a map"}))
+            self.assertIn("localization runs, and says: waiting for a map", self.wrong(findings, "tf"), self.said)
+            self.assertNotIn("local_map", self.wrong(findings, "map"))
+            _, findings = self.call(self.robot(pose=False, says={"robot1/localization: localisation": "global, not converged"}))
+            self.assertIn("does not know yet where the robot is", self.wrong(findings, "tf"), self.said)
+            self.assertIn("2D Pose Estimate", self.wrong(findings, "tf"))
+        finally:
+            own.unregister()
+
+    def test_slam_that_starves(self):
+        """It announces a map that it cannot draw: the driver of the map is not to blame."""
+        announced = rospy.Publisher("map", OccupancyGrid, queue_size=1)
+        try:
+            _, findings = self.call(self.robot(topic="elsewhere", pose=False, grid=False, says={"slam: SLAM": "0 keyframes; no scans"}))
+        finally:
+            announced.unregister()
+        self.assertIn("slam runs, but lacks what is told here", self.wrong(findings, "tf"), self.said)
+        self.assertIn("SLAM has published no /map", self.wrong(findings, "map"))
+        self.assertNotIn("ROS_IP", self.wrong(findings, "map"))
+
+    def test_a_camera_that_is_missing(self):
+        told = {"semantic_localization: visual places": "nothing has been learnt; no images on /camera/color/image_raw"}
+        eye = rospy.Publisher("eye", Image, queue_size=1)
+        try:
+            status, findings = self.call(self.robot(says=told))
+        finally:
+            eye.unregister()
+        self.assertEqual(status, 1)
+        self.assertIn("no images on /camera/color/image_raw", self.wrong(findings, "camera"), self.said)
+        self.assertIn("there is /eye: start with image:=/eye", self.wrong(findings, "camera"))
 
     def test_two_localisations(self):
         other = subprocess.Popen(["rosrun", "tf2_ros", "static_transform_publisher", "0", "0", "0", "0", "0", "0", "map", "odom"],

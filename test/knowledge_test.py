@@ -4,8 +4,10 @@ the name of its file, and a layer that fails leaves everything as it was."""
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
+import threading
 import unittest
 
 import rospy
@@ -14,6 +16,7 @@ from geometry_msgs.msg import Point, PointStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap
 from hyselam_msgs.srv import NamePlace, QueryObjects, StatePath, StatePathResponse
 from nav_msgs.msg import OccupancyGrid
+from roslib.packages import find_node
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger, TriggerResponse
 
@@ -25,7 +28,18 @@ class FakeSlam:
 
     def __init__(self):
         self.text, self.fails = "first", ""
-        self.services = [rospy.Service("slam/save", StatePath, self.save), rospy.Service("slam/load", StatePath, self.load)]
+        self.waits, self.entered, self.go_on = "", threading.Event(), threading.Event()
+        self.one_at_a_time = threading.Lock()
+        self.services = [rospy.Service("slam/save", StatePath, lambda r: self.serve("save", r)),
+                         rospy.Service("slam/load", StatePath, lambda r: self.serve("load", r))]
+
+    def serve(self, call, request):
+        with self.one_at_a_time:
+            if self.waits == call:
+                self.waits = ""  # once: what comes back is not held
+                self.entered.set()
+                self.go_on.wait(WAIT)
+            return getattr(self, call)(request)
 
     def save(self, request):
         if self.fails == "save":
@@ -185,7 +199,7 @@ class KnowledgeTest(unittest.TestCase):
         with open(path) as file:
             good = json.load(file)
         outside = {**good["files"], "../secret": {"bytes": 1, "sha256": ""}}
-        for bad, text in (({**good, "version": 2}, "version 2, this program reads 1"), ({**good, "format": "x"}, "this is no hyselam knowledge"),
+        for bad, text in (({**good, "version": 2}, "version 2, this program reads 1; it was saved by a newer HySeLAM"), ({**good, "format": "x"}, "this is no hyselam knowledge"),
                           ({**good, "files": outside}, "outside of the directory"), ({**good, "layers": {"slam": ["gone"]}}, "slam lacks gone"),
                           ([], "is damaged"), ({}, "is damaged")):
             with open(path, "w") as file:
@@ -209,6 +223,65 @@ class KnowledgeTest(unittest.TestCase):
         self.refused("load", 1, "slam: of another building; all layers know what they knew before")
         self.assertEqual([self.slam.text, self.camera.knows(), self.shown()], ["second"] * 3)
         self.assertEqual(self.left_over(), [])
+
+    def interrupt(self, command, number):
+        """Sends the signal while SLAM is in the command; the tool's exit status."""
+        self.slam.waits = command
+        self.slam.entered.clear()
+        self.slam.go_on.clear()
+        # rosrun ends with the tool, but hands no signal on.
+        tool = subprocess.Popen([find_node("hyselam_bringup", "knowledge")[0], command, self.path], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+        try:
+            self.assertTrue(self.slam.entered.wait(WAIT), f"SLAM is not asked to {command}")
+            tool.send_signal(number)
+            self.slam.go_on.set()
+            self.out, self.err = tool.communicate(timeout=WAIT)
+        finally:
+            self.slam.go_on.set()
+            tool.kill()
+        return tool.returncode
+
+    def test_a_save_that_is_killed_leaves_what_was(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.slam.text = "second"
+        self.assertEqual(self.interrupt("save", signal.SIGKILL), -signal.SIGKILL)
+        self.assertEqual(self.run_tool("check"), 0, self.err)
+        self.assertNotEqual(self.left_over(), [])
+        for number in (signal.SIGINT, signal.SIGTERM):
+            before = self.left_over()
+            self.assertEqual(self.interrupt("save", number), 1, self.out + self.err)
+            self.assertEqual(self.err, "error: interrupted; all is as it was\n")
+            self.assertTrue(set(self.left_over()) <= set(before))
+        with open(os.path.join(self.path, "slam.state")) as file:
+            self.assertEqual(file.read(), "first")
+        # The next one clears away what the killed one left.
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.assertEqual(self.left_over(), [])
+        # Where a disk cannot exchange directories in one step, it may have been killed between two: it goes on with the old one.
+        gone = subprocess.Popen(["true"])
+        gone.wait()
+        parent, name = os.path.split(self.path)
+        os.rename(self.path, os.path.join(parent, f".{name}.{gone.pid}.abcdefgh.old"))
+        self.slam.stop()
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.assertIn("kept slam", self.out)
+        self.assertEqual(self.left_over(), [])
+
+    def test_a_load_that_is_interrupted_goes_back(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.slam.text = "second"
+        self.camera.learn("second")
+        self.assertEqual(self.interrupt("load", signal.SIGINT), 1, self.out + self.err)
+        self.assertEqual(self.err, "error: interrupted; all layers know what they knew before\n")
+        wait_until(lambda: [self.slam.text, self.camera.knows()] == ["second"] * 2, lambda: f"{self.slam.text}")
+
+    def test_what_cannot_be_set_aside_is_not_replaced(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.slam.text, self.slam.fails = "second", "save"
+        self.refused("load", 1, "nothing is loaded, as what the layers know cannot be set aside in ")
+        self.assertIn("slam: the disk is full", self.err)
+        self.assertEqual(self.slam.text, "second")
 
     def test_layers_that_do_not_run_are_kept(self):
         self.assertEqual(self.run_tool("save"), 0, self.err)
