@@ -4,9 +4,12 @@
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <sstream>
+#include <vector>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
@@ -32,10 +35,48 @@ T valueAt(const pcl::PCLPointCloud2& cloud, std::size_t i, const pcl::PCLPointFi
   return value;
 }
 
+/// PCL makes room for all that a header announces before it looks at the data. A point is told by
+/// two characters at least in text, and 264 bytes by three where they are packed.
+void checkAnnounced(const std::string& path) {
+  constexpr std::uint64_t kMaxPacking = 100;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw InputError(path, "", "cannot be read");
+  const auto length = static_cast<std::uint64_t>(in.tellg());
+  in.seekg(0);
+  std::uint64_t width = 0, height = 1, points = 0, point_step = 0;
+  std::vector<std::uint64_t> sizes, counts;
+  const auto valuesOf = [](std::istringstream& line) {
+    std::vector<std::uint64_t> values;
+    for (std::uint64_t v; line >> v;) values.push_back(std::min(v, kMaxPoints + 1));
+    return values;
+  };
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string key;
+    words >> key;
+    if (key == "DATA") break;
+    if (key == "SIZE") sizes = valuesOf(words);
+    if (key == "COUNT") counts = valuesOf(words);
+    if (key != "WIDTH" && key != "HEIGHT" && key != "POINTS") continue;
+    const auto values = valuesOf(words);
+    if (!values.empty()) (key == "WIDTH" ? width : key == "HEIGHT" ? height : points) = values[0];
+  }
+  points = std::max(points, width * height);
+  if (points > kMaxPoints) {
+    throw InputError(path, "header", "announces more than 50 million points");
+  }
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    point_step += sizes[i] * (i < counts.size() ? counts[i] : 1);
+  }
+  if (point_step > kMaxPoints || points * point_step > kMaxPacking * length) {
+    throw InputError(path, "header", "announces more than a file of this length can hold");
+  }
+}
+
 }  // namespace
 
 CloudFile readPcd(const std::string& path) {
-  if (!std::ifstream(path)) throw InputError(path, "", "cannot be read");
+  checkAnnounced(path);
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   pcl::PCLPointCloud2 raw;
   pcl::PCDReader reader;
@@ -49,8 +90,6 @@ CloudFile readPcd(const std::string& path) {
     }
     const std::uint64_t points = std::uint64_t{raw.width} * raw.height;
     if (points == 0) throw InputError(path, "header", "announces no points");
-    if (points > kMaxPoints)
-      throw InputError(path, "header", "announces more than 50 million points");
     if (reader.read(path, raw) < 0) throw InputError(path, "data", "is cut short or damaged");
   } catch (const InputError&) {
     throw;

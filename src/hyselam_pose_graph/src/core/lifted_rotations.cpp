@@ -179,7 +179,9 @@ class LiftedProblem {
 Eigen::Vector2cd mainDirection(const std::vector<Lifted>& v) {
   Eigen::Matrix2cd gram = Eigen::Matrix2cd::Zero();
   for (const Lifted& p : v) {
-    const Eigen::Vector2cd u{{p.rotation[0], p.rotation[1]}, {p.rotation[2], p.rotation[3]}};
+    Eigen::Vector2cd u;  // two pairs of braces would be taken for two rows
+    u << std::complex<double>(p.rotation[0], p.rotation[1]),
+        std::complex<double>(p.rotation[2], p.rotation[3]);
     gram += u * u.adjoint();
   }
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd>(gram).eigenvectors().col(1);

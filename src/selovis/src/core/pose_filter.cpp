@@ -137,11 +137,14 @@ void PoseFilter::move(const std::optional<hyselam::Pose2>& odometry, double seco
 }
 
 double PoseFilter::likelihood(const hyselam::Pose2& pose, double unseen, int* place) const {
-  const int column = static_cast<int>(std::floor((pose.x - origin_.x) / cell_)),
-            row = static_cast<int>(std::floor((pose.y - origin_.y) / cell_));
+  const double across = std::floor((pose.x - origin_.x) / cell_),
+               along = std::floor((pose.y - origin_.y) / cell_);
+  *place = -1;
+  // Also of one that drifted away farther than numbers of cells go.
+  if (!(across >= -1.0 && across <= columns_ && along >= -1.0 && along <= rows_)) return kUnknown;
+  const int column = static_cast<int>(across), row = static_cast<int>(along);
   const double reach2 = params_.reach * params_.reach, turn2 = params_.turn * params_.turn;
   double sum = params_.doubt * unseen, weight = params_.doubt, nearest = reach2;
-  *place = -1;
   for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
     const int first = std::max(0, column - 1), last = std::min(columns_ - 1, column + 1);
     if (first > last) continue;
