@@ -87,6 +87,7 @@ TEST_F(SlamOffline, writesWhatWasAgreed) {
   const std::string report = fileBytes(out + "/report.html");
   EXPECT_NE(report.find("data:image/png;base64,"), std::string::npos);
   EXPECT_NE(report.find("loops: thesis"), std::string::npos);
+  EXPECT_NE(report.find("<h1>run.bag</h1>"), std::string::npos);
   const auto summary = nlohmann::json::parse(fileBytes(out + "/summary.json"));
   EXPECT_EQ(summary, nlohmann::json::parse(fileBytes(d / "a.json")));
   EXPECT_EQ(summary["scans"], scans);

@@ -297,7 +297,8 @@ nlohmann::json run(const Options& o) {
       summary[std::string("side_by_side_") + nameOf(other)] = s;
       pictures.push_back(pictureOf(label, *r.engine, mapOf(*r.engine, o.resolution)));
     }
-  writeReport(o.out + "/report.html", name, engine, pictures, summary);
+  writeReport(o.out + "/report.html", std::filesystem::path(name).filename().string(), engine,
+              pictures, summary);
   hyselam::writeFileAtomically(o.out + "/summary.json",
                                [&](std::ostream& out) { out << summary.dump(2) << "\n"; });
   std::cout << summary.dump(2) << "\n";
