@@ -16,10 +16,13 @@ configure_file(src/dialogue/shipped_phrases.hpp.in
 add_library(hyselam_dialogue
   src/dialogue/dialogue.cpp
   src/dialogue/dialogue_answers.cpp
+  src/dialogue/dialogue_descriptions.cpp
   src/dialogue/dialogue_naming.cpp
+  src/dialogue/dialogue_questions.cpp
   src/dialogue/dialogue_state.cpp
   src/dialogue/dialogue_walls.cpp
   src/dialogue/glass_wall.cpp
+  src/dialogue/match_constraints.cpp
   src/dialogue/phrases.cpp
   src/dialogue/place_man.cpp
   src/dialogue/place_pose.cpp

@@ -36,6 +36,9 @@ struct DescribedPlace {
   std::optional<int> parts;
 };
 
+/// The name and the aliases, in the order in which they were told.
+std::vector<std::string> allNamesOf(const DescribedPlace& place);
+
 /// Two joined places: "On your left you have A", told while the robot is in `from`; "in the kitchen
 /// you have the laundry" joins kitchen and laundry without a side.
 struct DescribedConnection {

@@ -180,24 +180,28 @@ class Dialogue {
   void takeDown(Turn* turn);
   void solve(Reply* reply, bool tell);
   void tellMatch(Reply* reply) const;
-  MatchConstraints constraints() const;
 
   // names
   void thisIs(const Utterance& u, Turn* turn);
   void forgetNames(const Utterance& u, Turn* turn);
   void rename(const Utterance& u, Turn* turn);
-  /// Throws hyselam::InputError for names that cannot be.
   /// Whether a place is confirmed to have names, and none of these.
   bool isNamedOtherwise(Id place, const std::vector<std::string>& names) const;
-  /// Asks whether a place with other names has these as well.
-  void askAlso(Id place, const std::vector<std::string>& names, Reply* out);
   void nameHere(Id place, const std::vector<std::string>& names, Reply* reply);
+
+  // what the robot asks, and what is answered
+  void placeEntered(Reply* reply);
   void askConfirm(Id place, Reply* reply);
   void askName(Id place, Reply* reply);
+  /// Whether a place with other names has these as well.
+  void askAlso(Id place, const std::vector<std::string>& names, Reply* out);
   void askFromAfar(const MatchProblem& problem, Reply* reply);
   void notConfirmed(Reply* reply);
-  void placeEntered(Reply* reply);
   void answer(const Utterance& u, Turn* turn);
+  void answerName(const std::vector<std::string>& names, Reply* reply);
+  void answerLength(double length, Reply* reply);
+  void answerYes(Reply* reply);
+  void answerNo(Reply* reply);
 
   // walls and virtual places
   void wall(const Utterance& u, WallKind kind, Turn* turn);

@@ -29,6 +29,12 @@ std::optional<Enum> numberOf(const std::array<const char*, N>& names, const std:
 
 }  // namespace
 
+std::vector<std::string> allNamesOf(const DescribedPlace& place) {
+  std::vector<std::string> names{place.name};
+  names.insert(names.end(), place.aliases.begin(), place.aliases.end());
+  return names;
+}
+
 const char* toString(Side side) {
   return kSides.at(static_cast<std::size_t>(side));
 }

@@ -104,8 +104,7 @@ void DescriptionBuilder::dispatch(const Utterance& u) {
 std::vector<Id> DescriptionBuilder::find(const std::string& name) const {
   std::vector<std::vector<std::string>> all;
   for (const DescribedPlace& place : building_.places) {
-    all.push_back({place.name});
-    all.back().insert(all.back().end(), place.aliases.begin(), place.aliases.end());
+    all.push_back(allNamesOf(place));
     const auto variants = variants_.find(place.id);
     if (variants == variants_.end()) continue;
     all.back().insert(all.back().end(), variants->second.begin(), variants->second.end());

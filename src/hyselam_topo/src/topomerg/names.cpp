@@ -112,9 +112,7 @@ AugmentedTopologicalMap withNames(const AugmentedTopologicalMap& map,
     words.erase(std::remove_if(words.begin(), words.end(),
                                [](const Word& word) { return !word.confirmed; }),
                 words.end());
-    std::vector<std::string> texts{told->name};
-    texts.insert(texts.end(), told->aliases.begin(), told->aliases.end());
-    for (const std::string& text : texts) {
+    for (const std::string& text : allNamesOf(*told)) {
       const bool has = std::any_of(words.begin(), words.end(),
                                    [&](const Word& word) { return word.text == text; });
       if (!has) words.push_back({text, confirmed});

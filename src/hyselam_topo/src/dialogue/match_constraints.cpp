@@ -1,0 +1,66 @@
+#include "match_constraints.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace hyselam_topo {
+
+MatchConstraints constraintsOf(const PlaceMan& places, const DescriptionBuilder& builder) {
+  MatchConstraints constraints;
+  const auto described = [&](const std::string& name) -> Id {
+    const std::vector<Id> found = builder.find(name);
+    return found.size() == 1 ? found.front() : 0;
+  };
+  for (const Place& place : places.map().places) {
+    if (nameStateOf(place) != NameState::kConfirmed) continue;
+    Id id = 0;
+    for (const std::string& name : namesOf(place)) {
+      if (id == 0) id = described(name);
+    }
+    if (id != 0) {
+      constraints.confirmed.emplace_back(place.id, id);
+    } else {
+      constraints.unnamed.push_back(place.id);
+    }
+  }
+  std::set<std::pair<Id, Id>> excluded;
+  for (const auto& [place, name] : places.state().rejected) {
+    const Id id = described(name);
+    const std::pair<Id, Id> pair{place, id};
+    const bool settled =
+        std::any_of(constraints.confirmed.begin(), constraints.confirmed.end(),
+                    [&](const auto& c) { return c.first == pair.first; }) ||
+        std::count(constraints.unnamed.begin(), constraints.unnamed.end(), pair.first) > 0;
+    if (id != 0 && !settled) excluded.insert(pair);
+  }
+  constraints.excluded.assign(excluded.begin(), excluded.end());
+  return constraints;
+}
+
+int nameAt(const MatchSolution& solution, std::size_t vertex) {
+  return solution.assignment[vertex];
+}
+
+EqualAnswers equalAnswers(const Match& match) {
+  EqualAnswers answers;
+  const MatchSolution& best = match.best();
+  const std::size_t known = std::min(match.equal, match.solutions.size());
+  std::set<int> unsure;
+  for (std::size_t s = 0; s < known; ++s) {
+    const MatchSolution& other = match.solutions[s];
+    if (other.vertices != best.vertices) continue;
+    ++answers.count;
+    for (std::size_t v = 0; v < best.assignment.size(); ++v) {
+      const int here = nameAt(best, v), there = nameAt(other, v);
+      if (here == there) continue;
+      if (here >= 0) unsure.insert(here);
+      if (there >= 0) unsure.insert(there);
+    }
+  }
+  answers.unsure.assign(unsure.begin(), unsure.end());
+  return answers;
+}
+
+}  // namespace hyselam_topo
