@@ -120,6 +120,27 @@ TEST(PlaceLabels, DoNotHideTheNode) {
   EXPECT_TRUE(liesWithin(label, inside));
 }
 
+// A place that was only told, without walls, within a large room.
+TEST(PlaceLabels, ReachOverBordersWithoutWallsRatherThanOverTheNode) {
+  const auto room = box(1, 1, 11, 11);
+  AugmentedTopologicalMap map = mapOf(room, {6, 6});
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 240; ++x) {
+      const Point2 p = map.grid->geometry.centre({x, y});
+      if (std::hypot(p.x - 6.0, p.y - 6.0) > 0.6 && room(p)) {
+        map.grid->labels[static_cast<std::size_t>(y * 240 + x)] = 2;
+      }
+    }
+  }
+  map.grid->places = {1, 2};
+  const PlaceLabelParams params;
+  const PlaceLabel label = labelIn(map, "VV07", "sunroom");
+  EXPECT_GE(label.position.y - 0.5 * label.height * textSize(label.text).height,
+            6.0 + params.node_radius - 0.05);
+  EXPECT_LT(label.position.y, 7.0);
+  EXPECT_NEAR(label.position.x, 6.0, 0.1);
+}
+
 // Text is level in the map, whatever way its grid lies.
 TEST(PlaceLabels, FollowTheMapNotTheGrid) {
   const auto inside = box(-2, 7, 2, 9);

@@ -32,9 +32,9 @@ TextSize textSize(const std::string& text);
 
 /// The label of a place with a centre. The largest height at which the text, broken at some of its
 /// blanks, lies within the cells of the place and beside its node; there, as near above the node
-/// as it can be. If it does not fit at the least height beside the node, it may cover the node; if
-/// it does not even then, it lies on the point deepest inside the place. Without cells it lies
-/// above the node.
+/// as it can be. If it does not fit at the least height beside the node, it may reach over a border
+/// without a wall, close to the node; else it may cover the node; if it does not fit even then, it
+/// lies on the point deepest inside the place. Without cells it lies above the node.
 /// `box`: the place's, of placeBoxes(); null: it has no cells. `code`: stands on a line of its own
 /// or before the whole name; may be empty.
 PlaceLabel placeLabel(const AugmentedTopologicalMap& map, const Place& place, const CellBox* box,

@@ -18,6 +18,7 @@ constexpr double kBlank = 0.58;       // width of a blank, of the height of a li
 constexpr double kStep = 0.1;         // [m] between the points that are looked at
 constexpr double kMaxPoints = 250e3;  // more: the step grows
 constexpr int kFrame = 3;             // points around the place; more than a closing adds
+constexpr double kNear = 1.0;         // [m] from the node to the middle of a text beside its place
 constexpr double kShrink = 0.92;      // from one height to the next smaller one
 
 double widthOf(char c) {
@@ -97,7 +98,10 @@ std::vector<std::string> layouts(const std::string& code, const std::string& nam
   return all;
 }
 
-/// The place as an image along the axes of the map, with a frame of points outside of it.
+constexpr Id kAnyPlace = 0;
+
+/// A place, or all places, within a box, as an image along the axes of the map with a frame of
+/// points outside.
 class Area {
  public:
   Area(const PlaceGrid& grid, Id id, const CellBox& box) {
@@ -118,7 +122,8 @@ class Area {
                        static_cast<int>(std::ceil((high.x - low.x) / step_)) + 2 * kFrame, CV_8U);
     for (int y = kFrame; y < inside_.rows - kFrame; ++y) {
       for (int x = kFrame; x < inside_.cols - kFrame; ++x) {
-        if (grid.placeOf(grid.geometry.cellAt(point(x, y))) == id) inside_.at<uchar>(y, x) = 1;
+        const Id here = grid.placeOf(grid.geometry.cellAt(point(x, y)));
+        if (id == kAnyPlace ? here != 0 : here == id) inside_.at<uchar>(y, x) = 1;
       }
     }
     // Single cells that the laser has not seen are no obstacle to a name.
@@ -236,6 +241,16 @@ PlaceLabel placeLabel(const AugmentedTopologicalMap& map, const Place& place, co
   Area beside = area;
   beside.cutOut({place.centre->x, place.centre->y}, params.node_radius);
   if (auto label = largestThatFits(beside, place, texts, params.max_height, params)) return *label;
+  // Over a border without a wall rather than over the node, if it is clear which node is meant.
+  const int cells = static_cast<int>(std::ceil(kNear / map.grid->geometry.resolution));
+  Area around(*map.grid, kAnyPlace,
+              {box->x_begin - cells, box->y_begin - cells, box->x_end + cells, box->y_end + cells});
+  around.cutOut({place.centre->x, place.centre->y}, params.node_radius);
+  const auto near = largestThatFits(around, place, texts, params.min_height, params);
+  if (near &&
+      std::hypot(near->position.x - place.centre->x, near->position.y - place.centre->y) < kNear) {
+    return *near;
+  }
   if (auto label = largestThatFits(area, place, texts, params.min_height, params)) return *label;
   const auto narrowest =
       std::min_element(texts.begin(), texts.end(), [](const auto& a, const auto& b) {
