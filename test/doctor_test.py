@@ -269,11 +269,23 @@ class DoctorTest(unittest.TestCase):
             _, findings = self.call(self.robot(pose=False, grid=False, says={"localization: localisation": "waiting for a map"}))
             self.assertIn("localization runs, and says: waiting for a map", self.wrong(findings, "tf"), self.said)
             self.assertNotIn("local_map", self.wrong(findings, "map"))
-            _, findings = self.call(self.robot(pose=False, says={"robot1/localization: localisation": "global, not converged"}))
+            _, findings = self.call(self.robot(pose=False, says={"localization: localisation": "global, not converged"}))
             self.assertIn("does not know yet where the robot is", self.wrong(findings, "tf"), self.said)
             self.assertIn("2D Pose Estimate", self.wrong(findings, "tf"))
         finally:
             own.unregister()
+
+    def test_a_robot_in_a_namespace(self):
+        """Its layers are meant, not another one's; who forgets the namespace is told of it."""
+        told = {"robot1/slam: SLAM": "no scans", "robot2/slam: SLAM": "38 keyframes"}
+        _, findings = self.call(self.robot(pose=False, says=told))
+        self.assertIn("no layer runs in this namespace, but in /robot1, /robot2", self.wrong(findings, "nodes"), self.said)
+        self.assertIn("ROS_NAMESPACE=robot1 rosrun hyselam_bringup doctor odom_frame:=robot1/odom", self.wrong(findings, "nodes"))
+        self.assertNotIn("38 keyframes", self.said)
+        _, findings = self.call(self.robot(odom="robot1/odom", topic="robot1/scan", pose=False, says=told), "__ns:=robot1")
+        self.assertIn("is it robot1/odom?", self.wrong(findings, "tf"), self.said)
+        self.assertIn("slam: SLAM: no scans", self.said)
+        self.assertNotIn("38 keyframes", self.said)
 
     def test_slam_that_starves(self):
         """It announces a map that it cannot draw: the driver of the map is not to blame."""
