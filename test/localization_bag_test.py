@@ -17,9 +17,9 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import Listener, Recording, angle_between, planar, wait_until
+from localization_rig import SLOWNESS, Listener, Recording, angle_between, planar, wait_until
 
-RATE = 8  # times real time; every scan must still be used, and that is checked
+RATE = 8 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 
 
 class LocalizationBagTest(unittest.TestCase):

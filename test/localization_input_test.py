@@ -47,14 +47,14 @@ class LocalizationInputTest(unittest.TestCase):
     def assert_refused(self, change, *words):
         """A scan changed like this is refused with these words; the next good one is used."""
         rig = self.guided()
-        used, poses = int(rig.value("scans used")), len(rig.poses.messages)
+        used, last = int(rig.value("scans used")), self.run_.scans[39].header.stamp  # guided() has fed 40
         rig.feed(1, change)
         self.assertEqual(int(rig.value("scans used")), used)
         self.assertEqual(rig.value("dropped: refused"), "1")
         for word in words:
             self.assertIn(word, rig.value("last dropped"))
         rig.wait_said("scan dropped", *words, level=Log.WARN)
-        self.assertEqual(len(rig.poses.messages), poses)
+        self.assertTrue(all(pose.header.stamp <= last for pose in rig.poses.messages))
         rig.feed(30)
         self.assert_on_track(rig)
 
@@ -119,7 +119,7 @@ class LocalizationInputTest(unittest.TestCase):
         rig.settle(tick=0.02)
         self.assertEqual(rig.value("dropped: no transform"), "3")
         rig.wait_said("no transform", "base_link -> nowhere", level=Log.WARN)
-        self.assertEqual(len(rig.poses.messages), poses)
+        self.assertTrue(all(pose.header.stamp <= last for pose in rig.poses.messages))
         rig.feed(30)
         self.assert_on_track(rig)
 

@@ -15,9 +15,9 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import Listener, Recording, wait_until
+from localization_rig import SLOWNESS, Listener, Recording, wait_until
 
-RATE = 15  # times real time; every scan must still be used, and that is checked
+RATE = 15 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 PLACES = ("fsd", "scan", "node")
 
 
