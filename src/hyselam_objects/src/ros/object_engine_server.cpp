@@ -1,7 +1,6 @@
 #include "hyselam_objects/ros/object_engine_server.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -9,14 +8,10 @@
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_objects/link_places.hpp"
-#include "hyselam_objects/object_descriptor.hpp"
 #include "hyselam_topo/ros/conversions.hpp"
 
 namespace hyselam_objects {
 namespace {
-
-constexpr double kTimeBack = 0.5;     // [s] a smaller step back is a late frame
-constexpr double kRetryEvery = 0.01;  // [s] while a frame waits for its pose
 
 /// An object map that messages can hold, in that frame. Throws hyselam::InputError.
 ObjectMap loadMapIn(const std::string& frame_id, const std::string& path) {
@@ -61,7 +56,7 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
       parser_(ObjectParser::shipped()),
       fill_(&parser_, &map_),
       mapper_(&map_, {}, params_.mapper),
-      tf_listener_(tf_buffer_),
+      shown_(params_.views_to_learn),
       map_publisher_(nh.advertise<hyselam_msgs::ObjectMap>("object_map", 1, true)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("object_markers", 1, true)),
       text_publisher_(nh.advertise<std_msgs::String>("robot_text", 20)) {
@@ -91,19 +86,13 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
   text_ = nh.subscribe("object_text", 20, &ObjectEngineServer::onText, this);
   place_ = nh.subscribe("place", 5, &ObjectEngineServer::onPlace, this);
   topology_subscriber_ = nh.subscribe("topological_map", 1, &ObjectEngineServer::onTopology, this);
-  if (params_.use_points) {
-    points_ = nh.subscribe("points", 1, &ObjectEngineServer::onPoints, this);
-  } else {
-    info_ = nh.subscribe("camera/depth/camera_info", 1, &ObjectEngineServer::onInfo, this);
-    depth_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/depth/image_raw", 5);
-    colour_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/color/image_raw", 5);
-    images_ =
-        std::make_unique<message_filters::TimeSynchronizer<Image, Image>>(*depth_, *colour_, 10);
-    images_->registerCallback(&ObjectEngineServer::onImages, this);
-  }
-  pose_timer_ = nh.createWallTimer(
-      ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); }, false,
-      false);
+  input_.emplace(
+      nh,
+      FrameInputParams{params_.map_frame, params_.use_points, params_.period, params_.tf_patience},
+      [this](const OrganisedCloud& cloud, const PinholeCamera& camera, const ros::Time& stamp) {
+        look(cloud, camera, stamp);
+      },
+      [this](const std::string& reason) { refuse(reason); });
   timer_ = nh.createWallTimer(ros::WallDuration(params_.publish_period),
                               [this](const ros::WallTimerEvent&) { publish(); });
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": objects",
@@ -111,116 +100,8 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
                        [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
 }
 
-void ObjectEngineServer::onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg) {
-  try {
-    camera_ = cameraOf(*msg);
-  } catch (const hyselam::InputError& e) {
-    refuse(e.what());
-  }
-}
-
-bool ObjectEngineServer::isDue(const std_msgs::Header& header) {
-  const bool back = header.stamp < last_frame_;  // a bag begins again
-  if ((last_frame_ - header.stamp).toSec() > kTimeBack) {
-    // A transform of before, received after the listener forgot them, would make it refuse all new
-    // ones.
-    tf_buffer_.clear();
-    waiting_.reset();
-  }
-  if (!back && !last_frame_.isZero() && (header.stamp - last_frame_).toSec() < params_.period) {
-    return false;
-  }
-  last_frame_ = header.stamp;
-  return true;
-}
-
-void ObjectEngineServer::onImages(const Image::ConstPtr& depth, const Image::ConstPtr& colour) {
-  if (!camera_ || !isDue(depth->header)) return;
-  await(depth->header, [this, depth, colour, camera = *camera_](const Eigen::Isometry3d& in_map) {
-    look(cloudOf(*depth, colour.get(), camera), camera, in_map, depth->header.stamp);
-  });
-}
-
-void ObjectEngineServer::onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg) {
-  if (!isDue(msg->header)) return;
-  await(msg->header, [this, msg](const Eigen::Isometry3d& in_map) {
-    const OrganisedCloud cloud = cloudOf(*msg);
-    // The focal length follows from the points themselves: u - cx = f x / z.
-    PinholeCamera camera;
-    camera.cx = 0.5 * cloud.width - 0.5;
-    camera.cy = 0.5 * cloud.height - 0.5;
-    std::vector<double> across, down;
-    for (std::size_t i = 0; i < cloud.size(); i += 17) {
-      const Point& p = cloud.points[i];
-      if (!cloud.isValid(i)) continue;
-      const double u = static_cast<double>(i % static_cast<std::size_t>(cloud.width)) - camera.cx;
-      const double v = static_cast<double>(i / static_cast<std::size_t>(cloud.width)) - camera.cy;
-      if (std::abs(p.x()) > 0.05f) across.push_back(u * p.z() / p.x());
-      if (std::abs(p.y()) > 0.05f) down.push_back(v * p.z() / p.y());
-    }
-    if (across.size() < 20 || down.size() < 20) {
-      throw hyselam::InputError("points", "", "hardly a point is valid");
-    }
-    const auto median = [](std::vector<double>* all) {
-      const auto middle = all->begin() + static_cast<std::ptrdiff_t>(all->size() / 2);
-      std::nth_element(all->begin(), middle, all->end());
-      return *middle;
-    };
-    camera.focal_length = median(&across);
-    const double other = median(&down);
-    if (!(camera.focal_length > 0.0 && other > 0.0 && std::isfinite(camera.focal_length))) {
-      throw hyselam::InputError("points", "",
-                                "they are not in the order of a camera's picture: x does not grow "
-                                "to the right, or y not downwards");
-    }
-    look(cloud, camera, in_map, msg->header.stamp);
-  });
-}
-
-// Waiting must not block: it would hold up the other nodelets of the manager, and for ever while
-// the clock stands.
-void ObjectEngineServer::await(const std_msgs::Header& header, UseFrame use) {
-  if (waiting_) refuseWithoutPose("a newer frame has come");
-  waiting_ = {header, std::move(use), ros::WallTime::now()};
-  serveWaiting();
-}
-
-void ObjectEngineServer::serveWaiting() {
-  if (!waiting_) return;
-  const std_msgs::Header& header = waiting_->header;
-  std::string why;
-  if (tf_buffer_.canTransform(map_.frame_id, header.frame_id, header.stamp, &why)) {
-    const Waiting frame = std::move(*waiting_);
-    waiting_.reset();
-    pose_timer_.stop();
-    try {
-      const geometry_msgs::Transform pose =
-          tf_buffer_.lookupTransform(map_.frame_id, frame.header.frame_id, frame.header.stamp)
-              .transform;
-      const auto& t = pose.translation;
-      const auto& q = pose.rotation;
-      frame.use(Eigen::Translation3d(t.x, t.y, t.z) *
-                Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized());
-    } catch (const std::exception& e) {
-      refuse(e.what());
-    }
-  } else if ((ros::WallTime::now() - waiting_->since).toSec() >= params_.tf_patience) {
-    refuseWithoutPose(why);
-  } else {
-    pose_timer_.start();
-  }
-}
-
-void ObjectEngineServer::refuseWithoutPose(const std::string& why) {
-  waiting_.reset();
-  pose_timer_.stop();
-  ++without_pose_;
-  refuse("the camera's pose is not known: " + why);
-}
-
-void ObjectEngineServer::look(const OrganisedCloud& cloud, PinholeCamera camera,
-                              const Eigen::Isometry3d& camera_in_map, const ros::Time& stamp) {
-  camera.in_map = camera_in_map;
+void ObjectEngineServer::look(const OrganisedCloud& cloud, const PinholeCamera& camera,
+                              const ros::Time& stamp) {
   const ros::WallTime begin = ros::WallTime::now();
   const std::vector<DetectedObject> seen = detectObjects(cloud, camera.in_map, params_.detect);
   // Before the map takes over what is wrong; but if it stays so, it is the map that was.
@@ -246,32 +127,13 @@ void ObjectEngineServer::look(const OrganisedCloud& cloud, PinholeCamera camera,
 
 void ObjectEngineServer::learn(const std::vector<DetectedObject>& seen,
                                const PinholeCamera& camera) {
-  if (shown_.empty()) return;
-  // What is shown stands nearest to the middle of the picture.
-  const Eigen::Isometry3d map_in_camera = camera.in_map.inverse();
-  const DetectedObject* best = nullptr;
-  double least = 0.35;  // tangent of the angle from the axis
-  for (const DetectedObject& each : seen) {
-    if (each.furniture || each.cut) continue;
-    const Point3 c = each.centre();
-    const Eigen::Vector3d p = map_in_camera * Eigen::Vector3d(c.x, c.y, c.z);
-    const double off = p.z() > 0.0 ? std::hypot(p.x(), p.y()) / p.z() : 1e9;
-    if (off < least) {
-      least = off;
-      best = &each;
-    }
-  }
-  if (best == nullptr) return;
-  shown_views_.push_back(best->descriptor);
-  shown_sizes_.emplace_back(best->high.x - best->low.x, best->high.y - best->low.y,
-                            best->high.z - best->low.z);
-  if (shown_views_.size() < static_cast<std::size_t>(params_.views_to_learn)) return;
+  const std::optional<GenericObject> thing = shown_.add(seen, camera);
+  if (!thing) return;
   ObjectDictionary learnt;
-  learnt.put(learnObject(shown_, shown_views_, shown_sizes_));
+  learnt.put(*thing);
   dictionary_ = merged(dictionary_, learnt);
   mapper_.setDictionary(dictionary_);
-  say(fill_.learnt(shown_));
-  shown_.clear();
+  say(fill_.learnt(thing->name));
   // Last: a file that cannot be written must not make it learn the same again and again.
   if (!params_.dictionary_file.empty()) saveXml(params_.dictionary_file, dictionary_);
 }
@@ -297,11 +159,7 @@ hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
     understood += reply.kind != ReplyKind::kNotUnderstood;
     out.asks = reply.kind == ReplyKind::kQuestion;
     if (reply.code == "going") out.go = 1;
-    if (reply.code == "shown") {
-      shown_ = reply.kind_of_object;
-      shown_views_.clear();
-      shown_sizes_.clear();
-    }
+    if (reply.code == "shown") shown_.begin(reply.kind_of_object);
   }
   // A part that is not understood is told of in the reply.
   out.understood = understood > 0;
@@ -425,7 +283,7 @@ void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   hyselam::addValue(status, "offset y [m]", landmarks_.y);
   hyselam::addValue(status, "frames used", frames_);
   hyselam::addValue(status, "frames refused", refused_);
-  hyselam::addValue(status, "frames without a pose", without_pose_);
+  hyselam::addValue(status, "frames without a pose", input_->withoutPose());
   hyselam::addValue(status, "detections", detections_);
   hyselam::addValue(status, "last frame [s]", seconds_);
   hyselam::addValue(status, "kinds known", dictionary_.objects.size());
