@@ -41,7 +41,7 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
                 : kidnapped ? colour(1.0, 0.45, 0.05, 0.95)
                             : colour(0.1, 0.7, 0.25, 0.95);
     array.markers.push_back(bar);
-    // The map's own markers name the others.
+    // The map's own markers name the places.
     const long percent = std::lround(100.0 * probabilities[i]);
     if (percent == 0) continue;
     Marker text = bar;
@@ -54,7 +54,7 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     text.pose.position.z = 0.3;
     text.color = here ? bar.color : colour(0.1, 0.1, 0.1, 1.0);
     text.color.a = 1.0f;
-    text.text = names[i] + " " + std::to_string(percent) + " %";
+    text.text = std::to_string(percent) + " %";
     array.markers.push_back(text);
   }
   return array;
