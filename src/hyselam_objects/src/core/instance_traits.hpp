@@ -1,5 +1,5 @@
-// What all stages of the object mapper ask of an instance: of which sort it is, and when a stay of
-// it is over.
+// What several parts ask of an instance of the map: of which sort it is, and when a stay of it is
+// over.
 #pragma once
 
 #include "hyselam_objects/object_map.hpp"

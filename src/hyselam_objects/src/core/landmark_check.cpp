@@ -8,6 +8,7 @@
 #include "hyselam_common/require.hpp"
 #include "hyselam_objects/object_descriptor.hpp"
 #include "hyselam_objects/object_relations.hpp"
+#include "instance_traits.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -91,8 +92,7 @@ std::vector<Sight> sightsOf(const ObjectMap& map, const std::vector<DetectedObje
                             const LandmarkParams& params) {
   std::vector<const ObjectInstance*> landmarks;
   for (const ObjectInstance& each : map.objects) {
-    const bool stays = each.properties.count("furniture") != 0 ||
-                       static_cast<int>(each.history.size()) >= params.visits;
+    const bool stays = isFurniture(each) || static_cast<int>(each.history.size()) >= params.visits;
     if (each.pose && stays && each.existence > 0.5 && each.seen >= params.seen &&
         movability(map, each.id) <= params.movable) {
       landmarks.push_back(&each);
@@ -109,7 +109,7 @@ std::vector<Sight> sightsOf(const ObjectMap& map, const std::vector<DetectedObje
     sight.middle = {c.x, c.y};
     for (const ObjectInstance* known : landmarks) {
       const ObjectPose& pose = *known->pose;
-      if ((known->properties.count("furniture") != 0) != each.furniture) continue;
+      if (isFurniture(*known) != each.furniture) continue;
       const double height = pose.position.z + 0.5 * pose.size[2] - each.high.z;
       constexpr double kHeight = 0.08;
       if (std::abs(height) > kHeight) continue;
