@@ -63,6 +63,15 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
     throw hyselam::InputError("parameter 'model'", params_.model, e.what());
   }
 
+  // Before all that starts it: a nodelet's queue is served while its constructor still runs.
+  timer_ = nh.createWallTimer(
+      ros::WallDuration(kPollEvery),
+      [this](const ros::WallTimerEvent&) {
+        takeTrained();
+        serveWaiting();
+        restIfIdle();
+      },
+      false, false);
   const auto queue = static_cast<std::uint32_t>(params_.queue_size);
   if (params_.image_transport == "compressed") {
     // Without the plugin, and with a look at whether the picture is whole.
@@ -113,11 +122,6 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
                private_nh.advertiseService("stop_learning", &Self::onStopLearning, this),
                private_nh.advertiseService("retrain", &Self::onRetrain, this),
                private_nh.advertiseService("save", &Self::onSave, this)};
-  timer_ = nh.createWallTimer(ros::WallDuration(kPollEvery), [this](const ros::WallTimerEvent&) {
-    takeTrained();
-    serveWaiting();
-    restIfIdle();
-  });
   diagnostics_ = std::make_unique<hyselam::Diagnostics>(
       nh, private_nh.getNamespace().substr(1) + ": visual places", params_.diagnostic_period,
       [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
