@@ -30,6 +30,14 @@ TEST(SensorHistory, ALateReadingTakesItsPlaceAndTheOthersStay) {
   EXPECT_FALSE(history.nearest(ros::Time(10.5), 0.05));
 }
 
+TEST(SensorHistory, OnlyTheLastAreKept) {
+  SensorHistory<Reading> history(2);
+  for (const double t : {10.0, 10.1, 10.2}) history.add(at(t));
+  EXPECT_FALSE(history.nearest(ros::Time(10.0), 0.05));
+  EXPECT_TRUE(history.nearest(ros::Time(10.1), 0.05));
+  EXPECT_TRUE(history.reaches(ros::Time(10.2)));
+}
+
 TEST(SensorHistory, ABagThatBeginsAgainForgets) {
   SensorHistory<Reading> history;
   for (const double t : {10.0, 10.2, 3.0}) history.add(at(t));

@@ -93,7 +93,7 @@ class SemanticLocalizationServer {
 
   std::deque<Waiting> waiting_;
   SensorHistory<sensor_msgs::LaserScan> scans_;
-  SensorHistory<sensor_msgs::Image> depths_;
+  SensorHistory<sensor_msgs::Image> depths_{60};  // two seconds of a camera; each may be a megabyte
   SensorHistory<sensor_msgs::Imu> imus_;
   SensorHistory<sensor_msgs::MagneticField> fields_;
   std::optional<double> aperture_;  // of the camera, by camera_info [rad]

@@ -4,6 +4,7 @@
 #include <ros/time.h>
 
 #include <cmath>
+#include <cstddef>
 #include <deque>
 #include <iterator>
 
@@ -15,6 +16,9 @@ constexpr double kClockSlack = 0.5;  // [s] older than the last by more: a bag b
 template <typename M>
 class SensorHistory {
  public:
+  /// Keeps the last `most` messages, at least 1.
+  explicit SensorHistory(std::size_t most = 400) : most_(most) {}
+
   void add(const typename M::ConstPtr& msg) {
     if (!messages_.empty() &&
         (messages_.back()->header.stamp - msg->header.stamp).toSec() > kClockSlack) {
@@ -23,7 +27,7 @@ class SensorHistory {
     auto at = messages_.end();
     while (at != messages_.begin() && msg->header.stamp < (*std::prev(at))->header.stamp) --at;
     messages_.insert(at, msg);  // one that is late takes its place
-    while (messages_.size() > 400) messages_.pop_front();
+    while (messages_.size() > most_) messages_.pop_front();
   }
   /// Whether a later message can not lie nearer to that time.
   bool reaches(const ros::Time& stamp) const {
@@ -44,6 +48,7 @@ class SensorHistory {
   }
 
  private:
+  std::size_t most_;
   std::deque<typename M::ConstPtr> messages_;
 };
 
