@@ -17,12 +17,13 @@ PICTURES = ("/camera/color/image_raw", "/camera/depth/image_raw", "/camera/color
 
 def enter_workspace():
     """Begins the program anew with the workspace's environment if that is not around it; ends it if there is none."""
-    if str(PREFIX) in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
+    entered = "HYSELAM_ENTERED"  # the environment may name the workspace by another path than this
+    if str(PREFIX) in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") or os.environ.get(entered) == str(PREFIX):
         return
     if not (PREFIX / "env.sh").exists():
         print(f"error: {PREFIX} is missing: run 'make build'", file=sys.stderr)
         sys.exit(2)
-    os.execv(PREFIX / "env.sh", ["env.sh", sys.executable, *sys.argv])
+    os.execve(PREFIX / "env.sh", ["env.sh", sys.executable, *sys.argv], {**os.environ, entered: str(PREFIX)})
 
 
 def say(text):
