@@ -15,7 +15,8 @@ bool looksThrough(const OrganisedCloud& cloud, const PinholeCamera& camera, cons
   const Eigen::Isometry3d map_in_camera = camera.in_map.inverse();
   double low_u = 1e9, high_u = -1e9, low_v = 1e9, high_v = -1e9;
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d sign(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1);
+    const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                               (corner & 4) != 0 ? 1.0 : -1.0);
     const Eigen::Vector3d p = map_in_camera * (middle + half.cwiseProduct(sign)).eval();
     if (p.z() < kNearest || p.z() > kFarthest) return false;
     const double u = camera.focal_length * p.x() / p.z() + camera.cx;

@@ -112,7 +112,7 @@ std::string colourName(const std::vector<std::uint32_t>& colours) {
   for (const std::uint32_t rgb : colours) {
     const Hsv c = toHsv(rgb);
     if (c.saturation > kLeastSaturation && c.value > kLeastValue) {
-      ++votes[static_cast<std::size_t>(c.hue * 12.0f + 0.5f) % 12];
+      ++votes[static_cast<std::size_t>(std::lround(c.hue * 12.0f)) % 12];
     } else {
       ++grey[c.value < 0.25f ? 0u : c.value < 0.75f ? 1u : 2u];
     }

@@ -45,7 +45,7 @@ std::vector<Id> FillMap::resolve(const ObjectPhrase& said, Id place, bool only_t
     if (said.reference == "it" && subjects_.size() != 1) return {};
     return subjects_;
   }
-  const std::vector<Id> all = candidates(said);
+  std::vector<Id> all = candidates(said);
   if (all.size() <= 1) return all;
   std::vector<Id> mentioned, here;
   for (const Id id : all) {
