@@ -6,7 +6,7 @@ import sys
 
 import rospy
 import rostest
-from hyselam_msgs.srv import StatePath
+from hyselam_msgs.srv import QueryObjects, StatePath
 
 sys.dont_write_bytecode = True
 from faults_rig import KNOWN, NEW, LaunchedStack, TwoRobots
@@ -38,6 +38,7 @@ class FaultsRespawnTest(TwoRobots):
 
     def test_manager_killed_and_all_is_back_with_what_was_saved(self):
         self.assertIn("Kitchen", self.name("Kitchen"))
+        self.call(KNOWN, "query_objects", QueryObjects, "There is a pen in the kitchen.")
         self.assertTrue(self.call(NEW, "slam/save", StatePath, "").success)
         keyframes = self.robots.count(NEW, "slam", "keyframes")
         wait_until(lambda: os.path.exists(self.path(KNOWN, "dialogue.state")), "the dialogue is not saved")
@@ -46,6 +47,7 @@ class FaultsRespawnTest(TwoRobots):
             self.comes_back_alone(robot)
         self.assertGreaterEqual(self.robots.count(NEW, "slam", "keyframes"), keyframes)
         self.assertIn("Kitchen", self.words())
+        self.assertIn("kitchen", self.call(KNOWN, "query_objects", QueryObjects, "Where is the pen?").reply)
         self.works()
 
     def test_manager_killed_twice_and_the_keeper_with_it(self):

@@ -14,7 +14,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Point, PointStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap
-from hyselam_msgs.srv import NamePlace, QueryObjects, StatePath, StatePathResponse
+from hyselam_msgs.srv import (NamePlace, ObjectMapPath, ObjectMapPathResponse, QueryObjects, StatePath, StatePathResponse)
 from nav_msgs.msg import OccupancyGrid
 from roslib.packages import find_node
 from std_msgs.msg import Header
@@ -26,12 +26,12 @@ from localization_rig import Listener, Recording, wait_until, WAIT
 class FakeSlam:
     """A SLAM that knows one text, and can be told to fail."""
 
-    def __init__(self):
+    def __init__(self, namespace=""):
         self.text, self.fails = "first", ""
         self.waits, self.entered, self.go_on = "", threading.Event(), threading.Event()
         self.one_at_a_time = threading.Lock()
-        self.services = [rospy.Service("slam/save", StatePath, lambda r: self.serve("save", r)),
-                         rospy.Service("slam/load", StatePath, lambda r: self.serve("load", r))]
+        self.services = [rospy.Service(namespace + "slam/save", StatePath, lambda r: self.serve("save", r)),
+                         rospy.Service(namespace + "slam/load", StatePath, lambda r: self.serve("load", r))]
 
     def serve(self, call, request):
         with self.one_at_a_time:
@@ -55,6 +55,27 @@ class FakeSlam:
             return StatePathResponse(False, "of another building")
         self.text = text
         return StatePathResponse(True, "")
+
+    def stop(self):
+        for service in self.services:
+            service.shutdown()
+
+
+class StubbornObjects:
+    """What knows objects, and takes back what it has saved itself, nothing else."""
+
+    def __init__(self, namespace):
+        self.services = [rospy.Service(namespace + "save_object_map", ObjectMapPath, self.save),
+                         rospy.Service(namespace + "load_object_map", ObjectMapPath, self.load)]
+
+    def save(self, request):
+        with open(request.path, "w") as file:
+            file.write("its own")
+        return ObjectMapPathResponse(True, "")
+
+    def load(self, request):
+        with open(request.path) as file:
+            return ObjectMapPathResponse(file.read() == "its own", "of another robot")
 
     def stop(self):
         for service in self.services:
@@ -291,6 +312,39 @@ class KnowledgeTest(unittest.TestCase):
         with open(os.path.join(self.path, "slam.state")) as file:
             self.assertEqual(file.read(), "first")
         self.assertEqual(self.run_tool("check"), 0, self.err)
+
+    def test_a_layer_that_knows_nothing_yet_is_left_out(self):
+        fresh = {"ROS_NAMESPACE": "fresh"}  # there Gr2To has no map
+        nothing = "places: there is no topological map yet"
+        rospy.wait_for_service("fresh/save_topological_map", WAIT)
+        self.assertEqual(self.run_tool("save", **fresh), 1)
+        self.assertEqual(self.err, f"error: {nothing}; nothing is saved\n")
+        self.assertFalse(os.path.exists(self.path))
+        slam = FakeSlam("fresh/")
+        self.addCleanup(slam.stop)
+        self.assertEqual(self.run_tool("save", **fresh), 0, self.err)
+        self.assertEqual(self.out, f"{self.path}: saved slam; left out {nothing}\n")
+        with open(os.path.join(self.path, "manifest.json")) as file:
+            manifest = json.load(file)
+        self.assertEqual(manifest["left_out"], {"places": "there is no topological map yet"})
+        self.assertEqual(list(manifest["layers"]), ["slam"])
+        self.assertEqual(self.run_tool("check", **fresh), 0, self.err)
+        self.assertIn(f"without {nothing}", self.out)
+        # What is there of it stays, and is not missed.
+        full = self.path + "_full"
+        self.assertEqual(self.run_tool("save", full), 0, self.err)
+        slam.text = "fresh"
+        self.assertEqual(self.run_tool("save", full, **fresh), 0, self.err)
+        self.assertIn("places", self.out.split("kept ")[1].split(";")[0])
+        with open(os.path.join(full, "manifest.json")) as file:
+            self.assertEqual(json.load(file)["left_out"], {})
+        # It takes what it is given; when another one refuses, there is nothing that it could go back to.
+        slam.text = "second"
+        self.addCleanup(StubbornObjects("fresh/").stop)
+        self.assertEqual(self.run_tool("load", full, **fresh), 1)
+        self.assertEqual(self.err, "error: objects: of another robot; all other layers know what they knew before; "
+                                   "places knew nothing before and keeps what it was given\n")
+        self.assertEqual(slam.text, "second")
 
     def test_usage_and_no_master(self):
         self.assertEqual(self.run_tool("save", ROS_MASTER_URI="http://localhost:9"), 2)

@@ -3,17 +3,20 @@
 import math
 import os
 import struct
+import subprocess
 import tempfile
 import unittest
 
 import rospy
 import rostest
 import tf2_ros
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from hyselam_msgs.msg import ObjectMap, PlaceState
 from hyselam_msgs.srv import ObjectMapPath, QueryObjects
 from nodelet.srv import NodeletLoad, NodeletUnload
+from roslib.packages import find_node
+from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
@@ -287,11 +290,107 @@ class ObjectEngineTest(unittest.TestCase):
         sent_until(cloud(math.nan, 1.0), lambda: told("hardly a point is valid"))
         sent_until(cloud(1.0, 1.0), self.kinds)
 
+    def asking(self):
+        ask = rospy.ServiceProxy(self.name + "/query_objects", QueryObjects)
+        ask.wait_for_service(WAIT)
+        return lambda text: ask(text).reply
+
+    def status(self):
+        """The newest diagnosis of the engine."""
+        all_of_it = [s for array in self.diagnostics.messages for s in array.status if s.name.endswith(": objects")]
+        return all_of_it[-1] if all_of_it else DiagnosticStatus()
+
+    def file_holds(self, text):
+        path = os.path.join(self.folder.name, "objects.xml")
+        if not os.path.exists(path):
+            return False
+        with open(path) as file:
+            return text in file.read()
+
+    def test_what_was_told_outlives_a_kill(self):
+        path = os.path.join(self.folder.name, "objects.xml")
+        # Of its own process; what it sees it would save in an hour.
+        command = [find_node("hyselam_objects", "object_engine_node")[0], "__ns:=" + self.name, "_map_file:=" + path,
+                   "_autosave_period:=3600"]
+        for text, reply in (("There is a pen in the kitchen.", "pen"), ("Where is the pen?", "kitchen"),
+                            ("The pen is red. Where is the red pen?", "kitchen"), ("Forget the pen.", ""),
+                            ("Where is the pen?", "know of no")):
+            engine = subprocess.Popen(command)
+            try:
+                # The last one's service is still known to the master.
+                wait_until(lambda: self.answers(text), "an answer")
+                self.assertIn(reply, self.answer)
+            finally:
+                engine.kill()
+                engine.wait()
+        self.assertEqual(os.listdir(self.folder.name), ["objects.xml"])
+
+    def answers(self, text):
+        try:
+            self.answer = rospy.ServiceProxy(self.name + "/query_objects", QueryObjects)(text).reply
+        except rospy.ServiceException:
+            return False
+        return True
+
+    def test_what_is_seen_is_saved_by_itself_and_at_the_end(self):
+        path = os.path.join(self.folder.name, "objects.xml")
+        self.assertTrue(self.start(map_file=path, autosave_period=0.1))
+        self.see(self.camera())
+        wait_until(lambda: self.file_holds("furniture"), "what is seen in the file")
+        self.unload(name=self.name + "/engine")
+        os.remove(path)
+        self.name += "_slow"
+        self.maps = Listener(self.name + "/object_map", ObjectMap)
+        self.assertTrue(self.start(map_file=path, autosave_period=3600.0))
+        self.see(self.camera())
+        self.assertFalse(os.path.exists(path), "saved too soon")
+        self.unload(name=self.name + "/engine")
+        self.loaded = False
+        self.assertTrue(self.file_holds("furniture"))
+
+    def test_a_damaged_map_file_is_put_aside(self):
+        path = os.path.join(self.folder.name, "objects.xml")
+        with open(path, "w") as out:
+            out.write("<object_map>")
+        self.diagnostics = Listener(self.name + "/diagnostics", DiagnosticArray)
+        self.addCleanup(self.diagnostics.close)
+        self.assertTrue(self.start(map_file=path, diagnostic_period=0.05))
+        wait_until(lambda: self.status().level == DiagnosticStatus.ERROR, lambda: str(self.status()))
+        self.assertIn(path, self.status().message)
+        with open(path + ".damaged") as file:
+            self.assertEqual(file.read(), "<object_map>")
+        self.assertFalse(os.path.exists(path))
+        self.assertEqual(self.kinds(), [])
+        ask = self.asking()
+        ask("There is a pen in the kitchen.")
+        self.assertTrue(self.file_holds("pen"))
+        wait_until(lambda: self.status().level == DiagnosticStatus.OK, lambda: str(self.status()))
+
+    def test_a_map_file_that_cannot_be_written_is_told_of(self):
+        folder = os.path.join(self.folder.name, "later")
+        self.diagnostics = Listener(self.name + "/diagnostics", DiagnosticArray)
+        self.addCleanup(self.diagnostics.close)
+        log = Listener("/rosout", Log)
+        self.addCleanup(log.close)
+        self.assertTrue(self.start(map_file=os.path.join(folder, "objects.xml"), autosave_period=0.1, diagnostic_period=0.05))
+        ask = self.asking()
+        ask("There is a pen in the kitchen.")
+        wait_until(lambda: self.status().level == DiagnosticStatus.ERROR, lambda: str(self.status()))
+        self.assertIn(folder, self.status().message)
+        self.assertIn("kitchen", ask("Where is the pen?"))
+        ask("There is a cup in the kitchen.")
+        self.assertIn("kitchen", ask("Where is the cup?"))
+        os.mkdir(folder)
+        # Though nobody tells anything more.
+        wait_until(lambda: self.status().level == DiagnosticStatus.OK, lambda: str(self.status()))
+        self.assertIn("objects.xml", os.listdir(folder))
+        self.assertEqual(len([m for m in log.messages if m.name == "/manager" and "not saved" in m.msg and folder in m.msg]), 1)
+
     def test_bad_parameters_and_files_do_not_load(self):
         bad = os.path.join(self.folder.name, "bad.xml")
         with open(bad, "w") as out:
             out.write("no XML")
-        for number, params in enumerate([{"period": -1.0}, {"gate": 0.0}, {"map_file": bad}, {"dictionary_file": bad}]):
+        for number, params in enumerate([{"period": -1.0}, {"gate": 0.0}, {"autosave_period": 0.0}, {"dictionary_file": bad}]):
             self.name += str(number)
             self.assertFalse(self.start(**params), params)
 

@@ -11,27 +11,15 @@
 #include "hyselam_topo/ros/conversions.hpp"
 
 namespace hyselam_objects {
-namespace {
-
-/// An object map that messages can hold, in that frame. Throws hyselam::InputError.
-ObjectMap loadMapIn(const std::string& frame_id, const std::string& path) {
-  ObjectMap map = loadObjectMap(path);
-  if (map.frame_id != frame_id) {
-    throw hyselam::InputError(path, "frame_id",
-                              "is '" + map.frame_id + "', not '" + frame_id + "'");
-  }
-  hyselam::toRosTime(map.stamp, path);  // what no message can hold is refused
-  toMsg(map);                           // the times of its objects, too
-  return map;
-}
-
-}  // namespace
 
 ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
   using hyselam::Range;
   ObjectEngineParams p;
   loader.get("map_frame", p.map_frame, "frame of the object map");
-  loader.get("map_file", p.map_file, "object map to begin with, and to save to; empty: none");
+  loader.get("map_file", p.map_file,
+             "object map to begin with, kept up to date; empty: nothing is kept");
+  loader.get("autosave_period", p.autosave_period, Range::between(0.1, 3600.0),
+             "[s] what was seen is saved so often; what is told, at once");
   loader.get("dictionary_file", p.dictionary_file, "object dictionary, the same");
   loader.get("use_points", p.use_points, "input from the topic points, else from the images");
   loader.get("period", p.period, Range::between(0.0, 60.0),
@@ -53,6 +41,8 @@ ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
 ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : who_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndTell(private_nh, loadObjectEngineParams)),
+      map_file_(who_, params_.map_file),
+      map_(map_file_.begin(params_.map_frame)),
       parser_(ObjectParser::shipped()),
       fill_(&parser_, &map_),
       mapper_(&map_, {}, params_.mapper),
@@ -62,10 +52,6 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
       text_publisher_(nh.advertise<std_msgs::String>("robot_text", 20)) {
   talk_publisher_ = nh.advertise<std_msgs::String>("conversation", 100);
   answer_publisher_ = nh.advertise<hyselam_msgs::ObjectAnswer>("object_answer", 20);
-  map_.frame_id = params_.map_frame;
-  if (!params_.map_file.empty() && std::filesystem::exists(params_.map_file)) {
-    map_ = loadMapIn(params_.map_frame, params_.map_file);
-  }
   if (!params_.dictionary_file.empty() && std::filesystem::exists(params_.dictionary_file)) {
     dictionary_ = loadDictionary(params_.dictionary_file);
     mapper_.setDictionary(dictionary_);
@@ -95,9 +81,25 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
       [this](const std::string& reason) { refuse(reason); });
   timer_ = nh.createWallTimer(ros::WallDuration(params_.publish_period),
                               [this](const ros::WallTimerEvent&) { publish(); });
+  autosave_timer_ =
+      nh.createWallTimer(ros::WallDuration(params_.autosave_period),
+                         [this](const ros::WallTimerEvent&) { map_file_.saveAside(map_); });
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": objects",
                        params_.diagnostic_period,
                        [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
+}
+
+ObjectEngineServer::~ObjectEngineServer() {
+  // No callback may change the map while it is written.
+  timer_.stop();
+  autosave_timer_.stop();
+  diagnostics_.reset();
+  input_.reset();
+  for (ros::Subscriber* subscriber : {&text_, &request_, &place_, &topology_subscriber_}) {
+    subscriber->shutdown();
+  }
+  for (ros::ServiceServer* service : {&save_, &load_, &query_}) service->shutdown();
+  map_file_.save(map_);
 }
 
 void ObjectEngineServer::look(const OrganisedCloud& cloud, const PinholeCamera& camera,
@@ -147,6 +149,7 @@ void ObjectEngineServer::refuse(const std::string& reason) {
 hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
   hyselam_msgs::ObjectAnswer out;
   const std::vector<std::string> before = fill_.unknownKinds(dictionary_);
+  const ObjectMap known = map_;
   std::size_t understood = 0;
   const std::vector<ObjectReply> replies = fill_.say(text);
   for (const ObjectReply& reply : replies) {
@@ -170,6 +173,8 @@ hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
     }
   }
   all_understood_ = understood == replies.size();
+  // Before anybody hears that it is known.
+  if (!(map_ == known)) map_file_.save(map_);
   publish();
   return out;
 }
@@ -226,6 +231,7 @@ bool ObjectEngineServer::onSave(hyselam_msgs::ObjectMapPath::Request& request,
   try {
     if (path.empty())
       throw hyselam::InputError("path", "", "is empty, as is the parameter map_file");
+    map_file_.wait();  // an older map must not come after this one
     saveXml(path, map_);
     response.success = true;
     response.message = std::to_string(map_.objects.size()) + " objects written to " + path;
@@ -244,6 +250,7 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
     fill_.forgetContext();
     watch_.clear();
     if (topology_) linkPlaces(&map_, *topology_);
+    map_file_.save(map_);
     publish();
     response.success = true;
     response.message = std::to_string(map_.objects.size()) + " objects read from " + path;
@@ -264,6 +271,9 @@ void ObjectEngineServer::publish() {
 void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   using diagnostic_msgs::DiagnosticStatus;
   if (!error_.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, error_);
+  if (!map_file_.error().empty()) {
+    hyselam::addRemark(status, DiagnosticStatus::ERROR, map_file_.error());
+  }
   hyselam::addRemark(status, DiagnosticStatus::OK,
                      std::to_string(map_.objects.size()) + " objects in the map");
   if (landmarks_.verdict == LandmarkVerdict::kDisplaced) {

@@ -18,6 +18,7 @@
 #include "hyselam_objects/landmark_check.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
 #include "hyselam_objects/ros/frame_input.hpp"
+#include "hyselam_objects/ros/map_file.hpp"
 #include "hyselam_objects/shown_thing.hpp"
 
 namespace hyselam_objects {
@@ -25,6 +26,7 @@ namespace hyselam_objects {
 struct ObjectEngineParams {
   std::string map_frame = "map";
   std::string map_file;            ///< begun with if it is there, saved to; empty: neither
+  double autosave_period = 10.0;   ///< of what was seen; what is told is saved at once [s]
   std::string dictionary_file;     ///< the same for the dictionary
   bool use_points = false;         ///< input from `points`, else from the camera's images
   double period = 0.5;             ///< frames that come sooner are left out [s]
@@ -43,8 +45,9 @@ ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader);
 /// time.
 class ObjectEngineServer {
  public:
-  /// @throws hyselam::ParameterError; hyselam::InputError for files that cannot be used.
+  /// @throws hyselam::ParameterError; hyselam::InputError for a dictionary that cannot be used.
   ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh);
+  ~ObjectEngineServer();
 
  private:
   hyselam_msgs::ObjectAnswer answer(const std::string& text);
@@ -68,6 +71,7 @@ class ObjectEngineServer {
 
   std::string who_;
   ObjectEngineParams params_;
+  MapFile map_file_;
   ObjectMap map_;
   ObjectDictionary dictionary_;
   ObjectParser parser_;
@@ -88,7 +92,7 @@ class ObjectEngineServer {
   ros::Subscriber text_, request_, place_, topology_subscriber_;
   ros::ServiceServer save_, load_, query_;
   std::optional<FrameInput> input_;
-  ros::WallTimer timer_;
+  ros::WallTimer timer_, autosave_timer_;
   std::optional<hyselam::Diagnostics> diagnostics_;
 };
 
