@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kPollEvery = 0.005;  // [s] of wall time: images that wait, training that ends
 constexpr double kPoseAge = 0.5;      // [s] a pose so old is still that of the image
+constexpr double kDepthPause = 1.0;   // [s] without depth images: none come any more
 constexpr int kRangeColumns = 40;     // distances taken from a laser scan
 
 std::shared_ptr<const Model> firstModel(const SemanticLocalizationParams& params) {
@@ -193,6 +194,10 @@ std::optional<Readings> SemanticLocalizationServer::readingsFor(const Waiting& i
   Readings readings;
   readings.stamp = stamp.toSec();
   const bool waited = (ros::WallTime::now() - image.since).toSec() >= params_.sync_wait;
+  // Ranges by depth go before those by a scan: as long as depth comes, it is waited for.
+  if (needs_.ranges && !waited && depths_.nearest(stamp, kDepthPause) && !depths_.reaches(stamp)) {
+    return {};
+  }
   const bool by_depth = needs_.ranges && depths_.nearest(stamp, params_.sync_tolerance);
   const auto find = [&](const auto& history, const char* what) {
     const auto msg = history.nearest(stamp, params_.sync_tolerance);
