@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 #include "hyselam_common/testing/fuzz_target.hpp"
 
 TEST(FuzzSeeds, AreRead) {
   namespace fs = std::filesystem;
+  EXPECT_FALSE(hyselam::testing::fuzzTargets().empty());
   for (const hyselam::testing::FuzzTarget& target : hyselam::testing::fuzzTargets()) {
     int files = 0;
     for (const auto& entry :
