@@ -36,6 +36,8 @@ class FrameInput {
 
   /// `use` gets each frame whose pose is known; what it throws is a reason to refuse the frame.
   FrameInput(ros::NodeHandle nh, const FrameInputParams& params, Use use, Refuse refuse);
+  FrameInput(const FrameInput&) = delete;  // its callbacks hold it
+  FrameInput& operator=(const FrameInput&) = delete;
 
   /// Frames refused because nobody told in time where the camera was.
   std::size_t withoutPose() const { return without_pose_; }
