@@ -74,6 +74,7 @@ catkin_install_python(PROGRAMS scripts/chat scripts/listen scripts/speak
                       DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
 if(CATKIN_ENABLE_TESTING)
+  hyselam_fuzz_seeds(LIBRARIES hyselam_dialogue ZLIB::ZLIB)
   foreach(test topo_state glass_wall place_man route)
     hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_dialogue)
   endforeach()

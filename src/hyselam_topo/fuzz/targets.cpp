@@ -1,3 +1,6 @@
+#include <zlib.h>
+
+#include <cstdio>
 #include <string>
 
 #include "hyselam_common/errors.hpp"
@@ -5,6 +8,7 @@
 #include "hyselam_topo/describe_building.hpp"
 #include "hyselam_topo/description_builder.hpp"
 #include "hyselam_topo/description_xml.hpp"
+#include "hyselam_topo/dialogue_state.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
 
 namespace hyselam_topo {
@@ -92,10 +96,36 @@ void mapXml(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// The state of a dialogue: refused, or written to the same again. Length and checksum are put
+/// right.
+void dialogueState(const std::uint8_t* data, std::size_t size) {
+  const std::string body = textOf(data, size);
+  char head[80];
+  std::snprintf(head, sizeof head, "hyselam_dialogue 1 %08lx %zu\n",
+                crc32(0L, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(size)),
+                size);
+  DialogueState state;
+  try {
+    state = dialogueStateFromText(head + body, "fuzz");
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  std::string once;
+  try {
+    once = toText(state);
+  } catch (const hyselam::InputError&) {
+    return;  // extras of the XML within may be written otherwise, and be refused then
+  }
+  require(toText(dialogueStateFromText(once, "written")) == once);
+}
+
 }  // namespace
 }  // namespace hyselam_topo
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace hyselam_topo;  // NOLINT: its own targets
-  return {{"parser", parser}, {"descriptionXml", descriptionXml}, {"mapXml", mapXml}};
+  return {{"parser", parser},
+          {"descriptionXml", descriptionXml},
+          {"mapXml", mapXml},
+          {"dialogueState", dialogueState}};
 }

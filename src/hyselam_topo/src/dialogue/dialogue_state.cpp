@@ -8,6 +8,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/json_integer.hpp"
 #include "hyselam_topo/description_xml.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
 
@@ -105,7 +106,8 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
       state.places.walls.push_back(wall);
     }
     for (const json& r : j.at("rejected")) {
-      state.places.rejected.emplace_back(r.at("place").get<Id>(), r.at("name").get<std::string>());
+      state.places.rejected.emplace_back(hyselam::integerOf<Id>(r.at("place")),
+                                         r.at("name").get<std::string>());
     }
   } catch (const InputError&) {
     throw;

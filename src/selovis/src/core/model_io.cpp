@@ -9,12 +9,14 @@
 #include "binary.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/json_integer.hpp"
 #include "selovis/model.hpp"
 
 namespace selovis {
 namespace {
 
 using hyselam::InputError;
+using hyselam::integerOf;
 using nlohmann::json;
 
 constexpr const char* kFormat = "selovis model 1";
@@ -54,7 +56,7 @@ std::string loadData(const std::string& directory, const std::string& kind, cons
   }
   const std::string path = pathIn(directory, name);
   const std::string bytes = hyselam::readTextFile(path, kMaxBytes);
-  if (bytes.size() != entry.at("bytes").get<std::size_t>()) {
+  if (bytes.size() != integerOf<std::size_t>(entry.at("bytes"))) {
     throw InputError(
         path, "byte " + std::to_string(bytes.size()),
         "must have " + entry.at("bytes").dump() + " bytes: it was cut short or changed");
@@ -112,10 +114,10 @@ json parametersOf(const DescriptorParams& p) {
 
 DescriptorParams descriptorParams(const json& j) {
   DescriptorParams p;
-  p.lbp.radius = j.at("lbp_radius").get<int>();
+  p.lbp.radius = integerOf<int>(j.at("lbp_radius"));
   p.lbp.disc_mean = j.at("lbp_disc_mean").get<bool>();
-  p.value_min = j.at("value_min").get<int>();
-  p.saturation_min = j.at("saturation_min").get<int>();
+  p.value_min = integerOf<int>(j.at("value_min"));
+  p.saturation_min = integerOf<int>(j.at("saturation_min"));
   p.near_range = j.at("near_range").get<double>();
   p.middle_range = j.at("middle_range").get<double>();
   p.range_max = j.at("range_max").get<double>();
@@ -142,8 +144,8 @@ ClassifierParams classifierParams(const json& j) {
   p.cost = j.at("cost").get<double>();
   p.gamma = j.at("gamma").get<double>();
   p.beta = j.at("beta").get<double>();
-  p.neighbours = j.at("neighbours").get<int>();
-  p.seed = j.at("seed").get<unsigned>();
+  p.neighbours = integerOf<int>(j.at("neighbours"));
+  p.seed = integerOf<unsigned>(j.at("seed"));
   validate(p);
   return p;
 }
@@ -159,7 +161,7 @@ PlaceGraph graphOf(const json& j) {
   }
   const int n = static_cast<int>(graph.places.size());
   for (const auto& pair : j.at("transitions")) {
-    const int a = pair.at(0).get<int>(), b = pair.at(1).get<int>();
+    const int a = integerOf<int>(pair.at(0)), b = integerOf<int>(pair.at(1));
     if (a < 0 || b < 0 || a >= n || b >= n)
       throw std::invalid_argument("a transition joins no places");
     graph.transitions.emplace_back(a, b);
