@@ -73,6 +73,15 @@ Gr2ToServer::Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
   }
 }
 
+Gr2ToServer::~Gr2ToServer() {
+  // The segmentation ends before the other members: nothing may come in for it any more.
+  diagnostics_.reset();
+  subscriber_.shutdown();
+  for (ros::ServiceServer* service : {&place_at_service_, &save_service_, &load_service_}) {
+    service->shutdown();
+  }
+}
+
 void Gr2ToServer::onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg) {
   ++received_;
   last_map_ = msg;

@@ -74,6 +74,14 @@ WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
 }
 
 WordsServer::~WordsServer() {
+  // No callback may change the corpus while it is written.
+  diagnostics_.reset();
+  subscriber_.shutdown();
+  scan_input_.reset();
+  save_timer_.stop();
+  for (ros::ServiceServer* service : {&save_service_, &load_service_, &start_service_}) {
+    service->shutdown();
+  }
   try {
     if (params_.from_scan) take(sensor_.finish());
   } catch (const std::exception& e) {

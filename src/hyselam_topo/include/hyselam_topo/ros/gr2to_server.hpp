@@ -26,6 +26,7 @@ class Gr2ToServer {
   /// @throws hyselam::ParameterError; hyselam::InputError for `map_file`.
   Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
               BackgroundGr2To::Pipeline pipeline = nullptr);
+  ~Gr2ToServer();
 
   const Gr2ToServerParams& params() const { return params_; }
   /// Other parameters from now on: the last input is segmented again.
