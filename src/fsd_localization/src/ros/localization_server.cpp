@@ -85,6 +85,7 @@ MapPreparation::Source mapService(ros::NodeHandle nh, const LocalizationServerPa
 LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : private_nh_(private_nh),
       who_(logName(private_nh)),
+      map_topic_(nh.resolveName("map")),
       params_(loadParams(private_nh)),
       publisher_(nh, params_),
       map_service_(mapService(nh, params_, who_, map_seen_)),
@@ -129,7 +130,7 @@ void LocalizationServer::onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg) {
     ROS_INFO_STREAM(who_ << " another map is ignored (first_map_only)");
     return;
   }
-  prepare(*msg, map_subscriber_.getTopic());
+  prepare(*msg, map_topic_);
 }
 
 bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source) {
@@ -361,7 +362,7 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
       const ros::WallTime now = ros::WallTime::now();
       if (params_.use_map_topic && (now - reminded_of_map_).toSec() > kRemindEvery) {
         reminded_of_map_ = now;
-        ROS_WARN_STREAM(who_ << " waiting for a map on " << map_subscriber_.getTopic() << " ("
+        ROS_WARN_STREAM(who_ << " waiting for a map on " << map_topic_ << " ("
                              << map_subscriber_.getNumPublishers() << " publishers)");
       }
     }

@@ -53,6 +53,7 @@ class LocalizationServer {
 
   ros::NodeHandle private_nh_;
   std::string who_;
+  std::string map_topic_;  // a latched map may come while map_subscriber_ is still being set
   LocalizationServerParams params_;
   LocalizationPublisher publisher_;
   std::atomic<bool> map_seen_{false};   // a map that looks usable has come
