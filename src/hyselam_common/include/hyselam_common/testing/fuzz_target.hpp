@@ -2,8 +2,6 @@
 // its targets in fuzz/targets.cpp; the seeds of target `mapXml` are in test/data/fuzz/map_xml.
 #pragma once
 
-#include <unistd.h>
-
 #include <cctype>
 #include <cstdint>
 #include <cstdlib>
@@ -49,9 +47,12 @@ class FuzzFolder {
   FuzzFolder() {
     const std::filesystem::path memory = "/dev/shm";
     const bool there = std::filesystem::is_directory(memory);
-    path_ = (there ? memory : std::filesystem::temp_directory_path()) /
-            ("hyselam-fuzz-" + std::to_string(::getpid()));
-    std::filesystem::create_directories(path_);
+    // A name that nobody can have put a link at.
+    std::string name =
+        ((there ? memory : std::filesystem::temp_directory_path()) / "hyselam-fuzz-XXXXXX")
+            .string();
+    require(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
   }
   ~FuzzFolder() {
     std::error_code ignored;
