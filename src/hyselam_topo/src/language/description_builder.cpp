@@ -18,6 +18,20 @@ const std::map<std::string, RelationKind>& relations() {
   return kRelations;
 }
 
+/// Points to what is said for as long as this lives.
+class Saying {
+ public:
+  Saying(const Utterance** current, const Utterance& said) : current_(*current) {
+    current_ = &said;
+  }
+  ~Saying() { current_ = nullptr; }
+  Saying(const Saying&) = delete;
+  Saying& operator=(const Saying&) = delete;
+
+ private:
+  const Utterance*& current_;
+};
+
 }  // namespace
 
 const char* toString(IssueKind kind) {
@@ -56,7 +70,7 @@ std::vector<DescriptionIssue> DescriptionBuilder::add(const ParsedText& text) {
 std::vector<DescriptionIssue> DescriptionBuilder::add(const Utterance& utterance) {
   issues_.clear();
   if (!utterance.understood() || !handles(utterance.intent)) return {};
-  current_ = &utterance;
+  const Saying saying(&current_, utterance);
   correction_ = utterance.correction;
   corrected_ = false;
   // A statement that fails half-way leaves nothing behind.
@@ -166,7 +180,7 @@ void DescriptionBuilder::setRobotPlace(const std::string& name) {
   SaidName said;
   said.text = name;
   const Utterance nothing;
-  current_ = &nothing;
+  const Saying saying(&current_, nothing);
   try {
     building_.robot_place = place(said);
     subjects_ = {*building_.robot_place};
