@@ -8,14 +8,18 @@ import signal
 import subprocess
 import tempfile
 import threading
+import types
 import unittest
+from unittest import mock
 
+import rosgraph
+import rospkg
 import rospy
 import rostest
 from geometry_msgs.msg import Point, PointStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap
 from hyselam_msgs.srv import (NamePlace, ObjectMapPath, ObjectMapPathResponse, QueryObjects, StatePath, StatePathResponse)
-from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import MapMetaData, OccupancyGrid
 from roslib.packages import find_node
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger, TriggerResponse
@@ -26,24 +30,26 @@ from localization_rig import Listener, Recording, wait_until, WAIT
 class FakeSlam:
     """A SLAM that knows one text, and can be told to fail."""
 
+    why = "the disk is full"
+
     def __init__(self, namespace=""):
-        self.text, self.fails = "first", ""
-        self.waits, self.entered, self.go_on = "", threading.Event(), threading.Event()
+        self.text, self.fails, self.refuses = "first", "", ""
+        self.waits, self.entered, self.go_on = [], threading.Semaphore(0), threading.Semaphore(0)
         self.one_at_a_time = threading.Lock()
         self.services = [rospy.Service(namespace + "slam/save", StatePath, lambda r: self.serve("save", r)),
                          rospy.Service(namespace + "slam/load", StatePath, lambda r: self.serve("load", r))]
 
     def serve(self, call, request):
         with self.one_at_a_time:
-            if self.waits == call:
-                self.waits = ""  # once: what comes back is not held
-                self.entered.set()
-                self.go_on.wait(WAIT)
+            if self.waits[:1] == [call]:
+                self.waits.pop()
+                self.entered.release()
+                self.go_on.acquire(timeout=WAIT)
             return getattr(self, call)(request)
 
     def save(self, request):
         if self.fails == "save":
-            return StatePathResponse(False, "the disk is full")
+            return StatePathResponse(False, self.why)
         with open(request.path, "w") as file:
             file.write(self.text)
         return StatePathResponse(True, "")
@@ -51,7 +57,7 @@ class FakeSlam:
     def load(self, request):
         with open(request.path) as file:
             text = file.read()
-        if self.fails == "load" and text != self.text:
+        if self.fails == "load" and text != self.text or text == self.refuses:
             return StatePathResponse(False, "of another building")
         self.text = text
         return StatePathResponse(True, "")
@@ -109,6 +115,8 @@ class KnowledgeTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        # rosrun looks for it each time, which takes longer than the tool, and hands no signal on.
+        cls.program = find_node("hyselam_bringup", "knowledge")[0]
         cls.map_publisher = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         cls.map_publisher.publish(Recording("small").map)
         cls.named = Listener("named_map", AugmentedTopologicalMap)
@@ -129,7 +137,7 @@ class KnowledgeTest(unittest.TestCase):
         rospy.set_param("object_engine/dictionary_file", self.dictionary)
 
     def run_tool(self, command, path=None, **environment):
-        done = subprocess.run(["rosrun", "hyselam_bringup", "knowledge", command, path or self.path], stdout=subprocess.PIPE,
+        done = subprocess.run([self.program, command, path or self.path], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True, timeout=60, env=dict(os.environ, **environment))
         self.out, self.err = done.stdout, done.stderr
         return done.returncode
@@ -245,23 +253,30 @@ class KnowledgeTest(unittest.TestCase):
         self.assertEqual([self.slam.text, self.camera.knows(), self.shown()], ["second"] * 3)
         self.assertEqual(self.left_over(), [])
 
-    def interrupt(self, command, number):
-        """Sends the signal while SLAM is in the command; the tool's exit status."""
-        self.slam.waits = command
-        self.slam.entered.clear()
-        self.slam.go_on.clear()
-        # rosrun ends with the tool, but hands no signal on.
-        tool = subprocess.Popen([find_node("hyselam_bringup", "knowledge")[0], command, self.path], stdout=subprocess.PIPE,
+    def interrupt(self, command, number, times=1):
+        """Sends the signal while SLAM is in the command, each time that it is; the tool's exit status."""
+        self.slam.waits = [command] * times
+        self.slam.entered, self.slam.go_on = threading.Semaphore(0), threading.Semaphore(0)
+        tool = subprocess.Popen([self.program, command, self.path], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True)
         try:
-            self.assertTrue(self.slam.entered.wait(WAIT), f"SLAM is not asked to {command}")
-            tool.send_signal(number)
-            self.slam.go_on.set()
+            for _ in range(times):
+                self.assertTrue(self.slam.entered.acquire(timeout=WAIT), f"SLAM is not asked to {command}")
+                tool.send_signal(number)
+                self.slam.go_on.release()
             self.out, self.err = tool.communicate(timeout=WAIT)
         finally:
-            self.slam.go_on.set()
+            self.slam.waits = []
+            self.slam.go_on.release()
             tool.kill()
         return tool.returncode
+
+    def kept(self):
+        """The directory that the error names, for what the layers knew."""
+        path = self.err.strip().rsplit("can be loaded from ", 1)[1]
+        self.addCleanup(shutil.rmtree, path)
+        self.assertEqual(self.run_tool("check", path), 0, self.err)
+        return path
 
     def test_a_save_that_is_killed_leaves_what_was(self):
         self.assertEqual(self.run_tool("save"), 0, self.err)
@@ -297,6 +312,109 @@ class KnowledgeTest(unittest.TestCase):
         self.assertEqual(self.err, "error: interrupted; all layers know what they knew before\n")
         wait_until(lambda: [self.slam.text, self.camera.knows()] == ["second"] * 2, lambda: f"{self.slam.text}")
 
+    def test_what_was_known_is_kept_when_the_way_back_fails(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        stubborn = {"ROS_NAMESPACE": "stubborn"}
+        slam = FakeSlam("stubborn/")
+        self.addCleanup(slam.stop)
+        objects = StubbornObjects("stubborn/")
+        self.addCleanup(objects.stop)
+        slam.text = slam.refuses = "second"
+        self.assertEqual(self.run_tool("load", **stubborn), 1)
+        self.assertIn("error: objects: of another robot; and the way back failed: slam: of another building; what the layers "
+                      "knew before can be loaded from /", self.err)
+        path = self.kept()
+        self.assertEqual(slam.text, "first")
+        slam.refuses = ""
+        self.assertEqual(self.run_tool("load", path, **stubborn), 0, self.err)
+        self.assertEqual(slam.text, "second")
+
+    def test_what_was_known_is_kept_when_the_way_back_is_interrupted(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.slam.text = "second"
+        self.assertEqual(self.interrupt("load", signal.SIGINT, 2), 1, self.out + self.err)
+        self.assertIn("error: interrupted; and the way back failed: interrupted; what the layers knew before", self.err)
+        path = self.kept()
+        self.slam.text = "third"
+        self.assertEqual(self.run_tool("load", path), 0, self.err)
+        self.assertEqual(self.slam.text, "second")
+
+    def test_a_map_server_that_is_dead_is_told_of(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        slam = FakeSlam("dead/")
+        self.addCleanup(slam.stop)
+        slam.text = "second"
+        # Registered still, and nobody answers: what a killed one leaves.
+        master, service = rosgraph.Master("/dead_map_server"), ("/dead/change_map", "rosrpc://localhost:9")
+        master.registerService(*service, "http://localhost:9")
+        self.addCleanup(master.unregisterService, *service)
+        self.assertEqual(self.run_tool("load", ROS_NAMESPACE="dead"), 1)
+        self.assertRegex(self.err, r"^error: map: change_map: .*; all layers know what they knew before\n$")
+        self.assertEqual(slam.text, "second")
+
+    def test_a_map_of_another_size_than_its_cells(self):
+        grid = OccupancyGrid(info=MapMetaData(width=2, height=2, resolution=0.05), data=[0, 0, 0])
+        publisher = rospy.Publisher("odd/map", OccupancyGrid, queue_size=1, latch=True)
+        self.addCleanup(publisher.unregister)
+        publisher.publish(grid)
+        self.assertEqual(self.run_tool("save", ROS_NAMESPACE="odd"), 1)
+        self.assertEqual(self.err, "error: map: /odd/map: its 3 cells are not 2 x 2\n")
+        self.assertFalse(os.path.exists(self.path))
+
+    def test_a_load_that_is_killed_leaves_the_visual_places(self):
+        """Where a disk cannot exchange directories in one step, killed between the two."""
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        self.camera.learn("second")
+        tool = self.tool()
+        tool.ctypes = types.SimpleNamespace(CDLL=lambda *_, **__: None)  # an old C library
+        gone = subprocess.Popen(["true"])
+        gone.wait()
+        move = os.rename
+
+        def killed(source, target):
+            move(source, target)
+            raise KeyboardInterrupt
+        with mock.patch("os.getpid", lambda: gone.pid):
+            fresh = tool.beside(self.camera.folder)
+        shutil.copytree(os.path.join(self.path, "visual_places"), fresh, dirs_exist_ok=True)
+        with mock.patch("os.rename", killed), self.assertRaises(KeyboardInterrupt):
+            tool.exchange(fresh, self.camera.folder)
+        self.assertFalse(os.path.exists(self.camera.folder))
+        self.assertEqual(self.run_tool("save", self.path + "_other"), 0, self.err)
+        self.assertEqual(self.camera.knows(), "second")
+        self.assertEqual(self.left_over(), [])
+
+    def tool(self):
+        """The tool as a module."""
+        path = os.path.join(rospkg.RosPack().get_path("hyselam_bringup"), "scripts", "knowledge")
+        module = types.ModuleType("knowledge")
+        with open(path) as file:
+            exec(compile(file.read(), path, "exec"), module.__dict__)
+        return module
+
+    def test_a_power_cut_after_a_save_loses_nothing(self):
+        """Files, and the directories that name them, are on the disk before the exchange, which is before the end."""
+        tool, order, wait, move = self.tool(), [], os.fsync, os.rename
+
+        def waits(descriptor):
+            order.append(os.readlink(f"/proc/self/fd/{descriptor}"))
+            wait(descriptor)
+
+        def moves(source, target):
+            order.append("exchange")
+            move(source, target)
+        fresh = tool.beside(self.path)
+        os.makedirs(os.path.join(fresh, "inner"))
+        for name in ("outer.txt", "inner/deep.txt"):
+            with open(os.path.join(fresh, name), "w") as file:
+                file.write("known")
+        with mock.patch("os.fsync", waits), mock.patch("os.rename", moves):
+            tool.seal(fresh, {}, {})
+            tool.exchange(fresh, self.path)
+        names = [os.path.relpath(path, fresh) if path != "exchange" else path for path in order]
+        self.assertEqual(sorted(names[:-2]), [".", "inner", "inner/deep.txt", "manifest.json", "outer.txt"])
+        self.assertEqual(names[-2:], ["exchange", ".."])
+
     def test_what_cannot_be_set_aside_is_not_replaced(self):
         self.assertEqual(self.run_tool("save"), 0, self.err)
         self.slam.text, self.slam.fails = "second", "save"
@@ -312,6 +430,13 @@ class KnowledgeTest(unittest.TestCase):
         with open(os.path.join(self.path, "slam.state")) as file:
             self.assertEqual(file.read(), "first")
         self.assertEqual(self.run_tool("check"), 0, self.err)
+
+    def test_a_failure_that_sounds_like_knowing_nothing_is_one(self):
+        self.slam.fails, self.slam.why = "save", "the disk is not there yet"
+        self.refused("save", 1, "slam: the disk is not there yet")
+        self.slam.why = "there is no topological map yet"  # that is for another layer to say
+        self.refused("save", 1, "slam: there is no topological map yet")
+        self.assertFalse(os.path.exists(self.path))
 
     def test_a_layer_that_knows_nothing_yet_is_left_out(self):
         fresh = {"ROS_NAMESPACE": "fresh"}  # there Gr2To has no map
