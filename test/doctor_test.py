@@ -3,6 +3,7 @@
 import copy
 import json
 import os
+import signal
 import socket
 import subprocess
 import tempfile
@@ -13,13 +14,16 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
+from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image, LaserScan
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from geometry_msgs.msg import TransformStamped
 
-from localization_rig import Recording, wait_until
+from localization_rig import Recording, SLOWNESS, wait_until, WAIT
+
+ENOUGH_TO_SEE_THE_MOUNT = 250  # scans: the robot has gone some metres and turned
 
 
 def transform(parent, child, stamp, rotation=(0.0, 0.0, 0.0, 1.0)):
@@ -54,20 +58,25 @@ class DoctorTest(unittest.TestCase):
     def setUpClass(cls):
         cls.recording = Recording("small")
         cls.folder = tempfile.TemporaryDirectory()
+        cls.doctor = find_node("hyselam_bringup", "doctor")[0]  # rosrun hands no signal on
 
     def setUp(self):
         rospy.set_param("/use_sim_time", True)
         self.sent = {"/clock": 0, "/tf": 0, "/scan": 0}
 
     def call(self, play, *arguments, uri=None):
-        """The doctor's exit status and findings; `play` feeds the robot meanwhile."""
+        """The doctor's exit status and findings; `play` feeds the robot meanwhile, and ends the watching when all is said."""
         path = os.path.join(self.folder.name, "findings.json")
         environment = dict(os.environ, ROS_MASTER_URI=uri) if uri else None
-        doctor = subprocess.Popen(["rosrun", "hyselam_bringup", "doctor", "--seconds", "4", "--json", path, *arguments],
+        doctor = subprocess.Popen([self.doctor, "--seconds", str(WAIT) if play else "1", "--json", path, *arguments],
                                   env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        if play:
-            play(doctor)
-        self.said, _ = doctor.communicate(timeout=60)
+        try:
+            if play:
+                play(doctor)
+            self.said, _ = doctor.communicate(timeout=60)
+        finally:
+            doctor.kill()  # one that is left would be taken for that of the next case
+            doctor.wait()
         with open(path) as file:
             return doctor.returncode, json.load(file)["findings"]
 
@@ -75,7 +84,7 @@ class DoctorTest(unittest.TestCase):
         return " | ".join(f"{f['text']} {f['hint']}" for f in findings if f["name"] == name and f["level"] == "WRONG")
 
     def robot(self, scan_of=lambda s: s, static=None, topic="scan", odom="odom", pose=True, grid=True, back=False, clock=True,
-              says=None):
+              says=None, scans=50):
         """A player of the recording: clock, scans, tf, a map and a pose in it; `says`: what layers tell, by their names."""
         def play(doctor):
             publish = {
@@ -95,9 +104,11 @@ class DoctorTest(unittest.TestCase):
                                                                 for name, message in (says or {}).items()]))
                 if grid:
                     publish["map"].publish(self.recording.map if grid is True else grid)
-                wait_until(lambda: publish["tf"].get_num_connections() > 0 or doctor.poll() is not None, "the doctor does not listen")
-                time.sleep(0.3)
-                moving = self.recording.scans[:250]
+                # /diagnostics is what it subscribes to last.
+                wait_until(lambda: all(publish[n].get_num_connections() > 0 for n in ("tf", "static", "said")) or
+                           doctor.poll() is not None, "the doctor does not listen")
+                time.sleep(0.2)
+                moving = self.recording.scans[:scans]
                 transforms = iter(self.recording.transforms)
                 next_tf = next(transforms)
                 for i, scan in enumerate(moving):
@@ -105,7 +116,7 @@ class DoctorTest(unittest.TestCase):
                         break
                     stamp = scan.header.stamp
                     if clock:
-                        publish["clock"].publish(Clock(stamp - rospy.Duration(20 if back and i == 200 else 0)))
+                        publish["clock"].publish(Clock(stamp - rospy.Duration(1 if back and i == scans // 2 else 0)))
                     while next_tf.header.stamp <= stamp + rospy.Duration(0.1):
                         t = copy.deepcopy(next_tf)
                         if t.header.frame_id == "odom":
@@ -116,7 +127,9 @@ class DoctorTest(unittest.TestCase):
                         publish["tf"].publish(TFMessage([transform("map", odom, stamp)]))
                     publish["scan"].publish(scan_of(scan))
                     time.sleep(0.01)
-                doctor.wait(30)
+                time.sleep(0.5 * SLOWNESS)
+                doctor.send_signal(signal.SIGINT)
+                doctor.wait(WAIT)
             finally:
                 for publisher in publish.values():
                     publisher.unregister()
@@ -155,12 +168,12 @@ class DoctorTest(unittest.TestCase):
         self.assertEqual(len(findings), 1, "what follows from it is not told")
 
     def test_a_healthy_robot_is_let_go(self):
-        status, findings = self.call(self.robot())
+        status, findings = self.call(self.robot(scans=ENOUGH_TO_SEE_THE_MOUNT))
         self.assertEqual(status, 0, self.said)
         self.assertIn("mounted as tf says", " ".join(f["text"] for f in findings if f["name"] == "laser" and f["level"] == "ok"))
 
     def test_a_laser_upside_down(self):
-        status, findings = self.call(self.robot(scan_of=upside_down))
+        status, findings = self.call(self.robot(scan_of=upside_down, scans=ENOUGH_TO_SEE_THE_MOUNT))
         self.assertEqual(status, 1)
         self.assertIn("mounted upside down:", self.wrong(findings, "laser"), self.said)
 
@@ -168,14 +181,14 @@ class DoctorTest(unittest.TestCase):
         static = copy.deepcopy(self.recording.static)
         for t in static:
             t.transform.rotation.x, t.transform.rotation.w = 1.0, 0.0
-        status, _ = self.call(self.robot(scan_of=upside_down, static=static))
+        status, _ = self.call(self.robot(scan_of=upside_down, static=static, scans=ENOUGH_TO_SEE_THE_MOUNT))
         self.assertEqual(status, 0, self.said)
 
     def test_a_laser_backwards(self):
         static = copy.deepcopy(self.recording.static)
         for t in static:
             t.transform.rotation.z, t.transform.rotation.w = 1.0, 0.0
-        status, findings = self.call(self.robot(static=static))
+        status, findings = self.call(self.robot(static=static, scans=ENOUGH_TO_SEE_THE_MOUNT))
         self.assertEqual(status, 1)
         self.assertIn("mounted backwards:", self.wrong(findings, "laser"), self.said)
 
@@ -313,11 +326,24 @@ class DoctorTest(unittest.TestCase):
         other = subprocess.Popen(["rosrun", "tf2_ros", "static_transform_publisher", "0", "0", "0", "0", "0", "0", "map", "odom"],
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
+            wait_until(lambda: any("static_transform_publisher" in node for topic, nodes in rospy.get_master().getSystemState()[2][0]
+                                   for node in nodes if topic == "/tf_static"), "the other localisation")
             _, findings = self.call(self.robot())
         finally:
             other.terminate()
             other.wait()
         self.assertIn("map -> odom is published by", self.wrong(findings, "tf"), self.said)
+
+    def test_ctrl_c_ends_the_watching_only(self):
+        def interrupt(doctor):
+            said = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
+            wait_until(lambda: said.get_num_connections() > 0, "the doctor does not listen")
+            doctor.send_signal(signal.SIGINT)
+            said.unregister()
+        status, findings = self.call(interrupt)
+        self.assertEqual(status, 1)
+        self.assertIn("nobody publishes /scan", self.wrong(findings, "scan"), self.said)
+        self.assertNotIn("Traceback", self.said)
 
     def test_usage(self):
         done = subprocess.run(["rosrun", "hyselam_bringup", "doctor", "--seconds", "0"], stderr=subprocess.PIPE, text=True)
