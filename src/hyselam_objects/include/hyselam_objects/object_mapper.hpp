@@ -47,7 +47,7 @@ class ObjectMapper {
   void setPlaces(PlaceAt place_at) { place_at_ = std::move(place_at); }
   void setDictionary(ObjectDictionary dictionary) { dictionary_ = std::move(dictionary); }
 
-  /// One frame at a time [s]. Throws as checkSegment().
+  /// One frame at a time [s]. Throws as checkCloud().
   void update(const OrganisedCloud& cloud, const PinholeCamera& camera,
               const std::vector<DetectedObject>& detections, double stamp);
 

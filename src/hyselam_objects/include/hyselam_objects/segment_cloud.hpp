@@ -57,7 +57,10 @@ struct Segmentation {
 };
 
 /// Throws hyselam::InputError for a cloud whose sizes do not fit together or that is larger than 50
-/// million points, hyselam::ParameterError for a parameter out of range.
+/// million points.
+void checkCloud(const OrganisedCloud& cloud);
+
+/// Throws as checkCloud(), and hyselam::ParameterError for a parameter out of range.
 void checkSegment(const OrganisedCloud& cloud, const SegmentParams& params);
 
 /// Segments one frame. The same arguments give the same labels. Throws as checkSegment().

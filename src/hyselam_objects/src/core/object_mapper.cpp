@@ -31,7 +31,7 @@ ObjectMapper::ObjectMapper(ObjectMap* map, ObjectDictionary dictionary, const Ma
 
 void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& camera,
                           const std::vector<DetectedObject>& all, double stamp) {
-  checkSegment(cloud, SegmentParams{});
+  checkCloud(cloud);
   time_ = stamp;
   dropTopsOfThings(&map_);
   std::vector<Id> met;

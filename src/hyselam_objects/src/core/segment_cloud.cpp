@@ -84,9 +84,8 @@ std::vector<bool> above(const SurfaceGrid& grid, const Plane& support,
 
 }  // namespace
 
-void checkSegment(const OrganisedCloud& cloud, const SegmentParams& p) {
+void checkCloud(const OrganisedCloud& cloud) {
   using hyselam::InputError;
-  using hyselam::ParameterError;
   const auto size = static_cast<std::size_t>(std::max(0, cloud.width)) *
                     static_cast<std::size_t>(std::max(0, cloud.height));
   if (cloud.width < 0 || cloud.height < 0 || cloud.points.size() != size ||
@@ -94,6 +93,11 @@ void checkSegment(const OrganisedCloud& cloud, const SegmentParams& p) {
     throw InputError("cloud", "", "has not as many points as its width and height say");
   }
   if (size > 50000000) throw InputError("cloud", "", "has more than 50 million points");
+}
+
+void checkSegment(const OrganisedCloud& cloud, const SegmentParams& p) {
+  using hyselam::ParameterError;
+  checkCloud(cloud);
   if (p.reduce < 1 || p.reduce > 8) throw ParameterError("reduce", p.reduce, "1 .. 8");
   if (p.normal_window < 1 || p.normal_window > 20) {
     throw ParameterError("normal_window", p.normal_window, "1 .. 20");
