@@ -271,6 +271,8 @@ void ObjectEngineServer::publish() {
 void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   using diagnostic_msgs::DiagnosticStatus;
   if (!error_.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, error_);
+  const std::string missing = input_ ? input_->missing() : "";
+  if (!missing.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, missing);
   if (!map_file_.error().empty()) {
     hyselam::addRemark(status, DiagnosticStatus::ERROR, map_file_.error());
   }

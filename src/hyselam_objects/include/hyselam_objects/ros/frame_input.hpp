@@ -39,6 +39,10 @@ class FrameInput {
   FrameInput(const FrameInput&) = delete;  // its callbacks hold it
   FrameInput& operator=(const FrameInput&) = delete;
 
+  /// What the input has lacked since this was asked last: topics that gave nothing, stamps of depth
+  /// and colour that never were the same; empty: nothing.
+  std::string missing();
+
   /// Frames refused because nobody told in time where the camera was.
   std::size_t withoutPose() const { return without_pose_; }
 
@@ -47,6 +51,8 @@ class FrameInput {
   using WithPose = std::function<void(const Eigen::Isometry3d& camera_in_map)>;
 
   void onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg);
+  void onDepth(const Image::ConstPtr& msg);
+  void onColour(const Image::ConstPtr& msg);
   void onImages(const Image::ConstPtr& depth, const Image::ConstPtr& colour);
   void onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg);
   bool isDue(const std_msgs::Header& header);
@@ -57,6 +63,12 @@ class FrameInput {
   const FrameInputParams params_;
   const Use use_;
   const Refuse refuse_;
+  const std::string depth_topic_, colour_topic_, info_topic_, points_topic_;
+  struct Received {
+    std::size_t depth = 0, colour = 0, info = 0, clouds = 0;
+  };
+  Received since_;                                        // missing() was asked
+  std::size_t unpaired_depth_ = 0, unpaired_colour_ = 0;  // since the last pair of the same stamp
   std::optional<PinholeCamera> camera_;
   struct Waiting {
     std_msgs::Header header;
