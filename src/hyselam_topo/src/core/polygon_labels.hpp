@@ -8,7 +8,8 @@
 
 namespace hyselam_topo {
 
-/// Labels the open cells (CV_8U, not 0), place k of circle and polygon k - 1; CV_16U, 0: none.
+/// Labels the open cells (CV_8U, not 0), place k of circle and polygon k - 1; CV_16U, 0: none. Of
+/// at most 65535 circles: runThesis() refuses maps that give more.
 class PolygonLabels {
  public:
   PolygonLabels(const cv::Mat& open, const std::vector<Circle>& circles,
