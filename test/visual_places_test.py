@@ -405,8 +405,10 @@ class VisualPlacesTest(unittest.TestCase):
         answer = rig.call("retrain")
         self.assertTrue(answer.success, answer.message)
         wait_until(lambda: rig.number("frames trained") == learnt, "trained")
+        self.assertIn(f"{learnt} frames learnt, not saved", rig.status().message)
         answer = rig.call("save")
         self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: "not saved" not in rig.status().message, "saved")
         begun = len(rig.seen.messages)
         for image in self.film.raw:
             rig.give(image)

@@ -1,4 +1,5 @@
 // The part of the server that learns places while the robot drives (7.3.2).
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -120,6 +121,7 @@ bool SemanticLocalizationServer::onSave(Trigger::Request&, Trigger::Response& re
         throw hyselam::InputError(directory, "", "nothing has been learnt");
       }
       saveModel(*model_, directory);
+      saved_frames_ = std::max(saved_frames_, trained_frames_);
       response.message =
           std::to_string(model_->graph.places.size()) + " places written to " + directory;
     }
@@ -133,6 +135,7 @@ bool SemanticLocalizationServer::onSave(Trigger::Request&, Trigger::Response& re
       }
       const std::size_t lost = store(learner_->frames(), *model_, taken_with, &map);
       hyselam_topo::saveXml(params_.save_map, map);
+      saved_frames_ = learner_->frames().size();
       response.message += (response.message.empty() ? "" : "; ") +
                           std::to_string(learner_->frames().size() - lost) + " frames written to " +
                           params_.save_map;

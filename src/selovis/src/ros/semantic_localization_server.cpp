@@ -431,6 +431,10 @@ void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& statu
   } else {
     addRemark(status, DiagnosticStatus::OK, last_place_.empty() ? "place unknown" : last_place_);
   }
+  const std::size_t unsaved = learner_->frames().size() - saved_frames_;
+  if (unsaved > 0) {
+    addRemark(status, DiagnosticStatus::OK, std::to_string(unsaved) + " frames learnt, not saved");
+  }
   if (received_ == reported_received_) {
     addRemark(status, DiagnosticStatus::WARN, "no images on " + image_topic_);
   }

@@ -105,6 +105,7 @@ class SemanticLocalizationServer {
   std::unique_ptr<Learner> learner_;
   std::size_t trained_frames_ = 0;  // of the learner's, in the model or in training
   std::size_t training_frames_ = 0;
+  std::size_t saved_frames_ = 0;  ///< that `~save` has written, in the model or the map
   std::size_t tried_frames_ = 0;  ///< when training began last, whatever became of it
   std::mutex trained_mutex_;
   std::optional<BackgroundTraining::Outcome> trained_;  // from the other thread
