@@ -94,7 +94,11 @@ std::string document() {
          "they belong\ntogether, is in the README of each package. A value of the wrong type or "
          "outside of what is allowed ends\nthe node with a sentence; a name that nobody knows is "
          "told with the nearest known one. `map_server`\nhas two, `yaml_filename` and `frame_id` "
-         "([hyselam_map_server](../src/hyselam_map_server)).\n";
+         "([hyselam_map_server](../src/hyselam_map_server)).\n\n"
+         "Topics are no parameters: the launch files take them as arguments (`scan:=base_scan`, "
+         "see "
+         "`roslaunch --ros-args hyselam_bringup\nhyselam.launch`), nodelets by remapping. Files of "
+         "parameters go in as `slam_params:=FILE.yaml` and the like.\n";
   for (const Nodelet& n : nodelets()) {
     out << "\n## " << n.package << "/" << n.name << "\n\nMore in [" << n.package << "](../src/"
         << n.package << "/README.md).\n\n| parameter | default | allowed | |\n|---|---|---|---|\n";
