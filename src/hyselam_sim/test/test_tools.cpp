@@ -7,32 +7,22 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/files.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
 std::string content(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
+  return hyselam::testing::fileBytes(path.string());
 }
 
 class Tools : public testing::Test {
  protected:
-  Tools() {
-    std::string name = (fs::temp_directory_path() / "hyselam_sim_XXXXXX").string();
-    directory_ = mkdtemp(name.data());
-  }
-  ~Tools() override { fs::remove_all(directory_); }
-
   fs::path file(const std::string& name) const { return directory_ / name; }
 
   int run(const std::string& tool, const std::string& arguments) {
@@ -51,7 +41,7 @@ class Tools : public testing::Test {
     EXPECT_NE(error.find(part), std::string::npos) << error;
   }
 
-  fs::path directory_;
+  hyselam::testing::TemporaryDirectory directory_;
 };
 
 TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {

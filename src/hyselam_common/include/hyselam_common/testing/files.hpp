@@ -1,8 +1,7 @@
-// What tests of all packages need around files: a directory that vanishes, the real data sets.
+// What tests of all packages need around files: directories that vanish, bytes, the real data sets.
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,38 +9,10 @@
 #include <sstream>
 #include <string>
 
+#include "hyselam_common/testing/temporary_directory.hpp"
+
 namespace hyselam {
 namespace testing {
-
-/// An empty directory for one test, removed with all its content at the end.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "hyselam-test-XXXXXX").string();
-    if (::mkdtemp(&name[0]) == nullptr) std::abort();
-    path_ = name;
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::string path() const { return path_.string(); }
-  std::size_t fileCount() const {
-    std::size_t count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
-      (void)entry;
-      ++count;
-    }
-    return count;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline void writeFile(const std::string& path, const std::string& content) {
   std::ofstream out(path, std::ios::binary);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_common/testing/temporary_directory.hpp"
+
 namespace hyselam {
 namespace testing {
 
@@ -41,35 +43,20 @@ inline std::string textOf(const std::uint8_t* data, std::size_t size) {
   return std::string(reinterpret_cast<const char*>(data), size);
 }
 
-/// A folder of this process that is removed with it, in memory where the system has such a place.
+/// A folder of this process, in memory where the system has such a place.
 class FuzzFolder {
  public:
-  FuzzFolder() {
-    const std::filesystem::path memory = "/dev/shm";
-    const bool there = std::filesystem::is_directory(memory);
-    // A name that nobody can have put a link at.
-    std::string name =
-        ((there ? memory : std::filesystem::temp_directory_path()) / "hyselam-fuzz-XXXXXX")
-            .string();
-    require(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-  }
-  ~FuzzFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  FuzzFolder(const FuzzFolder&) = delete;
-  FuzzFolder& operator=(const FuzzFolder&) = delete;
-
   /// Writes the file and tells its path.
   std::string put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary | std::ios::trunc) << bytes;
-    return (path_ / name).string();
+    std::ofstream(path(name), std::ios::binary | std::ios::trunc) << bytes;
+    return path(name);
   }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string path(const std::string& name) const { return directory_ / name; }
 
  private:
-  std::filesystem::path path_;
+  TemporaryDirectory directory_{std::filesystem::is_directory("/dev/shm")
+                                    ? "/dev/shm"
+                                    : std::filesystem::temp_directory_path()};
 };
 
 }  // namespace testing
