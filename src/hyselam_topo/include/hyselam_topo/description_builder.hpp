@@ -72,6 +72,9 @@ class DescriptionBuilder {
   void sizeOf(Id id, const Utterance& u);
   void parts(const Utterance& u);
   void buildingCount(const Utterance& u);
+  /// A number that was said; one known before is replaced by a correction only. `told`: ends the
+  /// sentence that says so.
+  void takeCount(const Utterance& u, const std::string& told, std::optional<int>* known);
   void exists(const Utterance& u);
   void forget(const Utterance& u);
 

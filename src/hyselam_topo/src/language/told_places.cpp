@@ -110,27 +110,22 @@ void DescriptionBuilder::sizeOf(Id id, const Utterance& u) {
 
 void DescriptionBuilder::parts(const Utterance& u) {
   const Id id = place(u, "place");
-  DescribedPlace& place = *building_.findPlace(id);
-  const int count = static_cast<int>(u.number("count").value_or(1.0));
-  if (place.parts && *place.parts != count) {
-    if (!correction_) {
-      fail(IssueKind::kContradiction, std::to_string(*place.parts) + " parts were told");
-    }
-    corrected_ = true;
-  }
-  place.parts = count;
+  takeCount(u, " parts were told", &building_.findPlace(id)->parts);
   subjects_ = {id};
 }
 
 void DescriptionBuilder::buildingCount(const Utterance& u) {
+  takeCount(u, " were told", &building_.place_count);
+}
+
+void DescriptionBuilder::takeCount(const Utterance& u, const std::string& told,
+                                   std::optional<int>* known) {
   const int count = static_cast<int>(u.number("count").value_or(1.0));
-  if (building_.place_count && *building_.place_count != count) {
-    if (!correction_) {
-      fail(IssueKind::kContradiction, std::to_string(*building_.place_count) + " were told");
-    }
+  if (*known && **known != count) {
+    if (!correction_) fail(IssueKind::kContradiction, std::to_string(**known) + told);
     corrected_ = true;
   }
-  building_.place_count = count;
+  *known = count;
 }
 
 void DescriptionBuilder::exists(const Utterance& u) {
