@@ -8,6 +8,7 @@ import tempfile
 import time
 
 import rosbag
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -164,6 +165,23 @@ class Rig:
             inputs = [self.scan] + ([self.initialpose] if kind == "Localization" else [])
             wait_until(lambda: all(topic.get_num_connections() > 0 for topic in inputs + [Rig.clock])
                        and Rig.tf.get_num_connections() > 1, "the nodelet does not listen")
+            self.listen_to_tf()
+
+    def listen_to_tf(self):
+        """Hears every publisher of /tf that the master knows. Where a nodelet gave the topic up and the next one of
+        its process advertises it at once, rospy may meet the gap, and does not try again; a new subscription does."""
+        def connected():
+            publishers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0]).get("/tf", [])
+            greeted = {connection.callerid_pub for connection in self.tf_seen.subscriber.impl.connections}
+            if greeted.issuperset(publishers):
+                return True
+            if time.monotonic() > self.tf_due:
+                self.tf_seen.close()
+                self.tf_seen = Listener("/tf", TFMessage)
+                self.tf_due = time.monotonic() + 1.0
+            return False
+        self.tf_due = time.monotonic() + 1.0
+        wait_until(connected, "not every publisher of /tf is heard")
 
     def load(self, kind):
         # A topic for each rig: one that another nodelet of the same process gave up a moment ago is at times not
