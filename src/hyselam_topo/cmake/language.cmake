@@ -73,7 +73,7 @@ hyselam_target(${PROJECT_NAME}_parse_description)
 install(TARGETS ${PROJECT_NAME}_parse_description
         RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
-hyselam_benchmark(${PROJECT_NAME}_topo_parser_benchmark bench/language_benchmark.cpp
+hyselam_benchmark(topo_parser_benchmark bench/language_benchmark.cpp
                   LIBRARIES hyselam_language)
 
 if(CATKIN_ENABLE_TESTING)

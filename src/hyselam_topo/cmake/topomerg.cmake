@@ -30,7 +30,7 @@ set_target_properties(${PROJECT_NAME}_topomerg PROPERTIES OUTPUT_NAME topomerg)
 target_link_libraries(${PROJECT_NAME}_topomerg hyselam_topomerg)
 hyselam_target(${PROJECT_NAME}_topomerg)
 install(TARGETS ${PROJECT_NAME}_topomerg RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-hyselam_benchmark(${PROJECT_NAME}_topomerg_benchmark bench/topomerg_benchmark.cpp
+hyselam_benchmark(topomerg_benchmark bench/topomerg_benchmark.cpp
                   LIBRARIES hyselam_topomerg)
 if(TARGET ${PROJECT_NAME}_topomerg_benchmark)
   target_compile_definitions(${PROJECT_NAME}_topomerg_benchmark
@@ -53,11 +53,6 @@ endif()
 
 # Floors from the plan to the names, for bench/merge.
 if(hyselam_sim_FOUND)
-  add_executable(${PROJECT_NAME}_merge_floors bench/merge_floors.cpp)
-  set_target_properties(${PROJECT_NAME}_merge_floors PROPERTIES OUTPUT_NAME merge_floors)
-  target_link_libraries(${PROJECT_NAME}_merge_floors hyselam_topomerg hyselam_gr2to
-                                                     ${hyselam_sim_LIBRARIES})
-  hyselam_target(${PROJECT_NAME}_merge_floors)
-  install(TARGETS ${PROJECT_NAME}_merge_floors
-          RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  hyselam_bench_program(merge_floors bench/merge_floors.cpp
+                        LIBRARIES hyselam_topomerg hyselam_gr2to ${hyselam_sim_LIBRARIES})
 endif()

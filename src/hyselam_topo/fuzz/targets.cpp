@@ -119,6 +119,22 @@ void dialogueState(const std::uint8_t* data, std::size_t size) {
   require(toText(dialogueStateFromText(once, "written")) == once);
 }
 
+/// A grammar: refused, or good to understand a sentence with.
+void grammar(const std::uint8_t* data, std::size_t size) {
+  std::vector<Grammar> grammars;
+  try {
+    grammars.push_back(Grammar::fromYaml({{"fuzz", textOf(data, size)}}));
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  const Grammar::Intent first = grammars.front().intents().front();
+  require(!first.name.empty());
+  const TopoParser parser(std::move(grammars));
+  std::string text = "The ball is crimson. The cup weighs 300 g.";
+  for (const std::string& word : parser.grammars().front().words()) text += " " + word;
+  for (const Utterance& said : parser.parse(text).utterances) checkUtterance(said, text.size());
+}
+
 }  // namespace
 }  // namespace hyselam_topo
 
@@ -127,5 +143,6 @@ std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   return {{"parser", parser},
           {"descriptionXml", descriptionXml},
           {"mapXml", mapXml},
-          {"dialogueState", dialogueState}};
+          {"dialogueState", dialogueState},
+          {"grammar", grammar}};
 }

@@ -12,10 +12,10 @@ namespace hyselam_topo {
 struct NameUncertainty {
   Id name = 0;
   Id place = 0;  ///< of the map: the largest that the name was given to; 0: none
-  /// By how much at least the best fitness drops if the name is not there: 0 another answer is as
-  /// good or time was too short to tell, large if the name cannot be elsewhere. For a confirmed
-  /// name 1.
+  /// By how much at least the best fitness drops if the name is not there: 0 if another answer is
+  /// as good, large if the name cannot be elsewhere. For a confirmed name 1.
   double drop = 0.0;
+  bool proven = true;  ///< false: time was too short, the drop may be larger
 };
 
 /// One search for each name that is the same in all best answers; `time_limit` holds for all of

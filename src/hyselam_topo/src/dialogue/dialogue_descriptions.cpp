@@ -105,12 +105,19 @@ void Dialogue::tellMatch(Reply* out) const {
   const DescribedBuilding& building = builder_.building();
   out->sentences.push_back(p.say("done"));
   std::vector<std::string> missing;
+  std::size_t confirmed = 0;
   for (const DescribedPlace& place : building.places) {
-    if (places_.find(place.name).empty()) missing.push_back(place.name);
+    const std::vector<Id> found = places_.find(place.name);
+    if (found.empty()) {
+      missing.push_back(place.name);
+    } else if (nameStateOf(*places_.map().findPlace(found.front())) == NameState::kConfirmed) {
+      ++confirmed;
+    }
   }
   const std::size_t all = building.places.size();
-  out->sentences.push_back(p.say(
-      "found", {{"found", std::to_string(all - missing.size())}, {"told", std::to_string(all)}}));
+  out->sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
+                                           {"told", std::to_string(all)},
+                                           {"confirmed", std::to_string(confirmed)}}));
   if (!missing.empty()) out->sentences.push_back(p.say("not_found", {{"names", p.list(missing)}}));
   if (!match_ || match_->equal < 2) return;
   const EqualAnswers equal = equalAnswers(*match_);

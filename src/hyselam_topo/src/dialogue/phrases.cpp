@@ -38,7 +38,7 @@ const std::map<std::string, std::set<std::string>>& knownPhrases() {
       {"no_place_here", {}},
       {"wait", {}},
       {"done", {}},
-      {"found", {"found", "told"}},
+      {"found", {"found", "told", "confirmed"}},
       {"not_found", {"names"}},
       {"several", {"number", "names"}},
       {"no_map", {}},

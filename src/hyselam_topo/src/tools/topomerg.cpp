@@ -68,8 +68,12 @@ void print(const nlohmann::json& result) {
       std::cout << before << place;
       before = ", ";
     }
-    for (const nlohmann::json& each : result.value("uncertainties", nlohmann::json::array()))
-      if (each.at("id") == name.at("id") && each.at("drop") <= 0.0) std::cout << " (unsure)";
+    for (const nlohmann::json& each : result.value("uncertainties", nlohmann::json::array())) {
+      if (each.at("id") != name.at("id") || each.at("drop") > 0.0) continue;
+      std::cout << (each.at("proven").get<bool>()
+                        ? " (unsure: another answer is as good)"
+                        : " (unsure: too little time to rule others out)");
+    }
     std::cout << '\n';
   }
   if (!result.contains("question")) return;
@@ -177,7 +181,8 @@ int main(int argc, char** argv) {
         list.push_back({{"id", u.name},
                         {"name", building.findPlace(u.name)->name},
                         {"place", u.place},
-                        {"drop", u.drop}});
+                        {"drop", u.drop},
+                        {"proven", u.proven}});
       result["uncertainties"] = list;
     }
     if (const auto question = mostInformativeQuestion(problem, match))
@@ -186,9 +191,9 @@ int main(int argc, char** argv) {
                             {"probability", question->probability},
                             {"bits", question->bits}};
     progress.update(3);
-    std::cout << "fitness " << match.best().fitness << ", " << match.equal
-              << (match.more ? "+" : "") << " equally good, " << match.nodes << " nodes, "
-              << std::lround(match.microseconds) << " us -> " << out << '\n';
+    std::cout << "fitness " << match.best().fitness << " (1: the map is just as it was told), "
+              << match.equal << (match.more ? "+" : "") << " equally good, " << match.nodes
+              << " nodes, " << std::lround(match.microseconds) << " us -> " << out << '\n';
     print(result);
     return result;
   });

@@ -57,6 +57,7 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
       const Match second = solveExact(without, again);
       if (second.found()) other = std::max(other, second.best().fitness);
       // What was not looked at in time may be as good as the gap says.
+      u.proven = second.optimal;
       if (!second.optimal)
         other = std::max(other, second.gap + (second.found() ? second.best().fitness : 0.0));
     }
