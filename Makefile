@@ -8,7 +8,7 @@ demo:     ; @scripts/demo
 demo-localization: ; @scripts/demo_localization
 test:     ; @scripts/test
 docs:     ; @scripts/docs
-bench:    ; @bench/run --json out/bench.json
+bench:    ; @scripts/build benchmarks && bench/run --json out/bench.json
 lint:     ; @scripts/lint
 sanitize: ; @scripts/sanitize address
 install:  ; @scripts/build install
