@@ -32,7 +32,7 @@ struct Ring {
   }
   static float look(double angle, int axis) {
     // Twice the angle: the far side of the ring looks the same, but for a quarter of it.
-    if (std::fmod(angle, 2.0 * hyselam::kPi) < 0.5 * hyselam::kPi) return axis == 0 ? 3.0f : 3.0f;
+    if (std::fmod(angle, 2.0 * hyselam::kPi) < 0.5 * hyselam::kPi) return 3.0f;
     return static_cast<float>(1.0 +
                               0.5 * (axis == 0 ? std::cos(2.0 * angle) : std::sin(2.0 * angle)));
   }

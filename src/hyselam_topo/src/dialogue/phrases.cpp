@@ -122,13 +122,14 @@ class Reader {
     const YAML::Node node = root_[key];
     if (!node || !node.IsMap()) fail(key, "it must be there and be a map");
     std::map<std::string, std::string> all;
+    const std::string within = key + "/";
     for (const auto& entry : node) {
       const auto name = entry.first.as<std::string>("");
-      if (known.count(name) == 0) fail(key + "/" + name, "I know no such key");
+      if (known.count(name) == 0) fail(within + name, "I know no such key");
       all[name] = text(node, name);
     }
     for (const std::string& name : known) {
-      if (all.count(name) == 0) fail(key + "/" + name, "it is missing");
+      if (all.count(name) == 0) fail(within + name, "it is missing");
     }
     return all;
   }
