@@ -253,7 +253,7 @@ void LocalMap::updateCells(const Ring& ring, std::size_t from, std::size_t to,
   for (; cell != last; ++cell) {
     const int d2 = cell->squared_distance;
     const int miss = d2 < limits.free_end ? kMiss : 0;
-    const int hit = (d2 >= limits.occupied_begin) & (d2 < limits.occupied_end) ? kHit : 0;
+    const int hit = ((d2 >= limits.occupied_begin) & (d2 < limits.occupied_end)) ? kHit : 0;
     std::uint8_t& value = laser[cell->offset];
     value =
         static_cast<std::uint8_t>(std::clamp(value + hit - miss, 0, static_cast<int>(kMaxValue)));
