@@ -101,7 +101,7 @@ class Stack:
             self.load(robot, node.name)
 
     def start_manager(self, robot):
-        rospy.set_param(f"/{robot}/hyselam_manager/num_worker_threads", 4)  # as hyselam.launch does
+        rospy.set_param(f"/{robot}/hyselam_manager/num_worker_threads", 8)  # as hyselam.launch does
         # Ignored, the signal leaves a write to a full disk with an error, as a full disk does.
         quiet = lambda: signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         self.managers[robot] = subprocess.Popen(

@@ -10,6 +10,7 @@ namespace {
 
 float medianHeight(const MappedFrame& frame, const std::vector<std::size_t>& pixels) {
   std::vector<float> heights;
+  heights.reserve(pixels.size());
   for (const std::size_t i : pixels) heights.push_back(frame.point(i).z());
   const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
   std::nth_element(heights.begin(), middle, heights.end());
