@@ -149,7 +149,7 @@ TEST_F(MapFiles, BadWordsAreNamed) {
 }
 
 TEST_F(MapFiles, NonsenseInsteadOfYamlIsAnError) {
-  EXPECT_TRUE(refused("", "is not a YAML file of keys"));
+  EXPECT_TRUE(refused("", "the file is empty"));
   EXPECT_TRUE(refused("just text", "is not a YAML file of keys"));
   EXPECT_TRUE(refused("a: [1, 2\nb: }", "is not YAML"));
   EXPECT_TRUE(refused(std::string(100000, '['), ""));

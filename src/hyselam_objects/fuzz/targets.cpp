@@ -1,12 +1,15 @@
+#include <cmath>
 #include <sstream>
 #include <string>
 
+#include "../src/language/object_words.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_objects/fill_map.hpp"
 #include "hyselam_objects/object_dictionary.hpp"
 #include "hyselam_objects/object_map.hpp"
 #include "hyselam_objects/object_relations.hpp"
+#include "hyselam_objects/pcl/cloud_io.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -68,6 +71,42 @@ void objectDictionaryXml(const std::uint8_t* data, std::size_t size) {
   require(merged(dictionary, dictionary).objects.size() == dictionary.objects.size());
 }
 
+/// A list of words for objects: refused, or a grammar can be made of it.
+void objectWords(const std::uint8_t* data, std::size_t size) {
+  try {
+    const ObjectWords words = ObjectWords::fromYaml({"fuzz", textOf(data, size)});
+    hyselam_topo::Grammar::fromYaml({words.grammar()});
+    bool plural = false;
+    for (const std::string& noun : words.nouns) words.singular(noun, &plural);
+  } catch (const hyselam::InputError&) {
+  }
+}
+
+/// The PCD file of a cloud: refused, or points that are numbers or all none, and written and read
+/// as the same.
+void objectCloud(const std::uint8_t* data, std::size_t size) {
+  static const hyselam::testing::FuzzFolder folder;
+  CloudFile file;
+  try {
+    file = readPcd(folder.put("cloud.pcd", textOf(data, size)));
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  const std::size_t points = file.cloud.points.size();
+  require(points == file.cloud.size() && points > 0);
+  require(file.cloud.colours.empty() || file.cloud.colours.size() == points);
+  require(file.labels.empty() || file.labels.size() == points);
+  for (const Point& p : file.cloud.points) {
+    require(p.allFinite() || (std::isnan(p.x()) && std::isnan(p.y()) && std::isnan(p.z())));
+  }
+  file.labels.resize(points);
+  const std::string again = folder.path("again.pcd");
+  writePcd(again, file.cloud, file.labels);
+  const CloudFile same = readPcd(again);
+  require(same.labels == file.labels && same.cloud.colours == file.cloud.colours &&
+          same.cloud.width == file.cloud.width && same.cloud.height == file.cloud.height);
+}
+
 }  // namespace
 }  // namespace hyselam_objects
 
@@ -75,5 +114,7 @@ std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace hyselam_objects;  // NOLINT: its own targets
   return {{"objectText", objectText},
           {"objectMapXml", objectMapXml},
-          {"objectDictionaryXml", objectDictionaryXml}};
+          {"objectDictionaryXml", objectDictionaryXml},
+          {"objectWords", objectWords},
+          {"objectCloud", objectCloud}};
 }

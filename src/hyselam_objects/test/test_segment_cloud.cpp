@@ -222,6 +222,9 @@ TEST(PcdFile, RefusesWhatIsNone) {
             "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 40000000\nWIDTH 10000\n"
             "HEIGHT 1\nPOINTS 10000\nDATA binary\nab");
   EXPECT_THROW(readPcd(directory / "wide.pcd"), hyselam::InputError);
+  writeFile(directory / "beyond.pcd",
+            "VERSION 0.7\nFIELDS x y z\nSIZE 4\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n");
+  EXPECT_THROW(readPcd(directory / "beyond.pcd"), hyselam::InputError);
   writeFile(directory / "flat.pcd",
             "VERSION 0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 1\nHEIGHT 1\n"
             "POINTS 1\nDATA ascii\n1 2\n");

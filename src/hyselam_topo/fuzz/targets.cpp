@@ -9,6 +9,8 @@
 #include "hyselam_topo/description_builder.hpp"
 #include "hyselam_topo/description_xml.hpp"
 #include "hyselam_topo/dialogue_state.hpp"
+#include "hyselam_topo/octomap_reader.hpp"
+#include "hyselam_topo/phrases.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
 
 namespace hyselam_topo {
@@ -135,14 +137,42 @@ void grammar(const std::uint8_t* data, std::size_t size) {
   for (const Utterance& said : parser.parse(text).utterances) checkUtterance(said, text.size());
 }
 
+/// The file of an OctoMap, .bt or .ot: refused, or cubes within the space that keys can tell.
+void octoMap(const std::uint8_t* data, std::size_t size) {
+  constexpr int kEdge = 32768;
+  OctoMapLimits few;
+  few.max_leaves = 1u << 16;
+  VoxelMap map;
+  try {
+    map = parseOctoMap(textOf(data, size), "fuzz", few);
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  require(map.leaves.size() <= few.max_leaves);
+  for (const VoxelLeaf& leaf : map.leaves) {
+    require(leaf.size >= 1 && leaf.probability >= 0.0f && leaf.probability <= 1.0f);
+    for (const int at : {leaf.x, leaf.y, leaf.z}) require(at >= -kEdge && at + leaf.size <= kEdge);
+  }
+}
+
+/// What the robot says, as data: refused, or good to say things with.
+void phrases(const std::uint8_t* data, std::size_t size) {
+  try {
+    const Phrases read = Phrases::fromYaml("fuzz", textOf(data, size));
+    require(!read.language().empty());
+    read.say("at_named", {{"code", "A1"}, {"names", read.list({"a", "b", "{code}"})}});
+    require(!read.number(1.5, 1).empty());
+  } catch (const hyselam::InputError&) {
+  }
+}
+
 }  // namespace
 }  // namespace hyselam_topo
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace hyselam_topo;  // NOLINT: its own targets
-  return {{"parser", parser},
-          {"descriptionXml", descriptionXml},
-          {"mapXml", mapXml},
-          {"dialogueState", dialogueState},
-          {"grammar", grammar}};
+  return {{"parser", parser},   {"descriptionXml", descriptionXml},
+          {"mapXml", mapXml},   {"dialogueState", dialogueState},
+          {"grammar", grammar}, {"octoMap", octoMap},
+          {"phrases", phrases}};
 }

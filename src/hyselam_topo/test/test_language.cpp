@@ -92,7 +92,7 @@ TEST(Grammar, WhatIsWrongWithAFileIsTold) {
   expectParts(errorWith("kind: statement", "refuse: never"), {"no reason 'never'"});
   expectParts(errorWith("0.001: [g]", "-1: [g]"), {"factor > 0"});
   expectParts(errorWith("stop: [is", "stip: [is"), {"names.thing.stip"});
-  expectParts(errorWith("intents:", "intents: ["), {"g.yaml", "no YAML"});
+  expectParts(errorWith("intents:", "intents: ["), {"g.yaml", "is not YAML"});
   expectParts(messageOf<hyselam::InputError>([] { Grammar::shipped("tlh"); }), {"'tlh'", "en, pt"});
   EXPECT_THROW(Grammar::load({"/nowhere/g.yaml"}), hyselam::InputError);
   EXPECT_THROW(TopoParser(std::vector<Grammar>{}), hyselam::ParameterError);

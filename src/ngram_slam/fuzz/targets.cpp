@@ -1,9 +1,12 @@
+#include <zlib.h>
+
 #include <sstream>
 
 #include "../src/core/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "ngram_slam/corpus.hpp"
+#include "ngram_slam/semantic_forest.hpp"
 #include "ngram_slam/slam_state_io.hpp"
 
 namespace ngram_slam {
@@ -68,10 +71,43 @@ void slamState(const std::uint8_t* data, std::size_t size) {
           same.matches.size() == state.matches.size());
 }
 
+/// What is behind the first line of a forest of semantic classes, whose checksum is put right:
+/// refused, or a class for any features, and saved and loaded as the same.
+void semanticForest(const std::uint8_t* data, std::size_t size) {
+  static const hyselam::testing::FuzzFolder folder;
+  std::ostringstream head;
+  head << "ngram_slam semantic forest 1, " << kSemanticFeatures << " features, crc32 " << std::hex
+       << crc32(0L, data, static_cast<uInt>(size)) << "\n";
+  const auto verdictsOf = [](const SemanticForest& forest) {
+    std::vector<SemanticVerdict> verdicts;
+    for (const double value : {0.0, -1.0, 0.5, 1e6}) {
+      SemanticFeatures features{};
+      features.length = value;
+      verdicts.push_back(forest.classify(features));
+    }
+    return verdicts;
+  };
+  try {
+    const SemanticForest forest = SemanticForest::load(
+        folder.put("forest.yml", head.str() + hyselam::testing::textOf(data, size)));
+    const auto verdicts = verdictsOf(forest);
+    for (const SemanticVerdict& verdict : verdicts) {
+      require(verdict.confidence >= 0.0 && verdict.confidence <= 1.0);
+    }
+    forest.save(folder.path("again.yml"));
+    const auto again = verdictsOf(SemanticForest::load(folder.path("again.yml")));
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+      require(again[i].semantic_class == verdicts[i].semantic_class &&
+              again[i].confidence == verdicts[i].confidence);
+    }
+  } catch (const hyselam::InputError&) {
+  }
+}
+
 }  // namespace
 }  // namespace ngram_slam
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace ngram_slam;  // NOLINT: its own targets
-  return {{"corpus", corpus}, {"slamState", slamState}};
+  return {{"corpus", corpus}, {"slamState", slamState}, {"semanticForest", semanticForest}};
 }

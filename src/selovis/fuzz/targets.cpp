@@ -10,6 +10,7 @@
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "selovis/labels.hpp"
 #include "selovis/model.hpp"
+#include "selovis/place_graph.hpp"
 
 namespace selovis {
 namespace {
@@ -108,10 +109,32 @@ void placeLabels(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// A graph of places: refused, or its transitions join places that it has, and ways lead along
+/// them.
+void placeGraph(const std::uint8_t* data, std::size_t size) {
+  static const FuzzFolder folder;
+  PlaceGraph graph;
+  try {
+    graph = readPlaceGraph(folder.put("graph", hyselam::testing::textOf(data, size)));
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  const int places = static_cast<int>(graph.places.size());
+  require(places > 0);
+  for (const auto& [a, b] : graph.transitions) require(a >= 0 && a < b && b < places);
+  constexpr int kManyPlaces = 200;  // all ways between more of them make an input slow
+  if (places > kManyPlaces) return;
+  const PlaceDistances ways = shortestPaths(graph);
+  for (const auto& [a, b] : graph.transitions) {
+    require(ways.distance[ways.size * static_cast<std::size_t>(a) + static_cast<std::size_t>(b)] ==
+            1);
+  }
+}
+
 }  // namespace
 }  // namespace selovis
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace selovis;  // NOLINT: its own targets
-  return {{"placeModel", placeModel}, {"placeLabels", placeLabels}};
+  return {{"placeModel", placeModel}, {"placeLabels", placeLabels}, {"placeGraph", placeGraph}};
 }

@@ -1,7 +1,6 @@
 #include "hyselam_common/map_io.hpp"
 
 #include <sys/stat.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/yaml_text.hpp"
 #include "pgm.hpp"
 
 namespace hyselam {
@@ -44,13 +44,8 @@ std::string directoryOf(const std::string& path) {
 /// One YAML file; every question that it cannot answer is an InputError with the key.
 class YamlFile {
  public:
-  explicit YamlFile(const std::string& path) : path_(path) {
-    const std::string text = readTextFile(path, kMaxYamlBytes);
-    try {
-      root_ = YAML::Load(text);
-    } catch (const YAML::Exception& e) {
-      throw InputError(path_, "line " + std::to_string(e.mark.line + 1), "is not YAML: " + e.msg);
-    }
+  explicit YamlFile(const std::string& path)
+      : path_(path), root_(parseYaml(readTextFile(path, kMaxYamlBytes), path)) {
     if (!root_.IsMap()) throw InputError(path_, "", "is not a YAML file of keys and values");
   }
 

@@ -1,10 +1,9 @@
 #include "object_words.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/yaml_text.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -27,7 +26,7 @@ std::string lowerCase(std::string text) {
 ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
   ObjectWords words;
   try {
-    const YAML::Node root = YAML::Load(source.yaml);
+    const YAML::Node root = hyselam::parseYaml(source.yaml, source.name);
     if (!root.IsMap() || root["format"].as<std::string>("") != kFormat ||
         root["version"].as<std::string>("") != "1") {
       throw hyselam::InputError(source.name, "key 'format'",

@@ -6,20 +6,18 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <vector>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "pcd_header.hpp"
 
 namespace hyselam_objects {
 namespace {
 
 using hyselam::InputError;
-
-constexpr std::uint64_t kMaxPoints = 50000000;
 
 const pcl::PCLPointField* find(const pcl::PCLPointCloud2& cloud, const std::string& name) {
   for (const pcl::PCLPointField& field : cloud.fields) {
@@ -35,48 +33,12 @@ T valueAt(const pcl::PCLPointCloud2& cloud, std::size_t i, const pcl::PCLPointFi
   return value;
 }
 
-/// PCL makes room for all that a header announces before it looks at the data. A point is told by
-/// two characters at least in text, and 264 bytes by three where they are packed.
-void checkAnnounced(const std::string& path) {
-  constexpr std::uint64_t kMaxPacking = 100;
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw InputError(path, "", "cannot be read");
-  const auto length = static_cast<std::uint64_t>(in.tellg());
-  in.seekg(0);
-  std::uint64_t width = 0, height = 1, points = 0, point_step = 0;
-  std::vector<std::uint64_t> sizes, counts;
-  const auto valuesOf = [](std::istringstream& line) {
-    std::vector<std::uint64_t> values;
-    for (std::uint64_t v; line >> v;) values.push_back(std::min(v, kMaxPoints + 1));
-    return values;
-  };
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string key;
-    words >> key;
-    if (key == "DATA") break;
-    if (key == "SIZE") sizes = valuesOf(words);
-    if (key == "COUNT") counts = valuesOf(words);
-    if (key != "WIDTH" && key != "HEIGHT" && key != "POINTS") continue;
-    const auto values = valuesOf(words);
-    if (!values.empty()) (key == "WIDTH" ? width : key == "HEIGHT" ? height : points) = values[0];
-  }
-  points = std::max(points, width * height);
-  if (points > kMaxPoints) {
-    throw InputError(path, "header", "announces more than 50 million points");
-  }
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    point_step += sizes[i] * (i < counts.size() ? counts[i] : 1);
-  }
-  if (point_step > kMaxPoints || points * point_step > kMaxPacking * length) {
-    throw InputError(path, "header", "announces more than a file of this length can hold");
-  }
-}
-
 }  // namespace
 
 CloudFile readPcd(const std::string& path) {
-  checkAnnounced(path);
+  constexpr std::size_t kMaxBytes = std::size_t{4} << 30;
+  const std::string bytes = hyselam::readTextFile(path, kMaxBytes);
+  const PcdHeader header = checkPcdHeader(bytes, path);
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   pcl::PCLPointCloud2 raw;
   pcl::PCDReader reader;
@@ -85,20 +47,29 @@ CloudFile readPcd(const std::string& path) {
   int version = 0, type = 0;
   unsigned int start = 0;
   try {
-    if (reader.readHeader(path, raw, origin, orientation, version, type, start) < 0) {
+    std::istringstream head(bytes.substr(0, header.length));
+    if (reader.readHeader(head, raw, origin, orientation, version, type, start) < 0) {
       throw InputError(path, "header", "is not that of a PCD file");
     }
-    const std::uint64_t points = std::uint64_t{raw.width} * raw.height;
-    if (points == 0) throw InputError(path, "header", "announces no points");
-    if (reader.read(path, raw) < 0) throw InputError(path, "data", "is cut short or damaged");
+    constexpr int kText = 0, kPacked = 2;
+    int status = 0;
+    if (type == kText) {
+      std::istringstream data(bytes.substr(header.length));
+      status = reader.readBodyASCII(data, raw, version);
+    } else {
+      const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+      status = reader.readBodyBinary(data, raw, version, type == kPacked, start);
+    }
+    if (status < 0) throw InputError(path, "data", "is cut short or damaged");
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {
     throw InputError(path, "", std::string("is no usable PCD file: ") + e.what());
   }
   const std::size_t size = std::size_t{raw.width} * raw.height;
-  if (raw.point_step == 0 || raw.data.size() < size * raw.point_step) {
-    throw InputError(path, "data", "is cut short");
+  // PCL tells of data that cannot be unpacked by a cloud of another size.
+  if (size != header.points || raw.data.size() < size * raw.point_step) {
+    throw InputError(path, "data", "is cut short or damaged");
   }
   CloudFile out;
   out.cloud.width = static_cast<int>(raw.width);

@@ -7,6 +7,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/yaml_text.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "yaml_map.hpp"
 
@@ -266,7 +267,7 @@ double FloorPlan::nextDoorChange(double time) const {
 
 FloorPlan parseFloorPlan(const std::string& content, const std::string& source) {
   const YamlMap map(
-      source, "", parseYaml(content, source),
+      source, "", hyselam::parseYaml(content, source),
       {"plan", "description", "size", "origin", "wall_thickness", "wall_height", "walls", "doors",
        "configurations", "furniture", "places", "inside", "areas", "floor_kind"});
   FloorPlan plan;

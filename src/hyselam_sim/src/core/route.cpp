@@ -4,6 +4,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/yaml_text.hpp"
 #include "yaml_map.hpp"
 
 namespace hyselam_sim {
@@ -143,7 +144,7 @@ std::optional<Point2> Person::at(double time) const {
 
 Route parseRoute(const std::string& content, const std::string& source) {
   const YamlMap map(
-      source, "", parseYaml(content, source),
+      source, "", hyselam::parseYaml(content, source),
       {"route", "plan", "description", "start", "doors", "speed", "direct", "steps", "people"});
   Route route;
   route.source = source;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/yaml_text.hpp"
 #include "yaml_map.hpp"
 
 namespace hyselam_sim {
@@ -40,7 +41,7 @@ Thing readThing(const YamlMap& map) {
 }  // namespace
 
 std::vector<Thing> parseThings(const std::string& text, const std::string& source) {
-  const YamlMap map(source, "", parseYaml(text, source), {"things"});
+  const YamlMap map(source, "", hyselam::parseYaml(text, source), {"things"});
   std::vector<Thing> things;
   std::set<std::string> names;
   const std::vector<YAML::Node> entries = map.list("things");

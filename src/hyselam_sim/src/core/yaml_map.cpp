@@ -26,31 +26,6 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// Older yaml-cpp recurses without limit, so text that nests absurdly deep is kept from it. Brackets
-// in texts and comments count as well, which no sensible file notices.
-void requireShallow(const std::string& text, const std::string& source) {
-  constexpr int kDeepest = 64, kWidestIndent = 256;
-  int brackets = 0, indent = 0, dashes = 0, line = 1;
-  bool leading = true;
-  for (const char c : text) {
-    if (c == '\n') {
-      ++line;
-      indent = dashes = 0;
-      leading = true;
-    } else if (leading && (c == ' ' || c == '-' || c == '?')) {
-      ++indent;
-      dashes += c != ' ';
-    } else {
-      leading = false;
-    }
-    if (c == '[' || c == '{') ++brackets;
-    if (c == ']' || c == '}') brackets = std::max(0, brackets - 1);
-    if (brackets > kDeepest || dashes > kDeepest || indent > kWidestIndent) {
-      throw hyselam::InputError(source, "line " + std::to_string(line), "nested too deep");
-    }
-  }
-}
-
 std::string place(const std::string& path, const YAML::Node& node) {
   std::ostringstream out;
   if (node && node.Mark().line >= 0) out << "line " << node.Mark().line + 1;
@@ -59,18 +34,6 @@ std::string place(const std::string& path, const YAML::Node& node) {
 }
 
 }  // namespace
-
-YAML::Node parseYaml(const std::string& text, const std::string& source) {
-  requireShallow(text, source);
-  try {
-    YAML::Node node = YAML::Load(text);
-    if (!node || node.IsNull()) throw hyselam::InputError(source, "", "the file is empty");
-    return node;
-  } catch (const YAML::Exception& e) {
-    const std::string where = e.mark.line >= 0 ? "line " + std::to_string(e.mark.line + 1) : "";
-    throw hyselam::InputError(source, where, "not YAML: " + e.msg);
-  }
-}
 
 std::string suggestion(const std::string& wrong, const std::vector<std::string>& candidates) {
   std::string best;

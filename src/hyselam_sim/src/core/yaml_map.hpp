@@ -11,9 +11,6 @@
 
 namespace hyselam_sim {
 
-/// Parses text to a node. Throws hyselam::InputError for broken YAML.
-YAML::Node parseYaml(const std::string& text, const std::string& source);
-
 /// ", did you mean 'x'?" with the nearest candidate, or the list of candidates if none is near.
 std::string suggestion(const std::string& wrong, const std::vector<std::string>& candidates);
 

@@ -1,7 +1,5 @@
 #include "hyselam_topo/phrases.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <set>
@@ -9,6 +7,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/yaml_text.hpp"
 #include "shipped_phrases.hpp"
 
 namespace hyselam_topo {
@@ -100,12 +99,8 @@ std::set<std::string> slotsOf(const std::string& text) {
 
 class Reader {
  public:
-  Reader(const std::string& source, const std::string& yaml) : source_(source) {
-    try {
-      root_ = YAML::Load(yaml);
-    } catch (const YAML::Exception& e) {
-      throw InputError(source, "line " + std::to_string(e.mark.line + 1), e.msg);
-    }
+  Reader(const std::string& source, const std::string& yaml)
+      : source_(source), root_(hyselam::parseYaml(yaml, source)) {
     if (!root_.IsMap()) throw InputError(source, "", "it is no YAML map");
   }
 

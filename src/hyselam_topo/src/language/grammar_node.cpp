@@ -4,18 +4,14 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/yaml_text.hpp"
 #include "hyselam_topo/text.hpp"
 
 namespace hyselam_topo {
 namespace language {
 
 GrammarNode GrammarNode::parse(const std::string& yaml, const std::string& source) {
-  try {
-    return GrammarNode(YAML::Load(yaml), source, "");
-  } catch (const YAML::Exception& e) {
-    throw hyselam::InputError(source, "line " + std::to_string(e.mark.line + 1),
-                              "this is no YAML: " + e.msg);
-  }
+  return GrammarNode(hyselam::parseYaml(yaml, source), source, "");
 }
 
 void GrammarNode::fail(const std::string& reason) const {

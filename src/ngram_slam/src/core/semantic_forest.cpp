@@ -3,6 +3,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/ml.hpp>
 #include <sstream>
@@ -28,6 +31,57 @@ std::string checksum(const std::string& body) {
 cv::Mat rowOf(const SemanticFeatures& features) {
   const auto v = vectorOf(features);
   return cv::Mat(1, static_cast<int>(v.size()), CV_32F, const_cast<float*>(v.data())).clone();
+}
+
+/// NaN stands for what is no number.
+std::vector<double> numbersOf(const cv::FileNode& list) {
+  std::vector<double> numbers;
+  for (const cv::FileNode& entry : list) {
+    const bool number = entry.isInt() || entry.isReal();
+    numbers.push_back(number ? entry.real() : std::numeric_limits<double>::quiet_NaN());
+  }
+  return numbers;
+}
+
+/// OpenCV believes what a file says of its own layout. These lists are always the same for
+/// features that are ordered and one class.
+bool hasLayout(const cv::FileNode& root) {
+  std::vector<double> indices(kSemanticFeatures);
+  std::iota(indices.begin(), indices.end(), 0.0);
+  std::vector<double> types(kSemanticFeatures, cv::ml::VAR_ORDERED);
+  types.push_back(cv::ml::VAR_CATEGORICAL);
+  if (numbersOf(root["var_idx"]) != indices || numbersOf(root["var_type"]) != types ||
+      numbersOf(root["cat_ofs"]) != std::vector<double>(2 * kSemanticFeatures, 0.0) ||
+      numbersOf(root["missing_subst"]).size() != types.size()) {
+    return false;
+  }
+  const std::vector<double> labels = numbersOf(root["class_labels"]);
+  return !labels.empty() && std::all_of(labels.begin(), labels.end(), [](double label) {
+    return label >= 0.0 && label < kSemanticClasses && label == std::floor(label);
+  });
+}
+
+/// Whether every way down a tree ends in a class.
+bool isSound(const cv::ml::RTrees& trees, std::size_t classes) {
+  const auto& nodes = trees.getNodes();
+  const auto& splits = trees.getSplits();
+  const auto within = [](int index, std::size_t size) {
+    return index >= 0 && static_cast<std::size_t>(index) < size;
+  };
+  const auto& roots = trees.getRoots();
+  for (const int root : roots) {
+    if (!within(root, nodes.size())) return false;
+  }
+  for (const auto& node : nodes) {
+    if (!within(node.classIdx, classes)) return false;
+    if (node.split < 0) continue;
+    if (!within(node.split, splits.size()) || !within(node.left, nodes.size()) ||
+        !within(node.right, nodes.size()) ||
+        !within(splits[static_cast<std::size_t>(node.split)].varIdx, kSemanticFeatures)) {
+      return false;
+    }
+  }
+  return !roots.empty() && trees.isClassifier();
 }
 
 }  // namespace
@@ -113,15 +167,26 @@ SemanticForest SemanticForest::load(const std::string& path) {
   if (head != expected.str() + checksum(body))
     throw hyselam::InputError(path, "", "is damaged or cut off: its checksum is wrong");
   auto model = std::make_unique<Model>();
+  std::size_t classes = 0;
   try {
     const cv::FileStorage file(body, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    if (!hasLayout(file.root())) {
+      throw hyselam::InputError(path, "", "holds no forest for these features");
+    }
     model->trees = cv::Algorithm::read<cv::ml::RTrees>(file.root());
+    classes = file.root()["class_labels"].size();
+  } catch (const hyselam::InputError&) {
+    throw;
   } catch (const cv::Exception& e) {
     throw hyselam::InputError(path, "", "holds no forest: " + e.err);
+  } catch (const std::exception& e) {
+    throw hyselam::InputError(path, "", std::string("holds no forest: ") + e.what());
   }
   if (!model->trees || !model->trees->isTrained() ||
-      model->trees->getVarCount() != static_cast<int>(kSemanticFeatures))
-    throw hyselam::InputError(path, "", "holds no forest for these features");
+      model->trees->getVarCount() != static_cast<int>(kSemanticFeatures) ||
+      !isSound(*model->trees, classes)) {
+    throw hyselam::InputError(path, "", "holds a forest whose trees are not whole");
+  }
   return SemanticForest(std::move(model));
 }
 
