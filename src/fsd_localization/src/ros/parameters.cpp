@@ -66,6 +66,7 @@ void loadKernels(ParamLoader& loader, std::vector<KernelSpec>& kernels, Gradient
                                  {"inverted", KernelProfile::kInverted}},
                                 "profile of the density kernels");
   std::vector<double> bandwidths;
+  bandwidths.reserve(kernels.size());
   for (const KernelSpec& k : kernels) bandwidths.push_back(k.bandwidth);
   loader.get("bandwidths", bandwidths, Range::above(0.0), 1, "[m] one kernel each, 1 to 8");
   kernels.clear();

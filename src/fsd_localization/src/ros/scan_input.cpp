@@ -98,18 +98,22 @@ bool ScanInput::waitedLongEnough(const Waiting& w) const {
          (ros::Time::now() - w.since).toSec() >= params_.transform_wait;
 }
 
+std::string ScanInput::missingTransform(const std_msgs::Header& header) const {
+  std::string why;
+  if (!tf_.canTransform(params_.odom_frame_id, params_.base_frame_id, header.stamp, &why)) {
+    return params_.odom_frame_id + " -> " + params_.base_frame_id + " at " +
+           seconds(header.stamp.toSec()) + ": " + why;
+  }
+  if (!tf_.canTransform(params_.base_frame_id, header.frame_id, ros::Time(0), &why)) {
+    return params_.base_frame_id + " -> " + header.frame_id + ": " + why;
+  }
+  return "";
+}
+
 void ScanInput::serveWaiting() {
   while (!waiting_.empty()) {
     const Waiting& first = waiting_.front();
-    const std_msgs::Header& header = first.scan->header;
-    std::string why;
-    if (!tf_.canTransform(params_.odom_frame_id, params_.base_frame_id, header.stamp, &why))
-      why = params_.odom_frame_id + " -> " + params_.base_frame_id + " at " +
-            seconds(header.stamp.toSec()) + ": " + why;
-    else if (!tf_.canTransform(params_.base_frame_id, header.frame_id, ros::Time(0), &why))
-      why = params_.base_frame_id + " -> " + header.frame_id + ": " + why;
-    else
-      why.clear();
+    const std::string why = missingTransform(first.scan->header);
     if (!why.empty()) {
       if (!waitedLongEnough(first)) break;
       drops_.drop("no transform", why);

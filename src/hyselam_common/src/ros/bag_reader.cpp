@@ -115,7 +115,8 @@ void takeTransforms(const rosbag::MessageInstance& m, const tf2_msgs::TFMessage&
   for (const auto& t : msg.transforms) {
     const std::string parent = withoutSlash(t.header.frame_id);
     const std::string child = withoutSlash(t.child_frame_id);
-    const std::string what = source + ": " + parent + " -> " + child;
+    std::string what = source;
+    what.append(": ").append(parent).append(" -> ").append(child);
     if (parent == options.odom_frame && child == options.base_frame) {
       content->tf_odometry.push_back({stampOf(t.header.stamp, m), fromMsg(t.transform, what)});
     } else if (parent != options.odom_frame && parent != options.map_frame) {

@@ -26,8 +26,10 @@ PinholeCamera cameraOf(const OrganisedCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); i += kStep) {
     const Point& p = cloud.points[i];
     if (!cloud.isValid(i)) continue;
-    const double u = static_cast<double>(i % static_cast<std::size_t>(cloud.width)) - camera.cx;
-    const double v = static_cast<double>(i / static_cast<std::size_t>(cloud.width)) - camera.cy;
+    const auto width = static_cast<std::size_t>(cloud.width);
+    const std::size_t row = i / width, column = i % width;
+    const double u = static_cast<double>(column) - camera.cx;
+    const double v = static_cast<double>(row) - camera.cy;
     if (std::abs(p.x()) > 0.05f) across.push_back(u * p.z() / p.x());
     if (std::abs(p.y()) > 0.05f) down.push_back(v * p.z() / p.y());
   }

@@ -421,18 +421,14 @@ std::vector<std::string> Dialogue::labels(const std::vector<Id>& ids) const {
   for (const Id id : ids) {
     const Place& place = *places_.map().findPlace(id);
     const std::string code = codeOf(place);
-    const std::string name = shortName(id);
-    switch (nameStateOf(place)) {
-      case NameState::kNone:
-        all.push_back(code);
-        break;
-      case NameState::kUnconfirmed:
-        all.push_back(phrases().say("perhaps", {{"name", name}}) + " (" + code + ")");
-        break;
-      case NameState::kConfirmed:
-        all.push_back(name + " (" + code + ")");
-        break;
+    const NameState state = nameStateOf(place);
+    if (state == NameState::kNone) {
+      all.push_back(code);
+      continue;
     }
+    std::string label = shortName(id);
+    if (state == NameState::kUnconfirmed) label = phrases().say("perhaps", {{"name", label}});
+    all.push_back(label.append(" (").append(code).append(")"));
   }
   return all;
 }

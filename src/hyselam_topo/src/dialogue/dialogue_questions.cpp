@@ -69,10 +69,12 @@ void Dialogue::notConfirmed(Reply* out) {
 
 void Dialogue::answer(const Utterance& u, Turn* turn) {
   Reply* out = &turn->reply;
-  const auto length = u.number("length") ? u.number("length") : u.number("radius");
   if (question_.kind == Question::Kind::kNone) {
     out->sentences.push_back(phrases().say("nothing_asked"));
-  } else if (u.intent == "unknown_answer") {
+    return;
+  }
+  const auto length = u.number("length") ? u.number("length") : u.number("radius");
+  if (u.intent == "unknown_answer") {
     question_ = {};
     out->sentences.push_back(phrases().say("cancelled"));
   } else if (u.intent == "name_answer") {

@@ -51,7 +51,8 @@ struct Walls {
   std::optional<Cell> hit(Point2 from, double angle, double range, Point2* end) const {
     const double dx = std::cos(angle), dy = std::sin(angle);
     constexpr double kStep = 0.25;
-    for (double r = 0.0; r <= range; r += kStep) {
+    for (int i = 0; i * kStep <= range; ++i) {
+      const double r = i * kStep;
       *end = {from.x + r * dx, from.y + r * dy};
       const Cell c{static_cast<int>(std::floor(end->x)), static_cast<int>(std::floor(end->y))};
       if (occupied(c)) return c;
@@ -84,8 +85,9 @@ struct Walls {
   /// No occupied cell between two corners; their own posts do not count.
   bool nothingBetween(Cell a, Cell b, double post) const {
     const double length = std::hypot(b.x - a.x, b.y - a.y);
-    for (double r = post; r <= length - post; r += 0.25) {
-      const double t = r / length;
+    constexpr double kStep = 0.25;
+    for (int i = 0; post + i * kStep <= length - post; ++i) {
+      const double t = (post + i * kStep) / length;
       const Cell c{static_cast<int>(std::floor(a.x + 0.5 + t * (b.x - a.x))),
                    static_cast<int>(std::floor(a.y + 0.5 + t * (b.y - a.y)))};
       if (occupied(c)) return false;

@@ -77,6 +77,7 @@ std::vector<Entry> entriesAt(const SentenceWords& words, std::size_t at) {
     }
   });
   std::vector<Entry> entries;
+  entries.reserve(cheapest.size());
   for (const auto& [key, cost] : cheapest) entries.push_back({key.first, cost, key.second});
   return entries;
 }

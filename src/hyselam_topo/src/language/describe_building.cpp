@@ -90,7 +90,7 @@ class Teller {
   std::string named(Id id) {
     told_.insert(id);
     const std::string& name = building_.findPlace(id)->name;
-    const std::string quoted = plain(name);
+    std::string quoted = plain(name);
     if (quoted != name) return quoted;
     const auto* type = grammar_.compiled().nameType("place");
     const std::string folded = language::folded(name);
@@ -129,6 +129,7 @@ class Teller {
       }
       std::sort(row.begin(), row.end());
       std::vector<Id> ids;
+      ids.reserve(row.size());
       for (const auto& [order, to] : row) ids.push_back(to);
       if (side == Side::kUnknown) {
         const std::string where = named(from);

@@ -87,11 +87,11 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     require(ids.insert(place.id).second, who + " stands there twice");
     require(!place.name.empty(), who + " has no name");
     const std::string wrong = whatIsWrongWithWord(place.name);
-    require(wrong.empty(), who + ": the name " + wrong);
+    require(wrong.empty(), (who + ": the name ").append(wrong));
     for (const std::string& alias : place.aliases) {
       require(!alias.empty(), who + " has an empty alias");
       const std::string wrong_alias = whatIsWrongWithWord(alias);
-      require(wrong_alias.empty(), who + ": an alias " + wrong_alias);
+      require(wrong_alias.empty(), (who + ": an alias ").append(wrong_alias));
     }
     for (const auto& size : {place.length, place.width, place.area}) {
       require(!size || (std::isfinite(*size) && *size > 0.0), who + " has a size that is not > 0");

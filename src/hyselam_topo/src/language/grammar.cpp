@@ -18,6 +18,7 @@ Grammar Grammar::fromYaml(const std::vector<GrammarSource>& sources) {
 Grammar Grammar::load(const std::vector<std::string>& paths) {
   constexpr std::size_t kMaxBytes = 4u << 20;
   std::vector<GrammarSource> sources;
+  sources.reserve(paths.size());
   for (const std::string& path : paths) {
     sources.push_back({path, hyselam::readTextFile(path, kMaxBytes)});
   }

@@ -23,7 +23,7 @@ void GrammarNode::fail(const std::string& reason) const {
 
 std::string GrammarNode::text() const {
   if (!node_.IsScalar()) fail("here must be a text");
-  const std::string value = node_.Scalar();
+  std::string value = node_.Scalar();
   if (!isUtf8(value)) fail("this is not UTF-8 text");
   return value;
 }

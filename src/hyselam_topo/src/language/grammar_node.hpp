@@ -29,8 +29,8 @@ class GrammarNode {
   void each(const Visit& visit) const;
 
  private:
-  GrammarNode(YAML::Node node, std::string source, std::string path)
-      : node_(std::move(node)), source_(std::move(source)), path_(std::move(path)) {}
+  GrammarNode(const YAML::Node& node, std::string source, std::string path)
+      : node_(node), source_(std::move(source)), path_(std::move(path)) {}
 
   YAML::Node node_;
   std::string source_;

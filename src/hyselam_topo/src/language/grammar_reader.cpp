@@ -24,6 +24,7 @@ class Reader {
  public:
   std::shared_ptr<const CompiledGrammar> read(const std::vector<GrammarSource>& sources) {
     std::vector<GrammarNode> roots;
+    roots.reserve(sources.size());
     for (const GrammarSource& source : sources) {
       roots.push_back(GrammarNode::parse(source.yaml, source.name));
     }

@@ -149,7 +149,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       is_last = true;
     } else if (isMarkOfNames(token) && k > begin) {
       may_end = false;
-    } else if (!isWordLike(token)) {
+    } else if (!isWordLike(token) || beginsWithArticle(begin, k, type)) {
       break;
     } else if (isStop(token, type)) {
       if (!isLetterOfTitle(begin, k, type)) break;
@@ -162,8 +162,6 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       } else {
         break;
       }
-    } else if (k == begin && mayBeArticle(k, type) && token.folded.size() > 1) {
-      break;
     }
     ++words;
     if (type.joiners.count(token.folded) != 0) may_end = false;
@@ -179,6 +177,12 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     if (is_last) break;
   }
   return found;
+}
+
+/// More than a letter, which may be a name of its own.
+bool NameFinder::beginsWithArticle(std::size_t begin, std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  return at == begin && token.folded.size() > 1 && mayBeArticle(at, type) && !isStop(token, type);
 }
 
 bool NameFinder::isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const {

@@ -54,6 +54,7 @@ class Compiler {
   int anyOf(const std::vector<std::string>& texts, int from, int depth) {
     if (texts.empty()) throw std::invalid_argument("there are no alternatives");
     std::vector<int> ends;
+    ends.reserve(texts.size());
     for (const std::string& text : texts) {
       ends.push_back(whole(text, step(from, EdgeKind::kSkip), depth));
     }
@@ -90,7 +91,7 @@ class Compiler {
     if (end == std::string::npos) {
       throw std::invalid_argument("'" + std::string(1, close) + "' is missing");
     }
-    const std::string inside = text.substr(*at, end - *at);
+    std::string inside = text.substr(*at, end - *at);
     *at = end + 1;
     return inside;
   }

@@ -125,7 +125,8 @@ std::optional<PlaceKind> PlaceNames::kindOf(const std::string& name) const {
       for (std::size_t n = 0; n < 3; ++n) {
         if (type->head_first ? at + n >= words.size() : n > at) break;
         const std::string& word = words[type->head_first ? at + n : at - n];
-        phrase = n == 0 ? word : type->head_first ? phrase + " " + word : word + " " + phrase;
+        if (n > 0) phrase.insert(type->head_first ? phrase.size() : 0, 1, ' ');
+        phrase.insert(type->head_first ? phrase.size() : 0, word);
         const auto found = type->nouns.find(phrase);
         if (found != type->nouns.end()) kind = &found->second;
       }

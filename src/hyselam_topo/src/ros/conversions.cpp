@@ -168,6 +168,7 @@ class Reader {
 
   static std::vector<Word> words(const std::vector<hyselam_msgs::PlaceWord>& list) {
     std::vector<Word> words;
+    words.reserve(list.size());
     for (const auto& word : list) words.push_back({word.text, word.confirmed != 0});
     return words;
   }

@@ -13,7 +13,7 @@ namespace hyselam_topo {
 
 class GoalDriver::Client {
  public:
-  explicit Client(ros::NodeHandle nh) : nh_(nh), action_(nh, "move_base", false) {}
+  explicit Client(const ros::NodeHandle& nh) : nh_(nh), action_(nh, "move_base", false) {}
 
   bool connected() const { return action_.isServerConnected(); }
 
@@ -75,7 +75,7 @@ class GoalDriver::Client {
   std::string status_;
 };
 
-GoalDriver::GoalDriver(ros::NodeHandle nh) : client_(std::make_unique<Client>(nh)) {}
+GoalDriver::GoalDriver(const ros::NodeHandle& nh) : client_(std::make_unique<Client>(nh)) {}
 bool GoalDriver::available() const {
   return client_->connected();
 }
@@ -96,7 +96,7 @@ class GoalDriver::Client {
   std::string status;
 };
 
-GoalDriver::GoalDriver(ros::NodeHandle) : client_(std::make_unique<Client>()) {}
+GoalDriver::GoalDriver(const ros::NodeHandle&) : client_(std::make_unique<Client>()) {}
 bool GoalDriver::available() const {
   return false;
 }

@@ -155,7 +155,7 @@ Reply TopoEngineServer::hear(const std::string& text) {
   options.pass_on = objects_->isThere();
   options.of_things = of_things_;
   options.others_asked = objects_asked_;
-  const Reply reply = dialogue_.hear(text, options);
+  Reply reply = dialogue_.hear(text, options);
   if (dialogue_.question().kind != Question::Kind::kNone && !reply.sentences.empty()) {
     objects_asked_ = false;
   }

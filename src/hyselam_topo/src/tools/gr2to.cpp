@@ -119,17 +119,17 @@ int main(int argc, char** argv) {
       total += time;
     }
     seconds["total"] = total;
-    const nlohmann::json summary{{"map", map_file},
-                                 {"mode", mode},
-                                 {"width", grid.geometry.width},
-                                 {"height", grid.geometry.height},
-                                 {"resolution", grid.geometry.resolution},
-                                 {"places", result.map.places.size()},
-                                 {"corridors", corridors},
-                                 {"doors", doors},
-                                 {"open_borders", open_borders},
-                                 {"walls", walls},
-                                 {"seconds", seconds}};
+    nlohmann::json summary{{"map", map_file},
+                           {"mode", mode},
+                           {"width", grid.geometry.width},
+                           {"height", grid.geometry.height},
+                           {"resolution", grid.geometry.resolution},
+                           {"places", result.map.places.size()},
+                           {"corridors", corridors},
+                           {"doors", doors},
+                           {"open_borders", open_borders},
+                           {"walls", walls},
+                           {"seconds", seconds}};
     hyselam::writeFileAtomically(out + "/summary.json",
                                  [&](std::ostream& file) { file << summary.dump(2) << '\n'; });
     progress.update(4);

@@ -114,10 +114,12 @@ Group::Least ExactSearch::leastLoss(std::uint64_t max_nodes, double known) {
   Group::Least least;
   least.loss = known;
   max_nodes_ = max_nodes;
-  for (double loss = std::max(kFirstLoss, kDeeper * known); loss < 1.0; loss *= kDeeper) {
+  double loss = std::max(kFirstLoss, kDeeper * known);
+  while (loss < 1.0) {
     solutions_.restart(1.0 - loss);
     if (!searchAll()) break;
     least.loss = loss;
+    loss *= kDeeper;
     if (!solutions_.any()) continue;
     least.loss = std::max(0.0, 1.0 - solutions_.best() - kEqualFitness);
     least.exact = true;

@@ -180,8 +180,10 @@ class Terms {
   /// `of` gives the vertices of a name.
   template <typename Of>
   double clauseLoss(const Clause& clause, Of&& of) const {
+    if (clause.order) {
+      return order * (1.0 - orderValue(clause, of(clause.a), of(clause.b), of(clause.c)));
+    }
     const Vertices* c = clause.c >= 0 ? &of(clause.c) : nullptr;
-    if (clause.order) return order * (1.0 - orderValue(clause, of(clause.a), of(clause.b), *c));
     return relation * (1.0 - relationValue(clause.kind, of(clause.a), of(clause.b), c));
   }
 

@@ -26,9 +26,8 @@
 #include "hyselam_sim/rasterise.hpp"
 #include "room_scores.hpp"
 
+namespace hyselam_topo {
 namespace {
-
-using namespace hyselam_topo;
 
 struct Options {
   std::string data, out;
@@ -297,9 +296,7 @@ void write(const std::string& folder, const BoostedTrees& model) {
   });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int train(int argc, char** argv) {
   Options options;
   bool each = false;
   CLI::App app("Learns which neighbouring parts of a map are one place");
@@ -361,4 +358,11 @@ int main(int argc, char** argv) {
     if (!options.out.empty()) write(options.out, all);
     return {};
   });
+}
+
+}  // namespace
+}  // namespace hyselam_topo
+
+int main(int argc, char** argv) {
+  return hyselam_topo::train(argc, argv);
 }

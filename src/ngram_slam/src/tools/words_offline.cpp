@@ -65,16 +65,15 @@ nlohmann::json run(const Options& o) {
   writeRegions(o.out + "/regions.csv", regions, stamps);
   if (!o.corpus.empty()) CorpusFile::save(o.corpus, r.corpus());
   const auto words = static_cast<double>(r.text().words());
-  const nlohmann::json j = {
-      {"observations", r.observations().size()},
-      {"words", r.text().positions()},
-      {"alternative_words", r.text().words() - r.text().positions()},
-      {"classes", r.classes().list().size()},
-      {"requantisations", r.requantisations()},
-      {"matches", matches.size()},
-      {"regions", regions.size()},
-      {"comparisons", r.counters().comparisons},
-      {"bytes_per_word", words > 0 ? static_cast<double>(r.bytes()) / words : 0.0}};
+  nlohmann::json j = {{"observations", r.observations().size()},
+                      {"words", r.text().positions()},
+                      {"alternative_words", r.text().words() - r.text().positions()},
+                      {"classes", r.classes().list().size()},
+                      {"requantisations", r.requantisations()},
+                      {"matches", matches.size()},
+                      {"regions", regions.size()},
+                      {"comparisons", r.counters().comparisons},
+                      {"bytes_per_word", words > 0 ? static_cast<double>(r.bytes()) / words : 0.0}};
   std::cout << j.dump(2) << "\n";
   return j;
 }

@@ -56,6 +56,8 @@ class ScanInput {
   void timeWentBack(const std::string& what);
   void serveWaiting();
   bool waitedLongEnough(const Waiting& waiting) const;
+  /// Which transform a scan of this header waits for, and why; empty: none.
+  std::string missingTransform(const std_msgs::Header& header) const;
   bool serve(const sensor_msgs::LaserScan& scan);
   void noteGeometry(const sensor_msgs::LaserScan& scan);
 

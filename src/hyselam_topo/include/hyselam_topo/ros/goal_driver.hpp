@@ -14,7 +14,7 @@ namespace hyselam_topo {
 /// Callbacks run on the queue of `nh`. Without move_base_msgs at build time it does nothing.
 class GoalDriver {
  public:
-  explicit GoalDriver(ros::NodeHandle nh);
+  explicit GoalDriver(const ros::NodeHandle& nh);
   ~GoalDriver();
 
   /// Whether this was built with move_base_msgs and a server is there.
