@@ -13,7 +13,7 @@ namespace hyselam_topo {
 
 class GoalDriver::Client {
  public:
-  explicit Client(const ros::NodeHandle& nh) : nh_(nh), action_(nh, "move_base", false) {}
+  explicit Client(const ros::NodeHandle& nh) : nh_(nh), action_(nh_, "move_base", false) {}
 
   bool connected() const { return action_.isServerConnected(); }
 
