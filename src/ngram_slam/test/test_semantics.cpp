@@ -1,8 +1,10 @@
 // Regions with a meaning: equality with the transcription of chapter 6, streams, the score, and
 // what is done with input that cannot be used.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <limits>
+#include <sstream>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
@@ -384,6 +386,36 @@ TEST(SemanticForest, refusesFilesThatAreNone) {
   EXPECT_TRUE(refused("ngram_slam semantic forest 1, 13 features, crc32 0\n"));
   EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "none"); }), "");
   EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir.path()); }), "");
+}
+
+TEST(SemanticForest, refusesTreesThatAreNotWhole) {
+  TemporaryDirectory dir;
+  SemanticForest::train(examples(100)).save(dir / "good");
+  const std::string good = fileBytes(dir / "good");
+  const std::size_t line = good.find('\n');
+  // A right checksum over `to` in place of the first `from`.
+  const auto messageWith = [&](const std::string& from, const std::string& to) {
+    std::string body = good.substr(line + 1);
+    const std::size_t at = body.find(from);
+    if (at == std::string::npos) return "no " + from;
+    body.replace(at, from.size(), to);
+    std::ostringstream head;
+    head << good.substr(0, good.find("crc32 ") + 6) << std::hex
+         << crc32(0L, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+    writeFile(dir / "bad", head.str() + "\n" + body);
+    return messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "bad"); });
+  };
+  EXPECT_EQ(messageWith("", ""), "");
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"norm_class_idx: ", "norm_class_idx: 7"},
+           {"var_idx: [ 0", "var_idx: [ 9"},
+           {"class_labels: [ ", "class_labels: [ 9"},
+           {"is_classifier: 1", "is_classifier: 0"},
+           {"ntrees: 60", "ntrees: 0"},
+           {"depth: 1", "depth: -1"},
+           {"missing_subst: [", "missing_subst: [ a,"}}) {
+    EXPECT_EQ(messageWith(from, to).find(dir / "bad"), 0u) << to;
+  }
 }
 
 TEST(SemanticRegions, areWrittenAsATable) {
