@@ -200,7 +200,7 @@ std::optional<Readings> SemanticLocalizationServer::readingsFor(const Waiting& i
   }
   const bool by_depth = needs_.ranges && depths_.nearest(stamp, params_.sync_tolerance);
   const auto find = [&](const auto& history, const char* what) {
-    const auto msg = history.nearest(stamp, params_.sync_tolerance);
+    auto msg = history.nearest(stamp, params_.sync_tolerance);
     if (!msg && waited) {
       throw hyselam::InputError(image_topic_, "",
                                 std::string("no ") + what + " came within " +

@@ -69,7 +69,7 @@ cv::Mat fromMsg(const sensor_msgs::ImageConstPtr& msg, const std::string& source
 }
 
 cv::Mat fromMsg(const sensor_msgs::CompressedImage& msg, const std::string& source) {
-  const cv::Mat image = decodeImage(std::string(msg.data.begin(), msg.data.end()), source);
+  cv::Mat image = decodeImage(std::string(msg.data.begin(), msg.data.end()), source);
   if (image.depth() != CV_8U) throw hyselam::InputError(source, "", "has not 8 bits");
   return image;
 }

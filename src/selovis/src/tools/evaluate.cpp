@@ -159,7 +159,7 @@ nlohmann::json run(Options& o) {
   nlohmann::json by_filter;
   if (o.recogniser.filter.kind == FilterKind::kPoses) by_filter["poses"] = right / all;
   for (std::size_t k = 0; k < filters.size(); ++k) by_filter[filters[k].first] = right_by[k] / all;
-  const nlohmann::json result = {{"accuracy", right / all},
+  nlohmann::json result = {{"accuracy", right / all},
                                  {"accuracy_frame_alone", right_alone / all},
                                  {"accuracy_with_transitions", right_with_second / all},
                                  {"frames", rows.size()},
