@@ -13,7 +13,7 @@ import unittest
 import rosbag
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap, LocalizationStatus, Place, PlaceEdge, PlaceState, PlaceWord, VisualPlace
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
@@ -386,18 +386,13 @@ class VisualPlacesTest(unittest.TestCase):
     def test_learning_on_the_way(self):
         folder = os.path.join(self.film.folder.name, "learnt")
         topo = os.path.join(self.film.folder.name, "learnt.xml")
-        rig = self.rig(save_model=folder, save_map=topo, retrain_every=0, min_travel=0.0, min_turn=0.0)
+        rig = self.rig(save_model=folder, save_map=topo, autosave=False, retrain_every=0, min_travel=0.0, min_turn=0.0)
         self.assertFalse(rig.call("retrain").success)
         self.assertFalse(rig.call("save").success, "nothing has been learnt")
         rig.give_map(topological_map())
         wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
         self.assertTrue(rig.call("start_learning").success)
-        for image, name in zip(self.film.raw, self.film.places):
-            state = PlaceState(place=ROOMS[name][0], name=name, confirmed=True)
-            state.header.stamp = image.header.stamp
-            state.header.frame_id = "map"
-            state.pose.x, state.pose.y = ROOMS[name][1], 2.0
-            self.place_then_image(rig, state, image)
+        self.learn_tour(rig)
         self.assertIn("frames learnt", rig.call("stop_learning").message)
         learnt = rig.number("frames learnt")
         # A place and the image after it come on two connections: the first may overtake.
@@ -425,6 +420,36 @@ class VisualPlacesTest(unittest.TestCase):
         self.assertEqual(len(self.film.predictions(folder, self.film.raw_list)), len(self.film.raw))
         with open(topo) as file:
             self.assertEqual(file.read().count("<signature"), 5 * learnt)
+
+    def test_what_was_trained_is_saved_by_itself(self):
+        folder = os.path.join(self.film.folder.name, "autosaved")
+        rig = self.rig(save_model=folder, retrain_every=20, learn=True, min_travel=0.0, min_turn=0.0)
+        rig.give_map(topological_map())
+        wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
+        self.learn_tour(rig)
+        wait_until(lambda: rig.number("frames trained") >= 20, "trained")
+        trained = rig.number("frames trained")
+        self.assertEqual({row["place"] for row in self.film.predictions(folder, self.film.raw_list)}, set(ROOMS))
+        learnt = rig.number("frames learnt")
+        wait_until(lambda: (f"{learnt - trained} frames learnt, not saved" in rig.status().message) == (learnt > trained),
+                   "only what came after the training is not saved")
+        # The next one goes on with it; where it cannot write, it says so and lives.
+        other = self.rig(model=folder, save_model="/dev/null/none", retrain_every=0, learn=True, min_travel=0.0, min_turn=0.0)
+        other.give_map(topological_map())
+        wait_until(lambda: other.values().get("places of the map") == "2", "the map")
+        self.learn_tour(other)
+        self.assertTrue(other.seen.messages, "it knows the places")
+        self.assertTrue(other.call("retrain").success)
+        wait_until(lambda: "/dev/null/none" in other.status().message, "the folder is named")
+        self.assertEqual(other.status().level, DiagnosticStatus.ERROR)
+
+    def learn_tour(self, rig):
+        for image, name in zip(self.film.raw, self.film.places):
+            state = PlaceState(place=ROOMS[name][0], name=name, confirmed=True)
+            state.header.stamp = image.header.stamp
+            state.header.frame_id = "map"
+            state.pose.x, state.pose.y = ROOMS[name][1], 2.0
+            self.place_then_image(rig, state, image)
 
     def place_then_image(self, rig, state, image):
         rig.place.publish(state)

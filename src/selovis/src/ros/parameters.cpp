@@ -67,6 +67,7 @@ SemanticLocalizationParams loadParams(hyselam::ParamLoader& loader) {
   loader.get("retrain_every", p.retrain_every, Range::between(0, 1e6), "frames; 0: when asked");
   loader.get("border", p.border, Range::between(0.0, 10.0), "[m]");
   loader.get("save_model", p.save_model, "directory; empty: that of `model`");
+  loader.get("autosave", p.autosave, "after each training, if `save_model` is given");
   loader.get("save_map", p.save_map, "file (XML); empty: the map is not written");
 
   SupervisorParams& s = p.supervisor;

@@ -58,10 +58,7 @@ bool SemanticLocalizationServer::startTraining(std::string* message) {
     return false;
   }
   const std::size_t count = fresh.size();
-  if (!training_.start(model_, std::move(fresh), [this](const BackgroundTraining::Outcome& o) {
-        const std::lock_guard<std::mutex> lock(trained_mutex_);
-        trained_ = o;
-      })) {
+  if (!train(std::move(fresh))) {
     tell("training is under way");
     return false;
   }
@@ -72,23 +69,44 @@ bool SemanticLocalizationServer::startTraining(std::string* message) {
   return true;
 }
 
+bool SemanticLocalizationServer::train(std::vector<LearntFrame> frames) {
+  return training_.start(model_, std::move(frames), [this](const BackgroundTraining::Outcome& o) {
+    Trained trained{o, false, ""};
+    if (o.model && params_.autosave && !params_.save_model.empty()) {
+      try {
+        const std::lock_guard<std::mutex> lock(save_mutex_);
+        saveModel(*o.model, params_.save_model);
+        trained.saved = true;
+      } catch (const std::exception& e) {
+        trained.save_error = e.what();
+      }
+    }
+    const std::lock_guard<std::mutex> lock(trained_mutex_);
+    trained_ = std::move(trained);
+  });
+}
+
 void SemanticLocalizationServer::takeTrained() {
-  std::optional<BackgroundTraining::Outcome> outcome;
+  std::optional<Trained> trained;
   {
     const std::lock_guard<std::mutex> lock(trained_mutex_);
-    outcome.swap(trained_);
+    trained.swap(trained_);
   }
-  if (!outcome) return;
-  training_error_ = outcome->error;
-  if (!outcome->model) {
-    ROS_WARN_STREAM(who_ << " not trained: " << outcome->error);
+  if (!trained) return;
+  training_error_ = trained->outcome.error;
+  if (!trained->outcome.model) {
+    ROS_WARN_STREAM(who_ << " not trained: " << trained->outcome.error);
     return;
   }
   trained_frames_ = training_frames_;
   ++trainings_;
-  useModel(outcome->model);
-  ROS_INFO_STREAM(who_ << " trained with " << outcome->frames
-                       << " new frames: " << model_->graph.places.size() << " places");
+  useModel(trained->outcome.model);
+  ROS_INFO_STREAM(who_ << " trained with " << trained->outcome.frames
+                       << " new frames: " << model_->graph.places.size() << " places"
+                       << (trained->saved ? ", saved" : ""));
+  if (trained->saved) saved_frames_ = std::max(saved_frames_, trained_frames_);
+  autosave_error_ = trained->save_error;
+  if (!autosave_error_.empty()) ROS_ERROR_STREAM(who_ << " not saved: " << autosave_error_);
 }
 
 bool SemanticLocalizationServer::onStartLearning(Trigger::Request&, Trigger::Response& response) {
@@ -120,7 +138,11 @@ bool SemanticLocalizationServer::onSave(Trigger::Request&, Trigger::Response& re
       if (model_->samples.count() == 0) {
         throw hyselam::InputError(directory, "", "nothing has been learnt");
       }
-      saveModel(*model_, directory);
+      {
+        const std::lock_guard<std::mutex> lock(save_mutex_);
+        saveModel(*model_, directory);
+      }
+      autosave_error_.clear();
       saved_frames_ = std::max(saved_frames_, trained_frames_);
       response.message =
           std::to_string(model_->graph.places.size()) + " places written to " + directory;

@@ -384,11 +384,7 @@ void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalM
   if (model_->samples.count() == 0 && !tried_map_) {
     std::vector<LearntFrame> frames = framesOf(*map_, *model_);
     const std::size_t count = frames.size();
-    if (count > 0 &&
-        training_.start(model_, std::move(frames), [this](const BackgroundTraining::Outcome& o) {
-          const std::lock_guard<std::mutex> lock(trained_mutex_);
-          trained_ = o;
-        })) {
+    if (count > 0 && train(std::move(frames))) {
       timer_.start();
       tried_map_ = true;
       training_frames_ = trained_frames_;
@@ -431,6 +427,7 @@ void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& statu
   } else {
     addRemark(status, DiagnosticStatus::OK, last_place_.empty() ? "place unknown" : last_place_);
   }
+  if (!autosave_error_.empty()) addRemark(status, DiagnosticStatus::ERROR, autosave_error_);
   const std::size_t unsaved = learner_->frames().size() - saved_frames_;
   if (unsaved > 0) {
     addRemark(status, DiagnosticStatus::OK, std::to_string(unsaved) + " frames learnt, not saved");

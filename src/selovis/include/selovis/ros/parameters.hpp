@@ -35,6 +35,7 @@ struct SemanticLocalizationParams {
   int retrain_every = 200;  ///< frames; 0: only when asked
   double border = 0.5;      ///< frames nearer to another place are not learnt [m]
   std::string save_model;   ///< directory; empty: `model`
+  bool autosave = true;     ///< into `save_model`, if it is not empty, after each training
   std::string save_map;     ///< topological map with signatures (XML); empty: none
 
   SupervisorParams supervisor;

@@ -45,6 +45,11 @@ class SemanticLocalizationServer {
     std_msgs::Header header;
     ros::WallTime since;
   };
+  struct Trained {
+    BackgroundTraining::Outcome outcome;
+    bool saved = false;      ///< in `save_model`
+    std::string save_error;  ///< why not; empty: it was not tried, or it was saved
+  };
   using Trigger = std_srvs::Trigger;
 
   void onImage(Waiting image);
@@ -66,6 +71,8 @@ class SemanticLocalizationServer {
   void useModel(std::shared_ptr<const Model> model);
   void rebuild();
   bool startTraining(std::string* message);
+  /// In the other thread, which saves the model, too. False if it is busy.
+  bool train(std::vector<LearntFrame> frames);
   void takeTrained();
 
   bool onStartLearning(Trigger::Request&, Trigger::Response& response);
@@ -105,11 +112,12 @@ class SemanticLocalizationServer {
   std::unique_ptr<Learner> learner_;
   std::size_t trained_frames_ = 0;  // of the learner's, in the model or in training
   std::size_t training_frames_ = 0;
-  std::size_t saved_frames_ = 0;  ///< that `~save` has written, in the model or the map
+  std::size_t saved_frames_ = 0;  ///< that have been written, in the model or the map
   std::size_t tried_frames_ = 0;  ///< when training began last, whatever became of it
   std::mutex trained_mutex_;
-  std::optional<BackgroundTraining::Outcome> trained_;  // from the other thread
-  std::string training_error_;
+  std::optional<Trained> trained_;  // from the other thread
+  std::mutex save_mutex_;           // of the directory that models are saved to
+  std::string training_error_, autosave_error_;
   std::size_t trainings_ = 0;
   bool tried_map_ = false;  // to learn from the map's own signatures
 
