@@ -218,8 +218,8 @@ class VisualPlacesTest(unittest.TestCase):
     def setUpClass(cls):
         cls.film = Film()
 
-    def rig(self, **params):
-        rig = Rig(self._testMethodName[5:25], **params)
+    def rig(self, after="", **params):
+        rig = Rig(self._testMethodName[5:25] + after, **params)
         self.addCleanup(rig.close)
         return rig
 
@@ -434,7 +434,8 @@ class VisualPlacesTest(unittest.TestCase):
         wait_until(lambda: (f"{learnt - trained} frames learnt, not saved" in rig.status().message) == (learnt > trained),
                    "only what came after the training is not saved")
         # The next one goes on with it; where it cannot write, it says so and lives.
-        other = self.rig(model=folder, save_model="/dev/null/none", retrain_every=0, learn=True, min_travel=0.0, min_turn=0.0)
+        other = self.rig("_again", model=folder, save_model="/dev/null/none", retrain_every=0, learn=True,
+                         min_travel=0.0, min_turn=0.0)
         other.give_map(topological_map())
         wait_until(lambda: other.values().get("places of the map") == "2", "the map")
         self.learn_tour(other)
