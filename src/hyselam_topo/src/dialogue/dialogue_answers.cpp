@@ -121,10 +121,11 @@ void Dialogue::whereIs(const Utterance& u, Turn* turn) {
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
   const std::string name = shortName(found.front());
-  if (std::count(found.begin(), found.end(), robot().place) > 0) {
-    out->sentences.push_back(
-        p.say("where_is_here",
-              {{"name", name}, {"code", codeOf(*places_.map().findPlace(robot().place))}}));
+  const Id here = robot().place;
+  if (std::count(found.begin(), found.end(), here) > 0) {
+    const Place& place = *places_.map().findPlace(here);
+    out->sentences.push_back(p.say("where_is_here", {{"name", name}, {"code", codeOf(place)}}));
+    if (nameStateOf(place) == NameState::kUnconfirmed) askConfirm(here, out);
     return;
   }
   const auto leg = robot().has_pose ? planRoute(places_.map(), robot().pose, found, params_.route)
