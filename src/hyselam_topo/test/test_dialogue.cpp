@@ -226,11 +226,26 @@ TEST(Dialogue, AnswersQuestions) {
   describe(&v);
   EXPECT_TRUE(has(v.say("What is next to the stairs?"), "corridor"));
   EXPECT_TRUE(has(v.say("Where is I-111?"), "meters from here"));
+  EXPECT_TRUE(has(v.say("Is this I-111?"), "meters from here"));
+  EXPECT_TRUE(has(v.say("Are we in the stairs?"), "meters from here"));
   EXPECT_TRUE(has(v.say("How do I get to the hall?"), "corridor"));
   EXPECT_TRUE(has(v.say("What is on your left?"), "i-109"));
   EXPECT_TRUE(has(v.say("How big is room i-108?"), "9"));
   EXPECT_TRUE(has(v.say("Which places do you know?"), "Hall"));
   EXPECT_TRUE(has(v.say("Flurb the gnarl of sqwox."), "I did not understand"));
+}
+
+TEST(Dialogue, AsksToConfirmAGuessThatItIsAskedFor) {
+  Visit v;
+  describe(&v);
+  v.at(9.0, 6.0, 0.0);
+  v.say("Cancel.");
+  const std::string name = v.names(v.truth("i-110")).front();
+  const Reply reply = v.say("Is this " + name + "?");
+  EXPECT_TRUE(has(reply, "I am there. Can you please confirm the name " + name)) << reply.text();
+  v.say("Yes.");
+  EXPECT_TRUE(has(v.say("Is this " + name + "?"), "I am there."));
+  EXPECT_EQ(v.dialogue.question().kind, Question::Kind::kNone);
 }
 
 TEST(Dialogue, AsksByItselfAsItsParametersSay) {
