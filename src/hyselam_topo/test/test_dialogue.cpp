@@ -239,7 +239,12 @@ TEST(Dialogue, AsksToConfirmAGuessThatItIsAskedFor) {
   Visit v;
   describe(&v);
   v.at(9.0, 6.0, 0.0);
-  v.say("Cancel.");
+  for (const char* said :
+       {"Cancel.", "Never mind.", "Stop.", "Halt!", "Help.", "Hello.", "Skip."}) {
+    v.dialogue.hear(said);
+    const auto names = v.names(v.truth("i-110"));
+    EXPECT_EQ(std::count(names.begin(), names.end(), "i-110"), 1) << said << " is no name";
+  }
   const std::string name = v.names(v.truth("i-110")).front();
   const Reply reply = v.say("Is this " + name + "?");
   EXPECT_TRUE(has(reply, "I am there. Can you please confirm the name " + name)) << reply.text();
