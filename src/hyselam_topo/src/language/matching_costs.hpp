@@ -15,7 +15,7 @@ constexpr int kInnerCost = 2;      ///< the same within a clause
 constexpr int kNameCost = 4;       ///< a name ...
 constexpr int kNameWordCost = 2;   ///< ... and each of its words: keywords rather than names
 constexpr int kClauseCost = 6;     ///< a clause: few clauses rather than many
-constexpr int kExpectedBonus = 5;  ///< less for an answer that was asked for; "stop" is no name
+constexpr int kExpectedBonus = 8;  ///< less for an answer that was asked for
 constexpr int kSeparatorCost = 1;  ///< a word between clauses
 
 constexpr std::size_t kShortestMisspelt = 4;  ///< letters of a keyword that may be misspelt

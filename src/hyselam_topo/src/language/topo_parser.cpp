@@ -108,7 +108,10 @@ ParsedText TopoParser::parse(const std::string& text, const ParseOptions& option
   std::optional<ParsedText> best;
   for (const auto& [known, index] : order) {
     const Grammar& each = grammars_[index];
-    ParsedText parsed = parseWith(each, text, options.expected);
+    // In a language that knows less of it, any words would do as the name that was asked for.
+    static const std::set<std::string> kNothing;
+    ParsedText parsed =
+        parseWith(each, text, known == order.front().first ? options.expected : kNothing);
     if (!best || parsed.misunderstood() < best->misunderstood()) best = std::move(parsed);
     if (best->misunderstood() == 0) break;
   }
