@@ -125,6 +125,9 @@ class LaunchFilesTest(unittest.TestCase):
         params = self.whole("work_dir:=/w", "pose:=localization")[1].params
         self.assertEqual(params["/words/corpus"].value, "/w/words.corpus")
         self.assertEqual(params["/topo_engine/state_file"].value, "/w/dialogue.state")
+        self.assertEqual(self.whole("work_dir:=/w", "vision:=true")[1].params["/semantic_localization/save_model"].value,
+                         "/w/visual_places")
+        self.assertEqual(self.whole("model:=/m", "vision:=true")[1].params["/semantic_localization/save_model"].value, "")
         self.assertEqual(self.whole("work_dir:=/w")[1].params["/slam/state"].value, "/w/slam.state")
         self.assertEqual(self.whole()[1].params["/slam/state"].value, "")
 
@@ -136,6 +139,7 @@ class LaunchFilesTest(unittest.TestCase):
                                      ("fsd", "odom_frame_id", "o"), ("fsd", "base_frame_id", "b"),
                                      ("topo_engine", "base_frame", "b"), ("semantic_localization", "base_frame_id", "b"),
                                      ("semantic_localization", "global_frame_id", "m"),
+                                     ("semantic_localization", "odom_frame_id", "o"),
                                      ("object_engine", "map_frame", "m")):
                 if "/" + name in nodes:
                     self.assertEqual(config.params[f"/{name}/{key}"].value, value, f"{name} {key}")
@@ -143,6 +147,20 @@ class LaunchFilesTest(unittest.TestCase):
                 if "/" + name in nodes:
                     self.assertIn(["scan", "base_scan"], [list(r) for r in nodes["/" + name].remap_args], name)
             self.assertIn(["image", "eye"], [list(r) for r in nodes["/semantic_localization"].remap_args])
+            shown = [list(r) for r in self.whole("rviz:=true", "scan:=base_scan", "image:=eye")[0]["/rviz"].remap_args]
+            self.assertIn(["scan", "base_scan"], shown)
+            self.assertIn(["camera/color/image_raw", "eye"], shown)
+
+    def test_further_parameters_reach_their_layers(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write("further: 7\n")
+            file.flush()
+            for layer, name, more in (("slam", "slam", ["pose:=slam"]), ("localization", "localization", ["pose:=localization"]),
+                                      ("words", "words", ["pose:=other"]), ("places", "gr2to", []),
+                                      ("places", "gr2to", ["dialogue:=false"]), ("dialogue", "topo_engine", []),
+                                      ("vision", "semantic_localization", ["vision:=true"]), ("objects", "object_engine", ["objects:=true"])):
+                params = self.whole(f"{layer}_params:={file.name}", *more)[1].params
+                self.assertEqual(params[f"/{name}/further"].value, 7, f"{layer} {more}")
 
     def test_cameras_know_places_by_the_names_that_people_gave(self):
         for dialogue, topic in (("true", "named_map"), ("false", "topological_map")):

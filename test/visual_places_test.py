@@ -433,6 +433,9 @@ class VisualPlacesTest(unittest.TestCase):
         learnt = rig.number("frames learnt")
         wait_until(lambda: (f"{learnt - trained} frames learnt, not saved" in rig.status().message) == (learnt > trained),
                    "only what came after the training is not saved")
+        kept = self.rig("_kept", model="/nowhere", save_model=folder)
+        self.assertTrue(kept.loaded, "what was kept goes before what there was to begin with")
+        self.assertEqual(kept.values()["places"], "2")
         # The next one goes on with it; where it cannot write, it says so and lives.
         other = self.rig("_again", model=folder, save_model="/dev/null/none", retrain_every=0, learn=True,
                          min_travel=0.0, min_turn=0.0)

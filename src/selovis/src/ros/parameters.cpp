@@ -7,7 +7,7 @@ using hyselam::Range;
 SemanticLocalizationParams loadParams(hyselam::ParamLoader& loader) {
   SemanticLocalizationParams p;
   loader.get("model", p.model,
-             "directory that `train` or ~save has written; empty: nothing learnt");
+             "directory that `train` or ~save has written, to begin with; empty: nothing learnt");
   loader.get("descriptor", p.descriptor, "without a model");
   loader.get("kernel", p.kernel, {"linear", "poly", "rbf", "exemplar"}, "without a model");
 
@@ -66,7 +66,8 @@ SemanticLocalizationParams loadParams(hyselam::ParamLoader& loader) {
   p.learner.max_frames = static_cast<std::size_t>(frames);
   loader.get("retrain_every", p.retrain_every, Range::between(0, 1e6), "frames; 0: when asked");
   loader.get("border", p.border, Range::between(0.0, 10.0), "[m]");
-  loader.get("save_model", p.save_model, "directory; empty: that of `model`");
+  loader.get("save_model", p.save_model,
+             "directory, gone on with if it holds a model; empty: ~save writes to `model`");
   loader.get("autosave", p.autosave, "after each training, if `save_model` is given");
   loader.get("save_map", p.save_map, "file (XML); empty: the map is not written");
 

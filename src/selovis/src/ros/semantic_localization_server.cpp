@@ -3,6 +3,7 @@
 #include <hyselam_msgs/VisualPlace.h>
 
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -20,7 +21,20 @@ constexpr double kPoseAge = 0.5;      // [s] a pose so old is still that of the 
 constexpr double kDepthPause = 1.0;   // [s] without depth images: none come any more
 constexpr int kRangeColumns = 40;     // distances taken from a laser scan
 
-std::shared_ptr<const Model> firstModel(const SemanticLocalizationParams& params) {
+bool holdsModel(const std::string& directory) {
+  std::error_code error;
+  return !directory.empty() && std::filesystem::exists(directory + "/model.json", error);
+}
+
+std::shared_ptr<const Model> firstModel(const SemanticLocalizationParams& params,
+                                        const std::string& who) {
+  if (holdsModel(params.save_model)) {
+    if (!params.model.empty() && params.model != params.save_model) {
+      ROS_WARN_STREAM(who << " goes on with " << params.save_model << ", not with "
+                          << params.model);
+    }
+    return std::make_shared<Model>(loadModel(params.save_model));
+  }
   if (!params.model.empty()) return std::make_shared<Model>(loadModel(params.model));
   TrainingOptions options;
   options.descriptor = params.descriptor;
@@ -48,7 +62,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
       place_publisher_(nh.advertise<hyselam_msgs::VisualPlace>("visual_place", 10)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("place_markers", 1, true)),
       transport_(nh) {
-  const auto first = firstModel(params_);
+  const auto first = firstModel(params_, who_);
   needs_ = needsOf(first->descriptor);
   learner_ = std::make_unique<Learner>(first, params_.learner);
   if (params_.recogniser.filter.kind == FilterKind::kPoses &&

@@ -34,7 +34,7 @@ struct SemanticLocalizationParams {
   bool learn = false;       ///< from the start, not only when asked
   int retrain_every = 200;  ///< frames; 0: only when asked
   double border = 0.5;      ///< frames nearer to another place are not learnt [m]
-  std::string save_model;   ///< directory; empty: `model`
+  std::string save_model;   ///< directory, gone on with if it holds a model; empty: `model`
   bool autosave = true;     ///< into `save_model`, if it is not empty, after each training
   std::string save_map;     ///< topological map with signatures (XML); empty: none
 
