@@ -1,5 +1,6 @@
 // The programs as people call them: exit status, one line of error, results as JSON.
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/testing/files.hpp"
 
 namespace hyselam {
@@ -85,6 +87,27 @@ TEST_F(Tools, BuildMapMaps) {
   const OccupancyGrid grid = loadMap(d / "map.yaml");
   EXPECT_EQ(grid.geometry.resolution, 0.1);
   EXPECT_EQ(grid.valueOr(grid.geometry.cellAt({1.0, 0.5})), OccupancyGrid::kFree);
+  EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "out.json"))["scans"], 3);
+}
+
+TEST_F(Tools, BagsMayNameTheirTopicsAndFramesOtherwise) {
+  const RobotLog log = readCarmenLog(d / "in.log");
+  BagOptions named;
+  named.scan_topic = "/front";
+  named.odometry_topic = "/wheels";
+  named.odom_frame = "robot/odom";
+  named.base_frame = "robot/base";
+  writeBag(d / "in.bag", log, named);
+  {
+    rosbag::Bag bag(d / "in.bag", rosbag::bagmode::Append);
+    bag.write("/rear", toRosTime(1.0), toMsg(log.scans[0], "laser"));
+  }
+  const std::string build = "build_map " + (d / "in.bag") + " " + (d / "map.yaml") +
+                            " --poses odometry --odom-topic wheels --odom-frame robot/odom" +
+                            " --base-frame robot/base";
+  EXPECT_TRUE(refused(run(d, build), "/front /rear"));
+  const Result r = run(d, build + " --scan-topic front --json " + (d / "out.json"));
+  ASSERT_EQ(r.status, 0) << r.errors;
   EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "out.json"))["scans"], 3);
 }
 

@@ -8,7 +8,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
-#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
@@ -24,6 +24,7 @@ struct Options {
   std::uint64_t seed = 1;
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
   bool cache = false;
+  hyselam::BagOptions bag_options;
 };
 
 /// The estimates against the reference, if there is one.
@@ -120,7 +121,7 @@ nlohmann::json run(const Options& o) {
   p.validate();
 
   const hyselam::OccupancyGrid map = hyselam::loadMap(o.map);
-  const hyselam::RobotLog log = hyselam::readRobotLog(o.log);
+  const hyselam::RobotLog log = hyselam::readRobotLog(o.log, o.bag_options);
   std::vector<hyselam::StampedPose2> truth = log.ground_truth;
   if (!o.reference.empty()) truth = hyselam::readPoses(o.reference).poses;
 
@@ -208,6 +209,7 @@ int main(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.add_option("--map", o.map, "map (map_server YAML)")->required();
   app.add_option("--bag", o.log, "bag or CARMEN log, plain or gzip")->required();
+  hyselam::addBagOptions(app, &o.bag_options);
   app.add_option("--model", o.model, "fsd, beam, cosine, likelihood or hybrid");
   app.add_option("--particles", o.particles, "particles of the search");
   app.add_option("--kernel", o.kernel,

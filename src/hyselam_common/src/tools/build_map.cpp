@@ -5,7 +5,7 @@
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/progress.hpp"
-#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "report_issues.hpp"
@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
                  "share of hits above which a cell is occupied");
   app.add_option("--min-observations", parameters.min_observations,
                  "cells seen less often stay unknown");
+  hyselam::addBagOptions(app, &bag);
 
   return hyselam::runTool(argc, argv, app, [&] {
     hyselam::OccupancyMapper mapper(parameters);

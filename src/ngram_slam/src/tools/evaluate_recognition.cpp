@@ -34,7 +34,8 @@ using Truth = std::shared_ptr<const RecognitionTruth>;
 /// Poses of a run in the common frame: a file, or the log's own ground truth.
 std::vector<hyselam::StampedPose2> referenceOf(const Options& o, std::size_t run) {
   if (run < o.references.size()) return hyselam::readPoses(o.references[run]).poses;
-  auto truth = hyselam::readRobotLog(o.recognition.logs[run]).ground_truth;
+  auto truth =
+      hyselam::readRobotLog(o.recognition.logs[run], o.recognition.bag_options).ground_truth;
   if (truth.empty())
     throw hyselam::InputError(o.recognition.logs[run], "", "has no ground truth: give --reference");
   return truth;

@@ -8,7 +8,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
-#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
 #include "ngram_slam/log_observations.hpp"
 #include "ngram_slam/recogniser.hpp"
@@ -18,6 +18,7 @@ namespace ngram_slam {
 
 struct RecognitionOptions {
   std::vector<std::string> logs;
+  hyselam::BagOptions bag_options;
   RecogniserParams recogniser;
   LogObservationParams observations;
   double angle_deg = 30.0;
@@ -28,6 +29,7 @@ struct RecognitionOptions {
     app.option_defaults()->always_capture_default();
     app.add_option("logs", logs, "bags or CARMEN logs, plain or gzip: one run each, in this order")
         ->required();
+    hyselam::addBagOptions(app, &bag_options);
     app.add_option("--levels", recogniser.levels, "levels of words");
     app.add_option("--min-n", min_n, "least words of a match, one number per level (7,10,13,...)")
         ->delimiter(',');
@@ -99,7 +101,7 @@ struct Run {
 inline std::vector<Run> readRuns(const RecognitionOptions& options) {
   std::vector<Run> runs;
   for (const std::string& path : options.logs) {
-    const hyselam::RobotLog log = hyselam::readRobotLog(path);
+    const hyselam::RobotLog log = hyselam::readRobotLog(path, options.bag_options);
     hyselam::Progress progress("densities of " + path, log.scans.size());
     LogObservations seen = observationsOf(log, options.observationParams(),
                                           [&](std::size_t done) { progress.update(done); });

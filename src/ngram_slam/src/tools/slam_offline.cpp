@@ -11,7 +11,7 @@
 #include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/rng.hpp"
-#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
@@ -31,6 +31,7 @@ struct Options {
   std::uint64_t seed = 1;
   double noise = 0.0, resolution = 0.05;
   bool side_by_side = false, raw_odometry = false;
+  hyselam::BagOptions bag_options;
 };
 
 double cpuSeconds() {
@@ -51,7 +52,7 @@ double peakMegabytes() {
 hyselam::RobotLog readLog(const Options& o) {
   if (o.bag.empty() == o.carmen.empty())
     throw hyselam::InputError("slam_offline", "", "needs either --bag or --carmen");
-  return o.bag.empty() ? hyselam::readCarmenLog(o.carmen) : hyselam::readBag(o.bag);
+  return o.bag.empty() ? hyselam::readCarmenLog(o.carmen) : hyselam::readBag(o.bag, o.bag_options);
 }
 
 /// Adds errors to each motion: deviations of `factor` times 1 % of the way in both directions, and
@@ -315,6 +316,7 @@ int main(int argc, char** argv) {
   auto* carmen = app.add_option("--carmen", o.carmen, "CARMEN log, plain or gzip");
   bag->excludes(carmen);
   app.add_option("--out", o.out, "folder for what is written")->required();
+  hyselam::addBagOptions(app, &o.bag_options);
   app.add_option("--levels", o.levels, "levels of words");
   app.add_option("--seed", o.seed, "of the errors of --odometry-noise");
   app.add_option("--loops", o.loops,
