@@ -12,4 +12,4 @@ bench:    ; @scripts/build benchmarks && bench/run --json out/bench.json
 lint:     ; @scripts/lint
 sanitize: ; @scripts/sanitize address
 install:  ; @scripts/build install
-clean:    ; rm -rf build build_address build_thread build_docs devel install out
+clean:    ; rm -rf build build_address build_thread build_fuzz build_docs devel install out
