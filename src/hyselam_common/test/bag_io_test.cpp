@@ -246,7 +246,7 @@ TEST(BagIo, MessagesOutOfOrderAreSorted) {
 // --- bags that cannot be used
 
 std::string errorOf(const std::string& path, const BagOptions& options = {}) {
-  const std::string message = messageOf<InputError>([&] { readBag(path, options); });
+  std::string message = messageOf<InputError>([&] { readBag(path, options); });
   EXPECT_EQ(message.find(path), 0U) << message;
   return message;
 }

@@ -33,8 +33,7 @@ target_include_directories(hyselam_dialogue PRIVATE src/core ${HYSELAM_DIALOGUE_
 target_include_directories(hyselam_dialogue SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS}
                                                            ${YAML_CPP_INCLUDE_DIR})
 target_link_libraries(hyselam_dialogue PUBLIC hyselam_topomerg
-                                       PRIVATE opencv_core opencv_imgproc ${YAML_CPP_LIBRARIES}
-                                               ZLIB::ZLIB)
+                                       PRIVATE opencv_core opencv_imgproc ${YAML_CPP_LIBRARIES})
 hyselam_target(hyselam_dialogue)
 install(TARGETS hyselam_dialogue
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
@@ -74,7 +73,7 @@ catkin_install_python(PROGRAMS scripts/chat scripts/listen scripts/speak
                       DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
 if(CATKIN_ENABLE_TESTING)
-  hyselam_fuzz_seeds(LIBRARIES hyselam_dialogue ZLIB::ZLIB)
+  hyselam_fuzz_seeds(LIBRARIES hyselam_dialogue)
   foreach(test topo_state glass_wall place_man route)
     hyselam_gtest(${PROJECT_NAME}_test_${test} test/test_${test}.cpp LIBRARIES hyselam_dialogue)
   endforeach()

@@ -1,8 +1,6 @@
-#include <zlib.h>
-
-#include <cstdio>
 #include <string>
 
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_topo/describe_building.hpp"
@@ -102,10 +100,8 @@ void mapXml(const std::uint8_t* data, std::size_t size) {
 /// right.
 void dialogueState(const std::uint8_t* data, std::size_t size) {
   const std::string body = textOf(data, size);
-  char head[80];
-  std::snprintf(head, sizeof head, "hyselam_dialogue 1 %08lx %zu\n",
-                crc32(0L, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(size)),
-                size);
+  const std::string head =
+      "hyselam_dialogue 1 " + hyselam::crc32Text(body) + " " + std::to_string(size) + "\n";
   DialogueState state;
   try {
     state = dialogueStateFromText(head + body, "fuzz");

@@ -1,8 +1,7 @@
-#include <zlib.h>
-
 #include <sstream>
 
 #include "../src/core/binary_io.hpp"
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "ngram_slam/corpus.hpp"
@@ -77,7 +76,7 @@ void semanticForest(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
   std::ostringstream head;
   head << "ngram_slam semantic forest 1, " << kSemanticFeatures << " features, crc32 " << std::hex
-       << crc32(0L, data, static_cast<uInt>(size)) << "\n";
+       << hyselam::crc32Of(hyselam::testing::textOf(data, size)) << "\n";
   const auto verdictsOf = [](const SemanticForest& forest) {
     std::vector<SemanticVerdict> verdicts;
     for (const double value : {0.0, -1.0, 0.5, 1e6}) {

@@ -1,11 +1,9 @@
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "selovis/labels.hpp"
@@ -33,10 +31,7 @@ std::string nextPart(std::string& text) {
 /// Writes a data file of the model and says so in its manifest.
 void putData(const FuzzFolder& folder, nlohmann::json& manifest, const std::string& kind,
              const std::string& bytes) {
-  char sum[16];
-  std::snprintf(
-      sum, sizeof sum, "%08lx",
-      crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
+  const std::string sum = hyselam::crc32Text(bytes);
   const std::string name = kind + "-" + sum + ".bin";
   folder.put(name, bytes);
   manifest[kind] = {{"file", name}, {"bytes", bytes.size()}, {"crc32", sum}};

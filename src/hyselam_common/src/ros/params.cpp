@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <sstream>
+
+#include "hyselam_common/edit_distance.hpp"
 
 namespace hyselam {
 namespace {
@@ -45,21 +46,6 @@ std::optional<double> asDouble(XmlRpcValue value) {
   if (value.getType() == XmlRpcValue::TypeDouble) return static_cast<double&>(value);
   if (value.getType() == XmlRpcValue::TypeInt) return static_cast<int&>(value);
   return std::nullopt;
-}
-
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
-    }
-  }
-  return row.back();
 }
 
 class ServerSource : public ParamSource {

@@ -18,7 +18,7 @@ class IncrementalGraph {
   /// `params.start` has no effect. @throws hyselam::ParameterError
   explicit IncrementalGraph(const OptimizeParams& params = {});
   /// Goes on with a graph that is known. @throws as GraphOptimizer does.
-  IncrementalGraph(PoseGraph graph, const OptimizeParams& params = {});
+  explicit IncrementalGraph(PoseGraph graph, const OptimizeParams& params = {});
   ~IncrementalGraph();
   IncrementalGraph(IncrementalGraph&&) noexcept;
   IncrementalGraph& operator=(IncrementalGraph&&) noexcept;

@@ -124,6 +124,7 @@ std::vector<Eigen::Matrix3d> GraphOptimizer::covariances(const std::vector<hysel
     throw std::invalid_argument("covariances: as many weights as the graph has edges, please");
   const Marginals marginals(*system_, poses, weights);
   std::vector<Eigen::Matrix3d> result;
+  result.reserve(of.size());
   for (const int pose : of) result.push_back(marginals.covariance(pose));
   return result;
 }

@@ -32,7 +32,7 @@ struct Found {
 class SearchGrid {
  public:
   /// @throws hyselam::ParameterError
-  SearchGrid(const SurfaceMap& map, const SearchParams& params = {});
+  explicit SearchGrid(const SurfaceMap& map, const SearchParams& params = {});
 
   /// The best pose of the window around `guess`, nothing if its score is below `least_score`.
   /// The same scan, map and guess give the same pose.

@@ -73,7 +73,8 @@ SearchGrid::SearchGrid(const SurfaceMap& map, const SearchParams& params) : para
         const double dx = x0_ + (x + 0.5) * r - p.x, dy = y0_ + (y + 0.5) * r - p.y;
         const double part = 2.0 * (dx * dx + dy * dy) / (params.reach * params.reach);
         if (part >= 2.0) continue;
-        const auto value = static_cast<std::uint8_t>(kFull * std::exp(-2.0 * part) + 0.5);
+        const double rounded = 0.5 + kFull * std::exp(-2.0 * part);
+        const auto value = static_cast<std::uint8_t>(rounded);
         std::uint8_t& cell =
             base.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                        static_cast<std::size_t>(x)];

@@ -79,9 +79,9 @@ LightMap::LightMap(const FloorRegions& regions, const RayCaster& walls,
     lamps_.push_back(p);
     lit[static_cast<std::size_t>(regions.roomAt(p))] = true;
   };
-  for (double y = 0.5 * kLampSpacing; y < height; y += kLampSpacing) {
-    for (double x = 0.5 * kLampSpacing; x < width; x += kLampSpacing) {
-      const Point2 p = fine.origin * Point2{x, y};
+  for (int row = 0; (row + 0.5) * kLampSpacing < height; ++row) {
+    for (int col = 0; (col + 0.5) * kLampSpacing < width; ++col) {
+      const Point2 p = fine.origin * Point2{(col + 0.5) * kLampSpacing, (row + 0.5) * kLampSpacing};
       if (regions.onFloor(p) && sees(walls, p, p + Point2{0.4, 0.0}) &&
           sees(walls, p, p - Point2{0.4, 0.0})) {
         hang(p);

@@ -5,26 +5,11 @@
 #include <set>
 #include <sstream>
 
+#include "hyselam_common/edit_distance.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace hyselam_sim {
 namespace {
-
-// Levenshtein distance.
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
 
 std::string place(const std::string& path, const YAML::Node& node) {
   std::ostringstream out;
@@ -39,7 +24,7 @@ std::string suggestion(const std::string& wrong, const std::vector<std::string>&
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
-    const std::size_t d = editDistance(wrong, candidate);
+    const std::size_t d = hyselam::editDistance(wrong, candidate);
     if (d < best_distance) {
       best_distance = d;
       best = candidate;

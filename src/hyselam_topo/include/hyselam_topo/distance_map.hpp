@@ -34,7 +34,6 @@ class DistanceMap {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  bool isObstacle(hyselam::Cell c) const { return obstacle_[index(c)] != 0; }
 
   /// Puts an obstacle or takes it away; cells outside are ignored. update() makes it effective.
   void setObstacle(hyselam::Cell c, bool obstacle);

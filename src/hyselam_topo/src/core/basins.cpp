@@ -52,7 +52,7 @@ cv::Mat waysUp(const cv::Mat& clearance) {
       if (c[1] > best) best = c[1], offset = 1;
       if ((left || above) && c[stride - 1] > best) best = c[stride - 1], offset = stride - 1;
       if (c[stride] > best) best = c[stride], offset = stride;
-      if ((right || above) && c[stride + 1] > best) best = c[stride + 1], offset = stride + 1;
+      if ((right || above) && c[stride + 1] > best) offset = stride + 1;
       out[x] = y * stride + x + offset;
     }
   }

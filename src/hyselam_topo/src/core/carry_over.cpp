@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "place_matching.hpp"
 
 namespace hyselam_topo {
@@ -335,20 +335,16 @@ class CarryOver {
   AugmentedTopologicalMap map_;
 };
 
-void requireIn(const char* name, double value, bool good, const char* allowed) {
-  if (!good) throw hyselam::ParameterError(name, value, allowed);
-}
-
 void check(const CarryOverParams& p) {
   const auto share = [](const char* name, double value) {
-    requireIn(name, value, value > 0.0 && value <= 1.0, "in (0, 1]");
+    hyselam::require(name, value, value > 0.0 && value <= 1.0, "in (0, 1]");
   };
   share("min_overlap", p.min_overlap);
   share("min_wall_overlap", p.min_wall_overlap);
-  requireIn("max_door_shift", p.max_door_shift, p.max_door_shift >= 0.0, ">= 0");
-  requireIn("max_wall_shift", p.max_wall_shift, p.max_wall_shift >= 0.0, ">= 0");
-  requireIn("max_wall_turn", p.max_wall_turn,
-            p.max_wall_turn >= 0.0 && p.max_wall_turn <= 0.5 * hyselam::kPi, "in [0, pi/2]");
+  hyselam::require("max_door_shift", p.max_door_shift, p.max_door_shift >= 0.0, ">= 0");
+  hyselam::require("max_wall_shift", p.max_wall_shift, p.max_wall_shift >= 0.0, ">= 0");
+  hyselam::require("max_wall_turn", p.max_wall_turn,
+                   p.max_wall_turn >= 0.0 && p.max_wall_turn <= 0.5 * hyselam::kPi, "in [0, pi/2]");
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ std::pair<int, int> sidesOf(const ConfirmedDoor& door, const cv::Mat& labels) {
   const double l = std::max(1e-9, std::hypot(b.x - a.x, b.y - a.y));
   const Point2d across{-(b.y - a.y) / l, (b.x - a.x) / l}, middle = 0.5 * (a + b);
   const auto first = [&](double sign) {
-    for (double s = 1.5; s < 12.0; s += 0.5) {
+    for (int half = 3; half < 24; ++half) {
+      const double s = 0.5 * half;  // cells from the middle
       const Point2d p = middle + sign * s * across;
       const int x = static_cast<int>(std::lround(p.x)), y = static_cast<int>(std::lround(p.y));
       if (x < 0 || y < 0 || x >= labels.cols || y >= labels.rows) return 0;

@@ -221,12 +221,13 @@ class DoorFinder {
   // door at the side leads into a third place and makes neither of them wider.
   double freeWay(cv::Point2d from, cv::Point2d along, double limit, const DoorLine& door) const {
     double s = 0.0;
-    for (; s < limit; s += 0.5) {
+    while (s < limit) {
       const cv::Point2d p = from + (s + 0.5) * along;
       if (blocked(p)) break;
       const int label = labels_.at<std::uint16_t>(static_cast<int>(std::floor(p.y)),
                                                   static_cast<int>(std::floor(p.x)));
       if (label != 0 && label != door.place_a && label != door.place_b) break;
+      s += 0.5;
     }
     return std::min(s, limit);
   }
@@ -238,7 +239,7 @@ class DoorFinder {
     const double more = std::max(params_.jambs * cells_, 1.5);
     const double limit = 0.5 * width + more;
     int wide = 0;
-    for (double t = 1.0; t <= params_.depth * cells_; t += 1.0) {
+    for (int t = 1; t <= params_.depth * cells_; ++t) {
       const cv::Point2d p = middle + t * across;
       if (blocked(p)) break;
       // Both sides together: a door in the corner of a room has a jamb on one side only.

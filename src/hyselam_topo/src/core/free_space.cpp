@@ -85,7 +85,8 @@ void clean(FreeSpace& space, const cv::Mat& occupied) {
   // more solid neighbour is allowed for pairs of them.
   cv::Mat around;
   cv::boxFilter(free, around, -1, {3, 3}, {-1, -1}, true, cv::BORDER_CONSTANT);
-  cv::compare(around, 255 * 13 / 18, around, cv::CMP_GT);
+  constexpr int kMean = 255 * 13 / 18;
+  cv::compare(around, kMean, around, cv::CMP_GT);
   cv::bitwise_or(free, around, free);
 
   // Where a map was seen by few rays, free and unknown cells mingle: the majority decides.

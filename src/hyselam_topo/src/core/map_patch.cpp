@@ -77,6 +77,7 @@ void nameByOverlap(const cv::Mat& labels, const Patch& patch, int places,
     }
   }
   std::vector<std::pair<int, std::pair<int, int>>> pairs;
+  pairs.reserve(overlap.size());
   for (const auto& [pair, cells] : overlap) pairs.push_back({cells, pair});
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const auto& p, const auto& q) { return p.first > q.first; });

@@ -50,7 +50,8 @@ class Obstacles {
     for (int ray = 0; ray < kRays; ++ray) {
       const double angle = axis + kBeam * (static_cast<double>(ray) / (kRays - 1) - 0.5);
       const Point2d u{std::cos(angle), std::sin(angle)};
-      for (double s = 1.0; s <= limit; s += 0.5) {
+      for (int half = 2; 0.5 * half <= limit; ++half) {
+        const double s = 0.5 * half;
         const int x = static_cast<int>(std::lround(centre.x + s * u.x)),
                   y = static_cast<int>(std::lround(centre.y + s * u.y));
         if (!isInside(x, y)) break;

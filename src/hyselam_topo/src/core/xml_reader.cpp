@@ -13,7 +13,7 @@ namespace {
 
 class Reader {
  public:
-  Reader(const XmlLimits& limits) : limits_(limits) {}
+  explicit Reader(const XmlLimits& limits) : limits_(limits) {}
 
   AugmentedTopologicalMap map(XmlElement& e) {
     AugmentedTopologicalMap map;

@@ -1,12 +1,11 @@
 #include "hyselam_topo/dialogue_state.hpp"
 
-#include <zlib.h>
-
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/json_integer.hpp"
 #include "hyselam_topo/description_xml.hpp"
@@ -21,17 +20,6 @@ using nlohmann::json;
 constexpr char kFormat[] = "hyselam_dialogue";
 constexpr int kVersion = 1;
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
-
-unsigned long crcOf(const std::string& bytes) {
-  unsigned long crc = crc32(0L, nullptr, 0);
-  std::size_t at = 0;
-  while (at < bytes.size()) {
-    const std::size_t piece = std::min<std::size_t>(bytes.size() - at, 1u << 30);
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(bytes.data() + at), static_cast<uInt>(piece));
-    at += piece;
-  }
-  return crc;
-}
 
 double numberAt(const json& j, const char* key) {
   if (!j.is_object() || !j.contains(key) || !j.at(key).is_number()) {
@@ -63,8 +51,8 @@ std::string toText(const DialogueState& state) {
   }
   const std::string body = j.dump(1) + "\n";
   char head[80];
-  std::snprintf(head, sizeof head, "%s %d %08lx %zu\n", kFormat, kVersion, crcOf(body),
-                body.size());
+  std::snprintf(head, sizeof head, "%s %d %s %zu\n", kFormat, kVersion,
+                hyselam::crc32Text(body).c_str(), body.size());
   return head + body;
 }
 
@@ -85,7 +73,8 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
     throw InputError(source, "", "it is not complete");
   }
   const std::string body = text.substr(begin);
-  if (crcOf(body) != crc) throw InputError(source, "", "it is damaged: the checksum is wrong");
+  if (hyselam::crc32Of(body) != crc)
+    throw InputError(source, "", "it is damaged: the checksum is wrong");
   DialogueState state;
   try {
     const json j = json::parse(body);

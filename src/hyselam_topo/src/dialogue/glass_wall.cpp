@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 #include "plane.hpp"
 
@@ -18,10 +19,6 @@ using hyselam::Point2;
 
 /// Two glass walls are the same if their ends are within this [m].
 constexpr double kSame = 0.3;
-
-void require(const char* name, double value, bool good, const char* allowed) {
-  if (!good) throw hyselam::ParameterError(name, value, allowed);
-}
 
 double directionOf(Side side) {
   switch (side) {
@@ -99,17 +96,17 @@ struct Walls {
 }  // namespace
 
 void checkGlassWallParams(const GlassWallParams& p) {
-  require("aperture", p.aperture, p.aperture > 0.0 && p.aperture <= 2.0 * hyselam::kPi,
-          "in (0, 2 pi]");
-  require("range", p.range, p.range > 0.0 && p.range <= 1000.0, "in (0, 1000]");
-  require("corner_cells", p.corner_cells, p.corner_cells >= 2 && p.corner_cells <= 100,
-          "in [2, 100]");
-  require("corner_angle", p.corner_angle, p.corner_angle > 0.0 && p.corner_angle < hyselam::kPi,
-          "in (0, pi)");
-  require("min_length", p.min_length, p.min_length > 0.0, "> 0");
-  require("max_length", p.max_length, p.max_length > p.min_length, "> min_length");
-  require("occupied_min", p.occupied_min, p.occupied_min >= 1 && p.occupied_min <= 100,
-          "in [1, 100]");
+  hyselam::require("aperture", p.aperture, p.aperture > 0.0 && p.aperture <= 2.0 * hyselam::kPi,
+                   "in (0, 2 pi]");
+  hyselam::require("range", p.range, p.range > 0.0 && p.range <= 1000.0, "in (0, 1000]");
+  hyselam::require("corner_cells", p.corner_cells, p.corner_cells >= 2 && p.corner_cells <= 100,
+                   "in [2, 100]");
+  hyselam::require("corner_angle", p.corner_angle,
+                   p.corner_angle > 0.0 && p.corner_angle < hyselam::kPi, "in (0, pi)");
+  hyselam::require("min_length", p.min_length, p.min_length > 0.0, "> 0");
+  hyselam::require("max_length", p.max_length, p.max_length > p.min_length, "> min_length");
+  hyselam::require("occupied_min", p.occupied_min, p.occupied_min >= 1 && p.occupied_min <= 100,
+                   "in [1, 100]");
 }
 
 double GlassWall::length() const {

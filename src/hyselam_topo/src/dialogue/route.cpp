@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <queue>
 
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 #include "hyselam_topo/place_pose.hpp"
 #include "plane.hpp"
@@ -20,10 +20,6 @@ using hyselam::Point2;
 using hyselam::Pose2;
 
 constexpr double kReach = 0.5;  // from a start on no place to the nearest one [m]
-
-void require(const char* name, double value, bool good, const char* allowed) {
-  if (!good) throw hyselam::ParameterError(name, value, allowed);
-}
 
 /// A step from a place to another one.
 struct Passage {
@@ -259,12 +255,14 @@ struct GraphSearch {
 }  // namespace
 
 void checkRouteParams(const RouteParams& p) {
-  require("clearance", p.clearance, p.clearance >= 0.0 && std::isfinite(p.clearance), ">= 0");
-  require("comfortable", p.comfortable, p.comfortable >= 0.0 && std::isfinite(p.comfortable),
-          ">= 0");
-  require("discomfort", p.discomfort, p.discomfort >= 0.0 && std::isfinite(p.discomfort), ">= 0");
-  require("closed_door", p.closed_door, p.closed_door >= 0.0, ">= 0");
-  require("spacing", p.spacing, p.spacing > 0.0, "> 0");
+  hyselam::require("clearance", p.clearance, p.clearance >= 0.0 && std::isfinite(p.clearance),
+                   ">= 0");
+  hyselam::require("comfortable", p.comfortable,
+                   p.comfortable >= 0.0 && std::isfinite(p.comfortable), ">= 0");
+  hyselam::require("discomfort", p.discomfort, p.discomfort >= 0.0 && std::isfinite(p.discomfort),
+                   ">= 0");
+  hyselam::require("closed_door", p.closed_door, p.closed_door >= 0.0, ">= 0");
+  hyselam::require("spacing", p.spacing, p.spacing > 0.0, "> 0");
 }
 
 std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const Pose2& from,

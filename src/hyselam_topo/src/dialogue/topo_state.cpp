@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topo/map_geometry.hpp"
 #include "plane.hpp"
 
@@ -26,17 +26,13 @@ double doorDistance(const AugmentedTopologicalMap& map, Id a, Id b, hyselam::Poi
   return nearest;
 }
 
-void require(const char* name, double value, bool good, const char* allowed) {
-  if (!good) throw hyselam::ParameterError(name, value, allowed);
-}
-
 }  // namespace
 
 void checkTopoStateParams(const TopoStateParams& p) {
-  require("inside", p.inside, p.inside >= 0.0 && std::isfinite(p.inside), ">= 0");
-  require("reach", p.reach, p.reach >= 0.0 && std::isfinite(p.reach), ">= 0");
-  require("settle", p.settle, p.settle >= 0.0, ">= 0");
-  require("jump", p.jump, p.jump > 0.0, "> 0");
+  hyselam::require("inside", p.inside, p.inside >= 0.0 && std::isfinite(p.inside), ">= 0");
+  hyselam::require("reach", p.reach, p.reach >= 0.0 && std::isfinite(p.reach), ">= 0");
+  hyselam::require("settle", p.settle, p.settle >= 0.0, ">= 0");
+  hyselam::require("jump", p.jump, p.jump > 0.0, "> 0");
 }
 
 TopoState::TopoState(const TopoStateParams& params) : params_(params) {

@@ -21,7 +21,6 @@ class KeyframeMapper {
       mapper_.clear();
       drawn_ = 0;
       revision_ = revision;
-      ++redrawn_;
     }
     while (drawn_ < keyframes.size()) {
       const SlamKeyframe& k = keyframes[drawn_++];
@@ -29,13 +28,11 @@ class KeyframeMapper {
     }
   }
   hyselam::OccupancyGrid grid() const { return mapper_.grid(); }
-  int redrawn() const { return redrawn_; }
 
  private:
   hyselam::OccupancyMapper mapper_;
   std::size_t drawn_ = 0;
   long revision_ = -1;
-  int redrawn_ = 0;
 };
 
 }  // namespace ngram_slam

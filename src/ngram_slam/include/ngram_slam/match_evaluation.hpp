@@ -30,7 +30,6 @@ class MatchEvaluation {
 
   const RecognitionScore& score() const { return score_; }
   std::size_t matches() const { return matches_; }
-  std::size_t trueMatches() const { return true_matches_; }
   double matchPrecision() const { return RecognitionFigures::share(true_matches_, matches_, 1.0); }
 
  private:

@@ -1,8 +1,6 @@
 // Numbers as bytes, little-endian, with checksums.
 #pragma once
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +8,8 @@
 #include <string>
 #include <type_traits>
 #include <vector>
+
+#include "hyselam_common/checksum.hpp"
 
 namespace ngram_slam {
 
@@ -47,8 +47,7 @@ class Writer {
  private:
   static constexpr std::size_t kChunk = 1 << 18;
   void flush() {
-    crc_ = static_cast<std::uint32_t>(crc32(crc_, reinterpret_cast<const Bytef*>(buffer_.data()),
-                                            static_cast<uInt>(buffer_.size())));
+    crc_ = hyselam::crc32Of(buffer_, crc_);
     out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     buffer_.clear();
   }
@@ -85,13 +84,7 @@ class Reader {
 };
 
 inline std::uint32_t checksum(const std::string& text, std::size_t begin, std::size_t end) {
-  uLong crc = 0;
-  while (begin < end) {
-    const std::size_t n = std::min(end - begin, std::size_t{1} << 30);
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(text.data() + begin), static_cast<uInt>(n));
-    begin += n;
-  }
-  return static_cast<std::uint32_t>(crc);
+  return hyselam::crc32Of({text.data() + begin, end - begin});
 }
 
 }  // namespace ngram_slam

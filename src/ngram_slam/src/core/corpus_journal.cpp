@@ -228,7 +228,9 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
   while (at < text.size()) {
     const std::string place =
         "block " + std::to_string(loaded.blocks) + ", byte " + std::to_string(at);
-    const auto cutOff = [&] { loaded.remark = path + ": " + place + ": is cut off, not used"; };
+    const auto cutOff = [&] {
+      (loaded.remark = path).append(": ").append(place).append(": is cut off, not used");
+    };
     if (text.size() - at < kBlockHeader) {
       cutOff();
       break;

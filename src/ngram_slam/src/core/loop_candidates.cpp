@@ -71,6 +71,7 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
   std::stable_sort(found.begin(), found.end(),
                    [](const Near& a, const Near& b) { return a.distance < b.distance; });
   std::vector<LoopCandidate> out;
+  out.reserve(found.size());
   for (const Near& n : found) out.push_back(n.candidate);
   return out;
 }

@@ -84,7 +84,7 @@ std::vector<Observation> ObservationSensor::add(const hyselam::LaserScan& scan,
 }
 
 std::vector<Observation> ObservationSensor::finish() {
-  const std::vector<Observation> complete = release(std::numeric_limits<double>::max());
+  std::vector<Observation> complete = release(std::numeric_limits<double>::max());
   sensor_.reset();
   sampler_.reset();
   return complete;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 
@@ -21,10 +22,8 @@ constexpr const char* kMagic = "ngram_slam semantic forest 1";
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 std::string checksum(const std::string& body) {
-  const auto crc =
-      crc32(0L, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
   std::ostringstream out;
-  out << std::hex << crc;
+  out << std::hex << hyselam::crc32Of(body);
   return out.str();
 }
 

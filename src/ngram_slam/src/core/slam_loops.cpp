@@ -230,7 +230,7 @@ void SlamEngine::takeFar(const SlamLoop& loop) {
                               state_.keyframes[static_cast<std::size_t>(loop.newer)].pose);
   if (std::isfinite(way) && distance(known, loop.measured) > p.reach(way) + 2.0) return;
 
-  const auto admit = [&](SlamLoop l) {
+  const auto admit = [&](const SlamLoop& l) {
     SlamCounters::Loops& count =
         l.source == LoopSource::kNgram ? state_.counters.words : state_.counters.far;
     ++count.accepted;

@@ -24,7 +24,6 @@ class ColorLbp {
   ~ColorLbp();
 
   const LbpParams& lbpParams() const { return lbp_; }
-  const ColorParams& colorParams() const { return colors_; }
 
   /// Pixels nearer than the radius to the border have no pattern and are not counted. Any size, any
   /// stride (also a region of interest). `layout` must have the image's size. Throws

@@ -179,6 +179,7 @@ std::vector<LabelledFrame> readLabels(const std::string& path) {
     if (cells.size() > kMaxColumns) throw hyselam::InputError(path, where, "has too many columns");
     if (columns.empty()) {
       std::vector<Column> named;
+      named.reserve(cells.size());
       for (const auto& cell : cells) named.push_back(columnOf(cell));
       header = std::count(named.begin(), named.end(), Column::kPlace) == 1 &&
                std::count(named.begin(), named.end(), Column::kImage) == 1;

@@ -1,13 +1,11 @@
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "binary.hpp"
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/json_integer.hpp"
 #include "selovis/model.hpp"
@@ -23,25 +21,13 @@ constexpr const char* kFormat = "selovis model 1";
 constexpr std::size_t kMaxBytes = std::size_t{2} << 30;
 constexpr int kMaxPlaces = 10000;
 
-std::string checksum(const std::string& bytes) {
-  uLong crc = crc32(0, nullptr, 0);
-  for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t n = std::min<std::size_t>(bytes.size() - at, std::size_t{1} << 30);
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(bytes.data() + at), static_cast<uInt>(n));
-    at += n;
-  }
-  char text[16];
-  std::snprintf(text, sizeof text, "%08lx", crc);
-  return text;
-}
-
 std::string pathIn(const std::string& directory, const std::string& name) {
   return (std::filesystem::path(directory) / name).string();
 }
 
 /// Writes bytes under a name with their checksum; returns what model.json says of them.
 json saveData(const std::string& directory, const std::string& kind, const std::string& bytes) {
-  const std::string crc = checksum(bytes), name = kind + "-" + crc + ".bin";
+  const std::string crc = hyselam::crc32Text(bytes), name = kind + "-" + crc + ".bin";
   hyselam::writeFileAtomically(pathIn(directory, name), [&](std::ostream& out) {
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   });
@@ -55,13 +41,13 @@ std::string loadData(const std::string& directory, const std::string& kind, cons
     throw InputError(manifest, kind, "'" + name + "' is no name of a data file");
   }
   const std::string path = pathIn(directory, name);
-  const std::string bytes = hyselam::readTextFile(path, kMaxBytes);
+  std::string bytes = hyselam::readTextFile(path, kMaxBytes);
   if (bytes.size() != integerOf<std::size_t>(entry.at("bytes"))) {
     throw InputError(
         path, "byte " + std::to_string(bytes.size()),
         "must have " + entry.at("bytes").dump() + " bytes: it was cut short or changed");
   }
-  if (checksum(bytes) != crc) throw InputError(path, "", "its checksum is not " + crc);
+  if (hyselam::crc32Text(bytes) != crc) throw InputError(path, "", "its checksum is not " + crc);
   return bytes;
 }
 

@@ -48,9 +48,9 @@ cv::Point2f VanishingPoint::find(const cv::Mat& image) {
   }
   const auto best = std::max_element(votes_.begin(), votes_.end());
   if (*best <= kMinShare * all / static_cast<float>(kCells * kCells)) return middle;
-  const int at = static_cast<int>(best - votes_.begin());
-  const float x = kWidth * 0.25f + (static_cast<float>(at % kCells) + 0.5f) * cell_w;
-  const float y = kHeight * 0.25f + (static_cast<float>(at / kCells) + 0.5f) * cell_h;
+  const int at = static_cast<int>(best - votes_.begin()), col = at % kCells, row = at / kCells;
+  const float x = kWidth * 0.25f + (static_cast<float>(col) + 0.5f) * cell_w;
+  const float y = kHeight * 0.25f + (static_cast<float>(row) + 0.5f) * cell_h;
   return {x * static_cast<float>(image.cols) / kWidth,
           y * static_cast<float>(image.rows) / kHeight};
 }
