@@ -160,21 +160,21 @@ nlohmann::json run(Options& o) {
   if (o.recogniser.filter.kind == FilterKind::kPoses) by_filter["poses"] = right / all;
   for (std::size_t k = 0; k < filters.size(); ++k) by_filter[filters[k].first] = right_by[k] / all;
   nlohmann::json result = {{"accuracy", right / all},
-                                 {"accuracy_frame_alone", right_alone / all},
-                                 {"accuracy_with_transitions", right_with_second / all},
-                                 {"frames", rows.size()},
-                                 {"descriptive_frames", descriptive},
-                                 {"novel_frames", novel},
-                                 {"accuracy_by_filter", by_filter},
-                                 {"per_place", per_place},
-                                 {"confusion", matrix},
-                                 {"descriptor_ms", median(descriptor_ms)},
-                                 {"frame_ms", median(frame_ms)},
-                                 {"descriptor", model.descriptor},
-                                 {"kernel", nameOf(model.classifier.kernel)},
-                                 {"filter", o.filter},
-                                 {"unknown_places", unknown_places},
-                                 {"places_not_on_map", not_on_map}};
+                           {"accuracy_frame_alone", right_alone / all},
+                           {"accuracy_with_transitions", right_with_second / all},
+                           {"frames", rows.size()},
+                           {"descriptive_frames", descriptive},
+                           {"novel_frames", novel},
+                           {"accuracy_by_filter", by_filter},
+                           {"per_place", per_place},
+                           {"confusion", matrix},
+                           {"descriptor_ms", median(descriptor_ms)},
+                           {"frame_ms", median(frame_ms)},
+                           {"descriptor", model.descriptor},
+                           {"kernel", nameOf(model.classifier.kernel)},
+                           {"filter", o.filter},
+                           {"unknown_places", unknown_places},
+                           {"places_not_on_map", not_on_map}};
   if (!o.predictions.empty()) writePredictions(o.predictions, tours, rows, model.graph.places);
   if (!o.plots.empty()) {
     std::error_code error;
