@@ -74,9 +74,9 @@ void slamState(const std::uint8_t* data, std::size_t size) {
 /// refused, or a class for any features, and saved and loaded as the same.
 void semanticForest(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
-  std::ostringstream head;
-  head << "ngram_slam semantic forest 1, " << kSemanticFeatures << " features, crc32 " << std::hex
-       << hyselam::crc32Of(hyselam::testing::textOf(data, size)) << "\n";
+  const std::string body = hyselam::testing::textOf(data, size);
+  const std::string head = "ngram_slam semantic forest 2, " + std::to_string(kSemanticFeatures) +
+                           " features, crc32 " + hyselam::crc32Text(body) + "\n";
   const auto verdictsOf = [](const SemanticForest& forest) {
     std::vector<SemanticVerdict> verdicts;
     for (const double value : {0.0, -1.0, 0.5, 1e6}) {
@@ -87,14 +87,13 @@ void semanticForest(const std::uint8_t* data, std::size_t size) {
     return verdicts;
   };
   try {
-    const SemanticForest forest = SemanticForest::load(
-        folder.put("forest.yml", head.str() + hyselam::testing::textOf(data, size)));
+    const SemanticForest forest = SemanticForest::load(folder.put("forest.txt", head + body));
     const auto verdicts = verdictsOf(forest);
     for (const SemanticVerdict& verdict : verdicts) {
       require(verdict.confidence >= 0.0 && verdict.confidence <= 1.0);
     }
-    forest.save(folder.path("again.yml"));
-    const auto again = verdictsOf(SemanticForest::load(folder.path("again.yml")));
+    forest.save(folder.path("again.txt"));
+    const auto again = verdictsOf(SemanticForest::load(folder.path("again.txt")));
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
       require(again[i].semantic_class == verdicts[i].semantic_class &&
               again[i].confidence == verdicts[i].confidence);

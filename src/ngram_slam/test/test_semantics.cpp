@@ -383,6 +383,7 @@ TEST(SemanticForest, refusesFilesThatAreNone) {
   other.replace(other.find(" features") - 2, 2, "99");
   EXPECT_TRUE(refused(other));
   // A right checksum over something else.
+  EXPECT_TRUE(refused("ngram_slam semantic forest 2, 13 features, crc32 00000000\n"));
   EXPECT_TRUE(refused("ngram_slam semantic forest 1, 13 features, crc32 0\n"));
   EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "none"); }), "");
   EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir.path()); }), "");
@@ -399,20 +400,28 @@ TEST(SemanticForest, refusesTreesThatAreNotWhole) {
     const std::size_t at = body.find(from);
     if (at == std::string::npos) return "no " + from;
     body.replace(at, from.size(), to);
-    std::ostringstream head;
-    head << good.substr(0, good.find("crc32 ") + 6) << std::hex << hyselam::crc32Of(body);
-    writeFile(dir / "bad", head.str() + "\n" + body);
+    writeFile(dir / "bad",
+              good.substr(0, good.find("crc32 ") + 6) + hyselam::crc32Text(body) + "\n" + body);
     return messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "bad"); });
   };
   EXPECT_EQ(messageWith("", ""), "");
-  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
-           {"norm_class_idx: ", "norm_class_idx: 7"},
-           {"var_idx: [ 0", "var_idx: [ 9"},
-           {"class_labels: [ ", "class_labels: [ 9"},
-           {"is_classifier: 1", "is_classifier: 0"},
-           {"ntrees: 60", "ntrees: 0"},
-           {"depth: 1", "depth: -1"},
-           {"missing_subst: [", "missing_subst: [ a,"}}) {
+  const std::size_t root = good.find('\n', line + 1) + 1;  // behind "tree"
+  const std::string first = good.substr(root, good.find('\n', root) + 1 - root);
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{first, "13 0.5\n"},
+                                                        {first, "-1 0.5\n"},
+                                                        {first, "1.5 0.5\n"},
+                                                        {first, "1 nan\n"},
+                                                        {first, "1 1e99\n"},
+                                                        {first, "1 2 3\n"},
+                                                        {first, "\n"},
+                                                        {"tree\n", ""},
+                                                        {"tree\n", "tree\ntree\n"},
+                                                        {first, first + first},
+                                                        {first, first + "corridor\n"},
+                                                        {"corridor\n", "corridors\n"},
+                                                        {good.substr(line + 1), ""},
+                                                        {good.substr(line + 1), first}}) {
     EXPECT_EQ(messageWith(from, to).find(dir / "bad"), 0u) << to;
   }
 }

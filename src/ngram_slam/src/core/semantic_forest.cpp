@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/ml.hpp>
 #include <sstream>
@@ -13,81 +12,145 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/numbers.hpp"
 #include "hyselam_common/rng.hpp"
 
 namespace ngram_slam {
 namespace {
 
-constexpr const char* kMagic = "ngram_slam semantic forest 1";
+constexpr const char* kMagic = "ngram_slam semantic forest 2";
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
-
-std::string checksum(const std::string& body) {
-  std::ostringstream out;
-  out << std::hex << hyselam::crc32Of(body);
-  return out.str();
-}
 
 cv::Mat rowOf(const SemanticFeatures& features) {
   const auto v = vectorOf(features);
   return cv::Mat(1, static_cast<int>(v.size()), CV_32F, const_cast<float*>(v.data())).clone();
 }
 
-/// NaN stands for what is no number.
-std::vector<double> numbersOf(const cv::FileNode& list) {
-  std::vector<double> numbers;
-  for (const cv::FileNode& entry : list) {
-    const bool number = entry.isInt() || entry.isReal();
-    numbers.push_back(number ? entry.real() : std::numeric_limits<double>::quiet_NaN());
-  }
-  return numbers;
-}
-
-/// OpenCV believes what a file says of its own layout. These lists are always the same for
-/// features that are ordered and one class.
-bool hasLayout(const cv::FileNode& root) {
-  std::vector<double> indices(kSemanticFeatures);
-  std::iota(indices.begin(), indices.end(), 0.0);
-  std::vector<double> types(kSemanticFeatures, cv::ml::VAR_ORDERED);
-  types.push_back(cv::ml::VAR_CATEGORICAL);
-  if (numbersOf(root["var_idx"]) != indices || numbersOf(root["var_type"]) != types ||
-      numbersOf(root["cat_ofs"]) != std::vector<double>(2 * kSemanticFeatures, 0.0) ||
-      numbersOf(root["missing_subst"]).size() != types.size()) {
-    return false;
-  }
-  const std::vector<double> labels = numbersOf(root["class_labels"]);
-  return !labels.empty() && std::all_of(labels.begin(), labels.end(), [](double label) {
-    return label >= 0.0 && label < kSemanticClasses && label == std::floor(label);
-  });
-}
-
-/// Whether every way down a tree ends in a class.
-bool isSound(const cv::ml::RTrees& trees, std::size_t classes) {
-  const auto& nodes = trees.getNodes();
-  const auto& splits = trees.getSplits();
-  const auto within = [](int index, std::size_t size) {
-    return index >= 0 && static_cast<std::size_t>(index) < size;
-  };
-  const auto& roots = trees.getRoots();
-  for (const int root : roots) {
-    if (!within(root, nodes.size())) return false;
-  }
-  for (const auto& node : nodes) {
-    if (!within(node.classIdx, classes)) return false;
-    if (node.split < 0) continue;
-    if (!within(node.split, splits.size()) || !within(node.left, nodes.size()) ||
-        !within(node.right, nodes.size()) ||
-        !within(splits[static_cast<std::size_t>(node.split)].varIdx, kSemanticFeatures)) {
-      return false;
-    }
-  }
-  return !roots.empty() && trees.isClassifier();
+/// The first line of a file with that body.
+std::string headOf(const std::string& body) {
+  std::ostringstream out;
+  out << kMagic << ", " << kSemanticFeatures << " features, crc32 " << hyselam::crc32Text(body);
+  return out.str();
 }
 
 }  // namespace
 
+/// The trees one after the other, each node before what is below it: a split is followed by its
+/// left side, where the feature is at most the threshold.
 struct SemanticForest::Model {
-  cv::Ptr<cv::ml::RTrees> trees;
+  struct Node {
+    int feature = -1;  ///< of a split; -1: a leaf
+    float threshold = 0.0f;
+    std::size_t right = 0;  ///< other side of a split
+    SemanticClass semantic_class = SemanticClass::kCorridor;
+  };
+  std::vector<Node> nodes;
+  std::vector<std::size_t> roots;
+
+  SemanticClass ask(std::size_t root, const std::array<float, kSemanticFeatures>& features) const {
+    std::size_t at = root;
+    while (nodes[at].feature >= 0) {
+      const Node& node = nodes[at];
+      const bool left = features[static_cast<std::size_t>(node.feature)] <= node.threshold;
+      at = left ? at + 1 : node.right;
+    }
+    return nodes[at].semantic_class;
+  }
+
+  /// Adds a tree of OpenCV's from a node of it on.
+  void add(const cv::ml::DTrees& trees, int from) {
+    const auto& given = trees.getNodes()[static_cast<std::size_t>(from)];
+    const std::size_t own = nodes.size();
+    nodes.emplace_back();
+    if (given.split < 0) {
+      nodes[own].semantic_class = kAllSemanticClasses.at(static_cast<std::size_t>(given.value));
+      return;
+    }
+    const auto& split = trees.getSplits()[static_cast<std::size_t>(given.split)];
+    nodes[own].feature = split.varIdx;
+    nodes[own].threshold = split.c;
+    add(trees, given.left);
+    nodes[own].right = nodes.size();
+    add(trees, given.right);
+  }
+
+  /// A line "tree" before each, then a node a line: "FEATURE THRESHOLD" or the name of a class.
+  std::string text() const {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out.precision(std::numeric_limits<float>::max_digits10);
+    auto root = roots.begin();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Node& node = nodes[i];
+      if (root != roots.end() && *root == i) {
+        out << "tree\n";
+        ++root;
+      }
+      if (node.feature < 0) {
+        out << nameOf(node.semantic_class) << "\n";
+      } else {
+        out << node.feature << " " << node.threshold << "\n";
+      }
+    }
+    return out.str();
+  }
+
+  static Model read(const std::string& body, const std::string& path);
 };
+
+SemanticForest::Model SemanticForest::Model::read(const std::string& body,
+                                                  const std::string& path) {
+  Model model;
+  std::vector<std::size_t> waiting;  // splits without their right side
+  bool ended = true;                 // a side, or a tree; else a node must follow
+  std::vector<std::string_view> fields;
+  hyselam::forEachLine(body, [&](std::size_t number, std::string_view line) {
+    const auto fail = [&](const char* reason) {
+      throw hyselam::InputError(path, "line " + std::to_string(number + 1), reason);
+    };
+    const std::size_t own = model.nodes.size();
+    if (line == "tree") {
+      if (!ended || !waiting.empty()) fail("begins a tree within a tree");
+      model.roots.push_back(own);
+      ended = false;
+      return;
+    }
+    if (ended) {
+      if (waiting.empty()) fail("stands outside of a tree");
+      model.nodes[waiting.back()].right = own;
+      waiting.pop_back();
+    }
+    Node node;
+    hyselam::splitFields(line, &fields);
+    if (fields.size() == 1) {
+      const auto semantic_class = semanticClassOf(std::string(fields[0]));
+      if (!semantic_class) fail("is no class");
+      node.semantic_class = *semantic_class;
+      ended = true;
+    } else if (fields.size() == 2) {
+      const auto feature = hyselam::parseNumber(fields[0]);
+      const auto threshold = hyselam::parseNumber(fields[1]);
+      if (!feature || *feature != std::floor(*feature) || *feature < 0.0 ||
+          *feature >= kSemanticFeatures) {
+        fail("names a feature that there is not");
+      }
+      if (!threshold || std::abs(*threshold) > std::numeric_limits<float>::max()) {
+        fail("has a threshold that is no number");
+      }
+      node.feature = static_cast<int>(*feature);
+      node.threshold = static_cast<float>(*threshold);
+      waiting.push_back(own);
+      ended = false;
+    } else {
+      fail("must be a class, or a feature and a threshold");
+    }
+    model.nodes.push_back(node);
+  });
+  if (model.roots.empty() || !ended || !waiting.empty()) {
+    throw hyselam::InputError(path, "", "ends within a tree");
+  }
+  return model;
+}
 
 SemanticForest::SemanticForest(std::unique_ptr<Model> model) : model_(std::move(model)) {}
 SemanticForest::SemanticForest(SemanticForest&&) noexcept = default;
@@ -113,30 +176,30 @@ SemanticForest SemanticForest::train(const std::vector<SemanticExample>& example
     samples.push_back(rowOf(e.features));
     answers.push_back(static_cast<int>(indexOf(e.semantic_class)));
   }
-  auto model = std::make_unique<Model>();
-  model->trees = cv::ml::RTrees::create();
-  model->trees->setMaxDepth(params.depth);
-  model->trees->setMinSampleCount(params.smallest);
-  model->trees->setActiveVarCount(params.choice);
-  model->trees->setTermCriteria({cv::TermCriteria::MAX_ITER, params.trees, 0.0});
+  const auto trees = cv::ml::RTrees::create();
+  trees->setMaxDepth(params.depth);
+  trees->setMinSampleCount(params.smallest);
+  trees->setActiveVarCount(params.choice);
+  trees->setTermCriteria({cv::TermCriteria::MAX_ITER, params.trees, 0.0});
   cv::Mat types(samples.cols + 1, 1, CV_8U, cv::Scalar(cv::ml::VAR_ORDERED));
   types.at<uchar>(samples.cols) = cv::ml::VAR_CATEGORICAL;
   // OpenCV draws from the thread's own generator.
   const std::uint64_t before = cv::theRNG().state;
   cv::theRNG().state = hyselam::mix(params.seed, 1) | 1;
-  model->trees->train(cv::ml::TrainData::create(samples, cv::ml::ROW_SAMPLE, answers, cv::noArray(),
-                                                cv::noArray(), cv::noArray(), types));
+  trees->train(cv::ml::TrainData::create(samples, cv::ml::ROW_SAMPLE, answers, cv::noArray(),
+                                         cv::noArray(), cv::noArray(), types));
   cv::theRNG().state = before;
+  auto model = std::make_unique<Model>();
+  for (const int root : trees->getRoots()) {
+    model->roots.push_back(model->nodes.size());
+    model->add(*trees, root);
+  }
   return SemanticForest(std::move(model));
 }
 
 void SemanticForest::save(const std::string& path) const {
-  cv::FileStorage file(".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-  model_->trees->write(file);
-  const std::string body = file.releaseAndGetString();
-  std::ostringstream head;
-  head << kMagic << ", " << kSemanticFeatures << " features, crc32 " << checksum(body) << "\n";
-  const std::string text = head.str() + body;
+  const std::string body = model_->text();
+  const std::string text = headOf(body) + "\n" + body;
   if (path.size() < 3 || path.compare(path.size() - 3, 3, ".gz") != 0) {
     hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << text; });
     return;
@@ -158,50 +221,23 @@ SemanticForest SemanticForest::load(const std::string& path) {
   if (head.compare(0, std::string(kMagic).size(), kMagic) != 0)
     throw hyselam::InputError(path, "line 1", "is no forest of semantic classes of this version");
   const std::string body = line == std::string::npos ? "" : text.substr(line + 1);
-  std::ostringstream expected;
-  expected << kMagic << ", " << kSemanticFeatures << " features, crc32 ";
-  if (head.compare(0, expected.str().size(), expected.str()) != 0)
+  const std::string expected = headOf(body);
+  const std::size_t sum = expected.rfind(' ');
+  if (head.compare(0, sum, expected, 0, sum) != 0)
     throw hyselam::InputError(path, "line 1",
                               "was made for other features: train it again with train_semantic");
-  if (head != expected.str() + checksum(body))
+  if (head != expected)
     throw hyselam::InputError(path, "", "is damaged or cut off: its checksum is wrong");
-  auto model = std::make_unique<Model>();
-  std::size_t classes = 0;
-  try {
-    const cv::FileStorage file(body, cv::FileStorage::READ | cv::FileStorage::MEMORY);
-    if (!hasLayout(file.root())) {
-      throw hyselam::InputError(path, "", "holds no forest for these features");
-    }
-    model->trees = cv::Algorithm::read<cv::ml::RTrees>(file.root());
-    classes = file.root()["class_labels"].size();
-  } catch (const hyselam::InputError&) {
-    throw;
-  } catch (const cv::Exception& e) {
-    throw hyselam::InputError(path, "", "holds no forest: " + e.err);
-  } catch (const std::exception& e) {
-    throw hyselam::InputError(path, "", std::string("holds no forest: ") + e.what());
-  }
-  if (!model->trees || !model->trees->isTrained() ||
-      model->trees->getVarCount() != static_cast<int>(kSemanticFeatures) ||
-      !isSound(*model->trees, classes)) {
-    throw hyselam::InputError(path, "", "holds a forest whose trees are not whole");
-  }
-  return SemanticForest(std::move(model));
+  return SemanticForest(std::make_unique<Model>(Model::read(body, path)));
 }
 
 SemanticVerdict SemanticForest::classify(const SemanticFeatures& features) const {
-  // The first row of the votes holds the classes, the second how many trees chose each.
-  cv::Mat votes;
-  model_->trees->getVotes(rowOf(features), votes, 0);
-  double all = 0.0;
-  int best = 0;
-  for (int c = 0; c < votes.cols; ++c) {
-    all += votes.at<int>(1, c);
-    if (votes.at<int>(1, c) > votes.at<int>(1, best)) best = c;
-  }
-  const auto index = static_cast<std::size_t>(votes.at<int>(0, best));
-  return {kAllSemanticClasses[std::min(index, kSemanticClasses - 1)],
-          votes.at<int>(1, best) / std::max(1.0, all)};
+  const auto values = vectorOf(features);
+  std::array<std::size_t, kSemanticClasses> votes{};
+  for (const std::size_t root : model_->roots) ++votes[indexOf(model_->ask(root, values))];
+  const auto best = std::max_element(votes.begin(), votes.end());
+  return {kAllSemanticClasses[static_cast<std::size_t>(best - votes.begin())],
+          static_cast<double>(*best) / static_cast<double>(model_->roots.size())};
 }
 
 }  // namespace ngram_slam
