@@ -11,7 +11,7 @@ namespace {
 using hyselam_objects::simulated::Furnished;
 
 void run(benchmark::State& state, const Furnished& furnished) {
-  using namespace hyselam_objects::simulated;
+  using namespace hyselam_objects::simulated;  // NOLINT: a program, not a header
   const char* every = std::getenv("HYSELAM_FLAT_EVERY");
   FlatScores scores;
   for (auto _ : state) {

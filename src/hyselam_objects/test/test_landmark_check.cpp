@@ -7,7 +7,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_objects/landmark_check.hpp"
 
-using namespace hyselam_objects;
+using namespace hyselam_objects;  // NOLINT: a test, not a header
 
 namespace {
 

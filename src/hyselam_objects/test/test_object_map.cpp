@@ -14,7 +14,7 @@
 #include "hyselam_objects/object_dictionary.hpp"
 #include "hyselam_objects/object_map.hpp"
 
-using namespace hyselam_objects;
+using namespace hyselam_objects;  // NOLINT: a test, not a header
 using hyselam::InputError;
 using hyselam::testing::messageOf;
 using hyselam::testing::TemporaryDirectory;

@@ -8,7 +8,7 @@
 #include "hyselam_objects/object_descriptor.hpp"
 #include "hyselam_objects/object_mapper.hpp"
 
-using namespace hyselam_objects;
+using namespace hyselam_objects;  // NOLINT: a test, not a header
 
 namespace {
 

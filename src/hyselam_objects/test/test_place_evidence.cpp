@@ -6,7 +6,7 @@
 #include "hyselam_objects/place_evidence.hpp"
 #include "hyselam_topo/topomerg.hpp"
 
-using namespace hyselam_objects;
+using namespace hyselam_objects;  // NOLINT: a test, not a header
 using hyselam_topo::MatchProblem;
 
 namespace {

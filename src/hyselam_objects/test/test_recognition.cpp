@@ -11,7 +11,7 @@
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/find_model.hpp"
 
-using namespace hyselam_objects;
+using namespace hyselam_objects;  // NOLINT: a test, not a header
 
 namespace {
 

@@ -29,7 +29,8 @@ AugmentedTopologicalMap building(int side) {
     }
   }
   for (int r = 0; r < rooms * rooms; ++r) {
-    const double x = 5.0 * (r % rooms), y = 5.0 * (r / rooms);
+    const int column = r % rooms, row = r / rooms;
+    const double x = 5.0 * column, y = 5.0 * row;
     Place place;
     place.id = map.next_place_id++;
     place.area = 24.0;
