@@ -140,7 +140,7 @@ TEST(DistanceMap, WithoutObstaclesAllIsFar) {
 }
 
 TEST(DistanceMap, RefusesWhatIsNoMap) {
-  EXPECT_THROW(DistanceMap(cv::Mat()), std::invalid_argument);
+  EXPECT_THROW(DistanceMap{cv::Mat()}, std::invalid_argument);
   EXPECT_THROW(DistanceMap(cv::Mat(3, 3, CV_32F)), std::invalid_argument);
   EXPECT_THROW(DistanceMap(cv::Mat(1, 40000, CV_8U, cv::Scalar(0))), std::invalid_argument);
   DistanceMap map(cv::Mat(3, 5, CV_8UC1, cv::Scalar(0)));
