@@ -106,6 +106,11 @@ TEST_F(Tools, BagsMayNameTheirTopicsAndFramesOtherwise) {
                             " --poses odometry --odom-topic wheels --odom-frame robot/odom" +
                             " --base-frame robot/base";
   EXPECT_TRUE(refused(run(d, build), "/front /rear"));
+  EXPECT_TRUE(refused(run(d, build + " --scan-topic frnt"), "there is no topic frnt"));
+  EXPECT_TRUE(refused(run(d, build + " --scan-topic front --odom-topic typo"), "only /wheels"));
+  EXPECT_TRUE(refused(run(d, build + " --scan-topic front --base-frame base_link"),
+                      "no transform leads to it from base_link; frames of the bag: robot/base"));
+  EXPECT_TRUE(refused(run(d, build + " --scan-topic front --base-frame typo"), "from typo"));
   const Result r = run(d, build + " --scan-topic front --json " + (d / "out.json"));
   ASSERT_EQ(r.status, 0) << r.errors;
   EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "out.json"))["scans"], 3);

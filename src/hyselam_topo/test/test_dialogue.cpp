@@ -226,7 +226,7 @@ TEST(Dialogue, AnswersQuestions) {
   describe(&v);
   EXPECT_TRUE(has(v.say("What is next to the stairs?"), "corridor"));
   EXPECT_TRUE(has(v.say("Where is I-111?"), "meters from here"));
-  EXPECT_TRUE(has(v.say("Is this I-111?"), "meters from here"));
+  EXPECT_TRUE(has(v.say("Is this I-111?"), "No. "));
   EXPECT_TRUE(has(v.say("Are we in the stairs?"), "meters from here"));
   EXPECT_TRUE(has(v.say("How do I get to the hall?"), "corridor"));
   EXPECT_TRUE(has(v.say("What is on your left?"), "i-109"));
@@ -245,11 +245,12 @@ TEST(Dialogue, AsksToConfirmAGuessThatItIsAskedFor) {
     const auto names = v.names(v.truth("i-110"));
     EXPECT_EQ(std::count(names.begin(), names.end(), "i-110"), 1) << said << " is no name";
   }
+  EXPECT_TRUE(has(v.say("Okay."), "I have not asked anything.")) << "stop ends a question";
   const std::string name = v.names(v.truth("i-110")).front();
   const Reply reply = v.say("Is this " + name + "?");
   EXPECT_TRUE(has(reply, "I am there. Can you please confirm the name " + name)) << reply.text();
   v.say("Yes.");
-  EXPECT_TRUE(has(v.say("Is this " + name + "?"), "I am there."));
+  EXPECT_TRUE(has(v.say("Is this " + name + "?"), "Yes. " + name));
   EXPECT_EQ(v.dialogue.question().kind, Question::Kind::kNone);
 }
 

@@ -193,9 +193,10 @@ TEST(Recogniser, recognisesTheSecondLapAndAlignsIt) {
       ASSERT_EQ(static_cast<int>(ngram.size()), m.n);
       ++matches;
       for (const auto& p : alignedObservations(r.text(), r.observations(), {ngram.back()}, 5)) {
-        const auto away = static_cast<double>(
-            (place[p.newer] + c.steps() - place[p.older] + c.steps() / 2) % c.steps());
-        const double apart = std::abs(away - static_cast<double>(c.steps() / 2));
+        const auto half = c.steps() / 2;
+        const auto away =
+            static_cast<double>((place[p.newer] + c.steps() - place[p.older] + half) % c.steps());
+        const double apart = std::abs(away - static_cast<double>(half));
         wrong += apart > 20;
         error += apart;
         ++pairs;

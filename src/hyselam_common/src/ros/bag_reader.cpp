@@ -82,19 +82,25 @@ std::map<std::string, std::string> topicTypes(rosbag::Bag& bag) {
   return types;
 }
 
-/// The wanted topic if it has the type, else the only one of that type, else "".
+/// The wanted topic if it has the type. Else, if it was not asked for by another name than the
+/// usual one, the only one of that type, or "".
 std::string findTopic(const std::map<std::string, std::string>& types, const std::string& wanted,
-                      const std::string& type, const std::string& path) {
+                      const std::string& usual, const std::string& type, const std::string& path) {
   std::vector<std::string> candidates;
   for (const auto& t : types) {
     if (t.second != type) continue;
     if (withoutSlash(t.first) == withoutSlash(wanted)) return t.first;
     candidates.push_back(t.first);
   }
-  if (candidates.size() <= 1) return candidates.empty() ? "" : candidates.front();
+  const bool asked_for = withoutSlash(wanted) != withoutSlash(usual);
+  if (!asked_for && candidates.size() <= 1) return candidates.empty() ? "" : candidates.front();
   std::string names;
   for (const std::string& c : candidates) names += " " + c;
-  throw InputError(path, "", "there is no topic " + wanted + ", and several " + type + ":" + names);
+  throw InputError(path, "",
+                   "there is no topic " + wanted + " of type " + type +
+                       (candidates.empty()       ? ", and no other"
+                        : candidates.size() == 1 ? ", only" + names
+                                                 : ", and several:" + names));
 }
 
 /// The time of the header, or that of the recording where the header has none.
@@ -192,8 +198,9 @@ boost::shared_ptr<T> decode(const rosbag::MessageInstance& m, const std::string&
 
 Content readContent(rosbag::Bag& bag, const std::string& path, const BagOptions& options) {
   const auto types = topicTypes(bag);
+  const BagOptions usual;
   const std::string scan_topic =
-      findTopic(types, options.scan_topic, "sensor_msgs/LaserScan", path);
+      findTopic(types, options.scan_topic, usual.scan_topic, "sensor_msgs/LaserScan", path);
   if (scan_topic.empty()) throw InputError(path, "", "holds no laser scans");
   // The ground truth is an Odometry topic too, but never a candidate for the odometry.
   auto odometry_types = types;
@@ -202,8 +209,8 @@ Content readContent(rosbag::Bag& bag, const std::string& path, const BagOptions&
     if (withoutSlash(t.first) == withoutSlash(options.ground_truth_topic)) truth_topic = t.first;
   }
   odometry_types.erase(truth_topic);
-  const std::string odometry_topic =
-      findTopic(odometry_types, options.odometry_topic, "nav_msgs/Odometry", path);
+  const std::string odometry_topic = findTopic(odometry_types, options.odometry_topic,
+                                               usual.odometry_topic, "nav_msgs/Odometry", path);
 
   std::vector<std::string> topics{scan_topic, "/tf", "/tf_static", "tf", "tf_static"};
   for (const std::string& t : {odometry_topic, truth_topic}) {
@@ -237,6 +244,24 @@ void sortByStamp(std::vector<StampedPose2>* poses) {
                    [](const StampedPose2& a, const StampedPose2& b) { return a.stamp < b.stamp; });
 }
 
+/// No transform leads from the base to a laser. Bags without any are taken as they are: the laser
+/// is at the base. But a base that is in no transform, beside transforms, is one of another name.
+void requireKnownBase(const Content& content, const std::string& laser, const std::string& path,
+                      const BagOptions& options) {
+  std::set<std::string> frames;
+  for (const auto& t : content.transforms) frames.insert({t.first.first, t.first.second});
+  const bool asked_for = options.base_frame != BagOptions().base_frame;
+  if (!content.tf_odometry.empty() || frames.count(options.base_frame) != 0 || frames.empty() ||
+      (!asked_for && frames.count(laser) == 0)) {
+    return;
+  }
+  std::string known;
+  for (const std::string& frame : frames) known += " " + frame;
+  throw InputError(
+      path, "frame " + laser,
+      "no transform leads to it from " + options.base_frame + "; frames of the bag:" + known);
+}
+
 RobotLog assemble(Content content, const std::string& path, const BagOptions& options) {
   RobotLog log;
   if (content.scans.empty()) throw InputError(path, "", "holds no laser scans");
@@ -257,6 +282,7 @@ RobotLog assemble(Content content, const std::string& path, const BagOptions& op
       auto found = lasers.find(s.frame);
       if (found == lasers.end()) {
         found = lasers.emplace(s.frame, chain(content, options.base_frame, s.frame)).first;
+        if (!found->second) requireKnownBase(content, s.frame, path, options);
       }
       if (found->second) placeLaser(*found->second, path + ": frame " + s.frame, &s.scan);
     }

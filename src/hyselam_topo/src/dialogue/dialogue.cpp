@@ -282,6 +282,7 @@ bool Dialogue::understands(const Utterance& u, Turn* turn) {
     out->actions.push_back({DialogueAction::Kind::kFollow, {}, 0.0});
     say("following");
   } else if (intent == "stop") {
+    question_ = {};
     out->actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
     say("stopped");
   } else if (intent == "turn") {
@@ -300,7 +301,7 @@ bool Dialogue::understands(const Utterance& u, Turn* turn) {
     say("cancelled");
   } else if (intent == "where_are_you") {
     whereAreYou(out);
-  } else if (intent == "where_is") {
+  } else if (intent == "where_is" || intent == "is_here") {
     whereIs(u, turn);
   } else if (intent == "way_to") {
     wayTo(u, turn);

@@ -120,12 +120,19 @@ void Dialogue::whereIs(const Utterance& u, Turn* turn) {
   const Phrases& p = phrases();
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
-  const std::string name = shortName(found.front());
+  std::string name = shortName(found.front());
   const Id here = robot().place;
-  if (std::count(found.begin(), found.end(), here) > 0) {
-    const Place& place = *places_.map().findPlace(here);
+  const bool at = std::count(found.begin(), found.end(), here) > 0;
+  const Place& asked_for = *places_.map().findPlace(at ? here : found.front());
+  const bool guessed = nameStateOf(asked_for) == NameState::kUnconfirmed;
+  if (u.intent == "is_here" && here != 0 && !guessed) {
+    out->sentences.push_back(p.say(at ? "yes" : "no"));
+  }
+  if (guessed) name = p.say("perhaps", {{"name", name}});
+  if (at) {
+    const Place& place = asked_for;
     out->sentences.push_back(p.say("where_is_here", {{"name", name}, {"code", codeOf(place)}}));
-    if (nameStateOf(place) == NameState::kUnconfirmed) askConfirm(here, out);
+    if (guessed) askConfirm(here, out);
     return;
   }
   const auto leg = robot().has_pose ? planRoute(places_.map(), robot().pose, found, params_.route)

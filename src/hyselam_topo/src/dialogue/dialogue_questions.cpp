@@ -129,6 +129,9 @@ void Dialogue::answerYes(Reply* out) {
       out->actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
       out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
       break;
+    case Question::Kind::kName:
+      out->sentences.push_back(phrases().say("ask_name"));  // a name is no matter of yes
+      break;
     default:
       out->sentences.push_back(phrases().say("nothing_asked"));
   }

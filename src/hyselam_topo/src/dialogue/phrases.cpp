@@ -64,6 +64,8 @@ const std::map<std::string, std::set<std::string>>& knownPhrases() {
       {"stopped", {}},
       {"turning", {"side"}},
       {"cancelled", {}},
+      {"yes", {}},
+      {"no", {}},
       {"where_is", {"name", "code", "length"}},
       {"where_is_here", {"name", "code"}},
       {"where_is_no_way", {"name", "code"}},

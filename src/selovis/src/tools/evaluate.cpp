@@ -2,6 +2,7 @@
 #include <ctime>
 #include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "hyselam_common/atomic_file.hpp"
@@ -71,6 +72,9 @@ nlohmann::json run(Options& o) {
   std::vector<std::string> not_on_map;
   if (!o.topology.empty()) {
     graph = reordered(readTopology(o.topology), model.graph.places, &not_on_map);
+    if (not_on_map.size() == model.graph.places.size()) {
+      throw hyselam::InputError(o.topology, "", "has none of the places of the model");
+    }
   }
   try {
     o.recogniser.filter.kind = filterKind(o.filter);
@@ -175,6 +179,8 @@ nlohmann::json run(Options& o) {
                            {"filter", o.filter},
                            {"unknown_places", unknown_places},
                            {"places_not_on_map", not_on_map}};
+  std::cout << right << " of " << rows.size() << " frames right (" << std::fixed
+            << std::setprecision(1) << 100.0 * right / all << " %)\n";
   if (!o.predictions.empty()) writePredictions(o.predictions, tours, rows, model.graph.places);
   if (!o.plots.empty()) {
     std::error_code error;

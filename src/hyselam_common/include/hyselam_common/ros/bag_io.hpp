@@ -29,13 +29,15 @@ struct BagOptions {
 ///
 /// Scans: `scan_topic`, or the only LaserScan topic if that one is missing. Odometry:
 /// `odometry_topic` (nav_msgs/Odometry), or the only Odometry topic, else the odom_frame ->
-/// base_frame transform of /tf. Ground truth: `ground_truth_topic` as nav_msgs/Odometry or
+/// base_frame transform of /tf. A topic that is told by another name than the default is not
+/// replaced. Ground truth: `ground_truth_topic` as nav_msgs/Odometry or
 /// geometry_msgs/PoseStamped, if present. laser_in_base: the option, else the first chain of
 /// transforms of /tf_static and /tf from base_frame to the scans' frame_id, else identity; a laser
 /// mounted upside down comes out with mirrored angles and a negative increment. Times are those of
 /// the headers; messages are put in the order of their headers. Throws InputError for: a missing
-/// file, no bag, a truncated or damaged bag, no scans, several scan topics without a choice, no
-/// odometry, and messages that cannot be used (topic and time are named).
+/// file, no bag, a truncated or damaged bag, no scans, several scan topics without a choice, topics
+/// told that are not there, a base frame that is in no transform while others are, no odometry, and
+/// messages that cannot be used (topic and time are named).
 RobotLog readBag(const std::string& path, const BagOptions& options = {});
 
 /// Writes /scan, /odom (with the velocities that neighbouring samples give), /tf (odom -> base_link
