@@ -102,16 +102,21 @@ TEST_F(Tools, BagsMayNameTheirTopicsAndFramesOtherwise) {
     rosbag::Bag bag(d / "in.bag", rosbag::bagmode::Append);
     bag.write("/rear", toRosTime(1.0), toMsg(log.scans[0], "laser"));
   }
-  const std::string build = "build_map " + (d / "in.bag") + " " + (d / "map.yaml") +
-                            " --poses odometry --odom-topic wheels --odom-frame robot/odom" +
-                            " --base-frame robot/base";
-  EXPECT_TRUE(refused(run(d, build), "/front /rear"));
-  EXPECT_TRUE(refused(run(d, build + " --scan-topic frnt"), "there is no topic frnt"));
-  EXPECT_TRUE(refused(run(d, build + " --scan-topic front --odom-topic typo"), "only /wheels"));
-  EXPECT_TRUE(refused(run(d, build + " --scan-topic front --base-frame base_link"),
-                      "no transform leads to it from base_link; frames of the bag: robot/base"));
-  EXPECT_TRUE(refused(run(d, build + " --scan-topic front --base-frame typo"), "from typo"));
-  const Result r = run(d, build + " --scan-topic front --json " + (d / "out.json"));
+  const auto build = [&](const std::string& scans, const std::string& odometry,
+                         const std::string& base) {
+    return run(d, "build_map " + (d / "in.bag") + " " + (d / "map.yaml") + " --poses odometry" +
+                      scans + odometry + base + " --odom-frame robot/odom --json " +
+                      (d / "out.json"));
+  };
+  const std::string scans = " --scan-topic front", odometry = " --odom-topic wheels",
+                    base = " --base-frame robot/base";
+  EXPECT_TRUE(refused(build("", odometry, base), "/front /rear"));
+  EXPECT_TRUE(refused(build(" --scan-topic frnt", odometry, base), "there is no topic frnt"));
+  EXPECT_TRUE(refused(build(scans, " --odom-topic typo", base), "only /wheels"));
+  EXPECT_TRUE(refused(build(scans, odometry, ""),
+                      "no transform leads to it from base_link; frames of the bag: laser robot"));
+  EXPECT_TRUE(refused(build(scans, odometry, " --base-frame typo"), "from typo"));
+  const Result r = build(scans, odometry, base);
   ASSERT_EQ(r.status, 0) << r.errors;
   EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "out.json"))["scans"], 3);
 }
