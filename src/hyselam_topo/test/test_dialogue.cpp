@@ -256,6 +256,20 @@ TEST(Dialogue, AsksToConfirmAGuessThatItIsAskedFor) {
   EXPECT_TRUE(has(v.say("Is this " + name + "?"), "No. " + name));
 }
 
+TEST(Dialogue, ForgetsAllThatItWasToldOfTheBuilding) {
+  Visit v;
+  describe(&v);
+  v.say("Forget all names.");
+  EXPECT_TRUE(has(v.say("Where is the hall?"), "I do not know the place hall."));
+  v.at(1.0, 1.2, 0.0);
+  v.say("You are in the corridor. On your left you have the lab.");
+  for (const auto& place : v.dialogue.map().places) {
+    for (const auto& name : v.names(place.id)) {
+      EXPECT_TRUE(name == "corridor" || name == "lab") << name;
+    }
+  }
+}
+
 TEST(Dialogue, AsksByItselfAsItsParametersSay) {
   DialogueParams params;
   params.ask = DialogueParams::Ask::kAlways;

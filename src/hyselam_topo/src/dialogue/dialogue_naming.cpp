@@ -84,6 +84,9 @@ void Dialogue::forgetNames(const Utterance& u, Turn* turn) {
   const Phrases& p = phrases();
   if (!u.word("all").empty() || u.find("all") != nullptr) {
     places_.forgetAllNames();
+    builder_ = DescriptionBuilder(parser_);  // or the next sentence would bring them back
+    match_.reset();
+    question_ = {};
     out->sentences.push_back(p.say("forgot_all"));
     out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
     return;

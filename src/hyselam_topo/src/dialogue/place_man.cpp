@@ -214,6 +214,7 @@ std::vector<Id> PlaceMan::forgetName(const std::string& name) {
 
 void PlaceMan::forgetAllNames() {
   for (Place& place : state_.map.places) place.words.clear();
+  state_.rejected.clear();
 }
 
 void PlaceMan::rename(Id id, const std::string& name) {
