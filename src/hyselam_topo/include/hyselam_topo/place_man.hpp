@@ -76,6 +76,7 @@ class PlaceMan {
   bool forget(Id place);
   /// A name goes, everywhere. The places that had it.
   std::vector<Id> forgetName(const std::string& name);
+  /// With those that were refused.
   void forgetAllNames();
   /// All names of a place go and another one is confirmed.
   void rename(Id place, const std::string& name);
