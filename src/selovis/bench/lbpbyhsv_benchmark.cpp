@@ -27,7 +27,8 @@ cv::Mat scene(std::uint64_t seed) {
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < 3 * image.cols; ++x) {
       std::uint8_t& v = image.ptr<std::uint8_t>(y)[x];
-      v = cv::saturate_cast<std::uint8_t>(v + x / 60 + rng.gaussian(0.0, 2.0));
+      const int slope = x / 60;
+      v = cv::saturate_cast<std::uint8_t>(v + slope + rng.gaussian(0.0, 2.0));
     }
   }
   return image;

@@ -23,7 +23,7 @@ constexpr int kMaxSignature = 100000;
 std::string nextPart(std::string& text) {
   const std::string mark = "\n===\n";
   const std::size_t at = std::min(text.find(mark), text.size());
-  const std::string part = text.substr(0, at);
+  std::string part = text.substr(0, at);
   text.erase(0, std::min(text.size(), at + mark.size()));
   return part;
 }

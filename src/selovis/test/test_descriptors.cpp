@@ -89,7 +89,8 @@ std::vector<Member> regionsOf(const std::string& suffix, int rows, int cols) {
     return {[=](int, int y) { return y < rows / 2; }, [=](int, int y) { return y >= rows / 2; }};
   }
   if (suffix == "-IRIS") {
-    const double cx = cols / 2, cy = rows / 2;  // the static point
+    const int middle_col = cols / 2, middle_row = rows / 2;  // the static point
+    const double cx = middle_col, cy = middle_row;
     const auto part = [=](int x, int y) {
       const bool above = y < cy;
       const double depth = above ? y : rows - y, height = above ? cy : rows - cy;
