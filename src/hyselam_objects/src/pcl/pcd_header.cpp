@@ -88,9 +88,9 @@ class HeaderReader {
     if (words.size() != (many ? fields_.size() : key_ == "VIEWPOINT" ? 7 : 1)) {
       fail("has " + std::to_string(words.size()) + " values of " + key_);
     }
-    if (key_ == "WIDTH") width_ = numbersOf({words[0]})[0];
-    if (key_ == "HEIGHT") height_ = numbersOf({words[0]})[0];
-    if (key_ == "POINTS") points_ = numbersOf({words[0]})[0];
+    if (key_ == "WIDTH") width_ = numbersOf(words)[0];
+    if (key_ == "HEIGHT") height_ = numbersOf(words)[0];
+    if (key_ == "POINTS") points_ = numbersOf(words)[0];
     if (key_ == "DATA") data_ = words[0];
   }
 

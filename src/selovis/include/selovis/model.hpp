@@ -85,6 +85,9 @@ cv::Mat shifted(const cv::Mat& image, double shift);
 /// every moment. Throws hyselam::InputError.
 void saveModel(const Model& model, const std::string& directory);
 
+/// Whether a model was saved there, usable or not.
+bool holdsModel(const std::string& directory);
+
 /// Throws hyselam::InputError naming the file, the place in it and the reason.
 Model loadModel(const std::string& directory);
 

@@ -18,6 +18,7 @@ using hyselam::integerOf;
 using nlohmann::json;
 
 constexpr const char* kFormat = "selovis model 1";
+constexpr const char* kManifest = "model.json";
 constexpr std::size_t kMaxBytes = std::size_t{2} << 30;
 constexpr int kMaxPlaces = 10000;
 
@@ -36,7 +37,7 @@ json saveData(const std::string& directory, const std::string& kind, const std::
 
 std::string loadData(const std::string& directory, const std::string& kind, const json& entry) {
   const auto name = entry.at("file").get<std::string>(), crc = entry.at("crc32").get<std::string>();
-  const std::string manifest = pathIn(directory, "model.json");
+  const std::string manifest = pathIn(directory, kManifest);
   if (name != kind + "-" + crc + ".bin" || name.find('/') != std::string::npos) {
     throw InputError(manifest, kind, "'" + name + "' is no name of a data file");
   }
@@ -179,7 +180,7 @@ void saveModel(const Model& model, const std::string& directory) {
     j["poses"] = saveData(directory, "poses", out.bytes());
   }
   if (!model.state.empty()) j["svm"] = saveData(directory, "svm", model.state);
-  hyselam::writeFileAtomically(pathIn(directory, "model.json"),
+  hyselam::writeFileAtomically(pathIn(directory, kManifest),
                                [&](std::ostream& out) { out << j.dump(1) << '\n'; });
   // What belonged to an earlier model goes last.
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
@@ -194,8 +195,13 @@ void saveModel(const Model& model, const std::string& directory) {
   }
 }
 
+bool holdsModel(const std::string& directory) {
+  std::error_code error;
+  return !directory.empty() && std::filesystem::exists(pathIn(directory, kManifest), error);
+}
+
 Model loadModel(const std::string& directory) {
-  const std::string manifest = pathIn(directory, "model.json");
+  const std::string manifest = pathIn(directory, kManifest);
   const std::string text = hyselam::readTextFile(manifest, std::size_t{16} << 20);
   Model model;
   std::string reading = manifest;

@@ -3,7 +3,6 @@
 #include <hyselam_msgs/VisualPlace.h>
 
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -20,11 +19,6 @@ constexpr double kPollEvery = 0.005;  // [s] of wall time: images that wait, tra
 constexpr double kPoseAge = 0.5;      // [s] a pose so old is still that of the image
 constexpr double kDepthPause = 1.0;   // [s] without depth images: none come any more
 constexpr int kRangeColumns = 40;     // distances taken from a laser scan
-
-bool holdsModel(const std::string& directory) {
-  std::error_code error;
-  return !directory.empty() && std::filesystem::exists(directory + "/model.json", error);
-}
 
 std::shared_ptr<const Model> firstModel(const SemanticLocalizationParams& params,
                                         const std::string& who) {
