@@ -4,6 +4,8 @@
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
+#include <set>
+#include <tuple>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
@@ -78,6 +80,43 @@ TEST(Topology, PlacesNearAPointTheOwnOneFirst) {
   EXPECT_TRUE(placesNear(map, {100.0, 0.0}, 0.5).empty());
   EXPECT_TRUE(placesNear(map, {std::nan(""), 0.0}, 0.5).empty());
   EXPECT_TRUE(placesNear({}, {0.0, 0.0}, 0.5).empty());
+}
+
+TEST(Topology, WhatTheMapDoesNotBorderMayBeSeenFromAnywhere) {
+  auto map = row();
+  // "desk" was told in the kitchen, "sofa" in the store on the left.
+  for (const auto& [id, around, name] :
+       {std::tuple(5, 2, "desk"), std::tuple(6, 1, "sofa"), std::tuple(7, 2, "sink")}) {
+    hyselam_topo::Place place;
+    place.id = static_cast<hyselam_topo::Id>(id);
+    place.kind = hyselam_topo::PlaceKind::kVirtual;
+    place.words.push_back({name, true});
+    map.places.push_back(place);
+    hyselam_topo::Edge edge;
+    edge.a = static_cast<hyselam_topo::Id>(around);
+    edge.b = place.id;
+    map.edges.push_back(edge);
+  }
+  PlaceGraph learnt;
+  learnt.places = {"store", "kitchen", "desk", "sofa", "sink", "attic"};
+  const auto seen = [&](const std::vector<std::string>& near) {
+    std::set<std::string> names;
+    for (const int i : placesInSight(map, learnt, near))
+      names.insert(learnt.places[static_cast<std::size_t>(i)]);
+    return names;
+  };
+  using Names = std::set<std::string>;
+  // The attic is not on the map: it may be a part of any place.
+  EXPECT_EQ(seen({"kitchen"}), (Names{"kitchen", "desk", "sink", "attic"}));
+  EXPECT_EQ(seen({"kitchen", "store"}), (Names{"kitchen", "store", "desk", "sink", "attic"}));
+  EXPECT_EQ(seen({"desk"}), (Names{"desk", "kitchen", "sink", "attic"}));
+  EXPECT_EQ(seen({"store"}), (Names{"store", "sofa", "attic"}));
+  // Never learnt, or nowhere: nothing can be said.
+  EXPECT_TRUE(seen({"room 3", "store"}).empty());
+  EXPECT_TRUE(seen({}).empty());
+  // A map that borders all that was learnt leaves the pose's own place.
+  learnt.places = {"store", "kitchen"};
+  EXPECT_EQ(seen({"kitchen"}), Names{"kitchen"});
 }
 
 TEST(Topology, SpreadOfAPlaceIsThatOfItsCells) {

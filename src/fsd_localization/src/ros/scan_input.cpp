@@ -6,6 +6,7 @@
 #include "fsd_localization/ros/diagnostics.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/transport.hpp"
 
 namespace fsd_localization {
 
@@ -33,7 +34,7 @@ ScanInput::ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const st
       on_scan_(std::move(on_scan)),
       on_time_back_(std::move(on_time_back)),
       drops_(who),
-      tf_listener_(tf_),
+      tf_listener_(tf_, true, hyselam::promptly()),
       last_now_(ros::Time::now()),
       reported_(ros::WallTime::now()),
       quiet_since_(reported_) {
@@ -41,7 +42,7 @@ ScanInput::ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const st
       ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); }, false,
       false);
   subscriber_ = nh.subscribe("scan", static_cast<std::uint32_t>(params_.queue_size),
-                             &ScanInput::onScan, this);
+                             &ScanInput::onScan, this, hyselam::promptly());
 }
 
 void ScanInput::checkClock() {

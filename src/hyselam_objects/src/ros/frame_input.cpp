@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/ros/transport.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
 #include "points_camera.hpp"
 
@@ -24,7 +25,7 @@ FrameInput::FrameInput(ros::NodeHandle nh, const FrameInputParams& params, Use u
       colour_topic_(nh.resolveName("camera/color/image_raw")),
       info_topic_(nh.resolveName("camera/depth/camera_info")),
       points_topic_(nh.resolveName("points")),
-      tf_listener_(tf_buffer_),
+      tf_listener_(tf_buffer_, true, hyselam::promptly()),
       pose_timer_(nh.createWallTimer(
           ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); },
           false, false)) {

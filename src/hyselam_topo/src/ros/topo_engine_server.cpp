@@ -11,6 +11,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
+#include "hyselam_common/ros/transport.hpp"
 #include "hyselam_topo/dialogue_state.hpp"
 #include "hyselam_topo/ros/conversions.hpp"
 #include "hyselam_topo/ros/dialogue_markers.hpp"
@@ -28,7 +29,7 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
     : who_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndTell(private_nh, loadTopoEngineParams)),
       dialogue_(params_.dialogue),
-      tf_listener_(tf_),
+      tf_listener_(tf_, true, hyselam::promptly()),
       driver_(nh) {
   using Self = TopoEngineServer;
   text_publisher_ = nh.advertise<std_msgs::String>("robot_text", 20);

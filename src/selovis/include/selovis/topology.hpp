@@ -23,6 +23,13 @@ PlaceGraph readTopology(const std::string& path);
 std::vector<std::string> placesNear(const hyselam_topo::AugmentedTopologicalMap& map,
                                     hyselam::Point2 point, double reach);
 
+/// Indices in `learnt` of the places that a robot may see which stands where `near`, from
+/// placesNear(), says: those; all virtual places joined to its own, since somebody told where such
+/// a place is, not where it ends; and what the map does not have, which may lie anywhere. Empty if
+/// the place of the pose was never learnt: what is seen there says nothing about it.
+std::vector<int> placesInSight(const hyselam_topo::AugmentedTopologicalMap& map,
+                               const PlaceGraph& learnt, const std::vector<std::string>& near);
+
 /// A guess of the pose of which nothing but the place is known.
 struct PlaceSpread {
   hyselam::Pose2 mean;

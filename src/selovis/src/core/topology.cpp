@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_topo/topological_map_xml.hpp"
@@ -77,6 +78,47 @@ std::vector<std::string> placesNear(const AugmentedTopologicalMap& map, hyselam:
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   return names;
+}
+
+std::vector<int> placesInSight(const AugmentedTopologicalMap& map, const PlaceGraph& learnt,
+                               const std::vector<std::string>& near) {
+  if (near.empty() || learnt.find(near.front()) < 0) return {};
+  const auto names = namesOf(map);
+  const auto isVirtual = [&](Id id) {
+    const auto* place = map.findPlace(id);
+    return place != nullptr && place->kind == hyselam_topo::PlaceKind::kVirtual;
+  };
+  const auto joinedTo = [&](const std::set<Id>& ids) {
+    std::set<Id> joined;
+    for (const auto& edge : map.edges) {
+      if (ids.count(edge.a) != 0) joined.insert(edge.b);
+      if (ids.count(edge.b) != 0) joined.insert(edge.a);
+    }
+    return joined;
+  };
+  std::set<Id> own, own_virtual;
+  for (const auto& [id, name] : names) {
+    if (name != near.front()) continue;
+    own.insert(id);
+    if (isVirtual(id)) own_virtual.insert(id);
+  }
+  // Around a virtual place is a room, which is seen from there, and what else was told to be in it.
+  const std::set<Id> around = joinedTo(own_virtual);
+  own.insert(around.begin(), around.end());
+
+  std::set<std::string> in_sight(near.begin(), near.end());
+  const std::set<Id> beside = joinedTo(own);
+  for (const auto& [id, name] : names) {
+    if (around.count(id) != 0 || (beside.count(id) != 0 && isVirtual(id))) in_sight.insert(name);
+  }
+  std::set<std::string> on_map;
+  for (const auto& [id, name] : names) on_map.insert(name);
+  std::vector<int> places;
+  for (std::size_t i = 0; i < learnt.places.size(); ++i) {
+    const std::string& name = learnt.places[i];
+    if (in_sight.count(name) != 0 || on_map.count(name) == 0) places.push_back(static_cast<int>(i));
+  }
+  return places;
 }
 
 std::optional<PlaceSpread> spreadOf(const AugmentedTopologicalMap& map, const std::string& name) {

@@ -96,12 +96,7 @@ void PoseSupervision::judge(const std::vector<double>& frame,
   pose_places_.clear();
   if (pose && poseIsMeant(stamp)) {
     pose_places_ = placesNear(map, {pose->x, pose->y}, params_.reach);
-    for (const auto& name : pose_places_) {
-      const int place = graph_.find(name);
-      if (place >= 0) here.push_back(place);
-    }
-    // The place of the pose was never learnt: what is seen there says nothing about it.
-    if (!pose_places_.empty() && graph_.find(pose_places_.front()) < 0) here.clear();
+    here = placesInSight(map, graph_, pose_places_);
   }
   const bool was = last_.kidnapped;
   last_ = supervisor_->update(frame, here);

@@ -8,6 +8,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
+#include "hyselam_common/ros/transport.hpp"
 #include "hyselam_topo/ros/conversions.hpp"
 #include "selovis/ros/place_markers.hpp"
 #include "selovis/ros/sensor_images.hpp"
@@ -51,7 +52,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
       image_topic_(nh.resolveName("image")),
       params_(hyselam::loadAndTell(private_nh, loadParams)),
       learning_(params_.learn),
-      tf_listener_(tf_),
+      tf_listener_(tf_, true, hyselam::promptly()),
       supervision_(nh, private_nh, params_, who_),
       place_publisher_(nh.advertise<hyselam_msgs::VisualPlace>("visual_place", 10)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("place_markers", 1, true)),
@@ -94,7 +95,8 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
         [this](const sensor_msgs::ImageConstPtr& msg) {
           onImage({msg, nullptr, msg->header, ros::WallTime::now()});
         },
-        ros::VoidPtr(), image_transport::TransportHints(params_.image_transport));
+        ros::VoidPtr(),
+        image_transport::TransportHints(params_.image_transport, hyselam::promptly()));
   }
   subscribers_.push_back(nh.subscribe<sensor_msgs::CameraInfo>(
       "camera_info", 5, [this](const sensor_msgs::CameraInfo::ConstPtr& info) {
@@ -106,7 +108,8 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
   if (needs_.scan || needs_.ranges) {
     subscribers_.push_back(nh.subscribe<sensor_msgs::LaserScan>(
         "scan", 100,
-        [this](const sensor_msgs::LaserScan::ConstPtr& msg) { onReading(scans_, msg); }));
+        [this](const sensor_msgs::LaserScan::ConstPtr& msg) { onReading(scans_, msg); },
+        ros::VoidConstPtr(), hyselam::promptly()));
   }
   if (needs_.ranges) {
     subscribers_.push_back(nh.subscribe<sensor_msgs::Image>(
