@@ -392,6 +392,21 @@ class KnowledgeTest(unittest.TestCase):
             exec(compile(file.read(), path, "exec"), module.__dict__)
         return module
 
+    def test_a_layer_that_still_writes_leaves_nothing_behind(self):
+        """A save that is interrupted clears its draft away while the layer that it had asked goes on."""
+        tool, remove, late = self.tool(), os.rmdir, ["topo.xml", "slam.state"]
+        draft = tool.beside(self.path)
+
+        def writes_between(path, *args, **kwargs):
+            if late:
+                with open(os.path.join(draft, late.pop()), "w") as file:
+                    file.write("second")
+            remove(path, *args, **kwargs)
+        with mock.patch("os.rmdir", writes_between):
+            tool.discard(draft)
+        self.assertEqual(late, [])
+        self.assertEqual(self.left_over(), [])
+
     def test_a_power_cut_after_a_save_loses_nothing(self):
         """Files, and the directories that name them, are on the disk before the exchange, which is before the end."""
         tool, order, wait, move = self.tool(), [], os.fsync, os.rename
