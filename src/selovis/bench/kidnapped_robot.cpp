@@ -23,7 +23,7 @@ using hyselam::Pose2;
 
 struct Options {
   std::string plan = "office", descriptor = "GLANCE";
-  int teleports = 20;
+  int teleports = 20, unnamed = 0;
   double between = 15.0, hour = 13.0, rate = 5.0, reach = 1.0, patience = 3.0;
   std::vector<double> learn{9.0, 20.0};
   std::uint64_t seed = 1;
@@ -66,8 +66,10 @@ hyselam_sim::Route kidnapRoute(const hyselam_sim::FloorPlan& plan, const Options
   return route;
 }
 
-/// The plan's places as a topological map with a grid.
-hyselam_topo::AugmentedTopologicalMap topologyOf(const hyselam_sim::Scene& scene) {
+/// The plan's places as a topological map with a grid; so many, drawn at random, without their
+/// names.
+hyselam_topo::AugmentedTopologicalMap topologyOf(const hyselam_sim::Scene& scene,
+                                                 const Options& o) {
   hyselam_topo::AugmentedTopologicalMap map;
   hyselam_topo::PlaceGrid grid;
   grid.geometry = scene.regions().geometry();
@@ -88,6 +90,13 @@ hyselam_topo::AugmentedTopologicalMap topologyOf(const hyselam_sim::Scene& scene
     }
   }
   map.grid = grid;
+  hyselam::Rng rng(o.seed);
+  const auto n = static_cast<std::uint32_t>(map.places.size());
+  for (int left = std::min(o.unnamed, static_cast<int>(n)); left > 0;) {
+    auto& words = map.places[rng.below(n)].words;
+    left -= !words.empty();
+    words.clear();
+  }
   return map;
 }
 
@@ -142,7 +151,7 @@ nlohmann::json run(const Options& o) {
     door.schedule.clear();
   }
   const hyselam_sim::Scene scene(plan);
-  const auto map = topologyOf(scene);
+  const auto map = topologyOf(scene, o);
   if (o.learn.size() != 2) {
     throw hyselam::InputError("command line", "--learn", "needs two hours");
   }
@@ -232,15 +241,12 @@ nlohmann::json run(const Options& o) {
                         : model.graph.find(plan.places[static_cast<std::size_t>(f.place)].name);
         const auto& p = recogniser.frameProbabilities();
         frame_right += std::max_element(p.begin(), p.end()) - p.begin() == truth;
-        std::vector<int> here;
+        ExpectedPlaces expected;
         if (laser.tracking() && !set) {
           const Pose2 pose = laser.pose(*odom);
-          for (const auto& name : placesNear(map, {pose.x, pose.y}, o.reach)) {
-            const int place = model.graph.find(name);
-            if (place >= 0) here.push_back(place);
-          }
+          expected = expectedPlaces(map, model.graph, {pose.x, pose.y}, o.reach);
         }
-        const Supervision s = supervisor.update(p, here);
+        const Supervision s = supervisor.update(p, expected.agree, expected.unmapped);
         judged_seconds += s.judged ? dt : 0.0;
         if (s.alarm) {
           ++alarms;
@@ -321,6 +327,8 @@ int main(int argc, char** argv) {
   app.add_option("--plan", o.plan, "plan that hyselam_sim comes with");
   app.add_option("--descriptor", o.descriptor, "name");
   app.add_option("--teleports", o.teleports, "how often")->check(CLI::NonNegativeNumber);
+  app.add_option("--unnamed", o.unnamed, "places that are learnt and have no name on the map")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--between", o.between, "way driven between them [m]");
   app.add_option("--hour", o.hour, "of the day");
   app.add_option("--learn", o.learn, "two hours of the day")->delimiter(',');

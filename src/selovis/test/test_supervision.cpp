@@ -82,41 +82,63 @@ TEST(Topology, PlacesNearAPointTheOwnOneFirst) {
   EXPECT_TRUE(placesNear({}, {0.0, 0.0}, 0.5).empty());
 }
 
-TEST(Topology, WhatTheMapDoesNotBorderMayBeSeenFromAnywhere) {
+/// row() with virtual places that were told: in the kitchen "desk", on it "drawer", beside it
+/// "sink"; in the first store "sofa"; in room 3 "corner". Two columns of cells belong to each.
+hyselam_topo::AugmentedTopologicalMap furnished() {
   auto map = row();
-  // "desk" was told in the kitchen, "sofa" in the store on the left.
-  for (const auto& [id, around, name] :
-       {std::tuple(5, 2, "desk"), std::tuple(6, 1, "sofa"), std::tuple(7, 2, "sink")}) {
+  for (const auto& [id, around, name, x] :
+       {std::tuple(5, 2, "desk", 12), std::tuple(6, 5, "drawer", 14), std::tuple(7, 2, "sink", 16),
+        std::tuple(8, 1, "sofa", 5), std::tuple(9, 3, "corner", 25)}) {
     hyselam_topo::Place place;
     place.id = static_cast<hyselam_topo::Id>(id);
     place.kind = hyselam_topo::PlaceKind::kVirtual;
     place.words.push_back({name, true});
     map.places.push_back(place);
+    map.grid->places.push_back(place.id);
+    for (int y = 0; y < 10; ++y) {
+      map.grid->labels[static_cast<std::size_t>(40 * y + x)] = static_cast<std::uint16_t>(id);
+      map.grid->labels[static_cast<std::size_t>(40 * y + x + 1)] = static_cast<std::uint16_t>(id);
+    }
     hyselam_topo::Edge edge;
     edge.a = static_cast<hyselam_topo::Id>(around);
     edge.b = place.id;
     map.edges.push_back(edge);
   }
+  return map;
+}
+
+TEST(Topology, WhatTheCameraIsExpectedToSee) {
+  using Names = std::set<std::string>;
+  const auto map = furnished();
   PlaceGraph learnt;
-  learnt.places = {"store", "kitchen", "desk", "sofa", "sink", "attic"};
-  const auto seen = [&](const std::vector<std::string>& near) {
-    std::set<std::string> names;
-    for (const int i : placesInSight(map, learnt, near))
-      names.insert(learnt.places[static_cast<std::size_t>(i)]);
+  learnt.places = {"store", "kitchen", "desk", "drawer", "sink", "sofa", "attic"};
+  const auto named = [&](const std::vector<int>& places) {
+    Names names;
+    for (const int i : places) names.insert(learnt.places[static_cast<std::size_t>(i)]);
     return names;
   };
-  using Names = std::set<std::string>;
-  // The attic is not on the map: it may be a part of any place.
-  EXPECT_EQ(seen({"kitchen"}), (Names{"kitchen", "desk", "sink", "attic"}));
-  EXPECT_EQ(seen({"kitchen", "store"}), (Names{"kitchen", "store", "desk", "sink", "attic"}));
-  EXPECT_EQ(seen({"desk"}), (Names{"desk", "kitchen", "sink", "attic"}));
-  EXPECT_EQ(seen({"store"}), (Names{"store", "sofa", "attic"}));
-  // Never learnt, or nowhere: nothing can be said.
-  EXPECT_TRUE(seen({"room 3", "store"}).empty());
-  EXPECT_TRUE(seen({}).empty());
-  // A map that borders all that was learnt leaves the pose's own place.
-  learnt.places = {"store", "kitchen"};
-  EXPECT_EQ(seen({"kitchen"}), Names{"kitchen"});
+  const auto at = [&](double x, double reach = 0.05) {
+    const ExpectedPlaces e = expectedPlaces(map, learnt, {x, 0.0}, reach);
+    EXPECT_EQ(named(e.unmapped), e.agree.empty() ? Names() : Names{"attic"});
+    return std::pair(e.own, named(e.agree));
+  };
+  const Names kitchen{"kitchen", "desk", "drawer", "sink"};
+  EXPECT_EQ(at(4.7), std::pair(std::string("kitchen"), kitchen));
+  EXPECT_EQ(at(3.7), std::pair(std::string("desk"), kitchen));
+  EXPECT_EQ(at(4.1), std::pair(std::string("drawer"), kitchen)) << "told inside the desk";
+  EXPECT_EQ(at(1.5), std::pair(std::string("store"), Names({"store", "sofa"})));
+  EXPECT_EQ(at(8.5), std::pair(std::string("store"), Names({"store"}))) << "the other one";
+  // Within reach, what was told there is as good as what has walls.
+  Names both = kitchen;
+  both.insert({"store", "sofa"});
+  EXPECT_EQ(at(3.1, 0.5).second, both);
+  // Never learnt, or nowhere: nothing is expected.
+  EXPECT_EQ(at(6.5), std::pair(std::string("room 3"), Names()));
+  EXPECT_EQ(at(6.1), std::pair(std::string("corner"), Names()));
+  EXPECT_EQ(at(50.0), std::pair(std::string(), Names()));
+  // A virtual place that was told after learning is in a room that was learnt.
+  learnt.places = {"store", "kitchen", "attic"};
+  EXPECT_EQ(at(4.1), std::pair(std::string("drawer"), Names({"kitchen"})));
 }
 
 TEST(Topology, SpreadOfAPlaceIsThatOfItsCells) {
@@ -188,6 +210,23 @@ TEST(Supervisor, PlacesNextToThePoseCountAsItsOwn) {
   for (int i = 0; i < 200; ++i) EXPECT_FALSE(s.update(sees(5, 2), {1, 2}).kidnapped);
 }
 
+TEST(Supervisor, APlaceThatNobodyPutOnTheMapSpeaksNeitherForNorAgainst) {
+  Supervisor s(chain(8), {});
+  for (int i = 0; i < 200; ++i) {
+    const Supervision r = s.update(sees(8, 6), {3}, {6});
+    EXPECT_FALSE(r.kidnapped);
+    EXPECT_LT(r.evidence, 0.5);
+  }
+  // An alarm stands meanwhile, until places of the map tell more.
+  int frames = 0;
+  while (!s.update(sees(8, 0, 0.97), {3}, {6}).kidnapped) ASSERT_LT(++frames, 8);
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(s.update(sees(8, 6), {3}, {6}).kidnapped) << i;
+  for (int i = 0; i < 20; ++i) s.update(sees(8, 3), {3}, {6});
+  EXPECT_FALSE(s.update(sees(8, 3), {3}, {6}).kidnapped);
+  // Where all that is left is such a place, there is nothing to compare.
+  EXPECT_FALSE(Supervisor(chain(2), {}).update({0.5, 0.5}, {0}, {1}).judged);
+}
+
 TEST(Supervisor, WithoutAPoseNothingIsJudged) {
   Supervisor s(chain(5), {});
   for (int i = 0; i < 200; ++i) {
@@ -234,6 +273,7 @@ TEST(Supervisor, WrongNumbersAreRefused) {
   EXPECT_THROW(s.update({0.5, -0.5, 0.0, 1.0}, {0}), std::invalid_argument);
   EXPECT_THROW(s.update({0.5, std::nan(""), 0.0, 1.0}, {0}), std::invalid_argument);
   EXPECT_THROW(s.update(sees(4, 1), {4}), std::invalid_argument);
+  EXPECT_THROW(s.update(sees(4, 1), {1}, {-1}), std::invalid_argument);
   SupervisorParams p;
   p.threshold = 0.0;
   EXPECT_THROW(Supervisor(chain(4), p), hyselam::ParameterError);

@@ -30,11 +30,14 @@ FrameInput::FrameInput(ros::NodeHandle nh, const FrameInputParams& params, Use u
           ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); },
           false, false)) {
   if (params_.use_points) {
-    points_ = nh.subscribe("points", 1, &FrameInput::onPoints, this);
+    points_ = nh.subscribe("points", 1, &FrameInput::onPoints, this, hyselam::promptly());
   } else {
-    info_ = nh.subscribe("camera/depth/camera_info", 1, &FrameInput::onInfo, this);
-    depth_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/depth/image_raw", 5);
-    colour_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/color/image_raw", 5);
+    info_ =
+        nh.subscribe("camera/depth/camera_info", 1, &FrameInput::onInfo, this, hyselam::promptly());
+    depth_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/depth/image_raw", 5,
+                                                                  hyselam::promptly());
+    colour_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/color/image_raw", 5,
+                                                                   hyselam::promptly());
     images_ =
         std::make_unique<message_filters::TimeSynchronizer<Image, Image>>(*depth_, *colour_, 10);
     depth_->registerCallback(&FrameInput::onDepth, this);

@@ -46,10 +46,14 @@ class Supervisor {
   Supervisor(const PlaceGraph& graph, const SupervisorParams& params);
 
   /// @param frame probability of each place by this frame alone.
-  /// @param here places of the pose: the one it lies in and those it is next to; none: not known,
-  ///   or places that were never learnt. The frame then only tells where a kidnapped robot is.
+  /// @param here places that agree with the pose: the one it lies in and those it is next to; none:
+  ///   not known, or places that were never learnt. The frame then only tells where a kidnapped
+  ///   robot is.
+  /// @param unmapped places of which nobody knows where they are; none of `here`. They belong to
+  ///   neither hypothesis, and a frame counts by the share of it that sees others.
   /// Throws std::invalid_argument for a wrong number of probabilities, or places that are none.
-  Supervision update(const std::vector<double>& frame, const std::vector<int>& here);
+  Supervision update(const std::vector<double>& frame, const std::vector<int>& here,
+                     const std::vector<int>& unmapped = {});
 
   /// Forgets all evidence: the pose has been set anew.
   void reset();

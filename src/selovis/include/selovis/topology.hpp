@@ -23,12 +23,20 @@ PlaceGraph readTopology(const std::string& path);
 std::vector<std::string> placesNear(const hyselam_topo::AugmentedTopologicalMap& map,
                                     hyselam::Point2 point, double reach);
 
-/// Indices in `learnt` of the places that a robot may see which stands where `near`, from
-/// placesNear(), says: those; all virtual places joined to its own, since somebody told where such
-/// a place is, not where it ends; and what the map does not have, which may lie anywhere. Empty if
-/// the place of the pose was never learnt: what is seen there says nothing about it.
-std::vector<int> placesInSight(const hyselam_topo::AugmentedTopologicalMap& map,
-                               const PlaceGraph& learnt, const std::vector<std::string>& near);
+/// What the camera of a robot at a point of the map is expected to see; places by their indices in
+/// the graph of what was learnt.
+struct ExpectedPlaces {
+  std::string own;  ///< name of the place at the point, or of the nearest; empty: none in reach
+  /// What agrees with the point: its place, places within reach, and all virtual places of their
+  /// rooms, since somebody told where such a place is and not where it ends. Empty if neither the
+  /// point's place nor, for a virtual one, the room around was learnt: nothing is expected then.
+  std::vector<int> agree;
+  /// What was learnt and is not on the map. It may be a part of any place, so seeing it speaks
+  /// neither for nor against the point.
+  std::vector<int> unmapped;
+};
+ExpectedPlaces expectedPlaces(const hyselam_topo::AugmentedTopologicalMap& map,
+                              const PlaceGraph& learnt, hyselam::Point2 point, double reach);
 
 /// A guess of the pose of which nothing but the place is known.
 struct PlaceSpread {

@@ -8,6 +8,12 @@
 
 namespace selovis {
 
+namespace {
+
+enum class Role { kHere, kElsewhere, kUnmapped };  // of a place, for the hypotheses
+
+}  // namespace
+
 void validate(const SupervisorParams& p) {
   const auto check = [](const char* name, double value, double low, double high,
                         const char* allowed) {
@@ -56,7 +62,8 @@ void Supervisor::restart(const std::vector<int>& here) {
   }
 }
 
-Supervision Supervisor::update(const std::vector<double>& frame, const std::vector<int>& here) {
+Supervision Supervisor::update(const std::vector<double>& frame, const std::vector<int>& here,
+                               const std::vector<int>& unmapped) {
   const std::size_t n = next_.size();
   if (frame.size() != n) {
     throw std::invalid_argument("there are " + std::to_string(n) + " places, but " +
@@ -69,11 +76,17 @@ Supervision Supervisor::update(const std::vector<double>& frame, const std::vect
     }
     total += p;
   }
-  for (const int place : here) {
-    if (place < 0 || place >= static_cast<int>(n)) {
-      throw std::invalid_argument("a place of the pose is none of the graph's");
+  std::vector<Role> roles(n, Role::kElsewhere);
+  const auto give = [&](const std::vector<int>& places, Role role) {
+    for (const int place : places) {
+      if (place < 0 || place >= static_cast<int>(n)) {
+        throw std::invalid_argument("a place of the pose is none of the graph's");
+      }
+      roles[static_cast<std::size_t>(place)] = role;
     }
-  }
+  };
+  give(unmapped, Role::kUnmapped);
+  give(here, Role::kHere);
   if (total <= 0.0) total = 1.0;  // tells nothing: all places are equally unlikely
   const auto likelihood = [&](std::size_t i) {
     return std::pow(std::max(frame[i] / total, params_.least), params_.trust);
@@ -92,14 +105,16 @@ Supervision Supervisor::update(const std::vector<double>& frame, const std::vect
     }
   }
   // "Elsewhere" is no place of the pose; a robot that was kidnapped may have come back to one.
-  double elsewhere_share = 0.0, elsewhere_witness = 0.0, witness = 0.0;
+  double elsewhere_share = 0.0, elsewhere_witness = 0.0, witness = 0.0, says_nothing = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double predicted =
         (1.0 - params_.leak) * next_[i] + params_.leak / static_cast<double>(n);
     next_[i] = predicted * likelihood(i);
-    if (std::find(here.begin(), here.end(), static_cast<int>(i)) == here.end()) {
+    if (roles[i] == Role::kElsewhere) {
       elsewhere_share += predicted;
       elsewhere_witness += next_[i];
+    } else if (roles[i] == Role::kUnmapped) {
+      says_nothing += frame[i] / total;
     } else if (!kidnapped_) {
       next_[i] = 0.0;
     }
@@ -113,8 +128,8 @@ Supervision Supervisor::update(const std::vector<double>& frame, const std::vect
     for (const int place : here) {
       at_pose = std::max(at_pose, likelihood(static_cast<std::size_t>(place)));
     }
-    evidence_ = std::clamp(evidence_ + std::log(elsewhere_witness / elsewhere_share / at_pose), 0.0,
-                           params_.threshold);
+    const double ratio = std::log(elsewhere_witness / elsewhere_share / at_pose);
+    evidence_ = std::clamp(evidence_ + (1.0 - says_nothing) * ratio, 0.0, params_.threshold);
     if (!kidnapped_ && evidence_ >= params_.threshold) {
       kidnapped_ = result.alarm = true;
     } else if (kidnapped_ && evidence_ <= 0.0) {

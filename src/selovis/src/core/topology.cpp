@@ -21,6 +21,75 @@ std::map<Id, std::string> namesOf(const AugmentedTopologicalMap& map) {
   return names;
 }
 
+/// The place at a point of the map first, then those that come within `reach` of it.
+std::vector<Id> idsNear(const AugmentedTopologicalMap& map, hyselam::Point2 point, double reach) {
+  std::vector<Id> ids;
+  if (!map.grid || !std::isfinite(point.x) || !std::isfinite(point.y)) return ids;
+  const auto& grid = *map.grid;
+  const hyselam::Pose2 in_grid =
+      grid.geometry.origin.inverse() * hyselam::Pose2{point.x, point.y, 0.0};
+  const double r = grid.geometry.resolution;
+  if (std::abs(in_grid.x / r) > 1e8 || std::abs(in_grid.y / r) > 1e8) return ids;
+  const int col = static_cast<int>(std::floor(in_grid.x / r)),
+            row = static_cast<int>(std::floor(in_grid.y / r));
+  const int cells = static_cast<int>(std::ceil(reach / r));
+  std::vector<std::pair<int, Id>> found;  // squared distance, place
+  for (int dy = -cells; dy <= cells; ++dy) {
+    for (int dx = -cells; dx <= cells; ++dx) {
+      const int square = dx * dx + dy * dy;
+      if (square * r * r > reach * reach) continue;
+      const Id id = grid.placeOf({col + dx, row + dy});
+      if (id != 0) found.emplace_back(square, id);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  for (const auto& [square, id] : found) {
+    const bool known = std::find(ids.begin(), ids.end(), id) != ids.end();
+    if (!known && map.findPlace(id) != nullptr) ids.push_back(id);
+  }
+  return ids;
+}
+
+bool isVirtual(const AugmentedTopologicalMap& map, Id id) {
+  const auto* place = map.findPlace(id);
+  return place != nullptr && place->kind == hyselam_topo::PlaceKind::kVirtual;
+}
+
+/// All that is reached from `start` over edges from `through` on; with the start.
+template <typename Through>
+std::set<Id> reached(const AugmentedTopologicalMap& map, const std::set<Id>& start,
+                     const Through& through) {
+  std::set<Id> found = start;
+  std::vector<Id> open(start.begin(), start.end());
+  while (!open.empty()) {
+    const Id from = open.back();
+    open.pop_back();
+    for (const auto& edge : map.edges) {
+      if (edge.a != from && edge.b != from) continue;
+      const Id to = edge.a == from ? edge.b : edge.a;
+      if (map.findPlace(to) != nullptr && through(from, to) && found.insert(to).second) {
+        open.push_back(to);
+      }
+    }
+  }
+  return found;
+}
+
+/// The places that have walls: of `ids`, and around those of `ids` that are virtual. One virtual
+/// place may have been told inside another.
+std::set<Id> roomsAround(const AugmentedTopologicalMap& map, const std::set<Id>& ids) {
+  std::set<Id> rooms;
+  for (const Id id : reached(map, ids, [&](Id from, Id) { return isVirtual(map, from); })) {
+    if (!isVirtual(map, id)) rooms.insert(id);
+  }
+  return rooms;
+}
+
+/// The virtual places inside of rooms.
+std::set<Id> virtualPlacesOf(const AugmentedTopologicalMap& map, const std::set<Id>& rooms) {
+  return reached(map, rooms, [&](Id, Id to) { return isVirtual(map, to); });
+}
+
 }  // namespace
 
 PlaceGraph graphOf(const AugmentedTopologicalMap& map) {
@@ -52,73 +121,42 @@ PlaceGraph readTopology(const std::string& path) {
 std::vector<std::string> placesNear(const AugmentedTopologicalMap& map, hyselam::Point2 point,
                                     double reach) {
   std::vector<std::string> names;
-  if (!map.grid || !std::isfinite(point.x) || !std::isfinite(point.y)) return names;
-  const auto& grid = *map.grid;
-  const hyselam::Pose2 in_grid =
-      grid.geometry.origin.inverse() * hyselam::Pose2{point.x, point.y, 0.0};
-  const double r = grid.geometry.resolution;
-  if (std::abs(in_grid.x / r) > 1e8 || std::abs(in_grid.y / r) > 1e8) return names;
-  const int col = static_cast<int>(std::floor(in_grid.x / r)),
-            row = static_cast<int>(std::floor(in_grid.y / r));
-  const int cells = static_cast<int>(std::ceil(reach / r));
-  std::vector<std::pair<int, Id>> found;  // squared distance, place
-  for (int dy = -cells; dy <= cells; ++dy) {
-    for (int dx = -cells; dx <= cells; ++dx) {
-      const int square = dx * dx + dy * dy;
-      if (square * r * r > reach * reach) continue;
-      const Id id = grid.placeOf({col + dx, row + dy});
-      if (id != 0) found.emplace_back(square, id);
-    }
-  }
-  std::sort(found.begin(), found.end());
-  for (const auto& [square, id] : found) {
-    const auto* place = map.findPlace(id);
-    if (place == nullptr) continue;
-    const std::string name = hyselam_topo::nameOf(*place);
+  for (const Id id : idsNear(map, point, reach)) {
+    const std::string name = hyselam_topo::nameOf(*map.findPlace(id));
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   return names;
 }
 
-std::vector<int> placesInSight(const AugmentedTopologicalMap& map, const PlaceGraph& learnt,
-                               const std::vector<std::string>& near) {
-  if (near.empty() || learnt.find(near.front()) < 0) return {};
+ExpectedPlaces expectedPlaces(const AugmentedTopologicalMap& map, const PlaceGraph& learnt,
+                              hyselam::Point2 point, double reach) {
+  ExpectedPlaces expected;
+  const std::vector<Id> near = idsNear(map, point, reach);
+  if (near.empty()) return expected;
   const auto names = namesOf(map);
-  const auto isVirtual = [&](Id id) {
-    const auto* place = map.findPlace(id);
-    return place != nullptr && place->kind == hyselam_topo::PlaceKind::kVirtual;
-  };
-  const auto joinedTo = [&](const std::set<Id>& ids) {
-    std::set<Id> joined;
-    for (const auto& edge : map.edges) {
-      if (ids.count(edge.a) != 0) joined.insert(edge.b);
-      if (ids.count(edge.b) != 0) joined.insert(edge.a);
-    }
-    return joined;
-  };
-  std::set<Id> own, own_virtual;
-  for (const auto& [id, name] : names) {
-    if (name != near.front()) continue;
-    own.insert(id);
-    if (isVirtual(id)) own_virtual.insert(id);
+  expected.own = names.at(near.front());
+  // The point's room is learnt if its place is, or what is around that as a virtual place.
+  const std::set<Id> own_rooms = roomsAround(map, {near.front()});
+  const auto isLearnt = [&](Id id) { return learnt.find(names.at(id)) >= 0; };
+  if (!isLearnt(near.front()) && std::none_of(own_rooms.begin(), own_rooms.end(), isLearnt)) {
+    return expected;
   }
-  // Around a virtual place is a room, which is seen from there, and what else was told to be in it.
-  const std::set<Id> around = joinedTo(own_virtual);
-  own.insert(around.begin(), around.end());
 
-  std::set<std::string> in_sight(near.begin(), near.end());
-  const std::set<Id> beside = joinedTo(own);
-  for (const auto& [id, name] : names) {
-    if (around.count(id) != 0 || (beside.count(id) != 0 && isVirtual(id))) in_sight.insert(name);
-  }
-  std::set<std::string> on_map;
+  std::set<std::string> agree, on_map;
   for (const auto& [id, name] : names) on_map.insert(name);
-  std::vector<int> places;
+  const std::set<Id> rooms = roomsAround(map, {near.begin(), near.end()});
+  for (const Id id : virtualPlacesOf(map, rooms)) agree.insert(names.at(id));
+  for (const Id id : rooms) agree.insert(names.at(id));
+  for (const Id id : near) agree.insert(names.at(id));
   for (std::size_t i = 0; i < learnt.places.size(); ++i) {
-    const std::string& name = learnt.places[i];
-    if (in_sight.count(name) != 0 || on_map.count(name) == 0) places.push_back(static_cast<int>(i));
+    const int place = static_cast<int>(i);
+    if (agree.count(learnt.places[i]) != 0) {
+      expected.agree.push_back(place);
+    } else if (on_map.count(learnt.places[i]) == 0) {
+      expected.unmapped.push_back(place);
+    }
   }
-  return places;
+  return expected;
 }
 
 std::optional<PlaceSpread> spreadOf(const AugmentedTopologicalMap& map, const std::string& name) {

@@ -92,14 +92,12 @@ void PoseSupervision::judge(const std::vector<double>& frame,
   tellSearch();
   if (set_at_ && (*set_at_ - stamp).toSec() > 1.0) set_at_.reset();  // time went back
   heedLost(stamp);
-  std::vector<int> here;
-  pose_places_.clear();
+  expected_ = ExpectedPlaces();
   if (pose && poseIsMeant(stamp)) {
-    pose_places_ = placesNear(map, {pose->x, pose->y}, params_.reach);
-    here = placesInSight(map, graph_, pose_places_);
+    expected_ = expectedPlaces(map, graph_, {pose->x, pose->y}, params_.reach);
   }
   const bool was = last_.kidnapped;
-  last_ = supervisor_->update(frame, here);
+  last_ = supervisor_->update(frame, expected_.agree, expected_.unmapped);
   judged_ += last_.judged;
   if (last_.alarm) {
     ++alarms_;
@@ -107,7 +105,7 @@ void PoseSupervision::judge(const std::vector<double>& frame,
     to_act_ = params_.on_kidnap != OnKidnap::kNothing;
     by_laser_ = false;
     std::ostringstream text;
-    text << "the pose lies in '" << pose_places_.front() << "', but the camera sees "
+    text << "the pose lies in '" << expected_.own << "', but the camera sees "
          << (last_.place >= 0 ? "'" + graph_.places[static_cast<std::size_t>(last_.place)] + "'"
                               : std::string("another place"));
     last_alarm_ = text.str();
@@ -188,7 +186,7 @@ void PoseSupervision::report(diagnostic_msgs::DiagnosticStatus& status) const {
               "kidnapped or diverged: " + last_alarm_);
   }
   addValue(status, "pose judged", last_.judged);
-  addValue(status, "pose lies in", pose_places_.empty() ? "" : pose_places_.front());
+  addValue(status, "pose lies in", expected_.own);
   addValue(status, "evidence against the pose [nats]", last_.evidence);
   addValue(status, "kidnapped", last_.kidnapped);
   addValue(status, "frames judged", judged_);

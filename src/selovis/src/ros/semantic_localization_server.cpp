@@ -86,9 +86,11 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
   if (params_.image_transport == "compressed") {
     // Without the plugin, and with a look at whether the picture is whole.
     subscribers_.push_back(nh.subscribe<sensor_msgs::CompressedImage>(
-        "image/compressed", queue, [this](const sensor_msgs::CompressedImage::ConstPtr& msg) {
+        "image/compressed", queue,
+        [this](const sensor_msgs::CompressedImage::ConstPtr& msg) {
           onImage({nullptr, msg, msg->header, ros::WallTime::now()});
-        }));
+        },
+        ros::VoidConstPtr(), hyselam::promptly()));
   } else {
     image_subscriber_ = transport_.subscribe(
         "image", queue,
@@ -99,32 +101,26 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
         image_transport::TransportHints(params_.image_transport, hyselam::promptly()));
   }
   subscribers_.push_back(nh.subscribe<sensor_msgs::CameraInfo>(
-      "camera_info", 5, [this](const sensor_msgs::CameraInfo::ConstPtr& info) {
+      "camera_info", 5,
+      [this](const sensor_msgs::CameraInfo::ConstPtr& info) {
         if (info->K[0] > 0.0 && info->K[4] > 0.0 && info->width > 0 && info->height > 0) {
           aperture_ = 2.0 * std::atan(0.5 * info->width / info->K[0]);
           aperture_y_ = 2.0 * std::atan(0.5 * info->height / info->K[4]);
         }
-      }));
-  if (needs_.scan || needs_.ranges) {
-    subscribers_.push_back(nh.subscribe<sensor_msgs::LaserScan>(
-        "scan", 100,
-        [this](const sensor_msgs::LaserScan::ConstPtr& msg) { onReading(scans_, msg); },
+      },
+      ros::VoidConstPtr(), hyselam::promptly()));
+  // What is read beside the picture.
+  const auto read = [&](auto& history, const char* topic, std::uint32_t size) {
+    using Message = typename std::decay_t<decltype(history)>::Message;
+    subscribers_.push_back(nh.subscribe<Message>(
+        topic, size,
+        [this, &history](const typename Message::ConstPtr& msg) { onReading(history, msg); },
         ros::VoidConstPtr(), hyselam::promptly()));
-  }
-  if (needs_.ranges) {
-    subscribers_.push_back(nh.subscribe<sensor_msgs::Image>(
-        "depth", queue,
-        [this](const sensor_msgs::Image::ConstPtr& msg) { onReading(depths_, msg); }));
-  }
-  if (needs_.heading) {
-    subscribers_.push_back(nh.subscribe<sensor_msgs::Imu>(
-        "imu", 200, [this](const sensor_msgs::Imu::ConstPtr& msg) { onReading(imus_, msg); }));
-  }
-  if (needs_.magnetic) {
-    subscribers_.push_back(nh.subscribe<sensor_msgs::MagneticField>(
-        "magnetic_field", 200,
-        [this](const sensor_msgs::MagneticField::ConstPtr& msg) { onReading(fields_, msg); }));
-  }
+  };
+  if (needs_.scan || needs_.ranges) read(scans_, "scan", 100);
+  if (needs_.ranges) read(depths_, "depth", queue);
+  if (needs_.heading) read(imus_, "imu", 200);
+  if (needs_.magnetic) read(fields_, "magnetic_field", 200);
   subscribers_.push_back(
       nh.subscribe("topological_map", 2, &SemanticLocalizationServer::onMap, this));
   subscribers_.push_back(nh.subscribe<hyselam_msgs::PlaceState>(

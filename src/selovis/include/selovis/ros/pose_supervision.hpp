@@ -56,7 +56,7 @@ class PoseSupervision {
   bool by_laser_ = false;  // it is the localisation's own
   ros::Time alarm_at_;
   std::optional<ros::Time> set_at_;  // when the pose was set anew
-  std::vector<std::string> pose_places_;
+  ExpectedPlaces expected_;          // at the pose
   std::size_t judged_ = 0, alarms_ = 0, poses_set_ = 0, searches_ = 0, lost_ = 0;
   std::string last_alarm_;
   ros::Publisher kidnapped_publisher_, initialpose_publisher_;

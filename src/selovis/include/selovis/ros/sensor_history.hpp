@@ -16,6 +16,8 @@ constexpr double kClockSlack = 0.5;  // [s] older than the last by more: a bag b
 template <typename M>
 class SensorHistory {
  public:
+  using Message = M;
+
   /// Keeps the last `most` messages, at least 1.
   explicit SensorHistory(std::size_t most = 400) : most_(most) {}
 
