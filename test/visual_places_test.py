@@ -436,6 +436,18 @@ class VisualPlacesTest(unittest.TestCase):
         kept = self.rig("_kept", model="/nowhere", save_model=folder)
         self.assertTrue(kept.loaded, "what was kept goes before what there was to begin with")
         self.assertEqual(kept.values()["places"], "2")
+        # A place that gets another name takes along what was learnt of it.
+        named = topological_map()
+        named.places[1].words = [PlaceWord("lab", True)]
+        rig.give_map(named)
+        wait_until(lambda: rig.number("places renamed") >= 1, "the new name")
+        rig.give(self.film.frame_in("right room"))
+        rig.settle()
+        self.assertEqual((rig.seen.messages[-1].name, rig.seen.messages[-1].place), ("lab", 2))
+        self.assertEqual(rig.values()["places"], "2")
+        # Also if a training that had begun before ends after it.
+        wait_until(lambda: {row["place"] for row in self.film.predictions(folder, self.film.raw_list)} == {"left room", "lab"},
+                   "the new name, saved")
         # The next one goes on with it; where it cannot write, it says so and lives.
         other = self.rig("_again", model=folder, save_model="/dev/null/none", retrain_every=0, learn=True,
                          min_travel=0.0, min_turn=0.0)

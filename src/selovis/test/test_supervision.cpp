@@ -141,6 +141,35 @@ TEST(Topology, WhatTheCameraIsExpectedToSee) {
   EXPECT_EQ(at(4.1), std::pair(std::string("drawer"), Names({"kitchen"})));
 }
 
+TEST(Topology, WhoIsCalledOtherwiseThanBefore) {
+  const auto before = row();
+  const auto renamings = [&](hyselam_topo::AugmentedTopologicalMap after) {
+    std::vector<std::pair<std::string, std::string>> found;
+    for (const auto& r : renamedPlaces(before, after)) found.emplace_back(r.from, r.to);
+    return found;
+  };
+  using Found = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(renamings(before), Found());
+  auto after = before;
+  after.places[2].words.push_back({"library", false});
+  after.places[2].centre->x += 0.3;
+  EXPECT_EQ(renamings(after), (Found{{"room 3", "library"}}));
+  after.places[3].words = {{"lab", true}};  // the first one is a store still
+  EXPECT_EQ(renamings(after), (Found{{"room 3", "library"}}));
+  // The same number in another building.
+  after.places[2].centre->x += 0.3;
+  EXPECT_EQ(renamings(after), Found());
+  after.places[2].centre.reset();
+  EXPECT_EQ(renamings(after), Found());
+  after.places.resize(2);
+  EXPECT_EQ(renamings(after), Found());
+
+  PlaceGraph learnt;
+  learnt.places = {"store", "room 3", "room 4", "lab"};
+  EXPECT_EQ(rename({{"room 3", "library"}, {"room 4", "lab"}, {"attic", "roof"}}, &learnt), 1u);
+  EXPECT_EQ(learnt.places, (std::vector<std::string>{"store", "library", "room 4", "lab"}));
+}
+
 TEST(Topology, SpreadOfAPlaceIsThatOfItsCells) {
   const auto spread = spreadOf(row(), "kitchen");
   ASSERT_TRUE(spread);
@@ -320,6 +349,20 @@ TEST(Learner, KeepsAFrameOncePerWayAndPlace) {
   EXPECT_THROW(learner->add(cv::Mat(), {}, "hall", {0.0, 0.0, 0.0}, 1.2, 21.0),
                std::invalid_argument);
   EXPECT_EQ(learner->frames().size(), before + 1);
+}
+
+TEST(Learner, FramesGoWithTheirPlacesName) {
+  const auto learner = drive(nothingLearnt());
+  const auto count = [&](const std::string& name) {
+    const auto& frames = learner->frames();
+    return std::count_if(frames.begin(), frames.end(),
+                         [&](const LearntFrame& f) { return f.place == name; });
+  };
+  const auto kitchen = count("kitchen");
+  learner->rename({{"kitchen", "lab"}, {"attic", "roof"}});
+  EXPECT_EQ(count("kitchen"), 0);
+  EXPECT_EQ(count("lab"), kitchen);
+  EXPECT_GT(kitchen, 0);
 }
 
 TEST(Learner, WhatWasLearntOnTheWayIsRecognised) {

@@ -66,6 +66,9 @@ class Learner {
   bool add(const cv::Mat& image, const Readings& readings, const std::string& place,
            const hyselam::Pose2& camera, double height, double stamp);
 
+  /// Frames of places that got another name are frames of that name.
+  void rename(const std::vector<Renaming>& renamings);
+
   const std::vector<LearntFrame>& frames() const { return frames_; }
   void clear() { frames_.clear(); }
 

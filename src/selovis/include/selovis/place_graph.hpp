@@ -18,6 +18,14 @@ struct PlaceGraph {
   bool connected(int a, int b) const;
 };
 
+/// A place that got another name.
+struct Renaming {
+  std::string from, to;
+};
+/// Gives places their new names. One whose new name is there already keeps the old one. Returns
+/// how many have changed.
+std::size_t rename(const std::vector<Renaming>& renamings, PlaceGraph* graph);
+
 /// Shortest paths. first_step[i * n + j] is a(i, j) of Eq. 6.22: the place next to j on a shortest
 /// path from j to i (the one with the lowest index among equals); distance[i * n + j] is d(i, j) of
 /// Eq. 6.21, -1 where there is no path.

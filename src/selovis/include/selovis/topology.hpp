@@ -38,6 +38,12 @@ struct ExpectedPlaces {
 ExpectedPlaces expectedPlaces(const hyselam_topo::AugmentedTopologicalMap& map,
                               const PlaceGraph& learnt, hyselam::Point2 point, double reach);
 
+/// Places that people call otherwise than they did: the same in both maps, by id and by a centre
+/// that has moved by less than 0.5 m, with another name in `after`, where no place bears the old
+/// one. (Ids alone may be those of another building.)
+std::vector<Renaming> renamedPlaces(const hyselam_topo::AugmentedTopologicalMap& before,
+                                    const hyselam_topo::AugmentedTopologicalMap& after);
+
 /// A guess of the pose of which nothing but the place is known.
 struct PlaceSpread {
   hyselam::Pose2 mean;

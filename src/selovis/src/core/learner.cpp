@@ -177,6 +177,14 @@ bool Learner::add(const cv::Mat& image, const Readings& readings, const std::str
   return true;
 }
 
+void Learner::rename(const std::vector<Renaming>& renamings) {
+  for (auto& frame : frames_) {
+    const auto renaming = std::find_if(renamings.begin(), renamings.end(),
+                                       [&](const Renaming& r) { return r.from == frame.place; });
+    if (renaming != renamings.end()) frame.place = renaming->to;
+  }
+}
+
 BackgroundTraining::~BackgroundTraining() {
   if (thread_.joinable()) thread_.join();
 }

@@ -99,6 +99,17 @@ bool PlaceGraph::connected(int a, int b) const {
   });
 }
 
+std::size_t rename(const std::vector<Renaming>& renamings, PlaceGraph* graph) {
+  std::size_t changed = 0;
+  for (const auto& renaming : renamings) {
+    const int place = graph->find(renaming.from);
+    if (place < 0 || graph->find(renaming.to) >= 0) continue;
+    graph->places[static_cast<std::size_t>(place)] = renaming.to;
+    ++changed;
+  }
+  return changed;
+}
+
 PlaceDistances shortestPaths(const PlaceGraph& graph) {
   PlaceDistances result;
   const std::size_t n = result.size = graph.places.size();

@@ -159,6 +159,23 @@ ExpectedPlaces expectedPlaces(const AugmentedTopologicalMap& map, const PlaceGra
   return expected;
 }
 
+std::vector<Renaming> renamedPlaces(const AugmentedTopologicalMap& before,
+                                    const AugmentedTopologicalMap& after) {
+  constexpr double kSame = 0.5;  // [m]
+  const auto names = namesOf(after);
+  std::vector<Renaming> renamings;
+  for (const auto& old : before.places) {
+    const auto* now = after.findPlace(old.id);
+    if (now == nullptr || !now->centre || !old.centre) continue;
+    const Renaming r{hyselam_topo::nameOf(old), hyselam_topo::nameOf(*now)};
+    const double moved = std::hypot(now->centre->x - old.centre->x, now->centre->y - old.centre->y);
+    const bool borne = std::any_of(names.begin(), names.end(),
+                                   [&](const auto& place) { return place.second == r.from; });
+    if (r.from != r.to && moved < kSame && !borne) renamings.push_back(r);
+  }
+  return renamings;
+}
+
 std::optional<PlaceSpread> spreadOf(const AugmentedTopologicalMap& map, const std::string& name) {
   if (!map.grid) return {};
   const auto& grid = *map.grid;

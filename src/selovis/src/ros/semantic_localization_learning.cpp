@@ -73,17 +73,50 @@ bool SemanticLocalizationServer::train(std::vector<LearntFrame> frames) {
   return training_.start(model_, std::move(frames), [this](const BackgroundTraining::Outcome& o) {
     Trained trained{o, false, ""};
     if (o.model && params_.autosave && !params_.save_model.empty()) {
-      try {
-        const std::lock_guard<std::mutex> lock(save_mutex_);
-        saveModel(*o.model, params_.save_model);
-        trained.saved = true;
-      } catch (const std::exception& e) {
-        trained.save_error = e.what();
-      }
+      trained.save_error = trySave(*o.model);
+      trained.saved = trained.save_error.empty();
     }
     const std::lock_guard<std::mutex> lock(trained_mutex_);
     trained_ = std::move(trained);
   });
+}
+
+std::string SemanticLocalizationServer::trySave(const Model& model) {
+  try {
+    const std::lock_guard<std::mutex> lock(save_mutex_);
+    saveModel(model, params_.save_model);
+    return "";
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+}
+
+void SemanticLocalizationServer::rename(const std::vector<Renaming>& renamings) {
+  learner_->rename(renamings);
+  bool in_training = training_.busy();
+  {
+    const std::lock_guard<std::mutex> lock(trained_mutex_);
+    in_training = in_training || trained_;
+  }
+  if (in_training) {
+    renamed_in_training_.insert(renamed_in_training_.end(), renamings.begin(), renamings.end());
+  }
+  renameModel(renamings);
+}
+
+void SemanticLocalizationServer::renameModel(const std::vector<Renaming>& renamings) {
+  PlaceGraph graph = model_->graph;
+  const std::size_t changed = selovis::rename(renamings, &graph);
+  if (changed == 0) return;
+  renamed_ += changed;
+  auto named = std::make_shared<Model>(*model_);
+  named->graph = std::move(graph);
+  useModel(std::move(named));
+  ROS_INFO_STREAM(who_ << " what was learnt goes with places that are called otherwise now, '"
+                       << renamings.back().to << "' among them");
+  if (!params_.autosave || params_.save_model.empty()) return;
+  autosave_error_ = trySave(*model_);
+  if (!autosave_error_.empty()) ROS_ERROR_STREAM(who_ << " not saved: " << autosave_error_);
 }
 
 void SemanticLocalizationServer::takeTrained() {
@@ -93,6 +126,7 @@ void SemanticLocalizationServer::takeTrained() {
     trained.swap(trained_);
   }
   if (!trained) return;
+  const std::vector<Renaming> renamings = std::exchange(renamed_in_training_, {});
   training_error_ = trained->outcome.error;
   if (!trained->outcome.model) {
     ROS_WARN_STREAM(who_ << " not trained: " << trained->outcome.error);
@@ -107,6 +141,7 @@ void SemanticLocalizationServer::takeTrained() {
   if (trained->saved) saved_frames_ = std::max(saved_frames_, trained_frames_);
   autosave_error_ = trained->save_error;
   if (!autosave_error_.empty()) ROS_ERROR_STREAM(who_ << " not saved: " << autosave_error_);
+  renameModel(renamings);
 }
 
 bool SemanticLocalizationServer::onStartLearning(Trigger::Request&, Trigger::Response& response) {

@@ -373,8 +373,11 @@ std::optional<hyselam::Pose2> SemanticLocalizationServer::poseIn(const std::stri
 // The map and the model.
 
 void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg) {
+  std::vector<Renaming> renamings;
   try {
-    map_ = hyselam_topo::fromMsg(*msg, "topological_map");
+    auto map = hyselam_topo::fromMsg(*msg, "topological_map");
+    if (map_) renamings = renamedPlaces(*map_, map);
+    map_ = std::move(map);
     map_error_.clear();
   } catch (const std::exception& e) {
     map_error_ = e.what();  // the one before stays
@@ -382,6 +385,7 @@ void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalM
     return;
   }
   const PlaceGraph before = graph_;
+  if (!renamings.empty()) rename(renamings);
   rebuild();
   if (!(before.places == graph_.places && before.transitions == graph_.transitions) &&
       !not_on_map_.empty()) {
@@ -454,6 +458,7 @@ void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& statu
   addValue(status, "descriptor", model_->descriptor);
   addValue(status, "places", model_->graph.places.size());
   addValue(status, "signatures", model_->samples.count());
+  addValue(status, "places renamed", renamed_);
   addValue(status, "places of the map", map_ ? map_->places.size() : 0);
   addValue(status, "places not on the map", not_on_map_.size());
   addValue(status, "images received", received_);

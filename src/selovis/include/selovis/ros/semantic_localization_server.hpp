@@ -69,6 +69,12 @@ class SemanticLocalizationServer {
 
   void onMap(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg);
   void useModel(std::shared_ptr<const Model> model);
+  /// What was learnt of places goes with them when they get another name.
+  void rename(const std::vector<Renaming>& renamings);
+  /// The model in use with new names, saved if that is wanted.
+  void renameModel(const std::vector<Renaming>& renamings);
+  /// Into `save_model`; why not, or empty.
+  std::string trySave(const Model& model);
   void rebuild();
   bool startTraining(std::string* message);
   /// In the other thread, which saves the model, too. False if it is busy.
@@ -116,9 +122,10 @@ class SemanticLocalizationServer {
   std::size_t tried_frames_ = 0;  ///< when training began last, whatever became of it
   std::mutex trained_mutex_;
   std::optional<Trained> trained_;  // from the other thread
-  std::mutex save_mutex_;           // of the directory that models are saved to
+  std::vector<Renaming> renamed_in_training_;
+  std::mutex save_mutex_;  // of the directory that models are saved to
   std::string training_error_, autosave_error_;
-  std::size_t trainings_ = 0;
+  std::size_t trainings_ = 0, renamed_ = 0;
   bool tried_map_ = false;  // to learn from the map's own signatures
 
   std::size_t received_ = 0, used_ = 0, dropped_ = 0, reported_received_ = 0, reported_dropped_ = 0;
