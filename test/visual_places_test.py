@@ -429,7 +429,7 @@ class VisualPlacesTest(unittest.TestCase):
         self.learn_tour(rig)
         wait_until(lambda: rig.number("frames trained") >= 20, "trained")
         trained = rig.number("frames trained")
-        self.assertEqual({row["place"] for row in self.film.predictions(folder, self.film.raw_list)}, set(ROOMS))
+        self.assertEqual({row["predicted"] for row in self.film.predictions(folder, self.film.raw_list)}, set(ROOMS))
         learnt = rig.number("frames learnt")
         wait_until(lambda: (f"{learnt - trained} frames learnt, not saved" in rig.status().message) == (learnt > trained),
                    "only what came after the training is not saved")
@@ -446,7 +446,7 @@ class VisualPlacesTest(unittest.TestCase):
         self.assertEqual((rig.seen.messages[-1].name, rig.seen.messages[-1].place), ("lab", 2))
         self.assertEqual(rig.values()["places"], "2")
         # Also if a training that had begun before ends after it.
-        wait_until(lambda: {row["place"] for row in self.film.predictions(folder, self.film.raw_list)} == {"left room", "lab"},
+        wait_until(lambda: {row["predicted"] for row in self.film.predictions(folder, self.film.raw_list)} == {"left room", "lab"},
                    "the new name, saved")
         # The next one goes on with it; where it cannot write, it says so and lives.
         other = self.rig("_again", model=folder, save_model="/dev/null/none", retrain_every=0, learn=True,
