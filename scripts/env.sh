@@ -57,7 +57,17 @@ use_workspace() {
   unset ROS_IP
 }
 
-# free_port: a TCP port that nobody listens on at this moment.
+# free_port: a TCP port that nobody listens on at this moment, and that the system gives to nobody who does not ask for it.
 free_port() {
-  python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])'
+  python3 -c '
+import random, socket
+while True:
+    with socket.socket() as s:
+        port = random.randrange(20000, 32768)
+        try:
+            s.bind(("localhost", port))
+        except OSError:
+            continue
+    print(port)
+    break'
 }

@@ -21,7 +21,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from geometry_msgs.msg import TransformStamped
 
-from localization_rig import Recording, SLOWNESS, wait_until, WAIT
+from localization_rig import Recording, SLOWNESS, free_port, wait_until, WAIT
 
 ENOUGH_TO_SEE_THE_MOUNT = 250  # scans: the robot has gone some metres and turned
 
@@ -149,9 +149,7 @@ class DoctorTest(unittest.TestCase):
         self.assertIn("nobody publishes /clock: time stands still", self.wrong(findings, "clock"))
 
     def test_a_master_under_which_nothing_runs(self):
-        with socket.socket() as s:
-            s.bind(("localhost", 0))
-            port = s.getsockname()[1]
+        port = free_port()
         master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             def answers():

@@ -13,6 +13,7 @@ import rostest
 
 sys.dont_write_bytecode = True
 from faults_rig import program, run
+from localization_rig import free_port
 
 PATIENCE = 60.0  # [s] never reached when all is well
 
@@ -20,9 +21,7 @@ PATIENCE = 60.0  # [s] never reached when all is well
 class FaultsMasterTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
-        with socket.socket() as s:
-            s.bind(("localhost", 0))
-            self.port = s.getsockname()[1]
+        self.port = free_port()
         self.environment = {"ROS_MASTER_URI": f"http://localhost:{self.port}", "ROS_HOME": self.path("ros_home")}
         self.running = []
         self.addCleanup(self.end_all)

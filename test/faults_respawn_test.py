@@ -53,11 +53,16 @@ class FaultsRespawnTest(TwoRobots):
     def test_manager_killed_twice_and_the_keeper_with_it(self):
         self.assertIn("Kitchen", self.name("Kitchen"))
         keeper = f"/{KNOWN}/hyselam_manager_keeper"
-        wait_until(lambda: rospy.get_param(keeper + "/seen", {}).get("loaders", []) and
-                   len(rospy.get_param(keeper + "/seen")["loaders"]) == len(self.stack.layers(KNOWN)), "the keeper sees all layers")
+
+        def keeper_sees_all():
+            seen = rospy.get_param(keeper + "/seen", {})
+            return (seen and seen["manager"][1] == self.process_now(f"/{KNOWN}/hyselam_manager") and
+                    len(seen.get("loaders", [])) == len(self.stack.layers(KNOWN)))
+        wait_until(keeper_sees_all, "the keeper sees all layers")
         os.kill(self.stack.process_of(keeper), signal.SIGKILL)
         self.kill_manager(KNOWN)
         self.comes_back_alone(KNOWN)
+        wait_until(keeper_sees_all, "the keeper sees all layers again")
         self.kill_manager(KNOWN)
         self.comes_back_alone(KNOWN)
         self.works()

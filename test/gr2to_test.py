@@ -125,11 +125,15 @@ class Rig:
         self.input.unregister()
 
     def give(self, msg):
-        """Publishes and waits until it has been used or refused."""
+        """Publishes and waits until it has been used or refused, and what came of it is here."""
         self.given += 1
+        outputs = {listener: len(listener.messages) for listener in (self.maps, self.markers)}
+        segmented = int(self.value("maps segmented") or 0)
         self.input.publish(msg)
         wait_until(lambda: self.value("maps received") == str(self.given) and self.value("segmenting") == "False"
                    and self.done() == self.given, lambda: str(self.values()))
+        for listener, before in outputs.items():  # other connections than that of the diagnosis
+            listener.wait(before + int(self.value("maps segmented")) - segmented)
 
     def done(self):
         return sum(int(self.value(f"maps {what}") or 0) for what in ("segmented", "unchanged", "refused"))

@@ -38,7 +38,7 @@ class LocalizationBagTest(unittest.TestCase):
         for ns in ("nodelet", "node"):
             cls.heard[ns, "density_field"].wait()
         # /scan goes to four listeners; wait for them as rosbag's own --wait-for-subscribers counts one only.
-        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", cls.run_.bag,
+        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", "--queue", "100000", cls.run_.bag,
                         "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
         for ns in ("nodelet", "node"):
             wait_until(lambda: cls.value(f"{ns}/localization", "scans waiting") == "0"

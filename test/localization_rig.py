@@ -3,6 +3,8 @@ nodelets answer. No test; the localization_*_test.py files import it."""
 import copy
 import math
 import os
+import random
+import socket
 import subprocess
 import tempfile
 import time
@@ -47,6 +49,18 @@ def wait_until(condition, what):
         if time.monotonic() > deadline or rospy.is_shutdown():
             raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
         time.sleep(0.01)
+
+
+def free_port():
+    """One that nobody listens on now, and that the system gives to nobody who does not ask for it."""
+    while True:
+        with socket.socket() as s:
+            port = random.randrange(20000, 32768)
+            try:
+                s.bind(("localhost", port))
+            except OSError:
+                continue
+        return port
 
 
 class Recording:

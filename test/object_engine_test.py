@@ -278,6 +278,10 @@ class ObjectEngineTest(unittest.TestCase):
 
         def counts(key, number):
             wait_until(lambda: self.number(key) >= number, lambda: str(self.status()))
+        # Three connections: without what camera_info tells, the first pair would be left out.
+        silent = types.SimpleNamespace(publish=lambda msg: None)
+        self.show((camera[0], silent, silent), 6999.5)
+        wait_until(lambda: self.status().name and "camera_info" not in self.status().message, lambda: str(self.status()))
         self.show(camera, 7000)
         counts("frames used", 1)
         self.show(camera, 6999.9)

@@ -43,7 +43,7 @@ class SlamBagTest(unittest.TestCase):
         rospy.wait_for_service("/slam/save", 30)
         wait_until(lambda: all(h.subscriber.get_num_connections() > 0 for t, h in cls.heard.items() if t != "tf"),
                    "not connected")
-        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", cls.run_.bag,
+        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", "--queue", "100000", cls.run_.bag,
                         "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
         wait_until(lambda: int(cls.values().get("scans used", 0)) >= len(cls.run_.scans), lambda: str(cls.values()))
         last = cls.run_.scans[-1].header.stamp.to_sec()

@@ -254,6 +254,7 @@ class SlamInputTest(unittest.TestCase):
         rig.next = 0
         rig.set_clock(self.recording.scans[0].header.stamp.to_sec() - 0.5)
         rig.tf_seen.messages.clear()
+        rig.wait_value("time went back", 1)
         rig.feed(120)
         self.assertEqual(rig.value("time went back"), "1")
         self.assertEqual(rig.value("runs"), "2")

@@ -295,6 +295,7 @@ class VisualPlacesTest(unittest.TestCase):
             rig.give(image)
             rig.settle()
         self.assertEqual(rig.number("images dropped"), 4)
+        rig.seen.wait(5)
         self.assertEqual(len(rig.seen.messages), 5)
         # In the dark: passed over, the place stays.
         rig.give(changed(data=bytes(len(good.data))))
@@ -305,11 +306,13 @@ class VisualPlacesTest(unittest.TestCase):
         # Another resolution: half of the rows.
         rig.give(changed(height=good.height // 2, data=good.data[:len(good.data) // 2]))
         rig.settle()
+        rig.seen.wait(7)
         self.assertEqual(len(rig.seen.messages), 7)
         rig.give(bad["a grey image"])
+        seen = len(rig.seen.messages)
         rig.give(good)
         rig.settle()
-        self.assertEqual(rig.seen.messages[-1].name, "left room")
+        self.assertEqual(rig.seen.wait(seen + 1).name, "left room")
 
     def test_jpeg_cut_short(self):
         rig = self.rig(model=self.film.model, compressed=True)
@@ -322,6 +325,7 @@ class VisualPlacesTest(unittest.TestCase):
         rig.give(self.film.jpeg[4])
         rig.settle()
         self.assertEqual(rig.number("images dropped"), 3)
+        rig.seen.wait(4)
         self.assertEqual(len(rig.seen.messages), 4)
 
     def test_readings_that_do_not_come(self):
@@ -337,7 +341,7 @@ class VisualPlacesTest(unittest.TestCase):
         rig.settle()
         rig.give(self.film.raw[2], self.film.scan_of(self.film.raw[2]))
         rig.settle()
-        self.assertTrue(rig.seen.messages)
+        rig.seen.wait()
 
     def test_models_that_cannot_be_used(self):
         cut = os.path.join(self.film.folder.name, "cut")
@@ -367,7 +371,8 @@ class VisualPlacesTest(unittest.TestCase):
         for _ in range(3):
             rig.give(self.film.frame_in("right room"))
         rig.settle()
-        self.assertEqual((rig.seen.messages[-1].name, rig.seen.messages[-1].place), ("right room", 2))
+        seen = rig.seen.wait(3)
+        self.assertEqual((seen.name, seen.place), ("right room", 2))
         bars = [m for m in rig.markers.wait().markers if m.ns == "bars"]
         self.assertEqual(sorted(m.id for m in bars), [1, 2])
         self.assertGreater(max(bars, key=lambda m: m.scale.z).pose.position.x, 4.0)
@@ -375,7 +380,7 @@ class VisualPlacesTest(unittest.TestCase):
         wait_until(lambda: rig.values().get("places not on the map") == "1", "a place is gone")
         rig.give(self.film.frame_in("right room"))
         rig.settle()
-        self.assertEqual(rig.seen.messages[-1].place, 0, "it is recognised, and has no id")
+        self.assertEqual(rig.seen.wait(4).place, 0, "it is recognised, and has no id")
         broken = topological_map()
         broken.grid.width = 7
         rig.give_map(broken)
@@ -435,15 +440,18 @@ class VisualPlacesTest(unittest.TestCase):
                    "only what came after the training is not saved")
         kept = self.rig("_kept", model="/nowhere", save_model=folder)
         self.assertTrue(kept.loaded, "what was kept goes before what there was to begin with")
-        self.assertEqual(kept.values()["places"], "2")
+        wait_until(lambda: kept.values().get("places") == "2", lambda: str(kept.values()))
         # A place that gets another name takes along what was learnt of it.
         named = topological_map()
         named.places[1].words = [PlaceWord("lab", True)]
         rig.give_map(named)
         wait_until(lambda: rig.number("places renamed") >= 1, "the new name")
+        rig.settle()
+        before = len(rig.seen.messages)
         rig.give(self.film.frame_in("right room"))
         rig.settle()
-        self.assertEqual((rig.seen.messages[-1].name, rig.seen.messages[-1].place), ("lab", 2))
+        seen = rig.seen.wait(before + 1)
+        self.assertEqual((seen.name, seen.place), ("lab", 2))
         self.assertEqual(rig.values()["places"], "2")
         # Also if a training that had begun before ends after it.
         wait_until(lambda: {row["predicted"] for row in self.film.predictions(folder, self.film.raw_list)} == {"left room", "lab"},
@@ -498,7 +506,7 @@ class VisualPlacesTest(unittest.TestCase):
             look(there, 1.5)  # the pose still says left
             if rig.kidnapped.messages[-1].data:
                 break
-        self.assertTrue(rig.kidnapped.messages[-1].data)
+        wait_until(lambda: rig.kidnapped.messages[-1].data, "the alarm")
         self.assertLessEqual(frames, 12)
         guess = rig.initialpose.wait()
         self.assertEqual(guess.header.frame_id, "map")
@@ -552,7 +560,7 @@ class VisualPlacesTest(unittest.TestCase):
         tell(LocalizationStatus.LOST)
         rospy.sleep(0.3)
         look(1)
-        self.assertTrue(rig.kidnapped.messages[-1].data)
+        wait_until(lambda: rig.kidnapped.messages[-1].data, "the doubt")
         tell(LocalizationStatus.TRACKING)
         rospy.sleep(0.3)
         look(1)

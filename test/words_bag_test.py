@@ -17,7 +17,7 @@ from visualization_msgs.msg import MarkerArray
 sys.dont_write_bytecode = True
 from localization_rig import SLOWNESS, Listener, Recording, wait_until
 
-RATE = 15 / SLOWNESS  # times real time; every scan must still be used, and that is checked
+RATE = 8 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 PLACES = ("fsd", "scan", "node")
 
 
@@ -32,7 +32,7 @@ class WordsBagTest(unittest.TestCase):
         for ns in PLACES:
             rospy.wait_for_service(f"/{ns}/words/start_run", 30)
         wait_until(lambda: all(l.subscriber.get_num_connections() > 0 for l in cls.heard.values()), "not connected")
-        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", cls.run_.bag,
+        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", "--queue", "100000", cls.run_.bag,
                         "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
         for ns, name, key in (("fsd", "words_fsd", "scans used"), ("fsd", "words", "observations used"),
                               ("scan", "words", "scans used"), ("node", "words", "scans used")):

@@ -4,6 +4,7 @@
 
 #include "fsd_localization/localizer.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/temporary_directory.hpp"
 #include "random_worlds.hpp"
 
 using namespace fsd_localization;  // NOLINT: a test, not a header
@@ -368,8 +369,8 @@ TEST(LikelihoodField, farReturnsAreExplainedByNoTolerance) {
 }
 
 TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
-  const std::string path = ::testing::TempDir() + "room.fsd";
-  std::remove(path.c_str());
+  const hyselam::testing::TemporaryDirectory folder;
+  const std::string path = folder / "room.fsd";
   bool cached = true;
   const auto first = FsdMap::cached(path, room(), {}, 1, {}, &cached);
   EXPECT_FALSE(cached);
@@ -387,11 +388,11 @@ TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
   }
   FsdMap::cached(path, changed, {}, 1, {}, &cached);
   EXPECT_FALSE(cached);
-  std::remove(path.c_str());
 }
 
 TEST(FsdMap, cacheThatCannotBeWrittenIsToldAndDoesNoHarm) {
-  const std::string path = ::testing::TempDir() + "no/such/folder/room.fsd";
+  const hyselam::testing::TemporaryDirectory folder;
+  const std::string path = folder / "no/such/folder/room.fsd";
   bool cached = true;
   std::string problem;
   const auto map = FsdMap::cached(path, room(), {}, 1, {}, &cached, &problem);
@@ -400,10 +401,8 @@ TEST(FsdMap, cacheThatCannotBeWrittenIsToldAndDoesNoHarm) {
   const FsdMap fresh(room(), {}, 1);
   EXPECT_TRUE(std::equal(fresh.data(), fresh.data() + fresh.bytes(), map.data()));
 
-  const std::string good = ::testing::TempDir() + "room_kept.fsd";
-  FsdMap::cached(good, room(), {}, 1, {}, &cached, &problem);
+  FsdMap::cached(folder / "room_kept.fsd", room(), {}, 1, {}, &cached, &problem);
   EXPECT_TRUE(problem.empty()) << problem;
-  std::remove(good.c_str());
 }
 
 TEST(DensityField, doesNotDependOnTheNumberOfThreads) {

@@ -62,6 +62,11 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
       if (failed) params_.state_file.clear();
     }
   }
+  // Before the services: a nodelet's queue is served while its constructor still runs.
+  objects_.emplace(nh, params_.object_patience,
+                   [this](const PassedOn& sentence, const hyselam_msgs::ObjectAnswer* answer) {
+                     answered(sentence, answer);
+                   });
   services_ = {nh.advertiseService("tell_robot", &Self::onTell, this),
                nh.advertiseService("name_place", &Self::onName, this),
                nh.advertiseService("where_am_i", &Self::onWhere, this),
@@ -71,10 +76,6 @@ TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& pr
                nh.advertiseService("add_glass_wall", &Self::onGlassWall, this),
                nh.advertiseService("save_dialogue", &Self::onSave, this),
                nh.advertiseService("load_dialogue", &Self::onLoad, this)};
-  objects_.emplace(nh, params_.object_patience,
-                   [this](const PassedOn& sentence, const hyselam_msgs::ObjectAnswer* answer) {
-                     answered(sentence, answer);
-                   });
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": dialogue",
                        params_.diagnostic_period,
                        [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });

@@ -54,7 +54,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
       learning_(params_.learn),
       tf_listener_(tf_, true, hyselam::promptly()),
       supervision_(nh, private_nh, params_, who_),
-      place_publisher_(nh.advertise<hyselam_msgs::VisualPlace>("visual_place", 10)),
+      place_publisher_(nh.advertise<hyselam_msgs::VisualPlace>("visual_place", 100)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("place_markers", 1, true)),
       transport_(nh) {
   const auto first = firstModel(params_, who_);
