@@ -8,6 +8,7 @@ import signal
 import subprocess
 import tempfile
 import threading
+import time
 import types
 import unittest
 from unittest import mock
@@ -270,6 +271,22 @@ class KnowledgeTest(unittest.TestCase):
             self.slam.go_on.release()
             tool.kill()
         return tool.returncode
+
+    def test_an_interrupt_that_comes_late_is_too_late_or_undoes_all(self):
+        self.assertEqual(self.run_tool("save"), 0, self.err)
+        outcomes = {(0, ""), (1, "error: interrupted; all is as it was\n")}
+        for wait in (0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6):
+            self.slam.waits, self.slam.entered = ["save"], threading.Semaphore(0)
+            self.slam.go_on = threading.Semaphore(1)  # it need not wait
+            tool = subprocess.Popen([self.program, "save", self.path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.assertTrue(self.slam.entered.acquire(timeout=WAIT), "SLAM is not asked to save")
+            time.sleep(wait)
+            tool.send_signal(signal.SIGINT)
+            out, err = tool.communicate(timeout=WAIT)
+            self.assertIn((tool.returncode, err), outcomes)
+            self.assertEqual(tool.returncode == 0, "saved" in out)
+            self.assertEqual(self.run_tool("check"), 0, self.err)
+            self.assertEqual(self.left_over(), [])
 
     def kept(self):
         """The directory that the error names, for what the layers knew."""
