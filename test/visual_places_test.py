@@ -405,7 +405,7 @@ class VisualPlacesTest(unittest.TestCase):
         answer = rig.call("retrain")
         self.assertTrue(answer.success, answer.message)
         wait_until(lambda: rig.number("frames trained") == learnt, "trained")
-        self.assertIn(f"{learnt} frames learnt, not saved", rig.status().message)
+        self.assertIn(f"{learnt} frames gathered, not saved yet", rig.status().message)
         answer = rig.call("save")
         self.assertTrue(answer.success, answer.message)
         wait_until(lambda: "not saved" not in rig.status().message, "saved")
@@ -436,7 +436,7 @@ class VisualPlacesTest(unittest.TestCase):
         trained = rig.number("frames trained")
         self.assertEqual({row["predicted"] for row in self.film.predictions(folder, self.film.raw_list)}, set(ROOMS))
         learnt = rig.number("frames learnt")
-        wait_until(lambda: (f"{learnt - trained} frames learnt, not saved" in rig.status().message) == (learnt > trained),
+        wait_until(lambda: (f"{learnt - trained} frames gathered, not saved yet" in rig.status().message) == (learnt > trained),
                    "only what came after the training is not saved")
         kept = self.rig("_kept", model="/nowhere", save_model=folder)
         self.assertTrue(kept.loaded, "what was kept goes before what there was to begin with")
