@@ -133,7 +133,8 @@ class Rig:
         wait_until(lambda: self.value("maps received") == str(self.given) and self.value("segmenting") == "False"
                    and self.done() == self.given, lambda: str(self.values()))
         for listener, before in outputs.items():  # other connections than that of the diagnosis
-            listener.wait(before + int(self.value("maps segmented")) - segmented)
+            expected = before + int(self.value("maps segmented")) - segmented
+            wait_until(lambda: len(listener.messages) >= expected, lambda: f"{expected} messages: {self.values()}")
 
     def done(self):
         return sum(int(self.value(f"maps {what}") or 0) for what in ("segmented", "unchanged", "refused"))

@@ -12,7 +12,7 @@ from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
-from localization_rig import Recording, Rig
+from localization_rig import Recording, Rig, wait_until
 
 NAN, INF = float("nan"), float("inf")
 
