@@ -11,8 +11,8 @@
 
 #include "../test/random_texts.hpp"
 #include "../test/transcription/matching.hpp"
-#include "ngram_slam/recogniser.hpp"
-#include "ngram_slam/reverse_matcher.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/matching/reverse_ngram_matcher.hpp"
 
 namespace {
 
@@ -48,7 +48,7 @@ class Writer {
       corridors_.push_back(words);
     }
   }
-  void write(Text& text) {
+  void write(WordLattice& text) {
     if (pending_.empty()) {
       const auto& corridor = corridors_[corridor_];
       const std::size_t at = backwards_ ? corridor.size() - 1 - at_ : at_;
@@ -93,7 +93,7 @@ template <typename AnyMatcher>
 struct Situation {
   explicit Situation(Place place) : writer(place, 7), matcher(text) {}
   Writer writer;
-  Text text{3};
+  WordLattice text{3};
   AnyMatcher matcher;
 };
 
@@ -155,17 +155,17 @@ void oneWord(benchmark::State& state, Place place, const char* baseline) {
 }
 
 void OneWord_Circuit(benchmark::State& state) {
-  oneWord<Matcher>(state, Place::kCircuit, nullptr);
+  oneWord<NgramMatcher>(state, Place::kCircuit, nullptr);
 }
 void OneWord_Building(benchmark::State& state) {
-  oneWord<Matcher>(state, Place::kBuilding, "OneWord_Building_Scan");
+  oneWord<NgramMatcher>(state, Place::kBuilding, "OneWord_Building_Scan");
 }
 /// The same corridors both ways, and what the search the other way round costs by itself.
 void OneWord_CircuitReverse(benchmark::State& state) {
-  oneWord<ReverseMatcher>(state, Place::kCircuitBoth, nullptr);
+  oneWord<ReverseNgramMatcher>(state, Place::kCircuitBoth, nullptr);
 }
 void OneWord_BuildingReverse(benchmark::State& state) {
-  oneWord<ReverseMatcher>(state, Place::kBuildingBoth, nullptr);
+  oneWord<ReverseNgramMatcher>(state, Place::kBuildingBoth, nullptr);
 }
 BENCHMARK(OneWord_CircuitReverse)
     ->Apply(textLengths)
@@ -181,8 +181,8 @@ BENCHMARK(OneWord_Building)->Apply(textLengths)->Iterations(3000)->Unit(benchmar
 /// A lap of the circuit after 40 laps (5.3.2), regions already built: words, levels, all matches.
 void OneLap_Circuit(benchmark::State& state) {
   Writer writer(Place::kCircuit, 7);
-  Text text(3);
-  Matcher matcher(text);
+  WordLattice text(3);
+  NgramMatcher matcher(text);
   while (text.positions() < 40 * 24) {
     writer.write(text);
     matcher.update();
@@ -198,7 +198,7 @@ BENCHMARK(OneLap_Circuit)->Iterations(40)->Unit(benchmark::kMillisecond);
 /// Single comparisons of words, one after the other.
 void CompareWords(benchmark::State& state) {
   Writer writer(Place::kBuilding, 7);
-  Text text(1);
+  WordLattice text(1);
   while (text.words() < 10000) writer.write(text);
   const WordTolerance tolerance;
   const Syllables newest = text.syllables(0);
@@ -217,7 +217,7 @@ BENCHMARK(CompareWords)->Unit(benchmark::kMicrosecond);
 Corpus largeCorpus() {
   Corpus corpus;
   hyselam::Rng rng(5);
-  Observation o;
+  DensityObservation o;
   for (int i = 0; i < 1500000; ++i) {
     o.base_in_odom = o.base_in_odom * hyselam::Pose2{0.1, 0.0, rng.uniform(-0.02, 0.02)};
     if (std::hypot(o.base_in_odom.x, o.base_in_odom.y) > 1e4) o.base_in_odom = {};
@@ -242,7 +242,7 @@ void SaveCorpus(benchmark::State& state) {
 void LoadCorpus(benchmark::State& state) {
   CorpusFile::save(corpusFile(), largeCorpus());
   for (auto _ : state) {
-    const Recogniser r(RecogniserParams{}, CorpusFile::load(corpusFile()));
+    const NgramRecognizer r(NgramRecognizerParams{}, CorpusFile::load(corpusFile()));
     state.counters["words"] = static_cast<double>(r.text().words());
     state.counters["bytes_per_word"] =
         static_cast<double>(r.bytes()) / static_cast<double>(r.text().words());
@@ -256,9 +256,9 @@ BENCHMARK(LoadCorpus)->Iterations(3)->Unit(benchmark::kMillisecond);
 /// n-grams instead of all, which nobody could wait for.
 void OneWord_Building_Scan(benchmark::State& state) {
   Writer writer(Place::kBuilding, 7);
-  Text text(3);
+  WordLattice text(3);
   while (text.words() < static_cast<std::size_t>(state.range(0))) writer.write(text);
-  const MatcherParams params;
+  const NgramMatcherParams params;
   const auto words = transcription::plainWords(text);
   Position last = text.positions();
   for (auto _ : state) {

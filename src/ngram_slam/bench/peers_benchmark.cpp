@@ -6,7 +6,7 @@
 
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/simulation.hpp"
-#include "ngram_slam/word.hpp"
+#include "ngram_slam/words/density_word.hpp"
 #include "peers/icp_distance.hpp"
 #include "peers/polar_context.hpp"
 

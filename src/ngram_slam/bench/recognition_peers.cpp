@@ -10,7 +10,7 @@
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "ngram_slam/recognition_score.hpp"
+#include "ngram_slam/matching/recognition_score.hpp"
 #include "peers/icp_distance.hpp"
 #include "peers/polar_context.hpp"
 

@@ -13,8 +13,8 @@
 
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/tool.hpp"
-#include "ngram_slam/corpus_journal.hpp"
-#include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/words/corpus_journal.hpp"
 
 namespace {
 
@@ -36,9 +36,9 @@ class Way {
         s.turn = i % 2 == 0 || rng.below(2) == 0 ? 0.0 : rng.below(2) == 0 ? 1.57 : -1.57;
       }
   }
-  Observation next() {
+  DensityObservation next() {
     while (at_ == visit_.size()) write();
-    Observation o;
+    DensityObservation o;
     const Step& step = visit_[at_++];
     pose_ = pose_ * hyselam::Pose2{0.1, 0.0, step.turn};
     // A way of years does not leave its building.
@@ -114,12 +114,12 @@ nlohmann::json run(const Options& o) {
   Way way(o.seed);
   const ObservationStore& known = loaded.corpus.observations;
   for (std::uint32_t i = 0; i < known.size(); ++i) {
-    const Observation expected = way.next();
+    const DensityObservation expected = way.next();
     if (std::abs(known.soft(i) - expected.soft) > 1e-4 || known.stamp(i) != expected.stamp)
       throw std::runtime_error("observation " + std::to_string(i) + " is not what was saved");
   }
-  Recogniser r(o.improved ? RecogniserParams::improved() : RecogniserParams{},
-               std::move(loaded.corpus));
+  NgramRecognizer r(o.improved ? NgramRecognizerParams::improved() : NgramRecognizerParams{},
+                    std::move(loaded.corpus));
   std::ostringstream start;
   start << "loaded " << r.observations().size() << ' ' << r.text().positions() << ' '
         << msSince(begin) << ' ' << residentMb();
@@ -128,9 +128,9 @@ nlohmann::json run(const Options& o) {
   std::vector<double> word_ms, save_ms;
   std::size_t matches = 0;
   while (r.text().positions() < o.words) {
-    const Observation next = way.next();
+    const DensityObservation next = way.next();
     const auto t0 = Clock::now();
-    const RecogniserUpdate update = r.add(next);
+    const NgramRecognizerUpdate update = r.add(next);
     if (update.word) word_ms.push_back(msSince(t0));
     matches += update.matches.size();
     if (r.observations().size() % o.save_every != 0) continue;

@@ -1,12 +1,12 @@
 #include <sstream>
 
-#include "../src/core/binary_io.hpp"
+#include "../src/core/words/binary_io.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
-#include "ngram_slam/corpus.hpp"
-#include "ngram_slam/semantic_forest.hpp"
-#include "ngram_slam/slam_state_io.hpp"
+#include "ngram_slam/semantics/semantic_forest.hpp"
+#include "ngram_slam/slam/slam_state_io.hpp"
+#include "ngram_slam/words/corpus.hpp"
 
 namespace ngram_slam {
 namespace {

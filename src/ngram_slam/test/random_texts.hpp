@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hyselam_common/rng.hpp"
-#include "ngram_slam/text.hpp"
+#include "ngram_slam/words/word_lattice.hpp"
 
 namespace random_texts {
 
@@ -23,7 +23,7 @@ inline Syllables noisy(Syllables w, hyselam::Rng& rng, double size_share, double
 /// Words drawn from few classes, sizes and angles, so that matches are common; neighbours differ in
 /// class. Now and then a stretch of old words is written again, with noise; now and then a run
 /// ends.
-inline void write(ngram_slam::Text& text, std::size_t positions, hyselam::Rng& rng) {
+inline void write(ngram_slam::WordLattice& text, std::size_t positions, hyselam::Rng& rng) {
   std::vector<Syllables> real;
   const std::uint32_t classes = 2 + rng.below(3), sizes = 1 + rng.below(4),
                       angles = 1 + rng.below(4);

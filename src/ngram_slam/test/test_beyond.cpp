@@ -6,10 +6,10 @@
 #include <map>
 
 #include "hyselam_common/errors.hpp"
-#include "ngram_slam/language_model.hpp"
-#include "ngram_slam/match_judge.hpp"
-#include "ngram_slam/observation_sensor.hpp"
-#include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/matching/match_confidence.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/words/language_model.hpp"
+#include "ngram_slam/words/observation_sensor.hpp"
 #include "random_texts.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
@@ -70,11 +70,11 @@ std::vector<Pose2> way(bool back) {
   return poses;
 }
 
-std::vector<Observation> drive(bool back, double look_back) {
+std::vector<DensityObservation> drive(bool back, double look_back) {
   ObservationSensorParams params;
   params.look_back = look_back;
   ObservationSensor sensor(params);
-  std::vector<Observation> all;
+  std::vector<DensityObservation> all;
   double stamp = 0.0;
   for (const Pose2& pose : way(back)) {
     // Every spot is seen often, as by a robot of 0.5 m/s.
@@ -94,9 +94,9 @@ double differenceBothWays(WordDensity which) {
   const auto there = drive(false, 3.0), back = drive(true, 3.0);
   double sum = 0.0;
   int n = 0;
-  for (const Observation& a : there) {
+  for (const DensityObservation& a : there) {
     if (a.base_in_odom.x < 4.0 || a.base_in_odom.y > 15.0) continue;
-    for (const Observation& b : back) {
+    for (const DensityObservation& b : back) {
       if (hyselam::distance(a.base_in_odom, b.base_in_odom) > 0.05) continue;
       const double d =
           which == WordDensity::kFull ? a.full.value() - b.full.value() : a.soft - b.soft;
@@ -109,8 +109,8 @@ double differenceBothWays(WordDensity which) {
   return std::sqrt(sum / n);
 }
 
-Observation at(double way, double density) {
-  Observation o;
+DensityObservation at(double way, double density) {
+  DensityObservation o;
   o.stamp = way;
   o.base_in_odom = {way, 0.0, 0.0};
   o.soft = density;
@@ -191,11 +191,11 @@ TEST(Classes, hysteresisKeepsTheClassNearItsBounds) {
 }
 
 TEST(Classes, hysteresisSparesWordsWhereADensityTrembles) {
-  RecogniserParams params;
+  NgramRecognizerParams params;
   params.min_region = 1;
   const auto words = [&](double hysteresis) {
     params.class_hysteresis = hysteresis;
-    Recogniser r(params);
+    NgramRecognizer r(params);
     for (int i = 0; i < 400; ++i)
       r.add(at(0.1 * i, (i < 200 ? 0.25 : 0.6) + (i % 2 == 0 ? 0.005 : -0.005)));
     r.endRun();
@@ -273,12 +273,12 @@ TEST(LanguageModel, costsTheSameWhateverItHasRead) {
   EXPECT_EQ(model.bytes(), bytes);
 }
 
-TEST(MatchJudge, tellsRareWordsFromCommonOnes) {
+TEST(MatchConfidence, tellsRareWordsFromCommonOnes) {
   // Two stretches of six words come back: one of corridors that are all alike, one of odd rooms.
-  Text text(1);
+  WordLattice text(1);
   ObservationStore observations;
   const WordTolerance tolerance;
-  MatchJudge judge(text, observations, tolerance, WordDensity::kSoft);
+  MatchConfidence judge(text, observations, tolerance, WordDensity::kSoft);
   Position learnt = 0;
   const auto push = [&](Syllables w) {
     text.push(w);
@@ -294,11 +294,11 @@ TEST(MatchJudge, tellsRareWordsFromCommonOnes) {
   const Position end_of_common = text.positions() - 1;
   for (const auto& w : odd) push(w);
   const auto chanceOf = [&](Position newer, Position older) {
-    Match m;
+    NgramMatch m;
     m.newer = text.realWord(newer);
     m.older = text.realWord(older);
     m.n = 6;
-    MatchJudge fresh = judge;
+    MatchConfidence fresh = judge;
     fresh.judge(m, false);
     EXPECT_LT(m.probability, 0.0);  // not asked for
     return m.chance;
@@ -316,17 +316,17 @@ TEST(Judgement, leavesTheProbableMatchesOfAWayThatComesBackBothWays) {
     const std::size_t length = 10 + rng.below(60);
     for (std::size_t i = 0; i < length; ++i) densities.push_back(d);
   }
-  RecogniserParams params;
+  NgramRecognizerParams params;
   params.reverse = true;
   params.matcher.min_n = {3, 3, 3};
   params.min_probability = 0.8;
-  Recogniser r(params);
+  NgramRecognizer r(params);
   std::map<Direction, std::size_t> told;
   std::size_t right = 0;
   const auto total = static_cast<double>(densities.size());
   const auto run = [&](int lap) {
-    const auto use = [&](const RecogniserUpdate& u) {
-      for (const Match& m : u.matches) {
+    const auto use = [&](const NgramRecognizerUpdate& u) {
+      for (const NgramMatch& m : u.matches) {
         ++told[m.direction];
         EXPECT_GE(m.probability, 0.8);
         EXPECT_LE(m.probability, 1.0);
@@ -339,7 +339,8 @@ TEST(Judgement, leavesTheProbableMatchesOfAWayThatComesBackBothWays) {
     };
     for (std::size_t i = 0; i < densities.size(); ++i) {
       const std::size_t k = lap == 2 ? densities.size() - 1 - i : i;
-      Observation o = at(0.1 * static_cast<double>(k), densities[k] + rng.uniform(-0.001, 0.001));
+      DensityObservation o =
+          at(0.1 * static_cast<double>(k), densities[k] + rng.uniform(-0.001, 0.001));
       o.stamp = lap * total + static_cast<double>(i);
       use(r.add(o));
     }
@@ -355,27 +356,27 @@ TEST(Judgement, leavesTheProbableMatchesOfAWayThatComesBackBothWays) {
 }
 
 TEST(Judgement, improvedParametersAreValid) {
-  const RecogniserParams p = RecogniserParams::improved();
+  const NgramRecognizerParams p = NgramRecognizerParams::improved();
   p.validate();
   EXPECT_TRUE(p.judges());
-  EXPECT_FALSE(RecogniserParams{}.judges());
+  EXPECT_FALSE(NgramRecognizerParams{}.judges());
   EXPECT_EQ(p.matcher.min_n.size(), static_cast<std::size_t>(p.levels));
 }
 
 TEST(Judgement, refusesBadParameters) {
   const auto refused = [](auto change) {
-    RecogniserParams p;
+    NgramRecognizerParams p;
     change(p);
     EXPECT_THROW(p.validate(), hyselam::ParameterError);
   };
-  refused([](RecogniserParams& p) { p.class_hysteresis = 0.5; });
-  refused([](RecogniserParams& p) { p.class_hysteresis = -0.1; });
-  refused([](RecogniserParams& p) { p.max_chance = -1.0; });
-  refused([](RecogniserParams& p) { p.max_chance = std::nan(""); });
-  refused([](RecogniserParams& p) { p.min_probability = 1.1; });
-  refused([](RecogniserParams& p) { p.judge.misfit_floor = 0.0; });
-  refused([](RecogniserParams& p) { p.judge.max_words = 0; });
-  refused([](RecogniserParams& p) { p.judge.bias = std::nan(""); });
+  refused([](NgramRecognizerParams& p) { p.class_hysteresis = 0.5; });
+  refused([](NgramRecognizerParams& p) { p.class_hysteresis = -0.1; });
+  refused([](NgramRecognizerParams& p) { p.max_chance = -1.0; });
+  refused([](NgramRecognizerParams& p) { p.max_chance = std::nan(""); });
+  refused([](NgramRecognizerParams& p) { p.min_probability = 1.1; });
+  refused([](NgramRecognizerParams& p) { p.judge.misfit_floor = 0.0; });
+  refused([](NgramRecognizerParams& p) { p.judge.max_words = 0; });
+  refused([](NgramRecognizerParams& p) { p.judge.bias = std::nan(""); });
 }
 
 TEST(Alignment, inReverseLiesTheOlderPartBackwards) {

@@ -10,8 +10,8 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/alignment.hpp"
-#include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/matching/alignment.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::InputError;
@@ -51,7 +51,7 @@ void drive(const Circuit& c, std::size_t from, std::size_t count, hyselam::Rng& 
     const auto& s = c.stretches[(from + k) % c.stretches.size()];
     for (int i = 0; i < s.steps; ++i) {
       pose = pose * Pose2{0.1, 0.0, s.turn / s.steps + rng.gaussian(0.0, 0.002)};
-      Observation o;
+      DensityObservation o;
       o.stamp = stamp += 0.2;
       o.base_in_odom = pose;
       o.soft = s.density + rng.gaussian(0.0, 0.008);
@@ -61,8 +61,8 @@ void drive(const Circuit& c, std::size_t from, std::size_t count, hyselam::Rng& 
   }
 }
 
-RecogniserParams circuitParams() {
-  RecogniserParams p;
+NgramRecognizerParams circuitParams() {
+  NgramRecognizerParams p;
   p.levels = 2;
   p.matcher.min_n = {5, 8};
   p.matcher.index_bits = 12;
@@ -70,11 +70,11 @@ RecogniserParams circuitParams() {
 }
 
 Corpus someCorpus() {
-  Recogniser r(circuitParams());
+  NgramRecognizer r(circuitParams());
   hyselam::Rng rng(4);
   for (int run = 0; run < 2; ++run) {
     drive(Circuit(), static_cast<std::size_t>(run) * 5, 14, rng,
-          [&](const Observation& o) { r.add(o); });
+          [&](const DensityObservation& o) { r.add(o); });
     r.endRun();
   }
   Corpus c = r.corpus();
@@ -82,9 +82,10 @@ Corpus someCorpus() {
   return c;
 }
 
-std::vector<std::vector<double>> matchesOf(const std::vector<Match>& matches, const Text& text) {
+std::vector<std::vector<double>> matchesOf(const std::vector<NgramMatch>& matches,
+                                           const WordLattice& text) {
   std::vector<std::vector<double>> out;
-  for (const Match& m : matches)
+  for (const NgramMatch& m : matches)
     out.push_back({static_cast<double>(text.last(m.newer)), static_cast<double>(text.last(m.older)),
                    static_cast<double>(text.level(m.older)), static_cast<double>(m.levels),
                    static_cast<double>(m.n)});
@@ -101,7 +102,7 @@ TEST(Alignment, findsTheShiftOfEquation53) {
   for (int run = 0; run < 2; ++run) {
     store.startRun();
     for (int i = 0; i < 300; ++i) {
-      Observation o;
+      DensityObservation o;
       o.soft = density(i + 7 * run) + rng.gaussian(0.0, 0.005);  // run 1 starts 7 steps later
       store.append(o);
     }
@@ -139,7 +140,7 @@ TEST(Alignment, equalsTheEquationWrittenDown) {
   ObservationStore store;
   hyselam::Rng rng(10);
   for (int i = 0; i < 2000; ++i) {
-    Observation o;
+    DensityObservation o;
     o.soft = 0.5 + 0.4 * std::sin(0.05 * i * rng.uniform(0.99, 1.01));
     store.append(o);
   }
@@ -167,13 +168,13 @@ TEST(Alignment, equalsTheEquationWrittenDown) {
   }
 }
 
-TEST(Recogniser, recognisesTheSecondLapAndAlignsIt) {
+TEST(NgramRecognizer, recognisesTheSecondLapAndAlignsIt) {
   const Circuit c;
-  Recogniser r(circuitParams());
+  NgramRecognizer r(circuitParams());
   hyselam::Rng rng(1);
   std::vector<std::size_t> place;  // of each observation, along the circuit
   std::size_t at = 0;
-  drive(c, 0, 24, rng, [&](const Observation& o) {
+  drive(c, 0, 24, rng, [&](const DensityObservation& o) {
     place.push_back(at++ % c.steps());
     r.add(o);
   });
@@ -184,10 +185,10 @@ TEST(Recogniser, recognisesTheSecondLapAndAlignsIt) {
   std::size_t matches = 0, wrong = 0, pairs = 0;
   double error = 0.0;
   at = begin;
-  drive(c, 5, 16, rng, [&](const Observation& o) {
+  drive(c, 5, 16, rng, [&](const DensityObservation& o) {
     place.push_back(at++ % c.steps());
     const auto update = r.add(o);
-    for (const Match& m : update.matches) {
+    for (const NgramMatch& m : update.matches) {
       const auto ngram =
           longestNgram(r.text(), r.params().matcher.tolerance, {m.newer, m.older}, m.levels);
       ASSERT_EQ(static_cast<int>(ngram.size()), m.n);
@@ -209,15 +210,15 @@ TEST(Recogniser, recognisesTheSecondLapAndAlignsIt) {
   EXPECT_LT(error / static_cast<double>(pairs), 10.0);  // less than a metre
 }
 
-TEST(Recogniser, aRequantisationBuildsEverythingAgain) {
-  RecogniserParams p = circuitParams();
+TEST(NgramRecognizer, aRequantisationBuildsEverythingAgain) {
+  NgramRecognizerParams p = circuitParams();
   p.learn_classes = true;
-  Recogniser learning(p);
+  NgramRecognizer learning(p);
   hyselam::Rng rng(2);
-  std::vector<Observation> all;
-  drive(Circuit(), 0, 40, rng, [&](const Observation& o) { all.push_back(o); });
-  std::vector<Match> told;
-  for (const Observation& o : all) {
+  std::vector<DensityObservation> all;
+  drive(Circuit(), 0, 40, rng, [&](const DensityObservation& o) { all.push_back(o); });
+  std::vector<NgramMatch> told;
+  for (const DensityObservation& o : all) {
     const auto update = learning.add(o);
     if (update.requantised) told.clear();
     told.insert(told.end(), update.matches.begin(), update.matches.end());
@@ -227,8 +228,8 @@ TEST(Recogniser, aRequantisationBuildsEverythingAgain) {
   EXPECT_GT(told.size(), 10u);
 
   // The same as if the classes had been known from the beginning.
-  RegionBuilder regions(p.min_region);
-  Text text(p.levels, [&](std::uint32_t b, std::uint32_t e) {
+  DensityRegionBuilder regions(p.min_region);
+  WordLattice text(p.levels, [&](std::uint32_t b, std::uint32_t e) {
     return angleVariation(learning.observations(), b, e);
   });
   for (std::uint32_t i = 0; i < learning.observations().size(); ++i)
@@ -237,7 +238,7 @@ TEST(Recogniser, aRequantisationBuildsEverythingAgain) {
       text.push({region->density_class, region->size(),
                  static_cast<float>(
                      angleVariation(learning.observations(), region->begin, region->end))});
-  Matcher matcher(text, p.matcher);
+  NgramMatcher matcher(text, p.matcher);
   ASSERT_EQ(text.words(), learning.text().words());
   EXPECT_EQ(matchesOf(matcher.update(), text), matchesOf(told, learning.text()));
 }
@@ -253,7 +254,7 @@ TEST(Corpus, isTheSameAfterSavingAndLoading) {
   EXPECT_EQ(loaded.histogram, saved.histogram);
   ASSERT_EQ(loaded.classes.list().size(), saved.classes.list().size());
   for (std::uint32_t i = 0; i < saved.observations.size(); ++i) {
-    const Observation a = saved.observations[i], b = loaded.observations[i];
+    const DensityObservation a = saved.observations[i], b = loaded.observations[i];
     ASSERT_EQ(a.stamp, b.stamp);
     ASSERT_EQ(a.base_in_odom.x, b.base_in_odom.x);
     ASSERT_EQ(a.base_in_odom.theta, b.base_in_odom.theta);
@@ -273,17 +274,17 @@ TEST(Corpus, aRunAfterLoadingMatchesAsIfThereHadBeenNoPause) {
   for (const bool learn : {false, true}) {
     SCOPED_TRACE(learn ? "learnt classes" : "uniform classes");
     const TemporaryDirectory dir;
-    RecogniserParams p = circuitParams();
+    NgramRecognizerParams p = circuitParams();
     p.learn_classes = learn;
-    Recogniser through(p);
+    NgramRecognizer through(p);
     hyselam::Rng rng(6);
-    drive(Circuit(), 0, 30, rng, [&](const Observation& o) { through.add(o); });
+    drive(Circuit(), 0, 30, rng, [&](const DensityObservation& o) { through.add(o); });
     through.endRun();
     CorpusFile::save(dir / "c", through.corpus());
-    Recogniser resumed(p, CorpusFile::load(dir / "c"));
+    NgramRecognizer resumed(p, CorpusFile::load(dir / "c"));
     ASSERT_EQ(resumed.text().words(), through.text().words());
-    std::vector<Match> a, b;
-    drive(Circuit(), 3, 30, rng, [&](const Observation& o) {
+    std::vector<NgramMatch> a, b;
+    drive(Circuit(), 3, 30, rng, [&](const DensityObservation& o) {
       const auto x = through.add(o), y = resumed.add(o);
       ASSERT_EQ(x.word, y.word);
       ASSERT_EQ(x.requantised, y.requantised);

@@ -11,7 +11,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/corpus_journal.hpp"
+#include "ngram_slam/words/corpus_journal.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::InputError;
@@ -23,9 +23,9 @@ using hyselam::testing::writeFile;
 namespace {
 
 /// The i-th observation of the way; a run begins with every hundredth.
-Observation observation(std::uint32_t i) {
+DensityObservation observation(std::uint32_t i) {
   hyselam::Rng rng(3, i);
-  Observation o;
+  DensityObservation o;
   o.stamp = 0.2 * i;
   o.base_in_odom = {0.1 * i, rng.uniform(-1, 1), rng.uniform(-3.1, 3.1)};
   o.soft = rng.uniform();

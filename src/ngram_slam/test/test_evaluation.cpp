@@ -17,7 +17,7 @@
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/simulation.hpp"
-#include "ngram_slam/match_evaluation.hpp"
+#include "ngram_slam/matching/match_evaluation.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::Pose2;

@@ -7,8 +7,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/matcher.hpp"
-#include "ngram_slam/ngram.hpp"
+#include "ngram_slam/matching/ngram.hpp"
+#include "ngram_slam/matching/ngram_matcher.hpp"
 #include "random_texts.hpp"
 #include "transcription/matching.hpp"
 
@@ -53,14 +53,14 @@ struct FoundGrams {
 };
 
 FoundGrams gramsOf(int n) {
-  Text text(1);
-  MatcherParams params;
+  WordLattice text(1);
+  NgramMatcherParams params;
   params.min_n = {n};
-  Matcher matcher(text, params);
+  NgramMatcher matcher(text, params);
   FoundGrams found;
   for (std::size_t i = 0; i < segments().size(); ++i) {
     text.push(wordOfType(segments()[i]));
-    for (const Match& m : matcher.update()) {
+    for (const NgramMatch& m : matcher.update()) {
       ++found.pairs;
       const std::vector<int> words(segments().begin() + static_cast<std::ptrdiff_t>(i + 1) - n,
                                    segments().begin() + static_cast<std::ptrdiff_t>(i + 1));
@@ -74,17 +74,18 @@ FoundGrams gramsOf(int n) {
 using Table = std::map<std::vector<int>, std::set<std::size_t>>;
 
 /// Every pair with the lowest pass that accepts it and its longest n-gram there.
-std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> byPair(const std::vector<Match>& m) {
+std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> byPair(
+    const std::vector<NgramMatch>& m) {
   std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> out;
-  for (const Match& x : m) {
+  for (const NgramMatch& x : m) {
     EXPECT_TRUE(out.emplace(std::make_pair(x.newer, x.older), std::make_pair(x.levels, x.n)).second)
         << "told twice";
   }
   return out;
 }
 
-MatcherParams randomParams(hyselam::Rng& rng, int levels) {
-  MatcherParams p;
+NgramMatcherParams randomParams(hyselam::Rng& rng, int levels) {
+  NgramMatcherParams p;
   p.tolerance.size = 0.1003 + 0.1 * rng.below(4);  // no ratio of small numbers: no ties
   p.tolerance.angle = radians(15.0 + 15.0 * rng.below(4));
   p.min_n.clear();
@@ -143,20 +144,20 @@ TEST(WorkedExample, hasTheFourAndFiveGramsOfTheThesisAndNoLonger) {
   EXPECT_EQ(gramsOf(6).pairs, 0u);
 }
 
-TEST(Matcher, equalsTheTableOfAllPairsOnRandomTexts) {
+TEST(NgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
   constexpr int kRounds = 10000;
   std::size_t accepted = 0, beyond_real = 0, across_levels = 0;
   for (int round = 0; round < kRounds; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     hyselam::Rng rng(53, static_cast<std::uint64_t>(round));
     const int levels = 1 + static_cast<int>(rng.below(4));
-    const MatcherParams params = randomParams(rng, levels);
-    Text text(levels);
-    Matcher matcher(text, params);
+    const NgramMatcherParams params = randomParams(rng, levels);
+    WordLattice text(levels);
+    NgramMatcher matcher(text, params);
     // Word by word in one text out of two, else several at once.
     const bool one_by_one = rng.below(2) == 0;
-    std::vector<Match> found;
-    Text whole(levels);
+    std::vector<NgramMatch> found;
+    WordLattice whole(levels);
     random_texts::write(whole, 20 + rng.below(60), rng);
     for (Position p = 0; p < whole.positions(); ++p) {
       if (whole.startsRun(p)) text.startRun();
@@ -191,21 +192,21 @@ TEST(Matcher, equalsTheTableOfAllPairsOnRandomTexts) {
   EXPECT_GT(across_levels, 5000u);
 }
 
-TEST(Matcher, equalsAlgorithm53OnRandomTexts) {
+TEST(NgramMatcher, equalsAlgorithm53OnRandomTexts) {
   constexpr int kRounds = 10000;
   std::size_t grams = 0, mixed = 0;
   for (int round = 0; round < kRounds; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     hyselam::Rng rng(54, static_cast<std::uint64_t>(round));
     const int levels = 1 + static_cast<int>(rng.below(3));
-    const MatcherParams params = randomParams(rng, levels);
-    Text text(levels);
-    Matcher matcher(text, params);
+    const NgramMatcherParams params = randomParams(rng, levels);
+    WordLattice text(levels);
+    NgramMatcher matcher(text, params);
     random_texts::write(text, 8 + rng.below(20), rng);
     // Only the newest word: the words before are context.
     const WordIndex newest = text.realWord(text.positions() - 1);
     std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> found;
-    for (const Match& m : matcher.update())
+    for (const NgramMatch& m : matcher.update())
       if (m.newer == newest) found[{m.newer, m.older}] = {m.levels, m.n};
 
     const auto words = transcription::plainWords(text);
@@ -249,11 +250,11 @@ TEST(Matcher, equalsAlgorithm53OnRandomTexts) {
   EXPECT_GT(mixed, 1000u);
 }
 
-TEST(Matcher, keepsRunsApart) {
-  Text text(1);
-  MatcherParams params;
+TEST(NgramMatcher, keepsRunsApart) {
+  WordLattice text(1);
+  NgramMatcherParams params;
   params.min_n = {3};
-  Matcher matcher(text, params);
+  NgramMatcher matcher(text, params);
   const auto write = [&](std::vector<int> types) {
     std::size_t matches = 0;
     for (int t : types) {
@@ -271,13 +272,13 @@ TEST(Matcher, keepsRunsApart) {
   EXPECT_EQ(write({8, 5}), 0u);  // the newest run is too short by itself
 }
 
-TEST(Matcher, findsARegionAgainBehindADoorThatIsOpenNow) {
+TEST(NgramMatcher, findsARegionAgainBehindADoorThatIsOpenNow) {
   // Fig. 5.1: a corridor is one word; with a door open it is three. Level 1 sees through it.
   const std::vector<Syllables> tail = {{1, 30, 0.0f}, {2, 55, 0.0f}, {1, 31, 1.5f}};
-  Text text(2);
-  MatcherParams params;
+  WordLattice text(2);
+  NgramMatcherParams params;
   params.min_n = {6, 6};
-  Matcher matcher(text, params);
+  NgramMatcher matcher(text, params);
   const auto push = [&](Syllables s) {
     text.push(s);
     return matcher.update();
@@ -302,34 +303,34 @@ TEST(Matcher, findsARegionAgainBehindADoorThatIsOpenNow) {
   EXPECT_EQ(text.level(chain[1].older), 0);
 }
 
-TEST(Matcher, skippedRunsAreSearchedButNotSearching) {
+TEST(NgramMatcher, skippedRunsAreSearchedButNotSearching) {
   hyselam::Rng rng(8);
   for (int round = 0; round < 200; ++round) {
-    Text text(3);
-    MatcherParams params;
+    WordLattice text(3);
+    NgramMatcherParams params;
     params.min_n = {3, 4, 5};
     params.index_bits = 12;
-    Matcher all(text, params), late(text, params);
+    NgramMatcher all(text, params), late(text, params);
     random_texts::write(text, 60, rng);
     late.skip();
     text.startRun();
     const Position begin = text.positions();
     random_texts::write(text, 40, rng);
-    std::vector<Match> expected;
-    for (const Match& m : all.update())
+    std::vector<NgramMatch> expected;
+    for (const NgramMatch& m : all.update())
       if (text.last(m.newer) >= begin) expected.push_back(m);
     ASSERT_EQ(byPair(late.update()), byPair(expected));
   }
 }
 
-TEST(Matcher, doesNotLookAtWordsThatCannotContinueAGram) {
+TEST(NgramMatcher, doesNotLookAtWordsThatCannotContinueAGram) {
   // Words of 60 kinds in random order: grams of 7 words never come back by chance.
   const auto comparisonsPerWord = [](std::size_t positions) {
     hyselam::Rng rng(1);
-    Text text(1);
-    MatcherParams params;
+    WordLattice text(1);
+    NgramMatcherParams params;
     params.min_n = {7};
-    Matcher matcher(text, params);
+    NgramMatcher matcher(text, params);
     std::uint64_t before = 0;
     for (std::size_t i = 0; i < positions; ++i) {
       if (i + 1000 == positions) before = matcher.counters().comparisons;
@@ -342,15 +343,15 @@ TEST(Matcher, doesNotLookAtWordsThatCannotContinueAGram) {
   EXPECT_LT(comparisonsPerWord(30000), 30.0);
 }
 
-TEST(Matcher, followsTheNewestPlacesOfTooMany) {
+TEST(NgramMatcher, followsTheNewestPlacesOfTooMany) {
   // A circuit of eight words, 200 laps: with every lap one more place matches.
-  Text text(2);
-  MatcherParams params;
+  WordLattice text(2);
+  NgramMatcherParams params;
   params.min_n = {4, 5};
   params.index_bits = 12;
-  Matcher all(text, params);
+  NgramMatcher all(text, params);
   params.max_followed = 20;
-  Matcher few(text, params);
+  NgramMatcher few(text, params);
   for (int i = 0; i < 1600; ++i) {
     text.push({i % 8 / 2, 10u << i % 8 / 2, i % 2 == 0 ? 0.0f : 1.5f});
     auto complete = byPair(all.update());
@@ -361,17 +362,17 @@ TEST(Matcher, followsTheNewestPlacesOfTooMany) {
   }
 }
 
-TEST(Matcher, isExactWhileItMayFollowAll) {
+TEST(NgramMatcher, isExactWhileItMayFollowAll) {
   // The same texts with room for few grams and with room for all.
   std::size_t complete_texts = 0, short_texts = 0;
   for (std::uint64_t round = 0; round < 2000; ++round) {
     hyselam::Rng rng(55, round);
-    Text text(3);
-    MatcherParams params = randomParams(rng, 3);
-    Matcher all(text, params);
+    WordLattice text(3);
+    NgramMatcherParams params = randomParams(rng, 3);
+    NgramMatcher all(text, params);
     params.max_followed = 1 + static_cast<int>(rng.below(12));
-    Matcher few(text, params);
-    Matcher again(text, params);
+    NgramMatcher few(text, params);
+    NgramMatcher again(text, params);
     random_texts::write(text, 60, rng);
     const auto whole = byPair(all.update()), part = byPair(few.update());
     ASSERT_EQ(byPair(again.update()), part);
@@ -389,24 +390,26 @@ TEST(Matcher, isExactWhileItMayFollowAll) {
   EXPECT_GT(short_texts, 100u);
 }
 
-TEST(Matcher, refusesParametersOutOfRange) {
-  const auto messageFor = [](const std::function<void(MatcherParams&)>& change, int levels = 3) {
-    MatcherParams p;
+TEST(NgramMatcher, refusesParametersOutOfRange) {
+  const auto messageFor = [](const std::function<void(NgramMatcherParams&)>& change,
+                             int levels = 3) {
+    NgramMatcherParams p;
     change(p);
-    const Text text(levels);
-    return hyselam::testing::messageOf<hyselam::ParameterError>([&] { Matcher m(text, p); });
+    const WordLattice text(levels);
+    return hyselam::testing::messageOf<hyselam::ParameterError>([&] { NgramMatcher m(text, p); });
   };
-  EXPECT_EQ(messageFor([](MatcherParams&) {}), "");
-  EXPECT_NE(messageFor([](MatcherParams&) {}, 2).find("min_n"), std::string::npos);
-  EXPECT_NE(messageFor([](MatcherParams& p) { p.min_n[1] = 0; }).find("min_n"), std::string::npos);
-  EXPECT_NE(messageFor([](MatcherParams& p) { p.tolerance.size = 1.0; }).find("size"),
+  EXPECT_EQ(messageFor([](NgramMatcherParams&) {}), "");
+  EXPECT_NE(messageFor([](NgramMatcherParams&) {}, 2).find("min_n"), std::string::npos);
+  EXPECT_NE(messageFor([](NgramMatcherParams& p) { p.min_n[1] = 0; }).find("min_n"),
             std::string::npos);
-  EXPECT_NE(messageFor([](MatcherParams& p) { p.tolerance.angle = 0.0; }).find("angle"),
+  EXPECT_NE(messageFor([](NgramMatcherParams& p) { p.tolerance.size = 1.0; }).find("size"),
             std::string::npos);
-  EXPECT_NE(messageFor([](MatcherParams& p) { p.index_gram = 0; }).find("index_gram"),
+  EXPECT_NE(messageFor([](NgramMatcherParams& p) { p.tolerance.angle = 0.0; }).find("angle"),
             std::string::npos);
-  EXPECT_NE(messageFor([](MatcherParams& p) { p.max_followed = 0; }).find("max_followed"),
+  EXPECT_NE(messageFor([](NgramMatcherParams& p) { p.index_gram = 0; }).find("index_gram"),
             std::string::npos);
-  EXPECT_NE(messageFor([](MatcherParams& p) { p.index_bits = 40; }).find("index_bits"),
+  EXPECT_NE(messageFor([](NgramMatcherParams& p) { p.max_followed = 0; }).find("max_followed"),
+            std::string::npos);
+  EXPECT_NE(messageFor([](NgramMatcherParams& p) { p.index_bits = 40; }).find("index_bits"),
             std::string::npos);
 }

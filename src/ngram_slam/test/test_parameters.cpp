@@ -81,7 +81,7 @@ TEST(WordsParameters, aPresetSetsDefaultsThatCanBeChanged) {
   EXPECT_FALSE(thesis.recogniser.reverse);
   const WordsServerParams improved =
       load({{"preset", "improved"}, {"input", "scan"}, {"bandwidth", 4.0}});
-  const RecogniserParams expected = RecogniserParams::improved();
+  const NgramRecognizerParams expected = NgramRecognizerParams::improved();
   EXPECT_EQ(improved.recogniser.matcher.min_n, expected.matcher.min_n);
   EXPECT_EQ(improved.recogniser.min_probability, expected.min_probability);
   EXPECT_TRUE(improved.recogniser.reverse && improved.recogniser.with_probability);

@@ -6,7 +6,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/quantizer.hpp"
+#include "ngram_slam/words/quantizer.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::ParameterError;
@@ -14,10 +14,10 @@ using hyselam::testing::messageOf;
 
 namespace {
 
-Histogram histogramOf(const std::vector<std::pair<double, double>>& peaks, int count,
-                      std::uint64_t seed, double sigma = 0.02) {
+DensityHistogram histogramOf(const std::vector<std::pair<double, double>>& peaks, int count,
+                             std::uint64_t seed, double sigma = 0.02) {
   hyselam::Rng rng(seed);
-  Histogram h(256, 0);
+  DensityHistogram h(256, 0);
   for (int i = 0; i < count; ++i) {
     double u = rng.uniform(), mean = peaks.back().first;
     for (const auto& [at, share] : peaks) {
@@ -31,7 +31,7 @@ Histogram histogramOf(const std::vector<std::pair<double, double>>& peaks, int c
 }
 
 /// Cheng 1995: a point climbs to the mean of what its window sees, again and again.
-double climb(const Histogram& h, double x, double bandwidth) {
+double climb(const DensityHistogram& h, double x, double bandwidth) {
   for (int round = 0; round < 100000; ++round) {
     double sum = 0.0, weight = 0.0;
     for (std::size_t i = 0; i < h.size(); ++i) {
@@ -86,7 +86,7 @@ TEST(MeanShift, modesAreWhereEveryBinClimbsTo) {
     std::vector<std::pair<double, double>> peaks;
     const int n = 1 + static_cast<int>(rng.below(5));
     for (int i = 0; i < n; ++i) peaks.push_back({rng.uniform(0.1, 0.9), 1.0 / n});
-    const Histogram h = histogramOf(peaks, 2000, round);
+    const DensityHistogram h = histogramOf(peaks, 2000, round);
     const double bandwidth = rng.uniform(0.01, 0.06);
     const auto modes = densityModes(h, bandwidth);
     ASSERT_FALSE(modes.empty());
@@ -114,7 +114,7 @@ TEST(MeanShift, modesAreWhereEveryBinClimbsTo) {
 
 TEST(MeanShift, findsThreeKindsOfPlacesByItself) {
   // Fig. 4.3: corridors, corners, crossroads.
-  const Histogram h = histogramOf({{0.38, 0.7}, {0.52, 0.2}, {0.68, 0.1}}, 4000, 7);
+  const DensityHistogram h = histogramOf({{0.38, 0.7}, {0.52, 0.2}, {0.68, 0.1}}, 4000, 7);
   const double bandwidth = bandwidthOf(h, 0.02, 12);
   const auto modes = densityModes(h, bandwidth, 0.02);
   ASSERT_EQ(modes.size(), 3u) << "bandwidth " << bandwidth;
@@ -129,12 +129,12 @@ TEST(MeanShift, findsThreeKindsOfPlacesByItself) {
 }
 
 TEST(MeanShift, weakModesJoinOverTheHigherPass) {
-  const Histogram h = histogramOf({{0.3, 0.6}, {0.42, 0.01}, {0.8, 0.39}}, 20000, 5);
+  const DensityHistogram h = histogramOf({{0.3, 0.6}, {0.42, 0.01}, {0.8, 0.39}}, 20000, 5);
   EXPECT_EQ(densityModes(h, 0.015).size(), 3u);
   const auto modes = densityModes(h, 0.015, 0.05);
   ASSERT_EQ(modes.size(), 2u);
   EXPECT_GT(modes[0].end, static_cast<std::size_t>(0.42 * 256));
-  EXPECT_TRUE(densityModes(Histogram(256, 0), 0.02).empty());
+  EXPECT_TRUE(densityModes(DensityHistogram(256, 0), 0.02).empty());
 }
 
 TEST(MeanShift, idsStayWhereModesPersist) {
@@ -192,7 +192,7 @@ TEST(Quantizer, goesOnFromASavedState) {
   a.update();
   b.update();
   EXPECT_EQ(idsOf(b.classes()), idsOf(a.classes()));
-  EXPECT_NE(messageOf<ParameterError>([&] { b.restore(a.classes(), Histogram(3, 1)); }), "");
+  EXPECT_NE(messageOf<ParameterError>([&] { b.restore(a.classes(), DensityHistogram(3, 1)); }), "");
 }
 
 TEST(Quantizer, refusesParametersOutOfRange) {

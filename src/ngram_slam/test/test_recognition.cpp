@@ -11,8 +11,8 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/corpus.hpp"
-#include "ngram_slam/log_observations.hpp"
+#include "ngram_slam/words/corpus.hpp"
+#include "ngram_slam/words/log_observations.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::Pose2;
@@ -95,7 +95,7 @@ TEST(LogObservations, areEveryStepOfTheWayAndSeeTheBuilding) {
   // A corridor is narrower than the place beside a niche.
   const auto densityNear = [&](double x, double y) {
     double best = 1e9, density = 0.0;
-    for (const Observation& o : seen.observations) {
+    for (const DensityObservation& o : seen.observations) {
       const Pose2 p = Pose2{7, 5, 0} * o.base_in_odom;
       const double away = std::hypot(p.x - x, p.y - y);
       if (away >= best) continue;

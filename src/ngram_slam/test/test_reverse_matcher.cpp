@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "ngram_slam/ngram.hpp"
-#include "ngram_slam/reverse_matcher.hpp"
+#include "ngram_slam/matching/ngram.hpp"
+#include "ngram_slam/matching/reverse_ngram_matcher.hpp"
 #include "random_texts.hpp"
 #include "transcription/matching.hpp"
 
@@ -46,8 +46,8 @@ class AllReversePairs {
 using Found = std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>>;
 
 /// A random text with stretches that come back the other way, into `text`.
-void writeBothWays(Text& text, std::size_t positions, hyselam::Rng& rng) {
-  Text source(1);
+void writeBothWays(WordLattice& text, std::size_t positions, hyselam::Rng& rng) {
+  WordLattice source(1);
   random_texts::write(source, positions, rng);
   std::vector<Syllables> real;
   for (Position p = 0; p < source.positions(); ++p) {
@@ -64,8 +64,8 @@ void writeBothWays(Text& text, std::size_t positions, hyselam::Rng& rng) {
   }
 }
 
-MatcherParams randomParams(hyselam::Rng& rng, int levels) {
-  MatcherParams p;
+NgramMatcherParams randomParams(hyselam::Rng& rng, int levels) {
+  NgramMatcherParams p;
   p.tolerance.size = 0.1003 + 0.1 * rng.below(4);
   p.tolerance.angle = radians(15.0 + 15.0 * rng.below(4));
   p.min_n.clear();
@@ -104,18 +104,18 @@ TEST(Reversed, isTheAngleOfTheWayBack) {
   }
 }
 
-TEST(ReverseMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
+TEST(ReverseNgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
   std::size_t accepted = 0, beyond_real = 0, across_levels = 0, long_ones = 0;
   for (int round = 0; round < 10000; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     hyselam::Rng rng(61, static_cast<std::uint64_t>(round));
     const int levels = 1 + static_cast<int>(rng.below(4));
-    const MatcherParams params = randomParams(rng, levels);
-    Text whole(levels), text(levels);
+    const NgramMatcherParams params = randomParams(rng, levels);
+    WordLattice whole(levels), text(levels);
     writeBothWays(whole, 8 + rng.below(20), rng);
-    ReverseMatcher matcher(text, params);
+    ReverseNgramMatcher matcher(text, params);
     const bool one_by_one = rng.below(2) == 0;
-    std::vector<Match> found;
+    std::vector<NgramMatch> found;
     for (Position p = 0; p < whole.positions(); ++p) {
       if (whole.startsRun(p)) text.startRun();
       text.push(whole.syllables(whole.realWord(p)));
@@ -124,7 +124,7 @@ TEST(ReverseMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
       found.insert(found.end(), m.begin(), m.end());
     }
     Found got;
-    for (const Match& m : found) {
+    for (const NgramMatch& m : found) {
       ASSERT_EQ(m.direction, Direction::kReverse);
       ASSERT_TRUE(
           got.emplace(std::make_pair(m.newer, m.older), std::make_pair(m.levels, m.n)).second)
@@ -163,13 +163,13 @@ TEST(ReverseMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
   EXPECT_GT(long_ones, 3000u);
 }
 
-TEST(ReverseMatcher, findsTheWayBackOutOfADeadEnd) {
+TEST(ReverseNgramMatcher, findsTheWayBackOutOfADeadEnd) {
   const std::vector<Syllables> way = {{0, 100, 0.0f}, {1, 30, 1.5f},  {0, 60, 0.0f}, {2, 25, 0.0f},
                                       {0, 80, 0.0f},  {1, 31, -1.5f}, {3, 40, 0.0f}};
-  Text text(1);
-  MatcherParams params;
+  WordLattice text(1);
+  NgramMatcherParams params;
   params.min_n = {4};
-  ReverseMatcher matcher(text, params);
+  ReverseNgramMatcher matcher(text, params);
   for (const auto& w : way) {
     text.push(w);
     EXPECT_TRUE(matcher.update().empty());
@@ -178,7 +178,7 @@ TEST(ReverseMatcher, findsTheWayBackOutOfADeadEnd) {
   std::size_t told = 0;
   for (std::size_t i = way.size(); i-- > 0;) {
     text.push(reversed(way[i]));
-    for (const Match& m : matcher.update()) {
+    for (const NgramMatch& m : matcher.update()) {
       ++told;
       EXPECT_EQ(text.last(m.older), i);
       EXPECT_EQ(m.n, static_cast<int>(way.size() - i));
@@ -187,24 +187,24 @@ TEST(ReverseMatcher, findsTheWayBackOutOfADeadEnd) {
   EXPECT_EQ(told, 4u);  // from the fourth word on
 }
 
-TEST(ReverseMatcher, skippedRunsAreSearchedButNotSearching) {
+TEST(ReverseNgramMatcher, skippedRunsAreSearchedButNotSearching) {
   hyselam::Rng rng(9);
   std::size_t compared = 0;
   for (int round = 0; round < 200; ++round) {
-    Text text(3);
-    MatcherParams params;
+    WordLattice text(3);
+    NgramMatcherParams params;
     params.min_n = {3, 4, 5};
     params.index_bits = 12;
-    ReverseMatcher all(text, params), late(text, params);
+    ReverseNgramMatcher all(text, params), late(text, params);
     writeBothWays(text, 40, rng);
     late.skip();
     text.startRun();
     const Position begin = text.positions();
     writeBothWays(text, 30, rng);
     Found expected, got;
-    for (const Match& m : all.update())
+    for (const NgramMatch& m : all.update())
       if (text.last(m.newer) >= begin) expected[{m.newer, m.older}] = {m.levels, m.n};
-    for (const Match& m : late.update()) got[{m.newer, m.older}] = {m.levels, m.n};
+    for (const NgramMatch& m : late.update()) got[{m.newer, m.older}] = {m.levels, m.n};
     ASSERT_EQ(got, expected);
     compared += got.size();
   }

@@ -9,9 +9,9 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/semantic_forest.hpp"
-#include "ngram_slam/semantic_regions_io.hpp"
-#include "ngram_slam/semantic_score.hpp"
+#include "ngram_slam/semantics/semantic_forest.hpp"
+#include "ngram_slam/semantics/semantic_regions_io.hpp"
+#include "ngram_slam/semantics/semantic_score.hpp"
 #include "transcription/semantics.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
@@ -24,8 +24,8 @@ using hyselam::testing::writeFile;
 namespace {
 
 /// Levels, ramps and noise; stretches of frontiers; bends. Densities have the precision of floats.
-std::vector<Observation> randomRun(Rng& rng, std::size_t length) {
-  std::vector<Observation> out;
+std::vector<DensityObservation> randomRun(Rng& rng, std::size_t length) {
+  std::vector<DensityObservation> out;
   double density = rng.uniform(0.2, 0.9), goal = density, slope = 0.01, heading = 0.0, bend = 0.0;
   int frontiers = 2;
   const double noise = rng.below(3) == 0 ? 0.02 : 0.004;
@@ -40,7 +40,7 @@ std::vector<Observation> randomRun(Rng& rng, std::size_t length) {
     if (rng.below(15) == 0) bend = rng.below(3) == 0 ? rng.uniform(-0.3, 0.3) : 0.0;
     heading += bend;
     at = at * hyselam::Pose2{0.1, 0.0, hyselam::normalizeAngle(heading - at.theta)};
-    Observation o;
+    DensityObservation o;
     o.stamp = 0.1 * static_cast<double>(out.size());
     o.base_in_odom = at;
     o.soft = static_cast<float>(std::clamp(density + rng.gaussian(0.0, noise), 0.0, 1.0));
@@ -65,19 +65,19 @@ SemanticParams randomParams(Rng& rng) {
 }
 
 std::vector<SemanticRegion> streamed(SemanticSegmenter& segmenter,
-                                     const std::vector<Observation>& run) {
+                                     const std::vector<DensityObservation>& run) {
   std::vector<SemanticRegion> out;
   const auto keep = [&](const std::vector<SemanticRegion>& more) {
     out.insert(out.end(), more.begin(), more.end());
   };
-  for (const Observation& o : run) keep(segmenter.add(o));
+  for (const DensityObservation& o : run) keep(segmenter.add(o));
   keep(segmenter.finish());
   return out;
 }
 
-transcription::Run plain(const std::vector<Observation>& run) {
+transcription::Run plain(const std::vector<DensityObservation>& run) {
   transcription::Run out;
-  for (const Observation& o : run) {
+  for (const DensityObservation& o : run) {
     out.soft.push_back(o.soft);
     out.frontiers.push_back(o.frontiers);
     const double theta = o.base_in_odom.theta;
@@ -101,7 +101,7 @@ TEST(SemanticCutter, equalsThePlainOneOnTenThousandStreams) {
     std::vector<double> densities;
     SemanticCutter cutter(params);
     std::vector<SemanticCut> cuts;
-    for (const Observation& o : run) {
+    for (const DensityObservation& o : run) {
       densities.push_back(o.soft);
       for (const SemanticCut& c : cutter.add(o.soft)) cuts.push_back(c);
       if (!cuts.empty()) {
@@ -210,7 +210,7 @@ TEST(SemanticSegmenter, tellsARegionBeforeTheNextOneEnds) {
   SemanticSegmenter segmenter;
   std::vector<SemanticRegion> told;
   for (int i = 0; i < 180; ++i) {
-    Observation o;
+    DensityObservation o;
     o.base_in_odom.x = 0.1 * i;
     const double away = std::abs(i - 80);
     o.soft = 0.5 + 0.3 * std::max(0.0, 1.0 - away / 20.0);
@@ -231,9 +231,9 @@ TEST(SemanticSegmenter, refusesObservationsThatCannotBeUsedAndGoesOn) {
   const auto expected = streamed(clean, run);
   std::vector<SemanticRegion> got;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Observation& o : run) {
+  for (const DensityObservation& o : run) {
     for (int kind = 0; kind < 5; ++kind) {
-      Observation bad = o;
+      DensityObservation bad = o;
       if (kind == 0) bad.soft = nan;
       if (kind == 1) bad.soft = 1.5;
       if (kind == 2) bad.frontiers = -1;

@@ -10,9 +10,9 @@
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/simulation.hpp"
-#include "ngram_slam/region_graph.hpp"
-#include "ngram_slam/slam_engine.hpp"
-#include "ngram_slam/slam_score.hpp"
+#include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+#include "ngram_slam/slam/slam_score.hpp"
 
 namespace ngram_slam {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/slam_engine.hpp"
-#include "ngram_slam/slam_state_io.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+#include "ngram_slam/slam/slam_state_io.hpp"
 
 namespace {
 

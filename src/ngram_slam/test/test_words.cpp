@@ -6,8 +6,8 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "ngram_slam/regions.hpp"
-#include "ngram_slam/text.hpp"
+#include "ngram_slam/words/density_regions.hpp"
+#include "ngram_slam/words/word_lattice.hpp"
 #include "transcription/words.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
@@ -18,9 +18,9 @@ using hyselam::testing::messageOf;
 
 namespace {
 
-std::vector<Region> regionsOf(const std::string& classes, int t_o) {
-  RegionBuilder builder(t_o);
-  std::vector<Region> out;
+std::vector<DensityRegion> regionsOf(const std::string& classes, int t_o) {
+  DensityRegionBuilder builder(t_o);
+  std::vector<DensityRegion> out;
   for (char c : classes)
     if (const auto r = builder.add(c)) out.push_back(*r);
   if (const auto r = builder.finish()) out.push_back(*r);
@@ -28,9 +28,9 @@ std::vector<Region> regionsOf(const std::string& classes, int t_o) {
 }
 
 /// "A5 B7": class and size of each region.
-std::string told(const std::vector<Region>& regions) {
+std::string told(const std::vector<DensityRegion>& regions) {
   std::string text;
-  for (const Region& r : regions)
+  for (const DensityRegion& r : regions)
     text += (text.empty() ? "" : " ") + std::string(1, static_cast<char>(r.density_class)) +
             std::to_string(r.size());
   return text;
@@ -52,10 +52,10 @@ std::vector<int> randomClasses(hyselam::Rng& rng, std::size_t n, std::uint32_t s
 TEST(Observations, areGivenBackAsTheyWereButForRounding) {
   ObservationStore store;
   hyselam::Rng rng(3);
-  std::vector<Observation> all;
+  std::vector<DensityObservation> all;
   for (int i = 0; i < 500; ++i) {
     if (i % 200 == 0) store.startRun();
-    Observation o;
+    DensityObservation o;
     o.stamp = 1e9 + 0.1 * i;
     o.base_in_odom = {5e6 + rng.uniform(-1000, 1000), rng.uniform(-1000, 1000), rng.uniform(-4, 4)};
     o.soft = rng.uniform();
@@ -70,7 +70,7 @@ TEST(Observations, areGivenBackAsTheyWereButForRounding) {
   EXPECT_EQ(store.runOf(199), 0u);
   EXPECT_EQ(store.runOf(200), 1u);
   for (std::uint32_t i = 0; i < 500; ++i) {
-    const Observation o = store[i];
+    const DensityObservation o = store[i];
     EXPECT_EQ(o.stamp, all[i].stamp);
     EXPECT_NEAR(o.base_in_odom.x, all[i].base_in_odom.x, 0.6e-4);
     EXPECT_NEAR(o.base_in_odom.y, all[i].base_in_odom.y, 0.6e-4);
@@ -87,21 +87,24 @@ TEST(Observations, areGivenBackAsTheyWereButForRounding) {
 TEST(Observations, thatCannotBeUsedAreRefusedByName) {
   ObservationStore store;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto refusal = [&](const std::function<void(Observation&)>& change) {
-    Observation o;
+  const auto refusal = [&](const std::function<void(DensityObservation&)>& change) {
+    DensityObservation o;
     change(o);
     return messageOf<InputError>([&] { store.append(o); });
   };
-  EXPECT_NE(refusal([&](Observation& o) { o.soft = nan; }).find("soft density"), std::string::npos);
-  EXPECT_NE(refusal([&](Observation& o) { o.hard = 1.5; }).find("hard density"), std::string::npos);
-  EXPECT_NE(refusal([&](Observation& o) { o.stamp = nan; }).find("stamp"), std::string::npos);
-  EXPECT_NE(refusal([&](Observation& o) { o.base_in_odom.y = nan; }).find("pose"),
+  EXPECT_NE(refusal([&](DensityObservation& o) { o.soft = nan; }).find("soft density"),
             std::string::npos);
-  EXPECT_NE(refusal([&](Observation& o) { o.frontiers = -1; }).find("frontiers"),
+  EXPECT_NE(refusal([&](DensityObservation& o) { o.hard = 1.5; }).find("hard density"),
+            std::string::npos);
+  EXPECT_NE(refusal([&](DensityObservation& o) { o.stamp = nan; }).find("stamp"),
+            std::string::npos);
+  EXPECT_NE(refusal([&](DensityObservation& o) { o.base_in_odom.y = nan; }).find("pose"),
+            std::string::npos);
+  EXPECT_NE(refusal([&](DensityObservation& o) { o.frontiers = -1; }).find("frontiers"),
             std::string::npos);
   EXPECT_EQ(store.size(), 0u);
-  EXPECT_EQ(refusal([](Observation&) {}), "");
-  EXPECT_NE(refusal([](Observation& o) { o.base_in_odom.x = 3e5; }).find("200 km"),
+  EXPECT_EQ(refusal([](DensityObservation&) {}), "");
+  EXPECT_NE(refusal([](DensityObservation& o) { o.base_in_odom.x = 3e5; }).find("200 km"),
             std::string::npos);
   EXPECT_EQ(store.size(), 1u);
 }
@@ -157,7 +160,7 @@ TEST(Regions, equalAlgorithm42WhereNothingIsShort) {
     const auto classes = randomClasses(rng, 60, t_o + 1);
     std::deque<transcription::Observed> pending;
     for (int c : classes) pending.push_back({c, {}});
-    std::vector<Region> expected;
+    std::vector<DensityRegion> expected;
     std::uint32_t begin = 0;
     for (;;) {
       const auto r = transcription::buildRegion(pending, t_o);
@@ -165,8 +168,8 @@ TEST(Regions, equalAlgorithm42WhereNothingIsShort) {
       expected.push_back({r.front().d, begin, begin + static_cast<std::uint32_t>(r.size())});
       begin = expected.back().end;
     }
-    RegionBuilder builder(static_cast<int>(t_o));
-    std::vector<Region> found;
+    DensityRegionBuilder builder(static_cast<int>(t_o));
+    std::vector<DensityRegion> found;
     for (int c : classes)
       if (const auto r = builder.add(c)) found.push_back(*r);
     if (const auto r = builder.finish()) found.push_back(*r);
@@ -181,8 +184,8 @@ TEST(Regions, equalTheCorrectedRuleOnAnything) {
     const std::uint32_t t_o = 1 + rng.below(6);
     const auto classes = randomClasses(rng, 80, 1);
     const auto expected = transcription::regionsOfRun(classes, t_o);
-    RegionBuilder builder(static_cast<int>(t_o), 1000);
-    std::vector<Region> found;
+    DensityRegionBuilder builder(static_cast<int>(t_o), 1000);
+    std::vector<DensityRegion> found;
     for (int c : classes)
       if (const auto r = builder.add(c)) found.push_back(*r);
     if (const auto r = builder.finish()) found.push_back(*r);
@@ -221,8 +224,8 @@ TEST(Words, levelsEqualAlgorithm52) {
     hyselam::Rng rng(52, static_cast<std::uint64_t>(round));
     const int levels = 1 + static_cast<int>(rng.below(6));
     ObservationStore store;
-    Text text(levels,
-              [&](std::uint32_t b, std::uint32_t e) { return angleVariation(store, b, e); });
+    WordLattice text(levels,
+                     [&](std::uint32_t b, std::uint32_t e) { return angleVariation(store, b, e); });
     const std::uint32_t runs = 1 + rng.below(3);
     std::vector<transcription::MultiLevelWords> expected;
     std::vector<std::size_t> offset;
@@ -242,7 +245,7 @@ TEST(Words, levelsEqualAlgorithm52) {
         const std::uint32_t size = 1 + rng.below(9), begin = store.size();
         for (std::uint32_t k = 0; k < size; ++k) {
           pose = pose * Pose2{0.1, 0.0, rng.uniform(-0.5, 0.5)};
-          Observation o;
+          DensityObservation o;
           o.base_in_odom = pose;
           const auto at = store.append(o);
           region.push_back({c, store.pose(at)});
@@ -259,7 +262,7 @@ TEST(Words, levelsEqualAlgorithm52) {
           WordIndex i = 0;
           ASSERT_TRUE(text.findEndingAt(static_cast<Position>(offset[run] + w->last),
                                         static_cast<int>(level), &i));
-          const Word found = text.word(i);
+          const DensityWord found = text.word(i);
           ASSERT_EQ(found.first, offset[run] + w->first);
           ASSERT_EQ(found.syllables.density_class, w->d);
           ASSERT_EQ(found.syllables.size, w->s);
@@ -286,9 +289,9 @@ TEST(Words, levelsEqualAlgorithm52) {
 }
 
 TEST(Words, textRefusesWhatItCannotHold) {
-  EXPECT_NE(messageOf<ParameterError>([] { Text t(0); }).find("levels"), std::string::npos);
-  EXPECT_NE(messageOf<ParameterError>([] { Text t(17); }).find("levels"), std::string::npos);
-  Text text;
+  EXPECT_NE(messageOf<ParameterError>([] { WordLattice t(0); }).find("levels"), std::string::npos);
+  EXPECT_NE(messageOf<ParameterError>([] { WordLattice t(17); }).find("levels"), std::string::npos);
+  WordLattice text;
   EXPECT_NE(messageOf<ParameterError>([&] {
               text.push({256, 1, 0});
             }).find("class"),
@@ -303,7 +306,7 @@ TEST(Words, textRefusesWhatItCannotHold) {
             std::string::npos);
   EXPECT_EQ(text.words(), 0u);
   text.push({255, 1u << 30, 0});
-  EXPECT_EQ(text.syllables(0).size, Text::kMaxSize);
+  EXPECT_EQ(text.syllables(0).size, WordLattice::kMaxSize);
   EXPECT_EQ(text.syllables(0).density_class, 255);
 }
 

@@ -22,8 +22,8 @@ geometry_msgs::Pose2D poseMsg(const hyselam::Pose2& pose) {
 
 }  // namespace
 
-Observation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
-                    const std::string& source) {
+DensityObservation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
+                           const std::string& source) {
   const std::size_t kernels = msg.kernel_names.size();
   if (msg.bandwidths.size() != kernels || msg.soft.size() != kernels ||
       msg.hard.size() != kernels || msg.frontiers.size() != kernels)
@@ -35,7 +35,7 @@ Observation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
   if (k == kernels)
     throw InputError(source, "kernels",
                      "hold no uniform kernel of " + std::to_string(bandwidth) + " m");
-  Observation o;
+  DensityObservation o;
   o.stamp = hyselam::toSeconds(msg.header.stamp);
   o.base_in_odom = {msg.base_in_odom.x, msg.base_in_odom.y, msg.base_in_odom.theta};
   if (!o.base_in_odom.isFinite()) throw InputError(source, "base_in_odom", "is not finite");
@@ -53,10 +53,10 @@ Observation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
   return o;
 }
 
-hyselam_msgs::Word wordMsg(const Recogniser& recogniser, WordIndex index) {
+hyselam_msgs::Word wordMsg(const NgramRecognizer& recogniser, WordIndex index) {
   const ObservationStore& observations = recogniser.observations();
-  const Text& text = recogniser.text();
-  const Word w = text.word(index);
+  const WordLattice& text = recogniser.text();
+  const DensityWord w = text.word(index);
   hyselam_msgs::Word msg;
   msg.index = index;
   msg.level = static_cast<std::uint8_t>(w.level);
@@ -76,7 +76,7 @@ hyselam_msgs::Word wordMsg(const Recogniser& recogniser, WordIndex index) {
   return msg;
 }
 
-hyselam_msgs::WordMatch matchMsg(const Recogniser& recogniser, const Match& match,
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const NgramMatch& match,
                                  const ObservationPair& place) {
   const ObservationStore& observations = recogniser.observations();
   hyselam_msgs::WordMatch msg;

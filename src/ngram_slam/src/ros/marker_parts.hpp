@@ -5,7 +5,7 @@
 
 #include "hyselam_common/pose2.hpp"
 #include "hyselam_common/ros/markers.hpp"
-#include "ngram_slam/semantic_class.hpp"
+#include "ngram_slam/semantics/semantic_class.hpp"
 
 namespace ngram_slam {
 

@@ -12,7 +12,7 @@ using hyselam::Range;
 
 namespace {
 
-void loadMinN(ParamLoader& loader, RecogniserParams& p) {
+void loadMinN(ParamLoader& loader, NgramRecognizerParams& p) {
   const std::vector<int>& known = p.matcher.min_n;
   const int step = known.back() > known.front() ? 3 : 0;
   std::vector<double> least;
@@ -30,8 +30,8 @@ void loadMinN(ParamLoader& loader, RecogniserParams& p) {
   }
 }
 
-void loadRecogniser(ParamLoader& loader, RecogniserParams& p) {
-  loader.get("levels", p.levels, Range::between(1, Text::kMaxLevels), "levels of words");
+void loadRecogniser(ParamLoader& loader, NgramRecognizerParams& p) {
+  loader.get("levels", p.levels, Range::between(1, WordLattice::kMaxLevels), "levels of words");
   loadMinN(loader, p);
   loader.get("size_tolerance", p.matcher.tolerance.size, {0.0, 1.0, true, true}, "epsilon_s");
   loader.get("angle_tolerance", p.matcher.tolerance.angle, {0.0, hyselam::kPi, true, true},
@@ -40,7 +40,7 @@ void loadRecogniser(ParamLoader& loader, RecogniserParams& p) {
              "old places followed at a time; of more, the newest");
   loader.get("min_region", p.min_region, Range::between(1, 10000),
              "[observations] t_o, least length of a region");
-  loader.get("uniform_classes", p.uniform_classes, Range::between(1, Text::kMaxClasses),
+  loader.get("uniform_classes", p.uniform_classes, Range::between(1, WordLattice::kMaxClasses),
              "density classes of equal width");
   loader.get("learn_classes", p.learn_classes, "density classes by mean shift instead");
   loader.get("class_hysteresis", p.class_hysteresis, {0.0, 0.5, false, true},
@@ -75,7 +75,7 @@ WordsServerParams loadWordsParams(ParamLoader& loader) {
   std::string preset = "thesis";
   loader.get("preset", preset, {"thesis", "improved"},
              "defaults of what is recognised; improved needs input scan");
-  if (preset == "improved") p.recogniser = RecogniserParams::improved();
+  if (preset == "improved") p.recogniser = NgramRecognizerParams::improved();
   std::string input = "fsd_observation";
   loader.get("input", input, {"fsd_observation", "scan"}, "topic that observations are made from");
   p.from_scan = input == "scan";

@@ -20,7 +20,7 @@ geometry_msgs::Pose2D pose2d(const hyselam::Pose2& p) {
 }
 
 /// The real word that an observation belongs to; the last one for observations without word yet.
-std::uint32_t wordAt(const Text& text, std::uint32_t observation) {
+std::uint32_t wordAt(const WordLattice& text, std::uint32_t observation) {
   Position low = 0, high = text.positions();
   while (low + 1 < high) {
     const Position middle = low + (high - low) / 2;
@@ -83,7 +83,7 @@ nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msg
   return path;
 }
 
-hyselam_msgs::WordMatch matchMsg(const Recogniser& recogniser, const SlamMatch& match) {
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const SlamMatch& match) {
   const ObservationStore& observations = recogniser.observations();
   hyselam_msgs::WordMatch msg;
   msg.newer = wordAt(recogniser.text(), match.newer);

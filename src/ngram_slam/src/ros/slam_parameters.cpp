@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "hyselam_common/errors.hpp"
-#include "ngram_slam/slam_engine.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
 

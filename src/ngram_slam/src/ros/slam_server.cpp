@@ -15,10 +15,10 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
-#include "ngram_slam/region_graph.hpp"
 #include "ngram_slam/ros/conversions.hpp"
 #include "ngram_slam/ros/slam_messages.hpp"
-#include "ngram_slam/slam_state_io.hpp"
+#include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_state_io.hpp"
 #include "wall_milliseconds.hpp"
 
 namespace ngram_slam {
@@ -277,7 +277,7 @@ std_msgs::Header SlamServer::header(const std::string& frame) const {
 /// Words, matches and regions that are new. With mutex_ held.
 void SlamServer::tell() {
   Mapping& m = *mapping_;
-  const Recogniser& recogniser = m.engine.recogniser();
+  const NgramRecognizer& recogniser = m.engine.recogniser();
   const bool anew = recogniser.requantisations() != m.requantisations;
   m.requantisations = recogniser.requantisations();
   if (anew) m.told_words = m.told_matches = 0;

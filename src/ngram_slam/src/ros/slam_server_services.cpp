@@ -4,7 +4,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "ngram_slam/ros/slam_server.hpp"
-#include "ngram_slam/slam_state_io.hpp"
+#include "ngram_slam/slam/slam_state_io.hpp"
 #include "wall_milliseconds.hpp"
 
 namespace ngram_slam {

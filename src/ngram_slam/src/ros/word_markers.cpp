@@ -44,10 +44,11 @@ std::string textOf(const Syllables& s) {
 
 }  // namespace
 
-visualization_msgs::MarkerArray wordMarkers(const Recogniser& recogniser, const ShownRun& shown,
-                                            int words, const std_msgs::Header& header) {
+visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
+                                            const ShownRun& shown, int words,
+                                            const std_msgs::Header& header) {
   const ObservationStore& observations = recogniser.observations();
-  const Text& text = recogniser.text();
+  const WordLattice& text = recogniser.text();
   visualization_msgs::MarkerArray array;
   Marker clear;
   clear.header = header;

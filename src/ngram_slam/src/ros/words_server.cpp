@@ -10,7 +10,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
-#include "ngram_slam/match_place.hpp"
+#include "ngram_slam/matching/match_place.hpp"
 #include "ngram_slam/ros/conversions.hpp"
 
 namespace ngram_slam {
@@ -92,7 +92,7 @@ WordsServer::~WordsServer() {
 
 /// Goes on from a corpus.
 void WordsServer::restart(Corpus corpus) {
-  recogniser_ = std::make_unique<Recogniser>(params_.recogniser, std::move(corpus));
+  recogniser_ = std::make_unique<NgramRecognizer>(params_.recogniser, std::move(corpus));
   segmenter_ = SemanticSegmenter(params_.semantic);
   segmenter_begin_ = recogniser_->observations().size();
   told_words_ = recogniser_->text().words();
@@ -121,7 +121,8 @@ void WordsServer::onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg) {
   }
   last_stamp_ = stamp;
   try {
-    const Observation reading = fromMsg(*msg, params_.sensor.bandwidth, subscriber_.getTopic());
+    const DensityObservation reading =
+        fromMsg(*msg, params_.sensor.bandwidth, subscriber_.getTopic());
     const auto due = sampler_.due(reading.base_in_odom);
     if (!due.empty()) take(sampler_.take(reading, due));
     ++used_;
@@ -130,18 +131,18 @@ void WordsServer::onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg) {
   }
 }
 
-void WordsServer::take(const std::vector<Observation>& observations) {
-  for (const Observation& o : observations) take(o);
+void WordsServer::take(const std::vector<DensityObservation>& observations) {
+  for (const DensityObservation& o : observations) take(o);
 }
 
-void WordsServer::take(const Observation& observation) {
+void WordsServer::take(const DensityObservation& observation) {
   if (last_ && leapt(*last_, observation)) {
     ++leaps_;
     endRun("the odometry jumped by " +
            std::to_string(hyselam::distance(last_->base_in_odom, observation.base_in_odom)) + " m");
   }
   const ros::WallTime begin = ros::WallTime::now();
-  const RecogniserUpdate update = recogniser_->add(observation);
+  const NgramRecognizerUpdate update = recogniser_->add(observation);
   last_ = observation;
   const std::vector<SemanticRegion> regions =
       params_.semantics
@@ -173,8 +174,8 @@ void WordsServer::endRun(const std::string& why) {
   shown_ = {};
 }
 
-void WordsServer::told(const RecogniserUpdate& update) {
-  const Text& text = recogniser_->text();
+void WordsServer::told(const NgramRecognizerUpdate& update) {
+  const WordLattice& text = recogniser_->text();
   if (!update.word && !update.requantised) return;
   if (update.requantised) shown_.matches.clear();
   hyselam_msgs::WordArray words;
@@ -190,7 +191,7 @@ void WordsServer::told(const RecogniserUpdate& update) {
   matches.anew = update.requantised;
   const ObservationStore& observations = recogniser_->observations();
   const std::uint32_t run_begin = observations.runBegin(observations.runs() - 1);
-  for (const Match& m : update.matches) {
+  for (const NgramMatch& m : update.matches) {
     const auto place = placeOf(*recogniser_, m);
     if (!place) continue;
     matches.matches.push_back(matchMsg(*recogniser_, m, *place));
@@ -316,7 +317,7 @@ bool WordsServer::onStartRun(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
 }
 
 void WordsServer::report(Status& status) {
-  const Text& text = recogniser_->text();
+  const WordLattice& text = recogniser_->text();
   addRemark(status, Status::OK,
             std::to_string(text.positions()) + " words, " + std::to_string(matches_) + " matches");
   if (scan_input_) {

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "ngram_slam/semantic_score.hpp"
+#include "ngram_slam/semantics/semantic_score.hpp"
 
 namespace ngram_slam {
 

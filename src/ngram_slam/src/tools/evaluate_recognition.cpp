@@ -8,7 +8,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "ngram_slam/match_evaluation.hpp"
+#include "ngram_slam/matching/match_evaluation.hpp"
 #include "recognition_options.hpp"
 #include "similarity_picture.hpp"
 
@@ -49,7 +49,7 @@ Truth truthOf(const Options& o, const ObservationStore& observations,
   std::vector<std::uint32_t> runs;  // a log in which the robot was carried off has several
   for (std::size_t log = 0; log < logs.size(); ++log) {
     const std::vector<hyselam::StampedPose2> reference = referenceOf(o, log);
-    for (const Observation& observation : logs[log].observations) {
+    for (const DensityObservation& observation : logs[log].observations) {
       runs.push_back(observations.runOf(static_cast<std::uint32_t>(runs.size())));
       poses.push_back(hyselam::poseAt(reference, observation.stamp, 0.5));
     }
@@ -91,9 +91,9 @@ std::vector<int> listOf(const std::string& name, const std::string& text) {
   return list;
 }
 
-std::vector<Match> recognise(Recogniser& recogniser, const std::vector<Run>& runs) {
-  std::vector<Match> matches;
-  feed(runs, recogniser, [&](const RecogniserUpdate& u) {
+std::vector<NgramMatch> recognise(NgramRecognizer& recogniser, const std::vector<Run>& runs) {
+  std::vector<NgramMatch> matches;
+  feed(runs, recogniser, [&](const NgramRecognizerUpdate& u) {
     if (u.requantised) matches.clear();
     matches.insert(matches.end(), u.matches.begin(), u.matches.end());
   });
@@ -102,7 +102,7 @@ std::vector<Match> recognise(Recogniser& recogniser, const std::vector<Run>& run
 
 /// One row per n and size tolerance, and where the run stood by then.
 nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth& truth) {
-  const RecogniserParams base = o.recognition.params();
+  const NgramRecognizerParams base = o.recognition.params();
   const std::vector<int> list =
       o.n.empty() ? std::vector<int>{base.matcher.min_n.front()} : listOf("--n", o.n);
   const std::vector<double> sizes =
@@ -111,12 +111,12 @@ nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth
   hyselam::Progress progress("sweep", list.size() * sizes.size());
   for (const double size : sizes) {
     for (const int n : list) {
-      RecogniserParams params = base;
+      NgramRecognizerParams params = base;
       params.matcher.tolerance.size = size;
       for (std::size_t l = 0; l < params.matcher.min_n.size(); ++l)
         params.matcher.min_n[l] = n + base.matcher.min_n[l] - base.matcher.min_n[0];
       params.validate();
-      Recogniser recogniser(params);
+      NgramRecognizer recogniser(params);
       MatchEvaluation evaluation(recogniser, truth);
       evaluation.add(recognise(recogniser, runs));
       nlohmann::json row = summary(evaluation);
@@ -155,15 +155,15 @@ nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth
 }
 
 /// Precision and recall while ever less sure matches are taken in.
-nlohmann::json curve(const Options& o, const Recogniser& recogniser, std::vector<Match> matches,
-                     const Truth& truth) {
-  const RecogniserParams& params = recogniser.params();
-  const auto key = [&](const Match& m) {
+nlohmann::json curve(const Options& o, const NgramRecognizer& recogniser,
+                     std::vector<NgramMatch> matches, const Truth& truth) {
+  const NgramRecognizerParams& params = recogniser.params();
+  const auto key = [&](const NgramMatch& m) {
     if (params.with_probability) return m.probability;
     return params.max_chance > 0.0 ? -m.chance : static_cast<double>(m.n);
   };
   std::stable_sort(matches.begin(), matches.end(),
-                   [&](const Match& a, const Match& b) { return key(a) > key(b); });
+                   [&](const NgramMatch& a, const NgramMatch& b) { return key(a) > key(b); });
   nlohmann::json points = nlohmann::json::array();
   MatchEvaluation evaluation(recogniser, truth);
   std::size_t told = 0;
@@ -195,10 +195,10 @@ nlohmann::json run(const Options& o) {
   if (!o.references.empty() && o.references.size() != o.recognition.logs.size())
     throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
   if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
-  Recogniser recogniser(o.recognition.params());
+  NgramRecognizer recogniser(o.recognition.params());
   const std::vector<Run> runs = readRuns(o.recognition);
   const std::clock_t begin = std::clock();
-  const std::vector<Match> matches = recognise(recogniser, runs);
+  const std::vector<NgramMatch> matches = recognise(recogniser, runs);
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   const Truth truth = truthOf(o, recogniser.observations(), runs);
   MatchEvaluation evaluation(recogniser, truth);

@@ -7,8 +7,8 @@
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/picture.hpp"
-#include "ngram_slam/semantic_forest.hpp"
-#include "ngram_slam/semantic_regions_io.hpp"
+#include "ngram_slam/semantics/semantic_forest.hpp"
+#include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "semantic_runs.hpp"
 
 namespace {

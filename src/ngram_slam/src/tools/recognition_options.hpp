@@ -10,16 +10,16 @@
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
-#include "ngram_slam/log_observations.hpp"
-#include "ngram_slam/recogniser.hpp"
-#include "ngram_slam/way_sampler.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/words/log_observations.hpp"
+#include "ngram_slam/words/way_sampler.hpp"
 
 namespace ngram_slam {
 
 struct RecognitionOptions {
   std::vector<std::string> logs;
   hyselam::BagOptions bag_options;
-  RecogniserParams recogniser;
+  NgramRecognizerParams recogniser;
   LogObservationParams observations;
   double angle_deg = 30.0;
   std::vector<int> min_n;
@@ -69,14 +69,14 @@ struct RecognitionOptions {
     return p;
   }
   /// The parameters, completed. @throws hyselam::ParameterError
-  RecogniserParams params() const {
-    RecogniserParams p = recogniser;
-    const Text level_check(p.levels);
+  NgramRecognizerParams params() const {
+    NgramRecognizerParams p = recogniser;
+    const WordLattice level_check(p.levels);
     p.word_density = full_density ? WordDensity::kFull : WordDensity::kSoft;
     p.matcher.tolerance.angle = hyselam::radians(angle_deg);
     p.matcher.min_n = min_n;
     if (improved) {
-      const RecogniserParams better = RecogniserParams::improved();
+      const NgramRecognizerParams better = NgramRecognizerParams::improved();
       p.word_density = better.word_density;
       p.reverse = better.reverse;
       p.with_probability = better.with_probability;
@@ -94,7 +94,7 @@ struct RecognitionOptions {
 
 /// The observations of one log, at least one.
 struct Run {
-  std::vector<Observation> observations;
+  std::vector<DensityObservation> observations;
 };
 
 /// @throws hyselam::InputError for a log that cannot be read or of which no scan can be used.
@@ -117,11 +117,11 @@ inline std::vector<Run> readRuns(const RecognitionOptions& options) {
 }
 
 /// Feeds all runs. `use` gets what each observation brought about.
-inline void feed(const std::vector<Run>& runs, Recogniser& recogniser,
-                 const std::function<void(const RecogniserUpdate&)>& use) {
+inline void feed(const std::vector<Run>& runs, NgramRecognizer& recogniser,
+                 const std::function<void(const NgramRecognizerUpdate&)>& use) {
   for (const Run& run : runs) {
-    const Observation* before = nullptr;
-    for (const Observation& o : run.observations) {
+    const DensityObservation* before = nullptr;
+    for (const DensityObservation& o : run.observations) {
       if (before != nullptr && leapt(*before, o)) use(recogniser.endRun());
       use(recogniser.add(o));
       before = &o;
@@ -129,8 +129,8 @@ inline void feed(const std::vector<Run>& runs, Recogniser& recogniser,
     use(recogniser.endRun());
   }
 }
-inline void feed(const RecognitionOptions& options, Recogniser& recogniser,
-                 const std::function<void(const RecogniserUpdate&)>& use) {
+inline void feed(const RecognitionOptions& options, NgramRecognizer& recogniser,
+                 const std::function<void(const NgramRecognizerUpdate&)>& use) {
   feed(readRuns(options), recogniser, use);
 }
 

@@ -6,9 +6,9 @@
 
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/floor_plan.hpp"
-#include "ngram_slam/log_observations.hpp"
-#include "ngram_slam/semantic_score.hpp"
-#include "ngram_slam/semantic_segmenter.hpp"
+#include "ngram_slam/semantics/semantic_score.hpp"
+#include "ngram_slam/semantics/semantic_segmenter.hpp"
+#include "ngram_slam/words/log_observations.hpp"
 
 namespace ngram_slam {
 
@@ -46,7 +46,8 @@ inline SemanticRun semanticRun(const hyselam::RobotLog& log, const SemanticRunOp
   const auto keep = [&](const std::vector<SemanticRegion>& regions) {
     run.regions.insert(run.regions.end(), regions.begin(), regions.end());
   };
-  for (const Observation& o : observationsOf(log, options.observations, progress).observations) {
+  for (const DensityObservation& o :
+       observationsOf(log, options.observations, progress).observations) {
     run.stamps.push_back(o.stamp);
     keep(segmenter.add(o));
     if (plan == nullptr) continue;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hyselam_common/atomic_file.hpp"
-#include "ngram_slam/recognition_score.hpp"
+#include "ngram_slam/matching/recognition_score.hpp"
 
 namespace ngram_slam {
 namespace picture {

@@ -15,8 +15,8 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
-#include "ngram_slam/semantic_regions_io.hpp"
-#include "ngram_slam/slam_score.hpp"
+#include "ngram_slam/semantics/semantic_regions_io.hpp"
+#include "ngram_slam/slam/slam_score.hpp"
 #include "slam_report.hpp"
 #include "word_tables.hpp"
 
@@ -224,9 +224,9 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
 }
 
 SlamParams paramsOf(const Options& o, SlamLoops loops) {
-  if (o.levels < 1 || o.levels > Text::kMaxLevels)
+  if (o.levels < 1 || o.levels > WordLattice::kMaxLevels)
     throw hyselam::ParameterError("levels", o.levels,
-                                  "from 1 to " + std::to_string(Text::kMaxLevels));
+                                  "from 1 to " + std::to_string(WordLattice::kMaxLevels));
   SlamParams params;
   if (loops == SlamLoops::kThesis) {
     params = SlamParams::thesis(o.levels);

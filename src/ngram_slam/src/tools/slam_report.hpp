@@ -12,8 +12,8 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
-#include "ngram_slam/region_graph.hpp"
-#include "ngram_slam/slam_engine.hpp"
+#include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
 namespace report {
@@ -149,12 +149,12 @@ inline std::string mapFigure(const SlamPicture& p) {
 /// The words of the first level in the order of the way: length by size, colour by density.
 inline std::string wordStrip(const SlamEngine& engine) {
   using namespace report;  // NOLINT: one function
-  const Text& text = engine.recogniser().text();
+  const WordLattice& text = engine.recogniser().text();
   constexpr double kLine = 1200.0, kHeight = 22.0, kPerObservation = 1.0;
   double x = 0.0, y = 0.0;
   std::ostringstream boxes;
   for (WordIndex i = 0; i < text.words(); ++i) {
-    const Word w = text.word(i);
+    const DensityWord w = text.word(i);
     if (w.level != 0) continue;
     const double width = kPerObservation * w.syllables.size;
     if (x > 0.0 && x + width > kLine) {

@@ -6,7 +6,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/simulation.hpp"
-#include "ngram_slam/semantic_forest.hpp"
+#include "ngram_slam/semantics/semantic_forest.hpp"
 #include "semantic_runs.hpp"
 
 namespace {

@@ -5,18 +5,18 @@
 #include <string>
 
 #include "hyselam_common/atomic_file.hpp"
-#include "ngram_slam/recogniser.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
 
 namespace ngram_slam {
 
 /// words.csv: README.md names the columns. @throws hyselam::InputError
-inline void writeWords(const std::string& path, const Recogniser& r) {
+inline void writeWords(const std::string& path, const NgramRecognizer& r) {
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
     out << std::setprecision(15)
         << "word,level,first,last,run,stamp_begin,stamp_end,class,size,angle\n";
-    const Text& text = r.text();
+    const WordLattice& text = r.text();
     for (WordIndex i = 0; i < text.words(); ++i) {
-      const Word w = text.word(i);
+      const DensityWord w = text.word(i);
       const std::uint32_t begin = text.observationBegin(i), end = text.observationEnd(i);
       out << i << ',' << w.level << ',' << w.first << ',' << w.last << ','
           << r.observations().runOf(begin) << ',' << r.observations().stamp(begin) << ','

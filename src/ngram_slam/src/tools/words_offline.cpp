@@ -5,8 +5,8 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "ngram_slam/match_place.hpp"
-#include "ngram_slam/semantic_regions_io.hpp"
+#include "ngram_slam/matching/match_place.hpp"
+#include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "recognition_options.hpp"
 #include "word_tables.hpp"
 
@@ -20,14 +20,14 @@ struct Options {
 };
 
 struct PlacedMatch {
-  Match match;
+  NgramMatch match;
   ObservationPair place;
 };
 
 /// One line per match: the pair of observations that stands for it. x, y, theta is where the newer
 /// one was made in the frame of the older one, as far as words can tell: the same place, and the
 /// same heading or the opposite one. Nobody has verified it.
-void writeMatches(const std::string& path, const Recogniser& r,
+void writeMatches(const std::string& path, const NgramRecognizer& r,
                   const std::vector<PlacedMatch>& matches) {
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
     out << "stamp_a,stamp_b,level,n,direction,x,y,theta,verified,run_a,run_b,word_a,word_b,"
@@ -45,15 +45,15 @@ void writeMatches(const std::string& path, const Recogniser& r,
 }
 
 nlohmann::json run(const Options& o) {
-  Recogniser r(o.recognition.params());
+  NgramRecognizer r(o.recognition.params());
   std::error_code error;
   std::filesystem::create_directories(o.out, error);
   if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
   std::vector<PlacedMatch> matches;
-  feed(o.recognition, r, [&](const RecogniserUpdate& u) {
+  feed(o.recognition, r, [&](const NgramRecognizerUpdate& u) {
     if (u.requantised) matches.clear();
     // Now, as a robot would: later observations could move the pair a little.
-    for (const Match& m : u.matches)
+    for (const NgramMatch& m : u.matches)
       if (const auto place = placeOf(r, m)) matches.push_back({m, *place});
   });
   writeWords(o.out + "/words.csv", r);

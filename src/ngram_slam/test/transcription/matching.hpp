@@ -1,5 +1,5 @@
 // Alg. 5.3 as the thesis writes it, on plain lists of words, and a matcher that fills the table of
-// all pairs of words. The oracles of Matcher; slow on purpose.
+// all pairs of words. The oracles of NgramMatcher; slow on purpose.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ngram_slam/text.hpp"
+#include "ngram_slam/words/word_lattice.hpp"
 
 namespace transcription {
 
@@ -21,7 +21,7 @@ struct PlainWord {
   std::vector<std::size_t> P;
 };
 
-inline std::vector<PlainWord> plainWords(const ngram_slam::Text& text) {
+inline std::vector<PlainWord> plainWords(const ngram_slam::WordLattice& text) {
   std::vector<PlainWord> out;
   for (ngram_slam::WordIndex i = 0; i < text.words(); ++i) {
     const auto w = text.word(i);

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "ngram_slam/semantic_segmenter.hpp"
+#include "ngram_slam/semantics/semantic_segmenter.hpp"
 
 namespace transcription {
 

@@ -1,5 +1,5 @@
 // Alg. 4.2, 4.3 and 5.2 as the thesis writes them (with the errata that are named). The oracles of
-// RegionBuilder, angleVariation and Text; slow on purpose.
+// DensityRegionBuilder, angleVariation and Text; slow on purpose.
 #pragma once
 
 #include <cmath>

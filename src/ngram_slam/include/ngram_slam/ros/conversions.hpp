@@ -8,22 +8,22 @@
 
 #include <string>
 
-#include "ngram_slam/alignment.hpp"
-#include "ngram_slam/recogniser.hpp"
-#include "ngram_slam/semantic_segmenter.hpp"
+#include "ngram_slam/matching/alignment.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/semantics/semantic_segmenter.hpp"
 
 namespace ngram_slam {
 
 /// The reading of the uniform kernel of `bandwidth` [m].
 /// @throws hyselam::InputError (beginning with `source`) without such a kernel, for arrays of
 /// unequal lengths, and for a pose or density that is not finite.
-Observation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
-                    const std::string& source);
+DensityObservation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
+                           const std::string& source);
 
-hyselam_msgs::Word wordMsg(const Recogniser& recogniser, WordIndex word);
+hyselam_msgs::Word wordMsg(const NgramRecognizer& recogniser, WordIndex word);
 
 /// @param place the two observations that stand for the match; see placeOf().
-hyselam_msgs::WordMatch matchMsg(const Recogniser& recogniser, const Match& match,
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const NgramMatch& match,
                                  const ObservationPair& place);
 
 /// @param step way between observations [m].

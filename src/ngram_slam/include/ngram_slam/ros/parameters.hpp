@@ -5,9 +5,9 @@
 
 #include "fsd_localization/ros/parameters.hpp"
 #include "hyselam_common/ros/params.hpp"
-#include "ngram_slam/observation_sensor.hpp"
-#include "ngram_slam/recogniser.hpp"
-#include "ngram_slam/semantic_segmenter.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/semantics/semantic_segmenter.hpp"
+#include "ngram_slam/words/observation_sensor.hpp"
 
 namespace ngram_slam {
 
@@ -15,7 +15,7 @@ struct WordsServerParams {
   bool from_scan = false;  ///< observations from `scan` and tf, else from `fsd_observation`
   fsd_localization::ScanInputParams input;
   ObservationSensorParams sensor;  ///< with `fsd_observation` only bandwidth and step count
-  RecogniserParams recogniser;
+  NgramRecognizerParams recogniser;
   bool semantics = true;
   SemanticParams semantic;
   std::string corpus;              ///< file loaded at the start and saved; empty: none

@@ -8,9 +8,9 @@
 
 #include <vector>
 
-#include "ngram_slam/recogniser.hpp"
-#include "ngram_slam/region_graph.hpp"
-#include "ngram_slam/slam_types.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_types.hpp"
 
 namespace ngram_slam {
 
@@ -21,7 +21,7 @@ hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header
 nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msgs::Header& header);
 
 /// A match as SLAM keeps it: words by the observations, chance and alignment not known.
-hyselam_msgs::WordMatch matchMsg(const Recogniser& recogniser, const SlamMatch& match);
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const SlamMatch& match);
 
 /// Namespaces: "way", lines between keyframes; "loops", green by proximity, magenta by words, red
 /// where they contradict others; "regions", one ball per region coloured by class; "region_links",

@@ -7,8 +7,8 @@
 #include "fsd_localization/ros/parameters.hpp"
 #include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/ros/params.hpp"
-#include "ngram_slam/semantic_segmenter.hpp"
-#include "ngram_slam/slam_params.hpp"
+#include "ngram_slam/semantics/semantic_segmenter.hpp"
+#include "ngram_slam/slam/slam_params.hpp"
 
 namespace ngram_slam {
 

@@ -21,10 +21,10 @@
 #include "fsd_localization/ros/rate_limit.hpp"
 #include "fsd_localization/ros/scan_input.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
-#include "ngram_slam/keyframe_mapper.hpp"
-#include "ngram_slam/region_graph.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
-#include "ngram_slam/slam_engine.hpp"
+#include "ngram_slam/slam/keyframe_mapper.hpp"
+#include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
 

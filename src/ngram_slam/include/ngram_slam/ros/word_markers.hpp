@@ -6,9 +6,9 @@
 
 #include <deque>
 
-#include "ngram_slam/alignment.hpp"
-#include "ngram_slam/recogniser.hpp"
-#include "ngram_slam/semantic_segmenter.hpp"
+#include "ngram_slam/matching/alignment.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/semantics/semantic_segmenter.hpp"
 
 namespace ngram_slam {
 
@@ -30,7 +30,8 @@ struct ShownRun {
 /// syllables as text "class.length angle"; "matches", lines between two observations of one place,
 /// green in the same direction, magenta in the reverse one. Only the newest `words` words.
 /// @param header frame: odometry of the run.
-visualization_msgs::MarkerArray wordMarkers(const Recogniser& recogniser, const ShownRun& shown,
-                                            int words, const std_msgs::Header& header);
+visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
+                                            const ShownRun& shown, int words,
+                                            const std_msgs::Header& header);
 
 }  // namespace ngram_slam

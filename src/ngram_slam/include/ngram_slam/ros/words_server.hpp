@@ -13,9 +13,9 @@
 #include "fsd_localization/ros/rate_limit.hpp"
 #include "fsd_localization/ros/scan_input.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
-#include "ngram_slam/corpus_journal.hpp"
 #include "ngram_slam/ros/parameters.hpp"
 #include "ngram_slam/ros/word_markers.hpp"
+#include "ngram_slam/words/corpus_journal.hpp"
 
 namespace ngram_slam {
 
@@ -34,11 +34,11 @@ class WordsServer {
 
  private:
   void onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg);
-  void take(const std::vector<Observation>& observations);
-  void take(const Observation& observation);
+  void take(const std::vector<DensityObservation>& observations);
+  void take(const DensityObservation& observation);
   void startAnew(const std::string& why);
   void endRun(const std::string& why);
-  void told(const RecogniserUpdate& update);
+  void told(const NgramRecognizerUpdate& update);
   void told(const std::vector<SemanticRegion>& regions);
   std_msgs::Header header() const;
   void show();
@@ -52,12 +52,12 @@ class WordsServer {
   std::string who_;
   WordsServerParams params_;
   std::unique_ptr<CorpusJournal> journal_;  // empty: no corpus is kept
-  std::unique_ptr<Recogniser> recogniser_;
+  std::unique_ptr<NgramRecognizer> recogniser_;
   SemanticSegmenter segmenter_;
   std::uint32_t segmenter_begin_ = 0;  // observations of the corpus before the segmenter's first
   ObservationSensor sensor_;           // with input scan
   WaySampler sampler_;                 // with input fsd_observation
-  std::optional<Observation> last_;    // of this run
+  std::optional<DensityObservation> last_;  // of this run
   std::size_t told_words_ = 0;
   ShownRun shown_;
 

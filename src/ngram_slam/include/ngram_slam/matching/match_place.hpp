@@ -1,0 +1,21 @@
+// Where a match says that the robot is: one pair of observations for each match.
+#pragma once
+
+#include <optional>
+
+#include "ngram_slam/matching/alignment.hpp"
+#include "ngram_slam/matching/ngram_recognizer.hpp"
+
+namespace ngram_slam {
+
+/// The pair in the middle of the match's own two words, aligned by density. Nothing where too
+/// little of them overlaps.
+inline std::optional<ObservationPair> placeOf(const NgramRecognizer& recogniser,
+                                              const NgramMatch& match) {
+  const auto pairs = alignedObservations(recogniser.text(), recogniser.observations(),
+                                         {{match.newer, match.older}}, 1, {}, match.direction);
+  if (pairs.empty()) return std::nullopt;
+  return pairs[pairs.size() / 2];
+}
+
+}  // namespace ngram_slam

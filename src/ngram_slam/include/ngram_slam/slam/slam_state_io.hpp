@@ -1,0 +1,27 @@
+// The state of SLAM in a file: what lets it go on in a building that it knows.
+#pragma once
+
+#include <string>
+
+#include "ngram_slam/slam/slam_params.hpp"
+#include "ngram_slam/slam/slam_types.hpp"
+
+namespace ngram_slam {
+
+/// Layout (little-endian): "NGRAMSLM", version u32, length of the body u64, CRC-32 of these; body;
+/// CRC-32 of the body. Scans are kept as they were measured, surfaces are made of them anew.
+class SlamStateFile {
+ public:
+  static constexpr std::uint32_t kVersion = 1;
+
+  /// Atomic: whoever reads sees the old file or the new one.
+  /// @throws hyselam::InputError when the place cannot be written.
+  static void save(const std::string& path, const SlamState& state);
+  /// `surface`: as the engine has it that is to go on.
+  /// @throws hyselam::InputError naming file, place and reason for a file that is missing, no such
+  /// file, of another version, cut short, damaged, or whose parts do not fit together.
+  static SlamState load(const std::string& path,
+                        const hyselam_scan_matching::SurfaceParams& surface);
+};
+
+}  // namespace ngram_slam

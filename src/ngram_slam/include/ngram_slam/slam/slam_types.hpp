@@ -1,0 +1,98 @@
+// What SLAM knows, as plain values: keyframes, the edges between them, and where it stands.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hyselam_common/laser_scan.hpp"
+#include "hyselam_pose_graph/pose_graph.hpp"
+#include "hyselam_scan_matching/surface.hpp"
+#include "ngram_slam/words/corpus.hpp"
+#include "ngram_slam/words/density_word.hpp"
+
+namespace ngram_slam {
+
+/// A scan that the map is made of.
+struct SlamKeyframe {
+  double stamp = 0.0;       ///< [s]
+  hyselam::Pose2 odometry;  ///< base in odom when the scan was taken
+  hyselam::Pose2 pose;      ///< base in map, as optimised last
+  double way = 0.0;         ///< driven by odometry until here, over all runs [m]
+  std::uint32_t run = 0;    ///< counted from 0
+  std::shared_ptr<const hyselam::LaserScan> scan;  ///< never null; never changed
+  std::shared_ptr<const hyselam_scan_matching::SurfacePoints> points;  ///< the same as surfaces
+};
+
+/// Where a scan that is no keyframe was taken.
+struct PlacedScan {
+  double stamp = 0.0;  ///< [s]
+  int keyframe = 0;
+  hyselam::Pose2 base_in_keyframe;
+};
+
+enum class LoopSource : std::uint8_t { kProximity, kNgram };
+
+/// A loop of less weight contradicts the others so much that nothing is concluded from it.
+constexpr double kDoubtedWeight = 0.3;
+
+/// A measurement between keyframes that do not follow each other.
+struct SlamLoop {
+  int older = 0, newer = 0;                               ///< keyframes
+  hyselam::Pose2 measured;                                ///< newer in older
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< see PoseEdge
+  LoopSource source = LoopSource::kProximity;
+  bool far = false;      ///< came from a wide search, with company
+  double matched = 0.0;  ///< part of the points on known surfaces, 0..1
+  double weight = 1.0;   ///< given by the last optimisation, 0..1; below 1: contradicts others
+};
+
+/// A match of words, and what became of it.
+struct SlamMatch {
+  std::uint32_t newer = 0, older = 0;           ///< observations
+  double stamp_newer = 0.0, stamp_older = 0.0;  ///< [s]
+  int level = 0;                                ///< highest level of words in use, from 0
+  int n = 0;
+  Direction direction = Direction::kSame;
+  double probability = 0.0;
+  int keyframe_newer = 0, keyframe_older = 0;
+  /// Newer in older keyframe: as verified, else the same place and heading or its opposite.
+  hyselam::Pose2 measured;
+  bool tried = false;     ///< the scans were compared
+  bool verified = false;  ///< the scans fit
+  bool accepted = false;  ///< and it stands in the graph: places beside it say the same
+};
+
+/// How often what happened.
+struct SlamCounters {
+  std::uint64_t scans = 0;     ///< taken in
+  std::uint64_t matched = 0;   ///< against the local map
+  std::uint64_t searched = 0;  ///< of them: lost, and found again by a search
+  std::uint64_t weak = 0;      ///< of them: hardly anything matched, odometry decides
+  std::uint64_t leaps = 0;     ///< of the odometry
+  std::uint64_t optimisations = 0;
+  struct Loops {
+    std::uint64_t tried = 0, verified = 0, accepted = 0;
+  } near, far, words;
+};
+
+/// All that outlives the process. Together with SlamParams it makes the engine what it was; only
+/// the observations of the last few metres that still wait for their second look are lost, and the
+/// loops that wait for a job.
+struct SlamState {
+  std::vector<SlamKeyframe> keyframes;
+  std::vector<PlacedScan> scans;  ///< all scans of all runs, keyframes' own too
+  std::vector<hyselam_pose_graph::PoseEdge> odometry;  ///< edges between following keyframes
+  std::vector<SlamLoop> loops;
+  std::vector<SlamLoop> waiting;  ///< far loops that nobody agrees with yet
+  std::vector<SlamMatch> matches;
+  Corpus corpus;
+  std::vector<std::int32_t> keyframe_of_observation;
+  SlamCounters counters;
+
+  /// @throws std::invalid_argument for parts that refer to what is not there, and for a keyframe
+  /// without scan or finite pose.
+  void validate() const;
+};
+
+}  // namespace ngram_slam

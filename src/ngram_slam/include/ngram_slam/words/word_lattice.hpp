@@ -1,0 +1,159 @@
+// The text of a robot's way: real words and, on higher levels, the words that would have been there
+// had an interruption been absent (Eq. 5.1, Alg. 5.1, Alg. 5.2 with its erratum), for any number
+// of levels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "ngram_slam/words/block_vector.hpp"
+#include "ngram_slam/words/density_word.hpp"
+
+namespace ngram_slam {
+
+/// Words are numbered in the order in which they are written: first the real word of a position,
+/// then, as soon as the next word is known, the alternative words that end there.
+using WordIndex = std::uint32_t;
+/// Real words are counted by position, over all runs.
+using Position = std::uint32_t;
+
+/// A word as seen from outside.
+struct DensityWord {
+  Syllables syllables;
+  int level = 0;       ///< 0: real; l: stands for l + 2 real words
+  Position first = 0;  ///< the real words that it covers: first .. last
+  Position last = 0;
+};
+
+/// A range of words with consecutive indices.
+struct WordRange {
+  WordIndex begin = 0;
+  WordIndex end = 0;
+  bool empty() const { return begin == end; }
+  WordIndex size() const { return end - begin; }
+};
+
+/// Syllable a of the observations [begin, end).
+using AngleOf = std::function<double(std::uint32_t begin, std::uint32_t end)>;
+
+/// 12 bytes per word and 8 per position; nothing is moved when it grows.
+///
+/// All words that end at a position lie side by side, and every word's predecessors are the words
+/// that end just before its first position. So the predecessor lists of Alg. 5.2 need no memory.
+class WordLattice {
+ public:
+  static constexpr int kMaxLevels = 16;
+  static constexpr std::size_t kMaxPositions = std::size_t{1} << 28;
+  static constexpr int kMaxClasses = 256;
+  static constexpr std::uint32_t kMaxSize = (1u << 20) - 1;  ///< longer words count as this long
+
+  /// `levels`: how many levels of words there are, 1 (real words only) .. kMaxLevels.
+  /// `angle_of` gives alternative words their angle; without it, it is the wrapped sum of the
+  /// angles of the words they cover, for texts that have no observations behind them.
+  /// @throws hyselam::ParameterError
+  explicit WordLattice(int levels = 3, AngleOf angle_of = {});
+
+  /// What comes next starts at an unknown place: it has no predecessors, no word spans the gap.
+  /// `first_observation`: index of the run's first observation; none: observations go on counting.
+  void startRun();
+  void startRun(std::uint32_t first_observation);
+
+  /// Appends the alternative words that end at the position before, then a real word. Its
+  /// observations follow those of the word before. Returns its position.
+  /// @throws hyselam::ParameterError for a class or size out of range (size >= 1), InputError
+  /// when the text is full (2^28 positions, 2^31 words).
+  Position push(const Syllables& word);
+
+  int levels() const { return levels_; }
+  std::size_t words() const { return words_.size(); }
+  Position positions() const { return static_cast<Position>(blocks_.size()); }
+  /// First positions of all runs that have words.
+  const std::vector<Position>& runs() const { return runs_; }
+
+  DensityWord word(WordIndex i) const;
+  Syllables syllables(WordIndex i) const {
+    const Packed& w = words_[i];
+    return {static_cast<int>(w.tags >> 24), w.tags & kMaxSize, w.angle};
+  }
+  int level(WordIndex i) const { return static_cast<int>(words_[i].tags >> 20 & 15u); }
+  Position last(WordIndex i) const { return words_[i].last; }
+  Position first(WordIndex i) const {
+    const int l = level(i);
+    return words_[i].last - static_cast<Position>(l == 0 ? 0 : l + 1);
+  }
+
+  WordIndex realWord(Position p) const { return blocks_[p].begin; }
+  bool startsRun(Position p) const { return blocks_[p].starts_run; }
+  /// The words that end at a position: the real one, then alternatives by level. At the newest
+  /// position, and at the last one of each run, only the real one.
+  WordRange endingAt(Position p) const {
+    return {blocks_[p].begin, p + 1 < positions() ? static_cast<WordIndex>(blocks_[p + 1].begin)
+                                                  : static_cast<WordIndex>(words())};
+  }
+  /// The list P of Eq. 5.1: the words just before. Empty at the start of a run.
+  WordRange predecessors(WordIndex i) const {
+    const Position p = first(i);
+    return startsRun(p) ? WordRange{} : endingAt(p - 1);
+  }
+  /// Calls `use(word)` with the words below `levels` that begin at a position: the real one, then
+  /// alternatives by level.
+  template <typename Use>
+  void forEachBeginningAt(Position p, int levels, Use&& use) const {
+    for (int level = 0; level < levels; ++level) {
+      const Position end = p + static_cast<Position>(level == 0 ? 0 : level + 1);
+      WordIndex w;
+      if (end >= positions()) return;
+      if (findEndingAt(end, level, &w)) use(w);
+    }
+  }
+  /// The words below `levels` just after a word, in its run.
+  template <typename Use>
+  void forEachSuccessor(WordIndex i, int levels, Use&& use) const {
+    const Position next = last(i) + 1;
+    if (next < positions() && !startsRun(next)) forEachBeginningAt(next, levels, use);
+  }
+  /// The word of a level that ends at a position, if there is one: true and its index.
+  bool findEndingAt(Position p, int level, WordIndex* found) const;
+
+  /// Fetches into the cache what findEndingAt will look at: first where the words are, then they.
+  void prefetchPosition(Position p) const { prefetch(blocks_[p]); }
+  void prefetchWords(Position p) const { prefetch(words_[blocks_[p].begin]); }
+
+  /// The observations that a word describes: [begin, end).
+  std::uint32_t observationBegin(WordIndex i) const { return observations_[first(i)]; }
+  std::uint32_t observationEnd(WordIndex i) const {
+    const Position p = last(i);
+    return observations_[p] + syllables(realWord(p)).size;
+  }
+  std::size_t bytes() const {
+    return words_.bytes() + blocks_.bytes() + observations_.bytes() +
+           runs_.capacity() * sizeof(Position);
+  }
+
+ private:
+  struct Packed {
+    float angle;
+    std::uint32_t tags;  // class, 8 bits; level, 4; size, 20
+    Position last;
+  };
+  struct Block {
+    std::uint32_t begin : 31;  // its real word
+    std::uint32_t starts_run : 1;
+  };
+
+  void writeAlternatives();
+  void append(const Syllables& s, int level, Position last);
+
+  int levels_;
+  AngleOf angle_of_;
+  BlockVector<Packed> words_;
+  BlockVector<Block> blocks_;
+  BlockVector<std::uint32_t> observations_;  // first one of each position
+  std::vector<Position> runs_;
+  std::uint32_t next_observation_ = 0;
+  bool starts_run_ = true;
+};
+
+}  // namespace ngram_slam

@@ -1,0 +1,132 @@
+#include "ngram_slam/words/observation_sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hyselam_common/errors.hpp"
+
+namespace ngram_slam {
+
+using fsd_localization::FsdSensorParams;
+using fsd_localization::Kernel;
+using fsd_localization::KernelProfile;
+using hyselam::Cell;
+using hyselam::Pose2;
+
+namespace {
+
+FsdSensorParams sensorParams(const ObservationSensorParams& p) {
+  p.validate();
+  FsdSensorParams out;
+  out.local_map.resolution = p.resolution;
+  out.local_map.usable_range = p.usable_range;
+  // What lies around the spot that is looked back at must not have been forgotten.
+  out.local_map.radius = std::max(out.local_map.radius, p.bandwidth + p.look_back + 1.0);
+  out.kernels = {{KernelProfile::kUniform, p.bandwidth}};
+  out.with_gradient = false;
+  return out;
+}
+
+double inUnitRange(double density) {
+  // Sums of a kernel's weights may exceed 1 by their rounding. FsdObservation holds floats: what
+  // comes by it shall be the same.
+  return std::clamp(static_cast<double>(static_cast<float>(density)), 0.0, 1.0);
+}
+
+}  // namespace
+
+void ObservationSensorParams::validate() const {
+  if (!(look_back >= 0.0 && look_back <= 20.0))
+    throw hyselam::ParameterError("look_back", look_back, "0..20 [m]");
+  const DistanceSampler step_check(step);
+}
+
+ObservationSensor::ObservationSensor(const ObservationSensorParams& params)
+    : params_(params),
+      sensor_(sensorParams(params)),
+      kernel_(Kernel({KernelProfile::kUniform, params.bandwidth}, params.resolution)),
+      sampler_(params.step) {}
+
+std::vector<DensityObservation> ObservationSensor::add(const hyselam::LaserScan& scan,
+                                                       const Pose2& base_in_odom) {
+  std::vector<DensityObservation> complete;
+  std::deque<Waiting> held_back;
+  // After a jump of the odometry the map no longer shows what waits.
+  const bool jump = params_.look_back > 0.0 && sampler_.jumps(base_in_odom);
+  if (jump) {
+    held_back = waiting_;
+    complete = release(std::numeric_limits<double>::max());
+  }
+  try {
+    sensor_.integrate(scan, base_in_odom);
+  } catch (const hyselam::InputError&) {
+    if (jump) waiting_ = std::move(held_back);
+    throw;
+  }
+  const std::vector<Pose2> due = sampler_.due(base_in_odom);
+  if (due.empty()) return complete;
+  const fsd_localization::FsdReading reading = sensor_.observe().readings[0];
+  DensityObservation now;
+  now.stamp = scan.stamp;
+  now.base_in_odom = base_in_odom;
+  now.soft = inUnitRange(reading.density.soft);
+  if (reading.density.hard) now.hard = inUnitRange(*reading.density.hard);
+  now.frontiers = std::min(reading.frontiers, 255);
+  for (const DensityObservation& o : sampler_.take(now, due)) {
+    way_ += params_.step;
+    waiting_.push_back({o, way_});
+  }
+  const std::vector<DensityObservation> more = release(way_ - params_.look_back);
+  complete.insert(complete.end(), more.begin(), more.end());
+  return complete;
+}
+
+std::vector<DensityObservation> ObservationSensor::finish() {
+  std::vector<DensityObservation> complete = release(std::numeric_limits<double>::max());
+  sensor_.reset();
+  sampler_.reset();
+  return complete;
+}
+
+std::vector<DensityObservation> ObservationSensor::release(double until) {
+  std::vector<DensityObservation> complete;
+  if (waiting_.empty() || waiting_.front().way > until) return complete;
+  if (params_.look_back > 0.0) {
+    const double reach = params_.bandwidth + params_.look_back + 1.0;
+    sensor_.localMap().freeSpace(static_cast<int>(std::ceil(reach / params_.resolution)), space_);
+  }
+  while (!waiting_.empty() && waiting_.front().way <= until) {
+    DensityObservation o = waiting_.front().observation;
+    waiting_.pop_front();
+    if (params_.look_back > 0.0) o.full = lookBack(o.base_in_odom);
+    complete.push_back(o);
+  }
+  return complete;
+}
+
+/// The density of a spot on the map as it is now. Where something stands by now, of the nearest
+/// free cell within 0.3 m.
+std::optional<double> ObservationSensor::lookBack(const Pose2& pose) {
+  const fsd_localization::LocalMap& map = sensor_.localMap();
+  const Cell spot{static_cast<int>(std::floor(pose.x / params_.resolution)) - map.windowInOdom().x,
+                  static_cast<int>(std::floor(pose.y / params_.resolution)) - map.windowInOdom().y};
+  const int edge = kernel_.kernel().radius() + 1;
+  if (spot.x < edge || spot.y < edge || spot.x >= map.side() - edge || spot.y >= map.side() - edge)
+    return std::nullopt;
+  const int reach = static_cast<int>(0.3 / params_.resolution);
+  std::optional<Cell> nearest;
+  int least = reach * reach + 1;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const int d = dx * dx + dy * dy;
+      if (d >= least || !space_.free.get(spot.x + dx, spot.y + dy)) continue;
+      least = d;
+      nearest = Cell{spot.x + dx, spot.y + dy};
+    }
+  if (!nearest) return std::nullopt;
+  return inUnitRange(kernel_.soft(space_, *nearest));
+}
+
+}  // namespace ngram_slam
