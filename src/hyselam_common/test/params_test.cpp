@@ -133,6 +133,66 @@ TEST(ParamLoader, TableShowsWhatWasResolved) {
   double sigma = 0.2;
   p.get("sigma", sigma, Range::above(0), "[m] spread of a hit");
   EXPECT_EQ(p.table(), "map:\n  sigma = 0.5  (> 0; default 0.2) [m] spread of a hit\n");
+  ASSERT_EQ(p.rows().size(), 1U);
+  EXPECT_EQ(p.rows()[0].unit, "m");
+  EXPECT_EQ(p.rows()[0].meaning, "spread of a hit");
+}
+
+struct Engine {
+  double step = 5.0;
+  std::size_t count = 20;
+  std::optional<double> height;
+  std::vector<int> levels{7, 10};
+
+  void describe(ParameterVisitor& visit) {
+    visit.renamed("leap", "step");
+    visit("step", step, Range::above(0.0), "m", "longest step");
+    visit("count", count, Range::between(1, 100), "", "particles");
+    visit("height", height, Range::between(-10, 10), "m", "of the floor");
+    visit("levels", levels, Range::between(1, 50), 1, "", "one per level");
+  }
+};
+
+TEST(ParamLoader, LoadsWhatAStructDescribes) {
+  XmlRpcValue levels = list({3, 4});
+  auto p = loader({{"step", 2}, {"count", 7}, {"height", -1.5}, {"levels", levels}});
+  Engine engine;
+  engine.describe(p);
+  EXPECT_EQ(engine.step, 2.0);
+  EXPECT_EQ(engine.count, 7U);
+  EXPECT_EQ(engine.height, -1.5);
+  EXPECT_EQ(engine.levels, (std::vector<int>{3, 4}));
+  EXPECT_EQ(p.rows().size(), 4U);
+  EXPECT_TRUE(p.reportUnknown().empty());
+}
+
+TEST(ParamLoader, WrongTypesOfADescriptionAreRefused) {
+  for (const auto& wrong : std::map<std::string, XmlRpcValue>{
+           {"count", -1}, {"count", 2.0}, {"height", "low"}, {"levels", list({1.5})}}) {
+    auto p = loader({wrong});
+    Engine engine;
+    EXPECT_NE(messageOf<ParameterError>([&] { engine.describe(p); }).find("map/" + wrong.first),
+              std::string::npos);
+  }
+}
+
+TEST(ParamLoader, FormerNameGivesTheValueAndIsReported) {
+  auto p = loader({{"loop/leap", 3.0}});
+  Engine engine;
+  p.group("loop/", engine);
+  EXPECT_EQ(engine.step, 3.0);
+  EXPECT_TRUE(p.isSet("loop/step"));
+  EXPECT_TRUE(p.reportUnknown().empty());
+  EXPECT_EQ(p.reportRenamed(),
+            (std::vector<std::string>{"parameter 'map/loop/leap' is now called 'loop/step'"}));
+}
+
+TEST(ParamLoader, FormerAndPresentNameTogetherAreRefused) {
+  auto p = loader({{"leap", 3.0}, {"step", 4.0}});
+  Engine engine;
+  EXPECT_EQ(messageOf<ParameterError>([&] { engine.describe(p); }),
+            "parameter 'map/leap' is 3, but must be left out: it is the former name of 'step', "
+            "which is set too");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ MapServerParameters loadParameters(const ros::NodeHandle& private_nh,
   hyselam::ParamLoader loader(private_nh);
   loader.get("yaml_filename", parameters.yaml_filename, "map_server YAML file");
   loader.get("frame_id", parameters.frame_id, "frame of the map");
-  loader.warnUnknown();
+  loader.logWarnings();
   if (!file_argument.empty()) parameters.yaml_filename = file_argument;
   const std::string where = private_nh.getNamespace() + "/";
   if (parameters.yaml_filename.empty()) {

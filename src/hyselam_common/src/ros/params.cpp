@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "hyselam_common/edit_distance.hpp"
@@ -12,12 +13,6 @@ namespace hyselam {
 namespace {
 
 using XmlRpc::XmlRpcValue;
-
-std::string number(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
 
 std::string show(const XmlRpcValue& value) {
   switch (value.getType()) {
@@ -48,6 +43,19 @@ std::optional<double> asDouble(XmlRpcValue value) {
   return std::nullopt;
 }
 
+/// A meaning that begins with its unit: "[m] ...".
+ParameterInfo infoOf(const std::string& name, const std::string& meaning) {
+  ParameterInfo info;
+  info.name = name;
+  info.meaning = meaning;
+  const auto end = meaning.find(']');
+  if (meaning.empty() || meaning[0] != '[' || end == std::string::npos) return info;
+  info.unit = meaning.substr(1, end - 1);
+  info.meaning = meaning.substr(end + 1);
+  info.meaning.erase(0, info.meaning.find_first_not_of(' '));
+  return info;
+}
+
 class ServerSource : public ParamSource {
  public:
   explicit ServerSource(const ros::NodeHandle& nh) : nh_(nh) {}
@@ -75,22 +83,6 @@ class ServerSource : public ParamSource {
 
 }  // namespace
 
-bool Range::contains(double value) const {
-  if (std::isnan(value)) return false;
-  return (min_open ? value > min : value >= min) && (max_open ? value < max : value <= max);
-}
-
-std::string Range::text() const {
-  const bool low = std::isfinite(min), high = std::isfinite(max);
-  if (low && high) {
-    return std::string("in ") + (min_open ? "(" : "[") + number(min) + ", " + number(max) +
-           (max_open ? ")" : "]");
-  }
-  if (low) return (min_open ? "> " : ">= ") + number(min);
-  if (high) return (max_open ? "< " : "<= ") + number(max);
-  return "a number";
-}
-
 std::optional<XmlRpcValue> MapParamSource::get(const std::string& name) const {
   const auto found = values_.find(name);
   if (found == values_.end()) return std::nullopt;
@@ -112,118 +104,180 @@ std::string ParamLoader::fullName(const std::string& name) const {
   return source_->where() + "/" + name;
 }
 
-void ParamLoader::record(Row row) {
-  known_.insert(row.name);
+bool ParamLoader::isSet(const std::string& name) const {
+  return source_->get(name).has_value() || former_.count(name) > 0;
+}
+
+std::optional<XmlRpcValue> ParamLoader::read(const std::string& name) {
+  known_.insert(name);
+  const auto former = former_.find(name);
+  return source_->get(former == former_.end() ? name : former->second);
+}
+
+template <typename T>
+void ParamLoader::accept(const ParameterInfo& info, T& member, const T& value) {
+  ParameterInfo full = info;
+  full.name = fullName(info.name);
+  checkParameter(full, value);
+  ParameterRow row = parameterRow(info, member);
+  row.value = parameterRow(info, value).value;
   rows_.push_back(std::move(row));
+  member = value;
+}
+
+void ParamLoader::refuse(const ParameterInfo& info, const ParameterRow& row,
+                         const XmlRpcValue& value) const {
+  throw ParameterError(fullName(info.name), show(value), row.allowed);
+}
+
+void ParamLoader::visit(const ParameterInfo& info, double& member) {
+  double value = member;
+  if (const auto given = read(info.name)) {
+    const auto number = asDouble(*given);
+    if (!number) refuse(info, parameterRow(info, member), *given);
+    value = *number;
+  }
+  accept(info, member, value);
+}
+
+void ParamLoader::visit(const ParameterInfo& info, int& member) {
+  int value = member;
+  if (auto given = read(info.name)) {
+    if (given->getType() != XmlRpcValue::TypeInt) refuse(info, parameterRow(info, member), *given);
+    value = static_cast<int&>(*given);
+  }
+  accept(info, member, value);
+}
+
+void ParamLoader::visit(const ParameterInfo& info, std::size_t& member) {
+  std::size_t value = member;
+  if (auto given = read(info.name)) {
+    if (given->getType() != XmlRpcValue::TypeInt || static_cast<int&>(*given) < 0) {
+      refuse(info, parameterRow(info, member), *given);
+    }
+    value = static_cast<std::size_t>(static_cast<int&>(*given));
+  }
+  accept(info, member, value);
+}
+
+void ParamLoader::visit(const ParameterInfo& info, std::optional<double>& member) {
+  std::optional<double> value = member;
+  if (const auto given = read(info.name)) {
+    value = asDouble(*given);
+    if (!value) refuse(info, parameterRow(info, member), *given);
+  }
+  ParameterInfo full = info;
+  full.name = fullName(info.name);
+  if (value) checkParameter(full, *value);
+  ParameterRow row = parameterRow(info, member);
+  row.value = parameterRow(info, value).value;
+  rows_.push_back(std::move(row));
+  member = value;
+}
+
+void ParamLoader::visit(const ParameterInfo& info, bool& member) {
+  ParameterRow row = parameterRow(info, member);
+  bool value = member;
+  if (auto given = read(info.name)) {
+    if (given->getType() != XmlRpcValue::TypeBoolean) refuse(info, row, *given);
+    value = static_cast<bool&>(*given);
+  }
+  row.value = parameterRow(info, value).value;
+  rows_.push_back(std::move(row));
+  member = value;
+}
+
+void ParamLoader::visit(const ParameterInfo& info, std::string& member) {
+  std::string value = member;
+  if (auto given = read(info.name)) {
+    if (given->getType() != XmlRpcValue::TypeString) {
+      refuse(info, parameterRow(info, member), *given);
+    }
+    value = static_cast<std::string&>(*given);
+  }
+  accept(info, member, value);
+}
+
+void ParamLoader::visit(const ParameterInfo& info, std::vector<double>& member) {
+  std::vector<double> value = member;
+  if (auto given = read(info.name)) {
+    if (given->getType() != XmlRpcValue::TypeArray) {
+      refuse(info, parameterRow(info, member), *given);
+    }
+    value.clear();
+    for (int i = 0; i < given->size(); ++i) {
+      const auto element = asDouble((*given)[i]);
+      if (!element) refuse(info, parameterRow(info, member), *given);
+      value.push_back(*element);
+    }
+  }
+  accept(info, member, value);
+}
+
+void ParamLoader::visit(const ParameterInfo& info, std::vector<int>& member) {
+  std::vector<int> value = member;
+  if (auto given = read(info.name)) {
+    if (given->getType() != XmlRpcValue::TypeArray) {
+      refuse(info, parameterRow(info, member), *given);
+    }
+    value.clear();
+    for (int i = 0; i < given->size(); ++i) {
+      const auto element = asDouble((*given)[i]);
+      const bool whole = element && std::abs(*element) <= std::numeric_limits<int>::max() &&
+                         *element == std::trunc(*element);
+      if (!whole) refuse(info, parameterRow(info, member), *given);
+      value.push_back(static_cast<int>(*element));
+    }
+  }
+  accept(info, member, value);
+}
+
+void ParamLoader::visitRenamed(const std::string& old_name, const std::string& new_name) {
+  known_.insert(old_name);
+  const auto given = source_->get(old_name);
+  if (!given) return;
+  if (source_->get(new_name)) {
+    throw ParameterError(fullName(old_name), show(*given),
+                         "left out: it is the former name of '" + new_name + "', which is set too");
+  }
+  former_[new_name] = old_name;
 }
 
 void ParamLoader::get(const std::string& name, double& value, const Range& range,
                       const std::string& meaning) {
-  known_.insert(name);
-  double result = value;
-  if (const auto given = source_->get(name)) {
-    const auto as_double = asDouble(*given);
-    if (!as_double) throw ParameterError(fullName(name), show(*given), range.text());
-    result = *as_double;
-  }
-  if (!range.contains(result)) throw ParameterError(fullName(name), result, range.text());
-  record({name, number(result), range.text(), number(value), meaning});
-  value = result;
+  ParameterInfo info = infoOf(name, meaning);
+  info.range = range;
+  visit(info, value);
 }
 
 void ParamLoader::get(const std::string& name, int& value, const Range& range,
                       const std::string& meaning) {
-  known_.insert(name);
-  const std::string allowed =
-      "a whole number" + (range.text() == Range::any().text() ? "" : " " + range.text());
-  int result = value;
-  if (auto given = source_->get(name)) {
-    if (given->getType() != XmlRpcValue::TypeInt) {
-      throw ParameterError(fullName(name), show(*given), allowed);
-    }
-    result = static_cast<int&>(*given);
-  }
-  if (!range.contains(result)) throw ParameterError(fullName(name), result, allowed);
-  record({name, std::to_string(result), allowed, std::to_string(value), meaning});
-  value = result;
+  ParameterInfo info = infoOf(name, meaning);
+  info.range = range;
+  visit(info, value);
 }
 
 void ParamLoader::get(const std::string& name, bool& value, const std::string& meaning) {
-  known_.insert(name);
-  bool result = value;
-  if (auto given = source_->get(name)) {
-    if (given->getType() != XmlRpcValue::TypeBoolean) {
-      throw ParameterError(fullName(name), show(*given), "true or false");
-    }
-    result = static_cast<bool&>(*given);
-  }
-  record({name, result ? "true" : "false", "true or false", value ? "true" : "false", meaning});
-  value = result;
+  visit(infoOf(name, meaning), value);
 }
 
 void ParamLoader::get(const std::string& name, std::string& value, const std::string& meaning) {
-  known_.insert(name);
-  std::string result = value;
-  if (auto given = source_->get(name)) {
-    if (given->getType() != XmlRpcValue::TypeString) {
-      throw ParameterError(fullName(name), show(*given), "a text");
-    }
-    result = static_cast<std::string&>(*given);
-  }
-  record({name, quote(result), "a text", quote(value), meaning});
-  value = result;
+  visit(infoOf(name, meaning), value);
 }
 
 void ParamLoader::get(const std::string& name, std::string& value,
                       const std::vector<std::string>& choices, const std::string& meaning) {
-  known_.insert(name);
-  std::string allowed = "one of";
-  for (std::size_t i = 0; i < choices.size(); ++i) allowed += (i > 0 ? ", " : " ") + choices[i];
-  std::string result = value;
-  if (auto given = source_->get(name)) {
-    if (given->getType() != XmlRpcValue::TypeString) {
-      throw ParameterError(fullName(name), show(*given), allowed);
-    }
-    result = static_cast<std::string&>(*given);
-  }
-  if (std::find(choices.begin(), choices.end(), result) == choices.end()) {
-    throw ParameterError(fullName(name), quote(result), allowed);
-  }
-  record({name, result, allowed, value, meaning});
-  value = result;
+  ParameterInfo info = infoOf(name, meaning);
+  info.choices = choices;
+  visit(info, value);
 }
 
 void ParamLoader::get(const std::string& name, std::vector<double>& value, const Range& range,
                       std::size_t min_size, const std::string& meaning) {
-  known_.insert(name);
-  const std::string allowed = "a list of " +
-                              (min_size > 0 ? "at least " + std::to_string(min_size) + " " : "") +
-                              "numbers, each " + range.text();
-  const auto list = [](const std::vector<double>& numbers) {
-    std::string text = "[";
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-      text += (i > 0 ? ", " : "") + number(numbers[i]);
-    return text + "]";
-  };
-  std::vector<double> result = value;
-  if (auto given = source_->get(name)) {
-    if (given->getType() != XmlRpcValue::TypeArray) {
-      throw ParameterError(fullName(name), show(*given), allowed);
-    }
-    result.clear();
-    for (int i = 0; i < given->size(); ++i) {
-      const auto element = asDouble((*given)[i]);
-      if (!element) throw ParameterError(fullName(name), show(*given), allowed);
-      result.push_back(*element);
-    }
-  }
-  const bool inside =
-      std::all_of(result.begin(), result.end(), [&](double v) { return range.contains(v); });
-  if (!inside || result.size() < min_size) {
-    throw ParameterError(fullName(name), list(result), allowed);
-  }
-  record({name, list(result), allowed, list(value), meaning});
-  value = result;
+  ParameterInfo info = infoOf(name, meaning);
+  info.range = range;
+  info.min_size = min_size;
+  visit(info, value);
 }
 
 std::vector<std::string> ParamLoader::reportUnknown() const {
@@ -249,16 +303,26 @@ std::vector<std::string> ParamLoader::reportUnknown() const {
   return report;
 }
 
-void ParamLoader::warnUnknown() const {
+std::vector<std::string> ParamLoader::reportRenamed() const {
+  std::vector<std::string> report;
+  for (const auto& [name, former] : former_) {
+    report.push_back("parameter " + quote(fullName(former)) + " is now called " + quote(name));
+  }
+  return report;
+}
+
+void ParamLoader::logWarnings() const {
+  for (const std::string& line : reportRenamed()) ROS_WARN("%s", line.c_str());
   for (const std::string& line : reportUnknown()) ROS_WARN("%s", line.c_str());
 }
 
 std::string ParamLoader::table() const {
   std::ostringstream out;
   out << source_->where() << ":\n";
-  for (const Row& r : rows_) {
-    out << "  " << r.name << " = " << r.value << "  (" << r.allowed << "; default " << r.fallback
-        << ")" << (r.meaning.empty() ? "" : " " + r.meaning) << "\n";
+  for (const ParameterRow& r : rows_) {
+    out << "  " << r.name << " = " << r.value << "  (" << r.allowed << "; default "
+        << r.default_value << ")" << (r.unit.empty() ? "" : " [" + r.unit + "]")
+        << (r.meaning.empty() ? "" : " " + r.meaning) << "\n";
   }
   return out.str();
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/surface_map.hpp"
 
 namespace hyselam_scan_matching {
@@ -15,6 +16,7 @@ struct RefineParams {
   double sigma = 0.03;        ///< deviation of points from surfaces [m], > 0
   double settled = 1e-5;      ///< a step shorter than this ends it [m and rad], > 0
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/surface_map.hpp"
 
 namespace hyselam_scan_matching {
@@ -18,6 +19,7 @@ struct SearchParams {
   double turn = 0.5;         ///< headings this far from the guess, 0..pi [rad]
   double least_score = 0.5;  ///< below this nothing is found, 0..1
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hyselam_common/laser_scan.hpp"
+#include "hyselam_common/parameters.hpp"
 
 namespace hyselam_scan_matching {
 
@@ -25,6 +26,7 @@ struct SurfaceParams {
   /// Neighbours off the line by more than this part of its length: no normal, > 0.
   double normal_bend = 0.3;
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };

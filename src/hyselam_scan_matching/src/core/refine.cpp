@@ -12,6 +12,7 @@ namespace {
 
 using hyselam::ParameterError;
 using hyselam::Pose2;
+using hyselam::Range;
 
 /// Normal equations for a small motion (x, y, theta) in the frame of the pose.
 struct Equations {
@@ -52,13 +53,20 @@ Equations equations(const SurfacePoints& scan, const SurfaceMap& map, const Pose
 
 }  // namespace
 
+void RefineParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("max_iterations", max_iterations, Range::atLeast(1), "", "iterations at most");
+  visit("first_radius", first_radius, Range::above(0.0), "m",
+        "largest distance between paired points in the first iteration");
+  visit("last_radius", last_radius, Range::above(0.0), "m", "and in the last iterations");
+  visit("sigma", sigma, Range::above(0.0), "m", "standard deviation of points from surfaces");
+  visit("settled", settled, Range::above(0.0), "m and rad", "a smaller step ends the iteration");
+}
+
 void RefineParams::validate() const {
-  if (max_iterations < 1) throw ParameterError("max_iterations", max_iterations, "at least 1");
-  if (!(last_radius > 0.0)) throw ParameterError("last_radius", last_radius, "above 0");
-  if (!(first_radius >= last_radius))
+  hyselam::checkParameters(*this);
+  if (!(first_radius >= last_radius)) {
     throw ParameterError("first_radius", first_radius, "at least last_radius");
-  if (!(sigma > 0.0)) throw ParameterError("sigma", sigma, "above 0");
-  if (!(settled > 0.0)) throw ParameterError("settled", settled, "above 0");
+  }
 }
 
 Refined refine(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& guess,

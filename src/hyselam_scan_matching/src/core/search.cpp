@@ -10,6 +10,7 @@ namespace hyselam_scan_matching {
 namespace {
 
 using hyselam::ParameterError;
+using hyselam::Range;
 
 constexpr int kLevels = 7;  // the largest square has 64 cells a side
 constexpr double kFull = 255.0;
@@ -33,13 +34,18 @@ struct Candidate {
 
 }  // namespace
 
+void SearchParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("resolution", resolution, Range::above(0.0), "m", "of positions and of the grid of scores");
+  visit("reach", reach, Range::above(0.0), "m",
+        "distance from a surface at which a point scores 0");
+  visit("window", window, Range::above(0.0), "m", "positions searched around the guess, each axis");
+  visit("turn", turn, Range::between(0.0, hyselam::kPi), "rad",
+        "headings searched around that of the guess");
+  visit("least_score", least_score, Range::between(0.0, 1.0), "", "smallest score of a result");
+}
+
 void SearchParams::validate() const {
-  if (!(resolution > 0.0)) throw ParameterError("resolution", resolution, "above 0");
-  if (!(reach > 0.0)) throw ParameterError("reach", reach, "above 0");
-  if (!(window > 0.0)) throw ParameterError("window", window, "above 0");
-  if (!(turn >= 0.0 && turn <= hyselam::kPi)) throw ParameterError("turn", turn, "from 0 to pi");
-  if (!(least_score >= 0.0 && least_score <= 1.0))
-    throw ParameterError("least_score", least_score, "from 0 to 1");
+  hyselam::checkParameters(*this);
 }
 
 SearchGrid::SearchGrid(const SurfaceMap& map, const SearchParams& params) : params_(params) {

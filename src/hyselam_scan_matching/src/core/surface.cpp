@@ -9,7 +9,7 @@ namespace hyselam_scan_matching {
 
 namespace {
 
-using hyselam::ParameterError;
+using hyselam::Range;
 
 /// The normal of the line through points first..last, towards the origin's side `(sx, sy)`.
 void setNormal(const SurfacePoints& all, std::size_t first, std::size_t last, double bend,
@@ -45,13 +45,20 @@ void setNormal(const SurfacePoints& all, std::size_t first, std::size_t last, do
 
 }  // namespace
 
+void SurfaceParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("max_range", max_range, Range::above(0.0), "m", "farther returns are left out");
+  visit("spacing", spacing, Range::atLeast(0.0), "m",
+        "points nearer to the last one kept are left out");
+  visit("normal_reach", normal_reach, Range::above(0.0), "m",
+        "radius of the neighbourhood to which a line is fitted for the normal");
+  visit("normal_reach_per_m", normal_reach_per_m, Range::atLeast(0.0), "m/m",
+        "the same per metre of range, where beams lie apart");
+  visit("normal_bend", normal_bend, Range::above(0.0), "",
+        "largest deviation of neighbours from the line, as a part of its length");
+}
+
 void SurfaceParams::validate() const {
-  if (!(max_range > 0.0)) throw ParameterError("max_range", max_range, "above 0");
-  if (!(spacing >= 0.0)) throw ParameterError("spacing", spacing, "at least 0");
-  if (!(normal_reach > 0.0)) throw ParameterError("normal_reach", normal_reach, "above 0");
-  if (!(normal_reach_per_m >= 0.0))
-    throw ParameterError("normal_reach_per_m", normal_reach_per_m, "at least 0");
-  if (!(normal_bend > 0.0)) throw ParameterError("normal_bend", normal_bend, "above 0");
+  hyselam::checkParameters(*this);
 }
 
 SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfaceParams& params) {

@@ -251,7 +251,9 @@ Model loadModel(const std::string& directory) {
     model.makeClassifier();
   } catch (const json::exception& e) {
     throw InputError(manifest, "", std::string("is no model: ") + e.what());
-  } catch (const std::invalid_argument& e) {  // ParameterError as well
+  } catch (const hyselam::ParameterError& e) {
+    throw InputError(reading, "", e.what());
+  } catch (const std::invalid_argument& e) {
     throw InputError(reading, "", e.what());
   }
   return model;

@@ -120,6 +120,8 @@ nlohmann::json run(Options& o) {
           if (r.descriptive && !r.novel) filters[k].second.update(recogniser.frameProbabilities());
           right_by[k] += filters[k].second.estimate().place == rows.back().truth;
         }
+      } catch (const hyselam::ParameterError& e) {
+        throw hyselam::InputError(tours.frame(0, i).image, "", e.what());
       } catch (const std::invalid_argument& e) {
         throw hyselam::InputError(tours.frame(0, i).image, "", e.what());
       }

@@ -63,6 +63,8 @@ nlohmann::json run(Options& o) {
       learn("");
     else
       hyselam::replaceFileAtomically(o.libsvm, learn);
+  } catch (const hyselam::ParameterError& e) {
+    throw hyselam::InputError(o.labels.front(), "", e.what());
   } catch (const std::invalid_argument& e) {
     throw hyselam::InputError(o.labels.front(), "", e.what());
   }

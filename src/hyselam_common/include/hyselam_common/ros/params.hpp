@@ -1,11 +1,10 @@
-// Parameters of a node, checked at start: wrong type, out of range and misspelt keys are said
-// aloud.
+// Parameters of a node, read and checked at start: a wrong type and a value out of range end it,
+// unknown names are reported.
 #pragma once
 
 #include <XmlRpcValue.h>
 #include <ros/node_handle.h>
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,25 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/parameters.hpp"
 
 namespace hyselam {
-
-/// The values a number may take; NaN never lies inside.
-struct Range {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool min_open = false;  ///< min itself is not allowed
-  bool max_open = false;
-
-  static Range any() { return {}; }
-  static Range atLeast(double low) { return {low, any().max, false, false}; }
-  static Range above(double low) { return {low, any().max, true, false}; }
-  static Range between(double low, double high) { return {low, high, false, false}; }
-  bool contains(double value) const;
-  /// "in (0, 1]", ">= 0", "any number".
-  std::string text() const;
-};
 
 /// Where parameters come from; a test can put a map in place of the parameter server.
 class ParamSource {
@@ -57,18 +40,23 @@ class MapParamSource : public ParamSource {
   std::map<std::string, XmlRpc::XmlRpcValue> values_;
 };
 
-/// Usage: `ParamLoader p(private_nh); p.get("sigma_hit", parameters.sigma_hit, Range::above(0),
-/// "[m]
-/// ..."); ...; p.warnUnknown();`. The variable holds the default on entry and the value on return;
-/// it is untouched if an exception leaves. All get() throw ParameterError with the full name, the
-/// value and what is allowed.
-class ParamLoader {
+/// Reads what a struct of parameters describes (parameters.hpp) from the parameter server:
+///
+///     ParamLoader loader(private_nh);
+///     Gr2ToServerParams params;    // holds the defaults
+///     params.describe(loader);     // or loader.group("", params)
+///     params.validate();           // conditions between parameters
+///     loader.logWarnings();
+///
+/// A variable holds the default on entry and the value on return; it is untouched if an exception
+/// leaves. All throw ParameterError with the full name, the value and what is allowed.
+class ParamLoader : public ParameterVisitor {
  public:
   explicit ParamLoader(const ros::NodeHandle& private_nh);
   explicit ParamLoader(std::shared_ptr<const ParamSource> source);
 
-  /// Whole numbers are accepted for floating point values, not the other way round. `meaning` goes
-  /// into the table.
+  /// Single parameters without a description. Whole numbers are accepted for floating point values,
+  /// not the other way round. `meaning` goes into the table and may begin with "[unit]".
   void get(const std::string& name, double& value, const Range& range = Range::any(),
            const std::string& meaning = "");
   void get(const std::string& name, int& value, const Range& range = Range::any(),
@@ -87,44 +75,54 @@ class ParamLoader {
   void getEnum(const std::string& name, E& value,
                const std::vector<std::pair<std::string, E>>& words,
                const std::string& meaning = "") {
-    std::vector<std::string> choices;
-    std::string word;
-    for (const auto& w : words) {
-      choices.push_back(w.first);
-      if (w.second == value) word = w.first;
-    }
-    get(name, word, choices, meaning);
-    for (const auto& w : words) {
-      if (w.first == word) value = w.second;
-    }
+    (*this)(name, value, words, meaning);
   }
 
   /// Whether the parameter server holds a value, for parameters whose absence means something.
-  bool isSet(const std::string& name) const { return source_->get(name).has_value(); }
+  bool isSet(const std::string& name) const;
 
   /// Marks a name as known that something else reads (nodelet parameters, dynamic reconfigure).
   void know(const std::string& name) { known_.insert(name); }
 
   /// Set but never asked for, with the nearest known name: "unknown parameter '/n/alhpa' (did you
-  /// mean 'alpha'?)". Call after the last get().
+  /// mean 'alpha'?)". Call after the last parameter.
   std::vector<std::string> reportUnknown() const;
-  /// Logs reportUnknown() as warnings.
-  void warnUnknown() const;
+  /// Set under their former name: "parameter '/n/leap' is now called 'max_step'".
+  std::vector<std::string> reportRenamed() const;
+  /// Logs reportRenamed() and reportUnknown() as warnings.
+  void logWarnings() const;
 
-  /// Resolved values, one per line: name = value [allowed] (default) meaning. For one log entry at
-  /// start and for documents.
+  /// What was resolved, in the order of reading; `default_value` is that before reading.
+  const std::vector<ParameterRow>& rows() const { return rows_; }
+  /// The same as text, one per line: name = value (allowed; default) [unit] meaning.
   std::string table() const;
 
+ protected:
+  void visit(const ParameterInfo& info, double& member) override;
+  void visit(const ParameterInfo& info, int& member) override;
+  void visit(const ParameterInfo& info, std::size_t& member) override;
+  void visit(const ParameterInfo& info, std::optional<double>& member) override;
+  void visit(const ParameterInfo& info, bool& member) override;
+  void visit(const ParameterInfo& info, std::string& member) override;
+  void visit(const ParameterInfo& info, std::vector<double>& member) override;
+  void visit(const ParameterInfo& info, std::vector<int>& member) override;
+  /// @throws ParameterError if both are set.
+  void visitRenamed(const std::string& old_name, const std::string& new_name) override;
+
  private:
-  struct Row {
-    std::string name, value, allowed, fallback, meaning;
-  };
   std::string fullName(const std::string& name) const;
-  void record(Row row);
+  /// The value that the server holds under this name or a former one.
+  std::optional<XmlRpc::XmlRpcValue> read(const std::string& name);
+  /// Stores the value read and its row, unless it lies outside of what is allowed.
+  template <typename T>
+  void accept(const ParameterInfo& info, T& member, const T& value);
+  [[noreturn]] void refuse(const ParameterInfo& info, const ParameterRow& row,
+                           const XmlRpc::XmlRpcValue& value) const;
 
   std::shared_ptr<const ParamSource> source_;
   std::set<std::string> known_;
-  std::vector<Row> rows_;
+  std::map<std::string, std::string> former_;  ///< name -> former name, where that one is set
+  std::vector<ParameterRow> rows_;
 };
 
 }  // namespace hyselam

@@ -19,7 +19,7 @@ template <typename Params>
 Params loadAndTell(const ros::NodeHandle& private_nh, Params (*load)(ParamLoader&)) {
   ParamLoader loader(private_nh);
   const Params params = load(loader);
-  loader.warnUnknown();
+  loader.logWarnings();
   ROS_INFO_STREAM("parameters of " << loader.table());
   return params;
 }
