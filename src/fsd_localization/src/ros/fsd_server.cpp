@@ -3,20 +3,23 @@
 #include <cmath>
 
 #include "fsd_localization/ros/conversions.hpp"
-#include "fsd_localization/ros/server_setup.hpp"
 #include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/server_setup.hpp"
 
 namespace fsd_localization {
 
+using hyselam::addRemark;
+using hyselam::addValue;
+
 FsdServer::FsdServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
-    : params_(loadAndTell(private_nh, loadFsdParams)),
+    : params_(hyselam::loadAndTell(private_nh, loadFsdParams)),
       sensor_(params_.sensor),
       gui_rate_(params_.gui_publish_rate),
       observation_publisher_(nh.advertise<hyselam_msgs::FsdObservation>("fsd_observation", 100)),
       local_map_publisher_(nh.advertise<nav_msgs::OccupancyGrid>("local_map", 1)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("fsd_markers", 1)),
       input_(
-          nh, params_.input, logName(private_nh),
+          nh, params_.input, hyselam::logName(private_nh),
           [this](const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
                  const ros::Time& stamp) { return onScan(scan, base_in_odom, stamp); },
           [this] { onTimeBack(); }),

@@ -6,12 +6,17 @@
 #include <cmath>
 #include <sstream>
 
-#include "fsd_localization/ros/server_setup.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/server_setup.hpp"
 
 namespace fsd_localization {
 
+using hyselam::addRemark;
+using hyselam::addValue;
+using hyselam::InitialPose;
+using hyselam::loadAndTell;
+using hyselam::logName;
 using hyselam::Pose2;
 
 namespace {
@@ -281,7 +286,8 @@ void LocalizationServer::onInitialPose(
     const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
   InitialPose pose;
   try {
-    pose = fromMsg(*msg, params_.global_frame_id, initial_pose_subscriber_.getTopic());
+    pose = hyselam::initialPoseFromMsg(*msg, params_.global_frame_id,
+                                       initial_pose_subscriber_.getTopic());
   } catch (const hyselam::InputError& e) {
     ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
     return;
@@ -328,7 +334,8 @@ bool LocalizationServer::onSetMap(nav_msgs::SetMap::Request& request,
   response.success = false;
   InitialPose pose;
   try {
-    pose = fromMsg(request.initial_pose, params_.global_frame_id, "service set_map: initial_pose");
+    pose = hyselam::initialPoseFromMsg(request.initial_pose, params_.global_frame_id,
+                                       "service set_map: initial_pose");
   } catch (const hyselam::InputError& e) {
     ROS_ERROR_STREAM(who_ << " set_map refused: " << e.what());
     return true;

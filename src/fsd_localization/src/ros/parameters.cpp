@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/ros/rate_limit.hpp"
+
 namespace fsd_localization {
 
 using hyselam::kPi;
@@ -37,13 +39,6 @@ void getCount(ParamLoader& loader, const std::string& name, std::size_t& value, 
   int number = static_cast<int>(value);
   loader.get(name, number, Range::between(low, high), meaning);
   value = static_cast<std::size_t>(number);
-}
-
-void getFrame(ParamLoader& loader, const std::string& name, std::string& value,
-              const std::string& meaning) {
-  loader.get(name, value, meaning);
-  if (!value.empty() && value[0] == '/') value.erase(0, 1);  // as tf2 wants it
-  if (value.empty()) throw ParameterError(name, "''", "the name of a frame");
 }
 
 void loadLocalMap(ParamLoader& loader, LocalMapParams& p) {
@@ -225,26 +220,9 @@ void loadInitialPose(ParamLoader& loader, LocalizationServerParams& p) {
 
 }  // namespace
 
-void loadRate(ParamLoader& loader, const std::string& name, double& value,
-              const std::string& meaning) {
-  loader.get(name, value, Range::between(-1.0, 1000.0), meaning);
-  if (value != -1.0 && !(value > 0.0))
-    throw ParameterError(name, value, "-1, or > 0 and <= 1000 Hz");
-}
-
-void loadScanInput(ParamLoader& loader, ScanInputParams& p) {
-  getFrame(loader, "odom_frame_id", p.odom_frame_id, "frame in which the robot moves smoothly");
-  getFrame(loader, "base_frame_id", p.base_frame_id, "frame of the robot");
-  if (p.odom_frame_id == p.base_frame_id)
-    throw ParameterError("base_frame_id", p.base_frame_id, "another frame than odom_frame_id");
-  loader.get("transform_wait", p.transform_wait, Range::between(0.0, 60.0),
-             "[s] a scan waits for its odometry");
-  loader.get("scan_queue_size", p.queue_size, Range::between(1, 100000), "scans that may wait");
-}
-
 FsdServerParams loadFsdParams(ParamLoader& loader) {
   FsdServerParams p;
-  loadScanInput(loader, p.input);
+  hyselam::loadScanInputParams(loader, p.input);
   loader.get("update_min_d", p.update_min_d, Range::atLeast(0.0),
              "[m] travel between observations; 0: one per scan");
   loader.get("update_min_a", p.update_min_a, Range::atLeast(0.0),
@@ -253,8 +231,8 @@ FsdServerParams loadFsdParams(ParamLoader& loader) {
   loader.get("min_frontier_share", p.sensor.min_frontier_share, Range::between(0.0, 1.0),
              "of the kernel's perimeter, to be a frontier");
   loadLocalMap(loader, p.sensor.local_map);
-  loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
-           "[Hz] of local_map and fsd_markers; -1: no limit");
+  hyselam::loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
+                    "[Hz] of local_map and fsd_markers; -1: no limit");
   loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");
   p.sensor.validate();
   return p;
@@ -263,8 +241,8 @@ FsdServerParams loadFsdParams(ParamLoader& loader) {
 LocalizationServerParams loadLocalizationParams(ParamLoader& loader) {
   LocalizationServerParams p;
   for (const char* name : kIgnoredOfAmcl) loader.know(name);
-  loadScanInput(loader, p.input);
-  getFrame(loader, "global_frame_id", p.global_frame_id, "frame of the map");
+  hyselam::loadScanInputParams(loader, p.input);
+  hyselam::loadFrame(loader, "global_frame_id", p.global_frame_id, "frame of the map");
   if (p.global_frame_id == p.input.odom_frame_id || p.global_frame_id == p.input.base_frame_id)
     throw ParameterError("global_frame_id", p.global_frame_id,
                          "another frame than odom_frame_id and base_frame_id");
@@ -279,9 +257,9 @@ LocalizationServerParams loadLocalizationParams(ParamLoader& loader) {
   loader.get("publish_unconverged_tf", p.publish_unconverged_tf, "from guesses too, as amcl");
   loader.get("transform_tolerance", p.transform_tolerance, Range::between(0.0, 60.0),
              "[s] tf is dated this far ahead");
-  loadRate(loader, "save_pose_rate", p.save_pose_rate, "[Hz] -1: never");
-  loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
-           "[Hz] of particlecloud, local_map, fsd_markers; -1: no limit");
+  hyselam::loadRate(loader, "save_pose_rate", p.save_pose_rate, "[Hz] -1: never");
+  hyselam::loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
+                    "[Hz] of particlecloud, local_map, fsd_markers; -1: no limit");
   loader.get("max_cloud_particles", p.max_cloud_particles, Range::between(1, 1e7),
              "in particlecloud; of more, a fair sample");
   loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/ros/rate_limit.hpp"
 
 namespace ngram_slam {
 
@@ -81,7 +82,7 @@ WordsServerParams loadWordsParams(ParamLoader& loader) {
   p.from_scan = input == "scan";
   if (preset == "improved" && !p.from_scan)
     throw ParameterError("preset", "'improved'", "'thesis' unless input is scan");
-  fsd_localization::loadScanInput(loader, p.input);
+  hyselam::loadScanInputParams(loader, p.input);
   loader.get("bandwidth", p.sensor.bandwidth, Range::between(0.2, 50.0),
              "[m] radius of the uniform kernel");
   loader.get("step", p.sensor.step, Range::between(0.01, 10.0), "[m] of way between observations");
@@ -99,8 +100,8 @@ WordsServerParams loadWordsParams(ParamLoader& loader) {
   loader.get("semantics", p.semantics, "tell regions of meaning");
   p.semantic.validate();
   loadCorpus(loader, p);
-  fsd_localization::loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
-                             "[Hz] of word_markers; -1: no limit");
+  hyselam::loadRate(loader, "gui_publish_rate", p.gui_publish_rate,
+                    "[Hz] of word_markers; -1: no limit");
   loader.get("shown_words", p.shown_words, Range::between(1, 100000),
              "in word_markers, the newest");
   loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");

@@ -78,7 +78,7 @@ void loadState(ParamLoader& loader, SlamServerParams& p) {
 
 SlamServerParams loadSlamParams(ParamLoader& loader) {
   SlamServerParams p;
-  fsd_localization::loadScanInput(loader, p.input);
+  hyselam::loadScanInputParams(loader, p.input);
   loader.get("global_frame_id", p.global_frame_id, "frame of the map");
   if (p.global_frame_id.empty() || p.global_frame_id == p.input.odom_frame_id)
     throw ParameterError("global_frame_id", "'" + p.global_frame_id + "'",

@@ -11,9 +11,9 @@
 #include <cmath>
 #include <utility>
 
-#include "fsd_localization/ros/initial_pose.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/initial_pose.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "ngram_slam/ros/conversions.hpp"
 #include "ngram_slam/ros/slam_messages.hpp"
@@ -117,7 +117,7 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
   map_service_ = service_nh.advertiseService<GetMap::Request, GetMap::Response>(
       "dynamic_map", [this](GetMap::Request&, GetMap::Response& out) { return onMap(out); });
 
-  input_ = std::make_unique<fsd_localization::ScanInput>(
+  input_ = std::make_unique<hyselam::ScanInput>(
       nh, params_.input, who_,
       [this](const hyselam::LaserScan& scan, const Pose2& base_in_odom, const ros::Time& stamp) {
         return onScan(scan, base_in_odom, stamp);
@@ -236,10 +236,10 @@ void SlamServer::onTimeBack() {
 }
 
 void SlamServer::onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
-  fsd_localization::InitialPose pose;
+  hyselam::InitialPose pose;
   try {
-    pose = fsd_localization::fromMsg(*msg, params_.global_frame_id,
-                                     initial_pose_subscriber_.getTopic());
+    pose = hyselam::initialPoseFromMsg(*msg, params_.global_frame_id,
+                                       initial_pose_subscriber_.getTopic());
   } catch (const hyselam::InputError& e) {
     ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
     return;

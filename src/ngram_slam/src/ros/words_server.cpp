@@ -57,7 +57,7 @@ WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
         nh.createWallTimer(ros::WallDuration(params_.save_period),
                            [this](const ros::WallTimerEvent&) { saveNow("now and then"); });
   if (params_.from_scan) {
-    scan_input_ = std::make_unique<fsd_localization::ScanInput>(
+    scan_input_ = std::make_unique<hyselam::ScanInput>(
         nh, params_.input, who_,
         [this](const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
                const ros::Time&) {

@@ -4,9 +4,10 @@
 #include <ros/ros.h>
 
 #include "fsd_localization/fsd_sensor.hpp"
-#include "fsd_localization/ros/diagnostics.hpp"
-#include "fsd_localization/ros/rate_limit.hpp"
-#include "fsd_localization/ros/scan_input.hpp"
+#include "fsd_localization/ros/parameters.hpp"
+#include "hyselam_common/ros/diagnostics.hpp"
+#include "hyselam_common/ros/rate_limit.hpp"
+#include "hyselam_common/ros/scan_input.hpp"
 
 namespace fsd_localization {
 
@@ -32,10 +33,10 @@ class FsdServer {
   double travelled_ = 0.0;
   std::size_t observations_ = 0;
   double observe_ms_ = 0.0;
-  RateLimit gui_rate_;
+  hyselam::RateLimit gui_rate_;
   ros::Publisher observation_publisher_, local_map_publisher_, marker_publisher_;
-  ScanInput input_;
-  Diagnostics diagnostics_;
+  hyselam::ScanInput input_;
+  hyselam::Diagnostics diagnostics_;
 };
 
 }  // namespace fsd_localization

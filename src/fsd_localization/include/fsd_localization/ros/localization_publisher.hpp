@@ -7,7 +7,7 @@
 
 #include "fsd_localization/localizer.hpp"
 #include "fsd_localization/ros/parameters.hpp"
-#include "fsd_localization/ros/rate_limit.hpp"
+#include "hyselam_common/ros/rate_limit.hpp"
 
 namespace fsd_localization {
 
@@ -31,7 +31,7 @@ class LocalizationPublisher {
   std_msgs::Header header(const ros::Time& stamp, const std::string& frame) const;
 
   LocalizationServerParams params_;
-  RateLimit gui_rate_;
+  hyselam::RateLimit gui_rate_;
   bool markers_shown_ = false;
   ros::Publisher pose_, status_, cloud_, density_field_, local_map_, markers_;
   tf2_ros::TransformBroadcaster tf_;

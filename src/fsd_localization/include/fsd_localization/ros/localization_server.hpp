@@ -12,11 +12,11 @@
 #include <optional>
 #include <string>
 
-#include "fsd_localization/ros/diagnostics.hpp"
-#include "fsd_localization/ros/initial_pose.hpp"
 #include "fsd_localization/ros/localization_publisher.hpp"
 #include "fsd_localization/ros/map_preparation.hpp"
-#include "fsd_localization/ros/scan_input.hpp"
+#include "hyselam_common/ros/diagnostics.hpp"
+#include "hyselam_common/ros/initial_pose.hpp"
+#include "hyselam_common/ros/scan_input.hpp"
 
 namespace fsd_localization {
 
@@ -45,7 +45,7 @@ class LocalizationServer {
 
   // Guesses and orders from outside.
   void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
-  bool startAt(const InitialPose& pose);
+  bool startAt(const hyselam::InitialPose& pose);
   void forgetPose(const std::string& why);
   bool onSetMap(nav_msgs::SetMap::Request& request, nav_msgs::SetMap::Response& response);
 
@@ -60,9 +60,9 @@ class LocalizationServer {
   MapPreparation::Source map_service_;  // static_map
   MapPreparation preparation_;          // its thread sets map_seen_: ends before that does
   std::unique_ptr<Localizer> localizer_;
-  std::uint64_t fingerprint_ = 0;               // of the newest map that came by topic or set_map
-  std::string map_error_;                       // of the newest map; empty: it is good
-  std::optional<InitialPose> pending_initial_;  // for the map that is being prepared
+  std::uint64_t fingerprint_ = 0;  // of the newest map that came by topic or set_map
+  std::string map_error_;          // of the newest map; empty: it is good
+  std::optional<hyselam::InitialPose> pending_initial_;  // for the map that is being prepared
   std::optional<LocalizationResult> last_result_;
   std::optional<hyselam::Pose2> odom_in_map_;  // what tf says
   bool guided_ = false;  // an initial pose was given, and nothing has converged since
@@ -71,9 +71,9 @@ class LocalizationServer {
   std::size_t updates_ = 0;
   ros::WallTime saved_;
 
-  ScanInput input_;
+  hyselam::ScanInput input_;
   ros::WallTime reminded_of_map_ = ros::WallTime::now();
-  Diagnostics diagnostics_;
+  hyselam::Diagnostics diagnostics_;
   ros::WallTimer map_timer_;
   ros::Subscriber map_subscriber_, initial_pose_subscriber_;
   ros::ServiceServer global_service_, update_service_, set_map_service_;

@@ -6,20 +6,14 @@
 #include <string>
 
 #include "fsd_localization/localizer.hpp"
+#include "hyselam_common/ros/initial_pose.hpp"
 #include "hyselam_common/ros/params.hpp"
+#include "hyselam_common/ros/scan_input_params.hpp"
 
 namespace fsd_localization {
 
-/// How scans come in, for both servers.
-struct ScanInputParams {
-  std::string odom_frame_id = "odom";       ///< frame in which the robot moves smoothly
-  std::string base_frame_id = "base_link";  ///< frame of the robot
-  double transform_wait = 0.5;              ///< a scan waits at most this long for its odometry [s]
-  int queue_size = 100;                     ///< scans that may wait; the oldest is dropped first
-};
-
 struct FsdServerParams {
-  ScanInputParams input;
+  hyselam::ScanInputParams input;
   FsdSensorParams sensor;
   double update_min_d = 0.1;       ///< travel between observations [m]; 0: one per scan
   double update_min_a = 0.0;       ///< turn between observations [rad]; 0: turning alone gives none
@@ -27,14 +21,8 @@ struct FsdServerParams {
   double diagnostic_period = 1.0;  ///< [s]
 };
 
-/// Base in the map frame with standard deviations [m, m, rad].
-struct InitialPose {
-  hyselam::Pose2 base_in_map;
-  hyselam::Pose2 stddev;
-};
-
 struct LocalizationServerParams {
-  ScanInputParams input;
+  hyselam::ScanInputParams input;
   LocalizerParams localizer;
   std::string global_frame_id = "map";
   bool use_map_topic = false;    ///< map from the topic `map`, else from the service `static_map`
@@ -49,17 +37,11 @@ struct LocalizationServerParams {
   int max_cloud_particles = 5000;  ///< in particlecloud; of more, a fair sample
   int density_field_kernel = 1;    ///< index into the kernels; -1: density_field is not published
   double diagnostic_period = 1.0;  ///< [s]
-  std::optional<InitialPose> initial_pose;  ///< empty: the robot knows nothing at the start
+  std::optional<hyselam::InitialPose>
+      initial_pose;  ///< empty: the robot knows nothing at the start
 };
 
-/// Frames, waiting time and queue of scans, for every server that takes scans.
 /// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.
-void loadScanInput(hyselam::ParamLoader& loader, ScanInputParams& params);
-/// A rate [Hz] that may be -1 for "no limit" or "never". @throws as above.
-void loadRate(hyselam::ParamLoader& loader, const std::string& name, double& value,
-              const std::string& meaning);
-
-/// @throws as above.
 FsdServerParams loadFsdParams(hyselam::ParamLoader& loader);
 /// As above. Names of amcl that mean nothing here are taken as known; see ignoredAmclParams().
 LocalizationServerParams loadLocalizationParams(hyselam::ParamLoader& loader);

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "fsd_localization/ros/parameters.hpp"
 #include "hyselam_common/ros/params.hpp"
+#include "hyselam_common/ros/scan_input_params.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
 #include "ngram_slam/semantics/semantic_segmenter.hpp"
 #include "ngram_slam/words/observation_sensor.hpp"
@@ -13,7 +13,7 @@ namespace ngram_slam {
 
 struct WordsServerParams {
   bool from_scan = false;  ///< observations from `scan` and tf, else from `fsd_observation`
-  fsd_localization::ScanInputParams input;
+  hyselam::ScanInputParams input;
   ObservationSensorParams sensor;  ///< with `fsd_observation` only bandwidth and step count
   NgramRecognizerParams recogniser;
   bool semantics = true;

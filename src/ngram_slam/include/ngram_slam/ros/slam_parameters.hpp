@@ -4,16 +4,17 @@
 #include <optional>
 #include <string>
 
-#include "fsd_localization/ros/parameters.hpp"
 #include "hyselam_common/occupancy_mapper.hpp"
+#include "hyselam_common/ros/initial_pose.hpp"
 #include "hyselam_common/ros/params.hpp"
+#include "hyselam_common/ros/scan_input_params.hpp"
 #include "ngram_slam/semantics/semantic_segmenter.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 
 namespace ngram_slam {
 
 struct SlamServerParams {
-  fsd_localization::ScanInputParams input;
+  hyselam::ScanInputParams input;
   std::string global_frame_id = "map";
   SlamParams slam;
   SemanticParams semantic;
@@ -26,7 +27,7 @@ struct SlamServerParams {
   double save_period = 60.0;  ///< [s] of wall time; 0: only at the end and when asked
   double start_window = 2.0;  ///< around the pose where a run starts in a known map [m], (0, 50]
   double start_turn = 1.0;    ///< [rad], 0..pi
-  std::optional<fsd_localization::InitialPose> initial_pose;
+  std::optional<hyselam::InitialPose> initial_pose;
   double diagnostic_period = 1.0;  ///< [s]
 };
 

@@ -18,9 +18,9 @@
 #include <optional>
 #include <thread>
 
-#include "fsd_localization/ros/rate_limit.hpp"
-#include "fsd_localization/ros/scan_input.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
+#include "hyselam_common/ros/rate_limit.hpp"
+#include "hyselam_common/ros/scan_input.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
 #include "ngram_slam/slam/keyframe_mapper.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
@@ -96,7 +96,7 @@ class SlamServer {
   ros::Time stamp_;  // of the last scan
   enum class Next { kGoOn, kAfterPause, kAfterJump };
   Next next_ = Next::kGoOn;  // what the next scan is
-  std::optional<fsd_localization::InitialPose> pending_;
+  std::optional<hyselam::InitialPose> pending_;
   hyselam::Pose2 last_odometry_;
   std::string job_error_, map_error_, save_error_;
   double scan_ms_ = 0.0, worst_scan_ms_ = 0.0, job_ms_ = 0.0, map_ms_ = 0.0, save_ms_ = 0.0;
@@ -107,13 +107,13 @@ class SlamServer {
   std::mutex save_mutex_;  // one saving at a time
 
   ros::Time told_tf_;
-  fsd_localization::RateLimit map_rate_;
+  hyselam::RateLimit map_rate_;
   tf2_ros::TransformBroadcaster tf_;
   ros::Publisher map_publisher_, metadata_publisher_, word_publisher_, match_publisher_,
       region_publisher_, graph_publisher_, path_publisher_, marker_publisher_;
   ros::CallbackQueue service_queue_;
   ros::ServiceServer save_service_, load_service_, pause_service_, resume_service_, map_service_;
-  std::unique_ptr<fsd_localization::ScanInput> input_;
+  std::unique_ptr<hyselam::ScanInput> input_;
   ros::Subscriber initial_pose_subscriber_;
   ros::WallTimer tf_timer_;
   std::unique_ptr<hyselam::Diagnostics> diagnostics_;

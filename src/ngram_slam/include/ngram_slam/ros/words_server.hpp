@@ -9,10 +9,10 @@
 #include <memory>
 #include <optional>
 
-#include "fsd_localization/ros/drop_counter.hpp"
-#include "fsd_localization/ros/rate_limit.hpp"
-#include "fsd_localization/ros/scan_input.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
+#include "hyselam_common/ros/drop_counter.hpp"
+#include "hyselam_common/ros/rate_limit.hpp"
+#include "hyselam_common/ros/scan_input.hpp"
 #include "ngram_slam/ros/parameters.hpp"
 #include "ngram_slam/ros/word_markers.hpp"
 #include "ngram_slam/words/corpus_journal.hpp"
@@ -68,12 +68,12 @@ class WordsServer {
   ros::WallTime saved_at_;
   double save_ms_ = 0.0;
   std::string save_error_;
-  fsd_localization::DropCounter drops_;
-  fsd_localization::RateLimit gui_rate_;
+  hyselam::DropCounter drops_;
+  hyselam::RateLimit gui_rate_;
   ros::Publisher word_publisher_, match_publisher_, region_publisher_, marker_publisher_;
   ros::ServiceServer save_service_, load_service_, start_service_;
   ros::WallTimer save_timer_;
-  std::unique_ptr<fsd_localization::ScanInput> scan_input_;
+  std::unique_ptr<hyselam::ScanInput> scan_input_;
   ros::Subscriber subscriber_;
   std::unique_ptr<hyselam::Diagnostics> diagnostics_;
 };

@@ -1,13 +1,13 @@
-#include "fsd_localization/ros/drop_counter.hpp"
+#include "hyselam_common/ros/drop_counter.hpp"
 
 #include <ros/console.h>
 
-#include "fsd_localization/ros/diagnostics.hpp"
+#include "hyselam_common/ros/diagnostics.hpp"
 
-namespace fsd_localization {
+namespace hyselam {
 
 namespace {
-constexpr double kTellEvery = 10.0;  // [s] of wall time
+constexpr double kLogEvery = 10.0;  // [s] of wall time
 }
 
 void DropCounter::drop(const std::string& reason, const std::string& detail) {
@@ -16,10 +16,10 @@ void DropCounter::drop(const std::string& reason, const std::string& detail) {
   ++total_;
   last_ = reason + ": " + detail;
   const ros::WallTime now = ros::WallTime::now();
-  if (tally.count > 1 && (now - tally.told).toSec() < kTellEvery) return;
-  tally.told = now;
-  ROS_WARN_STREAM(who_ << " " << what_ << " dropped, " << last_ << " (" << tally.count
-                       << " so far)");
+  if (tally.count > 1 && (now - tally.logged).toSec() < kLogEvery) return;
+  tally.logged = now;
+  ROS_WARN_STREAM(log_name_ << " " << message_kind_ << " dropped, " << last_ << " (" << tally.count
+                            << " so far)");
 }
 
 std::size_t DropCounter::count(const std::string& reason) const {
@@ -28,9 +28,9 @@ std::size_t DropCounter::count(const std::string& reason) const {
 }
 
 void DropCounter::report(diagnostic_msgs::DiagnosticStatus& status) const {
-  addValue(status, what_ + "s dropped", total_);
+  addValue(status, message_kind_ + "s dropped", total_);
   for (const auto& [reason, tally] : tallies_) addValue(status, "dropped: " + reason, tally.count);
   if (!last_.empty()) addValue(status, "last dropped", last_);
 }
 
-}  // namespace fsd_localization
+}  // namespace hyselam

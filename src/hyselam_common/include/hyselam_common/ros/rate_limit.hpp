@@ -1,13 +1,17 @@
-// Lets something pass at most so often, in the time of the data.
+// At most so many publications per second, in the time of the data.
 #pragma once
 
 #include <ros/time.h>
 
-namespace fsd_localization {
+#include <string>
+
+#include "hyselam_common/ros/params.hpp"
+
+namespace hyselam {
 
 class RateLimit {
  public:
-  /// @param rate [Hz]; -1: everything passes.
+  /// @param rate [Hz]; -1: no limit.
   explicit RateLimit(double rate) : period_(rate > 0.0 ? 1.0 / rate : 0.0) {}
 
   /// Whether enough time lies between `now` and what passed last; then `now` is the last. After a
@@ -24,4 +28,9 @@ class RateLimit {
   ros::Time last_;
 };
 
-}  // namespace fsd_localization
+/// A rate [Hz] that may be -1 for "no limit" or "never".
+/// @throws ParameterError unless it is -1 or in (0, 1000].
+void loadRate(ParamLoader& loader, const std::string& name, double& rate,
+              const std::string& meaning);
+
+}  // namespace hyselam

@@ -1,4 +1,5 @@
-// What was not used, why, and how often: told in the log now and then, and in the diagnostics.
+// Messages that were not used: why and how often, logged now and then, and shown in the
+// diagnostics.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
@@ -8,17 +9,17 @@
 #include <string>
 #include <utility>
 
-namespace fsd_localization {
+namespace hyselam {
 
 /// Not thread safe: for the callbacks of one queue.
 class DropCounter {
  public:
-  /// @param who begins the warnings ("[/localization]").
-  /// @param what is dropped.
-  explicit DropCounter(std::string who, std::string what = "scan")
-      : who_(std::move(who)), what_(std::move(what)) {}
+  /// @param log_name begins the warnings ("[/localization]").
+  /// @param message_kind what is dropped.
+  explicit DropCounter(std::string log_name, std::string message_kind = "scan")
+      : log_name_(std::move(log_name)), message_kind_(std::move(message_kind)) {}
 
-  /// Counts one; warns at the first one of a reason, then at most once in ten seconds.
+  /// Counts one; warns at the first one of a reason, then at most once in ten seconds of wall time.
   /// @param reason a fixed word or two ("no transform"), @param detail what is special this time.
   void drop(const std::string& reason, const std::string& detail);
 
@@ -32,12 +33,12 @@ class DropCounter {
  private:
   struct Tally {
     std::size_t count = 0;
-    ros::WallTime told;
+    ros::WallTime logged;
   };
-  std::string who_, what_;
+  std::string log_name_, message_kind_;
   std::map<std::string, Tally> tallies_;
   std::size_t total_ = 0;
   std::string last_;
 };
 
-}  // namespace fsd_localization
+}  // namespace hyselam
