@@ -4,7 +4,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_objects/fill_map.hpp"
 #include "hyselam_objects/place_evidence.hpp"
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 using hyselam_topo::MatchProblem;
@@ -19,7 +19,7 @@ hyselam_topo::AugmentedTopologicalMap corridorWithRooms() {
     place.id = id;
     place.kind = id == 1 ? hyselam_topo::PlaceKind::kCorridor : hyselam_topo::PlaceKind::kRoom;
     place.area = id == 1 ? 40.0 : 20.0;
-    place.centre = hyselam_topo::Point3{id == 1 ? 10.0 : 4.0 * id, id == 1 ? 0.0 : 4.0, 0.0};
+    place.centre = hyselam::Point3{id == 1 ? 10.0 : 4.0 * id, id == 1 ? 0.0 : 4.0, 0.0};
     map.places.push_back(place);
     if (id == 1) continue;
     hyselam_topo::Edge edge;

@@ -15,9 +15,9 @@
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_topo/gr2to.hpp"
-#include "hyselam_topo/topomerg.hpp"
-#include "hyselam_topo/topomerg_names.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
 
 namespace {
 

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "../test/random_matches.hpp"
-#include "hyselam_topo/description_xml.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
 
 using namespace random_matches;  // NOLINT: a bench, not a header
 
 MatchProblem scenario() {
-  const std::string data = std::string(HYSELAM_TOPO_SOURCE_DIR) + "/test/data/";
+  const std::string data = std::string(HYSELAM_PACKAGE_DIR) + "/test/data/";
   return compileMatch(loadDescription(data + "scenario_532_human.xml"),
                       hyselam_topo::loadXml(data + "scenario_532_map.xml"), {4, 0.0});
 }

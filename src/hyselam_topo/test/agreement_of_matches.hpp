@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 
 /// The same answers in the same order.
 inline void expectSame(const hyselam_topo::Match& a, const hyselam_topo::Match& b,

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 
 namespace random_matches {
 

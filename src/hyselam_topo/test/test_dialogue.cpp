@@ -9,10 +9,10 @@
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/dialogue_state.hpp"
-#include "hyselam_topo/gr2to.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue_state.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 
 using hyselam::InputError;
 using hyselam::Point2;
@@ -31,7 +31,7 @@ bool has(const Reply& reply, const std::string& text) {
 }
 
 const hyselam_sim::FloorPlan& plan() {
-  static const auto kPlan = hyselam_sim::loadFloorPlan(std::string(HYSELAM_TOPO_SOURCE_DIR) +
+  static const auto kPlan = hyselam_sim::loadFloorPlan(std::string(HYSELAM_PACKAGE_DIR) +
                                                        "/test/data/glass_building.yaml");
   return kPlan;
 }
@@ -423,7 +423,7 @@ TEST(Phrases, RefuseFilesWithMistakes) {
         [&] { hyselam_topo::Phrases::fromYaml("f", yaml); });
   };
   const std::string good =
-      hyselam::testing::fileBytes(std::string(HYSELAM_TOPO_SOURCE_DIR) + "/dialogue/en.yaml");
+      hyselam::testing::fileBytes(std::string(HYSELAM_PACKAGE_DIR) + "/dialogue/en.yaml");
   const auto with = [&](const std::string& a, const std::string& b) {
     std::string text = good;
     text.replace(text.find(a), a.size(), b);

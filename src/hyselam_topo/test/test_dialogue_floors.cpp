@@ -12,9 +12,9 @@
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/gr2to.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 
 using hyselam::Point2;
 using hyselam::Pose2;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/glass_wall.hpp"
+#include "hyselam_topo/dialogue/glass_wall.hpp"
 #include "two_rooms.hpp"
 
 using hyselam::OccupancyGrid;

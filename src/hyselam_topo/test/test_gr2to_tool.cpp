@@ -11,8 +11,8 @@
 
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_topo/overview.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_gr2to/overview.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 using hyselam::OccupancyGrid;
@@ -43,7 +43,7 @@ OccupancyGrid twoRooms() {
 class Gr2ToTool : public testing::Test {
  protected:
   int run(const std::string& arguments) {
-    const std::string command = std::string("\"") + HYSELAM_TOPO_TOOLS + "/gr2to\" " + arguments +
+    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/gr2to\" " + arguments +
                                 " >" + folder_ / "stdout" + " 2>" + (folder_ / "stderr");
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

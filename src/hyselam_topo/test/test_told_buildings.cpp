@@ -10,9 +10,9 @@
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/gr2to.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -41,7 +41,7 @@ int namedRightly(const hyselam_sim::FloorPlan& plan, const hyselam::Pose2& pose,
   robot.setMap(gr2to(*robot.gridWithWalls()).map);
   robot.setPose(1.0, pose);
   robot.hear(
-      hyselam::readTextFile(std::string(HYSELAM_TOPO_SOURCE_DIR) + "/test/data/told/" + file));
+      hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/told/" + file));
   int right = 0;
   for (const auto& [place, told] : names) {
     const auto there = placeAt(robot.map(), plan.place(place).at, 0.3);

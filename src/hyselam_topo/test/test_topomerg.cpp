@@ -10,10 +10,10 @@
 
 #include "agreement_of_matches.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/description_xml.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
-#include "hyselam_topo/topomerg.hpp"
-#include "hyselam_topo/topomerg_names.hpp"
+#include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
 #include "random_matches.hpp"
 
 using namespace random_matches;  // NOLINT: a test, not a header
@@ -25,9 +25,9 @@ constexpr double kPi = 3.14159265358979323846;
 /// Table 5.1's scenario. The robot's corridor is place 4 of the map; the kitchen is in two pieces.
 struct Scenario {
   DescribedBuilding building =
-      loadDescription(std::string(HYSELAM_TOPO_SOURCE_DIR) + "/test/data/scenario_532_human.xml");
+      loadDescription(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/scenario_532_human.xml");
   AugmentedTopologicalMap map =
-      loadXml(std::string(HYSELAM_TOPO_SOURCE_DIR) + "/test/data/scenario_532_map.xml");
+      loadXml(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/scenario_532_map.xml");
   MatchObserver observer{4, 0.0};
   MatchProblem problem = compileMatch(building, map, observer);
 };

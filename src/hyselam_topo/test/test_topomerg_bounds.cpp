@@ -11,7 +11,7 @@
 
 #include "agreement_of_matches.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 #include "random_matches.hpp"
 
 using namespace random_matches;  // NOLINT: a test, not a header

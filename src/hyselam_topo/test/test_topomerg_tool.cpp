@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 using hyselam::testing::fileBytes;
 
@@ -17,7 +17,7 @@ namespace {
 class TopoMergTool : public testing::Test {
  protected:
   int run(const std::string& arguments) {
-    const std::string command = std::string("\"") + HYSELAM_TOPO_TOOLS + "/topomerg\" " +
+    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/topomerg\" " +
                                 arguments + " >" + (folder_ / "stdout") + " 2>" +
                                 (folder_ / "stderr");
     const int status = std::system(command.c_str());
@@ -32,7 +32,7 @@ class TopoMergTool : public testing::Test {
   }
   nlohmann::json json() { return nlohmann::json::parse(fileBytes(folder_ / "out.json")); }
 
-  const std::string data_ = std::string(HYSELAM_TOPO_SOURCE_DIR) + "/test/data/";
+  const std::string data_ = std::string(HYSELAM_PACKAGE_DIR) + "/test/data/";
   const std::string input_ = data_ + "scenario_532_human.xml " + data_ + "scenario_532_map.xml ";
   hyselam::testing::TemporaryDirectory folder_;
   const std::string output_ =

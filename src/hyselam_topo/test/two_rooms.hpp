@@ -1,8 +1,8 @@
 // The smallest map with a door, drawn by hand.
 #pragma once
 
-#include "hyselam_topo/map_geometry.hpp"
-#include "hyselam_topo/topological_map.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
 
 namespace two_rooms {
 

@@ -10,7 +10,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "selovis/learner.hpp"
 #include "selovis/recogniser.hpp"
 #include "selovis/supervisor.hpp"
@@ -33,7 +33,7 @@ hyselam_topo::AugmentedTopologicalMap row() {
     hyselam_topo::Place place;
     place.id = id;
     if (*names[id - 1] != '\0') place.words.push_back({names[id - 1], id == 1});
-    place.centre = hyselam_topo::Point3{2.0 * id, 0.0, 0.0};
+    place.centre = hyselam::Point3{2.0 * id, 0.0, 0.0};
     grid.places.push_back(id);
     map.places.push_back(place);
     if (id > 1) {

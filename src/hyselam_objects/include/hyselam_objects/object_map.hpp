@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_topo/topological_map.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_objects {
 
-using hyselam_topo::Covariance3;
+using hyselam::Covariance3;
 using hyselam_topo::Id;
-using hyselam_topo::Point3;
+using hyselam::Point3;
 
 /// W_R of Eq. 3.8: "a is ... b". What is related to a place is `at` it.
 enum class RelationWord {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "hyselam_objects/object_map.hpp"
-#include "hyselam_topo/topo_parser.hpp"
+#include "hyselam_language/grammar/topo_parser.hpp"
 
 namespace hyselam_objects {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hyselam_objects/object_map.hpp"
-#include "hyselam_topo/described_building.hpp"
-#include "hyselam_topo/topomerg_problem.hpp"
+#include "hyselam_language/building/described_building.hpp"
+#include "hyselam_topo/topomerg/topomerg_problem.hpp"
 
 namespace hyselam_objects {
 

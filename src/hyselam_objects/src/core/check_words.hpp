@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "hyselam_topo/text.hpp"
+#include "hyselam_common/utf8.hpp"
 
 namespace hyselam_objects {
 
 /// What the topological map takes for a word, and not beyond all measure.
 inline bool isWord(const std::string& text) {
   constexpr std::size_t kLongest = 256;  // bytes
-  return text.size() <= kLongest && hyselam_topo::whatIsWrongWithWord(text).empty();
+  return text.size() <= kLongest && hyselam::wordError(text).empty();
 }
 
 }  // namespace hyselam_objects

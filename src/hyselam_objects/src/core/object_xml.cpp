@@ -6,20 +6,20 @@
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_objects/object_dictionary.hpp"
 #include "hyselam_objects/object_map.hpp"
-#include "hyselam_topo/xml_document.hpp"
+#include "hyselam_common/xml_document.hpp"
 
 namespace hyselam_objects {
 namespace {
 
-using hyselam_topo::XmlElement;
+using hyselam::XmlElement;
 
 constexpr char kVersion[] = "1";
 constexpr char kDictionaryNamespace[] = "urn:hyselam:object_dictionary:1";
 constexpr char kMapNamespace[] = "urn:hyselam:object_map:1";
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
-hyselam_topo::XmlLimits limits() {
-  hyselam_topo::XmlLimits out;
+hyselam::XmlLimits limits() {
+  hyselam::XmlLimits out;
   out.max_bytes = kMaxBytes;
   return out;
 }
@@ -258,7 +258,7 @@ ObjectInstance readInstance(XmlElement& e) {
   object.missed = e.integer("missed");
   object.last_seen = e.number("last_seen");
   object.existence = e.number("existence");
-  hyselam_topo::Once<ObjectPose> pose;
+  hyselam::Once<ObjectPose> pose;
   e.children([&](XmlElement& child) {
     if (child.name() == "property") {
       object.properties[child.text("name")] = child.text("value");
@@ -289,7 +289,7 @@ ObjectRelation readRelation(XmlElement& e) {
   if (e.has("place")) relation.place = e.id("place");
   relation.movability = e.number("movability");
   relation.told = e.truth("told");
-  hyselam_topo::Once<Point3> vector;
+  hyselam::Once<Point3> vector;
   e.children([&](XmlElement& child) {
     if (child.name() != "vector") return false;
     vector.set(child, readPoint(child));
@@ -347,7 +347,7 @@ std::string toXml(const ObjectMap& map, const std::string& source) {
 
 ObjectDictionary dictionaryFromXml(const std::string& text, const std::string& source) {
   ObjectDictionary dictionary;
-  hyselam_topo::readXmlDocument(text, source, limits(), [&](XmlElement& root) {
+  hyselam::readXmlDocument(text, source, limits(), [&](XmlElement& root) {
     checkRoot(root, "object_dictionary", kDictionaryNamespace);
     root.children([&](XmlElement& child) {
       if (child.name() != "object") return false;
@@ -361,7 +361,7 @@ ObjectDictionary dictionaryFromXml(const std::string& text, const std::string& s
 
 ObjectMap objectMapFromXml(const std::string& text, const std::string& source) {
   ObjectMap map;
-  hyselam_topo::readXmlDocument(text, source, limits(),
+  hyselam::readXmlDocument(text, source, limits(),
                                 [&](XmlElement& root) { map = readMap(root); });
   checkMap(map, source);
   return map;

@@ -1,7 +1,7 @@
 #include "hyselam_objects/link_places.hpp"
 
-#include "hyselam_topo/place_names.hpp"
-#include "hyselam_topo/topo_parser.hpp"
+#include "hyselam_language/building/place_names.hpp"
+#include "hyselam_language/grammar/topo_parser.hpp"
 
 namespace hyselam_objects {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_topo/grammar.hpp"
+#include "hyselam_language/grammar/grammar.hpp"
 
 namespace hyselam_objects {
 

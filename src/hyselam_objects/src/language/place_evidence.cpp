@@ -6,7 +6,7 @@
 
 #include "hyselam_common/require.hpp"
 #include "hyselam_objects/object_relations.hpp"
-#include "hyselam_topo/place_names.hpp"
+#include "hyselam_language/building/place_names.hpp"
 
 namespace hyselam_objects {
 namespace {

@@ -8,7 +8,7 @@
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_objects/link_places.hpp"
-#include "hyselam_topo/ros/conversions.hpp"
+#include "hyselam_topological_map/ros/conversions.hpp"
 
 namespace hyselam_objects {
 

@@ -7,7 +7,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_objects/fill_map.hpp"
 #include "hyselam_objects/link_places.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
 

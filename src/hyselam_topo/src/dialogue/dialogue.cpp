@@ -1,4 +1,4 @@
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "dialogue_turn.hpp"
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 
 namespace hyselam_topo {
 namespace {

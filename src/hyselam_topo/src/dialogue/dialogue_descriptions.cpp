@@ -1,7 +1,7 @@
 // Descriptions of the building: taken down, matched with the map, told how that went.
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 #include "match_constraints.hpp"
 
 namespace hyselam_topo {

@@ -3,7 +3,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 
 namespace hyselam_topo {
 

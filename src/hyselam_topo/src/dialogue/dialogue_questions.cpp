@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "dialogue_turn.hpp"
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/topomerg_names.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
 
 namespace hyselam_topo {
 

@@ -1,4 +1,4 @@
-#include "hyselam_topo/dialogue_state.hpp"
+#include "hyselam_topo/dialogue/dialogue_state.hpp"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/json_integer.hpp"
-#include "hyselam_topo/description_xml.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 
 namespace hyselam_topo {
 

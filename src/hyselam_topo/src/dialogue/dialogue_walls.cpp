@@ -4,7 +4,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {

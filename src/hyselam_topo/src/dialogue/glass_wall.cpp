@@ -1,4 +1,4 @@
-#include "hyselam_topo/glass_wall.hpp"
+#include "hyselam_topo/dialogue/glass_wall.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/require.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {

@@ -1,10 +1,10 @@
 // What people have confirmed and rejected, for matching their description with the map.
 #pragma once
 
-#include "hyselam_topo/described_building.hpp"
-#include "hyselam_topo/description_builder.hpp"
-#include "hyselam_topo/place_man.hpp"
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_language/building/described_building.hpp"
+#include "hyselam_language/building/description_builder.hpp"
+#include "hyselam_topo/dialogue/place_man.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 
 namespace hyselam_topo {
 

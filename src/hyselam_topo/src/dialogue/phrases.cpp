@@ -1,4 +1,4 @@
-#include "hyselam_topo/phrases.hpp"
+#include "hyselam_topo/dialogue/phrases.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -186,15 +186,15 @@ Phrases Phrases::load(const std::string& path) {
 }
 
 Phrases Phrases::shipped(const std::string& language) {
-  for (const ShippedPhrases& phrases : kShippedPhrases) {
-    if (language == phrases.language) return fromYaml("phrases " + language, phrases.yaml);
+  for (const hyselam::EmbeddedText& phrases : kShippedPhrases) {
+    if (language == phrases.key) return fromYaml("phrases " + language, phrases.text);
   }
   throw InputError("phrases", "", "none are shipped for the language '" + language + "'");
 }
 
 std::vector<std::string> Phrases::shippedLanguages() {
   std::vector<std::string> all;
-  for (const ShippedPhrases& phrases : kShippedPhrases) all.emplace_back(phrases.language);
+  for (const hyselam::EmbeddedText& phrases : kShippedPhrases) all.emplace_back(phrases.key);
   return all;
 }
 

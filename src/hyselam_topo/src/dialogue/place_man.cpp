@@ -1,4 +1,4 @@
-#include "hyselam_topo/place_man.hpp"
+#include "hyselam_topo/dialogue/place_man.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <map>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/map_geometry.hpp"
-#include "hyselam_topo/text.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {
@@ -34,7 +34,7 @@ void checkWall(const ToldWall& wall) {
 
 void checkNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    const std::string wrong = whatIsWrongWithWord(name);
+    const std::string wrong = hyselam::wordError(name);
     if (!wrong.empty()) throw InputError("name", "", "it " + wrong);
   }
 }

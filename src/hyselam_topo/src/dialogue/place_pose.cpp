@@ -1,12 +1,12 @@
-#include "hyselam_topo/place_pose.hpp"
+#include "hyselam_topo/dialogue/place_pose.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "hyselam_topo/map_geometry.hpp"
-#include "hyselam_topo/place_paths.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
+#include "hyselam_topological_map/place_paths.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {

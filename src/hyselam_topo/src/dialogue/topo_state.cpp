@@ -1,11 +1,11 @@
-#include "hyselam_topo/topo_state.hpp"
+#include "hyselam_topo/dialogue/topo_state.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "hyselam_common/require.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {

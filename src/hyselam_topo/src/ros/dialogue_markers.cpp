@@ -5,7 +5,7 @@
 #include <map>
 
 #include "hyselam_common/ros/markers.hpp"
-#include "hyselam_topo/place_labels.hpp"
+#include "hyselam_topological_map/place_labels.hpp"
 
 namespace hyselam_topo {
 namespace {

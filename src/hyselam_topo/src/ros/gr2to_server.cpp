@@ -8,9 +8,10 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
-#include "hyselam_topo/map_geometry.hpp"
-#include "hyselam_topo/ros/conversions.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_gr2to/ros/octomap_conversions.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
+#include "hyselam_topological_map/ros/conversions.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace hyselam_topo {
 namespace {

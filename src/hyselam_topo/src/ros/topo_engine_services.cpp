@@ -3,7 +3,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
-#include "hyselam_topo/map_geometry.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_topo/ros/topo_engine_server.hpp"
 
 namespace hyselam_topo {

@@ -1,5 +1,5 @@
 // gr2to MAP --out DIR: places, doors and walls of a grid map or an OctoMap.
-#include "hyselam_topo/gr2to.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 
 #include <filesystem>
 #include <iostream>
@@ -13,9 +13,9 @@
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
-#include "hyselam_topo/octomap_compression.hpp"
-#include "hyselam_topo/overview.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_gr2to/octomap/octomap_compression.hpp"
+#include "hyselam_gr2to/overview.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
 

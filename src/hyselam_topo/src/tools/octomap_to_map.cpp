@@ -11,7 +11,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/tool.hpp"
-#include "hyselam_topo/octomap_compression.hpp"
+#include "hyselam_gr2to/octomap/octomap_compression.hpp"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/tool.hpp"
-#include "hyselam_topo/description_builder.hpp"
-#include "hyselam_topo/description_xml.hpp"
-#include "hyselam_topo/topo_parser.hpp"
+#include "hyselam_language/building/description_builder.hpp"
+#include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_language/grammar/topo_parser.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // topomerg HUMAN.xml TOPO.xml --out MERGED.xml: gives the places of a map the names that a person
 // has told.
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
-#include "hyselam_topo/description_xml.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
-#include "hyselam_topo/topomerg_names.hpp"
+#include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
 
 namespace {
 

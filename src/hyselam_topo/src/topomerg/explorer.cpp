@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 #include "merge_terms.hpp"
 #include "solutions.hpp"
 

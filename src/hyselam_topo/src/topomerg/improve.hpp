@@ -1,7 +1,7 @@
 // A quick way to make an answer better: one vertex or two names changed at a time.
 #pragma once
 
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 #include "merge_terms.hpp"
 
 namespace hyselam_topo::merging {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topomerg_problem.hpp"
+#include "hyselam_topo/topomerg/topomerg_problem.hpp"
 #include "merge_terms.hpp"
 
 namespace hyselam_topo {

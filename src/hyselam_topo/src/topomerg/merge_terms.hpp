@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
-#include "hyselam_topo/topomerg_problem.hpp"
+#include "hyselam_topo/topomerg/topomerg_problem.hpp"
 
 namespace hyselam_topo::merging {
 

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topomerg_names.hpp"
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <vector>
 
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 #include "merge_terms.hpp"
 
 namespace hyselam_topo::merging {

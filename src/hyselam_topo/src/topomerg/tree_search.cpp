@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "hyselam_topo/topomerg.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
 #include "merge_terms.hpp"
 #include "solutions.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
-#include "hyselam_topo/topological_map.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
 #include "selovis/place_graph.hpp"
 
 namespace selovis {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "hyselam_common/atomic_file.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace selovis {
 
@@ -110,7 +110,7 @@ PlaceGraph graphOf(const AugmentedTopologicalMap& map) {
 }
 
 PlaceGraph readTopology(const std::string& path) {
-  const std::string text = hyselam::readTextFile(path, hyselam_topo::XmlLimits().max_bytes);
+  const std::string text = hyselam::readTextFile(path, hyselam::XmlLimits().max_bytes);
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first != std::string::npos && text[first] == '<') {
     return graphOf(hyselam_topo::fromXml(text, path));

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topological_map_xml.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "selovis/ros/semantic_localization_server.hpp"
 
 namespace selovis {

@@ -9,7 +9,7 @@
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_common/ros/transport.hpp"
-#include "hyselam_topo/ros/conversions.hpp"
+#include "hyselam_topological_map/ros/conversions.hpp"
 #include "selovis/ros/place_markers.hpp"
 #include "selovis/ros/sensor_images.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/ros/map_markers.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topological_map/ros/map_markers.hpp"
 
 namespace hyselam_topo {
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "hyselam_common/ros/diagnostics.hpp"
-#include "hyselam_topo/background_gr2to.hpp"
+#include "hyselam_gr2to/background_gr2to.hpp"
 #include "hyselam_topo/ros/parameters.hpp"
 
 namespace hyselam_topo {

@@ -9,7 +9,7 @@
 #include <functional>
 #include <map>
 
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 
 namespace hyselam_topo {
 

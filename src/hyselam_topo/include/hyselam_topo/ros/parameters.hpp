@@ -4,9 +4,9 @@
 #include <string>
 
 #include "hyselam_common/ros/params.hpp"
-#include "hyselam_topo/gr2to.hpp"
-#include "hyselam_topo/octomap_compression.hpp"
-#include "hyselam_topo/ros/map_markers.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
+#include "hyselam_gr2to/octomap/octomap_compression.hpp"
+#include "hyselam_topological_map/ros/map_markers.hpp"
 
 namespace hyselam_topo {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "hyselam_common/ros/params.hpp"
-#include "hyselam_topo/dialogue.hpp"
-#include "hyselam_topo/ros/map_markers.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topological_map/ros/map_markers.hpp"
 
 namespace hyselam_topo {
 

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "hyselam_common/ros/diagnostics.hpp"
-#include "hyselam_topo/dialogue.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topo/ros/goal_driver.hpp"
 #include "hyselam_topo/ros/object_talk.hpp"
 #include "hyselam_topo/ros/topo_engine_parameters.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_topo/topological_map.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
 
 namespace selovis {
 

@@ -1,0 +1,94 @@
+// Gr2To in a thread of its own: maps go in, the newest wins, and the topological map that comes out
+// carries on what was known before.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "hyselam_topological_map/carry_over.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
+
+namespace hyselam_topo {
+
+/// Safe to call from any thread.
+class BackgroundGr2To {
+ public:
+  using Pipeline = std::function<Gr2ToResult(const hyselam::OccupancyGrid&, const Gr2ToParams&)>;
+  using MapPtr = std::shared_ptr<const AugmentedTopologicalMap>;
+
+  struct Input {
+    /// Makes the grid in the thread; what it throws becomes Outcome::error.
+    std::function<hyselam::OccupancyGrid()> grid;
+    std::string frame_id = "map";
+    double stamp = 0.0;  ///< [s]
+    Gr2ToParams params;
+    int params_version = 0;  ///< another number when the parameters are others
+  };
+
+  struct Outcome {
+    MapPtr map;         ///< null if the input could not be used; then the map before stays
+    std::string error;  ///< why; empty: it could
+    /// Something that a person should know: what was known before could not be carried over.
+    std::string warning;
+    bool unchanged = false;  ///< the grid and the parameters are those of the map before
+    std::shared_ptr<const hyselam::OccupancyGrid> grid;
+    CarryOverReport report;
+    std::vector<std::pair<std::string, double>> seconds;  ///< of the stages
+    double total_seconds = 0.0;
+  };
+
+  /// `done` is called in the thread after each input.
+  BackgroundGr2To(std::function<void(const Outcome&)> done, Pipeline pipeline);
+
+  /// Gr2To that looks again only at the places around a change (Gr2ToUpdater), and after
+  /// `most_updates` of them at everything, because places far from the changes were not weighed
+  /// anew. 0: always at everything.
+  static Pipeline updating(int most_updates = 50);
+  /// Waits for what is being done.
+  ~BackgroundGr2To();
+  BackgroundGr2To(const BackgroundGr2To&) = delete;
+  BackgroundGr2To& operator=(const BackgroundGr2To&) = delete;
+
+  /// An input that waits is replaced; one that is in work is finished, and its map counts as known
+  /// for the next one.
+  void start(Input input);
+
+  /// The newest map; null before the first.
+  MapPtr current() const;
+
+  /// A map from elsewhere takes the place of the newest one; later inputs carry it on. It must have
+  /// a grid. Throws hyselam::InputError, as checkMap().
+  void replace(const AugmentedTopologicalMap& map, const std::string& source);
+
+  /// Whether an input waits or is in work.
+  bool busy() const;
+
+ private:
+  void run();
+  Outcome work(const Input& input);
+  /// Fits the fresh map to the newest one and puts it in its place.
+  void adopt(const AugmentedTopologicalMap& fresh, Outcome* outcome);
+
+  std::function<void(const Outcome&)> on_done_;
+  Pipeline pipeline_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<Input> next_;
+  MapPtr current_;
+  bool working_ = false;
+  bool stop_ = false;
+  /// Of the thread: what the newest map was made of; empty after replace().
+  std::shared_ptr<const hyselam::OccupancyGrid> last_grid_;
+  std::string last_frame_;
+  int last_params_version_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace hyselam_topo

@@ -1,0 +1,41 @@
+// First step of the segmentation: the free space of a grid map as people see it, at a resolution
+// that the later steps are made for. Clutter is seen through, leaks are cut off.
+#pragma once
+
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "cell_runs.hpp"
+#include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_gr2to/segmentation/segmentation.hpp"
+
+namespace hyselam_topo {
+
+struct SolidPiece {
+  cv::Rect box;
+  int cells = 0;
+  std::size_t begin = 0, end = 0;
+};
+
+struct FreeSpace {
+  cv::Mat free;             ///< CV_8U, 255 free, 0 not; the outermost cells are never free
+  double resolution = 0.0;  ///< [m/cell]
+  int joined = 1;           ///< so many cells of the grid, along each axis, make one cell
+  int split = 1;            ///< ... or one cell of the grid makes so many; one of the two is 1
+  cv::Point origin;  ///< working cell at (0, 0) of `free`; grid cell (0, 0) starts cell (0, 0)
+  /// The connected pieces that were not free before clutter was seen through, and their cells: of
+  /// a piece those from `begin` to before `end`.
+  std::vector<SolidPiece> pieces;
+  std::vector<CellRun> solid;
+};
+
+/// Empty `free` if the grid has no free cell.
+FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationParams& params);
+
+/// Labels of working cells, brought to the grid's cells. Those that are free without a label get
+/// that of the nearest labelled one on a way through free cells of at most `reach` cells.
+cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::OccupancyGrid& grid,
+               int free_max, int reach);
+
+}  // namespace hyselam_topo

@@ -1,0 +1,102 @@
+// What a person has told about a building (dos Santos, section 5.1, Fig. 5.5): places with names
+// and sizes, which of them are joined, on which side they lie, and where the robot stood meanwhile.
+// It is G_human of section 5.3; TopoParser makes it from text, TopoMerg matches it with the robot's
+// map.
+//
+// Plain values. Lengths [m]. Nothing here has a position: people say sides, not coordinates.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hyselam_topological_map/topological_map.hpp"
+
+namespace hyselam_topo {
+
+/// Where a place lies, seen by the robot as it stood at the moment of the description.
+enum class Side { kUnknown, kFront, kLeft, kBack, kRight };
+
+/// "unknown", "front", "left", "back", "right" and back; nothing for another word.
+const char* toString(Side side);
+std::optional<Side> sideOf(const std::string& text);
+
+/// A place as people told of it.
+struct DescribedPlace {
+  Id id = 0;                         ///< unique in the description, never 0
+  std::string name;                  ///< as it was first told, without article: "room I-109"
+  std::vector<std::string> aliases;  ///< "also known as"
+  /// Told or guessed from the name's words ("corridor", "hall"); nothing: not known.
+  std::optional<PlaceKind> kind;
+  std::optional<double> length;  ///< the first and ...
+  std::optional<double> width;   ///< ... the second of "6 by 8 metres"
+  std::optional<double> area;    ///< told as such, or length times width
+  /// "divided into six rooms": how many places of a map this one may be made of.
+  std::optional<int> parts;
+};
+
+/// The name and the aliases, in the order in which they were told.
+std::vector<std::string> allNamesOf(const DescribedPlace& place);
+
+/// Two joined places: "On your left you have A", told while the robot is in `from`; "in the kitchen
+/// you have the laundry" joins kitchen and laundry without a side.
+struct DescribedConnection {
+  Id from = 0;  ///< the place that the side is seen from (the "main vertex" of section 5.3.2)
+  Id to = 0;
+  Side side = Side::kUnknown;
+  /// Place in the row of those told of the same `from` and side, from 0: "A, then B" gives 0 and 1.
+  std::size_t order = 0;
+};
+
+/// What people say of places besides connections.
+enum class RelationKind {
+  kNextTo,    ///< a and b lie side by side
+  kOpposite,  ///< a and b face each other
+  kBetween,   ///< a lies between b and c
+  kAtEndOf,   ///< a lies at an end of b
+  kInside     ///< a is a part of b
+};
+
+const char* toString(RelationKind kind);
+std::optional<RelationKind> relationKindOf(const std::string& text);
+
+struct DescribedRelation {
+  RelationKind kind = RelationKind::kNextTo;
+  Id a = 0;
+  Id b = 0;
+  Id c = 0;  ///< only for kBetween, otherwise 0
+};
+
+/// The whole description.
+struct DescribedBuilding {
+  std::vector<DescribedPlace> places;            ///< in the order of their ids
+  std::vector<DescribedConnection> connections;  ///< at most one between two places, as told
+  std::vector<DescribedRelation> relations;
+  std::optional<Id> robot_place;  ///< where the robot was told that it is, the last time
+  /// "This house is divided into six rooms": of how many places, corridors among them, it is made.
+  std::optional<int> place_count;
+
+  const DescribedPlace* findPlace(Id id) const;
+  DescribedPlace* findPlace(Id id);
+};
+
+bool operator==(const DescribedPlace& a, const DescribedPlace& b);
+bool operator==(const DescribedConnection& a, const DescribedConnection& b);
+bool operator==(const DescribedRelation& a, const DescribedRelation& b);
+bool operator==(const DescribedBuilding& a, const DescribedBuilding& b);
+
+/// Throws hyselam::InputError with `source` and the part that is wrong, unless: ids are there and
+/// unique, names and aliases are not empty, UTF-8 and without control characters, sizes finite and
+/// > 0, parts >= 1, connections and relations join different places of the description, two places
+/// are connected at most once.
+void checkDescription(const DescribedBuilding& building, const std::string& source);
+
+/// How sure it is, from something else than words (objects, pictures), that a place has a name.
+struct MatchEvidence {
+  Id place = 0;        ///< of the map
+  Id name = 0;         ///< of the description
+  double value = 0.0;  ///< 0 .. 1
+};
+
+}  // namespace hyselam_topo

@@ -1,0 +1,50 @@
+// When two names mean the same place: "room I-110", "I-110" and "i 110" do, "room 5" and "lab 5" do
+// not.
+//
+// Names are compared without case, accents, articles, spaces and signs, possessive s and the
+// repetition of a title ("room room3"). If they are still different, titles ("room", "lab": word
+// list of the grammar) in front of a code (a digit, one or two letters, a number word) may be
+// missing on one side; purely generic titles ("room") in front of any name.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hyselam_language/grammar/grammar.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
+
+namespace hyselam_topo {
+
+/// What is compared of a name.
+struct NameKey {
+  std::string full;   ///< everything: "roomi110"
+  std::string core;   ///< without titles: "i110"
+  std::string title;  ///< "room"; "" without one
+};
+
+enum class SameName { kNo, kPerhaps, kYes };
+
+/// kYes: equal in full; kPerhaps: equal but for a title that is missing on one side.
+SameName compare(const NameKey& a, const NameKey& b);
+
+class PlaceNames {
+ public:
+  /// The word lists of all the grammars together.
+  explicit PlaceNames(std::vector<Grammar> grammars, std::string type = "place");
+
+  NameKey key(const std::string& name) const;
+  /// Guessed from words such as "corridor" and "kitchen"; nothing without one.
+  std::optional<PlaceKind> kindOf(const std::string& name) const;
+
+  /// For each list of names (of one place each): the index of those that `name` means. One that is
+  /// equal in full goes before those that are equal but for a title; several: it is ambiguous.
+  std::vector<std::size_t> find(const std::string& name,
+                                const std::vector<std::vector<std::string>>& places) const;
+
+ private:
+  std::vector<Grammar> grammars_;
+  std::string type_;
+};
+
+}  // namespace hyselam_topo

@@ -1,0 +1,54 @@
+// TopoParser (dos Santos, section 5.1): what people say, into statements, commands and questions.
+// The thesis gives the work to the program Nooj; here a grammar of its own is read from a file and
+// matched by a small engine.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hyselam_language/grammar/grammar.hpp"
+#include "hyselam_language/grammar/utterance.hpp"
+
+namespace hyselam_topo {
+
+struct ParseOptions {
+  /// A language of the parser, or "auto": the one that understands most of the text, of several the
+  /// one that knows more of its words, of several the first.
+  std::string language = "auto";
+  /// Of "auto": the language of what fits several equally well; "" for the first of the parser.
+  std::string preferred;
+  /// Intents of answers to a question that was asked: preferred where a sentence may mean several
+  /// things, and needed for some, as "name_answer" for a bare "Kitchen.".
+  std::set<std::string> expected;
+  std::size_t max_bytes = 1u << 16;  ///< longer texts are not understood
+};
+
+struct ParsedText {
+  std::string language;               ///< of the grammar that was used
+  std::vector<Utterance> utterances;  ///< in the order said
+  /// The number of those not understood.
+  std::size_t misunderstood() const;
+};
+
+class TopoParser {
+ public:
+  /// All shipped languages, English first.
+  TopoParser();
+  /// Throws hyselam::ParameterError without a grammar.
+  explicit TopoParser(std::vector<Grammar> grammars);
+
+  /// Never throws for what a text holds: what is no text, too long or not understood comes back as
+  /// an utterance with the reason. A sentence is understood as a whole or not at all. Throws
+  /// hyselam::ParameterError for an unknown language.
+  ParsedText parse(const std::string& text, const ParseOptions& options = {}) const;
+
+  const std::vector<Grammar>& grammars() const { return grammars_; }
+  /// Throws hyselam::ParameterError for an unknown language.
+  const Grammar& grammar(const std::string& language) const;
+
+ private:
+  std::vector<Grammar> grammars_;
+};
+
+}  // namespace hyselam_topo

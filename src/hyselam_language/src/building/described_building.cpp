@@ -1,0 +1,130 @@
+#include "hyselam_language/building/described_building.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/utf8.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+constexpr std::array<const char*, 5> kSides{"unknown", "front", "left", "back", "right"};
+constexpr std::array<const char*, 5> kRelations{"next_to", "opposite", "between", "at_end_of",
+                                                "inside"};
+
+/// More than anybody tells of one side; a file can carry it as a whole number.
+constexpr std::size_t kMaxOrder = 1000000;
+
+template <typename Enum, std::size_t N>
+std::optional<Enum> numberOf(const std::array<const char*, N>& names, const std::string& text) {
+  const auto found = std::find(names.begin(), names.end(), text);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Enum>(found - names.begin());
+}
+
+}  // namespace
+
+std::vector<std::string> allNamesOf(const DescribedPlace& place) {
+  std::vector<std::string> names{place.name};
+  names.insert(names.end(), place.aliases.begin(), place.aliases.end());
+  return names;
+}
+
+const char* toString(Side side) {
+  return kSides.at(static_cast<std::size_t>(side));
+}
+std::optional<Side> sideOf(const std::string& text) {
+  return numberOf<Side>(kSides, text);
+}
+const char* toString(RelationKind kind) {
+  return kRelations.at(static_cast<std::size_t>(kind));
+}
+std::optional<RelationKind> relationKindOf(const std::string& text) {
+  return numberOf<RelationKind>(kRelations, text);
+}
+
+DescribedPlace* DescribedBuilding::findPlace(Id id) {
+  const auto found = std::find_if(places.begin(), places.end(),
+                                  [id](const DescribedPlace& place) { return place.id == id; });
+  return found == places.end() ? nullptr : &*found;
+}
+
+const DescribedPlace* DescribedBuilding::findPlace(Id id) const {
+  return const_cast<DescribedBuilding*>(this)->findPlace(id);
+}
+
+bool operator==(const DescribedPlace& a, const DescribedPlace& b) {
+  return std::tie(a.id, a.name, a.aliases, a.kind, a.length, a.width, a.area, a.parts) ==
+         std::tie(b.id, b.name, b.aliases, b.kind, b.length, b.width, b.area, b.parts);
+}
+
+bool operator==(const DescribedConnection& a, const DescribedConnection& b) {
+  return std::tie(a.from, a.to, a.side, a.order) == std::tie(b.from, b.to, b.side, b.order);
+}
+
+bool operator==(const DescribedRelation& a, const DescribedRelation& b) {
+  return std::tie(a.kind, a.a, a.b, a.c) == std::tie(b.kind, b.a, b.b, b.c);
+}
+
+bool operator==(const DescribedBuilding& a, const DescribedBuilding& b) {
+  return std::tie(a.places, a.connections, a.relations, a.robot_place, a.place_count) ==
+         std::tie(b.places, b.connections, b.relations, b.robot_place, b.place_count);
+}
+
+void checkDescription(const DescribedBuilding& building, const std::string& source) {
+  const auto require = [&source](bool holds, const std::string& what) {
+    if (!holds) throw hyselam::InputError(source, "", what);
+  };
+  std::set<Id> ids;
+  for (const DescribedPlace& place : building.places) {
+    const std::string who = "place " + std::to_string(place.id);
+    require(place.id != 0, "a place has the id 0");
+    require(ids.insert(place.id).second, who + " stands there twice");
+    require(!place.name.empty(), who + " has no name");
+    const std::string wrong = hyselam::wordError(place.name);
+    require(wrong.empty(), (who + ": the name ").append(wrong));
+    for (const std::string& alias : place.aliases) {
+      require(!alias.empty(), who + " has an empty alias");
+      const std::string wrong_alias = hyselam::wordError(alias);
+      require(wrong_alias.empty(), (who + ": an alias ").append(wrong_alias));
+    }
+    for (const auto& size : {place.length, place.width, place.area}) {
+      require(!size || (std::isfinite(*size) && *size > 0.0), who + " has a size that is not > 0");
+    }
+    require(!place.parts || *place.parts >= 1, who + " has fewer than one part");
+  }
+  const auto known = [&](Id id, const std::string& where) {
+    require(ids.count(id) != 0,
+            where + " names place " + std::to_string(id) + ", which is missing");
+  };
+  std::set<std::pair<Id, Id>> joined;
+  for (const DescribedConnection& connection : building.connections) {
+    known(connection.from, "a connection");
+    known(connection.to, "a connection");
+    require(connection.from != connection.to, "a connection joins a place with itself");
+    require(connection.order < kMaxOrder,
+            "a connection is beyond the " + std::to_string(kMaxOrder) + "th of its side");
+    require(joined.insert(std::minmax(connection.from, connection.to)).second,
+            "places " + std::to_string(connection.from) + " and " + std::to_string(connection.to) +
+                " are connected twice");
+  }
+  for (const DescribedRelation& relation : building.relations) {
+    known(relation.a, "a relation");
+    known(relation.b, "a relation");
+    const bool between = relation.kind == RelationKind::kBetween;
+    if (between) known(relation.c, "a relation");
+    require(between || relation.c == 0, "a relation of two places names a third");
+    require(relation.a != relation.b && relation.a != relation.c && relation.b != relation.c,
+            "a relation names a place twice");
+  }
+  require(!building.place_count || *building.place_count >= 1,
+          "it is made of fewer than one place");
+  if (building.robot_place) known(*building.robot_place, "the robot's place");
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,169 @@
+#include "hyselam_language/building/place_names.hpp"
+
+#include <algorithm>
+
+#include "grammar/compiled_grammar.hpp"
+#include "hyselam_common/utf8.hpp"
+#include "grammar/letters.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using language::NameType;
+
+/// Words of letters and digits, folded, without the s of possessives.
+std::vector<std::string> wordsOf(const std::string& name) {
+  const std::string text = language::folded(name);
+  std::vector<std::string> words;
+  bool in_word = false;
+  std::uint32_t code = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = std::max<std::size_t>(hyselam::utf8CharacterAt(text, i, &code), 1);
+    if (language::isLetterOrDigit(code)) {
+      if (!in_word) words.emplace_back();
+      words.back().append(text, i, length);
+      in_word = true;
+    } else if (code == '\'' && in_word) {
+      const bool possessive =
+          text.compare(i, 2, "'s") == 0 && (i + 2 == text.size() || text[i + 2] == ' ');
+      if (possessive) ++i;
+      // Other apostrophes vanish within their word.
+      in_word = !possessive;
+    } else {
+      in_word = false;
+    }
+    i += length;
+  }
+  return words;
+}
+
+bool hasDigit(const std::string& word) {
+  return std::any_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::string joined(const std::vector<std::string>& words, std::size_t from = 0) {
+  std::string all;
+  for (std::size_t i = from; i < words.size(); ++i) all += words[i];
+  return all;
+}
+
+}  // namespace
+
+SameName compare(const NameKey& a, const NameKey& b) {
+  if (a.full == b.full) return SameName::kYes;
+  if (a.core.empty() || a.core != b.core) return SameName::kNo;
+  if (a.title == b.title) return SameName::kYes;
+  return a.title.empty() || b.title.empty() ? SameName::kPerhaps : SameName::kNo;
+}
+
+PlaceNames::PlaceNames(std::vector<Grammar> grammars, std::string type)
+    : grammars_(std::move(grammars)), type_(std::move(type)) {}
+
+NameKey PlaceNames::key(const std::string& name) const {
+  std::vector<std::string> words = wordsOf(name);
+  NameKey key;
+  std::vector<const NameType*> types;
+  for (const Grammar& grammar : grammars_) {
+    if (const NameType* type = grammar.compiled().nameType(type_)) types.push_back(type);
+  }
+  const auto anyType = [&](auto&& holds) { return std::any_of(types.begin(), types.end(), holds); };
+  const bool article = words.size() > 1 && words[0].size() > 1 &&
+                       anyType([&](const NameType* type) { return type->isArticle(words[0]); });
+  if (article) words.erase(words.begin());
+  key.full = key.core = joined(words);
+  std::size_t from = 0;
+  while (from < words.size()) {
+    // "room3" is room 3.
+    std::string word = words[from];
+    const std::size_t digit = word.find_first_of("0123456789");
+    const bool glued = digit != std::string::npos && digit > 0;
+    const std::string head = glued ? word.substr(0, digit) : word;
+    std::string title;
+    bool generic = false;
+    for (const NameType* type : types) {
+      const auto found = type->titles.find(head);
+      if (found != type->titles.end() && title.empty()) title = found->second;
+      generic = generic || type->generic.count(head) != 0;
+    }
+    if (title.empty() && (!generic || glued)) break;
+    if (!glued && from + 1 == words.size()) break;
+    const std::string rest = (glued ? word.substr(digit) : "") + joined(words, from + 1);
+    bool is_code = hasDigit(rest) || rest.size() <= 2;
+    // "room two" is room 2.
+    for (const Grammar& grammar : grammars_) {
+      const auto& numbers = grammar.compiled().number_words;
+      is_code = is_code || numbers.count(rest) != 0;
+    }
+    if (!generic && !is_code) break;
+    if (!title.empty()) key.title = title;
+    key.core = rest;
+    if (glued) {
+      words[from] = word.substr(digit);
+      continue;
+    }
+    ++from;
+  }
+  for (const Grammar& grammar : grammars_) {
+    const auto number = grammar.compiled().number_words.find(key.core);
+    if (key.title.empty() || number == grammar.compiled().number_words.end()) continue;
+    key.core = std::to_string(static_cast<int>(number->second.first));
+    break;
+  }
+  return key;
+}
+
+std::optional<PlaceKind> PlaceNames::kindOf(const std::string& name) const {
+  const std::vector<std::string> words = wordsOf(name);
+  for (const Grammar& grammar : grammars_) {
+    const NameType* type = grammar.compiled().nameType(type_);
+    if (type == nullptr) continue;
+    // The longest noun at the head: the last in "entrance hall", the first in "sala de estar".
+    for (std::size_t k = 0; k < words.size(); ++k) {
+      const std::size_t at = type->head_first ? k : words.size() - 1 - k;
+      const std::string* kind = nullptr;
+      std::string phrase;
+      for (std::size_t n = 0; n < 3; ++n) {
+        if (type->head_first ? at + n >= words.size() : n > at) break;
+        const std::string& word = words[type->head_first ? at + n : at - n];
+        if (n > 0) phrase.insert(type->head_first ? phrase.size() : 0, 1, ' ');
+        phrase.insert(type->head_first ? phrase.size() : 0, word);
+        const auto found = type->nouns.find(phrase);
+        if (found != type->nouns.end()) kind = &found->second;
+      }
+      // "room3"
+      const std::size_t digit = words[at].find_first_of("0123456789");
+      if (kind == nullptr && digit != std::string::npos && digit > 0) {
+        const auto found = type->nouns.find(words[at].substr(0, digit));
+        if (found != type->nouns.end()) kind = &found->second;
+      }
+      if (kind != nullptr) return placeKindOf(*kind);
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<std::size_t> PlaceNames::find(
+    const std::string& name, const std::vector<std::vector<std::string>>& places) const {
+  const NameKey wanted = key(name);
+  std::vector<std::size_t> exact, perhaps;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    bool is = false, may_be = false, cannot_be = false;
+    for (const std::string& each : places[i]) {
+      const NameKey other = key(each);
+      const SameName same = compare(wanted, other);
+      is = is || same == SameName::kYes;
+      may_be = may_be || same == SameName::kPerhaps;
+      // "110" was called "lab 110" since: it is not "room 110".
+      cannot_be =
+          cannot_be || (same == SameName::kNo && !wanted.core.empty() && wanted.core == other.core);
+    }
+    if (is) {
+      exact.push_back(i);
+    } else if (may_be && !cannot_be) {
+      perhaps.push_back(i);
+    }
+  }
+  return exact.empty() ? perhaps : exact;
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,124 @@
+// A grammar as the matcher uses it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "automaton.hpp"
+#include "hyselam_language/grammar/utterance.hpp"
+#include "tokens.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+using Words = std::vector<std::string>;
+/// Numbers of words of the vocabulary, one after another.
+using Phrase = std::vector<int>;
+
+/// All words of patterns, numbered; those long enough may be misspelt.
+class Vocabulary {
+ public:
+  int add(const std::string& word);
+  struct Match {
+    int word = 0;
+    int cost = 0;
+  };
+  /// The words that a token may stand for; `may_be_misspelt`: look for those one slip away.
+  std::vector<Match> matches(const Token& token, bool may_be_misspelt) const;
+  const std::string& text(int word) const { return entries_[static_cast<std::size_t>(word)].lower; }
+  std::size_t size() const { return entries_.size(); }
+  bool contains(const std::string& folded_word) const { return by_folded_.count(folded_word) != 0; }
+
+ private:
+  struct Entry {
+    std::string lower;
+    std::string folded;
+  };
+  std::vector<Entry> entries_;
+  std::unordered_map<std::string, int> by_lower_;
+  std::unordered_multimap<std::string, int> by_folded_;
+};
+
+/// What may be a name (of places, of objects, ...). Sets hold folded words.
+struct NameType {
+  std::string name;
+  std::set<std::string> definite;
+  std::set<std::string> indefinite;
+  std::set<std::string> joiners;                 ///< behind them an article may stand: "of the"
+  std::set<std::string> stop;                    ///< never within a name
+  std::set<std::string> generic;                 ///< no name on their own: "room"
+  std::set<std::string> quantities;              ///< no name begins so: "several"
+  std::map<std::string, std::string> forbidden;  ///< word -> code of the reason
+  std::map<std::string, std::string> nouns;      ///< phrase -> kind: "dining hall" -> "room"
+  std::map<std::string, std::string> titles;     ///< "lab" -> "lab", "laboratory" -> "lab"
+  std::map<std::string, std::string> plurals;    ///< "rooms 1 and 2" are "room 1" and "room 2"
+  std::set<std::string> between;                 ///< words between the codes of such a row: "and"
+  std::set<std::string> parts;                   ///< "door": a door of a place is no place
+  std::set<std::string> part_joiners;            ///< "of": what a part and its place stand around
+  std::set<std::string> feminine;                ///< nouns with the second article when generating
+  bool head_first = false;                       ///< the first noun tells the kind, not the last
+  bool needs_noun = false;
+  bool indefinite_needs_noun = false;
+  std::size_t max_words = 8;
+
+  bool isArticle(const std::string& word) const {
+    return definite.count(word) != 0 || indefinite.count(word) != 0;
+  }
+};
+
+struct Unit {
+  double factor = 1.0;
+  std::vector<Phrase> phrases;
+};
+
+struct Quantity {
+  std::string name;
+  double default_factor = 0.0;  ///< 0: a unit must be said
+  std::vector<Unit> units;
+};
+
+struct IntentInfo {
+  std::string name;
+  UtteranceKind kind = UtteranceKind::kStatement;
+  std::string refuse;          ///< code of the reason; "" for what is understood
+  bool only_expected = false;  ///< tried only when asked for
+  int cost = 0;                ///< more than other intents, where two fit equally well
+  bool corrects_next = false;  ///< "no.": the next statement is a correction
+  std::vector<std::string> examples;
+  std::vector<Automaton> patterns;
+};
+
+struct CompiledGrammar {
+  std::string language;
+  std::string title;
+  Vocabulary vocabulary;
+  std::set<std::string> known_words;  ///< folded words that are never misspelt keywords
+  std::vector<Phrase> fillers_before, fillers_after, corrections, clause_separators;
+  std::set<int> fillers_inner;
+  std::set<std::string> abbreviations;
+  std::map<std::string, Words> contractions;
+  std::map<std::string, std::pair<double, bool>> number_words;  ///< value, is a multiple of ten
+  std::set<std::string> number_joiners;
+  std::vector<Phrase> halves;
+  std::set<std::string> unit_words;
+  std::vector<Quantity> quantities;
+  std::vector<NameType> name_types;
+  std::vector<IntentInfo> intents;
+  std::vector<std::string> values;  ///< entries of word classes
+  std::map<std::string, std::string> refusing_words;
+  std::map<std::string, std::string> reasons;
+  std::map<std::string, std::string> say;
+
+  const NameType* nameType(const std::string& name) const;
+  TokenRules tokenRules() const;
+  /// The reason of a code, with {word} put in.
+  std::string reason(const std::string& code, const std::string& word = "") const;
+};
+
+}  // namespace language
+}  // namespace hyselam_topo

@@ -1,0 +1,285 @@
+#include "name_finder.hpp"
+
+#include <algorithm>
+
+#include "hyselam_common/utf8.hpp"
+#include "letters.hpp"
+#include "matching_costs.hpp"
+
+namespace hyselam_topo {
+namespace language {
+namespace {
+
+constexpr char kMarksInNames[] = "-/#+_";
+constexpr std::size_t kLongestNoun = 3;  // words
+
+bool isMarkOfNames(const Token& token) {
+  return token.kind == TokenKind::kMark && token.text.size() == 1 &&
+         std::string(kMarksInNames).find(token.text) != std::string::npos;
+}
+
+bool isWordLike(const Token& token) {
+  return token.kind == TokenKind::kWord || token.kind == TokenKind::kNumber;
+}
+
+bool isStop(const Token& token, const NameType& type) {
+  return type.stop.count(token.lower) != 0 ||
+         (token.lower != token.folded && token.folded.size() > 3 &&
+          type.stop.count(token.folded) != 0);
+}
+
+/// Nothing but letters a .. z.
+bool isAscii(const std::string& word) {
+  return std::all_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+}
+
+}  // namespace
+
+NameFinder::NameFinder(const CompiledGrammar& grammar, const std::string& text,
+                       const std::vector<Token>& tokens)
+    : grammar_(grammar),
+      text_(text),
+      tokens_(tokens),
+      cache_(tokens.size() * grammar.name_types.size()) {}
+
+const std::vector<FoundName>& NameFinder::namesAt(std::size_t at, std::size_t type) {
+  Cached& cached = cache_[at * grammar_.name_types.size() + type];
+  if (!cached.known) {
+    cached.known = true;
+    cached.names = find(at, grammar_.name_types[type]);
+  }
+  return cached.names;
+}
+
+bool NameFinder::mayBeArticle(std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  if (token.kind != TokenKind::kWord || !type.isArticle(token.folded)) return false;
+  // "room A", but "A kitchen is on your left".
+  return !(token.starts_upper && token.text.size() == 1 && at > 0);
+}
+
+std::size_t NameFinder::codeEnd(std::size_t at) const {
+  const auto isCode = [&](std::size_t k) {
+    if (k >= tokens_.size()) return false;
+    const Token& token = tokens_[k];
+    if (token.kind == TokenKind::kNumber) return true;
+    return token.kind == TokenKind::kWord &&
+           ((token.text.size() == 1 && token.starts_upper) ||
+            std::any_of(token.text.begin(), token.text.end(),
+                        [](char c) { return c >= '0' && c <= '9'; }));
+  };
+  if (!isCode(at)) return 0;
+  std::size_t end = at + 1;
+  while (end + 1 < tokens_.size() && isMarkOfNames(tokens_[end]) && isCode(end + 1)) end += 2;
+  return end;
+}
+
+std::string NameFinder::titleOfRow(std::size_t at, const NameType& type) const {
+  for (std::size_t k = at; k > 0;) {
+    const auto plural = type.plurals.find(tokens_[k - 1].folded);
+    if (plural != type.plurals.end()) {
+      // "two rooms A and B" counts, and names A and B.
+      const bool counted = k > 1 && (tokens_[k - 2].kind == TokenKind::kNumber ||
+                                     grammar_.number_words.count(tokens_[k - 2].folded) != 0);
+      return counted ? "" : plural->second;
+    }
+    std::size_t behind = k;
+    while (behind > 0 && (tokens_[behind - 1].kind == TokenKind::kComma ||
+                          type.between.count(tokens_[behind - 1].lower) != 0)) {
+      --behind;
+    }
+    if (behind == k) return "";
+    std::size_t begin = behind;
+    while (begin > 0 && codeEnd(begin - 1) == behind) --begin;
+    if (begin == behind) return "";
+    k = begin;
+  }
+  return "";
+}
+
+std::optional<FoundName> NameFinder::inRow(std::size_t at, const NameType& type) const {
+  std::size_t begin = at;
+  if (mayBeArticle(begin, type)) ++begin;
+  if (begin < tokens_.size() && type.plurals.count(tokens_[begin].folded) != 0) {
+    ++begin;
+  } else {
+    begin = at;
+  }
+  const std::size_t end = codeEnd(begin);
+  if (end == 0) return std::nullopt;
+  const std::string title = titleOfRow(begin, type);
+  if (title.empty()) return std::nullopt;
+  SaidName name = nameOf(begin, end);
+  name.text = title + " " + name.text;
+  return FoundName{end, kNameCost + kNameWordCost, name};
+}
+
+bool NameFinder::isPart(std::size_t begin, std::size_t end, const NameType& type) const {
+  for (std::size_t k = begin; k + 1 < end; ++k) {
+    if (type.parts.count(tokens_[k].folded) != 0 &&
+        type.part_joiners.count(tokens_[k + 1].folded) != 0) {
+      return true;
+    }
+  }
+  const std::string& last = tokens_[end - 1].folded;
+  return !type.head_first && type.parts.count(last) != 0 && type.nouns.count(last) == 0 &&
+         hasNoun(begin, end - 1, type);
+}
+
+std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
+  std::vector<FoundName> found;
+  if (const auto in_row = inRow(at, type)) return {*in_row};
+  std::size_t begin = at;
+  bool indefinite = false;
+  if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
+    const Token& next = tokens_[at + 1];
+    const bool goes_on =
+        next.kind == TokenKind::kQuoted || (isWordLike(next) && !isStop(next, type));
+    if (goes_on) {
+      indefinite = type.indefinite.count(tokens_[at].folded) != 0 &&
+                   type.definite.count(tokens_[at].folded) == 0;
+      ++begin;
+    }
+  }
+  std::size_t words = 0;
+  for (std::size_t k = begin; k < tokens_.size() && words < type.max_words; ++k) {
+    const Token& token = tokens_[k];
+    bool is_last = false, may_end = true;
+    if (token.kind == TokenKind::kQuoted) {
+      is_last = true;
+    } else if (isMarkOfNames(token) && k > begin) {
+      may_end = false;
+    } else if (!isWordLike(token) || beginsWithArticle(begin, k, type)) {
+      break;
+    } else if (isStop(token, type)) {
+      if (!isLetterOfTitle(begin, k, type)) break;
+    } else if (k > begin && mayBeArticle(k, type)) {
+      const std::string& before = tokens_[k - 1].folded;
+      if (type.joiners.count(before) != 0) {
+        may_end = false;
+      } else if (token.folded.size() == 1 && type.titles.count(before) != 0) {
+        is_last = true;  // "room a"
+      } else {
+        break;
+      }
+    }
+    ++words;
+    if (type.joiners.count(token.folded) != 0) may_end = false;
+    if (may_end) {
+      const std::string wrong = whatIsWrong(begin, k + 1, indefinite, type);
+      if (wrong.empty()) {
+        found.push_back(
+            {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1)});
+      } else {
+        failures_.push_back({begin, wrong, k + 1});
+      }
+    }
+    if (is_last) break;
+  }
+  return found;
+}
+
+/// More than a letter, which may be a name of its own.
+bool NameFinder::beginsWithArticle(std::size_t begin, std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  return at == begin && token.folded.size() > 1 && mayBeArticle(at, type) && !isStop(token, type);
+}
+
+bool NameFinder::isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const {
+  if (at == begin || tokens_[at].folded.size() != 1) return false;
+  if (type.titles.count(tokens_[at - 1].folded) == 0) return false;
+  return at + 1 == tokens_.size() || tokens_[at + 1].kind != TokenKind::kWord;
+}
+
+bool NameFinder::hasNoun(std::size_t begin, std::size_t end, const NameType& type) const {
+  for (std::size_t i = begin; i < end; ++i) {
+    std::string phrase;
+    for (std::size_t k = i; k < std::min(end, i + kLongestNoun); ++k) {
+      phrase += (k > i ? " " : "") + tokens_[k].folded;
+      if (type.nouns.count(phrase) != 0) return true;
+    }
+  }
+  return false;
+}
+
+bool NameFinder::mayBeMisspelt(std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  const bool plain = token.only_lower_letters || (at == 0 && isAscii(token.folded));
+  if (!plain || token.folded.size() < 2 || grammar_.known_words.count(token.folded) != 0) {
+    return false;
+  }
+  return std::any_of(type.stop.begin(), type.stop.end(), [&](const std::string& stop) {
+    return stop.size() >= 2 && isOneSlipApart(stop, token.folded);
+  });
+}
+
+std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
+                                    const NameType& type) {
+  const Token& first = tokens_[begin];
+  const Token& last = tokens_[end - 1];
+  const bool has_noun = hasNoun(begin, end, type);
+  const bool quoted = last.kind == TokenKind::kQuoted;
+  if (end - begin > 1) {
+    // A quotation may follow "room", nothing else.
+    for (std::size_t k = begin; quoted && k + 1 < end; ++k) {
+      const std::string& word = tokens_[k].folded;
+      const bool noun = type.nouns.count(word) != 0 || type.titles.count(word) != 0;
+      if (!noun && type.generic.count(word) == 0) return "no_name";
+    }
+  }
+  const std::string& name = nameOf(begin, end).text;
+  if (!hyselam::wordError(name).empty() || name.size() > kMaxNameBytes) return "no_name";
+  if (quoted) return "";
+  if (isPart(begin, end, type)) return "part_of_place";
+  const bool number_word =
+      first.kind == TokenKind::kWord && grammar_.number_words.count(first.folded) != 0;
+  const bool small_number =
+      end - begin == 1 && first.kind == TokenKind::kNumber && first.text.size() < 3;
+  if (number_word || small_number || type.quantities.count(first.folded) != 0) return "quantity";
+  bool only_generic = true;
+  for (std::size_t k = begin; k < end; ++k) {
+    const auto forbidden = type.forbidden.find(tokens_[k].folded);
+    if (forbidden != type.forbidden.end() && !has_noun) return forbidden->second;
+    only_generic = only_generic && type.generic.count(tokens_[k].folded) != 0;
+  }
+  if (only_generic) return "no_name";
+  if (mayBeMisspelt(begin, type) || mayBeMisspelt(end - 1, type)) return "misspelt";
+  if (!has_noun && (type.needs_noun || (indefinite && type.indefinite_needs_noun))) {
+    return "not_a_known_kind";
+  }
+  return "";
+}
+
+bool NameFinder::isCommonNoun(const std::string& word) const {
+  return std::any_of(
+      grammar_.name_types.begin(), grammar_.name_types.end(), [&](const NameType& type) {
+        if (type.titles.count(word) != 0) return true;
+        const auto noun = type.nouns.lower_bound(word);
+        return noun != type.nouns.end() &&
+               (noun->first == word || noun->first.compare(0, word.size() + 1, word + " ") == 0);
+      });
+}
+
+SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
+  SaidName name;
+  name.range = {tokens_[begin].range.begin, tokens_[end - 1].range.end};
+  const Token& last = tokens_[end - 1];
+  if (last.kind == TokenKind::kQuoted) {
+    name.quoted = true;
+    const std::string before = text_.substr(name.range.begin, last.range.begin - name.range.begin);
+    name.text = singleSpaced(before + " " + last.text);
+    if (name.text.compare(0, 1, " ") == 0) name.text.erase(0, 1);
+  } else {
+    name.text = singleSpaced(text_.substr(name.range.begin, name.range.end - name.range.begin));
+  }
+  // "Room A" at the beginning of a sentence is "room A".
+  const Token& first = tokens_[begin];
+  const bool common = begin == 0 && first.starts_upper && first.kind == TokenKind::kWord &&
+                      isCommonNoun(first.folded) && first.text.substr(1) == first.lower.substr(1) &&
+                      first.text[0] >= 'A' && first.text[0] <= 'Z';
+  if (common) name.text[0] = static_cast<char>(name.text[0] - 'A' + 'a');
+  return name;
+}
+
+}  // namespace language
+}  // namespace hyselam_topo

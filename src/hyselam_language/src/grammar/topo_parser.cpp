@@ -1,0 +1,121 @@
+#include "hyselam_language/grammar/topo_parser.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "compiled_grammar.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/utf8.hpp"
+#include "matcher.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using language::CompiledGrammar;
+
+std::vector<Grammar> allShipped() {
+  std::vector<Grammar> grammars;
+  for (const std::string& each : Grammar::shippedLanguages()) {
+    grammars.push_back(Grammar::shipped(each));
+  }
+  return grammars;
+}
+
+ParsedText parseWith(const Grammar& grammar, const std::string& text,
+                     const std::set<std::string>& expected) {
+  const CompiledGrammar& compiled = grammar.compiled();
+  ParsedText parsed;
+  parsed.language = grammar.language();
+  bool corrects = false;
+  for (const language::Sentence& sentence : language::splitSentences(text, compiled.tokenRules())) {
+    for (Utterance& utterance : language::readSentence(compiled, text, sentence, expected)) {
+      if (corrects && utterance.kind == UtteranceKind::kStatement) utterance.correction = true;
+      const auto intent =
+          std::find_if(compiled.intents.begin(), compiled.intents.end(),
+                       [&](const auto& each) { return each.name == utterance.intent; });
+      corrects = intent != compiled.intents.end() && intent->corrects_next;
+      parsed.utterances.push_back(std::move(utterance));
+    }
+  }
+  return parsed;
+}
+
+std::size_t knownWords(const Grammar& grammar, const std::string& text) {
+  const CompiledGrammar& compiled = grammar.compiled();
+  const auto tokens = language::tokenize(text, {0, text.size()}, compiled.tokenRules());
+  return static_cast<std::size_t>(std::count_if(tokens.begin(), tokens.end(), [&](const auto& t) {
+    return compiled.known_words.count(t.folded) != 0;
+  }));
+}
+
+ParsedText refused(const Grammar& grammar, const std::string& text, const std::string& code) {
+  ParsedText parsed;
+  parsed.language = grammar.language();
+  Utterance utterance;
+  utterance.range = utterance.culprit = {0, text.size()};
+  utterance.reason_code = code;
+  utterance.reason = grammar.compiled().reason(code);
+  parsed.utterances.push_back(std::move(utterance));
+  return parsed;
+}
+
+}  // namespace
+
+std::size_t ParsedText::misunderstood() const {
+  return static_cast<std::size_t>(std::count_if(
+      utterances.begin(), utterances.end(), [](const Utterance& u) { return !u.understood(); }));
+}
+
+TopoParser::TopoParser() : TopoParser(allShipped()) {}
+
+TopoParser::TopoParser(std::vector<Grammar> grammars) : grammars_(std::move(grammars)) {
+  if (grammars_.empty()) throw hyselam::ParameterError("grammars", 0, "at least one");
+}
+
+const Grammar& TopoParser::grammar(const std::string& language) const {
+  std::string known;
+  for (const Grammar& each : grammars_) {
+    if (each.language() == language) return each;
+    known += (known.empty() ? "" : ", ") + each.language();
+  }
+  throw hyselam::ParameterError("language", language, "auto, " + known);
+}
+
+ParsedText TopoParser::parse(const std::string& text, const ParseOptions& options) const {
+  const bool any = options.language == "auto";
+  const auto preferred = std::find_if(grammars_.begin(), grammars_.end(), [&](const Grammar& each) {
+    return each.language() == options.preferred;
+  });
+  const Grammar& first = !any                           ? grammar(options.language)
+                         : preferred == grammars_.end() ? grammars_.front()
+                                                        : *preferred;
+  if (text.size() > options.max_bytes) return refused(first, text, "too_long");
+  if (text.find('\0') != std::string::npos || !hyselam::isUtf8(text)) {
+    return refused(first, text, "not_text");
+  }
+  if (!any) return parseWith(first, text, options.expected);
+  // The language of most of its words first.
+  std::vector<std::pair<std::size_t, std::size_t>> order;
+  for (std::size_t i = 0; i < grammars_.size(); ++i) {
+    order.emplace_back(grammars_.size() > 1 ? knownWords(grammars_[i], text) : 0, i);
+  }
+  if (preferred != grammars_.end()) {
+    const auto at = order.begin() + (preferred - grammars_.begin());
+    std::rotate(order.begin(), at, at + 1);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::optional<ParsedText> best;
+  for (const auto& [known, index] : order) {
+    const Grammar& each = grammars_[index];
+    // In a language that knows less of it, any words would do as the name that was asked for.
+    static const std::set<std::string> kNothing;
+    ParsedText parsed =
+        parseWith(each, text, known == order.front().first ? options.expected : kNothing);
+    if (!best || parsed.misunderstood() < best->misunderstood()) best = std::move(parsed);
+    if (best->misunderstood() == 0) break;
+  }
+  return *best;
+}
+
+}  // namespace hyselam_topo

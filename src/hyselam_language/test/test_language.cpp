@@ -1,0 +1,276 @@
+// Grammars, the engine, names, the builder and the way back to text.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_language/building/describe_building.hpp"
+#include "hyselam_language/building/description_builder.hpp"
+#include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_language/testing/language_outlines.hpp"
+#include "random_buildings.hpp"
+#ifdef HYSELAM_HAVE_RAPIDCHECK
+#include "hyselam_common/testing/properties.hpp"
+#endif
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::testing::messageOf;
+
+const TopoParser& parser() {
+  static const TopoParser kParser;
+  return kParser;
+}
+
+void expectParts(const std::string& message, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
+  }
+}
+
+constexpr char kSmall[] =
+    "format: hyselam_grammar\nversion: 1\nlanguage: xx\n"
+    "names: {thing: {definite: [the], stop: [is, here]}}\n"
+    "reasons: {why: because}\n"
+    "classes: {colour: {red: [red, crimson], blue: [blue]}}\n"
+    "macros: {be: [is, seems]}\n"
+    "units: {weight: {1: [kg], 0.001: [g]}}\n"
+    "intents: {tell: {kind: statement, patterns: ['{what:thing} <be> {colour:colour}', "
+    "'{what:thing} weighs {weight:weight}']}}\n";
+
+std::string errorWith(const std::string& from, const std::string& to) {
+  std::string text = kSmall;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  return messageOf<hyselam::InputError>([&] { Grammar::fromYaml({{"g.yaml", text}}); });
+}
+
+TEST(Grammar, AnyLanguageMayBeGiven) {
+  const TopoParser small({Grammar::fromYaml({{"g.yaml", kSmall}})});
+  const auto said = small.parse("The ball is crimson. The cup weighs 300 g.").utterances;
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(testing::outline(said[0]), "tell colour=red what=ball");
+  EXPECT_EQ(testing::outline(said[1]), "tell weight=0.3 what=cup");
+}
+
+TEST(Grammar, FurtherFilesAddToTheFirst) {
+  const std::string more =
+      "format: hyselam_grammar\nversion: 1\nlanguage: xx\nclasses: {colour: {green: [green]}}\n"
+      "intents: {ask: {kind: question, patterns: ['where <be> {what:thing}']}}\n";
+  const TopoParser both({Grammar::fromYaml({{"g.yaml", kSmall}, {"more.yaml", more}})});
+  EXPECT_EQ(testing::outline(both.parse("the ball is green").utterances[0]),
+            "tell colour=green what=ball");
+  EXPECT_EQ(testing::outline(both.parse("Where is the ball?").utterances[0]), "ask what=ball");
+  const std::string other = "format: hyselam_grammar\nversion: 1\nlanguage: yy\n";
+  expectParts(messageOf<hyselam::InputError>([&] {
+                Grammar::fromYaml({{"g.yaml", kSmall}, {"other.yaml", other}});
+              }),
+              {"other.yaml", "'yy'", "'xx'"});
+}
+
+TEST(Grammar, WhatIsWrongWithAFileIsTold) {
+  expectParts(errorWith("format: hyselam_grammar", "format: cake"), {"g.yaml", "'format'"});
+  expectParts(errorWith("version: 1", "version: 2"), {"'version'", "'2'"});
+  expectParts(errorWith("language: xx\n", ""), {"'language' is missing"});
+  expectParts(errorWith("macros:", "makros:"), {"line 7", "'makros'", "not known"});
+  expectParts(errorWith("<be>", "<bee>"),
+              {"intents.tell.patterns", "no macro or word class 'bee'"});
+  expectParts(errorWith("{what:thing}", "{what:thin}"), {"there is no type 'thin'"});
+  expectParts(errorWith("{what:thing}", "{what}"), {"{slot:type}"});
+  expectParts(errorWith("<be> ", "(<be> "), {"')' is missing"});
+  expectParts(errorWith("<be> ", "<be>] "), {"']' closes nothing"});
+  expectParts(errorWith("<be> ", "<be>, "), {"commas"});
+  expectParts(errorWith("'{what:thing} weighs {weight:weight}'", "'[perhaps]'"),
+              {"matches nothing at all"});
+  expectParts(errorWith("be: [is, seems]", "be: [<be> is]"), {"contain one another"});
+  expectParts(errorWith("kind: statement", "kind: song"), {"must be statement", "'song'"});
+  expectParts(errorWith("kind: statement, ", ""), {"'kind' is missing"});
+  expectParts(errorWith("kind: statement", "refuse: never"), {"no reason 'never'"});
+  expectParts(errorWith("0.001: [g]", "-1: [g]"), {"factor > 0"});
+  expectParts(errorWith("stop: [is", "stip: [is"), {"names.thing.stip"});
+  expectParts(errorWith("intents:", "intents: ["), {"g.yaml", "is not YAML"});
+  expectParts(messageOf<hyselam::InputError>([] { Grammar::shipped("tlh"); }), {"'tlh'", "en, pt"});
+  EXPECT_THROW(Grammar::load({"/nowhere/g.yaml"}), hyselam::InputError);
+  EXPECT_THROW(TopoParser(std::vector<Grammar>{}), hyselam::ParameterError);
+  ParseOptions klingon;
+  klingon.language = "tlh";
+  EXPECT_THROW(parser().parse("yes", klingon), hyselam::ParameterError);
+}
+
+TEST(Grammar, ShippedFilesAreTheSameAsInTheLibrary) {
+  for (const std::string& language : Grammar::shippedLanguages()) {
+    EXPECT_EQ(
+        Grammar::shippedSource(language).yaml,
+        hyselam::testing::fileBytes(HYSELAM_PACKAGE_DIR "/grammar/" + language + ".yaml"));
+  }
+}
+
+TEST(Grammar, EveryExampleMeansItsIntent) {
+  std::set<std::string> names[2];
+  int i = 0;
+  for (const Grammar& grammar : parser().grammars()) {
+    for (const Grammar::Intent& intent : grammar.intents()) {
+      if (intent.refused) continue;
+      names[i].insert(intent.name);
+      EXPECT_FALSE(intent.examples.empty()) << grammar.language() << " " << intent.name;
+      for (const std::string& example : intent.examples) {
+        ParseOptions options;
+        options.language = grammar.language();
+        options.expected = {intent.name};
+        const auto said = parser().parse(example, options).utterances;
+        const bool found = std::any_of(said.begin(), said.end(),
+                                       [&](const Utterance& u) { return u.intent == intent.name; });
+        EXPECT_TRUE(found) << grammar.language() << " " << intent.name << ": " << example << " is "
+                           << (said.empty() ? "" : testing::outline(said[0]));
+      }
+    }
+    ++i;
+  }
+  EXPECT_EQ(names[0], names[1]) << "both languages must know the same intents";
+}
+
+TEST(TopoParser, RangesAndReasonsPointAtTheWords) {
+  const std::string text = "You are in the hall. On yuor left there is a table, é claro.";
+  const auto said = parser().parse(text).utterances;
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(text.substr(said[0].range.begin, said[0].range.end - said[0].range.begin),
+            "You are in the hall");
+  const Slot* place = said[0].find("place");
+  ASSERT_NE(place, nullptr);
+  EXPECT_EQ(text.substr(place->names[0].range.begin, 4), "hall");
+  EXPECT_FALSE(said[1].understood());
+  EXPECT_FALSE(said[1].reason.empty());
+  EXPECT_GE(said[1].culprit.begin, said[1].range.begin);
+}
+
+TEST(TopoParser, MisspeltWordsAreTold) {
+  const auto said = parser().parse("folow me").utterances;
+  ASSERT_EQ(said.size(), 1u);
+  ASSERT_EQ(said[0].spelling.size(), 1u);
+  EXPECT_EQ(said[0].spelling[0].said, "folow");
+  EXPECT_EQ(said[0].spelling[0].taken_as, "follow");
+}
+
+TEST(TopoParser, WhatIsNoTextIsNotUnderstood) {
+  const auto code = [](const std::string& text, std::size_t limit = 1000) {
+    ParseOptions options;
+    options.max_bytes = limit;
+    const auto said = parser().parse(text, options).utterances;
+    return said.size() == 1 && !said[0].understood() ? said[0].reason_code : "";
+  };
+  EXPECT_EQ(code("\xff\xfe"), "not_text");
+  EXPECT_EQ(code(std::string("yes\0no", 6)), "not_text");
+  EXPECT_EQ(code("You are in the corridor.", 10), "too_long");
+  std::string long_sentence = "on your left";
+  for (int i = 0; i < 500; ++i) long_sentence += " and";
+  EXPECT_EQ(code(long_sentence, 10000), "too_long");
+  EXPECT_TRUE(parser().parse("").utterances.empty());
+}
+
+TEST(TopoParser, LanguageIsFound) {
+  EXPECT_EQ(parser().parse("Você está no corredor.").language, "pt");
+  EXPECT_EQ(parser().parse("You are in the corridor.").language, "en");
+  EXPECT_EQ(parser().parse("não").language, "pt");
+}
+
+TEST(PlaceNames, VariantsOfANameMeanOnePlace) {
+  const PlaceNames names(parser().grammars());
+  const auto same = [&](const char* a, const char* b) {
+    const SameName found = compare(names.key(a), names.key(b));
+    EXPECT_EQ(found, compare(names.key(b), names.key(a))) << a << " " << b;
+    return found;
+  };
+  for (const auto& [a, b] :
+       {std::make_pair("room I-110", "Room i 110"), std::make_pair("room3", "room 3"),
+        std::make_pair("room room3", "room3"), std::make_pair("room Room B", "Room B"),
+        std::make_pair("room two", "room 2"), std::make_pair("John’s office", "John's office"),
+        std::make_pair("the kitchen", "Kitchen"), std::make_pair("Café", "cafe"),
+        std::make_pair("laboratory 3", "lab 3")}) {
+    EXPECT_EQ(same(a, b), SameName::kYes) << a << " | " << b;
+  }
+  for (const auto& [a, b] : {std::make_pair("room I-110", "I-110"), std::make_pair("A", "room A"),
+                             std::make_pair("lab 5", "5")}) {
+    EXPECT_EQ(same(a, b), SameName::kPerhaps) << a << " | " << b;
+  }
+  for (const auto& [a, b] :
+       {std::make_pair("room 5", "lab 5"), std::make_pair("kitchen", "kichen"),
+        std::make_pair("lab kitchen", "kitchen"), std::make_pair("living room", "dining room"),
+        std::make_pair("room 1", "room 11")}) {
+    EXPECT_EQ(same(a, b), SameName::kNo) << a << " | " << b;
+  }
+  EXPECT_EQ(names.find("110", {{"room 110"}, {"hall"}}), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(names.find("110", {{"room 110"}, {"lab 110"}}), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(names.find("110", {{"room 110"}, {"110"}}), (std::vector<std::size_t>{1}));
+  EXPECT_EQ(names.find("room 110", {{"110", "lab 110"}}), (std::vector<std::size_t>{}));
+  EXPECT_EQ(names.kindOf("entrance hall"), PlaceKind::kCorridor);
+  EXPECT_EQ(names.kindOf("dining hall"), PlaceKind::kRoom);
+  EXPECT_EQ(names.kindOf("corredor da cozinha"), PlaceKind::kCorridor);
+  EXPECT_EQ(names.kindOf("room3"), PlaceKind::kRoom);
+  EXPECT_EQ(names.kindOf("I-110"), std::nullopt);
+}
+
+TEST(DescriptionBuilder, GoesOnWithWhatWasToldBefore) {
+  DescriptionBuilder first(parser());
+  first.add(parser().parse("You are in the corridor. On your left you have room A."));
+  DescriptionBuilder second(parser());
+  second.continueFrom(first.building());
+  EXPECT_TRUE(second.add(parser().parse("On your left you have room B.")).empty());
+  EXPECT_EQ(testing::outline(second.building()),
+            (std::vector<std::string>{"at corridor", "corridor left room A > room B"}));
+  second.setRobotPlace("I-5");
+  EXPECT_TRUE(second.add(parser().parse("On your right you have room C.")).empty());
+  EXPECT_EQ(second.building().places.size(), 5u);
+}
+
+TEST(DescriptionBuilder, WhatFailsLeavesNothingBehind) {
+  DescriptionBuilder builder(parser());
+  const auto issues = builder.add(parser().parse("Room A is 6 by 0 meters."));
+  ASSERT_EQ(issues.size(), 1u);
+  EXPECT_EQ(issues[0].kind, IssueKind::kMeaningless);
+  EXPECT_TRUE(builder.building().places.empty());
+}
+
+TEST(DescribeBuilding, WhatIsToldIsUnderstoodAsItWas) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    for (const Grammar& grammar : parser().grammars()) {
+      const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();
+      const std::string text = describeBuilding(building, grammar);
+      ParseOptions options;
+      options.language = grammar.language();
+      DescriptionBuilder builder(parser());
+      const auto issues = builder.add(parser().parse(text, options));
+      EXPECT_TRUE(issues.empty()) << issues[0].reason << "\n" << text;
+      ASSERT_EQ(testing::outline(builder.building(), true), testing::outline(building, true))
+          << "seed " << seed << "\n"
+          << text;
+    }
+  }
+}
+
+#ifdef HYSELAM_HAVE_RAPIDCHECK
+RC_GTEST_PROP(DescribeBuilding, EveryBuildingIsUnderstoodAsItWas, (unsigned seed)) {
+  for (const Grammar& grammar : parser().grammars()) {
+    const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();
+    ParseOptions options;
+    options.language = grammar.language();
+    DescriptionBuilder builder(parser());
+    builder.add(parser().parse(describeBuilding(building, grammar), options));
+    RC_ASSERT(testing::outline(builder.building(), true) == testing::outline(building, true));
+  }
+}
+#endif
+
+TEST(DescribeBuilding, NamesThatNoMarksCanHoldAreRefused) {
+  DescribedBuilding building;
+  building.places.resize(1);
+  building.places[0].id = 1;
+  building.places[0].name = "\"a\" “b” «c» is";
+  EXPECT_THROW(describeBuilding(building, parser().grammars()[0]), hyselam::InputError);
+}
+
+}  // namespace
+}  // namespace hyselam_topo

@@ -1,0 +1,93 @@
+// Where a glass wall stands that a person tells of and no laser sees (dos Santos, section 7.2).
+//
+// "On your left there is a glass wall": the grid map is looked at as a laser at the robot would see
+// it, turned to that side. Glass walls are held by something solid, so they stand between two
+// convex corners: the one nearest to the robot, and the next one to it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_language/building/described_building.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
+
+namespace hyselam_topo {
+
+struct GlassWallParams {
+  double aperture = hyselam::kPi - hyselam::kPi / 6.0;  ///< alpha_laser [rad], (0, 2 pi]
+  double range = 6.0;                                   ///< l_laser [m], > 0
+  int corner_cells = 4;                                 ///< l_corner [cells], 2 .. 100
+  /// alpha_corner [rad], (0, pi): by so much the angle that is free around a convex corner is wider
+  /// than that before a straight wall.
+  double corner_angle = 8.0 / 12.0;
+  double min_length = 0.5;  ///< k [m]: two corners nearer than this are one post, > 0
+  double max_length = 6.0;  ///< [m], > min_length
+  int occupied_min = 65;    ///< cells of this or more are occupied, 1 .. 100
+};
+
+/// Throws hyselam::ParameterError for a parameter out of range.
+void checkGlassWallParams(const GlassWallParams& params);
+
+/// A glass wall on the floor, from corner to corner, in the frame of the map [m].
+struct GlassWall {
+  hyselam::Point2 a;
+  hyselam::Point2 b;
+
+  double length() const;
+  double distanceTo(hyselam::Point2 point) const;  ///< from a point to the nearest point of it
+};
+
+bool operator==(const GlassWall& a, const GlassWall& b);
+
+/// What the search at one place has seen.
+class GlassWallSearch {
+ public:
+  /// Looks from `robot` (pose in the frame of the map) to a side. Throws hyselam::ParameterError
+  /// for parameters out of range, hyselam::InputError for a side that is not known, a pose that is
+  /// not finite or lies outside of the grid.
+  GlassWallSearch(const hyselam::OccupancyGrid& grid, const hyselam::Pose2& robot, Side side,
+                  const GlassWallParams& params = {});
+
+  /// Between the corner nearest to the robot and the next one to it that it can be joined with; if
+  /// it has none, the second nearest, and so on. Not one that was rejected.
+  std::optional<GlassWall> likeliest() const;
+  /// The one whose length is nearest to what was told [m]; of equal ones the nearest to the robot.
+  /// Not one that was rejected, unless it fits better by more than 0.3 m.
+  std::optional<GlassWall> ofLength(double length) const;
+  /// A person has said that there is none.
+  void reject(const GlassWall& wall);
+
+  /// Convex corners, nearest to the robot first.
+  const std::vector<hyselam::Point2>& corners() const { return corners_; }
+  /// Ends of the beams from the right to the left: the outline of what was looked at.
+  const std::vector<hyselam::Point2>& seen() const { return seen_; }
+  const hyselam::Pose2& robot() const { return robot_; }
+  Side side() const { return side_; }
+
+ private:
+  bool rejected(const GlassWall& wall) const;
+
+  hyselam::Pose2 robot_;
+  Side side_;
+  GlassWallParams params_;
+  std::vector<hyselam::Point2> corners_;
+  std::vector<hyselam::Point2> seen_;
+  std::vector<GlassWall> pairs_;  // by the nearness of their first, then of their second corner
+  std::vector<GlassWall> rejected_;
+};
+
+/// Makes the cells occupied that the walls cross, so that no way of 4 or 8 neighbours leads
+/// through; what lies outside of the grid is left out. Never draw into the grid of a SLAM, but into
+/// a copy.
+void drawGlassWalls(const std::vector<GlassWall>& walls, hyselam::OccupancyGrid* grid);
+
+/// Puts the walls into the topological map, as glass or as virtual walls, each into the place that
+/// it limits (by the nearest cells on its two sides; into both if they differ), unless it is there.
+void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map,
+                   WallKind kind = WallKind::kGlass);
+
+/// Whether two walls are one: their ends are within 0.3 m.
+bool sameWall(const GlassWall& a, const GlassWall& b);
+
+}  // namespace hyselam_topo

@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
+#include "hyselam_topo/ros/parameters.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using hyselam::testing::messageOf;
+
+Gr2ToServerParams load(const std::map<std::string, XmlRpc::XmlRpcValue>& values) {
+  hyselam::ParamLoader loader(std::make_shared<hyselam::MapParamSource>(values));
+  const Gr2ToServerParams params = loadGr2ToParams(loader);
+  EXPECT_TRUE(loader.reportUnknown().empty());
+  return params;
+}
+
+TEST(Parameters, DefaultsAreThoseOfTheCore) {
+  const Gr2ToServerParams params = load({});
+  EXPECT_EQ(params.gr2to.mode, Gr2ToParams().mode);
+  EXPECT_EQ(params.gr2to.segmentation.working_resolution, SegmentationParams().working_resolution);
+  EXPECT_FALSE(params.octomap.z_min || params.octomap.storey);
+  EXPECT_EQ(load({{"mode", "thesis"}}).gr2to.mode, Gr2ToParams::Mode::kThesis);
+  EXPECT_EQ(load({{"z_min", 0.5}}).octomap.z_min, 0.5);
+  EXPECT_EQ(load({{"storey", 1}}).octomap.storey, 1);
+}
+
+TEST(Parameters, OutOfRangeIsRefusedByName) {
+  const std::map<std::string, XmlRpc::XmlRpcValue> bad = {{"mode", "magic"},
+                                                          {"free_max", 100},
+                                                          {"free_max", -1},
+                                                          {"clutter", -0.1},
+                                                          {"working_resolution", 0.0},
+                                                          {"smallest_place", -1.0},
+                                                          {"storey", -2},
+                                                          {"max_free_height", -1.0},
+                                                          {"min_occupied_height", -1.0},
+                                                          {"floor_margin", -1.0},
+                                                          {"ceiling_margin", -1.0},
+                                                          {"max_map_cells", 0},
+                                                          {"marker_alpha", 1.5},
+                                                          {"diagnostic_period", 0.0},
+                                                          {"z_min", 1e9},
+                                                          {"use_octomap", "perhaps"}};
+  for (const auto& [name, value] : bad) {
+    const std::string message = messageOf<hyselam::ParameterError>([&, n = name, v = value] {
+      load({{n, v}});
+    });
+    EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
+  }
+  EXPECT_THROW(load({{"z_min", 1.0}, {"z_max", 0.5}}), hyselam::ParameterError);
+}
+
+}  // namespace
+}  // namespace hyselam_topo

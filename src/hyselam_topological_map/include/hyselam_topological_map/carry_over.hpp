@@ -1,0 +1,53 @@
+// Keeps what is known about places, doors and walls when the map is segmented again.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "hyselam_topological_map/topological_map.hpp"
+
+namespace hyselam_topo {
+
+struct CarryOverParams {
+  /// An old place goes on in the new place that covers most of it, if they share at least this part
+  /// of the smaller of the two. (0, 1]
+  double min_overlap = 0.3;
+  /// A door is the same if its middle has moved by no more than this, or half its width. [m] >= 0
+  double max_door_shift = 0.5;
+  /// A wall is the same if it has moved sideways by no more than this, [m] >= 0, ...
+  double max_wall_shift = 0.3;
+  /// ... turned by no more than this, [rad] 0 .. pi/2, ...
+  double max_wall_turn = hyselam::radians(20.0);
+  /// ... and shares at least this part of the shorter of the two. (0, 1]
+  double min_wall_overlap = 0.3;
+};
+
+/// What became of the places.
+struct CarryOverReport {
+  std::vector<Id> kept;                      ///< ids that went on
+  std::vector<Id> created;                   ///< new ids
+  std::vector<std::pair<Id, Id>> merged;     ///< old id, the id that it is part of now
+  std::vector<std::pair<Id, Id>> split_off;  ///< created id, the old place that it was part of
+  std::vector<Id> lost;                      ///< old ids without a successor
+};
+
+/// The new map with the ids, words, signatures and extras of the old one.
+///
+/// `fresh` decides where places, walls and doors are; its ids mean nothing. Both maps need a grid
+/// (their geometries may differ) in one frame. Places go on by the share of cells that they have in
+/// common: of a place that falls apart the biggest part keeps the id, of places that grow together
+/// the named one (confirmed before guessed), else the oldest, and the words and signatures of all
+/// are united. Doors keep id, state, height, appearance, walls keep id and height. Kept from the
+/// old map although the new one does not know them: virtual places and their edges, words of edges
+/// (without a door if it is gone), and walls of glass, which no range sensor sees, while their
+/// place lasts. Ids are never used again. Equal input gives equal output; a map carried over to
+/// itself is unchanged.
+///
+/// Throws hyselam::InputError for maps that checkMap() refuses or without a grid,
+/// hyselam::ParameterError for parameters out of range.
+AugmentedTopologicalMap carryOver(const AugmentedTopologicalMap& old,
+                                  const AugmentedTopologicalMap& fresh,
+                                  const CarryOverParams& params = {},
+                                  CarryOverReport* report = nullptr);
+
+}  // namespace hyselam_topo
