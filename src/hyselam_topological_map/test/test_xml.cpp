@@ -184,10 +184,10 @@ TEST(Xml, EntitiesAreRefused) {
 
 TEST(Xml, TooMuchIsRefused) {
   const std::string text = toXml(twoRooms());
-  const auto error = [&](const std::string& t, const XmlLimits& limits) {
+  const auto error = [&](const std::string& t, const MapXmlLimits& limits) {
     return messageOf<hyselam::InputError>([&] { fromXml(t, "m.xml", limits); });
   };
-  XmlLimits limits;
+  MapXmlLimits limits;
   limits.max_bytes = text.size() - 1;
   expectError(error(text, limits), {"m.xml", "bytes, more than"});
   limits = {};
