@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "hyselam_common/map_io.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_gr2to/gr2to.hpp"
 
 namespace {
 

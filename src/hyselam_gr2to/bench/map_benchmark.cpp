@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "hyselam_gr2to/octomap/octomap_compression.hpp"
 #include "hyselam_topological_map/carry_over.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
-#include "hyselam_gr2to/octomap/octomap_compression.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {

@@ -5,10 +5,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/rng.hpp"
-#include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
 #include "hyselam_gr2to/gr2to_updater.hpp"
 #include "hyselam_gr2to/thesis/thesis.hpp"
+#include "hyselam_sim/generate_plan.hpp"
+#include "hyselam_sim/rasterise.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "train/boosting.hpp"
 #include "hyselam_common/rng.hpp"
+#include "train/boosting.hpp"
 #include "train/room_scores.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header

@@ -5,10 +5,10 @@
 #include <iostream>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_sim/rasterise.hpp"
 #include "hyselam_gr2to/map_builder/borders.hpp"
 #include "hyselam_gr2to/map_builder/doors.hpp"
 #include "hyselam_gr2to/map_builder/map_builder.hpp"
+#include "hyselam_sim/rasterise.hpp"
 #include "plan_truth.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header

@@ -8,9 +8,9 @@
 #include "agreement.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
+#include "hyselam_gr2to/gr2to_updater.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_gr2to/gr2to_updater.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 using hyselam::OccupancyGrid;

@@ -12,10 +12,10 @@
 #include "agreement.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
-#include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_sim/generate_plan.hpp"
+#include "hyselam_sim/rasterise.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 using hyselam::OccupancyGrid;

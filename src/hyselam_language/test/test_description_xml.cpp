@@ -4,9 +4,9 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/xml_testing.hpp"
 #include "hyselam_language/building/description_xml.hpp"
 #include "random_descriptions.hpp"
-#include "hyselam_common/testing/xml_testing.hpp"
 #ifdef HYSELAM_HAVE_RAPIDCHECK
 #include "hyselam_common/testing/properties.hpp"
 #endif
@@ -14,9 +14,9 @@
 namespace hyselam_topo {
 namespace {
 
+using hyselam::testing::expectError;
 using hyselam::testing::messageOf;
 using hyselam::testing::TemporaryDirectory;
-using hyselam::testing::expectError;
 
 DescribedBuilding flat() {
   DescribedBuilding building;

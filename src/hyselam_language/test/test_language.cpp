@@ -103,9 +103,8 @@ TEST(Grammar, WhatIsWrongWithAFileIsTold) {
 
 TEST(Grammar, ShippedFilesAreTheSameAsInTheLibrary) {
   for (const std::string& language : Grammar::shippedLanguages()) {
-    EXPECT_EQ(
-        Grammar::shippedSource(language).yaml,
-        hyselam::testing::fileBytes(HYSELAM_PACKAGE_DIR "/grammar/" + language + ".yaml"));
+    EXPECT_EQ(Grammar::shippedSource(language).yaml,
+              hyselam::testing::fileBytes(HYSELAM_PACKAGE_DIR "/grammar/" + language + ".yaml"));
   }
 }
 

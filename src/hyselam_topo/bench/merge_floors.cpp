@@ -12,10 +12,10 @@
 #include "../test/random_matches.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 #include "hyselam_topo/topomerg/topomerg_names.hpp"
 

@@ -7,11 +7,11 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
-#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 
 using hyselam::InputError;

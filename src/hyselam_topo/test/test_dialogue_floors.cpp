@@ -9,11 +9,11 @@
 #include <map>
 
 #include "hyselam_common/rng.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterise.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
-#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 
 using hyselam::Point2;

@@ -43,8 +43,8 @@ OccupancyGrid twoRooms() {
 class Gr2ToTool : public testing::Test {
  protected:
   int run(const std::string& arguments) {
-    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/gr2to\" " + arguments +
-                                " >" + folder_ / "stdout" + " 2>" + (folder_ / "stderr");
+    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/gr2to\" " + arguments + " >" +
+                                folder_ / "stdout" + " 2>" + (folder_ / "stderr");
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
-#include "hyselam_topo/dialogue/place_man.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
+#include "hyselam_topo/dialogue/place_man.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "two_rooms.hpp"
 
 using hyselam::InputError;

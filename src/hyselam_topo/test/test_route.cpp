@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_topo/dialogue/route.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "two_rooms.hpp"
 
 using hyselam::Pose2;

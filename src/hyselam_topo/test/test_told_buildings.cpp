@@ -7,11 +7,11 @@
 #include <string>
 
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterise.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
-#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 
 namespace hyselam_topo {
@@ -40,8 +40,7 @@ int namedRightly(const hyselam_sim::FloorPlan& plan, const hyselam::Pose2& pose,
   robot.setGrid(hyselam_sim::rasterise(plan, 0.05, 0.0));
   robot.setMap(gr2to(*robot.gridWithWalls()).map);
   robot.setPose(1.0, pose);
-  robot.hear(
-      hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/told/" + file));
+  robot.hear(hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/told/" + file));
   int right = 0;
   for (const auto& [place, told] : names) {
     const auto there = placeAt(robot.map(), plan.place(place).at, 0.3);

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_topo/dialogue/place_pose.hpp"
 #include "hyselam_topo/dialogue/topo_state.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "two_rooms.hpp"
 
 using hyselam::Pose2;

@@ -11,9 +11,9 @@
 #include "agreement_of_matches.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_language/building/description_xml.hpp"
-#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 #include "hyselam_topo/topomerg/topomerg_names.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "random_matches.hpp"
 
 using namespace random_matches;  // NOLINT: a test, not a header

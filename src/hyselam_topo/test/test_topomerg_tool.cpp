@@ -17,9 +17,8 @@ namespace {
 class TopoMergTool : public testing::Test {
  protected:
   int run(const std::string& arguments) {
-    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/topomerg\" " +
-                                arguments + " >" + (folder_ / "stdout") + " 2>" +
-                                (folder_ / "stderr");
+    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/topomerg\" " + arguments +
+                                " >" + (folder_ / "stdout") + " 2>" + (folder_ / "stderr");
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

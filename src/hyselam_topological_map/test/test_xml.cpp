@@ -5,10 +5,10 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
-#include "hyselam_topological_map/topological_map_xml.hpp"
-#include "hyselam_topological_map/testing/random_maps.hpp"
 #include "hyselam_common/testing/xml_testing.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
+#include "hyselam_topological_map/testing/random_maps.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 #ifdef HYSELAM_HAVE_RAPIDCHECK
 #include "hyselam_common/testing/properties.hpp"
 #endif
@@ -16,10 +16,10 @@
 namespace hyselam_topo {
 namespace {
 
-using hyselam::testing::messageOf;
-using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::expectError;
+using hyselam::testing::messageOf;
 using hyselam::testing::replaced;
+using hyselam::testing::TemporaryDirectory;
 
 AugmentedTopologicalMap twoRooms() {
   AugmentedTopologicalMap map;
@@ -83,7 +83,8 @@ RC_GTEST_PROP(Xml, EveryMapComesBackAsItWas, (unsigned seed)) {
 // Whatever a file says: it is read or refused.
 RC_GTEST_PROP(Xml, DamagedFilesNeverCrash, (unsigned seed)) {
   try {
-    checkMap(fromXml(hyselam::testing::damaged(toXml(testing::RandomMaps(seed).map()), seed)), "damaged");
+    checkMap(fromXml(hyselam::testing::damaged(toXml(testing::RandomMaps(seed).map()), seed)),
+             "damaged");
   } catch (const hyselam::InputError&) {
   }
 }

@@ -64,7 +64,8 @@ int XmlElement::integer(const char* attribute_name) {
 
 std::uint32_t XmlElement::id(const char* attribute_name) {
   const double value = number(attribute_name);
-  if (value != std::floor(value) || value < 1.0 || value > std::numeric_limits<std::uint32_t>::max()) {
+  if (value != std::floor(value) || value < 1.0 ||
+      value > std::numeric_limits<std::uint32_t>::max()) {
     fail("the attribute '" + std::string(attribute_name) + "' is no id: 1 .. 4294967295");
   }
   return static_cast<std::uint32_t>(value);

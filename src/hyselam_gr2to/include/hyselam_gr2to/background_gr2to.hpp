@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "hyselam_topological_map/carry_over.hpp"
 #include "hyselam_gr2to/gr2to.hpp"
+#include "hyselam_topological_map/carry_over.hpp"
 
 namespace hyselam_topo {
 

@@ -9,8 +9,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_gr2to/map_builder/doors.hpp"
-#include "map_patch.hpp"
 #include "map_builder/place_builder.hpp"
+#include "map_patch.hpp"
 
 namespace hyselam_topo {
 

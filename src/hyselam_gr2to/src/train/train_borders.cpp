@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "segmentation/agglomeration.hpp"
 #include "boosting.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
@@ -25,6 +24,7 @@
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterise.hpp"
 #include "room_scores.hpp"
+#include "segmentation/agglomeration.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "grammar/compiled_grammar.hpp"
+#include "grammar/letters.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_language/building/place_names.hpp"
-#include "grammar/letters.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -77,8 +77,8 @@ class Writer {
 };
 
 template <typename Enum>
-Enum oneOf(hyselam::XmlElement& e, const char* attribute, std::optional<Enum> (*parse)(const std::string&),
-           const std::string& allowed) {
+Enum oneOf(hyselam::XmlElement& e, const char* attribute,
+           std::optional<Enum> (*parse)(const std::string&), const std::string& allowed) {
   const auto value = parse(e.text(attribute));
   if (!value) e.fail("the attribute '" + std::string(attribute) + "' must be " + allowed);
   return *value;
@@ -164,7 +164,7 @@ DescribedBuilding descriptionFromXml(const std::string& text, const std::string&
                                      const hyselam::XmlLimits& limits) {
   DescribedBuilding building;
   hyselam::readXmlDocument(text, source, limits,
-                  [&](hyselam::XmlElement& root) { building = readDescription(root); });
+                           [&](hyselam::XmlElement& root) { building = readDescription(root); });
   checkDescription(building, source);
   return building;
 }

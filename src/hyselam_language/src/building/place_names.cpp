@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "grammar/compiled_grammar.hpp"
-#include "hyselam_common/utf8.hpp"
 #include "grammar/letters.hpp"
+#include "hyselam_common/utf8.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
-#include "hyselam_common/yaml_text.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "hyselam_common/yaml_text.hpp"
 
 namespace hyselam_topo {
 namespace language {

@@ -16,8 +16,8 @@
 namespace hyselam_objects {
 
 using hyselam::Covariance3;
-using hyselam_topo::Id;
 using hyselam::Point3;
+using hyselam_topo::Id;
 
 /// W_R of Eq. 3.8: "a is ... b". What is related to a place is `at` it.
 enum class RelationWord {

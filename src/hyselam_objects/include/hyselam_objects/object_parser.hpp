@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_objects/object_map.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
+#include "hyselam_objects/object_map.hpp"
 
 namespace hyselam_objects {
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "hyselam_objects/object_map.hpp"
 #include "hyselam_language/building/described_building.hpp"
+#include "hyselam_objects/object_map.hpp"
 #include "hyselam_topo/topomerg/topomerg_problem.hpp"
 
 namespace hyselam_objects {

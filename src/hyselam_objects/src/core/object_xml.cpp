@@ -4,9 +4,9 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/xml_document.hpp"
 #include "hyselam_objects/object_dictionary.hpp"
 #include "hyselam_objects/object_map.hpp"
-#include "hyselam_common/xml_document.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -361,8 +361,7 @@ ObjectDictionary dictionaryFromXml(const std::string& text, const std::string& s
 
 ObjectMap objectMapFromXml(const std::string& text, const std::string& source) {
   ObjectMap map;
-  hyselam::readXmlDocument(text, source, limits(),
-                                [&](XmlElement& root) { map = readMap(root); });
+  hyselam::readXmlDocument(text, source, limits(), [&](XmlElement& root) { map = readMap(root); });
   checkMap(map, source);
   return map;
 }

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "hyselam_common/require.hpp"
-#include "hyselam_objects/object_relations.hpp"
 #include "hyselam_language/building/place_names.hpp"
+#include "hyselam_objects/object_relations.hpp"
 
 namespace hyselam_objects {
 namespace {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {

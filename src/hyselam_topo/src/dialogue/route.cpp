@@ -8,8 +8,8 @@
 #include <queue>
 
 #include "hyselam_common/require.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_topo/dialogue/place_pose.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {

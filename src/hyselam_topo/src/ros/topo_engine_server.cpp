@@ -13,8 +13,8 @@
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_common/ros/transport.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
-#include "hyselam_topological_map/ros/conversions.hpp"
 #include "hyselam_topo/ros/dialogue_markers.hpp"
+#include "hyselam_topological_map/ros/conversions.hpp"
 
 namespace hyselam_topo {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_topo/ros/topo_engine_server.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 
 namespace hyselam_topo {
 namespace {

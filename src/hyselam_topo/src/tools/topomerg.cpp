@@ -10,8 +10,8 @@
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_language/building/description_xml.hpp"
-#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "hyselam_topo/topomerg/topomerg_names.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
 

@@ -1,4 +1,5 @@
-// The augmented topological map as XML. The schema is share/hyselam_topological_map/xsd/topological_map.xsd.
+// The augmented topological map as XML. The schema is
+// share/hyselam_topological_map/xsd/topological_map.xsd.
 #pragma once
 
 #include <cstddef>

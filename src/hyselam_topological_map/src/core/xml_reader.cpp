@@ -3,8 +3,8 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "hyselam_common/xml_document.hpp"
+#include "hyselam_topological_map/topological_map_xml.hpp"
 #include "packed_bytes.hpp"
 #include "xml_format.hpp"
 
@@ -333,7 +333,8 @@ class Reader {
 AugmentedTopologicalMap fromXml(const std::string& text, const std::string& source,
                                 const MapXmlLimits& limits) {
   AugmentedTopologicalMap map;
-  hyselam::readXmlDocument(text, source, limits, [&](hyselam::XmlElement& root) { map = Reader(limits).map(root); });
+  hyselam::readXmlDocument(text, source, limits,
+                           [&](hyselam::XmlElement& root) { map = Reader(limits).map(root); });
   checkMap(map, source);
   return map;
 }

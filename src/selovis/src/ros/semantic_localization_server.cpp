@@ -441,7 +441,8 @@ void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& statu
   if (!autosave_error_.empty()) addRemark(status, DiagnosticStatus::ERROR, autosave_error_);
   const std::size_t unsaved = learner_->frames().size() - saved_frames_;
   if (unsaved > 0) {
-    addRemark(status, DiagnosticStatus::OK, std::to_string(unsaved) + " frames gathered, not saved yet");
+    addRemark(status, DiagnosticStatus::OK,
+              std::to_string(unsaved) + " frames gathered, not saved yet");
   }
   if (received_ == reported_received_) {
     addRemark(status, DiagnosticStatus::WARN, "no images on " + image_topic_);

@@ -62,8 +62,8 @@ inline bool haveXmllint() {
 inline bool follows(const std::string& schema, const std::string& text) {
   const hyselam::testing::TemporaryDirectory dir;
   hyselam::testing::writeFile(dir / "tested.xml", text);
-  const std::string command = "xmllint --noout --schema '" HYSELAM_PACKAGE_DIR "/xsd/" +
-                              schema + "' '" + (dir / "tested.xml") + "' > /dev/null 2>&1";
+  const std::string command = "xmllint --noout --schema '" HYSELAM_PACKAGE_DIR "/xsd/" + schema +
+                              "' '" + (dir / "tested.xml") + "' > /dev/null 2>&1";
   return std::system(command.c_str()) == 0;
 }
 

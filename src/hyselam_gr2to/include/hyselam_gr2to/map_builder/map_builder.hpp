@@ -3,9 +3,9 @@
 #pragma once
 
 #include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_gr2to/map_builder/walls.hpp"
 #include "hyselam_gr2to/segmentation/segmentation.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
-#include "hyselam_gr2to/map_builder/walls.hpp"
 
 namespace hyselam_topo {
 

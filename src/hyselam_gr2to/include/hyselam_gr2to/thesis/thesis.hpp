@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_gr2to/segmentation/segmentation.hpp"
 #include "hyselam_gr2to/thesis/circles.hpp"
 #include "hyselam_gr2to/thesis/critical_points.hpp"
 #include "hyselam_gr2to/thesis/distance_map.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
 #include "hyselam_gr2to/thesis/voronoi.hpp"
 
 namespace hyselam_topo {

@@ -1,6 +1,6 @@
 // A language as data: sentence patterns, word classes, number words, units, what may be a name.
-// The files are share/hyselam_language/grammar/*.yaml; their format is told in their comments and in
-// the README. The library carries the shipped ones within itself.
+// The files are share/hyselam_language/grammar/*.yaml; their format is told in their comments and
+// in the README. The library carries the shipped ones within itself.
 #pragma once
 
 #include <memory>

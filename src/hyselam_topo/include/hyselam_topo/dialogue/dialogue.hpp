@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "hyselam_language/building/description_builder.hpp"
+#include "hyselam_language/grammar/topo_parser.hpp"
 #include "hyselam_topo/dialogue/glass_wall.hpp"
 #include "hyselam_topo/dialogue/phrases.hpp"
 #include "hyselam_topo/dialogue/place_man.hpp"
 #include "hyselam_topo/dialogue/place_pose.hpp"
 #include "hyselam_topo/dialogue/route.hpp"
-#include "hyselam_language/grammar/topo_parser.hpp"
 #include "hyselam_topo/dialogue/topo_state.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "hyselam_topological_map/carry_over.hpp"
-#include "hyselam_topo/dialogue/glass_wall.hpp"
 #include "hyselam_language/building/place_names.hpp"
+#include "hyselam_topo/dialogue/glass_wall.hpp"
+#include "hyselam_topological_map/carry_over.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "hyselam_language/building/described_building.hpp"
-#include "hyselam_topological_map/topological_map.hpp"
 #include "hyselam_topo/topomerg/topomerg_place_set.hpp"
+#include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
 
