@@ -159,7 +159,7 @@ Growing almostWhole() {
   Growing g{IncrementalGraph{}, whole.edges.back()};
   whole.edges.pop_back();
   g.graph = IncrementalGraph(std::move(whole));
-  g.graph.optimise();
+  g.graph.optimize();
   return g;
 }
 
@@ -174,7 +174,7 @@ void takeLoop(benchmark::State& state) {
     Growing g = almostWhole();
     state.ResumeTiming();
     g.graph.addEdge(g.loop);
-    benchmark::DoNotOptimize(g.graph.optimise());
+    benchmark::DoNotOptimize(g.graph.optimize());
   }
   state.SetLabel("baseline=pose_graph_incremental/batch");
 }

@@ -37,9 +37,9 @@ nlohmann::json run(const Options& o) {
               std::pair{"gnc", GraphRobust::kGnc}}) {
           OptimizeParams params;
           params.robust = robust;
-          // A believed graph of many false loops is dense: minutes for nothing new.
+          // With full weights of many false loops the system is dense: minutes without a new result.
           if (robust == GraphRobust::kNone && share > 0.1) continue;
-          // False loops turn edges at the minimum whatever one does.
+          // False loops leave large rotation errors at any minimum.
           if (robust == GraphRobust::kNone && share > 0.0) params.start = GraphStart::kChordal;
           const clock_t begin = clock();
           const OptimizeResult r = optimizer.optimize(params);

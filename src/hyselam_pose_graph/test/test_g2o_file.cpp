@@ -53,7 +53,7 @@ TEST(G2oFile, EdgesAloneAreComposed) {
   EXPECT_EQ(g.poses[2].theta, 1.5);
 }
 
-TEST(G2oFile, RefusesWhatItCannotRead) {
+TEST(G2oFile, RejectsInvalidFiles) {
   const std::string good(kEdge);
   EXPECT_NE(complaint("").find("holds no pose"), std::string::npos);
   EXPECT_NE(complaint(good + "VERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n").find("line 2"),
@@ -74,7 +74,7 @@ TEST(G2oFile, RefusesWhatItCannotRead) {
   EXPECT_THROW(readG2o("/nowhere/graph.g2o"), hyselam::InputError);
 }
 
-TEST(G2oFile, TruncatedAnywhereIsReadOrRefused) {
+TEST(G2oFile, TruncatedFilesAreReadOrRejected) {
   std::string text;
   {
     TemporaryDirectory dir;
@@ -84,10 +84,10 @@ TEST(G2oFile, TruncatedAnywhereIsReadOrRefused) {
   for (std::size_t length = 0; length < text.size(); length += 3) complaint(text.substr(0, length));
 }
 
-TEST(OptimizeGraphTool, SolvesWritesAndTells) {
+TEST(OptimizeGraphTool, SolvesWritesAndReports) {
   TemporaryDirectory dir;
   writeG2o(dir / "in.g2o", random_graphs::streets(80, 0.05, 1).graph);
-  const std::string tool = std::string(NGRAM_SLAM_TOOLS) + "/optimize_graph ";
+  const std::string tool = std::string(HYSELAM_POSE_GRAPH_TOOLS) + "/optimize_graph ";
   const std::string command = tool + (dir / "in.g2o") + " " + (dir / "out.g2o") + " --json " +
                               (dir / "r.json") + " > " + (dir / "log");
   ASSERT_EQ(std::system(command.c_str()), 0);

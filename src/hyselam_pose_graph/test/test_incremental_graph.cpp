@@ -1,6 +1,7 @@
 // A graph that grows pose by pose against the same graph solved at once.
 #include <gtest/gtest.h>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_pose_graph/incremental_graph.hpp"
 #include "random_graphs.hpp"
 
@@ -58,7 +59,7 @@ TEST(IncrementalGraph, EqualsTheBatchAtEachLoop) {
     int loops = 0;
     g.growTo(149, [&] {
       EXPECT_TRUE(g.graph.pending());
-      const OptimizeResult r = g.graph.optimise();
+      const OptimizeResult r = g.graph.optimize();
       EXPECT_FALSE(g.graph.pending());
       const int n = static_cast<int>(g.graph.graph().poses.size());
       // All loops of the newest pose are in (streets() gives each at most one).
@@ -87,15 +88,15 @@ TEST(IncrementalGraph, CovariancesEqualTheBatchBeforeAndAfterALoop) {
   };
   g.growTo(3, [] {});
   compare();  // odometry alone
-  g.growTo(100, [&] { g.graph.optimise(); });
-  g.graph.optimise();
+  g.growTo(100, [&] { g.graph.optimize(); });
+  g.graph.optimize();
   compare();
   // Poses appended since, up to the next loop.
-  g.growTo(101, [&] { g.graph.optimise(); });
+  g.growTo(101, [&] { g.graph.optimize(); });
   compare();
 }
 
-TEST(IncrementalGraph, CovariancesReachAcrossALongWayWithoutLoops) {
+TEST(IncrementalGraph, CovariancesGrowAlongALongPathWithoutLoops) {
   IncrementalGraph graph;
   graph.addPose({});
   constexpr int kSteps = 200000;
@@ -106,27 +107,27 @@ TEST(IncrementalGraph, CovariancesReachAcrossALongWayWithoutLoops) {
 TEST(IncrementalGraph, PatternIsReusedWhenALoopFitsIntoIt) {
   const auto known = random_graphs::streets(200, 0.02, 3);
   IncrementalGraph graph(known.graph);
-  graph.optimise();
-  EXPECT_EQ(graph.analyses(), 1);
+  graph.optimize();
+  EXPECT_EQ(graph.patternAnalyses(), 1);
   PoseEdge again = known.graph.edges.back();  // the same two poses, measured once more
   graph.addEdge(again);
-  graph.optimise();
-  EXPECT_EQ(graph.analyses(), 1);
-  // Two neighbours of one pose, which is eliminated before or after them, may not be coupled; poses
+  graph.optimize();
+  EXPECT_EQ(graph.patternAnalyses(), 1);
+  // Two neighbors of one pose, which is eliminated before or after them, may not be coupled; poses
   // far apart are not.
   again.from = 1;
   again.to = 150;
   again.measured = between(known.truth[1], known.truth[150]);
   graph.addEdge(again);
-  const OptimizeResult r = graph.optimise();
+  const OptimizeResult r = graph.optimize();
   PoseGraph whole = graph.graph();
   EXPECT_NEAR(GraphOptimizer(whole).optimize().final_cost, r.final_cost, 1e-5 * r.final_cost);
   graph.append({1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity());
-  graph.optimise();
-  EXPECT_GE(graph.analyses(), 2) << "a new pose needs a new pattern";
+  graph.optimize();
+  EXPECT_GE(graph.patternAnalyses(), 2) << "a new pose needs a new pattern";
 }
 
-TEST(IncrementalGraph, ADoubtfulMinimumIsSoughtAnew) {
+TEST(IncrementalGraph, LargeRotationErrorsStartTheGlobalRelaxation) {
   // A first guess from which descent ends in a false minimum.
   auto known = random_graphs::streets(300, 0.02, 3);
   const double best = GraphOptimizer(known.graph).optimize().final_cost;
@@ -136,24 +137,24 @@ TEST(IncrementalGraph, ADoubtfulMinimumIsSoughtAnew) {
   OptimizeParams params;
   params.start = GraphStart::kGiven;
   ASSERT_GT(GraphOptimizer(known.graph).optimize(params).final_cost, 1.1 * best);
-  EXPECT_NEAR(IncrementalGraph(known.graph).optimise().final_cost, best, 1e-4 * best);
+  EXPECT_NEAR(IncrementalGraph(known.graph).optimize().final_cost, best, 1e-4 * best);
 }
 
-TEST(IncrementalGraph, RefusesWhatDoesNotFitAndStaysAsItWas) {
+TEST(IncrementalGraph, RejectsInvalidEdgesAndStaysUnchanged) {
   IncrementalGraph graph;
-  EXPECT_THROW(graph.append({1, 0, 0}, Eigen::Matrix3d::Identity()), std::invalid_argument);
+  EXPECT_THROW(graph.append({1, 0, 0}, Eigen::Matrix3d::Identity()), hyselam::InputError);
   graph.addPose({});
   EXPECT_THROW(graph.append({std::nan(""), 0, 0}, Eigen::Matrix3d::Identity()),
-               std::invalid_argument);
-  EXPECT_THROW(graph.append({1, 0, 0}, -Eigen::Matrix3d::Identity()), std::invalid_argument);
+               hyselam::InputError);
+  EXPECT_THROW(graph.append({1, 0, 0}, -Eigen::Matrix3d::Identity()), hyselam::InputError);
   PoseEdge edge;
   edge.to = 1;
-  EXPECT_THROW(graph.addEdge(edge), std::invalid_argument);
+  EXPECT_THROW(graph.addEdge(edge), hyselam::InputError);
   EXPECT_EQ(graph.graph().poses.size(), 1u);
   EXPECT_TRUE(graph.graph().edges.empty());
   EXPECT_FALSE(graph.pending());
-  EXPECT_EQ(graph.optimise().final_cost, 0.0);
-  EXPECT_THROW(graph.covariance(1), std::invalid_argument);
+  EXPECT_EQ(graph.optimize().final_cost, 0.0);
+  EXPECT_THROW(graph.covariance(1), hyselam::InputError);
 }
 
 }  // namespace

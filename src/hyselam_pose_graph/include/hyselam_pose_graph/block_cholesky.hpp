@@ -1,9 +1,9 @@
-// Cholesky factorisation of sparse symmetric (Hermitian) matrices of small dense blocks,
-// left-looking by columns of blocks.
+// Cholesky factorization of sparse symmetric (Hermitian) matrices of small dense blocks,
+// left-looking by block columns.
 //
-// What takes the time of a pose graph are products of 3x3 blocks; a sparse library that knows
-// scalars only follows an index for each of their entries. Measured against CHOLMOD in
-// `bench/run pose_graph`; held equal to it in test_graph_optimizer.
+// Most of the time of a pose graph goes into products of 3x3 blocks; a scalar sparse library
+// follows an index for each of their entries. Measured against CHOLMOD in `bench/run pose_graph`;
+// equal to it by test_block_cholesky.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +38,8 @@ class BlockCholesky {
   Block& entry(int i) { return values_[static_cast<std::size_t>(i)]; }
   const Block& entry(int i) const { return values_[static_cast<std::size_t>(i)]; }
 
-  /// Replaces the matrix by its factor. False if it is not positive definite; it is neither matrix
-  /// nor factor then.
+  /// Replaces the matrix by its factor. False if it is not positive definite; the entries are
+  /// undefined then.
   bool factor() {
     const CholeskyPattern& p = *pattern_;
     Block* const l = values_.data();
@@ -91,8 +91,8 @@ class BlockCholesky {
       (*b)[i] = x[static_cast<std::size_t>(p.position[i])];
   }
 
-  /// The columns of x = L^-1 b that are not zero when b is zero but for one variable: the way up
-  /// the tree of elimination. x comes in the order of `visit(const Vector&)`.
+  /// The nonzero rows of x = L^-1 b when b is zero except for one variable: those on the path to
+  /// the root of the elimination tree. Calls `visit(const Vector&)` for each in this order.
   template <class Visit>
   void solveLowerFrom(int variable, const Vector& b, const Visit& visit) const {
     const CholeskyPattern& p = *pattern_;
@@ -114,7 +114,7 @@ class BlockCholesky {
  private:
   const CholeskyPattern* pattern_;
   std::vector<Block> values_;
-  std::vector<int> place_;  ///< of a row's entry in the column at work
+  std::vector<int> place_;  ///< entry of each row in the current column
 };
 
 }  // namespace hyselam_pose_graph

@@ -1,5 +1,5 @@
-// Where the Cholesky factor of a sparse symmetric matrix of blocks has entries: worked out once per
-// graph, used by every factorisation of whatever blocks.
+// Symbolic Cholesky factorization of a sparse symmetric block matrix: where the factor has blocks.
+// Computed once per graph and used by every numeric factorization (block_cholesky.hpp).
 #pragma once
 
 #include <utility>
@@ -11,7 +11,7 @@ namespace hyselam_pose_graph {
 /// SuiteSparse).
 struct CholeskyPattern {
   int size = 0;               ///< rows of blocks
-  std::vector<int> position;  ///< of each variable in the order of elimination
+  std::vector<int> position;  ///< of each variable in the elimination order
   /// Column c of L has its entries at column_begin[c] .. column_begin[c + 1] - 1, by ascending row,
   /// the diagonal first.
   std::vector<int> column_begin;
@@ -25,18 +25,18 @@ struct CholeskyPattern {
     return column_begin[static_cast<std::size_t>(position[static_cast<std::size_t>(variable)])];
   }
 
-  /// Where the block of two different variables stands that are coupled in A.
+  /// The entry of L that holds the block of two different variables coupled in A.
   struct Slot {
     int entry;
     bool transposed;  ///< the entry holds A(b, a), not A(a, b)
   };
   Slot slot(int a, int b) const;
-  /// Whether L has room for a block of two different variables.
+  /// Whether L has an entry for two different variables.
   bool holds(int a, int b) const;
 };
 
 /// `couplings`: pairs of different variables with a block in A, each at least once.
-/// @throws std::invalid_argument for variables out of range.
-CholeskyPattern analysePattern(int variables, const std::vector<std::pair<int, int>>& couplings);
+/// @throws hyselam::InputError for variables out of range.
+CholeskyPattern analyzePattern(int variables, const std::vector<std::pair<int, int>>& couplings);
 
 }  // namespace hyselam_pose_graph

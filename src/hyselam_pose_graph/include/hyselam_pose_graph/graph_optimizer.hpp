@@ -1,31 +1,33 @@
-// The most likely poses of a pose graph: least squares on SE(2) from a start that needs no guess
-// (Maffei 2017, 2.1.3.1 and appendix B, and what was learnt since).
+// Maximum-likelihood poses of a pose graph: least squares on SE(2) that needs no initial guess
+// (Maffei 2017, 2.1.3.1 and appendix B; chordal initialization: Carlone et al. 2015; global
+// relaxation: Rosen et al. 2019).
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_pose_graph/pose_graph.hpp"
 
 namespace hyselam_pose_graph {
 
 class PoseSystem;
 
-/// Where the descent begins.
+/// Initial poses of the descent.
 enum class GraphStart {
   kGiven,     ///< at the poses of the graph
   kComposed,  ///< at composedPoses()
   kChordal,   ///< rotations first, by one linear system, then positions by another
-  kBest       ///< kChordal; where the minimum found is doubtful, the global relaxation too
+  kBest       ///< kChordal, then the global relaxation if max_rotation_error is exceeded
 };
 
-/// How the descent goes on.
+/// Steps of the descent.
 enum class GraphMethod {
-  kGaussNewton,        ///< as in the thesis: full steps, wherever they lead
-  kLevenbergMarquardt  ///< undamped as long as that descends, damped when it does not
+  kGaussNewton,        ///< as in the thesis: always full steps
+  kLevenbergMarquardt  ///< damped only where a full step does not descend
 };
 
-/// What is done about edges that contradict the others. Odometry (isOdometry) is always believed.
+/// How false loops are rejected. Odometry (isOdometry) always has full weight.
 enum class GraphRobust {
   kNone,
   kDcs,  ///< dynamic covariance scaling (Agarwal et al. 2013): loops lose weight with their error
@@ -36,51 +38,55 @@ struct OptimizeParams {
   GraphStart start = GraphStart::kBest;
   GraphMethod method = GraphMethod::kLevenbergMarquardt;
   GraphRobust robust = GraphRobust::kNone;
-  int max_iterations = 200;    ///< linear systems solved at most, >= 1
-  double tolerance = 1e-6;     ///< stop when a step promises less than this part of the cost, > 0
-  double dcs_phi = 5.0;        ///< squared error from which DCS takes weight, > 0
-  double gnc_inlier = 16.266;  ///< squared error that a true edge keeps below, > 0 (chi^2, 99.9 %)
-  /// kBest: an edge that is turned by more than this at the minimum [rad, > 0] makes it doubtful
-  /// and asks for the global relaxation, which takes some hundred times as long.
-  double doubtful_turn = 1.0;
+  int max_iterations = 200;  ///< linear systems solved at most, >= 1
+  double tolerance = 1e-6;   ///< stop below this predicted relative decrease of the cost, 0..1
+  double dcs_phi = 5.0;      ///< squared error above which DCS reduces the weight, > 0
+  /// Squared error that a true edge stays below, > 0 (chi^2 with 3 degrees of freedom, 99.9 %).
+  double gnc_inlier_threshold = 16.266;
+  /// kBest: a larger rotation error of an edge at the minimum [rad], > 0, starts the global
+  /// relaxation, which takes some hundred times as long.
+  double max_rotation_error = 1.0;
+
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
 struct OptimizeResult {
   std::vector<hyselam::Pose2> poses;
-  double initial_cost = 0.0;    ///< of the graph's poses, sum of e^T Omega e over all edges
-  double final_cost = 0.0;      ///< the same of `poses`, weights not counted
-  int iterations = 0;           ///< linear systems of poses solved
+  double initial_cost = 0.0;    ///< sum of e^T Omega e over all edges, at the graph's poses
+  double final_cost = 0.0;      ///< the same at `poses`, without weights
+  int iterations = 0;           ///< linear systems solved
   bool converged = false;       ///< the tolerance was reached
   bool global = false;          ///< the poses come from the global relaxation
   std::vector<double> weights;  ///< of each edge, 0..1; empty without robust
 };
 
-/// Optimises one graph. The pattern of its linear system is worked out when it is made and used for
-/// each optimisation after that, whatever the measurements and poses have become.
+/// Optimizes one graph. The sparsity pattern of its linear system is computed by the constructor
+/// and used by every optimization.
 class GraphOptimizer {
  public:
-  /// @throws std::invalid_argument as PoseGraph::validate does.
+  /// @throws hyselam::InputError as PoseGraph::validate().
   explicit GraphOptimizer(PoseGraph graph);
-  /// The same with the pattern of an earlier optimiser, where all edges fit into it.
+  /// The same with the pattern of an earlier optimizer if it contains all edges.
   GraphOptimizer(PoseGraph graph, const GraphOptimizer& earlier);
   ~GraphOptimizer();
   GraphOptimizer(GraphOptimizer&&) noexcept;
   GraphOptimizer& operator=(GraphOptimizer&&) noexcept;
 
   const PoseGraph& graph() const { return graph_; }
-  /// The pattern was taken from an earlier optimiser.
+  /// Whether the pattern was taken from the earlier optimizer.
   bool reusesPattern() const;
 
-  /// The first pose of each connected part stays where it is.
+  /// The first pose of each connected component is fixed (gauge).
   /// @throws hyselam::ParameterError
   OptimizeResult optimize(const OptimizeParams& params = {}) const;
 
-  /// Covariance of (x, y, theta) of some poses, given the first of their part, at `poses`; in the
-  /// frame of the graph. Zero for a first pose. `weights`: as optimize() tells them; none: all 1.
-  /// @throws std::invalid_argument for an index out of range, std::runtime_error when the edges do
-  /// not determine the poses.
+  /// Marginal covariances of (x, y, theta) of the poses `of`, given the first pose of their
+  /// component, linearized at `poses`; in the frame of the graph. Zero for a first pose.
+  /// `weights`: OptimizeResult::weights; empty: all 1.
+  /// @throws hyselam::InputError for an index out of range or vectors of wrong length, and when the
+  /// edges do not determine the poses.
   std::vector<Eigen::Matrix3d> covariances(const std::vector<hyselam::Pose2>& poses,
                                            const std::vector<int>& of,
                                            const std::vector<double>& weights = {}) const;

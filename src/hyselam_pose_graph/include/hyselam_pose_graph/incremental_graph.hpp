@@ -1,4 +1,4 @@
-// A pose graph that grows while it is used: what an online SLAM asks of the optimiser.
+// A pose graph that grows while it is used: the back end of online SLAM.
 #pragma once
 
 #include <memory>
@@ -10,60 +10,60 @@ namespace hyselam_pose_graph {
 
 class Marginals;
 
-/// Poses come one by one and cost nothing but their place; a loop is taken in at once and counts
-/// from the next optimise() on, which starts where the last one ended. Not to be used by two
-/// threads at a time.
+/// Appending a pose costs no linear algebra; a loop takes effect at the next optimize(), which
+/// starts from the present poses. Not thread-safe.
 class IncrementalGraph {
  public:
   /// `params.start` has no effect. @throws hyselam::ParameterError
   explicit IncrementalGraph(const OptimizeParams& params = {});
-  /// Goes on with a graph that is known. @throws as GraphOptimizer does.
+  /// Continues with a known graph. @throws hyselam::InputError as PoseGraph::validate().
   explicit IncrementalGraph(PoseGraph graph, const OptimizeParams& params = {});
   ~IncrementalGraph();
   IncrementalGraph(IncrementalGraph&&) noexcept;
   IncrementalGraph& operator=(IncrementalGraph&&) noexcept;
 
-  /// A pose that nothing ties to the others yet; its index. Its id is one more than that of the
-  /// pose before it, 0 for the first.
+  /// Adds a pose without edges and returns its index. Its id is one more than that of the previous
+  /// pose, 0 for the first. @throws hyselam::InputError if it is not finite.
   int addPose(const hyselam::Pose2& pose);
-  /// The pose after the newest one, where odometry has it; `information` as in PoseEdge.
-  /// @throws std::invalid_argument without a first pose, and as PoseGraph::validate does; nothing
-  /// is changed then.
+  /// Adds the pose at `measured` from the newest one with an edge of odometry, and returns its
+  /// index; `information` as in PoseEdge.
+  /// @throws hyselam::InputError without a first pose, and as PoseGraph::validate(); the graph is
+  /// unchanged then.
   int append(const hyselam::Pose2& measured, const Eigen::Matrix3d& information);
-  /// Any other edge. @throws std::invalid_argument as PoseGraph::validate does.
+  /// Adds any other edge. @throws hyselam::InputError as PoseGraph::validate().
   void addEdge(const PoseEdge& edge);
 
-  /// With the poses as they are estimated now.
+  /// The graph at the present estimate.
   const PoseGraph& graph() const { return graph_; }
-  /// There are edges that poses do not know of yet: optimise() is worth while.
+  /// Whether edges were added since the last optimize().
   bool pending() const { return pending_; }
 
-  /// Descends from the poses as they are. Where an edge is turned far at the end
-  /// (OptimizeParams::doubtful_turn; without robust only) all is solved anew, as without a guess.
-  OptimizeResult optimise();
-  /// Covariance of (x, y, theta) of a pose given the first one, in the frame of the graph, as of
-  /// the last optimise(); poses appended since then add their odometry's. The first one asked for
-  /// after optimise() costs a factorisation, the others little: a pose of the graph optimised last
-  /// a way up the tree of elimination, one appended since a product for each pose in between.
-  /// @throws std::invalid_argument for a pose that is not there or was not tied to a pose before it
-  /// by append() since the last optimise(); std::runtime_error when edges do not determine poses.
+  /// Descends from the present poses. Without robust: if the rotation error of an edge exceeds
+  /// OptimizeParams::max_rotation_error at the minimum, solves again from GraphStart::kBest.
+  OptimizeResult optimize();
+  /// Marginal covariance of (x, y, theta) of a pose given the first one, in the frame of the graph,
+  /// at the last optimize(); for poses appended since, that of odometry is added. The first call
+  /// after optimize() factorizes; further calls cost a path of the elimination tree for a pose of
+  /// the optimized graph, a product per pose for those appended since.
+  /// @throws hyselam::InputError for a pose that does not exist or was not added by append() since
+  /// the last optimize(), and when the edges do not determine the poses.
   Eigen::Matrix3d covariance(int pose) const;
 
-  /// How often the pattern of the linear system was worked out, of all optimisations.
-  int analyses() const { return analyses_; }
+  /// How often the sparsity pattern was computed, in all optimizations.
+  int patternAnalyses() const { return pattern_analyses_; }
 
  private:
   std::vector<hyselam::Pose2> optimizerPoses() const;
-  Eigen::Matrix3d carriedOver(const Eigen::Matrix3d& before, int pose) const;
+  Eigen::Matrix3d propagated(const Eigen::Matrix3d& before, int pose) const;
 
   OptimizeParams params_;
   PoseGraph graph_;
   std::optional<GraphOptimizer> optimizer_;
-  std::vector<double> weights_;   ///< of the last optimisation
-  std::vector<int> appended_by_;  ///< edge that append() made for each pose; -1
+  std::vector<double> weights_;   ///< of the last optimization
+  std::vector<int> appended_by_;  ///< edge made by append() for each pose; -1: none
   mutable std::unique_ptr<Marginals> marginals_;
   bool pending_ = false;
-  int analyses_ = 0;
+  int pattern_analyses_ = 0;
 };
 
 }  // namespace hyselam_pose_graph

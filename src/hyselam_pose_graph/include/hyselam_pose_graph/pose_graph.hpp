@@ -1,4 +1,4 @@
-// Poses of the plane tied by relative measurements: what SLAM leaves to be solved (Maffei 2017,
+// Poses of the plane connected by relative measurements: the back end of graph SLAM (Maffei 2017,
 // 2.1.3.1 and appendix B).
 #pragma once
 
@@ -26,13 +26,13 @@ struct PoseGraph {
   std::vector<hyselam::Pose2> poses;  ///< in one frame
   std::vector<PoseEdge> edges;
 
-  /// @throws std::invalid_argument naming the edge or pose that refers to nothing, is not finite,
-  /// or whose information is not symmetric positive semidefinite.
+  /// @throws hyselam::InputError naming the edge that refers to a missing pose, the edge or pose
+  /// that is not finite, or the edge whose information is not symmetric positive semidefinite.
   void validate() const;
 };
 
-/// @throws std::invalid_argument, beginning with `name`, for an edge that PoseGraph::validate
-/// refuses in a graph of `poses` poses.
+/// @throws hyselam::InputError, naming the edge `name`, for an edge that PoseGraph::validate
+/// rejects in a graph of `poses` poses.
 void validateEdge(const PoseEdge& edge, std::size_t poses, const std::string& name);
 
 /// An edge between poses that follow each other in the list: odometry, as opposed to a loop.
@@ -48,13 +48,12 @@ double edgeCost(const PoseEdge& edge, const std::vector<hyselam::Pose2>& poses);
 /// The sum over all edges, without a factor 1/2.
 double graphCost(const PoseGraph& graph, const std::vector<hyselam::Pose2>& poses);
 
-/// Poses composed along measurements, from the first pose of each connected part on: along edges of
-/// neighbours in the list where there are any, else along a breadth-first tree. The first pose of
-/// each part stays as the graph has it.
+/// Poses composed along measurements, from the first pose of each connected component: along
+/// odometry where there is any, else along a breadth-first tree. The first pose of each component
+/// keeps its value.
 std::vector<hyselam::Pose2> composedPoses(const PoseGraph& graph);
 
-/// For each pose the number of the connected part that it belongs to, counted from 0 in order of
-/// first poses.
-std::vector<int> connectedParts(const PoseGraph& graph);
+/// The connected component of each pose, numbered from 0 in the order of their first poses.
+std::vector<int> connectedComponents(const PoseGraph& graph);
 
 }  // namespace hyselam_pose_graph

@@ -7,14 +7,14 @@
 namespace hyselam_pose_graph {
 
 namespace {
-constexpr int kLeaps = 8;  // what Gauss-Newton gets to show that it arrives
+constexpr int kFullSteps = 8;  // tried at once where a damped step does not descend
 }
 
-bool Descent::placeByRotations(Poses* poses) {
+bool Descent::solvePositions(Poses* poses) {
   Poses placed = *poses;
   for (std::size_t i = 0; i < placed.size(); ++i)
     if (system_.row(static_cast<int>(i)) >= 0) placed[i].x = placed[i].y = 0.0;
-  system_.lineariseFromRotations(placed, weights, &h_, &b_);
+  system_.linearizeFromRotations(placed, weights, &h_, &b_);
   ++iterations_;
   if (!factorPoses(&h_)) return false;
   h_.solve(&b_);
@@ -22,16 +22,17 @@ bool Descent::placeByRotations(Poses* poses) {
   return true;
 }
 
-bool Descent::relax(Poses* poses) {
+bool Descent::initializeChordal(Poses* poses) {
   Poses relaxed = *poses;
-  if (!system_.chordalRotations(weights, &relaxed) || !placeByRotations(&relaxed)) return false;
+  if (!system_.relaxRotations(weights, &relaxed) || !solvePositions(&relaxed)) return false;
   *poses = std::move(relaxed);
   return true;
 }
 
-/// The step at `poses`, in b_, and what it promises to take from the cost. False if there is none.
-bool Descent::step(const Poses& poses, double damping, double* promised) {
-  system_.linearise(poses, weights, damping, &h_, &b_);
+/// The step at `poses`, in b_, and the decrease of the cost that it predicts. False if there is
+/// none.
+bool Descent::step(const Poses& poses, double damping, double* predicted) {
+  system_.linearize(poses, weights, damping, &h_, &b_);
   ++iterations_;
   if (!factorPoses(&h_)) return false;
   gradient_ = b_;
@@ -41,43 +42,43 @@ bool Descent::step(const Poses& poses, double damping, double* promised) {
     const PoseSystem::Vector p = b_[i] * gradient_[i];
     sum += p[0] + p[1] + p[2];
   }
-  *promised = sum;
+  *predicted = sum;
   return std::isfinite(sum);
 }
 
-/// Full steps, wherever they lead: near a minimum along a curved valley they climb before they
-/// arrive, and damped ones would creep.
-bool Descent::leap(Poses* poses, int steps) {
+/// Undamped steps, even where they increase the cost: along a curved valley they climb before they
+/// converge, where damped ones would be very small.
+bool Descent::takeFullSteps(Poses* poses, int steps) {
   for (int done = 0; done < steps; ++done) {
-    double promised = 0.0;
-    if (!step(*poses, 0.0, &promised)) return false;
+    double predicted = 0.0;
+    if (!step(*poses, 0.0, &predicted)) return false;
     *poses = system_.moved(*poses, b_);
-    if (promised <= params_.tolerance * system_.cost(*poses, weights)) return true;
+    if (predicted <= params_.tolerance * system_.cost(*poses, weights)) return true;
   }
   return false;
 }
 
 bool Descent::descend(Poses* poses, int steps) {
-  if (params_.method == GraphMethod::kGaussNewton) return leap(poses, steps);
+  if (params_.method == GraphMethod::kGaussNewton) return takeFullSteps(poses, steps);
   double cost = system_.cost(*poses, weights), damping = 0.0;
-  bool leapt = false;
+  bool full_steps_tried = false;
   for (int done = 0; done < steps; ++done) {
-    double promised = 0.0;
-    if (step(*poses, damping, &promised)) {
+    double predicted = 0.0;
+    if (step(*poses, damping, &predicted)) {
       Poses next = system_.moved(*poses, b_);
       const double next_cost = system_.cost(next, weights);
-      const bool settled = promised <= params_.tolerance * cost;
-      // Rounding may lift the cost a little at the very minimum.
-      if (next_cost <= cost || (settled && next_cost <= cost * (1.0 + 1e-9))) {
+      const bool converged = predicted <= params_.tolerance * cost;
+      // Rounding may increase the cost slightly at the minimum.
+      if (next_cost <= cost || (converged && next_cost <= cost * (1.0 + 1e-9))) {
         *poses = std::move(next);
         cost = next_cost;
-        if (settled && damping == 0.0) return true;
+        if (converged && damping == 0.0) return true;
         damping = damping > 1e-6 ? damping / 10.0 : 0.0;
         continue;
       }
-      if (!leapt && steps - done > kLeaps) {
-        leapt = true;
-        if (leap(&next, kLeaps) && system_.cost(next, weights) <= cost) {
+      if (!full_steps_tried && steps - done > kFullSteps) {
+        full_steps_tried = true;
+        if (takeFullSteps(&next, kFullSteps) && system_.cost(next, weights) <= cost) {
           *poses = std::move(next);
           return true;
         }
@@ -89,17 +90,18 @@ bool Descent::descend(Poses* poses, int steps) {
   return false;
 }
 
-bool Descent::judgeAt(const Poses& poses) {
-  system_.linearise(poses, weights, 0.0, &h_, &b_);
+bool Descent::factorAt(const Poses& poses) {
+  system_.linearize(poses, weights, 0.0, &h_, &b_);
   return factorPoses(&h_);
 }
 
 double Descent::innovation(const SystemEdge& edge, const Poses& poses) const {
-  if (system_.part(edge.from) != system_.part(edge.to)) return 0.0;  // nothing contradicts
+  if (system_.component(edge.from) != system_.component(edge.to))
+    return 0.0;  // nothing connects them
   const PoseSystem::Jacobian j = PoseSystem::jacobian(
       edge, poses[static_cast<std::size_t>(edge.from)], poses[static_cast<std::size_t>(edge.to)]);
   const int from = system_.row(edge.from), to = system_.row(edge.to);
-  Eigen::Matrix3d open = Eigen::Matrix3d::Zero();  // covariance of the error by the graph
+  Eigen::Matrix3d graph_covariance = Eigen::Matrix3d::Zero();  // of the error
   std::vector<PoseSystem::Vector> x(static_cast<std::size_t>(system_.rows()));
   for (int c = 0; c < 3; ++c) {
     std::fill(x.begin(), x.end(), PoseSystem::Vector{});
@@ -110,12 +112,13 @@ double Descent::innovation(const SystemEdge& edge, const Poses& poses) const {
     h_.solve(&x);
     for (int r = 0; r < 3; ++r)
       for (int k = 0; k < 3; ++k) {
-        if (from >= 0) open(r, c) += j.from(r, k) * x[static_cast<std::size_t>(from)][k];
-        if (to >= 0) open(r, c) += j.to(r, k) * x[static_cast<std::size_t>(to)][k];
+        if (from >= 0)
+          graph_covariance(r, c) += j.from(r, k) * x[static_cast<std::size_t>(from)][k];
+        if (to >= 0) graph_covariance(r, c) += j.to(r, k) * x[static_cast<std::size_t>(to)][k];
       }
   }
-  // e^T (open + W^-1)^-1 e = e^T W (open W + 1)^-1 e: W need not have an inverse.
-  const Eigen::Matrix3d spread = j.information * open + Eigen::Matrix3d::Identity();
+  // e^T (S + W^-1)^-1 e = e^T W (S W + 1)^-1 e, which needs no inverse of W.
+  const Eigen::Matrix3d spread = j.information * graph_covariance + Eigen::Matrix3d::Identity();
   return j.error.dot(spread.partialPivLu().solve(j.information * j.error));
 }
 

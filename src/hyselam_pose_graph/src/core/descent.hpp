@@ -1,4 +1,4 @@
-// Poses on their way to a minimum of a pose graph's cost.
+// Iterative minimization of a pose graph's cost.
 #pragma once
 
 #include <vector>
@@ -15,29 +15,30 @@ class Descent {
   Descent(const PoseSystem& system, const OptimizeParams& params)
       : system_(system), params_(params), h_(system.pattern()) {}
 
-  /// Of each edge, 0..1; none: all 1.
+  /// Of each edge, 0..1; empty: all 1.
   std::vector<double> weights;
-  /// Linear systems of poses solved.
+  /// Linear systems solved.
   int iterations() const { return iterations_; }
 
-  /// Positions, and small turns, that fit the rotations best: one linear system. False if the edges
-  /// do not determine them.
-  bool placeByRotations(Poses* poses);
-  /// Rotations by the chordal relaxation, positions by the above. False and unchanged as above.
-  bool relax(Poses* poses);
+  /// Positions, and small corrections of the rotations, that fit the rotations best: one linear
+  /// system. False if the edges do not determine them.
+  bool solvePositions(Poses* poses);
+  /// Rotations by the chordal relaxation, then positions by solvePositions(). False, and `poses`
+  /// unchanged, if the edges do not determine them.
+  bool initializeChordal(Poses* poses);
   /// Descends at most `steps` steps. True when the tolerance was reached.
   bool descend(Poses* poses, int steps);
 
-  /// Takes `poses` for the minimum: what innovation() is judged at. False if the edges do not
-  /// determine them.
-  bool judgeAt(const Poses& poses);
-  /// The squared error of an edge that is not in the graph, by its own information and by what the
-  /// graph leaves open between its two poses: chi^2 with three degrees of freedom if it is true.
+  /// Factorizes the information at `poses` for innovation(). False if the edges do not determine
+  /// them.
+  bool factorAt(const Poses& poses);
+  /// Squared Mahalanobis error of an edge that is not in the graph, with its own covariance and the
+  /// graph's covariance between its poses: chi^2 with three degrees of freedom if it is true.
   double innovation(const SystemEdge& edge, const Poses& poses) const;
 
  private:
-  bool step(const Poses& poses, double damping, double* promised);
-  bool leap(Poses* poses, int steps);
+  bool step(const Poses& poses, double damping, double* predicted);
+  bool takeFullSteps(Poses* poses, int steps);
 
   const PoseSystem& system_;
   const OptimizeParams& params_;

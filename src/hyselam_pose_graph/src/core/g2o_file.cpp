@@ -23,7 +23,7 @@ struct IdEdge {
   PoseEdge edge;
 };
 
-/// The lines of one file, and complaints that name it.
+/// Parses the lines of one file; its errors name file and line.
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {}
@@ -105,13 +105,13 @@ class Reader {
     return v;
   }
   void check(const IdEdge& e) const {
-    if (e.from == e.to) fail("the edge ties pose " + std::to_string(e.from) + " to itself");
+    if (e.from == e.to) fail("the edge connects pose " + std::to_string(e.from) + " to itself");
     PoseGraph pair{{0, 1}, {{}, {}}, {e.edge}};
     pair.edges[0].from = 0;
     pair.edges[0].to = 1;
     try {
       pair.validate();
-    } catch (const std::invalid_argument&) {
+    } catch (const InputError&) {
       fail("the information is not positive semidefinite");
     }
   }

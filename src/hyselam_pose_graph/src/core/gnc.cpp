@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "consistent_loops.hpp"
 #include "descent.hpp"
-#include "loop_company.hpp"
 #include "robust_weights.hpp"
 
 namespace hyselam_pose_graph {
@@ -12,38 +12,39 @@ namespace hyselam_pose_graph {
 namespace {
 
 using Poses = Descent::Poses;
-using Squares = std::function<void(const Poses&, std::vector<double>*)>;
+using SquaredErrors = std::function<void(const Poses&, std::vector<double>*)>;
 
-constexpr double kGrowth = 1.4;  // of mu per round, as its authors have it
-constexpr int kRounds = 6;
-constexpr int kReach = 10;  // poses between loops that keep each other company
-/// Edges are rarely worth just what they say. Where company shows them better, the limit of what
-/// may be true is tighter, with this to spare: little for those that decide where all begins, more
-/// for the others, whose errors have long tails. (M3500 and intel end the same from 25 to 50.)
-constexpr double kSpareFirst = 2.0, kSpare = 25.0;
-/// The 99.9 % quantile of chi^2 with one degree of freedom beside that with three.
-constexpr double kTurnShare = 10.828 / 16.266;
+constexpr double kMuGrowth = 1.4;  // per round, as in the paper
+constexpr int kMaxRounds = 6;
+constexpr int kMaxLoopDistance = 10;  // poses between loops that can support each other
+/// The stated information is rarely exact. Where consistent loops show that errors are smaller, the
+/// inlier threshold shrinks with them, times these margins: small for the loops of the first stage,
+/// large for the others, whose errors have long tails. (M3500 and intel end the same from 25
+/// to 50.)
+constexpr double kFirstMargin = 2.0, kMargin = 25.0;
+/// The 99.9 % quantile of chi^2 with one degree of freedom divided by that with three.
+constexpr double kRotationShare = 10.828 / 16.266;
 
-/// Weighs loops by their squared errors and solves again, until each is in or out.
-void anneal(const PoseGraph& graph, double limit, const Squares& squares,
+/// Weighs loops by their squared errors and solves again, until each weight is 0 or 1.
+void anneal(const PoseGraph& graph, double threshold, const SquaredErrors& squared_errors,
             const std::function<void()>& solve, const Poses& poses, std::vector<double>* weights) {
   std::vector<double> squared;
-  squares(poses, &squared);
+  squared_errors(poses, &squared);
   double largest = 0.0;
   for (std::size_t k = 0; k < squared.size(); ++k)
     if (!isOdometry(graph.edges[k])) largest = std::max(largest, squared[k]);
-  double mu = gncFirstMu(largest, limit);
-  if (mu <= 0.0) return;  // nothing contradicts
-  for (bool undecided = true; undecided; mu *= kGrowth) {
+  double mu = gncFirstMu(largest, threshold);
+  if (mu <= 0.0) return;  // no outlier
+  for (bool undecided = true; undecided; mu *= kMuGrowth) {
     undecided = mu < 1.0;
     for (std::size_t k = 0; k < squared.size(); ++k) {
       if (isOdometry(graph.edges[k])) continue;
       double& weight = (*weights)[k];
-      weight = gncWeight(squared[k], limit, mu);
+      weight = gncWeight(squared[k], threshold, mu);
       undecided = undecided || (weight > 0.0 && weight < 1.0);
     }
     solve();
-    squares(poses, &squared);
+    squared_errors(poses, &squared);
   }
 }
 
@@ -61,68 +62,96 @@ PoseGraph withLoops(const PoseGraph& graph, const std::function<bool(std::size_t
   return part;
 }
 
+class GncSolver {
+ public:
+  GncSolver(const PoseGraph& graph, const PoseSystem& system, const OptimizeParams& params)
+      : graph_(graph),
+        system_(system),
+        params_(params),
+        threshold_(params.gnc_inlier_threshold),
+        poses_(PoseSystem::system(composedPoses(graph))),
+        weights_(graph.edges.size(), 1.0) {}
+
+  OptimizeResult solve() {
+    selectFirstLoops();
+    const std::vector<double> selected = weights_;
+    solveStage([&](std::size_t k) { return selected[k] > 0.0; }, true);
+    // Rejected loops that fit are taken back, until nothing changes.
+    std::vector<double> before;
+    for (int round = 0; round < kMaxRounds && weights_ != before; ++round) {
+      before = weights_;
+      const std::vector<char> fits = fits_;
+      solveStage([&](std::size_t k) { return fits[k] != 0; }, false);
+    }
+    result_.poses = PoseSystem::poses(poses_);
+    result_.weights = weights_;
+    return std::move(result_);
+  }
+
+ private:
+  /// Sets weights 0 and 1, and the threshold of the stages that follow.
+  void selectFirstLoops() {
+    const ConsistentLoops all = findConsistentLoops(graph_, threshold_, kMaxLoopDistance);
+    any_support_ = std::any_of(all.support.begin(), all.support.end(), [](int n) { return n > 0; });
+    if (!any_support_) {
+      anneal(
+          graph_, threshold_ * kRotationShare,
+          [&](const Poses& p, std::vector<double>* s) { system_.rotationCosts(p, s); },
+          [&] { system_.relaxRotations(weights_, &poses_); }, poses_, &weights_);
+      return;
+    }
+    const ConsistentLoops closest = findConsistentLoops(
+        graph_, threshold_ * std::min(1.0, kFirstMargin * all.error_scale), kMaxLoopDistance);
+    threshold_ *= std::min(1.0, kMargin * all.error_scale);
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      weights_[k] = isOdometry(graph_.edges[k]) || closest.support[k] > 0 ? 1.0 : 0.0;
+    }
+  }
+
+  /// Anneals odometry and the loops that `keep`, then finds the loops that fit the result.
+  void solveStage(const std::function<bool(std::size_t)>& keep, bool first) {
+    std::vector<std::size_t> kept;
+    const PoseGraph part = withLoops(graph_, keep, &kept);
+    const PoseSystem part_system(part);
+    Descent descent(part_system, params_);
+    descent.weights.assign(part.edges.size(), 1.0);
+    if (first) any_support_ ? descent.initializeChordal(&poses_) : descent.solvePositions(&poses_);
+    anneal(
+        part, threshold_,
+        [&](const Poses& p, std::vector<double>* s) { part_system.edgeCosts(p, s); },
+        [&] {
+          first ? static_cast<void>(descent.initializeChordal(&poses_))
+                : static_cast<void>(descent.descend(&poses_, 2));
+        },
+        poses_, &descent.weights);
+    result_.converged = descent.descend(&poses_, params_.max_iterations);
+    result_.iterations += descent.iterations();
+    std::fill(weights_.begin(), weights_.end(), 0.0);
+    for (std::size_t k = 0; k < kept.size(); ++k) weights_[kept[k]] = descent.weights[k];
+    // A loop with a large error still fits where the covariance of the graph is large.
+    fits_.assign(weights_.size(), 0);
+    if (!descent.factorAt(poses_)) return;
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      fits_[k] = weights_[k] > 0.0 || descent.innovation(system_.edges()[k], poses_) <= threshold_;
+    }
+  }
+
+  const PoseGraph& graph_;
+  const PoseSystem& system_;
+  const OptimizeParams& params_;
+  double threshold_;
+  Poses poses_;
+  std::vector<double> weights_;
+  std::vector<char> fits_;  ///< edges that may be true, by the last stage
+  bool any_support_ = false;
+  OptimizeResult result_;
+};
+
 }  // namespace
 
 OptimizeResult solveGnc(const PoseGraph& graph, const PoseSystem& system,
                         const OptimizeParams& params) {
-  OptimizeResult result;
-  Poses poses = PoseSystem::system(composedPoses(graph));
-  std::vector<double> weights(graph.edges.size(), 1.0);
-  double limit = params.gnc_inlier;
-  LoopCompany company = findCompany(graph, limit, kReach);
-  const bool in_company = std::any_of(company.companions.begin(), company.companions.end(),
-                                      [](int n) { return n > 0; });
-  if (in_company) {
-    const double scale = company.scale;
-    company = findCompany(graph, limit * std::min(1.0, kSpareFirst * scale), kReach);
-    limit *= std::min(1.0, kSpare * scale);
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      weights[k] = isOdometry(graph.edges[k]) || company.companions[k] > 0 ? 1.0 : 0.0;
-  } else {
-    anneal(
-        graph, limit * kTurnShare,
-        [&](const Poses& p, std::vector<double>* s) { system.turnCosts(p, s); },
-        [&] { system.chordalRotations(weights, &poses); }, poses, &weights);
-  }
-
-  std::vector<std::size_t> kept;
-  std::vector<char> fits;  // edges that may be true, by the last stage
-  const auto stage = [&](const std::function<bool(std::size_t)>& keep, bool last) {
-    const PoseGraph part = withLoops(graph, keep, &kept);
-    const PoseSystem part_system(part);
-    Descent descent(part_system, params);
-    descent.weights.assign(part.edges.size(), 1.0);
-    if (!last) in_company ? descent.relax(&poses) : descent.placeByRotations(&poses);
-    anneal(
-        part, limit, [&](const Poses& p, std::vector<double>* s) { part_system.edgeCosts(p, s); },
-        [&] {
-          last ? static_cast<void>(descent.descend(&poses, 2))
-               : static_cast<void>(descent.relax(&poses));
-        },
-        poses, &descent.weights);
-    result.converged = descent.descend(&poses, params.max_iterations);
-    result.iterations += descent.iterations();
-    std::fill(weights.begin(), weights.end(), 0.0);
-    for (std::size_t k = 0; k < kept.size(); ++k) weights[kept[k]] = descent.weights[k];
-    // What the graph leaves open makes room for loops that look wrong at these poses.
-    fits.assign(weights.size(), 0);
-    if (!descent.judgeAt(poses)) return;
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      fits[k] = weights[k] > 0.0 || descent.innovation(system.edges()[k], poses) <= limit;
-  };
-  const std::vector<double> chosen_first = weights;
-  stage([&](std::size_t k) { return chosen_first[k] > 0.0; }, false);
-  // Loops come back that may be true after all, until that changes nothing.
-  std::vector<double> before;
-  for (int round = 0; round < kRounds && weights != before; ++round) {
-    before = weights;
-    const std::vector<char> chosen = fits;
-    stage([&](std::size_t k) { return chosen[k] != 0; }, true);
-  }
-
-  result.poses = PoseSystem::poses(poses);
-  result.weights = weights;
-  return result;
+  return GncSolver(graph, system, params).solve();
 }
 
 }  // namespace hyselam_pose_graph

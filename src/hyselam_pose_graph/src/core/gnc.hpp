@@ -1,4 +1,4 @@
-// Poses in spite of false loops.
+// Graduated non-convexity: optimization that rejects false loops.
 #pragma once
 
 #include "hyselam_pose_graph/graph_optimizer.hpp"
@@ -6,12 +6,12 @@
 
 namespace hyselam_pose_graph {
 
-/// Graduated non-convexity (Yang et al. 2020) with truncated least squares, in stages each of which
-/// has a linear system for a global solver, as the method wants. It begins with the loops that
-/// other loops confirm (findCompany), or, where there are none, with what annealing of the
-/// rotations alone leaves from odometry on; these with rotations and positions relaxed in turn;
-/// then the full cost, with every loop back that fits by then. Loops that lost their weight leave
-/// the linear system too: false ones tie everything to everything and make it dense.
+/// Graduated non-convexity (Yang et al. 2020) with truncated least squares, in stages that each
+/// have a linear system as global solver, as the method requires. The first stage takes the loops
+/// that other loops support (findConsistentLoops) or, if there are none, those that annealing of
+/// the rotations alone keeps, starting from odometry; it solves rotations and positions in turn.
+/// The following stages minimize the full cost and take back each loop that fits. Rejected loops
+/// leave the linear system too: false ones would make it dense.
 OptimizeResult solveGnc(const PoseGraph& graph, const PoseSystem& system,
                         const OptimizeParams& params);
 

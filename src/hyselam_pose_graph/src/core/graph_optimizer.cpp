@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "descent.hpp"
 #include "gnc.hpp"
@@ -17,11 +16,12 @@ namespace hyselam_pose_graph {
 namespace {
 
 using Poses = Descent::Poses;
-using hyselam::ParameterError;
+using hyselam::InputError;
+using hyselam::Range;
 
-constexpr int kStepsBeforeDoubt = 20;  // a good start needs fewer
+constexpr int kStepsBeforeRelaxation = 20;  // enough for a good start
 
-/// Dynamic covariance scaling: each step with the weights that the last one's errors give.
+/// Dynamic covariance scaling: each step with the weights given by the errors before it.
 bool descendDcs(const PoseGraph& graph, const PoseSystem& system, const OptimizeParams& params,
                 Descent* descent, Poses* poses) {
   descent->weights.assign(graph.edges.size(), 1.0);
@@ -48,20 +48,21 @@ OptimizeResult solve(const PoseGraph& graph, const PoseSystem& system,
   OptimizeResult result;
   Descent descent(system, params);
   Poses poses = PoseSystem::system(graph.poses);
-  // Loops of unknown truth mislead the relaxation: DCS starts with odometry.
+  // False loops mislead the chordal relaxation: DCS starts with odometry.
   const bool composed = params.start == GraphStart::kComposed ||
                         (params.robust == GraphRobust::kDcs && params.start == GraphStart::kBest);
-  if (composed || (params.start != GraphStart::kGiven && !descent.relax(&poses)))
+  if (composed || (params.start != GraphStart::kGiven && !descent.initializeChordal(&poses)))
     poses = PoseSystem::system(composedPoses(graph));
   if (params.robust == GraphRobust::kDcs) {
     result.converged = descendDcs(graph, system, params, &descent, &poses);
   } else if (params.start != GraphStart::kBest) {
     result.converged = descent.descend(&poses, params.max_iterations);
   } else {
-    result.converged = descent.descend(&poses, std::min(kStepsBeforeDoubt, params.max_iterations));
-    if (system.largestTurn(poses) > params.doubtful_turn) {
-      Poses other = liftedSolution(system, poses);
-      if (descent.placeByRotations(&other)) {
+    result.converged =
+        descent.descend(&poses, std::min(kStepsBeforeRelaxation, params.max_iterations));
+    if (system.maxRotationError(poses) > params.max_rotation_error) {
+      Poses other = solveLifted(system, poses);
+      if (descent.solvePositions(&other)) {
         const bool converged = descent.descend(&other, params.max_iterations);
         if (system.cost(other, {}) < system.cost(poses, {})) {
           poses = std::move(other);
@@ -80,13 +81,33 @@ OptimizeResult solve(const PoseGraph& graph, const PoseSystem& system,
 
 }  // namespace
 
+void OptimizeParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("start", start,
+        {{"given", GraphStart::kGiven},
+         {"composed", GraphStart::kComposed},
+         {"chordal", GraphStart::kChordal},
+         {"best", GraphStart::kBest}},
+        "initial poses");
+  visit("method", method,
+        {{"gauss-newton", GraphMethod::kGaussNewton},
+         {"levenberg-marquardt", GraphMethod::kLevenbergMarquardt}},
+        "steps of the descent");
+  visit("robust", robust,
+        {{"none", GraphRobust::kNone}, {"dcs", GraphRobust::kDcs}, {"gnc", GraphRobust::kGnc}},
+        "how false loops are rejected");
+  visit("max_iterations", max_iterations, Range::atLeast(1), "", "linear systems solved at most");
+  visit("tolerance", tolerance, Range::inside(0.0, 1.0), "",
+        "stop below this predicted relative decrease of the cost");
+  visit("dcs_phi", dcs_phi, Range::above(0.0), "",
+        "squared error above which DCS reduces the weight");
+  visit("gnc_inlier_threshold", gnc_inlier_threshold, Range::above(0.0), "",
+        "squared error that a true edge stays below");
+  visit("max_rotation_error", max_rotation_error, Range::above(0.0), "rad",
+        "rotation error at the minimum above which the global relaxation starts");
+}
+
 void OptimizeParams::validate() const {
-  if (max_iterations < 1) throw ParameterError("max_iterations", max_iterations, "at least 1");
-  if (!(tolerance > 0.0 && tolerance < 1.0))
-    throw ParameterError("tolerance", tolerance, "between 0 and 1");
-  if (!(dcs_phi > 0.0)) throw ParameterError("dcs_phi", dcs_phi, "above 0");
-  if (!(gnc_inlier > 0.0)) throw ParameterError("gnc_inlier", gnc_inlier, "above 0");
-  if (!(doubtful_turn > 0.0)) throw ParameterError("doubtful_turn", doubtful_turn, "above 0");
+  hyselam::checkParameters(*this);
 }
 
 GraphOptimizer::GraphOptimizer(PoseGraph graph) : graph_(std::move(graph)) {
@@ -119,9 +140,9 @@ std::vector<Eigen::Matrix3d> GraphOptimizer::covariances(const std::vector<hysel
                                                          const std::vector<int>& of,
                                                          const std::vector<double>& weights) const {
   if (poses.size() != graph_.poses.size())
-    throw std::invalid_argument("covariances: as many poses as the graph has, please");
+    throw InputError("covariances", "poses", "are not as many as the graph has");
   if (!weights.empty() && weights.size() != graph_.edges.size())
-    throw std::invalid_argument("covariances: as many weights as the graph has edges, please");
+    throw InputError("covariances", "weights", "are not as many as the graph has edges");
   const Marginals marginals(*system_, poses, weights);
   std::vector<Eigen::Matrix3d> result;
   result.reserve(of.size());

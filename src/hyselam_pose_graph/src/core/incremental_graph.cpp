@@ -2,12 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <stdexcept>
 
+#include "hyselam_common/errors.hpp"
 #include "marginals.hpp"
 
 namespace hyselam_pose_graph {
 
+using hyselam::InputError;
 using hyselam::Pose2;
 
 IncrementalGraph::IncrementalGraph(const OptimizeParams& params) : params_(params) {
@@ -28,7 +29,7 @@ IncrementalGraph::IncrementalGraph(IncrementalGraph&&) noexcept = default;
 IncrementalGraph& IncrementalGraph::operator=(IncrementalGraph&&) noexcept = default;
 
 int IncrementalGraph::addPose(const Pose2& pose) {
-  if (!pose.isFinite()) throw std::invalid_argument("a pose that is not finite");
+  if (!pose.isFinite()) throw InputError("pose graph", "new pose", "is not finite");
   std::int64_t id = 0;
   if (!graph_.ids.empty()) id = graph_.ids.back() + 1;
   graph_.ids.push_back(id);
@@ -38,7 +39,7 @@ int IncrementalGraph::addPose(const Pose2& pose) {
 }
 
 int IncrementalGraph::append(const Pose2& measured, const Eigen::Matrix3d& information) {
-  if (graph_.poses.empty()) throw std::invalid_argument("there is no pose to append to");
+  if (graph_.poses.empty()) throw InputError("pose graph", "", "there is no pose to append to");
   PoseEdge edge;
   edge.from = static_cast<int>(graph_.poses.size()) - 1;
   edge.to = edge.from + 1;
@@ -57,22 +58,22 @@ void IncrementalGraph::addEdge(const PoseEdge& edge) {
   pending_ = true;
 }
 
-OptimizeResult IncrementalGraph::optimise() {
-  marginals_.reset();  // refers to the system that goes
+OptimizeResult IncrementalGraph::optimize() {
+  marginals_.reset();  // refers to the system that is replaced
   optimizer_ = optimizer_ ? GraphOptimizer(graph_, *optimizer_) : GraphOptimizer(graph_);
-  analyses_ += optimizer_->reusesPattern() ? 0 : 1;
+  pattern_analyses_ += optimizer_->reusesPattern() ? 0 : 1;
   OptimizeResult result = optimizer_->optimize(params_);
   if (params_.robust == GraphRobust::kNone) {
-    double turn = 0.0;
+    double rotation_error = 0.0;
     for (const PoseEdge& e : graph_.edges) {
       const Pose2 &from = result.poses[static_cast<std::size_t>(e.from)],
                   &to = result.poses[static_cast<std::size_t>(e.to)];
-      turn = std::max(turn, std::abs(edgeError(e, from, to)[2]));
+      rotation_error = std::max(rotation_error, std::abs(edgeError(e, from, to)[2]));
     }
-    if (turn > params_.doubtful_turn) {
-      OptimizeParams anew = params_;
-      anew.start = GraphStart::kBest;
-      OptimizeResult other = optimizer_->optimize(anew);
+    if (rotation_error > params_.max_rotation_error) {
+      OptimizeParams again = params_;
+      again.start = GraphStart::kBest;
+      OptimizeResult other = optimizer_->optimize(again);
       const int iterations = result.iterations + other.iterations;
       if (other.final_cost < result.final_cost) result = std::move(other);
       result.iterations = iterations;
@@ -86,39 +87,37 @@ OptimizeResult IncrementalGraph::optimise() {
 
 Eigen::Matrix3d IncrementalGraph::covariance(int pose) const {
   if (pose < 0 || pose >= static_cast<int>(graph_.poses.size()))
-    throw std::invalid_argument("covariance: no pose " + std::to_string(pose));
+    throw InputError("covariance", "pose " + std::to_string(pose), "does not exist");
   const int known = optimizer_ ? static_cast<int>(optimizer_->graph().poses.size()) : 0;
-  int from = pose;  // the newest pose up to it whose covariance is known
+  int from = pose;  // the newest pose not after it whose covariance is known
   for (; from > 0 && from >= known; --from)
     if (appended_by_[static_cast<std::size_t>(from)] < 0)
-      throw std::invalid_argument("covariance: pose " + std::to_string(from) +
-                                  " is not optimised yet");
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of pose 0: where the frame is
+      throw InputError("covariance", "pose " + std::to_string(from), "is not optimized yet");
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of pose 0, which is fixed
   if (from < known) {
     if (!marginals_)
       marginals_ = std::make_unique<Marginals>(*optimizer_->system_, optimizerPoses(), weights_);
     covariance = marginals_->covariance(from);
   }
-  while (from < pose) covariance = carriedOver(covariance, ++from);
+  while (from < pose) covariance = propagated(covariance, ++from);
   return covariance;
 }
 
-/// An error of the pose before carries over, its turn by the lever of the step; odometry adds its
-/// own.
-Eigen::Matrix3d IncrementalGraph::carriedOver(const Eigen::Matrix3d& before, int pose) const {
+/// First-order propagation of the covariance of the previous pose along the edge of odometry.
+Eigen::Matrix3d IncrementalGraph::propagated(const Eigen::Matrix3d& before, int pose) const {
   const auto at = static_cast<std::size_t>(pose);
   const PoseEdge& edge = graph_.edges[static_cast<std::size_t>(appended_by_[at])];
   const Pose2 &from = graph_.poses[at - 1], &to = graph_.poses[at];
   const Eigen::LDLT<Eigen::Matrix3d> information(edge.information);
   if (!(information.vectorD().minCoeff() > 0.0))
-    throw std::runtime_error("the edges do not determine the poses");
-  Eigen::Matrix3d carry = Eigen::Matrix3d::Identity(), turn = carry;
-  carry(0, 2) = from.y - to.y;
-  carry(1, 2) = to.x - from.x;
+    throw InputError("pose graph", "", "the edges do not determine the poses");
+  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity(), rotation = jacobian;
+  jacobian(0, 2) = from.y - to.y;
+  jacobian(1, 2) = to.x - from.x;
   const double c = std::cos(to.theta), s = std::sin(to.theta);
-  turn.topLeftCorner<2, 2>() << c, -s, s, c;
-  return carry * before * carry.transpose() +
-         turn * information.solve(Eigen::Matrix3d::Identity()) * turn.transpose();
+  rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+  return jacobian * before * jacobian.transpose() +
+         rotation * information.solve(Eigen::Matrix3d::Identity()) * rotation.transpose();
 }
 
 std::vector<Pose2> IncrementalGraph::optimizerPoses() const {

@@ -37,7 +37,7 @@ struct Block7 {
 };
 
 /// (re, im, re, im) of two complex numbers times c + i s.
-Vector4 turned(const Vector4& u, double c, double s) {
+Vector4 rotated(const Vector4& u, double c, double s) {
   return {c * u[0] - s * u[1], s * u[0] + c * u[1], c * u[2] - s * u[3], s * u[2] + c * u[3]};
 }
 
@@ -67,11 +67,11 @@ class LiftedProblem {
  public:
   explicit LiftedProblem(const PoseSystem& system) : system_(system) {
     for (const SystemEdge& e : system.edges()) {
-      // tau: what the information of the position is on average, 2 / trace(inverse).
-      const double determinant = e.w[0] * e.w[2] - e.w[1] * e.w[1];
-      const double trace = e.w[0] + e.w[2];
+      // tau: mean information of the position, 2 / trace(inverse).
+      const double determinant = e.w.xx * e.w.yy - e.w.xy * e.w.xy;
+      const double trace = e.w.xx + e.w.yy;
       const double tau = trace > 0.0 ? std::max(0.0, 2.0 * determinant / trace) : 0.0;
-      edges_.push_back({e.from, e.to, e.w[5], tau, std::cos(e.theta), std::sin(e.theta), e.x, e.y});
+      edges_.push_back({e.from, e.to, e.w.tt, tau, std::cos(e.theta), std::sin(e.theta), e.x, e.y});
     }
   }
 
@@ -89,57 +89,14 @@ class LiftedProblem {
             std::vector<Block7::Vector>* x) const {
     h->setZero();
     x->assign(static_cast<std::size_t>(system_.rows()), Block7::Vector::Zero());
-    std::vector<double> pull(v.size(), 0.0);  // of the cost along each rotation: Lambda
-    for (const LiftedEdge& e : edges_) {
-      const Lifted& vi = v[static_cast<std::size_t>(e.from)];
-      const Lifted& vj = v[static_cast<std::size_t>(e.to)];
-      const Residual r = residual(e, v);
-      // Gradients with respect to the rotations in R^4 and the positions.
-      const Vector4 rj = e.kappa * r.rotation, tj = e.tau * r.position;
-      const Vector4 ri = -turned(rj, e.c, -e.s) - turned(tj, e.x, -e.y);
-      pull[static_cast<std::size_t>(e.from)] += ri.dot(vi.rotation);
-      pull[static_cast<std::size_t>(e.to)] += rj.dot(vj.rotation);
-      const int row_i = system_.row(e.from), row_j = system_.row(e.to);
-      const Eigen::Matrix<double, 4, 3> bi = tangent(vi.rotation), bj = tangent(vj.rotation);
-      Eigen::Matrix<double, 4, 3> zb, yb;  // derivatives of the residuals by rotation i, negative
-      for (int k = 0; k < 3; ++k) {
-        zb.col(k) = turned(bi.col(k), e.c, e.s);
-        yb.col(k) = turned(bi.col(k), e.x, e.y);
-      }
-      if (row_i >= 0) {
-        Block7& d = h->entry(system_.pattern().diagonal(row_i));
-        d.m.topLeftCorner<3, 3>() += e.kappa * zb.transpose() * zb + e.tau * yb.transpose() * yb;
-        d.m.topRightCorner<3, 4>() += e.tau * yb.transpose();
-        d.m.bottomLeftCorner<4, 3>() += e.tau * yb;
-        d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
-        (*x)[static_cast<std::size_t>(row_i)].head<3>() -= bi.transpose() * ri;
-        (*x)[static_cast<std::size_t>(row_i)].tail<4>() += tj;
-      }
-      if (row_j >= 0) {
-        Block7& d = h->entry(system_.pattern().diagonal(row_j));
-        d.m.topLeftCorner<3, 3>() += e.kappa * Eigen::Matrix3d::Identity();
-        d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
-        (*x)[static_cast<std::size_t>(row_j)].head<3>() -= bj.transpose() * rj;
-        (*x)[static_cast<std::size_t>(row_j)].tail<4>() -= tj;
-      }
-      if (row_i >= 0 && row_j >= 0) {
-        Block7::Matrix o = Block7::Matrix::Zero();  // H(i, j)
-        o.topLeftCorner<3, 3>() = -e.kappa * zb.transpose() * bj;
-        o.topRightCorner<3, 4>() = -e.tau * yb.transpose();
-        o.bottomRightCorner<4, 4>() = -e.tau * Matrix4::Identity();
-        const CholeskyPattern::Slot slot = system_.pattern().slot(row_i, row_j);
-        if (slot.transposed)
-          h->entry(slot.entry).m += o.transpose();
-        else
-          h->entry(slot.entry).m += o;
-      }
-    }
+    std::vector<double> multipliers(v.size(), 0.0);  // of the unit spheres: Lambda
+    for (const LiftedEdge& e : edges_) addEdge(e, v, h, x, &multipliers);
     for (std::size_t i = 0; i < v.size(); ++i) {
       const int row = system_.row(static_cast<int>(i));
       if (row < 0) continue;
       Block7& d = h->entry(system_.pattern().diagonal(row));
       const Block7::Vector scale = d.m.diagonal();
-      d.m.topLeftCorner<3, 3>().diagonal().array() -= pull[i];
+      d.m.topLeftCorner<3, 3>().diagonal().array() -= multipliers[i];
       d.m.diagonal() += damping * scale;
     }
     if (!h->factor()) return false;
@@ -164,19 +121,66 @@ class LiftedProblem {
   struct Residual {
     Vector4 rotation, position;
   };
+
+  void addEdge(const LiftedEdge& e, const std::vector<Lifted>& v, BlockCholesky<Block7>* h,
+               std::vector<Block7::Vector>* x, std::vector<double>* multipliers) const {
+    const Lifted& vi = v[static_cast<std::size_t>(e.from)];
+    const Lifted& vj = v[static_cast<std::size_t>(e.to)];
+    const Residual r = residual(e, v);
+    // Gradients with respect to the rotations in R^4 and the positions.
+    const Vector4 rj = e.kappa * r.rotation, tj = e.tau * r.position;
+    const Vector4 ri = -rotated(rj, e.c, -e.s) - rotated(tj, e.x, -e.y);
+    (*multipliers)[static_cast<std::size_t>(e.from)] += ri.dot(vi.rotation);
+    (*multipliers)[static_cast<std::size_t>(e.to)] += rj.dot(vj.rotation);
+    const int row_i = system_.row(e.from), row_j = system_.row(e.to);
+    const Eigen::Matrix<double, 4, 3> bi = tangent(vi.rotation), bj = tangent(vj.rotation);
+    Eigen::Matrix<double, 4, 3> zb, yb;  // derivatives of the residuals by rotation i, negative
+    for (int k = 0; k < 3; ++k) {
+      zb.col(k) = rotated(bi.col(k), e.c, e.s);
+      yb.col(k) = rotated(bi.col(k), e.x, e.y);
+    }
+    if (row_i >= 0) {
+      Block7& d = h->entry(system_.pattern().diagonal(row_i));
+      d.m.topLeftCorner<3, 3>() += e.kappa * zb.transpose() * zb + e.tau * yb.transpose() * yb;
+      d.m.topRightCorner<3, 4>() += e.tau * yb.transpose();
+      d.m.bottomLeftCorner<4, 3>() += e.tau * yb;
+      d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
+      (*x)[static_cast<std::size_t>(row_i)].head<3>() -= bi.transpose() * ri;
+      (*x)[static_cast<std::size_t>(row_i)].tail<4>() += tj;
+    }
+    if (row_j >= 0) {
+      Block7& d = h->entry(system_.pattern().diagonal(row_j));
+      d.m.topLeftCorner<3, 3>() += e.kappa * Eigen::Matrix3d::Identity();
+      d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
+      (*x)[static_cast<std::size_t>(row_j)].head<3>() -= bj.transpose() * rj;
+      (*x)[static_cast<std::size_t>(row_j)].tail<4>() -= tj;
+    }
+    if (row_i < 0 || row_j < 0) return;
+    Block7::Matrix o = Block7::Matrix::Zero();  // H(i, j)
+    o.topLeftCorner<3, 3>() = -e.kappa * zb.transpose() * bj;
+    o.topRightCorner<3, 4>() = -e.tau * yb.transpose();
+    o.bottomRightCorner<4, 4>() = -e.tau * Matrix4::Identity();
+    const CholeskyPattern::Slot slot = system_.pattern().slot(row_i, row_j);
+    if (slot.transposed) {
+      h->entry(slot.entry).m += o.transpose();
+    } else {
+      h->entry(slot.entry).m += o;
+    }
+  }
+
   static Residual residual(const LiftedEdge& e, const std::vector<Lifted>& v) {
     const Lifted& i = v[static_cast<std::size_t>(e.from)];
     const Lifted& j = v[static_cast<std::size_t>(e.to)];
-    return {j.rotation - turned(i.rotation, e.c, e.s),
-            j.position - i.position - turned(i.rotation, e.x, e.y)};
+    return {j.rotation - rotated(i.rotation, e.c, e.s),
+            j.position - i.position - rotated(i.rotation, e.x, e.y)};
   }
 
   const PoseSystem& system_;
   std::vector<LiftedEdge> edges_;
 };
 
-/// The complex direction of C^2 that most of the rotations share.
-Eigen::Vector2cd mainDirection(const std::vector<Lifted>& v) {
+/// The direction of C^2 with the largest share of the rotations (first principal component).
+Eigen::Vector2cd dominantDirection(const std::vector<Lifted>& v) {
   Eigen::Matrix2cd gram = Eigen::Matrix2cd::Zero();
   for (const Lifted& p : v) {
     Eigen::Vector2cd u;  // two pairs of braces would be taken for two rows
@@ -189,17 +193,18 @@ Eigen::Vector2cd mainDirection(const std::vector<Lifted>& v) {
 
 }  // namespace
 
-std::vector<SystemPose> liftedSolution(const PoseSystem& system, std::vector<SystemPose> poses,
-                                       int max_iterations) {
+std::vector<SystemPose> solveLifted(const PoseSystem& system, std::vector<SystemPose> poses,
+                                    int max_iterations) {
   const LiftedProblem problem(system);
-  // A little of the second dimension, at random, leads away from the false minimum of the first.
+  // A random perturbation into the second dimension leads away from the local minimum of the first.
   hyselam::Rng rng(1);
   std::vector<Lifted> v;
   v.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const SystemPose& p = poses[i];
-    const double shake = system.row(static_cast<int>(i)) < 0 ? 0.0 : 0.3;
-    const double a = shake * (2.0 * rng.uniform() - 1.0), b = shake * (2.0 * rng.uniform() - 1.0);
+    const double perturbation = system.row(static_cast<int>(i)) < 0 ? 0.0 : 0.3;
+    const double a = perturbation * (2.0 * rng.uniform() - 1.0),
+                 b = perturbation * (2.0 * rng.uniform() - 1.0);
     v.push_back({Vector4(p.c, p.s, a, b).normalized(), Vector4(p.x, p.y, 0.0, 0.0)});
   }
   BlockCholesky<Block7> h(system.pattern());
@@ -222,10 +227,10 @@ std::vector<SystemPose> liftedSolution(const PoseSystem& system, std::vector<Sys
     damping = std::max(damping / 4.0, 1e-9);
     if (gain < 1e-8 * cost) break;
   }
-  const Eigen::Vector2cd direction = mainDirection(v);
-  // Poses held fast keep their rotation: each part is turned back by that of its first pose, which
-  // comes before the others.
-  std::vector<std::complex<double>> turn;
+  const Eigen::Vector2cd direction = dominantDirection(v);
+  // Fixed poses keep their rotation: each component is rotated back by that of its first pose,
+  // which precedes the others.
+  std::vector<std::complex<double>> alignment;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Vector4& u = v[i].rotation;
     const std::complex<double> r = std::conj(direction[0]) * std::complex<double>(u[0], u[1]) +
@@ -234,11 +239,11 @@ std::vector<SystemPose> liftedSolution(const PoseSystem& system, std::vector<Sys
     const std::complex<double> unit = length > 0.0 ? r / length : std::complex<double>(1.0, 0.0);
     SystemPose& p = poses[i];
     if (system.row(static_cast<int>(i)) < 0) {
-      turn.push_back(std::complex<double>(p.c, p.s) / unit);
+      alignment.push_back(std::complex<double>(p.c, p.s) / unit);
       continue;
     }
     const std::complex<double> rotation =
-        unit * turn[static_cast<std::size_t>(system.part(static_cast<int>(i)))];
+        unit * alignment[static_cast<std::size_t>(system.component(static_cast<int>(i)))];
     p.c = rotation.real();
     p.s = rotation.imag();
     p.theta = std::arg(rotation);

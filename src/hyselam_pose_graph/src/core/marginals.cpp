@@ -1,20 +1,23 @@
 #include "marginals.hpp"
 
-#include <stdexcept>
+#include "hyselam_common/errors.hpp"
 
 namespace hyselam_pose_graph {
+
+using hyselam::InputError;
 
 Marginals::Marginals(const PoseSystem& system, const std::vector<hyselam::Pose2>& poses,
                      const std::vector<double>& weights)
     : system_(system), poses_(static_cast<int>(poses.size())), factor_(system.pattern()) {
   std::vector<PoseSystem::Vector> b;
-  system_.linearise(PoseSystem::system(poses), weights, 0.0, &factor_, &b);
-  if (!factorPoses(&factor_)) throw std::runtime_error("the edges do not determine the poses");
+  system_.linearize(PoseSystem::system(poses), weights, 0.0, &factor_, &b);
+  if (!factorPoses(&factor_))
+    throw InputError("pose graph", "", "the edges do not determine the poses");
 }
 
 Eigen::Matrix3d Marginals::covariance(int pose) const {
   if (pose < 0 || pose >= poses_)
-    throw std::invalid_argument("covariances: no pose " + std::to_string(pose));
+    throw InputError("covariances", "pose " + std::to_string(pose), "does not exist");
   const int row = system_.row(pose);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   if (row < 0) return covariance;

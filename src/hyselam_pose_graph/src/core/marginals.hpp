@@ -5,15 +5,15 @@
 
 namespace hyselam_pose_graph {
 
-/// One factorisation, then any pose for the price of a way up the tree of elimination.
+/// One factorization, then any pose at the cost of a path to the root of the elimination tree.
 class Marginals {
  public:
-  /// `system` must outlive this. @throws std::runtime_error when the edges do not determine the
+  /// `system` must outlive this. @throws hyselam::InputError when the edges do not determine the
   /// poses.
   Marginals(const PoseSystem& system, const std::vector<hyselam::Pose2>& poses,
             const std::vector<double>& weights);
-  /// Of (x, y, theta), in the frame of the graph, given the first pose of its part.
-  /// @throws std::invalid_argument for an index out of range.
+  /// Of (x, y, theta), in the frame of the graph, given the first pose of its component.
+  /// @throws hyselam::InputError for an index out of range.
   Eigen::Matrix3d covariance(int pose) const;
 
  private:

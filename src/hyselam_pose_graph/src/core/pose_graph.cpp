@@ -2,22 +2,24 @@
 
 #include <Eigen/Eigenvalues>
 #include <deque>
-#include <stdexcept>
 #include <string>
+
+#include "hyselam_common/errors.hpp"
 
 namespace hyselam_pose_graph {
 
 namespace {
 
+using hyselam::InputError;
 using hyselam::Pose2;
 
-struct Neighbour {
+struct Neighbor {
   int pose;
   int edge;
 };
 
-std::vector<std::vector<Neighbour>> neighbours(const PoseGraph& graph) {
-  std::vector<std::vector<Neighbour>> list(graph.poses.size());
+std::vector<std::vector<Neighbor>> neighbors(const PoseGraph& graph) {
+  std::vector<std::vector<Neighbor>> list(graph.poses.size());
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     const PoseEdge& edge = graph.edges[e];
     list[static_cast<std::size_t>(edge.from)].push_back({edge.to, static_cast<int>(e)});
@@ -26,7 +28,7 @@ std::vector<std::vector<Neighbour>> neighbours(const PoseGraph& graph) {
   return list;
 }
 
-/// Information up to rounding: a matrix written with six digits may be off a little.
+/// Positive semidefinite up to rounding: files hold matrices with six digits.
 bool isInformation(const Eigen::Matrix3d& m) {
   if (!m.allFinite()) return false;
   const double scale = m.cwiseAbs().maxCoeff();
@@ -40,24 +42,33 @@ bool isInformation(const Eigen::Matrix3d& m) {
 
 void validateEdge(const PoseEdge& e, std::size_t poses, const std::string& name) {
   const int n = static_cast<int>(poses);
-  if (e.from < 0 || e.from >= n || e.to < 0 || e.to >= n)
-    throw std::invalid_argument(name + " refers to a pose that is not there");
-  if (e.from == e.to) throw std::invalid_argument(name + " ties a pose to itself");
-  if (!e.measured.isFinite()) throw std::invalid_argument(name + " is not finite");
-  if (!isInformation(e.information))
-    throw std::invalid_argument(name +
-                                ": information is not a symmetric positive semidefinite matrix");
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError("pose graph", name, reason);
+  };
+  if (e.from < 0 || e.from >= n || e.to < 0 || e.to >= n) {
+    refuse("refers to a pose that does not exist");
+  }
+  if (e.from == e.to) refuse("connects a pose to itself");
+  if (!e.measured.isFinite()) refuse("the measurement is not finite");
+  if (!isInformation(e.information)) {
+    refuse("the information is not a symmetric positive semidefinite matrix");
+  }
 }
 
 void PoseGraph::validate() const {
-  if (ids.size() != poses.size())
-    throw std::invalid_argument("a pose graph of " + std::to_string(poses.size()) + " poses has " +
-                                std::to_string(ids.size()) + " ids");
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (!poses[i].isFinite())
-      throw std::invalid_argument("pose " + std::to_string(ids[i]) + " is not finite");
-  for (std::size_t i = 0; i < edges.size(); ++i)
+  if (ids.size() != poses.size()) {
+    throw InputError(
+        "pose graph", "",
+        std::to_string(poses.size()) + " poses have " + std::to_string(ids.size()) + " ids");
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i].isFinite()) {
+      throw InputError("pose graph", "pose " + std::to_string(ids[i]), "is not finite");
+    }
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
     validateEdge(edges[i], poses.size(), "edge " + std::to_string(i));
+  }
 }
 
 Eigen::Vector3d edgeError(const PoseEdge& edge, const Pose2& from, const Pose2& to) {
@@ -78,11 +89,11 @@ double graphCost(const PoseGraph& graph, const std::vector<Pose2>& poses) {
 }
 
 std::vector<Pose2> composedPoses(const PoseGraph& graph) {
-  const auto list = neighbours(graph);
+  const auto list = neighbors(graph);
   std::vector<Pose2> poses = graph.poses;
   std::vector<char> known(poses.size(), 0);
   std::deque<std::size_t> queue;
-  const auto settle = [&](std::size_t at, const Neighbour& n) {
+  const auto place = [&](std::size_t at, const Neighbor& n) {
     const PoseEdge& edge = graph.edges[static_cast<std::size_t>(n.edge)];
     const auto next = static_cast<std::size_t>(n.pose);
     const bool forward = static_cast<std::size_t>(edge.from) == at;
@@ -90,13 +101,13 @@ std::vector<Pose2> composedPoses(const PoseGraph& graph) {
     known[next] = 1;
     queue.push_back(next);
   };
-  // Follows the way of the robot from `at` as far as odometry tells it.
-  const auto followChain = [&](std::size_t at) {
+  // Along odometry from `at`, as far as it goes without a gap.
+  const auto followOdometry = [&](std::size_t at) {
     for (bool moved = true; moved;) {
       moved = false;
-      for (const Neighbour& n : list[at]) {
+      for (const Neighbor& n : list[at]) {
         if (n.pose != static_cast<int>(at) + 1 || known[at + 1]) continue;
-        settle(at, n);
+        place(at, n);
         ++at;
         moved = true;
         break;
@@ -107,42 +118,42 @@ std::vector<Pose2> composedPoses(const PoseGraph& graph) {
     if (known[first]) continue;
     known[first] = 1;
     queue.push_back(first);
-    followChain(first);
+    followOdometry(first);
     while (!queue.empty()) {
       const std::size_t at = queue.front();
       queue.pop_front();
-      for (const Neighbour& n : list[at]) {
+      for (const Neighbor& n : list[at]) {
         if (known[static_cast<std::size_t>(n.pose)]) continue;
-        settle(at, n);
-        followChain(static_cast<std::size_t>(n.pose));
+        place(at, n);
+        followOdometry(static_cast<std::size_t>(n.pose));
       }
     }
   }
   return poses;
 }
 
-std::vector<int> connectedParts(const PoseGraph& graph) {
-  const auto list = neighbours(graph);
-  std::vector<int> part(graph.poses.size(), -1);
-  int parts = 0;
+std::vector<int> connectedComponents(const PoseGraph& graph) {
+  const auto list = neighbors(graph);
+  std::vector<int> component(graph.poses.size(), -1);
+  int components = 0;
   std::vector<std::size_t> stack;
-  for (std::size_t first = 0; first < part.size(); ++first) {
-    if (part[first] >= 0) continue;
-    part[first] = parts;
+  for (std::size_t first = 0; first < component.size(); ++first) {
+    if (component[first] >= 0) continue;
+    component[first] = components;
     stack.push_back(first);
     while (!stack.empty()) {
       const std::size_t at = stack.back();
       stack.pop_back();
-      for (const Neighbour& n : list[at]) {
+      for (const Neighbor& n : list[at]) {
         const auto next = static_cast<std::size_t>(n.pose);
-        if (part[next] >= 0) continue;
-        part[next] = parts;
+        if (component[next] >= 0) continue;
+        component[next] = components;
         stack.push_back(next);
       }
     }
-    ++parts;
+    ++components;
   }
-  return part;
+  return component;
 }
 
 }  // namespace hyselam_pose_graph

@@ -13,23 +13,79 @@ struct Residual {
   double wx, wy, wt;  // Omega e
 };
 
+/// The error of an edge for t_j in i at (x, y).
+void setError(const SystemEdge& e, double x, double y, const SystemPose& i, const SystemPose& j,
+              Residual* r) {
+  r->ex = x - e.x;
+  r->ey = y - e.y;
+  r->et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
+  r->wx = e.w.xx * r->ex + e.w.xy * r->ey + e.w.xt * r->et;
+  r->wy = e.w.xy * r->ex + e.w.yy * r->ey + e.w.yt * r->et;
+  r->wt = e.w.xt * r->ex + e.w.yt * r->ey + e.w.tt * r->et;
+}
+
 Residual residual(const SystemEdge& e, const SystemPose& i, const SystemPose& j) {
   Residual r{};
   const double dx = j.x - i.x, dy = j.y - i.y;
   r.px = i.c * dx + i.s * dy;
   r.py = -i.s * dx + i.c * dy;
-  r.ex = r.px - e.x;
-  r.ey = r.py - e.y;
-  r.et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
-  r.wx = e.w[0] * r.ex + e.w[1] * r.ey + e.w[3] * r.et;
-  r.wy = e.w[1] * r.ex + e.w[2] * r.ey + e.w[4] * r.et;
-  r.wt = e.w[3] * r.ex + e.w[4] * r.ey + e.w[5] * r.et;
+  setError(e, r.px, r.py, i, j, &r);
   return r;
 }
 
-double turnError(const SystemEdge& e, const std::vector<SystemPose>& poses) {
+/// The residual with unknown positions: they are counted from the origin, those of fixed poses are
+/// known. The derivative by the angle is taken at the measurement.
+Residual residualOfRotations(const SystemEdge& e, const SystemPose& i, bool i_fixed,
+                             const SystemPose& j, bool j_fixed) {
+  Residual r{};
+  const double dx = (j_fixed ? j.x : 0.0) - (i_fixed ? i.x : 0.0);
+  const double dy = (j_fixed ? j.y : 0.0) - (i_fixed ? i.y : 0.0);
+  setError(e, i.c * dx + i.s * dy, -i.s * dx + i.c * dy, i, j, &r);
+  r.px = e.x;
+  r.py = e.y;
+  return r;
+}
+
+double rotationError(const SystemEdge& e, const std::vector<SystemPose>& poses) {
   return hyselam::normalizeAngle(poses[static_cast<std::size_t>(e.to)].theta -
                                  poses[static_cast<std::size_t>(e.from)].theta - e.theta);
+}
+
+/// What an edge adds to the normal equations. J_j = (R_i^T 0; 0 1), J_i = -(R_i^T q; 0 1) with
+/// q = (-py, px): d(R_i^T d)/dtheta = -q.
+struct EdgeTerms {
+  double hxx, hxy, hyy, hxt, hyt, htt;  ///< J_j^T Omega J_j
+  double mx, my, mt;                    ///< the column of theta in J_i^T Omega J_i
+  double m2;                            ///< theta, theta in -J_i^T Omega J_j
+  double gx, gy;                        ///< J_j^T Omega e, and the negative of J_i^T Omega e
+  double gt_from, gt_to;                ///< the same of theta
+};
+
+EdgeTerms edgeTerms(const SystemEdge& e, const SystemPose& i, const Residual& r, double weight) {
+  const double w00 = weight * e.w.xx, w01 = weight * e.w.xy, w11 = weight * e.w.yy;
+  const double w02 = weight * e.w.xt, w12 = weight * e.w.yt, w22 = weight * e.w.tt;
+  EdgeTerms t{};
+  // u = Omega J_j, its columns of x and y.
+  const double ux0 = w00 * i.c - w01 * i.s, ux1 = w01 * i.c - w11 * i.s;
+  const double uy0 = w00 * i.s + w01 * i.c, uy1 = w01 * i.s + w11 * i.c;
+  t.hxx = i.c * ux0 - i.s * ux1;
+  t.hxy = i.c * uy0 - i.s * uy1;
+  t.hyy = i.s * uy0 + i.c * uy1;
+  t.hxt = i.c * w02 - i.s * w12;
+  t.hyt = i.s * w02 + i.c * w12;
+  t.htt = w22;
+  // m = Omega (q, 1): the negative column of theta in Omega J_i.
+  const double qx = -r.py, qy = r.px;
+  const double m0 = w00 * qx + w01 * qy + w02, m1 = w01 * qx + w11 * qy + w12;
+  t.m2 = w02 * qx + w12 * qy + w22;
+  t.mx = i.c * m0 - i.s * m1;
+  t.my = i.s * m0 + i.c * m1;
+  t.mt = qx * m0 + qy * m1 + t.m2;
+  t.gx = weight * (i.c * r.wx - i.s * r.wy);
+  t.gy = weight * (i.s * r.wx + i.c * r.wy);
+  t.gt_to = weight * r.wt;
+  t.gt_from = weight * (qx * r.wx + qy * r.wy) + t.gt_to;
+  return t;
 }
 
 double squared(const Residual& r) {
@@ -39,11 +95,11 @@ double squared(const Residual& r) {
 }  // namespace
 
 PoseSystem::PoseSystem(const PoseGraph& graph, const PoseSystem* earlier)
-    : row_(graph.poses.size(), -1), part_(connectedParts(graph)) {
-  int rows = 0, parts = 0;
+    : row_(graph.poses.size(), -1), component_(connectedComponents(graph)) {
+  int rows = 0, components = 0;
   for (std::size_t i = 0; i < row_.size(); ++i) {
-    if (part_[i] == parts)
-      ++parts;  // first of its part: held fast
+    if (component_[i] == components)
+      ++components;  // first of its component: fixed (gauge)
     else
       row_[i] = rows++;
   }
@@ -56,7 +112,7 @@ PoseSystem::PoseSystem(const PoseGraph& graph, const PoseSystem* earlier)
                     std::all_of(couplings.begin(), couplings.end(), [&](const auto& pair) {
                       return earlier->pattern_.holds(pair.first, pair.second);
                     });
-  pattern_ = reuses_pattern_ ? earlier->pattern_ : analysePattern(rows, couplings);
+  pattern_ = reuses_pattern_ ? earlier->pattern_ : analyzePattern(rows, couplings);
   diagonal_.resize(static_cast<std::size_t>(rows));
   for (int i = 0; i < rows; ++i) diagonal_[static_cast<std::size_t>(i)] = pattern_.diagonal(i);
 
@@ -74,15 +130,10 @@ PoseSystem::PoseSystem(const PoseGraph& graph, const PoseSystem* earlier)
     e.x = edge.measured.x;
     e.y = edge.measured.y;
     e.theta = edge.measured.theta;
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(edge.measured.theta).toRotationMatrix();
-    const Eigen::Matrix3d w = turn * edge.information * turn.transpose();
-    e.w[0] = w(0, 0);
-    e.w[1] = w(0, 1);
-    e.w[2] = w(1, 1);
-    e.w[3] = w(0, 2);
-    e.w[4] = w(1, 2);
-    e.w[5] = w(2, 2);
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    rotation.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(edge.measured.theta).toRotationMatrix();
+    const Eigen::Matrix3d w = rotation * edge.information * rotation.transpose();
+    e.w = {w(0, 0), w(0, 1), w(1, 1), w(0, 2), w(1, 2), w(2, 2)};
     edges_.push_back(e);
   }
 }
@@ -123,12 +174,13 @@ void PoseSystem::edgeCosts(const std::vector<SystemPose>& poses, std::vector<dou
   }
 }
 
-void PoseSystem::turnCosts(const std::vector<SystemPose>& poses, std::vector<double>* costs) const {
+void PoseSystem::rotationCosts(const std::vector<SystemPose>& poses,
+                               std::vector<double>* costs) const {
   costs->resize(edges_.size());
   for (std::size_t k = 0; k < edges_.size(); ++k) {
     const SystemEdge& e = edges_[k];
-    const double turn = turnError(e, poses);
-    (*costs)[k] = e.w[5] * turn * turn;
+    const double turn = rotationError(e, poses);
+    (*costs)[k] = e.w.tt * turn * turn;
   }
 }
 
@@ -139,8 +191,8 @@ PoseSystem::Jacobian PoseSystem::jacobian(const SystemEdge& edge, const SystemPo
   j.error << r.ex, r.ey, r.et;
   j.from << -from.c, -from.s, r.py, from.s, -from.c, -r.px, 0.0, 0.0, -1.0;
   j.to << from.c, from.s, 0.0, -from.s, from.c, 0.0, 0.0, 0.0, 1.0;
-  j.information << edge.w[0], edge.w[1], edge.w[3], edge.w[1], edge.w[2], edge.w[4], edge.w[3],
-      edge.w[4], edge.w[5];
+  j.information << edge.w.xx, edge.w.xy, edge.w.xt, edge.w.xy, edge.w.yy, edge.w.yt, edge.w.xt,
+      edge.w.yt, edge.w.tt;
   return j;
 }
 
@@ -156,72 +208,40 @@ void PoseSystem::fill(const std::vector<SystemPose>& poses, const std::vector<do
     const SystemPose& i = poses[static_cast<std::size_t>(e.from)];
     const SystemPose& j = poses[static_cast<std::size_t>(e.to)];
     const int ri = row(e.from), rj = row(e.to);
-    Residual r{};
-    if (kFromRotations) {
-      // Positions are unknowns themselves, counted from the origin; those held fast are known. The
-      // derivative by the angle is taken where the measurement would have it.
-      const double dx = (rj < 0 ? j.x : 0.0) - (ri < 0 ? i.x : 0.0);
-      const double dy = (rj < 0 ? j.y : 0.0) - (ri < 0 ? i.y : 0.0);
-      r.ex = i.c * dx + i.s * dy - e.x;
-      r.ey = -i.s * dx + i.c * dy - e.y;
-      r.et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
-      r.wx = e.w[0] * r.ex + e.w[1] * r.ey + e.w[3] * r.et;
-      r.wy = e.w[1] * r.ex + e.w[2] * r.ey + e.w[4] * r.et;
-      r.wt = e.w[3] * r.ex + e.w[4] * r.ey + e.w[5] * r.et;
-      r.px = e.x;
-      r.py = e.y;
-    } else {
-      r = residual(e, i, j);
-    }
-    // J_j = (R_i^T 0; 0 1), J_i = -(R_i^T q; 0 1) with q = (-py, px): d(R_i^T d)/dtheta = -q.
-    // u = Omega J_j and its products, in columns of x, y, theta.
-    const double w00 = weight * e.w[0], w01 = weight * e.w[1], w11 = weight * e.w[2];
-    const double w02 = weight * e.w[3], w12 = weight * e.w[4], w22 = weight * e.w[5];
-    const double ux0 = w00 * i.c - w01 * i.s, ux1 = w01 * i.c - w11 * i.s;
-    const double uy0 = w00 * i.s + w01 * i.c, uy1 = w01 * i.s + w11 * i.c;
-    const double hxx = i.c * ux0 - i.s * ux1, hxy = i.c * uy0 - i.s * uy1;
-    const double hyy = i.s * uy0 + i.c * uy1;
-    const double hxt = i.c * w02 - i.s * w12, hyt = i.s * w02 + i.c * w12;
-    // With m = Omega (q, 1): the column of theta in Omega J_i, but for the sign.
-    const double qx = -r.py, qy = r.px;
-    const double m0 = w00 * qx + w01 * qy + w02, m1 = w01 * qx + w11 * qy + w12;
-    const double m2 = w02 * qx + w12 * qy + w22;
-    const double mx = i.c * m0 - i.s * m1, my = i.s * m0 + i.c * m1;
-    const double mt = qx * m0 + qy * m1 + m2;
-    const double gx = weight * (i.c * r.wx - i.s * r.wy), gy = weight * (i.s * r.wx + i.c * r.wy);
-    const double gt = weight * r.wt;
+    const Residual r =
+        kFromRotations ? residualOfRotations(e, i, ri < 0, j, rj < 0) : residual(e, i, j);
+    const EdgeTerms t = edgeTerms(e, i, r, weight);
     if (rj >= 0) {
       Block3& d = h->entry(diagonal_[static_cast<std::size_t>(rj)]);
-      d.column[0] += Vector{hxx, hxy, hxt, 0.0};
-      d.column[1] += Vector{hxy, hyy, hyt, 0.0};
-      d.column[2] += Vector{hxt, hyt, w22, 0.0};
-      (*b)[static_cast<std::size_t>(rj)] -= Vector{gx, gy, gt, 0.0};
+      d.column[0] += Vector{t.hxx, t.hxy, t.hxt, 0.0};
+      d.column[1] += Vector{t.hxy, t.hyy, t.hyt, 0.0};
+      d.column[2] += Vector{t.hxt, t.hyt, t.htt, 0.0};
+      (*b)[static_cast<std::size_t>(rj)] -= Vector{t.gx, t.gy, t.gt_to, 0.0};
     }
     if (ri >= 0) {
       Block3& d = h->entry(diagonal_[static_cast<std::size_t>(ri)]);
-      d.column[0] += Vector{hxx, hxy, mx, 0.0};
-      d.column[1] += Vector{hxy, hyy, my, 0.0};
-      d.column[2] += Vector{mx, my, mt, 0.0};
-      const double git = weight * (qx * r.wx + qy * r.wy) + gt;
-      (*b)[static_cast<std::size_t>(ri)] += Vector{gx, gy, git, 0.0};
+      d.column[0] += Vector{t.hxx, t.hxy, t.mx, 0.0};
+      d.column[1] += Vector{t.hxy, t.hyy, t.my, 0.0};
+      d.column[2] += Vector{t.mx, t.my, t.mt, 0.0};
+      (*b)[static_cast<std::size_t>(ri)] += Vector{t.gx, t.gy, t.gt_from, 0.0};
     }
     if (e.block >= 0) {
       // H(i, j) = J_i^T Omega J_j.
       Block3& o = h->entry(e.block);
       if (e.from_row) {  // the entry's row is i
-        o.column[0] -= Vector{hxx, hxy, mx, 0.0};
-        o.column[1] -= Vector{hxy, hyy, my, 0.0};
-        o.column[2] -= Vector{hxt, hyt, m2, 0.0};
+        o.column[0] -= Vector{t.hxx, t.hxy, t.mx, 0.0};
+        o.column[1] -= Vector{t.hxy, t.hyy, t.my, 0.0};
+        o.column[2] -= Vector{t.hxt, t.hyt, t.m2, 0.0};
       } else {
-        o.column[0] -= Vector{hxx, hxy, hxt, 0.0};
-        o.column[1] -= Vector{hxy, hyy, hyt, 0.0};
-        o.column[2] -= Vector{mx, my, m2, 0.0};
+        o.column[0] -= Vector{t.hxx, t.hxy, t.hxt, 0.0};
+        o.column[1] -= Vector{t.hxy, t.hyy, t.hyt, 0.0};
+        o.column[2] -= Vector{t.mx, t.my, t.m2, 0.0};
       }
     }
   }
 }
 
-void PoseSystem::linearise(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+void PoseSystem::linearize(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
                            double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const {
   fill<false>(poses, weights, h, b);
   if (damping > 0.0)
@@ -229,7 +249,7 @@ void PoseSystem::linearise(const std::vector<SystemPose>& poses, const std::vect
       for (int k = 0; k < 3; ++k) h->entry(d).column[k][k] *= 1.0 + damping;
 }
 
-void PoseSystem::lineariseFromRotations(const std::vector<SystemPose>& poses,
+void PoseSystem::linearizeFromRotations(const std::vector<SystemPose>& poses,
                                         const std::vector<double>& weights,
                                         BlockCholesky<Block3>* h, std::vector<Vector>* b) const {
   fill<true>(poses, weights, h, b);
@@ -251,8 +271,8 @@ std::vector<SystemPose> PoseSystem::moved(const std::vector<SystemPose>& poses,
   return result;
 }
 
-bool PoseSystem::chordalRotations(const std::vector<double>& weights,
-                                  std::vector<SystemPose>* poses) const {
+bool PoseSystem::relaxRotations(const std::vector<double>& weights,
+                                std::vector<SystemPose>* poses) const {
   using Complex = std::complex<double>;
   BlockCholesky<BlockComplex> h(pattern_);
   h.setZero();
@@ -260,7 +280,7 @@ bool PoseSystem::chordalRotations(const std::vector<double>& weights,
   for (std::size_t k = 0; k < edges_.size(); ++k) {
     // kappa |r_j - z r_i|^2
     const SystemEdge& e = edges_[k];
-    const double kappa = (weights.empty() ? 1.0 : weights[k]) * e.w[5];
+    const double kappa = (weights.empty() ? 1.0 : weights[k]) * e.w.tt;
     if (kappa == 0.0) continue;
     const Complex z{std::cos(e.theta), std::sin(e.theta)};
     const int ri = row(e.from), rj = row(e.to);
@@ -289,9 +309,9 @@ bool PoseSystem::chordalRotations(const std::vector<double>& weights,
   return true;
 }
 
-double PoseSystem::largestTurn(const std::vector<SystemPose>& poses) const {
+double PoseSystem::maxRotationError(const std::vector<SystemPose>& poses) const {
   double largest = 0.0;
-  for (const SystemEdge& e : edges_) largest = std::max(largest, std::abs(turnError(e, poses)));
+  for (const SystemEdge& e : edges_) largest = std::max(largest, std::abs(rotationError(e, poses)));
   return largest;
 }
 

@@ -1,4 +1,4 @@
-// How much an edge is believed, by its squared error: the schedules of DCS and GNC.
+// Weight of an edge by its squared error: DCS and GNC.
 #pragma once
 
 #include <algorithm>

@@ -81,7 +81,8 @@ int main(int argc, char** argv) {
   app.add_option("--tolerance", o.params.tolerance,
                  "stop when a step promises less than this part of the cost")
       ->capture_default_str();
-  app.add_option("--gnc-inlier", o.params.gnc_inlier, "squared error that true edges stay below")
+  app.add_option("--gnc-inlier", o.params.gnc_inlier_threshold,
+                 "squared error that true edges stay below")
       ->capture_default_str();
   app.add_option("--dcs-phi", o.params.dcs_phi, "squared error from which DCS takes weight")
       ->capture_default_str();
