@@ -87,7 +87,7 @@ TEST(G2oFile, TruncatedFilesAreReadOrRejected) {
 TEST(OptimizeGraphTool, SolvesWritesAndReports) {
   TemporaryDirectory dir;
   writeG2o(dir / "in.g2o", random_graphs::streets(80, 0.05, 1).graph);
-  const std::string tool = std::string(HYSELAM_POSE_GRAPH_TOOLS) + "/optimize_graph ";
+  const std::string tool = std::string(HYSELAM_TOOLS) + "/optimize_graph ";
   const std::string command = tool + (dir / "in.g2o") + " " + (dir / "out.g2o") + " --json " +
                               (dir / "r.json") + " > " + (dir / "log");
   ASSERT_EQ(std::system(command.c_str()), 0);
