@@ -1,14 +1,16 @@
 // Files in and out: whole or not at all, and what is wrong with them.
-#include "hyselam_common/testing/files.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <zlib.h>
 
+#include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
 namespace hyselam {
@@ -158,6 +160,57 @@ TEST(ReferenceTable, GapInTheIndexIsAnError) {
   TemporaryDirectory d;
   writeFile(d / "r.txt", "# scan_index\n0 0 0 0 0 0\n2 0 0 0 0 0\n");
   EXPECT_TRUE(mentions(messageOf<InputError>([&] { readReferenceTable(d / "r.txt"); }), "line 3"));
+}
+
+TEST(BinaryIo, NumbersAreLittleEndianAndReadBackExactly) {
+  std::ostringstream out;
+  {
+    BinaryWriter writer(out);
+    writer.put(std::uint32_t{0x01020304});
+    writer.put(-2.5);
+    writer.put(std::int16_t{-7});
+    writer.putSized(std::vector<float>{1.5F, std::numeric_limits<float>::infinity()});
+    writer.putText("abc");
+  }
+  const std::string bytes = out.str();
+  EXPECT_EQ(bytes.substr(0, 4), "\x04\x03\x02\x01");
+  BinaryReader reader(bytes);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 0x01020304U);
+  EXPECT_EQ(reader.get<double>(), -2.5);
+  EXPECT_EQ(reader.get<std::int16_t>(), -7);
+  EXPECT_EQ(reader.getSized<float>(),
+            (std::vector<float>{1.5F, std::numeric_limits<float>::infinity()}));
+  EXPECT_EQ(reader.left(), 3U);
+  reader.skip(3);
+  reader.requireEnd();
+}
+
+TEST(BinaryIo, ChecksumCoversWhatWasWrittenSinceTheLastOne) {
+  std::ostringstream out;
+  BinaryWriter writer(out);
+  writer.put(std::uint64_t{42});
+  writer.putChecksum();
+  writer.put(std::uint8_t{1});
+  writer.putChecksum();
+  const std::string bytes = out.str();
+  BinaryReader reader(bytes);
+  reader.skip(8);
+  EXPECT_EQ(reader.get<std::uint32_t>(), checksumOf(bytes, 0, 8));
+  reader.skip(1);
+  EXPECT_EQ(reader.get<std::uint32_t>(), checksumOf(bytes, 12, 13));
+}
+
+TEST(BinaryIo, MissingAndLeftBytesAreErrors) {
+  const std::string five(5, '\xff');
+  BinaryReader reader(five, "model");
+  reader.skip(2);
+  EXPECT_EQ(messageOf<InputError>([&] { reader.get<std::uint32_t>(); }),
+            "model: byte 2: ends early");
+  EXPECT_EQ(messageOf<InputError>([&] { reader.requireEnd(); }),
+            "model: byte 2: has bytes after its end");
+  const std::string eight(8, '\xff');
+  BinaryReader sized(eight);  // says that 2^64 - 1 values follow
+  EXPECT_THROW(sized.getSized<double>(), InputError);
 }
 
 }  // namespace

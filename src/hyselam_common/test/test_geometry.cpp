@@ -62,7 +62,7 @@ RC_GTEST_PROP(GridGeometry, CentreLiesInItsCellUnderAnyOrigin, ()) {
   g.resolution = *testing::between(0.01, 1.0);
   g.origin = *anyPose();
   const Cell c{*rc::gen::inRange(-50, 2050), *rc::gen::inRange(-50, 2050)};
-  RC_ASSERT(g.cellAt(g.centre(c)) == c);
+  RC_ASSERT(g.cellAt(g.center(c)) == c);
   if (g.contains(c)) RC_ASSERT(g.index(c) < g.cellCount());
 }
 
@@ -140,7 +140,7 @@ TEST(Coarsen, keepsThinWallsAndPlaces) {
   EXPECT_EQ(coarse.cells, (std::vector<std::int8_t>{100, 30, -1, -1, -1, 0}));
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 5; ++x)
-      EXPECT_EQ(coarse.geometry.cellAt(g.centre({x, y})), (Cell{x / 2, y / 2}));
+      EXPECT_EQ(coarse.geometry.cellAt(g.center({x, y})), (Cell{x / 2, y / 2}));
   EXPECT_EQ(coarsen(map, 1).cells, map.cells);
   EXPECT_THROW(coarsen(map, 0), ParameterError);
   EXPECT_EQ(coarseningFactor(0.05, 0.1), 2);

@@ -1,13 +1,13 @@
 // map_server's files: meaning of every key, round trips, and every way to get them wrong.
-#include "hyselam_common/map_io.hpp"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/map_io.hpp"
 #include "hyselam_common/rng.hpp"
+#include "hyselam_common/testing/drawn_grid.hpp"
 #include "hyselam_common/testing/files.hpp"
 
 namespace hyselam {
@@ -81,7 +81,7 @@ TEST_F(MapFiles, RawKeepsGreyValuesUpTo100) {
 TEST_F(MapFiles, YawOfTheOriginIsKept) {
   const OccupancyGrid g = load(replaced(kGood, "0.0]", "1.5707963267948966]"));
   // Cell (1, 0) lies one cell along +y of the map, since the grid is turned to the left.
-  const Point2 c = g.geometry.centre({1, 0});
+  const Point2 c = g.geometry.center({1, 0});
   EXPECT_NEAR(c.x, 1.0 - 0.05, 1e-9);
   EXPECT_NEAR(c.y, -2.0 + 0.15, 1e-9);
 }
@@ -273,12 +273,27 @@ TEST(SaveMap, RefusesGridsThatAreNone) {
   OccupancyGrid grid = randomGrid(MapMode::kTrinary);
   EXPECT_THROW(saveMap(d / "m.pgm", grid), InputError);
   EXPECT_THROW(saveMap(d / "none/m.yaml", grid), InputError);
-  EXPECT_THROW(saveMap(d / "m.yaml", OccupancyGrid{}), std::invalid_argument);
+  EXPECT_THROW(saveMap(d / "m.yaml", OccupancyGrid{}), InputError);
   grid.cells[3] = 101;
-  EXPECT_THROW(saveMap(d / "m.yaml", grid), std::invalid_argument);
+  EXPECT_THROW(saveMap(d / "m.yaml", grid), InputError);
   grid.cells.pop_back();
-  EXPECT_THROW(saveMap(d / "m.yaml", grid), std::invalid_argument);
+  EXPECT_THROW(saveMap(d / "m.yaml", grid), InputError);
   EXPECT_EQ(d.fileCount(), 0U);
+}
+
+TEST(DrawnGrid, FirstRowIsTheUpperOne) {
+  const OccupancyGrid grid = testing::drawnGrid({"##?",  //
+                                                 "#. "},
+                                                0.5);
+  EXPECT_EQ(grid.geometry.width, 3);
+  EXPECT_EQ(grid.geometry.height, 2);
+  EXPECT_EQ(grid.geometry.resolution, 0.5);
+  EXPECT_EQ(grid.at({1, 0}), OccupancyGrid::kFree);
+  EXPECT_EQ(grid.at({1, 1}), OccupancyGrid::kOccupied);
+  EXPECT_EQ(grid.at({2, 0}), OccupancyGrid::kUnknown);
+  EXPECT_EQ(testing::drawingOf(grid), (std::vector<std::string>{"##?", "#.?"}));
+  EXPECT_THROW(testing::drawnGrid({"##", "#"}), std::logic_error);
+  EXPECT_THROW(testing::drawnGrid({"x"}), std::logic_error);
 }
 
 }  // namespace

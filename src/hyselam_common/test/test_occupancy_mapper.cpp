@@ -1,6 +1,4 @@
 // Maps from scans with known poses, in worlds small enough to check by hand.
-#include "hyselam_common/occupancy_mapper.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,13 +6,14 @@
 #include <stdexcept>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/rng.hpp"
 
 namespace hyselam {
 namespace {
 
-OccupancyMapperParameters coarse() {
-  OccupancyMapperParameters p;
+OccupancyMapperParams coarse() {
+  OccupancyMapperParams p;
   p.resolution = 0.1;
   p.min_observations = 1;
   return p;
@@ -174,7 +173,7 @@ TEST(OccupancyMapper, PosesThatAreNoneAndMapsWithoutBoundAreRefused) {
   auto parameters = coarse();
   parameters.max_cells = 1000000;
   OccupancyMapper mapper(parameters);
-  EXPECT_THROW(mapper.insert({std::nan(""), 0, 0}, scanOf({1.0F})), std::invalid_argument);
+  EXPECT_THROW(mapper.insert({std::nan(""), 0, 0}, scanOf({1.0F})), InputError);
   mapper.insert({}, scanOf({1.0F}));
   EXPECT_THROW(mapper.insert({1e4, 1e4, 0}, scanOf({1.0F})), std::length_error);
   EXPECT_THROW(mapper.insert({1e30, 0, 0}, scanOf({1.0F})), std::length_error);
@@ -184,7 +183,7 @@ TEST(OccupancyMapper, PosesThatAreNoneAndMapsWithoutBoundAreRefused) {
 
 TEST(OccupancyMapper, ParametersOutOfRangeAreRefused) {
   const auto refused = [](auto change) {
-    OccupancyMapperParameters p;
+    OccupancyMapperParams p;
     change(p);
     EXPECT_THROW(OccupancyMapper{p}, ParameterError);
   };

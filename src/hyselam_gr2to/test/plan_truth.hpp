@@ -27,7 +27,7 @@ inline cv::Mat labels(const hyselam_sim::FloorPlan& plan, const OccupancyGrid& g
     for (int x = 0; x < out.cols; ++x) {
       if (grid.at({x, y}) != OccupancyGrid::kFree) continue;
       for (std::size_t k = 0; k < plan.places.size(); ++k) {
-        if (!hyselam_sim::contains(plan.places[k].outline, grid.geometry.centre({x, y}))) continue;
+        if (!hyselam_sim::contains(plan.places[k].outline, grid.geometry.center({x, y}))) continue;
         out.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(k + 1);
         front.push_back({x, y});
         break;
@@ -69,7 +69,7 @@ inline void shiftBorders(const hyselam_sim::FloorPlan& plan, const OccupancyGrid
     const double reach = std::hypot(0.5 * door.width, distance);
     for (int y = 0; y < labels->rows; ++y) {
       for (int x = 0; x < labels->cols; ++x) {
-        const Point2 p = grid.geometry.centre({x, y});
+        const Point2 p = grid.geometry.center({x, y});
         if (std::hypot(p.x - door.at.x, p.y - door.at.y) > reach) continue;
         auto& label = labels->at<std::uint16_t>(y, x);
         if (label == yields) label = grows;

@@ -201,7 +201,7 @@ OccupancyGrid rooms(double x, double size) {
   OccupancyGrid grid(geometry, OccupancyGrid::kFree);
   for (int row = 0; row < geometry.height; ++row) {
     for (int column = 0; column < geometry.width; ++column) {
-      const auto c = geometry.centre({column, row});
+      const auto c = geometry.center({column, row});
       const bool limit = c.x < 0.1 || c.x > 8.4 || c.y < 0.1 || c.y > 4.1;
       const bool wall = c.x > 4.1 && c.x < 4.25 && (c.y < 1.5 || c.y > 2.5);
       const bool box = c.x > x && c.x < x + size && c.y > 3.0 && c.y < 3.0 + size;

@@ -258,7 +258,7 @@ TEST(Segmentation, FloorsHaveTheirRoomsHoweverTheyAreTurned) {
       for (int y = 0; y < rooms.rows; ++y)
         for (int x = 0; x < rooms.cols; ++x)
           for (std::size_t i = 0; i < plan.places.size(); ++i)
-            if (hyselam_sim::contains(plan.places[i].outline, grid.geometry.centre({x, y})))
+            if (hyselam_sim::contains(plan.places[i].outline, grid.geometry.center({x, y})))
               rooms.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(i + 1);
       const double index = agreement(rooms, segment(grid).labels);
       EXPECT_GE(index, 0.8) << "seed " << seed << ", turned by " << rotation;

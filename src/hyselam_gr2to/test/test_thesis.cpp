@@ -7,6 +7,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
+#include "hyselam_common/testing/drawn_grid.hpp"
 #include "hyselam_gr2to/thesis/door_candidates.hpp"
 #include "hyselam_gr2to/thesis/thesis.hpp"
 #include "transcription/thesis.hpp"
@@ -14,26 +15,9 @@
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 using hyselam::Cell;
 using hyselam::OccupancyGrid;
+using hyselam::testing::drawnGrid;
 
 namespace {
-
-// '#' occupied, '.' free, ' ' unknown; the first row is the highest.
-OccupancyGrid drawn(const std::vector<std::string>& rows, double resolution = 0.1) {
-  hyselam::GridGeometry g;
-  g.width = static_cast<int>(rows[0].size());
-  g.height = static_cast<int>(rows.size());
-  g.resolution = resolution;
-  OccupancyGrid grid(g);
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const char c = rows[static_cast<std::size_t>(g.height - 1 - y)][static_cast<std::size_t>(x)];
-      grid.at({x, y}) = c == '#'   ? OccupancyGrid::kOccupied
-                        : c == '.' ? OccupancyGrid::kFree
-                                   : OccupancyGrid::kUnknown;
-    }
-  }
-  return grid;
-}
 
 // Rooms of 4 m side by side, joined by doors of the given width in their middle; cells of 10 cm.
 OccupancyGrid roomsInARow(int rooms, int door_cells) {
@@ -112,12 +96,15 @@ TEST(ThesisOracle, StoredCirclesDoNotOverlap) {
 }
 
 TEST(ThesisFilter, LonelyCellsGo) {
-  const OccupancyGrid out = filterIsolatedCells(
-      drawn({"#####     ", "#...#     ", "#.......  ", "#...#    .", "#####     "}));
+  const OccupancyGrid out = filterIsolatedCells(drawnGrid({"#####     ",  //
+                                                           "#...#     ",  //
+                                                           "#.......  ",  //
+                                                           "#...#    .",  //
+                                                           "#####     "}));
   EXPECT_EQ(OccupancyGrid::kUnknown, out.at({9, 1}));
   EXPECT_EQ(OccupancyGrid::kFree, out.at({7, 2}));
   EXPECT_EQ(OccupancyGrid::kOccupied, out.at({4, 1}));
-  const OccupancyGrid salt = filterIsolatedCells(drawn({".....", "..#..", "....."}));
+  const OccupancyGrid salt = filterIsolatedCells(drawnGrid({".....", "..#..", "....."}));
   EXPECT_EQ(OccupancyGrid::kFree, salt.at({2, 1}));
 }
 

@@ -21,28 +21,30 @@ nav_msgs::OccupancyGrid read(const std::string& file, const std::string& frame_i
 
 }  // namespace
 
-MapServerParameters loadParameters(const ros::NodeHandle& private_nh,
-                                   const std::string& file_argument) {
-  MapServerParameters parameters;
+void MapServerParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("yaml_filename", yaml_filename, "map_server YAML file");
+  visit("frame_id", frame_id, "frame of the map");
+}
+
+MapServerParams loadParams(const ros::NodeHandle& private_nh, const std::string& file_argument) {
+  MapServerParams params;
   hyselam::ParamLoader loader(private_nh);
-  loader.get("yaml_filename", parameters.yaml_filename, "map_server YAML file");
-  loader.get("frame_id", parameters.frame_id, "frame of the map");
+  params.describe(loader);
   loader.logWarnings();
-  if (!file_argument.empty()) parameters.yaml_filename = file_argument;
+  if (!file_argument.empty()) params.yaml_filename = file_argument;
   const std::string where = private_nh.getNamespace() + "/";
-  if (parameters.yaml_filename.empty()) {
+  if (params.yaml_filename.empty()) {
     throw hyselam::ParameterError(where + "yaml_filename", "empty",
                                   "the path of a map's YAML file");
   }
-  if (parameters.frame_id.empty()) {
+  if (params.frame_id.empty()) {
     throw hyselam::ParameterError(where + "frame_id", "empty", "the name of a frame");
   }
-  return parameters;
+  return params;
 }
 
-MapServer::MapServer(ros::NodeHandle nh, const MapServerParameters& parameters)
-    : parameters_(parameters) {
-  const nav_msgs::OccupancyGrid map = read(parameters.yaml_filename, parameters.frame_id);
+MapServer::MapServer(ros::NodeHandle nh, const MapServerParams& params) : params_(params) {
+  const nav_msgs::OccupancyGrid map = read(params.yaml_filename, params.frame_id);
   map_publisher_ = nh.advertise<nav_msgs::OccupancyGrid>("map", 1, true);
   metadata_publisher_ = nh.advertise<nav_msgs::MapMetaData>("map_metadata", 1, true);
   use(map);
@@ -65,7 +67,7 @@ void MapServer::use(const nav_msgs::OccupancyGrid& map) {
 bool MapServer::changeMap(nav_msgs::LoadMap::Request& request,
                           nav_msgs::LoadMap::Response& response) {
   try {
-    use(read(request.map_url, parameters_.frame_id));
+    use(read(request.map_url, params_.frame_id));
     response.map = map_;
     response.result = nav_msgs::LoadMap::Response::RESULT_SUCCESS;
   } catch (const std::exception& error) {

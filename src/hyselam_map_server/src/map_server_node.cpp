@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   try {
     const ros::NodeHandle private_nh("~");
     const hyselam_map_server::MapServer server(
-        ros::NodeHandle(), hyselam_map_server::loadParameters(private_nh, argc > 1 ? argv[1] : ""));
+        ros::NodeHandle(), hyselam_map_server::loadParams(private_nh, argc > 1 ? argv[1] : ""));
     ros::spin();
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << '\n';

@@ -57,7 +57,7 @@ places:
                                   angle};
         const Frame frame = flat.take(base, 0.0, ++seed);
         for (const DetectedObject& seen : detectObjects(frame.cloud, frame.camera.in_map)) {
-          const Point3 c = seen.centre();
+          const Point3 c = seen.center();
           if (seen.furniture || seen.cut || std::hypot(c.x - 3.0, c.y - 3.0) > 0.25) continue;
           views.push_back(seen.descriptor);
           sizes.emplace_back(seen.high.x - seen.low.x, seen.high.y - seen.low.y,

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "../src/core/graph_blocks.hpp"
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 
 namespace {

@@ -6,8 +6,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
-#include "hyselam_scan_matching/refine.hpp"
-#include "hyselam_scan_matching/search.hpp"
+#include "hyselam_scan_matching/correlative_matcher.hpp"
+#include "hyselam_scan_matching/icp.hpp"
 
 namespace {
 
@@ -53,7 +53,7 @@ SurfaceMap roomMap() {
   return map;
 }
 
-TEST(Surface, NormalsFaceTheLaser) {
+TEST(SurfacePoints, NormalsFaceTheLaser) {
   const Pose2 at{3, 2, 0.3};
   const SurfacePoints points = transformed(at, surfacePoints(roomScan(at)));
   ASSERT_GT(points.size(), 100u);
@@ -69,7 +69,7 @@ TEST(Surface, NormalsFaceTheLaser) {
   EXPECT_GT(told, 80);
 }
 
-TEST(Surface, SaysNothingOfReadingsThatAreNone) {
+TEST(SurfacePoints, InvalidReadingsAreLeftOut) {
   hyselam::LaserScan scan = roomScan({3, 2, 0});
   for (std::size_t i = 0; i < scan.ranges.size(); i += 4)
     scan.ranges[i] = std::numeric_limits<float>::quiet_NaN();
@@ -81,7 +81,7 @@ TEST(Surface, SaysNothingOfReadingsThatAreNone) {
   EXPECT_TRUE(surfacePoints(scan).empty());
 }
 
-TEST(SurfaceMap, NearestEqualsLookingAtAll) {
+TEST(SurfaceMap, NearestEqualsExhaustiveSearch) {
   const SurfaceMap map = roomMap();
   hyselam::Rng rng(1);
   for (int k = 0; k < 5000; ++k) {
@@ -104,7 +104,7 @@ TEST(SurfaceMap, NearestEqualsLookingAtAll) {
   }
 }
 
-TEST(SurfaceMap, EmptyAndFarAwayPointsAreNoTrouble) {
+TEST(SurfaceMap, EmptyMapsAndFarPointsAreHandled) {
   SurfaceMap map;
   map.finish();
   EXPECT_EQ(map.nearest({0, 0, 0, 0}, 1.0), nullptr);
@@ -114,14 +114,14 @@ TEST(SurfaceMap, EmptyAndFarAwayPointsAreNoTrouble) {
   EXPECT_THROW(SurfaceMap(0.0), hyselam::ParameterError);
 }
 
-TEST(Refine, FindsThePoseFromGuessesNearby) {
+TEST(Icp, FindsThePoseFromGuessesNearby) {
   const SurfaceMap map = roomMap();
   hyselam::Rng rng(3);
   for (int k = 0; k < 100; ++k) {
     const Pose2 truth{1.0 + 3.0 * rng.uniform(), 1.0 + 3.0 * rng.uniform(), 6.0 * rng.uniform()};
     const Pose2 guess = truth * Pose2{0.3 * rng.uniform() - 0.15, 0.3 * rng.uniform() - 0.15,
                                       0.2 * rng.uniform() - 0.1};
-    const Refined r = refine(surfacePoints(roomScan(truth)), map, guess);
+    const IcpResult r = alignIcp(surfacePoints(roomScan(truth)), map, guess);
     EXPECT_LT(distance(r.pose, truth), 0.01) << k;
     EXPECT_LT(std::abs(hyselam::normalizeAngle(r.pose.theta - truth.theta)), 0.005) << k;
     EXPECT_GT(r.matched, 0.8);
@@ -129,7 +129,7 @@ TEST(Refine, FindsThePoseFromGuessesNearby) {
   }
 }
 
-TEST(Refine, ABareCorridorTellsNothingAlong) {
+TEST(Icp, ABareCorridorGivesNoInformationAlongIt) {
   SurfaceMap map;
   SurfacePoints walls;
   for (int i = -200; i <= 200; ++i) {
@@ -142,53 +142,53 @@ TEST(Refine, ABareCorridorTellsNothingAlong) {
   for (const SurfacePoint& p : walls)
     if (std::abs(p.x) < 4.0) seen.push_back(p);
   Eigen::Matrix3d odometry = Eigen::Vector3d(100, 100, 100).asDiagonal();
-  const Refined r = refine(seen, map, {0.4, 0.1, 0.02}, odometry);
+  const IcpResult r = alignIcp(seen, map, {0.4, 0.1, 0.02}, odometry);
   EXPECT_NEAR(r.pose.x, 0.4, 0.02);  // odometry's word counts
   EXPECT_NEAR(r.pose.y, 0.0, 0.005);
   EXPECT_NEAR(r.pose.theta, 0.0, 0.002);
   EXPECT_LT(r.information(0, 0), 1e-3 * r.information(1, 1));
 }
 
-TEST(Refine, NothingToMatchGivesTheGuessBack) {
-  const Refined a = refine({}, roomMap(), {1, 2, 3});
+TEST(Icp, ReturnsTheGuessWithoutAnythingToMatch) {
+  const IcpResult a = alignIcp({}, roomMap(), {1, 2, 3});
   SurfaceMap nothing;
   nothing.finish();
-  const Refined b = refine(surfacePoints(roomScan({3, 2, 0})), nothing, {1, 2, 3});
-  for (const Refined* r : {&a, &b}) {
+  const IcpResult b = alignIcp(surfacePoints(roomScan({3, 2, 0})), nothing, {1, 2, 3});
+  for (const IcpResult* r : {&a, &b}) {
     EXPECT_EQ(r->pose.y, 2.0);
     EXPECT_EQ(r->matched, 0.0);
   }
-  RefineParams bad;
-  bad.last_radius = 1.0;
+  IcpParams bad;
+  bad.final_distance = 1.0;
   EXPECT_THROW(bad.validate(), hyselam::ParameterError);
 }
 
 /// The score of every pose of the window, one by one.
-double bestByLookingAtAll(const SurfaceMap& map, const SurfacePoints& scan, const Pose2& guess,
-                          SearchParams params) {
-  params.window = params.resolution;  // a window of a cell each way ...
-  const double window = 0.4, turn = params.turn;
-  params.turn = 0.0;
+double bestOfAllPoses(const SurfaceMap& map, const SurfacePoints& scan, const Pose2& guess,
+                      CorrelativeMatcherParams params) {
+  params.linear_window = params.resolution;  // a window of a cell each way ...
+  const double window = 0.4, turn = params.angular_window;
+  params.angular_window = 0.0;
   double far = 1.0;
   for (const SurfacePoint& p : scan) far = std::max(far, std::hypot(p.x, p.y));
   const double step = std::max(params.resolution / far, 0.002);
   const int turns = static_cast<int>(std::ceil(turn / step));
   const int cells = static_cast<int>(std::ceil(window / params.resolution));
-  params.least_score = 0.0;
-  const SearchGrid grid(map, params);
+  params.min_score = 0.0;
+  const CorrelativeMatcher grid(map, params);
   double best = 0.0;
   for (int t = -turns; t <= turns; ++t)
     for (int y = -cells + 1; y < cells; ++y)
       for (int x = -cells + 1; x < cells; ++x) {
         // ... around each pose of the larger one.
-        const auto f = grid.search(scan, {guess.x + x * params.resolution,
-                                          guess.y + y * params.resolution, guess.theta + t * step});
+        const auto f = grid.match(scan, {guess.x + x * params.resolution,
+                                         guess.y + y * params.resolution, guess.theta + t * step});
         if (f) best = std::max(best, f->score);
       }
   return best;
 }
 
-TEST(Search, NoPoseOfTheWindowIsMissed) {
+TEST(CorrelativeMatcher, EqualsExhaustiveSearch) {
   const SurfaceMap map = roomMap();
   hyselam::Rng rng(9);
   for (int k = 0; k < 3; ++k) {
@@ -196,36 +196,37 @@ TEST(Search, NoPoseOfTheWindowIsMissed) {
     SurfacePoints scan = surfacePoints(roomScan(truth));
     SurfacePoints few;
     for (std::size_t i = 0; i < scan.size(); i += 8) few.push_back(scan[i]);
-    SearchParams params;
-    params.window = 0.4;
-    params.turn = 0.05;
-    params.least_score = 0.0;
+    CorrelativeMatcherParams params;
+    params.linear_window = 0.4;
+    params.angular_window = 0.05;
+    params.min_score = 0.0;
     const Pose2 guess = truth * Pose2{0.2, -0.1, 0.03};
-    const auto found = SearchGrid(map, params).search(few, guess);
+    const auto found = CorrelativeMatcher(map, params).match(few, guess);
     ASSERT_TRUE(found.has_value());
-    EXPECT_NEAR(found->score, bestByLookingAtAll(map, few, guess, params), 0.004) << k;
+    EXPECT_NEAR(found->score, bestOfAllPoses(map, few, guess, params), 0.004) << k;
   }
 }
 
-TEST(Search, FindsThePoseAcrossTheRoom) {
+TEST(CorrelativeMatcher, FindsThePoseAcrossTheRoom) {
   const SurfaceMap map = roomMap();
   const Pose2 truth{2.2, 3.1, 0.7};
   const SurfacePoints scan = surfacePoints(roomScan(truth));
-  SearchParams params;
-  params.window = 2.5;
-  params.turn = 0.8;
-  const auto found = SearchGrid(map, params).search(scan, {4.0, 2.0, 0.1});
+  CorrelativeMatcherParams params;
+  params.linear_window = 2.5;
+  params.angular_window = 0.8;
+  const auto found = CorrelativeMatcher(map, params).match(scan, {4.0, 2.0, 0.1});
   ASSERT_TRUE(found.has_value());
   EXPECT_LT(distance(found->pose, truth), 0.1);
   EXPECT_LT(std::abs(found->pose.theta - truth.theta), 0.03);
-  params.least_score = 0.99;
-  EXPECT_FALSE(SearchGrid(map, params).search(surfacePoints(roomScan({20, 20, 0})), {4, 2, 0}));
+  params.min_score = 0.99;
+  EXPECT_FALSE(
+      CorrelativeMatcher(map, params).match(surfacePoints(roomScan({20, 20, 0})), {4, 2, 0}));
 }
 
-TEST(Search, RefusesParametersOutOfRange) {
-  SearchParams params;
-  params.turn = 4.0;
-  EXPECT_THROW(SearchGrid(roomMap(), params), hyselam::ParameterError);
+TEST(CorrelativeMatcher, RejectsParametersOutOfRange) {
+  CorrelativeMatcherParams params;
+  params.angular_window = 4.0;
+  EXPECT_THROW(CorrelativeMatcher(roomMap(), params), hyselam::ParameterError);
 }
 
 }  // namespace

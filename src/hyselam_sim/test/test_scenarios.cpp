@@ -111,7 +111,7 @@ double symmetry(const FloorPlan& plan, Point2 centre) {
     for (int x = 0; x < grid.geometry.width; ++x) {
       if (grid.at({x, y}) != hyselam::OccupancyGrid::kFree) continue;
       ++free;
-      const Point2 p = 2.0 * centre - grid.geometry.centre({x, y});
+      const Point2 p = 2.0 * centre - grid.geometry.center({x, y});
       if (grid.valueOr(grid.geometry.cellAt(p)) == hyselam::OccupancyGrid::kFree) ++same;
     }
   }

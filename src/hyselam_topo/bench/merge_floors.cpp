@@ -174,7 +174,7 @@ std::map<Id, Id> truthOf(const hyselam_sim::FloorPlan& plan, const Gr2ToResult& 
   for (int y = 0; y < grid.geometry.height; ++y)
     for (int x = 0; x < grid.geometry.width; ++x)
       if (const Id id = grid.placeOf({x, y}))
-        if (const Id plan_id = placeAt(plan, grid.geometry.centre({x, y}))) ++votes[id][plan_id];
+        if (const Id plan_id = placeAt(plan, grid.geometry.center({x, y}))) ++votes[id][plan_id];
   std::map<Id, Id> out;
   for (const auto& [id, counts] : votes)
     out[id] = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {

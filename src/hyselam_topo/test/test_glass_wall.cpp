@@ -38,7 +38,7 @@ struct Corridor {
            std::int8_t value = OccupancyGrid::kOccupied) {
     for (int y = 0; y < grid.geometry.height; ++y) {
       for (int x = 0; x < grid.geometry.width; ++x) {
-        const Point2 p = frame.inverse() * grid.geometry.centre({x, y});
+        const Point2 p = frame.inverse() * grid.geometry.center({x, y});
         if (p.x > x0 && p.x < x1 && p.y > y0 && p.y < y1) grid.at({x, y}) = value;
       }
     }

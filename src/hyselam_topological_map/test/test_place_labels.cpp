@@ -26,7 +26,7 @@ AugmentedTopologicalMap mapOf(const std::function<bool(Point2)>& inside, Point2 
   grid.places = {1};
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 240; ++x) {
-      grid.labels.push_back(inside(grid.geometry.centre({x, y})) ? 1 : 0);
+      grid.labels.push_back(inside(grid.geometry.center({x, y})) ? 1 : 0);
     }
   }
   map.grid = grid;
@@ -126,7 +126,7 @@ TEST(PlaceLabels, ReachOverBordersWithoutWallsRatherThanOverTheNode) {
   AugmentedTopologicalMap map = mapOf(room, {6, 6});
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 240; ++x) {
-      const Point2 p = map.grid->geometry.centre({x, y});
+      const Point2 p = map.grid->geometry.center({x, y});
       if (std::hypot(p.x - 6.0, p.y - 6.0) > 0.6 && room(p)) {
         map.grid->labels[static_cast<std::size_t>(y * 240 + x)] = 2;
       }

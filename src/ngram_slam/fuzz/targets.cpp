@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "../src/core/words/binary_io.hpp"
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
@@ -14,7 +14,7 @@ namespace {
 using hyselam::testing::require;
 
 void putSum(std::string& text, std::size_t at, std::size_t begin, std::size_t end) {
-  const std::uint32_t sum = checksum(text, begin, end);
+  const std::uint32_t sum = hyselam::checksumOf(text, begin, end);
   for (int i = 0; i < 4; ++i) text[at + i] = static_cast<char>(sum >> 8 * i & 0xff);
 }
 
@@ -52,7 +52,7 @@ void corpus(const std::uint8_t* data, std::size_t size) {
 /// The state of SLAM: refused, or sound, and written and read as the same.
 void slamState(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
-  const hyselam_scan_matching::SurfaceParams surface;
+  const hyselam_scan_matching::SurfacePointParams surface;
   std::string text = hyselam::testing::textOf(data, size);
   putSumsOfPart(text);
   putSums(text, 20);

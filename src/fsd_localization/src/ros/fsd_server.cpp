@@ -12,7 +12,7 @@ using hyselam::addRemark;
 using hyselam::addValue;
 
 FsdServer::FsdServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
-    : params_(hyselam::loadAndTell(private_nh, loadFsdParams)),
+    : params_(hyselam::loadAndLogParams(private_nh, loadFsdParams)),
       sensor_(params_.sensor),
       gui_rate_(params_.gui_publish_rate),
       observation_publisher_(nh.advertise<hyselam_msgs::FsdObservation>("fsd_observation", 100)),

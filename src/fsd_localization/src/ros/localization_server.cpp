@@ -15,7 +15,7 @@ namespace fsd_localization {
 using hyselam::addRemark;
 using hyselam::addValue;
 using hyselam::InitialPose;
-using hyselam::loadAndTell;
+using hyselam::loadAndLogParams;
 using hyselam::logName;
 using hyselam::Pose2;
 
@@ -29,7 +29,7 @@ constexpr double kAskAgainAfter = 2.0;   // [s] when it gave a map that cannot b
 LocalizationServerParams loadParams(const ros::NodeHandle& private_nh) {
   for (const std::string& sentence : ignoredAmclParams(hyselam::ParamLoader(private_nh)))
     ROS_WARN_STREAM(logName(private_nh) << " " << sentence);
-  return loadAndTell(private_nh, loadLocalizationParams);
+  return loadAndLogParams(private_nh, loadLocalizationParams);
 }
 
 hyselam::OccupancyGrid checkedMap(const nav_msgs::OccupancyGrid& msg,

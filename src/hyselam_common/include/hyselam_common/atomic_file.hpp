@@ -10,7 +10,7 @@ namespace hyselam {
 /// Replaces `path` by what `write` puts into the stream (binary): writes a temporary file beside
 /// it, flushes it to the disk, renames it. On any failure, an exception of `write` included, the
 /// temporary file is removed and an existing file stays as it was.
-/// Throws InputError when the place cannot be written; passes on what `write` throws.
+/// @throws InputError when the place cannot be written; passes on what `write` throws.
 void writeFileAtomically(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 /// The same for libraries that insist on opening a file by name: `write` gets the name of a
@@ -20,8 +20,8 @@ void replaceFileAtomically(const std::string& path,
                            const std::function<void(const std::string& temporary)>& write);
 
 /// The content of a file; gzip data (told by its first two bytes, not by its name) is unpacked.
-/// Throws InputError for a missing file, a directory, damaged or truncated gzip data, or content of
-/// more than `max_bytes` after unpacking.
+/// @throws InputError for a missing file, a directory, damaged or truncated gzip data, or content
+/// of more than `max_bytes` after unpacking.
 std::string readTextFile(const std::string& path, std::size_t max_bytes = std::size_t{4} << 30);
 
 }  // namespace hyselam

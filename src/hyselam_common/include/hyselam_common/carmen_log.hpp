@@ -65,7 +65,7 @@ std::string toString(const CarmenIssue& issue);
 /// and that is reported.
 ///
 /// Malformed lines (truncated, wrong counts, not a number, unknown message) are reported and
-/// skipped. Throws InputError if the file cannot be read or no usable scan is left, ParameterError
+/// skipped. @throws InputError if the file cannot be read or no usable scan is left, ParameterError
 /// for options out of range. `issues` may be null.
 RobotLog readCarmenLog(const std::string& path, const CarmenOptions& options = {},
                        std::vector<CarmenIssue>* issues = nullptr);

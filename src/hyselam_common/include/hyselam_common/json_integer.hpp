@@ -10,7 +10,7 @@
 
 namespace hyselam {
 
-/// The value, if it is a whole number that a T can hold. Throws std::invalid_argument.
+/// The value, if it is a whole number that a T can hold. @throws std::invalid_argument.
 template <typename T>
 T integerOf(const nlohmann::json& j) {
   static_assert(std::is_integral<T>::value && !std::is_same<T, bool>::value, "whole numbers only");

@@ -20,8 +20,8 @@ struct MapIoOptions {
 /// (default), scale or raw. With p = (255 - grey) / 255, or grey / 255 if negated (colours are
 /// averaged): trinary: p > occupied_thresh occupied, p < free_thresh free, else unknown; scale:
 /// between the thresholds 1 .. 99 in proportion, and unknown where an alpha channel is less than
-/// opaque; raw: the grey value itself where <= 100, else unknown. Throws InputError naming the file
-/// and the key for everything that cannot be used.
+/// opaque; raw: the grey value itself where <= 100, else unknown. @throws InputError naming the
+/// file and the key for everything that cannot be used.
 OccupancyGrid loadMap(const std::string& yaml_path, const MapIoOptions& options = {});
 
 enum class MapMode { kTrinary, kScale, kRaw };
@@ -29,9 +29,9 @@ enum class MapMode { kTrinary, kScale, kRaw };
 /// Writes NAME.yaml and, beside it, NAME.pgm (raw, 8 bit); each replaces its predecessor at once,
 /// the image first. Trinary: free 254, occupied 0, unknown 205, values between them unknown, as
 /// map_saver does. Scale and raw keep 0 .. 100; in scale mode unknown needs an alpha channel, so
-/// the image is NAME.png then. Throws InputError if a file cannot be written, std::invalid_argument
-/// if the grid is empty, its resolution is not positive, its cells do not fit its size, or a value
-/// lies outside -1 .. 100.
+/// the image is NAME.png then. @throws InputError if a file cannot be written, the grid is empty,
+/// its resolution is not positive, its cells do not match its size, or a value lies outside
+/// -1 .. 100.
 void saveMap(const std::string& yaml_path, const OccupancyGrid& grid,
              MapMode mode = MapMode::kTrinary);
 

@@ -42,7 +42,7 @@ struct GridGeometry {
             static_cast<int>(std::floor(p.y / resolution))};
   }
   /// Centre of a cell in the map frame [m].
-  Point2 centre(Cell c) const {
+  Point2 center(Cell c) const {
     return origin * Point2{(c.x + 0.5) * resolution, (c.y + 0.5) * resolution};
   }
 };

@@ -7,10 +7,11 @@
 
 #include "hyselam_common/laser_scan.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_common/parameters.hpp"
 
 namespace hyselam {
 
-struct OccupancyMapperParameters {
+struct OccupancyMapperParams {
   double resolution = 0.05;  ///< side of a cell [m], > 0
   /// Returns farther away only clear the beam up to here [m], > 0. Far returns are sparse and their
   /// position suffers most from a wrong heading.
@@ -21,26 +22,30 @@ struct OccupancyMapperParameters {
   /// A cell is occupied if hits / (hits + misses) is above; (0, 1). Low, because a thin wall is
   /// also missed by beams that graze it.
   double occupied_ratio = 0.25;
-  /// Cells seen less often stay unknown; >= 1. More than 1 drops the rays that slip through walls
-  /// where a single pose is a little off.
-  std::uint32_t min_observations = 2;
-  std::size_t max_cells = std::size_t{1} << 28;  ///< growth beyond is refused
+  /// Cells observed less often stay unknown; >= 1. More than 1 removes single rays that pass
+  /// through walls where a pose is slightly wrong.
+  int min_observations = 2;
+  std::size_t max_cells = std::size_t{1} << 28;  ///< growth beyond is refused, >= 1
+
+  void describe(ParameterVisitor& visit);
+  /// @throws ParameterError
+  void validate() const;
 };
 
 /// Counting model ("reflection probability map"): each beam counts a miss in the cells it crosses
 /// and a hit where it ends. The order of scans does not matter. Not thread safe.
 class OccupancyMapper {
  public:
-  /// Throws ParameterError for values out of range.
-  explicit OccupancyMapper(const OccupancyMapperParameters& parameters = {});
+  /// @throws ParameterError for values out of range.
+  explicit OccupancyMapper(const OccupancyMapperParams& parameters = {});
 
-  /// Adds a scan taken with the robot at `base_in_map`. Throws std::invalid_argument for a pose
-  /// that is not finite, std::length_error if the map would exceed max_cells.
+  /// Adds a scan taken with the robot at `base_in_map`. @throws InputError for a pose that is not
+  /// finite, std::length_error if the map would exceed max_cells.
   void insert(const Pose2& base_in_map, const LaserScan& scan);
   void clear();
 
   std::size_t scanCount() const { return scans_; }
-  const OccupancyMapperParameters& parameters() const { return parameters_; }
+  const OccupancyMapperParams& parameters() const { return parameters_; }
 
   /// The map so far, cropped to the observed cells plus a margin of two unknown cells; its origin
   /// is a multiple of the resolution. Without any observation: 1 x 1 unknown cell.
@@ -58,7 +63,7 @@ class OccupancyMapper {
   void cover(const Box& box);
   void trace(double x0, double y0, double x1, double y1, bool hit);
 
-  OccupancyMapperParameters parameters_;
+  OccupancyMapperParams parameters_;
   std::size_t scans_ = 0;
   Box box_;
   int stride_ = 0;

@@ -9,16 +9,16 @@
 namespace hyselam {
 
 /// Reads `stamp x y z qx qy qz qw` per line; '#' starts a comment; plain or gzip. z, roll and pitch
-/// are dropped. Throws InputError, naming the line, for anything else, for a quaternion that is far
-/// from unit length (more than 1 %), and for a file without poses.
+/// are dropped. @throws InputError, naming the line, for anything else, for a quaternion that is
+/// far from unit length (more than 1 %), and for a file without poses.
 std::vector<StampedPose2> readTum(const std::string& path);
 
 /// Writes the TUM format (z, roll and pitch 0; stamps with 9, values with 9 digits after the
-/// point), replacing the file at once. Throws InputError if it cannot be written.
+/// point), replacing the file at once. @throws InputError if it cannot be written.
 void writeTum(const std::string& path, const std::vector<StampedPose2>& trajectory);
 
 /// Reads a table `scan_index ipc_timestamp monotone_timestamp x y theta ...`, one line per scan of
-/// a log, indices 0, 1, 2, ...; stamps are the monotone ones. Plain or gzip. Throws InputError,
+/// a log, indices 0, 1, 2, ...; stamps are the monotone ones. Plain or gzip. @throws InputError,
 /// naming the line.
 std::vector<StampedPose2> readReferenceTable(const std::string& path);
 

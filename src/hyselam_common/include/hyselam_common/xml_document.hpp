@@ -20,7 +20,7 @@ struct XmlLimits {
   int max_depth = 32;                              ///< elements within elements
 };
 
-/// Calls `read` with the outermost element. Throws hyselam::InputError for text that is no XML,
+/// Calls `read` with the outermost element. @throws hyselam::InputError for text that is no XML,
 /// holds a document type declaration or entities, or more than the limits allow.
 void readXmlDocument(const std::string& text, const std::string& source, const XmlLimits& limits,
                      const std::function<void(XmlElement& root)>& read);

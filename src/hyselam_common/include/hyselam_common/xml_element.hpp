@@ -19,7 +19,7 @@ namespace hyselam {
 
 class XmlElement {
  public:
-  /// Both must outlive this. Throws InputError for an attribute that stands twice.
+  /// Both must outlive this. @throws InputError for an attribute that stands twice.
   XmlElement(const tinyxml2::XMLElement& element, const std::string& source);
 
   [[noreturn]] void fail(const std::string& reason) const;

@@ -7,7 +7,7 @@
 
 namespace hyselam {
 
-/// The node of a text. Throws InputError, naming source and line, for text that is no YAML, is
+/// The node of a text. @throws InputError, naming source and line, for text that is no YAML, is
 /// empty, or nests absurdly deep (which older yaml-cpp would follow until the stack ends).
 YAML::Node parseYaml(const std::string& text, const std::string& source);
 

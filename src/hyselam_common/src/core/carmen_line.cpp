@@ -8,7 +8,7 @@
 namespace hyselam {
 namespace {
 
-constexpr double kCentimetre = 0.01;
+constexpr double kCentimeter = 0.01;
 constexpr std::size_t kMinBeams = 2;       // one beam has no increment
 constexpr std::size_t kMaxBeams = 100000;  // more is no laser scanner but a damaged count
 
@@ -195,13 +195,13 @@ void parseWeanScan(FieldReader& in, std::size_t fields, CarmenLine* line) {
   constexpr std::size_t kOthers = 8;  // L, two poses, stamp
   Pose2 robot = in.pose("the odometry");
   Pose2 laser = in.pose("the laser pose");
-  in.ranges(fields > kOthers ? fields - kOthers : 0, kCentimetre, &line->scan);
+  in.ranges(fields > kOthers ? fields - kOthers : 0, kCentimeter, &line->scan);
   line->ipc_stamp = line->logger_stamp = in.number("the timestamp");
   in.end();
   if (!in.ok()) return;
   for (Pose2* p : {&robot, &laser}) {
-    p->x *= kCentimetre;
-    p->y *= kCentimetre;
+    p->x *= kCentimeter;
+    p->y *= kCentimeter;
   }
   line->odometry = robot;
   line->scan.laser_in_base = between(robot, laser);
@@ -249,8 +249,8 @@ std::optional<CarmenLine> parseCarmenLine(std::string_view text,
   } else if (tag == "O") {
     line.kind = Kind::kOdometry;
     line.pose = in.pose("the odometry");
-    line.pose.x *= kCentimetre;
-    line.pose.y *= kCentimetre;
+    line.pose.x *= kCentimeter;
+    line.pose.y *= kCentimeter;
     line.ipc_stamp = line.logger_stamp = in.number("the timestamp");
     in.end();
   } else if (tag == "TRUEPOS") {

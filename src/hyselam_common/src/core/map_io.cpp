@@ -23,7 +23,7 @@ constexpr std::size_t kMaxYamlBytes = 1 << 20;
 constexpr double kOccupiedThreshold = 0.65;
 constexpr double kFreeThreshold = 0.196;
 constexpr int kGreyFree = 254, kGreyOccupied = 0, kGreyUnknown = 205;
-// Thresholds of scale maps: far apart, so that 1 .. 99 spread over many grey values.
+// Thresholds of scale maps: far apart, so that 1 .. 99 spread over many gray values.
 constexpr double kScaleOccupied = 0.99, kScaleFree = 0.01;
 
 struct MapFile {
@@ -170,12 +170,12 @@ std::int8_t cellValue(const MapFile& map, const std::uint8_t* pixel, int channel
   const int averaged = has_alpha && map.mode != MapMode::kTrinary ? channels - 1 : channels;
   int sum = 0;
   for (int k = 0; k < averaged; ++k) sum += pixel[k];
-  double grey = static_cast<double>(sum) / averaged;
-  if (map.negate) grey = 255.0 - grey;
+  double gray = static_cast<double>(sum) / averaged;
+  if (map.negate) gray = 255.0 - gray;
   if (map.mode == MapMode::kRaw) {
-    return grey <= 100.0 ? static_cast<std::int8_t>(grey) : OccupancyGrid::kUnknown;
+    return gray <= 100.0 ? static_cast<std::int8_t>(gray) : OccupancyGrid::kUnknown;
   }
-  const double p = (255.0 - grey) / 255.0;
+  const double p = (255.0 - gray) / 255.0;
   const bool transparent = map.mode == MapMode::kScale && has_alpha && pixel[channels - 1] < 255;
   if (transparent) return OccupancyGrid::kUnknown;
   if (p > map.occupied_thresh) return OccupancyGrid::kOccupied;
@@ -186,21 +186,24 @@ std::int8_t cellValue(const MapFile& map, const std::uint8_t* pixel, int channel
   return static_cast<std::int8_t>(1.0 + 98.0 * ratio);
 }
 
-void checkGrid(const OccupancyGrid& grid) {
+void checkGrid(const OccupancyGrid& grid, const std::string& path) {
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError(path, "grid to be written", reason);
+  };
   const GridGeometry& g = grid.geometry;
-  if (g.width <= 0 || g.height <= 0) throw std::invalid_argument("saveMap: the grid is empty");
+  if (g.width <= 0 || g.height <= 0) refuse("is empty");
   if (grid.cells.size() != g.cellCount()) {
-    throw std::invalid_argument("saveMap: the cells do not fit the size of the grid");
+    refuse("the number of cells does not match width and height");
   }
   if (!(g.resolution > 0.0) || !g.origin.isFinite()) {
-    throw std::invalid_argument("saveMap: resolution or origin of the grid cannot be used");
+    refuse("resolution or origin are invalid");
   }
   for (const std::int8_t v : grid.cells) {
-    if (v < -1 || v > 100) throw std::invalid_argument("saveMap: a cell lies outside -1 .. 100");
+    if (v < -1 || v > 100) refuse("a cell lies outside -1 .. 100");
   }
 }
 
-std::uint8_t greyOf(std::int8_t value, MapMode mode) {
+std::uint8_t grayOf(std::int8_t value, MapMode mode) {
   switch (mode) {
     case MapMode::kTrinary:
       if (value == OccupancyGrid::kFree) return kGreyFree;
@@ -257,7 +260,7 @@ OccupancyGrid loadMap(const std::string& yaml_path, const MapIoOptions& options)
 }
 
 void saveMap(const std::string& yaml_path, const OccupancyGrid& grid, MapMode mode) {
-  checkGrid(grid);
+  checkGrid(grid, yaml_path);
   const std::string directory = directoryOf(yaml_path);
   std::string name = yaml_path.substr(directory.size());
   const std::size_t dot = name.rfind('.');
@@ -277,8 +280,8 @@ void saveMap(const std::string& yaml_path, const OccupancyGrid& grid, MapMode mo
     std::uint8_t* pixel = image.ptr<std::uint8_t>(g.height - 1 - y);
     for (int x = 0; x < g.width; ++x) {
       const std::int8_t value = grid.at({x, y});
-      const std::uint8_t grey = greyOf(value, mode);
-      for (int k = 0; k < std::min(channels, 3); ++k) *pixel++ = grey;
+      const std::uint8_t gray = grayOf(value, mode);
+      for (int k = 0; k < std::min(channels, 3); ++k) *pixel++ = gray;
       if (channels == 4) *pixel++ = value < 0 ? 0 : 255;
     }
   }

@@ -14,22 +14,26 @@ constexpr double kMaxCellCoordinate = 1e8;  // well inside int, also after addin
 
 }  // namespace
 
-OccupancyMapper::OccupancyMapper(const OccupancyMapperParameters& parameters)
+void OccupancyMapperParams::describe(ParameterVisitor& visit) {
+  visit("resolution", resolution, Range::aboveUpTo(0.0, 1000.0), "m/cell", "side of a cell");
+  visit("usable_range", usable_range, Range::above(0.0), "m",
+        "farther returns clear the beam up to here only");
+  visit("no_return_clears", no_return_clears, Range::atLeast(0.0), "m",
+        "a beam without return clears cells up to here");
+  visit("occupied_ratio", occupied_ratio, Range::inside(0.0, 1.0), "",
+        "hits / (hits + misses) above which a cell is occupied");
+  visit("min_observations", min_observations, Range::atLeast(1), "",
+        "cells observed less often stay unknown");
+  visit("max_map_cells", max_cells, Range::atLeast(1), "cells", "growth beyond is refused");
+}
+
+void OccupancyMapperParams::validate() const {
+  checkParameters(*this);
+}
+
+OccupancyMapper::OccupancyMapper(const OccupancyMapperParams& parameters)
     : parameters_(parameters) {
-  const auto& p = parameters_;
-  if (!(p.resolution > 0.0) || !std::isfinite(p.resolution)) {
-    throw ParameterError("resolution", p.resolution, "> 0");
-  }
-  if (!(p.usable_range > 0.0)) throw ParameterError("usable_range", p.usable_range, "> 0");
-  if (!(p.no_return_clears >= 0.0)) {
-    throw ParameterError("no_return_clears", p.no_return_clears, ">= 0");
-  }
-  if (!(p.occupied_ratio > 0.0 && p.occupied_ratio < 1.0)) {
-    throw ParameterError("occupied_ratio", p.occupied_ratio, "in (0, 1)");
-  }
-  if (p.min_observations < 1) {
-    throw ParameterError("min_observations", p.min_observations, ">= 1");
-  }
+  parameters_.validate();
 }
 
 void OccupancyMapper::clear() {
@@ -115,7 +119,7 @@ void OccupancyMapper::trace(double x0, double y0, double x1, double y1, bool hit
 void OccupancyMapper::insert(const Pose2& base_in_map, const LaserScan& scan) {
   const Pose2 laser = base_in_map * scan.laser_in_base;
   if (!laser.isFinite()) {
-    throw std::invalid_argument("the pose of a scan to be mapped is not finite");
+    throw InputError("scan", "", "its pose is not finite");
   }
   const double to_cells = 1.0 / parameters_.resolution;
   const double x0 = laser.x * to_cells, y0 = laser.y * to_cells;

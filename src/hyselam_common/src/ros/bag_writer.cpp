@@ -25,13 +25,13 @@ void check(const RobotLog& log, const std::string& path) {
   }
   for (const auto* poses : {&log.odometry, &log.ground_truth}) {
     for (const StampedPose2& p : *poses) {
-      if (!p.pose.isFinite()) throw std::invalid_argument("writeBag: a pose is not finite");
+      if (!p.pose.isFinite()) throw InputError(path, "log to be written", "a pose is not finite");
     }
   }
   for (const LaserScan& scan : log.scans) {
     const Pose2 moved = between(log.scans.front().laser_in_base, scan.laser_in_base);
     if (!(std::hypot(moved.x, moved.y) <= kLaserMoves && std::abs(moved.theta) <= kLaserMoves)) {
-      throw std::invalid_argument("writeBag: the laser moves on the robot");
+      throw InputError(path, "log to be written", "the laser moves on the robot");
     }
   }
 }

@@ -33,7 +33,7 @@ ScanInput::ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const st
       on_scan_(std::move(on_scan)),
       on_time_jump_(std::move(on_time_jump)),
       drops_(log_name),
-      tf_listener_(tf_, true, promptly()),
+      tf_listener_(tf_, true, tcpNoDelay()),
       waiting_(
           nh, {static_cast<std::size_t>(params.queue_size), params.transform_wait},
           [this](const ScanPtr& scan) { return missingTransformOf(scan->header); },
@@ -50,7 +50,7 @@ ScanInput::ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const st
       reported_(ros::WallTime::now()),
       quiet_since_(reported_) {
   subscriber_ = nh.subscribe("scan", static_cast<std::uint32_t>(params_.queue_size),
-                             &ScanInput::onScan, this, promptly());
+                             &ScanInput::onScan, this, tcpNoDelay());
 }
 
 void ScanInput::checkClock() {

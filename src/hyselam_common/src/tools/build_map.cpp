@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   CLI::App app("Builds a grid map (map_server's YAML and PGM) from a log whose poses are known.",
                "build_map");
   std::string in, out, pose_source;
-  hyselam::OccupancyMapperParameters parameters;
+  hyselam::OccupancyMapperParams parameters;
   hyselam::BagOptions bag;
   app.option_defaults()->always_capture_default();
   app.add_option("LOG", in, "CARMEN log or bag, plain or gzip")->required();

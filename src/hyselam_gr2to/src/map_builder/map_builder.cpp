@@ -221,7 +221,7 @@ std::vector<Place> buildPlaces(const OccupancyGrid& grid, const cv::Mat& labels,
     place.id = static_cast<Id>(label);
     place.area = region.cells * r * r;
     if (region.centre.x >= 0) {
-      const Point2 c = grid.geometry.centre({region.centre.x, region.centre.y});
+      const Point2 c = grid.geometry.center({region.centre.x, region.centre.y});
       place.centre = Point3{c.x, c.y, 0.0};
     }
     const auto around = neighbours.find(label);

@@ -88,7 +88,7 @@ class Canvas {
 };
 
 /// Neighbours, and places near each other, get different colours.
-std::map<Id, cv::Vec3b> colour(const AugmentedTopologicalMap& map) {
+std::map<Id, cv::Vec3b> color(const AugmentedTopologicalMap& map) {
   std::map<Id, std::size_t> chosen;
   std::map<Id, cv::Vec3b> colours;
   for (const Place& place : map.places) {
@@ -127,7 +127,7 @@ cv::Rect knownPart(const hyselam::OccupancyGrid& grid, const cv::Mat& labels) {
 
 cv::Mat floorOf(const hyselam::OccupancyGrid& grid, const Gr2ToResult& result, const cv::Rect& box,
                 double scale) {
-  const std::map<Id, cv::Vec3b> colours = colour(result.map);
+  const std::map<Id, cv::Vec3b> colours = color(result.map);
   cv::Mat cells(box.height, box.width, CV_8UC3);
   for (int y = 0; y < box.height; ++y)
     for (int x = 0; x < box.width; ++x) {

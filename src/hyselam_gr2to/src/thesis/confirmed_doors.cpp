@@ -43,8 +43,8 @@ Point2 middleOf(const DoorLine& line) {
 /// centres; nothing if they touch.
 std::optional<DoorLine> lineOf(const ConfirmedDoor& door, const hyselam::GridGeometry& geometry) {
   DoorLine line;
-  line.a = geometry.centre(door.critical.basis_a);
-  line.b = geometry.centre(door.critical.basis_b);
+  line.a = geometry.center(door.critical.basis_a);
+  line.b = geometry.center(door.critical.basis_b);
   const double across = std::hypot(line.b.x - line.a.x, line.b.y - line.a.y);
   const double r = geometry.resolution;
   if (across <= r) return std::nullopt;

@@ -135,7 +135,7 @@ std::pair<hyselam::OccupancyGrid, cv::Mat> generated(int i) {
   for (int y = 0; y < rooms.rows; ++y)
     for (int x = 0; x < rooms.cols; ++x)
       for (std::size_t k = 0; k < plan.places.size(); ++k)
-        if (hyselam_sim::contains(plan.places[k].outline, grid.geometry.centre({x, y})))
+        if (hyselam_sim::contains(plan.places[k].outline, grid.geometry.center({x, y})))
           rooms.at<int>(y, x) = static_cast<int>(k) + 1;
   return {grid, rooms};
 }

@@ -35,7 +35,7 @@ struct DetectedObject {
   std::string colour;
   std::size_t points = 0;
 
-  Point3 centre() const {
+  Point3 center() const {
     return {0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)};
   }
 };

@@ -27,7 +27,7 @@ void filter(ObjectInstance* object, const DetectedObject& seen, double variance)
   // What was known was only a part.
   if (size[2] > 1.4 * pose.size[2]) setVariance(&pose, 100.0 * variance);
   const double gain = pose.covariance[0] / (pose.covariance[0] + variance);
-  const Point3 c = seen.centre();
+  const Point3 c = seen.center();
   pose.position.x += gain * (c.x - pose.position.x);
   pose.position.y += gain * (c.y - pose.position.y);
   pose.position.z += gain * (c.z - pose.position.z);

@@ -31,7 +31,7 @@ double costOfFurniture(const ObjectPose& pose, const DetectedObject& seen) {
 
 double costOfThing(const ObjectInstance& object, const DetectedObject& seen, double stamp,
                    const MapperParams& params) {
-  const double away = distance(object.pose->position, seen.centre());
+  const double away = distance(object.pose->position, seen.center());
   const double look = viewDistance(object.descriptor, seen.descriptor);
   // Where one thing is there is no other: a part of it looks different.
   const bool same_visit = std::abs(stamp - object.last_seen) < kAbsence;

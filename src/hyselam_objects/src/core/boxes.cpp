@@ -10,7 +10,7 @@ double distance(const Point3& a, const Point3& b) {
 }
 
 ObjectPose boxOf(const DetectedObject& seen) {
-  return {seen.centre(),
+  return {seen.center(),
           {seen.high.x - seen.low.x, seen.high.y - seen.low.y, seen.high.z - seen.low.z},
           0.0,
           {}};

@@ -105,7 +105,7 @@ std::vector<Sight> sightsOf(const ObjectMap& map, const std::vector<DetectedObje
     sight.furniture = each.furniture;
     sight.low = {each.low.x, each.low.y};
     sight.high = {each.high.x, each.high.y};
-    const Point3 c = each.centre();
+    const Point3 c = each.center();
     sight.middle = {c.x, c.y};
     for (const ObjectInstance* known : landmarks) {
       const ObjectPose& pose = *known->pose;

@@ -47,7 +47,7 @@ void ObjectMapper::update(const OrganisedCloud& cloud, const PinholeCamera& came
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(of[d])];
       met.push_back(object.id);
       if (whole) addView(&object, seen, kind, stamp, params_);
-    } else if (whole && (seen.furniture || !isPartOfFurniture(map_, seen.centre()))) {
+    } else if (whole && (seen.furniture || !isPartOfFurniture(map_, seen.center()))) {
       met.push_back(add(seen, kind, stamp));
     }
   }
@@ -66,8 +66,8 @@ void ObjectMapper::forgetGroups(const std::vector<DetectedObject>& detections,
     for (std::size_t e = 0; e < detections.size() && of[d] < 0; ++e) {
       if (of[e] < 0 || detections[d].furniture || detections[e].furniture) continue;
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(of[e])];
-      const bool two = object.pose && isIn(*object.pose, detections[d].centre()) &&
-                       isIn(*object.pose, detections[e].centre());
+      const bool two = object.pose && isIn(*object.pose, detections[d].center()) &&
+                       isIn(*object.pose, detections[e].center());
       if (two && !detections[e].cut) object.pose.reset();
     }
   }
@@ -86,7 +86,7 @@ Id ObjectMapper::add(const DetectedObject& seen, const std::string& kind, double
 // Told of, but not seen yet: the same kind at the same place.
 Id ObjectMapper::findTold(const DetectedObject& seen, const std::string& kind) const {
   if (kind.empty() || !place_at_) return 0;
-  const auto here = place_at_(seen.centre().x, seen.centre().y);
+  const auto here = place_at_(seen.center().x, seen.center().y);
   if (!here) return 0;
   for (const ObjectInstance& object : map_.objects) {
     const ObjectPlace* place = map_.findPlace(map_.placeOf(object.id));

@@ -15,7 +15,7 @@ const DetectedObject* inTheMiddle(const std::vector<DetectedObject>& seen,
   double least = 0.35;  // tangent of the angle from the axis
   for (const DetectedObject& each : seen) {
     if (each.furniture || each.cut) continue;
-    const Point3 c = each.centre();
+    const Point3 c = each.center();
     const Eigen::Vector3d p = map_in_camera * Eigen::Vector3d(c.x, c.y, c.z);
     const double off = p.z() > 0.0 ? std::hypot(p.x(), p.y()) / p.z() : 1e9;
     if (off < least) {

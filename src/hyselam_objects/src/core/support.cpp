@@ -15,7 +15,7 @@ double sigmaAt(float depth, const SegmentParams& params) {
 
 bool isTaller(const DetectedObject& object, const std::vector<LevelSurface>& surfaces,
               const DetectParams& params) {
-  const Point3 c = object.centre();
+  const Point3 c = object.center();
   for (const LevelSurface& surface : surfaces) {
     const Eigen::Vector2f middle(static_cast<float>(c.x), static_cast<float>(c.y));
     if (surface.height > c.z || outside(surface.hull, middle) > 0.1) continue;
@@ -28,7 +28,7 @@ bool isFloating(const DetectedObject& object, const std::vector<DetectedObject>&
                 const std::vector<LevelSurface>& surfaces, const Eigen::Vector3f& eye,
                 const DetectParams& params) {
   constexpr double kContact = 0.02, kAside = 0.02;
-  const Point3 c = object.centre();
+  const Point3 c = object.center();
   const Eigen::Vector3f middle(static_cast<float>(c.x), static_cast<float>(c.y),
                                static_cast<float>(c.z));
   const double noise =
@@ -43,7 +43,7 @@ bool isFloating(const DetectedObject& object, const std::vector<DetectedObject>&
   // What is as thin as the noise on another thing is that thing's own top.
   if (object.high.z - object.low.z < kContact + noise) return true;
   return std::none_of(others.begin(), others.end(), [&](const DetectedObject& below) {
-    if (&below == &object || below.centre().z > c.z) return false;
+    if (&below == &object || below.center().z > c.z) return false;
     const bool over = c.x > below.low.x - kAside && c.x < below.high.x + kAside &&
                       c.y > below.low.y - kAside && c.y < below.high.y + kAside;
     return over && std::abs(object.low.z - below.high.z) < kContact + noise;

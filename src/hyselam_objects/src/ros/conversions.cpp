@@ -43,7 +43,7 @@ std::uint32_t colourOf(const std::uint8_t* pixel, bool bgr) {
   return bgr ? last << 16 | green << 8 | first : first << 16 | green << 8 | last;
 }
 
-std_msgs::ColorRGBA colour(const ObjectInstance& object) {
+std_msgs::ColorRGBA color(const ObjectInstance& object) {
   struct Named {
     const char* name;
     float r, g, b;
@@ -185,7 +185,7 @@ visualization_msgs::MarkerArray objectMarkers(const ObjectMap& map) {
     box.scale.x = std::max(0.01, object.pose->size[0]);
     box.scale.y = std::max(0.01, object.pose->size[1]);
     box.scale.z = std::max(0.01, object.pose->size[2]);
-    box.color = colour(object);
+    box.color = color(object);
     array.markers.push_back(box);
     visualization_msgs::Marker text = base;
     text.ns = "names";

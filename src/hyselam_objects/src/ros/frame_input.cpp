@@ -25,19 +25,19 @@ FrameInput::FrameInput(ros::NodeHandle nh, const FrameInputParams& params, Use u
       colour_topic_(nh.resolveName("camera/color/image_raw")),
       info_topic_(nh.resolveName("camera/depth/camera_info")),
       points_topic_(nh.resolveName("points")),
-      tf_listener_(tf_buffer_, true, hyselam::promptly()),
+      tf_listener_(tf_buffer_, true, hyselam::tcpNoDelay()),
       pose_timer_(nh.createWallTimer(
           ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); },
           false, false)) {
   if (params_.use_points) {
-    points_ = nh.subscribe("points", 1, &FrameInput::onPoints, this, hyselam::promptly());
+    points_ = nh.subscribe("points", 1, &FrameInput::onPoints, this, hyselam::tcpNoDelay());
   } else {
-    info_ =
-        nh.subscribe("camera/depth/camera_info", 1, &FrameInput::onInfo, this, hyselam::promptly());
+    info_ = nh.subscribe("camera/depth/camera_info", 1, &FrameInput::onInfo, this,
+                         hyselam::tcpNoDelay());
     depth_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/depth/image_raw", 5,
-                                                                  hyselam::promptly());
+                                                                  hyselam::tcpNoDelay());
     colour_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/color/image_raw", 5,
-                                                                   hyselam::promptly());
+                                                                   hyselam::tcpNoDelay());
     images_ =
         std::make_unique<message_filters::TimeSynchronizer<Image, Image>>(*depth_, *colour_, 10);
     depth_->registerCallback(&FrameInput::onDepth, this);

@@ -40,7 +40,7 @@ ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
 
 ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : who_(hyselam::logName(private_nh)),
-      params_(hyselam::loadAndTell(private_nh, loadObjectEngineParams)),
+      params_(hyselam::loadAndLogParams(private_nh, loadObjectEngineParams)),
       map_file_(who_, params_.map_file),
       map_(map_file_.begin(params_.map_frame)),
       parser_(ObjectParser::shipped()),

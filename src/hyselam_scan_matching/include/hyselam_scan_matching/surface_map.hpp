@@ -4,20 +4,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "hyselam_scan_matching/surface.hpp"
+#include "hyselam_scan_matching/surface_points.hpp"
 
 namespace hyselam_scan_matching {
 
-/// Points gathered in cells; points of one cell that face the same way are averaged.
+/// Points in cells; points of one cell that face the same way are averaged.
 class SurfaceMap {
  public:
   /// `cell`: side [m], > 0. @throws hyselam::ParameterError
   explicit SurfaceMap(double cell = 0.05);
 
-  /// Adds points given in the frame `pose` is in after `pose` is applied. Points farther than
-  /// `kMaxExtent` from the first one are left out.
+  /// Adds the points transformed by `pose`. Points farther than `kMaxExtent` from the first one are
+  /// left out.
   void insert(const hyselam::Pose2& pose, const SurfacePoints& points);
-  /// Nothing can be looked up before this is called after the last insert().
+  /// Must be called after the last insert() and before nearest().
   void finish();
 
   bool empty() const { return points_.empty(); }
@@ -35,6 +35,7 @@ class SurfaceMap {
     double x, y, nx, ny;
     std::int32_t count;
   };
+  SurfacePoints mergeCells() const;
 
   double cell_;
   std::vector<Sum> sums_;  ///< as inserted

@@ -25,11 +25,8 @@ void SurfaceMap::insert(const hyselam::Pose2& pose, const SurfacePoints& points)
   }
 }
 
-void SurfaceMap::finish() {
-  // Equal cells side by side, in the order of insertion: sums do not depend on anything else.
-  std::stable_sort(sums_.begin(), sums_.end(), [](const Sum& a, const Sum& b) {
-    return std::tie(a.cy, a.cx) < std::tie(b.cy, b.cx);
-  });
+/// The mean of the points of each cell that face the same way.
+SurfacePoints SurfaceMap::mergeCells() const {
   SurfacePoints merged;
   for (std::size_t i = 0; i < sums_.size();) {
     Sum groups[2];
@@ -62,6 +59,15 @@ void SurfaceMap::finish() {
     }
     i = j;
   }
+  return merged;
+}
+
+void SurfaceMap::finish() {
+  // Equal cells side by side, in the order of insertion: sums depend on nothing else.
+  std::stable_sort(sums_.begin(), sums_.end(), [](const Sum& a, const Sum& b) {
+    return std::tie(a.cy, a.cx) < std::tie(b.cy, b.cx);
+  });
+  const SurfacePoints merged = mergeCells();
   points_.clear();
   begin_.assign(1, 0);
   width_ = height_ = 0;

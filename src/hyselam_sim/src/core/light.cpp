@@ -90,7 +90,7 @@ LightMap::LightMap(const FloorRegions& regions, const RayCaster& walls,
   }
   for (int y = 0; y < geometry_.height; ++y) {
     for (int x = 0; x < geometry_.width; ++x) {
-      const Point2 p = geometry_.centre({x, y});
+      const Point2 p = geometry_.center({x, y});
       if (regions.onFloor(p) && !lit[static_cast<std::size_t>(regions.roomAt(p))]) hang(p);
     }
   }
@@ -102,7 +102,7 @@ LightMap::LightMap(const FloorRegions& regions, const RayCaster& walls,
   std::vector<Mean> means(static_cast<std::size_t>(regions.rooms()));
   for (int y = 0; y < geometry_.height; ++y) {
     for (int x = 0; x < geometry_.width; ++x) {
-      const Point2 p = geometry_.centre({x, y});
+      const Point2 p = geometry_.center({x, y});
       if (!regions.onFloor(p)) continue;
       auto& cell = cells_[geometry_.index({x, y})];
       for (const Window& window : windows) {
@@ -129,7 +129,7 @@ LightMap::LightMap(const FloorRegions& regions, const RayCaster& walls,
   dark_.assign(geometry_.cellCount(), false);
   for (int y = 0; y < geometry_.height; ++y) {
     for (int x = 0; x < geometry_.width; ++x) {
-      const int room = regions.roomAt(geometry_.centre({x, y}));
+      const int room = regions.roomAt(geometry_.center({x, y}));
       if (room < 0) continue;
       const Mean& mean = means[static_cast<std::size_t>(room)];
       auto& cell = cells_[geometry_.index({x, y})];

@@ -113,7 +113,7 @@ class Planner {
 
  private:
   Point2 point(int node) const {
-    return map_.geometry().centre({(node % width_) * kStride, (node / width_) * kStride});
+    return map_.geometry().center({(node % width_) * kStride, (node / width_) * kStride});
   }
 
   std::optional<int> snap(Point2 p) const {
@@ -190,7 +190,7 @@ ClearanceMap ClearanceMap::without(const std::vector<Point2>& centres, double ra
     const Cell low = geometry_.cellAt(centre - reach), high = geometry_.cellAt(centre + reach);
     for (int y = std::max(0, low.y); y <= std::min(geometry_.height - 1, high.y); ++y) {
       for (int x = std::max(0, low.x); x <= std::min(geometry_.width - 1, high.x); ++x) {
-        if (length(geometry_.centre({x, y}) - centre) <= radius) {
+        if (length(geometry_.center({x, y}) - centre) <= radius) {
           out.metres_.at<float>(y, x) = 0.0F;
         }
       }

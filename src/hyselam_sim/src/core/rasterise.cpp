@@ -38,12 +38,12 @@ void forCellsOf(const Polygon& outline, const GridGeometry& g, Mark mark) {
     const double half = 0.5 * g.resolution - std::min(kTouch, 0.1 * g.resolution);
     box({std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y)},
         {std::max(s.a.x, s.b.x), std::max(s.a.y, s.b.y)}, [&](Cell c) {
-          const Point2 m = g.centre(c);
+          const Point2 m = g.center(c);
           if (touchesBox(s, m - Point2{half, half}, m + Point2{half, half})) mark(c);
         });
   }
   box(low, high, [&](Cell c) {
-    if (contains(outline, g.centre(c))) mark(c);
+    if (contains(outline, g.center(c))) mark(c);
   });
 }
 
@@ -80,7 +80,7 @@ OccupancyGrid rasterise(const FloorPlan& plan, const RasterOptions& options) {
   std::vector<Cell> front;
   const auto visit = [&](Cell c) {
     if (!g.contains(c)) {
-      const Point2 p = g.centre(c);
+      const Point2 p = g.center(c);
       std::ostringstream reason;
       reason << "the interior is not closed: free floor reaches the edge of the drawing near ["
              << p.x << ", " << p.y << "]";

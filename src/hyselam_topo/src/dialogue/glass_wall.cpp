@@ -183,7 +183,7 @@ GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2
     const auto sharpest = std::max_element(
         p.begin(), p.end(), [](const Corner& a, const Corner& b) { return a.free < b.free; });
     corners.push_back(sharpest->cell);
-    corners_.push_back(g.centre(sharpest->cell));
+    corners_.push_back(g.center(sharpest->cell));
   }
   const double post = 0.5 * params.corner_cells + 1.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -332,7 +332,7 @@ void PlaceMan::drawVirtualPlaces() {
     for (int y = 0; y < grid.geometry.height; ++y) {
       for (int x = 0; x < grid.geometry.width; ++x) {
         if (grid.placeOf({x, y}) != around) continue;
-        if (!contains(place.outline, grid.geometry.centre({x, y}))) continue;
+        if (!contains(place.outline, grid.geometry.center({x, y}))) continue;
         grid.labels[grid.geometry.index({x, y})] = label;
         any = true;
       }

@@ -61,7 +61,7 @@ std::optional<PlacePose> poseOfCells(const PlaceGrid& grid, const Place& place) 
     for (int x = box.x_begin; x < box.x_end; ++x) {
       if (grid.placeOf({x, y}) != place.id) continue;
       mask.at<std::uint8_t>(y - box.y_begin + 1, x - box.x_begin + 1) = 255;
-      const Point2 p = grid.geometry.centre({x, y});
+      const Point2 p = grid.geometry.center({x, y});
       mean.x += p.x;
       mean.y += p.y;
       count += 1.0;
@@ -80,7 +80,7 @@ std::optional<PlacePose> poseOfCells(const PlaceGrid& grid, const Place& place) 
     for (int x = box.x_begin; x < box.x_end; ++x) {
       const double here = clearance.at<float>(y - box.y_begin + 1, x - box.x_begin + 1);
       if (here <= 0.0 || here < enough) continue;
-      const Point2 p = grid.geometry.centre({x, y});
+      const Point2 p = grid.geometry.center({x, y});
       const double d = distanceBetween(p, middle);
       if (d >= least) continue;
       least = d;
@@ -92,7 +92,7 @@ std::optional<PlacePose> poseOfCells(const PlaceGrid& grid, const Place& place) 
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
       if (mask.at<std::uint8_t>(y - box.y_begin + 1, x - box.x_begin + 1) == 0) continue;
-      const Point2 p = grid.geometry.centre({x, y});
+      const Point2 p = grid.geometry.center({x, y});
       spread.add(p.x - result.pose.x, p.y - result.pose.y);
     }
   }

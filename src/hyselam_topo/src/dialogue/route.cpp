@@ -41,7 +41,7 @@ std::optional<Point2> contact(const PlaceGrid& grid, Id a, Id b) {
           grid.placeOf({x, y + 1}) != b && grid.placeOf({x, y - 1}) != b) {
         continue;
       }
-      cells.push_back(grid.geometry.centre({x, y}));
+      cells.push_back(grid.geometry.center({x, y}));
       mean.x += cells.back().x;
       mean.y += cells.back().y;
     }
@@ -124,7 +124,7 @@ class CellWays {
           }
           const Id there = grid_.placeOf(n);
           if (there != place) {
-            const Point2 p = g.centre(n);
+            const Point2 p = g.center(n);
             if (distanceBetween(p, from) > reach && distanceBetween(p, to) > reach) continue;
           }
           const double step = std::hypot(dx, dy) * (1.0 + discomfort(n));
@@ -163,7 +163,7 @@ class CellWays {
     for (int y = c.y - reach; y <= c.y + reach; ++y) {
       for (int x = c.x - reach; x <= c.x + reach; ++x) {
         if (clearanceOf({x, y}) <= 0.0) continue;
-        const double d = distanceBetween(g.centre({x, y}), p);
+        const double d = distanceBetween(g.center({x, y}), p);
         if (d > least) continue;
         least = d;
         best = {x, y};
@@ -178,7 +178,7 @@ class CellWays {
     std::vector<Point2> path{to};
     for (auto i = static_cast<std::int32_t>(g.index(goal)); i >= 0;
          i = before[static_cast<std::size_t>(i)]) {
-      path.push_back(g.centre({i % g.width, i / g.width}));
+      path.push_back(g.center({i % g.width, i / g.width}));
     }
     path.push_back(from);
     std::reverse(path.begin(), path.end());

@@ -11,19 +11,19 @@ namespace hyselam_topo {
 namespace {
 
 using hyselam::at;
-using hyselam::colour;
+using hyselam::color;
 using visualization_msgs::Marker;
 
 std_msgs::ColorRGBA colourOf(NameState state) {
   switch (state) {
     case NameState::kNone:
-      return colour(0.0, 0.45, 0.1);
+      return color(0.0, 0.45, 0.1);
     case NameState::kUnconfirmed:
-      return colour(0.75, 0.05, 0.05);
+      return color(0.75, 0.05, 0.05);
     case NameState::kConfirmed:
       break;
   }
-  return colour(0.05, 0.15, 0.75);
+  return color(0.05, 0.15, 0.75);
 }
 
 Marker make(const std::string& frame, const std::string& ns, int id, int type) {
@@ -92,7 +92,7 @@ visualization_msgs::MarkerArray questionMarkers(const Question& question,
   if (!question.search) return array;
   Marker seen = make(frame_id, "glass_wall", 1, Marker::LINE_STRIP);
   seen.scale.x = 0.03;
-  seen.color = colour(0.2, 0.8, 0.2);
+  seen.color = color(0.2, 0.8, 0.2);
   const hyselam::Pose2& robot = question.search->robot();
   seen.points.push_back(at(robot.x, robot.y, kHeight));
   for (const auto& p : question.search->seen()) seen.points.push_back(at(p.x, p.y, kHeight));
@@ -101,7 +101,7 @@ visualization_msgs::MarkerArray questionMarkers(const Question& question,
   if (!question.search->corners().empty()) {
     Marker corners = make(frame_id, "glass_wall", 2, Marker::CUBE_LIST);
     corners.scale.x = corners.scale.y = 0.15;
-    corners.color = colour(0.9, 0.1, 0.1);
+    corners.color = color(0.9, 0.1, 0.1);
     for (const auto& p : question.search->corners()) {
       corners.points.push_back(at(p.x, p.y, kHeight));
     }
@@ -110,7 +110,7 @@ visualization_msgs::MarkerArray questionMarkers(const Question& question,
   if (question.kind == Question::Kind::kWall) {
     Marker wall = make(frame_id, "glass_wall", 3, Marker::LINE_STRIP);
     wall.scale.x = 0.12;
-    wall.color = colour(0.1, 0.3, 0.95);
+    wall.color = color(0.1, 0.3, 0.95);
     wall.points.push_back(at(question.wall.line.a.x, question.wall.line.a.y, kHeight));
     wall.points.push_back(at(question.wall.line.b.x, question.wall.line.b.y, kHeight));
     array.markers.push_back(wall);

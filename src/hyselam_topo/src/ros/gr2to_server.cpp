@@ -45,7 +45,7 @@ bool hasExtension(const std::string& path, const char* extension) {
 Gr2ToServer::Gr2ToServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh,
                          BackgroundGr2To::Pipeline pipeline)
     : who_(hyselam::logName(private_nh)),
-      params_(hyselam::loadAndTell(private_nh, loadGr2ToParams)),
+      params_(hyselam::loadAndLogParams(private_nh, loadGr2ToParams)),
       marker_params_(params_.markers),
       map_publisher_(
           nh.advertise<hyselam_msgs::AugmentedTopologicalMap>("topological_map", 1, true)),

@@ -27,9 +27,9 @@ constexpr double kSavePeriod = 2.0;   // at most so often [s]
 
 TopoEngineServer::TopoEngineServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : who_(hyselam::logName(private_nh)),
-      params_(hyselam::loadAndTell(private_nh, loadTopoEngineParams)),
+      params_(hyselam::loadAndLogParams(private_nh, loadTopoEngineParams)),
       dialogue_(params_.dialogue),
-      tf_listener_(tf_, true, hyselam::promptly()),
+      tf_listener_(tf_, true, hyselam::tcpNoDelay()),
       driver_(nh) {
   using Self = TopoEngineServer;
   text_publisher_ = nh.advertise<std_msgs::String>("robot_text", 20);

@@ -27,7 +27,7 @@ cv::Mat drawn(const OccupancyGrid& grid, const hyselam::GridGeometry& geometry) 
   cv::Mat picture(geometry.height, geometry.width, CV_8UC3);
   for (int y = 0; y < geometry.height; ++y) {
     for (int x = 0; x < geometry.width; ++x) {
-      const hyselam::Cell there = grid.geometry.cellAt(geometry.centre({x, y}));
+      const hyselam::Cell there = grid.geometry.cellAt(geometry.center({x, y}));
       picture.at<cv::Vec3b>(geometry.height - 1 - y, x) = colourOf(grid.valueOr(there));
     }
   }

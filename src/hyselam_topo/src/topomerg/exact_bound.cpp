@@ -87,7 +87,7 @@ double ExactSearch::bound(Node* node, const Growth* growth) {
   std::vector<double>& losses = losses_[level];
   if (level > 0 && growth == nullptr) losses.resize(losses_[0].size());
 
-  AssignmentBound& table = node->table;
+  hyselam::Assignment& table = node->table;
   table.reset(static_cast<int>(node->rows.size()), static_cast<int>(node->available.size()));
   node->cost.resize(node->rows.size() * node->setCount());
   double sum = node->base;

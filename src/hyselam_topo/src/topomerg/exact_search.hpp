@@ -9,11 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "assignment_bound.hpp"
+#include "hyselam_common/assignment.hpp"
 #include "merge_terms.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo::merging {
+
+constexpr double kNever = hyselam::Assignment::kNotAllowed;  ///< loss of what is not allowed
 
 inline std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -71,7 +73,7 @@ struct Node {
   std::vector<int> row_of;     ///< of each name, -1: none
   std::vector<int> column_of;  ///< of each vertex, -1: none
   std::vector<double> cost;    ///< rows x (alive, then extra)
-  AssignmentBound table;       ///< rows x available vertices
+  hyselam::Assignment table;   ///< rows x available vertices
 
   std::size_t setCount() const { return alive.size() + extra.size(); }
 };

@@ -43,7 +43,7 @@ class Window {
     return c.x >= 0 && c.y >= 0 && c.x < width_ && c.y < height_ &&
            inside_[static_cast<std::size_t>(index(c))];
   }
-  Point2 centre(Cell c) const { return grid_.geometry.centre({c.x + x0_, c.y + y0_}); }
+  Point2 center(Cell c) const { return grid_.geometry.center({c.x + x0_, c.y + y0_}); }
 
   /// The cell of the place nearest to a point; kNone without cells.
   int nearest(Point2 point) const {
@@ -216,7 +216,7 @@ std::vector<std::vector<Point2>> waysWithin(const PlaceGrid& grid, Id place, con
       at = next[static_cast<std::size_t>(at)];
       way.push_back(window.cell(at));
     }
-    for (const Cell c : pulledTaut(window, to_end, way)) ways[k].push_back(window.centre(c));
+    for (const Cell c : pulledTaut(window, to_end, way)) ways[k].push_back(window.center(c));
   }
   return ways;
 }

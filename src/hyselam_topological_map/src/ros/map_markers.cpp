@@ -12,7 +12,7 @@
 namespace hyselam_topo {
 namespace {
 
-using hyselam::colour;
+using hyselam::color;
 using hyselam::Point2;
 using visualization_msgs::Marker;
 
@@ -33,7 +33,7 @@ std_msgs::ColorRGBA placeColour(const Place* place, Id id, double alpha) {
     const double k = std::fmod(shift + hue, 6.0);
     return 0.97 * (1.0 - saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0));
   };
-  return colour(channel(5.0), channel(3.0), channel(1.0), alpha);
+  return color(channel(5.0), channel(3.0), channel(1.0), alpha);
 }
 
 geometry_msgs::Point at(Point2 p, double z) {
@@ -143,7 +143,7 @@ void addNames(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& b
         placeLabel(map, place, box == boxes.end() ? nullptr : &box->second, "", nameOf(place));
     marker.scale.z = label.height;
     marker.pose.position = at(label.position, kNameHeight);
-    marker.color = colour(0.05, 0.05, 0.15);
+    marker.color = color(0.05, 0.05, 0.15);
     marker.text = label.text;
     markers->put(std::move(marker));
   }
@@ -156,9 +156,9 @@ void addWalls(const AugmentedTopologicalMap& map, Markers* markers) {
     double width;
     std_msgs::ColorRGBA colour;
   };
-  const Style styles[] = {{WallKind::kVirtual, 0.04, colour(0.5, 0.5, 0.55, 0.9)},
-                          {WallKind::kGlass, 0.08, colour(0.3, 0.65, 0.95)},
-                          {WallKind::kSolid, 0.14, colour(0.12, 0.12, 0.16)}};
+  const Style styles[] = {{WallKind::kVirtual, 0.04, color(0.5, 0.5, 0.55, 0.9)},
+                          {WallKind::kGlass, 0.08, color(0.3, 0.65, 0.95)},
+                          {WallKind::kSolid, 0.14, color(0.12, 0.12, 0.16)}};
   for (const Style& style : styles) {
     Marker lines =
         markers->makeLines("walls", static_cast<int>(style.kind), style.width, style.colour);
@@ -206,10 +206,10 @@ void drawDashed(Point2 a, Point2 b, double dash, Marker* lines) {
 
 void addDoors(const AugmentedTopologicalMap& map, Markers* markers) {
   enum { kSwings, kThresholds, kClosed, kVirtual };
-  Marker swings = markers->makeLines("doors", kSwings, 0.06, colour(0.55, 0.27, 0.07));
-  Marker thresholds = markers->makeLines("doors", kThresholds, 0.16, colour(0.95, 0.6, 0.2));
-  Marker closed = markers->makeLines("doors", kClosed, 0.16, colour(0.8, 0.1, 0.1));
-  Marker dashed = markers->makeLines("doors", kVirtual, 0.08, colour(0.35, 0.35, 0.45));
+  Marker swings = markers->makeLines("doors", kSwings, 0.06, color(0.55, 0.27, 0.07));
+  Marker thresholds = markers->makeLines("doors", kThresholds, 0.16, color(0.95, 0.6, 0.2));
+  Marker closed = markers->makeLines("doors", kClosed, 0.16, color(0.8, 0.1, 0.1));
+  Marker dashed = markers->makeLines("doors", kVirtual, 0.08, color(0.35, 0.35, 0.45));
   for (const Edge& edge : map.edges) {
     for (const Door& door : edge.doors) {
       const auto [a, b] = ends(door);
@@ -256,8 +256,8 @@ void addGraph(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& b
               Markers* markers) {
   Marker spheres = markers->make("graph", 0, Marker::SPHERE_LIST);
   spheres.scale.x = spheres.scale.y = spheres.scale.z = 0.25;
-  spheres.color = colour(0.1, 0.25, 0.6);
-  Marker lines = markers->makeLines("graph", 1, 0.05, colour(0.1, 0.25, 0.6, 0.8));
+  spheres.color = color(0.1, 0.25, 0.6);
+  Marker lines = markers->makeLines("graph", 1, 0.05, color(0.1, 0.25, 0.6, 0.8));
   for (const Place& place : map.places) {
     if (place.centre) {
       spheres.points.push_back(at({place.centre->x, place.centre->y}, kGraphHeight));

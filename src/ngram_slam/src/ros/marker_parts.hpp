@@ -9,22 +9,22 @@
 
 namespace ngram_slam {
 
-using hyselam::colour;
+using hyselam::color;
 
 inline std_msgs::ColorRGBA colourOf(SemanticClass c) {
   switch (c) {
     case SemanticClass::kBifurcation:
-      return colour(0.95, 0.75, 0.10);
+      return color(0.95, 0.75, 0.10);
     case SemanticClass::kCorner:
-      return colour(0.90, 0.35, 0.10);
+      return color(0.90, 0.35, 0.10);
     case SemanticClass::kCorridor:
-      return colour(0.45, 0.65, 0.90);
+      return color(0.45, 0.65, 0.90);
     case SemanticClass::kDeadEnd:
-      return colour(0.55, 0.30, 0.70);
+      return color(0.55, 0.30, 0.70);
     case SemanticClass::kHall:
-      return colour(0.35, 0.75, 0.40);
+      return color(0.35, 0.75, 0.40);
   }
-  return colour(0.6, 0.6, 0.6);
+  return color(0.6, 0.6, 0.6);
 }
 
 inline geometry_msgs::Point at(const hyselam::Pose2& pose, double z) {
@@ -37,7 +37,7 @@ inline visualization_msgs::Marker marker(const std_msgs::Header& header, const c
   m.header = header;
   m.scale.x = width;
   m.scale.y = m.scale.z = 0.0;
-  m.color = colour(0.1, 0.1, 0.1);
+  m.color = color(0.1, 0.1, 0.1);
   return m;
 }
 

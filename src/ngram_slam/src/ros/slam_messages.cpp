@@ -121,24 +121,24 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   for (std::size_t i = 1; i < keyframes.size(); ++i)
     if (keyframes[i].run == keyframes[i - 1].run)
       addLine(&way, keyframes[i - 1].pose, keyframes[i].pose, 0.05,
-              keyframes[i].run == keyframes.back().run ? colour(0.15, 0.35, 0.85)
-                                                       : colour(0.55, 0.55, 0.6));
+              keyframes[i].run == keyframes.back().run ? color(0.15, 0.35, 0.85)
+                                                       : color(0.55, 0.55, 0.6));
   add(std::move(way));
 
   Marker lines = marker(header, "loops", Marker::LINE_LIST, 0.05);
   for (const SlamLoop& l : loops)
     addLine(&lines, keyframes[static_cast<std::size_t>(l.older)].pose,
             keyframes[static_cast<std::size_t>(l.newer)].pose, 0.1,
-            l.weight < 0.5                   ? colour(0.9, 0.1, 0.1)
-            : l.source == LoopSource::kNgram ? colour(0.85, 0.1, 0.75)
-                                             : colour(0.1, 0.65, 0.25));
+            l.weight < 0.5                   ? color(0.9, 0.1, 0.1)
+            : l.source == LoopSource::kNgram ? color(0.85, 0.1, 0.75)
+                                             : color(0.1, 0.65, 0.25));
   add(std::move(lines));
 
   Marker links = marker(header, "region_links", Marker::LINE_LIST, 0.08);
   for (const RegionEdge& link : graph.edges)
     addLine(&links, graph.nodes[link.a].pose, graph.nodes[link.b].pose, 1.0,
-            link.kind == RegionEdge::Kind::kLoop ? colour(0.85, 0.1, 0.75, 0.6)
-                                                 : colour(0.25, 0.25, 0.25, 0.6));
+            link.kind == RegionEdge::Kind::kLoop ? color(0.85, 0.1, 0.75, 0.6)
+                                                 : color(0.25, 0.25, 0.25, 0.6));
   add(std::move(links));
 
   Marker balls = marker(header, "regions", Marker::SPHERE_LIST, 0.6);

@@ -78,7 +78,7 @@ std::vector<SemanticRegion> SlamServer::Mapping::segment() {
 
 SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : who_(hyselam::logName(private_nh)),
-      params_(hyselam::loadAndTell(private_nh, loadSlamParams)),
+      params_(hyselam::loadAndLogParams(private_nh, loadSlamParams)),
       pending_(params_.initial_pose),
       map_rate_(params_.map_update_interval > 0.0 ? 1.0 / params_.map_update_interval : -1.0) {
   SlamState state;

@@ -17,8 +17,8 @@ namespace {
 /// From blue (narrow) over green to red (wide), for densities 0..1.
 std_msgs::ColorRGBA colourOf(double density) {
   const double x = std::clamp(density, 0.0, 1.0);
-  return colour(std::clamp(2.0 * x - 0.6, 0.0, 1.0), 1.0 - std::abs(2.0 * x - 1.0),
-                std::clamp(1.2 - 2.4 * x, 0.0, 1.0));
+  return color(std::clamp(2.0 * x - 0.6, 0.0, 1.0), 1.0 - std::abs(2.0 * x - 1.0),
+               std::clamp(1.2 - 2.4 * x, 0.0, 1.0));
 }
 
 /// Beside the way at an observation, `aside` metres to its left.
@@ -68,7 +68,7 @@ visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
   Marker regions = marker(header, "regions", Marker::LINE_STRIP, 0.45);
   Marker kinds = marker(header, "kinds", Marker::TEXT_VIEW_FACING, 0.0);
   kinds.scale.z = 0.4;
-  kinds.color = colour(0.25, 0.25, 0.25, 0.9);
+  kinds.color = color(0.25, 0.25, 0.25, 0.9);
   Marker classes = marker(header, "classes", Marker::LINE_STRIP, 0.12);
   Marker label = marker(header, "words", Marker::TEXT_VIEW_FACING, 0.0);
   label.scale.z = 0.45;
@@ -80,9 +80,9 @@ visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
     while (region != shown.regions.end() && region->last < i) ++region;
     regions.points.push_back(at(pose, -0.02));
     const bool known = region != shown.regions.end() && region->first <= i;
-    regions.colors.push_back(known ? colourOf(region->semantic_class) : colour(0.7, 0.7, 0.7));
+    regions.colors.push_back(known ? colourOf(region->semantic_class) : color(0.7, 0.7, 0.7));
     if (p < text.positions() && i >= text.observationEnd(text.realWord(p))) ++p;
-    std_msgs::ColorRGBA c = colour(0.7, 0.7, 0.7);
+    std_msgs::ColorRGBA c = color(0.7, 0.7, 0.7);
     if (p < text.positions()) {
       const int id = text.syllables(text.realWord(p)).density_class;
       for (const DensityClass& density : recogniser.classes().list())
@@ -110,8 +110,8 @@ visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
   Marker lines = marker(header, "matches", Marker::LINE_LIST, 0.06);
   for (const MatchLine& m : shown.matches) {
     if (m.pair.older < begin || m.pair.newer >= observations.size()) continue;
-    const auto c = m.direction == Direction::kReverse ? colour(0.85, 0.1, 0.75, 0.8)
-                                                      : colour(0.05, 0.55, 0.1, 0.8);
+    const auto c = m.direction == Direction::kReverse ? color(0.85, 0.1, 0.75, 0.8)
+                                                      : color(0.05, 0.55, 0.1, 0.8);
     for (std::uint32_t i : {m.pair.newer, m.pair.older}) {
       lines.points.push_back(at(observations.pose(i), 0.2));
       lines.colors.push_back(c);

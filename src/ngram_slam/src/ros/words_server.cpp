@@ -28,7 +28,7 @@ constexpr std::size_t kRegionsPerWord = 4;
 
 WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : who_(hyselam::logName(private_nh)),
-      params_(hyselam::loadAndTell(private_nh, loadWordsParams)),
+      params_(hyselam::loadAndLogParams(private_nh, loadWordsParams)),
       segmenter_(params_.semantic),
       sensor_(params_.sensor),
       sampler_(params_.sensor.step),

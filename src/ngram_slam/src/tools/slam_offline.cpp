@@ -118,7 +118,7 @@ Run runSlam(const hyselam::RobotLog& log, const SlamParams& params, const std::s
 }
 
 hyselam::OccupancyMapper emptyMap(double resolution) {
-  hyselam::OccupancyMapperParameters p;
+  hyselam::OccupancyMapperParams p;
   p.resolution = resolution;
   return hyselam::OccupancyMapper(p);
 }

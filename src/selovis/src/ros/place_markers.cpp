@@ -8,7 +8,7 @@
 namespace selovis {
 namespace {
 
-using hyselam::colour;
+using hyselam::color;
 using visualization_msgs::Marker;
 
 constexpr double kWidth = 0.5;        // of a bar [m]
@@ -37,9 +37,9 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     bar.pose.position.x = place.centre->x;
     bar.pose.position.y = place.centre->y;
     bar.pose.position.z = 0.5 * bar.scale.z;
-    bar.color = !here       ? colour(0.25, 0.45, 0.9, 0.85)
-                : kidnapped ? colour(1.0, 0.45, 0.05, 0.95)
-                            : colour(0.1, 0.7, 0.25, 0.95);
+    bar.color = !here       ? color(0.25, 0.45, 0.9, 0.85)
+                : kidnapped ? color(1.0, 0.45, 0.05, 0.95)
+                            : color(0.1, 0.7, 0.25, 0.95);
     array.markers.push_back(bar);
     // The map's own markers name the places.
     const long percent = std::lround(100.0 * probabilities[i]);
@@ -52,7 +52,7 @@ visualization_msgs::MarkerArray placeMarkers(const hyselam_topo::AugmentedTopolo
     // In front of the bar's foot, so that neither hides the other.
     text.pose.position.y -= 0.5 * kWidth + 0.8 * text.scale.z;
     text.pose.position.z = 0.3;
-    text.color = here ? bar.color : colour(0.1, 0.1, 0.1, 1.0);
+    text.color = here ? bar.color : color(0.1, 0.1, 0.1, 1.0);
     text.color.a = 1.0f;
     text.text = std::to_string(percent) + " %";
     array.markers.push_back(text);

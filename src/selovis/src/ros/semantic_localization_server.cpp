@@ -50,9 +50,9 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
                                                        ros::NodeHandle private_nh)
     : who_(hyselam::logName(private_nh)),
       image_topic_(nh.resolveName("image")),
-      params_(hyselam::loadAndTell(private_nh, loadParams)),
+      params_(hyselam::loadAndLogParams(private_nh, loadParams)),
       learning_(params_.learn),
-      tf_listener_(tf_, true, hyselam::promptly()),
+      tf_listener_(tf_, true, hyselam::tcpNoDelay()),
       supervision_(nh, private_nh, params_, who_),
       place_publisher_(nh.advertise<hyselam_msgs::VisualPlace>("visual_place", 100)),
       marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("place_markers", 1, true)),
@@ -90,7 +90,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
         [this](const sensor_msgs::CompressedImage::ConstPtr& msg) {
           onImage({nullptr, msg, msg->header, ros::WallTime::now()});
         },
-        ros::VoidConstPtr(), hyselam::promptly()));
+        ros::VoidConstPtr(), hyselam::tcpNoDelay()));
   } else {
     image_subscriber_ = transport_.subscribe(
         "image", queue,
@@ -98,7 +98,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
           onImage({msg, nullptr, msg->header, ros::WallTime::now()});
         },
         ros::VoidPtr(),
-        image_transport::TransportHints(params_.image_transport, hyselam::promptly()));
+        image_transport::TransportHints(params_.image_transport, hyselam::tcpNoDelay()));
   }
   subscribers_.push_back(nh.subscribe<sensor_msgs::CameraInfo>(
       "camera_info", 5,
@@ -108,14 +108,14 @@ SemanticLocalizationServer::SemanticLocalizationServer(ros::NodeHandle nh,
           aperture_y_ = 2.0 * std::atan(0.5 * info->height / info->K[4]);
         }
       },
-      ros::VoidConstPtr(), hyselam::promptly()));
+      ros::VoidConstPtr(), hyselam::tcpNoDelay()));
   // What is read beside the picture.
   const auto read = [&](auto& history, const char* topic, std::uint32_t size) {
     using Message = typename std::decay_t<decltype(history)>::Message;
     subscribers_.push_back(nh.subscribe<Message>(
         topic, size,
         [this, &history](const typename Message::ConstPtr& msg) { onReading(history, msg); },
-        ros::VoidConstPtr(), hyselam::promptly()));
+        ros::VoidConstPtr(), hyselam::tcpNoDelay()));
   };
   if (needs_.scan || needs_.ranges) read(scans_, "scan", 100);
   if (needs_.ranges) read(depths_, "depth", queue);

@@ -29,23 +29,23 @@ struct BagOptions {
 ///
 /// Scans: `scan_topic`, or the only LaserScan topic if that one is missing. Odometry:
 /// `odometry_topic` (nav_msgs/Odometry), or the only Odometry topic, else the odom_frame ->
-/// base_frame transform of /tf. A topic that is told by another name than the default is not
+/// base_frame transform of /tf. A topic named other than by default is not
 /// replaced. Ground truth: `ground_truth_topic` as nav_msgs/Odometry or
 /// geometry_msgs/PoseStamped, if present. laser_in_base: the option, else the first chain of
 /// transforms of /tf_static and /tf from base_frame to the scans' frame_id, else identity; a laser
 /// mounted upside down comes out with mirrored angles and a negative increment. Times are those of
-/// the headers; messages are put in the order of their headers. Throws InputError for: a missing
+/// the headers; messages are put in the order of their headers. @throws InputError for: a missing
 /// file, no bag, a truncated or damaged bag, no scans, several scan topics without a choice, topics
-/// told that are not there, a base frame that is in no transform while others are, no odometry, and
+/// named that do not exist, a base frame that is in no transform while others are, no odometry, and
 /// messages that cannot be used (topic and time are named).
 RobotLog readBag(const std::string& path, const BagOptions& options = {});
 
-/// Writes /scan, /odom (with the velocities that neighbouring samples give), /tf (odom -> base_link
+/// Writes /scan, /odom (with the velocities that neighboring samples give), /tf (odom -> base_link
 /// at each odometry), /tf_static (latched, base_link -> laser) and /ground_truth
 /// (nav_msgs/Odometry) if known, in the order of time. The same log gives the same bytes; an
-/// existing file is replaced at once. A time of 0 becomes 1 ns, since bags cannot hold 0. Throws
-/// InputError if the file cannot be written, a time cannot be held by a bag, or the log has neither
-/// scans nor odometry; std::invalid_argument if the laser moves on the robot.
+/// existing file is replaced at once. A time of 0 becomes 1 ns, since bags cannot hold 0. @throws
+/// InputError if the file cannot be written, a time cannot be held by a bag, the log has neither
+/// scans nor odometry, a pose is not finite, or the laser moves on the robot.
 void writeBag(const std::string& path, const RobotLog& log, const BagOptions& options = {});
 
 /// readBag() for names that end in .bag or .bag.gz, readCarmenLog() for all others.

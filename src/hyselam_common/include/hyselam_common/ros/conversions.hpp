@@ -21,11 +21,11 @@ namespace hyselam {
 
 /// Times [s]; ros::Time cannot hold 0 in a bag, negative or not finite values.
 double toSeconds(const ros::Time& time);
-/// Rounded to ns. 0 becomes 1 ns, because bags and tf take 0 for "no time". Throws InputError for
+/// Rounded to ns. 0 becomes 1 ns, because bags and tf take 0 for "no time". @throws InputError for
 /// negative, not finite or too large (>= 2^32 s) values.
 ros::Time toRosTime(double seconds, const std::string& source = "time");
 
-/// The heading of a quaternion, which is normalised. Throws InputError if it is not finite or so
+/// The heading of a quaternion, which is normalised. @throws InputError if it is not finite or so
 /// short
 /// (|q| < 0.1) that it says nothing; an all-zero quaternion is such a case.
 double yawFromMsg(const geometry_msgs::Quaternion& q, const std::string& source);
@@ -44,7 +44,7 @@ LaserScan fromMsg(const sensor_msgs::LaserScan& msg, const std::string& source,
 sensor_msgs::LaserScan toMsg(const LaserScan& scan, const std::string& frame_id);
 
 /// Says where the laser of `scan` sits on the robot (laser in base). One that is mounted upside
-/// down comes out with mirrored angles and a negative increment. Throws InputError for a transform
+/// down comes out with mirrored angles and a negative increment. @throws InputError for a transform
 /// that is not finite, and for a laser whose plane is inclined by more than 60 degrees.
 void placeLaser(const tf2::Transform& laser_in_base, const std::string& source, LaserScan* scan);
 

@@ -8,7 +8,7 @@
 namespace hyselam {
 
 /// Parts of red, green and blue, and opacity, each 0..1.
-inline std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1.0) {
+inline std_msgs::ColorRGBA color(double r, double g, double b, double a = 1.0) {
   std_msgs::ColorRGBA c;
   c.r = static_cast<float>(r);
   c.g = static_cast<float>(g);

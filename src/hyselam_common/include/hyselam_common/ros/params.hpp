@@ -84,6 +84,9 @@ class ParamLoader : public ParameterVisitor {
   /// Marks a name as known that something else reads (nodelet parameters, dynamic reconfigure).
   void know(const std::string& name) { known_.insert(name); }
 
+  /// All names asked for or marked as known.
+  const std::set<std::string>& known() const { return known_; }
+
   /// Set but never asked for, with the nearest known name: "unknown parameter '/n/alhpa' (did you
   /// mean 'alpha'?)". Call after the last parameter.
   std::vector<std::string> reportUnknown() const;

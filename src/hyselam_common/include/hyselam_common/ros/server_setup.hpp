@@ -1,4 +1,4 @@
-// What all servers do with their parameters at the start.
+// How servers name themselves in the log and load their parameters.
 #pragma once
 
 #include <ros/console.h>
@@ -9,14 +9,14 @@
 
 namespace hyselam {
 
-/// How a server calls itself in the log.
+/// The prefix of a server's log messages: "[/namespace/name]".
 inline std::string logName(const ros::NodeHandle& private_nh) {
   return "[" + private_nh.getNamespace() + "]";
 }
 
-/// Loads, warns of unknown names and logs the resolved table.
+/// Loads the parameters, warns of unknown and renamed ones and logs the resolved table.
 template <typename Params>
-Params loadAndTell(const ros::NodeHandle& private_nh, Params (*load)(ParamLoader&)) {
+Params loadAndLogParams(const ros::NodeHandle& private_nh, Params (*load)(ParamLoader&)) {
   ParamLoader loader(private_nh);
   const Params params = load(loader);
   loader.logWarnings();

@@ -18,7 +18,7 @@ struct SlamServerParams {
   std::string global_frame_id = "map";
   SlamParams slam;
   SemanticParams semantic;
-  hyselam::OccupancyMapperParameters map;
+  hyselam::OccupancyMapperParams map;
   double map_update_interval = 2.0;  ///< between maps [s] of the data; 0: no map is drawn
   bool tf_broadcast = true;
   double transform_publish_period = 0.05;  ///< of map -> odom [s] of wall time; 0: at scans only

@@ -12,7 +12,7 @@ namespace ngram_slam {
 class KeyframeMapper {
  public:
   /// @throws hyselam::ParameterError
-  explicit KeyframeMapper(const hyselam::OccupancyMapperParameters& params) : mapper_(params) {}
+  explicit KeyframeMapper(const hyselam::OccupancyMapperParams& params) : mapper_(params) {}
 
   /// `revision`: changes whenever poses of keyframes given before are others.
   /// @throws std::length_error when the map would be too large; what fits remains.

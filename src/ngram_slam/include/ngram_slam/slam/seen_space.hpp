@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hyselam_scan_matching/surface.hpp"
+#include "hyselam_scan_matching/surface_points.hpp"
 
 namespace ngram_slam {
 

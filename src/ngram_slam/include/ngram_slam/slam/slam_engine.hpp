@@ -6,7 +6,7 @@
 
 #include "hyselam_common/laser_scan.hpp"
 #include "hyselam_pose_graph/graph_optimizer.hpp"
-#include "hyselam_scan_matching/refine.hpp"
+#include "hyselam_scan_matching/icp.hpp"
 #include "hyselam_scan_matching/surface_map.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
@@ -105,8 +105,9 @@ class SlamEngine {
            params_.loops == SlamLoops::kThesis;
   }
   void startAt(const hyselam::LaserScan& scan, const hyselam::Pose2& odometry);
-  hyselam_scan_matching::Refined matchLocally(const hyselam_scan_matching::SurfacePoints& points,
-                                              const Eigen::Matrix3d& believed, SlamUpdate* update);
+  hyselam_scan_matching::IcpResult matchLocally(const hyselam_scan_matching::SurfacePoints& points,
+                                                const Eigen::Matrix3d& believed,
+                                                SlamUpdate* update);
   void addKeyframe(const hyselam::LaserScan& scan,
                    std::shared_ptr<const hyselam_scan_matching::SurfacePoints> points,
                    const hyselam_pose_graph::PoseEdge* edge);

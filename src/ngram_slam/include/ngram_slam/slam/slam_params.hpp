@@ -1,8 +1,8 @@
 // All that can be set about SLAM, with values that serve from a small office to long corridors.
 #pragma once
 
-#include "hyselam_scan_matching/refine.hpp"
-#include "hyselam_scan_matching/surface.hpp"
+#include "hyselam_scan_matching/icp.hpp"
+#include "hyselam_scan_matching/surface_points.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
 #include "ngram_slam/words/observation_sensor.hpp"
 
@@ -95,8 +95,8 @@ struct SlamParams {
   /// As the thesis has it: its own words, which have to be sure, and loops of kThesis.
   static SlamParams thesis(int levels = 3);
 
-  hyselam_scan_matching::SurfaceParams surface;
-  hyselam_scan_matching::RefineParams refine;
+  hyselam_scan_matching::SurfacePointParams surface;
+  hyselam_scan_matching::IcpParams refine;
   OdometryNoise odometry;
   bool refine_odometry = true;  ///< scans against what was seen last; else odometry as it is
   double scan_step =

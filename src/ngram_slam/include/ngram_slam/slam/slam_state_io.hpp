@@ -21,7 +21,7 @@ class SlamStateFile {
   /// @throws hyselam::InputError naming file, place and reason for a file that is missing, no such
   /// file, of another version, cut short, damaged, or whose parts do not fit together.
   static SlamState load(const std::string& path,
-                        const hyselam_scan_matching::SurfaceParams& surface);
+                        const hyselam_scan_matching::SurfacePointParams& surface);
 };
 
 }  // namespace ngram_slam

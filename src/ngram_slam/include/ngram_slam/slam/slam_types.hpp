@@ -7,7 +7,7 @@
 
 #include "hyselam_common/laser_scan.hpp"
 #include "hyselam_pose_graph/pose_graph.hpp"
-#include "hyselam_scan_matching/surface.hpp"
+#include "hyselam_scan_matching/surface_points.hpp"
 #include "ngram_slam/words/corpus.hpp"
 #include "ngram_slam/words/density_word.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "hyselam_scan_matching/refine.hpp"
-#include "hyselam_scan_matching/search.hpp"
+#include "hyselam_scan_matching/correlative_matcher.hpp"
+#include "hyselam_scan_matching/icp.hpp"
 
 namespace ngram_slam {
 
@@ -56,27 +56,27 @@ LoopAnswer verifyLoop(const LoopTask& task, const SlamParams& params) {
   }
   if (points.empty() || old_map.empty()) return answer;
 
-  SearchParams s;
-  s.window = task.window;
-  s.turn = task.turn;
-  s.least_score = task.far ? p.far_score : p.near_score;
+  CorrelativeMatcherParams s;
+  s.linear_window = task.window;
+  s.angular_window = task.turn;
+  s.min_score = task.far ? p.far_score : p.near_score;
   s.resolution = task.far ? p.far_resolution : 0.06;
-  s.reach = task.far ? 3.0 * p.far_resolution : 0.2;
-  const SearchGrid grid(old_map, s);
+  s.max_distance = task.far ? 3.0 * p.far_resolution : 0.2;
+  const CorrelativeMatcher grid(old_map, s);
   const SurfacePoints few = thinned(points, task.far ? kFarPoints : kNearPoints);
-  const auto found = grid.search(few, task.guess);
+  const auto found = grid.match(few, task.guess);
   if (!found) return answer;
   answer.score = found->score;
   if (task.far && p.rival_share < 1.0) {
     const auto rival =
-        grid.rival(few, task.guess, found->pose, p.rival_apart, p.rival_share * found->score);
+        grid.secondBest(few, task.guess, found->pose, p.rival_apart, p.rival_share * found->score);
     if (rival) {
       answer.rival = rival->score;
       return answer;
     }
   }
   const SurfacePoints many = task.far ? thinned(points, kRefinedPoints) : points;
-  const Refined r = refine(many, old_map, found->pose, Eigen::Matrix3d::Zero(), params.refine);
+  const IcpResult r = alignIcp(many, old_map, found->pose, Eigen::Matrix3d::Zero(), params.refine);
   loop.measured = r.pose;
   loop.matched = r.matched;
   // A stretch of many scans is believed no more than one of them: its inner errors are one's own.

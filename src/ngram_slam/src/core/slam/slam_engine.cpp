@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_scan_matching/refine.hpp"
-#include "hyselam_scan_matching/search.hpp"
+#include "hyselam_scan_matching/correlative_matcher.hpp"
+#include "hyselam_scan_matching/icp.hpp"
 
 namespace ngram_slam {
 
 using hyselam::between;
 using hyselam::Pose2;
 using hyselam_pose_graph::PoseEdge;
-using hyselam_scan_matching::Refined;
-using hyselam_scan_matching::SearchGrid;
+using hyselam_scan_matching::CorrelativeMatcher;
+using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
@@ -117,7 +117,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
                   : params_.odometry.information(motion);
   Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
   if (params_.refine_odometry) {
-    const Refined r = matchLocally(*points, believed, &update);
+    const IcpResult r = matchLocally(*points, believed, &update);
     seen = r.information;
     pose_ = r.pose;
   }
@@ -155,19 +155,20 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   return update;
 }
 
-hyselam_scan_matching::Refined SlamEngine::matchLocally(const SurfacePoints& points,
-                                                        const Eigen::Matrix3d& believed,
-                                                        SlamUpdate* update) {
+hyselam_scan_matching::IcpResult SlamEngine::matchLocally(const SurfacePoints& points,
+                                                          const Eigen::Matrix3d& believed,
+                                                          SlamUpdate* update) {
   ++state_.counters.matched;
-  Refined r = refine(points, local_, pose_, believed, params_.refine);
+  IcpResult r = alignIcp(points, local_, pose_, believed, params_.refine);
   constexpr std::size_t kEnough = 30;
   if (r.matched < params_.lost && points.size() > kEnough && !local_.empty()) {
-    hyselam_scan_matching::SearchParams s;
-    s.window = 0.6;
-    s.turn = 0.35;
-    s.least_score = 0.4;
-    if (const auto found = SearchGrid(local_, s).search(points, pose_)) {
-      const Refined again = refine(points, local_, found->pose, 0.05 * believed, params_.refine);
+    hyselam_scan_matching::CorrelativeMatcherParams s;
+    s.linear_window = 0.6;
+    s.angular_window = 0.35;
+    s.min_score = 0.4;
+    if (const auto found = CorrelativeMatcher(local_, s).match(points, pose_)) {
+      const IcpResult again =
+          alignIcp(points, local_, found->pose, 0.05 * believed, params_.refine);
       if (again.matched > r.matched + 0.1) {
         r = again;
         ++state_.counters.searched;
@@ -227,12 +228,13 @@ void SlamEngine::startAt(const hyselam::LaserScan& scan, const Pose2& odometry) 
       map.insert(old.pose, *old.points);
     }
     map.finish();
-    hyselam_scan_matching::SearchParams s;
-    s.window = start.window;
-    s.turn = start.turn;
-    s.least_score = 0.4;
-    if (const auto found = SearchGrid(map, s).search(*points, start.pose)) {
-      const Refined r = refine(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
+    hyselam_scan_matching::CorrelativeMatcherParams s;
+    s.linear_window = start.window;
+    s.angular_window = start.turn;
+    s.min_score = 0.4;
+    if (const auto found = CorrelativeMatcher(map, s).match(*points, start.pose)) {
+      const IcpResult r =
+          alignIcp(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
       if (r.matched >= params_.lost) {
         pose_ = r.pose;
         tie.matched = r.matched;

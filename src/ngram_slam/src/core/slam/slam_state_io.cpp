@@ -4,8 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "../words/binary_io.hpp"
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
@@ -21,7 +21,7 @@ constexpr std::size_t kHeaderBytes = 20;
 /// One description of each part for both ways: `Io` is Out or In, values are put or got.
 class Out {
  public:
-  explicit Out(Writer* writer) : writer_(writer) {}
+  explicit Out(hyselam::BinaryWriter* writer) : writer_(writer) {}
   template <typename T>
   void number(const T& value) {
     writer_->put(value);
@@ -32,7 +32,7 @@ class Out {
   }
 
  private:
-  Writer* writer_;
+  hyselam::BinaryWriter* writer_;
 };
 
 /// Never reads beyond the end.
@@ -70,7 +70,7 @@ class In {
   void anything(bool yes) { may_be_anything_ = yes; }
 
  private:
-  Reader reader_;
+  hyselam::BinaryReader reader_;
   std::size_t left_;
   std::string path_;
   bool may_be_anything_ = false;
@@ -205,7 +205,7 @@ void rest(Io& io, State& s) {
 void SlamStateFile::save(const std::string& path, const SlamState& state) {
   std::ostringstream stream;
   {
-    Writer w(stream);
+    hyselam::BinaryWriter w(stream);
     Out out(&w);
     out.size(state.keyframes, 0);
     for (const SlamKeyframe& k : state.keyframes) {
@@ -223,7 +223,7 @@ void SlamStateFile::save(const std::string& path, const SlamState& state) {
   }
   const std::string body = stream.str();
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
-    Writer w(out);
+    hyselam::BinaryWriter w(out);
     w.putText(kMagic, 8);
     w.put(kVersion);
     w.put(static_cast<std::uint64_t>(body.size() - 4));
@@ -233,29 +233,29 @@ void SlamStateFile::save(const std::string& path, const SlamState& state) {
 }
 
 SlamState SlamStateFile::load(const std::string& path,
-                              const hyselam_scan_matching::SurfaceParams& surface) {
+                              const hyselam_scan_matching::SurfacePointParams& surface) {
   const std::string text = hyselam::readTextFile(path);
   const auto refuse = [&](const std::string& place, const std::string& reason) {
     throw InputError(path, place, reason);
   };
   if (text.compare(0, 8, kMagic) != 0) refuse("byte 0", "is no state of SLAM");
   if (text.size() < kHeaderBytes + 4) refuse("header", "ends too early (truncated)");
-  Reader header(text);
+  hyselam::BinaryReader header(text);
   header.skip(8);
   const auto version = header.get<std::uint32_t>();
   const auto length = header.get<std::uint64_t>();
   if (version != kVersion)
     refuse("version", "is " + std::to_string(version) + ", but only " + std::to_string(kVersion) +
                           " is known");
-  if (header.get<std::uint32_t>() != checksum(text, 0, kHeaderBytes))
+  if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes))
     refuse("header", "is damaged (wrong checksum)");
   const std::size_t begin = kHeaderBytes + 4, expected = begin + length + 4;
   if (length > text.size() || text.size() != expected)
     refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
                       std::to_string(expected) + (text.size() < expected ? " (truncated)" : ""));
-  Reader tail(text);
+  hyselam::BinaryReader tail(text);
   tail.skip(begin + length);
-  if (tail.get<std::uint32_t>() != checksum(text, begin, begin + length))
+  if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, begin, begin + length))
     refuse("body", "is damaged (wrong checksum)");
 
   const std::string body = text.substr(begin, length);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "binary_io.hpp"
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
@@ -28,7 +28,7 @@ void CorpusFile::save(const std::string& path, const ObservationStore& o,
 
 void CorpusFile::write(std::ostream& out, const ObservationStore& o, const DensityClasses& classes,
                        const DensityHistogram& histogram) {
-  Writer w(out);
+  hyselam::BinaryWriter w(out);
   w.putText(kMagic, 8);
   w.put(kVersion);
   w.put(o.runs());
@@ -68,14 +68,14 @@ Corpus CorpusFile::parse(const std::string& text, const std::string& path) {
   };
   if (text.compare(0, 8, kMagic) != 0) refuse("byte 0", "is no corpus of words");
   if (text.size() < kHeaderBytes + 4) refuse("header", "ends too early (truncated)");
-  Reader r(text);
+  hyselam::BinaryReader r(text);
   r.skip(8);
   const auto version = r.get<std::uint32_t>();
   if (version != kVersion)
     refuse("version", "is " + std::to_string(version) + ", but only 2 is known");
   const auto runs = r.get<std::uint32_t>(), observations = r.get<std::uint32_t>(),
              classes = r.get<std::uint32_t>(), bins = r.get<std::uint32_t>();
-  if (r.get<std::uint32_t>() != checksum(text, 0, kHeaderBytes))
+  if (r.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes))
     refuse("header", "is damaged (wrong checksum)");
   if (classes < 1 || classes > 256) refuse("header", "has a number of classes outside 1..256");
   if (bins != 0 && bins != MeanShiftQuantizer::kBins)
@@ -88,9 +88,9 @@ Corpus CorpusFile::parse(const std::string& text, const std::string& path) {
     refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
                       std::to_string(expected) + (text.size() < expected ? " (truncated)" : ""));
   const std::size_t body_begin = r.at(), body_end = text.size() - 4;
-  Reader tail(text);
+  hyselam::BinaryReader tail(text);
   tail.skip(body_end);
-  if (tail.get<std::uint32_t>() != checksum(text, body_begin, body_end))
+  if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, body_begin, body_end))
     refuse("body", "is damaged (wrong checksum)");
 
   Corpus corpus;

@@ -11,8 +11,8 @@
 #include <sstream>
 #include <utility>
 
-#include "binary_io.hpp"
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
@@ -86,7 +86,7 @@ std::uint32_t checksumOf(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes(4, '\0');
   if (!in.seekg(-4, std::ios::end) || !in.read(&bytes[0], 4)) return 0;
-  return Reader(bytes).get<std::uint32_t>();
+  return hyselam::BinaryReader(bytes).get<std::uint32_t>();
 }
 
 double orNan(const std::optional<double>& value) {
@@ -98,7 +98,7 @@ std::optional<double> unlessNan(double value) {
 
 std::string headerFor(std::uint32_t file_checksum) {
   std::ostringstream out;
-  Writer w(out);
+  hyselam::BinaryWriter w(out);
   w.putText(kMagic, 8);
   w.put(kVersion);
   w.put(file_checksum);
@@ -109,7 +109,7 @@ std::string headerFor(std::uint32_t file_checksum) {
 std::string blockFrom(const ObservationStore& observations, const DensityClasses& classes,
                       const DensityHistogram& histogram, std::uint32_t from) {
   std::ostringstream body;
-  Writer w(body);
+  hyselam::BinaryWriter w(body);
   w.put(observations.size() - from);
   w.put(static_cast<std::uint32_t>(classes.list().size()));
   w.put(static_cast<std::uint32_t>(histogram.size()));
@@ -130,7 +130,7 @@ std::string blockFrom(const ObservationStore& observations, const DensityClasses
   w.putChecksum();
   const std::string text = body.str();
   std::ostringstream out;
-  Writer h(out);
+  hyselam::BinaryWriter h(out);
   h.putText(kBlock, 4);
   h.put(static_cast<std::uint32_t>(text.size()));
   h.put(from);
@@ -140,7 +140,7 @@ std::string blockFrom(const ObservationStore& observations, const DensityClasses
 
 /// Adds what a block holds. @throws hyselam::Error of any kind for values that cannot be.
 void addBlock(const std::string& body, Corpus& corpus) {
-  Reader r(body);
+  hyselam::BinaryReader r(body);
   const auto n = r.get<std::uint32_t>(), classes = r.get<std::uint32_t>(),
              bins = r.get<std::uint32_t>();
   const std::uint64_t expected =
@@ -210,12 +210,12 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
     loaded.remark = path + ": is cut off before its first block";
     return 0;
   }
-  Reader header(text);
+  hyselam::BinaryReader header(text);
   header.skip(8);
   const auto version = header.get<std::uint32_t>(), belongs_to = header.get<std::uint32_t>();
   if (text.compare(0, 8, kMagic) != 0)
     throw InputError(path, "byte 0", "is no journal of a corpus");
-  if (header.get<std::uint32_t>() != checksum(text, 0, kHeader - 4))
+  if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeader - 4))
     throw InputError(path, "header", "is damaged (wrong checksum)");
   if (version != kVersion)
     throw InputError(path, "version", "is " + std::to_string(version) + ", but only 1 is known");
@@ -235,11 +235,11 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
       cutOff();
       break;
     }
-    Reader r(text);
+    hyselam::BinaryReader r(text);
     r.skip(at + 4);
     const auto bytes = r.get<std::uint32_t>(), first = r.get<std::uint32_t>();
     if (text.compare(at, 4, kBlock) != 0 ||
-        r.get<std::uint32_t>() != checksum(text, at, at + kBlockHeader - 4))
+        r.get<std::uint32_t>() != hyselam::checksumOf(text, at, at + kBlockHeader - 4))
       throw InputError(path, place, "is damaged (wrong checksum)");
     const std::size_t begin = at + kBlockHeader;
     if (text.size() - begin < bytes) {
@@ -247,9 +247,9 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
       break;
     }
     if (bytes < 16) throw InputError(path, place, "has a wrong length");
-    Reader tail(text);
+    hyselam::BinaryReader tail(text);
     tail.skip(begin + bytes - 4);
-    if (tail.get<std::uint32_t>() != checksum(text, begin, begin + bytes - 4))
+    if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, begin, begin + bytes - 4))
       throw InputError(path, place, "is damaged (wrong checksum)");
     if (first != loaded.corpus.observations.size())
       throw InputError(path, place, "does not follow what is before it");

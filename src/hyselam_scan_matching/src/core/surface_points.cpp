@@ -1,4 +1,4 @@
-#include "hyselam_scan_matching/surface.hpp"
+#include "hyselam_scan_matching/surface_points.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,23 +45,22 @@ void setNormal(const SurfacePoints& all, std::size_t first, std::size_t last, do
 
 }  // namespace
 
-void SurfaceParams::describe(hyselam::ParameterVisitor& visit) {
+void SurfacePointParams::describe(hyselam::ParameterVisitor& visit) {
   visit("max_range", max_range, Range::above(0.0), "m", "farther returns are left out");
-  visit("spacing", spacing, Range::atLeast(0.0), "m",
-        "points nearer to the last one kept are left out");
-  visit("normal_reach", normal_reach, Range::above(0.0), "m",
-        "radius of the neighbourhood to which a line is fitted for the normal");
-  visit("normal_reach_per_m", normal_reach_per_m, Range::atLeast(0.0), "m/m",
-        "the same per metre of range, where beams lie apart");
-  visit("normal_bend", normal_bend, Range::above(0.0), "",
-        "largest deviation of neighbours from the line, as a part of its length");
+  visit("min_spacing", min_spacing, Range::atLeast(0.0), "m", "closer points are left out");
+  visit("normal_radius", normal_radius, Range::above(0.0), "m",
+        "radius of the neighborhood to which a line is fitted for the normal");
+  visit("normal_radius_per_meter", normal_radius_per_meter, Range::atLeast(0.0), "m/m",
+        "the same per meter of range, where beams are farther apart");
+  visit("max_normal_deviation", max_normal_deviation, Range::above(0.0), "",
+        "largest deviation of neighbors from the line, as a part of its length");
 }
 
-void SurfaceParams::validate() const {
+void SurfacePointParams::validate() const {
   hyselam::checkParameters(*this);
 }
 
-SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfaceParams& params) {
+SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfacePointParams& params) {
   SurfacePoints all;
   std::vector<double> reach;
   all.reserve(scan.ranges.size());
@@ -73,7 +72,7 @@ SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfaceParams&
     const hyselam::Point2 p =
         scan.laser_in_base * hyselam::Point2{r * std::cos(bearing), r * std::sin(bearing)};
     all.push_back({p.x, p.y, 0.0, 0.0});
-    reach.push_back(std::max(params.normal_reach, params.normal_reach_per_m * r));
+    reach.push_back(std::max(params.normal_radius, params.normal_radius_per_meter * r));
   }
   SurfacePoints kept;
   kept.reserve(all.size());
@@ -82,12 +81,13 @@ SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfaceParams&
       return std::hypot(all[i].x - all[j].x, all[i].y - all[j].y) <= reach[i];
     };
     SurfacePoint p = all[i];
-    if (!kept.empty() && std::hypot(p.x - kept.back().x, p.y - kept.back().y) < params.spacing)
+    if (!kept.empty() && std::hypot(p.x - kept.back().x, p.y - kept.back().y) < params.min_spacing)
       continue;
     std::size_t first = i, last = i;
     while (first > 0 && near(first - 1)) --first;
     while (last + 1 < all.size() && near(last + 1)) ++last;
-    setNormal(all, first, last, params.normal_bend, scan.laser_in_base.x, scan.laser_in_base.y, &p);
+    setNormal(all, first, last, params.max_normal_deviation, scan.laser_in_base.x,
+              scan.laser_in_base.y, &p);
     kept.push_back(p);
   }
   return kept;

@@ -1,4 +1,4 @@
-#include "hyselam_scan_matching/refine.hpp"
+#include "hyselam_scan_matching/icp.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -31,7 +31,7 @@ Equations equations(const SurfacePoints& scan, const SurfaceMap& map, const Pose
                          c * p.nx - s * p.ny, s * p.nx + c * p.ny};
     const SurfacePoint* m = map.nearest(q, radius);
     if (m == nullptr) continue;
-    // The line's normal, by both sides' opinion; none: no line, the points themselves.
+    // The mean of both normals; without any, the point is left out.
     double nx = m->nx + q.nx, ny = m->ny + q.ny;
     const double length = std::hypot(nx, ny);
     if (!(length > 0.0)) continue;
@@ -53,50 +53,51 @@ Equations equations(const SurfacePoints& scan, const SurfaceMap& map, const Pose
 
 }  // namespace
 
-void RefineParams::describe(hyselam::ParameterVisitor& visit) {
+void IcpParams::describe(hyselam::ParameterVisitor& visit) {
   visit("max_iterations", max_iterations, Range::atLeast(1), "", "iterations at most");
-  visit("first_radius", first_radius, Range::above(0.0), "m",
-        "largest distance between paired points in the first iteration");
-  visit("last_radius", last_radius, Range::above(0.0), "m", "and in the last iterations");
+  visit("initial_distance", initial_distance, Range::above(0.0), "m",
+        "maximum distance of corresponding points in the first iteration");
+  visit("final_distance", final_distance, Range::above(0.0), "m", "and in the last iterations");
   visit("sigma", sigma, Range::above(0.0), "m", "standard deviation of points from surfaces");
-  visit("settled", settled, Range::above(0.0), "m and rad", "a smaller step ends the iteration");
+  visit("convergence_threshold", convergence_threshold, Range::above(0.0), "m and rad",
+        "a smaller step ends the iteration");
 }
 
-void RefineParams::validate() const {
+void IcpParams::validate() const {
   hyselam::checkParameters(*this);
-  if (!(first_radius >= last_radius)) {
-    throw ParameterError("first_radius", first_radius, "at least last_radius");
+  if (!(initial_distance >= final_distance)) {
+    throw ParameterError("initial_distance", initial_distance, "at least final_distance");
   }
 }
 
-Refined refine(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& guess,
-               const Eigen::Matrix3d& guess_information, const RefineParams& params) {
-  Refined result;
+IcpResult alignIcp(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& guess,
+                   const Eigen::Matrix3d& guess_information, const IcpParams& params) {
+  IcpResult result;
   result.pose = guess;
   if (scan.empty() || map.empty()) return result;
-  double radius = params.first_radius;
+  double radius = params.initial_distance;
   for (; result.iterations < params.max_iterations; ++result.iterations) {
     Equations e = equations(scan, map, result.pose, radius, params.sigma);
     const Pose2 off = between(guess, result.pose);
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    turn.topLeftCorner<2, 2>() << std::cos(off.theta), -std::sin(off.theta), std::sin(off.theta),
-        std::cos(off.theta);
-    e.h += turn.transpose() * guess_information * turn;
-    e.g += turn.transpose() * guess_information * Eigen::Vector3d(off.x, off.y, off.theta);
-    // A trace of damping keeps the pose where nothing tells it.
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    rotation.topLeftCorner<2, 2>() << std::cos(off.theta), -std::sin(off.theta),
+        std::sin(off.theta), std::cos(off.theta);
+    e.h += rotation.transpose() * guess_information * rotation;
+    e.g += rotation.transpose() * guess_information * Eigen::Vector3d(off.x, off.y, off.theta);
+    // A little damping keeps the pose in directions that no surface determines.
     e.h.diagonal().array() += 1e-3;
     const Eigen::Vector3d step = e.h.ldlt().solve(-e.g);
     if (!step.allFinite()) break;
     result.pose = result.pose * Pose2{step[0], step[1], step[2]};
-    const bool last = radius <= params.last_radius;
-    if (last && step.cwiseAbs().maxCoeff() < params.settled) {
+    const bool last = radius <= params.final_distance;
+    if (last && step.cwiseAbs().maxCoeff() < params.convergence_threshold) {
       result.converged = true;
       ++result.iterations;
       break;
     }
-    radius = std::max(params.last_radius, radius * 0.7);
+    radius = std::max(params.final_distance, radius * 0.7);
   }
-  const Equations end = equations(scan, map, result.pose, params.last_radius, params.sigma);
+  const Equations end = equations(scan, map, result.pose, params.final_distance, params.sigma);
   result.information = end.h;
   result.matched = static_cast<double>(end.pairs) / static_cast<double>(scan.size());
   result.rms = end.pairs > 0 ? std::sqrt(end.squares / end.pairs) : 0.0;

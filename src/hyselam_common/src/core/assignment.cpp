@@ -1,15 +1,15 @@
-#include "assignment_bound.hpp"
+#include "hyselam_common/assignment.hpp"
 
 #include <algorithm>
 
-namespace hyselam_topo::merging {
+namespace hyselam {
 
-void AssignmentBound::reset(int rows, int columns) {
+void Assignment::reset(int rows, int columns) {
   columns_ = columns;
   const auto r = static_cast<std::size_t>(rows);
   const auto c = static_cast<std::size_t>(columns);
-  cost_.assign(r * c, kNever);
-  without_.assign(r, kNever);
+  cost_.assign(r * c, kNotAllowed);
+  without_.assign(r, kNotAllowed);
   u_.assign(r, 0.0);
   v_.assign(c, 0.0);
   row_of_.assign(c, -1);
@@ -19,8 +19,9 @@ void AssignmentBound::reset(int rows, int columns) {
   price_.resize(c);
 }
 
-// Loops without branches: they are most of the work.
-void AssignmentBound::start(int row) {
+/// Distances of all columns from the row that is added. Without branches, as the loops below: they
+/// take most of the time.
+void Assignment::setDistances(int row) {
   const double* costs = cost_.data() + index(row, 0);
   const auto columns = static_cast<std::size_t>(columns_);
   for (std::size_t c = 0; c < columns; ++c) {
@@ -30,19 +31,20 @@ void AssignmentBound::start(int row) {
   }
 }
 
-void AssignmentBound::goOn(int from, double so_far) {
+/// Shortens distances by paths through another row, which is this far from the new one.
+void Assignment::relaxDistances(int from, double distance) {
   const double* costs = cost_.data() + index(from, 0);
   const double u = u_[static_cast<std::size_t>(from)];
   const auto columns = static_cast<std::size_t>(columns_);
   for (std::size_t c = 0; c < columns; ++c) {
-    const double d = so_far + costs[c] - u - price_[c];
+    const double d = distance + costs[c] - u - price_[c];
     const bool nearer = d < distance_[c];
     distance_[c] = nearer ? d : distance_[c];
     before_[c] = nearer ? from : before_[c];
   }
 }
 
-int AssignmentBound::nearestColumn() const {
+int Assignment::nearestColumn() const {
   const auto columns = static_cast<std::size_t>(columns_);
   const double* d = distance_.data();
   double a = std::numeric_limits<double>::infinity(), b = a;
@@ -57,25 +59,26 @@ int AssignmentBound::nearestColumn() const {
   return static_cast<int>(std::find(d, d + columns, least) - d);
 }
 
-double AssignmentBound::addRow(int row) {
+double Assignment::addRow(int row) {
   // Shortest path from the new row to a free column, or to a row that goes without.
-  double best = std::numeric_limits<double>::infinity();  // of the ends that are known
+  double best = std::numeric_limits<double>::infinity();  // of the known ends of paths
   int best_row = -1;                                      // goes without
   int last = -1;                                          // free column
   int from = row;
-  double so_far = 0.0;
-  done_.clear();
+  double distance = 0.0;
+  final_.clear();
   while (true) {
     const auto f = static_cast<std::size_t>(from);
-    const double alone = so_far + without_[f] - u_[f];
+    const double alone = distance + without_[f] - u_[f];
     if (alone < best) {
       best = alone;
       best_row = from;
     }
-    if (from == row)
-      start(row);
-    else
-      goOn(from, so_far);
+    if (from == row) {
+      setDistances(row);
+    } else {
+      relaxDistances(from, distance);
+    }
     const int next = nearestColumn();
     if (next < 0) break;
     const auto k = static_cast<std::size_t>(next);
@@ -87,21 +90,21 @@ double AssignmentBound::addRow(int row) {
       last = next;
       break;
     }
-    // Its distance is final: no other path leads to it.
-    done_.push_back({k, nearest});
+    // Its distance is final: no other path is shorter.
+    final_.push_back({k, nearest});
     distance_[k] = std::numeric_limits<double>::infinity();
     price_[k] = -std::numeric_limits<double>::infinity();
-    so_far = nearest;
+    distance = nearest;
     from = row_of_[k];
   }
   // New dual values.
   u_[static_cast<std::size_t>(row)] += best;
-  for (const Done& column : done_) {
+  for (const FinalColumn& column : final_) {
     const double slack = best - column.distance;
     u_[static_cast<std::size_t>(row_of_[column.number])] += slack;
     v_[column.number] -= slack;
   }
-  // Turn the path around.
+  // Augment along the path.
   int column = last;
   if (best_row >= 0) {
     column = column_of_[static_cast<std::size_t>(best_row)];
@@ -119,4 +122,4 @@ double AssignmentBound::addRow(int row) {
   return best;
 }
 
-}  // namespace hyselam_topo::merging
+}  // namespace hyselam

@@ -9,7 +9,7 @@
 namespace hyselam_scan_matching {
 
 /// A point of a wall; (nx, ny) is its unit normal on the side it was seen from, or (0, 0) where
-/// neighbours do not tell it (an edge, a single return).
+/// neighbors do not determine it (an edge, a single return).
 struct SurfacePoint {
   double x = 0.0, y = 0.0;  ///< [m]
   double nx = 0.0, ny = 0.0;
@@ -18,13 +18,14 @@ struct SurfacePoint {
 };
 using SurfacePoints = std::vector<SurfacePoint>;
 
-struct SurfaceParams {
-  double max_range = 30.0;     ///< farther returns are left out [m], > 0
-  double spacing = 0.05;       ///< points nearer to the last one kept are left out [m], >= 0
-  double normal_reach = 0.15;  ///< a normal is a line through the neighbours this near [m], > 0
-  double normal_reach_per_m = 0.03;  ///< or this part of the range, where beams lie apart, >= 0
-  /// Neighbours off the line by more than this part of its length: no normal, > 0.
-  double normal_bend = 0.3;
+struct SurfacePointParams {
+  double max_range = 30.0;      ///< farther returns are left out [m], > 0
+  double min_spacing = 0.05;    ///< closer points are left out [m], >= 0
+  double normal_radius = 0.15;  ///< neighborhood of the line fitted for a normal [m], > 0
+  /// The same per meter of range, where beams are farther apart; the larger one counts; >= 0.
+  double normal_radius_per_meter = 0.03;
+  /// Neighbors farther from the line than this part of its length: no normal; > 0.
+  double max_normal_deviation = 0.3;
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
@@ -32,7 +33,7 @@ struct SurfaceParams {
 };
 
 /// The returns of a scan in the base frame, in the order of beams.
-SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfaceParams& params = {});
+SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfacePointParams& params = {});
 
 /// The points seen from another frame.
 SurfacePoints transformed(const hyselam::Pose2& pose, const SurfacePoints& points);
