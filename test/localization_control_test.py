@@ -389,7 +389,7 @@ class LocalizationControlTest(unittest.TestCase):
         self.assert_not_loaded("model", "lidar", "'lidar'", "fsd, beam, cosine, likelihood, hybrid")
 
     def test_parameters_that_contradict_each_other(self):
-        self.assert_not_loaded("candidate_particles", 10, ">= tracking_particles")
+        self.assert_not_loaded("hypothesis_particles", 10, ">= tracking_particles")
 
     def test_frame_that_is_empty(self):
         self.assert_not_loaded("odom_frame_id", "", "name of a frame")

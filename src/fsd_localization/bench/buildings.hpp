@@ -17,8 +17,9 @@ inline hyselam::OccupancyGrid building(int side, std::uint64_t seed) {
   g.resolution = 0.1;
   hyselam::OccupancyGrid map(g, hyselam::OccupancyGrid::kFree);
   const auto fill = [&map](int x0, int y0, int x1, int y1, std::int8_t v) {
-    for (int y = std::max(0, y0); y < std::min(map.geometry.height, y1); ++y)
+    for (int y = std::max(0, y0); y < std::min(map.geometry.height, y1); ++y) {
       for (int x = std::max(0, x0); x < std::min(map.geometry.width, x1); ++x) map.at({x, y}) = v;
+    }
   };
   constexpr std::int8_t kWall = hyselam::OccupancyGrid::kOccupied,
                         kOpen = hyselam::OccupancyGrid::kFree;
@@ -38,8 +39,9 @@ inline hyselam::OccupancyGrid building(int side, std::uint64_t seed) {
       x += w;
     }
     y += depth + 2 + 30;
-    for (int x = 60; x < side; x += 300 + upTo(100))
+    for (int x = 60; x < side; x += 300 + upTo(100)) {
       fill(x, y - depth - 32, x + 25, y - 30, kOpen);  // links
+    }
   }
   fill(0, 0, side, 2, kWall);
   fill(0, side - 2, side, side, kWall);

@@ -23,7 +23,7 @@ constexpr std::size_t kParticles = 40000;
 const std::vector<std::pair<hyselam::LaserScan, Pose2>>& drive() {
   static const auto scans = [] {
     const auto map = bench::building(400, 3);
-    const RayCaster rays(map);
+    const GridRayCaster rays(map);
     std::vector<std::pair<hyselam::LaserScan, Pose2>> out;
     for (int i = 0; i < 100; ++i) {
       const Pose2 pose{3.0 + 0.1 * i, 1.5, 0.3 * std::sin(0.1 * i)};
@@ -31,9 +31,10 @@ const std::vector<std::pair<hyselam::LaserScan, Pose2>>& drive() {
       s.angle_min = -hyselam::kPi / 2;
       s.angle_increment = hyselam::kPi / 180;
       s.range_max = 30.0;
-      for (int b = 0; b < 181; ++b)
+      for (int b = 0; b < 181; ++b) {
         s.ranges.push_back(static_cast<float>(
             rays.range(pose.x, pose.y, pose.theta + s.angle_min + b * s.angle_increment, 30.0)));
+      }
       out.push_back({s, pose});
     }
     return out;
@@ -51,10 +52,11 @@ void OneObservation_Transcription(benchmark::State& state) {
   for (auto _ : state) {
     const auto& [scan, pose] = drive()[i++ % drive().size()];
     transcription::himm(grid, scan, pose.theta, 0.1, 90.0, 9.0, 1.0);
-    for (std::size_t k = 0; k < cells.state.size(); ++k)
+    for (std::size_t k = 0; k < cells.state.size(); ++k) {
       cells.state[k] = grid.occ[k] < 3    ? transcription::Cells::kFree
                        : grid.occ[k] > 12 ? transcription::Cells::kOccupied
                                           : transcription::Cells::kUnknown;
+    }
     benchmark::DoNotOptimize(transcription::freeSpaceDensity(cells, 90, 90, kernel));
   }
 }
@@ -63,7 +65,7 @@ BENCHMARK(OneObservation_Transcription)->Unit(benchmark::kMicrosecond);
 void OneObservation(benchmark::State& state) {
   LocalMap map;
   const FreeSpaceDensity density(Kernel(KernelProfile::kUniform, 40));
-  FreeSpace space;
+  FreeSpaceGrid space;
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& [scan, pose] = drive()[i++ % drive().size()];
@@ -93,8 +95,9 @@ void DensityOfACell_Transcription(benchmark::State& state) {
   const Kernel kernel(KernelProfile::kInverted, static_cast<int>(state.range(0)));
   transcription::Cells cells;
   cells.width = cells.height = 500;
-  for (std::int8_t v : map.cells)
+  for (std::int8_t v : map.cells) {
     cells.state.push_back(v == 0 ? transcription::Cells::kFree : transcription::Cells::kOccupied);
+  }
   std::mt19937_64 rng(1);
   for (auto _ : state) {
     int x = 0, y = 0;
@@ -107,7 +110,7 @@ void DensityOfACell_Transcription(benchmark::State& state) {
 BENCHMARK(DensityOfACell_Transcription)->Arg(15)->Arg(30)->Arg(50)->Unit(benchmark::kNanosecond);
 
 void DensityOfACell(benchmark::State& state) {
-  const FreeSpace space = freeSpaceOf(bench::building(500, 7));
+  const FreeSpaceGrid space = freeSpaceOf(bench::building(500, 7));
   const FreeSpaceDensity density(
       Kernel(KernelProfile::kInverted, static_cast<int>(state.range(0))));
   int i = 0;
@@ -165,7 +168,7 @@ void weigh(benchmark::State& state, std::size_t n, MakeModel make, const char* b
 }
 void WeighBeam19(benchmark::State& s) {
   weigh(
-      s, kParticles, [] { return BeamModel(std::make_shared<const RayCaster>(bigMap())); },
+      s, kParticles, [] { return BeamModel(std::make_shared<const GridRayCaster>(bigMap())); },
       nullptr);
 }
 void WeighLikelihood60(benchmark::State& s) {
@@ -174,11 +177,11 @@ void WeighLikelihood60(benchmark::State& s) {
 }
 void WeighFsd3(benchmark::State& s) {
   weigh(
-      s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighBeam19");
+      s, kParticles, [] { return FsdObservationModel(bigFields()); }, "baseline=WeighBeam19");
 }
 void WeighFsd3AgainstLikelihood(benchmark::State& s) {
   weigh(
-      s, kParticles, [] { return FsdModel(bigFields()); }, "baseline=WeighLikelihood60");
+      s, kParticles, [] { return FsdObservationModel(bigFields()); }, "baseline=WeighLikelihood60");
 }
 BENCHMARK(WeighBeam19)->Unit(benchmark::kMillisecond);
 BENCHMARK(WeighLikelihood60)->Unit(benchmark::kMillisecond);
@@ -190,14 +193,14 @@ template <typename Model>
 void iterate(benchmark::State& state, const Model& model, const char* baseline) {
   FilterParams p;
   p.max_particles = kParticles;
-  p.resample_below = 1.0;
+  p.resample_threshold = 1.0;
   ParticleFilter filter(bigFields(), p, 3);
   const Observation look = aLook();
   int i = 0;
   for (auto _ : state) {
     if (++i % 5 == 0) {  // before it concentrates
       state.PauseTiming();
-      filter.spread();
+      filter.spreadOverMap();
       state.ResumeTiming();
     }
     benchmark::DoNotOptimize(filter.step({0.1, 0.0, 0.02}, model, look));
@@ -209,7 +212,7 @@ void IterationLikelihood60(benchmark::State& s) {
   iterate(s, likelihood60(), nullptr);
 }
 void IterationFsd3(benchmark::State& s) {
-  iterate(s, FsdModel(bigFields()), "baseline=IterationLikelihood60");
+  iterate(s, FsdObservationModel(bigFields()), "baseline=IterationLikelihood60");
 }
 BENCHMARK(IterationLikelihood60)->Unit(benchmark::kMillisecond);
 BENCHMARK(IterationFsd3)->Unit(benchmark::kMillisecond);

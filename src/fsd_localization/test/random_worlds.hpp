@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "fsd_localization/bit_plane.hpp"
+#include "fsd_localization/density/bit_plane.hpp"
 #include "hyselam_common/laser_scan.hpp"
 #include "transcription/free_space.hpp"
 
@@ -24,29 +24,33 @@ inline transcription::Cells rooms(std::mt19937_64& rng, int width, int height) {
   for (int i = 0; i < walls; ++i) {
     const bool across = upTo(2) == 0;
     const int at = upTo(across ? height : width), gap = upTo(across ? width : height);
-    for (int k = 0; k < (across ? width : height); ++k)
-      if (std::abs(k - gap) > 4)
+    for (int k = 0; k < (across ? width : height); ++k) {
+      if (std::abs(k - gap) > 4) {
         across ? put(k, at, transcription::Cells::kOccupied)
                : put(at, k, transcription::Cells::kOccupied);
+      }
+    }
   }
   const int clutter = upTo(width * height / 40 + 1);
   for (int i = 0; i < clutter; ++i) put(upTo(width), upTo(height), transcription::Cells::kOccupied);
   const int patches = upTo(4);
   for (int i = 0; i < patches; ++i) {
     const int x0 = upTo(width), y0 = upTo(height), w = 1 + upTo(12), h = 1 + upTo(12);
-    for (int y = y0; y < y0 + h; ++y)
+    for (int y = y0; y < y0 + h; ++y) {
       for (int x = x0; x < x0 + w; ++x) put(x, y, transcription::Cells::kUnknown);
+    }
   }
   return m;
 }
 
-inline fsd_localization::FreeSpace toFreeSpace(const transcription::Cells& m) {
-  fsd_localization::FreeSpace s(m.width, m.height);
-  for (int y = 0; y < m.height; ++y)
+inline fsd_localization::FreeSpaceGrid toFreeSpace(const transcription::Cells& m) {
+  fsd_localization::FreeSpaceGrid s(m.width, m.height);
+  for (int y = 0; y < m.height; ++y) {
     for (int x = 0; x < m.width; ++x) {
       s.free.set(x, y, m.at(x, y) == transcription::Cells::kFree);
       s.unknown.set(x, y, m.at(x, y) == transcription::Cells::kUnknown);
     }
+  }
   return s;
 }
 
@@ -64,12 +68,13 @@ inline hyselam::LaserScan scan(std::mt19937_64& rng, int beams, double field_of_
     if (unit(rng) < 0.1) r = reach * 1.3 * unit(rng);
     double value = std::max(0.0, r + 0.02 * (unit(rng) - 0.5));
     const double kind = unit(rng);
-    if (kind < 0.02)
+    if (kind < 0.02) {
       value = std::numeric_limits<double>::quiet_NaN();
-    else if (kind < 0.04)
+    } else if (kind < 0.04) {
       value = std::numeric_limits<double>::infinity();
-    else if (kind < 0.05)
+    } else if (kind < 0.05) {
       value = 0.01;
+    }
     s.ranges.push_back(static_cast<float>(value));
   }
   return s;

@@ -17,11 +17,13 @@ hyselam::OccupancyGrid gridOf(const transcription::Cells& cells) {
   g.width = cells.width;
   g.height = cells.height;
   hyselam::OccupancyGrid map(g);
-  for (int y = 0; y < g.height; ++y)
-    for (int x = 0; x < g.width; ++x)
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
       map.at({x, y}) = cells.at(x, y) == transcription::Cells::kOccupied ? 100
                        : cells.at(x, y) == transcription::Cells::kFree   ? 0
                                                                          : -1;
+    }
+  }
   return map;
 }
 
@@ -49,8 +51,9 @@ hyselam::OccupancyGrid room() {
   g.height = 80;
   hyselam::OccupancyGrid map(g, 0);
   const auto wall = [&map](int x0, int y0, int x1, int y1) {
-    for (int y = y0; y < y1; ++y)
+    for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) map.at({x, y}) = 100;
+    }
   };
   wall(0, 0, 120, 3);
   wall(0, 77, 120, 80);
@@ -61,15 +64,16 @@ hyselam::OccupancyGrid room() {
   return map;
 }
 
-hyselam::LaserScan look(const RayCaster& rays, const Pose2& at, double stamp) {
+hyselam::LaserScan look(const GridRayCaster& rays, const Pose2& at, double stamp) {
   hyselam::LaserScan s;
   s.stamp = stamp;
   s.angle_min = -hyselam::kPi / 2;
   s.angle_increment = hyselam::kPi / 180;
   s.range_max = 30.0;
-  for (int b = 0; b < 181; ++b)
+  for (int b = 0; b < 181; ++b) {
     s.ranges.push_back(static_cast<float>(
         rays.range(at.x, at.y, at.theta + s.angle_min + b * s.angle_increment, 30.0)));
+  }
   return s;
 }
 
@@ -81,7 +85,7 @@ TEST(Oracle, rangesEqualPlainStepsFromCellToCell) {
   int hits = 0;
   for (int world = 0; world < 500; ++world) {
     const auto map = gridOf(random_worlds::rooms(rng, 60, 50));
-    const RayCaster rays(map);
+    const GridRayCaster rays(map);
     for (int i = 0; i < 20; ++i) {
       const double x = 6.0 * unit(rng), y = 5.0 * unit(rng), a = 6.28 * unit(rng);
       const double plain = plainRange(map, x, y, a, 8.0);
@@ -108,7 +112,7 @@ TEST(Resampling, copiesEachParticleByItsShare) {
   }
 }
 
-TEST(Resampling, keepsEverybodyWhenNothingIsKnown) {
+TEST(Resampling, keepsAllParticlesWhenNoWeightIsLeft) {
   Particles in, out;
   in.resize(5);
   for (std::size_t i = 0; i < 5; ++i) in.set(i, {static_cast<double>(i), 0, 0}, 0.0F);
@@ -132,7 +136,7 @@ TEST(Noise, isStandardNormal) {
   EXPECT_NEAR(cross / (2.0 * kDraws), 0.0, 0.007);
 }
 
-TEST(Motion, spreadsAsItsParametersSay) {
+TEST(Motion, hasTheVarianceOfItsParameters) {
   Particles p;
   p.resize(40000);
   for (std::size_t i = 0; i < p.size(); ++i) p.set(i, {5.0, 5.0, 1.0}, 1.0F);
@@ -151,20 +155,21 @@ TEST(Motion, spreadsAsItsParametersSay) {
 }
 
 /// A density or direction `off` beyond what fits.
-double agreement(double off, double tolerance, const FsdModelParams& p) {
-  if (p.profile == FsdModelParams::Profile::kStep) return off > tolerance ? p.penalty : 1.0;
+double agreement(double off, double tolerance, const FsdObservationModelParams& p) {
+  if (p.profile == FsdObservationModelParams::Profile::kStep)
+    return off > tolerance ? p.penalty : 1.0;
   const double stddev = tolerance / 2.0;
   return p.penalty + (1.0 - p.penalty) * std::exp(-off * off / (2.0 * stddev * stddev));
 }
 
-class FsdModelProfile : public testing::TestWithParam<FsdModelParams::Profile> {};
+class FsdModelProfile : public testing::TestWithParam<FsdObservationModelParams::Profile> {};
 
 TEST_P(FsdModelProfile, weighsAsEquations34To36) {
   const auto map = std::make_shared<const FsdMap>(room(), FsdMapParams{});
-  FsdModelParams params;
-  params.undefined = FsdModelParams::Undefined::kNeutral;
+  FsdObservationModelParams params;
+  params.undefined = FsdObservationModelParams::Undefined::kNeutral;
   params.profile = GetParam();
-  const FsdModel model(map, params);
+  const FsdObservationModel model(map, params);
   Observation o;
   o.fsd.readings.resize(3);
   const double densities[] = {0.7, 0.5, 0.3};
@@ -200,12 +205,12 @@ TEST_P(FsdModelProfile, weighsAsEquations34To36) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Both, FsdModelProfile,
-                         testing::Values(FsdModelParams::Profile::kStep,
-                                         FsdModelParams::Profile::kGaussian));
+                         testing::Values(FsdObservationModelParams::Profile::kStep,
+                                         FsdObservationModelParams::Profile::kGaussian));
 
-TEST(Localizer, findsItselfAndDoesSoAgain) {
+TEST(Localizer, localizesGloballyAndReproducibly) {
   const auto map = room();
-  const RayCaster rays(map);
+  const GridRayCaster rays(map);
   const auto drive = [&](std::uint64_t seed) {
     LocalizerParams params;
     params.filter.max_particles = 10000;
@@ -235,9 +240,9 @@ TEST(Localizer, findsItselfAndDoesSoAgain) {
   EXPECT_EQ(first.theta, again.theta);
 }
 
-TEST(Localizer, noticesThatItWasCarriedOffThoughItOnlyTurns) {
+TEST(Localizer, detectsKidnappingWhileTurningInPlace) {
   const auto map = room();
-  const RayCaster rays(map);
+  const GridRayCaster rays(map);
   Localizer localizer(map, LocalizerParams{});
   localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
   double stamp = 0.0, heading = 0.0;
@@ -259,15 +264,16 @@ TEST(Localizer, noticesThatItWasCarriedOffThoughItOnlyTurns) {
   EXPECT_TRUE(lost) << "not within two turns";
 }
 
-TEST(ParticleFilter, weightsStayInRangeWithoutResampling) {
+TEST(ParticleFilter, weightsStayFiniteWithoutResampling) {
   /// Prefers particles on the left a little, and calls everything far more or less likely than 1.
   class Extreme final : public ObservationModel {
    public:
     explicit Extreme(double scale) : scale_(scale) {}
     const char* name() const override { return "extreme"; }
     std::optional<double> weigh(const Observation&, Particles& p) const override {
-      for (std::size_t i = 0; i < p.size(); ++i)
+      for (std::size_t i = 0; i < p.size(); ++i) {
         p.weight[i] = static_cast<float>(p.weight[i] * scale_ * (p.x[i] < 6.0F ? 1.0 : 0.9));
+      }
       return 1.0;
     }
 
@@ -277,7 +283,7 @@ TEST(ParticleFilter, weightsStayInRangeWithoutResampling) {
   const auto map = std::make_shared<const FsdMap>(room(), FsdMapParams{});
   FilterParams params;
   params.max_particles = 1000;
-  params.resample_below = 0.01;
+  params.resample_threshold = 0.01;
   params.motion.alpha1 = params.motion.alpha2 = params.motion.alpha3 = params.motion.alpha4 = 0.0;
   for (const double scale : {1e-25, 1e25}) {
     ParticleFilter filter(map, params, 1);
@@ -291,9 +297,9 @@ TEST(ParticleFilter, weightsStayInRangeWithoutResampling) {
   }
 }
 
-TEST(Localizer, refusesBadScansAndStaysAsItWas) {
+TEST(Localizer, refusesBadScansAndKeepsItsState) {
   const auto map = room();
-  const RayCaster rays(map);
+  const GridRayCaster rays(map);
   LocalizerParams params;
   params.filter.max_particles = 1000;
   Localizer localizer(map, params);
@@ -334,18 +340,18 @@ TEST(Parameters, outOfRangeAreNamed) {
     }
   };
   named([](auto& p) { p.update_min_d = -1; }, "update_min_d");
-  named([](auto& p) { p.converged_share = 0; }, "converged_share");
+  named([](auto& p) { p.converged_cluster_weight = 0; }, "converged_cluster_weight");
   named([](auto& p) { p.filter.min_particles = 0; }, "min_particles");
   named([](auto& p) { p.filter.kld_error = 2; }, "kld_err");
   named([](auto& p) { p.filter.motion.alpha1 = std::nan(""); }, "odom_alpha1");
-  named([](auto& p) { p.map.kernels.clear(); }, "kernels");
+  named([](auto& p) { p.map.kernels.clear(); }, "bandwidths");
   named([](auto& p) { p.map.kernels[0].bandwidth = 20; }, "bandwidth");
   named([](auto& p) { p.local_map.resolution = 0; }, "resolution");
   named([](auto& p) { p.likelihood.sigma_hit = 0; }, "sigma_hit");
-  EXPECT_THROW(modelFromName("amcl"), hyselam::ParameterError);
+  EXPECT_THROW(observationModelKindFromString("amcl"), hyselam::ParameterError);
 }
 
-TEST(Localizer, tellsAtOnceWhichMapsItCannotUse) {
+TEST(Localizer, checksMapsBeforePreparation) {
   const LocalizerParams params;
   EXPECT_NO_THROW(Localizer::checkMap(room(), params));
   hyselam::OccupancyGrid shut(room().geometry, 100);
@@ -357,15 +363,15 @@ TEST(Localizer, tellsAtOnceWhichMapsItCannotUse) {
   EXPECT_THROW(Localizer(vast, params), hyselam::ParameterError);
 }
 
-TEST(LikelihoodField, farReturnsAreExplainedByNoTolerance) {
+TEST(LikelihoodField, farReturnsAreNeverInliers) {
   LikelihoodFieldParams params;
   params.sigma_hit = 0.03;
   const LikelihoodFieldModel model(room(), params);
   const Pose2 at{6.0, 4.0, 0.0};
-  hyselam::LaserScan scan = look(RayCaster(room()), at, 1.0);
-  EXPECT_GT(*model.explainedShare(scan, at, 0.3), 0.9);
+  hyselam::LaserScan scan = look(GridRayCaster(room()), at, 1.0);
+  EXPECT_GT(*model.inlierRatio(scan, at, 0.3), 0.9);
   for (float& range : scan.ranges) range *= 0.5F;  // into the open
-  EXPECT_LT(*model.explainedShare(scan, at, 0.3), 0.1);
+  EXPECT_LT(*model.inlierRatio(scan, at, 0.3), 0.1);
 }
 
 TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
@@ -390,7 +396,7 @@ TEST(FsdMap, cacheIsUsedOnlyWhenItFits) {
   EXPECT_FALSE(cached);
 }
 
-TEST(FsdMap, cacheThatCannotBeWrittenIsToldAndDoesNoHarm) {
+TEST(FsdMap, unwritableCacheIsReportedAndFieldsAreUsed) {
   const hyselam::testing::TemporaryDirectory folder;
   const std::string path = folder / "no/such/folder/room.fsd";
   bool cached = true;
@@ -406,7 +412,7 @@ TEST(FsdMap, cacheThatCannotBeWrittenIsToldAndDoesNoHarm) {
 }
 
 TEST(DensityField, doesNotDependOnTheNumberOfThreads) {
-  const FreeSpace space = freeSpaceOf(room());
+  const FreeSpaceGrid space = freeSpaceOf(room());
   const Kernel kernel(KernelProfile::kGaussian, 20);
   EXPECT_EQ(densityField(space, kernel, 1).values, densityField(space, kernel, 3).values);
 }

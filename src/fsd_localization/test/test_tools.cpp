@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fsd_localization/ray_caster.hpp"
+#include "fsd_localization/models/grid_ray_caster.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/testing/files.hpp"
@@ -27,17 +27,20 @@ hyselam::OccupancyGrid room() {
   g.height = 50;
   g.resolution = 0.1;
   hyselam::OccupancyGrid map(g, 0);
-  for (int y = 0; y < g.height; ++y)
-    for (int x = 0; x < g.width; ++x)
-      if (x < 2 || y < 2 || x >= g.width - 2 || y >= g.height - 2 || (x > 50 && x < 56 && y < 20))
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      if (x < 2 || y < 2 || x >= g.width - 2 || y >= g.height - 2 || (x > 50 && x < 56 && y < 20)) {
         map.at({x, y}) = 100;
+      }
+    }
+  }
   return map;
 }
 
 /// Three metres straight on, a scan each 10 cm.
 hyselam::RobotLog drive() {
   hyselam::RobotLog log;
-  const fsd_localization::RayCaster rays(room());
+  const fsd_localization::GridRayCaster rays(room());
   for (int i = 0; i < 30; ++i) {
     const Pose2 at{1.0 + 0.1 * i, 2.5, 0.0};
     hyselam::LaserScan s;
@@ -46,9 +49,10 @@ hyselam::RobotLog drive() {
     s.angle_increment = hyselam::kPi / 180;
     s.range_min = 0.05;
     s.range_max = 20.0;
-    for (int b = 0; b < 181; ++b)
+    for (int b = 0; b < 181; ++b) {
       s.ranges.push_back(static_cast<float>(
           rays.range(at.x, at.y, s.angle_min + b * s.angle_increment, s.range_max)));
+    }
     log.scans.push_back(s);
     log.odometry.push_back({s.stamp, {0.1 * i, 0.0, 0.0}});
     log.ground_truth.push_back({s.stamp, at});
@@ -104,7 +108,7 @@ TEST_F(Tools, EqualSeedsGiveEqualBytes) {
   EXPECT_FALSE(fileBytes(d / "a.tum") == fileBytes(d / "c.tum"));
 }
 
-TEST_F(Tools, CacheGivesTheSameAndIsToldWhenItCannotBeKept) {
+TEST_F(Tools, CacheGivesEqualPosesAndUnwritableCacheIsReported) {
   ASSERT_EQ(localize("--trajectory " + d / "a.tum"), 0) << errors;
   for (const char* round : {"written", "read"}) {
     ASSERT_EQ(localize("--cache --trajectory " + d / "b.tum"), 0) << round << errors;

@@ -25,9 +25,10 @@ constexpr int kLookAgain = 100;    // for an answer [ms]
 /// Calls the service; tells what went wrong.
 QString tell(ros::NodeHandle nh, hyselam_msgs::NamePlace call) {
   auto client = nh.serviceClient<hyselam_msgs::NamePlace>(kService);
-  if (!client.waitForExistence(ros::Duration(kPatience)) || !client.call(call))
+  if (!client.waitForExistence(ros::Duration(kPatience)) || !client.call(call)) {
     return QString("Nobody offers the service %1.")
         .arg(QString::fromStdString(nh.resolveName(kService)));
+  }
   return call.response.success ? QString() : QString::fromStdString(call.response.message);
 }
 
@@ -90,8 +91,9 @@ void NamePlaceTool::showAnswers() {
     answer = answers_.erase(answer);
   }
   if (answers_.empty()) timer_.stop();
-  for (const QString& problem : problems)
+  for (const QString& problem : problems) {
     if (!problem.isEmpty()) QMessageBox::warning(window(), "The place is not named", problem);
+  }
 }
 
 }  // namespace hyselam_rviz_plugins

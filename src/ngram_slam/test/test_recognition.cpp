@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "fsd_localization/ray_caster.hpp"
+#include "fsd_localization/models/grid_ray_caster.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
@@ -51,7 +51,7 @@ const hyselam::OccupancyGrid& building() {
 /// Round the block, `laps` times, in steps of 5 cm and with rounded corners.
 hyselam::RobotLog drive(int laps) {
   hyselam::RobotLog log;
-  const fsd_localization::RayCaster rays(building());
+  const fsd_localization::GridRayCaster rays(building());
   Pose2 at{7, 5, 0};
   const Pose2 start = at;
   hyselam::Rng rng(3);

@@ -10,21 +10,23 @@ namespace fsd_localization {
 
 using hyselam::ParameterError;
 using hyselam::Pose2;
+using hyselam::Range;
 
 namespace {
 
-constexpr std::pair<Model, const char*> kModelNames[] = {{Model::kFsd, "fsd"},
-                                                         {Model::kBeam, "beam"},
-                                                         {Model::kCosine, "cosine"},
-                                                         {Model::kLikelihood, "likelihood"},
-                                                         {Model::kHybrid, "hybrid"}};
-constexpr Pose2 kCandidateBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of the search
+constexpr Pose2 kHypothesisBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of a search
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
-constexpr double kFastMemory = 1.0;           // [m] of motion
-constexpr double kSlowMemory = 30.0;          // [m]
 constexpr double kTurnAsTravel = 0.5;         // [m/rad] a turn shows as much as so much travel
 constexpr double kFarthest = 1e6;             // [m] beyond it cell numbers would not fit an int
-constexpr double kGuessShare = 0.1;  // of the particles stays with the old belief when lost
+constexpr std::size_t kStayEvery = 10;  // each tenth particle stays at the old place when lost
+
+// Streams of random numbers that differ from each other: one per cause, and per millimetre
+// travelled.
+constexpr std::uint64_t kInitialPoseStream = 0x1217;
+constexpr std::uint64_t kSearchAgainStream = 0x5ea7c4;
+std::uint64_t millimeters(double travelled) {
+  return static_cast<std::uint64_t>(travelled * 1000);
+}
 
 FsdSensorParams sensorParams(const LocalizerParams& p) {
   FsdSensorParams s;
@@ -37,57 +39,73 @@ FsdSensorParams sensorParams(const LocalizerParams& p) {
 
 }  // namespace
 
-Model modelFromName(const std::string& name) {
-  for (const auto& [model, text] : kModelNames)
-    if (name == text) return model;
-  throw ParameterError("model", name, "one of fsd, beam, cosine, likelihood, hybrid");
-}
-
-const char* toString(Model model) {
-  for (const auto& [m, text] : kModelNames)
-    if (m == model) return text;
-  return "?";
-}
-
-const char* toString(Phase phase) {
-  switch (phase) {
-    case Phase::kGlobal:
-      return "global";
-    case Phase::kTracking:
-      return "tracking";
-    case Phase::kLost:
-      break;
+void LocalizerParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("model", model,
+        {{"fsd", ObservationModelKind::kFsd},
+         {"beam", ObservationModelKind::kBeam},
+         {"cosine", ObservationModelKind::kCosine},
+         {"likelihood", ObservationModelKind::kLikelihood},
+         {"hybrid", ObservationModelKind::kHybrid}},
+        "observation model");
+  visit("seed", seed, Range::atLeast(0), "", "equal seeds and input give equal results");
+  visit("update_min_d", update_min_d, Range::atLeast(0.0), "m", "travel between updates");
+  visit("update_min_a", update_min_a, Range::atLeast(0.0), "rad", "or turn");
+  visit.group("", filter);
+  visit.renamed("converged_share", "converged_cluster_weight");
+  visit("converged_cluster_weight", converged_cluster_weight, Range::aboveUpTo(0.0, 1.0), "",
+        "share of the weight in the heaviest cluster, for its pose to count as converged");
+  visit("converged_stddev", converged_stddev, Range::above(0.0), "m",
+        "and largest standard deviation of its position");
+  describeHybrid(visit);
+  visit.group("", map);
+  visit.group("fsd_", fsd);
+  visit.group("local_map_", local_map);
+  // amcl's laser_* belong to the model that weighs beams.
+  if (model == ObservationModelKind::kBeam) {
+    visit.group("laser_", beam);
+  } else if (model == ObservationModelKind::kCosine) {
+    visit.group("laser_", cosine, {{"exponent", "cosine_exponent"}});
+  } else if (model != ObservationModelKind::kFsd) {
+    visit.group("laser_", likelihood, {{"max_distance", "laser_likelihood_max_dist"}});
   }
-  return "lost";
+}
+
+void LocalizerParams::describeHybrid(hyselam::ParameterVisitor& visit) {
+  const Range count = Range::between(1, 1e7);
+  visit("tracking_particles", tracking_particles, count, "",
+        "hybrid: fewest particles while tracking");
+  visit.renamed("candidate_particles", "hypothesis_particles");
+  visit("hypothesis_particles", hypothesis_particles, count, "",
+        "hybrid: while the likelihood field chooses among places");
+  visit.renamed("candidate_beams", "hypothesis_beams");
+  visit("hypothesis_beams", hypothesis_beams, Range::aboveUpTo(0.0, 1e4), "",
+        "hybrid: what the beams of a scan count as meanwhile; few, so that it chooses slowly");
+  visit.renamed("max_candidate_bins", "max_hypothesis_bins");
+  visit("max_hypothesis_bins", max_hypothesis_bins, count, "",
+        "hybrid: it does when the particles fill no more bins of 0.5 m and 15 deg");
+  visit.renamed("explained_tolerance", "inlier_distance");
+  visit("inlier_distance", inlier_distance, Range::above(0.0), "m",
+        "hybrid: a return this near to a mapped obstacle is an inlier");
+  const Range ratio = Range::fromBelow(0.0, 1.0);
+  visit.renamed("found_above", "found_inlier_ratio");
+  visit("found_inlier_ratio", found_inlier_ratio, ratio, "",
+        "hybrid: a place is accepted only with this share of inliers, averaged over about 1 m");
+  visit.renamed("lost_below", "lost_inlier_ratio");
+  visit("lost_inlier_ratio", lost_inlier_ratio, ratio, "",
+        "hybrid: lost below this share of inliers, averaged over about 1 m");
+  visit.renamed("lost_ratio", "lost_relative_ratio");
+  visit("lost_relative_ratio", lost_relative_ratio, ratio, "",
+        "hybrid: or below this times the average over about 30 m");
 }
 
 void LocalizerParams::validate() const {
-  if (!(update_min_d >= 0.0)) throw ParameterError("update_min_d", update_min_d, ">= 0 m");
-  if (!(update_min_a >= 0.0)) throw ParameterError("update_min_a", update_min_a, ">= 0 rad");
-  if (!(converged_share > 0.0 && converged_share <= 1.0))
-    throw ParameterError("converged_share", converged_share, "in (0, 1]");
-  if (!(converged_stddev > 0.0))
-    throw ParameterError("converged_stddev", converged_stddev, "> 0 m");
-  if (tracking_particles < 1)
-    throw ParameterError("tracking_particles", tracking_particles, ">= 1");
-  if (candidate_particles < tracking_particles)
-    throw ParameterError("candidate_particles", candidate_particles, ">= tracking_particles");
-  if (!(candidate_beams > 0.0 && candidate_beams <= 1e4))
-    throw ParameterError("candidate_beams", candidate_beams, "in (0, 10000]");
-  if (max_candidate_bins < 1)
-    throw ParameterError("max_candidate_bins", max_candidate_bins, ">= 1");
-  if (!(explained_tolerance > 0.0))
-    throw ParameterError("explained_tolerance", explained_tolerance, "> 0 m");
-  if (!(found_above >= 0.0 && found_above < 1.0))
-    throw ParameterError("found_above", found_above, "in [0, 1)");
-  if (!(lost_below >= 0.0 && lost_below < 1.0))
-    throw ParameterError("lost_below", lost_below, "in [0, 1)");
-  if (!(lost_ratio >= 0.0 && lost_ratio < 1.0))
-    throw ParameterError("lost_ratio", lost_ratio, "in [0, 1)");
+  hyselam::checkParameters(*this);
+  if (hypothesis_particles < tracking_particles) {
+    throw ParameterError("hypothesis_particles", hypothesis_particles, ">= tracking_particles");
+  }
   map.validate();
   sensorParams(*this).validate();
-  fsd.validate();
-  beam.validate();
+  beam.validate();  // also those of models that are not in use
   cosine.validate();
   likelihood.validate();
   filter.validate();
@@ -95,20 +113,20 @@ void LocalizerParams::validate() const {
 
 namespace {
 
-/// Densities are compared like with like: fields on the local map's cells, if the map's are finer.
-/// It also closes the gaps in walls of finely drawn maps, through which free space would leak.
-hyselam::OccupancyGrid forDensities(const hyselam::OccupancyGrid& map,
-                                    const LocalizerParams& params) {
+/// Densities are compared on cells of equal size: those of the local map, if the map's are finer.
+/// This also closes the gaps in walls of finely drawn maps, through which free space would leak.
+hyselam::OccupancyGrid coarsenForDensities(const hyselam::OccupancyGrid& map,
+                                           const LocalizerParams& params) {
   return hyselam::coarsen(
       map, hyselam::coarseningFactor(map.geometry.resolution, params.local_map.resolution));
 }
 
-std::shared_ptr<const FsdMap> densities(const hyselam::OccupancyGrid& map,
-                                        const LocalizerParams& params,
-                                        const std::string& cache_path,
-                                        const std::function<void(double)>& progress, bool* cached,
-                                        std::string* problem) {
-  const hyselam::OccupancyGrid coarse = forDensities(map, params);
+std::shared_ptr<const FsdMap> densityMap(const hyselam::OccupancyGrid& map,
+                                         const LocalizerParams& params,
+                                         const std::string& cache_path,
+                                         const std::function<void(double)>& progress, bool* cached,
+                                         std::string* problem) {
+  const hyselam::OccupancyGrid coarse = coarsenForDensities(map, params);
   return std::make_shared<const FsdMap>(
       cache_path.empty()
           ? FsdMap(coarse, params.map, 0, progress)
@@ -118,72 +136,76 @@ std::shared_ptr<const FsdMap> densities(const hyselam::OccupancyGrid& map,
 }  // namespace
 
 void Localizer::checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params) {
-  const hyselam::OccupancyGrid coarse = forDensities(map, params);
+  const hyselam::OccupancyGrid coarse = coarsenForDensities(map, params);
   const auto free = [&](std::int8_t v) { return v >= 0 && v < params.map.thresholds.free_below; };
-  if (std::none_of(coarse.cells.begin(), coarse.cells.end(), free))
+  if (std::none_of(coarse.cells.begin(), coarse.cells.end(), free)) {
     throw hyselam::InputError("map", "", "has no free cell to put particles on");
+  }
   for (const KernelSpec& spec : params.map.kernels) Kernel(spec, coarse.geometry.resolution);
 }
 
 Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& params,
                      const std::string& cache_path, const std::function<void(double)>& progress)
     : params_((params.validate(), params)),
-      map_(densities(map, params, cache_path, progress, &map_was_cached_, &map_cache_problem_)),
+      map_(densityMap(map, params, cache_path, progress, &map_was_cached_, &map_cache_problem_)),
       sensor_(sensorParams(params)),
       filter_(map_, params_.filter, params.seed) {
-  const auto rays = [&] { return std::make_shared<const RayCaster>(map, params.map.thresholds); };
+  const auto rays = [&] {
+    return std::make_shared<const GridRayCaster>(map, params.map.thresholds);
+  };
   switch (params_.model) {
-    case Model::kBeam:
+    case ObservationModelKind::kBeam:
       model_ = std::make_unique<BeamModel>(rays(), params_.beam);
       break;
-    case Model::kCosine:
+    case ObservationModelKind::kCosine:
       model_ = std::make_unique<CosineModel>(rays(), params_.cosine);
       break;
-    case Model::kLikelihood:
+    case ObservationModelKind::kLikelihood:
       model_ =
           std::make_unique<LikelihoodFieldModel>(map, params_.likelihood, params_.map.thresholds);
       break;
-    case Model::kHybrid:
+    case ObservationModelKind::kHybrid:
       tracker_ =
           std::make_unique<LikelihoodFieldModel>(map, params_.likelihood, params_.map.thresholds);
       [[fallthrough]];
-    case Model::kFsd:
-      model_ = std::make_unique<FsdModel>(map_, params_.fsd);
+    case ObservationModelKind::kFsd:
+      model_ = std::make_unique<FsdObservationModel>(map_, params_.fsd);
   }
 }
 Localizer::~Localizer() = default;
 
 const ObservationModel& Localizer::activeModel() const {
-  if (stage_ == Stage::kSearch) return *model_;
-  return *tracker_;
+  return isHybrid() && !isSearching(state_) ? *tracker_ : *model_;
 }
 
 void Localizer::relocalizeGlobally() {
   filter_ = ParticleFilter(map_, params_.filter, hyselam::splitmix64(params_.seed));
-  startSearch();
-  phase_ = Phase::kGlobal;
+  state_ = LocalizerState::kGlobalSearch;
   travelled_ = 0.0;
   restartClock();
 }
 
 void Localizer::setInitialPose(const Pose2& base_in_map, const Pose2& stddev) {
   if (!base_in_map.isFinite()) throw hyselam::InputError("initial pose", "", "not finite");
-  if (!stddev.isFinite() || stddev.x < 0.0 || stddev.y < 0.0 || stddev.theta < 0.0)
+  if (!stddev.isFinite() || stddev.x < 0.0 || stddev.y < 0.0 || stddev.theta < 0.0) {
     throw hyselam::InputError("initial pose", "standard deviations",
                               "must be finite and not negative");
+  }
   const Pose2 base_in_grid = map_->geometry().origin.inverse() * base_in_map;
   if (std::hypot(base_in_grid.x, base_in_grid.y) > kFarthest ||
-      std::hypot(stddev.x, stddev.y) > kFarthest)
+      std::hypot(stddev.x, stddev.y) > kFarthest) {
     throw hyselam::InputError("initial pose", "",
                               "or its standard deviation lies more than 1000 km off the map");
+  }
   travelled_ = 0.0;
   restartClock();
-  phase_ = Phase::kGlobal;
-  if (params_.model == Model::kHybrid)
-    startChoice(gaussianParticles(base_in_grid, stddev, params_.candidate_particles,
-                                  hyselam::mix(params_.seed, 0x1217)));
-  else
-    filter_.concentrate(base_in_grid, stddev);
+  state_ = LocalizerState::kGlobalSearch;
+  if (isHybrid()) {
+    startHypotheses(gaussianParticles(base_in_grid, stddev, params_.hypothesis_particles,
+                                      hyselam::mix(params_.seed, kInitialPoseStream)));
+  } else {
+    filter_.concentrateAround(base_in_grid, stddev);
+  }
 }
 
 void Localizer::restartClock() {
@@ -194,64 +216,56 @@ void Localizer::restartClock() {
   updated_odom_.reset();
 }
 
-void Localizer::startSearch() {
-  stage_ = Stage::kSearch;
-  sensor_.reset();
-}
-
-void Localizer::startChoice(Particles particles) {
-  stage_ = Stage::kChoice;
-  explained_fast_.reset();
-  explained_slow_.reset();
-  judged_ = 0.0;
+void Localizer::startHypotheses(Particles particles) {
+  state_ = withHypotheses(state_);
+  inliers_.reset();
   // Few particles would let places die out by chance, and a sharp model by the luck of the nearest.
-  continueWith(std::move(particles), params_.candidate_particles, params_.candidate_beams);
+  startTracker(std::move(particles), params_.hypothesis_particles, params_.hypothesis_beams);
 }
 
 void Localizer::startTracking() {
-  stage_ = Stage::kTrack;
-  phase_ = Phase::kTracking;
-  continueWith(filter_.particles(),
-               std::min(params_.tracking_particles, params_.candidate_particles),
+  state_ = LocalizerState::kTracking;
+  startTracker(filter_.particles(),
+               std::min(params_.tracking_particles, params_.hypothesis_particles),
                params_.likelihood.independent_beams);
 }
 
-void Localizer::continueWith(Particles particles, std::size_t min_particles,
+void Localizer::startTracker(Particles particles, std::size_t min_particles,
                              double independent_beams) {
   tracker_->setIndependentBeams(independent_beams);
   FilterParams p = params_.filter;
   p.adaptive_size = true;
   p.min_particles = min_particles;
-  p.max_particles = params_.candidate_particles;
-  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // supervise() sees to that
-  filter_ =
-      ParticleFilter(map_, p,
-                     hyselam::mix(params_.seed, 2 * static_cast<std::uint64_t>(travelled_ * 1000) +
-                                                    (stage_ == Stage::kTrack ? 1 : 0)));
-  filter_.take(std::move(particles));
+  p.max_particles = params_.hypothesis_particles;
+  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // updateState() recovers
+  const std::uint64_t stream =
+      2 * millimeters(travelled_) + (state_ == LocalizerState::kTracking ? 1 : 0);
+  filter_ = ParticleFilter(map_, p, hyselam::mix(params_.seed, stream));
+  filter_.setParticles(std::move(particles));
 }
 
 void Localizer::searchAgain() {
   const Particles old = filter_.particles();
-  filter_ = ParticleFilter(
-      map_, params_.filter,
-      hyselam::mix(params_.seed, 0x5ea7c4 + static_cast<std::uint64_t>(travelled_ * 1000)));
-  if (phase_ == Phase::kTracking && old.size() > 0) {  // the alarm may be false
+  filter_ =
+      ParticleFilter(map_, params_.filter,
+                     hyselam::mix(params_.seed, kSearchAgainStream + millimeters(travelled_)));
+  if (state_ == LocalizerState::kTracking && old.size() > 0) {  // the alarm may be false
     Particles mixed = filter_.particles();
-    const auto every = static_cast<std::size_t>(1.0 / kGuessShare);
-    for (std::size_t i = 0, k = 0; i < mixed.size(); i += every, k = (k + 1) % old.size())
+    for (std::size_t i = 0, k = 0; i < mixed.size(); i += kStayEvery, k = (k + 1) % old.size()) {
       mixed.set(i, old.pose(k), 1.0F);
-    filter_.take(std::move(mixed));
-    phase_ = Phase::kLost;
+    }
+    filter_.setParticles(std::move(mixed));
   }
-  startSearch();
+  state_ = backToSearch(state_);
+  sensor_.reset();
 }
 
 std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& scan,
                                                     const Pose2& base_in_odom, bool force) {
   if (!std::isfinite(scan.stamp)) throw hyselam::InputError("laser scan", "stamp", "not finite");
-  if (last_stamp_ && scan.stamp <= *last_stamp_)
+  if (last_stamp_ && scan.stamp <= *last_stamp_) {
     throw hyselam::InputError("laser scan", "stamp", "not later than the scan before");
+  }
   sensor_.integrate(scan, base_in_odom);  // refuses what cannot be used, before anything changes
   last_stamp_ = scan.stamp;
   if (last_odom_) travelled_ += hyselam::distance(*last_odom_, base_in_odom);
@@ -260,8 +274,9 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   const Pose2 delta = updated_odom_ ? hyselam::between(*updated_odom_, base_in_odom) : Pose2{};
   const double moved = std::hypot(delta.x, delta.y);
   if (updated_odom_ && !force && moved < params_.update_min_d &&
-      std::abs(delta.theta) < params_.update_min_a)
+      std::abs(delta.theta) < params_.update_min_a) {
     return std::nullopt;
+  }
   updated_odom_ = base_in_odom;
 
   observation_.scan = scan;
@@ -269,62 +284,60 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   const FilterStep step = filter_.step(delta, activeModel(), observation_);
   const PoseEstimate estimate = estimatePose(filter_.particles());
 
+  LocalizationResult result = resultOf(estimate, step.effective_size);
+  if (isHybrid()) {
+    // Turning shows the same surroundings again: enough to see that they do not fit, too little to
+    // distinguish places that look alike.
+    const double turned = state_ == LocalizerState::kTracking ? std::abs(delta.theta) : 0.0;
+    updateState(estimate, moved + kTurnAsTravel * turned, result);
+  } else {
+    state_ = result.converged ? LocalizerState::kTracking : LocalizerState::kGlobalSearch;
+  }
+  result.phase = phaseOf(state_);
+  return result;
+}
+
+LocalizationResult Localizer::resultOf(const PoseEstimate& estimate, double effective_size) const {
   LocalizationResult result;
-  result.stamp = scan.stamp;
+  result.stamp = observation_.scan.stamp;
   const Pose2& origin = map_->geometry().origin;
   result.base_in_map = origin * estimate.mean;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   const double c = std::cos(origin.theta), s = std::sin(origin.theta);
   rotation.topLeftCorner<2, 2>() << c, -s, s, c;
   result.covariance = rotation * estimate.covariance * rotation.transpose();
-  result.converged = estimate.share >= params_.converged_share &&
+  result.converged = estimate.cluster_weight >= params_.converged_cluster_weight &&
                      estimate.positionStddev() <= params_.converged_stddev;
-  result.cluster_share = estimate.share;
+  result.cluster_weight = estimate.cluster_weight;
   result.particles = filter_.particles().size();
-  result.effective_size = step.effective_size;
+  result.effective_size = effective_size;
   result.travelled = travelled_;
-  if (params_.model == Model::kHybrid) {
-    // Turning shows the same surroundings again: enough to see that they do not fit, too little to
-    // tell places apart that look alike.
-    const double turned = stage_ == Stage::kTrack ? std::abs(delta.theta) : 0.0;
-    supervise(estimate, moved + kTurnAsTravel * turned, result);
-  } else {
-    phase_ = result.converged ? Phase::kTracking : Phase::kGlobal;
-  }
-  result.phase = phase_;
   return result;
 }
 
-void Localizer::supervise(const PoseEstimate& estimate, double motion, LocalizationResult& result) {
-  if (stage_ == Stage::kSearch) {
-    result.converged = false;  // the search alone is coarse; the likelihood field has the last word
+void Localizer::updateState(const PoseEstimate& estimate, double motion,
+                            LocalizationResult& result) {
+  if (isSearching(state_)) {
+    result.converged = false;  // the search alone is coarse; the likelihood field has to confirm
     const std::size_t limit =
-        std::min(params_.max_candidate_bins, filter_.particles().size() / kParticlesPerBin);
-    if (estimate.bins > 0 && estimate.bins <= limit)
-      startChoice(filter_.resampledCopy(params_.candidate_particles, kCandidateBlur));
+        std::min(params_.max_hypothesis_bins, filter_.particles().size() / kParticlesPerBin);
+    if (estimate.bins > 0 && estimate.bins <= limit) {
+      startHypotheses(filter_.resampledCopy(params_.hypothesis_particles, kHypothesisBlur));
+    }
     return;
   }
-  judged_ += motion;
-  result.explained =
-      tracker_->explainedShare(observation_.scan, estimate.mean, params_.explained_tolerance);
-  if (result.explained) {
-    const auto follow = [&](std::optional<double>& average, double memory) {
-      const double before = average.value_or(*result.explained);
-      average = before + std::min(1.0, motion / memory) * (*result.explained - before);
-    };
-    follow(explained_fast_, kFastMemory);
-    follow(explained_slow_, kSlowMemory);
-    const double limit =
-        std::max(stage_ == Stage::kChoice ? params_.found_above : params_.lost_below,
-                 params_.lost_ratio * *explained_slow_);
-    if (judged_ > kFastMemory && *explained_fast_ < limit) {
-      result.converged = false;
-      searchAgain();
-      return;
-    }
+  result.inlier_ratio =
+      tracker_->inlierRatio(observation_.scan, estimate.mean, params_.inlier_distance);
+  inliers_.add(result.inlier_ratio, motion);
+  const bool tracking = state_ == LocalizerState::kTracking;
+  if (inliers_.isBelow(tracking ? params_.lost_inlier_ratio : params_.found_inlier_ratio,
+                       params_.lost_relative_ratio)) {
+    result.converged = false;
+    searchAgain();
+    return;
   }
-  if (stage_ == Stage::kTrack) return;
-  result.converged = result.converged && explained_fast_.value_or(0.0) >= params_.found_above;
+  if (tracking) return;
+  result.converged = result.converged && inliers_.average() >= params_.found_inlier_ratio;
   if (result.converged) startTracking();
 }
 

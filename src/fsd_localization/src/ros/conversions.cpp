@@ -19,8 +19,9 @@ constexpr double kLargestDensityValue = 98.0;
 void fillCovariance(const Eigen::Matrix3d& in, boost::array<double, 36>& out) {
   constexpr int kPlace[3] = {0, 1, 5};
   out.assign(0.0);
-  for (int r = 0; r < 3; ++r)
+  for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) out[static_cast<std::size_t>(6 * kPlace[r] + kPlace[c])] = in(r, c);
+  }
 }
 
 Eigen::Matrix3d rotated(const Eigen::Matrix3d& covariance, double angle) {
@@ -102,8 +103,8 @@ hyselam_msgs::LocalizationStatus toStatusMsg(const LocalizationResult& result, d
   msg.converged = result.converged;
   msg.particles = static_cast<std::uint32_t>(result.particles);
   msg.effective_sample_size = static_cast<float>(result.effective_size);
-  msg.match_quality = result.explained ? static_cast<float>(*result.explained)
-                                       : std::numeric_limits<float>::quiet_NaN();
+  msg.match_quality = result.inlier_ratio ? static_cast<float>(*result.inlier_ratio)
+                                          : std::numeric_limits<float>::quiet_NaN();
   msg.travelled = result.travelled;
   msg.update_ms = static_cast<float>(update_ms);
   std::ostringstream text;
@@ -111,9 +112,10 @@ hyselam_msgs::LocalizationStatus toStatusMsg(const LocalizationResult& result, d
   text << std::fixed << toString(result.phase) << (result.converged ? "" : ", not converged")
        << ": x " << result.base_in_map.x << " m, y " << result.base_in_map.y << " m, ";
   text.precision(0);
-  text << hyselam::degrees(result.base_in_map.theta) << " deg, " << 100.0 * result.cluster_share
+  text << hyselam::degrees(result.base_in_map.theta) << " deg, " << 100.0 * result.cluster_weight
        << " % of " << result.particles << " particles";
-  if (result.explained) text << ", " << 100.0 * *result.explained << " % of the returns explained";
+  if (result.inlier_ratio)
+    text << ", " << 100.0 * *result.inlier_ratio << " % of the returns explained";
   msg.text = text.str();
   return msg;
 }
@@ -126,19 +128,23 @@ geometry_msgs::PoseArray toMsg(const Particles& particles, std::size_t most,
   if (particles.size() > most) resampleSystematic(particles, most, 0.5, sample);
   const Particles& shown = particles.size() > most ? sample : particles;
   msg.poses.reserve(shown.size());
-  for (std::size_t i = 0; i < shown.size(); ++i)
+  for (std::size_t i = 0; i < shown.size(); ++i) {
     msg.poses.push_back(hyselam::toPoseMsg(grid_in_map * shown.pose(i)));
+  }
   return msg;
 }
 
 nav_msgs::OccupancyGrid densityFieldMsg(const FsdMap& map, int kernel,
                                         const std_msgs::Header& header) {
   hyselam::OccupancyGrid grid(map.geometry(), 0);
-  for (int y = 0; y < map.geometry().height; ++y)
-    for (int x = 0; x < map.geometry().width; ++x)
-      if (map.isFree({x, y}))
+  for (int y = 0; y < map.geometry().height; ++y) {
+    for (int x = 0; x < map.geometry().width; ++x) {
+      if (map.isFree({x, y})) {
         grid.at({x, y}) = static_cast<std::int8_t>(
             1 + std::lround((kLargestDensityValue - 1.0) * map.density({x, y}, kernel)));
+      }
+    }
+  }
   return hyselam::toMsg(grid, header.frame_id, header.stamp);
 }
 

@@ -22,7 +22,7 @@ FsdServer::FsdServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
           nh, params_.input, hyselam::logName(private_nh),
           [this](const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
                  const ros::Time& stamp) { return onScan(scan, base_in_odom, stamp); },
-          [this] { onTimeBack(); }),
+          [this] { onTimeJump(); }),
       diagnostics_(nh, private_nh.getNamespace().substr(1) + ": free-space density",
                    params_.diagnostic_period,
                    [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }) {}
@@ -52,14 +52,16 @@ bool FsdServer::onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& bas
 }
 
 void FsdServer::show(const FsdObservation& observation, const std_msgs::Header& header) {
-  if (local_map_publisher_.getNumSubscribers() > 0)
+  if (local_map_publisher_.getNumSubscribers() > 0) {
     local_map_publisher_.publish(
         hyselam::toMsg(sensor_.localMap().toGrid(), header.frame_id, header.stamp));
-  if (marker_publisher_.getNumSubscribers() > 0)
+  }
+  if (marker_publisher_.getNumSubscribers() > 0) {
     marker_publisher_.publish(kernelMarkers(observation, params_.sensor.kernels, header));
+  }
 }
 
-void FsdServer::onTimeBack() {
+void FsdServer::onTimeJump() {
   sensor_.reset();
   last_odom_.reset();
   observed_odom_.reset();

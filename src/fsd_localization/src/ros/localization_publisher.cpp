@@ -16,8 +16,9 @@ LocalizationPublisher::LocalizationPublisher(ros::NodeHandle nh,
       cloud_(nh.advertise<geometry_msgs::PoseArray>("particlecloud", 2)),
       local_map_(nh.advertise<nav_msgs::OccupancyGrid>("local_map", 1)),
       markers_(nh.advertise<visualization_msgs::MarkerArray>("fsd_markers", 1)) {
-  if (params_.density_field_kernel >= 0)
+  if (params_.density_field_kernel >= 0) {
     density_field_ = nh.advertise<nav_msgs::OccupancyGrid>("density_field", 1, true);
+  }
 }
 
 std_msgs::Header LocalizationPublisher::header(const ros::Time& stamp,
@@ -45,13 +46,15 @@ void LocalizationPublisher::publishUpdate(const Localizer& localizer,
 
 void LocalizationPublisher::show(const Localizer& localizer, const std_msgs::Header& in_map) {
   const std_msgs::Header in_odom = header(in_map.stamp, params_.input.odom_frame_id);
-  if (cloud_.getNumSubscribers() > 0)
+  if (cloud_.getNumSubscribers() > 0) {
     cloud_.publish(toMsg(localizer.particles(),
                          static_cast<std::size_t>(params_.max_cloud_particles),
                          localizer.map().geometry().origin, in_map));
-  if (local_map_.getNumSubscribers() > 0)
+  }
+  if (local_map_.getNumSubscribers() > 0) {
     local_map_.publish(
         hyselam::toMsg(localizer.localMap().toGrid(), in_odom.frame_id, in_odom.stamp));
+  }
   const FsdObservation& seen = localizer.lastObservation();
   // Once is enough to take the discs away where the model of the moment reads no densities.
   if (markers_.getNumSubscribers() > 0 && (markers_shown_ || !seen.readings.empty())) {

@@ -21,14 +21,15 @@ using hyselam::Pose2;
 
 namespace {
 
-constexpr double kTakeOverEvery = 0.05;  // [s] while a map is being prepared
-constexpr double kAskEvery = 0.5;        // [s] for the service static_map
-constexpr double kRemindEvery = 10.0;    // [s] that no map has come on the topic
-constexpr double kAskAgainAfter = 2.0;   // [s] when it gave a map that cannot be used
+constexpr double kTakeOverPeriod = 0.05;  // [s] while a map is being prepared
+constexpr double kRequestPeriod = 0.5;    // [s] for the service static_map
+constexpr double kReminderPeriod = 10.0;  // [s] that no map has come on the topic
+constexpr double kRetryPeriod = 2.0;      // [s] when it gave a map that cannot be used
 
 LocalizationServerParams loadParams(const ros::NodeHandle& private_nh) {
-  for (const std::string& sentence : ignoredAmclParams(hyselam::ParamLoader(private_nh)))
+  for (const std::string& sentence : ignoredAmclParams(hyselam::ParamLoader(private_nh))) {
     ROS_WARN_STREAM(logName(private_nh) << " " << sentence);
+  }
   return loadAndLogParams(private_nh, loadLocalizationParams);
 }
 
@@ -37,16 +38,18 @@ hyselam::OccupancyGrid checkedMap(const nav_msgs::OccupancyGrid& msg,
                                   const std::string& source) {
   std::string frame = msg.header.frame_id;
   if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
-  if (frame != params.global_frame_id)
+  if (frame != params.global_frame_id) {
     throw hyselam::InputError(
         source, "frame_id",
         "is '" + frame + "', but global_frame_id is '" + params.global_frame_id + "'");
+  }
   const double cells = static_cast<double>(msg.info.width) * static_cast<double>(msg.info.height);
-  if (cells > params.max_map_cells)
+  if (cells > params.max_map_cells) {
     throw hyselam::InputError(
         source, "size",
         std::to_string(msg.info.width) + " x " + std::to_string(msg.info.height) +
             " cells are more than max_map_cells, " + std::to_string(params.max_map_cells));
+  }
   hyselam::OccupancyGrid map = hyselam::fromMsg(msg, source);
   try {
     Localizer::checkMap(map, params.localizer);
@@ -58,8 +61,10 @@ hyselam::OccupancyGrid checkedMap(const nav_msgs::OccupancyGrid& msg,
 
 /// Sleeps, but not on when the map is not wanted any more. @param seconds of wall time.
 void pauseFor(double seconds, const std::function<bool()>& cancelled) {
-  for (double waited = 0.0; waited < seconds && ros::ok() && !cancelled(); waited += kTakeOverEvery)
-    ros::WallDuration(kTakeOverEvery).sleep();
+  for (double waited = 0.0; waited < seconds && ros::ok() && !cancelled();
+       waited += kTakeOverPeriod) {
+    ros::WallDuration(kTakeOverPeriod).sleep();
+  }
 }
 
 /// Calls static_map until it answers.
@@ -79,7 +84,7 @@ MapPreparation::Source mapService(ros::NodeHandle nh, const LocalizationServerPa
           }
           ROS_INFO_STREAM_THROTTLE(
               10.0, who << " waiting for a map from the service " << client.getService());
-          pauseFor(kAskEvery, cancelled);
+          pauseFor(kRequestPeriod, cancelled);
         }
         return std::nullopt;
       };
@@ -89,50 +94,51 @@ MapPreparation::Source mapService(ros::NodeHandle nh, const LocalizationServerPa
 
 LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : private_nh_(private_nh),
-      who_(logName(private_nh)),
+      log_name_(logName(private_nh)),
       map_topic_(nh.resolveName("map")),
       params_(loadParams(private_nh)),
       publisher_(nh, params_),
-      map_service_(mapService(nh, params_, who_, map_seen_)),
+      map_service_(mapService(nh, params_, log_name_, map_seen_)),
       preparation_(params_.localizer, params_.cache_dir),
-      pending_initial_(params_.initial_pose),
+      pending_initial_(params_.initial_pose.pose()),
       input_(
-          nh, params_.input, who_,
+          nh, params_.input, log_name_,
           [this](const hyselam::LaserScan& scan, const Pose2& base_in_odom,
                  const ros::Time& stamp) { return onScan(scan, base_in_odom, stamp); },
-          [this] { onTimeBack(); }),
+          [this] { onTimeJump(); }),
       diagnostics_(nh, private_nh.getNamespace().substr(1) + ": localisation",
                    params_.diagnostic_period,
                    [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }),
       map_timer_(nh.createWallTimer(
-          ros::WallDuration(kTakeOverEvery), [this](const ros::WallTimerEvent&) { takeOverMap(); },
+          ros::WallDuration(kTakeOverPeriod), [this](const ros::WallTimerEvent&) { takeOverMap(); },
           false, false)) {
   using Empty = std_srvs::Empty;
-  if (params_.use_map_topic)
+  if (params_.use_map_topic) {
     map_subscriber_ = nh.subscribe("map", 1, &LocalizationServer::onMap, this);
-  else
-    askForMap(0.0);
+  } else {
+    requestMap(0.0);
+  }
   initial_pose_subscriber_ =
       nh.subscribe("initialpose", 2, &LocalizationServer::onInitialPose, this);
-  global_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
+  services_.push_back(nh.advertiseService<Empty::Request, Empty::Response>(
       "global_localization", [this](Empty::Request&, Empty::Response&) {
         if (localizer_) localizer_->relocalizeGlobally();
-        forgetPose("asked to by the service global_localization");
+        forgetPose("called by the service global_localization");
         return true;
-      });
-  update_service_ = nh.advertiseService<Empty::Request, Empty::Response>(
+      }));
+  services_.push_back(nh.advertiseService<Empty::Request, Empty::Response>(
       "request_nomotion_update", [this](Empty::Request&, Empty::Response&) {
         force_update_ = true;
         return true;
-      });
-  set_map_service_ = nh.advertiseService("set_map", &LocalizationServer::onSetMap, this);
+      }));
+  services_.push_back(nh.advertiseService("set_map", &LocalizationServer::onSetMap, this));
 }
 
 // ---- maps
 
 void LocalizationServer::onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg) {
   if (params_.first_map_only && map_seen_) {
-    ROS_INFO_STREAM(who_ << " another map is ignored (first_map_only)");
+    ROS_INFO_STREAM(log_name_ << " another map is ignored (first_map_only)");
     return;
   }
   prepare(*msg, map_topic_);
@@ -143,27 +149,28 @@ bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::
   try {
     map = checkedMap(msg, params_, source);
   } catch (const hyselam::InputError& e) {
-    map_error_.clear();  // told each time that somebody sends it
+    map_error_.clear();  // reported each time that somebody sends it
     refuseMap(e.what());
     return false;
   }
   const std::uint64_t fingerprint = FsdMap::fingerprint(map, params_.localizer.map);
   if (map_seen_ && fingerprint == fingerprint_ && map_error_.empty()) {
-    ROS_INFO_STREAM(who_ << " the same map again, nothing to do");
+    ROS_INFO_STREAM(log_name_ << " the same map again, nothing to do");
     return true;
   }
   fingerprint_ = fingerprint;
   map_seen_ = true;
   map_error_.clear();
-  ROS_INFO_STREAM(who_ << " preparing a map of " << map.geometry.width << " x "
-                       << map.geometry.height << " cells of " << map.geometry.resolution << " m");
+  ROS_INFO_STREAM(log_name_ << " preparing a map of " << map.geometry.width << " x "
+                            << map.geometry.height << " cells of " << map.geometry.resolution
+                            << " m");
   if (localizer_) pending_initial_.reset();  // it was for a map that is not wanted any more
   preparation_.start([map = std::move(map)](const std::function<bool()>&) { return map; });
   map_timer_.start();
   return true;
 }
 
-void LocalizationServer::askForMap(double pause) {
+void LocalizationServer::requestMap(double pause) {
   preparation_.start([ask = map_service_, pause](const std::function<bool()>& cancelled) {
     pauseFor(pause, cancelled);
     return ask(cancelled);
@@ -172,9 +179,10 @@ void LocalizationServer::askForMap(double pause) {
 }
 
 void LocalizationServer::refuseMap(const std::string& why) {
-  if (why != map_error_)
-    ROS_ERROR_STREAM(who_ << " map refused: " << why
-                          << (localizer_ ? "; the map before stays" : ""));
+  if (why != map_error_) {
+    ROS_ERROR_STREAM(log_name_ << " map refused: " << why
+                               << (localizer_ ? "; the map before stays" : ""));
+  }
   map_error_ = why;
 }
 
@@ -186,10 +194,11 @@ void LocalizationServer::takeOverMap() {
     if (outcome->error.empty()) return;  // the node ends
     refuseMap(outcome->error);
     map_seen_ = localizer_ != nullptr;
-    if (localizer_)
+    if (localizer_) {
       pending_initial_.reset();  // it came with this map
-    else if (!params_.use_map_topic)
-      askForMap(kAskAgainAfter);  // the map server may have a better one by then
+    } else if (!params_.use_map_topic) {
+      requestMap(kRetryPeriod);  // the map server may have a better one by then
+    }
     return;
   }
   // A corrected map of the same place shall not make a robot lost that knows where it is.
@@ -204,17 +213,19 @@ void LocalizationServer::takeOverMap() {
   localizer_ = std::move(outcome->localizer);
   map_error_.clear();
   const FsdMap& map = localizer_->map();
-  ROS_INFO_STREAM(who_ << " map ready: " << map.freeCells().size() << " free cells, "
-                       << map.kernelCount() << " density fields "
-                       << (outcome->cached ? "read" : "computed") << " in " << outcome->seconds
-                       << " s, " << map.bytes() / 1000000.0 << " MB");
-  if (!outcome->cache_problem.empty())
+  ROS_INFO_STREAM(log_name_ << " map ready: " << map.freeCells().size() << " free cells, "
+                            << map.kernelCount() << " density fields "
+                            << (outcome->cached ? "read" : "computed") << " in " << outcome->seconds
+                            << " s, " << map.bytes() / 1000000.0 << " MB");
+  if (!outcome->cache_problem.empty()) {
     ROS_WARN_STREAM(
-        who_ << " the density fields could not be kept, the next start will compute them"
-             << " again: " << outcome->cache_problem);
+        log_name_ << " the density fields could not be kept, the next start will compute them"
+                  << " again: " << outcome->cache_problem);
+  }
   publisher_.publishMap(*localizer_);
-  if (!start || !startAt(*start))
+  if (!start || !startAt(*start)) {
     forgetPose("a new map");  // whose particles lie everywhere already
+  }
 }
 
 // ---- scans
@@ -223,21 +234,22 @@ bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& bas
                                 const ros::Time& stamp) {
   takeOverMap();
   if (!localizer_) {
-    if (!map_seen_)
+    if (!map_seen_) {
       input_.drops().drop("no map", "none has come yet");
-    else
+    } else {
       input_.drops().drop("map not ready",
                           map_error_.empty() ? "it is being prepared" : map_error_);
+    }
     return false;
   }
   const ros::WallTime begin = ros::WallTime::now();
   const auto result = localizer_->update(scan, base_in_odom, force_update_);
   if (result) {
-    update_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
+    updates_.last_ms = 1e3 * (ros::WallTime::now() - begin).toSec();
     force_update_ = false;
-    ++updates_;
+    ++updates_.count;
     noteResult(*result, base_in_odom);
-    publisher_.publishUpdate(*localizer_, *result, update_ms_, stamp);
+    publisher_.publishUpdate(*localizer_, *result, updates_.last_ms, stamp);
     savePose(*result);
   }
   // Between updates too: tf listeners need transforms that cover the present.
@@ -247,21 +259,23 @@ bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& bas
 
 void LocalizationServer::noteResult(const LocalizationResult& result, const Pose2& base_in_odom) {
   if (!last_result_ || last_result_->phase != result.phase ||
-      last_result_->converged != result.converged)
-    ROS_INFO_STREAM(who_ << " " << toString(result.phase)
-                         << (result.converged ? ", converged" : ", not converged") << " at x "
-                         << result.base_in_map.x << " m, y " << result.base_in_map.y << " m, "
-                         << hyselam::degrees(result.base_in_map.theta) << " deg after "
-                         << result.travelled << " m");
+      last_result_->converged != result.converged) {
+    ROS_INFO_STREAM(log_name_ << " " << toString(result.phase)
+                              << (result.converged ? ", converged" : ", not converged") << " at x "
+                              << result.base_in_map.x << " m, y " << result.base_in_map.y << " m, "
+                              << hyselam::degrees(result.base_in_map.theta) << " deg after "
+                              << result.travelled << " m");
+  }
   last_result_ = result;
-  // A guess does not move the transform: dead reckoning from the last pose that was known is better
-  // than jumping between guesses.
-  if (result.converged || guided_ || params_.publish_unconverged_tf)
+  // An unconverged pose does not move the transform: dead reckoning from the last known pose is
+  // better than jumping between hypotheses.
+  if (result.converged || guided_ || params_.publish_unconverged_tf) {
     odom_in_map_ = result.base_in_map * base_in_odom.inverse();
+  }
   if (result.converged) guided_ = false;
 }
 
-void LocalizationServer::onTimeBack() {
+void LocalizationServer::onTimeJump() {
   odom_in_map_.reset();  // the odometry may have begun again elsewhere
   if (localizer_) localizer_->restartClock();
 }
@@ -276,11 +290,12 @@ void LocalizationServer::savePose(const LocalizationResult& result) {
   private_nh_.setParam("initial_pose_a", result.base_in_map.theta);
   constexpr const char* kNames[] = {"initial_cov_xx", "initial_cov_yy", "initial_cov_aa"};
   constexpr double kSmallest = 1e-6;  // 0 would be refused at the next start
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 3; ++i) {
     private_nh_.setParam(kNames[i], std::max(kSmallest, result.covariance(i, i)));
+  }
 }
 
-// ---- guesses and orders from outside
+// ---- poses and commands from outside
 
 void LocalizationServer::onInitialPose(
     const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
@@ -289,28 +304,33 @@ void LocalizationServer::onInitialPose(
     pose = hyselam::initialPoseFromMsg(*msg, params_.global_frame_id,
                                        initial_pose_subscriber_.getTopic());
   } catch (const hyselam::InputError& e) {
-    ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " initial pose ignored: " << e.what());
     return;
   }
-  if (msg->header.frame_id.empty())
-    ROS_WARN_STREAM(who_ << " initial pose without frame_id, taken as " << params_.global_frame_id);
+  if (msg->header.frame_id.empty()) {
+    ROS_WARN_STREAM(log_name_ << " initial pose without frame_id, taken as "
+                              << params_.global_frame_id);
+  }
   // The robot may have moved on while a person pointed at the map.
-  if (!msg->header.stamp.isZero())
-    if (const auto motion = input_.motionSince(msg->header.stamp))
+  if (!msg->header.stamp.isZero()) {
+    if (const auto motion = input_.motionSince(msg->header.stamp)) {
       pose.base_in_map = pose.base_in_map * *motion;
+    }
+  }
   startAt(pose);
 }
 
 bool LocalizationServer::startAt(const InitialPose& pose) {
-  ROS_INFO_STREAM(who_ << " initial pose x " << pose.base_in_map.x << " m, y " << pose.base_in_map.y
-                       << " m, " << hyselam::degrees(pose.base_in_map.theta) << " deg"
-                       << (localizer_ ? "" : ", kept for when a map is ready"));
+  ROS_INFO_STREAM(log_name_ << " initial pose x " << pose.base_in_map.x << " m, y "
+                            << pose.base_in_map.y << " m, "
+                            << hyselam::degrees(pose.base_in_map.theta) << " deg"
+                            << (localizer_ ? "" : ", kept for when a map is ready"));
   if (!localizer_ || pending_initial_) pending_initial_ = pose;  // the newest guess counts
   if (!localizer_) return true;
   try {
     localizer_->setInitialPose(pose.base_in_map, pose.stddev);
   } catch (const hyselam::InputError& e) {
-    ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " initial pose ignored: " << e.what());
     return false;
   }
   odom_in_map_.reset();
@@ -320,7 +340,7 @@ bool LocalizationServer::startAt(const InitialPose& pose) {
 }
 
 void LocalizationServer::forgetPose(const std::string& why) {
-  ROS_INFO_STREAM(who_ << " searching the whole map: " << why);
+  ROS_INFO_STREAM(log_name_ << " searching the whole map: " << why);
   pending_initial_.reset();
   odom_in_map_.reset();
   last_result_.reset();
@@ -337,7 +357,7 @@ bool LocalizationServer::onSetMap(nav_msgs::SetMap::Request& request,
     pose = hyselam::initialPoseFromMsg(request.initial_pose, params_.global_frame_id,
                                        "service set_map: initial_pose");
   } catch (const hyselam::InputError& e) {
-    ROS_ERROR_STREAM(who_ << " set_map refused: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " set_map refused: " << e.what());
     return true;
   }
   if (!prepare(request.map, "service set_map: map")) return true;
@@ -356,10 +376,11 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   using Status = diagnostic_msgs::DiagnosticStatus;
   input_.checkClock();
   const bool preparing = map_seen_ && preparation_.busy();
-  if (preparing)
+  if (preparing) {
     addRemark(status, Status::WARN,
               "preparing map (" +
                   std::to_string(static_cast<int>(100.0 * preparation_.progress())) + " %)");
+  }
   if (!map_error_.empty()) addRemark(status, Status::ERROR, "map refused: " + map_error_);
   if (!localizer_) {
     if (!preparing && map_error_.empty()) {
@@ -367,10 +388,10 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
                 std::string("waiting for a map from the ") +
                     (params_.use_map_topic ? "topic map" : "service static_map"));
       const ros::WallTime now = ros::WallTime::now();
-      if (params_.use_map_topic && (now - reminded_of_map_).toSec() > kRemindEvery) {
+      if (params_.use_map_topic && (now - reminded_of_map_).toSec() > kReminderPeriod) {
         reminded_of_map_ = now;
-        ROS_WARN_STREAM(who_ << " waiting for a map on " << map_topic_ << " ("
-                             << map_subscriber_.getNumPublishers() << " publishers)");
+        ROS_WARN_STREAM(log_name_ << " waiting for a map on " << map_topic_ << " ("
+                                  << map_subscriber_.getNumPublishers() << " publishers)");
       }
     }
   } else if (!last_result_) {
@@ -382,18 +403,18 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   }
   addValue(status, "map ready", localizer_ != nullptr);
   addValue(status, "model", toString(params_.localizer.model));
-  addValue(status, "updates", updates_);
-  addValue(status, "last update [ms]", update_ms_);
+  addValue(status, "updates", updates_.count);
+  addValue(status, "last update [ms]", updates_.last_ms);
   if (last_result_) {
     const Eigen::Matrix3d& c = last_result_->covariance;
     addValue(status, "phase", toString(last_result_->phase));
     addValue(status, "converged", last_result_->converged);
     addValue(status, "particles", last_result_->particles);
-    addValue(status, "cluster share", last_result_->cluster_share);
+    addValue(status, "cluster weight", last_result_->cluster_weight);
     addValue(status, "cluster deviation x, y [m], yaw [deg]",
              std::to_string(std::sqrt(c(0, 0))) + " " + std::to_string(std::sqrt(c(1, 1))) + " " +
                  std::to_string(hyselam::degrees(std::sqrt(c(2, 2)))));
-    if (last_result_->explained) addValue(status, "explained returns", *last_result_->explained);
+    if (last_result_->inlier_ratio) addValue(status, "inlier ratio", *last_result_->inlier_ratio);
     addValue(status, "travelled [m]", last_result_->travelled);
   }
   addValue(status, "publishing tf", odom_in_map_.has_value() && params_.tf_broadcast);

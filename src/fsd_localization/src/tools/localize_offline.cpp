@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <memory>
 
 #include "fsd_localization/localizer.hpp"
 #include "hyselam_common/errors.hpp"
@@ -41,8 +42,9 @@ class Score {
     e.good = e.error_m < success_m_ && e.error_deg < success_deg_;
     e.converged = converged;
     if (!entries_.empty() &&
-        hyselam::distance(truth_, truth) > travelled - entries_.back().travelled + kJump)
+        hyselam::distance(truth_, truth) > travelled - entries_.back().travelled + kJump) {
       jumps_.push_back(entries_.size());
+    }
     truth_ = truth;
     entries_.push_back(e);
   }
@@ -76,12 +78,14 @@ class Score {
     while (end > begin && entries_[end - 1].good) --end;
     return end;
   }
-  /// Travel in which the robot was sure of a wrong place [m].
+  /// Travel with false convergence [m].
   double wronglyConverged() const {
     double sum = 0.0;
-    for (std::size_t i = 1; i < entries_.size(); ++i)
-      if (entries_[i].converged && !entries_[i].good)
+    for (std::size_t i = 1; i < entries_.size(); ++i) {
+      if (entries_[i].converged && !entries_[i].good) {
         sum += entries_[i].travelled - entries_[i - 1].travelled;
+      }
+    }
     return sum;
   }
   nlohmann::json kidnaps() const {
@@ -109,43 +113,59 @@ class Score {
   std::vector<std::size_t> jumps_;  // first entry after each
 };
 
-nlohmann::json run(const Options& o) {
+fsd_localization::LocalizerParams localizerParams(const Options& o) {
   fsd_localization::LocalizerParams p;
-  p.model = fsd_localization::modelFromName(o.model);
+  p.model = fsd_localization::observationModelKindFromString(o.model);
   p.seed = o.seed;
   p.filter.max_particles = o.particles;
   p.filter.min_particles = std::min(p.filter.min_particles, o.particles);
   p.map.kernels.clear();
-  for (double h : o.bandwidths)
-    p.map.kernels.push_back({fsd_localization::kernelProfileFromName(o.kernel), h});
+  for (double h : o.bandwidths) {
+    p.map.kernels.push_back({fsd_localization::kernelProfileFromString(o.kernel), h});
+  }
   p.validate();
+  return p;
+}
 
-  const hyselam::OccupancyGrid map = hyselam::loadMap(o.map);
-  const hyselam::RobotLog log = hyselam::readRobotLog(o.log, o.bag_options);
-  std::vector<hyselam::StampedPose2> truth = log.ground_truth;
-  if (!o.reference.empty()) truth = hyselam::readPoses(o.reference).poses;
-
-  const double begin = log.scans.front().stamp + o.start;
-  if (begin > log.scans.back().stamp)
-    throw hyselam::InputError(o.log, "--start " + std::to_string(o.start),
-                              "lies after the last scan");
+std::unique_ptr<fsd_localization::Localizer> makeLocalizer(
+    const hyselam::OccupancyGrid& map, const fsd_localization::LocalizerParams& params,
+    const Options& o) {
   hyselam::Progress preparing("density fields", 100);
-  fsd_localization::Localizer localizer(map, p, o.cache ? o.map + ".fsd" : "", [&](double share) {
-    preparing.update(static_cast<std::size_t>(100 * share));
-  });
-
-  if (!localizer.mapCacheProblem().empty())
-    std::cerr << "warning: the density fields are not kept: " << localizer.mapCacheProblem()
+  auto localizer = std::make_unique<fsd_localization::Localizer>(
+      map, params, o.cache ? o.map + ".fsd" : "",
+      [&](double share) { preparing.update(static_cast<std::size_t>(100 * share)); });
+  if (!localizer->mapCacheProblem().empty()) {
+    std::cerr << "warning: the density fields are not kept: " << localizer->mapCacheProblem()
               << "\n";
+  }
+  return localizer;
+}
 
-  hyselam::Progress progress("localising", log.scans.size());
+/// A run through the localiser: one entry per update, and what could not be used.
+struct Replay {
   std::vector<hyselam::StampedPose2> trajectory;
   std::vector<double> update_ms;
-  std::size_t without_odometry = 0, refused = 0, index = 0;
+  std::size_t without_odometry = 0, refused = 0;
   nlohmann::json converged_at = nullptr;
-  std::string phase;
   nlohmann::json phases = nlohmann::json::array();
-  Score score(o);
+
+  void add(const fsd_localization::LocalizationResult& result) {
+    trajectory.push_back({result.stamp, result.base_in_map});
+    if (result.converged && converged_at.is_null()) converged_at = result.travelled;
+    const std::string phase = toString(result.phase);
+    if (phases.empty() || phases.back()["phase"] != phase) {
+      phases.push_back(
+          {{"phase", phase}, {"travelled_m", result.travelled}, {"stamp", result.stamp}});
+    }
+  }
+};
+
+Replay replay(fsd_localization::Localizer& localizer, const hyselam::RobotLog& log,
+              const std::vector<hyselam::StampedPose2>& truth, const Options& o, Score& score) {
+  const double begin = log.scans.front().stamp + o.start;
+  hyselam::Progress progress("localising", log.scans.size());
+  Replay out;
+  std::size_t index = 0;
   double travelled = 0.0;
   for (const hyselam::LaserScan& scan : log.scans) {
     progress.update(++index);
@@ -154,7 +174,7 @@ nlohmann::json run(const Options& o) {
     if (o.distance > 0.0 && travelled > o.distance) break;
     const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
     if (!odom) {
-      ++without_odometry;
+      ++out.without_odometry;
       continue;
     }
     const auto t0 = std::chrono::steady_clock::now();
@@ -162,40 +182,54 @@ nlohmann::json run(const Options& o) {
     try {
       result = localizer.update(scan, *odom);
     } catch (const hyselam::InputError& e) {
-      if (refused++ == 0)
+      if (out.refused++ == 0) {
         std::cerr << "warning: scan at " << std::fixed << scan.stamp << " s: " << e.what() << "\n";
+      }
       continue;
     }
     if (!result) continue;
-    update_ms.push_back(
+    out.update_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t0).count());
-    trajectory.push_back({result->stamp, result->base_in_map});
+    out.add(*result);
     travelled = result->travelled;
-    if (result->converged && converged_at.is_null()) converged_at = result->travelled;
-    const std::string now = toString(result->phase);
-    if (now != phase)
-      phases.push_back(
-          {{"phase", now}, {"travelled_m", result->travelled}, {"stamp", result->stamp}});
-    phase = now;
-    if (const auto at = hyselam::poseAt(truth, scan.stamp, 0.05))
+    if (const auto at = hyselam::poseAt(truth, scan.stamp, 0.05)) {
       score.add(result->base_in_map, *at, result->travelled, result->converged);
+    }
   }
-  if (trajectory.empty())
-    throw hyselam::InputError(o.log, "", "no scan could be used for an update");
-  if (!o.trajectory.empty()) hyselam::writeTum(o.trajectory, trajectory);
+  return out;
+}
 
-  std::vector<double> sorted = update_ms;
+nlohmann::json run(const Options& o) {
+  const fsd_localization::LocalizerParams params = localizerParams(o);
+  const hyselam::OccupancyGrid map = hyselam::loadMap(o.map);
+  const hyselam::RobotLog log = hyselam::readRobotLog(o.log, o.bag_options);
+  std::vector<hyselam::StampedPose2> truth = log.ground_truth;
+  if (!o.reference.empty()) truth = hyselam::readPoses(o.reference).poses;
+  if (log.scans.front().stamp + o.start > log.scans.back().stamp) {
+    throw hyselam::InputError(o.log, "--start " + std::to_string(o.start),
+                              "lies after the last scan");
+  }
+
+  const auto localizer = makeLocalizer(map, params, o);
+  Score score(o);
+  const Replay result = replay(*localizer, log, truth, o, score);
+  if (result.trajectory.empty()) {
+    throw hyselam::InputError(o.log, "", "no scan could be used for an update");
+  }
+  if (!o.trajectory.empty()) hyselam::writeTum(o.trajectory, result.trajectory);
+
+  std::vector<double> sorted = result.update_ms;
   std::sort(sorted.begin(), sorted.end());
   nlohmann::json j = {{"model", o.model},
                       {"particles", o.particles},
                       {"seed", o.seed},
-                      {"updates", trajectory.size()},
+                      {"updates", result.trajectory.size()},
                       {"median_update_ms", sorted[sorted.size() / 2]},
                       {"worst_update_ms", sorted.back()},
-                      {"converged_at_m", converged_at},
-                      {"phases", phases},
-                      {"scans_without_odometry", without_odometry},
-                      {"scans_refused", refused}};
+                      {"converged_at_m", result.converged_at},
+                      {"phases", result.phases},
+                      {"scans_without_odometry", result.without_odometry},
+                      {"scans_refused", result.refused}};
   if (!score.empty()) j["against_reference"] = score.report();
   std::cout << j.dump(2) << "\n";
   return j;
@@ -217,7 +251,7 @@ int main(int argc, char** argv) {
   app.add_option("--bandwidths", o.bandwidths, "bandwidths of the density kernels [m]")
       ->delimiter(',');
   app.add_option("--seed", o.seed, "equal seeds give equal results");
-  app.add_option("--start", o.start, "seconds to skip at the beginning; the robot wakes up there")
+  app.add_option("--start", o.start, "seconds to skip at the beginning; the robot starts there")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--duration", o.duration, "seconds to use; 0: to the end")
       ->check(CLI::NonNegativeNumber);

@@ -7,7 +7,7 @@
 #include <queue>
 #include <vector>
 
-#include "fsd_localization/kernel.hpp"
+#include "fsd_localization/density/kernel.hpp"
 
 namespace transcription {
 
@@ -78,8 +78,9 @@ inline Fsd freeSpaceDensityNear(const Cells& m, int x0, int y0,
   Cells near;
   near.width = near.height = 2 * h + 1;
   near.state.reserve(static_cast<std::size_t>(near.width * near.height));
-  for (int y = y0 - h; y <= y0 + h; ++y)
+  for (int y = y0 - h; y <= y0 + h; ++y) {
     for (int x = x0 - h; x <= x0 + h; ++x) near.state.push_back(m.at(x, y));
+  }
   return freeSpaceDensity(near, h, h, kernel);
 }
 
@@ -117,7 +118,7 @@ inline int frontiers(const Cells& m, int x0, int y0, int h, double min_share) {
       const auto cell = open.back();
       open.pop_back();
       group.push_back(cell);
-      for (std::size_t i = 0; i < border.size();)
+      for (std::size_t i = 0; i < border.size();) {
         if (std::abs(border[i].first - cell.first) <= 1 &&
             std::abs(border[i].second - cell.second) <= 1) {
           open.push_back(border[i]);
@@ -125,6 +126,7 @@ inline int frontiers(const Cells& m, int x0, int y0, int h, double min_share) {
         } else {
           ++i;
         }
+      }
     }
     if (static_cast<double>(group.size()) > min_size) ++count;
   }

@@ -25,11 +25,11 @@ struct HimmGrid {
 /// what the thesis leaves open).
 inline void himm(HimmGrid& m, const hyselam::LaserScan& scan, double laser_heading,
                  double resolution, double d_max, double usable, double epsilon_d) {
-  const int centre = m.side / 2;
+  const int center = m.side / 2;
   const double inc = std::abs(scan.angle_increment);
-  for (int y = 0; y < m.side; ++y)
+  for (int y = 0; y < m.side; ++y) {
     for (int x = 0; x < m.side; ++x) {
-      const double dx = x - centre, dy = y - centre;
+      const double dx = x - center, dy = y - center;
       const double phi = std::atan2(dy, dx) - laser_heading;
       std::size_t k = 0;
       double best = 1e9;
@@ -49,11 +49,13 @@ inline void himm(HimmGrid& m, const hyselam::LaserScan& scan, double laser_headi
         continue;
       }
       const double d = range / resolution;
-      if (std::abs(d_i - d) < epsilon_d)
+      if (std::abs(d_i - d) < epsilon_d) {
         occ = std::min(15, occ + 3);
-      else if (d_i < d - epsilon_d)
+      } else if (d_i < d - epsilon_d) {
         occ = std::max(0, occ - 1);
+      }
     }
+  }
 }
 
 }  // namespace transcription

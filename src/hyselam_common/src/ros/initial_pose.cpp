@@ -7,6 +7,25 @@
 
 namespace hyselam {
 
+void InitialPoseParams::describe(ParameterVisitor& visit) {
+  constexpr double kFarthest = 1e8;
+  const Range finite = Range::between(-kFarthest, kFarthest);
+  const Range variance = Range::aboveUpTo(0.0, kFarthest);
+  visit("initial_pose_x", x, finite, "m",
+        "where the robot starts; if none of the three is set, it starts lost");
+  visit("initial_pose_y", y, finite, "m", "");
+  visit("initial_pose_a", a, finite, "rad", "");
+  visit("initial_cov_xx", cov_xx, variance, "m^2", "variance of initial_pose_x");
+  visit("initial_cov_yy", cov_yy, variance, "m^2", "variance of initial_pose_y");
+  visit("initial_cov_aa", cov_aa, variance, "rad^2", "variance of initial_pose_a");
+}
+
+std::optional<InitialPose> InitialPoseParams::pose() const {
+  if (!x && !y && !a) return std::nullopt;
+  return InitialPose{{x.value_or(0.0), y.value_or(0.0), normalizeAngle(a.value_or(0.0))},
+                     {std::sqrt(cov_xx), std::sqrt(cov_yy), std::sqrt(cov_aa)}};
+}
+
 InitialPose initialPoseFromMsg(const geometry_msgs::PoseWithCovarianceStamped& msg,
                                const std::string& global_frame, const std::string& source) {
   std::string frame = msg.header.frame_id;

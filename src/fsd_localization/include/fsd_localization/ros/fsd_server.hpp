@@ -3,7 +3,7 @@
 
 #include <ros/ros.h>
 
-#include "fsd_localization/fsd_sensor.hpp"
+#include "fsd_localization/density/fsd_sensor.hpp"
 #include "fsd_localization/ros/parameters.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/rate_limit.hpp"
@@ -22,7 +22,7 @@ class FsdServer {
  private:
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
               const ros::Time& stamp);
-  void onTimeBack();
+  void onTimeJump();
   void show(const FsdObservation& observation, const std_msgs::Header& header);
   void report(diagnostic_msgs::DiagnosticStatus& status);
 

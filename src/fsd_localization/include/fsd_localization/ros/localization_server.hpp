@@ -1,4 +1,4 @@
-// Where am I on this map, on amcl's interface.
+// Localisation on a map, on amcl's interface.
 #pragma once
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fsd_localization/ros/localization_publisher.hpp"
 #include "fsd_localization/ros/map_preparation.hpp"
@@ -32,7 +33,7 @@ class LocalizationServer {
   // Maps.
   void onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg);
   bool prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source);
-  void askForMap(double pause);
+  void requestMap(double pause);
   void takeOverMap();
   void refuseMap(const std::string& why);
 
@@ -40,10 +41,10 @@ class LocalizationServer {
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
               const ros::Time& stamp);
   void noteResult(const LocalizationResult& result, const hyselam::Pose2& base_in_odom);
-  void onTimeBack();
+  void onTimeJump();
   void savePose(const LocalizationResult& result);
 
-  // Guesses and orders from outside.
+  // Poses and commands from outside.
   void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
   bool startAt(const hyselam::InitialPose& pose);
   void forgetPose(const std::string& why);
@@ -52,7 +53,7 @@ class LocalizationServer {
   void report(diagnostic_msgs::DiagnosticStatus& status);
 
   ros::NodeHandle private_nh_;
-  std::string who_;
+  std::string log_name_;
   std::string map_topic_;  // a latched map may come while map_subscriber_ is still being set
   LocalizationServerParams params_;
   LocalizationPublisher publisher_;
@@ -64,11 +65,13 @@ class LocalizationServer {
   std::string map_error_;          // of the newest map; empty: it is good
   std::optional<hyselam::InitialPose> pending_initial_;  // for the map that is being prepared
   std::optional<LocalizationResult> last_result_;
-  std::optional<hyselam::Pose2> odom_in_map_;  // what tf says
+  std::optional<hyselam::Pose2> odom_in_map_;  // as published on tf
   bool guided_ = false;  // an initial pose was given, and nothing has converged since
   bool force_update_ = false;
-  double update_ms_ = 0.0;
-  std::size_t updates_ = 0;
+  struct Updates {
+    double last_ms = 0.0;
+    std::size_t count = 0;
+  } updates_;
   ros::WallTime saved_;
 
   hyselam::ScanInput input_;
@@ -76,7 +79,7 @@ class LocalizationServer {
   hyselam::Diagnostics diagnostics_;
   ros::WallTimer map_timer_;
   ros::Subscriber map_subscriber_, initial_pose_subscriber_;
-  ros::ServiceServer global_service_, update_service_, set_map_service_;
+  std::vector<ros::ServiceServer> services_;
 };
 
 }  // namespace fsd_localization

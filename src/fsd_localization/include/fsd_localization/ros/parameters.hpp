@@ -1,5 +1,5 @@
-// Parameters of the two servers, and the one place where the parameter server fills them. The names
-// are amcl's where the meaning is the same; README.md holds the table.
+// Parameters of the two servers. The names on the parameter server are amcl's where the meaning is
+// the same; README.md holds the table.
 #pragma once
 
 #include <optional>
@@ -19,6 +19,9 @@ struct FsdServerParams {
   double update_min_a = 0.0;       ///< turn between observations [rad]; 0: turning alone gives none
   double gui_publish_rate = 5.0;   ///< of local_map and fsd_markers [Hz]; -1: no limit
   double diagnostic_period = 1.0;  ///< [s]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 struct LocalizationServerParams {
@@ -37,8 +40,10 @@ struct LocalizationServerParams {
   int max_cloud_particles = 5000;  ///< in particlecloud; of more, a fair sample
   int density_field_kernel = 1;    ///< index into the kernels; -1: density_field is not published
   double diagnostic_period = 1.0;  ///< [s]
-  std::optional<hyselam::InitialPose>
-      initial_pose;  ///< empty: the robot knows nothing at the start
+  hyselam::InitialPoseParams initial_pose;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.

@@ -3,8 +3,10 @@
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 
+#include <optional>
 #include <string>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/pose2.hpp"
 
 namespace hyselam {
@@ -13,6 +15,19 @@ namespace hyselam {
 struct InitialPose {
   Pose2 base_in_map;
   Pose2 stddev;
+};
+
+/// The pose at the start, as amcl has it.
+struct InitialPoseParams {
+  std::optional<double> x, y, a;  ///< [m, m, rad]; none: the robot knows nothing at the start
+  double cov_xx = 0.25;           ///< [m^2]
+  double cov_yy = 0.25;           ///< [m^2]
+  double cov_aa = (kPi / 12.0) * (kPi / 12.0);  ///< [rad^2]
+
+  /// initial_pose_x, _y, _a and initial_cov_xx, _yy, _aa.
+  void describe(ParameterVisitor& visit);
+  /// Empty where none of x, y and a is set; the others are 0 then.
+  std::optional<InitialPose> pose() const;
 };
 
 /// @param source begins the text of the error (a topic, a service).

@@ -28,8 +28,12 @@ class RateLimit {
   ros::Time last_;
 };
 
+/// What a rate [Hz] may be: (0, 1000], or -1 for "no limit" or "never".
+inline Range rateRange() {
+  return Range::aboveUpTo(0.0, 1000.0).orValue(-1.0);
+}
 /// A rate [Hz] that may be -1 for "no limit" or "never".
-/// @throws ParameterError unless it is -1 or in (0, 1000].
+/// @throws ParameterError unless it lies in rateRange().
 void loadRate(ParamLoader& loader, const std::string& name, double& rate,
               const std::string& meaning);
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fsd_localization/fsd_sensor.hpp"
+#include "fsd_localization/density/fsd_sensor.hpp"
 #include "ngram_slam/words/way_sampler.hpp"
 
 namespace ngram_slam {
@@ -56,7 +56,7 @@ class ObservationSensor {
   ObservationSensorParams params_;
   fsd_localization::FsdSensor sensor_;
   fsd_localization::FreeSpaceDensity kernel_;
-  fsd_localization::FreeSpace space_;
+  fsd_localization::FreeSpaceGrid space_;
   WaySampler sampler_;
   std::deque<Waiting> waiting_;
   double way_ = 0.0;

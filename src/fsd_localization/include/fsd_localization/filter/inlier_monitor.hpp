@@ -1,0 +1,30 @@
+// Whether the tracked place still fits: averages of the share of returns that the map predicts.
+#pragma once
+
+#include <optional>
+
+namespace fsd_localization {
+
+/// Two moving averages of an inlier ratio over the motion of the robot: a fast one, by which a
+/// place is judged, and a slow one, which shows what is normal at this place (people and furniture
+/// that are not on the map).
+class InlierMonitor {
+ public:
+  /// Forgets everything: another place is judged from now on.
+  void reset();
+  /// @param inlier_ratio 0..1; empty: the scan had no return. @param motion since the last one [m].
+  void add(const std::optional<double>& inlier_ratio, double motion);
+
+  /// The fast average; 0 before the first ratio.
+  double average() const { return fast_.value_or(0.0); }
+  /// Whether the last scan had returns, the robot has moved enough to judge, and the fast average
+  /// lies below `min_ratio`, or below `min_relative` times the slow one.
+  bool isBelow(double min_ratio, double min_relative) const;
+
+ private:
+  bool current_ = false;  // the last scan had returns
+  double motion_ = 0.0;   // [m] since reset()
+  std::optional<double> fast_, slow_;
+};
+
+}  // namespace fsd_localization

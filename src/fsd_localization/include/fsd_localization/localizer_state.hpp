@@ -1,0 +1,55 @@
+// What a localizer does at the moment, and what it says about it.
+#pragma once
+
+namespace fsd_localization {
+
+/// The states of localisation, and what leads from one to another:
+///
+///     state              on                                     next
+///     kGlobalSearch      few places are left                    kGlobalHypotheses
+///     kGlobalHypotheses  one place is left, and fits            kTracking
+///                        too few inliers                        kGlobalSearch
+///     kTracking          too few inliers                        kLostSearch
+///     kLostSearch        few places are left                    kLostHypotheses
+///     kLostHypotheses    one place is left, and fits            kTracking
+///                        too few inliers                        kLostSearch
+///     any                relocalizeGlobally()                   kGlobalSearch
+///     any                setInitialPose()                       kGlobalHypotheses
+///
+/// In a search, free-space density weighs particles everywhere; with hypotheses, the likelihood
+/// field chooses among the places that are left; while tracking it follows one place. Models other
+/// than hybrid know kGlobalSearch and kTracking only, and change between them as their estimate
+/// converges or not.
+/// Whether the estimate of an update deserves trust is LocalizationResult::converged.
+enum class LocalizerState {
+  kGlobalSearch,
+  kGlobalHypotheses,
+  kTracking,
+  kLostSearch,
+  kLostHypotheses,
+};
+
+/// The states as they are published.
+enum class Phase {
+  kGlobal,    ///< not found yet
+  kTracking,  ///< found
+  kLost,      ///< was found, is being searched for again
+};
+const char* toString(Phase phase);
+
+Phase phaseOf(LocalizerState state);
+inline bool isSearching(LocalizerState state) {
+  return state == LocalizerState::kGlobalSearch || state == LocalizerState::kLostSearch;
+}
+/// Few places are left: from the search of the same phase.
+inline LocalizerState withHypotheses(LocalizerState state) {
+  return phaseOf(state) == Phase::kGlobal ? LocalizerState::kGlobalHypotheses
+                                          : LocalizerState::kLostHypotheses;
+}
+/// No place fits: back to the search of the same phase; lost, if a place was tracked.
+inline LocalizerState backToSearch(LocalizerState state) {
+  return phaseOf(state) == Phase::kGlobal ? LocalizerState::kGlobalSearch
+                                          : LocalizerState::kLostSearch;
+}
+
+}  // namespace fsd_localization

@@ -1,0 +1,32 @@
+#include "fsd_localization/filter/inlier_monitor.hpp"
+
+#include <algorithm>
+
+namespace fsd_localization {
+
+namespace {
+constexpr double kFastMemory = 1.0;   // [m] of motion
+constexpr double kSlowMemory = 30.0;  // [m]
+}  // namespace
+
+void InlierMonitor::reset() {
+  *this = InlierMonitor();
+}
+
+void InlierMonitor::add(const std::optional<double>& inlier_ratio, double motion) {
+  motion_ += motion;
+  current_ = inlier_ratio.has_value();
+  if (!current_) return;
+  const auto follow = [&](std::optional<double>& average, double memory) {
+    const double before = average.value_or(*inlier_ratio);
+    average = before + std::min(1.0, motion / memory) * (*inlier_ratio - before);
+  };
+  follow(fast_, kFastMemory);
+  follow(slow_, kSlowMemory);
+}
+
+bool InlierMonitor::isBelow(double min_ratio, double min_relative) const {
+  return current_ && motion_ > kFastMemory && *fast_ < std::max(min_ratio, min_relative * *slow_);
+}
+
+}  // namespace fsd_localization
