@@ -4,6 +4,7 @@
 
 #include "fsd_localization/localizer.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/testing/drawn_grid.hpp"
 #include "hyselam_common/testing/temporary_directory.hpp"
 #include "random_worlds.hpp"
 
@@ -46,22 +47,13 @@ double plainRange(const hyselam::OccupancyGrid& map, double x, double y, double 
 
 /// A room of 12 x 8 m with one alcove, so that no two places look the same.
 hyselam::OccupancyGrid room() {
-  hyselam::GridGeometry g;
-  g.width = 120;
-  g.height = 80;
-  hyselam::OccupancyGrid map(g, 0);
-  const auto wall = [&map](int x0, int y0, int x1, int y1) {
-    for (int y = y0; y < y1; ++y) {
-      for (int x = x0; x < x1; ++x) map.at({x, y}) = 100;
-    }
-  };
-  wall(0, 0, 120, 3);
-  wall(0, 77, 120, 80);
-  wall(0, 0, 3, 80);
-  wall(117, 0, 120, 80);
-  wall(70, 3, 75, 30);
-  wall(30, 50, 40, 60);
-  return map;
+  return hyselam::testing::drawnGrid({"#######",  //
+                                      "#.....#",  //
+                                      "#.#...#",  //
+                                      "#.....#",  //
+                                      "#...#.#",  //
+                                      "#######"},
+                                     0.1, {3, 27, 10, 30, 5, 42, 3}, {3, 17, 10, 20, 27, 3});
 }
 
 hyselam::LaserScan look(const GridRayCaster& rays, const Pose2& at, double stamp) {

@@ -10,6 +10,7 @@
 #include "fsd_localization/models/grid_ray_caster.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/testing/drawn_grid.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
@@ -22,19 +23,11 @@ using hyselam::testing::writeFile;
 
 /// A room of 8 x 5 m with a niche.
 hyselam::OccupancyGrid room() {
-  hyselam::GridGeometry g;
-  g.width = 80;
-  g.height = 50;
-  g.resolution = 0.1;
-  hyselam::OccupancyGrid map(g, 0);
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      if (x < 2 || y < 2 || x >= g.width - 2 || y >= g.height - 2 || (x > 50 && x < 56 && y < 20)) {
-        map.at({x, y}) = 100;
-      }
-    }
-  }
-  return map;
+  return hyselam::testing::drawnGrid({"#####",  //
+                                      "#...#",  //
+                                      "#.#.#",  //
+                                      "#####"},
+                                     0.1, {2, 49, 5, 22, 2}, {2, 28, 18, 2});
 }
 
 /// Three metres straight on, a scan each 10 cm.

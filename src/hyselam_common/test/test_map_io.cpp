@@ -293,6 +293,8 @@ TEST(DrawnGrid, FirstRowIsTheUpperOne) {
   EXPECT_EQ(grid.at({2, 0}), OccupancyGrid::kUnknown);
   EXPECT_EQ(testing::drawingOf(grid), (std::vector<std::string>{"##?", "#.?"}));
   EXPECT_THROW(testing::drawnGrid({"##", "#"}), std::logic_error);
+  EXPECT_EQ(testing::drawingOf(testing::drawnGrid({"#.", ".#"}, 0.1, {1, 3}, {2, 1})),
+            (std::vector<std::string>{"#...", "#...", ".###"}));
   EXPECT_THROW(testing::drawnGrid({"x"}), std::logic_error);
 }
 

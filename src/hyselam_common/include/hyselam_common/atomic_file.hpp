@@ -13,13 +13,13 @@ namespace hyselam {
 /// @throws InputError when the place cannot be written; passes on what `write` throws.
 void writeFileAtomically(const std::string& path, const std::function<void(std::ostream&)>& write);
 
-/// The same for libraries that insist on opening a file by name: `write` gets the name of a
+/// The same for libraries that open a file by its name: `write` receives the name of a
 /// temporary file in the same directory (with the extension of `path`), which is then flushed and
 /// renamed.
 void replaceFileAtomically(const std::string& path,
                            const std::function<void(const std::string& temporary)>& write);
 
-/// The content of a file; gzip data (told by its first two bytes, not by its name) is unpacked.
+/// The content of a file; gzip data (known by its first two bytes, not by name) is unpacked.
 /// @throws InputError for a missing file, a directory, damaged or truncated gzip data, or content
 /// of more than `max_bytes` after unpacking.
 std::string readTextFile(const std::string& path, std::size_t max_bytes = std::size_t{4} << 30);

@@ -21,7 +21,7 @@ struct CarmenOptions {
   /// At or above it a reading means "no return" [m]; 0: from the messages that state it
   /// (ROBOTLASER, RAWLASER), else from the readings, see readCarmenLog().
   double range_max = 0.0;
-  double range_min = 0.01;  ///< readings below say nothing [m], > 0
+  double range_min = 0.01;  ///< readings below are invalid [m], > 0
   /// Message that holds the scans ("FLASER", "ROBOTLASER1", "RAWLASER2", "L", ...); empty: the
   /// first of FLASER, ROBOTLASER1, L, RAWLASER1 that the log has.
   std::string scan_message;
@@ -50,7 +50,7 @@ std::string toString(const CarmenIssue& issue);
 /// odd n. Odometry: ODOM, O, and the robot pose carried by the scans; where both fall on one stamp
 /// the scan's counts. Ground truth: TRUEPOS. PARAM robot_frontlaser_offset sets laser_in_base.x
 /// (its last value counts for the whole log); ROBOTLASER and L state both poses, and there the
-/// first scan counts. In corrected logs (told by NEFF lines) the ODOM line right after a scan is an
+/// first scan counts. In corrected logs (with NEFF lines) the ODOM line right after a scan is an
 /// artefact and is left out. Other known messages and comments are passed over silently.
 ///
 /// Range limit, if nothing states it: where the readings in the highest 1 % of the range pile up

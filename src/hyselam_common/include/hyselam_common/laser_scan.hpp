@@ -9,8 +9,8 @@ namespace hyselam {
 
 /// Beam i has bearing angle_min + i * angle_increment in the laser frame, counter-clockwise.
 ///
-/// A range is a return when range_min <= r < range_max; at or above range_max, or +inf, it says "no
-/// return: free as far as the sensor sees"; NaN, -inf and anything below range_min says nothing.
+/// A range is a return when range_min <= r < range_max; at or above range_max, or +inf, it is "no
+/// return: free as far as the sensor sees"; NaN, -inf and anything below range_min is invalid.
 struct LaserScan {
   double stamp = 0.0;            ///< time of the scan [s]
   double angle_min = 0.0;        ///< bearing of beam 0 [rad]

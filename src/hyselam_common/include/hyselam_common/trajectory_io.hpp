@@ -22,7 +22,7 @@ void writeTum(const std::string& path, const std::vector<StampedPose2>& trajecto
 /// naming the line.
 std::vector<StampedPose2> readReferenceTable(const std::string& path);
 
-/// Reads either format; a comment that names the column `scan_index` tells a reference table.
+/// Reads either format; a comment that names the column `scan_index` marks a reference table.
 struct PoseFile {
   std::vector<StampedPose2> poses;
   bool one_per_scan = false;  ///< a reference table: pose i belongs to scan i

@@ -8,7 +8,7 @@
 namespace hyselam {
 
 /// The length of the UTF-8 character that begins at byte `i` < bytes.size(), 0 if it is none;
-/// `*code` gets its number.
+/// `*code` is its number.
 std::size_t utf8CharacterAt(const std::string& bytes, std::size_t i, std::uint32_t* code);
 
 /// Whether the bytes are UTF-8 without overlong forms, surrogates and values beyond U+10FFFF.

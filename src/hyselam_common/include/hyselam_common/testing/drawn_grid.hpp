@@ -34,6 +34,28 @@ inline OccupancyGrid drawnGrid(const std::vector<std::string>& rows, double reso
   return grid;
 }
 
+/// A drawing whose characters stand for rectangles: column i of characters is `column_cells[i]`
+/// cells wide, row i from above `row_cells[i]` cells high.
+/// @throws std::logic_error as above, and unless there is one size per column and row.
+inline OccupancyGrid drawnGrid(const std::vector<std::string>& rows, double resolution,
+                               const std::vector<int>& column_cells,
+                               const std::vector<int>& row_cells) {
+  if (rows.empty() || row_cells.size() != rows.size() ||
+      column_cells.size() != rows.front().size()) {
+    throw std::logic_error("as many sizes as columns and rows are needed");
+  }
+  std::vector<std::string> cells;
+  for (std::size_t y = 0; y < rows.size(); ++y) {
+    if (rows[y].size() != column_cells.size()) throw std::logic_error("rows differ in length");
+    std::string row;
+    for (std::size_t x = 0; x < rows[y].size(); ++x) {
+      row.append(static_cast<std::size_t>(column_cells[x]), rows[y][x]);
+    }
+    cells.insert(cells.end(), static_cast<std::size_t>(row_cells[y]), row);
+  }
+  return drawnGrid(cells, resolution);
+}
+
 /// The drawing of a grid: what drawnGrid() takes, with '?' for unknown cells; occupied from 50 on.
 inline std::vector<std::string> drawingOf(const OccupancyGrid& grid) {
   std::vector<std::string> rows;

@@ -28,7 +28,7 @@ inline std::string fileBytes(const std::string& path) {
 }
 
 /// The real data sets: $HYSELAM_DATA, else the directory known at configure time; "" if it is not
-/// there. Tests then say so and skip: HYSELAM_NEED_DATA(data);
+/// there. Tests then skip with a message: HYSELAM_NEED_DATA(data);
 inline std::string dataDirectory() {
   const char* variable = std::getenv("HYSELAM_DATA");
   std::string directory = variable != nullptr ? variable : "";

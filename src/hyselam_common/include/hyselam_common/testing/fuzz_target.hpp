@@ -46,7 +46,7 @@ inline std::string textOf(const std::uint8_t* data, std::size_t size) {
 /// A folder of this process, in memory where the system has such a place.
 class FuzzFolder {
  public:
-  /// Writes the file and tells its path.
+  /// Writes the file and returns its path.
   std::string put(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary | std::ios::trunc) << bytes;
     return path(name);

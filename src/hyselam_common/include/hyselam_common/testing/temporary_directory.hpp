@@ -10,7 +10,7 @@
 namespace hyselam {
 namespace testing {
 
-/// An empty directory that nobody else knows, removed with all its content at the end.
+/// An empty directory of its own, removed with all its content at the end.
 class TemporaryDirectory {
  public:
   explicit TemporaryDirectory(
