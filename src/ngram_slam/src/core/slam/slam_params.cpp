@@ -53,7 +53,7 @@ const char* nameOf(SlamLoops loops) {
 }
 
 SlamParams::SlamParams() : words(NgramRecognizerParams::improved()) {
-  surface.spacing = 0.03;
+  surface.min_spacing = 0.03;
   observations.look_back = observations.bandwidth + 0.5;
   // The scans are asked afterwards: words need not be sure.
   words.min_probability = 0.2;
