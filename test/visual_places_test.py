@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Images into the nodelet SemanticLocalization, places out: the same as offline, with bad images among them; learning
-on the way; the pose watched over."""
+"""The nodelet SemanticLocalization: the same places as offline, bad images, learning while driving, tests of the pose."""
 import copy
 import csv
 import json
@@ -186,7 +185,7 @@ class Rig:
         self.image.publish(image)
         self.sent += 1
 
-    def settle(self):
+    def wait_used(self):
         """Waits until every image has been used or dropped."""
         wait_until(lambda: self.number("images received") == self.sent
                    and self.number("images used") + self.number("images dropped") == self.sent,
@@ -237,7 +236,7 @@ class VisualPlacesTest(unittest.TestCase):
         wait_until(lambda: rig.scan.get_num_connections() > 0, "the nodelet does not listen to scans")
         for image in self.film.raw:
             rig.give(image, self.film.scan_of(image))
-        rig.settle()
+        rig.wait_used()
         expected = self.film.predictions(self.film.scan_model, self.film.raw_list)
         self.assertGreater(self.assert_same(rig, expected), 0.9)
         self.assertEqual(rig.values()["images dropped"], "0")
@@ -246,7 +245,7 @@ class VisualPlacesTest(unittest.TestCase):
         rig = self.rig(model=self.film.model, compressed=True)
         for image in self.film.jpeg:
             rig.give(image)
-        rig.settle()
+        rig.wait_used()
         self.assert_same(rig, self.film.predictions(self.film.model, self.film.jpeg_list))
 
     def test_poses_and_odometry_as_offline(self):
@@ -257,7 +256,7 @@ class VisualPlacesTest(unittest.TestCase):
             if i == 0:
                 rospy.sleep(1.0)
             rig.give(image)
-            rig.settle()
+            rig.wait_used()
         expected = self.film.predictions(self.film.model, self.film.jpeg_list, "poses")
         self.assertEqual(len(rig.seen.messages), len(expected))
         # Angles go through a quaternion: a particle may fall the other way.
@@ -269,7 +268,7 @@ class VisualPlacesTest(unittest.TestCase):
         self.assertFalse(self.rig(descriptor="GLANCE", kernel="rbf", filter="poses").loaded)
 
     def test_bad_images_in_mid_stream(self):
-        rig = self.rig(model=self.film.model, images="corners")
+        rig = self.rig(model=self.film.model, descriptive_filter="corners")
         good = self.film.frame_in("left room")
 
         def changed(**fields):
@@ -279,7 +278,7 @@ class VisualPlacesTest(unittest.TestCase):
             return image
         for _ in range(5):
             rig.give(good)
-        rig.settle()
+        rig.wait_used()
         before = rig.seen.wait(5)
         self.assertEqual(before.name, "left room")
         bad = {
@@ -293,28 +292,28 @@ class VisualPlacesTest(unittest.TestCase):
             if what == "a grey image":
                 continue  # GLANCE needs colour: checked below
             rig.give(image)
-            rig.settle()
+            rig.wait_used()
         self.assertEqual(rig.number("images dropped"), 4)
         rig.seen.wait(5)
         self.assertEqual(len(rig.seen.messages), 5)
         # In the dark: passed over, the place stays.
         rig.give(changed(data=bytes(len(good.data))))
-        rig.settle()
+        rig.wait_used()
         dark = rig.seen.wait(6)
         self.assertFalse(dark.descriptive)
         self.assertEqual((dark.name, dark.probabilities), (before.name, before.probabilities))
         # Another resolution: half of the rows.
         rig.give(changed(height=good.height // 2, data=good.data[:len(good.data) // 2]))
-        rig.settle()
+        rig.wait_used()
         rig.seen.wait(7)
         self.assertEqual(len(rig.seen.messages), 7)
         rig.give(bad["a grey image"])
         seen = len(rig.seen.messages)
         rig.give(good)
-        rig.settle()
+        rig.wait_used()
         self.assertEqual(rig.seen.wait(seen + 1).name, "left room")
 
-    def test_jpeg_cut_short(self):
+    def test_truncated_jpeg(self):
         rig = self.rig(model=self.film.model, compressed=True)
         for image in self.film.jpeg[:3]:
             rig.give(image)
@@ -323,24 +322,24 @@ class VisualPlacesTest(unittest.TestCase):
             cut.data = cut.data[:length]
             rig.give(cut)
         rig.give(self.film.jpeg[4])
-        rig.settle()
+        rig.wait_used()
         self.assertEqual(rig.number("images dropped"), 3)
         rig.seen.wait(4)
         self.assertEqual(len(rig.seen.messages), 4)
 
-    def test_readings_that_do_not_come(self):
-        rig = self.rig(model=self.film.scan_model, sync_wait=0.1)
+    def test_missing_readings(self):
+        rig = self.rig(model=self.film.scan_model, sync_timeout=0.1)
         wait_until(lambda: rig.scan.get_num_connections() > 0, "the nodelet does not listen to scans")
         rig.give(self.film.raw[0])
-        rig.settle()
+        rig.wait_used()
         self.assertEqual(rig.number("dropped: no reading"), 1)
         self.assertIn("no scan", rig.values()["last dropped"])
         other = copy.deepcopy(self.film.scan_of(self.film.raw[1]))
         other.ranges = other.ranges[:20]  # too few for 61 groups of beams
         rig.give(self.film.raw[1], other)
-        rig.settle()
+        rig.wait_used()
         rig.give(self.film.raw[2], self.film.scan_of(self.film.raw[2]))
-        rig.settle()
+        rig.wait_used()
         rig.seen.wait()
 
     def test_models_that_cannot_be_used(self):
@@ -357,7 +356,7 @@ class VisualPlacesTest(unittest.TestCase):
         with open(os.path.join(other, "model.json"), "w") as file:
             json.dump(manifest, file)
         for number, params in enumerate(({"model": "/nowhere"}, {"model": cut}, {"model": other}, {"filter": "magic"},
-                                         {"supervisor_threshold": -1.0}, {"descriptor": "BOF-ORB500"},
+                                         {"kidnapping_threshold": -1.0}, {"supervisor_threshold": -1.0}, {"descriptor": "BOF-ORB500"},
                                          {"descriptor": "no such"})):
             rig = Rig(f"unusable_{number}", **params)
             self.addCleanup(rig.close)
@@ -370,7 +369,7 @@ class VisualPlacesTest(unittest.TestCase):
         wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
         for _ in range(3):
             rig.give(self.film.frame_in("right room"))
-        rig.settle()
+        rig.wait_used()
         seen = rig.seen.wait(3)
         self.assertEqual((seen.name, seen.place), ("right room", 2))
         bars = [m for m in rig.markers.wait().markers if m.ns == "bars"]
@@ -379,54 +378,54 @@ class VisualPlacesTest(unittest.TestCase):
         rig.give_map(topological_map(["left room"]))
         wait_until(lambda: rig.values().get("places not on the map") == "1", "a place is gone")
         rig.give(self.film.frame_in("right room"))
-        rig.settle()
+        rig.wait_used()
         self.assertEqual(rig.seen.wait(4).place, 0, "it is recognised, and has no id")
         broken = topological_map()
         broken.grid.width = 7
         rig.give_map(broken)
-        wait_until(lambda: "topological_map" in rig.status().message, "a broken map is told")
+        wait_until(lambda: "topological_map" in rig.status().message, "a broken map is reported")
         rig.give(self.film.frame_in("right room"))
-        rig.settle()
+        rig.wait_used()
 
-    def test_learning_on_the_way(self):
-        folder = os.path.join(self.film.folder.name, "learnt")
-        topo = os.path.join(self.film.folder.name, "learnt.xml")
+    def test_learning_while_driving(self):
+        folder = os.path.join(self.film.folder.name, "learned")
+        topo = os.path.join(self.film.folder.name, "learned.xml")
         rig = self.rig(save_model=folder, save_map=topo, autosave=False, retrain_every=0, min_travel=0.0, min_turn=0.0)
         self.assertFalse(rig.call("retrain").success)
-        self.assertFalse(rig.call("save").success, "nothing has been learnt")
+        self.assertFalse(rig.call("save").success, "nothing has been learned")
         rig.give_map(topological_map())
         wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
         self.assertTrue(rig.call("start_learning").success)
         self.learn_tour(rig)
-        self.assertIn("frames learnt", rig.call("stop_learning").message)
-        learnt = rig.number("frames learnt")
+        self.assertIn("frames collected", rig.call("stop_learning").message)
+        collected = rig.number("frames collected")
         # A place and the image after it come on two connections: the first may overtake.
-        self.assertGreaterEqual(learnt, len(self.film.raw) - 2)
+        self.assertGreaterEqual(collected, len(self.film.raw) - 2)
         answer = rig.call("retrain")
         self.assertTrue(answer.success, answer.message)
-        wait_until(lambda: rig.number("frames trained") == learnt, "trained")
-        self.assertIn(f"{learnt} frames gathered, not saved yet", rig.status().message)
+        wait_until(lambda: rig.number("frames trained") == collected, "trained")
+        self.assertIn(f"{collected} frames collected, not saved yet", rig.status().message)
         answer = rig.call("save")
         self.assertTrue(answer.success, answer.message)
         wait_until(lambda: "not saved" not in rig.status().message, "saved")
         begun = len(rig.seen.messages)
         for image in self.film.raw:
             rig.give(image)
-        rig.settle()
+        rig.wait_used()
 
-        def told():  # what was said of each image after the training, by its time
+        def recognized():  # place of each image after the training, by its time
             return {g.header.stamp: g.name for g in rig.seen.messages[begun:]}
 
-        wait_until(lambda: all(image.header.stamp in told() for image in self.film.raw), "all images")
-        right = sum(told()[image.header.stamp] == place
+        wait_until(lambda: all(image.header.stamp in recognized() for image in self.film.raw), "all images")
+        right = sum(recognized()[image.header.stamp] == place
                     for image, place in zip(self.film.raw, self.film.places))
         self.assertGreater(right / len(self.film.places), 0.9)
         # What was saved is what offline tools read; the map holds the signatures, enough to learn from again.
         self.assertEqual(len(self.film.predictions(folder, self.film.raw_list)), len(self.film.raw))
         with open(topo) as file:
-            self.assertEqual(file.read().count("<signature"), 5 * learnt)
+            self.assertEqual(file.read().count("<signature"), 5 * collected)
 
-    def test_what_was_trained_is_saved_by_itself(self):
+    def test_trained_models_are_saved(self):
         folder = os.path.join(self.film.folder.name, "autosaved")
         rig = self.rig(save_model=folder, retrain_every=20, learn=True, min_travel=0.0, min_turn=0.0)
         rig.give_map(topological_map())
@@ -435,21 +434,21 @@ class VisualPlacesTest(unittest.TestCase):
         wait_until(lambda: rig.number("frames trained") >= 20, "trained")
         trained = rig.number("frames trained")
         self.assertEqual({row["predicted"] for row in self.film.predictions(folder, self.film.raw_list)}, set(ROOMS))
-        learnt = rig.number("frames learnt")
-        wait_until(lambda: (f"{learnt - trained} frames gathered, not saved yet" in rig.status().message) == (learnt > trained),
+        collected = rig.number("frames collected")
+        wait_until(lambda: (f"{collected - trained} frames collected, not saved yet" in rig.status().message) == (collected > trained),
                    "only what came after the training is not saved")
         kept = self.rig("_kept", model="/nowhere", save_model=folder)
         self.assertTrue(kept.loaded, "what was kept goes before what there was to begin with")
         wait_until(lambda: kept.values().get("places") == "2", lambda: str(kept.values()))
-        # A place that gets another name takes along what was learnt of it.
+        # A place that gets another name keeps what was learned of it.
         named = topological_map()
         named.places[1].words = [PlaceWord("lab", True)]
         rig.give_map(named)
         wait_until(lambda: rig.number("places renamed") >= 1, "the new name")
-        rig.settle()
+        rig.wait_used()
         before = len(rig.seen.messages)
         rig.give(self.film.frame_in("right room"))
-        rig.settle()
+        rig.wait_used()
         seen = rig.seen.wait(before + 1)
         self.assertEqual((seen.name, seen.place), ("lab", 2))
         self.assertEqual(rig.values()["places"], "2")
@@ -478,32 +477,32 @@ class VisualPlacesTest(unittest.TestCase):
     def place_then_image(self, rig, state, image):
         rig.place.publish(state)
         rig.give(image)
-        rig.settle()
+        rig.wait_used()
 
-    def test_a_robot_that_was_carried_away(self):
-        rig = self.rig(model=self.film.model, reach=0.2, settle=2.0)
+    def test_kidnapped_robot(self):
+        rig = self.rig(model=self.film.model, expected_place_radius=0.2, grace_period=2.0)
         rig.give_map(topological_map())
         wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
         here, there = self.film.frame_in("left room"), self.film.frame_in("right room")
         clock = [here.header.stamp + rospy.Duration(1000)]
 
-        def look(image, x):
+        def show(image, x):
             clock[0] += rospy.Duration(0, 200000000)
             pose = TransformStamped()
             pose.header.stamp, pose.header.frame_id, pose.child_frame_id = clock[0], "map", "base_link"
             pose.transform.translation.x, pose.transform.translation.y, pose.transform.rotation.w = x, 2.0, 1.0
             rig.tf.publish(TFMessage([pose]))
-            judged = rig.number("frames judged")
+            tested = rig.number("frames tested")
             frame = copy.deepcopy(image)
             frame.header.stamp = clock[0]
             rospy.sleep(0.02)  # tf has a thread of its own
             rig.give(frame)
-            rig.settle()
-            return rig.number("frames judged") > judged
-        self.assertTrue(any([look(here, 1.5) for _ in range(10)]))
+            rig.wait_used()
+            return rig.number("frames tested") > tested
+        self.assertTrue(any([show(here, 1.5) for _ in range(10)]))
         self.assertEqual([m.data for m in rig.kidnapped.messages], [False])
         for frames in range(1, 15):
-            look(there, 1.5)  # the pose still says left
+            show(there, 1.5)  # the pose still says left
             if rig.kidnapped.messages[-1].data:
                 break
         wait_until(lambda: rig.kidnapped.messages[-1].data, "the alarm")
@@ -513,57 +512,58 @@ class VisualPlacesTest(unittest.TestCase):
         self.assertGreater(guess.pose.pose.position.x, 4.0)
         self.assertGreater(guess.pose.covariance[35], 1.0)
         for _ in range(20):
-            look(there, 6.0)  # the localisation has found it
+            show(there, 6.0)  # the localisation has found it
         wait_until(lambda: not rig.kidnapped.messages[-1].data, "they agree again")
         self.assertEqual(rig.values()["alarms"], "1")
 
-    def test_a_localization_that_is_lost_before_the_camera_notices(self):
-        rig = self.rig(model=self.film.model, reach=0.2, patience=1.0, known_from=0.97)  # two frames
+    def test_lost_localization(self):
+        rig = self.rig(model=self.film.model, expected_place_radius=0.2, relocalization_timeout=1.0,
+                       kidnapping_min_place_probability=0.97)  # two frames
         rig.give_map(topological_map())
         wait_until(lambda: rig.values().get("places of the map") == "2", "the map")
         there = self.film.frame_in("right room")
         clock = [there.header.stamp + rospy.Duration(1000)]
 
-        def tell(phase):
+        def report(phase):
             msg = LocalizationStatus(phase=phase, converged=phase == LocalizationStatus.TRACKING)
             msg.header.stamp, msg.header.frame_id = clock[0], "map"
             rig.localization.publish(msg)
 
-        def look(count=1):
+        def show(count=1):
             for _ in range(count):
                 clock[0] += rospy.Duration(0, 200000000)
                 rig.tf.publish(TFMessage([transform(there, "map", (1.5, 2.0, 0.0))]))
                 frame = copy.deepcopy(there)
                 frame.header.stamp = clock[0]
                 rig.give(frame)
-                rig.settle()
+                rig.wait_used()
 
         # It searches from the start on: no place is forced upon it.
-        tell(LocalizationStatus.GLOBAL)
+        report(LocalizationStatus.GLOBAL)
         rospy.sleep(0.3)
-        look(20)
+        show(20)
         self.assertFalse(rig.kidnapped.messages[-1].data or rig.initialpose.messages)
-        tell(LocalizationStatus.LOST)
+        report(LocalizationStatus.LOST)
         rospy.sleep(0.3)
-        look(10)
+        show(10)
         guess = rig.initialpose.wait()
         self.assertGreater(guess.pose.pose.position.x, 4.0)
         self.assertEqual((rig.values()["alarms"], rig.values()["localisation lost"]), ("0", "1"))
-        look(10)  # the last status still says lost: that was before the pose was set
+        show(10)  # the last status still says lost: that was before the pose was set
         self.assertEqual(len(rig.initialpose.messages), 1)
-        tell(LocalizationStatus.LOST)  # the pose that was set did not do
+        report(LocalizationStatus.LOST)  # the pose that was set did not do
         rospy.sleep(0.3)
-        look(10)
-        wait_until(lambda: len(rig.initialpose.messages) == 2, "the place is told again")
+        show(10)
+        wait_until(lambda: len(rig.initialpose.messages) == 2, "the place is set again")
         # It finds itself before the place is known: nothing is set any more.
-        look(10)
-        tell(LocalizationStatus.LOST)
+        show(10)
+        report(LocalizationStatus.LOST)
         rospy.sleep(0.3)
-        look(1)
-        wait_until(lambda: rig.kidnapped.messages[-1].data, "the doubt")
-        tell(LocalizationStatus.TRACKING)
+        show(1)
+        wait_until(lambda: rig.kidnapped.messages[-1].data, "lost")
+        report(LocalizationStatus.TRACKING)
         rospy.sleep(0.3)
-        look(1)
+        show(1)
         wait_until(lambda: not rig.kidnapped.messages[-1].data, "it has found itself")
         self.assertEqual(len(rig.initialpose.messages), 2)
 

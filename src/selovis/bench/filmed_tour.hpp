@@ -9,7 +9,7 @@
 
 #include "hyselam_sim/film.hpp"
 #include "hyselam_sim/simulation.hpp"
-#include "selovis/model.hpp"
+#include "selovis/learning/place_model.hpp"
 
 namespace selovis {
 namespace bench {
@@ -24,8 +24,8 @@ struct FilmedFrame {
   std::optional<hyselam::Pose2> odometry;  ///< of the camera
 
   cv::Mat image() const { return cv::imdecode(jpeg, cv::IMREAD_COLOR); }
-  Readings readings() const {
-    Readings r;
+  SensorReadings readings() const {
+    SensorReadings r;
     r.scan = scan;
     r.stamp = stamp;
     r.odometry = odometry;
@@ -117,12 +117,12 @@ inline FilmedTour filmTour(const hyselam_sim::Scene& scene, hyselam_sim::Route r
 }
 
 /// Trains on filmed tours.
-inline Model trainOn(const std::vector<FilmedTour>& tours,
-                     const std::vector<hyselam_sim::Place>& places,
-                     const TrainingOptions& options) {
+inline PlaceModel trainOn(const std::vector<FilmedTour>& tours,
+                          const std::vector<hyselam_sim::Place>& places,
+                          const TrainingOptions& options) {
   std::vector<std::size_t> sizes;
   for (const auto& tour : tours) sizes.push_back(tour.frames.size());
-  return train(
+  return trainPlaceModel(
       sizes,
       [&](std::size_t t, std::size_t i) -> TrainingFrame {
         const FilmedFrame& f = tours[t].frames[i];

@@ -1,6 +1,6 @@
-// kidnapped_robot: a robot that is carried away again and again in a simulated building. The camera
-// watches over the pose of the laser's localisation: how soon is it noticed, how often wrongly, and
-// does the localisation find its way again?
+// kidnapped_robot: a robot that is teleported again and again in a simulated building. The camera
+// tests the pose of the laser's localization: how soon is a teleport noticed, how often are there
+// false alarms, and does the localization find the pose again?
 #include <iostream>
 
 #include "filmed_tour.hpp"
@@ -11,9 +11,9 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/rasterise.hpp"
-#include "selovis/recogniser.hpp"
-#include "selovis/supervisor.hpp"
-#include "selovis/topology.hpp"
+#include "selovis/places/topological_places.hpp"
+#include "selovis/recognition/image_recognizer.hpp"
+#include "selovis/recognition/kidnapping_detector.hpp"
 
 namespace {
 
@@ -27,11 +27,11 @@ struct Options {
   double between = 15.0, hour = 13.0, rate = 5.0, reach = 1.0, patience = 3.0;
   std::vector<double> learn{9.0, 20.0};
   std::uint64_t seed = 1;
-  SupervisorParams supervisor;
+  KidnappingDetectorParams detector;
   bool without_camera = false;
 };
 
-/// From place to place at random; after some way the robot is carried to another place.
+/// From place to place at random; after some distance the robot is teleported to another place.
 hyselam_sim::Route kidnapRoute(const hyselam_sim::FloorPlan& plan, const Options& o) {
   hyselam_sim::Route route =
       hyselam_sim::loadRoute(hyselam_sim::routeFile(o.plan));  // for its people
@@ -41,10 +41,10 @@ hyselam_sim::Route kidnapRoute(const hyselam_sim::FloorPlan& plan, const Options
   const auto n = static_cast<std::uint32_t>(plan.places.size());
   std::uint32_t at = 0;
   const auto drive = [&] {
-    for (double way = 0.0; way < o.between;) {
+    for (double length = 0.0; length < o.between;) {
       const std::uint32_t to = (at + 1 + rng.below(n - 1)) % n;
       const auto &a = plan.places[at].at, &b = plan.places[to].at;
-      way += 1.2 * std::hypot(a.x - b.x, a.y - b.y);
+      length += 1.2 * std::hypot(a.x - b.x, a.y - b.y);
       hyselam_sim::RouteStep step;
       step.spot.place = plan.places[to].name;
       step.where = "leg";
@@ -123,7 +123,7 @@ class Laser {
   bool tracking() const { return tracking_; }
   bool lost() const { return lost_; }
   Pose2 pose(const Pose2& odom) const { return odom_in_map_ * odom; }
-  void startIn(const PlaceSpread& spread) {
+  void startIn(const PlacePosePrior& spread) {
     localizer_.setInitialPose(spread.mean, spread.stddev);
     tracking_ = lost_ = false;
   }
@@ -144,198 +144,262 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
+PlaceModel learnPlan(const hyselam_sim::Scene& scene, const hyselam_sim::FloorPlan& plan,
+                     const Options& o) {
+  hyselam::Progress progress("learning", 2);
+  hyselam_sim::Route tour = bench::roundTrip(plan);
+  tour.steps.resize(plan.places.size() - 1);  // without the way back
+  std::vector<bench::FilmedTour> tours;
+  tours.push_back(bench::filmTour(scene, tour, 101, bench::filmParams(o.learn[0], 1.0), false));
+  progress.update(1);
+  tours.push_back(bench::filmTour(scene, bench::reversed(tour), 102,
+                                  bench::filmParams(o.learn[1], 1.0), false));
+  TrainingOptions t;
+  t.descriptor = o.descriptor;
+  t.classifier.kernel = SvmKernel::kExemplar;
+  t.views = exemplarViews();
+  return bench::trainOn(tours, plan.places, t);
+}
+
+ImageRecognizerParams recognizerParams() {
+  ImageRecognizerParams params;
+  params.filter.kind = PlaceFilterKind::kBayes;
+  return params;
+}
+
+fsd_localization::LocalizerParams laserParams(const Options& o) {
+  fsd_localization::LocalizerParams params;
+  params.seed = o.seed;
+  return params;
+}
+
+struct Totals {
+  double tested_seconds = 0.0, right_seconds = 0.0, seconds = 0.0;
+  int false_alarms = 0, alarms = 0, started_in_place = 0, started_everywhere = 0;
+  int frames = 0, frames_right = 0;
+  nlohmann::json wrong_alarms = nlohmann::json::array();
+};
+
+/// The drive with its teleports: the laser localizes, the camera tests the pose.
+class Experiment {
+ public:
+  Experiment(const hyselam_sim::FloorPlan& plan, const hyselam_sim::Scene& scene,
+             const PlaceModel& model, const Options& o)
+      : o_(o),
+        plan_(plan),
+        scene_(scene),
+        model_(model),
+        map_(topologyOf(scene, o)),
+        route_(kidnapRoute(plan, o)),
+        run_(hyselam_sim::simulate(plan, route_, o.seed)),
+        laser_(hyselam_sim::rasterise(plan, {}), laserParams(o)),
+        recognizer_(model, model.transitions, recognizerParams()),
+        detector_(model.transitions, o.detector) {
+    for (const double stamp : run_.teleport_stamps) {
+      teleports_.push_back({stamp, -1.0, -1.0, -1.0});
+    }
+  }
+
+  nlohmann::json run() {
+    hyselam_sim::FilmParams film = bench::filmParams(o_.hour, o_.rate);
+    film.start_time = last_stamp_ = run_.log.ground_truth.front().stamp;
+    hyselam::Progress progress("driving", hyselam_sim::filmLength(run_.log, film));
+    hyselam_sim::film(scene_, run_.log, route_.people, o_.seed, film,
+                      [&](const hyselam_sim::FilmFrame& f) {
+                        progress.update(static_cast<std::size_t>(++totals_.frames));
+                        addFrame(f);
+                      });
+    addScansUntil(1e18);
+    if (!teleports_.empty()) print(teleports_.size() - 1);
+    return result();
+  }
+
+ private:
+  void print(std::size_t i) const {
+    const Teleport& t = teleports_[i];
+    std::cout << "teleport " << i + 1 << ": noticed after " << t.noticed << " s, found after "
+              << t.found << " s; false alarms so far: " << totals_.false_alarms << " in "
+              << totals_.right_seconds << " s" << std::endl;
+  }
+
+  void addScansUntil(double stamp) {
+    const auto& scans = run_.log.scans;
+    for (; scan_ < scans.size() && scans[scan_].stamp <= stamp + 1e-6; ++scan_) {
+      const auto& s = scans[scan_];
+      while (next_ < teleports_.size() && teleports_[next_].at <= s.stamp + 1e-6) {
+        if (next_ > 0) print(next_ - 1);
+        ++next_;
+        pose_right_ = false;
+      }
+      const auto odom = hyselam::poseAt(run_.log.odometry, s.stamp, 0.1);
+      const auto truth = hyselam::poseAt(run_.log.ground_truth, s.stamp, 0.1);
+      if (odom && truth) addScan(s, *odom, *truth);
+    }
+  }
+
+  void addScan(const hyselam::LaserScan& scan, const Pose2& odom, const Pose2& truth) {
+    if (laser_.scan(scan, odom) && restarted_ && laser_.tracking()) {
+      restarted_ = false;  // found again: the new pose is tested
+      detector_.reset();
+    }
+    const Pose2 pose = laser_.pose(odom);
+    pose_right_ =
+        laser_.tracking() && hyselam::distance(pose, truth) < 0.5 &&
+        std::abs(hyselam::normalizeAngle(pose.theta - truth.theta)) < hyselam::radians(15.0);
+    if (next_ == 0) return;
+    Teleport& t = teleports_[next_ - 1];
+    if (laser_.lost() && t.lost < 0.0) t.lost = scan.stamp - t.at;
+    if (pose_right_ && t.found < 0.0) t.found = scan.stamp - t.at;
+    if (!pose_right_) t.found = -1.0;  // found means: and not lost again
+  }
+
+  void addFrame(const hyselam_sim::FilmFrame& f) {
+    addScansUntil(f.stamp);
+    const double dt = f.stamp - last_stamp_;
+    last_stamp_ = f.stamp;
+    totals_.seconds += dt;
+    totals_.right_seconds += pose_right_ ? dt : 0.0;
+    const auto odom = hyselam::poseAt(run_.log.odometry, f.stamp, 0.1);
+    if (!odom || o_.without_camera) return;
+    recognizer_.update(f.picture.colour);
+    const int truth =
+        f.place < 0
+            ? -1
+            : model_.transitions.indexOf(plan_.places[static_cast<std::size_t>(f.place)].name);
+    const auto& p = recognizer_.frameProbabilities();
+    totals_.frames_right += std::max_element(p.begin(), p.end()) - p.begin() == truth;
+    ExpectedPlaces expected;
+    if (laser_.tracking() && !restarted_) {
+      const Pose2 pose = laser_.pose(*odom);
+      expected = expectedPlaces(map_, model_.transitions, {pose.x, pose.y}, o_.reach);
+    }
+    const KidnappingState state = detector_.update(p, expected.agreeing, expected.unmapped);
+    totals_.tested_seconds += state.tested ? dt : 0.0;
+    if (state.alarm) countAlarm(f);
+    if (pending_ && state.kidnapped) relocalize(state, f.stamp);
+  }
+
+  void countAlarm(const hyselam_sim::FilmFrame& f) {
+    ++totals_.alarms;
+    alarm_at_ = f.stamp;
+    pending_ = true;
+    if (pose_right_) {
+      ++totals_.false_alarms;
+      totals_.wrong_alarms.push_back({{"stamp", f.stamp}, {"x", f.base.x}, {"y", f.base.y}});
+    } else if (next_ > 0 && teleports_[next_ - 1].noticed < 0.0) {
+      teleports_[next_ - 1].noticed = f.stamp - teleports_[next_ - 1].at;
+    }
+  }
+
+  void relocalize(const KidnappingState& state, double stamp) {
+    if (state.place >= 0) {
+      laser_.startIn(
+          *posePriorOf(map_, model_.transitions.places[static_cast<std::size_t>(state.place)]));
+      ++totals_.started_in_place;
+    } else if (stamp - alarm_at_ >= o_.patience) {
+      laser_.startAnywhere();
+      ++totals_.started_everywhere;
+    } else {
+      return;
+    }
+    pending_ = false;
+    restarted_ = true;
+  }
+
+  nlohmann::json result() const {
+    nlohmann::json list = nlohmann::json::array();
+    std::vector<double> noticed, found;
+    int lost_first = 0;
+    for (const auto& t : teleports_) {
+      list.push_back({{"noticed_s", t.noticed}, {"laser_lost_s", t.lost}, {"found_s", t.found}});
+      if (t.noticed >= 0.0) noticed.push_back(t.noticed);
+      if (t.found >= 0.0) found.push_back(t.found);
+      lost_first += t.lost >= 0.0 && (t.noticed < 0.0 || t.lost < t.noticed);
+    }
+    // Those that were never noticed count as later than any.
+    std::vector<double> all = noticed;
+    all.resize(teleports_.size(), 1e9);
+    std::cout << noticed.size() << " of " << teleports_.size() << " teleports noticed, median "
+              << median(all) << " s; pose found again in " << found.size() << "; "
+              << totals_.false_alarms << " false alarms in " << totals_.right_seconds << " s\n";
+    return {{"plan", o_.plan},
+            {"teleports", teleports_.size()},
+            {"noticed", noticed.size()},
+            {"noticed_median_s", median(all)},
+            {"laser_first", lost_first},
+            {"found", found.size()},
+            {"found_median_s", median(found)},
+            {"alarms", totals_.alarms},
+            {"false_alarms", totals_.false_alarms},
+            {"false_alarms_per_hour",
+             totals_.false_alarms / std::max(1e-9, totals_.right_seconds / 3600.0)},
+            {"driven_s", totals_.seconds},
+            {"pose_right_s", totals_.right_seconds},
+            {"judged_s", totals_.tested_seconds},
+            {"started_in_place", totals_.started_in_place},
+            {"started_everywhere", totals_.started_everywhere},
+            {"frames", totals_.frames},
+            {"frame_accuracy",
+             totals_.frames_right / std::max(1.0, static_cast<double>(totals_.frames))},
+            {"places", model_.transitions.places.size()},
+            {"wrong_alarms", totals_.wrong_alarms},
+            {"each", list}};
+  }
+
+  const Options& o_;
+  const hyselam_sim::FloorPlan& plan_;
+  const hyselam_sim::Scene& scene_;
+  const PlaceModel& model_;
+  hyselam_topo::AugmentedTopologicalMap map_;
+  hyselam_sim::Route route_;
+  hyselam_sim::Simulation run_;
+  Laser laser_;
+  ImageRecognizer recognizer_;
+  KidnappingDetector detector_;
+  std::vector<Teleport> teleports_;
+  std::size_t scan_ = 0, next_ = 0;  // of the scans and teleports
+  // The localization was started again and has not converged; it is still to be started again.
+  bool restarted_ = false, pending_ = false;
+  bool pose_right_ = false;
+  double last_stamp_ = 0.0, alarm_at_ = 0.0;
+  Totals totals_;
+};
+
 nlohmann::json run(const Options& o) {
+  if (o.learn.size() != 2) {
+    throw hyselam::InputError("command line", "--learn", "needs two hours");
+  }
   hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile(o.plan));
   for (auto& door : plan.doors) {  // all rooms can be driven to
     door.initially_open = true;
     door.schedule.clear();
   }
   const hyselam_sim::Scene scene(plan);
-  const auto map = topologyOf(scene, o);
-  if (o.learn.size() != 2) {
-    throw hyselam::InputError("command line", "--learn", "needs two hours");
-  }
-  Model model;
-  {
-    hyselam::Progress progress("learning", 2);
-    hyselam_sim::Route tour = bench::roundTrip(plan);
-    tour.steps.resize(plan.places.size() - 1);  // without the way back
-    std::vector<bench::FilmedTour> tours;
-    tours.push_back(bench::filmTour(scene, tour, 101, bench::filmParams(o.learn[0], 1.0), false));
-    progress.update(1);
-    tours.push_back(bench::filmTour(scene, bench::reversed(tour), 102,
-                                    bench::filmParams(o.learn[1], 1.0), false));
-    TrainingOptions t;
-    t.descriptor = o.descriptor;
-    t.classifier.kernel = Kernel::kExemplar;
-    t.views = exemplarViews();
-    model = bench::trainOn(tours, plan.places, t);
-  }
-  const hyselam_sim::Route route = kidnapRoute(plan, o);
-  const hyselam_sim::Simulation run = hyselam_sim::simulate(plan, route, o.seed);
-  fsd_localization::LocalizerParams laser_params;
-  laser_params.seed = o.seed;
-  Laser laser(hyselam_sim::rasterise(plan, {}), laser_params);
-  RecogniserParams recogniser_params;
-  recogniser_params.filter.kind = FilterKind::kBayes;
-  Recogniser recogniser(model, model.graph, recogniser_params);
-  Supervisor supervisor(model.graph, o.supervisor);
-
-  std::vector<Teleport> teleports;
-  for (const double stamp : run.teleport_stamps) teleports.push_back({stamp, -1.0, -1.0, -1.0});
-  std::size_t scan = 0, next = 0;
-  bool set = false, to_act = false, good = false;
-  double alarm_at = 0.0, judged_seconds = 0.0, right_seconds = 0.0, seconds = 0.0;
-  int false_alarms = 0, alarms = 0, in_place = 0, everywhere = 0, frames = 0, frame_right = 0;
-  nlohmann::json wrong_alarms = nlohmann::json::array();
-  const auto tell = [&](std::size_t i) {
-    const Teleport& t = teleports[i];
-    std::cout << "teleport " << i + 1 << ": noticed after " << t.noticed << " s, found after "
-              << t.found << " s; false alarms so far: " << false_alarms << " in " << right_seconds
-              << " s" << std::endl;
-  };
-  const auto catchUp = [&](double stamp) {
-    for (; scan < run.log.scans.size() && run.log.scans[scan].stamp <= stamp + 1e-6; ++scan) {
-      const auto& s = run.log.scans[scan];
-      while (next < teleports.size() && teleports[next].at <= s.stamp + 1e-6) {
-        if (next > 0) tell(next - 1);
-        ++next;
-        good = false;
-      }
-      const auto odom = hyselam::poseAt(run.log.odometry, s.stamp, 0.1);
-      const auto truth = hyselam::poseAt(run.log.ground_truth, s.stamp, 0.1);
-      if (!odom || !truth) continue;
-      if (laser.scan(s, *odom) && set && laser.tracking()) {
-        set = false;  // found again: the new pose is judged
-        supervisor.reset();
-      }
-      const Pose2 pose = laser.pose(*odom);
-      good = laser.tracking() && hyselam::distance(pose, *truth) < 0.5 &&
-             std::abs(hyselam::normalizeAngle(pose.theta - truth->theta)) < hyselam::radians(15.0);
-      if (next > 0) {
-        Teleport& t = teleports[next - 1];
-        if (laser.lost() && t.lost < 0.0) t.lost = s.stamp - t.at;
-        if (good && t.found < 0.0) t.found = s.stamp - t.at;
-        if (!good) t.found = -1.0;  // found means: and not lost again
-      }
-    }
-  };
-  hyselam_sim::FilmParams film = bench::filmParams(o.hour, o.rate);
-  film.start_time = run.log.ground_truth.front().stamp;
-  hyselam::Progress progress("driving", hyselam_sim::filmLength(run.log, film));
-  double last_stamp = film.start_time;
-  hyselam_sim::film(
-      scene, run.log, route.people, o.seed, film, [&](const hyselam_sim::FilmFrame& f) {
-        progress.update(static_cast<std::size_t>(++frames));
-        catchUp(f.stamp);
-        const double dt = f.stamp - last_stamp;
-        last_stamp = f.stamp;
-        seconds += dt;
-        right_seconds += good ? dt : 0.0;
-        const auto odom = hyselam::poseAt(run.log.odometry, f.stamp, 0.1);
-        if (!odom) return;
-        if (o.without_camera) return;
-        recogniser.update(f.picture.colour);
-        const int truth =
-            f.place < 0 ? -1
-                        : model.graph.find(plan.places[static_cast<std::size_t>(f.place)].name);
-        const auto& p = recogniser.frameProbabilities();
-        frame_right += std::max_element(p.begin(), p.end()) - p.begin() == truth;
-        ExpectedPlaces expected;
-        if (laser.tracking() && !set) {
-          const Pose2 pose = laser.pose(*odom);
-          expected = expectedPlaces(map, model.graph, {pose.x, pose.y}, o.reach);
-        }
-        const Supervision s = supervisor.update(p, expected.agree, expected.unmapped);
-        judged_seconds += s.judged ? dt : 0.0;
-        if (s.alarm) {
-          ++alarms;
-          alarm_at = f.stamp;
-          to_act = true;
-          if (good) {
-            ++false_alarms;
-            wrong_alarms.push_back({{"stamp", f.stamp}, {"x", f.base.x}, {"y", f.base.y}});
-          } else if (next > 0 && teleports[next - 1].noticed < 0.0) {
-            teleports[next - 1].noticed = f.stamp - teleports[next - 1].at;
-          }
-        }
-        if (to_act && s.kidnapped) {
-          if (s.place >= 0) {
-            laser.startIn(*spreadOf(map, model.graph.places[static_cast<std::size_t>(s.place)]));
-            ++in_place;
-          } else if (f.stamp - alarm_at >= o.patience) {
-            laser.startAnywhere();
-            ++everywhere;
-          } else {
-            return;
-          }
-          to_act = false;
-          set = true;
-        }
-      });
-  catchUp(1e18);
-  if (!teleports.empty()) tell(teleports.size() - 1);
-  nlohmann::json list = nlohmann::json::array();
-  std::vector<double> noticed, found;
-  int lost_first = 0;
-  for (const auto& t : teleports) {
-    list.push_back({{"noticed_s", t.noticed}, {"laser_lost_s", t.lost}, {"found_s", t.found}});
-    if (t.noticed >= 0.0) noticed.push_back(t.noticed);
-    if (t.found >= 0.0) found.push_back(t.found);
-    lost_first += t.lost >= 0.0 && (t.noticed < 0.0 || t.lost < t.noticed);
-  }
-  // Those that were never noticed count as later than any.
-  std::vector<double> all = noticed;
-  all.resize(teleports.size(), 1e9);
-  const nlohmann::json result = {
-      {"plan", o.plan},
-      {"teleports", teleports.size()},
-      {"noticed", noticed.size()},
-      {"noticed_median_s", median(all)},
-      {"laser_first", lost_first},
-      {"found", found.size()},
-      {"found_median_s", median(found)},
-      {"alarms", alarms},
-      {"false_alarms", false_alarms},
-      {"false_alarms_per_hour", false_alarms / std::max(1e-9, right_seconds / 3600.0)},
-      {"driven_s", seconds},
-      {"pose_right_s", right_seconds},
-      {"judged_s", judged_seconds},
-      {"started_in_place", in_place},
-      {"started_everywhere", everywhere},
-      {"frames", frames},
-      {"frame_accuracy", frame_right / std::max(1.0, static_cast<double>(frames))},
-      {"places", model.graph.places.size()},
-      {"wrong_alarms", wrong_alarms},
-      {"each", list}};
-  std::cout << noticed.size() << " of " << teleports.size() << " teleports noticed, median "
-            << median(all) << " s; pose found again in " << found.size() << "; " << false_alarms
-            << " false alarms in " << right_seconds << " s\n";
-  return result;
+  const PlaceModel model = learnPlan(scene, plan, o);
+  return Experiment(plan, scene, model, o).run();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Carries a simulated robot away again and again; tells how soon the camera notices, how "
-      "often "
-      "wrongly, and whether the laser's localisation finds the pose again.",
+      "Teleports a simulated robot again and again; measures how soon the camera notices, how many "
+      "alarms are false, and whether the laser's localization finds the pose again.",
       "kidnapped_robot"};
   Options o;
   app.option_defaults()->always_capture_default();
   app.add_option("--plan", o.plan, "plan that hyselam_sim comes with");
   app.add_option("--descriptor", o.descriptor, "name");
   app.add_option("--teleports", o.teleports, "how often")->check(CLI::NonNegativeNumber);
-  app.add_option("--unnamed", o.unnamed, "places that are learnt and have no name on the map")
+  app.add_option("--unnamed", o.unnamed, "learned places without a name on the map")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--between", o.between, "way driven between them [m]");
+  app.add_option("--between", o.between, "distance driven between them [m]");
   app.add_option("--hour", o.hour, "of the day");
   app.add_option("--learn", o.learn, "two hours of the day")->delimiter(',');
   app.add_option("--rate", o.rate, "pictures per second");
-  app.add_option("--reach", o.reach, "places so near to the pose are as good as its own [m]");
-  app.add_option("--threshold", o.supervisor.threshold, "of the evidence [nats]");
-  app.add_option("--trust", o.supervisor.trust, "exponent of a frame's likelihoods");
+  app.add_option("--reach", o.reach, "places so near to the pose agree with it [m]");
+  app.add_option("--threshold", o.detector.threshold, "of the evidence [nats]");
+  app.add_option("--trust", o.detector.likelihood_exponent, "likelihood exponent of a frame");
   app.add_option("--seed", o.seed, "of route, run and pictures");
   app.add_flag("--without-camera", o.without_camera, "the laser's localisation alone");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });

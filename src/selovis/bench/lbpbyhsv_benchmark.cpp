@@ -5,7 +5,7 @@
 
 #include "../test/transcription/plain_lbp.hpp"
 #include "hyselam_common/rng.hpp"
-#include "selovis/recogniser.hpp"
+#include "selovis/recognition/image_recognizer.hpp"
 
 namespace {
 
@@ -36,7 +36,7 @@ cv::Mat scene(std::uint64_t seed) {
 
 void describe(benchmark::State& state, const std::string& name) {
   const cv::Mat image = scene(1);
-  Readings readings;
+  SensorReadings readings;
   for (int i = 0; i < 60; ++i) readings.ranges.push_back(0.5f + 0.05f * static_cast<float>(i));
   readings.scan.assign(181, 2.0f);
   const auto d = makeDescriptor(name);
@@ -112,18 +112,18 @@ void openCvHsvLbp(benchmark::State& state) {
 }
 
 /// Frame to place: descriptor, classifier, chain over 14 places, 700 training frames.
-void frameToPlace(benchmark::State& state, const std::string& name, Kernel kernel) {
+void frameToPlace(benchmark::State& state, const std::string& name, SvmKernel kernel) {
   constexpr int kPlaces = 14, kPerPlace = 50;
   TrainingOptions options;
   options.descriptor = name;
   options.classifier.kernel = kernel;
-  if (kernel == Kernel::kExemplar) options.views = {0.0, -0.09, 0.09, -0.18, 0.18};
+  if (kernel == SvmKernel::kExemplar) options.views = {0.0, -0.09, 0.09, -0.18, 0.18};
   std::vector<cv::Mat> scenes;  // small: training needs no more
   for (std::size_t place = 0; place < kPlaces; ++place) {
     scenes.emplace_back();
     cv::resize(scene(place), scenes.back(), cv::Size(160, 120), 0.0, 0.0, cv::INTER_AREA);
   }
-  const Model model = train(
+  const PlaceModel model = trainPlaceModel(
       {kPlaces * kPerPlace},
       [&](std::size_t, std::size_t i) {
         // One scene per place, turned a little from frame to frame, some pixels new each time.
@@ -137,9 +137,9 @@ void frameToPlace(benchmark::State& state, const std::string& name, Kernel kerne
         return TrainingFrame{image, {}, "place " + std::to_string(place)};
       },
       options);
-  Recogniser recogniser(model, model.graph, {});
+  ImageRecognizer recognizer(model, model.transitions, {});
   const cv::Mat image = scene(3);
-  for (auto _ : state) benchmark::DoNotOptimize(recogniser.update(image));
+  for (auto _ : state) benchmark::DoNotOptimize(recognizer.update(image));
   state.counters["frames_per_second"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
@@ -157,14 +157,14 @@ const int registered = [] {
                                  [name](benchmark::State& s) { describe(s, name); })
         ->Unit(kMillisecond);
   }
-  for (const Kernel kernel : {Kernel::kLinear, Kernel::kPoly, Kernel::kRbf}) {
+  for (const SvmKernel kernel : {SvmKernel::kLinear, SvmKernel::kPoly, SvmKernel::kRbf}) {
     benchmark::RegisterBenchmark(
-        (std::string("lbpbyhsv/frame_to_place/hLBP/") + nameOf(kernel)).c_str(),
+        (std::string("lbpbyhsv/frame_to_place/hLBP/") + toString(kernel)).c_str(),
         [kernel](benchmark::State& s) { frameToPlace(s, "hLBP", kernel); })
         ->Unit(kMillisecond);
   }
   benchmark::RegisterBenchmark("lbpbyhsv/frame_to_place/GLANCE/exemplar", [](benchmark::State& s) {
-    frameToPlace(s, "GLANCE", Kernel::kExemplar);
+    frameToPlace(s, "GLANCE", SvmKernel::kExemplar);
   })->Unit(kMillisecond);
   return 0;
 }();

@@ -3,11 +3,11 @@
 #include <ctime>
 #include <iostream>
 
-#include "../src/tools/options.hpp"
+#include "../src/tools/tours.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
-#include "selovis/recogniser.hpp"
+#include "selovis/recognition/image_recognizer.hpp"
 
 namespace {
 
@@ -28,70 +28,72 @@ double cpuMilliseconds() {
 
 struct Asked {
   std::vector<std::vector<float>> signatures;
-  std::vector<Readings> readings;  // what the filter over poses needs
+  std::vector<SensorReadings> readings;  // what the filter over poses needs
   std::vector<std::string> places;
 };
 
 /// The filter over poses on the same frames, with and without odometry.
-void addPoses(const Model& model, const Asked& tour, nlohmann::json* shares) {
-  if (model.classifier.kernel != Kernel::kExemplar || !model.samples.poses.front().isFinite()) {
+void addPoses(const PlaceModel& model, const Asked& tour, nlohmann::json* shares) {
+  if (model.classifier.kernel != SvmKernel::kExemplar || !model.samples.poses.front().isFinite()) {
     return;
   }
   for (const bool odometry : {false, true}) {
     if (odometry && !tour.readings.front().odometry) return;
-    RecogniserParams params;
-    params.filter.kind = FilterKind::kPoses;
-    Recogniser recogniser(model, model.graph, params);
+    ImageRecognizerParams params;
+    params.filter.kind = PlaceFilterKind::kPoses;
+    ImageRecognizer recognizer(model, model.transitions, params);
     int right = 0;
     for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
-      Readings readings = tour.readings[i];
+      SensorReadings readings = tour.readings[i];
       if (!odometry) readings.odometry.reset();
-      const Recognition r = recogniser.updateWithSignature(tour.signatures[i].data(), readings);
-      right += r.estimate.place == model.graph.find(tour.places[i]);
+      const Recognition r = recognizer.updateWithSignature(tour.signatures[i].data(), readings);
+      right += r.estimate.place == model.transitions.indexOf(tour.places[i]);
     }
     (*shares)[odometry ? "poses, odometry" : "poses"] =
         right / static_cast<double>(tour.signatures.size());
   }
 }
 
-Model learn(const Options& o, const std::string& kernel, bool grid, const Model* described) {
+PlaceModel learn(const Options& o, const std::string& kernel, bool grid,
+                 const PlaceModel* described) {
   TrainingOptions t;
   t.descriptor = o.descriptor;
-  t.classifier.kernel = kernelOf(kernel);
+  t.classifier.kernel = svmKernelFromString(kernel);
   t.grid_search = grid;
-  if (t.classifier.kernel == Kernel::kExemplar) t.views = exemplarViews();
+  if (t.classifier.kernel == SvmKernel::kExemplar) t.views = exemplarViews();
   if (described != nullptr) {
-    Model model = *described;
+    PlaceModel model = *described;
     model.classifier = t.classifier;
-    addTo(model, {}, {}, t);  // no new frames: trained anew on the signatures that are there
+    model = extendPlaceModel(std::move(model), {}, {},
+                             t);  // no new frames: trained anew on the signatures that are there
     return model;
   }
   const Tours tours(o.learn);
   hyselam::Progress progress("learning", 1);
-  return train(
+  return trainPlaceModel(
       tours.sizes(), [&](std::size_t tour, std::size_t i) { return tours.load(tour, i); }, t);
 }
 
-nlohmann::json rowOf(const Model& model, const std::vector<Asked>& asked,
+nlohmann::json rowOf(const PlaceModel& model, const std::vector<Asked>& asked,
                      std::vector<double>* frame_ms) {
   nlohmann::json row = nlohmann::json::array();
   for (const Asked& tour : asked) {
     std::vector<PlaceFilter> filters;
     for (const char* name : kFilters) {
       PlaceFilterParams params;
-      params.kind = filterKind(name);
-      filters.emplace_back(model.graph, params);
+      params.kind = placeFilterKindFromString(name);
+      filters.emplace_back(model.transitions, params);
     }
-    RecogniserParams params;
-    Recogniser recogniser(model, model.graph, params);
+    ImageRecognizerParams params;
+    ImageRecognizer recognizer(model, model.transitions, params);
     std::vector<int> right(filters.size(), 0);
     for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
       const double start = cpuMilliseconds();
-      recogniser.updateWithSignature(tour.signatures[i].data());
+      recognizer.updateWithSignature(tour.signatures[i].data());
       frame_ms->push_back(cpuMilliseconds() - start);
       for (std::size_t f = 0; f < filters.size(); ++f) {
-        filters[f].update(recogniser.frameProbabilities());
-        right[f] += filters[f].estimate().place == model.graph.find(tour.places[i]);
+        filters[f].update(recognizer.frameProbabilities());
+        right[f] += filters[f].estimate().place == model.transitions.indexOf(tour.places[i]);
       }
     }
     nlohmann::json shares;
@@ -112,16 +114,16 @@ double median(std::vector<double> values) {
 
 nlohmann::json run(const Options& o) {
   nlohmann::json rows = nlohmann::json::array();
-  std::unique_ptr<Model> described;  // the signatures of the SVMs: one view of each image
+  std::unique_ptr<PlaceModel> described;  // the signatures of the SVMs: one view of each image
   std::vector<Asked> asked;
   double descriptor_ms = 0.0;
   for (const auto& name : o.kernels) {
     const std::string kernel = name.substr(0, name.find(':'));
     const bool grid = name.find(":grid") != std::string::npos;
-    const bool exemplar = kernelOf(kernel) == Kernel::kExemplar;
+    const bool exemplar = svmKernelFromString(kernel) == SvmKernel::kExemplar;
     // A dictionary depends on the training images only: it is the same for all kernels.
-    Model model = learn(o, kernel, grid, exemplar ? nullptr : described.get());
-    if (!exemplar && !described) described = std::make_unique<Model>(model);
+    PlaceModel model = learn(o, kernel, grid, exemplar ? nullptr : described.get());
+    if (!exemplar && !described) described = std::make_unique<PlaceModel>(model);
     if (asked.empty()) {
       const auto descriptor = model.makeDescriptor();
       std::vector<double> ms;
@@ -135,7 +137,7 @@ nlohmann::json run(const Options& o) {
           const double start = cpuMilliseconds();
           tour.signatures.push_back(descriptor->compute(frame.image, frame.readings));
           ms.push_back(cpuMilliseconds() - start);
-          Readings kept;
+          SensorReadings kept;
           kept.odometry = frame.readings.odometry;
           kept.stamp = frame.readings.stamp;
           tour.readings.push_back(kept);

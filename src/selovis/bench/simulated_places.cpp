@@ -1,5 +1,5 @@
-// simulated_places: learns a simulated building at two hours of the day, asks for its places at two
-// others with people about.
+// simulated_places: learns a simulated building at two hours of the day, recognizes its places at
+// two others with people in it.
 #include <ctime>
 #include <iostream>
 
@@ -9,7 +9,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "selovis/recogniser.hpp"
+#include "selovis/recognition/image_recognizer.hpp"
 
 namespace {
 
@@ -27,96 +27,119 @@ struct Options {
 
 const char* const kFilters[] = {"none", "lowpass", "markov", "bayes"};
 
-nlohmann::json run(const Options& o) {
-  Route route;
+struct Building {
   FloorPlan plan;
+  Route route;
+};
+
+Building buildingOf(const Options& o) {
+  Building building;
   if (o.generate > 0) {
     PlanParams params;
-    params.min_door = 0.9;  // that the robot comes through; furniture may bar its way
-    plan = generatePlan(o.generate, params);
-    route = bench::roundTrip(plan);
+    params.min_door = 0.9;  // wide enough for the robot
+    building.plan = generatePlan(o.generate, params);
+    building.route = bench::roundTrip(building.plan);
   } else {
-    route = loadRoute(routeFile(o.route));
-    plan = loadFloorPlan(planFile(route.plan));
+    building.route = loadRoute(routeFile(o.route));
+    building.plan = loadFloorPlan(planFile(building.route.plan));
   }
-  SceneParams look;
-  look.seed = o.look;
-  const Scene scene(plan, look);
+  return building;
+}
+
+struct Tours {
+  std::vector<bench::FilmedTour> learned, asked;
+};
+
+Tours filmTours(const Scene& scene, const Route& route, const Options& o) {
+  Tours tours;
+  hyselam::Progress progress("filming", o.learn.size() + o.ask.size());
+  std::uint64_t seed = 1;
+  for (const double hour : o.learn) {
+    progress.update(seed - 1);
+    const Route& way = seed == 1 ? route : bench::reversed(route);
+    tours.learned.push_back(
+        bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
+    ++seed;
+  }
+  for (const double hour : o.ask) {
+    progress.update(seed - 1);
+    tours.asked.push_back(
+        bench::filmTour(scene, route, seed, bench::filmParams(hour, o.rate), true));
+    ++seed;
+  }
+  return tours;
+}
+
+/// Share of the frames whose place is right, by filter.
+nlohmann::json accuraciesOf(const PlaceModel& model, const std::vector<Place>& places,
+                            const bench::FilmedTour& tour) {
+  std::vector<std::unique_ptr<PlaceFilter>> filters;
+  for (const char* name : kFilters) {
+    PlaceFilterParams params;
+    params.kind = placeFilterKindFromString(name);
+    filters.push_back(std::make_unique<PlaceFilter>(model.transitions, params));
+  }
+  ImageRecognizer recognizer(model, model.transitions, {});
+  // The filter over poses without and with the odometry of the tour.
+  std::vector<std::unique_ptr<ImageRecognizer>> by_poses;
+  if (model.classifier.kernel == SvmKernel::kExemplar) {
+    ImageRecognizerParams params;
+    params.filter.kind = PlaceFilterKind::kPoses;
+    for (int i = 0; i < 2; ++i) {
+      by_poses.push_back(std::make_unique<ImageRecognizer>(model, model.transitions, params));
+    }
+  }
+  std::vector<int> right(filters.size(), 0), right_by_poses(by_poses.size(), 0);
+  for (const auto& frame : tour.frames) {
+    recognizer.update(frame.image(), frame.readings());
+    const int truth = model.transitions.indexOf(places[static_cast<std::size_t>(frame.place)].name);
+    for (std::size_t f = 0; f < filters.size(); ++f) {
+      filters[f]->update(recognizer.frameProbabilities());
+      right[f] += filters[f]->estimate().place == truth;
+    }
+    for (std::size_t m = 0; m < by_poses.size(); ++m) {
+      SensorReadings readings = frame.readings();
+      if (m == 0) readings.odometry.reset();
+      right_by_poses[m] += by_poses[m]
+                               ->updateWithSignature(recognizer.signature().data(), readings)
+                               .estimate.place == truth;
+    }
+  }
+  const double frames = static_cast<double>(tour.frames.size());
+  nlohmann::json shares;
+  for (std::size_t f = 0; f < filters.size(); ++f) shares[kFilters[f]] = right[f] / frames;
+  for (std::size_t m = 0; m < by_poses.size(); ++m) {
+    shares[m == 0 ? "poses" : "poses, odometry"] = right_by_poses[m] / frames;
+  }
+  return shares;
+}
+
+nlohmann::json run(const Options& o) {
   if (o.learn.size() != 2 || o.ask.empty()) {
     throw hyselam::InputError("command line", "", "two hours to learn, one or more to ask for");
   }
-  std::vector<bench::FilmedTour> learnt, asked;
-  {
-    hyselam::Progress progress("filming", o.learn.size() + o.ask.size());
-    std::uint64_t seed = 1;
-    for (const double hour : o.learn) {
-      progress.update(seed - 1);
-      const Route& way = seed == 1 ? route : bench::reversed(route);
-      learnt.push_back(bench::filmTour(scene, way, seed, bench::filmParams(hour, o.rate), false));
-      ++seed;
-    }
-    for (const double hour : o.ask) {
-      progress.update(seed - 1);
-      asked.push_back(bench::filmTour(scene, route, seed, bench::filmParams(hour, o.rate), true));
-      ++seed;
-    }
-  }
+  const Building building = buildingOf(o);
+  SceneParams look;
+  look.seed = o.look;
+  const Scene scene(building.plan, look);
+  const Tours tours = filmTours(scene, building.route, o);
   nlohmann::json rows = nlohmann::json::array();
   for (const auto& descriptor : o.descriptors) {
     for (const auto& kernel : o.kernels) {
       TrainingOptions t;
       t.descriptor = descriptor;
-      t.classifier.kernel = kernelOf(kernel);
-      if (t.classifier.kernel == Kernel::kExemplar) t.views = exemplarViews();
-      const Model model = bench::trainOn(learnt, plan.places, t);
-      nlohmann::json row = {{"plan", plan.name},
+      t.classifier.kernel = svmKernelFromString(kernel);
+      if (t.classifier.kernel == SvmKernel::kExemplar) t.views = exemplarViews();
+      const PlaceModel model = bench::trainOn(tours.learned, building.plan.places, t);
+      nlohmann::json row = {{"plan", building.plan.name},
                             {"descriptor", descriptor},
                             {"kernel", kernel},
-                            {"places", model.graph.places.size()}};
-      for (std::size_t k = 0; k < asked.size(); ++k) {
-        std::vector<std::unique_ptr<PlaceFilter>> filters;
-        for (const char* name : kFilters) {
-          PlaceFilterParams params;
-          params.kind = filterKind(name);
-          filters.push_back(std::make_unique<PlaceFilter>(model.graph, params));
-        }
-        Recogniser recogniser(model, model.graph, {});
-        // The filter over poses without and with the odometry of the tour that is asked for.
-        std::vector<std::unique_ptr<Recogniser>> moved;
-        if (model.classifier.kernel == Kernel::kExemplar) {
-          RecogniserParams params;
-          params.filter.kind = FilterKind::kPoses;
-          for (int i = 0; i < 2; ++i) {
-            moved.push_back(std::make_unique<Recogniser>(model, model.graph, params));
-          }
-        }
-        std::vector<int> right(filters.size(), 0), right_moved(moved.size(), 0);
-        for (const auto& frame : asked[k].frames) {
-          recogniser.update(frame.image(), frame.readings());
-          const int truth =
-              model.graph.find(plan.places[static_cast<std::size_t>(frame.place)].name);
-          for (std::size_t f = 0; f < filters.size(); ++f) {
-            filters[f]->update(recogniser.frameProbabilities());
-            right[f] += filters[f]->estimate().place == truth;
-          }
-          for (std::size_t m = 0; m < moved.size(); ++m) {
-            Readings readings = frame.readings();
-            if (m == 0) readings.odometry.reset();
-            right_moved[m] += moved[m]
-                                  ->updateWithSignature(recogniser.signature().data(), readings)
-                                  .estimate.place == truth;
-          }
-        }
-        nlohmann::json shares;
-        for (std::size_t f = 0; f < filters.size(); ++f) {
-          shares[kFilters[f]] = right[f] / static_cast<double>(asked[k].frames.size());
-        }
-        for (std::size_t m = 0; m < moved.size(); ++m) {
-          shares[m == 0 ? "poses" : "poses, odometry"] =
-              right_moved[m] / static_cast<double>(asked[k].frames.size());
-        }
+                            {"places", model.transitions.places.size()}};
+      for (std::size_t k = 0; k < tours.asked.size(); ++k) {
         row["asked"].push_back(
-            {{"hour", o.ask[k]}, {"frames", asked[k].frames.size()}, {"accuracy", shares}});
+            {{"hour", o.ask[k]},
+             {"frames", tours.asked[k].frames.size()},
+             {"accuracy", accuraciesOf(model, building.plan.places, tours.asked[k])}});
       }
       rows.push_back(row);
     }
@@ -129,8 +152,7 @@ nlohmann::json run(const Options& o) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Films a simulated building at two hours of the day to learn it and at others, with people, "
-      "to "
-      "ask for its places.",
+      "to recognize its places.",
       "simulated_places"};
   Options o;
   app.option_defaults()->always_capture_default();

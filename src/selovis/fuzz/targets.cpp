@@ -6,9 +6,9 @@
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
-#include "selovis/labels.hpp"
-#include "selovis/model.hpp"
-#include "selovis/place_graph.hpp"
+#include "selovis/learning/labeled_frames.hpp"
+#include "selovis/learning/place_model.hpp"
+#include "selovis/places/place_transitions.hpp"
 
 namespace selovis {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using hyselam::testing::FuzzFolder;
 using hyselam::testing::require;
 
-/// A signature of more values makes an input slow and no richer.
+/// Longer signatures make an input slow without covering more.
 constexpr int kMaxSignature = 100000;
 
 /// The text up to the next mark, which is taken off with it.
@@ -28,9 +28,13 @@ std::string nextPart(std::string& text) {
   return part;
 }
 
-/// Writes a data file of the model and says so in its manifest.
+/// Writes a data file of the model, with the header of its format, and names it in the manifest.
 void putData(const FuzzFolder& folder, nlohmann::json& manifest, const std::string& kind,
-             const std::string& bytes) {
+             const std::string& content) {
+  const std::string bytes = (manifest.count("format") && manifest["format"] == "selovis model 2"
+                                 ? "selovis " + kind + " 2\n"
+                                 : "") +
+                            content;
   const std::string sum = hyselam::crc32Text(bytes);
   const std::string name = kind + "-" + sum + ".bin";
   folder.put(name, bytes);
@@ -44,9 +48,9 @@ void clear(const std::string& folder) {
   }
 }
 
-void requireProbabilities(const Model& model) {
+void requireProbabilities(const PlaceModel& model) {
   const std::vector<float> signature(model.samples.size, 0.5f);
-  std::vector<double> p(model.graph.places.size());
+  std::vector<double> p(model.transitions.places.size());
   model.makeClassifier()->predict(signature.data(), p.data());
   double sum = 0.0;
   for (const double each : p) {
@@ -56,9 +60,9 @@ void requireProbabilities(const Model& model) {
   require(std::abs(sum - 1.0) < 1e-6);
 }
 
-/// A model's model.json, its signatures and its SVM, parted by "\n===\n"; names, lengths and
-/// checksums of the parts are put right first. Refused, or it tells probabilities, and is written
-/// and read as the same.
+/// A model's model.json, its signatures and its SVM, separated by "\n===\n"; names, lengths and
+/// checksums of the parts are corrected first. Refused, or it gives probabilities, and is written
+/// and read back equal.
 void placeModel(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
   clear(folder.path(""));
@@ -71,58 +75,60 @@ void placeModel(const std::uint8_t* data, std::size_t size) {
     manifest = j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
   folder.put("model.json", manifest);
-  Model model;
+  PlaceModel model;
   try {
-    model = loadModel(folder.path(""));
+    model = loadPlaceModel(folder.path(""));
   } catch (const hyselam::InputError&) {
     return;
   }
   if (model.samples.size > kMaxSignature) return;
   requireProbabilities(model);
   const std::string again = folder.path("again");
-  saveModel(model, again);
-  const Model same = loadModel(again);
-  require(same.descriptor == model.descriptor && same.graph.places == model.graph.places &&
-          same.graph.transitions == model.graph.transitions && same.learnt == model.learnt &&
-          same.samples.values == model.samples.values && same.state == model.state);
+  savePlaceModel(model, again);
+  const PlaceModel same = loadPlaceModel(again);
+  require(
+      same.descriptor == model.descriptor && same.transitions.places == model.transitions.places &&
+      same.transitions.pairs == model.transitions.pairs && same.dictionary == model.dictionary &&
+      same.samples.values == model.samples.values && same.svm == model.svm);
 }
 
 /// A list of images and places: refused, or each frame has an image and a place.
 void placeLabels(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
-  std::vector<LabelledFrame> frames;
+  std::vector<LabeledFrame> frames;
   try {
-    frames = readLabels(folder.put("labels.csv", hyselam::testing::textOf(data, size)));
+    frames = readLabeledFrames(folder.put("labels.csv", hyselam::testing::textOf(data, size)));
   } catch (const hyselam::InputError&) {
     return;
   }
   require(!frames.empty());
-  for (const LabelledFrame& frame : frames) {
+  for (const LabeledFrame& frame : frames) {
     require(!frame.place.empty() && !frame.image.empty());
     require(frame.pose.isFinite() ||
             !std::isfinite(frame.pose.x + frame.pose.y + frame.pose.theta));
   }
 }
 
-/// A graph of places: refused, or its transitions join places that it has, and ways lead along
+/// Transitions between places: refused, or they join places that it has, and paths lead along
 /// them.
 void placeGraph(const std::uint8_t* data, std::size_t size) {
   static const FuzzFolder folder;
-  PlaceGraph graph;
+  PlaceTransitions transitions;
   try {
-    graph = readPlaceGraph(folder.put("graph", hyselam::testing::textOf(data, size)));
+    transitions = readPlaceTransitions(folder.put("graph", hyselam::testing::textOf(data, size)));
   } catch (const hyselam::InputError&) {
     return;
   }
-  const int places = static_cast<int>(graph.places.size());
+  const int places = static_cast<int>(transitions.places.size());
   require(places > 0);
-  for (const auto& [a, b] : graph.transitions) require(a >= 0 && a < b && b < places);
-  constexpr int kManyPlaces = 200;  // all ways between more of them make an input slow
+  for (const auto& [a, b] : transitions.pairs) require(a >= 0 && a < b && b < places);
+  constexpr int kManyPlaces = 200;  // the paths between more of them make an input slow
   if (places > kManyPlaces) return;
-  const PlaceDistances ways = shortestPaths(graph);
-  for (const auto& [a, b] : graph.transitions) {
-    require(ways.distance[ways.size * static_cast<std::size_t>(a) + static_cast<std::size_t>(b)] ==
-            1);
+  const PlaceDistances paths = shortestPaths(transitions);
+  for (const auto& [a, b] : transitions.pairs) {
+    require(
+        paths.distance[paths.size * static_cast<std::size_t>(a) + static_cast<std::size_t>(b)] ==
+        1);
   }
 }
 

@@ -5,11 +5,12 @@
 #include <fstream>
 #include <opencv2/imgproc.hpp>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "selovis/color_lbp.hpp"
-#include "selovis/descriptor.hpp"
-#include "selovis/vanishing_point.hpp"
+#include "selovis/descriptors/color_lbp.hpp"
+#include "selovis/descriptors/descriptor.hpp"
+#include "selovis/descriptors/vanishing_point.hpp"
 #include "transcription/plain_lbp.hpp"
 
 namespace selovis {
@@ -138,7 +139,7 @@ TEST(Descriptors, DepthLbpEqualsTheTranscription) {
   hyselam::Rng rng(12);
   for (int round = 0; round < 12; ++round) {
     const cv::Mat image = randomImage(rng, 30 + round, 45 + 3 * round);
-    Readings readings;
+    SensorReadings readings;
     for (int i = 0; i < 20; ++i) {
       readings.ranges.push_back(static_cast<float>(rng.uniform(0.2, 4.0)));
     }
@@ -176,14 +177,14 @@ TEST(Descriptors, BaselinesEqualTheTranscription) {
   hyselam::Rng rng(13);
   for (int round = 0; round < 10; ++round) {
     const cv::Mat image = randomImage(rng, 25 + 3 * round, 31 + 5 * round);
-    cv::Mat hsv, grey;
+    cv::Mat hsv, gray;
     cv::cvtColor(image, hsv, cv::COLOR_BGR2HSV);
-    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
     const double total = double(image.rows - 6) * (image.cols - 6);
     std::vector<int> all(768), uniform(174), pyramid(21 * 58), census(256);
     for (int y = 1; y < image.rows - 1; ++y) {
       for (int x = 1; x < image.cols - 1; ++x) {
-        ++census[plain::lbp([&](int u, int v) { return grey.at<std::uint8_t>(v, u); }, x, y, 1,
+        ++census[plain::lbp([&](int u, int v) { return gray.at<std::uint8_t>(v, u); }, x, y, 1,
                             false)];
       }
     }
@@ -196,7 +197,7 @@ TEST(Descriptors, BaselinesEqualTheTranscription) {
           if (plain::isUniform(code)) ++uniform[c * 58 + plain::uniformLabel(code)];
         }
         const int code =
-            plain::lbp([&](int u, int v) { return grey.at<std::uint8_t>(v, u); }, x, y, 3, true);
+            plain::lbp([&](int u, int v) { return gray.at<std::uint8_t>(v, u); }, x, y, 3, true);
         if (!plain::isUniform(code)) continue;
         const int label = plain::uniformLabel(code);
         int row = 0, col = 0;
@@ -215,20 +216,20 @@ TEST(Descriptors, BaselinesEqualTheTranscription) {
   }
 }
 
-TEST(Descriptors, ColorClassesOfAllColorsOnAGridAreThoseOfEq613) {
+TEST(Descriptors, ColorClassesAreThoseOfEquation613) {
   std::vector<cv::Vec3b> colors;
   for (int b = 0; b < 256; b += 5) {
     for (int g = 0; g < 256; g += 5) {
       for (int r = 0; r < 256; r += 3) colors.emplace_back(b, g, r);
     }
   }
-  std::vector<std::uint8_t> grey(colors.size() + 16), classes(colors.size() + 16);
+  std::vector<std::uint8_t> gray(colors.size() + 16), classes(colors.size() + 16);
   for (const int n : {3, 7, 8, 16}) {
-    classifyRow(colors.front().val, static_cast<int>(colors.size()), {n, 40, 40}, grey.data(),
+    classifyRow(colors.front().val, static_cast<int>(colors.size()), {n, 40, 40}, gray.data(),
                 classes.data());
     for (std::size_t i = 0; i < colors.size(); ++i) {
       ASSERT_EQ(classes[i], plain::colorClass(colors[i], n, 40, 40)) << n << " " << colors[i];
-      ASSERT_EQ(grey[i], plain::grey(colors[i]));
+      ASSERT_EQ(gray[i], plain::gray(colors[i]));
     }
   }
 }
@@ -270,51 +271,51 @@ TEST(Descriptors, SizesAreThoseOfTheTables) {
 TEST(Descriptors, ListedNamesAllWorkOnAColorImage) {
   hyselam::Rng rng(14);
   const cv::Mat image = randomImage(rng, 120, 160);
-  Readings readings;
+  SensorReadings readings;
   readings.ranges.assign(20, 1.5f);
   readings.scan.assign(181, 2.0f);
   for (const auto& name : descriptorNames()) {
     const auto d = makeDescriptor(name);
-    if (d->needsTraining()) continue;
+    if (d->needsDictionary()) continue;
     for (const float v : d->compute(image, readings)) ASSERT_TRUE(std::isfinite(v)) << name;
   }
 }
 
-TEST(Descriptors, BagOfFeaturesLearnsWordsAndKeepsThem) {
+TEST(Descriptors, BagOfFeaturesLearnsADictionaryAndRestoresIt) {
   hyselam::Rng rng(15);
   std::vector<cv::Mat> images;
   for (int i = 0; i < 4; ++i) images.push_back(randomImage(rng, 120, 160));
   const auto d = makeDescriptor("BOF-ORB20-D");
-  EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(images[0]); }).find("train"),
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(images[0]); }).find("train"),
             std::string::npos);
-  d->train(images, 1);
+  d->learnDictionary(images, 1);
   const auto before = d->compute(images[0]);
   float sum = 0.0f;
   for (int i = 0; i < 20; ++i) sum += before[i];
   EXPECT_NEAR(sum, 1.0f, 1e-4);
   const auto copy = makeDescriptor("BOF-ORB20-D");
-  copy->setLearnt(d->learnt());
+  copy->setDictionary(d->dictionary());
   EXPECT_EQ(copy->compute(images[0]), before);
-  EXPECT_THROW(copy->setLearnt({1.0f, 2.0f}), std::invalid_argument);
+  EXPECT_THROW(copy->setDictionary({1.0f, 2.0f}), hyselam::InputError);
 }
 
-TEST(Descriptors, GreyAndOddImagesAreRefusedByName) {
-  const cv::Mat grey(40, 40, CV_8UC1, cv::Scalar(9)), deep(40, 40, CV_16UC3, cv::Scalar(9));
+TEST(Descriptors, GrayAndUnsuitableImagesAreRefusedWithTheDescriptorsName) {
+  const cv::Mat gray(40, 40, CV_8UC1, cv::Scalar(9)), deep(40, 40, CV_16UC3, cv::Scalar(9));
   for (const std::string name :
        {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP", "GLANCE"}) {
     const auto d = makeDescriptor(name);
-    EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(grey); }).find("grey"),
+    EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(gray); }).find("grey"),
               std::string::npos)
         << name;
-    EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(deep); }), "") << name;
-    EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(cv::Mat()); }), "") << name;
+    EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(deep); }), "") << name;
+    EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(cv::Mat()); }), "") << name;
   }
   for (const std::string name : {"LBP8,1", "SLBP", "CENTRIST", "LGOP"}) {  // these need no colour
-    EXPECT_NO_THROW(makeDescriptor(name)->compute(grey)) << name;
+    EXPECT_NO_THROW(makeDescriptor(name)->compute(gray)) << name;
   }
 }
 
-TEST(Descriptors, MissingReadingsAreNamed) {
+TEST(Descriptors, MissingReadingsAreReported) {
   const cv::Mat image(40, 40, CV_8UC3, cv::Scalar(9, 8, 7));
   const std::pair<const char*, const char*> cases[] = {{"sLBP-(N)LRF20", "distances"},
                                                        {"hLBP+psi", "heading"},
@@ -323,7 +324,7 @@ TEST(Descriptors, MissingReadingsAreNamed) {
                                                        {"LGOP+scan", "laser scan"}};
   for (const auto& c : cases) {
     const auto d = makeDescriptor(c.first);
-    EXPECT_NE(messageOf<std::invalid_argument>([&] { d->compute(image); }).find(c.second),
+    EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(image); }).find(c.second),
               std::string::npos)
         << c.first;
   }
@@ -334,12 +335,12 @@ TEST(Descriptors, UnknownNamesAreRefused) {
        {"", "LBP", "LBPbyHSV-U8", "LBPbyHSV-X8N", "LBPbyHSV-U2N", "LBPbyHSV-U17N", "LBPbyHSV-S8S",
         "hLBP+", "+hLBP", "sLBP-(X)LRF20", "sLBP-(N)LRF0", "A99999999999", "BOF-SIFT1",
         "HSV-GIST30", "BOF-ORB50+BOF-SIFT50"}) {
-    EXPECT_THROW(makeDescriptor(name), std::invalid_argument) << name;
+    EXPECT_THROW(makeDescriptor(name), hyselam::InputError) << name;
   }
 }
 
 TEST(Descriptors, BlackAndTinyImagesGiveFiniteSignatures) {
-  Readings readings;
+  SensorReadings readings;
   readings.scan.assign(181, 2.0f);
   for (const cv::Size size :
        {cv::Size(640, 480), cv::Size(1, 1), cv::Size(5, 300), cv::Size(7, 7)}) {
@@ -353,7 +354,7 @@ TEST(Descriptors, BlackAndTinyImagesGiveFiniteSignatures) {
   }
 }
 
-TEST(Descriptors, OneObjectServesImagesOfChangingSize) {
+TEST(Descriptors, OneObjectTakesImagesOfChangingSize) {
   hyselam::Rng rng(16);
   const cv::Mat a = randomImage(rng, 60, 80), b = randomImage(rng, 33, 121);
   for (const std::string name :
@@ -365,7 +366,7 @@ TEST(Descriptors, OneObjectServesImagesOfChangingSize) {
   }
 }
 
-TEST(VanishingPoint, IsFoundWhereDrawnLinesMeet) {
+TEST(VanishingPoint, IsFoundWhereLinesMeet) {
   hyselam::Rng rng(17);
   for (int round = 0; round < 10; ++round) {
     const cv::Point at(220 + static_cast<int>(rng.below(200)),
@@ -385,7 +386,7 @@ TEST(VanishingPoint, IsFoundWhereDrawnLinesMeet) {
 
 // scikit-image interpolates between pixels; with 4 samples, or where all 8 fall on pixels, it
 // defines the same. Its 8 samples at radius 1 are compared through the 4 that fall on pixels.
-TEST(Descriptors, CodesEqualScikitImageWhereDefinitionsCoincide) {
+TEST(Descriptors, LbpCodesEqualScikitImageWhereDefinitionsCoincide) {
   const char* python = std::getenv("HYSELAM_PYTHON");
   const std::string run = python != nullptr ? python : "python3";
   if (std::system((run + " -c 'import skimage' > /dev/null 2>&1").c_str()) != 0) {
@@ -394,10 +395,10 @@ TEST(Descriptors, CodesEqualScikitImageWhereDefinitionsCoincide) {
   hyselam::testing::TemporaryDirectory folder;
   hyselam::Rng rng(18);
   const int rows = 47, cols = 61;
-  cv::Mat grey(rows, cols, CV_8U);
-  for (int i = 0; i < rows * cols; ++i) grey.data[i] = static_cast<std::uint8_t>(rng.below(40));
+  cv::Mat gray(rows, cols, CV_8U);
+  for (int i = 0; i < rows * cols; ++i) gray.data[i] = static_cast<std::uint8_t>(rng.below(40));
   std::ofstream(folder / "in", std::ios::binary)
-      .write(reinterpret_cast<char*>(grey.data), rows * cols);
+      .write(reinterpret_cast<char*>(gray.data), rows * cols);
   for (const int radius : {1, 2, 3}) {
     const std::string script =
         "import numpy as np; from skimage.feature import local_binary_pattern as l; a = "
@@ -410,14 +411,14 @@ TEST(Descriptors, CodesEqualScikitImageWhereDefinitionsCoincide) {
     LbpStream<std::uint8_t> stream({radius, false});
     stream.begin(cols);
     for (int y = 0; y < rows; ++y) {
-      std::copy(grey.ptr(y), grey.ptr(y) + cols, stream.next());
+      std::copy(gray.ptr(y), gray.ptr(y) + cols, stream.next());
       if (!stream.push()) continue;
-      const int centre = y - radius;
+      const int center = y - radius;
       for (int x = radius; x < cols - radius; ++x) {
         int even = 0;  // samples 0, 2, 4, 6 of 8 are the 4
         for (int p = 0; p < 4; ++p) even |= ((stream.codes()[x] >> (2 * p)) & 1) << p;
         ASSERT_EQ(even,
-                  static_cast<std::uint8_t>(theirs[static_cast<std::size_t>(centre * cols + x)]));
+                  static_cast<std::uint8_t>(theirs[static_cast<std::size_t>(center * cols + x)]));
       }
     }
   }

@@ -7,8 +7,8 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "selovis/place_filter.hpp"
-#include "selovis/place_graph.hpp"
+#include "selovis/filters/place_filter.hpp"
+#include "selovis/places/place_transitions.hpp"
 
 namespace selovis {
 namespace {
@@ -19,11 +19,11 @@ using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::writeFile;
 
 /// a - b - c - d in a row, e joined to b, f alone.
-PlaceGraph sixPlaces() {
+PlaceTransitions sixPlaces() {
   return {{"a", "b", "c", "d", "e", "f"}, {{0, 1}, {1, 2}, {2, 3}, {1, 4}}};
 }
 
-TEST(PlaceGraph, ShortestPathsTellDistanceAndFirstStep) {
+TEST(PlaceTransitions, ShortestPathsHaveDistanceAndFirstStep) {
   const PlaceDistances p = shortestPaths(sixPlaces());
   const auto d = [&](int i, int j) { return p.distance[static_cast<std::size_t>(i * 6 + j)]; };
   const auto a = [&](int i, int j) { return p.first_step[static_cast<std::size_t>(i * 6 + j)]; };
@@ -36,19 +36,20 @@ TEST(PlaceGraph, ShortestPathsTellDistanceAndFirstStep) {
   EXPECT_EQ(d(2, 2), 0);
 }
 
-TEST(PlaceGraph, JsonAndEdgeListAreTheSame) {
+TEST(PlaceTransitions, JsonAndEdgeListAreTheSame) {
   TemporaryDirectory folder;
   writeFile(folder / "g.json",
             R"({"places": ["a", "b", "c"], "transitions": [["a", "b"], ["c", "b"]]})");
   writeFile(folder / "g.csv", "from,to\na,b\r\n# note\n\nb,c\na,b\n");
-  const PlaceGraph x = readPlaceGraph(folder / "g.json"), y = readPlaceGraph(folder / "g.csv");
+  const PlaceTransitions x = readPlaceTransitions(folder / "g.json"),
+                         y = readPlaceTransitions(folder / "g.csv");
   EXPECT_EQ(x.places, y.places);
-  EXPECT_EQ(x.transitions, y.transitions);
+  EXPECT_EQ(x.pairs, y.pairs);
   EXPECT_TRUE(x.connected(2, 1));
   EXPECT_FALSE(x.connected(0, 2));
 }
 
-TEST(PlaceGraph, BadFilesAreNamed) {
+TEST(PlaceTransitions, BadFilesAreRefusedWithTheirName) {
   TemporaryDirectory folder;
   const std::pair<const char*, const char*> cases[] = {
       {"", "no places"},
@@ -60,16 +61,16 @@ TEST(PlaceGraph, BadFilesAreNamed) {
       {"{\"places\": 3", "is no place graph"}};
   for (const auto& c : cases) {
     writeFile(folder / "g", c.first);
-    const std::string what = messageOf<InputError>([&] { readPlaceGraph(folder / "g"); });
+    const std::string what = messageOf<InputError>([&] { readPlaceTransitions(folder / "g"); });
     EXPECT_NE(what.find(c.second), std::string::npos) << c.first << ": " << what;
   }
-  EXPECT_THROW(readPlaceGraph(folder / "none"), InputError);
+  EXPECT_THROW(readPlaceTransitions(folder / "none"), InputError);
 }
 
-TEST(PlaceFilter, LowPassIsEq615) {
+TEST(PlaceFilter, LowPassIsEquation615) {
   PlaceFilterParams p;
-  p.kind = FilterKind::kLowPass;
-  p.alpha = 2.0;
+  p.kind = PlaceFilterKind::kLowPass;
+  p.low_pass_alpha = 2.0;
   PlaceFilter filter({{"a", "b"}, {}}, p);
   filter.update({0.6, 0.4});
   EXPECT_NEAR(filter.probabilities()[0], 0.6, 1e-12);
@@ -78,7 +79,7 @@ TEST(PlaceFilter, LowPassIsEq615) {
 }
 
 /// Eq. 6.21 to 6.25 as they stand, with the row scaled as in the filter.
-std::vector<double> plainMarkov(const PlaceGraph& g, const PlaceFilterParams& p,
+std::vector<double> plainMarkov(const PlaceTransitions& g, const PlaceFilterParams& p,
                                 const std::vector<double>& state,
                                 const std::vector<double>& rating) {
   const int n = static_cast<int>(g.places.size());
@@ -90,13 +91,13 @@ std::vector<double> plainMarkov(const PlaceGraph& g, const PlaceFilterParams& p,
     for (int i = 0; i < n; ++i) {
       const int d = paths.distance[i * n + j];
       if (i == j || d < 0) continue;
-      const double q = std::pow(p.rho1 / d, p.rho2) * rating[i] * largest;
+      const double q = std::pow(p.markov.rho1 / d, p.markov.rho2) * rating[i] * largest;
       t[paths.first_step[i * n + j]][j] += q;
       leaving += q;
     }
-    if (leaving > 1.0 - p.stay_min) {
-      for (int i = 0; i < n; ++i) t[i][j] *= (1.0 - p.stay_min) / leaving;
-      leaving = 1.0 - p.stay_min;
+    if (leaving > 1.0 - p.markov.min_stay_probability) {
+      for (int i = 0; i < n; ++i) t[i][j] *= (1.0 - p.markov.min_stay_probability) / leaving;
+      leaving = 1.0 - p.markov.min_stay_probability;
     }
     t[j][j] = 1.0 - leaving;
   }
@@ -107,13 +108,13 @@ std::vector<double> plainMarkov(const PlaceGraph& g, const PlaceFilterParams& p,
   return next;
 }
 
-PlaceGraph randomGraph(hyselam::Rng& rng) {
-  PlaceGraph g;
+PlaceTransitions randomGraph(hyselam::Rng& rng) {
+  PlaceTransitions g;
   const int n = 1 + static_cast<int>(rng.below(15));
   for (int i = 0; i < n; ++i) g.places.push_back("p" + std::to_string(i));
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < i; ++j) {
-      if (rng.below(4) == 0) g.transitions.emplace_back(i, j);
+      if (rng.below(4) == 0) g.pairs.emplace_back(i, j);
     }
   }
   return g;
@@ -128,13 +129,13 @@ std::vector<double> randomRatings(hyselam::Rng& rng, std::size_t n) {
   return r;
 }
 
-TEST(PlaceFilter, MarkovChainEqualsTheTranscription) {
+TEST(MarkovChain, EqualsTheTranscriptionOfTheEquations) {
   hyselam::Rng rng(21);
   for (int round = 0; round < 200; ++round) {
-    const PlaceGraph g = randomGraph(rng);
+    const PlaceTransitions g = randomGraph(rng);
     PlaceFilterParams p;
-    p.rho1 = rng.uniform(0.2, 5.0);
-    p.rho2 = rng.uniform(0.0, 4.0);
+    p.markov.rho1 = rng.uniform(0.2, 5.0);
+    p.markov.rho2 = rng.uniform(0.0, 4.0);
     PlaceFilter filter(g, p);
     std::vector<double> state = filter.probabilities();
     for (int k = 0; k < 20; ++k) {
@@ -147,19 +148,19 @@ TEST(PlaceFilter, MarkovChainEqualsTheTranscription) {
   }
 }
 
-TEST(PlaceFilter, EveryFilterKeepsADistributionAndEveryColumnOfTheChainIsOne) {
+TEST(PlaceFilter, EveryFilterKeepsADistributionAndColumnsOfTheMarkovChainSumToOne) {
   hyselam::Rng rng(22);
   for (int round = 0; round < 300; ++round) {
-    const PlaceGraph g = randomGraph(rng);
+    const PlaceTransitions g = randomGraph(rng);
     const std::size_t n = g.places.size();
-    for (const FilterKind kind :
-         {FilterKind::kNone, FilterKind::kLowPass, FilterKind::kMarkov, FilterKind::kBayes}) {
+    for (const PlaceFilterKind kind : {PlaceFilterKind::kNone, PlaceFilterKind::kLowPass,
+                                       PlaceFilterKind::kMarkov, PlaceFilterKind::kBayes}) {
       PlaceFilterParams p;
       p.kind = kind;
-      p.rho1 = rng.uniform(0.01, 100.0);
-      p.rho2 = rng.uniform(0.0, 10.0);
-      p.alpha = rng.uniform(0.0, 50.0);
-      p.trust = rng.uniform(0.1, 3.0);
+      p.markov.rho1 = rng.uniform(0.01, 100.0);
+      p.markov.rho2 = rng.uniform(0.0, 10.0);
+      p.low_pass_alpha = rng.uniform(0.0, 50.0);
+      p.bayes.likelihood_exponent = rng.uniform(0.1, 3.0);
       PlaceFilter filter(g, p);
       for (int k = 0; k < 30; ++k) {
         auto observed = randomRatings(rng, n);
@@ -171,11 +172,11 @@ TEST(PlaceFilter, EveryFilterKeepsADistributionAndEveryColumnOfTheChainIsOne) {
           sum += v;
         }
         ASSERT_NEAR(sum, 1.0, 1e-9);
-        for (std::size_t j = 0; kind == FilterKind::kMarkov && j < n; ++j) {
+        for (std::size_t j = 0; kind == PlaceFilterKind::kMarkov && j < n; ++j) {
           double column = 0.0;
           for (std::size_t i = 0; i < n; ++i) {
-            ASSERT_GE(filter.transition()[i * n + j], 0.0);
-            column += filter.transition()[i * n + j];
+            ASSERT_GE(filter.markovChain().matrix()[i * n + j], 0.0);
+            column += filter.markovChain().matrix()[i * n + j];
           }
           ASSERT_NEAR(column, 1.0, 1e-9);
         }
@@ -184,7 +185,7 @@ TEST(PlaceFilter, EveryFilterKeepsADistributionAndEveryColumnOfTheChainIsOne) {
   }
 }
 
-TEST(PlaceFilter, TheChainDoesNotJumpButComesRound) {
+TEST(MarkovChain, IgnoresAnOutlierAndFollowsAChange) {
   PlaceFilter filter(sixPlaces(), {});
   for (int k = 0; k < 30; ++k) filter.update({0.9, 0.02, 0.02, 0.02, 0.02, 0.02});
   EXPECT_EQ(filter.estimate().place, 0);
@@ -194,9 +195,9 @@ TEST(PlaceFilter, TheChainDoesNotJumpButComesRound) {
   EXPECT_EQ(filter.estimate().place, 3);
 }
 
-TEST(PlaceFilter, TwoLikelyNeighboursAreATransition) {
+TEST(PlaceFilter, TwoLikelyNeighborsAreATransition) {
   PlaceFilterParams p;
-  p.kind = FilterKind::kNone;
+  p.kind = PlaceFilterKind::kNone;
   PlaceFilter filter(sixPlaces(), p);
   filter.update({0.45, 0.4, 0.15, 0.0, 0.0, 0.0});
   EXPECT_EQ(filter.estimate().place, 0);
@@ -207,24 +208,24 @@ TEST(PlaceFilter, TwoLikelyNeighboursAreATransition) {
   EXPECT_EQ(filter.estimate().second, -1);
 }
 
-TEST(PlaceFilter, UnknownBelowTheLimitAndBadProbabilitiesAreRefused) {
+TEST(PlaceFilter, UnknownBelowTheLimitAndInvalidProbabilitiesAreRefused) {
   PlaceFilterParams p;
-  p.kind = FilterKind::kNone;
-  p.unknown_below = 0.5;
+  p.kind = PlaceFilterKind::kNone;
+  p.min_place_probability = 0.5;
   PlaceFilter filter(sixPlaces(), p);
   EXPECT_EQ(filter.estimate().place, -1);  // nothing seen yet
   filter.update({0.4, 0.3, 0.3, 0, 0, 0});
   EXPECT_EQ(filter.estimate().place, -1);
   filter.update({0.6, 0.2, 0.2, 0, 0, 0});
   EXPECT_EQ(filter.estimate().place, 0);
-  EXPECT_THROW(filter.update({0.5, 0.5}), std::invalid_argument);
-  EXPECT_THROW(filter.update({0.5, -0.1, 0.6, 0, 0, 0}), std::invalid_argument);
-  EXPECT_THROW(filter.update({NAN, 0, 0, 0, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(filter.update({0.5, 0.5}), InputError);
+  EXPECT_THROW(filter.update({0.5, -0.1, 0.6, 0, 0, 0}), InputError);
+  EXPECT_THROW(filter.update({NAN, 0, 0, 0, 0, 0}), InputError);
   filter.update({0, 0, 0, 0, 0, 0});  // tells nothing
   EXPECT_EQ(filter.estimate().place, 0);
-  p.alpha = -1.0;
+  p.low_pass_alpha = -1.0;
   EXPECT_THROW(PlaceFilter(sixPlaces(), p), hyselam::ParameterError);
-  EXPECT_THROW(filterKind("median"), std::invalid_argument);
+  EXPECT_THROW(placeFilterKindFromString("median"), InputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Classifiers against libsvm, models on disk, and what a recogniser makes of a stream of images.
+// Classifiers against libsvm, models on disk, recognition of a stream of images.
 #include <gtest/gtest.h>
 #include <libsvm/svm.h>
 
@@ -8,11 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "selovis/descriptive.hpp"
-#include "selovis/recogniser.hpp"
+#include "selovis/descriptors/descriptive_filter.hpp"
+#include "selovis/recognition/image_recognizer.hpp"
 
 namespace selovis {
 namespace {
@@ -47,12 +48,11 @@ TEST(Svm, ProbabilitiesEqualLibsvmsOwn) {
   TemporaryDirectory folder;
   for (const int classes : {2, 5}) {
     const Samples s = clusters(31, classes, 25, 40), test = clusters(31, classes, 6, 40);
-    for (const Kernel kernel : {Kernel::kLinear, Kernel::kPoly, Kernel::kRbf}) {
+    for (const SvmKernel kernel : {SvmKernel::kLinear, SvmKernel::kPoly, SvmKernel::kRbf}) {
       ClassifierParams p;
       p.kernel = kernel;
       p.power = 1.0;
-      std::string state;
-      const auto ours = trainClassifier(s, classes, p, &state, folder / "model");
+      const auto [ours, state] = trainClassifier(s, classes, p, folder / "model");
       svm_model* theirs = svm_load_model((folder / "model").c_str());
       ASSERT_NE(theirs, nullptr);
       double squares = 0.0;
@@ -71,7 +71,7 @@ TEST(Svm, ProbabilitiesEqualLibsvmsOwn) {
         for (int k = 0; k < classes; ++k) {
           EXPECT_NEAR(b[static_cast<std::size_t>(theirs->label[k])], a[static_cast<std::size_t>(k)],
                       2e-3)
-              << nameOf(kernel);
+              << toString(kernel);
         }
       }
       svm_free_and_destroy_model(&theirs);
@@ -79,15 +79,15 @@ TEST(Svm, ProbabilitiesEqualLibsvmsOwn) {
   }
 }
 
-TEST(Exemplars, TheNearestClusterWinsAndStrangersAreNovel) {
+TEST(ExemplarClassifier, NearestClusterIsMostLikelyAndOutliersAreNovel) {
   const Samples s = clusters(32, 4, 40, 30);
   Samples test;  // the same centres, other noise
   test.size = s.size;
   const Samples more = clusters(32, 4, 60, 30);
   for (std::size_t i = 45; i < more.count(); i += 60) test.add(more.row(i), more.places[i], 0);
   ClassifierParams p;
-  p.kernel = Kernel::kExemplar;
-  const auto c = trainClassifier(s, 4, p, nullptr);
+  p.kernel = SvmKernel::kExemplar;
+  const auto c = trainClassifier(s, 4, p).classifier;
   std::vector<double> q(4);
   int right = 0;
   double usual = 0.0;
@@ -103,21 +103,23 @@ TEST(Exemplars, TheNearestClusterWinsAndStrangersAreNovel) {
   EXPECT_GT(c->novelty(), 2.0 * usual);
 }
 
-TEST(Classifier, GridSearchFindsAWorkableCostAndTellsProgress) {
+TEST(Classifier, GridSearchFindsAWorkingCostAndReportsProgress) {
   const Samples s = clusters(33, 3, 30, 20);
   ClassifierParams p;
-  p.kernel = Kernel::kRbf;
+  p.kernel = SvmKernel::kRbf;
   p.cost = 1e-5;
   std::size_t last = 0;
-  GridSearch grid;
+  GridSearchParams grid;
   grid.costs = {1e-5, 10.0};
   grid.gammas = {1e-6, 1.0};
-  EXPECT_GT(searchGrid(s, 3, grid, p, [&](std::size_t done, std::size_t) { last = done; }), 0.7);
+  const GridSearchResult found =
+      searchGrid(s, 3, grid, p, [&](std::size_t done, std::size_t) { last = done; });
+  EXPECT_GT(found.accuracy, 0.7);
   EXPECT_EQ(last, 4u);
-  EXPECT_EQ(p.cost, 10.0);
+  EXPECT_EQ(found.params.cost, 10.0);
   Samples one = clusters(33, 1, 5, 20);
-  EXPECT_THROW(trainClassifier(one, 1, p, nullptr), std::invalid_argument);
-  EXPECT_THROW(trainClassifier(Samples{}, 2, p, nullptr), std::invalid_argument);
+  EXPECT_THROW(trainClassifier(one, 1, p), InputError);
+  EXPECT_THROW(trainClassifier(Samples{}, 2, p), InputError);
 }
 
 /// Walls of one colour with a stripe pattern of their own.
@@ -127,25 +129,26 @@ TrainingFrame frameOf(int place, int i) {
   return {image, {}, "room " + std::to_string(place)};
 }
 
-Model smallModel(Kernel kernel, int places = 3) {
+PlaceModel smallModel(SvmKernel kernel, int places = 3) {
   TrainingOptions o;
   o.descriptor = "LBPbyHSV-U8N";
   o.classifier.kernel = kernel;
-  return train(
+  return trainPlaceModel(
       {static_cast<std::size_t>(10 * places)},
       [](std::size_t, std::size_t i) { return frameOf(int(i) / 10, int(i)); }, o);
 }
 
-TEST(Models, SurviveTheDiskBitForBit) {
+TEST(PlaceModel, IsReadBackBitForBit) {
   TemporaryDirectory folder;
-  for (const Kernel kernel : {Kernel::kLinear, Kernel::kPoly, Kernel::kRbf, Kernel::kExemplar}) {
-    const Model model = smallModel(kernel);
-    saveModel(model, folder / "m");
-    const Model again = loadModel(folder / "m");
+  for (const SvmKernel kernel :
+       {SvmKernel::kLinear, SvmKernel::kPoly, SvmKernel::kRbf, SvmKernel::kExemplar}) {
+    const PlaceModel model = smallModel(kernel);
+    savePlaceModel(model, folder / "m");
+    const PlaceModel again = loadPlaceModel(folder / "m");
     EXPECT_EQ(again.descriptor, model.descriptor);
-    EXPECT_EQ(again.graph.places, model.graph.places);
-    EXPECT_EQ(again.graph.transitions, model.graph.transitions);
-    Recogniser a(model, model.graph, {}), b(again, again.graph, {});
+    EXPECT_EQ(again.transitions.places, model.transitions.places);
+    EXPECT_EQ(again.transitions.pairs, model.transitions.pairs);
+    ImageRecognizer a(model, model.transitions, {}), b(again, again.transitions, {});
     for (int i = 0; i < 12; ++i) {
       const cv::Mat image = frameOf(i / 4, i + 1).image;
       EXPECT_EQ(a.update(image).estimate.place, b.update(image).estimate.place);
@@ -154,36 +157,36 @@ TEST(Models, SurviveTheDiskBitForBit) {
     // One manifest, one file of signatures, at most one machine: what an earlier model left is
     // gone.
     const auto files = std::distance(std::filesystem::directory_iterator(folder / "m"), {});
-    EXPECT_EQ(files, kernel == Kernel::kExemplar ? 2 : 3);
+    EXPECT_EQ(files, kernel == SvmKernel::kExemplar ? 2 : 3);
   }
 }
 
-TEST(Models, PosesSurviveTheDiskAndServeTheFilter) {
+TEST(PlaceModel, PosesAreSavedAndUsedByThePoseFilter) {
   TemporaryDirectory folder;
   TrainingOptions o;
   o.descriptor = "LGOP";
-  o.classifier.kernel = Kernel::kExemplar;
+  o.classifier.kernel = SvmKernel::kExemplar;
   o.views = {0.0, 0.1};
-  o.aperture = 1.0;
+  o.horizontal_fov = 1.0;
   const auto withPose = [](std::size_t, std::size_t i) {
     TrainingFrame f = frameOf(int(i) / 10, int(i));
     if (i != 3) f.pose = {0.3 * double(i), 1.0, 0.2};
     return f;
   };
-  const Model model = train({30}, withPose, o);
-  saveModel(model, folder / "m");
-  const Model again = loadModel(folder / "m");
-  EXPECT_EQ(again.aperture, 1.0);
+  const PlaceModel model = trainPlaceModel({30}, withPose, o);
+  savePlaceModel(model, folder / "m");
+  const PlaceModel again = loadPlaceModel(folder / "m");
+  EXPECT_EQ(again.horizontal_fov, 1.0);
   ASSERT_EQ(again.samples.poses.size(), 60u);
-  EXPECT_FALSE(again.samples.poses[6].isFinite()) << "one frame had no pose";
+  EXPECT_FALSE(again.samples.poses[6].isFinite()) << "one frame has no pose";
   EXPECT_EQ(again.samples.poses[9].x, 0.3 * 4.0);
   EXPECT_NEAR(again.samples.poses[9].theta, 0.3, 1e-12) << "the second view is turned by 0.1 rad";
-  RecogniserParams params;
-  params.filter.kind = FilterKind::kPoses;
-  Recogniser r(again, again.graph, params);
+  ImageRecognizerParams params;
+  params.filter.kind = PlaceFilterKind::kPoses;
+  ImageRecognizer r(again, again.transitions, params);
   int right = 0;
   for (int i = 0; i < 30; ++i) {
-    Readings readings;
+    SensorReadings readings;
     readings.stamp = i;
     readings.odometry = hyselam::Pose2{0.3 * i, 0.0, 0.0};
     right += r.update(frameOf(i / 10, i).image, readings).estimate.place == i / 10;
@@ -194,38 +197,38 @@ TEST(Models, PosesSurviveTheDiskAndServeTheFilter) {
     if (f.path().filename().string().compare(0, 6, "poses-") == 0) poses = f.path().string();
   }
   writeFile(poses, hyselam::testing::fileBytes(poses).substr(0, 50));
-  EXPECT_NE(messageOf<InputError>([&] { loadModel(folder / "m"); }).find("cut short"),
+  EXPECT_NE(messageOf<InputError>([&] { loadPlaceModel(folder / "m"); }).find("cut short"),
             std::string::npos);
-  const Model without = smallModel(Kernel::kExemplar), svm = smallModel(Kernel::kLinear);
-  EXPECT_THROW(Recogniser(without, without.graph, params), std::invalid_argument);
-  EXPECT_THROW(Recogniser(svm, svm.graph, params), std::invalid_argument);
+  const PlaceModel without = smallModel(SvmKernel::kExemplar), svm = smallModel(SvmKernel::kLinear);
+  EXPECT_THROW(ImageRecognizer(without, without.transitions, params), InputError);
+  EXPECT_THROW(ImageRecognizer(svm, svm.transitions, params), InputError);
 }
 
-TEST(Models, PlacesCanBeAdded) {
-  for (const Kernel kernel : {Kernel::kLinear, Kernel::kExemplar}) {
-    Model model = smallModel(kernel, 2);
+TEST(PlaceModel, PlacesAreAddedToATrainedModel) {
+  for (const SvmKernel kernel : {SvmKernel::kLinear, SvmKernel::kExemplar}) {
+    PlaceModel model = smallModel(kernel, 2);
     TrainingOptions o;
-    addTo(
+    model = extendPlaceModel(
         model, {10}, [](std::size_t, std::size_t i) { return frameOf(2, int(i)); }, o);
-    ASSERT_EQ(model.graph.places.size(), 3u);
+    ASSERT_EQ(model.transitions.places.size(), 3u);
     PlaceFilterParams none;
-    none.kind = FilterKind::kNone;
-    RecogniserParams params;
+    none.kind = PlaceFilterKind::kNone;
+    ImageRecognizerParams params;
     params.filter = none;
-    Recogniser r(model, model.graph, params);
+    ImageRecognizer r(model, model.transitions, params);
     for (int place = 0; place < 3; ++place) {
-      EXPECT_EQ(r.update(frameOf(place, 3).image).estimate.place, place) << nameOf(kernel);
+      EXPECT_EQ(r.update(frameOf(place, 3).image).estimate.place, place) << toString(kernel);
     }
   }
 }
 
-TEST(Models, TrainingIsTheSameEveryTime) {
-  EXPECT_EQ(smallModel(Kernel::kRbf).state, smallModel(Kernel::kRbf).state);
+TEST(PlaceModel, TrainingIsDeterministic) {
+  EXPECT_EQ(smallModel(SvmKernel::kRbf).svm, smallModel(SvmKernel::kRbf).svm);
 }
 
-TEST(Models, ChangedFilesAreRefusedByName) {
+TEST(PlaceModel, ChangedFilesAreRefusedWithTheirName) {
   TemporaryDirectory folder;
-  saveModel(smallModel(Kernel::kLinear), folder / "m");
+  savePlaceModel(smallModel(SvmKernel::kLinear), folder / "m");
   std::string signatures, svm;
   for (const auto& f : std::filesystem::directory_iterator(folder / "m")) {
     const std::string name = f.path().filename().string();
@@ -237,7 +240,7 @@ TEST(Models, ChangedFilesAreRefusedByName) {
                            const std::string& says) {
     const std::string good = hyselam::testing::fileBytes(file);
     writeFile(file, content);
-    const std::string what = messageOf<InputError>([&] { loadModel(folder / "m"); });
+    const std::string what = messageOf<InputError>([&] { loadPlaceModel(folder / "m"); });
     EXPECT_NE(what.find(says), std::string::npos) << what;
     EXPECT_NE(what.find(folder.path()), std::string::npos) << what;
     writeFile(file, good);
@@ -271,44 +274,67 @@ TEST(Models, ChangedFilesAreRefusedByName) {
   auto elsewhere = j["svm"];
   elsewhere["file"] = "../../etc/passwd";
   refused(manifest, with("svm", elsewhere), "no name of a data file");
-  EXPECT_THROW(loadModel(folder / "none"), InputError);
-  EXPECT_NO_THROW(loadModel(folder / "m"));
+  // A complete file of another kind.
+  const std::string content = hyselam::testing::fileBytes(svm), crc = hyselam::crc32Text(content);
+  const std::string name = "signatures-" + crc + ".bin";
+  writeFile(folder / ("m/" + name), content);
+  refused(manifest, with("signatures", {{"file", name}, {"bytes", content.size()}, {"crc32", crc}}),
+          "does not begin with 'selovis signatures 2'");
+  EXPECT_THROW(loadPlaceModel(folder / "none"), InputError);
+  EXPECT_NO_THROW(loadPlaceModel(folder / "m"));
+}
+
+/// Format 1 had neither headers nor a byte order; it was written on little-endian machines.
+TEST(PlaceModel, FormerFormatIsReadAndWrittenAsTheNewOne) {
+  const PlaceModel model = loadPlaceModel(SELOVIS_TEST_DATA "/model_format_1");
+  EXPECT_EQ(model.transitions.places, (std::vector<std::string>{"hall", "lab"}));
+  EXPECT_EQ(model.samples.values, (std::vector<float>{0.1f, 0.2f, 0.8f, 0.9f}));
+  EXPECT_EQ(model.samples.places, (std::vector<int>{0, 0, 1, 1}));
+  ASSERT_EQ(model.samples.poses.size(), 4u);
+  EXPECT_EQ(model.samples.poses[1].x, 0.5);
+  EXPECT_EQ(model.samples.poses[1].theta, 0.25);
+  TemporaryDirectory folder;
+  savePlaceModel(model, folder / "m");
+  EXPECT_NE(hyselam::testing::fileBytes(folder / "m/model.json").find("selovis model 2"),
+            std::string::npos);
+  const PlaceModel again = loadPlaceModel(folder / "m");
+  EXPECT_EQ(again.samples.values, model.samples.values);
+  EXPECT_EQ(again.svm, model.svm);
+  EXPECT_EQ(again.samples.poses[1].x, 0.5);
 }
 
 /// With a right checksum, so that the parser itself must refuse.
-TEST(Models, RandomDamageNeverCrashes) {
+TEST(PlaceModel, RandomDamageIsRefusedWithoutACrash) {
   TemporaryDirectory folder;
   hyselam::Rng rng(41);
-  Model good = smallModel(Kernel::kRbf, 2);
+  PlaceModel good = smallModel(SvmKernel::kRbf, 2);
   int refused = 0;
   for (int round = 0; round < 150; ++round) {
-    Model bad = good;
-    const std::size_t at = rng.below(static_cast<std::uint32_t>(bad.state.size()));
+    PlaceModel bad = good;
+    const std::size_t at = rng.below(static_cast<std::uint32_t>(bad.svm.size()));
     if (round % 3 == 0)
-      bad.state.resize(at);
+      bad.svm.resize(at);
     else if (round % 3 == 1)
-      bad.state[at] = static_cast<char>(rng.below(256));
+      bad.svm[at] = static_cast<char>(rng.below(256));
     else
-      bad.state.replace(rng.below(64), 8, "\xff\xff\xff\xff\xff\xff\xff\x7f");
-    saveModel(bad, folder / "m");
+      bad.svm.replace(rng.below(64), 8, "\xff\xff\xff\xff\xff\xff\xff\x7f");
+    savePlaceModel(bad, folder / "m");
     try {
-      const Model m = loadModel(folder / "m");
-      Recogniser(m, m.graph, {}).update(frameOf(0, 1).image);
-    } catch (const InputError&) {
-      ++refused;
-    } catch (const std::invalid_argument&) {  // probabilities that are none
+      const PlaceModel m = loadPlaceModel(folder / "m");
+      ImageRecognizer(m, m.transitions, {}).update(frameOf(0, 1).image);
+    } catch (const InputError&) {  // by the reader, or for probabilities that are not finite
       ++refused;
     }
   }
   EXPECT_GT(refused, 60);
 }
 
-TEST(Recogniser, BlackFramesLeaveThePlaceAsItWas) {
-  const Model model = smallModel(Kernel::kLinear);
-  RecogniserParams p;
-  p.descriptive.kind = DescriptiveKind::kCorners;
+TEST(ImageRecognizer, BlackFramesDoNotChangeThePlace) {
+  const PlaceModel model = smallModel(SvmKernel::kLinear);
+  ImageRecognizerParams p;
+  p.descriptive.kind = DescriptiveFilterKind::kCorners;
   p.descriptive.min_features = 1;
-  Recogniser r(model, model.graph, p);
+  ImageRecognizer r(model, model.transitions, p);
   for (int i = 0; i < 5; ++i) {
     cv::Mat image = frameOf(1, i).image;
     cv::circle(image, {40, 30}, 6, cv::Scalar(255, 255, 255),
@@ -322,36 +348,35 @@ TEST(Recogniser, BlackFramesLeaveThePlaceAsItWas) {
   EXPECT_EQ(r.probabilities(), before);
 }
 
-TEST(Recogniser, AChangedResolutionAndAGreyImageInMidStream) {
-  const Model model = smallModel(Kernel::kLinear);
-  Recogniser r(model, model.graph, {});
+TEST(ImageRecognizer, AcceptsAnotherResolutionAndRefusesAGrayImage) {
+  const PlaceModel model = smallModel(SvmKernel::kLinear);
+  ImageRecognizer r(model, model.transitions, {});
   r.update(frameOf(0, 0).image);
   cv::Mat larger(480, 640, CV_8UC3, cv::Scalar(90, 120, 200));
   EXPECT_NO_THROW(r.update(larger));
   const auto before = r.probabilities();
-  EXPECT_THROW(r.update(cv::Mat(60, 80, CV_8UC1, cv::Scalar(3))), std::invalid_argument);
+  EXPECT_THROW(r.update(cv::Mat(60, 80, CV_8UC1, cv::Scalar(3))), InputError);
   EXPECT_EQ(r.probabilities(), before);
   EXPECT_NO_THROW(r.update(frameOf(0, 1).image));
 }
 
-TEST(Recogniser, APlaceTakenOffTheMapKeepsItsClassWithoutTransitions) {
-  const Model model = smallModel(Kernel::kLinear);
-  std::vector<std::string> missing;
-  const PlaceGraph left{{"room 2", "room 0"}, {{0, 1}}};
-  const PlaceGraph g = reordered(left, model.graph.places, &missing);
-  EXPECT_EQ(missing, std::vector<std::string>{"room 1"});
+TEST(ImageRecognizer, PlaceRemovedFromTheMapKeepsItsClassWithoutTransitions) {
+  const PlaceModel model = smallModel(SvmKernel::kLinear);
+  const PlaceTransitions left{{"room 2", "room 0"}, {{0, 1}}};
+  const PlaceTransitions g = reordered(left, model.transitions.places);
+  EXPECT_EQ(missingPlaces(left, model.transitions.places), std::vector<std::string>{"room 1"});
   EXPECT_TRUE(g.connected(0, 2));
-  Recogniser r(model, g, {});
+  ImageRecognizer r(model, g, {});
   for (int i = 0; i < 20; ++i) r.update(frameOf(2, i).image);
   EXPECT_EQ(r.update(frameOf(2, 1).image).estimate.place, 2);
-  EXPECT_THROW(Recogniser(model, left, {}), std::invalid_argument);
+  EXPECT_THROW(ImageRecognizer(model, left, {}), InputError);
 }
 
-TEST(Recogniser, TimeThatGoesBackBeginsThePosesAnew) {
+TEST(ImageRecognizer, TimeThatGoesBackResetsThePoseFilter) {
   TrainingOptions options;
   options.descriptor = "LGOP";
-  options.classifier.kernel = Kernel::kExemplar;
-  const Model model = train(
+  options.classifier.kernel = SvmKernel::kExemplar;
+  const PlaceModel model = trainPlaceModel(
       {24},
       [&](std::size_t, std::size_t i) {
         TrainingFrame f = frameOf(static_cast<int>(i / 8), static_cast<int>(i));
@@ -359,20 +384,20 @@ TEST(Recogniser, TimeThatGoesBackBeginsThePosesAnew) {
         return f;
       },
       options);
-  RecogniserParams params;
-  params.filter.kind = FilterKind::kPoses;
-  const auto at = [&](Recogniser& r, int i, double stamp) {
-    Readings readings;
+  ImageRecognizerParams params;
+  params.filter.kind = PlaceFilterKind::kPoses;
+  const auto at = [&](ImageRecognizer& r, int i, double stamp) {
+    SensorReadings readings;
     readings.stamp = stamp;
     readings.odometry = hyselam::Pose2{0.5 * i, 0.0, 0.0};
     r.updateWithSignature(model.samples.row(static_cast<std::size_t>(i)), readings);
     return r.probabilities();
   };
-  Recogniser again(model, model.graph, params), fresh(model, model.graph, params);
+  ImageRecognizer again(model, model.transitions, params), fresh(model, model.transitions, params);
   for (int i = 0; i < 12; ++i) at(again, i, 100.0 + i);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(at(again, i, 50.0 + i), at(fresh, i, 50.0 + i)) << i;
   // Late by less: the same drive, not one of its own.
-  Recogniser other(model, model.graph, params);
+  ImageRecognizer other(model, model.transitions, params);
   EXPECT_NE(at(again, 5, 54.8), at(other, 5, 54.8));
 }
 
@@ -385,13 +410,14 @@ TEST(DescriptiveFilter, CountsCornersAndSift) {
     busy(box).setTo(cv::Scalar(rng.below(256)));
   }
   const cv::Mat bare(240, 320, CV_8UC1, cv::Scalar(100));
-  for (const DescriptiveKind kind : {DescriptiveKind::kSift, DescriptiveKind::kCorners}) {
+  for (const DescriptiveFilterKind kind :
+       {DescriptiveFilterKind::kSift, DescriptiveFilterKind::kCorners}) {
     DescriptiveFilter filter({kind, 5});
     EXPECT_TRUE(filter.accepts(busy));
     EXPECT_FALSE(filter.accepts(bare));
   }
-  EXPECT_TRUE(DescriptiveFilter({DescriptiveKind::kNone, 10}).accepts(bare));
-  EXPECT_THROW(DescriptiveFilter({DescriptiveKind::kNone, -1}), hyselam::ParameterError);
+  EXPECT_TRUE(DescriptiveFilter({DescriptiveFilterKind::kNone, 10}).accepts(bare));
+  EXPECT_THROW(DescriptiveFilter({DescriptiveFilterKind::kNone, -1}), hyselam::ParameterError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The filter over poses: odometry and the look of what was learnt, particles among the frames.
+// The particle filter over the poses of the training frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,21 +8,21 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/pose2.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "selovis/classifier.hpp"
-#include "selovis/pose_filter.hpp"
+#include "selovis/classifiers/classifier.hpp"
+#include "selovis/filters/pose_filter.hpp"
 
 namespace selovis {
 namespace {
 
 using hyselam::testing::messageOf;
 
-/// A ring road of radius 5 m with four places, learnt by driving round it twice. Opposite places
-/// look alike, each its own half way round.
+/// A ring road of radius 5 m with four places, learned by driving round it twice. Opposite places
+/// have the same appearance.
 struct Ring {
   Ring() {
     samples.size = 2;
     for (int i = 0; i < 200; ++i) {
-      const float at[2] = {look(angle(i), 0), look(angle(i), 1)};
+      const float at[2] = {appearance(angle(i), 0), appearance(angle(i), 1)};
       samples.add(at, placeAt(angle(i)), i, pose(i));
     }
   }
@@ -30,8 +30,8 @@ struct Ring {
   static int placeAt(double angle) {
     return static_cast<int>(std::fmod(angle, 2.0 * hyselam::kPi) / (0.5 * hyselam::kPi));
   }
-  static float look(double angle, int axis) {
-    // Twice the angle: the far side of the ring looks the same, but for a quarter of it.
+  static float appearance(double angle, int axis) {
+    // Twice the angle: opposite sides of the ring look the same, except for one quarter.
     if (std::fmod(angle, 2.0 * hyselam::kPi) < 0.5 * hyselam::kPi) return 3.0f;
     return static_cast<float>(1.0 +
                               0.5 * (axis == 0 ? std::cos(2.0 * angle) : std::sin(2.0 * angle)));
@@ -39,18 +39,18 @@ struct Ring {
   static hyselam::Pose2 pose(double i) {
     return {5.0 * std::cos(angle(i)), 5.0 * std::sin(angle(i)), angle(i) + 0.5 * hyselam::kPi};
   }
-  /// Drives round once from step 5 and tells the share of frames in the right place after the first
-  /// quarter; `drift` of the odometry's frame against the map.
+  /// Drives round once from step 5; returns the share of frames in the right place after the first
+  /// quarter.
   double drive(PoseFilter& filter, bool odometry) const {
     ClassifierParams params;
-    params.kernel = Kernel::kExemplar;
+    params.kernel = SvmKernel::kExemplar;
     params.power = 1.0;
-    const auto classifier = trainClassifier(samples, 4, params, nullptr);
+    const auto classifier = trainClassifier(samples, 4, params).classifier;
     const hyselam::Pose2 frame{3.0, -7.0, 1.0};
     std::vector<double> p(4);
     int right = 0;
     for (int i = 5; i < 105; ++i) {
-      const float at[2] = {look(angle(i), 0), look(angle(i), 1)};
+      const float at[2] = {appearance(angle(i), 0), appearance(angle(i), 1)};
       classifier->predict(at, p.data());
       filter.update(*classifier->distances(),
                     odometry ? std::optional<hyselam::Pose2>(frame * pose(i)) : std::nullopt);
@@ -64,10 +64,10 @@ struct Ring {
   Samples samples;
 };
 
-TEST(PoseFilter, OdometryTellsPlacesThatLookAlikeApart) {
+TEST(PoseFilter, OdometryDistinguishesPlacesOfEqualAppearance) {
   const Ring ring;
   PoseFilterParams params;
-  params.jump = 0.0;
+  params.injection_rate = 0.0;
   PoseFilter filter(ring.samples, 4, params);
   EXPECT_GT(ring.drive(filter, true), 0.9);
   double sum = 0.0;
@@ -75,7 +75,7 @@ TEST(PoseFilter, OdometryTellsPlacesThatLookAlikeApart) {
   EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
-TEST(PoseFilter, IsTheSameEveryTimeAndAfterReset) {
+TEST(PoseFilter, IsDeterministicAlsoAfterReset) {
   const Ring ring;
   PoseFilter a(ring.samples, 4, {}), b(ring.samples, 4, {});
   ring.drive(a, true);
@@ -86,7 +86,7 @@ TEST(PoseFilter, IsTheSameEveryTimeAndAfterReset) {
   EXPECT_EQ(a.probabilities(), std::vector<double>(4, 0.25));
   ring.drive(a, true);
   EXPECT_EQ(a.probabilities(), first);
-  ring.drive(a, false);  // without odometry it only has to live on
+  ring.drive(a, false);  // without odometry it only has to stay valid
   for (const double p : a.probabilities()) EXPECT_TRUE(p >= 0.0 && p <= 1.0);
 }
 
@@ -94,24 +94,24 @@ TEST(PoseFilter, IsTheSameEveryTimeAndAfterReset) {
 std::vector<float> distancesAt(const Ring& ring, double i) {
   std::vector<float> d;
   for (std::size_t s = 0; s < ring.samples.count(); ++s) {
-    const float x = ring.samples.row(s)[0] - Ring::look(Ring::angle(i), 0),
-                y = ring.samples.row(s)[1] - Ring::look(Ring::angle(i), 1);
+    const float x = ring.samples.row(s)[0] - Ring::appearance(Ring::angle(i), 0),
+                y = ring.samples.row(s)[1] - Ring::appearance(Ring::angle(i), 1);
     d.push_back(x * x + y * y + 0.01f);
   }
   return d;
 }
 
-/// Drives a quarter round; `odometry(i)` is told at step i, one step a second unless said.
+/// Drives a quarter round; `odometry(i)` at step i, one step per `seconds`.
 template <typename F>
 std::vector<double> quarterRound(const Ring& ring, F odometry, double seconds = 1.0) {
   PoseFilterParams params;
-  params.jump = 0.0;
+  params.injection_rate = 0.0;
   PoseFilter filter(ring.samples, 4, params);
   for (int i = 5; i < 45; ++i) filter.update(distancesAt(ring, i), odometry(i), seconds);
   return filter.probabilities();
 }
 
-TEST(PoseFilter, OdometryThatIsNoNumberOrJumpsIsNoOdometry) {
+TEST(PoseFilter, OdometryThatIsNotFiniteOrJumpsIsNotUsed) {
   const Ring ring;
   const double nan = std::nan("");
   using Odometry = std::optional<hyselam::Pose2>;
@@ -133,7 +133,7 @@ TEST(PoseFilter, OdometryThatIsNoNumberOrJumpsIsNoOdometry) {
   }
 }
 
-TEST(PoseFilter, LivesOnWhenTimeGoesBackOrIsNoNumber) {
+TEST(PoseFilter, SurvivesTimeThatGoesBackOrIsNotFinite) {
   const Ring ring;
   for (const double seconds : {-100.0, std::nan(""), 0.0, 1e12}) {
     for (const bool odometry : {false, true}) {
@@ -148,10 +148,10 @@ TEST(PoseFilter, LivesOnWhenTimeGoesBackOrIsNoNumber) {
   }
 }
 
-TEST(PoseFilter, DrivenOutOfAllThatWasLearntItBeginsAgainWithThatFrame) {
+TEST(PoseFilter, BeginsAgainWhenAllParticlesLeaveTheTrainingPoses) {
   const Ring ring;
   PoseFilterParams params;
-  params.jump = 0.0;
+  params.injection_rate = 0.0;
   PoseFilter filter(ring.samples, 4, params), fresh(ring.samples, 4, params);
   filter.update(distancesAt(ring, 10), hyselam::Pose2{0.0, 0.0, 0.0});
   filter.update(distancesAt(ring, 10), hyselam::Pose2{900.0, 0.0, 0.0}, 1000.0);
@@ -160,7 +160,7 @@ TEST(PoseFilter, DrivenOutOfAllThatWasLearntItBeginsAgainWithThatFrame) {
   EXPECT_GT(filter.probabilities()[0], 0.9);
 }
 
-TEST(PoseFilter, ARobotThatWasCarriedIsFoundAgainAtThirtyFramesASecond) {
+TEST(PoseFilter, FindsAKidnappedRobotAgainAtThirtyFramesASecond) {
   const Ring ring;
   PoseFilterParams params;
   params.particles = 200;  // 0.13 of a particle is set anew in each frame
@@ -171,18 +171,18 @@ TEST(PoseFilter, ARobotThatWasCarriedIsFoundAgainAtThirtyFramesASecond) {
   EXPECT_GT(filter.probabilities()[0], 0.9);
 }
 
-TEST(PoseFilter, RefusesWhatItCannotUse) {
+TEST(PoseFilter, RefusesSamplesWithoutPosesAndBadParameters) {
   Ring ring;
   PoseFilterParams params;
   params.particles = 1;
   EXPECT_THROW(PoseFilter(ring.samples, 4, params), hyselam::ParameterError);
   PoseFilter filter(ring.samples, 4, {});
-  EXPECT_THROW(filter.update(std::vector<float>(3, 1.0f), {}), std::invalid_argument);
+  EXPECT_THROW(filter.update(std::vector<float>(3, 1.0f), {}), hyselam::InputError);
   ring.samples.poses.back().x = 1e9;
-  EXPECT_NE(messageOf<std::invalid_argument>([&] { PoseFilter(ring.samples, 4, {}); }).find("5 km"),
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { PoseFilter(ring.samples, 4, {}); }).find("5 km"),
             std::string::npos);
   std::fill(ring.samples.poses.begin(), ring.samples.poses.end(), kNoPose);
-  EXPECT_NE(messageOf<std::invalid_argument>([&] { PoseFilter(ring.samples, 4, {}); }).find("pose"),
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { PoseFilter(ring.samples, 4, {}); }).find("pose"),
             std::string::npos);
 }
 

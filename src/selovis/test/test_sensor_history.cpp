@@ -20,7 +20,7 @@ Reading::ConstPtr at(double seconds) {
   return reading;
 }
 
-TEST(SensorHistory, ALateReadingTakesItsPlaceAndTheOthersStay) {
+TEST(SensorHistory, LateMessageIsSortedIn) {
   SensorHistory<Reading> history;
   for (const double t : {10.0, 10.2, 10.1}) history.add(at(t));
   EXPECT_TRUE(history.reaches(ros::Time(10.2)));
@@ -30,7 +30,7 @@ TEST(SensorHistory, ALateReadingTakesItsPlaceAndTheOthersStay) {
   EXPECT_FALSE(history.nearest(ros::Time(10.5), 0.05));
 }
 
-TEST(SensorHistory, OnlyTheLastAreKept) {
+TEST(SensorHistory, OldestMessagesAreRemoved) {
   SensorHistory<Reading> history(2);
   for (const double t : {10.0, 10.1, 10.2}) history.add(at(t));
   EXPECT_FALSE(history.nearest(ros::Time(10.0), 0.05));
@@ -38,7 +38,7 @@ TEST(SensorHistory, OnlyTheLastAreKept) {
   EXPECT_TRUE(history.reaches(ros::Time(10.2)));
 }
 
-TEST(SensorHistory, ABagThatBeginsAgainForgets) {
+TEST(SensorHistory, TimeThatGoesBackClearsTheHistory) {
   SensorHistory<Reading> history;
   for (const double t : {10.0, 10.2, 3.0}) history.add(at(t));
   EXPECT_FALSE(history.reaches(ros::Time(10.0)));

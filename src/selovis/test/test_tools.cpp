@@ -9,8 +9,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "selovis/labels.hpp"
-#include "selovis/model.hpp"
+#include "selovis/learning/labeled_frames.hpp"
+#include "selovis/learning/place_model.hpp"
 
 namespace selovis {
 namespace {
@@ -47,7 +47,7 @@ void makeTour(const TemporaryDirectory& folder) {
   writeFile(folder / "labels.csv", list);
 }
 
-TEST(Tools, TrainAndEvaluateByTheContract) {
+TEST(Tools, TrainAndEvaluateWriteTheirFiles) {
   TemporaryDirectory f;
   makeTour(f);
   ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
@@ -71,12 +71,14 @@ TEST(Tools, TrainAndEvaluateByTheContract) {
     EXPECT_TRUE(j["descriptor_ms"].is_number());
     const std::string predictions = fileBytes(f / "p.csv");
     EXPECT_EQ(std::count(predictions.begin(), predictions.end(), '\n'), 21);
-    EXPECT_FALSE(cv::imread(f / "plots/confusion.png").empty());
-    EXPECT_FALSE(cv::imread(f / "plots/timeline.png").empty());
+    EXPECT_EQ(fileBytes(f / "plots/predictions.csv"), predictions);
+    const std::string confusion = fileBytes(f / "plots/confusion.csv");
+    EXPECT_EQ(confusion.find("truth,hall,kitchen,unknown\n"), 0u) << confusion;
+    EXPECT_EQ(std::count(confusion.begin(), confusion.end(), '\n'), 4);
   }
 }
 
-TEST(Tools, TwoRunsWriteTheSameBytes) {
+TEST(Tools, TwoTrainingsWriteTheSameBytes) {
   TemporaryDirectory f;
   makeTour(f);
   for (const std::string out : {"a", "b"}) {
@@ -88,7 +90,7 @@ TEST(Tools, TwoRunsWriteTheSameBytes) {
   EXPECT_EQ(fileBytes(f / "a/model.json"), fileBytes(f / "b/model.json"));
 }
 
-TEST(Tools, PlacesOutsideTheModelAndAddedLater) {
+TEST(Tools, UnknownPlacesAreReportedAndCanBeAdded) {
   TemporaryDirectory f;
   makeTour(f);
   ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
@@ -107,11 +109,11 @@ TEST(Tools, PlacesOutsideTheModelAndAddedLater) {
       run(f, "train --add --labels " + (f / "more.csv") + " --kernel exemplar --out " + (f / "m"))
           .status,
       0);
-  EXPECT_EQ(loadModel(f / "m").graph.places,
+  EXPECT_EQ(loadPlaceModel(f / "m").transitions.places,
             (std::vector<std::string>{"hall", "kitchen", "attic"}));
 }
 
-TEST(Tools, BadInputIsOneLineAndStatus2) {
+TEST(Tools, BadInputEndsWithOneLineAndStatus2) {
   TemporaryDirectory f;
   makeTour(f);
   const std::string labels = f / "labels.csv",
@@ -138,18 +140,18 @@ TEST(Tools, BadInputIsOneLineAndStatus2) {
   refused("evaluate " + (f / "m") + " --labels " + labels + " --topology " + (f / "0.png"),
           "0.png");
   refused("evaluate " + (f / "m") + " --labels " + labels + " --images blur", "blur");
-  cv::Mat image = cv::imread(f / "3.png"), grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  cv::imwrite(f / "3.png", grey);
-  refused("evaluate " + (f / "m") + " --labels " + labels, "3.png: LBPbyHSV needs a colour image");
+  cv::Mat image = cv::imread(f / "3.png"), gray;
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  cv::imwrite(f / "3.png", gray);
+  refused("evaluate " + (f / "m") + " --labels " + labels, "3.png: LBPbyHSV: needs a colour image");
 }
 
-TEST(Labels, ColumnsByNameAndWithoutAHeader) {
+TEST(LabeledFrames, ColumnsAreReadByNameAndWithoutAHeader) {
   TemporaryDirectory f;
   writeFile(f / "a.csv",
             "file,stamp,place,x,psi,mag_x,mag_y,mag_z,range_0,range_1,scan_0\n"
             "rgb/1.jpg,12.5,hall,3,0.5,1,2,3,1.5,,4\n");
-  const auto a = readLabels(f / "a.csv");
+  const auto a = readLabeledFrames(f / "a.csv");
   ASSERT_EQ(a.size(), 1u);
   EXPECT_EQ(a[0].image, f / "rgb/1.jpg");
   EXPECT_EQ(a[0].place, "hall");
@@ -159,19 +161,19 @@ TEST(Labels, ColumnsByNameAndWithoutAHeader) {
   EXPECT_TRUE(std::isnan(a[0].readings.ranges[1]));
   EXPECT_EQ(a[0].readings.scan[0], 4.0f);
   writeFile(f / "b.csv", "# a note\n/x/1.jpg,hall,1.5,2.5\r\n/x/2.jpg,hall,1.5,2.5\n");
-  const auto b = readLabels(f / "b.csv");
+  const auto b = readLabeledFrames(f / "b.csv");
   ASSERT_EQ(b.size(), 2u);
   EXPECT_EQ(b[0].image, "/x/1.jpg");
   EXPECT_EQ(b[1].readings.ranges[1], 2.5f);
 }
 
-TEST(Labels, PosesOdometryAndNamesWithCommas) {
+TEST(LabeledFrames, PosesOdometryAndQuotedNamesAreRead) {
   TemporaryDirectory f;
   writeFile(f / "a.csv",
             "image_path,place,stamp,x,y,theta,odom_x,odom_y,odom_theta\n"
             "1.jpg,\"hall, east \"\"wing\"\"\",7.5,1,2,0.5,4,5,6\n"
             "\"2,3.jpg\",hall,,,,,,,\n");
-  const auto a = readLabels(f / "a.csv");
+  const auto a = readLabeledFrames(f / "a.csv");
   ASSERT_EQ(a.size(), 2u);
   EXPECT_EQ(a[0].place, "hall, east \"wing\"");
   EXPECT_EQ(csvCell(a[0].place), "\"hall, east \"\"wing\"\"\"");
@@ -185,7 +187,7 @@ TEST(Labels, PosesOdometryAndNamesWithCommas) {
   EXPECT_FALSE(a[1].readings.odometry);
 }
 
-TEST(Labels, BadListsAreNamedWithTheLine) {
+TEST(LabeledFrames, BadListsAreRefusedWithTheLine) {
   TemporaryDirectory f;
   const std::pair<std::string, const char*> cases[] = {
       {"", "no frames"},
@@ -201,12 +203,12 @@ TEST(Labels, BadListsAreNamedWithTheLine) {
       {"a,b" + std::string(5000, ','), "too many columns"}};
   for (const auto& c : cases) {
     writeFile(f / "l.csv", c.first);
-    const std::string what = messageOf<InputError>([&] { readLabels(f / "l.csv"); });
+    const std::string what = messageOf<InputError>([&] { readLabeledFrames(f / "l.csv"); });
     EXPECT_NE(what.find(c.second), std::string::npos) << what;
   }
 }
 
-TEST(Images, CutShortOrNoImagesAreNamed) {
+TEST(Images, TruncatedFilesAreRefusedWithTheirName) {
   TemporaryDirectory f;
   cv::Mat image(120, 160, CV_8UC3);
   cv::randu(image, 0, 255);
@@ -230,15 +232,15 @@ TEST(Images, CutShortOrNoImagesAreNamed) {
   EXPECT_THROW(readImage(f.path()), InputError);
 }
 
-TEST(Images, DepthGivesTheNearestDistancePerColumn) {
+TEST(Images, RangesAreTakenFromADepthImage) {
   TemporaryDirectory f;
   cv::Mat depth(240, 320, CV_16U, cv::Scalar(3000));
   depth(cv::Rect(0, 80, 160, 80)).setTo(cv::Scalar(1200));
   depth(cv::Rect(304, 0, 16, 240)).setTo(cv::Scalar(0));
   cv::imwrite(f / "d.png", depth);
-  LabelledFrame frame;
+  LabeledFrame frame;
   frame.depth = f / "d.png";
-  const Readings r = readingsOf(frame);
+  const SensorReadings r = readingsOf(frame);
   ASSERT_EQ(r.ranges.size(), 20u);
   EXPECT_FLOAT_EQ(r.ranges[0], 1.2f);
   EXPECT_FLOAT_EQ(r.ranges[12], 3.0f);

@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
+#include "hyselam_common/errors.hpp"
+
 namespace hyselam {
 
-/// The value, if it is a whole number that a T can hold. @throws std::invalid_argument.
+/// The value, if it is a whole number that a T can hold. @throws Error, without the file's name.
 template <typename T>
 T integerOf(const nlohmann::json& j) {
   static_assert(std::is_integral<T>::value && !std::is_same<T, bool>::value, "whole numbers only");
@@ -26,9 +27,8 @@ T integerOf(const nlohmann::json& j) {
       return static_cast<T>(value);
     }
   }
-  throw std::invalid_argument(
-      "'" + j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 40) +
-      "' is no whole number that fits");
+  throw Error("'" + j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 40) +
+              "' is no whole number that fits");
 }
 
 }  // namespace hyselam

@@ -15,185 +15,202 @@
 namespace selovis {
 namespace {
 
-constexpr double kArrival = 1.0;  // [s] from setting a pose to the localisation's answer, at most
+using hyselam_msgs::LocalizationStatus;
+
+// From setting a pose to the status of the localization that takes it into account, at most.
+constexpr double kMaxStatusDelay = 1.0;  // [s]
+// Stamps that are later than the image by more: time went back.
+constexpr double kMaxLead = 1.0;  // [s]
 
 }  // namespace
 
 PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
-                                 const SemanticLocalizationParams& params, std::string who)
+                                 const SupervisionParams& params, std::string log_name)
     : params_(params),
-      who_(std::move(who)),
+      log_name_(std::move(log_name)),
       kidnapped_publisher_(private_nh.advertise<std_msgs::Bool>("kidnapped", 10, true)),
       initialpose_publisher_(
           nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("initialpose", 1)),
       global_localization_(nh.serviceClient<std_srvs::Empty>("global_localization")) {
-  status_subscriber_ = nh.subscribe<hyselam_msgs::LocalizationStatus>(
+  status_subscriber_ = nh.subscribe<LocalizationStatus>(
       "localization_status", 10,
-      [this](const hyselam_msgs::LocalizationStatus::ConstPtr& status) { status_ = status; });
+      [this](const LocalizationStatus::ConstPtr& status) { status_ = status; });
   publishKidnapped();
 }
 
-void PoseSupervision::setGraph(const PlaceGraph& graph) {
-  graph_ = graph;
-  supervisor_ =
-      graph.places.empty() ? nullptr : std::make_unique<Supervisor>(graph, params_.supervisor);
-  last_ = Supervision();
-  to_act_ = by_laser_ = false;
+void PoseSupervision::setTransitions(const PlaceTransitions& transitions) {
+  transitions_ = transitions;
+  detector_ = transitions.places.empty()
+                  ? nullptr
+                  : std::make_unique<KidnappingDetector>(transitions, params_.detector);
+  state_ = KidnappingState();
+  pending_ = Cause::kNone;
   publishKidnapped();
 }
 
-void PoseSupervision::heedLost(const ros::Time& stamp) {
+const std::string& PoseSupervision::placeName() const {
+  return transitions_.places[static_cast<std::size_t>(state_.place)];
+}
+
+void PoseSupervision::followLocalizationStatus(const ros::Time& stamp) {
   const bool lost = params_.on_kidnap == OnKidnap::kPlace && status_ &&
-                    status_->phase == hyselam_msgs::LocalizationStatus::LOST &&
-                    (status_->header.stamp - stamp).toSec() < 1.0;  // else time went back
-  if (by_laser_ && !lost) {
-    // It has found itself, or was told from elsewhere: a place would only disturb it now.
-    by_laser_ = to_act_ = false;
-    supervisor_->reset();
-    last_ = Supervision();
+                    status_->phase == LocalizationStatus::LOST &&
+                    (status_->header.stamp - stamp).toSec() < kMaxLead;
+  if (pending_ == Cause::kLocalization && !lost) {
+    // It has found its pose, or was given one: setting the place would only disturb it now.
+    pending_ = Cause::kNone;
+    detector_->reset();
+    state_ = KidnappingState();
     return;
   }
-  if (!lost || to_act_) return;
-  // What was set needs a moment to arrive.
-  if (set_at_ &&
-      (status_->header.stamp - *set_at_).toSec() < std::max(kArrival, params_.patience)) {
-    return;
+  if (!lost || pending_ != Cause::kNone) return;
+  if (set_at_ && (status_->header.stamp - *set_at_).toSec() <
+                     std::max(kMaxStatusDelay, params_.relocalization_timeout)) {
+    return;  // a pose that was just set is given time
   }
-  supervisor_->doubt();
-  by_laser_ = to_act_ = true;
-  alarm_at_ = stamp;
-  ++lost_;
-  last_alarm_ = "the localisation says that it is lost";
-  ROS_WARN_STREAM(who_ << " " << last_alarm_ << ": looking for the place");
+  detector_->declareLost();
+  pending_ = Cause::kLocalization;
+  pending_since_ = stamp;
+  ++counts_.lost;
+  last_alarm_ = "the localisation reports that it is lost";
+  ROS_WARN_STREAM(log_name_ << " " << last_alarm_ << ": searching the place");
 }
 
-bool PoseSupervision::poseIsMeant(const ros::Time& stamp) {
-  // Part 1 says itself whether its pose deserves trust. Others, amcl among them, do not: after the
-  // pose was set they get time to find it.
+bool PoseSupervision::poseIsValid(const ros::Time& stamp) {
+  // Our localization reports whether its pose is valid. Others, amcl among them, do not: after the
+  // pose was set they get time to converge.
   if (status_) {
     if (!status_->converged) return false;
     if (set_at_ && status_->header.stamp <= *set_at_) return false;
-  } else if (set_at_ && stamp >= *set_at_ && (stamp - *set_at_).toSec() < params_.settle) {
+  } else if (set_at_ && stamp >= *set_at_ && (stamp - *set_at_).toSec() < params_.grace_period) {
     return false;
   }
   if (set_at_) {
-    // From now on the new pose is judged.
+    // From now on the new pose is tested.
     set_at_.reset();
-    if (supervisor_) supervisor_->reset();
+    if (detector_) detector_->reset();
   }
   return true;
 }
 
-void PoseSupervision::judge(const std::vector<double>& frame,
-                            const std::optional<hyselam::Pose2>& pose,
-                            const hyselam_topo::AugmentedTopologicalMap& map,
-                            const ros::Time& stamp) {
-  if (!supervisor_) return;
-  tellSearch();
-  if (set_at_ && (*set_at_ - stamp).toSec() > 1.0) set_at_.reset();  // time went back
-  heedLost(stamp);
+void PoseSupervision::update(const std::vector<double>& frame,
+                             const std::optional<hyselam::Pose2>& pose,
+                             const hyselam_topo::AugmentedTopologicalMap& map,
+                             const ros::Time& stamp) {
+  if (!detector_) return;
+  reportGlobalLocalization();
+  if (set_at_ && (*set_at_ - stamp).toSec() > kMaxLead) set_at_.reset();
+  followLocalizationStatus(stamp);
   expected_ = ExpectedPlaces();
-  if (pose && poseIsMeant(stamp)) {
-    expected_ = expectedPlaces(map, graph_, {pose->x, pose->y}, params_.reach);
+  if (pose && poseIsValid(stamp)) {
+    expected_ =
+        expectedPlaces(map, transitions_, {pose->x, pose->y}, params_.expected_place_radius);
   }
-  const bool was = last_.kidnapped;
-  last_ = supervisor_->update(frame, expected_.agree, expected_.unmapped);
-  judged_ += last_.judged;
-  if (last_.alarm) {
-    ++alarms_;
-    alarm_at_ = stamp;
-    to_act_ = params_.on_kidnap != OnKidnap::kNothing;
-    by_laser_ = false;
-    std::ostringstream text;
-    text << "the pose lies in '" << expected_.own << "', but the camera sees "
-         << (last_.place >= 0 ? "'" + graph_.places[static_cast<std::size_t>(last_.place)] + "'"
-                              : std::string("another place"));
-    last_alarm_ = text.str();
-    ROS_WARN_STREAM(who_ << " kidnapped or diverged: " << last_alarm_);
-  } else if (was && !last_.kidnapped) {
-    ROS_INFO_STREAM(who_ << " the pose and the place seen agree again");
+  const bool was_kidnapped = state_.kidnapped;
+  state_ = detector_->update(frame, expected_.agreeing, expected_.unmapped);
+  counts_.tested += state_.tested;
+  if (state_.alarm) {
+    raiseAlarm(stamp);
+  } else if (was_kidnapped && !state_.kidnapped) {
+    ROS_INFO_STREAM(log_name_ << " the pose and the recognized place agree again");
   }
-  if (!last_.kidnapped) to_act_ = by_laser_ = false;
+  if (!state_.kidnapped) pending_ = Cause::kNone;
   publishKidnapped();
-  if (to_act_) act(map, stamp);
+  if (pending_ != Cause::kNone) relocalize(map, stamp);
 }
 
-void PoseSupervision::act(const hyselam_topo::AugmentedTopologicalMap& map,
-                          const ros::Time& stamp) {
+void PoseSupervision::raiseAlarm(const ros::Time& stamp) {
+  ++counts_.alarms;
+  pending_since_ = stamp;
+  pending_ = params_.on_kidnap == OnKidnap::kNothing ? Cause::kNone : Cause::kCamera;
+  std::ostringstream text;
+  text << "the pose lies in '" << expected_.own << "', but the camera sees "
+       << (state_.place >= 0 ? "'" + placeName() + "'" : std::string("another place"));
+  last_alarm_ = text.str();
+  ROS_WARN_STREAM(log_name_ << " kidnapped or diverged: " << last_alarm_);
+}
+
+void PoseSupervision::relocalize(const hyselam_topo::AugmentedTopologicalMap& map,
+                                 const ros::Time& stamp) {
+  std::optional<PlacePosePrior> prior;
   if (params_.on_kidnap == OnKidnap::kPlace) {
-    const auto spread = last_.place >= 0
-                            ? spreadOf(map, graph_.places[static_cast<std::size_t>(last_.place)])
-                            : std::optional<PlaceSpread>();
-    if (!spread && by_laser_) return;  // it searches the whole map by itself
-    if (!spread && (stamp - alarm_at_).toSec() < params_.patience) return;  // it may become known
-    if (spread) {
-      geometry_msgs::PoseWithCovarianceStamped msg;
-      msg.header.stamp = stamp;
-      msg.header.frame_id = map.frame_id;
-      msg.pose.pose = hyselam::toPoseMsg(spread->mean);
-      msg.pose.covariance[0] = spread->stddev.x * spread->stddev.x;
-      msg.pose.covariance[7] = spread->stddev.y * spread->stddev.y;
-      msg.pose.covariance[35] = spread->stddev.theta * spread->stddev.theta;
-      initialpose_publisher_.publish(msg);
-      ++poses_set_;
-      ROS_INFO_STREAM(who_ << " localisation begins again in '"
-                           << graph_.places[static_cast<std::size_t>(last_.place)] << "'");
-    } else {
-      searchEverywhere();
+    if (state_.place >= 0) prior = posePriorOf(map, placeName());
+    // A localization that is lost searches the whole map by itself; after an alarm the place may
+    // still become known.
+    if (!prior && (pending_ == Cause::kLocalization ||
+                   (stamp - pending_since_).toSec() < params_.relocalization_timeout)) {
+      return;
     }
-  } else {
-    searchEverywhere();
   }
-  to_act_ = by_laser_ = false;
+  if (prior) {
+    publishInitialPose(*prior, map.frame_id, stamp);
+  } else {
+    startGlobalLocalization();
+  }
+  pending_ = Cause::kNone;
   set_at_ = stamp;
 }
 
-void PoseSupervision::searchEverywhere() {
-  tellSearch();
-  if (search_.valid()) return;  // the last one has not been answered
-  ++searches_;
+void PoseSupervision::publishInitialPose(const PlacePosePrior& prior, const std::string& frame_id,
+                                         const ros::Time& stamp) {
+  geometry_msgs::PoseWithCovarianceStamped msg;
+  msg.header.stamp = stamp;
+  msg.header.frame_id = frame_id;
+  msg.pose.pose = hyselam::toPoseMsg(prior.mean);
+  msg.pose.covariance[0] = prior.stddev.x * prior.stddev.x;
+  msg.pose.covariance[7] = prior.stddev.y * prior.stddev.y;
+  msg.pose.covariance[35] = prior.stddev.theta * prior.stddev.theta;
+  initialpose_publisher_.publish(msg);
+  ++counts_.poses_set;
+  ROS_INFO_STREAM(log_name_ << " localisation begins again in '" << placeName() << "'");
+}
+
+void PoseSupervision::startGlobalLocalization() {
+  reportGlobalLocalization();
+  if (search_.valid()) return;  // the last call has not been answered
+  ++counts_.searches;
   search_ = std::async(std::launch::async, [client = global_localization_]() mutable {
     std_srvs::Empty empty;
     return client.call(empty);
   });
 }
 
-void PoseSupervision::tellSearch() {
+void PoseSupervision::reportGlobalLocalization() {
   if (!search_.valid() || search_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
     return;
   }
   if (search_.get()) {
-    ROS_INFO_STREAM(who_ << " localisation begins again on the whole map");
+    ROS_INFO_STREAM(log_name_ << " localisation begins again on the whole map");
   } else {
-    ROS_WARN_STREAM(who_ << " the service " << global_localization_.getService()
-                         << " does not answer");
+    ROS_WARN_STREAM(log_name_ << " the service " << global_localization_.getService()
+                              << " does not answer");
   }
 }
 
 void PoseSupervision::publishKidnapped() {
-  if (published_ && *published_ == last_.kidnapped) return;
-  published_ = last_.kidnapped;
+  if (published_ && *published_ == state_.kidnapped) return;
+  published_ = state_.kidnapped;
   std_msgs::Bool msg;
-  msg.data = last_.kidnapped;
+  msg.data = state_.kidnapped;
   kidnapped_publisher_.publish(msg);
 }
 
 void PoseSupervision::report(diagnostic_msgs::DiagnosticStatus& status) const {
   using hyselam::addRemark;
   using hyselam::addValue;
-  if (last_.kidnapped) {
+  if (state_.kidnapped) {
     addRemark(status, diagnostic_msgs::DiagnosticStatus::WARN,
               "kidnapped or diverged: " + last_alarm_);
   }
-  addValue(status, "pose judged", last_.judged);
-  addValue(status, "pose lies in", expected_.own);
-  addValue(status, "evidence against the pose [nats]", last_.evidence);
-  addValue(status, "kidnapped", last_.kidnapped);
-  addValue(status, "frames judged", judged_);
-  addValue(status, "alarms", alarms_);
-  addValue(status, "localisation lost", lost_);
-  addValue(status, "poses set", poses_set_);
-  addValue(status, "global localisations", searches_);
+  addValue(status, "pose tested", state_.tested);
+  addValue(status, "place of the pose", expected_.own);
+  addValue(status, "evidence against the pose [nats]", state_.evidence);
+  addValue(status, "kidnapped", state_.kidnapped);
+  addValue(status, "frames tested", counts_.tested);
+  addValue(status, "alarms", counts_.alarms);
+  addValue(status, "localisation lost", counts_.lost);
+  addValue(status, "poses set", counts_.poses_set);
+  addValue(status, "global localisations", counts_.searches);
   addValue(status, "last alarm", last_alarm_);
 }
 

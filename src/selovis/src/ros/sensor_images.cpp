@@ -9,14 +9,14 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/pose2.hpp"
-#include "selovis/labels.hpp"
+#include "selovis/learning/labeled_frames.hpp"
 
 namespace selovis {
 namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
 
-/// cv_bridge believes what the message says of itself.
+/// cv_bridge does not check the size of a message.
 void checkSize(const sensor_msgs::Image& msg, const std::string& source) {
   if (msg.width == 0 || msg.height == 0 || msg.width > 100000 || msg.height > 100000) {
     throw hyselam::InputError(source, "",
@@ -42,7 +42,7 @@ cv::Mat shared(const sensor_msgs::ImageConstPtr& msg, const std::string& encodin
                const std::string& source) {
   try {
     const cv_bridge::CvImageConstPtr image = cv_bridge::toCvShare(msg, encoding);
-    // The message may be gone before the image is.
+    // The image may outlive the message.
     return image->image.clone();
   } catch (const cv_bridge::Exception& e) {
     throw hyselam::InputError(source, "encoding '" + msg->encoding + "'", e.what());
@@ -55,8 +55,8 @@ cv::Mat shared(const sensor_msgs::ImageConstPtr& msg, const std::string& encodin
 
 cv::Mat fromMsg(const sensor_msgs::ImageConstPtr& msg, const std::string& source) {
   checkSize(*msg, source);
-  const bool grey = encodings::isMono(msg->encoding) || msg->encoding == encodings::TYPE_8UC1;
-  const bool picture = grey || encodings::isColor(msg->encoding) ||
+  const bool gray = encodings::isMono(msg->encoding) || msg->encoding == encodings::TYPE_8UC1;
+  const bool picture = gray || encodings::isColor(msg->encoding) ||
                        encodings::isBayer(msg->encoding) || msg->encoding == encodings::TYPE_8UC3 ||
                        msg->encoding == encodings::YUV422;
   if (!picture) {
@@ -65,7 +65,7 @@ cv::Mat fromMsg(const sensor_msgs::ImageConstPtr& msg, const std::string& source
   if (msg->encoding == encodings::TYPE_8UC1 || msg->encoding == encodings::TYPE_8UC3) {
     return shared(msg, msg->encoding, source);
   }
-  return shared(msg, grey ? encodings::MONO8 : encodings::BGR8, source);
+  return shared(msg, gray ? encodings::MONO8 : encodings::BGR8, source);
 }
 
 cv::Mat fromMsg(const sensor_msgs::CompressedImage& msg, const std::string& source) {
@@ -94,12 +94,12 @@ cv::Mat depthFromMsg(const sensor_msgs::ImageConstPtr& msg, const std::string& s
   return depth;
 }
 
-std::vector<float> rangesAcross(const sensor_msgs::LaserScan& scan, double aperture,
+std::vector<float> rangesAcross(const sensor_msgs::LaserScan& scan, double fov,
                                 double laser_in_camera, int columns) {
   std::vector<float> ranges;
   for (int k = 0; k < columns; ++k) {
     const double bearing =
-        std::atan((1.0 - (2.0 * k + 1.0) / columns) * std::tan(0.5 * aperture)) - laser_in_camera;
+        std::atan((1.0 - (2.0 * k + 1.0) / columns) * std::tan(0.5 * fov)) - laser_in_camera;
     const double beam =
         scan.angle_increment == 0.0f
             ? -1.0

@@ -1,4 +1,4 @@
-// train: learns the look of places from labelled images.
+// train: learns places from labeled images.
 #include <iostream>
 #include <memory>
 
@@ -6,7 +6,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
-#include "options.hpp"
+#include "tours.hpp"
 
 namespace {
 
@@ -43,38 +43,29 @@ nlohmann::json run(Options& o) {
   t.progress = [stages](const std::string& stage, std::size_t done, std::size_t all) {
     (*stages)(stage, done, all);
   };
-  Model model;
-  try {
-    t.classifier.kernel = kernelOf(o.kernel);
-    const bool exemplar = t.classifier.kernel == Kernel::kExemplar;
-    t.views = o.views != "auto" ? numbersOf(o.views, "--views")
-              : exemplar        ? exemplarViews()
-                                : std::vector<double>{0.0};
-    const auto learn = [&](const std::string& libsvm_file) {
-      t.libsvm_file = libsvm_file;
-      if (o.add) {
-        model = loadModel(o.out);
-        addTo(model, tours.sizes(), load, t);
-      } else {
-        model = train(tours.sizes(), load, t);
-      }
-    };
-    if (o.libsvm.empty())
-      learn("");
-    else
-      hyselam::replaceFileAtomically(o.libsvm, learn);
-  } catch (const hyselam::ParameterError& e) {
-    throw hyselam::InputError(o.labels.front(), "", e.what());
-  } catch (const std::invalid_argument& e) {
-    throw hyselam::InputError(o.labels.front(), "", e.what());
+  t.classifier.kernel = svmKernelFromString(o.kernel);
+  const bool exemplar = t.classifier.kernel == SvmKernel::kExemplar;
+  t.views = o.views != "auto" ? numbersOf(o.views, "--views")
+            : exemplar        ? exemplarViews()
+                              : std::vector<double>{0.0};
+  PlaceModel model;
+  const auto learn = [&](const std::string& libsvm_file) {
+    t.libsvm_file = libsvm_file;
+    model = o.add ? extendPlaceModel(loadPlaceModel(o.out), tours.sizes(), load, t)
+                  : trainPlaceModel(tours.sizes(), load, t);
+  };
+  if (o.libsvm.empty()) {
+    learn("");
+  } else {
+    hyselam::replaceFileAtomically(o.libsvm, learn);
   }
-  saveModel(model, o.out);
+  savePlaceModel(model, o.out);
   return {{"descriptor", model.descriptor},
           {"signature_size", model.samples.size},
-          {"kernel", nameOf(model.classifier.kernel)},
+          {"kernel", toString(model.classifier.kernel)},
           {"cost", model.classifier.cost},
           {"gamma", model.classifier.gamma},
-          {"places", model.graph.places},
+          {"places", model.transitions.places},
           {"signatures", model.samples.count()},
           {"model", o.out}};
 }
@@ -82,8 +73,7 @@ nlohmann::json run(Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Learns the look of places from labelled images and writes a model directory.",
-               "train"};
+  CLI::App app{"Learns places from labeled images and writes a model directory.", "train"};
   Options o;
   TrainingOptions& t = o.training;
   app.add_option("--labels", o.labels, "CSV: image_path,place[,sensor columns]; one file per tour")
@@ -99,14 +89,14 @@ int main(int argc, char** argv) {
   app.add_option("--gamma", t.classifier.gamma, "gamma of poly and rbf")->capture_default_str();
   app.add_option("--beta", t.classifier.beta, "sharpness of the exemplar kernel")
       ->capture_default_str();
-  app.add_option("--neighbours", t.classifier.neighbours, "exemplars that are weighed")
+  app.add_option("--neighbours", t.classifier.neighbors, "exemplars that are weighted")
       ->capture_default_str();
   app.add_option("--power", t.classifier.power, "each value is raised to it; 1: as it is")
       ->capture_default_str();
   app.add_option("--views", o.views = "auto",
                  "sideways shifts of each image, in widths; auto: five for exemplar, else one")
       ->capture_default_str();
-  app.add_option("--aperture", t.aperture, "opening angle of the camera across the image [rad]")
+  app.add_option("--aperture", t.horizontal_fov, "horizontal field of view of the camera [rad]")
       ->capture_default_str();
   app.add_option("--heading-weight", t.descriptor_params.heading_weight, "of psi and [psi]")
       ->capture_default_str();

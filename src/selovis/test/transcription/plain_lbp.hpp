@@ -67,7 +67,7 @@ inline int colorClass(const cv::Vec3b& bgr, int n, int value_min, int saturation
   return num * (n - 2) / (6 * d) + 2;
 }
 
-inline int grey(const cv::Vec3b& bgr) {
+inline int gray(const cv::Vec3b& bgr) {
   return (29 * bgr[0] + 150 * bgr[1] + 77 * bgr[2] + 128) >> 8;
 }
 
@@ -78,7 +78,7 @@ inline std::vector<int> byColor(const cv::Mat& image, bool uniform, int n, int v
                                 const std::function<bool(int, int)>& member) {
   const int labels = uniform ? 59 : 256;
   std::vector<int> h(static_cast<std::size_t>(labels * n), 0);
-  const Pixel g = [&](int x, int y) { return grey(image.at<cv::Vec3b>(y, x)); };
+  const Pixel g = [&](int x, int y) { return gray(image.at<cv::Vec3b>(y, x)); };
   for (int y = radius; y < image.rows - radius; ++y) {
     for (int x = radius; x < image.cols - radius; ++x) {
       if (!member(x, y)) continue;
@@ -96,7 +96,7 @@ inline std::vector<int> secondStage(const cv::Mat& image, bool uniform, int n, i
   const int rows = image.rows - 2 * radius, cols = image.cols - 2 * radius;
   std::vector<int> h(uniform ? 59 : 256, 0);
   if (rows <= 0 || cols <= 0) return h;
-  const Pixel g = [&](int x, int y) { return grey(image.at<cv::Vec3b>(y, x)); };
+  const Pixel g = [&](int x, int y) { return gray(image.at<cv::Vec3b>(y, x)); };
   cv::Mat inner(rows, cols, CV_32S);
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < cols; ++x) {

@@ -1,4 +1,4 @@
-// The probability of each place as a bar at its middle, for rviz.
+// Markers for rviz: the probability of each place as a bar at its center.
 #pragma once
 
 #include <visualization_msgs/MarkerArray.h>

@@ -1,4 +1,5 @@
-// The place seen against the pose of the localisation, and what is done when they disagree.
+// Tests the pose of the localization by the recognized place, and starts the localization again
+// where they disagree.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
@@ -12,8 +13,8 @@
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
+#include "selovis/places/topological_places.hpp"
 #include "selovis/ros/parameters.hpp"
-#include "selovis/topology.hpp"
 
 namespace selovis {
 
@@ -21,43 +22,53 @@ namespace selovis {
 /// Calls the service `global_localization`. All callbacks on the queue of `nh`.
 class PoseSupervision {
  public:
-  PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
-                  const SemanticLocalizationParams& params, std::string who);
+  PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh, const SupervisionParams& params,
+                  std::string log_name);
 
-  /// Other places, or other doors between them: all evidence is forgotten.
-  void setGraph(const PlaceGraph& graph);
-  /// One frame. `pose`: of the robot in the map, if known. `frame`: probabilities by this frame
-  /// alone.
-  void judge(const std::vector<double>& frame, const std::optional<hyselam::Pose2>& pose,
-             const hyselam_topo::AugmentedTopologicalMap& map, const ros::Time& stamp);
+  /// Other places, or other transitions between them: all evidence is forgotten.
+  void setTransitions(const PlaceTransitions& transitions);
+  /// One frame. @param frame probability of each place by this frame alone. @param pose of the
+  /// robot in the map, if known.
+  void update(const std::vector<double>& frame, const std::optional<hyselam::Pose2>& pose,
+              const hyselam_topo::AugmentedTopologicalMap& map, const ros::Time& stamp);
 
-  bool kidnapped() const { return last_.kidnapped; }
+  bool kidnapped() const { return state_.kidnapped; }
   void report(diagnostic_msgs::DiagnosticStatus& status) const;
 
  private:
-  /// A localisation that says that it is lost is told the place, once that is known.
-  void heedLost(const ros::Time& stamp);
-  /// Whether the localisation believes in its pose, as far as it is known.
-  bool poseIsMeant(const ros::Time& stamp);
-  void act(const hyselam_topo::AugmentedTopologicalMap& map, const ros::Time& stamp);
-  /// In a thread of its own: the service may take its time. One search at a time.
-  void searchEverywhere();
-  void tellSearch();
-  void publishKidnapped();
+  /// Why the localization has to begin again.
+  enum class Cause { kNone, kCamera, kLocalization };
+  struct Counts {
+    std::size_t tested = 0, alarms = 0, lost = 0, poses_set = 0, searches = 0;
+  };
 
-  SemanticLocalizationParams params_;
-  std::string who_;
-  PlaceGraph graph_;
-  std::unique_ptr<Supervisor> supervisor_;
-  Supervision last_;
+  /// Takes up, and drops, what the localization reports of being lost.
+  void followLocalizationStatus(const ros::Time& stamp);
+  /// Whether the localization vouches for its pose, as far as it is known.
+  bool poseIsValid(const ros::Time& stamp);
+  void raiseAlarm(const ros::Time& stamp);
+  /// Starts the localization again, in the place once it is known.
+  void relocalize(const hyselam_topo::AugmentedTopologicalMap& map, const ros::Time& stamp);
+  void publishInitialPose(const PlacePosePrior& prior, const std::string& frame_id,
+                          const ros::Time& stamp);
+  /// In a thread of its own: the service may take its time. One search at a time.
+  void startGlobalLocalization();
+  void reportGlobalLocalization();
+  void publishKidnapped();
+  const std::string& placeName() const;
+
+  const SupervisionParams params_;
+  const std::string log_name_;
+  PlaceTransitions transitions_;
+  std::unique_ptr<KidnappingDetector> detector_;  // null without places
+  KidnappingState state_;
   std::optional<bool> published_;
   hyselam_msgs::LocalizationStatus::ConstPtr status_;
-  bool to_act_ = false;    // an alarm waits for the place to be known
-  bool by_laser_ = false;  // it is the localisation's own
-  ros::Time alarm_at_;
-  std::optional<ros::Time> set_at_;  // when the pose was set anew
+  Cause pending_ = Cause::kNone;  // the localization has not been started again yet
+  ros::Time pending_since_;
+  std::optional<ros::Time> set_at_;  // when the pose was set
   ExpectedPlaces expected_;          // at the pose
-  std::size_t judged_ = 0, alarms_ = 0, poses_set_ = 0, searches_ = 0, lost_ = 0;
+  Counts counts_;
   std::string last_alarm_;
   ros::Publisher kidnapped_publisher_, initialpose_publisher_;
   ros::ServiceClient global_localization_;

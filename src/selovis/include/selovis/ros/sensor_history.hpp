@@ -10,39 +10,38 @@
 
 namespace selovis {
 
-constexpr double kClockSlack = 0.5;  // [s] older than the last by more: a bag begins again
+/// A message that is older than the last by more: time went back, as where a bag begins again [s].
+constexpr double kMaxDisorder = 0.5;
 
 /// Messages with a header, in order of time. Not thread safe: for the callbacks of one queue.
 template <typename M>
 class SensorHistory {
  public:
-  using Message = M;
-
-  /// Keeps the last `most` messages, at least 1.
-  explicit SensorHistory(std::size_t most = 400) : most_(most) {}
+  /// Keeps the last `capacity` messages, at least 1.
+  explicit SensorHistory(std::size_t capacity = 400) : capacity_(capacity) {}
 
   void add(const typename M::ConstPtr& msg) {
     if (!messages_.empty() &&
-        (messages_.back()->header.stamp - msg->header.stamp).toSec() > kClockSlack) {
-      messages_.clear();  // time went back: a bag begins again
+        (messages_.back()->header.stamp - msg->header.stamp).toSec() > kMaxDisorder) {
+      messages_.clear();
     }
     auto at = messages_.end();
     while (at != messages_.begin() && msg->header.stamp < (*std::prev(at))->header.stamp) --at;
-    messages_.insert(at, msg);  // one that is late takes its place
-    while (messages_.size() > most_) messages_.pop_front();
+    messages_.insert(at, msg);
+    while (messages_.size() > capacity_) messages_.pop_front();
   }
-  /// Whether a later message can not lie nearer to that time.
+  /// Whether the last message is not older than `stamp`: no later one will be nearer to it.
   bool reaches(const ros::Time& stamp) const {
     return !messages_.empty() && messages_.back()->header.stamp >= stamp;
   }
-  /// The nearest within `tolerance` [s]; null if there is none.
+  /// The message nearest to `stamp`, within `tolerance` [s]; null if there is none.
   typename M::ConstPtr nearest(const ros::Time& stamp, double tolerance) const {
     typename M::ConstPtr best;
     double least = tolerance;
     for (const auto& msg : messages_) {
-      const double apart = std::abs((msg->header.stamp - stamp).toSec());
-      if (apart <= least) {
-        least = apart;
+      const double difference = std::abs((msg->header.stamp - stamp).toSec());
+      if (difference <= least) {
+        least = difference;
         best = msg;
       }
     }
@@ -50,7 +49,7 @@ class SensorHistory {
   }
 
  private:
-  std::size_t most_;
+  std::size_t capacity_;
   std::deque<typename M::ConstPtr> messages_;
 };
 

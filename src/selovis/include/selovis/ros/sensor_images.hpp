@@ -11,21 +11,23 @@
 
 namespace selovis {
 
-/// 8-bit BGR of a colour image, 8-bit grey of a grey one; the pixels are the message's where they
-/// need not be turned round. Throws hyselam::InputError: no pixels, fewer bytes than the size says,
-/// an encoding that is no picture.
+/// 8-bit BGR of a color image, 8-bit gray of a gray one.
+/// @throws hyselam::InputError for an image without pixels, with fewer bytes than its size needs,
+/// or
+///   with an encoding that is no picture.
 cv::Mat fromMsg(const sensor_msgs::ImageConstPtr& msg, const std::string& source);
 
-/// The same from JPEG, PNG, ...; one that was cut short is refused.
+/// The same from JPEG, PNG, ...; a truncated one is refused. @throws hyselam::InputError.
 cv::Mat fromMsg(const sensor_msgs::CompressedImage& msg, const std::string& source);
 
-/// 16-bit depth in mm from 16UC1 or 32FC1 (m). Throws as above.
+/// 16-bit depth in mm from 16UC1 or 32FC1 (m). @throws hyselam::InputError.
 cv::Mat depthFromMsg(const sensor_msgs::ImageConstPtr& msg, const std::string& source);
 
-/// Distances across the image, from its left edge to its right, `columns` of them: what the beam
-/// nearest to the middle of each column read. The laser looks the camera's way, turned by
-/// `laser_in_camera` [rad]. NaN where no beam looks.
-std::vector<float> rangesAcross(const sensor_msgs::LaserScan& scan, double aperture,
+/// Ranges across the image, from its left edge to its right: for each of `columns` columns that of
+/// the beam nearest to its middle; NaN where the laser has no beam.
+/// @param fov horizontal field of view of the camera [rad]. @param laser_in_camera heading of the
+/// laser against the camera [rad].
+std::vector<float> rangesAcross(const sensor_msgs::LaserScan& scan, double fov,
                                 double laser_in_camera, int columns);
 
 }  // namespace selovis

@@ -1,0 +1,73 @@
+// Classifiers: from the signature of one image to a probability per place (dos Santos 2014, 6.4).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hyselam_common/parameters.hpp"
+#include "selovis/classifiers/samples.hpp"
+
+namespace selovis {
+
+/// The kernel of a support vector machine, or kExemplar: soft nearest neighbors among all training
+/// signatures, without an SVM.
+enum class SvmKernel { kLinear, kPoly, kRbf, kExemplar };
+
+/// "linear", "poly", "rbf", "exemplar".
+const char* toString(SvmKernel kernel);
+/// @throws hyselam::InputError for any other text.
+SvmKernel svmKernelFromString(const std::string& name);
+
+struct ClassifierParams {
+  SvmKernel kernel = SvmKernel::kPoly;
+  /// Each value v of a signature becomes v^power; 0.5 turns the dot product of histograms into the
+  /// Bhattacharyya coefficient, 1 leaves them as they are. Then all signatures are scaled so that
+  /// their mean squared length is 1. 0.05 to 4.
+  double power = 0.5;
+  double cost = 10.0;   ///< C of the SVM, 1e-6 to 1e9
+  double gamma = 1.0;   ///< of poly (gamma u.v + 1)^2 and rbf exp(-gamma |u - v|^2), 1e-9 to 1e9
+  double beta = 10.0;   ///< exemplar: weight exp(-beta (d^2 - d_min^2) / d_min^2), 0 to 1e6
+  int neighbors = 100;  ///< exemplar: the nearest so many are weighted, 1 to 100000
+  unsigned seed = 1;    ///< of libsvm's cross-validation for probabilities
+
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError.
+  void validate() const;
+};
+
+class Classifier {
+ public:
+  virtual ~Classifier() = default;
+  /// Number of classes.
+  virtual int places() const = 0;
+  /// Writes places() probabilities of sum 1. Not thread safe: buffers are kept.
+  virtual void predict(const float* signature, double* probabilities) = 0;
+  /// Distance of the last signature to the nearest training signature, in units of the typical
+  /// distance between training signatures: about 1 for familiar images. 0 where the kind of
+  /// classifier does not measure it.
+  virtual double novelty() const { return 0.0; }
+  /// Squared distances of the last signature to all samples; null where the kind has none.
+  virtual const std::vector<float>* distances() const { return nullptr; }
+};
+
+struct TrainedClassifier {
+  std::unique_ptr<Classifier> classifier;
+  /// What restoreClassifier() reads; empty for an exemplar classifier, which is its samples.
+  std::string state;
+};
+
+/// Trains on all samples. For an SVM, `libsvm_file`, if not empty, is written in libsvm's own
+/// format.
+/// @throws hyselam::InputError for samples of fewer than two of the `places` classes, or a file
+///   that cannot be written; hyselam::ParameterError.
+TrainedClassifier trainClassifier(const Samples& samples, int places,
+                                  const ClassifierParams& params,
+                                  const std::string& libsvm_file = "");
+
+/// @throws hyselam::InputError for bytes that do not fit; hyselam::ParameterError.
+std::unique_ptr<Classifier> restoreClassifier(const Samples& samples, int places,
+                                              const ClassifierParams& params,
+                                              const std::string& state);
+
+}  // namespace selovis

@@ -1,0 +1,37 @@
+// Signatures labeled with their places: the training set of the classifiers.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "hyselam_common/pose2.hpp"
+
+namespace selovis {
+
+/// A pose that is not known.
+constexpr hyselam::Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+
+struct Samples {
+  std::size_t size = 0;       ///< length of one signature
+  std::vector<float> values;  ///< one signature after the other
+  std::vector<int> places;    ///< class of each sample, from 0 on
+  /// Number of the frame that each sample was computed from, ascending; views of a frame share it.
+  std::vector<int> frames;
+  /// Of the camera in the map, turned as the view is; kNoPose where it is not known.
+  std::vector<hyselam::Pose2> poses;
+
+  std::size_t count() const { return places.size(); }
+  const float* row(std::size_t i) const { return values.data() + i * size; }
+  void add(const float* signature, int place, int frame, const hyselam::Pose2& pose = kNoPose) {
+    values.insert(values.end(), signature, signature + size);
+    places.push_back(place);
+    frames.push_back(frame);
+    poses.push_back(pose);
+  }
+};
+
+/// Dot product of n values, summed in a fixed order.
+float dot(const float* a, const float* b, std::size_t n);
+
+}  // namespace selovis
