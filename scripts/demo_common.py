@@ -2,10 +2,15 @@
 import json
 import pathlib
 import subprocess
+import sys
 
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.append(str(ROOT / "src/hyselam_common/scripts"))
+
+from html_page import write_page  # noqa: E402, F401 (for the reports)
+
 PLAN = ROOT / "src/hyselam_sim/plans/office.yaml"
 ROUTE = ROOT / "src/hyselam_sim/routes/office.yaml"
 THINGS = ROOT / "scripts/demo_things.yaml"
@@ -30,6 +35,20 @@ def tool(*command):
     if done.returncode:
         raise RuntimeError(f"{' '.join(str(c) for c in command[:3])}: {done.stdout.strip()}")
     return done.stdout
+
+
+def report_command(usage, checks, page):
+    """The command line of a report: `check ACT OUT`, with {act: check of the folder}, or `page OUT`."""
+    command, rest = (sys.argv + [""])[1], sys.argv[2:]
+    if command == "check" and len(rest) == 2 and rest[0] in checks:
+        passed, said = checks[rest[0]](pathlib.Path(rest[1]))
+        print(("ok      " if passed else "FAILED  ") + said)
+        return 0 if passed else 1
+    if command == "page" and len(rest) == 1:
+        page(pathlib.Path(rest[0]))
+        return 0
+    print(usage.split("\n\n")[1].strip(), file=sys.stderr)
+    return 2
 
 
 def common_name(name):

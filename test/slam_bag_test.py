@@ -114,7 +114,7 @@ class SlamBagTest(unittest.TestCase):
             self.assertLess(edge.a, edge.b)
             self.assertLess(edge.b, len(graph.nodes))
         self.assertIn(RegionEdge.LOOP, {e.kind for e in graph.edges})
-        # Nodes lie on the way.
+        # Nodes lie on the path.
         path = self.heard["path"].messages[-1]
         for node in graph.nodes:
             self.assertLess(min(math.hypot(p.pose.position.x - node.pose.x, p.pose.position.y - node.pose.y)
@@ -122,13 +122,13 @@ class SlamBagTest(unittest.TestCase):
 
     def test_what_rviz_shows(self):
         markers = {m.ns for m in self.heard["slam_markers"].messages[-1].markers}
-        self.assertGreaterEqual(markers, {"way", "loops", "regions", "region_links", "region_names"})
+        self.assertGreaterEqual(markers, {"path", "loops", "regions", "region_links", "region_names"})
 
     def test_diagnostics(self):
         values = self.values()
         self.assertGreater(int(values["loops"]), 0)
-        self.assertGreater(int(values["optimisations"]), 0)
-        self.assertEqual(values["odometry leapt"], "0")
+        self.assertGreater(int(values["optimizations"]), 0)
+        self.assertEqual(values["odometry jumps"], "0")
         self.assertEqual(values["publishing tf"], "true")
 
 

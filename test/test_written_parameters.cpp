@@ -127,6 +127,7 @@ TEST(WrittenParameters, ReadmesNameEachWithItsDefault) {
     const std::string readme = hyselam::readTextFile(kRoot + "/src/" + n.package + "/README.md");
     EXPECT_GT(n.rows.size(), 5U) << n.name;
     for (const Row& r : n.rows) {
+      if (r.name.find('/') != std::string::npos) continue;  // groups: in docs/parameters.md
       const auto symbol = symbols.find(r.name);
       const std::string value = symbol != symbols.end() ? symbol->second
                                 : r.fallback.empty()    ? "(empty)"

@@ -204,7 +204,7 @@ class WordsInputTest(unittest.TestCase):
         rig.feed(100)
         rig.pose = (50.0, 50.0, 0.0)
         rig.feed(100)
-        self.assertEqual((rig.value("odometry jumped"), rig.value("runs")), ("1", "2"))
+        self.assertEqual((rig.value("odometry jumps"), rig.value("runs")), ("1", "2"))
         rig.wait_said("the run ends", "jumped")
         words = rig.all(rig.words, "words")
         self.assertFalse([w for w in words if w.run == 0 and w.end_in_odom.x > 40])

@@ -45,10 +45,10 @@ void feed(SlamEngine* engine, const hyselam::RobotLog& log, std::size_t begin, s
 
 void finish(SlamEngine* engine) {
   engine->endRun();
-  while (const auto job = engine->takeLastJob()) engine->apply(runJob(*job));
+  while (const auto job = engine->takeFinalJob()) engine->apply(runJob(*job));
 }
 
-SlamEngine mapped(SlamLoops loops, std::size_t scans = 100000) {
+SlamEngine mapped(LoopClosureMode loops, std::size_t scans = 100000) {
   SlamParams params;
   params.loops = loops;
   SlamEngine engine(params);
@@ -58,7 +58,7 @@ SlamEngine mapped(SlamLoops loops, std::size_t scans = 100000) {
 }
 
 const SlamEngine& withAllLoops() {
-  static const SlamEngine engine = mapped(SlamLoops::kAll);
+  static const SlamEngine engine = mapped(LoopClosureMode::kAll);
   return engine;
 }
 
@@ -72,19 +72,19 @@ TEST(SlamEngine, mapsABuildingFarBetterThanOdometry) {
   EXPECT_GT(engine.loops().size(), 10U);
 }
 
-TEST(SlamEngine, believesNoFalseLoop) {
+TEST(SlamEngine, acceptsNoFalseLoop) {
   const SlamEngine& engine = withAllLoops();
   for (const SlamLoop& l : engine.loops()) {
     const LoopError e = loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
                                   engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured,
                                   building().ground_truth);
     EXPECT_FALSE(e.isFalse()) << l.older << " and " << l.newer << ": " << e.distance << " m, "
-                              << hyselam::degrees(e.turn) << " deg";
+                              << hyselam::degrees(e.angle) << " deg";
   }
 }
 
-TEST(SlamEngine, theSameInputGivesTheSameMap) {
-  const SlamEngine a = mapped(SlamLoops::kAll, 900), b = mapped(SlamLoops::kAll, 900);
+TEST(SlamEngine, givesTheSameMapForTheSameInput) {
+  const SlamEngine a = mapped(LoopClosureMode::kAll, 900), b = mapped(LoopClosureMode::kAll, 900);
   ASSERT_EQ(a.keyframes().size(), b.keyframes().size());
   ASSERT_EQ(a.loops().size(), b.loops().size());
   for (std::size_t i = 0; i < a.keyframes().size(); ++i) {
@@ -94,8 +94,8 @@ TEST(SlamEngine, theSameInputGivesTheSameMap) {
   }
 }
 
-TEST(SlamEngine, thesisModeBelievesWordsAsTheyAre) {
-  const SlamEngine engine = mapped(SlamLoops::kThesis);
+TEST(SlamEngine, acceptsWordsWithoutVerificationInThesisMode) {
+  const SlamEngine engine = mapped(LoopClosureMode::kThesis);
   std::size_t edges = 0;
   for (const SlamLoop& l : engine.loops()) {
     EXPECT_EQ(l.source, LoopSource::kNgram);
@@ -107,20 +107,20 @@ TEST(SlamEngine, thesisModeBelievesWordsAsTheyAre) {
   }
   EXPECT_GT(edges, 0U);
   const SlamParams thesis = SlamParams::thesis(2);
-  EXPECT_EQ(thesis.loops, SlamLoops::kThesis);
+  EXPECT_EQ(thesis.loops, LoopClosureMode::kThesis);
   EXPECT_EQ(thesis.words.matcher.min_n, (std::vector<int>{7, 10}));
   EXPECT_NO_THROW(thesis.validate());
   EXPECT_EQ(engine.counters().near.tried + engine.counters().far.tried, 0U);
 }
 
-TEST(SlamEngine, withoutLoopsTheGraphIsAChain) {
-  const SlamEngine engine = mapped(SlamLoops::kNone, 600);
+TEST(SlamEngine, buildsAChainWithoutLoops) {
+  const SlamEngine engine = mapped(LoopClosureMode::kNone, 600);
   EXPECT_TRUE(engine.loops().empty());
   EXPECT_EQ(engine.graph().edges.size() + 1, engine.keyframes().size());
   EXPECT_NO_THROW(engine.graph().validate());
 }
 
-TEST(SlamEngine, goesOnFromAStateInTheSameMap) {
+TEST(SlamEngine, continuesFromAStateInTheSameMap) {
   SlamParams params;
   SlamEngine first(params);
   const std::size_t half = 700;
@@ -128,28 +128,28 @@ TEST(SlamEngine, goesOnFromAStateInTheSameMap) {
   finish(&first);
   SlamEngine second(params, first.state());
   EXPECT_EQ(second.keyframes().size(), first.keyframes().size());
-  EXPECT_EQ(second.recogniser().observations().size(), first.recogniser().observations().size());
+  EXPECT_EQ(second.recognizer().observations().size(), first.recognizer().observations().size());
   feed(&second, building(), half, half + 300);
   EXPECT_EQ(second.keyframes().back().run, 1U);
   const TrajectoryError e = trajectoryError(second.trajectory(), building().ground_truth);
   EXPECT_LT(e.rms, 0.15);
-  EXPECT_LT(e.largest, 0.5);
+  EXPECT_LT(e.max, 0.5);
 }
 
 TEST(SlamEngine, refusesAStateWhosePartsDoNotFit) {
-  SlamEngine engine = mapped(SlamLoops::kAll, 100);
+  SlamEngine engine = mapped(LoopClosureMode::kAll, 100);
   SlamState state = engine.state();
   state.scans.push_back({1e6, 100000, {}});
-  EXPECT_THROW(SlamEngine(SlamParams{}, state), std::invalid_argument);
+  EXPECT_THROW(SlamEngine(SlamParams{}, state), hyselam::InputError);
   state = engine.state();
   state.keyframe_of_observation.push_back(0);
-  EXPECT_THROW(SlamEngine(SlamParams{}, state), std::invalid_argument);
+  EXPECT_THROW(SlamEngine(SlamParams{}, state), hyselam::InputError);
   state = engine.state();
   state.keyframes[3].scan.reset();
-  EXPECT_THROW(SlamEngine(SlamParams{}, state), std::invalid_argument);
+  EXPECT_THROW(SlamEngine(SlamParams{}, state), hyselam::InputError);
 }
 
-TEST(SlamEngine, refusesScansThatCannotBeUsedAndLivesOn) {
+TEST(SlamEngine, refusesUnusableScansAndContinues) {
   SlamEngine engine;
   feed(&engine, building(), 0, 50);
   const std::size_t keyframes = engine.keyframes().size();
@@ -173,18 +173,18 @@ TEST(SlamEngine, refusesScansThatCannotBeUsedAndLivesOn) {
   EXPECT_EQ(engine.counters().scans, 120U);
 }
 
-TEST(SlamEngine, standsWhenTheOdometryLeaps) {
+TEST(SlamEngine, standsWhenTheOdometryJumps) {
   SlamEngine engine;
   feed(&engine, building(), 0, 50);
   const Pose2 before = engine.pose();
   const auto& scan = building().scans[50];
   const SlamUpdate update =
       engine.add(scan, *hyselam::poseAt(building().odometry, scan.stamp) * Pose2{50.0, 0.0, 0.0});
-  EXPECT_TRUE(update.leap);
+  EXPECT_TRUE(update.odometry_jump);
   EXPECT_LT(distance(before, engine.pose()), 1.0);
 }
 
-TEST(SlamEngine, emptyScansAndAnEmptyLog) {
+TEST(SlamEngine, handlesEmptyScansAndAnEmptyLog) {
   SlamEngine nothing;
   finish(&nothing);
   EXPECT_TRUE(nothing.trajectory().empty());
@@ -200,7 +200,7 @@ TEST(SlamEngine, emptyScansAndAnEmptyLog) {
   EXPECT_NEAR(blind.pose().x, 9.9, 1e-6);  // odometry alone
 }
 
-TEST(SlamEngine, mapToOdomUndoesTheDrift) {
+TEST(SlamEngine, correctsTheDriftByMapToOdom) {
   const SlamEngine& engine = withAllLoops();
   const auto& last = building().scans.back();
   const Pose2 pose = engine.odomInMap() * *hyselam::poseAt(building().odometry, last.stamp, 1.0);
@@ -216,8 +216,8 @@ TEST(SlamEngine, mapToOdomUndoesTheDrift) {
   EXPECT_GT(distance(*hyselam::poseAt(building().odometry, last.stamp, 1.0), expected), 1.0);
 }
 
-TEST(SlamEngine, jobsRunWhileScansComeIn) {
-  // A job is out for many scans; what is applied late must not tear the way apart.
+TEST(SlamEngine, runsJobsWhileScansAreAdded) {
+  // A job is out for many scans; what is applied late must not distort the path.
   SlamEngine engine;
   std::optional<SlamJob> job;
   const auto& log = building();
@@ -236,7 +236,7 @@ TEST(SlamEngine, jobsRunWhileScansComeIn) {
   EXPECT_LT(trajectoryError(engine.trajectory(), log.ground_truth).rms, 0.15);
 }
 
-TEST(SlamEngine, weightsGoToTheirLoopsThoughARunBeganMeanwhile) {
+TEST(SlamEngine, assignsWeightsToTheirLoopsWhenARunBeganMeanwhile) {
   SlamEngine engine;
   const auto& log = building();
   std::optional<SlamJob> job;
@@ -254,19 +254,19 @@ TEST(SlamEngine, weightsGoToTheirLoopsThoughARunBeganMeanwhile) {
   const std::size_t loops = engine.loops().size();
   engine.endRun();
   add();
-  ASSERT_EQ(engine.loops().size(), loops + 1);  // the tie to the run before
+  ASSERT_EQ(engine.loops().size(), loops + 1);  // the edge to the run before
   SlamJobResult result = runJob(*job);
   // Each edge its own weight.
-  std::vector<double>& weights = result.optimised->weights;
+  std::vector<double>& weights = result.optimized->weights;
   ASSERT_EQ(weights.size(), job->graph->edges.size());
   for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 + 1e-6 * static_cast<double>(k);
   engine.apply(result);
   for (std::size_t k = 0; k < loops; ++k)
     EXPECT_EQ(engine.loops()[k].weight, weights[weights.size() - loops + k]);
-  EXPECT_EQ(engine.loops().back().weight, 1.0);  // nobody has weighed it yet
+  EXPECT_EQ(engine.loops().back().weight, 1.0);  // not optimized yet
 }
 
-TEST(SlamEngine, anAnswerComesTooLateForMatchesThatWereFoundAnew) {
+TEST(SlamEngine, ignoresLateVerificationsOfReplacedMatches) {
   SlamEngine engine;
   feed(&engine, building(), 0, 300);
   const auto k = static_cast<int>(engine.keyframes().size()) - 1;
@@ -282,16 +282,16 @@ TEST(SlamEngine, anAnswerComesTooLateForMatchesThatWereFoundAnew) {
   task.match = 0;
   task.older = 2;
   task.newer = k;
-  LoopAnswer answer;
+  LoopVerification answer;
   answer.verified = true;
   answer.loop.older = task.older;
   answer.loop.newer = task.newer;
   answer.loop.information.setIdentity();
   late.tasks.push_back(task);
-  late.answers.push_back(answer);
+  late.verifications.push_back(answer);
   second.apply(late);
   EXPECT_FALSE(second.matches().front().verified);
-  late.tasks.front().older = late.answers.front().loop.older = 1;
+  late.tasks.front().older = late.verifications.front().loop.older = 1;
   second.apply(late);
   EXPECT_TRUE(second.matches().front().verified);
 }
@@ -308,7 +308,7 @@ TEST(SlamEngine, refusesStartsThatCannotBeSearched) {
   EXPECT_EQ(engine.keyframes().back().run, 0U);  // the run went on
 }
 
-TEST(RegionGraph, holdsEveryObservationAndTiesLoops) {
+TEST(RegionGraph, containsEveryObservationAndConnectsLoops) {
   const SlamEngine& engine = withAllLoops();
   const RegionGraph graph = regionGraph(engine);
   ASSERT_FALSE(graph.nodes.empty());
@@ -317,7 +317,7 @@ TEST(RegionGraph, holdsEveryObservationAndTiesLoops) {
     EXPECT_EQ(n.first, next);
     next = n.last + 1;
   }
-  EXPECT_EQ(next, engine.recogniser().observations().size());
+  EXPECT_EQ(next, engine.recognizer().observations().size());
   std::size_t loops = 0;
   for (const RegionEdge& e : graph.edges) {
     EXPECT_LT(e.a, e.b);
@@ -348,9 +348,9 @@ LoopTask taskOf(const hyselam_scan_matching::SurfacePoints& old_points,
   task.newer = 1;
   task.far = true;
   task.window = 2.0;
-  task.old_stretch.push_back(
+  task.old_segment.push_back(
       {{}, std::make_shared<const hyselam_scan_matching::SurfacePoints>(old_points), {}});
-  task.new_stretch.push_back(
+  task.new_segment.push_back(
       {{}, std::make_shared<const hyselam_scan_matching::SurfacePoints>(new_points), {}});
   return task;
 }
@@ -370,7 +370,7 @@ TEST(VerifyLoop, findsTheSameRoomAndNoOther) {
   addWall(&corridor, -15.0, 1.0, 15.0, 1.0);
   const SlamParams params;
   const Pose2 moved{0.7, -0.4, 0.2};  // of the room's origin in the new scan's frame
-  const LoopAnswer same = verifyLoop(taskOf(room, transformed(moved, room)), params);
+  const LoopVerification same = verifyLoop(taskOf(room, transformed(moved, room)), params);
   EXPECT_TRUE(same.verified);
   const Pose2 off = moved * same.loop.measured;
   EXPECT_LT(std::hypot(off.x, off.y), 0.02);
@@ -381,38 +381,39 @@ TEST(VerifyLoop, findsTheSameRoomAndNoOther) {
   hyselam_scan_matching::SurfacePoints part;
   addWall(&part, -5.0, -1.0, 5.0, -1.0);
   addWall(&part, -5.0, 1.0, 5.0, 1.0);
-  const LoopAnswer anywhere = verifyLoop(taskOf(corridor, part), params);
+  const LoopVerification anywhere = verifyLoop(taskOf(corridor, part), params);
   EXPECT_FALSE(anywhere.verified);
-  EXPECT_GT(anywhere.rival, 0.0);
+  EXPECT_GT(anywhere.ambiguous_score, 0.0);
   EXPECT_FALSE(verifyLoop(taskOf(room, {}), params).verified);
 }
 
-TEST(SeenSpace, tellsWhatStandsWhereNothingIs) {
-  SeenSpace space(20.0, 0.1);
+TEST(ObservedSpace, detectsSurfacesInFreeSpace) {
+  ObservedSpace space(20.0, 0.1);
   hyselam_scan_matching::SurfacePoints wall;
   for (int i = -20; i <= 20; ++i) wall.push_back({5.0, 0.1 * i, -1.0, 0.0});
   space.insert({}, wall, {});
-  EXPECT_EQ(space.overlap({}, wall).fit, 1.0);
-  EXPECT_EQ(space.overlap({}, wall).known, 1.0);
-  EXPECT_EQ(space.overlap({-1.0, 0.0, 0.0}, wall).fit, 0.0);    // in the free space before it
-  EXPECT_EQ(space.overlap({3.0, 0.0, 0.0}, wall).known, 0.0);   // behind it
-  EXPECT_EQ(space.overlap({50.0, 0.0, 0.0}, wall).known, 0.0);  // off the square
-  EXPECT_THROW(SeenSpace(0.0, 0.1), hyselam::ParameterError);
+  EXPECT_EQ(space.overlap({}, wall).surface_ratio, 1.0);
+  EXPECT_EQ(space.overlap({}, wall).observed_ratio, 1.0);
+  EXPECT_EQ(space.overlap({-1.0, 0.0, 0.0}, wall).surface_ratio,
+            0.0);  // in the free space before it
+  EXPECT_EQ(space.overlap({3.0, 0.0, 0.0}, wall).observed_ratio, 0.0);   // behind it
+  EXPECT_EQ(space.overlap({50.0, 0.0, 0.0}, wall).observed_ratio, 0.0);  // off the square
+  EXPECT_THROW(ObservedSpace(0.0, 0.1), hyselam::ParameterError);
 }
 
-TEST(GraphWays, goThroughLoops) {
-  GraphWays ways;
-  for (int i = 0; i < 100; ++i) ways.add(i, i + 1, 1.0);
-  EXPECT_NEAR(ways.from(100)[0], 100.0, 1e-6);
-  ways.add(0, 90, 0.5);
-  EXPECT_NEAR(ways.from(100)[0], 10.5, 1e-6);
-  EXPECT_TRUE(std::isinf(ways.from(150)[0]));
+TEST(GraphPathLengths, useLoopsAsShortcuts) {
+  GraphPathLengths lengths;
+  for (int i = 0; i < 100; ++i) lengths.addEdge(i, i + 1, 1.0);
+  EXPECT_NEAR(lengths.from(100)[0], 100.0, 1e-6);
+  lengths.addEdge(0, 90, 0.5);
+  EXPECT_NEAR(lengths.from(100)[0], 10.5, 1e-6);
+  EXPECT_TRUE(std::isinf(lengths.from(150)[0]));
 }
 
-TEST(Company, loopsAgreeOrNot) {
+TEST(ConsistentLoops, excludeLoopsThatContradict) {
   std::vector<SlamKeyframe> keyframes(40);
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    keyframes[i].way = static_cast<double>(i);
+    keyframes[i].path_length = static_cast<double>(i);
     keyframes[i].pose = {static_cast<double>(i), 0.0, 0.0};
   }
   SlamLoop a, b;
@@ -422,14 +423,14 @@ TEST(Company, loopsAgreeOrNot) {
   b.older = 4;
   b.newer = 32;
   b.measured = {0.35, 0.05, 0.0};
-  EXPECT_EQ(agreeing(a, {b}, keyframes, LoopParams{}).size(), 1U);
+  EXPECT_EQ(consistentLoops(a, {b}, keyframes, LoopParams{}).size(), 1U);
   b.measured = {1.5, 0.0, 0.0};
-  EXPECT_TRUE(agreeing(a, {b}, keyframes, LoopParams{}).empty());
+  EXPECT_TRUE(consistentLoops(a, {b}, keyframes, LoopParams{}).empty());
   b.measured = {0.35, 0.05, 0.5};
-  EXPECT_TRUE(agreeing(a, {b}, keyframes, LoopParams{}).empty());
+  EXPECT_TRUE(consistentLoops(a, {b}, keyframes, LoopParams{}).empty());
 }
 
-TEST(TrajectoryError, forgetsTheFrame) {
+TEST(TrajectoryError, ignoresTheFrame) {
   std::vector<hyselam::StampedPose2> a, b;
   const Pose2 moved{3.0, -2.0, 1.0};
   for (int i = 0; i < 50; ++i) {
@@ -440,7 +441,7 @@ TEST(TrajectoryError, forgetsTheFrame) {
   const TrajectoryError e = trajectoryError(a, b);
   EXPECT_EQ(e.poses, 50U);
   EXPECT_NEAR(e.rms, 0.0, 1e-9);
-  EXPECT_NEAR(e.mean_turn, 0.0, 1e-9);
+  EXPECT_NEAR(e.mean_angle, 0.0, 1e-9);
   EXPECT_EQ(trajectoryError({}, b).poses, 0U);
 }
 
@@ -452,14 +453,14 @@ TEST(SlamParams, namesTheParameterOutOfRange) {
             }).find("keyframe_step"),
             std::string::npos);
   p = {};
-  p.loop.far_fit = 2.0;
+  p.loop.far_min_surface_ratio = 2.0;
   EXPECT_THROW(p.validate(), hyselam::ParameterError);
   p = {};
-  p.loop.far_resolution = 0.01;  // SeenSpace would have too many cells
+  p.loop.far_resolution = 0.01;  // ObservedSpace would have too many cells
   EXPECT_THROW(p.validate(), hyselam::ParameterError);
 }
 
-TEST(SlamEngine, realLogsGoWell) {
+TEST(SlamEngine, mapsARealLog) {
   HYSELAM_NEED_DATA(data);
   hyselam::RobotLog log = hyselam::readCarmenLog(data + "/laser/intel/intel.log.gz");
   log.scans.resize(3500);

@@ -68,7 +68,7 @@ struct SlamOffline : testing::Test {
 TemporaryDirectory* SlamOffline::directory = nullptr;
 std::size_t SlamOffline::scans = 0;
 
-TEST_F(SlamOffline, writesWhatWasAgreed) {
+TEST_F(SlamOffline, writesTheFilesOfTheContract) {
   const std::string out = d / "a";
   ASSERT_EQ(
       run("--bag " + d / "run.bag" + " --out " + out + " --side-by-side --json " + d / "a.json"), 0)
@@ -87,6 +87,12 @@ TEST_F(SlamOffline, writesWhatWasAgreed) {
   const std::string report = fileBytes(out + "/report.html");
   EXPECT_NE(report.find("data:image/png;base64,"), std::string::npos);
   EXPECT_NE(report.find("loops: thesis"), std::string::npos);
+  EXPECT_NE(report.find("side_by_side_none"), std::string::npos);
+  EXPECT_NE(report.find("<title>word 0: class"), std::string::npos);
+  EXPECT_GT(hyselam::loadMap(out + "/map_thesis.yaml").geometry.width, 50);
+  const auto page = nlohmann::json::parse(fileBytes(out + "/report.json"));
+  EXPECT_EQ(page["figures"].size(), 3U);
+  EXPECT_EQ(page["figures"][0]["trajectory"].size(), scans);
   EXPECT_NE(report.find("<h1>run.bag</h1>"), std::string::npos);
   const auto summary = nlohmann::json::parse(fileBytes(out + "/summary.json"));
   EXPECT_EQ(summary, nlohmann::json::parse(fileBytes(d / "a.json")));
@@ -97,7 +103,7 @@ TEST_F(SlamOffline, writesWhatWasAgreed) {
   EXPECT_TRUE(summary.contains("side_by_side_none"));
 }
 
-TEST_F(SlamOffline, theSameLogGivesTheSameBytes) {
+TEST_F(SlamOffline, givesTheSameBytesForTheSameLog) {
   const std::string arguments = "--bag " + d / "run.bag" + " --odometry-noise 5 --seed 3 --out ";
   ASSERT_EQ(run(arguments + d / "b"), 0) << errors;
   ASSERT_EQ(run(arguments + d / "c"), 0) << errors;
@@ -106,7 +112,7 @@ TEST_F(SlamOffline, theSameLogGivesTheSameBytes) {
     EXPECT_EQ(fileBytes(d / "b" + "/" + name), fileBytes(d / "c" + "/" + name)) << name;
 }
 
-TEST_F(SlamOffline, refusesWhatCannotBeUsed) {
+TEST_F(SlamOffline, refusesUnusableInput) {
   expectRefused("--out " + d / "x", "--bag or --carmen");
   expectRefused("--bag " + d / "none.bag" + " --out " + d / "x", "none.bag");
   expectRefused("--bag " + d / "run.bag" + " --loops some --out " + d / "x", "loops");

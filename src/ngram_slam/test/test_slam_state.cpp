@@ -57,7 +57,7 @@ SlamEngine engineAfter(int scans) {
 
 SlamState fullState() {
   SlamState s = engineAfter(60).state();
-  // What a short way does not bring about.
+  // What a short path does not contain.
   SlamLoop loop;
   loop.older = 1;
   loop.newer = 5;
@@ -65,11 +65,11 @@ SlamState fullState() {
   loop.information << 3, 1, 0, 1, 4, 0.5, 0, 0.5, 5;
   loop.source = LoopSource::kNgram;
   loop.far = true;
-  loop.matched = 0.75;
+  loop.inlier_ratio = 0.75;
   loop.weight = 0.5;
   s.loops.push_back(loop);
   loop.source = LoopSource::kProximity;
-  s.waiting.push_back(loop);
+  s.pending_loops.push_back(loop);
   SlamMatch match;
   match.newer = 9;
   match.older = 3;
@@ -92,7 +92,7 @@ void expectSame(const SlamState& a, const SlamState& b) {
     EXPECT_EQ(x.stamp, y.stamp);
     EXPECT_EQ(x.pose.x, y.pose.x);
     EXPECT_EQ(x.odometry.theta, y.odometry.theta);
-    EXPECT_EQ(x.way, y.way);
+    EXPECT_EQ(x.path_length, y.path_length);
     EXPECT_EQ(x.run, y.run);
     ASSERT_EQ(x.scan->ranges.size(), y.scan->ranges.size());
     for (std::size_t k = 0; k < x.scan->ranges.size(); ++k)
@@ -111,7 +111,7 @@ void expectSame(const SlamState& a, const SlamState& b) {
   EXPECT_EQ(a.loops.back().source, b.loops.back().source);
   EXPECT_EQ(a.loops.back().far, b.loops.back().far);
   EXPECT_EQ(a.loops.back().weight, b.loops.back().weight);
-  ASSERT_EQ(a.waiting.size(), b.waiting.size());
+  ASSERT_EQ(a.pending_loops.size(), b.pending_loops.size());
   ASSERT_EQ(a.matches.size(), b.matches.size());
   EXPECT_EQ(a.matches.back().direction, b.matches.back().direction);
   EXPECT_EQ(a.matches.back().probability, b.matches.back().probability);
@@ -123,7 +123,7 @@ void expectSame(const SlamState& a, const SlamState& b) {
   EXPECT_EQ(a.corpus.observations.size(), b.corpus.observations.size());
 }
 
-TEST(SlamStateFile, IsTheSameAfterwards) {
+TEST(SlamStateFile, isTheSameAfterLoading) {
   TemporaryDirectory folder;
   const SlamState state = fullState();
   ASSERT_GT(state.keyframes.size(), 10u);
@@ -136,7 +136,7 @@ TEST(SlamStateFile, IsTheSameAfterwards) {
             hyselam::testing::fileBytes(folder / "again.slam"));
 }
 
-TEST(SlamStateFile, AScanWithoutALargestRangeComesBack) {
+TEST(SlamStateFile, keepsAScanWithoutALargestRange) {
   SlamEngine engine;
   hyselam::LaserScan scan = corridor(0.0, 100.0);
   scan.range_max = std::numeric_limits<double>::infinity();
@@ -146,13 +146,13 @@ TEST(SlamStateFile, AScanWithoutALargestRangeComesBack) {
   EXPECT_EQ(load(folder / "map.slam").keyframes.front().scan->range_max, scan.range_max);
 }
 
-TEST(SlamStateFile, NothingIsAStateToo) {
+TEST(SlamStateFile, keepsAnEmptyState) {
   TemporaryDirectory folder;
   SlamStateFile::save(folder / "map.slam", SlamState{});
   EXPECT_TRUE(load(folder / "map.slam").keyframes.empty());
 }
 
-TEST(SlamStateFile, SlamGoesOnInIt) {
+TEST(SlamStateFile, letsSlamContinueInIt) {
   TemporaryDirectory folder;
   SlamEngine first = engineAfter(100);
   SlamStateFile::save(folder / "map.slam", first.state());
@@ -168,7 +168,7 @@ TEST(SlamStateFile, SlamGoesOnInIt) {
   EXPECT_EQ(second.keyframes().back().run, 1u);
 }
 
-TEST(SlamStateFile, AnyDamageIsRefused) {
+TEST(SlamStateFile, refusesAnyDamage) {
   TemporaryDirectory folder;
   SlamStateFile::save(folder / "map.slam", fullState());
   const std::string whole = hyselam::testing::fileBytes(folder / "map.slam");
@@ -190,7 +190,7 @@ TEST(SlamStateFile, AnyDamageIsRefused) {
   EXPECT_THROW(load(folder / "none.slam"), hyselam::InputError);
 }
 
-TEST(SlamStateFile, AnotherVersionIsNamed) {
+TEST(SlamStateFile, namesAnotherVersion) {
   TemporaryDirectory folder;
   SlamStateFile::save(folder / "map.slam", SlamState{});
   std::string bytes = hyselam::testing::fileBytes(folder / "map.slam");
@@ -201,7 +201,7 @@ TEST(SlamStateFile, AnotherVersionIsNamed) {
   EXPECT_NE(damaged.find("version"), std::string::npos) << damaged;
 }
 
-TEST(SlamStateFile, PartsThatDoNotFitAreRefused) {
+TEST(SlamStateFile, refusesPartsThatDoNotFit) {
   TemporaryDirectory folder;
   for (int part = 0; part < 6; ++part) {
     SlamState s = fullState();
@@ -216,7 +216,7 @@ TEST(SlamStateFile, PartsThatDoNotFitAreRefused) {
   }
 }
 
-TEST(SlamStateFile, AFailedSavingLeavesTheOldFile) {
+TEST(SlamStateFile, keepsTheOldFileWhenSavingFails) {
   TemporaryDirectory folder;
   EXPECT_THROW(SlamStateFile::save(folder / "no/such/folder/map.slam", SlamState{}),
                hyselam::InputError);

@@ -16,7 +16,7 @@ inline std::string written(const std::string& file) {
 
 /// Names and values, out of the table that a server logs.
 inline std::map<std::string, std::string> valuesOf(const std::string& table) {
-  static const std::regex row(R"(\n  (\w+) = (\[[^\]]*\]|'[^']*'|\S+)  \()");
+  static const std::regex row(R"(\n  ([\w/]+) = (\[[^\]]*\]|'[^']*'|\S+)  \()");
   std::map<std::string, std::string> all;
   for (std::sregex_iterator i(table.begin(), table.end(), row), end; i != end; ++i)
     all[(*i)[1]] = std::regex_replace((*i)[2].str(), std::regex("'"), "");

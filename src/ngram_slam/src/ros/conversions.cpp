@@ -53,9 +53,9 @@ DensityObservation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandw
   return o;
 }
 
-hyselam_msgs::Word wordMsg(const NgramRecognizer& recogniser, WordIndex index) {
-  const ObservationStore& observations = recogniser.observations();
-  const WordLattice& text = recogniser.text();
+hyselam_msgs::Word wordMsg(const NgramRecognizer& recognizer, WordIndex index) {
+  const ObservationStore& observations = recognizer.observations();
+  const WordLattice& text = recognizer.text();
   const DensityWord w = text.word(index);
   hyselam_msgs::Word msg;
   msg.index = index;
@@ -76,9 +76,9 @@ hyselam_msgs::Word wordMsg(const NgramRecognizer& recogniser, WordIndex index) {
   return msg;
 }
 
-hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const NgramMatch& match,
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const NgramMatch& match,
                                  const ObservationPair& place) {
-  const ObservationStore& observations = recogniser.observations();
+  const ObservationStore& observations = recognizer.observations();
   hyselam_msgs::WordMatch msg;
   msg.newer = match.newer;
   msg.older = match.older;

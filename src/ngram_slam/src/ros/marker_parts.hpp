@@ -11,7 +11,7 @@ namespace ngram_slam {
 
 using hyselam::color;
 
-inline std_msgs::ColorRGBA colourOf(SemanticClass c) {
+inline std_msgs::ColorRGBA colorOf(SemanticClass c) {
   switch (c) {
     case SemanticClass::kBifurcation:
       return color(0.95, 0.75, 0.10);

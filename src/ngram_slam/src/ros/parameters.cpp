@@ -76,7 +76,7 @@ WordsServerParams loadWordsParams(ParamLoader& loader) {
   std::string preset = "thesis";
   loader.get("preset", preset, {"thesis", "improved"},
              "defaults of what is recognised; improved needs input scan");
-  if (preset == "improved") p.recogniser = NgramRecognizerParams::improved();
+  if (preset == "improved") p.recognizer = NgramRecognizerParams::improved();
   std::string input = "fsd_observation";
   loader.get("input", input, {"fsd_observation", "scan"}, "topic that observations are made from");
   p.from_scan = input == "scan";
@@ -96,7 +96,7 @@ WordsServerParams loadWordsParams(ParamLoader& loader) {
   if (!p.from_scan && p.sensor.look_back > 0.0)
     throw ParameterError("look_back", p.sensor.look_back, "0 unless input is scan");
   p.sensor.validate();
-  loadRecogniser(loader, p.recogniser);
+  loadRecogniser(loader, p.recognizer);
   loader.get("semantics", p.semantics, "tell regions of meaning");
   p.semantic.validate();
   loadCorpus(loader, p);

@@ -63,7 +63,7 @@ hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header
     e.a = edge.a;
     e.b = edge.b;
     e.kind = edge.kind == RegionEdge::Kind::kLoop ? hyselam_msgs::RegionEdge::LOOP
-                                                  : hyselam_msgs::RegionEdge::WAY;
+                                                  : hyselam_msgs::RegionEdge::CONSECUTIVE;
     msg.edges.push_back(e);
   }
   return msg;
@@ -83,11 +83,11 @@ nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msg
   return path;
 }
 
-hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const SlamMatch& match) {
-  const ObservationStore& observations = recogniser.observations();
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMatch& match) {
+  const ObservationStore& observations = recognizer.observations();
   hyselam_msgs::WordMatch msg;
-  msg.newer = wordAt(recogniser.text(), match.newer);
-  msg.older = wordAt(recogniser.text(), match.older);
+  msg.newer = wordAt(recognizer.text(), match.newer);
+  msg.older = wordAt(recognizer.text(), match.older);
   msg.level = static_cast<std::uint8_t>(match.level);
   msg.n = static_cast<std::uint16_t>(std::clamp(match.n, 0, 65535));
   msg.direction = match.direction == Direction::kSame ? hyselam_msgs::WordMatch::SAME
@@ -117,13 +117,13 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
     if (!m.points.empty()) array.markers.push_back(std::move(m));
   };
 
-  Marker way = marker(header, "way", Marker::LINE_LIST, 0.06);
+  Marker path = marker(header, "path", Marker::LINE_LIST, 0.06);
   for (std::size_t i = 1; i < keyframes.size(); ++i)
     if (keyframes[i].run == keyframes[i - 1].run)
-      addLine(&way, keyframes[i - 1].pose, keyframes[i].pose, 0.05,
+      addLine(&path, keyframes[i - 1].pose, keyframes[i].pose, 0.05,
               keyframes[i].run == keyframes.back().run ? color(0.15, 0.35, 0.85)
                                                        : color(0.55, 0.55, 0.6));
-  add(std::move(way));
+  add(std::move(path));
 
   Marker lines = marker(header, "loops", Marker::LINE_LIST, 0.05);
   for (const SlamLoop& l : loops)
@@ -145,7 +145,7 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   balls.scale.y = balls.scale.z = 0.6;
   for (const RegionNode& node : graph.nodes) {
     balls.points.push_back(at(node.pose, 1.0));
-    balls.colors.push_back(colourOf(node.semantic_class));
+    balls.colors.push_back(colorOf(node.semantic_class));
   }
   add(std::move(balls));
 

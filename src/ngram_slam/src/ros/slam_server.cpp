@@ -1,10 +1,5 @@
 #include "ngram_slam/ros/slam_server.hpp"
 
-#include <hyselam_msgs/RegionGraph.h>
-#include <hyselam_msgs/SemanticRegionArray.h>
-#include <hyselam_msgs/WordArray.h>
-#include <hyselam_msgs/WordMatchArray.h>
-#include <nav_msgs/Path.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -25,12 +20,10 @@ namespace ngram_slam {
 
 using hyselam::Pose2;
 using Lock = std::unique_lock<std::mutex>;
-using Status = diagnostic_msgs::DiagnosticStatus;
 
 namespace {
 
-constexpr std::uint32_t kQueue = 1000;
-constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry tells the start
+constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry gives the start
 constexpr double kOdometryDrift = 0.1;   // [m/m], [rad/m]
 
 bool exists(const std::string& path) {
@@ -39,14 +32,16 @@ bool exists(const std::string& path) {
 }
 
 /// Where the robot is when its odometry went on from elsewhere: beside the keyframe of the last run
-/// that was taken nearest by odometry. A bag that begins again and a clock that was set back are
-/// told right alike.
+/// that was taken nearest by odometry. Right for a bag that begins again and for a clock that was
+/// set back.
 Pose2 placeByOdometry(const std::vector<SlamKeyframe>& keyframes, const Pose2& odometry) {
   const SlamKeyframe* nearest = &keyframes.back();
-  for (const SlamKeyframe& k : keyframes)
+  for (const SlamKeyframe& k : keyframes) {
     if (k.run == keyframes.back().run &&
-        distance(k.odometry, odometry) < distance(nearest->odometry, odometry))
+        distance(k.odometry, odometry) < distance(nearest->odometry, odometry)) {
       nearest = &k;
+    }
+  }
   return nearest->pose * between(nearest->odometry, odometry);
 }
 
@@ -54,88 +49,67 @@ Pose2 placeByOdometry(const std::vector<SlamKeyframe>& keyframes, const Pose2& o
 
 SlamServer::Mapping::Mapping(const SlamServerParams& params, SlamState state)
     : engine(params.slam, std::move(state)), segmenter(params.semantic) {
-  segment();
-  told_words = engine.recogniser().text().words();
-  told_matches = engine.matches().size();
-  requantisations = engine.recogniser().requantisations();
+  segmentNew();
+  published_words = engine.recognizer().text().words();
+  published_matches = engine.matches().size();
+  requantizations = engine.recognizer().requantisations();
   saved_scans = engine.counters().scans;
 }
 
-std::vector<SemanticRegion> SlamServer::Mapping::segment() {
-  const ObservationStore& observations = engine.recogniser().observations();
+std::vector<SemanticRegion> SlamServer::Mapping::segmentNew() {
+  const ObservationStore& observations = engine.recognizer().observations();
   std::vector<SemanticRegion> fresh;
-  const auto take = [&](const std::vector<SemanticRegion>& found) {
+  const auto append = [&](const std::vector<SemanticRegion>& found) {
     fresh.insert(fresh.end(), found.begin(), found.end());
   };
   for (; segmented < observations.size(); ++segmented) {
-    if (segmented > 0 && observations.runOf(segmented) != observations.runOf(segmented - 1))
-      take(segmenter.finish());
-    take(segmenter.add(observations[segmented]));
+    if (segmented > 0 && observations.runOf(segmented) != observations.runOf(segmented - 1)) {
+      append(segmenter.finish());
+    }
+    append(segmenter.add(observations[segmented]));
   }
   regions.insert(regions.end(), fresh.begin(), fresh.end());
   return fresh;
 }
 
 SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
-    : who_(hyselam::logName(private_nh)),
+    : log_name_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndLogParams(private_nh, loadSlamParams)),
-      pending_(params_.initial_pose),
-      map_rate_(params_.map_update_interval > 0.0 ? 1.0 / params_.map_update_interval : -1.0) {
+      initial_pose_(params_.initialPose()),
+      map_rate_(drawsMaps() ? 1.0 / params_.map_update_interval : -1.0),
+      publisher_(nh) {
   SlamState state;
   if (!params_.state.empty() && exists(params_.state)) {
     state = SlamStateFile::load(params_.state, params_.slam.surface);
-    ROS_INFO_STREAM(who_ << " goes on with " << params_.state << ": " << state.keyframes.size()
-                         << " keyframes, " << state.loops.size() << " loops");
+    ROS_INFO_STREAM(log_name_ << " goes on with " << params_.state << ": " << state.keyframes.size()
+                              << " keyframes, " << state.loops.size() << " loops");
   }
   mapping_ = std::make_unique<Mapping>(params_, std::move(state));
-  if (!mapping_->engine.keyframes().empty()) next_ = Next::kAfterPause;
+  if (!mapping_->engine.keyframes().empty()) next_scan_ = NextScan::kAfterPause;
   map_due_ = drawsMaps() && !mapping_->engine.keyframes().empty();
 
-  map_publisher_ = nh.advertise<nav_msgs::OccupancyGrid>("map", 1, true);
-  metadata_publisher_ = nh.advertise<nav_msgs::MapMetaData>("map_metadata", 1, true);
-  word_publisher_ = nh.advertise<hyselam_msgs::WordArray>("words", kQueue);
-  match_publisher_ = nh.advertise<hyselam_msgs::WordMatchArray>("word_matches", kQueue);
-  region_publisher_ = nh.advertise<hyselam_msgs::SemanticRegionArray>("semantic_regions", kQueue);
-  graph_publisher_ = nh.advertise<hyselam_msgs::RegionGraph>("region_graph", 1, true);
-  path_publisher_ = nh.advertise<nav_msgs::Path>("path", 1, true);
-  marker_publisher_ = nh.advertise<visualization_msgs::MarkerArray>("slam_markers", 1, true);
-
-  ros::NodeHandle service_nh(nh), private_service_nh(private_nh);
-  service_nh.setCallbackQueue(&service_queue_);
-  private_service_nh.setCallbackQueue(&service_queue_);
-  save_service_ = private_service_nh.advertiseService("save", &SlamServer::onSave, this);
-  load_service_ = private_service_nh.advertiseService("load", &SlamServer::onLoad, this);
-  using std_srvs::Trigger;
-  const auto switchTo = [&](const char* name, bool pause) {
-    return private_service_nh.advertiseService<Trigger::Request, Trigger::Response>(
-        name,
-        [this, pause](Trigger::Request&, Trigger::Response& out) { return onPause(pause, out); });
-  };
-  pause_service_ = switchTo("pause", true);
-  resume_service_ = switchTo("resume", false);
-  using nav_msgs::GetMap;
-  map_service_ = service_nh.advertiseService<GetMap::Request, GetMap::Response>(
-      "dynamic_map", [this](GetMap::Request&, GetMap::Response& out) { return onMap(out); });
-
+  advertiseServices(nh, private_nh);
   input_ = std::make_unique<hyselam::ScanInput>(
-      nh, params_.input, who_,
+      nh, params_.input, log_name_,
       [this](const hyselam::LaserScan& scan, const Pose2& base_in_odom, const ros::Time& stamp) {
         return onScan(scan, base_in_odom, stamp);
       },
-      [this] { onTimeBack(); });
+      [this] { onTimeJump(); });
   initial_pose_subscriber_ = nh.subscribe("initialpose", 2, &SlamServer::onInitialPose, this);
-  if (params_.tf_broadcast && params_.transform_publish_period > 0.0)
-    tf_timer_ = nh.createWallTimer(ros::WallDuration(params_.transform_publish_period),
-                                   [this](const ros::WallTimerEvent&) {
-                                     if (!told_tf_.isZero()) broadcast(ros::Time::now());
-                                   });
+  if (params_.tf_broadcast && params_.transform_publish_period > 0.0) {
+    broadcaster_.timer = nh.createWallTimer(ros::WallDuration(params_.transform_publish_period),
+                                            [this](const ros::WallTimerEvent&) {
+                                              if (!broadcaster_.last.isZero())
+                                                broadcast(ros::Time::now());
+                                            });
+  }
   diagnostics_ = std::make_unique<hyselam::Diagnostics>(
       nh, private_nh.getNamespace().substr(1) + ": SLAM", params_.diagnostic_period,
-      [this](Status& status) { report(status); });
-  service_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &service_queue_);
-  service_spinner_->start();
-  optimiser_ = std::thread([this] { optimise(); });
-  drawer_ = std::thread([this] { draw(); });
+      [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
+  services_.spinner = std::make_unique<ros::AsyncSpinner>(1, &services_.queue);
+  services_.spinner->start();
+  job_thread_ = std::thread([this] { runJobs(); });
+  map_thread_ = std::thread([this] { runMapper(); });
 }
 
 SlamServer::~SlamServer() {
@@ -143,15 +117,15 @@ SlamServer::~SlamServer() {
   diagnostics_.reset();
   initial_pose_subscriber_.shutdown();
   input_.reset();
-  service_spinner_->stop();
+  services_.spinner->stop();
   {
     const Lock lock(mutex_);
     ending_ = true;
   }
   work_.notify_all();
-  optimiser_.join();
-  drawer_.join();
-  saveNow("at the end");
+  job_thread_.join();
+  map_thread_.join();
+  saveIfChanged("at the end");
 }
 
 // ---- scans
@@ -162,77 +136,93 @@ bool SlamServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odo
   {
     const Lock lock(mutex_);
     if (paused_) {
-      ++paused_scans_;
+      ++status_.paused_scans;
       return false;
     }
-    SlamEngine& engine = mapping_->engine;
-    try {
-      if (pending_ || next_ != Next::kGoOn) startRun(base_in_odom);
-      const SlamUpdate update = engine.add(scan, base_in_odom);
-      if (update.leap) ROS_WARN_STREAM(who_ << " the odometry leapt; the robot is taken to stand");
-      weak_ += update.weak ? 1 : 0;
-      mapping_->localised = true;
-      last_odometry_ = base_in_odom;
-      stamp_ = stamp;
-      tell();
-    } catch (const hyselam::InputError&) {
-      throw;  // a refused scan
-    } catch (const std::exception& e) {
-      throw hyselam::InputError("scan", std::to_string(scan.stamp) + " s", e.what());
-    }
+    addScan(scan, base_in_odom);
+    last_scan_ = {stamp, base_in_odom};
+    publishNewWords();
+    publishNewRegions();
     if (drawsMaps() && map_rate_.pass(stamp)) map_due_ = true;
-    scan_ms_ = millisecondsSince(begin);
-    worst_scan_ms_ = std::max(worst_scan_ms_, scan_ms_);
+    status_.scan_ms = millisecondsSince(begin);
+    status_.max_scan_ms = std::max(status_.max_scan_ms, status_.scan_ms);
   }
   work_.notify_all();
   if (params_.tf_broadcast) broadcast(stamp);
   return true;
 }
 
-/// The next scan begins a run: where, is known more or less. With mutex_ held.
-void SlamServer::startRun(const Pose2& base_in_odom) {
-  SlamEngine& engine = mapping_->engine;
-  const bool fresh = engine.keyframes().empty();
-  Pose2 at = engine.pose();
-  double window = params_.start_window, turn = params_.start_turn;
-  // Odometry that went on tells more than a search that one scan decides.
-  const auto follow = [&](const Pose2& guess, double driven) {
-    at = guess;
-    window = std::min(window, kOdometryWindow + kOdometryDrift * driven);
-    turn = std::min(turn, kOdometryWindow + kOdometryDrift * driven);
+/// With mutex_ held. @throws hyselam::InputError for a scan that is refused.
+void SlamServer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_odom) {
+  try {
+    if (initial_pose_ || next_scan_ != NextScan::kGoesOn) startRun(base_in_odom);
+    const SlamUpdate update = mapping_->engine.add(scan, base_in_odom);
+    if (update.odometry_jump) {
+      ROS_WARN_STREAM(log_name_ << " the odometry jumped; the robot is taken to stand");
+    }
+    status_.weak_matches += update.weak_match ? 1 : 0;
+    mapping_->localized = true;
+  } catch (const hyselam::InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw hyselam::InputError("scan", std::to_string(scan.stamp) + " s", e.what());
+  }
+}
+
+/// Where the next scan begins a run, more or less. With mutex_ held.
+SlamServer::RunStart SlamServer::runStart(const Pose2& base_in_odom) const {
+  const SlamEngine& engine = mapping_->engine;
+  RunStart start{engine.pose(), params_.start_window, params_.start_angle};
+  // Odometry that went on is better than a search that one scan decides.
+  const auto startByOdometry = [&](const Pose2& guess, double driven) {
+    start.base_in_map = guess;
+    start.window = std::min(start.window, kOdometryWindow + kOdometryDrift * driven);
+    start.angle = std::min(start.angle, kOdometryWindow + kOdometryDrift * driven);
   };
-  if (pending_) {
-    at = pending_->base_in_map;
-    window = std::min(SlamEngine::kMaxStartWindow,
-                      std::max(window, 2.0 * std::max(pending_->stddev.x, pending_->stddev.y)));
-    turn = std::min(hyselam::kPi, std::max(turn, 2.0 * pending_->stddev.theta));
-  } else if (!fresh && next_ == Next::kAfterJump) {
-    at = placeByOdometry(engine.keyframes(), base_in_odom);
-  } else if (!fresh && mapping_->localised) {  // paused: it may have been driven meanwhile
-    follow(engine.odomInMap() * base_in_odom, distance(last_odometry_, base_in_odom));
-  } else if (!fresh) {
+  if (initial_pose_) {
+    const Pose2& stddev = initial_pose_->stddev;
+    start.base_in_map = initial_pose_->base_in_map;
+    start.window = std::min(SlamEngine::kMaxStartWindow,
+                            std::max(start.window, 2.0 * std::max(stddev.x, stddev.y)));
+    start.angle = std::min(hyselam::kPi, std::max(start.angle, 2.0 * stddev.theta));
+  } else if (engine.keyframes().empty()) {
+    return start;
+  } else if (next_scan_ == NextScan::kAfterJump) {
+    start.base_in_map = placeByOdometry(engine.keyframes(), base_in_odom);
+  } else if (mapping_->localized) {  // paused: it may have been driven meanwhile
+    startByOdometry(engine.odomInMap() * base_in_odom, distance(last_scan_.odometry, base_in_odom));
+  } else {
     // A state was loaded. Where odometry is still near to what it was then, it was not interrupted.
     const SlamKeyframe& last = engine.keyframes().back();
     const Pose2 driven = between(last.odometry, base_in_odom);
-    const double metres = std::hypot(driven.x, driven.y);
-    if (metres <= params_.start_window && std::abs(driven.theta) <= params_.start_turn)
-      follow(last.pose * driven, metres);
+    const double distance_driven = std::hypot(driven.x, driven.y);
+    if (distance_driven <= params_.start_window && std::abs(driven.theta) <= params_.start_angle) {
+      startByOdometry(last.pose * driven, distance_driven);
+    }
   }
-  if (!fresh || pending_) {
-    ROS_INFO_STREAM(who_ << " a run begins at x " << at.x << " m, y " << at.y << " m, "
-                         << hyselam::degrees(at.theta) << " deg, searched within " << window
-                         << " m");
-    engine.startRun(at, window, turn);
-  }
-  pending_.reset();
-  next_ = Next::kGoOn;
+  return start;
 }
 
-void SlamServer::onTimeBack() {
+/// With mutex_ held.
+void SlamServer::startRun(const Pose2& base_in_odom) {
+  SlamEngine& engine = mapping_->engine;
+  if (!engine.keyframes().empty() || initial_pose_) {
+    const RunStart start = runStart(base_in_odom);
+    const Pose2& at = start.base_in_map;
+    ROS_INFO_STREAM(log_name_ << " a run begins at x " << at.x << " m, y " << at.y << " m, "
+                              << hyselam::degrees(at.theta) << " deg, searched within "
+                              << start.window << " m");
+    engine.startRun(at, start.window, start.angle);
+  }
+  initial_pose_.reset();
+  next_scan_ = NextScan::kGoesOn;
+}
+
+void SlamServer::onTimeJump() {
   const Lock lock(mutex_);
   mapping_->engine.endRun();
-  next_ = Next::kAfterJump;
-  told_tf_ = ros::Time();
+  next_scan_ = NextScan::kAfterJump;
+  broadcaster_.last = ros::Time();
 }
 
 void SlamServer::onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
@@ -241,15 +231,17 @@ void SlamServer::onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::C
     pose = hyselam::initialPoseFromMsg(*msg, params_.global_frame_id,
                                        initial_pose_subscriber_.getTopic());
   } catch (const hyselam::InputError& e) {
-    ROS_ERROR_STREAM(who_ << " initial pose ignored: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " initial pose ignored: " << e.what());
     return;
   }
   // The robot may have moved on while a person pointed at the map.
-  if (!msg->header.stamp.isZero())
-    if (const auto motion = input_->motionSince(msg->header.stamp))
+  if (!msg->header.stamp.isZero()) {
+    if (const auto motion = input_->motionSince(msg->header.stamp)) {
       pose.base_in_map = pose.base_in_map * *motion;
+    }
+  }
   const Lock lock(mutex_);
-  pending_ = pose;
+  initial_pose_ = pose;
 }
 
 void SlamServer::broadcast(const ros::Time& stamp) {
@@ -257,55 +249,59 @@ void SlamServer::broadcast(const ros::Time& stamp) {
   geometry_msgs::TransformStamped transform;
   {
     const Lock lock(mutex_);
-    if (!mapping_->localised || dated <= told_tf_) return;
-    told_tf_ = dated;
+    if (!mapping_->localized || dated <= broadcaster_.last) return;
+    broadcaster_.last = dated;
     transform.transform = hyselam::toTransformMsg(mapping_->engine.odomInMap());
   }
   transform.header.stamp = dated;
   transform.header.frame_id = params_.global_frame_id;
   transform.child_frame_id = params_.input.odom_frame_id;
-  tf_.sendTransform(transform);
+  broadcaster_.tf.sendTransform(transform);
 }
 
 std_msgs::Header SlamServer::header(const std::string& frame) const {
   std_msgs::Header h;
-  h.stamp = stamp_;
+  h.stamp = last_scan_.stamp;
   h.frame_id = frame;
   return h;
 }
 
-/// Words, matches and regions that are new. With mutex_ held.
-void SlamServer::tell() {
+/// Words and matches that are new, or all of them when the classes have changed. With mutex_ held.
+void SlamServer::publishNewWords() {
   Mapping& m = *mapping_;
-  const NgramRecognizer& recogniser = m.engine.recogniser();
-  const bool anew = recogniser.requantisations() != m.requantisations;
-  m.requantisations = recogniser.requantisations();
-  if (anew) m.told_words = m.told_matches = 0;
-  m.told_matches = std::min(m.told_matches, m.engine.matches().size());
-  const std_msgs::Header in_odom = header(params_.input.odom_frame_id);
-  const std::size_t words = recogniser.text().words();
-  if (words > m.told_words || anew) {
-    hyselam_msgs::WordArray msg;
-    msg.header = in_odom;
-    msg.anew = anew;
-    for (; m.told_words < words; ++m.told_words)
-      msg.words.push_back(wordMsg(recogniser, static_cast<WordIndex>(m.told_words)));
-    word_publisher_.publish(msg);
-    hyselam_msgs::WordMatchArray matches;
-    matches.header = in_odom;
-    matches.anew = anew;
-    for (; m.told_matches < m.engine.matches().size(); ++m.told_matches)
-      matches.matches.push_back(matchMsg(recogniser, m.engine.matches()[m.told_matches]));
-    match_publisher_.publish(matches);
+  const NgramRecognizer& recognizer = m.engine.recognizer();
+  const bool replace = recognizer.requantisations() != m.requantizations;
+  m.requantizations = recognizer.requantisations();
+  if (replace) m.published_words = m.published_matches = 0;
+  m.published_matches = std::min(m.published_matches, m.engine.matches().size());
+  const std::size_t words = recognizer.text().words();
+  if (words <= m.published_words && !replace) return;
+  hyselam_msgs::WordArray word_array;
+  word_array.header = header(params_.input.odom_frame_id);
+  word_array.replaces_previous = replace;
+  for (; m.published_words < words; ++m.published_words) {
+    word_array.words.push_back(wordMsg(recognizer, static_cast<WordIndex>(m.published_words)));
   }
-  const std::vector<SemanticRegion> regions = m.segment();
+  hyselam_msgs::WordMatchArray match_array;
+  match_array.header = word_array.header;
+  match_array.replaces_previous = replace;
+  for (; m.published_matches < m.engine.matches().size(); ++m.published_matches) {
+    match_array.matches.push_back(matchMsg(recognizer, m.engine.matches()[m.published_matches]));
+  }
+  publisher_.publishWords(word_array, match_array);
+}
+
+/// With mutex_ held.
+void SlamServer::publishNewRegions() {
+  const std::vector<SemanticRegion> regions = mapping_->segmentNew();
   if (regions.empty()) return;
   hyselam_msgs::SemanticRegionArray msg;
-  msg.header = in_odom;
-  for (const SemanticRegion& region : regions)
-    msg.regions.push_back(
-        regionMsg(recogniser.observations(), region, params_.slam.observations.step));
-  region_publisher_.publish(msg);
+  msg.header = header(params_.input.odom_frame_id);
+  for (const SemanticRegion& region : regions) {
+    msg.regions.push_back(regionMsg(mapping_->engine.recognizer().observations(), region,
+                                    params_.slam.observations.step));
+  }
+  publisher_.publishRegions(msg);
 }
 
 }  // namespace ngram_slam

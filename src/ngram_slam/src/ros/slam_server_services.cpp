@@ -12,16 +12,30 @@ namespace ngram_slam {
 using hyselam::addRemark;
 using hyselam::addValue;
 using Lock = std::unique_lock<std::mutex>;
-using Status = diagnostic_msgs::DiagnosticStatus;
+using DiagnosticStatus = diagnostic_msgs::DiagnosticStatus;
 
-bool SlamServer::onMap(nav_msgs::GetMap::Response& out) {
-  const Lock lock(map_mutex_);
-  if (map_) out.map = *map_;
-  return map_.has_value();
+void SlamServer::advertiseServices(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
+  ros::NodeHandle public_services(nh), private_services(private_nh);
+  public_services.setCallbackQueue(&services_.queue);
+  private_services.setCallbackQueue(&services_.queue);
+  services_.save = private_services.advertiseService("save", &SlamServer::onSave, this);
+  services_.load = private_services.advertiseService("load", &SlamServer::onLoad, this);
+  using std_srvs::Trigger;
+  const auto advertisePause = [&](const char* name, bool pause) {
+    return private_services.advertiseService<Trigger::Request, Trigger::Response>(
+        name,
+        [this, pause](Trigger::Request&, Trigger::Response& out) { return onPause(pause, out); });
+  };
+  services_.pause = advertisePause("pause", true);
+  services_.resume = advertisePause("resume", false);
+  using nav_msgs::GetMap;
+  services_.map = public_services.advertiseService<GetMap::Request, GetMap::Response>(
+      "dynamic_map",
+      [this](GetMap::Request&, GetMap::Response& out) { return publisher_.newestMap(out); });
 }
 
 /// @returns what was written. @throws hyselam::InputError
-std::string SlamServer::save(const std::string& path) {
+std::string SlamServer::saveState(const std::string& path) {
   const Lock saving(save_mutex_);
   SlamState state;
   long epoch = 0;
@@ -33,13 +47,13 @@ std::string SlamServer::save(const std::string& path) {
   const ros::WallTime begin = ros::WallTime::now();
   SlamStateFile::save(path, state);
   const Lock lock(mutex_);
-  save_ms_ = millisecondsSince(begin);
+  status_.save_ms = millisecondsSince(begin);
   if (epoch == epoch_ && path == params_.state) mapping_->saved_scans = state.counters.scans;
   return path + ": " + std::to_string(state.keyframes.size()) + " keyframes, " +
          std::to_string(state.loops.size()) + " loops";
 }
 
-void SlamServer::saveNow(const char* when) {
+void SlamServer::saveIfChanged(const char* when) {
   if (params_.state.empty()) return;
   {
     const Lock lock(mutex_);
@@ -47,30 +61,31 @@ void SlamServer::saveNow(const char* when) {
   }
   std::string error;
   try {
-    save(params_.state);
+    saveState(params_.state);
   } catch (const std::exception& e) {
     error = e.what();
-    ROS_ERROR_STREAM(who_ << " not saved (" << when << "): " << error);
+    ROS_ERROR_STREAM(log_name_ << " not saved (" << when << "): " << error);
   }
   const Lock lock(mutex_);
-  save_error_ = error;
+  status_.save_error = error;
 }
 
-std::string SlamServer::pathOr(const std::string& given) const {
-  if (given.empty() && params_.state.empty())
+std::string SlamServer::pathOrDefault(const std::string& path) const {
+  if (path.empty() && params_.state.empty()) {
     throw hyselam::InputError("path", "", "none given, and the parameter state is empty");
-  return given.empty() ? params_.state : given;
+  }
+  return path.empty() ? params_.state : path;
 }
 
 bool SlamServer::onSave(hyselam_msgs::StatePath::Request& request,
                         hyselam_msgs::StatePath::Response& out) {
   try {
-    out.message = save(pathOr(request.path));
+    out.message = saveState(pathOrDefault(request.path));
     out.success = true;
   } catch (const std::exception& e) {
     out.success = false;
     out.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not saved: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " not saved: " << e.what());
   }
   return true;
 }
@@ -78,7 +93,7 @@ bool SlamServer::onSave(hyselam_msgs::StatePath::Request& request,
 bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
                         hyselam_msgs::StatePath::Response& out) {
   try {
-    const std::string path = pathOr(request.path);
+    const std::string path = pathOrDefault(request.path);
     auto mapping =
         std::make_unique<Mapping>(params_, SlamStateFile::load(path, params_.slam.surface));
     out.message = path + ": " + std::to_string(mapping->engine.keyframes().size()) +
@@ -87,17 +102,17 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
       const Lock lock(mutex_);
       std::swap(mapping_, mapping);
       ++epoch_;
-      next_ = Next::kAfterPause;
-      pending_.reset();
+      next_scan_ = NextScan::kAfterPause;
+      initial_pose_.reset();
       map_due_ = drawsMaps();
     }
     work_.notify_all();
     out.success = true;
-    ROS_INFO_STREAM(who_ << " loaded " << out.message);
+    ROS_INFO_STREAM(log_name_ << " loaded " << out.message);
   } catch (const std::exception& e) {
     out.success = false;
     out.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not loaded: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " not loaded: " << e.what());
   }
   return true;
 }
@@ -107,47 +122,51 @@ bool SlamServer::onPause(bool pause, std_srvs::Trigger::Response& out) {
   out.success = true;
   out.message = paused_ == pause ? (pause ? "paused already" : "was not paused")
                                  : (pause ? "paused" : "goes on");
-  if (paused_ && !pause && next_ == Next::kGoOn && mapping_->localised) next_ = Next::kAfterPause;
-  if (paused_ != pause) ROS_INFO_STREAM(who_ << ' ' << out.message);
+  if (paused_ && !pause && next_scan_ == NextScan::kGoesOn && mapping_->localized)
+    next_scan_ = NextScan::kAfterPause;
+  if (paused_ != pause) ROS_INFO_STREAM(log_name_ << ' ' << out.message);
   paused_ = pause;
   return true;
 }
 
 // ---- diagnostics
 
-void SlamServer::report(Status& status) {
+void SlamServer::report(DiagnosticStatus& status) {
   input_->checkClock();
   {
     const Lock lock(mutex_);
     const SlamEngine& engine = mapping_->engine;
     const SlamCounters& c = engine.counters();
-    addRemark(status, Status::OK,
+    const auto addError = [&](const char* what, const std::string& error) {
+      if (!error.empty()) addRemark(status, DiagnosticStatus::ERROR, what + error);
+    };
+    addRemark(status, DiagnosticStatus::OK,
               std::to_string(engine.keyframes().size()) + " keyframes, " +
                   std::to_string(engine.loops().size()) + " loops");
-    if (paused_) addRemark(status, Status::WARN, "paused");
-    if (!job_error_.empty()) addRemark(status, Status::ERROR, "optimisation: " + job_error_);
-    if (!map_error_.empty()) addRemark(status, Status::ERROR, "map: " + map_error_);
-    if (!save_error_.empty()) addRemark(status, Status::ERROR, "not saved: " + save_error_);
+    if (paused_) addRemark(status, DiagnosticStatus::WARN, "paused");
+    addError("optimization: ", status_.job_error);
+    addError("map: ", status_.map_error);
+    addError("not saved: ", status_.save_error);
     addValue(status, "paused", paused_);
-    addValue(status, "scans while paused", paused_scans_);
-    addValue(status, "publishing tf", params_.tf_broadcast && mapping_->localised);
+    addValue(status, "scans while paused", status_.paused_scans);
+    addValue(status, "publishing tf", params_.tf_broadcast && mapping_->localized);
     addValue(status, "runs", engine.keyframes().empty() ? 0 : engine.keyframes().back().run + 1);
     addValue(status, "keyframes", engine.keyframes().size());
     addValue(status, "loops", engine.loops().size());
     addValue(status, "loops by words", c.words.accepted);
     addValue(status, "matches of words", engine.matches().size());
     addValue(status, "regions", mapping_->regions.size());
-    addValue(status, "optimisations", c.optimisations);
-    addValue(status, "scans that hardly matched", weak_);
-    addValue(status, "odometry leapt", c.leaps);
-    addValue(status, "last scan [ms]", scan_ms_);
-    addValue(status, "slowest scan [ms]", worst_scan_ms_);
-    addValue(status, "last loops and optimisation [ms]", job_ms_);
-    addValue(status, "last map [ms]", map_ms_);
+    addValue(status, "optimizations", c.optimizations);
+    addValue(status, "scans that hardly matched", status_.weak_matches);
+    addValue(status, "odometry jumps", c.odometry_jumps);
+    addValue(status, "last scan [ms]", status_.scan_ms);
+    addValue(status, "slowest scan [ms]", status_.max_scan_ms);
+    addValue(status, "last loops and optimization [ms]", status_.job_ms);
+    addValue(status, "last map [ms]", status_.map_ms);
     if (!params_.state.empty()) {
       addValue(status, "state", params_.state);
       addValue(status, "scans not saved", c.scans - mapping_->saved_scans);
-      addValue(status, "last saving [ms]", save_ms_);
+      addValue(status, "last saving [ms]", status_.save_ms);
     }
   }
   input_->report(status);

@@ -15,13 +15,13 @@ using visualization_msgs::Marker;
 namespace {
 
 /// From blue (narrow) over green to red (wide), for densities 0..1.
-std_msgs::ColorRGBA colourOf(double density) {
+std_msgs::ColorRGBA colorOf(double density) {
   const double x = std::clamp(density, 0.0, 1.0);
   return color(std::clamp(2.0 * x - 0.6, 0.0, 1.0), 1.0 - std::abs(2.0 * x - 1.0),
                std::clamp(1.2 - 2.4 * x, 0.0, 1.0));
 }
 
-/// Beside the way at an observation, `aside` metres to its left.
+/// Beside the path at an observation, `aside` meters to its left.
 geometry_msgs::Point beside(const ObservationStore& observations, std::uint32_t i, double aside) {
   return at(observations.pose(i) * hyselam::Pose2{0.0, aside, 0.0}, 0.3);
 }
@@ -44,11 +44,11 @@ std::string textOf(const Syllables& s) {
 
 }  // namespace
 
-visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
+visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recognizer,
                                             const ShownRun& shown, int words,
                                             const std_msgs::Header& header) {
-  const ObservationStore& observations = recogniser.observations();
-  const WordLattice& text = recogniser.text();
+  const ObservationStore& observations = recognizer.observations();
+  const WordLattice& text = recognizer.text();
   visualization_msgs::MarkerArray array;
   Marker clear;
   clear.header = header;
@@ -80,13 +80,13 @@ visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
     while (region != shown.regions.end() && region->last < i) ++region;
     regions.points.push_back(at(pose, -0.02));
     const bool known = region != shown.regions.end() && region->first <= i;
-    regions.colors.push_back(known ? colourOf(region->semantic_class) : color(0.7, 0.7, 0.7));
+    regions.colors.push_back(known ? colorOf(region->semantic_class) : color(0.7, 0.7, 0.7));
     if (p < text.positions() && i >= text.observationEnd(text.realWord(p))) ++p;
     std_msgs::ColorRGBA c = color(0.7, 0.7, 0.7);
     if (p < text.positions()) {
       const int id = text.syllables(text.realWord(p)).density_class;
-      for (const DensityClass& density : recogniser.classes().list())
-        if (density.id == id) c = colourOf(density.mode);
+      for (const DensityClass& density : recognizer.classes().list())
+        if (density.id == id) c = colorOf(density.mode);
     }
     classes.points.push_back(at(pose, 0.05));
     classes.colors.push_back(c);

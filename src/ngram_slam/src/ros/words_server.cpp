@@ -12,6 +12,7 @@
 #include "hyselam_common/ros/server_setup.hpp"
 #include "ngram_slam/matching/match_place.hpp"
 #include "ngram_slam/ros/conversions.hpp"
+#include "wall_milliseconds.hpp"
 
 namespace ngram_slam {
 
@@ -27,44 +28,39 @@ constexpr std::size_t kRegionsPerWord = 4;
 }  // namespace
 
 WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
-    : who_(hyselam::logName(private_nh)),
+    : log_name_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndLogParams(private_nh, loadWordsParams)),
       segmenter_(params_.semantic),
       sensor_(params_.sensor),
       sampler_(params_.sensor.step),
-      drops_(who_, "observation"),
-      gui_rate_(params_.gui_publish_rate) {
+      drops_(log_name_, "observation"),
+      marker_rate_(params_.gui_publish_rate) {
   Corpus corpus;
   if (!params_.corpus.empty()) {
     journal_ = std::make_unique<CorpusJournal>(params_.corpus);
     CorpusJournal::Loaded loaded = journal_->load();
-    if (!loaded.remark.empty()) ROS_WARN_STREAM(who_ << " " << loaded.remark);
+    if (!loaded.remark.empty()) ROS_WARN_STREAM(log_name_ << " " << loaded.remark);
     corpus = std::move(loaded.corpus);
-    ROS_INFO_STREAM(who_ << " corpus " << params_.corpus << ": " << corpus.observations.size()
-                         << " observations of " << corpus.observations.runs() << " runs");
+    ROS_INFO_STREAM(log_name_ << " corpus " << params_.corpus << ": " << corpus.observations.size()
+                              << " observations of " << corpus.observations.runs() << " runs");
   }
-  restart(std::move(corpus));
+  goOnFrom(std::move(corpus));
 
-  word_publisher_ = nh.advertise<hyselam_msgs::WordArray>("words", 1000);
-  match_publisher_ = nh.advertise<hyselam_msgs::WordMatchArray>("word_matches", 1000);
-  region_publisher_ = nh.advertise<hyselam_msgs::SemanticRegionArray>("semantic_regions", 1000);
-  marker_publisher_ = nh.advertise<visualization_msgs::MarkerArray>("word_markers", 1);
-  save_service_ = private_nh.advertiseService("save", &WordsServer::onSave, this);
-  load_service_ = private_nh.advertiseService("load", &WordsServer::onLoad, this);
-  start_service_ = private_nh.advertiseService("start_run", &WordsServer::onStartRun, this);
-  if (journal_ && params_.save_period > 0.0)
+  advertise(nh, private_nh);
+  if (journal_ && params_.save_period > 0.0) {
     save_timer_ =
         nh.createWallTimer(ros::WallDuration(params_.save_period),
-                           [this](const ros::WallTimerEvent&) { saveNow("now and then"); });
+                           [this](const ros::WallTimerEvent&) { saveIfChanged("now and then"); });
+  }
   if (params_.from_scan) {
     scan_input_ = std::make_unique<hyselam::ScanInput>(
-        nh, params_.input, who_,
+        nh, params_.input, log_name_,
         [this](const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
                const ros::Time&) {
-          take(sensor_.add(scan, base_in_odom));
+          addObservations(sensor_.add(scan, base_in_odom));
           return true;
         },
-        [this] { startAnew("time went back"); });
+        [this] { startNewRun("time went back"); });
   } else {
     subscriber_ = nh.subscribe("fsd_observation", kQueue, &WordsServer::onFsd, this);
   }
@@ -73,29 +69,39 @@ WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
       [this](Status& status) { report(status); });
 }
 
+void WordsServer::advertise(ros::NodeHandle nh, ros::NodeHandle private_nh) {
+  publishers_.words = nh.advertise<hyselam_msgs::WordArray>("words", kQueue);
+  publishers_.matches = nh.advertise<hyselam_msgs::WordMatchArray>("word_matches", kQueue);
+  publishers_.regions = nh.advertise<hyselam_msgs::SemanticRegionArray>("semantic_regions", kQueue);
+  publishers_.markers = nh.advertise<visualization_msgs::MarkerArray>("word_markers", 1);
+  services_.save = private_nh.advertiseService("save", &WordsServer::onSave, this);
+  services_.load = private_nh.advertiseService("load", &WordsServer::onLoad, this);
+  services_.start_run = private_nh.advertiseService("start_run", &WordsServer::onStartRun, this);
+}
+
 WordsServer::~WordsServer() {
   // No callback may change the corpus while it is written.
   diagnostics_.reset();
   subscriber_.shutdown();
   scan_input_.reset();
   save_timer_.stop();
-  for (ros::ServiceServer* service : {&save_service_, &load_service_, &start_service_}) {
+  for (auto* service : {&services_.save, &services_.load, &services_.start_run}) {
     service->shutdown();
   }
   try {
-    if (params_.from_scan) take(sensor_.finish());
+    if (params_.from_scan) addObservations(sensor_.finish());
   } catch (const std::exception& e) {
-    ROS_ERROR_STREAM(who_ << " " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " " << e.what());
   }
-  saveNow("at the end");
+  saveIfChanged("at the end");
 }
 
 /// Goes on from a corpus.
-void WordsServer::restart(Corpus corpus) {
-  recogniser_ = std::make_unique<NgramRecognizer>(params_.recogniser, std::move(corpus));
+void WordsServer::goOnFrom(Corpus corpus) {
+  recognizer_ = std::make_unique<NgramRecognizer>(params_.recognizer, std::move(corpus));
   segmenter_ = SemanticSegmenter(params_.semantic);
-  segmenter_begin_ = recogniser_->observations().size();
-  told_words_ = recogniser_->text().words();
+  segmenter_begin_ = recognizer_->observations().size();
+  published_words_ = recognizer_->text().words();
   sensor_.finish();
   sampler_.reset();
   last_.reset();
@@ -103,148 +109,160 @@ void WordsServer::restart(Corpus corpus) {
 }
 
 void WordsServer::onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg) {
-  ++received_;
-  const ros::Time stamp = msg->header.stamp;
-  if (stamp.isZero()) return drops_.drop("refused", "the observation has no stamp");
-  std::string frame = msg->header.frame_id;
-  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
-  if (frame != params_.input.odom_frame_id)
-    return drops_.drop("refused", "the observation is in frame '" + frame + "', not in '" +
-                                      params_.input.odom_frame_id + "'");
-  if (stamp <= last_stamp_) {
-    const double back = (last_stamp_ - stamp).toSec();
-    if (back < kStampSlack)
-      return drops_.drop("refused", "its stamp is not later than that of the observation before");
-    ++time_jumps_;
-    ROS_WARN_STREAM(who_ << " time went back by " << back << " s; a new run begins");
-    startAnew("time went back");
-  }
-  last_stamp_ = stamp;
+  ++statistics_.received;
+  if (!isUsable(*msg)) return;
+  last_stamp_ = msg->header.stamp;
   try {
     const DensityObservation reading =
         fromMsg(*msg, params_.sensor.bandwidth, subscriber_.getTopic());
     const auto due = sampler_.due(reading.base_in_odom);
-    if (!due.empty()) take(sampler_.take(reading, due));
-    ++used_;
+    if (!due.empty()) addObservations(sampler_.sampleAt(reading, due));
+    ++statistics_.used;
   } catch (const hyselam::InputError& e) {
     drops_.drop("refused", e.what());
   }
 }
 
-void WordsServer::take(const std::vector<DensityObservation>& observations) {
-  for (const DensityObservation& o : observations) take(o);
+/// Whether stamp and frame of an observation can be used; begins a new run when time went back.
+bool WordsServer::isUsable(const hyselam_msgs::FsdObservation& msg) {
+  const auto refuse = [this](const std::string& reason) {
+    drops_.drop("refused", reason);
+    return false;
+  };
+  const ros::Time stamp = msg.header.stamp;
+  if (stamp.isZero()) return refuse("the observation has no stamp");
+  std::string frame = msg.header.frame_id;
+  if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+  if (frame != params_.input.odom_frame_id) {
+    return refuse("the observation is in frame '" + frame + "', not in '" +
+                  params_.input.odom_frame_id + "'");
+  }
+  if (stamp > last_stamp_) return true;
+  const double back = (last_stamp_ - stamp).toSec();
+  if (back < kStampSlack) {
+    return refuse("its stamp is not later than that of the observation before");
+  }
+  ++statistics_.time_jumps;
+  ROS_WARN_STREAM(log_name_ << " time went back by " << back << " s; a new run begins");
+  startNewRun("time went back");
+  return true;
 }
 
-void WordsServer::take(const DensityObservation& observation) {
-  if (last_ && leapt(*last_, observation)) {
-    ++leaps_;
+void WordsServer::addObservations(const std::vector<DensityObservation>& observations) {
+  for (const DensityObservation& o : observations) addObservation(o);
+}
+
+void WordsServer::addObservation(const DensityObservation& observation) {
+  if (last_ && odometryJumped(*last_, observation)) {
+    ++statistics_.odometry_jumps;
     endRun("the odometry jumped by " +
            std::to_string(hyselam::distance(last_->base_in_odom, observation.base_in_odom)) + " m");
   }
   const ros::WallTime begin = ros::WallTime::now();
-  const NgramRecognizerUpdate update = recogniser_->add(observation);
+  const NgramRecognizerUpdate update = recognizer_->add(observation);
   last_ = observation;
-  const std::vector<SemanticRegion> regions =
-      params_.semantics
-          ? segmenter_.add(recogniser_->observations()[recogniser_->observations().size() - 1])
-          : std::vector<SemanticRegion>{};
-  if (update.word || update.requantised) {
-    word_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
-    worst_word_ms_ = std::max(worst_word_ms_, word_ms_);
+  std::vector<SemanticRegion> regions;
+  if (params_.semantics) {
+    const ObservationStore& observations = recognizer_->observations();
+    regions = segmenter_.add(observations[observations.size() - 1]);
   }
-  told(update);
-  told(regions);
-  if (gui_rate_.pass(hyselam::toRosTime(observation.stamp))) show();
+  if (update.word || update.requantised) {
+    statistics_.word_ms = millisecondsSince(begin);
+    statistics_.max_word_ms = std::max(statistics_.max_word_ms, statistics_.word_ms);
+  }
+  publishUpdate(update);
+  publishRegions(regions);
+  if (marker_rate_.pass(hyselam::toRosTime(observation.stamp))) publishMarkers();
 }
 
 /// What follows is another run, and nothing lies between it and what was seen.
-void WordsServer::startAnew(const std::string& why) {
-  if (params_.from_scan) take(sensor_.finish());
+void WordsServer::startNewRun(const std::string& reason) {
+  if (params_.from_scan) addObservations(sensor_.finish());
   sampler_.reset();
-  endRun(why);
+  endRun(reason);
 }
 
 /// What follows starts at an unknown place.
-void WordsServer::endRun(const std::string& why) {
+void WordsServer::endRun(const std::string& reason) {
   if (!last_) return;
-  ROS_INFO_STREAM(who_ << " the run ends: " << why);
+  ROS_INFO_STREAM(log_name_ << " the run ends: " << reason);
   last_.reset();
-  told(recogniser_->endRun());
-  if (params_.semantics) told(segmenter_.finish());
+  publishUpdate(recognizer_->endRun());
+  if (params_.semantics) publishRegions(segmenter_.finish());
   shown_ = {};
 }
 
-void WordsServer::told(const NgramRecognizerUpdate& update) {
-  const WordLattice& text = recogniser_->text();
+void WordsServer::publishUpdate(const NgramRecognizerUpdate& update) {
+  const WordLattice& text = recognizer_->text();
   if (!update.word && !update.requantised) return;
   if (update.requantised) shown_.matches.clear();
   hyselam_msgs::WordArray words;
   words.header = header();
-  words.anew = update.requantised;
-  for (std::size_t i = update.requantised ? 0 : told_words_; i < text.words(); ++i)
-    words.words.push_back(wordMsg(*recogniser_, static_cast<WordIndex>(i)));
-  told_words_ = text.words();
-  word_publisher_.publish(words);
+  words.replaces_previous = update.requantised;
+  for (std::size_t i = update.requantised ? 0 : published_words_; i < text.words(); ++i)
+    words.words.push_back(wordMsg(*recognizer_, static_cast<WordIndex>(i)));
+  published_words_ = text.words();
+  publishers_.words.publish(words);
 
   hyselam_msgs::WordMatchArray matches;
   matches.header = words.header;
-  matches.anew = update.requantised;
-  const ObservationStore& observations = recogniser_->observations();
+  matches.replaces_previous = update.requantised;
+  const ObservationStore& observations = recognizer_->observations();
   const std::uint32_t run_begin = observations.runBegin(observations.runs() - 1);
   for (const NgramMatch& m : update.matches) {
-    const auto place = placeOf(*recogniser_, m);
+    const auto place = placeOf(*recognizer_, m);
     if (!place) continue;
-    matches.matches.push_back(matchMsg(*recogniser_, m, *place));
+    matches.matches.push_back(matchMsg(*recognizer_, m, *place));
     if (place->older >= run_begin) shown_.matches.push_back({*place, m.direction});
     while (shown_.matches.size() > kShownLines) shown_.matches.pop_front();
   }
-  matches_ = (update.requantised ? 0 : matches_) + matches.matches.size();
-  match_publisher_.publish(matches);
+  if (update.requantised) statistics_.matches = 0;
+  statistics_.matches += matches.matches.size();
+  publishers_.matches.publish(matches);
 }
 
-void WordsServer::told(const std::vector<SemanticRegion>& regions) {
+void WordsServer::publishRegions(const std::vector<SemanticRegion>& regions) {
   if (regions.empty()) return;
   hyselam_msgs::SemanticRegionArray out;
   out.header = header();
   for (SemanticRegion region : regions) {
     region.first += segmenter_begin_;
     region.last += segmenter_begin_;
-    out.regions.push_back(regionMsg(recogniser_->observations(), region, params_.sensor.step));
+    out.regions.push_back(regionMsg(recognizer_->observations(), region, params_.sensor.step));
     shown_.regions.push_back(region);
     // As many as words may cover.
     while (shown_.regions.size() > kRegionsPerWord * static_cast<std::size_t>(params_.shown_words))
       shown_.regions.pop_front();
   }
-  regions_ += out.regions.size();
-  region_publisher_.publish(out);
+  statistics_.regions += out.regions.size();
+  publishers_.regions.publish(out);
 }
 
 std_msgs::Header WordsServer::header() const {
   std_msgs::Header header;
   header.frame_id = params_.input.odom_frame_id;
-  const ObservationStore& observations = recogniser_->observations();
+  const ObservationStore& observations = recognizer_->observations();
   if (observations.size() > 0)
     header.stamp = hyselam::toRosTime(observations.stamp(observations.size() - 1));
   return header;
 }
 
-void WordsServer::show() {
-  if (marker_publisher_.getNumSubscribers() > 0)
-    marker_publisher_.publish(wordMarkers(*recogniser_, shown_, params_.shown_words, header()));
+void WordsServer::publishMarkers() {
+  if (publishers_.markers.getNumSubscribers() == 0) return;
+  publishers_.markers.publish(wordMarkers(*recognizer_, shown_, params_.shown_words, header()));
 }
 
-void WordsServer::saveNow(const char* when) {
-  if (!journal_ || !recogniser_) return;
-  if (journal_->saved() == recogniser_->observations().size()) return;
+void WordsServer::saveIfChanged(const char* when) {
+  if (!journal_ || !recognizer_) return;
+  if (journal_->saved() == recognizer_->observations().size()) return;
   const ros::WallTime begin = ros::WallTime::now();
   try {
-    journal_->save(recogniser_->observations(), recogniser_->classes(), recogniser_->histogram());
-    save_error_.clear();
-    saved_at_ = ros::WallTime::now();
-    save_ms_ = 1e3 * (saved_at_ - begin).toSec();
+    journal_->save(recognizer_->observations(), recognizer_->classes(), recognizer_->histogram());
+    statistics_.save_error.clear();
+    statistics_.save_ms = millisecondsSince(begin);
   } catch (const std::exception& e) {
-    save_error_ = e.what();
-    ROS_ERROR_STREAM(who_ << " not saved (" << when << "): " << save_error_);
+    statistics_.save_error = e.what();
+    ROS_ERROR_STREAM(log_name_ << " not saved (" << when << "): " << statistics_.save_error);
   }
 }
 
@@ -258,19 +276,19 @@ bool WordsServer::onSave(hyselam_msgs::CorpusPath::Request& request,
   }
   try {
     if (journal_ && path == journal_->path()) {
-      journal_->save(recogniser_->observations(), recogniser_->classes(), recogniser_->histogram());
+      journal_->save(recognizer_->observations(), recognizer_->classes(), recognizer_->histogram());
     } else {
       // A whole file by itself; a journal that lies beside it belonged to the one before.
-      CorpusJournal(path).saveWhole(recogniser_->observations(), recogniser_->classes(),
-                                    recogniser_->histogram());
+      CorpusJournal(path).saveWhole(recognizer_->observations(), recognizer_->classes(),
+                                    recognizer_->histogram());
     }
     out.success = true;
-    out.message = path + ": " + std::to_string(recogniser_->observations().size()) +
-                  " observations of " + std::to_string(recogniser_->observations().runs()) +
+    out.message = path + ": " + std::to_string(recognizer_->observations().size()) +
+                  " observations of " + std::to_string(recognizer_->observations().runs()) +
                   " runs";
   } catch (const std::exception& e) {
     out.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not saved: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " not saved: " << e.what());
   }
   return true;
 }
@@ -291,7 +309,7 @@ bool WordsServer::onLoad(hyselam_msgs::CorpusPath::Request& request,
     out.message = path + ": " + std::to_string(loaded.corpus.observations.size()) +
                   " observations of " + std::to_string(loaded.corpus.observations.runs()) +
                   " runs" + (loaded.remark.empty() ? "" : "; " + loaded.remark);
-    restart(std::move(loaded.corpus));
+    goOnFrom(std::move(loaded.corpus));
     // Another text than the file holds: what is saved next is written whole.
     if (journal_) {
       if (path == journal_->path())
@@ -300,62 +318,71 @@ bool WordsServer::onLoad(hyselam_msgs::CorpusPath::Request& request,
         *journal_ = CorpusJournal(journal_->path());
     }
     out.success = true;
-    ROS_INFO_STREAM(who_ << " loaded " << out.message);
+    ROS_INFO_STREAM(log_name_ << " loaded " << out.message);
   } catch (const std::exception& e) {
     out.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not loaded: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " not loaded: " << e.what());
   }
   return true;
 }
 
 bool WordsServer::onStartRun(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& out) {
-  startAnew("asked for");
+  startNewRun("asked for");
   out.success = true;
   out.message =
-      "the next observation starts run " + std::to_string(recogniser_->observations().runs());
+      "the next observation starts run " + std::to_string(recognizer_->observations().runs());
   return true;
 }
 
-void WordsServer::report(Status& status) {
-  const WordLattice& text = recogniser_->text();
-  addRemark(status, Status::OK,
-            std::to_string(text.positions()) + " words, " + std::to_string(matches_) + " matches");
+void WordsServer::reportInput(Status& status) {
   if (scan_input_) {
     scan_input_->checkClock();
     scan_input_->report(status);
-  } else {
-    const std::size_t fresh = received_ - reported_received_;
-    const std::size_t dropped = drops_.total() - reported_drops_;
-    reported_received_ = received_;
-    reported_drops_ = drops_.total();
-    if (fresh == 0) addRemark(status, Status::WARN, "no observations");
-    if (dropped > 0)
-      addRemark(status, Status::WARN, "dropping observations (" + drops_.last() + ")");
-    addValue(status, "observations received", received_);
-    addValue(status, "observations used", used_);
-    drops_.report(status);
-    addValue(status, "time went back", time_jumps_);
+    return;
   }
-  const ObservationStore& observations = recogniser_->observations();
-  addValue(status, "odometry jumped", leaps_);
+  Statistics& s = statistics_;
+  const std::size_t fresh = s.received - s.reported_received;
+  const std::size_t dropped = drops_.total() - s.reported_drops;
+  s.reported_received = s.received;
+  s.reported_drops = drops_.total();
+  if (fresh == 0) addRemark(status, Status::WARN, "no observations");
+  if (dropped > 0) {
+    addRemark(status, Status::WARN, "dropping observations (" + drops_.last() + ")");
+  }
+  addValue(status, "observations received", s.received);
+  addValue(status, "observations used", s.used);
+  drops_.report(status);
+  addValue(status, "time went back", s.time_jumps);
+}
+
+void WordsServer::report(Status& status) {
+  const WordLattice& text = recognizer_->text();
+  const ObservationStore& observations = recognizer_->observations();
+  addRemark(status, Status::OK,
+            std::to_string(text.positions()) + " words, " + std::to_string(statistics_.matches) +
+                " matches");
+  reportInput(status);
+  addValue(status, "odometry jumps", statistics_.odometry_jumps);
   addValue(status, "runs", observations.runs());
   addValue(status, "observations", observations.size());
   addValue(status, "words", text.positions());
   addValue(status, "alternative words", text.words() - text.positions());
-  addValue(status, "matches told", matches_);
-  addValue(status, "regions told", regions_);
-  addValue(status, "density classes", recogniser_->classes().list().size());
-  addValue(status, "requantisations", recogniser_->requantisations());
-  addValue(status, "last word [ms]", word_ms_);
-  addValue(status, "slowest word [ms]", worst_word_ms_);
-  addValue(status, "memory [MB]", static_cast<double>(recogniser_->bytes()) / 1e6);
+  addValue(status, "matches published", statistics_.matches);
+  addValue(status, "regions published", statistics_.regions);
+  addValue(status, "density classes", recognizer_->classes().list().size());
+  addValue(status, "requantizations", recognizer_->requantisations());
+  addValue(status, "last word [ms]", statistics_.word_ms);
+  addValue(status, "slowest word [ms]", statistics_.max_word_ms);
+  addValue(status, "memory [MB]", static_cast<double>(recognizer_->bytes()) / 1e6);
   if (!journal_) return;
   addValue(status, "corpus", journal_->path());
   addValue(status, "observations saved", journal_->saved());
-  addValue(status, "last saving [ms]", save_ms_);
+  addValue(status, "last saving [ms]", statistics_.save_ms);
   addValue(status, "file and journal [MB]",
            static_cast<double>(journal_->fileBytes() + journal_->journalBytes()) / 1e6);
-  if (!save_error_.empty()) addRemark(status, Status::ERROR, "not saved: " + save_error_);
+  if (!statistics_.save_error.empty()) {
+    addRemark(status, Status::ERROR, "not saved: " + statistics_.save_error);
+  }
 }
 
 }  // namespace ngram_slam

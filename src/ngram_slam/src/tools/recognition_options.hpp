@@ -12,7 +12,7 @@
 #include "hyselam_common/tool.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
 #include "ngram_slam/words/log_observations.hpp"
-#include "ngram_slam/words/way_sampler.hpp"
+#include "ngram_slam/words/observation_sampler.hpp"
 
 namespace ngram_slam {
 
@@ -122,7 +122,7 @@ inline void feed(const std::vector<Run>& runs, NgramRecognizer& recogniser,
   for (const Run& run : runs) {
     const DensityObservation* before = nullptr;
     for (const DensityObservation& o : run.observations) {
-      if (before != nullptr && leapt(*before, o)) use(recogniser.endRun());
+      if (before != nullptr && odometryJumped(*before, o)) use(recogniser.endRun());
       use(recogniser.add(o));
       before = &o;
     }

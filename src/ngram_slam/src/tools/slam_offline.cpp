@@ -1,6 +1,10 @@
 // slam_offline: a recorded run through the same SLAM as the nodelet, without a master.
+#include <spawn.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -55,35 +59,29 @@ hyselam::RobotLog readLog(const Options& o) {
   return o.bag.empty() ? hyselam::readCarmenLog(o.carmen) : hyselam::readBag(o.bag, o.bag_options);
 }
 
-/// Adds errors to each motion: deviations of `factor` times 1 % of the way in both directions, and
-/// of 1 % of the turn and 0.01 rad a metre in heading.
-void spoil(std::vector<hyselam::StampedPose2>* odometry, double factor, std::uint64_t seed) {
+/// Adds errors to each motion: standard deviations of `factor` times 1 % of the distance in both
+/// directions, and of 1 % of the rotation and 0.01 rad a meter in heading.
+void addOdometryNoise(double factor, std::uint64_t seed,
+                      std::vector<hyselam::StampedPose2>* odometry) {
   hyselam::Rng rng(seed);
-  Pose2 true_last, spoilt;
+  Pose2 last, noisy;
   for (std::size_t i = 0; i < odometry->size(); ++i) {
     Pose2& pose = (*odometry)[i].pose;
     if (i == 0) {
-      true_last = spoilt = pose;
+      last = noisy = pose;
       continue;
     }
-    Pose2 step = between(true_last, pose);
-    true_last = pose;
-    const double way = std::hypot(step.x, step.y), turn = std::abs(step.theta);
-    // White along the way: variances of steps add up to that of a metre.
-    const double share = 0.01 * factor * std::sqrt(way);
-    step.x += rng.gaussian(0.0, share);
-    step.y += rng.gaussian(0.0, share);
-    step.theta += rng.gaussian(0.0, share + 0.01 * factor * turn);
-    spoilt = spoilt * step;
-    pose = spoilt;
+    Pose2 step = between(last, pose);
+    last = pose;
+    const double distance = std::hypot(step.x, step.y), angle = std::abs(step.theta);
+    // White along the path: variances of steps add up to that of a meter.
+    const double stddev = 0.01 * factor * std::sqrt(distance);
+    step.x += rng.gaussian(0.0, stddev);
+    step.y += rng.gaussian(0.0, stddev);
+    step.theta += rng.gaussian(0.0, stddev + 0.01 * factor * angle);
+    noisy = noisy * step;
+    pose = noisy;
   }
-}
-
-SlamLoops loopsOf(const std::string& name) {
-  for (const SlamLoops l : {SlamLoops::kNone, SlamLoops::kProximity, SlamLoops::kNgrams,
-                            SlamLoops::kAll, SlamLoops::kThesis})
-    if (name == nameOf(l)) return l;
-  throw hyselam::ParameterError("loops", name, "none, proximity, ngrams, all or thesis");
 }
 
 struct Run {
@@ -112,7 +110,7 @@ Run runSlam(const hyselam::RobotLog& log, const SlamParams& params, const std::s
     while (const auto job = run.engine->takeJob()) run.engine->apply(runJob(*job));
   }
   run.engine->endRun();
-  while (const auto job = run.engine->takeLastJob()) run.engine->apply(runJob(*job));
+  while (const auto job = run.engine->takeFinalJob()) run.engine->apply(runJob(*job));
   run.cpu = cpuSeconds() - begin;
   return run;
 }
@@ -154,7 +152,7 @@ void writeSemanticRegions(const std::string& path, const SlamEngine& engine) {
     r.confidence = n.confidence;
     regions.push_back(r);
   }
-  const ObservationStore& observations = engine.recogniser().observations();
+  const ObservationStore& observations = engine.recognizer().observations();
   std::vector<double> stamps;
   for (std::uint32_t i = 0; i < observations.size(); ++i) stamps.push_back(observations.stamp(i));
   writeRegions(path, regions, stamps);
@@ -164,36 +162,47 @@ nlohmann::json toJson(const SlamCounters::Loops& l) {
   return {{"tried", l.tried}, {"verified", l.verified}, {"accepted", l.accepted}};
 }
 
+struct FalseLoops {
+  std::size_t near = 0, far = 0, words = 0, matches = 0;
+};
+
+FalseLoops falseLoops(const SlamEngine& engine,
+                      const std::vector<hyselam::StampedPose2>& reference) {
+  const auto isFalse = [&](int older, int newer, const Pose2& measured) {
+    return loopError(engine.keyframes()[static_cast<std::size_t>(older)],
+                     engine.keyframes()[static_cast<std::size_t>(newer)], measured, reference)
+        .isFalse();
+  };
+  FalseLoops count;
+  for (const SlamLoop& l : engine.loops()) {
+    if (!isFalse(l.older, l.newer, l.measured)) continue;
+    ++(l.source == LoopSource::kNgram ? count.words : l.far ? count.far : count.near);
+  }
+  for (const SlamMatch& m : engine.matches()) {
+    if (m.accepted && isFalse(m.keyframe_older, m.keyframe_newer, m.measured)) ++count.matches;
+  }
+  return count;
+}
+
 nlohmann::json errorOf(const SlamEngine& engine,
                        const std::vector<hyselam::StampedPose2>& reference) {
   const TrajectoryError e = trajectoryError(engine.trajectory(), reference);
-  std::size_t doubted = 0, near = 0, far = 0, words = 0, matches = 0;
-  for (const SlamLoop& l : engine.loops()) {
-    doubted += l.weight < kDoubtedWeight ? 1U : 0U;
-    if (!loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
-                   engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured, reference)
-             .isFalse())
-      continue;
-    ++(l.source == LoopSource::kNgram ? words : l.far ? far : near);
-  }
-  for (const SlamMatch& m : engine.matches())
-    if (m.accepted && loopError(engine.keyframes()[static_cast<std::size_t>(m.keyframe_older)],
-                                engine.keyframes()[static_cast<std::size_t>(m.keyframe_newer)],
-                                m.measured, reference)
-                          .isFalse())
-      ++matches;
+  const FalseLoops false_loops = falseLoops(engine, reference);
+  const auto without_weight =
+      std::count_if(engine.loops().begin(), engine.loops().end(),
+                    [](const SlamLoop& l) { return l.weight < kMinLoopWeight; });
   return {{"poses", e.poses},
           {"mean_m", e.mean},
           {"rms_m", e.rms},
-          {"largest_m", e.largest},
-          {"mean_deg", hyselam::degrees(e.mean_turn)},
+          {"largest_m", e.max},
+          {"mean_deg", hyselam::degrees(e.mean_angle)},
           {"mean_of_1_m_m", e.mean_step},
-          {"mean_of_1_m_deg", hyselam::degrees(e.mean_step_turn)},
-          {"false_loops_near", near},
-          {"false_loops_far", far},
-          {"false_loops_by_words", words},
-          {"false_verified_matches", matches},
-          {"loops_without_weight", doubted}};
+          {"mean_of_1_m_deg", hyselam::degrees(e.mean_step_angle)},
+          {"false_loops_near", false_loops.near},
+          {"false_loops_far", false_loops.far},
+          {"false_loops_by_words", false_loops.words},
+          {"false_verified_matches", false_loops.matches},
+          {"loops_without_weight", without_weight}};
 }
 
 nlohmann::json summaryOf(const Run& run, double log_seconds) {
@@ -204,18 +213,18 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
                       {"scans_without_odometry", run.without_odometry},
                       {"scans_refused", run.refused},
                       {"keyframes", keyframes.size()},
-                      {"way_m", keyframes.empty() ? 0.0 : keyframes.back().way},
-                      {"observations", e.recogniser().observations().size()},
-                      {"words", e.recogniser().text().words()},
+                      {"way_m", keyframes.empty() ? 0.0 : keyframes.back().path_length},
+                      {"observations", e.recognizer().observations().size()},
+                      {"words", e.recognizer().text().words()},
                       {"matches", e.matches().size()},
                       {"loops", e.loops().size()},
                       {"loops_near", toJson(c.near)},
                       {"loops_far", toJson(c.far)},
                       {"loops_by_words", toJson(c.words)},
-                      {"optimisations", c.optimisations},
-                      {"scans_searched", c.searched},
-                      {"scans_weak", c.weak},
-                      {"odometry_leaps", c.leaps},
+                      {"optimizations", c.optimizations},
+                      {"scans_searched", c.relocalized},
+                      {"scans_weak", c.weak_matches},
+                      {"odometry_leaps", c.odometry_jumps},
                       {"log_seconds", log_seconds},
                       {"cpu_seconds", run.cpu},
                       {"times_real_time", run.cpu > 0.0 ? log_seconds / run.cpu : 0.0},
@@ -223,12 +232,12 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
   return j;
 }
 
-SlamParams paramsOf(const Options& o, SlamLoops loops) {
+SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
   if (o.levels < 1 || o.levels > WordLattice::kMaxLevels)
     throw hyselam::ParameterError("levels", o.levels,
                                   "from 1 to " + std::to_string(WordLattice::kMaxLevels));
   SlamParams params;
-  if (loops == SlamLoops::kThesis) {
+  if (loops == LoopClosureMode::kThesis) {
     params = SlamParams::thesis(o.levels);
   } else {
     params.words.levels = o.levels;
@@ -241,67 +250,99 @@ SlamParams paramsOf(const Options& o, SlamLoops loops) {
   return params;
 }
 
+/// The poses to compare with: those given, else the ground truth of the log. May be empty.
+std::vector<hyselam::StampedPose2> referenceOf(const Options& o, const hyselam::RobotLog& log) {
+  if (o.reference.empty()) return log.ground_truth;
+  const hyselam::PoseFile file = hyselam::readPoses(o.reference);
+  std::vector<hyselam::StampedPose2> reference = file.poses;
+  // Tables count scans: their times may be another clock's.
+  if (file.one_per_scan) {
+    for (std::size_t i = 0; i < reference.size() && i < log.scans.size(); ++i) {
+      reference[i].stamp = log.scans[i].stamp;
+    }
+  }
+  return reference;
+}
+
+/// @throws hyselam::InputError
+void makeFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw hyselam::InputError(path, "", "cannot be made: " + error.message());
+}
+
+/// @throws hyselam::InputError if there is no map in it.
+void checkMapped(const Run& run, const std::string& name, std::size_t scans) {
+  if (!run.engine->keyframes().empty()) return;
+  throw hyselam::InputError(name, "",
+                            "gives no map: of " + std::to_string(scans) + " scans " +
+                                std::to_string(run.without_odometry) + " have no odometry, " +
+                                std::to_string(run.refused) + " cannot be used");
+}
+
+void writeResults(const Options& o, const SlamEngine& engine, const hyselam::RobotLog& log) {
+  hyselam::writeTum(o.out + "/trajectory.tum", engine.trajectory());
+  hyselam::writeTum(o.out + "/odometry.tum", log.odometry);
+  hyselam_pose_graph::writeG2o(o.out + "/graph.g2o", engine.graph());
+  hyselam::saveMap(o.out + "/map.yaml", mapOf(engine, o.resolution));
+  writeWords(o.out + "/words.csv", engine.recognizer());
+  writeSemanticRegions(o.out + "/regions.csv", engine);
+  writeMatches(o.out + "/matches.csv", engine.matches());
+}
+
+void writeJson(const std::string& path, const nlohmann::json& json, int indent) {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << json.dump(indent) << "\n"; });
+}
+
+/// report.html, by the script beside this program. Without it (no jinja2) there is no page.
+void makePage(const std::string& folder) {
+  const std::string script =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "slam_report";
+  std::string program = script, argument = folder;
+  char* const arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  int status = 0;
+  if (::posix_spawn(&child, script.c_str(), nullptr, nullptr, arguments, environ) != 0 ||
+      ::waitpid(child, &status, 0) != child || status != 0) {
+    std::cerr << "warning: " << folder << "/report.html was not made (" << script << ")\n";
+  }
+}
+
 nlohmann::json run(const Options& o) {
-  const SlamParams params = paramsOf(o, loopsOf(o.loops));
+  const SlamParams params = paramsOf(o, loopClosureModeFromString(o.loops));
   if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
   emptyMap(o.resolution);  // refused before the work, not after it
   hyselam::RobotLog log = readLog(o);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
-  if (o.noise > 0.0) spoil(&log.odometry, o.noise, o.seed);
-  std::vector<hyselam::StampedPose2> reference;
-  if (!o.reference.empty()) {
-    const hyselam::PoseFile file = hyselam::readPoses(o.reference);
-    reference = file.poses;
-    // Tables count scans: their times may be another clock's.
-    if (file.one_per_scan)
-      for (std::size_t i = 0; i < reference.size() && i < log.scans.size(); ++i)
-        reference[i].stamp = log.scans[i].stamp;
-  } else if (!log.ground_truth.empty()) {
-    reference = log.ground_truth;
-  }
-  std::error_code error;
-  std::filesystem::create_directories(o.out, error);
-  if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
+  if (o.noise > 0.0) addOdometryNoise(o.noise, o.seed, &log.odometry);
+  const std::vector<hyselam::StampedPose2> reference = referenceOf(o, log);
+  makeFolder(o.out);
 
   const Run main_run = runSlam(log, params, "SLAM of " + name);
   const SlamEngine& engine = *main_run.engine;
-  if (engine.keyframes().empty())
-    throw hyselam::InputError(name, "",
-                              "gives no map: of " + std::to_string(log.scans.size()) + " scans " +
-                                  std::to_string(main_run.without_odometry) +
-                                  " have no odometry, " + std::to_string(main_run.refused) +
-                                  " cannot be used");
+  checkMapped(main_run, name, log.scans.size());
   const auto span = hyselam::timeSpan(log);
-  const double log_seconds = span ? span->end - span->begin : 0.0;
-  nlohmann::json summary = summaryOf(main_run, log_seconds);
+  nlohmann::json summary = summaryOf(main_run, span ? span->end - span->begin : 0.0);
   summary["loops_mode"] = o.loops;
   if (!reference.empty()) summary["errors"] = errorOf(engine, reference);
+  writeResults(o, engine, log);
 
-  const hyselam::OccupancyGrid grid = mapOf(engine, o.resolution);
-  hyselam::writeTum(o.out + "/trajectory.tum", engine.trajectory());
-  hyselam::writeTum(o.out + "/odometry.tum", log.odometry);
-  hyselam_pose_graph::writeG2o(o.out + "/graph.g2o", engine.graph());
-  hyselam::saveMap(o.out + "/map.yaml", grid);
-  writeWords(o.out + "/words.csv", engine.recogniser());
-  writeSemanticRegions(o.out + "/regions.csv", engine);
-  writeMatches(o.out + "/matches.csv", engine.matches());
-
-  std::vector<SlamPicture> pictures{pictureOf("loops: " + o.loops, engine, grid)};
-  if (o.side_by_side)
-    for (const SlamLoops other : {SlamLoops::kNone, SlamLoops::kThesis}) {
-      if (other == params.loops) continue;
-      const std::string label = std::string("loops: ") + nameOf(other);
-      const Run r = runSlam(log, paramsOf(o, other), label);
-      nlohmann::json s = {{"loops", r.engine->loops().size()}, {"cpu_seconds", r.cpu}};
-      if (!reference.empty()) s.update(errorOf(*r.engine, reference));
-      hyselam::writeTum(o.out + "/trajectory_" + nameOf(other) + ".tum", r.engine->trajectory());
-      summary[std::string("side_by_side_") + nameOf(other)] = s;
-      pictures.push_back(pictureOf(label, *r.engine, mapOf(*r.engine, o.resolution)));
-    }
-  writeReport(o.out + "/report.html", std::filesystem::path(name).filename().string(), engine,
-              pictures, summary);
-  hyselam::writeFileAtomically(o.out + "/summary.json",
-                               [&](std::ostream& out) { out << summary.dump(2) << "\n"; });
+  nlohmann::json figures = {figureJson("loops: " + o.loops, "map.yaml", engine)};
+  for (const LoopClosureMode other : {LoopClosureMode::kNone, LoopClosureMode::kThesis}) {
+    if (!o.side_by_side || other == params.loops) continue;
+    const std::string mode = toString(other), label = "loops: " + mode, map = "map_" + mode;
+    const Run r = runSlam(log, paramsOf(o, other), label);
+    nlohmann::json s = {{"loops", r.engine->loops().size()}, {"cpu_seconds", r.cpu}};
+    if (!reference.empty()) s.update(errorOf(*r.engine, reference));
+    summary["side_by_side_" + mode] = s;
+    hyselam::writeTum(o.out + "/trajectory_" + mode + ".tum", r.engine->trajectory());
+    hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o.resolution));
+    figures.push_back(figureJson(label, map + ".yaml", *r.engine));
+  }
+  writeJson(o.out + "/report.json",
+            reportJson(std::filesystem::path(name).filename().string(), engine, figures), -1);
+  writeJson(o.out + "/summary.json", summary, 2);
+  makePage(o.out);
   std::cout << summary.dump(2) << "\n";
   return summary;
 }
@@ -309,7 +350,7 @@ nlohmann::json run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Map, way, words and recognised places of a recorded run.", "slam_offline");
+  CLI::App app("Map, trajectory, words and recognized places of a recorded run.", "slam_offline");
   Options o;
   app.option_defaults()->always_capture_default();
   auto* bag = app.add_option("--bag", o.bag, "bag with scans and odometry");
@@ -321,13 +362,13 @@ int main(int argc, char** argv) {
   app.add_option("--seed", o.seed, "of the errors of --odometry-noise");
   app.add_option("--loops", o.loops,
                  "none, proximity, ngrams (far places by words only), all, or thesis (words "
-                 "believed as they are)");
+                 "accepted without verification)");
   app.add_option("--reference", o.reference,
                  "poses to compare with: TUM, or a table with one pose for each scan");
   app.add_option("--resolution", o.resolution, "of the map [m]");
   app.add_option("--odometry-noise", o.noise,
-                 "spoil the odometry: this many per cent of way and turn, and as many "
-                 "centiradians a metre");
+                 "add errors to the odometry: this many per cent of distance and rotation, and as "
+                 "many centiradians a meter");
   app.add_flag("--raw-odometry", o.raw_odometry, "do not refine the odometry by scans");
   app.add_flag("--side-by-side", o.side_by_side,
                "the same without loops and in thesis mode too, for the report");

@@ -20,13 +20,13 @@ namespace ngram_slam {
 DensityObservation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
                            const std::string& source);
 
-hyselam_msgs::Word wordMsg(const NgramRecognizer& recogniser, WordIndex word);
+hyselam_msgs::Word wordMsg(const NgramRecognizer& recognizer, WordIndex word);
 
 /// @param place the two observations that stand for the match; see placeOf().
-hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const NgramMatch& match,
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const NgramMatch& match,
                                  const ObservationPair& place);
 
-/// @param step way between observations [m].
+/// @param step path between observations [m].
 hyselam_msgs::SemanticRegion regionMsg(const ObservationStore& observations,
                                        const SemanticRegion& region, double step);
 

@@ -15,7 +15,7 @@ struct WordsServerParams {
   bool from_scan = false;  ///< observations from `scan` and tf, else from `fsd_observation`
   hyselam::ScanInputParams input;
   ObservationSensorParams sensor;  ///< with `fsd_observation` only bandwidth and step count
-  NgramRecognizerParams recogniser;
+  NgramRecognizerParams recognizer;
   bool semantics = true;
   SemanticParams semantic;
   std::string corpus;              ///< file loaded at the start and saved; empty: none

@@ -21,9 +21,9 @@ hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header
 nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msgs::Header& header);
 
 /// A match as SLAM keeps it: words by the observations, chance and alignment not known.
-hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recogniser, const SlamMatch& match);
+hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMatch& match);
 
-/// Namespaces: "way", lines between keyframes; "loops", green by proximity, magenta by words, red
+/// Namespaces: "path", lines between keyframes; "loops", green by proximity, magenta by words, red
 /// where they contradict others; "regions", one ball per region coloured by class; "region_links",
 /// lines between them, those of loops in magenta; "region_names".
 visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,

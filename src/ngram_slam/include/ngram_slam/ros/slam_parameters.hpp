@@ -14,6 +14,8 @@
 namespace ngram_slam {
 
 struct SlamServerParams {
+  SlamServerParams();
+
   hyselam::ScanInputParams input;
   std::string global_frame_id = "map";
   SlamParams slam;
@@ -26,9 +28,18 @@ struct SlamServerParams {
   std::string state;          ///< file gone on with at the start and saved; empty: none
   double save_period = 60.0;  ///< [s] of wall time; 0: only at the end and when asked
   double start_window = 2.0;  ///< around the pose where a run starts in a known map [m], (0, 50]
-  double start_turn = 1.0;    ///< [rad], 0..pi
-  std::optional<hyselam::InitialPose> initial_pose;
-  double diagnostic_period = 1.0;  ///< [s]
+  double start_angle = 1.0;   ///< [rad], 0..pi
+  std::optional<double> initial_pose_x, initial_pose_y;  ///< [m]
+  std::optional<double> initial_pose_a;                  ///< [rad]
+  double diagnostic_period = 1.0;                        ///< [s]
+
+  /// Of initial_pose_x, _y, _a: those not set are 0; nothing if none is set.
+  std::optional<hyselam::InitialPose> initialPose() const;
+
+  /// All but `input` and `semantic`.
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError
+  void validate() const;
 };
 
 /// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.

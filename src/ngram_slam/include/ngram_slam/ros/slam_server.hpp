@@ -4,14 +4,11 @@
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hyselam_msgs/StatePath.h>
-#include <nav_msgs/GetMap.h>
-#include <nav_msgs/OccupancyGrid.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -22,6 +19,7 @@
 #include "hyselam_common/ros/rate_limit.hpp"
 #include "hyselam_common/ros/scan_input.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
+#include "ngram_slam/ros/slam_publisher.hpp"
 #include "ngram_slam/slam/keyframe_mapper.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -33,8 +31,8 @@ namespace ngram_slam {
 /// /diagnostics. Services: `dynamic_map`, `~save`, `~load`, `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
-/// poses optimised on one thread, maps drawn and saved on another, services answered on a third:
-/// none of them keeps a scan waiting for longer than it takes to copy what it needs.
+/// poses optimized on one thread, maps drawn and saved on another, services answered on a third:
+/// none of them delays a scan by more than it takes to copy what it needs.
 class SlamServer {
  public:
   /// Reads and checks the parameters of `private_nh` and the state, before anything is subscribed.
@@ -46,79 +44,105 @@ class SlamServer {
   SlamServer& operator=(const SlamServer&) = delete;
 
  private:
-  /// An engine with all that is told about it.
+  /// An engine with what has been published of it.
   struct Mapping {
     explicit Mapping(const SlamServerParams& params, SlamState state = {});
-    /// Regions of observations that came since.
-    std::vector<SemanticRegion> segment();
+    /// Segments the observations that came since; returns their regions.
+    std::vector<SemanticRegion> segmentNew();
 
     SlamEngine engine;
     SemanticSegmenter segmenter;
     std::vector<SemanticRegion> regions;
     std::uint32_t segmented = 0;  // observations
-    std::size_t told_words = 0, told_matches = 0;
-    int requantisations = 0;
+    std::size_t published_words = 0, published_matches = 0;
+    int requantizations = 0;
     std::uint64_t saved_scans = 0;
-    bool localised = false;  // a scan has come: odomInMap() means something
+    bool localized = false;  // a scan has come: odomInMap() means something
   };
+  /// For the diagnostics.
+  struct Status {
+    std::string job_error, map_error, save_error;
+    double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
+    std::size_t paused_scans = 0, weak_matches = 0;
+  };
+  /// What a map is drawn from, copied from the engine.
+  struct MapRequest {
+    std::vector<SlamKeyframe> keyframes;
+    std::vector<SlamLoop> loops;
+    RegionGraph graph;
+    std_msgs::Header header;
+    long revision = 0, epoch = -1;
+  };
+  /// Their own queue and thread.
+  struct Services {
+    ros::CallbackQueue queue;
+    ros::ServiceServer save, load, pause, resume, map;
+    std::unique_ptr<ros::AsyncSpinner> spinner;
+  };
+  struct OdomInMapBroadcaster {
+    tf2_ros::TransformBroadcaster tf;
+    ros::Time last;  // stamp of the last transform
+    ros::WallTimer timer;
+  };
+  /// Where a run begins, and how far around that is searched.
+  struct RunStart {
+    hyselam::Pose2 base_in_map;
+    double window, angle;
+  };
+  struct LastScan {
+    ros::Time stamp;
+    hyselam::Pose2 odometry;
+  };
+  enum class NextScan { kGoesOn, kAfterPause, kAfterJump };
 
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
               const ros::Time& stamp);
+  void addScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
+  RunStart runStart(const hyselam::Pose2& base_in_odom) const;
   void startRun(const hyselam::Pose2& base_in_odom);
-  void onTimeBack();
+  void onTimeJump();
   void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
-  void tell();
+  void publishNewWords();
+  void publishNewRegions();
   void broadcast(const ros::Time& stamp);
+  void advertiseServices(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
   bool onSave(hyselam_msgs::StatePath::Request& request, hyselam_msgs::StatePath::Response& out);
   bool onLoad(hyselam_msgs::StatePath::Request& request, hyselam_msgs::StatePath::Response& out);
   bool onPause(bool pause, std_srvs::Trigger::Response& out);
-  bool onMap(nav_msgs::GetMap::Response& out);
   bool drawsMaps() const { return params_.map_update_interval > 0.0; }
-  void optimise();
-  void draw();
-  void publish(const hyselam::OccupancyGrid& grid, const std::vector<SlamKeyframe>& keyframes,
-               const std::vector<SlamLoop>& loops, const RegionGraph& graph,
-               const std_msgs::Header& in_map);
-  std::string save(const std::string& path);
-  void saveNow(const char* when);
-  std::string pathOr(const std::string& given) const;
+  void runJobs();
+  void runMapper();
+  std::optional<MapRequest> awaitMapRequest();
+  void drawMap(const MapRequest& request, KeyframeMapper* mapper);
+  std::string saveState(const std::string& path);
+  void saveIfChanged(const char* when);
+  std::string pathOrDefault(const std::string& path) const;
   void report(diagnostic_msgs::DiagnosticStatus& status);
   std_msgs::Header header(const std::string& frame) const;
 
-  const std::string who_;
+  const std::string log_name_;
   const SlamServerParams params_;
 
   std::mutex mutex_;  // guards what follows, up to the next mutex
   std::condition_variable work_;
   std::unique_ptr<Mapping> mapping_;
-  long epoch_ = 0;  // counts mappings: what was worked out for another one is void
+  long epoch_ = 0;  // counts mappings: results for an earlier one are void
   bool ending_ = false, map_due_ = false, paused_ = false;
-  ros::Time stamp_;  // of the last scan
-  enum class Next { kGoOn, kAfterPause, kAfterJump };
-  Next next_ = Next::kGoOn;  // what the next scan is
-  std::optional<hyselam::InitialPose> pending_;
-  hyselam::Pose2 last_odometry_;
-  std::string job_error_, map_error_, save_error_;
-  double scan_ms_ = 0.0, worst_scan_ms_ = 0.0, job_ms_ = 0.0, map_ms_ = 0.0, save_ms_ = 0.0;
-  std::size_t paused_scans_ = 0, weak_ = 0;
+  LastScan last_scan_;
+  NextScan next_scan_ = NextScan::kGoesOn;
+  std::optional<hyselam::InitialPose> initial_pose_;  // not yet used
+  Status status_;
+  OdomInMapBroadcaster broadcaster_;
 
-  std::mutex map_mutex_;
-  std::optional<nav_msgs::OccupancyGrid> map_;
   std::mutex save_mutex_;  // one saving at a time
 
-  ros::Time told_tf_;
   hyselam::RateLimit map_rate_;
-  tf2_ros::TransformBroadcaster tf_;
-  ros::Publisher map_publisher_, metadata_publisher_, word_publisher_, match_publisher_,
-      region_publisher_, graph_publisher_, path_publisher_, marker_publisher_;
-  ros::CallbackQueue service_queue_;
-  ros::ServiceServer save_service_, load_service_, pause_service_, resume_service_, map_service_;
+  SlamPublisher publisher_;
+  Services services_;
   std::unique_ptr<hyselam::ScanInput> input_;
   ros::Subscriber initial_pose_subscriber_;
-  ros::WallTimer tf_timer_;
   std::unique_ptr<hyselam::Diagnostics> diagnostics_;
-  std::unique_ptr<ros::AsyncSpinner> service_spinner_;
-  std::thread optimiser_, drawer_;
+  std::thread job_thread_, map_thread_;
 };
 
 }  // namespace ngram_slam

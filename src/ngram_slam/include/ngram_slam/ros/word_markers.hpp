@@ -30,7 +30,7 @@ struct ShownRun {
 /// syllables as text "class.length angle"; "matches", lines between two observations of one place,
 /// green in the same direction, magenta in the reverse one. Only the newest `words` words.
 /// @param header frame: odometry of the run.
-visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recogniser,
+visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recognizer,
                                             const ShownRun& shown, int words,
                                             const std_msgs::Header& header);
 

@@ -33,45 +33,57 @@ class WordsServer {
   WordsServer& operator=(const WordsServer&) = delete;
 
  private:
+  struct Publishers {
+    ros::Publisher words, matches, regions, markers;
+  };
+  struct Services {
+    ros::ServiceServer save, load, start_run;
+  };
+  /// For the diagnostics.
+  struct Statistics {
+    std::size_t received = 0, used = 0, matches = 0, regions = 0;
+    std::size_t time_jumps = 0, odometry_jumps = 0;
+    std::size_t reported_received = 0, reported_drops = 0;
+    double word_ms = 0.0, max_word_ms = 0.0, save_ms = 0.0;
+    std::string save_error;
+  };
+
+  void advertise(ros::NodeHandle nh, ros::NodeHandle private_nh);
   void onFsd(const hyselam_msgs::FsdObservation::ConstPtr& msg);
-  void take(const std::vector<DensityObservation>& observations);
-  void take(const DensityObservation& observation);
-  void startAnew(const std::string& why);
-  void endRun(const std::string& why);
-  void told(const NgramRecognizerUpdate& update);
-  void told(const std::vector<SemanticRegion>& regions);
+  bool isUsable(const hyselam_msgs::FsdObservation& msg);
+  void addObservations(const std::vector<DensityObservation>& observations);
+  void addObservation(const DensityObservation& observation);
+  void startNewRun(const std::string& reason);
+  void endRun(const std::string& reason);
+  void publishUpdate(const NgramRecognizerUpdate& update);
+  void publishRegions(const std::vector<SemanticRegion>& regions);
+  void publishMarkers();
   std_msgs::Header header() const;
-  void show();
-  void restart(Corpus corpus);
-  void saveNow(const char* when);
+  void goOnFrom(Corpus corpus);
+  void saveIfChanged(const char* when);
   bool onSave(hyselam_msgs::CorpusPath::Request& request, hyselam_msgs::CorpusPath::Response& out);
   bool onLoad(hyselam_msgs::CorpusPath::Request& request, hyselam_msgs::CorpusPath::Response& out);
   bool onStartRun(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& out);
   void report(diagnostic_msgs::DiagnosticStatus& status);
+  void reportInput(diagnostic_msgs::DiagnosticStatus& status);
 
-  std::string who_;
+  std::string log_name_;
   WordsServerParams params_;
   std::unique_ptr<CorpusJournal> journal_;  // empty: no corpus is kept
-  std::unique_ptr<NgramRecognizer> recogniser_;
+  std::unique_ptr<NgramRecognizer> recognizer_;
   SemanticSegmenter segmenter_;
   std::uint32_t segmenter_begin_ = 0;  // observations of the corpus before the segmenter's first
   ObservationSensor sensor_;           // with input scan
-  WaySampler sampler_;                 // with input fsd_observation
+  ObservationSampler sampler_;         // with input fsd_observation
   std::optional<DensityObservation> last_;  // of this run
-  std::size_t told_words_ = 0;
+  std::size_t published_words_ = 0;
   ShownRun shown_;
-
-  std::size_t received_ = 0, used_ = 0, matches_ = 0, regions_ = 0, time_jumps_ = 0, leaps_ = 0;
-  std::size_t reported_received_ = 0, reported_drops_ = 0;
-  double word_ms_ = 0.0, worst_word_ms_ = 0.0;
+  Statistics statistics_;
   ros::Time last_stamp_;
-  ros::WallTime saved_at_;
-  double save_ms_ = 0.0;
-  std::string save_error_;
   hyselam::DropCounter drops_;
-  hyselam::RateLimit gui_rate_;
-  ros::Publisher word_publisher_, match_publisher_, region_publisher_, marker_publisher_;
-  ros::ServiceServer save_service_, load_service_, start_service_;
+  hyselam::RateLimit marker_rate_;
+  Publishers publishers_;
+  Services services_;
   ros::WallTimer save_timer_;
   std::unique_ptr<hyselam::ScanInput> scan_input_;
   ros::Subscriber subscriber_;

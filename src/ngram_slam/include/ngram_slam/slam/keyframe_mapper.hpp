@@ -1,4 +1,4 @@
-// The map of keyframes whose poses move now and then.
+// The occupancy map of keyframes whose poses optimization moves.
 #pragma once
 
 #include <vector>
@@ -8,22 +8,22 @@
 
 namespace ngram_slam {
 
-/// Adds keyframes as they come; draws everything anew after old ones moved.
+/// Inserts keyframes as they come; inserts all of them again after old ones moved.
 class KeyframeMapper {
  public:
   /// @throws hyselam::ParameterError
   explicit KeyframeMapper(const hyselam::OccupancyMapperParams& params) : mapper_(params) {}
 
-  /// `revision`: changes whenever poses of keyframes given before are others.
+  /// `revision`: changes whenever poses of earlier keyframes change.
   /// @throws std::length_error when the map would be too large; what fits remains.
   void update(const std::vector<SlamKeyframe>& keyframes, long revision) {
-    if (revision != revision_ || keyframes.size() < drawn_) {
+    if (revision != revision_ || keyframes.size() < inserted_) {
       mapper_.clear();
-      drawn_ = 0;
+      inserted_ = 0;
       revision_ = revision;
     }
-    while (drawn_ < keyframes.size()) {
-      const SlamKeyframe& k = keyframes[drawn_++];
+    while (inserted_ < keyframes.size()) {
+      const SlamKeyframe& k = keyframes[inserted_++];
       mapper_.insert(k.pose, *k.scan);
     }
   }
@@ -31,7 +31,7 @@ class KeyframeMapper {
 
  private:
   hyselam::OccupancyMapper mapper_;
-  std::size_t drawn_ = 0;
+  std::size_t inserted_ = 0;
   long revision_ = -1;
 };
 

@@ -1,4 +1,5 @@
-// Where to look for places seen before: by the poses and what the graph knows about them.
+// Where to look for loop closures: by the poses and what the graph knows about them; and which
+// loops are consistent with each other.
 #pragma once
 
 #include <vector>
@@ -8,50 +9,51 @@
 
 namespace ngram_slam {
 
-/// The shortest way through the graph from one keyframe to all others [m]: along odometry as far as
-/// the robot drove, through a loop for `loop_way`. What lies at the end of a long way is known
-/// badly. Infinite for keyframes of another part.
-class GraphWays {
+/// The length of the shortest path through the graph from one keyframe to all others [m]: along
+/// odometry as far as the robot drove, through a loop for `LoopParams::loop_path_length`. The
+/// longer the path, the more uncertain the relative pose. Infinite for keyframes of another part.
+class GraphPathLengths {
  public:
   /// Edges may come one by one; both directions are open.
-  void add(int a, int b, double way);
+  void addEdge(int a, int b, double length);
   std::vector<double> from(int keyframe) const;
-  int keyframes() const { return static_cast<int>(ways_.size()); }
-  void clear() { ways_.clear(); }
+  int keyframes() const { return static_cast<int>(edges_.size()); }
+  void clear() { edges_.clear(); }
 
  private:
-  struct Way {
+  struct Edge {
     int to;
     float length;
   };
-  std::vector<std::vector<Way>> ways_;
+  std::vector<std::vector<Edge>> edges_;
 };
 
+/// An older keyframe that may show the same place.
 struct LoopCandidate {
   int older = 0;
-  double window = 0.0;  ///< how uncertain its position is, seen from the newer keyframe [m]
-  double turn = 0.0;    ///< and its heading [rad]
+  double position_uncertainty = 0.0;  ///< seen from the newer keyframe [m]
+  double heading_uncertainty = 0.0;   ///< [rad]
 };
 
-/// The nearest keyframe of each stretch of the old way that may be where `keyframe` is, nearest
-/// first. `ways`: GraphWays::from(keyframe).
+/// The nearest keyframe of each segment of the old path that may be where `keyframe` is, nearest
+/// first. `path_lengths`: GraphPathLengths::from(keyframe).
 std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyframes, int keyframe,
-                                          const std::vector<double>& ways,
+                                          const std::vector<double>& path_lengths,
                                           const LoopParams& params);
 
-/// How much two loops contradict each other: what the one says about the other's pose, by the poses
-/// between their ends.
-struct LoopContradiction {
-  double way = 0.0;       ///< between both ends, along the poses driven [m]
-  double distance = 0.0;  ///< [m]
-  double turn = 0.0;      ///< [rad], >= 0
+/// How much two loops contradict each other: the pose of the one as predicted from the other and
+/// the poses between their ends.
+struct LoopInconsistency {
+  double path_length = 0.0;  ///< between both ends, along the path [m]; infinite: other runs
+  double distance = 0.0;     ///< [m]
+  double angle = 0.0;        ///< [rad], >= 0
 };
-LoopContradiction contradiction(const SlamLoop& a, const SlamLoop& b,
-                                const std::vector<SlamKeyframe>& keyframes);
+LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
+                                    const std::vector<SlamKeyframe>& keyframes);
 
-/// Of the loops in `others`, those that agree with `loop`.
-std::vector<std::size_t> agreeing(const SlamLoop& loop, const std::vector<SlamLoop>& others,
-                                  const std::vector<SlamKeyframe>& keyframes,
-                                  const LoopParams& params);
+/// The indices of the loops in `others` that are pairwise consistent with `loop`.
+std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector<SlamLoop>& others,
+                                         const std::vector<SlamKeyframe>& keyframes,
+                                         const LoopParams& params);
 
 }  // namespace ngram_slam

@@ -10,12 +10,11 @@
 namespace ngram_slam {
 
 struct TrajectoryError {
-  std::size_t poses = 0;  ///< compared
-  double mean = 0.0, rms = 0.0,
-         largest = 0.0;    ///< of the positions, after the best rigid motion [m]
-  double mean_turn = 0.0;  ///< of the headings [rad]
-  /// Of motions over one metre of way.
-  double mean_step = 0.0, mean_step_turn = 0.0;  ///< [m], [rad]
+  std::size_t poses = 0;                    ///< compared
+  double mean = 0.0, rms = 0.0, max = 0.0;  ///< of the positions, after the best rigid motion [m]
+  double mean_angle = 0.0;                  ///< of the headings [rad]
+  /// Of motions over one meter of path.
+  double mean_step = 0.0, mean_step_angle = 0.0;  ///< [m], [rad]
 };
 
 /// Compares each pose with the reference at its time; poses without one in 0.5 s are left out.
@@ -25,9 +24,9 @@ TrajectoryError trajectoryError(const std::vector<hyselam::StampedPose2>& trajec
 /// How far a measurement between keyframes is from what the reference says.
 struct LoopError {
   double distance = 0.0;  ///< [m]
-  double turn = 0.0;      ///< [rad], >= 0
-  /// More than a metre or 20 degrees off: another place.
-  bool isFalse() const { return distance > 1.0 || turn > hyselam::radians(20.0); }
+  double angle = 0.0;     ///< [rad], >= 0
+  /// More than a meter or 20 degrees off: another place.
+  bool isFalse() const { return distance > 1.0 || angle > hyselam::radians(20.0); }
 };
 LoopError loopError(const SlamKeyframe& older, const SlamKeyframe& newer,
                     const hyselam::Pose2& measured,

@@ -1,4 +1,4 @@
-// The state of SLAM in a file: what lets it go on in a building that it knows.
+// The state of SLAM in a file, from which it goes on in a known building.
 #pragma once
 
 #include <string>
@@ -9,12 +9,13 @@
 namespace ngram_slam {
 
 /// Layout (little-endian): "NGRAMSLM", version u32, length of the body u64, CRC-32 of these; body;
-/// CRC-32 of the body. Scans are kept as they were measured, surfaces are made of them anew.
+/// CRC-32 of the body. Scans are stored as they were measured; surfaces are made of them on
+/// loading.
 class SlamStateFile {
  public:
   static constexpr std::uint32_t kVersion = 1;
 
-  /// Atomic: whoever reads sees the old file or the new one.
+  /// Atomic: a reader sees the old file or the new one.
   /// @throws hyselam::InputError when the place cannot be written.
   static void save(const std::string& path, const SlamState& state);
   /// `surface`: as the engine has it that is to go on.

@@ -15,13 +15,13 @@ namespace ngram_slam {
 
 /// A scan that the map is made of.
 struct SlamKeyframe {
-  double stamp = 0.0;       ///< [s]
-  hyselam::Pose2 odometry;  ///< base in odom when the scan was taken
-  hyselam::Pose2 pose;      ///< base in map, as optimised last
-  double way = 0.0;         ///< driven by odometry until here, over all runs [m]
-  std::uint32_t run = 0;    ///< counted from 0
+  double stamp = 0.0;        ///< [s]
+  hyselam::Pose2 odometry;   ///< base in odom when the scan was taken
+  hyselam::Pose2 pose;       ///< base in map, as optimized last
+  double path_length = 0.0;  ///< driven by odometry until here, over all runs [m]
+  std::uint32_t run = 0;     ///< counted from 0
   std::shared_ptr<const hyselam::LaserScan> scan;  ///< never null; never changed
-  std::shared_ptr<const hyselam_scan_matching::SurfacePoints> points;  ///< the same as surfaces
+  std::shared_ptr<const hyselam_scan_matching::SurfacePoints> points;  ///< the scan as surfaces
 };
 
 /// Where a scan that is no keyframe was taken.
@@ -33,21 +33,21 @@ struct PlacedScan {
 
 enum class LoopSource : std::uint8_t { kProximity, kNgram };
 
-/// A loop of less weight contradicts the others so much that nothing is concluded from it.
-constexpr double kDoubtedWeight = 0.3;
+/// A loop of less weight contradicts the others so much that it is not used.
+constexpr double kMinLoopWeight = 0.3;
 
-/// A measurement between keyframes that do not follow each other.
+/// A loop closure: a measurement between keyframes that do not follow each other.
 struct SlamLoop {
   int older = 0, newer = 0;                               ///< keyframes
   hyselam::Pose2 measured;                                ///< newer in older
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< see PoseEdge
   LoopSource source = LoopSource::kProximity;
-  bool far = false;      ///< came from a wide search, with company
-  double matched = 0.0;  ///< part of the points on known surfaces, 0..1
-  double weight = 1.0;   ///< given by the last optimisation, 0..1; below 1: contradicts others
+  bool far = false;           ///< found by a wide search, accepted with consistent loops
+  double inlier_ratio = 0.0;  ///< part of the points on known surfaces, 0..1
+  double weight = 1.0;        ///< by the last optimization, 0..1; below 1: contradicts others
 };
 
-/// A match of words, and what became of it.
+/// A match of words, and what its verification gave.
 struct SlamMatch {
   std::uint32_t newer = 0, older = 0;           ///< observations
   double stamp_newer = 0.0, stamp_older = 0.0;  ///< [s]
@@ -60,38 +60,40 @@ struct SlamMatch {
   hyselam::Pose2 measured;
   bool tried = false;     ///< the scans were compared
   bool verified = false;  ///< the scans fit
-  bool accepted = false;  ///< and it stands in the graph: places beside it say the same
+  bool accepted = false;  ///< and it is in the graph: other loops are consistent with it
 };
 
-/// How often what happened.
+/// How often each thing happened.
 struct SlamCounters {
-  std::uint64_t scans = 0;     ///< taken in
-  std::uint64_t matched = 0;   ///< against the local map
-  std::uint64_t searched = 0;  ///< of them: lost, and found again by a search
-  std::uint64_t weak = 0;      ///< of them: hardly anything matched, odometry decides
-  std::uint64_t leaps = 0;     ///< of the odometry
-  std::uint64_t optimisations = 0;
+  std::uint64_t scans = 0;           ///< added
+  std::uint64_t matched = 0;         ///< with the local map
+  std::uint64_t relocalized = 0;     ///< of them: lost, and found again by a search
+  std::uint64_t weak_matches = 0;    ///< of them: hardly anything matched, odometry decides
+  std::uint64_t odometry_jumps = 0;  ///< see SlamParams::max_odometry_step
+  std::uint64_t optimizations = 0;
   struct Loops {
     std::uint64_t tried = 0, verified = 0, accepted = 0;
   } near, far, words;
 };
 
 /// All that outlives the process. Together with SlamParams it makes the engine what it was; only
-/// the observations of the last few metres that still wait for their second look are lost, and the
-/// loops that wait for a job.
+/// the observations of the last few meters that still wait for their full density are lost, and the
+/// loops that wait for verification.
 struct SlamState {
   std::vector<SlamKeyframe> keyframes;
   std::vector<PlacedScan> scans;  ///< all scans of all runs, keyframes' own too
   std::vector<hyselam_pose_graph::PoseEdge> odometry;  ///< edges between following keyframes
   std::vector<SlamLoop> loops;
-  std::vector<SlamLoop> waiting;  ///< far loops that nobody agrees with yet
+  std::vector<SlamLoop> pending_loops;  ///< verified far loops without consistent ones yet
   std::vector<SlamMatch> matches;
   Corpus corpus;
   std::vector<std::int32_t> keyframe_of_observation;
   SlamCounters counters;
 
-  /// @throws std::invalid_argument for parts that refer to what is not there, and for a keyframe
+  /// What is wrong with it, nullptr if nothing: parts that refer to what is not there, a keyframe
   /// without scan or finite pose.
+  const char* error() const;
+  /// @throws hyselam::InputError with error().
   void validate() const;
 };
 

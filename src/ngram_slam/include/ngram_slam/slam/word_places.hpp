@@ -1,5 +1,5 @@
-// Places seen before, by words: observations on the way, the recogniser, and its matches as pairs
-// of observations.
+// Places seen before, by words: observations along the path, the recognizer, and its matches as
+// pairs of observations.
 #pragma once
 
 #include <memory>
@@ -20,22 +20,22 @@ class WordPlaces {
   struct Update {
     std::vector<double> stamps;      ///< of the observations that were completed, in order
     std::vector<SlamMatch> matches;  ///< without keyframes
-    bool requantised = false;        ///< all matches before are void
+    bool requantized = false;        ///< all matches before are void
   };
-  /// `base`: by odometry or something better, without leaps.
+  /// `base`: by odometry or something better, without odometry_jumps.
   /// @throws hyselam::InputError for a scan that cannot be used; nothing is changed then.
   Update add(const hyselam::LaserScan& scan, const hyselam::Pose2& base);
   /// Ends the run.
   Update finish();
 
-  const NgramRecognizer& recogniser() const { return *recogniser_; }
+  const NgramRecognizer& recognizer() const { return *recognizer_; }
 
  private:
-  void take(const std::vector<DensityObservation>& seen, Update* update);
-  void note(const NgramRecognizerUpdate& u, Update* update);
+  void addObservations(const std::vector<DensityObservation>& observations, Update* update);
+  void addMatches(const NgramRecognizerUpdate& recognized, Update* update);
 
   ObservationSensor sensor_;
-  std::unique_ptr<NgramRecognizer> recogniser_;
+  std::unique_ptr<NgramRecognizer> recognizer_;
   std::optional<DensityObservation> last_;
 };
 

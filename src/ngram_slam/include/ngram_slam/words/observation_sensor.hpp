@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fsd_localization/density/fsd_sensor.hpp"
-#include "ngram_slam/words/way_sampler.hpp"
+#include "ngram_slam/words/observation_sampler.hpp"
 
 namespace ngram_slam {
 
@@ -57,7 +57,7 @@ class ObservationSensor {
   fsd_localization::FsdSensor sensor_;
   fsd_localization::FreeSpaceDensity kernel_;
   fsd_localization::FreeSpaceGrid space_;
-  WaySampler sampler_;
+  ObservationSampler sampler_;
   std::deque<Waiting> waiting_;
   double way_ = 0.0;
 };

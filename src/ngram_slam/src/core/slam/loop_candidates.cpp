@@ -10,37 +10,38 @@ namespace ngram_slam {
 
 using hyselam::Pose2;
 
-void GraphWays::add(int a, int b, double way) {
+void GraphPathLengths::addEdge(int a, int b, double length) {
   const auto needed = static_cast<std::size_t>(std::max(a, b)) + 1;
-  if (ways_.size() < needed) ways_.resize(needed);
-  ways_[static_cast<std::size_t>(a)].push_back({b, static_cast<float>(way)});
-  ways_[static_cast<std::size_t>(b)].push_back({a, static_cast<float>(way)});
+  if (edges_.size() < needed) edges_.resize(needed);
+  edges_[static_cast<std::size_t>(a)].push_back({b, static_cast<float>(length)});
+  edges_[static_cast<std::size_t>(b)].push_back({a, static_cast<float>(length)});
 }
 
-std::vector<double> GraphWays::from(int keyframe) const {
-  std::vector<double> length(std::max(ways_.size(), static_cast<std::size_t>(keyframe) + 1),
-                             std::numeric_limits<double>::infinity());
+std::vector<double> GraphPathLengths::from(int keyframe) const {
+  std::vector<double> lengths(std::max(edges_.size(), static_cast<std::size_t>(keyframe) + 1),
+                              std::numeric_limits<double>::infinity());
+  // Dijkstra's algorithm.
   using Open = std::pair<double, int>;
   std::priority_queue<Open, std::vector<Open>, std::greater<Open>> open;
-  length[static_cast<std::size_t>(keyframe)] = 0.0;
+  lengths[static_cast<std::size_t>(keyframe)] = 0.0;
   open.push({0.0, keyframe});
   while (!open.empty()) {
-    const auto [done, at] = open.top();
+    const auto [length, at] = open.top();
     open.pop();
-    if (done > length[static_cast<std::size_t>(at)] || static_cast<std::size_t>(at) >= ways_.size())
-      continue;
-    for (const Way& w : ways_[static_cast<std::size_t>(at)]) {
-      const double next = done + static_cast<double>(w.length);
-      if (next >= length[static_cast<std::size_t>(w.to)]) continue;
-      length[static_cast<std::size_t>(w.to)] = next;
-      open.push({next, w.to});
+    const auto here = static_cast<std::size_t>(at);
+    if (length > lengths[here] || here >= edges_.size()) continue;
+    for (const Edge& edge : edges_[here]) {
+      const double next = length + static_cast<double>(edge.length);
+      if (next >= lengths[static_cast<std::size_t>(edge.to)]) continue;
+      lengths[static_cast<std::size_t>(edge.to)] = next;
+      open.push({next, edge.to});
     }
   }
-  return length;
+  return lengths;
 }
 
 std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyframes, int keyframe,
-                                          const std::vector<double>& ways,
+                                          const std::vector<double>& path_lengths,
                                           const LoopParams& params) {
   struct Near {
     LoopCandidate candidate;
@@ -48,25 +49,28 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
   };
   std::vector<Near> found;
   const SlamKeyframe& here = keyframes[static_cast<std::size_t>(keyframe)];
-  double last_way = -std::numeric_limits<double>::infinity();
-  constexpr double kGap = 3.0;  // [m] of way between two stretches
+  double last_path_length = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < keyframe; ++k) {
     const SlamKeyframe& old = keyframes[static_cast<std::size_t>(k)];
-    if (old.run == here.run && here.way - old.way < params.least_way) break;
-    const double way = ways[static_cast<std::size_t>(k)];
-    if (!std::isfinite(way)) continue;
+    if (old.run == here.run && here.path_length - old.path_length < params.min_path_length) break;
+    const double length = path_lengths[static_cast<std::size_t>(k)];
+    if (!std::isfinite(length)) continue;
     // A run that has only begun beside an old one: its views may have little in common with those.
-    if (old.run != here.run && way < params.least_way) continue;
-    const double reach = std::min(params.most_uncertainty, params.reach(way));
-    const double d = distance(old.pose, here.pose);
-    // Two metres beside the old way its surfaces are still seen.
-    if (d >= reach + 2.0) continue;
-    const Near near{{k, reach, params.turn_growth * way + 0.1}, d};
-    if (found.empty() || old.way - last_way > kGap)
+    if (old.run != here.run && length < params.min_path_length) continue;
+    const double uncertainty =
+        std::min(params.max_position_uncertainty, params.positionUncertainty(length));
+    const double distance_to = distance(old.pose, here.pose);
+    if (distance_to >= uncertainty + params.visibility_margin) continue;
+    const Near near{{k, uncertainty,
+                     params.heading_uncertainty_per_meter * length + params.heading_uncertainty},
+                    distance_to};
+    // One candidate for each segment of the old path: its nearest keyframe.
+    if (found.empty() || old.path_length - last_path_length > params.candidate_spacing) {
       found.push_back(near);
-    else if (d < found.back().distance)
+    } else if (distance_to < found.back().distance) {
       found.back() = near;
-    last_way = old.way;
+    }
+    last_path_length = old.path_length;
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Near& a, const Near& b) { return a.distance < b.distance; });
@@ -76,34 +80,37 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
   return out;
 }
 
-LoopContradiction contradiction(const SlamLoop& a, const SlamLoop& b,
-                                const std::vector<SlamKeyframe>& keyframes) {
+LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
+                                    const std::vector<SlamKeyframe>& keyframes) {
   const auto at = [&](int k) -> const SlamKeyframe& {
     return keyframes[static_cast<std::size_t>(k)];
   };
-  LoopContradiction c;
+  LoopInconsistency result;
   if (at(a.newer).run != at(b.newer).run || at(a.older).run != at(b.older).run) {
-    c.way = std::numeric_limits<double>::infinity();
-    return c;
+    result.path_length = std::numeric_limits<double>::infinity();
+    return result;
   }
-  c.way = std::max(std::abs(at(a.newer).way - at(b.newer).way),
-                   std::abs(at(a.older).way - at(b.older).way));
-  const Pose2 foretold = between(at(a.older).pose, at(b.older).pose) * b.measured *
-                         between(at(b.newer).pose, at(a.newer).pose);
-  c.distance = distance(foretold, a.measured);
-  c.turn = std::abs(hyselam::normalizeAngle(foretold.theta - a.measured.theta));
-  return c;
+  result.path_length = std::max(std::abs(at(a.newer).path_length - at(b.newer).path_length),
+                                std::abs(at(a.older).path_length - at(b.older).path_length));
+  const Pose2 predicted = between(at(a.older).pose, at(b.older).pose) * b.measured *
+                          between(at(b.newer).pose, at(a.newer).pose);
+  result.distance = distance(predicted, a.measured);
+  result.angle = std::abs(hyselam::normalizeAngle(predicted.theta - a.measured.theta));
+  return result;
 }
 
-std::vector<std::size_t> agreeing(const SlamLoop& loop, const std::vector<SlamLoop>& others,
-                                  const std::vector<SlamKeyframe>& keyframes,
-                                  const LoopParams& params) {
+std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector<SlamLoop>& others,
+                                         const std::vector<SlamKeyframe>& keyframes,
+                                         const LoopParams& params) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < others.size(); ++i) {
-    const LoopContradiction c = contradiction(loop, others[i], keyframes);
-    if (c.way <= params.company_way && c.turn <= params.agreement_turn &&
-        c.distance <= params.agreement + params.agreement_growth * c.way)
+    const LoopInconsistency c = loopInconsistency(loop, others[i], keyframes);
+    const double max_distance =
+        params.consistency_distance + params.consistency_distance_per_meter * c.path_length;
+    if (c.path_length <= params.consistency_max_path_length &&
+        c.angle <= params.consistency_angle && c.distance <= max_distance) {
       out.push_back(i);
+    }
   }
   return out;
 }

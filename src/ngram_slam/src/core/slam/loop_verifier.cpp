@@ -2,101 +2,130 @@
 
 #include <algorithm>
 
-#include "hyselam_scan_matching/correlative_matcher.hpp"
 #include "hyselam_scan_matching/icp.hpp"
+#include "hyselam_scan_matching/correlative_matcher.hpp"
 
 namespace ngram_slam {
 
 namespace {
 
-using namespace hyselam_scan_matching;  // NOLINT: their words are this file's
+using hyselam_scan_matching::CorrelativeMatch;
+using hyselam_scan_matching::IcpResult;
+using hyselam_scan_matching::CorrelativeMatcher;
+using hyselam_scan_matching::CorrelativeMatcherParams;
+using hyselam_scan_matching::SurfaceMap;
+using hyselam_scan_matching::SurfacePoints;
 
-constexpr std::size_t kNearPoints = 80, kFarPoints = 250, kRefinedPoints = 1000;
-constexpr double kSpaceSide = 100.0;  // [m]
+// A far search scores points up to this many cells from a surface.
+constexpr double kFarInlierCells = 3.0;
 
-/// Every n-th point, so that about `most` remain.
-SurfacePoints thinned(const SurfacePoints& points, std::size_t most) {
-  const std::size_t step = std::max<std::size_t>(1, points.size() / most);
+/// Every n-th point, so that about `max_points` remain.
+SurfacePoints thinned(const SurfacePoints& points, int max_points) {
+  const auto max_size = static_cast<std::size_t>(max_points);
+  const std::size_t step = std::max<std::size_t>(1, points.size() / max_size);
   SurfacePoints few;
   for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i]);
   return few;
 }
 
-SurfaceMap mapOf(const LoopTask::Stretch& stretch, double cell) {
+SurfaceMap mapOf(const LoopTask::Segment& segment, double cell) {
   SurfaceMap map(cell);
-  for (const LoopTask::Seen& s : stretch) map.insert(s.pose, *s.points);
+  for (const LoopTask::PosedScan& s : segment) map.insert(s.pose, *s.points);
   map.finish();
   return map;
 }
 
-SeenSpace spaceOf(const LoopTask::Stretch& stretch, double cell) {
-  SeenSpace space(kSpaceSide, cell);
-  for (const LoopTask::Seen& s : stretch) space.insert(s.pose, *s.points, s.laser);
+ObservedSpace observedSpaceOf(const LoopTask::Segment& segment, const LoopParams& p) {
+  ObservedSpace space(p.observed_space_side, p.far_resolution);
+  for (const LoopTask::PosedScan& s : segment) space.insert(s.pose, *s.points, s.laser);
   return space;
+}
+
+/// The points of the new segment in the frame of `newer`.
+SurfacePoints newPoints(const LoopTask& task, const LoopParams& p) {
+  if (task.far) return mapOf(task.new_segment, 0.5 * p.far_resolution).points();
+  if (task.new_segment.empty()) return {};
+  return transformed(task.new_segment[0].pose, *task.new_segment[0].points);
+}
+
+CorrelativeMatcherParams searchParams(const LoopTask& task, const LoopParams& p) {
+  CorrelativeMatcherParams s;
+  s.linear_window = task.window;
+  s.angular_window = task.angle;
+  s.min_score = task.far ? p.far_min_score : p.near_min_score;
+  s.resolution = task.far ? p.far_resolution : p.near_resolution;
+  s.max_distance = task.far ? kFarInlierCells * p.far_resolution : p.near_inlier_distance;
+  return s;
+}
+
+/// The best pose of the window, nothing if there is none or, for a far loop, an ambiguous one.
+std::optional<CorrelativeMatch> searchUnambiguousPose(const LoopTask& task, const LoopParams& p,
+                                           const SurfaceMap& old_map, const SurfacePoints& points,
+                                           LoopVerification* answer) {
+  const CorrelativeMatcher grid(old_map, searchParams(task, p));
+  const SurfacePoints few = thinned(points, task.far ? p.far_max_points : p.near_max_points);
+  const auto found = grid.match(few, task.initial_guess);
+  if (!found) return std::nullopt;
+  answer->score = found->score;
+  if (task.far && p.max_ambiguity_ratio < 1.0) {
+    const auto other = grid.secondBest(few, task.initial_guess, found->pose, p.ambiguity_distance,
+                                  p.max_ambiguity_ratio * found->score);
+    if (other) {
+      answer->ambiguous_score = other->score;
+      return std::nullopt;
+    }
+  }
+  return found;
+}
+
+/// Puts the refined pose and its information into the loop.
+void refineLoop(const LoopTask& task, const SlamParams& params, const SurfaceMap& old_map,
+                const SurfacePoints& points, const hyselam::Pose2& pose, SlamLoop* loop) {
+  const SurfacePoints many =
+      task.far ? thinned(points, params.loop.far_max_refined_points) : points;
+  const IcpResult r = alignIcp(many, old_map, pose, Eigen::Matrix3d::Zero(), params.refine);
+  loop->measured = r.pose;
+  loop->inlier_ratio = r.matched;
+  // A segment of many scans counts no more than one of them: the errors within it are its own.
+  double scale = 1.0;
+  if (task.far) {
+    const std::size_t scans = std::max<std::size_t>(1, task.new_segment.size());
+    scale = std::min(1.0,
+                     static_cast<double>(points.size()) / static_cast<double>(many.size() * scans));
+  }
+  loop->information =
+      params.scan_information_scale * scale * r.information + Eigen::Matrix3d::Identity();
+  loop->information = (0.5 * (loop->information + loop->information.transpose())).eval();
 }
 
 }  // namespace
 
-LoopAnswer verifyLoop(const LoopTask& task, const SlamParams& params) {
-  LoopAnswer answer;
+LoopVerification verifyLoop(const LoopTask& task, const SlamParams& params) {
+  LoopVerification answer;
   SlamLoop& loop = answer.loop;
   loop.older = task.older;
   loop.newer = task.newer;
   loop.source = task.source;
   loop.far = task.far;
   const LoopParams& p = params.loop;
-  const SurfaceMap old_map = mapOf(task.old_stretch, params.local_cell);
-  SurfacePoints points;
-  std::size_t scans = 1;
-  if (task.far) {
-    points = mapOf(task.new_stretch, 0.5 * p.far_resolution).points();
-    scans = task.new_stretch.size();
-  } else if (!task.new_stretch.empty()) {
-    points = transformed(task.new_stretch[0].pose, *task.new_stretch[0].points);
-  }
+  const SurfaceMap old_map = mapOf(task.old_segment, params.local_map_resolution);
+  const SurfacePoints points = newPoints(task, p);
   if (points.empty() || old_map.empty()) return answer;
 
-  CorrelativeMatcherParams s;
-  s.linear_window = task.window;
-  s.angular_window = task.turn;
-  s.min_score = task.far ? p.far_score : p.near_score;
-  s.resolution = task.far ? p.far_resolution : 0.06;
-  s.max_distance = task.far ? 3.0 * p.far_resolution : 0.2;
-  const CorrelativeMatcher grid(old_map, s);
-  const SurfacePoints few = thinned(points, task.far ? kFarPoints : kNearPoints);
-  const auto found = grid.match(few, task.guess);
+  const auto found = searchUnambiguousPose(task, p, old_map, points, &answer);
   if (!found) return answer;
-  answer.score = found->score;
-  if (task.far && p.rival_share < 1.0) {
-    const auto rival =
-        grid.secondBest(few, task.guess, found->pose, p.rival_apart, p.rival_share * found->score);
-    if (rival) {
-      answer.rival = rival->score;
-      return answer;
-    }
+  refineLoop(task, params, old_map, points, found->pose, &loop);
+  if (loop.inlier_ratio < (task.far ? p.far_min_inlier_ratio : p.near_min_inlier_ratio)) {
+    return answer;
   }
-  const SurfacePoints many = task.far ? thinned(points, kRefinedPoints) : points;
-  const IcpResult r = alignIcp(many, old_map, found->pose, Eigen::Matrix3d::Zero(), params.refine);
-  loop.measured = r.pose;
-  loop.matched = r.matched;
-  // A stretch of many scans is believed no more than one of them: its inner errors are one's own.
-  const double share =
-      task.far
-          ? std::min(1.0, static_cast<double>(points.size()) /
-                              static_cast<double>(many.size() * std::max<std::size_t>(1, scans)))
-          : 1.0;
-  loop.information = params.scan_information * share * r.information + Eigen::Matrix3d::Identity();
-  loop.information = (0.5 * (loop.information + loop.information.transpose())).eval();
-  const double least_matched = task.far ? p.far_matched : p.near_matched;
-  if (r.matched < least_matched) return answer;
-  // Either may not stand where the other saw that nothing is.
-  answer.new_in_old = spaceOf(task.old_stretch, p.far_resolution).overlap(r.pose, points);
+  // Neither segment may have surfaces where the other observed free space.
+  answer.new_in_old = observedSpaceOf(task.old_segment, p).overlap(loop.measured, points);
   answer.old_in_new =
-      spaceOf(task.new_stretch, p.far_resolution).overlap(r.pose.inverse(), old_map.points());
-  const auto fits = [&](const Overlap& o, double least_known) {
-    return o.known >= least_known && o.fit >= (task.far ? p.far_fit : p.near_fit);
-  };
-  answer.verified = fits(answer.new_in_old, p.least_known) && fits(answer.old_in_new, 0.0);
+      observedSpaceOf(task.new_segment, p).overlap(loop.measured.inverse(), old_map.points());
+  const double min_ratio = task.far ? p.far_min_surface_ratio : p.near_min_surface_ratio;
+  answer.verified = answer.new_in_old.observed_ratio >= p.min_overlap &&
+                    answer.new_in_old.surface_ratio >= min_ratio &&
+                    answer.old_in_new.surface_ratio >= min_ratio;
   return answer;
 }
 

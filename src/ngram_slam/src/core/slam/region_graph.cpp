@@ -13,7 +13,7 @@ namespace {
 using hyselam::Pose2;
 
 RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>& regions) {
-  const ObservationStore& observations = engine.recogniser().observations();
+  const ObservationStore& observations = engine.recognizer().observations();
   const std::vector<Pose2> poses = observationPoses(engine);
   RegionGraph graph;
   std::vector<std::int32_t> node_of_keyframe(engine.keyframes().size(), -1);
@@ -35,13 +35,13 @@ RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>&
           static_cast<std::int32_t>(id);
     }
     if (id > 0 && graph.nodes.back().run == n.run)
-      edges.emplace(id - 1, id, RegionEdge::Kind::kWay);
+      edges.emplace(id - 1, id, RegionEdge::Kind::kConsecutive);
     graph.nodes.push_back(n);
   }
   for (const SlamLoop& l : engine.loops()) {
     const std::int32_t a = node_of_keyframe[static_cast<std::size_t>(l.older)];
     const std::int32_t b = node_of_keyframe[static_cast<std::size_t>(l.newer)];
-    if (a < 0 || b < 0 || a == b || l.weight < kDoubtedWeight) continue;
+    if (a < 0 || b < 0 || a == b || l.weight < kMinLoopWeight) continue;
     edges.emplace(static_cast<std::uint32_t>(std::min(a, b)),
                   static_cast<std::uint32_t>(std::max(a, b)), RegionEdge::Kind::kLoop);
   }
@@ -59,7 +59,7 @@ std::vector<Pose2> observationPoses(const SlamEngine& engine) {
 }
 
 RegionGraph regionGraph(const SlamEngine& engine) {
-  return graphOf(engine, semanticRegions(engine.recogniser().observations()));
+  return graphOf(engine, semanticRegions(engine.recognizer().observations()));
 }
 
 RegionGraph regionGraph(const SlamEngine& engine, const std::vector<SemanticRegion>& regions) {
@@ -68,18 +68,18 @@ RegionGraph regionGraph(const SlamEngine& engine, const std::vector<SemanticRegi
 
 RegionGraph spacedGraph(const SlamEngine& engine, double spacing) {
   if (!(spacing > 0.0)) throw hyselam::ParameterError("spacing", spacing, "above 0");
-  const ObservationStore& observations = engine.recogniser().observations();
+  const ObservationStore& observations = engine.recognizer().observations();
   std::vector<SemanticRegion> pieces;
   for (const SemanticRegion& r : semanticRegions(observations)) {
-    double way = 0.0;
+    double path = 0.0;
     SemanticRegion piece = r;
     for (std::uint32_t i = r.first; i <= r.last; ++i) {
-      if (i > piece.first) way += distance(observations.pose(i - 1), observations.pose(i));
-      if (way < spacing && i < r.last) continue;
+      if (i > piece.first) path += distance(observations.pose(i - 1), observations.pose(i));
+      if (path < spacing && i < r.last) continue;
       piece.last = i;
       pieces.push_back(piece);
       piece.first = i + 1;
-      way = 0.0;
+      path = 0.0;
     }
   }
   return graphOf(engine, pieces);

@@ -1,3 +1,5 @@
+// Scans of the engine: odometry, local map, keyframes. See slam_runs.cpp for the start of a run,
+// slam_loops.cpp for loops, slam_jobs.cpp for work on another thread.
 #include "ngram_slam/slam/slam_engine.hpp"
 
 #include <algorithm>
@@ -7,42 +9,54 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_scan_matching/correlative_matcher.hpp"
-#include "hyselam_scan_matching/icp.hpp"
 
 namespace ngram_slam {
 
 using hyselam::between;
 using hyselam::Pose2;
 using hyselam_pose_graph::PoseEdge;
-using hyselam_scan_matching::CorrelativeMatcher;
 using hyselam_scan_matching::IcpResult;
+using hyselam_scan_matching::CorrelativeMatcher;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
 namespace {
 
-constexpr double kFarthest = 0.99e7;    // [m] cells beyond 10^7 m have no number in the local maps
-constexpr double kFarthestLaser = 5.0;  // [m] it must lie on the local map of the words' sensor
+constexpr double kMaxCoordinate = 0.99e7;  // [m] cells beyond 10^7 m have no number in local maps
+constexpr double kMaxLaserOffset = 5.0;    // [m] it must lie on the local map of the words' sensor
 
-void check(const hyselam::LaserScan& scan, const Pose2& odometry) {
-  const std::string place = "scan at " + std::to_string(scan.stamp) + " s";
+void checkScan(const hyselam::LaserScan& scan) {
   if (!std::isfinite(scan.stamp)) throw hyselam::InputError("scan", "", "its time is not finite");
-  if (!odometry.isFinite()) throw hyselam::InputError("odometry", place, "is not finite");
-  if (std::max(std::abs(odometry.x), std::abs(odometry.y)) > kFarthest)
-    throw hyselam::InputError("odometry", place, "is more than 10000 km from its origin");
+  const std::string place = "scan at " + std::to_string(scan.stamp) + " s";
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) ||
       !std::isfinite(scan.range_min) || std::isnan(scan.range_max) ||
-      !scan.laser_in_base.isFinite())
+      !scan.laser_in_base.isFinite()) {
     throw hyselam::InputError("scan", place, "its geometry is not finite");
-  if (std::hypot(scan.laser_in_base.x, scan.laser_in_base.y) > kFarthestLaser)
+  }
+  if (std::hypot(scan.laser_in_base.x, scan.laser_in_base.y) > kMaxLaserOffset) {
     throw hyselam::InputError("scan", place, "the laser is more than 5 m from the base");
-  if (!scan.ranges.empty() && scan.angle_increment == 0.0)
+  }
+  if (!scan.ranges.empty() && scan.angle_increment == 0.0) {
     throw hyselam::InputError("scan", place, "all beams have one bearing: angle_increment is 0");
+  }
+}
+
+void checkOdometry(const Pose2& odometry, double stamp) {
+  const std::string place = "scan at " + std::to_string(stamp) + " s";
+  if (!odometry.isFinite()) throw hyselam::InputError("odometry", place, "is not finite");
+  if (std::max(std::abs(odometry.x), std::abs(odometry.y)) > kMaxCoordinate) {
+    throw hyselam::InputError("odometry", place, "is more than 10000 km from its origin");
+  }
 }
 
 SlamParams checked(const SlamParams& p) {
   p.validate();
   return p;
+}
+
+/// Whether a motion is shorter than `step` [m] and turns by less than `turn` [rad].
+bool isWithin(const Pose2& motion, double step, double turn) {
+  return std::hypot(motion.x, motion.y) < step && std::abs(motion.theta) < turn;
 }
 
 }  // namespace
@@ -53,24 +67,24 @@ SlamEngine::SlamEngine(const SlamParams& params, SlamState state)
     : params_(checked(params)),
       state_((state.validate(), std::move(state))),
       words_(params.observations, params.words, std::move(state_.corpus)),
-      local_(params.local_cell) {
+      local_map_(params.local_map_resolution) {
   state_.corpus = {};
-  relearnWays();
+  rebuildPathLengths();
   if (state_.keyframes.empty()) return;
   const SlamKeyframe& last = state_.keyframes.back();
-  way_ = last.way;
-  far_searched_ = way_;
+  path_length_ = last.path_length;
+  far_search_path_length_ = path_length_;
   pose_ = matched_pose_ = last.pose;
   odometry_ = matched_odometry_ = last.odometry;
-  if (!state_.scans.empty() &&
-      state_.scans.back().keyframe + 1 == static_cast<int>(state_.keyframes.size()))
+  if (!state_.scans.empty() && state_.scans.back().keyframe == lastKeyframe()) {
     pose_ = last.pose * state_.scans.back().base_in_keyframe;
-  optimised_keyframes_ = static_cast<int>(state_.keyframes.size());
+  }
+  optimized_keyframes_ = static_cast<int>(state_.keyframes.size());
 }
 
 SlamState SlamEngine::state() const {
   SlamState s = state_;
-  s.corpus = words_.recogniser().corpus();
+  s.corpus = words_.recognizer().corpus();
   return s;
 }
 
@@ -79,215 +93,181 @@ Pose2 SlamEngine::odomInMap() const {
 }
 
 SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry) {
-  check(scan, odometry);
-  if (run_open_ && scan.stamp <= last_stamp_)
+  checkScan(scan);
+  checkOdometry(odometry, scan.stamp);
+  if (run_open_ && scan.stamp <= last_stamp_) {
     throw hyselam::InputError(
         "scan", std::to_string(scan.stamp) + " s",
         "does not come after the last one, " + std::to_string(last_stamp_) + " s");
-  SlamUpdate update;
+  }
   ++state_.counters.scans;
   last_stamp_ = scan.stamp;
+  SlamUpdate update;
   if (!run_open_) {
-    startAt(scan, odometry);
+    beginRun(scan, odometry);
     update.keyframe = true;
     update.base_in_map = pose_;
     return update;
   }
-  Pose2 motion = between(matched_odometry_, odometry);
-  if (hyselam::distance(odometry_, odometry) > params_.longest_step) {
-    update.leap = true;
-    ++state_.counters.leaps;
-    motion = between(matched_odometry_, odometry_);
-  }
-  const Pose2 step = update.leap ? Pose2{} : between(odometry_, odometry);
-  way_ += std::hypot(step.x, step.y);
-  odometry_ = odometry;
-  pose_ = matched_pose_ * motion;
-  const auto last = static_cast<int>(state_.keyframes.size()) - 1;
-  if (!update.leap && std::hypot(motion.x, motion.y) < params_.scan_step &&
-      std::abs(motion.theta) < params_.scan_turn) {
-    state_.scans.push_back({scan.stamp, last, between(state_.keyframes.back().pose, pose_)});
+  const Motion motion = advanceOdometry(odometry);
+  update.odometry_jump = motion.jump;
+  if (isNearLastMatch(motion)) {
+    placeScan(scan.stamp);
     update.base_in_map = pose_;
     return update;
   }
-
-  const auto points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
-  const Eigen::Matrix3d believed =
-      update.leap ? Eigen::Matrix3d(Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal())
-                  : params_.odometry.information(motion);
-  Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
-  if (params_.refine_odometry) {
-    const IcpResult r = matchLocally(*points, believed, &update);
-    seen = r.information;
-    pose_ = r.pose;
-  }
-  const Pose2 refined = between(matched_pose_, pose_);
-  smooth_ = smooth_ * refined;
-  matched_pose_ = pose_;
-  matched_odometry_ = odometry;
-
-  const Pose2 from_keyframe = between(state_.keyframes.back().pose, pose_);
-  if (!update.leap && std::hypot(from_keyframe.x, from_keyframe.y) < params_.keyframe_step &&
-      std::abs(from_keyframe.theta) < params_.keyframe_turn) {
-    state_.scans.push_back({scan.stamp, last, from_keyframe});
-  } else {
-    PoseEdge edge;
-    edge.from = last;
-    edge.to = last + 1;
-    edge.measured = from_keyframe;
-    const Eigen::Matrix3d odometer =
-        update.leap ? believed : params_.odometry.information(from_keyframe);
-    edge.information = params_.refine_odometry
-                           ? Eigen::Matrix3d(params_.scan_information * seen + 0.5 * odometer)
-                           : odometer;
-    edge.information = (0.5 * (edge.information + edge.information.transpose())).eval();
+  const Points points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
+  const Eigen::Matrix3d scan_information = matchScan(*points, motion, &update);
+  if (needsKeyframe(motion)) {
+    const PoseEdge edge = odometryEdge(motion, scan_information);
     addKeyframe(scan, points, &edge);
+    searchLoopClosures();
     update.keyframe = true;
-    lookAround();
+  } else {
+    placeScan(scan.stamp);
   }
-  if (usesWords()) {
-    const std::size_t before = state_.matches.size();
-    takeWords(words_.add(scan, smooth_));
-    update.words =
-        static_cast<int>(state_.matches.size() - std::min(before, state_.matches.size()));
-  }
+  if (usesWords()) update.word_matches = addWords(scan);
   update.base_in_map = pose_;
   return update;
 }
 
-hyselam_scan_matching::IcpResult SlamEngine::matchLocally(const SurfacePoints& points,
-                                                          const Eigen::Matrix3d& believed,
-                                                          SlamUpdate* update) {
-  ++state_.counters.matched;
-  IcpResult r = alignIcp(points, local_, pose_, believed, params_.refine);
-  constexpr std::size_t kEnough = 30;
-  if (r.matched < params_.lost && points.size() > kEnough && !local_.empty()) {
-    hyselam_scan_matching::CorrelativeMatcherParams s;
-    s.linear_window = 0.6;
-    s.angular_window = 0.35;
-    s.min_score = 0.4;
-    if (const auto found = CorrelativeMatcher(local_, s).match(points, pose_)) {
-      const IcpResult again =
-          alignIcp(points, local_, found->pose, 0.05 * believed, params_.refine);
-      if (again.matched > r.matched + 0.1) {
-        r = again;
-        ++state_.counters.searched;
-      }
-    }
-  }
-  if (r.matched < 0.8 * params_.lost) {
-    update->weak = true;
-    ++state_.counters.weak;
-  }
-  return r;
-}
-
-void SlamEngine::startRun(const Pose2& base_in_map, double window, double turn) {
-  if (!base_in_map.isFinite()) throw hyselam::ParameterError("base_in_map", "not finite", "finite");
-  if (!(window > 0.0 && window <= kMaxStartWindow))
-    throw hyselam::ParameterError("window", window, "above 0, at most 50 m");
-  if (!(turn >= 0.0 && turn <= hyselam::kPi))
-    throw hyselam::ParameterError("turn", turn, "from 0 to pi");
-  endRun();
-  start_ = Start{base_in_map, window, turn};
-}
-
-void SlamEngine::endRun() {
-  if (!run_open_) return;
-  if (usesWords()) takeWords(words_.finish());
-  run_open_ = false;
-}
-
-void SlamEngine::startAt(const hyselam::LaserScan& scan, const Pose2& odometry) {
-  const auto points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
-  odometry_ = matched_odometry_ = odometry;
-  smooth_ = odometry;
-  first_of_run_ = static_cast<int>(state_.keyframes.size());
-  if (first_of_run_ == 0) {
-    pose_ = start_ ? start_->pose : odometry;
-    addKeyframe(scan, points, nullptr);
+/// Moves the pose by odometry. After a jump the robot is taken to have stood.
+SlamEngine::Motion SlamEngine::advanceOdometry(const Pose2& odometry) {
+  Motion motion;
+  motion.jump = hyselam::distance(odometry_, odometry) > params_.max_odometry_step;
+  if (motion.jump) {
+    ++state_.counters.odometry_jumps;
+    motion.pose = between(matched_odometry_, odometry_);
+    motion.information = params_.jump_information * Eigen::Matrix3d::Identity();
   } else {
-    const Start start = start_.value_or(Start{pose_, 1.0, 0.5});
-    pose_ = start.pose;
-    // What was seen around there.
-    const auto near = [&](const SlamKeyframe& k) { return distance(k.pose, start.pose); };
-    std::vector<int> around;
-    for (int k = 0; k < first_of_run_; ++k)
-      if (near(state_.keyframes[static_cast<std::size_t>(k)]) < 10.0 + start.window)
-        around.push_back(k);
-    const auto nearest = std::min_element(
-        state_.keyframes.begin(), state_.keyframes.end(),
-        [&](const SlamKeyframe& a, const SlamKeyframe& b) { return near(a) < near(b); });
-    SlamLoop tie;
-    tie.older = static_cast<int>(nearest - state_.keyframes.begin());
-    tie.newer = first_of_run_;
-    tie.information = Eigen::Vector3d(1.0, 1.0, 10.0).asDiagonal();
-    SurfaceMap map(params_.local_cell);
-    for (const int k : around) {
-      const SlamKeyframe& old = state_.keyframes[static_cast<std::size_t>(k)];
-      map.insert(old.pose, *old.points);
-    }
-    map.finish();
-    hyselam_scan_matching::CorrelativeMatcherParams s;
-    s.linear_window = start.window;
-    s.angular_window = start.turn;
-    s.min_score = 0.4;
-    if (const auto found = CorrelativeMatcher(map, s).match(*points, start.pose)) {
-      const IcpResult r =
-          alignIcp(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
-      if (r.matched >= params_.lost) {
-        pose_ = r.pose;
-        tie.matched = r.matched;
-        tie.information += params_.scan_information * r.information;
-        tie.information = (0.5 * (tie.information + tie.information.transpose())).eval();
-      }
-    }
-    tie.measured = between(nearest->pose, pose_);
-    addKeyframe(scan, points, nullptr);
-    accept(tie);
+    motion.pose = between(matched_odometry_, odometry);
+    motion.information = params_.odometry.information(motion.pose);
+    const Pose2 step = between(odometry_, odometry);
+    path_length_ += std::hypot(step.x, step.y);
   }
-  matched_pose_ = pose_;
-  start_.reset();
-  run_open_ = true;
-  if (usesWords()) takeWords(words_.add(scan, smooth_));
+  odometry_ = odometry;
+  pose_ = matched_pose_ * motion.pose;
+  return motion;
 }
 
-void SlamEngine::addKeyframe(const hyselam::LaserScan& scan,
-                             std::shared_ptr<const SurfacePoints> points, const PoseEdge* edge) {
+bool SlamEngine::isNearLastMatch(const Motion& motion) const {
+  return !motion.jump && isWithin(motion.pose, params_.scan_step, params_.scan_turn);
+}
+
+/// Refines the pose by the scan. Returns what the scan says about it: zero if it is not asked.
+Eigen::Matrix3d SlamEngine::matchScan(const SurfacePoints& points, const Motion& motion,
+                                      SlamUpdate* update) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  if (params_.refine_odometry) {
+    const IcpResult refined = matchLocalMap(points, motion.information, update);
+    information = refined.information;
+    pose_ = refined.pose;
+  }
+  smooth_pose_ = smooth_pose_ * between(matched_pose_, pose_);
+  matched_pose_ = pose_;
+  matched_odometry_ = odometry_;
+  return information;
+}
+
+/// Matches with the local map; a scan that does not fit is searched around the pose.
+IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points,
+                                  const Eigen::Matrix3d& odometry_information, SlamUpdate* update) {
+  ++state_.counters.matched;
+  const RelocalizationParams& p = params_.relocalization;
+  IcpResult best = alignIcp(points, local_map_, pose_, odometry_information, params_.refine);
+  if (best.matched < params_.min_inlier_ratio &&
+      points.size() > static_cast<std::size_t>(p.min_points) && !local_map_.empty()) {
+    hyselam_scan_matching::CorrelativeMatcherParams search;
+    search.linear_window = p.window;
+    search.angular_window = p.angle;
+    search.min_score = p.min_score;
+    if (const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_)) {
+      const IcpResult again =
+          alignIcp(points, local_map_, found->pose,
+                 p.odometry_information_scale * odometry_information, params_.refine);
+      if (again.matched > best.matched + p.min_gain) {
+        best = again;
+        ++state_.counters.relocalized;
+      }
+    }
+  }
+  if (best.matched < params_.weak_match_factor * params_.min_inlier_ratio) {
+    update->weak_match = true;
+    ++state_.counters.weak_matches;
+  }
+  return best;
+}
+
+bool SlamEngine::needsKeyframe(const Motion& motion) const {
+  return motion.jump || !isWithin(between(state_.keyframes.back().pose, pose_),
+                                  params_.keyframe_step, params_.keyframe_turn);
+}
+
+/// From the last keyframe to the pose.
+PoseEdge SlamEngine::odometryEdge(const Motion& motion,
+                                  const Eigen::Matrix3d& scan_information) const {
+  PoseEdge edge;
+  edge.from = lastKeyframe();
+  edge.to = edge.from + 1;
+  edge.measured = between(state_.keyframes.back().pose, pose_);
+  const Eigen::Matrix3d odometry =
+      motion.jump ? motion.information : params_.odometry.information(edge.measured);
+  edge.information = params_.refine_odometry
+                         ? Eigen::Matrix3d(params_.scan_information_scale * scan_information +
+                                           params_.odometry_information_scale * odometry)
+                         : odometry;
+  edge.information = (0.5 * (edge.information + edge.information.transpose())).eval();
+  return edge;
+}
+
+/// Notes a scan that is no keyframe, relative to the last one.
+void SlamEngine::placeScan(double stamp) {
+  state_.scans.push_back({stamp, lastKeyframe(), between(state_.keyframes.back().pose, pose_)});
+}
+
+/// Appends a keyframe at the pose; without `edge` it is the first of a run.
+void SlamEngine::addKeyframe(const hyselam::LaserScan& scan, Points points, const PoseEdge* edge) {
   SlamKeyframe k;
   k.stamp = scan.stamp;
   k.odometry = odometry_;
   k.pose = pose_;
-  k.way = way_;
+  k.path_length = path_length_;
   k.run = state_.keyframes.empty() ? 0 : state_.keyframes.back().run;
   if (edge == nullptr && !state_.keyframes.empty()) ++k.run;
   k.scan = std::make_shared<const hyselam::LaserScan>(scan);
   k.points = std::move(points);
   state_.keyframes.push_back(std::move(k));
-  state_.scans.push_back({scan.stamp, static_cast<int>(state_.keyframes.size()) - 1, {}});
+  state_.scans.push_back({scan.stamp, lastKeyframe(), {}});
   if (edge != nullptr) {
     state_.odometry.push_back(*edge);
-    ways_.add(edge->from, edge->to, std::hypot(edge->measured.x, edge->measured.y));
+    path_lengths_.addEdge(edge->from, edge->to, std::hypot(edge->measured.x, edge->measured.y));
   }
   rebuildLocalMap();
 }
 
+/// Observes the density at the pose, and adds the matches of words that it completes: their number.
+int SlamEngine::addWords(const hyselam::LaserScan& scan) {
+  const std::size_t before = state_.matches.size();
+  addWordMatches(words_.add(scan, smooth_pose_));
+  // All matches are found again when words are quantized again: there may be fewer.
+  return static_cast<int>(state_.matches.size() - std::min(before, state_.matches.size()));
+}
+
 void SlamEngine::rebuildLocalMap() {
-  local_ = SurfaceMap(params_.local_cell);
+  local_map_ = SurfaceMap(params_.local_map_resolution);
   const auto n = static_cast<int>(state_.keyframes.size());
-  const int first = std::max(first_of_run_, n - params_.local_keyframes);
-  const auto insert = [&](int k) {
-    const SlamKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(k)];
-    local_.insert(keyframe.pose, *keyframe.points);
-  };
-  // A run that has only begun sees what others saw there.
-  if (first_of_run_ > 0 && n - first < params_.local_keyframes)
-    for (int k = 0; k < first_of_run_; ++k)
-      if (distance(state_.keyframes[static_cast<std::size_t>(k)].pose,
-                   state_.keyframes.back().pose) < 3.0)
-        insert(k);
-  for (int k = first; k < n; ++k) insert(k);
-  local_.finish();
+  const int first = std::max(first_of_run_, n - params_.local_map_keyframes);
+  const Pose2& here = state_.keyframes.back().pose;
+  // A run that has only begun is matched with what earlier ones saw there.
+  if (first_of_run_ > 0 && n - first < params_.local_map_keyframes) {
+    for (int k = 0; k < first_of_run_; ++k) {
+      if (distance(keyframe(k).pose, here) < params_.run_start.local_map_radius) {
+        local_map_.insert(keyframe(k).pose, *keyframe(k).points);
+      }
+    }
+  }
+  for (int k = first; k < n; ++k) local_map_.insert(keyframe(k).pose, *keyframe(k).points);
+  local_map_.finish();
 }
 
 hyselam_pose_graph::PoseGraph SlamEngine::graph() const {
@@ -297,17 +277,18 @@ hyselam_pose_graph::PoseGraph SlamEngine::graph() const {
     g.poses.push_back(state_.keyframes[i].pose);
   }
   g.edges = state_.odometry;
-  for (const SlamLoop& l : state_.loops)
+  for (const SlamLoop& l : state_.loops) {
     g.edges.push_back({l.older, l.newer, l.measured, l.information});
+  }
   return g;
 }
 
 std::vector<hyselam::StampedPose2> SlamEngine::trajectory() const {
   std::vector<hyselam::StampedPose2> out;
   out.reserve(state_.scans.size());
-  for (const PlacedScan& s : state_.scans)
-    out.push_back({s.stamp, state_.keyframes[static_cast<std::size_t>(s.keyframe)].pose *
-                                s.base_in_keyframe});
+  for (const PlacedScan& s : state_.scans) {
+    out.push_back({s.stamp, keyframe(s.keyframe).pose * s.base_in_keyframe});
+  }
   return out;
 }
 

@@ -1,55 +1,220 @@
 #include "ngram_slam/slam/slam_params.hpp"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
 
+using hyselam::ParameterVisitor;
+using hyselam::Range;
+
 namespace {
 
-void above(const char* name, double value) {
-  if (!(value > 0.0 && std::isfinite(value))) throw hyselam::ParameterError(name, value, "above 0");
+const std::vector<std::pair<std::string, LoopClosureMode>>& loopClosureModes() {
+  static const std::vector<std::pair<std::string, LoopClosureMode>> modes = {
+      {"none", LoopClosureMode::kNone},
+      {"proximity", LoopClosureMode::kProximity},
+      {"ngrams", LoopClosureMode::kNgrams},
+      {"all", LoopClosureMode::kAll},
+      {"thesis", LoopClosureMode::kThesis}};
+  return modes;
 }
-void atLeast0(const char* name, double value) {
-  if (!(value >= 0.0 && std::isfinite(value)))
-    throw hyselam::ParameterError(name, value, "at least 0");
-}
-void share(const char* name, double value) {
-  if (!(value >= 0.0 && value <= 1.0)) throw hyselam::ParameterError(name, value, "from 0 to 1");
-}
-void atLeast1(const char* name, int value) {
-  if (value < 1) throw hyselam::ParameterError(name, value, "at least 1");
-}
-void angle(const char* name, double value) {
-  if (!(value >= 0.0 && value <= hyselam::kPi))
-    throw hyselam::ParameterError(name, value, "from 0 to pi");
-}
+
+const Range kRatio = Range::between(0.0, 1.0);
+const Range kAngle = Range::between(0.0, hyselam::kPi);
+const Range kPositive = Range::above(0.0);
+const Range kNotNegative = Range::atLeast(0.0);
+const Range kCount = Range::between(1, 1e6);
 
 }  // namespace
 
 Eigen::Matrix3d OdometryNoise::information(const hyselam::Pose2& motion) const {
-  const double way = std::hypot(motion.x, motion.y), turned = std::abs(motion.theta);
-  const double position = base + per_metre * way + per_turn * turned;
-  const double heading = turn_base + turn_per_turn * turned + turn_per_metre * way;
+  const double length = std::hypot(motion.x, motion.y), angle = std::abs(motion.theta);
+  const double position = position_base + position_per_meter * length + position_per_radian * angle;
+  const double heading = heading_base + heading_per_radian * angle + heading_per_meter * length;
   const double p = 1.0 / (position * position);
   return Eigen::Vector3d(p, p, 1.0 / (heading * heading)).asDiagonal();
 }
 
-const char* nameOf(SlamLoops loops) {
-  switch (loops) {
-    case SlamLoops::kNone:
-      return "none";
-    case SlamLoops::kProximity:
-      return "proximity";
-    case SlamLoops::kNgrams:
-      return "ngrams";
-    case SlamLoops::kThesis:
-      return "thesis";
-    case SlamLoops::kAll:
-      break;
+const char* toString(LoopClosureMode mode) {
+  for (const auto& [name, value] : loopClosureModes()) {
+    if (value == mode) return name.c_str();
   }
-  return "all";
+  return "";
+}
+
+LoopClosureMode loopClosureModeFromString(const std::string& text) {
+  for (const auto& [name, value] : loopClosureModes()) {
+    if (name == text) return value;
+  }
+  throw hyselam::ParameterError("loops", text, "none, proximity, ngrams, all or thesis");
+}
+
+void OdometryNoise::describe(ParameterVisitor& visit) {
+  visit("position_base", position_base, kPositive, "m",
+        "standard deviation of the position, of every motion");
+  visit("position_per_meter", position_per_meter, kNotNegative, "m/m",
+        "standard deviation of the position, per meter driven");
+  visit("position_per_radian", position_per_radian, kNotNegative, "m/rad",
+        "standard deviation of the position, per radian turned");
+  visit("heading_base", heading_base, kPositive, "rad",
+        "standard deviation of the heading, of every motion");
+  visit("heading_per_radian", heading_per_radian, kNotNegative, "rad/rad",
+        "standard deviation of the heading, per radian turned");
+  visit("heading_per_meter", heading_per_meter, kNotNegative, "rad/m",
+        "standard deviation of the heading, per meter driven");
+}
+
+void RelocalizationParams::describe(ParameterVisitor& visit) {
+  visit("min_points", min_points, Range::between(0, 1e6), "",
+        "a scan of fewer surface points is not searched");
+  visit("window", window, kPositive, "m",
+        "positions searched around the pose of a scan that does not fit, each axis");
+  visit("angle", angle, kAngle, "rad", "headings searched around it");
+  visit("min_score", min_score, kRatio, "", "of the search");
+  visit("min_gain", min_gain, kRatio, "", "in inlier ratio, for the pose found to be taken");
+  visit("odometry_information_scale", odometry_information_scale, kRatio, "",
+        "weight of odometry in the refinement of the pose found");
+}
+
+void RunStartParams::describe(ParameterVisitor& visit) {
+  visit("map_radius", map_radius, kNotNegative, "m",
+        "keyframes this far beyond the window make the map that is searched");
+  visit("min_score", min_score, kRatio, "", "of the search");
+  visit("position_information", position_information, kPositive, "1/m^2",
+        "of the edge that ties a run to the known map");
+  visit("heading_information", heading_information, kPositive, "1/rad^2", "of that edge");
+  visit("local_map_radius", local_map_radius, kNotNegative, "m",
+        "old keyframes this near join the local map of a run that has just begun");
+}
+
+void LoopParams::describe(ParameterVisitor& visit) {
+  visit("near_max_uncertainty", near_max_uncertainty, kPositive, "m",
+        "up to this uncertainty of its position a place is searched as near");
+  visit("near_search_angle", near_search_angle, kAngle, "rad", "headings searched for a near loop");
+  visit("near_min_score", near_min_score, kRatio, "", "of the search for a near loop");
+  visit("near_min_inlier_ratio", near_min_inlier_ratio, kRatio, "",
+        "part of the scan on known surfaces");
+  visit("near_min_surface_ratio", near_min_surface_ratio, kRatio, "", "as far_min_surface_ratio");
+  visit("near_segment_half_length", near_segment_half_length, kPositive, "m",
+        "of the old path, each side");
+  visit("near_resolution", near_resolution, Range::between(0.01, 1.0), "m",
+        "of the search for a near loop");
+  visit("near_inlier_distance", near_inlier_distance, kPositive, "m",
+        "a point scores up to here from a surface");
+  visit("near_max_points", near_max_points, kCount, "", "of the scan, in the search");
+  visit("near_search_interval", near_search_interval, kCount, "keyframes",
+        "between searches for near loops");
+  visit("near_max_candidates", near_max_candidates, kCount, "", "places tried in a search");
+  visit("far_search_interval", far_search_interval, kPositive, "m",
+        "of path between searches for far loops");
+  visit("far_max_candidates", far_max_candidates, kCount, "", "places tried in a search");
+  visit("far_old_segment_half_length", far_old_segment_half_length, kPositive, "m",
+        "of the old path, each side");
+  visit("far_new_segment_half_length", far_new_segment_half_length, kPositive, "m",
+        "of the new path, each side");
+  visit("far_resolution", far_resolution, Range::between(0.02, 1.0), "m",
+        "of the search for a far loop, and of what both segments observed");
+  visit("far_min_score", far_min_score, kRatio, "", "of the search for a far loop");
+  visit("far_min_inlier_ratio", far_min_inlier_ratio, kRatio, "",
+        "part of the points on known surfaces");
+  visit("far_min_surface_ratio", far_min_surface_ratio, kRatio, "",
+        "part of the points in space observed by the other segment that lie on its surfaces; both "
+        "ways");
+  visit("far_max_points", far_max_points, kCount, "", "in the search");
+  visit("far_max_refined_points", far_max_refined_points, kCount, "",
+        "in the refinement of the pose found");
+  visit("min_overlap", min_overlap, kRatio, "",
+        "part of the new points in space that the old segment observed");
+  visit("observed_space_side", observed_space_side, Range::between(1.0, 150.0), "m",
+        "of the square of space around the old place that is compared");
+  visit("ambiguity_distance", ambiguity_distance, kPositive, "m",
+        "a far loop is ambiguous if a pose this far from the best one ...");
+  visit("max_ambiguity_ratio", max_ambiguity_ratio, kRatio, "",
+        "... has this part of its score; 1: not checked");
+  visit("word_search_window", word_search_window, kPositive, "m",
+        "positions searched around a match of words");
+  visit("word_search_angle", word_search_angle, kAngle, "rad", "headings searched around it");
+  visit("word_candidate_spacing", word_candidate_spacing, kNotNegative, "m",
+        "of old path; matches of a new word closer than this are tried once");
+  visit("word_max_candidates", word_max_candidates, kCount, "", "far loops tried for one new word");
+  visit("min_path_length", min_path_length, kPositive, "m",
+        "through the graph; nearer keyframes are no loop candidates");
+  visit("candidate_spacing", candidate_spacing, kNotNegative, "m",
+        "of old path between two candidates");
+  visit("visibility_margin", visibility_margin, kNotNegative, "m",
+        "this far beside a path its surfaces are seen");
+  visit("segment_separation", segment_separation, kNotNegative, "m",
+        "of path between the old and the new segment of a run");
+  visit("position_uncertainty", position_uncertainty, kPositive, "m", "of a keyframe, at least");
+  visit("position_uncertainty_per_meter", position_uncertainty_per_meter, kNotNegative, "m/m",
+        "of path through the graph");
+  visit("position_uncertainty_per_square_meter", position_uncertainty_per_square_meter,
+        kNotNegative, "1/m", "of path through the graph: a heading that drifts bends it");
+  visit("max_position_uncertainty", max_position_uncertainty, kPositive, "m",
+        "search windows are no larger");
+  visit("heading_uncertainty", heading_uncertainty, kNotNegative, "rad", "of a keyframe, at least");
+  visit("heading_uncertainty_per_meter", heading_uncertainty_per_meter, kNotNegative, "rad/m",
+        "of path through the graph");
+  visit("loop_path_length", loop_path_length, kNotNegative, "m",
+        "of a loop edge in a path through the graph");
+  visit("min_consistent_loops", min_consistent_loops, kCount, "",
+        "far loops that are pairwise consistent, to be accepted");
+  visit("consistency_max_path_length", consistency_max_path_length, kPositive, "m",
+        "between consistent loops");
+  visit("consistency_min_span", consistency_min_span, kNotNegative, "m",
+        "of path that the new ends of consistent loops cover");
+  visit("consistency_distance", consistency_distance, kPositive, "m",
+        "consistent loops differ by no more than this ...");
+  visit("consistency_distance_per_meter", consistency_distance_per_meter, kNotNegative, "m/m",
+        "... and this part of the path between them");
+  visit("consistency_angle", consistency_angle, kPositive, "rad",
+        "and in heading by no more than this");
+  visit("thesis_position_stddev", thesis_position_stddev, kPositive, "m",
+        "of the edges of loops = thesis");
+  visit("thesis_heading_stddev", thesis_heading_stddev, kPositive, "rad",
+        "of the edges of loops = thesis");
+}
+
+void SlamParams::describe(ParameterVisitor& visit) {
+  visit("loops", loops, loopClosureModes(), "which places are taken to be places seen before");
+  visit("refine_odometry", refine_odometry, "match scans with what was seen last");
+  visit.group("surface/", surface, {{"max_range", "max_range"}});
+  visit.group("refine/", refine);
+  visit.group(
+      "odometry/", odometry,
+      {{"position_per_meter", "odometry_noise"}, {"heading_per_radian", "odometry_turn_noise"}});
+  visit("scan_step", scan_step, kNotNegative, "m",
+        "scans nearer to the last one matched are placed by odometry");
+  visit("scan_turn", scan_turn, kNotNegative, "rad", "and turned by less than this");
+  visit.renamed("longest_step", "max_odometry_step");
+  visit("max_odometry_step", max_odometry_step, kPositive, "m",
+        "between two scans; more is an odometry jump");
+  visit("jump_information", jump_information, kPositive, "1/m^2, 1/rad^2",
+        "of the motion across an odometry jump");
+  visit("keyframe_step", keyframe_step, kPositive, "m", "between keyframes");
+  visit("keyframe_turn", keyframe_turn, kPositive, "rad", "between keyframes");
+  visit("local_map_keyframes", local_map_keyframes, kCount, "",
+        "keyframes that make the local map");
+  visit("local_map_resolution", local_map_resolution, kPositive, "m", "of the local map");
+  visit("min_inlier_ratio", min_inlier_ratio, kRatio, "",
+        "part of a scan on known surfaces, below which its pose is searched");
+  visit("weak_match_factor", weak_match_factor, kRatio, "",
+        "part of min_inlier_ratio, below which a match is counted as weak");
+  visit("scan_information_scale", scan_information_scale, Range::aboveUpTo(0.0, 1.0), "",
+        "part of the information of a scan match that counts: its points are not independent");
+  visit("odometry_information_scale", odometry_information_scale, kRatio, "",
+        "part of the information of odometry that counts beside a scan match");
+  visit.group("relocalization/", relocalization);
+  visit.group("run_start/", run_start);
+  visit.group("loop/", loop);
+  visit.renamed("optimise_every", "optimize_interval");
+  visit("optimize_interval", optimize_interval, kCount, "keyframes",
+        "between optimizations when there are new loops");
+  visit("dcs_phi", dcs_phi, kPositive, "", "squared error from which loops lose weight");
 }
 
 SlamParams::SlamParams() : words(NgramRecognizerParams::improved()) {
@@ -61,7 +226,7 @@ SlamParams::SlamParams() : words(NgramRecognizerParams::improved()) {
 
 SlamParams SlamParams::thesis(int levels) {
   SlamParams p;
-  p.loops = SlamLoops::kThesis;
+  p.loops = LoopClosureMode::kThesis;
   p.observations.look_back = 0.0;
   p.words = NgramRecognizerParams{};
   p.words.levels = levels;
@@ -71,65 +236,11 @@ SlamParams SlamParams::thesis(int levels) {
 }
 
 void SlamParams::validate() const {
+  hyselam::checkParameters(*this);
   surface.validate();
   refine.validate();
   observations.validate();
   words.validate();
-  above("odometry.base", odometry.base);
-  above("odometry.turn_base", odometry.turn_base);
-  atLeast0("odometry.per_metre", odometry.per_metre);
-  atLeast0("odometry.per_turn", odometry.per_turn);
-  atLeast0("odometry.turn_per_turn", odometry.turn_per_turn);
-  atLeast0("odometry.turn_per_metre", odometry.turn_per_metre);
-  atLeast0("scan_step", scan_step);
-  atLeast0("scan_turn", scan_turn);
-  above("longest_step", longest_step);
-  above("keyframe_step", keyframe_step);
-  above("keyframe_turn", keyframe_turn);
-  atLeast1("local_keyframes", local_keyframes);
-  above("local_cell", local_cell);
-  share("lost", lost);
-  if (!(scan_information > 0.0 && scan_information <= 1.0))
-    throw hyselam::ParameterError("scan_information", scan_information, "above 0, at most 1");
-  atLeast1("optimise_every", optimise_every);
-  above("dcs_phi", dcs_phi);
-
-  above("loop.near_window", loop.near_window);
-  angle("loop.near_turn", loop.near_turn);
-  share("loop.near_score", loop.near_score);
-  share("loop.near_matched", loop.near_matched);
-  above("loop.near_stretch", loop.near_stretch);
-  atLeast1("loop.every", loop.every);
-  atLeast1("loop.most", loop.most);
-  above("loop.far_every", loop.far_every);
-  atLeast1("loop.far_most", loop.far_most);
-  above("loop.far_stretch", loop.far_stretch);
-  above("loop.far_half", loop.far_half);
-  if (!(loop.far_resolution >= 0.02 && loop.far_resolution <= 1.0))
-    throw hyselam::ParameterError("loop.far_resolution", loop.far_resolution, "from 0.02 to 1");
-  share("loop.far_score", loop.far_score);
-  share("loop.far_matched", loop.far_matched);
-  share("loop.near_fit", loop.near_fit);
-  share("loop.least_known", loop.least_known);
-  share("loop.far_fit", loop.far_fit);
-  above("loop.word_window", loop.word_window);
-  angle("loop.word_turn", loop.word_turn);
-  above("loop.rival_apart", loop.rival_apart);
-  share("loop.rival_share", loop.rival_share);
-  above("loop.least_way", loop.least_way);
-  above("loop.uncertainty", loop.uncertainty);
-  atLeast0("loop.uncertainty_growth", loop.uncertainty_growth);
-  atLeast0("loop.uncertainty_bend", loop.uncertainty_bend);
-  above("loop.most_uncertainty", loop.most_uncertainty);
-  atLeast0("loop.turn_growth", loop.turn_growth);
-  atLeast1("loop.company", loop.company);
-  above("loop.company_way", loop.company_way);
-  atLeast0("loop.company_span", loop.company_span);
-  above("loop.agreement", loop.agreement);
-  atLeast0("loop.agreement_growth", loop.agreement_growth);
-  above("loop.agreement_turn", loop.agreement_turn);
-  above("loop.thesis_deviation", loop.thesis_deviation);
-  above("loop.thesis_turn_deviation", loop.thesis_turn_deviation);
 }
 
 }  // namespace ngram_slam

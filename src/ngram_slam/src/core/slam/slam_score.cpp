@@ -43,26 +43,26 @@ TrajectoryError trajectoryError(const std::vector<hyselam::StampedPose2>& trajec
     const double d = distance(at, r);
     e.mean += d / n;
     e.rms += d * d / n;
-    e.largest = std::max(e.largest, d);
-    e.mean_turn += std::abs(hyselam::normalizeAngle(at.theta - r.theta)) / n;
+    e.max = std::max(e.max, d);
+    e.mean_angle += std::abs(hyselam::normalizeAngle(at.theta - r.theta)) / n;
   }
   e.rms = std::sqrt(e.rms);
   std::size_t last = 0, steps = 0;
-  double way = 0.0;
+  double path_length = 0.0;
   for (std::size_t i = 1; i < pairs.size(); ++i) {
-    way += distance(pairs[i - 1].second, pairs[i].second);
-    if (way < 1.0) continue;
+    path_length += distance(pairs[i - 1].second, pairs[i].second);
+    if (path_length < 1.0) continue;
     const Pose2 off = between(between(pairs[last].second, pairs[i].second),
                               between(pairs[last].first, pairs[i].first));
     e.mean_step += std::hypot(off.x, off.y);
-    e.mean_step_turn += std::abs(off.theta);
+    e.mean_step_angle += std::abs(off.theta);
     ++steps;
     last = i;
-    way = 0.0;
+    path_length = 0.0;
   }
   if (steps > 0) {
     e.mean_step /= static_cast<double>(steps);
-    e.mean_step_turn /= static_cast<double>(steps);
+    e.mean_step_angle /= static_cast<double>(steps);
   }
   return e;
 }

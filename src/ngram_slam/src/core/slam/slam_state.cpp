@@ -1,33 +1,64 @@
-#include <stdexcept>
-
+#include "hyselam_common/errors.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
 namespace ngram_slam {
 
+namespace {
+
+/// Whether keyframes, edges and loops fit together.
+const char* graphError(const SlamState& state) {
+  const auto n = static_cast<int>(state.keyframes.size());
+  const auto exists = [n](int k) { return k >= 0 && k < n; };
+  for (const SlamKeyframe& k : state.keyframes) {
+    if (!k.scan || !k.points || !k.pose.isFinite() || !k.odometry.isFinite()) {
+      return "a keyframe lacks its scan or pose";
+    }
+  }
+  for (const PlacedScan& p : state.scans) {
+    if (!exists(p.keyframe)) return "a scan has no keyframe";
+  }
+  for (const hyselam_pose_graph::PoseEdge& e : state.odometry) {
+    if (!exists(e.from) || !exists(e.to) || e.from == e.to) return "an edge lacks its keyframes";
+  }
+  for (const auto* loops : {&state.loops, &state.pending_loops}) {
+    for (const SlamLoop& l : *loops) {
+      if (!exists(l.older) || !exists(l.newer) || l.older == l.newer) {
+        return "a loop lacks its keyframes";
+      }
+    }
+  }
+  return nullptr;
+}
+
+/// Whether matches and observations refer to keyframes that exist.
+const char* wordsError(const SlamState& state) {
+  const auto n = static_cast<int>(state.keyframes.size());
+  const auto exists = [n](int k) { return k >= 0 && k < n; };
+  const std::size_t observations = state.corpus.observations.size();
+  for (const SlamMatch& m : state.matches) {
+    if (!exists(m.keyframe_newer) || !exists(m.keyframe_older) || m.newer >= observations ||
+        m.older >= observations) {
+      return "a match lacks its keyframes or observations";
+    }
+  }
+  for (const std::int32_t k : state.keyframe_of_observation) {
+    if (!exists(k)) return "an observation has no keyframe";
+  }
+  if (state.keyframe_of_observation.size() != observations) {
+    return "observations and their keyframes differ in number";
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const char* SlamState::error() const {
+  const char* graph = graphError(*this);
+  return graph != nullptr ? graph : wordsError(*this);
+}
+
 void SlamState::validate() const {
-  const auto demand = [](bool holds, const char* complaint) {
-    if (!holds) throw std::invalid_argument(complaint);
-  };
-  const auto n = static_cast<int>(keyframes.size());
-  const auto known = [n](int k) { return k >= 0 && k < n; };
-  for (const SlamKeyframe& k : keyframes)
-    demand(k.scan && k.points && k.pose.isFinite() && k.odometry.isFinite(),
-           "a keyframe lacks its scan or pose");
-  for (const PlacedScan& p : scans) demand(known(p.keyframe), "a scan has no keyframe");
-  for (const hyselam_pose_graph::PoseEdge& e : odometry)
-    demand(known(e.from) && known(e.to) && e.from != e.to, "an edge lacks its keyframes");
-  for (const auto* some : {&loops, &waiting})
-    for (const SlamLoop& l : *some)
-      demand(known(l.older) && known(l.newer) && l.older != l.newer, "a loop lacks its keyframes");
-  const std::size_t observations = corpus.observations.size();
-  for (const SlamMatch& m : matches)
-    demand(known(m.keyframe_newer) && known(m.keyframe_older) && m.newer < observations &&
-               m.older < observations,
-           "a match lacks its keyframes or observations");
-  for (const std::int32_t k : keyframe_of_observation)
-    demand(known(k), "an observation has no keyframe");
-  demand(keyframe_of_observation.size() == observations,
-         "observations and their keyframes differ in number");
+  if (const char* reason = error()) throw hyselam::InputError("SLAM state", "", reason);
 }
 
 }  // namespace ngram_slam

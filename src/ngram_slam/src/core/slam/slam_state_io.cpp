@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
 
-#include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/binary_io.hpp"
+#include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
@@ -16,16 +18,22 @@ using hyselam::InputError;
 using hyselam::Pose2;
 
 constexpr char kMagic[] = "NGRAMSLM";
-constexpr std::size_t kHeaderBytes = 20;
+constexpr std::size_t kHeaderBytes = 20, kChecksumBytes = 4;
+constexpr std::size_t kBodyBegin = kHeaderBytes + kChecksumBytes;
 
-/// One description of each part for both ways: `Io` is Out or In, values are put or got.
+/// One description of each part for both directions: `Io` is Out or In.
 class Out {
  public:
   explicit Out(hyselam::BinaryWriter* writer) : writer_(writer) {}
-  template <typename T>
-  void number(const T& value) {
-    writer_->put(value);
+  template <typename... T>
+  void numbers(const T&... values) {
+    (writer_->put(values), ...);
   }
+  /// Of a scan: any number, as none may be measured.
+  void ranges(const std::vector<float>& values) {
+    for (const float r : values) writer_->put(r);
+  }
+  void rangeMax(double value) { writer_->put(value); }
   template <typename Values>
   void size(const Values& values, std::size_t) {
     writer_->put(static_cast<std::uint32_t>(values.size()));
@@ -40,156 +48,123 @@ class In {
  public:
   In(const std::string& body, const std::string& path)
       : reader_(body), left_(body.size()), path_(path) {}
-  template <typename T>
-  void number(T& value) {
-    need(sizeof(T));
-    if constexpr (std::is_same_v<T, bool>)
-      value = reader_.get<std::uint8_t>() != 0;
-    else
-      value = reader_.get<T>();
-    if constexpr (std::is_floating_point_v<T>)
-      if (!may_be_anything_ && !std::isfinite(value)) refuse("holds a number that is not finite");
+  template <typename... T>
+  void numbers(T&... values) {
+    (finite(values), ...);
   }
-  /// `bytes`: what each takes at least.
+  void ranges(std::vector<float>& values) {
+    for (float& r : values) get(r);
+  }
+  /// A laser may name no limit: infinite.
+  void rangeMax(double& value) {
+    get(value);
+    if (std::isnan(value)) refuse("holds a scan whose largest range is not a number");
+  }
+  /// `bytes`: what each value takes at least.
   template <typename Values>
   void size(Values& values, std::size_t bytes) {
     std::uint32_t n = 0;
-    number(n);
+    get(n);
     if (n > left_ / bytes) refuse("counts more than it holds");
     values.resize(n);
   }
-  void need(std::size_t bytes) {
-    if (bytes > left_) refuse("ends too early");
-    left_ -= bytes;
-  }
   std::size_t left() const { return left_; }
   std::size_t at() const { return reader_.at(); }
+  /// @throws hyselam::InputError
   [[noreturn]] void refuse(const std::string& why) const {
-    throw InputError(path_, "byte " + std::to_string(kHeaderBytes + 4 + reader_.at()), why);
+    throw InputError(path_, "byte " + std::to_string(kBodyBegin + reader_.at()), why);
   }
-  void anything(bool yes) { may_be_anything_ = yes; }
 
  private:
+  template <typename T>
+  void get(T& value) {
+    if (sizeof(T) > left_) refuse("ends too early");
+    left_ -= sizeof(T);
+    if constexpr (std::is_same_v<T, bool>) {
+      value = reader_.get<std::uint8_t>() != 0;
+    } else {
+      value = reader_.get<T>();
+    }
+  }
+  template <typename T>
+  void finite(T& value) {
+    get(value);
+    if constexpr (std::is_floating_point_v<T>) {
+      if (!std::isfinite(value)) refuse("holds a number that is not finite");
+    }
+  }
+
   hyselam::BinaryReader reader_;
   std::size_t left_;
   std::string path_;
-  bool may_be_anything_ = false;
 };
 
 template <typename Io, typename P>
 void pose(Io& io, P& p) {
-  io.number(p.x);
-  io.number(p.y);
-  io.number(p.theta);
+  io.numbers(p.x, p.y, p.theta);
 }
 
 template <typename Io, typename M>
 void matrix(Io& io, M& m) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) io.number(m(r, c));
-}
-
-void rangeMax(Out& io, const hyselam::LaserScan& s) {
-  io.number(s.range_max);
-}
-void rangeMax(In& io, hyselam::LaserScan& s) {
-  io.anything(true);  // a laser may name no limit: infinite
-  io.number(s.range_max);
-  io.anything(false);
-  if (std::isnan(s.range_max)) io.refuse("holds a scan whose largest range is not a number");
-}
-void ranges(Out& io, const hyselam::LaserScan& s) {
-  for (const float r : s.ranges) io.number(r);
-}
-void ranges(In& io, hyselam::LaserScan& s) {
-  io.anything(true);  // a range may say that there is none
-  for (float& r : s.ranges) io.number(r);
-  io.anything(false);
+  for (int r = 0; r < 3; ++r) io.numbers(m(r, 0), m(r, 1), m(r, 2));
 }
 
 template <typename Io, typename Scan>
 void scan(Io& io, Scan& s) {
-  io.number(s.stamp);
-  io.number(s.angle_min);
-  io.number(s.angle_increment);
-  io.number(s.range_min);
-  rangeMax(io, s);
+  io.numbers(s.stamp, s.angle_min, s.angle_increment, s.range_min);
+  io.rangeMax(s.range_max);
   pose(io, s.laser_in_base);
   io.size(s.ranges, sizeof(float));
-  ranges(io, s);
+  io.ranges(s.ranges);
 }
 
 template <typename Io, typename K>
 void keyframe(Io& io, K& k) {
-  io.number(k.stamp);
+  io.numbers(k.stamp);
   pose(io, k.odometry);
   pose(io, k.pose);
-  io.number(k.way);
-  io.number(k.run);
+  io.numbers(k.path_length, k.run);
 }
 
 template <typename Io, typename L>
 void loop(Io& io, L& l) {
-  io.number(l.older);
-  io.number(l.newer);
+  io.numbers(l.older, l.newer);
   pose(io, l.measured);
   matrix(io, l.information);
-  io.number(l.source);
-  io.number(l.far);
-  io.number(l.matched);
-  io.number(l.weight);
+  io.numbers(l.source, l.far, l.inlier_ratio, l.weight);
 }
 
 template <typename Io, typename M>
 void match(Io& io, M& m) {
-  io.number(m.newer);
-  io.number(m.older);
-  io.number(m.stamp_newer);
-  io.number(m.stamp_older);
-  io.number(m.level);
-  io.number(m.n);
-  io.number(m.direction);
-  io.number(m.probability);
-  io.number(m.keyframe_newer);
-  io.number(m.keyframe_older);
+  io.numbers(m.newer, m.older, m.stamp_newer, m.stamp_older, m.level, m.n, m.direction,
+             m.probability, m.keyframe_newer, m.keyframe_older);
   pose(io, m.measured);
-  io.number(m.tried);
-  io.number(m.verified);
-  io.number(m.accepted);
+  io.numbers(m.tried, m.verified, m.accepted);
 }
 
 template <typename Io, typename C>
 void counters(Io& io, C& c) {
-  io.number(c.scans);
-  io.number(c.matched);
-  io.number(c.searched);
-  io.number(c.weak);
-  io.number(c.leaps);
-  io.number(c.optimisations);
+  io.numbers(c.scans, c.matched, c.relocalized, c.weak_matches, c.odometry_jumps, c.optimizations);
   for (auto* kind : {&c.near, &c.far, &c.words}) {
-    io.number(kind->tried);
-    io.number(kind->verified);
-    io.number(kind->accepted);
+    io.numbers(kind->tried, kind->verified, kind->accepted);
   }
 }
 
-/// All but keyframes and corpus.
+/// All but keyframes and corpus. The numbers: bytes of each at least.
 template <typename Io, typename State>
 void rest(Io& io, State& s) {
   io.size(s.scans, 36);
   for (auto& p : s.scans) {
-    io.number(p.stamp);
-    io.number(p.keyframe);
+    io.numbers(p.stamp, p.keyframe);
     pose(io, p.base_in_keyframe);
   }
   io.size(s.odometry, 104);
   for (auto& e : s.odometry) {
-    io.number(e.from);
-    io.number(e.to);
+    io.numbers(e.from, e.to);
     pose(io, e.measured);
     matrix(io, e.information);
   }
-  for (auto* loops : {&s.loops, &s.waiting}) {
+  for (auto* loops : {&s.loops, &s.pending_loops}) {
     io.size(*loops, 122);
     for (auto& l : *loops) loop(io, l);
   }
@@ -197,7 +172,38 @@ void rest(Io& io, State& s) {
   for (auto& m : s.matches) match(io, m);
   counters(io, s.counters);
   io.size(s.keyframe_of_observation, 4);
-  for (auto& k : s.keyframe_of_observation) io.number(k);
+  for (auto& k : s.keyframe_of_observation) io.numbers(k);
+}
+
+/// The body of a file, after its header and checksums were checked.
+std::string bodyOf(const std::string& text, const std::string& path) {
+  const auto refuse = [&](const std::string& place, const std::string& reason) {
+    throw InputError(path, place, reason);
+  };
+  if (text.compare(0, 8, kMagic) != 0) refuse("byte 0", "is no state of SLAM");
+  if (text.size() < kBodyBegin) refuse("header", "ends too early (truncated)");
+  hyselam::BinaryReader header(text);
+  header.skip(8);
+  const auto version = header.get<std::uint32_t>();
+  const auto length = header.get<std::uint64_t>();
+  if (version != SlamStateFile::kVersion) {
+    refuse("version", "is " + std::to_string(version) + ", but only " +
+                          std::to_string(SlamStateFile::kVersion) + " is known");
+  }
+  if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes)) {
+    refuse("header", "is damaged (wrong checksum)");
+  }
+  const std::size_t expected = kBodyBegin + length + kChecksumBytes;
+  if (length > text.size() || text.size() != expected) {
+    refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
+                      std::to_string(expected) + (text.size() < expected ? " (truncated)" : ""));
+  }
+  hyselam::BinaryReader tail(text);
+  tail.skip(kBodyBegin + length);
+  if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, kBodyBegin, kBodyBegin + length)) {
+    refuse("body", "is damaged (wrong checksum)");
+  }
+  return text.substr(kBodyBegin, length);
 }
 
 }  // namespace
@@ -226,7 +232,7 @@ void SlamStateFile::save(const std::string& path, const SlamState& state) {
     hyselam::BinaryWriter w(out);
     w.putText(kMagic, 8);
     w.put(kVersion);
-    w.put(static_cast<std::uint64_t>(body.size() - 4));
+    w.put(static_cast<std::uint64_t>(body.size() - kChecksumBytes));
     w.putChecksum();
     out.write(body.data(), static_cast<std::streamsize>(body.size()));
   });
@@ -234,31 +240,7 @@ void SlamStateFile::save(const std::string& path, const SlamState& state) {
 
 SlamState SlamStateFile::load(const std::string& path,
                               const hyselam_scan_matching::SurfacePointParams& surface) {
-  const std::string text = hyselam::readTextFile(path);
-  const auto refuse = [&](const std::string& place, const std::string& reason) {
-    throw InputError(path, place, reason);
-  };
-  if (text.compare(0, 8, kMagic) != 0) refuse("byte 0", "is no state of SLAM");
-  if (text.size() < kHeaderBytes + 4) refuse("header", "ends too early (truncated)");
-  hyselam::BinaryReader header(text);
-  header.skip(8);
-  const auto version = header.get<std::uint32_t>();
-  const auto length = header.get<std::uint64_t>();
-  if (version != kVersion)
-    refuse("version", "is " + std::to_string(version) + ", but only " + std::to_string(kVersion) +
-                          " is known");
-  if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes))
-    refuse("header", "is damaged (wrong checksum)");
-  const std::size_t begin = kHeaderBytes + 4, expected = begin + length + 4;
-  if (length > text.size() || text.size() != expected)
-    refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
-                      std::to_string(expected) + (text.size() < expected ? " (truncated)" : ""));
-  hyselam::BinaryReader tail(text);
-  tail.skip(begin + length);
-  if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, begin, begin + length))
-    refuse("body", "is damaged (wrong checksum)");
-
-  const std::string body = text.substr(begin, length);
+  const std::string body = bodyOf(hyselam::readTextFile(path), path);
   In in(body, path);
   SlamState state;
   in.size(state.keyframes, 100);
@@ -272,14 +254,10 @@ SlamState SlamStateFile::load(const std::string& path,
   }
   rest(in, state);
   std::uint64_t corpus_bytes = 0;
-  in.number(corpus_bytes);
+  in.numbers(corpus_bytes);
   if (corpus_bytes != in.left()) in.refuse("the corpus has a wrong length");
   state.corpus = CorpusFile::parse(body.substr(in.at()), path);
-  try {
-    state.validate();
-  } catch (const std::invalid_argument& e) {
-    throw InputError(path, "", e.what());
-  }
+  if (const char* reason = state.error()) throw InputError(path, "", reason);
   return state;
 }
 

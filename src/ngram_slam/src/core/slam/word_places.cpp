@@ -8,39 +8,40 @@ namespace ngram_slam {
 
 WordPlaces::WordPlaces(const ObservationSensorParams& sensor, const NgramRecognizerParams& words,
                        Corpus corpus)
-    : sensor_(sensor), recogniser_(std::make_unique<NgramRecognizer>(words, std::move(corpus))) {}
+    : sensor_(sensor), recognizer_(std::make_unique<NgramRecognizer>(words, std::move(corpus))) {}
 
 WordPlaces::Update WordPlaces::add(const hyselam::LaserScan& scan, const hyselam::Pose2& base) {
   Update update;
-  take(sensor_.add(scan, base), &update);
+  addObservations(sensor_.add(scan, base), &update);
   return update;
 }
 
 WordPlaces::Update WordPlaces::finish() {
   Update update;
-  take(sensor_.finish(), &update);
-  note(recogniser_->endRun(), &update);
+  addObservations(sensor_.finish(), &update);
+  addMatches(recognizer_->endRun(), &update);
   last_.reset();
   return update;
 }
 
-void WordPlaces::take(const std::vector<DensityObservation>& seen, Update* update) {
-  for (const DensityObservation& o : seen) {
-    if (last_ && leapt(*last_, o)) note(recogniser_->endRun(), update);
-    note(recogniser_->add(o), update);
+void WordPlaces::addObservations(const std::vector<DensityObservation>& observations,
+                                 Update* update) {
+  for (const DensityObservation& o : observations) {
+    if (last_ && odometryJumped(*last_, o)) addMatches(recognizer_->endRun(), update);
+    addMatches(recognizer_->add(o), update);
     update->stamps.push_back(o.stamp);
     last_ = o;
   }
 }
 
-void WordPlaces::note(const NgramRecognizerUpdate& u, Update* update) {
-  if (u.requantised) {
-    update->requantised = true;
+void WordPlaces::addMatches(const NgramRecognizerUpdate& recognized, Update* update) {
+  if (recognized.requantised) {
+    update->requantized = true;
     update->matches.clear();
   }
-  const ObservationStore& observations = recogniser_->observations();
-  for (const NgramMatch& m : u.matches) {
-    const auto place = placeOf(*recogniser_, m);
+  const ObservationStore& observations = recognizer_->observations();
+  for (const NgramMatch& m : recognized.matches) {
+    const auto place = placeOf(*recognizer_, m);
     if (!place) continue;
     SlamMatch match;
     match.newer = place->newer;

@@ -54,7 +54,7 @@ std::vector<DensityObservation> ObservationSensor::add(const hyselam::LaserScan&
   std::vector<DensityObservation> complete;
   std::deque<Waiting> held_back;
   // After a jump of the odometry the map no longer shows what waits.
-  const bool jump = params_.look_back > 0.0 && sampler_.jumps(base_in_odom);
+  const bool jump = params_.look_back > 0.0 && sampler_.isJump(base_in_odom);
   if (jump) {
     held_back = waiting_;
     complete = release(std::numeric_limits<double>::max());
@@ -74,7 +74,7 @@ std::vector<DensityObservation> ObservationSensor::add(const hyselam::LaserScan&
   now.soft = inUnitRange(reading.density.soft);
   if (reading.density.hard) now.hard = inUnitRange(*reading.density.hard);
   now.frontiers = std::min(reading.frontiers, 255);
-  for (const DensityObservation& o : sampler_.take(now, due)) {
+  for (const DensityObservation& o : sampler_.sampleAt(now, due)) {
     way_ += params_.step;
     waiting_.push_back({o, way_});
   }

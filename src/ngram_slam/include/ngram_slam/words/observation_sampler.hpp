@@ -1,4 +1,4 @@
-// From readings of density, one for each scan, to observations in equal steps of the way.
+// From readings of density, one for each scan, to observations in equal steps of the path.
 #pragma once
 
 #include <optional>
@@ -8,26 +8,26 @@
 
 namespace ngram_slam {
 
-/// Whether the odometry jumped between two observations: there is no way from the one to the other,
-/// and what follows is to be taken as another run.
-inline bool leapt(const DensityObservation& before, const DensityObservation& now) {
+/// Whether the odometry jumped between two observations: there is no path from the one to the
+/// other, and what follows belongs to another run.
+inline bool odometryJumped(const DensityObservation& before, const DensityObservation& now) {
   return hyselam::distance(before.base_in_odom, now.base_in_odom) > DistanceSampler::kMaxGap;
 }
 
-class WaySampler {
+class ObservationSampler {
  public:
   /// @throws hyselam::ParameterError unless step > 0.
-  explicit WaySampler(double step) : sampler_(step) {}
+  explicit ObservationSampler(double step) : sampler_(step) {}
 
-  /// Where observations are due on the way to `pose`; see DistanceSampler. To be followed by take()
-  /// if there are any.
+  /// Where observations are due on the path to `pose`; see DistanceSampler. To be followed by
+  /// sampleAt() if there are any.
   std::vector<hyselam::Pose2> due(const hyselam::Pose2& pose) { return sampler_.due(pose); }
   /// What is observed there: of several, the earlier ones lie between the last observation and
   /// `now`, in time and soft density alike; they have no hard density.
-  std::vector<DensityObservation> take(const DensityObservation& now,
-                                       const std::vector<hyselam::Pose2>& due);
-  /// Whether the odometry jumped to this pose, so that there is no way from the last observation.
-  bool jumps(const hyselam::Pose2& pose) const {
+  std::vector<DensityObservation> sampleAt(const DensityObservation& now,
+                                           const std::vector<hyselam::Pose2>& due);
+  /// Whether the odometry jumped to this pose, so that there is no path from the last observation.
+  bool isJump(const hyselam::Pose2& pose) const {
     return last_ && hyselam::distance(last_->base_in_odom, pose) > DistanceSampler::kMaxGap;
   }
   /// The next reading is a first one again.

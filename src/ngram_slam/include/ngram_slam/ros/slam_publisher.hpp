@@ -1,0 +1,43 @@
+// The topics of SLAM, and its newest map for those who ask.
+#pragma once
+
+#include <hyselam_msgs/SemanticRegionArray.h>
+#include <hyselam_msgs/WordArray.h>
+#include <hyselam_msgs/WordMatchArray.h>
+#include <nav_msgs/GetMap.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <ros/ros.h>
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "hyselam_common/occupancy_grid.hpp"
+#include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_types.hpp"
+
+namespace ngram_slam {
+
+/// `map`, `map_metadata`, `region_graph`, `path` and `slam_markers` (latched), `words`,
+/// `word_matches`, `semantic_regions`. Any thread may publish.
+class SlamPublisher {
+ public:
+  explicit SlamPublisher(ros::NodeHandle nh);
+
+  void publishWords(const hyselam_msgs::WordArray& words,
+                    const hyselam_msgs::WordMatchArray& matches);
+  void publishRegions(const hyselam_msgs::SemanticRegionArray& regions);
+  /// @param header map frame; stamp of the newest scan.
+  void publishMap(const hyselam::OccupancyGrid& grid, const std::vector<SlamKeyframe>& keyframes,
+                  const std::vector<SlamLoop>& loops, const RegionGraph& graph,
+                  const std_msgs::Header& header);
+  /// The service `dynamic_map`: false without a map.
+  bool newestMap(nav_msgs::GetMap::Response& out) const;
+
+ private:
+  ros::Publisher map_, metadata_, words_, matches_, regions_, graph_, path_, markers_;
+  mutable std::mutex mutex_;
+  std::optional<nav_msgs::OccupancyGrid> newest_map_;
+};
+
+}  // namespace ngram_slam

@@ -1,0 +1,101 @@
+// Runs of the engine: where one begins, and what is matched there.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_scan_matching/correlative_matcher.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+
+namespace ngram_slam {
+
+using hyselam::between;
+using hyselam::Pose2;
+using hyselam_scan_matching::IcpResult;
+using hyselam_scan_matching::CorrelativeMatcher;
+using hyselam_scan_matching::SurfaceMap;
+using hyselam_scan_matching::SurfacePoints;
+
+void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle) {
+  if (!base_in_map.isFinite()) throw hyselam::ParameterError("base_in_map", "not finite", "finite");
+  if (!(window > 0.0 && window <= kMaxStartWindow)) {
+    throw hyselam::ParameterError("window", window, "above 0, at most 50 m");
+  }
+  if (!(angle >= 0.0 && angle <= hyselam::kPi)) {
+    throw hyselam::ParameterError("angle", angle, "from 0 to pi");
+  }
+  endRun();
+  start_ = RunStart{base_in_map, window, angle};
+}
+
+void SlamEngine::endRun() {
+  if (!run_open_) return;
+  if (usesWords()) addWordMatches(words_.finish());
+  run_open_ = false;
+}
+
+void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry) {
+  Points points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
+  odometry_ = matched_odometry_ = odometry;
+  smooth_pose_ = odometry;
+  first_of_run_ = static_cast<int>(state_.keyframes.size());
+  if (first_of_run_ == 0) {
+    pose_ = start_ ? start_->pose : odometry;
+    addKeyframe(scan, std::move(points), nullptr);
+  } else {
+    beginRunInKnownMap(scan, std::move(points));
+  }
+  matched_pose_ = pose_;
+  start_.reset();
+  run_open_ = true;
+  if (usesWords()) addWords(scan);
+}
+
+/// Searches the first scan of a run around where it starts, and ties it to the nearest keyframe.
+void SlamEngine::beginRunInKnownMap(const hyselam::LaserScan& scan, Points points) {
+  const RunStartParams& p = params_.run_start;
+  const RunStart start = start_.value_or(RunStart{pose_, kDefaultStartWindow, kDefaultStartAngle});
+  pose_ = start.pose;
+  const auto nearest =
+      std::min_element(state_.keyframes.begin(), state_.keyframes.end(),
+                       [&](const SlamKeyframe& a, const SlamKeyframe& b) {
+                         return distance(a.pose, start.pose) < distance(b.pose, start.pose);
+                       });
+  SlamLoop tie;
+  tie.older = static_cast<int>(nearest - state_.keyframes.begin());
+  tie.newer = first_of_run_;
+  tie.information =
+      Eigen::Vector3d(p.position_information, p.position_information, p.heading_information)
+          .asDiagonal();
+  const SurfaceMap map = mapAround(start);
+  hyselam_scan_matching::CorrelativeMatcherParams search;
+  search.linear_window = start.window;
+  search.angular_window = start.angle;
+  search.min_score = p.min_score;
+  if (const auto found = CorrelativeMatcher(map, search).match(*points, start.pose)) {
+    const IcpResult r = alignIcp(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
+    if (r.matched >= params_.min_inlier_ratio) {
+      pose_ = r.pose;
+      tie.inlier_ratio = r.matched;
+      tie.information += params_.scan_information_scale * r.information;
+      tie.information = (0.5 * (tie.information + tie.information.transpose())).eval();
+    }
+  }
+  tie.measured = between(nearest->pose, pose_);
+  addKeyframe(scan, std::move(points), nullptr);
+  addLoopEdge(tie);
+}
+
+/// What earlier runs saw around the start.
+SurfaceMap SlamEngine::mapAround(const RunStart& start) const {
+  SurfaceMap map(params_.local_map_resolution);
+  for (int k = 0; k < first_of_run_; ++k) {
+    if (distance(keyframe(k).pose, start.pose) < params_.run_start.map_radius + start.window) {
+      map.insert(keyframe(k).pose, *keyframe(k).points);
+    }
+  }
+  map.finish();
+  return map;
+}
+
+}  // namespace ngram_slam
