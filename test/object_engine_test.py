@@ -253,7 +253,7 @@ class ObjectEngineTest(unittest.TestCase):
     def test_a_pose_that_comes_later_than_the_next_frame(self):
         self.diagnostics = Listener(self.name + "/diagnostics", DiagnosticArray)
         self.addCleanup(self.diagnostics.close)
-        self.assertTrue(self.start(tf_patience=5.0, diagnostic_period=0.05))
+        self.assertTrue(self.start(transform_wait=5.0, diagnostic_period=0.05))
         camera = self.camera()
         broadcaster = tf2_ros.TransformBroadcaster()
         count = [0]
@@ -467,7 +467,7 @@ class ObjectEngineTest(unittest.TestCase):
         bad = os.path.join(self.folder.name, "bad.xml")
         with open(bad, "w") as out:
             out.write("no XML")
-        for number, params in enumerate([{"period": -1.0}, {"gate": 0.0}, {"autosave_period": 0.0}, {"dictionary_file": bad}]):
+        for number, params in enumerate([{"frame_period": -1.0}, {"association_gate": 0.0}, {"autosave_period": 0.0}, {"dictionary_file": bad}]):
             self.name += str(number)
             self.assertFalse(self.start(**params), params)
 

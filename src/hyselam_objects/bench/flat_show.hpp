@@ -5,7 +5,7 @@
 #include <ctime>
 #include <map>
 
-#include "hyselam_objects/landmark_check.hpp"
+#include "hyselam_objects/mapping/landmark_check.hpp"
 #include "simulated_flat.hpp"
 
 namespace hyselam_objects {
@@ -58,7 +58,7 @@ places:
         const Frame frame = flat.take(base, 0.0, ++seed);
         for (const DetectedObject& seen : detectObjects(frame.cloud, frame.camera.in_map)) {
           const Point3 c = seen.center();
-          if (seen.furniture || seen.cut || std::hypot(c.x - 3.0, c.y - 3.0) > 0.25) continue;
+          if (seen.furniture || seen.partial || std::hypot(c.x - 3.0, c.y - 3.0) > 0.25) continue;
           views.push_back(seen.descriptor);
           sizes.emplace_back(seen.high.x - seen.low.x, seen.high.y - seen.low.y,
                              seen.high.z - seen.low.z);
@@ -77,8 +77,8 @@ class FlatShow {
         before_(furnished_.plan, furnished_.before, furnished_.targets),
         after_(furnished_.plan, furnished_.after, furnished_.targets),
         every_(every),
-        mapper_(&map_, dictionary) {
-    mapper_.setPlaces([this](double x, double y) { return before_.placeAt(x, y); });
+        mapper_(map_, dictionary) {
+    mapper_.setPlaceLookup([this](double x, double y) { return before_.placeAt(x, y); });
   }
 
   FlatScores run() {
@@ -114,11 +114,12 @@ class FlatShow {
       for (const auto& [before, true_before] : first_pairs) {
         if (first_names[true_before - 1] != name) continue;
         const ObjectInstance* left = map_.find(before);
-        scores.faults.push_back(left == nullptr ? "  it was dropped"
-                                                : "  what was left of it: existence " +
-                                                      std::to_string(left->existence) + " seen " +
-                                                      std::to_string(left->seen) + " missed " +
-                                                      std::to_string(left->missed));
+        scores.faults.push_back(left == nullptr
+                                    ? "  it was dropped"
+                                    : "  what was left of it: existence " +
+                                          std::to_string(left->existence) + " seen " +
+                                          std::to_string(left->detections) + " missed " +
+                                          std::to_string(left->missed_detections));
       }
     }
     double better = 0.0;
@@ -140,7 +141,7 @@ class FlatShow {
   /// A third look from each place, six frames at a time, by a robot that is wrong about its pose.
   void checkPose(FlatScores* scores) const {
     const std::vector<hyselam::Pose2> way = after_.tour();
-    LandmarkWatch right, wrong;
+    LandmarkMonitor right, wrong;
     for (std::size_t i = 0; i < way.size(); i += static_cast<std::size_t>(2 * every_)) {
       if (i % 12 == 0) {
         right.clear();
@@ -179,7 +180,7 @@ class FlatShow {
       seconds_ += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
       ++frames_;
     }
-    mapper_.finish();
+    mapper_.consolidate();
   }
 
   static std::map<Id, Id> match(const ObjectMap& map, const ObjectMap& truth) {
@@ -224,8 +225,8 @@ class FlatShow {
         const Point3& p = object.pose->position;
         scores.faults.push_back("not there: " + object.kind + " at " + std::to_string(p.x) + " " +
                                 std::to_string(p.y) + " " + std::to_string(p.z) + " seen " +
-                                std::to_string(object.seen) + " missed " +
-                                std::to_string(object.missed));
+                                std::to_string(object.detections) + " missed " +
+                                std::to_string(object.missed_detections));
         continue;
       }
       found.insert(pair->second);

@@ -1,5 +1,5 @@
-// Segmentation of the clouds of mOSD beside PCL's Euclidean clustering and LCCP, both as PCL's own
-// examples set them. Counters: mean best overlap (IoU) of the true objects, over- and
+// CloudSegmentation of the clouds of mOSD beside PCL's Euclidean clustering and LCCP, both as PCL's
+// own examples set them. Counters: mean best overlap (IoU) of the true objects, over- and
 // under-segmentation, summed over the clouds.
 #include <benchmark/benchmark.h>
 #include <pcl/features/normal_3d.h>
@@ -19,7 +19,7 @@
 #include <string>
 
 #include "hyselam_objects/pcl/cloud_io.hpp"
-#include "hyselam_objects/segment_cloud.hpp"
+#include "hyselam_objects/segmentation/segment_cloud.hpp"
 #include "segmentation_score.hpp"
 
 namespace {
@@ -93,7 +93,7 @@ Labels lccp(const CloudFile& file) {
   cloud->height = static_cast<std::uint32_t>(file.cloud.height);
   for (std::size_t i = 0; i < file.cloud.size(); ++i) {
     (*cloud)[i].getVector3fMap() = file.cloud.points[i];
-    if (!file.cloud.colours.empty()) (*cloud)[i].rgba = file.cloud.colours[i];
+    if (!file.cloud.colors.empty()) (*cloud)[i].rgba = file.cloud.colors[i];
   }
   pcl::SupervoxelClustering<PointT> voxels(0.0075f, 0.03f);
   voxels.setUseSingleCameraTransform(true);
@@ -128,7 +128,7 @@ void run(benchmark::State& state, const std::vector<CloudFile>& files,
     for (const CloudFile& file : files) {
       const Labels labels = segment(file);
       state.PauseTiming();
-      addScore(labels, file.labels, &score);
+      addScore(labels, file.labels, score);
       state.ResumeTiming();
     }
   }

@@ -24,7 +24,7 @@ struct SegmentationScore {
 
 /// `found`: labels >= 2 are objects; `truth`: parts. Points without truth are left out.
 inline void addScore(const std::vector<std::uint32_t>& found,
-                     const std::vector<std::uint32_t>& truth, SegmentationScore* score) {
+                     const std::vector<std::uint32_t>& truth, SegmentationScore& score) {
   std::map<std::uint32_t, int> truth_size, found_size;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> both;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -59,12 +59,12 @@ inline void addScore(const std::vector<std::uint32_t>& found,
         segment = pair.first;
       }
     }
-    score->iou_sum += best;
-    ++score->objects;
+    score.iou_sum += best;
+    ++score.objects;
     if (segment != 0) ++objects_of[segment];
   }
-  for (const auto& entry : segments_of) score->over += entry.second - 1;
-  for (const auto& entry : objects_of) score->under += entry.second - 1;
+  for (const auto& entry : segments_of) score.over += entry.second - 1;
+  for (const auto& entry : objects_of) score.under += entry.second - 1;
 }
 
 }  // namespace hyselam_objects

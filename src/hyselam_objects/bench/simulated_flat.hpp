@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_objects/object_descriptor.hpp"
-#include "hyselam_objects/object_mapper.hpp"
+#include "hyselam_objects/mapping/object_mapper.hpp"
+#include "hyselam_objects/recognition/object_descriptor.hpp"
 #include "hyselam_sim/camera.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 
@@ -24,10 +24,10 @@ inline Thing thing(const std::string& kind, int number) {
   t.kind = kind;
   t.name = kind + " " + std::to_string(number);
   const auto make = [&t](Thing::Shape shape, std::array<double, 3> size,
-                         hyselam_sim::Colour colour) {
+                         hyselam_sim::Colour color) {
     t.shape = shape;
     t.size = size;
-    t.colour = colour;
+    t.colour = color;
   };
   const auto box = Thing::Shape::kBox, round = Thing::Shape::kCylinder;
   if (kind == "cup") make(round, {0.10, 0.10, 0.12}, {0.75f, 0.05f, 0.05f});
@@ -225,7 +225,7 @@ inline Furnished drawnFlat(const std::string& plan_file, std::uint64_t seed) {
 }
 
 struct Frame {
-  OrganisedCloud cloud;
+  OrganizedCloud cloud;
   PinholeCamera camera;
   double stamp = 0.0;
   std::map<std::string, int> pixels;  ///< of each thing and piece of furniture in it
@@ -309,7 +309,7 @@ class Flat {
     optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     frame.camera.in_map.linear() =
         Eigen::AngleAxisd(at.theta, Eigen::Vector3d::UnitZ()).toRotationMatrix() * optical;
-    OrganisedCloud& cloud = frame.cloud;
+    OrganizedCloud& cloud = frame.cloud;
     cloud.width = camera.width;
     cloud.height = camera.height;
     std::map<std::int32_t, int> owners;
@@ -323,7 +323,7 @@ class Flat {
       for (int u = 0; u < camera.width; ++u) {
         const float z = 0.001f * picture.depth.at<std::uint16_t>(v, u);
         const auto& bgr = picture.colour.at<cv::Vec3b>(v, u);
-        cloud.colours.push_back(static_cast<std::uint32_t>(bgr[2] << 16 | bgr[1] << 8 | bgr[0]));
+        cloud.colors.push_back(static_cast<std::uint32_t>(bgr[2] << 16 | bgr[1] << 8 | bgr[0]));
         if (z <= 0.0f) {
           cloud.points.emplace_back(NAN, NAN, NAN);
           continue;
@@ -387,7 +387,7 @@ class Flat {
       const double ly = round ? t.size[0] : s * t.size[0] + c * t.size[1];
       add(t.name, t.kind, t.pose.x, t.pose.y, t.z, lx, ly, t.size[2]);
     }
-    updateRelations(&map);
+    updateRelations(map);
     return map;
   }
 

@@ -5,11 +5,11 @@
 #include "../src/language/object_words.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
-#include "hyselam_objects/fill_map.hpp"
-#include "hyselam_objects/object_dictionary.hpp"
-#include "hyselam_objects/object_map.hpp"
-#include "hyselam_objects/object_relations.hpp"
+#include "hyselam_objects/language/fill_map.hpp"
+#include "hyselam_objects/mapping/object_map.hpp"
+#include "hyselam_objects/mapping/object_relations.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
+#include "hyselam_objects/recognition/object_dictionary.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -22,17 +22,17 @@ void objectText(const std::uint8_t* data, std::size_t size) {
   static const ObjectParser kParser = ObjectParser::shipped();
   std::istringstream text(textOf(data, size));
   ObjectMap map;
-  FillMap fill(&kParser, &map);
-  if (size > 0 && data[0] % 2 == 0) fill.setPlace("studio");
+  FillMap fill(kParser, map);
+  if (size > 0 && data[0] % 2 == 0) fill.setRobotPlace("studio");
   int lines = 0;
   for (std::string line; ++lines <= 20 && std::getline(text, line);) {
-    for (const ObjectReply& reply : fill.say(line)) {
+    for (const ObjectReply& reply : fill.process(line)) {
       require(!reply.text.empty());
       // A later sentence of the same line may have had some of them forgotten.
       for (const Id id : reply.objects) require(id > 0 && id < map.next_object_id);
       for (const Id id : reply.places) require(id > 0 && id < map.next_place_id);
     }
-    checkMap(map, "told");
+    checkMap(map, "described");
   }
   require(objectMapFromXml(toXml(map)) == map);
   fill.unknownKinds(ObjectDictionary{});
@@ -53,8 +53,8 @@ void objectMapXml(const std::uint8_t* data, std::size_t size) {
     const double share = movability(map, object.id);
     require(share >= 0.0 && share <= 1.0);
   }
-  tellObjects(map);
-  updateRelations(&map);
+  summaryLines(map);
+  updateRelations(map);
   checkMap(map, "related");
 }
 
@@ -76,8 +76,7 @@ void objectWords(const std::uint8_t* data, std::size_t size) {
   try {
     const ObjectWords words = ObjectWords::fromYaml({"fuzz", textOf(data, size)});
     hyselam_topo::Grammar::fromYaml({words.grammar()});
-    bool plural = false;
-    for (const std::string& noun : words.nouns) words.singular(noun, &plural);
+    for (const std::string& noun : words.nouns) words.singular(noun);
   } catch (const hyselam::InputError&) {
   }
 }
@@ -94,7 +93,7 @@ void objectCloud(const std::uint8_t* data, std::size_t size) {
   }
   const std::size_t points = file.cloud.points.size();
   require(points == file.cloud.size() && points > 0);
-  require(file.cloud.colours.empty() || file.cloud.colours.size() == points);
+  require(file.cloud.colors.empty() || file.cloud.colors.size() == points);
   require(file.labels.empty() || file.labels.size() == points);
   for (const Point& p : file.cloud.points) {
     require(p.allFinite() || (std::isnan(p.x()) && std::isnan(p.y()) && std::isnan(p.z())));
@@ -103,7 +102,7 @@ void objectCloud(const std::uint8_t* data, std::size_t size) {
   const std::string again = folder.path("again.pcd");
   writePcd(again, file.cloud, file.labels);
   const CloudFile same = readPcd(again);
-  require(same.labels == file.labels && same.cloud.colours == file.cloud.colours &&
+  require(same.labels == file.labels && same.cloud.colors == file.cloud.colors &&
           same.cloud.width == file.cloud.width && same.cloud.height == file.cloud.height);
 }
 

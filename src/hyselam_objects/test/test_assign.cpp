@@ -12,21 +12,21 @@ using hyselam_objects::assignRows;
 namespace {
 
 double best(const std::vector<std::vector<double>>& cost, double without, std::size_t row,
-            std::vector<char>* taken) {
+            std::vector<char>& taken) {
   if (row == cost.size()) return 0.0;
   double least = without + best(cost, without, row + 1, taken);
   for (std::size_t c = 0; c < cost[row].size(); ++c) {
-    if ((*taken)[c] != 0 || cost[row][c] > without) continue;
-    (*taken)[c] = 1;
+    if (taken[c] != 0 || cost[row][c] > without) continue;
+    taken[c] = 1;
     least = std::min(least, cost[row][c] + best(cost, without, row + 1, taken));
-    (*taken)[c] = 0;
+    taken[c] = 0;
   }
   return least;
 }
 
 }  // namespace
 
-TEST(Assign, IsTheBestOfAll) {
+TEST(HungarianAssignment, HasTheSmallestTotalCost) {
   hyselam::Rng rng(3);
   for (int i = 0; i < 300; ++i) {
     const auto rows = static_cast<std::size_t>(1 + i % 6),
@@ -49,7 +49,7 @@ TEST(Assign, IsTheBestOfAll) {
       EXPECT_EQ(taken[static_cast<std::size_t>(of[r])]++, 0);
     }
     std::vector<char> none(columns, 0);
-    EXPECT_NEAR(sum, best(cost, without, 0, &none), 1e-9);
+    EXPECT_NEAR(sum, best(cost, without, 0, none), 1e-9);
   }
   EXPECT_TRUE(assignRows({}, 1.0).empty());
 }

@@ -5,7 +5,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
-#include "hyselam_objects/landmark_check.hpp"
+#include "hyselam_objects/mapping/landmark_check.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 
@@ -19,7 +19,7 @@ ObjectMap room() {
     object.pose = ObjectPose{{x, y, z + 0.5 * size[2]}, size, 0.0, {}};
     object.descriptor = {look};
     object.existence = 0.99;
-    object.seen = 20;
+    object.detections = 20;
     for (int i = 0; i < 4; ++i) object.history.push_back({1000.0 * i, 1000.0 * i + 5, {x, y, z}});
     return object.id;
   };
@@ -58,7 +58,7 @@ std::vector<DetectedObject> see(const ObjectMap& map, double x, double y, double
 
 }  // namespace
 
-TEST(LandmarkCheck, AMetreIsNoticedWhateverItsDirection) {
+TEST(LandmarkCheck, DetectsOffsetOfAMeterInAnyDirection) {
   const ObjectMap map = room();
   for (int i = 0; i < 16; ++i) {
     const double angle = i * M_PI / 8.0, x = std::cos(angle), y = std::sin(angle);
@@ -68,11 +68,11 @@ TEST(LandmarkCheck, AMetreIsNoticedWhateverItsDirection) {
     EXPECT_NEAR(check.y, y, 0.1);
     EXPECT_GT(check.chi2, 3.0 * check.chi2_with_offset);
     EXPECT_EQ(check.compared, 7);
-    EXPECT_EQ(check.fitting, 7);
+    EXPECT_EQ(check.inliers, 7);
   }
 }
 
-TEST(LandmarkCheck, ASmallErrorIsNone) {
+TEST(LandmarkCheck, ToleratesSmallPoseErrors) {
   const ObjectMap map = room();
   for (int i = 0; i < 16; ++i) {
     const double angle = i * M_PI / 8.0;
@@ -84,7 +84,7 @@ TEST(LandmarkCheck, ASmallErrorIsNone) {
   }
 }
 
-TEST(LandmarkCheck, OneThingMovedAndOneNewAreNoDisplacement) {
+TEST(LandmarkCheck, ToleratesOneMovedAndOneNewObject) {
   ObjectMap map = room();
   std::vector<DetectedObject> seen = see(map, 0.0, 0.0);
   seen[4].low.x += 1.0;
@@ -95,10 +95,10 @@ TEST(LandmarkCheck, OneThingMovedAndOneNewAreNoDisplacement) {
   const LandmarkCheck check = checkLandmarks(map, seen);
   EXPECT_EQ(check.verdict, LandmarkVerdict::kConsistent);
   EXPECT_EQ(check.compared, 7);
-  EXPECT_EQ(check.fitting, 6);
+  EXPECT_EQ(check.inliers, 6);
 }
 
-TEST(LandmarkCheck, FewThingsAndMovableOnesTellNothing) {
+TEST(LandmarkCheck, IsUnknownWithFewOrMovableObjects) {
   ObjectMap map = room();
   std::vector<DetectedObject> seen = see(map, 1.0, 0.0);
   seen.resize(2);
@@ -111,14 +111,14 @@ TEST(LandmarkCheck, FewThingsAndMovableOnesTellNothing) {
   }
   EXPECT_EQ(checkLandmarks(map, see(map, 1.0, 0.0)).verdict, LandmarkVerdict::kUnknown);
   LandmarkParams bad;
-  bad.sigma = 0.0;
+  bad.position_sigma = 0.0;
   EXPECT_THROW(checkLandmarks(map, {}, bad), hyselam::ParameterError);
 }
 
-TEST(LandmarkCheck, FramesThatShowLittleAddUp) {
+TEST(LandmarkMonitor, CombinesFramesWithFewObjects) {
   const ObjectMap map = room();
   const std::vector<DetectedObject> seen = see(map, 0.0, 1.0);
-  LandmarkWatch watch;
+  LandmarkMonitor watch;
   EXPECT_EQ(watch.add(map, {seen[4]}).verdict, LandmarkVerdict::kUnknown);
   EXPECT_EQ(watch.add(map, {seen[5]}).verdict, LandmarkVerdict::kUnknown);
   EXPECT_EQ(watch.add(map, {seen[6]}).verdict, LandmarkVerdict::kDisplaced);

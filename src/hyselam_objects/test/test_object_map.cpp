@@ -10,9 +10,9 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_objects/link_places.hpp"
-#include "hyselam_objects/object_dictionary.hpp"
-#include "hyselam_objects/object_map.hpp"
+#include "hyselam_objects/language/link_places.hpp"
+#include "hyselam_objects/mapping/object_map.hpp"
+#include "hyselam_objects/recognition/object_dictionary.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 using hyselam::InputError;
@@ -30,7 +30,7 @@ ObjectMap sample() {
   object.pose =
       ObjectPose{{1.0, 2.0, 0.8}, {0.1, 0.1, 0.12}, 0.3, {1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-4}};
   object.descriptor = {0.1f, 0.2f};
-  object.seen = 4;
+  object.detections = 4;
   object.last_seen = 1700000000.25;
   object.existence = 0.9;
   object.history = {{1.0, 2.0, {0.0, 0.0, 0.0}}, {3.0, 4.0, {1.0, 2.0, 0.8}}};
@@ -54,7 +54,7 @@ ObjectDictionary sampleDictionary() {
   ObjectDictionary dictionary;
   GenericObject cup;
   cup.name = "cup";
-  cup.also = {"mug"};
+  cup.synonyms = {"mug"};
   cup.shape.size = {0.1, 0.08, 0.12};
   cup.texture = {0.5f, 0.25f};
   cup.features = {{"weight", 0.3}};
@@ -98,33 +98,33 @@ TEST(ObjectMap, RemovesAnObjectWithItsRelations) {
   checkMap(map, "map");
 }
 
-TEST(ObjectMap, WrongMapsAreRefused) {
-  const auto refused = [](const std::function<void(ObjectMap*)>& change,
+TEST(ObjectMap, RefusesInvalidMaps) {
+  const auto refused = [](const std::function<void(ObjectMap&)>& change,
                           const std::string& reason) {
     ObjectMap map = sample();
-    change(&map);
+    change(map);
     EXPECT_NE(messageOf<InputError>([&] { toXml(map, "m.xml"); }).find(reason), std::string::npos)
         << reason;
   };
-  refused([](ObjectMap* m) { m->objects[0].id = 0; }, "its id is 0");
-  refused([](ObjectMap* m) { m->objects[1].id = 1; }, "stands twice");
-  refused([](ObjectMap* m) { m->next_object_id = 2; }, "not below the next one");
-  refused([](ObjectMap* m) { m->objects[0].kind = ""; }, "no word");
-  refused([](ObjectMap* m) { m->objects[0].kind = "a\nb"; }, "no word");
-  refused([](ObjectMap* m) { m->objects[1].existence = 1.5; }, "existence");
-  refused([](ObjectMap* m) { m->objects[1].existence = NAN; }, "existence");
-  refused([](ObjectMap* m) { m->objects[1].pose->position.x = INFINITY; }, "not finite");
-  refused([](ObjectMap* m) { m->objects[1].pose->size[1] = -1.0; }, "size");
-  refused([](ObjectMap* m) { m->objects[1].pose->covariance[4] = -1.0; }, "covariance");
-  refused([](ObjectMap* m) { m->objects[1].history[0].until = 0.0; }, "stay");
-  refused([](ObjectMap* m) { m->relations[0].object = 9; }, "no such object");
-  refused([](ObjectMap* m) { m->relations.back().other = 2; }, "is itself");
-  refused([](ObjectMap* m) { m->relations.back().movability = 2.0; }, "movability");
-  refused([](ObjectMap* m) { m->relations[0].place = 9; }, "no such place");
-  refused([](ObjectMap* m) { m->relations[0].word = RelationWord::kOn; }, "only 'at' a place");
+  refused([](ObjectMap& m) { m.objects[0].id = 0; }, "its id is 0");
+  refused([](ObjectMap& m) { m.objects[1].id = 1; }, "stands twice");
+  refused([](ObjectMap& m) { m.next_object_id = 2; }, "not below the next one");
+  refused([](ObjectMap& m) { m.objects[0].kind = ""; }, "no word");
+  refused([](ObjectMap& m) { m.objects[0].kind = "a\nb"; }, "no word");
+  refused([](ObjectMap& m) { m.objects[1].existence = 1.5; }, "existence");
+  refused([](ObjectMap& m) { m.objects[1].existence = NAN; }, "existence");
+  refused([](ObjectMap& m) { m.objects[1].pose->position.x = INFINITY; }, "not finite");
+  refused([](ObjectMap& m) { m.objects[1].pose->size[1] = -1.0; }, "size");
+  refused([](ObjectMap& m) { m.objects[1].pose->covariance[4] = -1.0; }, "covariance");
+  refused([](ObjectMap& m) { m.objects[1].history[0].until = 0.0; }, "stay");
+  refused([](ObjectMap& m) { m.relations[0].object = 9; }, "no such object");
+  refused([](ObjectMap& m) { m.relations.back().other = 2; }, "is itself");
+  refused([](ObjectMap& m) { m.relations.back().movability = 2.0; }, "movability");
+  refused([](ObjectMap& m) { m.relations[0].place = 9; }, "no such place");
+  refused([](ObjectMap& m) { m.relations[0].word = RelationWord::kOn; }, "only 'at' a place");
 }
 
-TEST(ObjectMap, HostileFilesAreRefused) {
+TEST(ObjectMap, RefusesHostileFiles) {
   const std::string good = toXml(sample());
   const auto replaced = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -150,7 +150,7 @@ TEST(ObjectMap, HostileFilesAreRefused) {
   EXPECT_NE(messageOf<InputError>([&] { dictionaryFromXml(good, "d.xml"); }), "");
 }
 
-TEST(ObjectMap, DamagedFilesNeverCrash) {
+TEST(ObjectMap, SurvivesDamagedFiles) {
   const std::string good = toXml(sample()), words = toXml(sampleDictionary());
   std::uint32_t state = 3;
   for (int i = 0; i < 1000; ++i) {
@@ -170,7 +170,7 @@ TEST(ObjectMap, DamagedFilesNeverCrash) {
   }
 }
 
-TEST(ObjectMap, KilledWhileSavingTheLastSaveIsThere) {
+TEST(ObjectMap, KeepsLastSaveWhenKilledWhileSaving) {
   TemporaryDirectory directory;
   const std::string path = directory / "map.xml";
   saveXml(path, sample());
@@ -193,11 +193,11 @@ TEST(ObjectMap, KilledWhileSavingTheLastSaveIsThere) {
   }
 }
 
-TEST(ObjectDictionary, TwoRobotsShareWhatTheyKnow) {
+TEST(ObjectDictionary, MergesTheDictionariesOfTwoRobots) {
   const ObjectDictionary a = sampleDictionary();
   ObjectDictionary b;
   GenericObject cup = *a.find("mug");
-  cup.also = {"beaker"};
+  cup.synonyms = {"beaker"};
   cup.classifier.views = {{1.0f, 2.0f}, {5.0f, 6.0f}};
   b.put(cup);
   GenericObject pen;
@@ -210,22 +210,22 @@ TEST(ObjectDictionary, TwoRobotsShareWhatTheyKnow) {
   EXPECT_EQ(merged(both, b).find("cup")->classifier.views.size(), 3u);
 }
 
-TEST(ObjectDictionary, WrongOnesAreRefused) {
-  const auto refused = [](const std::function<void(ObjectDictionary*)>& change) {
+TEST(ObjectDictionary, RefusesInvalidDictionaries) {
+  const auto refused = [](const std::function<void(ObjectDictionary&)>& change) {
     ObjectDictionary dictionary = sampleDictionary();
-    change(&dictionary);
+    change(dictionary);
     EXPECT_THROW(checkDictionary(dictionary, "d"), InputError);
   };
-  refused([](auto* d) { d->objects[1].also = {"book"}; });
-  refused([](auto* d) { d->objects[0].name = ""; });
-  refused([](auto* d) { d->objects[0].name = "zoo"; });
-  refused([](auto* d) { d->objects[1].classifier.views[0] = {}; });
-  refused([](auto* d) { d->objects[1].classifier.views[0] = {NAN, 1.0f}; });
-  refused([](auto* d) { d->objects[1].classifier.accept = -1.0; });
-  refused([](auto* d) { d->objects[1].shape.size[0] = -1.0; });
+  refused([](auto& d) { d.objects[1].synonyms = {"book"}; });
+  refused([](auto& d) { d.objects[0].name = ""; });
+  refused([](auto& d) { d.objects[0].name = "zoo"; });
+  refused([](auto& d) { d.objects[1].classifier.views[0] = {}; });
+  refused([](auto& d) { d.objects[1].classifier.views[0] = {NAN, 1.0f}; });
+  refused([](auto& d) { d.objects[1].classifier.max_distance = -1.0; });
+  refused([](auto& d) { d.objects[1].shape.size[0] = -1.0; });
 }
 
-TEST(LinkPlaces, NamesBecomePlacesOfTheTopologicalMap) {
+TEST(LinkPlaces, LinksNamesToPlacesOfTheTopologicalMap) {
   hyselam_topo::AugmentedTopologicalMap topology;
   for (const char* name : {"the kitchen", "room I-109", "lab"}) {
     hyselam_topo::Place place;
@@ -245,7 +245,7 @@ TEST(LinkPlaces, NamesBecomePlacesOfTheTopologicalMap) {
   map.addPlace("attic");
   const Id seen = map.addObject("cup");
   map.find(seen)->pose = ObjectPose{{2.0, 3.0, 1.0}, {0.1, 0.1, 0.1}, 0.0, {}};
-  EXPECT_EQ(linkPlaces(&map, topology), 1u);
+  EXPECT_EQ(linkPlaces(map, topology), 1u);
   EXPECT_EQ(map.places[0].topological, 1u);
   EXPECT_EQ(map.places[1].topological, 2u);
   EXPECT_EQ(map.places[2].topological, 0u);

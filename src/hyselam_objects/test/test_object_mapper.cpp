@@ -5,14 +5,14 @@
 #include <set>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_objects/object_descriptor.hpp"
-#include "hyselam_objects/object_mapper.hpp"
+#include "hyselam_objects/mapping/object_mapper.hpp"
+#include "hyselam_objects/recognition/object_descriptor.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 
 namespace {
 
-DetectedObject seen(double x, double y, double z, std::array<double, 3> size, std::uint32_t colour,
+DetectedObject seen(double x, double y, double z, std::array<double, 3> size, std::uint32_t color,
                     bool furniture = false) {
   DetectedObject object;
   object.furniture = furniture;
@@ -24,8 +24,8 @@ DetectedObject seen(double x, double y, double z, std::array<double, 3> size, st
                         static_cast<float>(size[1] * (i % 11) / 10.0),
                         static_cast<float>(size[2] * (i % 13) / 12.0));
   }
-  object.descriptor = describeView(points, std::vector<std::uint32_t>(points.size(), colour));
-  object.colour = colourName(std::vector<std::uint32_t>(1, colour));
+  object.descriptor = describeView(points, std::vector<std::uint32_t>(points.size(), color));
+  object.color = colorName(std::vector<std::uint32_t>(1, color));
   object.points = points.size();
   return object;
 }
@@ -35,9 +35,9 @@ constexpr std::array<double, 3> kTable{1.2, 0.8, 0.75}, kCup{0.1, 0.1, 0.12},
 constexpr std::uint32_t kBrown = 0x805030, kRed = 0xc01010, kBlue = 0x1020b0;
 
 /// Looks along x from 1.2 m above the origin; nothing is nearer than 9 m.
-class Room : public ::testing::Test {
+class ObjectMapperInRoom : public ::testing::Test {
  protected:
-  Room() : mapper_(&map_, {}) {
+  ObjectMapperInRoom() : mapper_(map_, {}) {
     cloud_.width = 320;
     cloud_.height = 240;
     cloud_.points.assign(320 * 240, Point(0.0f, 0.0f, 9.0f));
@@ -48,15 +48,17 @@ class Room : public ::testing::Test {
     Eigen::Matrix3d optical;
     optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     camera_.in_map.linear() = optical;
-    mapper_.setPlaces([](double, double) { return std::make_pair("room", Point3{0.0, 0.0, 0.0}); });
+    mapper_.setPlaceLookup([](double, double) {
+      return std::make_pair("room", Point3{0.0, 0.0, 0.0});
+    });
   }
   void look(const std::vector<DetectedObject>& all, double stamp, int times = 4) {
     for (int i = 0; i < times; ++i) mapper_.update(cloud_, camera_, all, stamp + i);
   }
-  const ObjectInstance* find(const std::string& colour) const {
+  const ObjectInstance* find(const std::string& color) const {
     for (const ObjectInstance& object : map_.objects) {
       const auto found = object.properties.find("colour");
-      if (found != object.properties.end() && found->second == colour) return &object;
+      if (found != object.properties.end() && found->second == color) return &object;
     }
     return nullptr;
   }
@@ -67,7 +69,7 @@ class Room : public ::testing::Test {
     return false;
   }
 
-  OrganisedCloud cloud_;
+  OrganizedCloud cloud_;
   PinholeCamera camera_;
   ObjectMap map_;
   ObjectMapper mapper_;
@@ -76,10 +78,10 @@ class Room : public ::testing::Test {
 
 }  // namespace
 
-TEST_F(Room, ThingsAreOneOverViewsAndStandOnTheTable) {
+TEST_F(ObjectMapperInRoom, AssociatesViewsAndFindsRelations) {
   look({table_, seen(2.05, 0.1, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
   look({table_, seen(2.06, 0.11, 0.75, kCup, kRed), seen(2.1, -0.28, 0.75, kBook, kBlue)}, 10.0);
-  mapper_.finish();
+  mapper_.consolidate();
   checkMap(map_, "map");
   ASSERT_EQ(map_.objects.size(), 3u);
   const Id table = map_.objects[0].id, cup = find("red")->id, book = find("blue")->id;
@@ -92,19 +94,19 @@ TEST_F(Room, ThingsAreOneOverViewsAndStandOnTheTable) {
   EXPECT_EQ(map_.placeOf(cup), 1u);
 }
 
-TEST_F(Room, WhatIsSeenOnceIsDropped) {
+TEST_F(ObjectMapperInRoom, RemovesObjectsSeenOnce) {
   look({table_}, 1.0);
   look({table_, seen(1.9, 0.1, 0.75, kCup, kRed)}, 10.0, 1);
-  mapper_.finish();
+  mapper_.consolidate();
   EXPECT_EQ(map_.objects.size(), 1u);
 }
 
-TEST_F(Room, AMovedThingKeepsItsIdAndIsMoreMovable) {
+TEST_F(ObjectMapperInRoom, MovedObjectKeepsItsIdAndIsMoreMovable) {
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
-  mapper_.finish();
+  mapper_.consolidate();
   const Id cup = find("red")->id, book = find("blue")->id;
   look({table_, seen(2.3, -0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1000.0);
-  mapper_.finish();
+  mapper_.consolidate();
   ASSERT_EQ(map_.objects.size(), 3u);
   EXPECT_EQ(find("red")->id, cup);
   EXPECT_NEAR(find("red")->pose->position.y, -0.3, 0.02);
@@ -113,17 +115,17 @@ TEST_F(Room, AMovedThingKeepsItsIdAndIsMoreMovable) {
   EXPECT_LT(movability(map_, map_.objects[0].id), movability(map_, book));
 }
 
-TEST_F(Room, OfThingsThatLookAlikeAsManyAreFoundAgainAsWereMoved) {
+TEST_F(ObjectMapperInRoom, ReassociatesAllMovedObjectsOfEqualAppearance) {
   look({table_, seen(1.7, 0.3, 0.75, kCup, kRed), seen(1.9, -0.3, 0.75, kCup, kRed),
         seen(2.2, 0.0, 0.75, kCup, kRed)},
        1.0);
-  mapper_.finish();
+  mapper_.consolidate();
   std::set<Id> before;
   for (const ObjectInstance& object : map_.objects) before.insert(object.id);
   look({table_, seen(1.7, 0.3, 0.75, kCup, kRed), seen(2.3, 0.35, 0.75, kCup, kRed),
         seen(2.4, -0.35, 0.75, kCup, kRed)},
        1000.0);
-  mapper_.finish();
+  mapper_.consolidate();
   std::set<Id> after;
   for (const ObjectInstance& object : map_.objects) after.insert(object.id);
   EXPECT_EQ(before, after);
@@ -136,28 +138,28 @@ TEST_F(Room, OfThingsThatLookAlikeAsManyAreFoundAgainAsWereMoved) {
   EXPECT_EQ(moved, 2);
 }
 
-TEST_F(Room, WhatWasThereInTheVisitInWhichAnotherWasLastSeenIsNotThatOneMoved) {
+TEST_F(ObjectMapperInRoom, ObjectSeenInTheSameVisitIsNotTakenForAMovedOne) {
   const auto hidden = std::vector<Point>(cloud_.points.size(), Point(0.0f, 0.0f, 1.0f));
   const std::vector<Point> open = cloud_.points;
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 1.0);
   const Id first = find("red")->id;
   cloud_.points = hidden;  // the next room: a cup that is just like it
   look({seen(2.3, -0.3, 0.75, kCup, kRed)}, 20.0);
-  mapper_.finish();
+  mapper_.consolidate();
   ASSERT_EQ(map_.objects.size(), 3u);
   const Id second = map_.objects.back().id;
   look({seen(2.3, -0.3, 0.75, kCup, kRed)}, 1000.0);
   cloud_.points = open;
   look({table_, seen(2.2, 0.35, 0.75, kCup, kRed)}, 1010.0);
   map_.find(second)->existence = 0.99;  // the frames above look at nothing but the first table
-  mapper_.finish();
+  mapper_.consolidate();
   ASSERT_NE(map_.find(first), nullptr);
   ASSERT_NE(map_.find(second), nullptr);
   EXPECT_NEAR(map_.find(first)->pose->position.x, 2.2, 0.02);
   EXPECT_NEAR(map_.find(second)->pose->position.x, 2.3, 0.02);
 }
 
-TEST_F(Room, ALowThingThatIsGoneIsMissedThoughTheTableIsCloseBehind) {
+TEST_F(ObjectMapperInRoom, DetectsThatALowObjectIsGone) {
   look({table_, seen(1.9, 0.1, 0.75, kBook, kBlue)}, 1.0);
   for (int v = 120; v < cloud_.height; ++v) {  // the table's plane
     for (int u = 0; u < cloud_.width; ++u) {
@@ -170,18 +172,18 @@ TEST_F(Room, ALowThingThatIsGoneIsMissedThoughTheTableIsCloseBehind) {
   EXPECT_LT(find("blue")->existence, 0.1);
 }
 
-TEST_F(Room, TheTopsOfThingsOnATableAreNoFurniture) {
+TEST_F(ObjectMapperInRoom, TopsOfObjectsOnATableAreNoFurniture) {
   const DetectedObject tops = seen(2.0, 0.0, 0.0, {0.6, 0.4, 1.1}, kRed, true);
   look({tops}, 1.0);
   look({tops, table_}, 10.0);
-  mapper_.finish();
+  mapper_.consolidate();
   ASSERT_EQ(map_.objects.size(), 1u);
   EXPECT_NEAR(map_.objects[0].pose->size[2], 0.75, 0.01);
 }
 
-TEST_F(Room, WhatIsToldOfAThingOutlastsThatItIsFoundAgain) {
+TEST_F(ObjectMapperInRoom, ReassociatedObjectKeepsDescribedRelations) {
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1.0);
-  mapper_.finish();
+  mapper_.consolidate();
   const Id cup = find("red")->id, book = find("blue")->id;
   look({table_, seen(2.3, -0.3, 0.75, kCup, kRed), seen(2.1, -0.3, 0.75, kBook, kBlue)}, 1000.0);
   Id now = 0;  // the same cup, not yet known to be
@@ -191,29 +193,29 @@ TEST_F(Room, WhatIsToldOfAThingOutlastsThatItIsFoundAgain) {
   told.object = now;
   told.word = RelationWord::kTop;
   told.other = book;
-  told.told = true;
+  told.described = true;
   map_.relate(told);
-  mapper_.finish();
+  mapper_.consolidate();
   checkMap(map_, "map");
   EXPECT_EQ(map_.find(now), nullptr);
   EXPECT_TRUE(isSaid(cup, RelationWord::kTop, book));
 }
 
-TEST_F(Room, ABagThatBeginsAgainIsNoLongTimeAgo) {
+TEST_F(ObjectMapperInRoom, BagPlayedAgainDoesNotRemoveObjects) {
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 5000.0);
-  mapper_.finish(mapper_.time() - 20.0);
+  mapper_.consolidate(mapper_.time() - 20.0);
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 10.0);
   look({table_, seen(1.9, 0.3, 0.75, kCup, kRed), seen(2.3, -0.3, 0.75, kBook, kBlue)}, 14.0, 1);
   EXPECT_EQ(mapper_.time(), 14.0);
-  mapper_.finish(mapper_.time() - 20.0);
+  mapper_.consolidate(mapper_.time() - 20.0);
   checkMap(map_, "map");
   EXPECT_EQ(map_.objects.size(), 3u) << "what was seen once just now is kept";
   EXPECT_EQ(find("red")->last_seen, 14.0);
 }
 
-TEST_F(Room, WhatIsGoneLosesEvidenceAndWhatIsHiddenDoesNot) {
+TEST_F(ObjectMapperInRoom, MissingObjectLosesEvidenceAndHiddenObjectDoesNot) {
   look({table_, seen(1.9, 0.1, 0.75, kCup, kRed)}, 1.0);
-  mapper_.finish();
+  mapper_.consolidate();
   const double before = find("red")->existence;
   cloud_.points.assign(cloud_.points.size(), Point(0.0f, 0.0f, 1.0f));  // something in front
   look({table_}, 1000.0);
@@ -221,42 +223,42 @@ TEST_F(Room, WhatIsGoneLosesEvidenceAndWhatIsHiddenDoesNot) {
   cloud_.points.assign(cloud_.points.size(), Point(0.0f, 0.0f, 9.0f));
   look({table_}, 1010.0);
   EXPECT_LT(find("red")->existence, 0.1);
-  EXPECT_GE(find("red")->missed, 3);
+  EXPECT_GE(find("red")->missed_detections, 3);
 }
 
-TEST_F(Room, WhatCarriesSomethingIsLessMovable) {
+TEST_F(ObjectMapperInRoom, ObjectThatCarriesAnotherIsLessMovable) {
   look({table_, seen(1.9, 0.1, 0.75, kBook, kBlue)}, 1.0);
-  mapper_.finish();
+  mapper_.consolidate();
   const double alone = movability(map_, find("blue")->id);
   look({table_, seen(1.9, 0.1, 0.75, kBook, kBlue), seen(1.9, 0.1, 0.80, kCup, kRed)}, 5.0);
-  mapper_.finish();
+  mapper_.consolidate();
   EXPECT_TRUE(isSaid(find("red")->id, RelationWord::kOn, find("blue")->id));
   EXPECT_NEAR(movability(map_, find("blue")->id), 0.6 * alone, 1e-9);
 }
 
-TEST_F(Room, AToldThingIsFoundWhereItWasTold) {
+TEST_F(ObjectMapperInRoom, DescribedObjectIsDetectedAtItsPlace) {
   const Id told = map_.addObject("cup");
-  map_.find(told)->told = true;
+  map_.find(told)->described = true;
   ObjectRelation at;
   at.object = told;
   at.place = map_.addPlace("room");
-  at.told = true;
+  at.described = true;
   map_.relate(at);
   ObjectDictionary dictionary;
   const DetectedObject cup = seen(1.9, 0.1, 0.75, kCup, kRed);
   dictionary.put(learnObject("cup", {cup.descriptor}, {}));
   mapper_.setDictionary(dictionary);
   look({table_, cup}, 1.0);
-  mapper_.finish();
+  mapper_.consolidate();
   EXPECT_EQ(map_.objects.size(), 2u);
   ASSERT_TRUE(map_.find(told)->pose);
   EXPECT_EQ(map_.find(told)->kind, "cup");
 }
 
-TEST_F(Room, BadInputIsRefused) {
+TEST_F(ObjectMapperInRoom, RefusesBadInput) {
   MapperParams params;
-  params.gate = 0.0;
-  EXPECT_THROW(ObjectMapper(&map_, {}, params), hyselam::ParameterError);
+  params.association_gate = 0.0;
+  EXPECT_THROW(ObjectMapper(map_, {}, params), hyselam::ParameterError);
   cloud_.points.pop_back();
   EXPECT_THROW(mapper_.update(cloud_, camera_, {}, 1.0), hyselam::InputError);
   EXPECT_THROW(detectObjects(cloud_, camera_.in_map), hyselam::InputError);

@@ -12,23 +12,23 @@ namespace {
 
 using visualization_msgs::Marker;
 
-Id addBox(ObjectMap* map, const std::string& kind, Point3 at, std::array<double, 3> size,
+Id addBox(ObjectMap& map, const std::string& kind, Point3 at, std::array<double, 3> size,
           double yaw = 0.0) {
-  const Id id = map->addObject(kind);
+  const Id id = map.addObject(kind);
   ObjectPose pose;
   pose.position = at;
   pose.size = size;
   pose.yaw = yaw;
-  map->find(id)->pose = pose;
+  map.find(id)->pose = pose;
   return id;
 }
 
-void rests(ObjectMap* map, Id thing, Id on) {
+void putOn(ObjectMap& map, Id object, Id on) {
   ObjectRelation relation;
-  relation.object = thing;
+  relation.object = object;
   relation.word = RelationWord::kOn;
   relation.other = on;
-  map->relate(relation);
+  map.relate(relation);
 }
 
 std::map<std::string, Marker> namesOf(const ObjectMap& map) {
@@ -39,9 +39,9 @@ std::map<std::string, Marker> namesOf(const ObjectMap& map) {
   return names;
 }
 
-TEST(ObjectMarkers, NamesAreOverTheMiddleOfObjects) {
+TEST(ObjectMarkers, ShowNamesOverTheCentersOfObjects) {
   ObjectMap map;
-  addBox(&map, "chair", {1.0, 2.0, 0.45}, {0.4, 0.4, 0.9});
+  addBox(map, "chair", {1.0, 2.0, 0.45}, {0.4, 0.4, 0.9});
   const auto names = namesOf(map);
   ASSERT_EQ(names.count("chair"), 1u);
   EXPECT_NEAR(names.at("chair").pose.position.x, 1.0, 1e-9);
@@ -49,23 +49,23 @@ TEST(ObjectMarkers, NamesAreOverTheMiddleOfObjects) {
   EXPECT_GT(names.at("chair").pose.position.z, 0.9);
 }
 
-TEST(ObjectMarkers, WhatIsOnlyToldHasNone) {
+TEST(ObjectMarkers, OmitObjectsThatWereOnlyDescribed) {
   ObjectMap map;
   map.addObject("pen");
   EXPECT_TRUE(namesOf(map).empty());
 }
 
 // The name of a desk would stand in what lies on it.
-TEST(ObjectMarkers, NamesOfFurnitureKeepClearOfThingsOnIt) {
+TEST(ObjectMarkers, KeepNamesOfFurnitureClearOfObjectsOnIt) {
   for (const double yaw : {0.0, 0.7, -2.0}) {
     ObjectMap map;
-    const Id desk = addBox(&map, "desk", {3.0, 1.0, 0.4}, {1.6, 0.8, 0.8}, yaw);
+    const Id desk = addBox(map, "desk", {3.0, 1.0, 0.4}, {1.6, 0.8, 0.8}, yaw);
     const double c = std::cos(yaw), s = std::sin(yaw);
     const auto onDesk = [&](double x, double y) {
       return Point3{3.0 + c * x - s * y, 1.0 + s * x + c * y, 0.9};
     };
-    rests(&map, addBox(&map, "cup", onDesk(0.0, 0.1), {0.1, 0.1, 0.2}), desk);
-    rests(&map, addBox(&map, "PC", onDesk(0.4, 0.2), {0.4, 0.2, 0.4}), desk);
+    putOn(map, addBox(map, "cup", onDesk(0.0, 0.1), {0.1, 0.1, 0.2}), desk);
+    putOn(map, addBox(map, "PC", onDesk(0.4, 0.2), {0.4, 0.2, 0.4}), desk);
     const auto names = namesOf(map);
     const auto& name = names.at("desk").pose.position;
     for (const char* thing : {"cup", "PC"}) {

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <iostream>
 
-#include "hyselam_objects/fill_map.hpp"
+#include "hyselam_objects/language/fill_map.hpp"
 
 using hyselam_objects::FillMap;
 using hyselam_objects::ObjectMap;
@@ -52,14 +52,14 @@ Score score(const std::string& file, const std::string& language) {
   Score score;
   for (const YAML::Node& each : corpus) {
     ObjectMap map;
-    FillMap fill(&parser, &map);
-    fill.setPlace(each["here"].as<std::string>(""));
+    FillMap fill(parser, map);
+    fill.setRobotPlace(each["here"].as<std::string>(""));
     std::vector<std::string> codes, answers;
     std::string said;
     bool asked = false;
     for (const std::string& text : texts(each["say"])) {
       ++score.sentences;
-      for (const auto& reply : fill.say(text)) {
+      for (const auto& reply : fill.process(text)) {
         using hyselam_objects::ReplyKind;
         said += " " + reply.text;
         asked =
@@ -70,7 +70,7 @@ Score score(const std::string& file, const std::string& language) {
         }
       }
     }
-    const std::vector<std::string> told = tellObjects(map);
+    const std::vector<std::string> told = summaryLines(map);
     std::vector<std::string> wanted = texts(each["map"]);
     std::sort(wanted.begin(), wanted.end());
     std::vector<std::string> or_this = texts(each["map_or"]);
@@ -104,60 +104,60 @@ Score score(const std::string& file, const std::string& language) {
 
 }  // namespace
 
-TEST(ObjectText, Corpus) {
+TEST(ObjectText, UnderstandsEnglishCorpus) {
   const Score of = score("objects_en.yaml", "en");
   EXPECT_GE(of.sentences, 100);
   EXPECT_GE(of.right, 0.97 * of.texts);
   EXPECT_EQ(of.silent, 0);
 }
 
-TEST(ObjectText, CorpusInPortuguese) {
+TEST(ObjectText, UnderstandsPortugueseCorpus) {
   const Score of = score("objects_pt.yaml", "pt");
   EXPECT_GE(of.sentences, 40);
   EXPECT_GE(of.right, 0.97 * of.texts);
   EXPECT_EQ(of.silent, 0);
 }
 
-TEST(ObjectText, TheLanguageIsFoundOut) {
+TEST(ObjectText, DetectsTheLanguage) {
   const ObjectParser parser = ObjectParser::shipped();
   ObjectMap map;
-  FillMap fill(&parser, &map);
-  EXPECT_EQ(fill.say("Há um copo vermelho na cozinha.").front().text,
+  FillMap fill(parser, map);
+  EXPECT_EQ(fill.process("Há um copo vermelho na cozinha.").front().text,
             "Anotado: copo vermelho em cozinha.");
-  EXPECT_EQ(fill.say("There is a red pen in the office.").front().text,
+  EXPECT_EQ(fill.process("There is a red pen in the office.").front().text,
             "Noted: red pen at office.");
-  EXPECT_EQ(fill.say("Onde está a caneta?").front().text, "Não sei de nenhum 'caneta'.");
+  EXPECT_EQ(fill.process("Onde está a caneta?").front().text, "Não sei de nenhum 'caneta'.");
 }
 
-TEST(ObjectText, SentencesThatTheGrammarWasNotMadeFor) {
+TEST(ObjectText, UnderstandsHeldOutSentences) {
   const Score of = score("objects_holdout_en.yaml", "en");
   EXPECT_GE(of.texts, 50);
   EXPECT_GE(of.right, 0.97 * of.texts);
   EXPECT_EQ(of.silent, 0);
 }
 
-TEST(ObjectText, TheThesisSentences) {
+TEST(ObjectText, UnderstandsTheSentencesOfTheThesis) {
   const ObjectParser parser = ObjectParser::shipped("en");
   ObjectMap map;
-  FillMap fill(&parser, &map);
-  const auto replies = fill.say(
+  FillMap fill(parser, map);
+  const auto replies = fill.process(
       "Robot, in John's office there is a PC and one pen over the table. On the left of the table "
       "there is a chair.");
   ASSERT_EQ(replies.size(), 2u);
   EXPECT_EQ(replies[0].kind, hyselam_objects::ReplyKind::kDone);
   EXPECT_EQ(replies[1].kind, hyselam_objects::ReplyKind::kDone);
-  EXPECT_EQ(tellObjects(map),
+  EXPECT_EQ(summaryLines(map),
             (std::vector<std::string>{
                 "PC at John's office, over table", "chair at John's office, left table",
                 "pen at John's office, over table", "table at John's office"}));
   checkMap(map, "map");
 }
 
-TEST(ObjectText, NewObjectAsksForWhatTheDictionaryDoesNotKnow) {
+TEST(ObjectText, AsksToBeShownUnknownKinds) {
   const ObjectParser parser = ObjectParser::shipped("en");
   ObjectMap map;
-  FillMap fill(&parser, &map);
-  fill.say("There is a pen and a cup in the kitchen.");
+  FillMap fill(parser, map);
+  fill.process("There is a pen and a cup in the kitchen.");
   hyselam_objects::ObjectDictionary dictionary;
   hyselam_objects::GenericObject cup;
   cup.name = "cup";
@@ -165,13 +165,13 @@ TEST(ObjectText, NewObjectAsksForWhatTheDictionaryDoesNotKnow) {
   cup.classifier.views = {{1.0f}};
   dictionary.put(cup);
   EXPECT_EQ(fill.unknownKinds(dictionary), std::vector<std::string>{"pen"});
-  EXPECT_EQ(fill.askToShow("pen"), "I do not know what a pen looks like: show me one.");
+  EXPECT_EQ(fill.showRequest("pen"), "I do not know what a pen looks like: show me one.");
 }
 
-TEST(ObjectText, AnyBytesAreSurvived) {
+TEST(ObjectText, SurvivesAnyBytes) {
   const ObjectParser parser = ObjectParser::shipped("en");
   ObjectMap map;
-  FillMap fill(&parser, &map);
+  FillMap fill(parser, map);
   const std::string sentence = "There are two red cups on the table in the kitchen.";
   std::uint32_t state = 7;
   for (int i = 0; i < 300; ++i) {
@@ -180,9 +180,9 @@ TEST(ObjectText, AnyBytesAreSurvived) {
       state = state * 1664525u + 1013904223u;
       text[(state >> 8) % text.size()] = static_cast<char>(state >> 20);
     }
-    fill.say(text);
+    fill.process(text);
     checkMap(map, "map");
   }
-  EXPECT_EQ(fill.say(std::string(100000, 'a')).front().kind,
+  EXPECT_EQ(fill.process(std::string(100000, 'a')).front().kind,
             hyselam_objects::ReplyKind::kNotUnderstood);
 }

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_objects/fill_map.hpp"
-#include "hyselam_objects/place_evidence.hpp"
+#include "hyselam_objects/language/fill_map.hpp"
+#include "hyselam_objects/language/place_evidence.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
@@ -72,11 +72,11 @@ ObjectMap seenObjects() {
 
 }  // namespace
 
-TEST(PlaceEvidence, ToldAndSeenObjectsTellEqualRoomsApart) {
+TEST(PlaceEvidence, ObjectsDistinguishRoomsOfEqualShape) {
   const ObjectParser parser = ObjectParser::shipped("en");
   ObjectMap told;
-  FillMap fill(&parser, &told);
-  fill.say(
+  FillMap fill(parser, told);
+  fill.process(
       "In the kitchen there is a fridge and an oven. In the office there is a PC. In the library "
       "there is a bookshelf. In the workshop there is a drill.");
   const auto map = corridorWithRooms();
@@ -101,15 +101,15 @@ TEST(PlaceEvidence, ToldAndSeenObjectsTellEqualRoomsApart) {
   }
 }
 
-TEST(PlaceEvidence, WhatIsToldNowhereGivesNone) {
+TEST(PlaceEvidence, IsEmptyWithoutAMatchingPlace) {
   const auto building = description();
   EXPECT_TRUE(placeEvidence({}, seenObjects(), building).empty());
   ObjectMap told;
   const ObjectParser parser = ObjectParser::shipped("en");
-  FillMap fill(&parser, &told);
-  fill.say("In the attic there is a fridge.");
+  FillMap fill(parser, told);
+  fill.process("In the attic there is a fridge.");
   EXPECT_TRUE(placeEvidence(told, seenObjects(), building).empty());
   EvidenceParams params;
-  params.by_chance = 0.0;
+  params.p_chance = 0.0;
   EXPECT_THROW(placeEvidence(told, seenObjects(), building, params), hyselam::ParameterError);
 }

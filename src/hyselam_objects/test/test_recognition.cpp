@@ -1,4 +1,5 @@
-// Recognition: descriptors of views of simulated things, and a real model found in a real scene.
+// ObjectRecognition: descriptors of views of simulated things, and a real model found in a real
+// scene.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -7,35 +8,35 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_objects/object_descriptor.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/find_model.hpp"
+#include "hyselam_objects/recognition/object_descriptor.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 
 namespace {
 
 /// The two sides of a box that somebody sees who looks at one of its edges.
-std::vector<Eigen::Vector3f> boxView(Eigen::Vector3f size, double turn, hyselam::Rng* rng) {
+std::vector<Eigen::Vector3f> boxView(Eigen::Vector3f size, double turn, hyselam::Rng& rng) {
   std::vector<Eigen::Vector3f> points;
   const Eigen::AngleAxisf rotation(static_cast<float>(turn), Eigen::Vector3f::UnitZ());
   for (int i = 0; i < 600; ++i) {
-    const auto u = static_cast<float>(rng->uniform()), v = static_cast<float>(rng->uniform());
+    const auto u = static_cast<float>(rng.uniform()), v = static_cast<float>(rng.uniform());
     Eigen::Vector3f p = i % 2 == 0 ? Eigen::Vector3f(u * size.x(), 0.0f, v * size.z())
                                    : Eigen::Vector3f(0.0f, u * size.y(), v * size.z());
-    p += 0.002f * Eigen::Vector3f(static_cast<float>(rng->gaussian()),
-                                  static_cast<float>(rng->gaussian()),
-                                  static_cast<float>(rng->gaussian()));
+    p += 0.002f * Eigen::Vector3f(static_cast<float>(rng.gaussian()),
+                                  static_cast<float>(rng.gaussian()),
+                                  static_cast<float>(rng.gaussian()));
     points.push_back(rotation * p);
   }
   return points;
 }
 
-std::vector<float> view(Eigen::Vector3f size, std::uint32_t colour, double turn,
+std::vector<float> view(Eigen::Vector3f size, std::uint32_t color, double turn,
                         std::uint64_t seed) {
   hyselam::Rng rng(seed);
-  const auto points = boxView(size, turn, &rng);
-  return describeView(points, std::vector<std::uint32_t>(points.size(), colour));
+  const auto points = boxView(size, turn, rng);
+  return describeView(points, std::vector<std::uint32_t>(points.size(), color));
 }
 
 ObjectDictionary twoBoxes() {
@@ -52,37 +53,38 @@ ObjectDictionary twoBoxes() {
 
 }  // namespace
 
-TEST(Recognition, NewViewsAreKnownAndOtherThingsAreNot) {
+TEST(ObjectRecognition, RecognizesNewViewsAndRejectsOtherObjects) {
   const ObjectDictionary dictionary = twoBoxes();
   checkDictionary(dictionary, "learnt");
   EXPECT_DOUBLE_EQ(dictionary.find("carton")->shape.size[0], 0.2) << "the longer side first";
   int right = 0;
   for (std::uint64_t i = 0; i < 20; ++i) {
     const double turn = 0.3 * static_cast<double>(i) + 0.1;
-    const auto a = recognise(view({0.2f, 0.08f, 0.3f}, 0xd0c020, turn, 500 + i), dictionary);
-    const auto b = recognise(view({0.24f, 0.11f, 0.07f}, 0xb03020, turn, 600 + i), dictionary);
+    const auto a = recognizeObject(view({0.2f, 0.08f, 0.3f}, 0xd0c020, turn, 500 + i), dictionary);
+    const auto b =
+        recognizeObject(view({0.24f, 0.11f, 0.07f}, 0xb03020, turn, 600 + i), dictionary);
     right += (a && a->name == "carton") + (b && b->name == "brick");
-    EXPECT_FALSE(recognise(view({0.5f, 0.5f, 0.6f}, 0x2040c0, turn, 700 + i), dictionary));
+    EXPECT_FALSE(recognizeObject(view({0.5f, 0.5f, 0.6f}, 0x2040c0, turn, 700 + i), dictionary));
   }
   EXPECT_GE(right, 38);
 }
 
-TEST(Recognition, TheDictionaryGoesToAnotherRobotAsAFile) {
+TEST(ObjectRecognition, WorksWithADictionaryFromAFile) {
   const ObjectDictionary other = dictionaryFromXml(toXml(twoBoxes()));
-  const auto found = recognise(view({0.2f, 0.08f, 0.3f}, 0xd0c020, 0.7, 900), other);
+  const auto found = recognizeObject(view({0.2f, 0.08f, 0.3f}, 0xd0c020, 0.7, 900), other);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->name, "carton");
 }
 
-TEST(Recognition, WhatCannotBeLearntIsRefused) {
+TEST(ObjectRecognition, RefusesViewsThatCannotBeLearned) {
   EXPECT_THROW(learnObject("cup", {}, {}), hyselam::InputError);
   EXPECT_THROW(learnObject("cup", {{1.0f, 2.0f}}, {}), hyselam::InputError);
   EXPECT_TRUE(describeView({}, {}).empty());
-  EXPECT_FALSE(recognise({}, twoBoxes()));
-  EXPECT_FALSE(recognise(view({0.2f, 0.1f, 0.3f}, 0, 0.0, 1), {}));
+  EXPECT_FALSE(recognizeObject({}, twoBoxes()));
+  EXPECT_FALSE(recognizeObject(view({0.2f, 0.1f, 0.3f}, 0, 0.0, 1), {}));
 }
 
-TEST(Recognition, TheMilkCartonIsFoundInTheScene) {
+TEST(ObjectRecognition, FindsTheMilkCartonInTheScene) {
   HYSELAM_NEED_DATA(data);
   const std::string folder = data + "/objects/pcl_tutorials/";
   const CloudFile model = readPcd(folder + "milk.pcd");
@@ -90,10 +92,11 @@ TEST(Recognition, TheMilkCartonIsFoundInTheScene) {
   const auto found = findModel(model.cloud, scene.cloud);
   ASSERT_FALSE(found.empty());
   std::cout << found.size() << " found; best: " << found.front().correspondences
-            << " correspondences, " << 100.0 * found.front().covered << " % of the model covered\n";
-  EXPECT_GE(found.front().covered, 0.8);
+            << " correspondences, " << 100.0 * found.front().coverage
+            << " % of the model covered\n";
+  EXPECT_GE(found.front().coverage, 0.8);
   // It is not found where it is not: the scene without it.
-  OrganisedCloud rest = scene.cloud;
+  OrganizedCloud rest = scene.cloud;
   const Eigen::Isometry3f pose = found.front().model_in_scene.cast<float>();
   Point low = pose * model.cloud.points.front(), high = low;
   for (const Point& p : model.cloud.points) {
@@ -105,5 +108,5 @@ TEST(Recognition, TheMilkCartonIsFoundInTheScene) {
     if (inside) p.setConstant(std::numeric_limits<float>::quiet_NaN());
   }
   const auto none = findModel(model.cloud, rest);
-  EXPECT_TRUE(none.empty() || none.front().covered < 0.8) << none.front().covered;
+  EXPECT_TRUE(none.empty() || none.front().coverage < 0.8) << none.front().coverage;
 }

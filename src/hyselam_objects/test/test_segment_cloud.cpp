@@ -1,4 +1,4 @@
-// Segmentation of simulated tables, files, and clouds that cannot be used.
+// CloudSegmentation of simulated tables, files, and clouds that cannot be used.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
-#include "hyselam_objects/pcl/unorganised.hpp"
-#include "hyselam_objects/segment_cloud.hpp"
+#include "hyselam_objects/pcl/segment_unorganized.hpp"
+#include "hyselam_objects/segmentation/segment_cloud.hpp"
 #include "hyselam_sim/camera.hpp"
 
 namespace hyselam_objects {
@@ -83,11 +83,11 @@ constexpr auto kCylinder = Thing::Shape::kCylinder;
 
 SegmentationScore scoreOf(const CloudFile& file) {
   SegmentationScore score;
-  addScore(segmentCloud(file.cloud).labels, file.labels, &score);
+  addScore(segmentCloud(file.cloud).labels, file.labels, score);
   return score;
 }
 
-TEST(SegmentCloud, FindsThingsThatStandApart) {
+TEST(SegmentCloud, FindsSeparateObjects) {
   const SegmentationScore score =
       scoreOf(table({thing("a", kBox, {1.9, 2.7, 0.5}, 0.5, {0.2, 0.1, 0.25}),
                      thing("b", kCylinder, {2.1, 3.3, 0.0}, 0.5, {0.09, 0.09, 0.12}),
@@ -98,7 +98,7 @@ TEST(SegmentCloud, FindsThingsThatStandApart) {
   EXPECT_EQ(score.under, 0);
 }
 
-TEST(SegmentCloud, SplitsWhatStandsOnEachOtherAndTouches) {
+TEST(SegmentCloud, SplitsObjectsInContact) {
   const SegmentationScore score =
       scoreOf(table({thing("lower", kBox, {2.0, 3.0, 0.3}, 0.5, {0.3, 0.3, 0.12}),
                      thing("upper", kBox, {2.03, 3.02, 0.9}, 0.62, {0.14, 0.14, 0.14}),
@@ -108,7 +108,7 @@ TEST(SegmentCloud, SplitsWhatStandsOnEachOtherAndTouches) {
   EXPECT_EQ(score.under, 0);
 }
 
-TEST(SegmentCloud, JoinsWhatANearerThingCutsInTwo) {
+TEST(SegmentCloud, MergesPartsBehindAnOccluder) {
   const SegmentationScore score =
       scoreOf(table({thing("behind", kBox, {2.2, 3.0, 1.5708}, 0.5, {0.5, 0.1, 0.2}),
                      thing("before", kBox, {1.9, 3.0, 0.0}, 0.5, {0.08, 0.08, 0.4})}));
@@ -117,10 +117,10 @@ TEST(SegmentCloud, JoinsWhatANearerThingCutsInTwo) {
   EXPECT_GT(score.meanIou(), 0.85);
 }
 
-TEST(SegmentCloud, LabelsAreInOrderFromTheNearestAndTheSameEveryTime) {
+TEST(SegmentCloud, SortsLabelsByDistanceDeterministically) {
   const CloudFile file = table({thing("far", kBox, {2.5, 3.1, 0.2}, 0.5, {0.15, 0.15, 0.15}),
                                 thing("near", kBox, {1.85, 2.8, 0.2}, 0.5, {0.15, 0.15, 0.15})});
-  const Segmentation a = segmentCloud(file.cloud), b = segmentCloud(file.cloud);
+  const CloudSegmentation a = segmentCloud(file.cloud), b = segmentCloud(file.cloud);
   EXPECT_EQ(a.labels, b.labels);
   ASSERT_EQ(a.objects, 2u);
   float depth[2] = {0.0f, 0.0f};
@@ -135,14 +135,14 @@ TEST(SegmentCloud, LabelsAreInOrderFromTheNearestAndTheSameEveryTime) {
   EXPECT_LT(depth[0] / static_cast<float>(count[0]), depth[1] / static_cast<float>(count[1]));
 }
 
-TEST(SegmentCloud, EmptyAndBlindCloudsHaveNoObjects) {
+TEST(SegmentCloud, FindsNoObjectsInEmptyAndInvalidClouds) {
   EXPECT_EQ(segmentCloud({}).objects, 0u);
-  OrganisedCloud blind;
+  OrganizedCloud blind;
   blind.width = 20;
   blind.height = 10;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   blind.points.assign(200, Point(nan, nan, nan));
-  const Segmentation found = segmentCloud(blind);
+  const CloudSegmentation found = segmentCloud(blind);
   EXPECT_EQ(found.objects, 0u);
   EXPECT_FALSE(found.support);
   EXPECT_EQ(found.labels, std::vector<std::uint32_t>(200, 0));
@@ -150,51 +150,51 @@ TEST(SegmentCloud, EmptyAndBlindCloudsHaveNoObjects) {
   EXPECT_EQ(segmentCloud(blind).objects, 0u);
 }
 
-TEST(SegmentCloud, RefusesSizesAndParametersThatDoNotFit) {
-  OrganisedCloud cloud;
+TEST(SegmentCloud, RefusesInvalidSizesAndParameters) {
+  OrganizedCloud cloud;
   cloud.width = 3;
   cloud.height = 3;
   cloud.points.resize(8);
   EXPECT_THROW(segmentCloud(cloud), hyselam::InputError);
   cloud.points.resize(9, Point(0, 0, 1));
-  cloud.colours.resize(2);
+  cloud.colors.resize(2);
   EXPECT_THROW(segmentCloud(cloud), hyselam::InputError);
-  cloud.colours.clear();
+  cloud.colors.clear();
   const auto refused = [&](auto change) {
     SegmentParams params;
     change(params);
     EXPECT_THROW(segmentCloud(cloud, params), hyselam::ParameterError);
   };
-  refused([](SegmentParams& p) { p.reduce = 0; });
+  refused([](SegmentParams& p) { p.downsampling = 0; });
   refused([](SegmentParams& p) { p.normal_window = 0; });
-  refused([](SegmentParams& p) { p.smallest = 0; });
-  refused([](SegmentParams& p) { p.step = std::nan(""); });
-  refused([](SegmentParams& p) { p.tallest = -1.0; });
+  refused([](SegmentParams& p) { p.min_object_pixels = 0; });
+  refused([](SegmentParams& p) { p.max_step = std::nan(""); });
+  refused([](SegmentParams& p) { p.max_object_height = -1.0; });
 }
 
-TEST(SegmentUnorganised, FindsWhatStandsApart) {
+TEST(SegmentUnorganized, FindsSeparateObjects) {
   CloudFile file = table({thing("a", kBox, {1.9, 2.7, 0.5}, 0.5, {0.2, 0.1, 0.25}),
                           thing("b", kCylinder, {2.0, 3.3, 0.0}, 0.5, {0.1, 0.1, 0.15})});
   file.cloud.width *= file.cloud.height;
   file.cloud.height = 1;
   SegmentationScore score;
-  const Segmentation found = segmentUnorganised(file.cloud, {0.0f, 0.0f, 0.0f});
-  addScore(found.labels, file.labels, &score);
+  const CloudSegmentation found = segmentUnorganized(file.cloud, {0.0f, 0.0f, 0.0f});
+  addScore(found.labels, file.labels, score);
   EXPECT_EQ(found.objects, 2u);
   EXPECT_GT(score.meanIou(), 0.8);
-  UnorganisedParams params;
-  params.voxel = 0.0;
-  EXPECT_THROW(segmentUnorganised(file.cloud, {0.0f, 0.0f, 0.0f}, params), hyselam::ParameterError);
+  UnorganizedParams params;
+  params.voxel_size = 0.0;
+  EXPECT_THROW(segmentUnorganized(file.cloud, {0.0f, 0.0f, 0.0f}, params), hyselam::ParameterError);
 }
 
 TEST(PcdFile, ReadsWhatItWrote) {
   const TemporaryDirectory directory;
   CloudFile file = table({});
-  file.cloud.colours.assign(file.cloud.size(), 0x123456u);
+  file.cloud.colors.assign(file.cloud.size(), 0x123456u);
   writePcd(directory / "a.pcd", file.cloud, file.labels);
   const CloudFile back = readPcd(directory / "a.pcd");
   EXPECT_EQ(back.labels, file.labels);
-  EXPECT_EQ(back.cloud.colours, file.cloud.colours);
+  EXPECT_EQ(back.cloud.colors, file.cloud.colors);
   EXPECT_EQ(back.cloud.width, file.cloud.width);
   for (std::size_t i = 0; i < file.cloud.size(); ++i) {
     ASSERT_EQ(back.cloud.isValid(i), file.cloud.isValid(i));
@@ -203,7 +203,7 @@ TEST(PcdFile, ReadsWhatItWrote) {
   }
 }
 
-TEST(PcdFile, RefusesWhatIsNone) {
+TEST(PcdFile, RefusesInvalidFiles) {
   const TemporaryDirectory directory;
   EXPECT_THROW(readPcd(directory / "none.pcd"), hyselam::InputError);
   writeFile(directory / "text.pcd", "this is no cloud\n");
@@ -253,7 +253,7 @@ TEST(SegmentCloudTool, WritesLabelsAndJson) {
   EXPECT_GE(json["seconds"], 0.0);
 }
 
-TEST(SegmentCloudTool, SaysInOneLineWhatIsWrong) {
+TEST(SegmentCloudTool, ReportsErrorsInOneLine) {
   const TemporaryDirectory directory;
   writeFile(directory / "bad.pcd", "nothing");
   EXPECT_EQ(shell((directory / "bad.pcd") + " --labels " + (directory / "o.pcd"), directory), 2);
@@ -263,13 +263,13 @@ TEST(SegmentCloudTool, SaysInOneLineWhatIsWrong) {
   EXPECT_FALSE(std::filesystem::exists(directory / "o.pcd"));
 }
 
-TEST(SegmentCloud, AgreesWithPeopleOnRealTables) {
+TEST(SegmentCloud, AgreesWithHumanLabelsOnRealTables) {
   HYSELAM_NEED_DATA(data);
   SegmentationScore score;
   for (const auto& entry : std::filesystem::directory_iterator(data + "/objects/mosd")) {
     if (entry.path().extension() != ".pcd") continue;
     const CloudFile file = readPcd(entry.path().string());
-    addScore(segmentCloud(file.cloud).labels, file.labels, &score);
+    addScore(segmentCloud(file.cloud).labels, file.labels, score);
   }
   EXPECT_EQ(score.objects, 23);
   EXPECT_GT(score.meanIou(), 0.94);

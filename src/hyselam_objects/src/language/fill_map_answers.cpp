@@ -1,102 +1,129 @@
-// Questions about the map, and the words of all answers.
+// FillMap: answers to questions about the map, and the words of all replies.
 #include <algorithm>
 #include <set>
 
-#include "hyselam_objects/fill_map.hpp"
+#include "hyselam_objects/language/fill_map.hpp"
 
 namespace hyselam_objects {
+namespace {
+
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& each : sentences) text += (text.empty() ? "" : " ") + each;
+  return text;
+}
+
+}  // namespace
 
 // ---- Questions ----
 
-ObjectReply FillMap::ask(const ObjectStatement& statement) {
+ObjectReply FillMap::answerQuestion(const ObjectStatement& question) {
   Id place = 0;
-  if (statement.place) {
-    const std::string said = placeName(*statement.place);
-    place = said.empty() ? 0 : findPlace(said);
+  if (question.place) {
+    const std::string name = resolvePlaceName(*question.place);
+    place = name.empty() ? 0 : findPlace(name);
     if (place == 0) return reply(ReplyKind::kAnswer, "nothing");
   }
   std::vector<Id> landmarks;
-  if (statement.landmark) {
-    landmarks = statement.landmark->reference.empty() ? candidates(*statement.landmark)
-                                                      : resolve(*statement.landmark, place_);
+  if (question.landmark) {
+    landmarks = question.landmark->reference.empty()
+                    ? candidates(*question.landmark)
+                    : resolveReference(*question.landmark, last_place_);
     if (landmarks.empty()) {
-      return reply(ReplyKind::kAnswer, "unknown", {{"what", statement.landmark->text}});
+      return reply(ReplyKind::kAnswer, "unknown", {{"what", question.landmark->text}});
     }
   }
-  const auto wanted = [&](const ObjectInstance& object) {
-    if (!statement.objects.empty()) {
-      const ObjectPhrase& said = statement.objects.front();
-      if (said.reference.empty()
-              ? !fits(object, said)
-              : std::find(subjects_.begin(), subjects_.end(), object.id) == subjects_.end()) {
-        return false;
-      }
-    }
-    if (place != 0 && map_.placeOf(object.id) != place) return false;
-    if (!statement.landmark) return true;
-    for (const ObjectRelation* r : map_.relationsOf(object.id)) {
-      if (std::find(landmarks.begin(), landmarks.end(), r->other) == landmarks.end()) continue;
-      const bool lies = isSupport(*statement.relation) &&
-                        *statement.relation != RelationWord::kUnder && isSupport(r->word) &&
-                        r->word != RelationWord::kUnder;
-      if (r->word == *statement.relation || lies) return true;
-    }
-    return false;
-  };
-  ObjectReply out;
-  for (const ObjectInstance& object : map_.objects) {
-    if (wanted(object)) out.objects.push_back(object.id);
-  }
+  std::vector<Id> objects;
   std::set<Id> places;
-  for (const Id id : out.objects) {
-    if (map_.placeOf(id) != 0) places.insert(map_.placeOf(id));
+  for (const ObjectInstance& object : map_.objects) {
+    if (!matchesQuestion(object, question, place, landmarks)) continue;
+    objects.push_back(object.id);
+    if (map_.placeOf(object.id) != 0) places.insert(map_.placeOf(object.id));
   }
-  out.places.assign(places.begin(), places.end());
-  std::vector<std::string> items;
-  ObjectReply text;
-  if (statement.intent == "how_many") {
-    text = reply(ReplyKind::kAnswer, "how_many_answer",
-                 {{"count", std::to_string(out.objects.size())}});
-  } else if (statement.intent == "is_there") {
-    for (const Id id : out.objects) {
-      items.push_back(phrase("where", {{"what", name(id)}, {"where", whereIs(id)}}));
+  const std::vector<Id> all_places(places.begin(), places.end());
+  ObjectReply out = answerText(question, objects, all_places);
+  out.objects = objects;
+  out.places = all_places;
+  return out;
+}
+
+bool FillMap::matchesQuestion(const ObjectInstance& object, const ObjectStatement& question,
+                              Id place, const std::vector<Id>& landmarks) const {
+  const auto isIn = [](Id id, const std::vector<Id>& ids) {
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  };
+  if (!question.objects.empty()) {
+    const ObjectPhrase& phrase = question.objects.front();
+    const bool meant =
+        phrase.reference.empty() ? matchesPhrase(object, phrase) : isIn(object.id, last_objects_);
+    if (!meant) return false;
+  }
+  if (place != 0 && map_.placeOf(object.id) != place) return false;
+  if (!question.landmark) return true;
+  const auto carried = [](RelationWord word) {
+    return isSupport(word) && word != RelationWord::kUnder;
+  };
+  for (const ObjectRelation* r : map_.relationsOf(object.id)) {
+    if (!isIn(r->other, landmarks)) continue;
+    // "on the table" asks for what is over it or in it, too.
+    if (r->word == *question.relation || (carried(*question.relation) && carried(r->word))) {
+      return true;
     }
-    std::string all;
-    for (const std::string& each : items) all += (all.empty() ? "" : " ") + each;
-    if (!all.empty()) all.pop_back();
-    text = out.objects.empty() ? reply(ReplyKind::kAnswer, "not_there")
-                               : reply(ReplyKind::kAnswer, "there", {{"what", all}});
-  } else if (out.objects.empty()) {
-    text = statement.objects.empty()
+  }
+  return false;
+}
+
+ObjectReply FillMap::answerText(const ObjectStatement& question, const std::vector<Id>& objects,
+                                const std::vector<Id>& places) const {
+  if (question.intent == "how_many") {
+    return reply(ReplyKind::kAnswer, "how_many_answer",
+                 {{"count", std::to_string(objects.size())}});
+  }
+  if (question.intent == "is_there") return isThereAnswer(objects);
+  if (objects.empty()) {
+    return question.objects.empty()
                ? reply(ReplyKind::kAnswer, "nothing")
-               : reply(ReplyKind::kAnswer, "unknown", {{"what", statement.objects.front().text}});
-  } else if (statement.intent == "which_rooms") {
-    for (const Id id : out.places) items.push_back(map_.findPlace(id)->name);
-    text = reply(ReplyKind::kAnswer, "rooms", {{"places", list(items)}});
-  } else if (statement.intent == "go_to" && out.places.empty()) {
-    text = reply(ReplyKind::kAnswer, "nowhere", {{"what", name(out.objects.front())}});
-  } else if (statement.intent == "go_to") {
-    // To the nearest of them, which the one who drives finds.
-    text = reply(ReplyKind::kAnswer, "going",
-                 {{"what", name(out.objects.front())}, {"where", whereIs(out.objects.front())}});
-    if (out.places.size() > 1) {
-      for (const Id id : out.places) items.push_back(map_.findPlace(id)->name);
-      text.text = phrase("rooms", {{"places", list(items)}});
-    }
-  } else if (statement.intent == "where_is") {
-    for (const Id id : out.objects) {
-      items.push_back(phrase("where", {{"what", name(id)}, {"where", whereIs(id)}}));
-    }
-    text = reply(ReplyKind::kAnswer, "where");
-    text.text.clear();
-    for (const std::string& each : items) text.text += (text.text.empty() ? "" : " ") + each;
-  } else {
-    for (const Id id : out.objects) items.push_back(name(id));
-    text = reply(ReplyKind::kAnswer, "what", {{"what", list(items)}});
+               : reply(ReplyKind::kAnswer, "unknown", {{"what", question.objects.front().text}});
   }
-  text.objects = out.objects;
-  text.places = out.places;
-  return text;
+  if (question.intent == "which_rooms") {
+    return reply(ReplyKind::kAnswer, "rooms", {{"places", placeNames(places)}});
+  }
+  if (question.intent == "go_to") return goToAnswer(objects, places);
+  std::vector<std::string> items;
+  if (question.intent == "where_is") {
+    for (const Id id : objects) {
+      items.push_back(
+          phraseText("where", {{"what", objectName(id)}, {"where", objectLocation(id)}}));
+    }
+    ObjectReply out = reply(ReplyKind::kAnswer, "where");
+    out.text = joined(items);
+    return out;
+  }
+  for (const Id id : objects) items.push_back(objectName(id));
+  return reply(ReplyKind::kAnswer, "what", {{"what", enumeration(items)}});
+}
+
+ObjectReply FillMap::isThereAnswer(const std::vector<Id>& objects) const {
+  if (objects.empty()) return reply(ReplyKind::kAnswer, "not_there");
+  std::vector<std::string> sentences;
+  for (const Id id : objects) {
+    sentences.push_back(
+        phraseText("where", {{"what", objectName(id)}, {"where", objectLocation(id)}}));
+  }
+  std::string all = joined(sentences);
+  if (!all.empty()) all.pop_back();  // the full stop: it is part of a sentence
+  return reply(ReplyKind::kAnswer, "there", {{"what", all}});
+}
+
+/// The navigation chooses the nearest of several places.
+ObjectReply FillMap::goToAnswer(const std::vector<Id>& objects,
+                                const std::vector<Id>& places) const {
+  const std::string name = objectName(objects.front());
+  if (places.empty()) return reply(ReplyKind::kAnswer, "nowhere", {{"what", name}});
+  ObjectReply out = reply(ReplyKind::kAnswer, "going",
+                          {{"what", name}, {"where", objectLocation(objects.front())}});
+  if (places.size() > 1) out.text = phraseText("rooms", {{"places", placeNames(places)}});
+  return out;
 }
 
 std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionary) const {
@@ -108,24 +135,17 @@ std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionar
   return {kinds.begin(), kinds.end()};
 }
 
-std::string FillMap::askToShow(const std::string& kind) const {
-  return phrase("show_me", {{"what", kind}});
+std::string FillMap::showRequest(const std::string& kind) const {
+  return phraseText("show_me", {{"what", kind}});
 }
 
-std::string FillMap::learnt(const std::string& kind) const {
-  return phrase("learnt", {{"what", kind}});
-}
-
-void FillMap::forgetContext() {
-  subjects_.clear();
-  place_ = 0;
-  pending_.reset();
+std::string FillMap::learnedReply(const std::string& kind) const {
+  return phraseText("learnt", {{"what", kind}});
 }
 
 // ---- Words ----
 
-std::string FillMap::phrase(const std::string& key,
-                            const std::vector<std::pair<std::string, std::string>>& values) const {
+std::string FillMap::phraseText(const std::string& key, const Values& values) const {
   std::string text = parser_.grammar(language_).say(key);
   for (const auto& [name, value] : values) {
     const std::size_t at = text.find("{" + name + "}");
@@ -134,53 +154,59 @@ std::string FillMap::phrase(const std::string& key,
   return text;
 }
 
-ObjectReply FillMap::reply(ReplyKind kind, const std::string& key,
-                           const std::vector<std::pair<std::string, std::string>>& values) const {
+ObjectReply FillMap::reply(ReplyKind kind, const std::string& key, const Values& values) const {
   ObjectReply out;
   out.kind = kind;
   out.code = key;
-  out.text = phrase(key, values);
+  out.text = phraseText(key, values);
   return out;
 }
 
 ObjectReply FillMap::askBack(const ObjectStatement& statement, const std::string& key,
-                             const std::vector<std::pair<std::string, std::string>>& values,
-                             bool for_place) {
+                             const Values& values, bool for_place) {
   const bool yes_or_no = key == "contradiction" || key == "count_contradiction";
-  if (yes_or_no || for_place) pending_ = Pending{{statement}, for_place, false};
+  if (yes_or_no || for_place) pending_ = Pending{statement, for_place, false};
   return reply(ReplyKind::kQuestion, key, values);
 }
 
-std::string FillMap::list(const std::vector<std::string>& items) const {
+std::string FillMap::enumeration(const std::vector<std::string>& items) const {
   std::string text;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i > 0) text += phrase(i + 1 == items.size() ? "and" : "comma");
+    if (i > 0) text += phraseText(i + 1 == items.size() ? "and" : "comma");
     text += items[i];
   }
   return text;
 }
 
-std::string FillMap::name(Id object) const {
+std::string FillMap::placeNames(const std::vector<Id>& places) const {
+  std::vector<std::string> names;
+  for (const Id id : places) names.push_back(map_.findPlace(id)->name);
+  return enumeration(names);
+}
+
+std::string FillMap::objectName(Id object) const {
   const ObjectInstance* found = map_.find(object);
   if (found == nullptr) return "";
   std::string text = found->kind;
   for (auto each = found->properties.rbegin(); each != found->properties.rend(); ++each) {
     const auto& [key, value] = *each;
     if (key == "furniture") continue;
-    text = phrase(key == "owner" ? "owned" : "described",
-                  {{"property", parser_.propertyIn(language_, value)}, {"what", text}});
+    text = phraseText(key == "owner" ? "owned" : "described",
+                      {{"property", parser_.propertyWord(language_, value)}, {"what", text}});
   }
   return text;
 }
 
-std::string FillMap::whereIs(Id object) const {
+std::string FillMap::objectLocation(Id object) const {
   std::vector<std::string> items;
   for (const ObjectRelation* r : map_.relationsOf(object)) {
-    if (r->other != 0) items.push_back(phrase(toString(r->word), {{"what", name(r->other)}}));
+    if (r->other != 0) {
+      items.push_back(phraseText(toString(r->word), {{"what", objectName(r->other)}}));
+    }
   }
   const ObjectPlace* place = map_.findPlace(map_.placeOf(object));
-  if (place != nullptr) items.push_back(phrase("at", {{"place", place->name}}));
-  return list(items);
+  if (place != nullptr) items.push_back(phraseText("at", {{"place", place->name}}));
+  return enumeration(items);
 }
 
 }  // namespace hyselam_objects

@@ -1,12 +1,14 @@
-#include "hyselam_objects/object_parser.hpp"
+#include "hyselam_objects/language/object_parser.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <sstream>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "object_words.hpp"
-#include "shipped_words.hpp"
+#include "shipped_object_texts.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -27,6 +29,16 @@ std::string wordBefore(const std::string& text, std::size_t at) {
   std::size_t begin = at;
   while (begin > 0 && text[begin - 1] != ' ' && text[begin - 1] != ',') --begin;
   return lowerCase(text.substr(begin, at - begin));
+}
+
+constexpr std::array<const char*, 2> kShippedLanguages{"en", "pt"};
+
+hyselam_topo::GrammarSource shippedText(const std::string& prefix, const std::string& language) {
+  const std::string key = prefix + language;
+  const auto found =
+      std::find_if(std::begin(kShippedObjectTexts), std::end(kShippedObjectTexts),
+                   [&](const hyselam::EmbeddedText& each) { return each.key == key; });
+  return {key, found->text};
 }
 
 bool isCapitals(const std::string& word) {
@@ -66,10 +78,10 @@ struct ObjectParser::Words : ObjectWords {
       const auto digits = hyselam::parseNumber(word);
       if (leading && !last && number != numbers.end()) {
         out.count = number->second;
-        out.count_said = true;
+        out.has_count = true;
       } else if (leading && !last && digits && *digits >= 1.0 && *digits <= 1000.0) {
         out.count = static_cast<int>(*digits);
-        out.count_said = true;
+        out.has_count = true;
       } else if (leading && !last && another.count(word) != 0) {
         out.another = true;
       } else if (leading && !last && property != properties.end()) {
@@ -85,17 +97,18 @@ struct ObjectParser::Words : ObjectWords {
     }
     std::string kind;
     for (const std::string& word : noun) kind += (kind.empty() ? "" : " ") + word;
-    out.kind = kindOf(kind, &out.plural);
+    const NounKind found = kindOf(kind);
+    out.kind = found.kind;
+    out.plural = found.plural;
     return out;
   }
 
-  std::string kindOf(const std::string& noun, bool* plural) const {
-    *plural = false;
-    const auto kept = same.find(lowerCase(noun));
-    if (kept != same.end()) return kept->second;
-    std::string kind;
+  NounKind kindOf(const std::string& noun) const {
+    const auto kept = synonyms.find(lowerCase(noun));
+    if (kept != synonyms.end()) return {kept->second, false};
+    NounKind out;
     const std::vector<std::string> words = split(noun);
-    // The word that is made plural: the last one, or that before "of".
+    // The word that takes the plural: the last one, or that before "of".
     std::size_t head = head_first || words.empty() ? 0 : words.size() - 1;
     for (std::size_t i = 1; i < words.size() && !head_first; ++i) {
       if (of.count(lowerCase(words[i])) != 0) {
@@ -105,11 +118,16 @@ struct ObjectParser::Words : ObjectWords {
     }
     for (std::size_t i = 0; i < words.size(); ++i) {
       std::string word = isCapitals(words[i]) ? words[i] : lowerCase(words[i]);
-      if (i == head) word = singular(word, plural);
-      kind += (kind.empty() ? "" : " ") + word;
+      if (i == head) {
+        const NounKind one = singular(word);
+        word = one.kind;
+        out.plural = one.plural;
+      }
+      out.kind += (out.kind.empty() ? "" : " ") + word;
     }
-    const auto again = same.find(lowerCase(kind));
-    return again == same.end() ? kind : again->second;
+    const auto again = synonyms.find(lowerCase(out.kind));
+    if (again != synonyms.end()) out.kind = again->second;
+    return out;
   }
 
   ObjectStatement statement(const Utterance& u, const std::string& text) const {
@@ -129,7 +147,7 @@ struct ObjectParser::Words : ObjectWords {
       here.text = here.reference = "here";
       out.place = here;
     }
-    if (!u.word("relation").empty()) out.relation = relationWordOf(u.word("relation"));
+    if (!u.word("relation").empty()) out.relation = relationWordFromString(u.word("relation"));
     // Where one word means both: what is "na mesa" lies on the table.
     const bool on_top = out.landmark && tops.count(out.landmark->kind) != 0;
     if (on_top && out.relation == RelationWord::kIn) out.relation = RelationWord::kOn;
@@ -144,15 +162,16 @@ struct ObjectParser::Words : ObjectWords {
 ObjectParser ObjectParser::shipped(const std::string& language) {
   std::vector<ObjectLanguage> all;
   std::string known;
-  for (const ShippedWords& each : kShippedWords) {
-    const std::string name = each.language;
-    known += (known.empty() ? "" : ", ") + name;
-    if (!language.empty() && language != name) continue;
-    all.push_back({{"objects_" + name, each.grammar}, {"words_" + name, each.words}});
+  for (const char* const name : kShippedLanguages) {
+    known += std::string(known.empty() ? "" : ", ") + name;
+    if (language.empty() || language == name) {
+      all.push_back({shippedText("objects_", name), shippedText("words_", name)});
+    }
   }
   if (all.empty()) {
-    throw hyselam::InputError("language", language,
-                              "objects are not spoken of in this language: " + known);
+    throw hyselam::InputError(
+        "language", language,
+        "there is no grammar of objects for this language, only for " + known);
   }
   return ObjectParser(all);
 }
@@ -194,15 +213,15 @@ std::size_t ObjectParser::indexOf(const std::string& language) const {
   return 0;
 }
 
-std::string ObjectParser::kindOf(const std::string& noun, bool* plural) const {
-  bool ignored = false;
-  return words_.front()->kindOf(noun, plural != nullptr ? plural : &ignored);
+NounKind ObjectParser::kindOf(const std::string& noun) const {
+  return words_.front()->kindOf(noun);
 }
 
-std::string ObjectParser::propertyIn(const std::string& language, const std::string& value) const {
-  const auto& said = words_[indexOf(language)]->said;
-  const auto found = said.find(value);
-  return found == said.end() ? value : found->second;
+std::string ObjectParser::propertyWord(const std::string& language,
+                                       const std::string& value) const {
+  const auto& words = words_[indexOf(language)]->property_words;
+  const auto found = words.find(value);
+  return found == words.end() ? value : found->second;
 }
 
 const hyselam_topo::Grammar& ObjectParser::grammar(const std::string& language) const {

@@ -42,7 +42,7 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
       for (const auto& value : root[key]) {
         for (const auto& word : value.second) {
           words.properties[lowerCase(word.Scalar())] = {property, value.first.Scalar()};
-          words.said.emplace(value.first.Scalar(), word.Scalar());
+          words.property_words.emplace(value.first.Scalar(), word.Scalar());
         }
       }
     }
@@ -59,9 +59,9 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
     }
     for (const auto& each : root["same"]) {
       for (const auto& word : each.second) {
-        words.same[lowerCase(word.Scalar())] = each.first.Scalar();
+        words.synonyms[lowerCase(word.Scalar())] = each.first.Scalar();
       }
-      words.same[lowerCase(each.first.Scalar())] = each.first.Scalar();
+      words.synonyms[lowerCase(each.first.Scalar())] = each.first.Scalar();
     }
     for (const auto& each : root["nouns"]) words.nouns.push_back(each.Scalar());
   } catch (const YAML::Exception& e) {
@@ -70,24 +70,19 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
   return words;
 }
 
-std::string ObjectWords::singular(const std::string& word, bool* plural) const {
+NounKind ObjectWords::singular(const std::string& word) const {
+  constexpr std::size_t kMinLength = 4;  // shorter words have no plural ending
   const auto given = plurals.find(lowerCase(word));
-  if (given != plurals.end()) {
-    *plural = given->second != given->first;
-    return given->second;
-  }
+  if (given != plurals.end()) return {given->second, given->second != given->first};
   // "a PC", "two PCs"
   if (word.size() == 3 && endsWith(word, "s") && word[0] >= 'A' && word[0] <= 'Z') {
-    *plural = true;
-    return word.substr(0, 2);
+    return {word.substr(0, 2), true};
   }
   for (const auto& [end, one] : plural_endings) {
-    if (word.size() <= 3 || !endsWith(word, end)) continue;
-    *plural = one != end;
-    return word.substr(0, word.size() - end.size()) + one;
+    if (word.size() < kMinLength || !endsWith(word, end)) continue;
+    return {word.substr(0, word.size() - end.size()) + one, one != end};
   }
-  *plural = false;
-  return word;
+  return {word, false};
 }
 
 hyselam_topo::GrammarSource ObjectWords::grammar() const {
@@ -100,7 +95,7 @@ hyselam_topo::GrammarSource ObjectWords::grammar() const {
     names.insert(lowerCase(noun));
     names.insert(lowerCase(noun) + "s");
   }
-  for (const auto& [word, kept] : same) names.insert(word);
+  for (const auto& [word, kept] : synonyms) names.insert(word);
   for (const auto& [word, kept] : plurals) names.insert(word);
   for (const auto& [word, number] : numbers) generic.insert(word);
   for (const auto& [word, property] : properties) generic.insert(word);

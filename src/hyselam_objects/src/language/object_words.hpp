@@ -1,4 +1,4 @@
-// The words of which names of objects are made.
+// The words of names of objects.
 #pragma once
 
 #include <map>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hyselam_language/grammar/grammar.hpp"
+#include "hyselam_objects/language/object_parser.hpp"
 
 namespace hyselam_objects {
 
@@ -17,25 +18,25 @@ struct ObjectWords {
   std::set<std::string> another;
   /// Word to (property, value): "crimson" to ("colour", "red").
   std::map<std::string, std::pair<std::string, std::string>> properties;
-  std::map<std::string, std::string> said;  ///< the first word for each value of a property
-  bool properties_after = false;            ///< "copo vermelho": they stand behind the noun, too
-  std::set<std::string> definite;           ///< words before what is known: "the"
-  std::set<std::string> of;                 ///< "bottles of water": the plural is before it
-  bool head_first = false;                  ///< the first word of a name is made plural
-  std::set<std::string> tops;  ///< kinds that things lie on where it is said that they are in
+  std::map<std::string, std::string> property_words;  ///< value of a property to its first word
+  bool properties_after = false;   ///< "copo vermelho": they may stand behind the noun, too
+  std::set<std::string> definite;  ///< words before a known object: "the"
+  std::set<std::string> of;        ///< "bottles of water": the word before it is in the plural
+  bool head_first = false;         ///< the first word of a name takes the plural
+  std::set<std::string> tops;      ///< kinds that objects lie on where people say "in"
   std::map<std::string, std::string> plurals;
-  std::vector<std::pair<std::string, std::string>> plural_endings;  ///< the first that fits
-  std::map<std::string, std::string> same;  ///< word to the one that is kept
+  std::vector<std::pair<std::string, std::string>> plural_endings;  ///< the first that matches
+  std::map<std::string, std::string> synonyms;  ///< word to the one that is kept
   std::vector<std::string> nouns;
 
-  /// Throws hyselam::InputError for text that is no list of words.
+  /// @throws hyselam::InputError for a text that is no list of words.
   static ObjectWords fromYaml(const hyselam_topo::GrammarSource& source);
 
   /// The part of a grammar that follows from these words.
   hyselam_topo::GrammarSource grammar() const;
 
-  /// "cups" is "cup" and `*plural`.
-  std::string singular(const std::string& word, bool* plural) const;
+  /// "cups" is {"cup", true}.
+  NounKind singular(const std::string& word) const;
 };
 
 /// ASCII letters in lower case.

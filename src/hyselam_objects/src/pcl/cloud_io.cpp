@@ -80,34 +80,34 @@ CloudFile readPcd(const std::string& path) {
       throw InputError(path, std::string("field ") + "xyz"[a], "is missing or no 32-bit float");
     }
   }
-  const pcl::PCLPointField* colour = find(raw, "rgba");
-  if (colour == nullptr) colour = find(raw, "rgb");
+  const pcl::PCLPointField* color = find(raw, "rgba");
+  if (color == nullptr) color = find(raw, "rgb");
   const pcl::PCLPointField* label = find(raw, "label");
-  for (const pcl::PCLPointField* field : {colour, label}) {
+  for (const pcl::PCLPointField* field : {color, label}) {
     if (field != nullptr && (field->datatype < pcl::PCLPointField::INT32 ||
                              field->datatype > pcl::PCLPointField::FLOAT32)) {
       throw InputError(path, "field " + field->name, "has not 32 bits");
     }
   }
   out.cloud.points.resize(size);
-  if (colour != nullptr) out.cloud.colours.resize(size);
+  if (color != nullptr) out.cloud.colors.resize(size);
   if (label != nullptr) out.labels.resize(size);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < size; ++i) {
     Point p(valueAt<float>(raw, i, *axes[0]), valueAt<float>(raw, i, *axes[1]),
             valueAt<float>(raw, i, *axes[2]));
     out.cloud.points[i] = p.allFinite() ? p : Point(nan, nan, nan);
-    if (colour != nullptr) {
-      out.cloud.colours[i] = valueAt<std::uint32_t>(raw, i, *colour) & 0xffffffu;
+    if (color != nullptr) {
+      out.cloud.colors[i] = valueAt<std::uint32_t>(raw, i, *color) & 0xffffffu;
     }
     if (label != nullptr) out.labels[i] = valueAt<std::uint32_t>(raw, i, *label);
   }
   return out;
 }
 
-void writePcd(const std::string& path, const OrganisedCloud& cloud,
+void writePcd(const std::string& path, const OrganizedCloud& cloud,
               const std::vector<std::uint32_t>& labels) {
-  const bool coloured = !cloud.colours.empty();
+  const bool coloured = !cloud.colors.empty();
   pcl::PCLPointCloud2 raw;
   raw.width = static_cast<std::uint32_t>(cloud.width);
   raw.height = static_cast<std::uint32_t>(cloud.height);
@@ -130,7 +130,7 @@ void writePcd(const std::string& path, const OrganisedCloud& cloud,
     std::uint8_t* at = &raw.data[i * raw.point_step];
     for (int a = 0; a < 3; ++a, at += 4) std::memcpy(at, &cloud.points[i][a], 4);
     if (coloured) {
-      std::memcpy(at, &cloud.colours[i], 4);
+      std::memcpy(at, &cloud.colors[i], 4);
       at += 4;
     }
     std::memcpy(at, &labels.at(i), 4);

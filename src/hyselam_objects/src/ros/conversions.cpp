@@ -38,12 +38,12 @@ void checkImage(const sensor_msgs::Image& image, std::size_t pixel_bytes, const 
   }
 }
 
-std::uint32_t colourOf(const std::uint8_t* pixel, bool bgr) {
+std::uint32_t colorOf(const std::uint8_t* pixel, bool bgr) {
   const std::uint32_t first = pixel[0], green = pixel[1], last = pixel[2];
   return bgr ? last << 16 | green << 8 | first : first << 16 | green << 8 | last;
 }
 
-std_msgs::ColorRGBA color(const ObjectInstance& object) {
+std_msgs::ColorRGBA markerColor(const ObjectInstance& object) {
   struct Named {
     const char* name;
     float r, g, b;
@@ -74,11 +74,11 @@ const sensor_msgs::PointField* findField(const sensor_msgs::PointCloud2& msg,
   return nullptr;
 }
 
-/// Over the middle of an object; if others rest on it, over one of its edges, as far from their
-/// names as can be.
+/// Over the center of an object; if others rest on it, over one of its edges, as far from their
+/// names as possible.
 geometry_msgs::Point namePosition(const ObjectMap& map, const ObjectInstance& object) {
   constexpr double kOver = 0.09;  // [m]
-  constexpr double kInset = 0.8;  // from the middle to an edge
+  constexpr double kInset = 0.8;  // from the center to an edge
   std::vector<Point3> resting;
   for (const ObjectRelation& relation : map.relations) {
     if (relation.other != object.id || !isSupport(relation.word)) continue;
@@ -109,126 +109,154 @@ geometry_msgs::Point namePosition(const ObjectMap& map, const ObjectInstance& ob
   return best;
 }
 
+std::uint32_t countMoves(const ObjectInstance& object) {
+  std::uint32_t moves = 0;
+  for (std::size_t i = 1; i < object.history.size(); ++i) {
+    const Point3 &a = object.history[i - 1].position, &b = object.history[i].position;
+    moves += std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > MovabilityParams().min_move;
+  }
+  return moves;
+}
+
+hyselam_msgs::ObjectInstance instanceMsg(const ObjectMap& map, const ObjectInstance& object) {
+  hyselam_msgs::ObjectInstance out;
+  out.id = object.id;
+  out.kind = object.kind;
+  for (const auto& [name, value] : object.properties) {
+    out.property_names.push_back(name);
+    out.property_values.push_back(value);
+  }
+  out.described = object.described;
+  out.has_pose = object.pose.has_value();
+  out.pose.orientation.w = 1.0;
+  if (object.pose) {
+    out.pose = poseMsg(*object.pose);
+    out.size.x = object.pose->size[0];
+    out.size.y = object.pose->size[1];
+    out.size.z = object.pose->size[2];
+    std::copy(object.pose->covariance.begin(), object.pose->covariance.end(),
+              out.position_covariance.begin());
+  }
+  out.existence = object.existence;
+  out.movability = movability(map, object.id);
+  out.detections = static_cast<std::uint32_t>(object.detections);
+  out.missed_detections = static_cast<std::uint32_t>(object.missed_detections);
+  out.last_seen = hyselam::toRosTime(object.last_seen);
+  out.moves = countMoves(object);
+  return out;
+}
+
+hyselam_msgs::ObjectRelation relationMsg(const ObjectMap& map, const ObjectRelation& relation) {
+  hyselam_msgs::ObjectRelation out;
+  out.object = relation.object;
+  out.word = toString(relation.word);
+  out.other = relation.other;
+  if (const ObjectPlace* place = map.findPlace(relation.place)) {
+    out.place = place->name;
+    out.place_id = place->topological;
+  }
+  out.has_vector = relation.vector.has_value();
+  if (relation.vector) {
+    out.vector.x = relation.vector->x;
+    out.vector.y = relation.vector->y;
+    out.vector.z = relation.vector->z;
+  }
+  out.movability = relation.movability;
+  out.described = relation.described;
+  return out;
+}
+
+using visualization_msgs::Marker;
+
+Marker boxMarker(const ObjectInstance& object, const Marker& base) {
+  constexpr double kMinSize = 0.01;  // [m]: a flat box would not be shown
+  Marker box = base;
+  box.ns = "boxes";
+  box.id = static_cast<int>(object.id);
+  box.type = Marker::CUBE;
+  box.pose = poseMsg(*object.pose);
+  box.scale.x = std::max(kMinSize, object.pose->size[0]);
+  box.scale.y = std::max(kMinSize, object.pose->size[1]);
+  box.scale.z = std::max(kMinSize, object.pose->size[2]);
+  box.color = markerColor(object);
+  return box;
+}
+
+Marker nameMarker(const ObjectMap& map, const ObjectInstance& object, const Marker& base) {
+  Marker text = base;
+  text.ns = "names";
+  text.id = static_cast<int>(object.id);
+  text.type = Marker::TEXT_VIEW_FACING;
+  text.pose = poseMsg(*object.pose);
+  text.pose.position = namePosition(map, object);
+  text.scale.z = 0.12;
+  text.color.r = text.color.g = text.color.b = 0.05f;
+  text.color.a = 1.0f;
+  text.text = object.kind;
+  return text;
+}
+
+Marker relationMarker(const ObjectPose& a, const ObjectPose& b, bool support, const Marker& base) {
+  constexpr double kOver = 0.03;  // [m]
+  Marker arrow = base;
+  arrow.ns = "relations";
+  arrow.type = Marker::ARROW;
+  arrow.points.push_back(poseMsg(a).position);
+  arrow.points.push_back(poseMsg(b).position);
+  if (!support) {  // over both, where the boxes do not hide it
+    const double top = std::max(a.position.z + 0.5 * a.size[2], b.position.z + 0.5 * b.size[2]);
+    arrow.points[0].z = arrow.points[1].z = top + kOver;
+  }
+  arrow.scale.x = 0.015;
+  arrow.scale.y = 0.04;
+  arrow.scale.z = 0.05;
+  arrow.color.a = 0.9f;
+  arrow.color.r = support ? 0.1f : 0.85f;
+  arrow.color.g = 0.45f;
+  arrow.color.b = support ? 0.9f : 0.1f;
+  return arrow;
+}
+
 }  // namespace
 
 hyselam_msgs::ObjectMap toMsg(const ObjectMap& map) {
   hyselam_msgs::ObjectMap msg;
   msg.header.frame_id = map.frame_id;
   msg.header.stamp = hyselam::toRosTime(map.stamp);
-  for (const ObjectInstance& object : map.objects) {
-    hyselam_msgs::ObjectInstance out;
-    out.id = object.id;
-    out.kind = object.kind;
-    for (const auto& [name, value] : object.properties) {
-      out.property_names.push_back(name);
-      out.property_values.push_back(value);
-    }
-    out.told = object.told;
-    out.has_pose = object.pose.has_value();
-    out.pose.orientation.w = 1.0;
-    if (object.pose) {
-      out.pose = poseMsg(*object.pose);
-      out.size.x = object.pose->size[0];
-      out.size.y = object.pose->size[1];
-      out.size.z = object.pose->size[2];
-      std::copy(object.pose->covariance.begin(), object.pose->covariance.end(),
-                out.position_covariance.begin());
-    }
-    out.existence = object.existence;
-    out.movability = movability(map, object.id);
-    out.seen = static_cast<std::uint32_t>(object.seen);
-    out.missed = static_cast<std::uint32_t>(object.missed);
-    out.last_seen = hyselam::toRosTime(object.last_seen);
-    for (std::size_t i = 1; i < object.history.size(); ++i) {
-      const Point3 &a = object.history[i - 1].position, &b = object.history[i].position;
-      out.moves += std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > MovabilityParams().moved;
-    }
-    msg.objects.push_back(std::move(out));
-  }
+  for (const ObjectInstance& object : map.objects) msg.objects.push_back(instanceMsg(map, object));
   for (const ObjectRelation& relation : map.relations) {
-    hyselam_msgs::ObjectRelation out;
-    out.object = relation.object;
-    out.word = toString(relation.word);
-    out.other = relation.other;
-    if (const ObjectPlace* place = map.findPlace(relation.place)) {
-      out.place = place->name;
-      out.place_id = place->topological;
-    }
-    out.has_vector = relation.vector.has_value();
-    if (relation.vector) {
-      out.vector.x = relation.vector->x;
-      out.vector.y = relation.vector->y;
-      out.vector.z = relation.vector->z;
-    }
-    out.movability = relation.movability;
-    out.told = relation.told;
-    msg.relations.push_back(std::move(out));
+    msg.relations.push_back(relationMsg(map, relation));
   }
   return msg;
 }
 
 visualization_msgs::MarkerArray objectMarkers(const ObjectMap& map) {
   visualization_msgs::MarkerArray array;
-  visualization_msgs::Marker base;
+  Marker base;
   base.header.frame_id = map.frame_id;
   base.pose.orientation.w = 1.0;
-  base.action = visualization_msgs::Marker::DELETEALL;
+  base.action = Marker::DELETEALL;
   array.markers.push_back(base);
-  base.action = visualization_msgs::Marker::ADD;
+  base.action = Marker::ADD;
   for (const ObjectInstance& object : map.objects) {
     if (!object.pose) continue;
-    visualization_msgs::Marker box = base;
-    box.ns = "boxes";
-    box.id = static_cast<int>(object.id);
-    box.type = visualization_msgs::Marker::CUBE;
-    box.pose = poseMsg(*object.pose);
-    box.scale.x = std::max(0.01, object.pose->size[0]);
-    box.scale.y = std::max(0.01, object.pose->size[1]);
-    box.scale.z = std::max(0.01, object.pose->size[2]);
-    box.color = color(object);
-    array.markers.push_back(box);
-    visualization_msgs::Marker text = base;
-    text.ns = "names";
-    text.id = box.id;
-    text.type = visualization_msgs::Marker::TEXT_VIEW_FACING;
-    text.pose = box.pose;
-    text.pose.position = namePosition(map, object);
-    text.scale.z = 0.12;
-    text.color.r = text.color.g = text.color.b = 0.05f;
-    text.color.a = 1.0f;
-    text.text = object.kind;
-    array.markers.push_back(text);
+    array.markers.push_back(boxMarker(object, base));
+    array.markers.push_back(nameMarker(map, object, base));
   }
   int number = 0;
   for (const ObjectRelation& relation : map.relations) {
     const ObjectInstance *a = map.find(relation.object), *b = map.find(relation.other);
     if (b == nullptr || !a->pose || !b->pose) continue;
-    // Near says little beside left and right, and would hide them.
+    // "near" adds little to "left" and "right", and would hide them.
     if (relation.word == RelationWord::kNear) continue;
-    visualization_msgs::Marker arrow = base;
-    arrow.ns = "relations";
+    Marker arrow = relationMarker(*a->pose, *b->pose, isSupport(relation.word), base);
     arrow.id = number++;
-    arrow.type = visualization_msgs::Marker::ARROW;
-    arrow.points.push_back(poseMsg(*a->pose).position);
-    arrow.points.push_back(poseMsg(*b->pose).position);
-    if (!isSupport(relation.word)) {  // over both, where the boxes do not hide it
-      const double top = std::max(a->pose->position.z + 0.5 * a->pose->size[2],
-                                  b->pose->position.z + 0.5 * b->pose->size[2]);
-      arrow.points[0].z = arrow.points[1].z = top + 0.03;
-    }
-    arrow.scale.x = 0.015;
-    arrow.scale.y = 0.04;
-    arrow.scale.z = 0.05;
-    arrow.color.a = 0.9f;
-    arrow.color.r = isSupport(relation.word) ? 0.1f : 0.85f;
-    arrow.color.g = 0.45f;
-    arrow.color.b = isSupport(relation.word) ? 0.9f : 0.1f;
     array.markers.push_back(arrow);
   }
   return array;
 }
 
-PinholeCamera cameraOf(const sensor_msgs::CameraInfo& info) {
+PinholeCamera cameraFromInfo(const sensor_msgs::CameraInfo& info) {
   PinholeCamera camera;
   if (!(info.K[0] > 0.0) || !std::isfinite(info.K[0]) || !std::isfinite(info.K[2]) ||
       !std::isfinite(info.K[5])) {
@@ -240,16 +268,16 @@ PinholeCamera cameraOf(const sensor_msgs::CameraInfo& info) {
   return camera;
 }
 
-OrganisedCloud cloudOf(const sensor_msgs::Image& depth, const sensor_msgs::Image* image,
-                       const PinholeCamera& camera) {
+OrganizedCloud cloudFromImages(const sensor_msgs::Image& depth, const sensor_msgs::Image* image,
+                               const PinholeCamera& camera) {
   namespace encodings = sensor_msgs::image_encodings;
-  const bool millimetres =
+  const bool millimeters =
       depth.encoding == encodings::TYPE_16UC1 || depth.encoding == encodings::MONO16;
-  if (!millimetres && depth.encoding != encodings::TYPE_32FC1) {
+  if (!millimeters && depth.encoding != encodings::TYPE_32FC1) {
     throw hyselam::InputError("depth", "encoding",
                               "'" + depth.encoding + "' is not 16UC1 or 32FC1");
   }
-  checkImage(depth, millimetres ? 2 : 4, "depth");
+  checkImage(depth, millimeters ? 2 : 4, "depth");
   const bool bgr = image != nullptr && image->encoding == encodings::BGR8;
   if (image != nullptr) {
     if (!bgr && image->encoding != encodings::RGB8) {
@@ -261,14 +289,14 @@ OrganisedCloud cloudOf(const sensor_msgs::Image& depth, const sensor_msgs::Image
     }
     checkImage(*image, 3, "colour");
   }
-  OrganisedCloud cloud;
+  OrganizedCloud cloud;
   cloud.width = static_cast<int>(depth.width);
   cloud.height = static_cast<int>(depth.height);
   const auto f = static_cast<float>(camera.focal_length);
   for (std::uint32_t v = 0; v < depth.height; ++v) {
     for (std::uint32_t u = 0; u < depth.width; ++u) {
       float z = 0.0f;
-      if (millimetres) {
+      if (millimeters) {
         std::uint16_t value = 0;
         std::memcpy(&value, &depth.data[static_cast<std::size_t>(v) * depth.step + 2 * u], 2);
         z = 0.001f * static_cast<float>(value);
@@ -281,15 +309,15 @@ OrganisedCloud cloudOf(const sensor_msgs::Image& depth, const sensor_msgs::Image
           valid ? (static_cast<float>(v) - static_cast<float>(camera.cy)) * z / f : kNone,
           valid ? z : kNone);
       if (image != nullptr) {
-        cloud.colours.push_back(
-            colourOf(&image->data[static_cast<std::size_t>(v) * image->step + 3 * u], bgr));
+        cloud.colors.push_back(
+            colorOf(&image->data[static_cast<std::size_t>(v) * image->step + 3 * u], bgr));
       }
     }
   }
   return cloud;
 }
 
-OrganisedCloud cloudOf(const sensor_msgs::PointCloud2& msg) {
+OrganizedCloud cloudFromMsg(const sensor_msgs::PointCloud2& msg) {
   if (msg.height < 2) {
     throw hyselam::InputError("points", "", "the cloud has no rows: an organised one is needed");
   }
@@ -313,7 +341,7 @@ OrganisedCloud cloudOf(const sensor_msgs::PointCloud2& msg) {
   const sensor_msgs::PointField* rgb = findField(msg, "rgb");
   if (rgb == nullptr) rgb = findField(msg, "rgba");
   if (rgb != nullptr && !inside(rgb->offset)) rgb = nullptr;
-  OrganisedCloud cloud;
+  OrganizedCloud cloud;
   cloud.width = static_cast<int>(msg.width);
   cloud.height = static_cast<int>(msg.height);
   for (std::uint32_t v = 0; v < msg.height; ++v) {
@@ -327,7 +355,7 @@ OrganisedCloud cloudOf(const sensor_msgs::PointCloud2& msg) {
       if (rgb == nullptr) continue;
       std::uint32_t value = 0;
       std::memcpy(&value, at + rgb->offset, 4);
-      cloud.colours.push_back(value & 0xffffffu);
+      cloud.colors.push_back(value & 0xffffffu);
     }
   }
   return cloud;

@@ -3,161 +3,169 @@
 #include <algorithm>
 #include <utility>
 
+#include "camera_from_cloud.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/transport.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
-#include "points_camera.hpp"
 
 namespace hyselam_objects {
 namespace {
 
-constexpr double kTimeBack = 0.5;     // [s] a smaller step back is a late frame
-constexpr double kRetryEvery = 0.01;  // [s] while a frame waits for its pose
+constexpr double kTimeJump = 0.5;     // [s] a smaller step back is a late frame
 constexpr std::size_t kUnpaired = 3;  // images of both in a row: their stamps differ
 
 }  // namespace
 
-FrameInput::FrameInput(ros::NodeHandle nh, const FrameInputParams& params, Use use, Refuse refuse)
+void FrameInputParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit.renamed("period", "frame_period");
+  visit.renamed("tf_patience", "transform_wait");
+  visit("map_frame", map_frame, "frame of the object map");
+  visit("use_points", use_points, "input from the topic points, else from the images");
+  visit("frame_period", frame_period, Range::between(0.0, 60.0), "s",
+        "frames that come sooner are left out");
+  visit("transform_wait", transform_wait, Range::between(0.0, 5.0), "s",
+        "a frame waits at most this long for the camera's pose");
+}
+
+FrameInput::FrameInput(ros::NodeHandle nh, const FrameInputParams& params, FrameCallback on_frame,
+                       RefusalCallback on_refusal)
     : params_(params),
-      use_(std::move(use)),
-      refuse_(std::move(refuse)),
+      on_frame_(std::move(on_frame)),
+      on_refusal_(std::move(on_refusal)),
       depth_topic_(nh.resolveName("camera/depth/image_raw")),
-      colour_topic_(nh.resolveName("camera/color/image_raw")),
+      color_topic_(nh.resolveName("camera/color/image_raw")),
       info_topic_(nh.resolveName("camera/depth/camera_info")),
       points_topic_(nh.resolveName("points")),
       tf_listener_(tf_buffer_, true, hyselam::tcpNoDelay()),
-      pose_timer_(nh.createWallTimer(
-          ros::WallDuration(kRetryEvery), [this](const ros::WallTimerEvent&) { serveWaiting(); },
-          false, false)) {
+      pose_queue_(makePoseQueue(nh)) {
   if (params_.use_points) {
     points_ = nh.subscribe("points", 1, &FrameInput::onPoints, this, hyselam::tcpNoDelay());
   } else {
-    info_ = nh.subscribe("camera/depth/camera_info", 1, &FrameInput::onInfo, this,
-                         hyselam::tcpNoDelay());
-    depth_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/depth/image_raw", 5,
-                                                                  hyselam::tcpNoDelay());
-    colour_ = std::make_unique<message_filters::Subscriber<Image>>(nh, "camera/color/image_raw", 5,
-                                                                   hyselam::tcpNoDelay());
-    images_ =
-        std::make_unique<message_filters::TimeSynchronizer<Image, Image>>(*depth_, *colour_, 10);
-    depth_->registerCallback(&FrameInput::onDepth, this);
-    colour_->registerCallback(&FrameInput::onColour, this);
-    images_->registerCallback(&FrameInput::onImages, this);
+    subscribeImages(nh);
   }
+}
+
+FrameInput::PoseQueue FrameInput::makePoseQueue(const ros::NodeHandle& nh) {
+  // By wall time: while the clock stands, a frame must not wait for ever.
+  const hyselam::WaitParams wait{1, params_.transform_wait, hyselam::WaitParams::Clock::kWall};
+  return PoseQueue(
+      nh, wait,
+      [this](const WaitingFrame& frame) {
+        return hyselam::missingTransform(tf_buffer_, params_.map_frame, frame.header.frame_id,
+                                         frame.header.stamp);
+      },
+      [this](const WaitingFrame& frame) { serveFrame(frame); },
+      [this](const WaitingFrame&, PoseQueue::Queue::GivenUp, const std::string& missing) {
+        ++frames_without_pose_;
+        on_refusal_("the camera's pose is not known: " + missing);
+      });
+}
+
+void FrameInput::subscribeImages(ros::NodeHandle nh) {
+  constexpr std::uint32_t kQueue = 5, kPairs = 10;
+  using Subscriber = message_filters::Subscriber<Image>;
+  info_ =
+      nh.subscribe("camera/depth/camera_info", 1, &FrameInput::onInfo, this, hyselam::tcpNoDelay());
+  depth_ =
+      std::make_unique<Subscriber>(nh, "camera/depth/image_raw", kQueue, hyselam::tcpNoDelay());
+  color_ =
+      std::make_unique<Subscriber>(nh, "camera/color/image_raw", kQueue, hyselam::tcpNoDelay());
+  images_ =
+      std::make_unique<message_filters::TimeSynchronizer<Image, Image>>(*depth_, *color_, kPairs);
+  depth_->registerCallback(&FrameInput::onDepth, this);
+  color_->registerCallback(&FrameInput::onColor, this);
+  images_->registerCallback(&FrameInput::onImages, this);
 }
 
 void FrameInput::onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg) {
   try {
-    ++since_.info;
-    camera_ = cameraOf(*msg);
+    ++received_.info;
+    camera_ = cameraFromInfo(*msg);
   } catch (const hyselam::InputError& e) {
-    refuse_(e.what());
+    on_refusal_(e.what());
   }
 }
 
 void FrameInput::onDepth(const Image::ConstPtr&) {
-  ++since_.depth;
+  ++received_.depth;
   ++unpaired_depth_;
 }
 
-void FrameInput::onColour(const Image::ConstPtr&) {
-  ++since_.colour;
-  ++unpaired_colour_;
+void FrameInput::onColor(const Image::ConstPtr&) {
+  ++received_.color;
+  ++unpaired_color_;
 }
 
-void FrameInput::onImages(const Image::ConstPtr& depth, const Image::ConstPtr& colour) {
-  unpaired_depth_ = unpaired_colour_ = 0;
+void FrameInput::onImages(const Image::ConstPtr& depth, const Image::ConstPtr& color) {
+  unpaired_depth_ = unpaired_color_ = 0;
   if (!camera_ || !isDue(depth->header)) return;
-  await(depth->header,
-        [this, depth, colour, camera = *camera_](const Eigen::Isometry3d& in_map) mutable {
-          camera.in_map = in_map;
-          use_(cloudOf(*depth, colour.get(), camera), camera, depth->header.stamp);
-        });
+  pose_queue_.add(
+      {depth->header,
+       [this, depth, color, camera = *camera_](const Eigen::Isometry3d& in_map) mutable {
+         camera.in_map = in_map;
+         on_frame_(cloudFromImages(*depth, color.get(), camera), camera, depth->header.stamp);
+       }});
 }
 
 void FrameInput::onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg) {
-  ++since_.clouds;
+  ++received_.clouds;
   if (!isDue(msg->header)) return;
-  await(msg->header, [this, msg](const Eigen::Isometry3d& in_map) {
-    const OrganisedCloud cloud = cloudOf(*msg);
-    PinholeCamera camera = cameraOf(cloud);
-    camera.in_map = in_map;
-    use_(cloud, camera, msg->header.stamp);
-  });
+  pose_queue_.add({msg->header, [this, msg](const Eigen::Isometry3d& in_map) {
+                     const OrganizedCloud cloud = cloudFromMsg(*msg);
+                     PinholeCamera camera = cameraFromCloud(cloud);
+                     camera.in_map = in_map;
+                     on_frame_(cloud, camera, msg->header.stamp);
+                   }});
 }
 
 bool FrameInput::isDue(const std_msgs::Header& header) {
-  if ((last_frame_ - header.stamp).toSec() > kTimeBack) {  // a bag begins again
-    // A transform of before, received after the listener forgot them, would make it refuse all new
-    // ones.
+  if ((last_frame_ - header.stamp).toSec() > kTimeJump) {  // a bag is played again
+    // Older transforms, received after the listener was cleared, would make it refuse all new ones.
     tf_buffer_.clear();
-    waiting_.reset();
+    pose_queue_.clear();
     last_frame_ = ros::Time();
   }
-  // A pose that always comes later than the next frame would never be used, were the one that waits
-  // given up for it.
-  serveWaiting();
-  if (waiting_) return false;
-  if (!last_frame_.isZero() && (header.stamp - last_frame_).toSec() < params_.period) return false;
+  // The waiting frame is not given up for a newer one: otherwise no frame would ever be used if
+  // poses always came later than the next frame.
+  pose_queue_.serve();
+  if (!pose_queue_.empty()) return false;
+  if (!last_frame_.isZero() && (header.stamp - last_frame_).toSec() < params_.frame_period) {
+    return false;
+  }
   last_frame_ = header.stamp;
   return true;
 }
 
-// Waiting must not block: it would hold up the other nodelets of the manager, and for ever while
-// the clock stands.
-void FrameInput::await(const std_msgs::Header& header, WithPose use) {
-  waiting_ = {header, std::move(use), ros::WallTime::now()};
-  serveWaiting();
-}
-
-void FrameInput::serveWaiting() {
-  if (!waiting_) return;
-  const std_msgs::Header& header = waiting_->header;
-  std::string why;
-  if (tf_buffer_.canTransform(params_.map_frame, header.frame_id, header.stamp, &why)) {
-    const Waiting frame = std::move(*waiting_);
-    waiting_.reset();
-    pose_timer_.stop();
-    try {
-      const geometry_msgs::Transform pose =
-          tf_buffer_.lookupTransform(params_.map_frame, frame.header.frame_id, frame.header.stamp)
-              .transform;
-      const auto& t = pose.translation;
-      const auto& q = pose.rotation;
-      frame.use(Eigen::Translation3d(t.x, t.y, t.z) *
-                Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized());
-    } catch (const std::exception& e) {
-      refuse_(e.what());
-    }
-  } else if ((ros::WallTime::now() - waiting_->since).toSec() >= params_.tf_patience) {
-    refuseWithoutPose(why);
-  } else {
-    pose_timer_.start();
+void FrameInput::serveFrame(const WaitingFrame& frame) {
+  try {
+    const geometry_msgs::Transform pose =
+        tf_buffer_.lookupTransform(params_.map_frame, frame.header.frame_id, frame.header.stamp)
+            .transform;
+    const auto& t = pose.translation;
+    const auto& q = pose.rotation;
+    frame.on_pose(Eigen::Translation3d(t.x, t.y, t.z) *
+                  Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized());
+  } catch (const std::exception& e) {
+    on_refusal_(e.what());
   }
 }
 
 std::string FrameInput::missing() {
-  const Received since = std::exchange(since_, {});
-  if (params_.use_points) return since.clouds == 0 ? "no clouds on " + points_topic_ : "";
+  const Received received = std::exchange(received_, {});
+  if (params_.use_points) return received.clouds == 0 ? "no clouds on " + points_topic_ : "";
   std::string out;
   const auto add = [&out](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
-  if (since.depth == 0) add("no images on " + depth_topic_);
-  if (since.colour == 0) add("no images on " + colour_topic_);
+  if (received.depth == 0) add("no images on " + depth_topic_);
+  if (received.color == 0) add("no images on " + color_topic_);
   if (!camera_) {
-    add((since.info == 0 ? "no camera_info on " : "no camera_info that can be used on ") +
+    add((received.info == 0 ? "no camera_info on " : "no camera_info that can be used on ") +
         info_topic_);
   }
-  if (std::min(unpaired_depth_, unpaired_colour_) >= kUnpaired) {
-    add("no image on " + depth_topic_ + " has the same stamp as one on " + colour_topic_);
+  if (std::min(unpaired_depth_, unpaired_color_) >= kUnpaired) {
+    add("no image on " + depth_topic_ + " has the same stamp as one on " + color_topic_);
   }
   return out;
-}
-
-void FrameInput::refuseWithoutPose(const std::string& why) {
-  waiting_.reset();
-  pose_timer_.stop();
-  ++without_pose_;
-  refuse_("the camera's pose is not known: " + why);
 }
 
 }  // namespace hyselam_objects

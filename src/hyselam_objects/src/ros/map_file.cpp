@@ -13,7 +13,7 @@
 namespace hyselam_objects {
 namespace {
 
-/// What went wrong; empty: nothing.
+/// Returns the error; empty: none.
 std::string write(const std::string& path, const ObjectMap& map) {
   try {
     saveXml(path, map);
@@ -25,35 +25,34 @@ std::string write(const std::string& path, const ObjectMap& map) {
 
 }  // namespace
 
-ObjectMap loadMapIn(const std::string& frame_id, const std::string& path) {
+ObjectMap loadMapInFrame(const std::string& frame_id, const std::string& path) {
   ObjectMap map = loadObjectMap(path);
   if (map.frame_id != frame_id) {
     throw hyselam::InputError(path, "frame_id",
                               "is '" + map.frame_id + "', not '" + frame_id + "'");
   }
   hyselam::toRosTime(map.stamp, path);  // what no message can hold is refused
-  toMsg(map);                           // the times of its objects, too
+  toMsg(map);                           // as well as times of its objects
   return map;
 }
 
-MapFile::MapFile(std::string who, std::string path)
-    : who_(std::move(who)), path_(std::move(path)) {}
+MapFile::MapFile(std::string log_name, std::string path)
+    : log_name_(std::move(log_name)), path_(std::move(path)) {}
 
-ObjectMap MapFile::begin(const std::string& frame_id) {
+ObjectMap MapFile::load(const std::string& frame_id) {
   ObjectMap map;
   map.frame_id = frame_id;
-  // What cannot even be looked at is treated as a file that cannot be read.
-  std::error_code unseen;
-  if (!path_.empty() && (std::filesystem::exists(path_, unseen) || unseen)) {
+  std::error_code unknown;  // whether it exists: then reading it gives the reason
+  if (!path_.empty() && (std::filesystem::exists(path_, unknown) || unknown)) {
     try {
-      map = loadMapIn(frame_id, path_);
+      map = loadMapInFrame(frame_id, path_);
     } catch (const std::exception& e) {
       error_ = e.what();
-      const std::string aside = path_ + ".damaged";
+      const std::string renamed = path_ + ".damaged";
       std::error_code failed;
-      std::filesystem::rename(path_, aside, failed);
-      ROS_ERROR_STREAM(who_ << " begins without its objects: " << e.what()
-                            << (failed ? "" : "; the file is kept as " + aside));
+      std::filesystem::rename(path_, renamed, failed);
+      ROS_ERROR_STREAM(log_name_ << " starts without its objects: " << e.what()
+                                 << (failed ? "" : "; the file is kept as " + renamed));
       if (failed) path_.clear();
     }
   }
@@ -64,35 +63,35 @@ ObjectMap MapFile::begin(const std::string& frame_id) {
 void MapFile::save(const ObjectMap& map) {
   if (path_.empty()) return;
   wait();
-  if (!differs_ && map == saved_) return;
+  if (!outdated_ && map == saved_) return;
   saved_ = map;
-  told(write(path_, map));
+  setError(write(path_, map));
 }
 
-void MapFile::saveAside(const ObjectMap& map) {
+void MapFile::saveInBackground(const ObjectMap& map) {
   error();
-  if (path_.empty() || writing_.valid() || (!differs_ && map == saved_)) return;
+  if (path_.empty() || writing_.valid() || (!outdated_ && map == saved_)) return;
   saved_ = map;
   writing_ = std::async(std::launch::async, [path = path_, map] { return write(path, map); });
 }
 
 void MapFile::wait() {
-  if (writing_.valid()) told(writing_.get());
+  if (writing_.valid()) setError(writing_.get());
 }
 
 const std::string& MapFile::error() {
   if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    told(writing_.get());
+    setError(writing_.get());
   }
   return error_;
 }
 
-void MapFile::told(const std::string& error) {
+void MapFile::setError(const std::string& error) {
   if (!error.empty() && error_.empty()) {
-    ROS_ERROR_STREAM(who_ << " the objects are not saved: " << error);
+    ROS_ERROR_STREAM(log_name_ << " the objects are not saved: " << error);
   }
   error_ = error;
-  differs_ = !error.empty();
+  outdated_ = !error.empty();
 }
 
 }  // namespace hyselam_objects

@@ -7,83 +7,97 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
-#include "hyselam_objects/link_places.hpp"
+#include "hyselam_objects/language/link_places.hpp"
 #include "hyselam_topological_map/ros/conversions.hpp"
 
 namespace hyselam_objects {
 
-ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
+void ObjectEngineParams::describe(hyselam::ParameterVisitor& visit) {
   using hyselam::Range;
-  ObjectEngineParams p;
-  loader.get("map_frame", p.map_frame, "frame of the object map");
-  loader.get("map_file", p.map_file,
-             "object map to begin with, kept up to date; empty: nothing is kept");
-  loader.get("autosave_period", p.autosave_period, Range::between(0.1, 3600.0),
-             "[s] what was seen is saved so often; what is told, at once");
-  loader.get("dictionary_file", p.dictionary_file, "object dictionary, the same");
-  loader.get("use_points", p.use_points, "input from the topic points, else from the images");
-  loader.get("period", p.period, Range::between(0.0, 60.0),
-             "[s] frames that come sooner are left out");
-  loader.get("publish_period", p.publish_period, Range::between(0.1, 60.0), "[s]");
-  loader.get("tf_patience", p.tf_patience, Range::between(0.0, 5.0), "[s] a pose is waited for");
-  loader.get("views_to_learn", p.views_to_learn, Range::between(1, 1000),
-             "of a thing that is shown");
-  loader.get("range", p.detect.range, Range::between(0.5, 20.0),
-             "[m] what is farther is not looked at");
-  loader.get("tallest", p.detect.tallest, Range::between(0.1, 3.0), "[m] thing on the floor");
-  loader.get("gate", p.mapper.gate, Range::between(0.01, 5.0),
-             "[m] a thing and its instance are nearer than this");
-  loader.get("confirm", p.mapper.confirm, Range::between(1, 100), "views before a thing is kept");
-  loader.get("diagnostic_period", p.diagnostic_period, Range::between(0.05, 60.0), "[s]");
-  return p;
+  visit("map_file", map_file,
+        "object map, loaded at the start if it exists and kept up to date; empty: none");
+  visit("autosave_period", autosave_period, Range::between(0.1, 3600.0), "s",
+        "detections are saved so often; what people say is saved at once");
+  visit("dictionary_file", dictionary_file,
+        "object dictionary, loaded at the start if it exists, saved when an object was learned");
+  visit.group("", input);
+  visit("publish_period", publish_period, Range::between(0.1, 60.0), "s", "of the object map");
+  visit("views_to_learn", views_to_learn, Range::between(1, 1000), "",
+        "number of views of an object that a person shows");
+  // Names of `detection` and `mapping` are distinct.
+  visit.group("", detection);
+  visit.group("", mapping);
+  visit("diagnostic_period", diagnostic_period, Range::between(0.05, 60.0), "s",
+        "of the diagnostics");
+}
+
+void ObjectEngineParams::validate() const {
+  hyselam::checkParameters(*this);
+  detection.validate();
+  mapping.validate();
+}
+
+ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
+  ObjectEngineParams params;
+  params.describe(loader);
+  params.validate();
+  return params;
 }
 
 ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
-    : who_(hyselam::logName(private_nh)),
+    : log_name_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndLogParams(private_nh, loadObjectEngineParams)),
-      map_file_(who_, params_.map_file),
-      map_(map_file_.begin(params_.map_frame)),
+      map_file_(log_name_, params_.map_file),
+      map_(map_file_.load(params_.input.map_frame)),
       parser_(ObjectParser::shipped()),
-      fill_(&parser_, &map_),
-      mapper_(&map_, {}, params_.mapper),
-      shown_(params_.views_to_learn),
-      map_publisher_(nh.advertise<hyselam_msgs::ObjectMap>("object_map", 1, true)),
-      marker_publisher_(nh.advertise<visualization_msgs::MarkerArray>("object_markers", 1, true)),
-      text_publisher_(nh.advertise<std_msgs::String>("robot_text", 20)) {
-  talk_publisher_ = nh.advertise<std_msgs::String>("conversation", 100);
-  answer_publisher_ = nh.advertise<hyselam_msgs::ObjectAnswer>("object_answer", 20);
+      fill_map_(parser_, map_),
+      mapper_(map_, {}, params_.mapping),
+      demonstrated_(params_.views_to_learn) {
   if (!params_.dictionary_file.empty() && std::filesystem::exists(params_.dictionary_file)) {
     dictionary_ = loadDictionary(params_.dictionary_file);
     mapper_.setDictionary(dictionary_);
   }
-  mapper_.setPlaces([this](double x, double y) -> std::optional<std::pair<std::string, Point3>> {
-    if (!topology_ || !topology_->grid) return std::nullopt;
-    const auto& grid = *topology_->grid;
-    const hyselam_topo::Place* place =
-        topology_->findPlace(grid.placeOf(grid.geometry.cellAt({x, y})));
-    if (place == nullptr) return std::nullopt;
-    return std::make_pair(nameOf(*place), place->centre.value_or(Point3{x, y, 0.0}));
-  });
-  publish();  // now: a nodelet's queue is served while its constructor still runs
-  save_ = nh.advertiseService("save_object_map", &ObjectEngineServer::onSave, this);
-  load_ = nh.advertiseService("load_object_map", &ObjectEngineServer::onLoad, this);
-  query_ = nh.advertiseService("query_objects", &ObjectEngineServer::onQuery, this);
-  request_ = nh.subscribe("object_request", 20, &ObjectEngineServer::onRequest, this);
-  text_ = nh.subscribe("object_text", 20, &ObjectEngineServer::onText, this);
-  place_ = nh.subscribe("place", 5, &ObjectEngineServer::onPlace, this);
-  topology_subscriber_ = nh.subscribe("topological_map", 1, &ObjectEngineServer::onTopology, this);
+  mapper_.setPlaceLookup([this](double x, double y) { return placeAt(x, y); });
+  advertise(nh);
+  subscribe(nh);
+  startTimers(nh, private_nh);
+}
+
+void ObjectEngineServer::advertise(ros::NodeHandle nh) {
+  constexpr std::uint32_t kTexts = 20, kConversation = 100;  // of the queues
+  publishers_.map = nh.advertise<hyselam_msgs::ObjectMap>("object_map", 1, true);
+  publishers_.markers = nh.advertise<visualization_msgs::MarkerArray>("object_markers", 1, true);
+  publishers_.text = nh.advertise<std_msgs::String>("robot_text", kTexts);
+  publishers_.conversation = nh.advertise<std_msgs::String>("conversation", kConversation);
+  publishers_.answers = nh.advertise<hyselam_msgs::ObjectAnswer>("object_answer", kTexts);
+  // Before anything can call back: a nodelet's queue is served while its constructor still runs.
+  publishMap();
+  services_.save = nh.advertiseService("save_object_map", &ObjectEngineServer::onSave, this);
+  services_.load = nh.advertiseService("load_object_map", &ObjectEngineServer::onLoad, this);
+  services_.query = nh.advertiseService("query_objects", &ObjectEngineServer::onQuery, this);
+}
+
+void ObjectEngineServer::subscribe(ros::NodeHandle nh) {
+  constexpr std::uint32_t kTexts = 20, kPlaces = 5;  // of the queues
+  using Server = ObjectEngineServer;
+  subscribers_.request = nh.subscribe("object_request", kTexts, &Server::onRequest, this);
+  subscribers_.text = nh.subscribe("object_text", kTexts, &Server::onText, this);
+  subscribers_.place = nh.subscribe("place", kPlaces, &Server::onPlace, this);
+  subscribers_.topology = nh.subscribe("topological_map", 1, &Server::onTopology, this);
   input_.emplace(
-      nh,
-      FrameInputParams{params_.map_frame, params_.use_points, params_.period, params_.tf_patience},
-      [this](const OrganisedCloud& cloud, const PinholeCamera& camera, const ros::Time& stamp) {
-        look(cloud, camera, stamp);
+      nh, params_.input,
+      [this](const OrganizedCloud& cloud, const PinholeCamera& camera, const ros::Time& stamp) {
+        processFrame(cloud, camera, stamp);
       },
-      [this](const std::string& reason) { refuse(reason); });
-  timer_ = nh.createWallTimer(ros::WallDuration(params_.publish_period),
-                              [this](const ros::WallTimerEvent&) { publish(); });
+      [this](const std::string& reason) { refuseFrame(reason); });
+}
+
+void ObjectEngineServer::startTimers(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
+  publish_timer_ = nh.createWallTimer(ros::WallDuration(params_.publish_period),
+                                      [this](const ros::WallTimerEvent&) { publishMap(); });
   autosave_timer_ =
       nh.createWallTimer(ros::WallDuration(params_.autosave_period),
-                         [this](const ros::WallTimerEvent&) { map_file_.saveAside(map_); });
+                         [this](const ros::WallTimerEvent&) { map_file_.saveInBackground(map_); });
   diagnostics_.emplace(nh, private_nh.getNamespace().substr(1) + ": objects",
                        params_.diagnostic_period,
                        [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
@@ -91,102 +105,107 @@ ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle
 
 ObjectEngineServer::~ObjectEngineServer() {
   // No callback may change the map while it is written.
-  timer_.stop();
+  publish_timer_.stop();
   autosave_timer_.stop();
   diagnostics_.reset();
   input_.reset();
-  for (ros::Subscriber* subscriber : {&text_, &request_, &place_, &topology_subscriber_}) {
-    subscriber->shutdown();
+  for (ros::Subscriber* each :
+       {&subscribers_.text, &subscribers_.request, &subscribers_.place, &subscribers_.topology}) {
+    each->shutdown();
   }
-  for (ros::ServiceServer* service : {&save_, &load_, &query_}) service->shutdown();
+  for (ros::ServiceServer* each : {&services_.save, &services_.load, &services_.query}) {
+    each->shutdown();
+  }
   map_file_.save(map_);
 }
 
-void ObjectEngineServer::look(const OrganisedCloud& cloud, const PinholeCamera& camera,
-                              const ros::Time& stamp) {
-  const ros::WallTime begin = ros::WallTime::now();
-  const std::vector<DetectedObject> seen = detectObjects(cloud, camera.in_map, params_.detect);
-  // Before the map takes over what is wrong; but if it stays so, it is the map that was.
-  constexpr int kMostHeld = 20;
-  landmarks_ = watch_.add(map_, seen);
-  const bool off = landmarks_.verdict == LandmarkVerdict::kDisplaced ||
-                   landmarks_.verdict == LandmarkVerdict::kDoubtful;
-  held_ = off ? held_ + 1 : 0;
-  if (held_ > kMostHeld) {
-    watch_.clear();
-    held_ = 0;
-  }
-  if (held_ == 0) {
-    mapper_.update(cloud, camera, seen, hyselam::toSeconds(stamp));
-    fill_.setTime(map_.stamp);
-  }
-  learn(seen, camera);
-  seconds_ = (ros::WallTime::now() - begin).toSec();
-  detections_ += seen.size();
-  ++frames_;
-  error_.clear();
+/// Name and center of the place at a position.
+std::optional<std::pair<std::string, Point3>> ObjectEngineServer::placeAt(double x,
+                                                                          double y) const {
+  if (!topology_ || !topology_->grid) return std::nullopt;
+  const auto& grid = *topology_->grid;
+  const hyselam_topo::Place* place =
+      topology_->findPlace(grid.placeOf(grid.geometry.cellAt({x, y})));
+  if (place == nullptr) return std::nullopt;
+  return std::make_pair(nameOf(*place), place->centre.value_or(Point3{x, y, 0.0}));
 }
 
-void ObjectEngineServer::learn(const std::vector<DetectedObject>& seen,
-                               const PinholeCamera& camera) {
-  const std::optional<GenericObject> thing = shown_.add(seen, camera);
-  if (!thing) return;
-  ObjectDictionary learnt;
-  learnt.put(*thing);
-  dictionary_ = merged(dictionary_, learnt);
+void ObjectEngineServer::processFrame(const OrganizedCloud& cloud, const PinholeCamera& camera,
+                                      const ros::Time& stamp) {
+  const ros::WallTime begin = ros::WallTime::now();
+  const std::vector<DetectedObject> detections =
+      detectObjects(cloud, camera.in_map, params_.detection);
+  if (guard_.allowsUpdate(map_, detections)) {
+    mapper_.update(cloud, camera, detections, hyselam::toSeconds(stamp));
+    fill_map_.setTime(map_.stamp);
+  }
+  learnDemonstrated(detections, camera);
+  frames_.seconds = (ros::WallTime::now() - begin).toSec();
+  frames_.detections += detections.size();
+  ++frames_.used;
+  frames_.error.clear();
+}
+
+void ObjectEngineServer::learnDemonstrated(const std::vector<DetectedObject>& detections,
+                                           const PinholeCamera& camera) {
+  const std::optional<GenericObject> object = demonstrated_.addView(detections, camera);
+  if (!object) return;
+  ObjectDictionary learned;
+  learned.put(*object);
+  dictionary_ = merged(dictionary_, learned);
   mapper_.setDictionary(dictionary_);
-  say(fill_.learnt(thing->name));
-  // Last: a file that cannot be written must not make it learn the same again and again.
+  publishText(fill_map_.learnedReply(object->name));
+  // Last: if the file cannot be written, the object is known nevertheless.
   if (!params_.dictionary_file.empty()) saveXml(params_.dictionary_file, dictionary_);
 }
 
-void ObjectEngineServer::refuse(const std::string& reason) {
-  ++refused_;
-  error_ = reason;
-  ROS_WARN_STREAM_THROTTLE(5.0, who_ << " a frame is not used: " << reason);
+void ObjectEngineServer::refuseFrame(const std::string& reason) {
+  ++frames_.refused;
+  frames_.error = reason;
+  ROS_WARN_STREAM_THROTTLE(5.0, log_name_ << " a frame is not used: " << reason);
 }
 
 hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
   hyselam_msgs::ObjectAnswer out;
-  const std::vector<std::string> before = fill_.unknownKinds(dictionary_);
-  const ObjectMap known = map_;
+  const std::vector<std::string> unknown_before = fill_map_.unknownKinds(dictionary_);
+  const ObjectMap map_before = map_;
   std::size_t understood = 0;
-  const std::vector<ObjectReply> replies = fill_.say(text);
+  const std::vector<ObjectReply> replies = fill_map_.process(text);
   for (const ObjectReply& reply : replies) {
     out.reply += (out.reply.empty() ? "" : " ") + reply.text;
     out.objects.insert(out.objects.end(), reply.objects.begin(), reply.objects.end());
     for (const Id id : reply.places) {
       out.places.push_back(map_.findPlace(id)->name);
-      out.topological.push_back(map_.findPlace(id)->topological);
+      out.place_ids.push_back(map_.findPlace(id)->topological);
     }
     understood += reply.kind != ReplyKind::kNotUnderstood;
-    out.asks = reply.kind == ReplyKind::kQuestion;
-    if (reply.code == "going") out.go = 1;
-    if (reply.code == "shown") shown_.begin(reply.kind_of_object);
+    out.is_question = reply.kind == ReplyKind::kQuestion;
+    if (reply.code == "going") out.go_to_place = 1;
+    if (reply.code == "shown") demonstrated_.start(reply.kind_of_object);
   }
-  // A part that is not understood is told of in the reply.
+  // If only a part is not understood, the reply says so.
   out.understood = understood > 0;
-  // NewObject: what is new and cannot be recognised is asked for.
-  for (const std::string& kind : fill_.unknownKinds(dictionary_)) {
-    if (std::find(before.begin(), before.end(), kind) == before.end()) {
-      out.reply += " " + fill_.askToShow(kind);
+  // NewObject: the robot asks to be shown kinds that are new and that it cannot recognize.
+  for (const std::string& kind : fill_map_.unknownKinds(dictionary_)) {
+    if (std::find(unknown_before.begin(), unknown_before.end(), kind) == unknown_before.end()) {
+      out.reply += " " + fill_map_.showRequest(kind);
     }
   }
   all_understood_ = understood == replies.size();
-  // Before anybody hears that it is known.
-  if (!(map_ == known)) map_file_.save(map_);
-  publish();
+  // Saved before anybody gets the confirmation.
+  if (!(map_ == map_before)) map_file_.save(map_);
+  publishMap();
   return out;
 }
 
 void ObjectEngineServer::onRequest(const hyselam_msgs::ObjectRequest::ConstPtr& msg) {
   hyselam_msgs::ObjectAnswer out = answer(msg->text);
   out.id = msg->id;
-  answer_publisher_.publish(out);
+  publishers_.answers.publish(out);
 }
 
 void ObjectEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
-  say(answer(msg->data).reply);
+  publishText(answer(msg->data).reply);
 }
 
 bool ObjectEngineServer::onQuery(hyselam_msgs::QueryObjects::Request& request,
@@ -199,16 +218,16 @@ bool ObjectEngineServer::onQuery(hyselam_msgs::QueryObjects::Request& request,
   return true;
 }
 
-void ObjectEngineServer::say(const std::string& text) {
+void ObjectEngineServer::publishText(const std::string& text) {
   std_msgs::String msg;
   msg.data = text;
-  text_publisher_.publish(msg);
+  publishers_.text.publish(msg);
   msg.data = "robot: " + text;
-  talk_publisher_.publish(msg);
+  publishers_.conversation.publish(msg);
 }
 
 void ObjectEngineServer::onPlace(const hyselam_msgs::PlaceState::ConstPtr& msg) {
-  fill_.setPlace(msg->name);
+  fill_map_.setRobotPlace(msg->name);
 }
 
 void ObjectEngineServer::onTopology(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg) {
@@ -219,9 +238,9 @@ void ObjectEngineServer::onTopology(const hyselam_msgs::AugmentedTopologicalMap:
                                 "is '" + map.frame_id + "', not '" + map_.frame_id + "'");
     }
     topology_ = std::move(map);
-    linkPlaces(&map_, *topology_);
+    linkPlaces(map_, *topology_);
   } catch (const std::exception& e) {
-    ROS_WARN_STREAM(who_ << " not used: " << e.what());
+    ROS_WARN_STREAM(log_name_ << " not used: " << e.what());
   }
 }
 
@@ -229,15 +248,16 @@ bool ObjectEngineServer::onSave(hyselam_msgs::ObjectMapPath::Request& request,
                                 hyselam_msgs::ObjectMapPath::Response& response) {
   const std::string path = request.path.empty() ? params_.map_file : request.path;
   try {
-    if (path.empty())
+    if (path.empty()) {
       throw hyselam::InputError("path", "", "is empty, as is the parameter map_file");
-    map_file_.wait();  // an older map must not come after this one
+    }
+    map_file_.wait();  // an older map must not be written after this one
     saveXml(path, map_);
     response.success = true;
     response.message = std::to_string(map_.objects.size()) + " objects written to " + path;
   } catch (const std::exception& e) {
     response.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not saved: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " not saved: " << e.what());
   }
   return true;
 }
@@ -246,31 +266,32 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
                                 hyselam_msgs::ObjectMapPath::Response& response) {
   const std::string path = request.path.empty() ? params_.map_file : request.path;
   try {
-    map_ = loadMapIn(params_.map_frame, path);
-    fill_.forgetContext();
-    watch_.clear();
-    if (topology_) linkPlaces(&map_, *topology_);
+    map_ = loadMapInFrame(params_.input.map_frame, path);
+    fill_map_.resetContext();
+    guard_.clear();
+    if (topology_) linkPlaces(map_, *topology_);
     map_file_.save(map_);
-    publish();
+    publishMap();
     response.success = true;
     response.message = std::to_string(map_.objects.size()) + " objects read from " + path;
   } catch (const std::exception& e) {
     response.message = e.what();
-    ROS_ERROR_STREAM(who_ << " not loaded: " << e.what());
+    ROS_ERROR_STREAM(log_name_ << " not loaded: " << e.what());
   }
   return true;
 }
 
-void ObjectEngineServer::publish() {
-  constexpr double kWeakFor = 20.0;  // what was seen once has so long to be seen again [s]
-  mapper_.finish(mapper_.time() - kWeakFor);
-  map_publisher_.publish(toMsg(map_));
-  marker_publisher_.publish(objectMarkers(map_));
+void ObjectEngineServer::publishMap() {
+  constexpr double kUnconfirmedFor = 20.0;  // an object seen once is kept so long [s]
+  mapper_.consolidate(mapper_.time() - kUnconfirmedFor);
+  publishers_.map.publish(toMsg(map_));
+  publishers_.markers.publish(objectMarkers(map_));
 }
 
 void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   using diagnostic_msgs::DiagnosticStatus;
-  if (!error_.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, error_);
+  const LandmarkCheck& landmarks = guard_.lastCheck();
+  if (!frames_.error.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, frames_.error);
   const std::string missing = input_ ? input_->missing() : "";
   if (!missing.empty()) hyselam::addRemark(status, DiagnosticStatus::WARN, missing);
   if (!map_file_.error().empty()) {
@@ -278,26 +299,26 @@ void ObjectEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   }
   hyselam::addRemark(status, DiagnosticStatus::OK,
                      std::to_string(map_.objects.size()) + " objects in the map");
-  if (landmarks_.verdict == LandmarkVerdict::kDisplaced) {
+  if (landmarks.verdict == LandmarkVerdict::kDisplaced) {
     char text[120];
     std::snprintf(
         text, sizeof(text),
-        "the robot seems to be elsewhere: things that do not move are off by %.2f, %.2f m",
-        landmarks_.x, landmarks_.y);
+        "the robot seems to be elsewhere: objects that do not move are off by %.2f, %.2f m",
+        landmarks.x, landmarks.y);
     hyselam::addRemark(status, DiagnosticStatus::WARN, text);
   }
-  hyselam::addValue(status, "landmarks", toString(landmarks_.verdict));
-  hyselam::addValue(status, "landmarks compared", landmarks_.compared);
-  hyselam::addValue(status, "landmarks fitting", landmarks_.fitting);
-  hyselam::addValue(status, "landmarks chi2", landmarks_.chi2);
-  hyselam::addValue(status, "frames held back", held_);
-  hyselam::addValue(status, "offset x [m]", landmarks_.x);
-  hyselam::addValue(status, "offset y [m]", landmarks_.y);
-  hyselam::addValue(status, "frames used", frames_);
-  hyselam::addValue(status, "frames refused", refused_);
-  hyselam::addValue(status, "frames without a pose", input_->withoutPose());
-  hyselam::addValue(status, "detections", detections_);
-  hyselam::addValue(status, "last frame [s]", seconds_);
+  hyselam::addValue(status, "landmarks", toString(landmarks.verdict));
+  hyselam::addValue(status, "landmarks compared", landmarks.compared);
+  hyselam::addValue(status, "landmarks fitting", landmarks.inliers);
+  hyselam::addValue(status, "landmarks chi2", landmarks.chi2);
+  hyselam::addValue(status, "frames held back", guard_.framesHeldBack());
+  hyselam::addValue(status, "offset x [m]", landmarks.x);
+  hyselam::addValue(status, "offset y [m]", landmarks.y);
+  hyselam::addValue(status, "frames used", frames_.used);
+  hyselam::addValue(status, "frames refused", frames_.refused);
+  hyselam::addValue(status, "frames without a pose", input_->framesWithoutPose());
+  hyselam::addValue(status, "detections", frames_.detections);
+  hyselam::addValue(status, "last frame [s]", frames_.seconds);
   hyselam::addValue(status, "kinds known", dictionary_.objects.size());
 }
 

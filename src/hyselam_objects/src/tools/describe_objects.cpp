@@ -5,8 +5,8 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/tool.hpp"
-#include "hyselam_objects/fill_map.hpp"
-#include "hyselam_objects/link_places.hpp"
+#include "hyselam_objects/language/fill_map.hpp"
+#include "hyselam_objects/language/link_places.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
@@ -36,10 +36,10 @@ int main(int argc, char** argv) {
     hyselam_objects::ObjectDictionary dictionary;
     if (!dictionary_path.empty()) dictionary = hyselam_objects::loadDictionary(dictionary_path);
     const hyselam_objects::ObjectParser parser = hyselam_objects::ObjectParser::shipped();
-    hyselam_objects::FillMap fill(&parser, &map);
-    fill.setPlace(place);
+    hyselam_objects::FillMap fill(parser, map);
+    fill.setRobotPlace(place);
     nlohmann::json replies = nlohmann::json::array();
-    for (const hyselam_objects::ObjectReply& reply : fill.say(text)) {
+    for (const hyselam_objects::ObjectReply& reply : fill.process(text)) {
       std::cout << reply.text << "\n";
       replies.push_back({{"kind", toString(reply.kind)},
                          {"code", reply.code},
@@ -49,15 +49,15 @@ int main(int argc, char** argv) {
     }
     nlohmann::json unlinked = nullptr;
     if (!topology_path.empty()) {
-      unlinked = hyselam_objects::linkPlaces(&map, hyselam_topo::loadXml(topology_path));
+      unlinked = hyselam_objects::linkPlaces(map, hyselam_topo::loadXml(topology_path));
     }
     const std::vector<std::string> unknown = fill.unknownKinds(dictionary);
     if (!dictionary_path.empty()) {
-      for (const std::string& kind : unknown) std::cout << fill.askToShow(kind) << "\n";
+      for (const std::string& kind : unknown) std::cout << fill.showRequest(kind) << "\n";
     }
     hyselam_objects::saveXml(map_path, map);
     return nlohmann::json{{"replies", replies},
-                          {"objects", hyselam_objects::tellObjects(map)},
+                          {"objects", hyselam_objects::summaryLines(map)},
                           {"unknown_kinds", unknown},
                           {"places_without_topology", unlinked}};
   });

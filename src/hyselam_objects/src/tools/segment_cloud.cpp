@@ -1,5 +1,5 @@
 // segment_cloud IN.pcd --labels OUT.pcd: which points of a cloud belong to one object.
-#include "hyselam_objects/segment_cloud.hpp"
+#include "hyselam_objects/segmentation/segment_cloud.hpp"
 
 #include <ctime>
 #include <iostream>
@@ -7,7 +7,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
-#include "hyselam_objects/pcl/unorganised.hpp"
+#include "hyselam_objects/pcl/segment_unorganized.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -18,26 +18,28 @@ int main(int argc, char** argv) {
       "segment_cloud");
   std::string in, out;
   hyselam_objects::SegmentParams params;
-  hyselam_objects::UnorganisedParams loose;
+  hyselam_objects::UnorganizedParams loose;
   app.option_defaults()->always_capture_default();
   app.add_option("CLOUD", in, "PCD file; z forward, x right, y down as cameras have it [m]")
       ->required();
   app.add_option("--labels", out,
                  "PCD file to write, with a label per point: 0 invalid, 1 support, 2 ... objects")
       ->required();
-  app.add_option("--reduce", params.reduce, "work on every n-th row and column");
-  app.add_option("--tallest", params.tallest, "highest object above the support [m]");
-  app.add_option("--smallest", params.smallest, "least number of reduced pixels of an object");
-  app.add_option("--gap", loose.gap, "between objects, for clouds that are not organised [m]");
+  app.add_option("--reduce", params.downsampling, "work on every n-th row and column");
+  app.add_option("--tallest", params.max_object_height, "highest object above the support [m]");
+  app.add_option("--smallest", params.min_object_pixels,
+                 "least number of reduced pixels of an object");
+  app.add_option("--gap", loose.cluster_gap,
+                 "between objects, for clouds that are not organised [m]");
 
   return hyselam::runTool(argc, argv, app, [&] {
     const hyselam_objects::CloudFile file = hyselam_objects::readPcd(in);
-    const bool organised = file.cloud.height > 1;
-    loose.tallest = params.tallest;
+    const bool organized = file.cloud.height > 1;
+    loose.max_object_height = params.max_object_height;
     const std::clock_t begin = std::clock();
-    const hyselam_objects::Segmentation found =
-        organised ? hyselam_objects::segmentCloud(file.cloud, params)
-                  : hyselam_objects::segmentUnorganised(file.cloud, {0.0f, 0.0f, 0.0f}, loose);
+    const hyselam_objects::CloudSegmentation found =
+        organized ? hyselam_objects::segmentCloud(file.cloud, params)
+                  : hyselam_objects::segmentUnorganized(file.cloud, {0.0f, 0.0f, 0.0f}, loose);
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     hyselam_objects::writePcd(out, file.cloud, found.labels);
     std::cout << found.objects << " objects"
@@ -45,7 +47,7 @@ int main(int argc, char** argv) {
               << " ms -> " << out << "\n";
     return nlohmann::json{{"objects", found.objects},
                           {"seconds", seconds},
-                          {"organised", organised},
+                          {"organised", organized},
                           {"support", found.support.has_value()},
                           {"points", file.cloud.size()}};
   });

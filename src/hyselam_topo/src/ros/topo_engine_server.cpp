@@ -171,12 +171,12 @@ void TopoEngineServer::answered(const PassedOn& sentence,
                                 const hyselam_msgs::ObjectAnswer* answer) {
   if (answer != nullptr && answer->understood) {
     of_things_ = true;
-    objects_asked_ = answer->asks != 0;
+    objects_asked_ = answer->is_question != 0;
     say(answer->reply);
-    if (answer->go == 0) return;
+    if (answer->go_to_place == 0) return;
     std::vector<Id> goals;
     for (std::size_t i = 0; i < answer->places.size(); ++i) {
-      const Id id = i < answer->topological.size() ? answer->topological[i] : 0;
+      const Id id = i < answer->place_ids.size() ? answer->place_ids[i] : 0;
       if (id != 0 && dialogue_.map().findPlace(id) != nullptr) {
         goals.push_back(id);
       } else {

@@ -5,24 +5,25 @@
 #include <string>
 #include <vector>
 
-#include "hyselam_objects/organised_cloud.hpp"
+#include "hyselam_objects/segmentation/organized_cloud.hpp"
 
 namespace hyselam_objects {
 
-/// A cloud as a file has it. `cloud.height` is 1 for one that is not organised.
+/// A cloud as stored in a file. `cloud.height` is 1 for one that is not organized.
 struct CloudFile {
-  OrganisedCloud cloud;
+  OrganizedCloud cloud;
   std::vector<std::uint32_t> labels;  ///< field `label`; empty: the file has none
 };
 
 /// Reads a PCD file (ASCII, binary, compressed) with the fields x, y, z as 32-bit floats, and rgb,
-/// rgba and label if they are there. Throws hyselam::InputError for a file that is missing, is no
-/// PCD, is cut short, lacks a coordinate or holds no point.
+/// rgba and label if they are there.
+/// @throws hyselam::InputError for a file that is missing, is no PCD, is cut short, lacks a
+///         coordinate or holds no point.
 CloudFile readPcd(const std::string& path);
 
-/// Writes x, y, z, rgb (if known) and label, binary compressed, as a whole or not at all. Throws
-/// hyselam::InputError if the file cannot be written.
-void writePcd(const std::string& path, const OrganisedCloud& cloud,
+/// Writes x, y, z, rgb (if known) and label, binary compressed, as a whole or not at all.
+/// @throws hyselam::InputError if the file cannot be written.
+void writePcd(const std::string& path, const OrganizedCloud& cloud,
               const std::vector<std::uint32_t>& labels);
 
 }  // namespace hyselam_objects

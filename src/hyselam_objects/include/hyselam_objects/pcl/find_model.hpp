@@ -1,33 +1,39 @@
-// A model, as a cloud, found in a scene: SHOT descriptors, correspondences that agree on a pose
-// (Chen and Bhanu 2007, as in PCL), refined by ICP, and how much of it is there.
+// A model, given as a cloud, found in a scene: SHOT descriptors, correspondences that agree on a
+// pose (Chen and Bhanu 2007, as in PCL), refined by ICP, and how much of the model is there.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "hyselam_objects/organised_cloud.hpp"
+#include "hyselam_common/parameters.hpp"
+#include "hyselam_objects/segmentation/organized_cloud.hpp"
 
 namespace hyselam_objects {
 
 struct FindModelParams {
-  double model_sampling = 0.01;     ///< keypoints are that far apart [m], > 0
-  double scene_sampling = 0.02;     ///< [m], > 0
-  double descriptor_radius = 0.03;  ///< [m], > 0
-  double consistency = 0.01;  ///< two correspondences agree if their lengths differ by less [m]
-  int least = 5;              ///< correspondences of a pose, >= 3
-  int candidates = 3;         ///< poses with most correspondences that are refined, >= 1
-  double touch = 0.01;        ///< a point of the model lies on the scene within this [m]
+  double model_sampling = 0.01;        ///< distance of keypoints in the model [m], > 0
+  double scene_sampling = 0.02;        ///< ... and in the scene [m], > 0
+  double descriptor_radius = 0.03;     ///< [m], > 0
+  double consistency_distance = 0.01;  ///< by which lengths of two correspondences may differ [m]
+  int min_correspondences = 5;         ///< of a pose, >= 3
+  int max_hypotheses = 3;              ///< poses with most correspondences that are refined, >= 1
+  double inlier_distance = 0.01;       ///< of a point of the model to the scene [m], > 0
+
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError
+  void validate() const;
 };
 
 struct FoundModel {
   Eigen::Isometry3d model_in_scene = Eigen::Isometry3d::Identity();
   std::size_t correspondences = 0;
-  double covered = 0.0;  ///< share of the model's points that lie on the scene, 0 .. 1
+  double coverage = 0.0;  ///< share of the model's points that lie on the scene, 0 .. 1
 };
 
-/// The poses refined, the one that covers most first. Throws hyselam::InputError for clouds without
-/// 100 usable points, hyselam::ParameterError for parameters out of range.
-std::vector<FoundModel> findModel(const OrganisedCloud& model, const OrganisedCloud& scene,
+/// The refined poses, sorted by coverage, the best first.
+/// @throws hyselam::InputError for clouds with fewer than 100 usable points;
+///         hyselam::ParameterError.
+std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,
                                   const FindModelParams& params = {});
 
 }  // namespace hyselam_objects

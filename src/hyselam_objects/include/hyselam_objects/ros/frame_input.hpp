@@ -1,5 +1,5 @@
-// Frames of the camera in, each with the camera's pose in the map: from depth and colour images, or
-// from organised clouds.
+// Frames of a color and depth camera, each with the camera's pose in the map: from depth and color
+// images, or from organized clouds.
 #pragma once
 
 #include <message_filters/subscriber.h>
@@ -16,75 +16,80 @@
 #include <optional>
 #include <string>
 
-#include "hyselam_objects/object_mapper.hpp"
+#include "hyselam_common/parameters.hpp"
+#include "hyselam_common/ros/wait_for_transform.hpp"
+#include "hyselam_objects/mapping/object_mapper.hpp"
 
 namespace hyselam_objects {
 
 struct FrameInputParams {
   std::string map_frame = "map";
-  bool use_points = false;   ///< input from `points`, else from the camera's images
-  double period = 0.5;       ///< frames that come sooner are left out [s]
-  double tf_patience = 0.2;  ///< a pose is waited for [s]
+  bool use_points = false;      ///< input from `points`, else from the camera's images
+  double frame_period = 0.5;    ///< frames that come sooner are left out [s], 0 .. 60
+  double transform_wait = 0.2;  ///< a frame waits at most this long for its pose [s], 0 .. 5
+
+  void describe(hyselam::ParameterVisitor& visit);
 };
 
 /// All callbacks run on the queue of `nh`.
 class FrameInput {
  public:
-  using Use =
-      std::function<void(const OrganisedCloud&, const PinholeCamera&, const ros::Time& stamp)>;
-  using Refuse = std::function<void(const std::string& reason)>;
+  using FrameCallback =
+      std::function<void(const OrganizedCloud&, const PinholeCamera&, const ros::Time& stamp)>;
+  using RefusalCallback = std::function<void(const std::string& reason)>;
 
-  /// `use` gets each frame whose pose is known; what it throws is a reason to refuse the frame.
-  FrameInput(ros::NodeHandle nh, const FrameInputParams& params, Use use, Refuse refuse);
+  /// `on_frame` gets each frame whose pose is known; an exception that it throws is a reason to
+  /// refuse the frame.
+  FrameInput(ros::NodeHandle nh, const FrameInputParams& params, FrameCallback on_frame,
+             RefusalCallback on_refusal);
   FrameInput(const FrameInput&) = delete;  // its callbacks hold it
   FrameInput& operator=(const FrameInput&) = delete;
 
-  /// What the input has lacked since this was asked last: topics that gave nothing, stamps of depth
-  /// and colour that never were the same; empty: nothing.
+  /// What the input has lacked since the last call: topics without messages, depth and color images
+  /// without equal stamps; empty: nothing.
   std::string missing();
 
-  /// Frames refused because nobody told in time where the camera was.
-  std::size_t withoutPose() const { return without_pose_; }
+  /// Frames refused because the camera's pose did not become known in time.
+  std::size_t framesWithoutPose() const { return frames_without_pose_; }
 
  private:
   using Image = sensor_msgs::Image;
-  using WithPose = std::function<void(const Eigen::Isometry3d& camera_in_map)>;
+  using PoseCallback = std::function<void(const Eigen::Isometry3d& camera_in_map)>;
+  struct WaitingFrame {
+    std_msgs::Header header;
+    PoseCallback on_pose;
+  };
+  using PoseQueue = hyselam::WaitForTransform<WaitingFrame>;
 
+  PoseQueue makePoseQueue(const ros::NodeHandle& nh);
+  void subscribeImages(ros::NodeHandle nh);
   void onInfo(const sensor_msgs::CameraInfo::ConstPtr& msg);
   void onDepth(const Image::ConstPtr& msg);
-  void onColour(const Image::ConstPtr& msg);
-  void onImages(const Image::ConstPtr& depth, const Image::ConstPtr& colour);
+  void onColor(const Image::ConstPtr& msg);
+  void onImages(const Image::ConstPtr& depth, const Image::ConstPtr& color);
   void onPoints(const sensor_msgs::PointCloud2::ConstPtr& msg);
   bool isDue(const std_msgs::Header& header);
-  void await(const std_msgs::Header& header, WithPose use);
-  void serveWaiting();
-  void refuseWithoutPose(const std::string& why);
+  void serveFrame(const WaitingFrame& frame);
 
   const FrameInputParams params_;
-  const Use use_;
-  const Refuse refuse_;
-  const std::string depth_topic_, colour_topic_, info_topic_, points_topic_;
+  const FrameCallback on_frame_;
+  const RefusalCallback on_refusal_;
+  const std::string depth_topic_, color_topic_, info_topic_, points_topic_;
   struct Received {
-    std::size_t depth = 0, colour = 0, info = 0, clouds = 0;
+    std::size_t depth = 0, color = 0, info = 0, clouds = 0;
   };
-  Received since_;                                        // missing() was asked
-  std::size_t unpaired_depth_ = 0, unpaired_colour_ = 0;  // since the last pair of the same stamp
+  Received received_;                                    // since missing() was called
+  std::size_t unpaired_depth_ = 0, unpaired_color_ = 0;  // since the last pair of the same stamp
   std::optional<PinholeCamera> camera_;
-  struct Waiting {
-    std_msgs::Header header;
-    WithPose use;
-    ros::WallTime since;
-  };
-  std::optional<Waiting> waiting_;  // for the camera's pose
   ros::Time last_frame_;
-  std::size_t without_pose_ = 0;
+  std::size_t frames_without_pose_ = 0;
 
   tf2_ros::Buffer tf_buffer_;
   tf2_ros::TransformListener tf_listener_;
+  PoseQueue pose_queue_;  // holds one frame at most
   ros::Subscriber info_, points_;
-  std::unique_ptr<message_filters::Subscriber<Image>> depth_, colour_;
+  std::unique_ptr<message_filters::Subscriber<Image>> depth_, color_;
   std::unique_ptr<message_filters::TimeSynchronizer<Image, Image>> images_;
-  ros::WallTimer pose_timer_;
 };
 
 }  // namespace hyselam_objects

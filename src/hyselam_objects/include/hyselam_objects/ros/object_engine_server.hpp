@@ -1,4 +1,4 @@
-// ObjectEngine: camera and words in, the object map out.
+// ObjectEngine: builds the object map from camera frames and from what people say.
 #pragma once
 
 #include <hyselam_msgs/AugmentedTopologicalMap.h>
@@ -12,30 +12,32 @@
 
 #include <optional>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/params.hpp"
-#include "hyselam_objects/fill_map.hpp"
-#include "hyselam_objects/landmark_check.hpp"
+#include "hyselam_objects/language/fill_map.hpp"
+#include "hyselam_objects/mapping/landmark_check.hpp"
+#include "hyselam_objects/recognition/demonstrated_object.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
 #include "hyselam_objects/ros/frame_input.hpp"
 #include "hyselam_objects/ros/map_file.hpp"
-#include "hyselam_objects/shown_thing.hpp"
 
 namespace hyselam_objects {
 
 struct ObjectEngineParams {
-  std::string map_frame = "map";
-  std::string map_file;            ///< begun with if it is there, saved to; empty: neither
-  double autosave_period = 10.0;   ///< of what was seen; what is told is saved at once [s]
-  std::string dictionary_file;     ///< the same for the dictionary
-  bool use_points = false;         ///< input from `points`, else from the camera's images
-  double period = 0.5;             ///< frames that come sooner are left out [s]
+  FrameInputParams input;
+  std::string map_file;            ///< loaded at the start, kept up to date; empty: none
+  double autosave_period = 10.0;   ///< of detections; what people say is saved at once [s]
+  std::string dictionary_file;     ///< loaded at the start, saved when an object was learned
   double publish_period = 2.0;     ///< [s]
-  double tf_patience = 0.2;        ///< [s]
-  int views_to_learn = 8;          ///< of a thing that is shown
+  int views_to_learn = 8;          ///< of an object that a person shows
   double diagnostic_period = 1.0;  ///< [s]
-  DetectParams detect;
-  MapperParams mapper;
+  DetectParams detection;
+  MapperParams mapping;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError
+  void validate() const;
 };
 
 /// @throws hyselam::ParameterError.
@@ -50,6 +52,26 @@ class ObjectEngineServer {
   ~ObjectEngineServer();
 
  private:
+  struct Publishers {
+    ros::Publisher map, markers, text, conversation, answers;
+  };
+  struct Services {
+    ros::ServiceServer save, load, query;
+  };
+  struct Subscribers {
+    ros::Subscriber text, request, place, topology;
+  };
+  struct FrameStatistics {
+    std::size_t used = 0, refused = 0, detections = 0;
+    double seconds = 0.0;  ///< of the last frame
+    std::string error;     ///< of the last frame; empty: it was used
+  };
+
+  void advertise(ros::NodeHandle nh);
+  void subscribe(ros::NodeHandle nh);
+  void startTimers(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
+  std::optional<std::pair<std::string, Point3>> placeAt(double x, double y) const;
+
   hyselam_msgs::ObjectAnswer answer(const std::string& text);
   void onRequest(const hyselam_msgs::ObjectRequest::ConstPtr& msg);
   void onText(const std_msgs::String::ConstPtr& msg);
@@ -62,37 +84,34 @@ class ObjectEngineServer {
   bool onQuery(hyselam_msgs::QueryObjects::Request& request,
                hyselam_msgs::QueryObjects::Response& response);
 
-  void look(const OrganisedCloud& cloud, const PinholeCamera& camera, const ros::Time& stamp);
-  void learn(const std::vector<DetectedObject>& seen, const PinholeCamera& camera);
-  void refuse(const std::string& reason);
-  void publish();
-  void say(const std::string& text);
+  void processFrame(const OrganizedCloud& cloud, const PinholeCamera& camera,
+                    const ros::Time& stamp);
+  void learnDemonstrated(const std::vector<DetectedObject>& detections,
+                         const PinholeCamera& camera);
+  void refuseFrame(const std::string& reason);
+  void publishMap();
+  void publishText(const std::string& text);
   void report(diagnostic_msgs::DiagnosticStatus& status);
 
-  std::string who_;
+  std::string log_name_;
   ObjectEngineParams params_;
   MapFile map_file_;
   ObjectMap map_;
   ObjectDictionary dictionary_;
   ObjectParser parser_;
-  FillMap fill_;
+  FillMap fill_map_;
   ObjectMapper mapper_;
-  LandmarkWatch watch_;
-  LandmarkCheck landmarks_;  ///< of the last frames
-  int held_ = 0;             ///< frames in a row that the map has not been given because of them
+  MapUpdateGuard guard_;
   std::optional<hyselam_topo::AugmentedTopologicalMap> topology_;
-  ShownThing shown_;
+  DemonstratedObject demonstrated_;
   bool all_understood_ = true;  ///< of the last text
-  std::size_t frames_ = 0, refused_ = 0, detections_ = 0;
-  double seconds_ = 0.0;
-  std::string error_;  ///< of the last frame; empty: it was used
+  FrameStatistics frames_;
 
-  ros::Publisher map_publisher_, marker_publisher_, text_publisher_, talk_publisher_,
-      answer_publisher_;
-  ros::Subscriber text_, request_, place_, topology_subscriber_;
-  ros::ServiceServer save_, load_, query_;
+  Publishers publishers_;
+  Services services_;
+  Subscribers subscribers_;
   std::optional<FrameInput> input_;
-  ros::WallTimer timer_, autosave_timer_;
+  ros::WallTimer publish_timer_, autosave_timer_;
   std::optional<hyselam::Diagnostics> diagnostics_;
 };
 

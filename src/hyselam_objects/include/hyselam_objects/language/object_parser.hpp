@@ -1,0 +1,89 @@
+// TextParser (dos Santos, section 3.2.4): what people say about objects, in the terms of the object
+// map. Sentences are parsed by the engine of TopoParser with a grammar of objects; here names such
+// as "two small red cups" are analyzed.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hyselam_language/grammar/topo_parser.hpp"
+#include "hyselam_objects/mapping/object_map.hpp"
+
+namespace hyselam_objects {
+
+/// "two small red cups", "the pen", "it".
+struct ObjectPhrase {
+  std::string kind;  ///< singular: "cup"; "" for a reference
+  std::map<std::string, std::string> properties;
+  int count = 1;
+  bool has_count = false;  ///< with a number, not an article
+  bool plural = false;     ///< of the noun
+  bool definite = false;   ///< "the pen"; otherwise "a pen", "two pens", "pens"
+  bool another = false;    ///< "another pen": none that is known
+  std::string reference;   ///< "it", "them"; "" for a name
+  std::string text;        ///< as it was said
+};
+
+struct ObjectStatement {
+  hyselam_topo::UtteranceKind kind = hyselam_topo::UtteranceKind::kNotUnderstood;
+  std::string intent;  ///< of the grammar: "exist", "is_at", "is_like", "where_is", ...
+  std::vector<ObjectPhrase> objects;  ///< in the order said
+  std::optional<RelationWord> relation;
+  std::optional<ObjectPhrase> landmark;  ///< what the relation is to
+  std::optional<hyselam_topo::SaidName> place;
+  std::map<std::string, std::string> properties;  ///< of "is_like"
+  std::optional<int> count;                       ///< of an answer to "how many?"
+  bool correction = false;
+  std::string language;
+  std::string text;
+  std::string reason;  ///< why it was not understood
+};
+
+/// "cups" is {"cup", true}.
+struct NounKind {
+  std::string kind;
+  bool plural = false;
+};
+
+/// The texts of a grammar and of its list of words.
+struct ObjectLanguage {
+  hyselam_topo::GrammarSource grammar;
+  hyselam_topo::GrammarSource words;
+};
+
+class ObjectParser {
+ public:
+  /// The shipped grammar of a language: "en", "pt"; "": all, each text in the best matching one.
+  /// @throws hyselam::InputError for others.
+  static ObjectParser shipped(const std::string& language = "");
+  /// @throws hyselam::InputError for a text that is no grammar or list of words.
+  explicit ObjectParser(const std::vector<ObjectLanguage>& languages);
+  ~ObjectParser();
+  ObjectParser(ObjectParser&&) noexcept;
+
+  /// Never throws for the content of a text: a part that is not understood is returned with the
+  /// reason. `expected`: intents of answers to a question that was asked; `preferred`: the language
+  /// of a text that matches several equally well.
+  std::vector<ObjectStatement> parse(const std::string& text,
+                                     const std::set<std::string>& expected = {},
+                                     const std::string& preferred = "") const;
+  /// The first one for a language that is not known, as "".
+  const hyselam_topo::Grammar& grammar(const std::string& language = "") const;
+  /// The word for a color or size of the map: "red", "vermelho".
+  std::string propertyWord(const std::string& language, const std::string& value) const;
+  /// Kind and number of a noun of the first language; synonyms give the same kind.
+  NounKind kindOf(const std::string& noun) const;
+
+ private:
+  struct Words;
+  std::size_t indexOf(const std::string& language) const;
+
+  std::vector<std::unique_ptr<const Words>> words_;  ///< in the order of the grammars
+  std::unique_ptr<const hyselam_topo::TopoParser> parser_;
+};
+
+}  // namespace hyselam_objects

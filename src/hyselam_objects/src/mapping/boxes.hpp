@@ -1,0 +1,30 @@
+// Geometry of boxes around objects, aligned with the axes of the map.
+#pragma once
+
+#include "hyselam_objects/mapping/object_map.hpp"
+#include "hyselam_objects/segmentation/detect_objects.hpp"
+
+namespace hyselam_objects {
+
+/// Between two points [m].
+double distance(const Point3& a, const Point3& b);
+
+ObjectPose boxOf(const DetectedObject& seen);
+
+/// Enlarges the first box to the box around both.
+void unite(ObjectPose& a, const ObjectPose& b);
+
+/// Intersection of the footprints of two boxes over the area of the smaller one, 0 .. 1.
+double footprintOverlap(const ObjectPose& a, const DetectedObject& b);
+
+/// Share of the first box's volume that lies in the second one, 0 .. 1.
+double containedFraction(const ObjectPose& a, const ObjectPose& b);
+
+/// Whether a point lies over or under the box (with a margin of 2 cm), or in it.
+bool isWithinFootprint(const ObjectPose& box, const Point3& p);
+bool contains(const ObjectPose& box, const Point3& p);
+
+/// Whether two boxes overlap so much that they must be of one object, or of a part of it.
+bool areAtSameSpot(const ObjectPose& a, const ObjectPose& b);
+
+}  // namespace hyselam_objects

@@ -1,0 +1,15 @@
+// Several instances of one object, from views that were too different to be associated.
+#pragma once
+
+#include "hyselam_objects/mapping/object_mapper.hpp"
+
+namespace hyselam_objects {
+
+/// Merges instances at one spot, and faces of one object of a known kind.
+void mergeDuplicates(ObjectMap& map, const ObjectDictionary& dictionary,
+                     const MapperParams& params);
+
+/// Whether it is a part of an object, or several objects in one, that was detected now and then.
+bool isSpurious(const ObjectMap& map, const ObjectInstance& object);
+
+}  // namespace hyselam_objects

@@ -1,0 +1,199 @@
+#include "hyselam_objects/mapping/object_relations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hyselam_objects {
+namespace {
+
+struct Extent {
+  Id id = 0;
+  std::array<double, 3> low{}, high{}, middle{};
+};
+
+Extent extentOf(const ObjectInstance& object) {
+  const ObjectPose& pose = *object.pose;
+  Extent box;
+  box.id = object.id;
+  box.middle = {pose.position.x, pose.position.y, pose.position.z};
+  // Around a box that is turned.
+  const double c = std::abs(std::cos(pose.yaw)), s = std::abs(std::sin(pose.yaw));
+  const std::array<double, 3> size{c * pose.size[0] + s * pose.size[1],
+                                   s * pose.size[0] + c * pose.size[1], pose.size[2]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.low[k] = box.middle[k] - 0.5 * size[k];
+    box.high[k] = box.middle[k] + 0.5 * size[k];
+  }
+  return box;
+}
+
+bool isOver(const Extent& a, const Extent& b, double overhang) {
+  return a.middle[0] > b.low[0] - overhang && a.middle[0] < b.high[0] + overhang &&
+         a.middle[1] > b.low[1] - overhang && a.middle[1] < b.high[1] + overhang;
+}
+
+double gap(const Extent& a, const Extent& b) {
+  const double x = std::max({0.0, a.low[0] - b.high[0], b.low[0] - a.high[0]});
+  const double y = std::max({0.0, a.low[1] - b.high[1], b.low[1] - a.high[1]});
+  return std::hypot(x, y);
+}
+
+bool contains(const Extent& b, const Extent& a) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (a.low[k] < b.low[k] || a.high[k] > b.high[k]) return false;
+  }
+  return true;
+}
+
+// Left and right need a viewer at least this far away [m].
+constexpr double kMinViewDistance = 0.1;
+
+class RelationBuilder {
+ public:
+  RelationBuilder(ObjectMap& map, const RelationParams& params) : map_(map), params_(params) {
+    for (const ObjectInstance& object : map_.objects) {
+      if (object.pose && object.existence > 0.5) extents_.push_back(extentOf(object));
+    }
+  }
+
+  void run() {
+    auto& all = map_.relations;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const auto& r) { return !r.described && r.other != 0; }),
+              all.end());
+    for (const Extent& a : extents_) findSupport(a);
+    for (const Extent& a : extents_) {
+      for (const Extent& b : extents_) {
+        if (a.id != b.id && !supportEachOther(a.id, b.id)) relateBeside(a, b);
+      }
+    }
+    for (ObjectRelation& r : all) {
+      if (r.other == 0) continue;
+      const ObjectInstance *a = map_.find(r.object), *b = map_.find(r.other);
+      if (!a->pose || !b->pose) continue;
+      const Point3 &p = a->pose->position, &q = b->pose->position;
+      r.vector = Point3{p.x - q.x, p.y - q.y, p.z - q.z};
+    }
+  }
+
+ private:
+  void relate(const Extent& a, RelationWord word, const Extent& b) {
+    // A person's word for the same relation stays: "over the table" for what stands on it.
+    for (const ObjectRelation* r : map_.relationsOf(a.id)) {
+      if (r->described && r->other == b.id && isSupport(r->word) == isSupport(word)) return;
+    }
+    ObjectRelation relation;
+    relation.object = a.id;
+    relation.word = word;
+    relation.other = b.id;
+    map_.relate(relation);
+  }
+
+  bool supportEachOther(Id a, Id b) const {
+    return std::any_of(map_.relations.begin(), map_.relations.end(), [&](const auto& r) {
+      return isSupport(r.word) &&
+             ((r.object == a && r.other == b) || (r.object == b && r.other == a));
+    });
+  }
+
+  void findSupport(const Extent& a) {
+    const Extent* on = nullptr;
+    for (const Extent& b : extents_) {
+      if (a.id == b.id || !isOver(a, b, params_.max_overhang)) continue;
+      if (contains(b, a)) {
+        relate(a, RelationWord::kInside, b);
+        return;
+      }
+      const bool stands =
+          std::abs(a.low[2] - b.high[2]) < params_.max_contact_gap && a.middle[2] > b.high[2];
+      if (stands && (on == nullptr || b.high[2] > on->high[2])) on = &b;
+      if (b.low[2] > a.high[2] + params_.max_contact_gap) relate(a, RelationWord::kUnder, b);
+    }
+    if (on != nullptr) relate(a, RelationWord::kOn, *on);
+  }
+
+  void relateBeside(const Extent& a, const Extent& b) {
+    if (std::abs(a.low[2] - b.low[2]) > params_.max_level_difference ||
+        gap(a, b) > params_.max_near_gap) {
+      return;
+    }
+    relate(a, RelationWord::kNear, b);
+    const ObjectRelation* at = nullptr;
+    for (const ObjectRelation* r : map_.relationsOf(b.id)) {
+      if (r->place != 0 && r->vector) at = r;
+    }
+    if (at == nullptr || map_.placeOf(a.id) != at->place) return;
+    const double length = std::hypot(at->vector->x, at->vector->y);
+    if (length < kMinViewDistance) return;
+    // Seen from the center of the place: along and across the line of sight.
+    const double vx = at->vector->x / length, vy = at->vector->y / length;
+    const double dx = a.middle[0] - b.middle[0], dy = a.middle[1] - b.middle[1];
+    const double aside = vx * dy - vy * dx, along = vx * dx + vy * dy;
+    if (std::abs(aside) < 2.0 * std::abs(along)) return;
+    relate(a, aside > 0.0 ? RelationWord::kLeft : RelationWord::kRight, b);
+  }
+
+  ObjectMap& map_;
+  const RelationParams& params_;
+  std::vector<Extent> extents_;
+};
+
+}  // namespace
+
+void RelationParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("max_contact_gap", max_contact_gap, Range::atLeast(0.0), "m",
+        "between the underside of an object and the top of what it stands on");
+  visit("max_overhang", max_overhang, Range::atLeast(0.0), "m",
+        "of the center of an object beyond the border of what it stands on");
+  visit("max_near_gap", max_near_gap, Range::atLeast(0.0), "m",
+        "between the boxes of two objects that are near each other");
+  visit("max_level_difference", max_level_difference, Range::atLeast(0.0), "m",
+        "of the undersides of objects side by side");
+}
+
+void RelationParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
+void MovabilityParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("min_move", min_move, Range::atLeast(0.0), "m", "distance of two stays that is a move");
+  visit("prior_weight", prior_weight, Range::above(0.0), "", "of the size's prior, in visits");
+  visit("stacking_factor", stacking_factor, Range::between(0.0, 1.0), "",
+        "factor for each object that stands on it");
+}
+
+void MovabilityParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
+void updateRelations(ObjectMap& map, const RelationParams& params) {
+  RelationBuilder(map, params).run();
+}
+
+double movability(const ObjectMap& map, Id id, const MovabilityParams& params) {
+  const ObjectInstance* object = map.find(id);
+  if (object == nullptr) return 0.5;
+  double prior = 0.5;
+  if (object->pose) {
+    const auto& size = object->pose->size;
+    const double liters = 1000.0 * std::max(1e-6, size[0] * size[1] * size[2]);
+    prior = std::clamp(0.7 - 0.2 * std::log10(liters), 0.1, 0.9);
+  }
+  const auto visits = static_cast<double>(object->history.size());
+  double moves = 0.0;
+  for (std::size_t i = 1; i < object->history.size(); ++i) {
+    const Point3 &a = object->history[i - 1].position, &b = object->history[i].position;
+    moves += std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > params.min_move;
+  }
+  double value = (params.prior_weight * prior + moves) / (params.prior_weight + visits);
+  for (const ObjectRelation& r : map.relations) {
+    if (r.other == id && (r.word == RelationWord::kOn || r.word == RelationWord::kTop)) {
+      value *= params.stacking_factor;
+    }
+  }
+  return std::clamp(value, 0.0, 1.0);
+}
+
+}  // namespace hyselam_objects

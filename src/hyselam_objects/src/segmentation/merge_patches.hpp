@@ -1,0 +1,14 @@
+// Which patches belong to one object.
+#pragma once
+
+#include <vector>
+
+#include "patches.hpp"
+
+namespace hyselam_objects {
+
+/// The object of each pixel, numbered from 0 by distance from the camera; Patches::kNone for none.
+std::vector<int> mergePatches(const SurfaceGrid& grid, const Patches& patches,
+                              const SegmentParams& params);
+
+}  // namespace hyselam_objects
