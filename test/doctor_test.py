@@ -236,7 +236,7 @@ class DoctorTest(unittest.TestCase):
             finally:
                 self.recording = start
             self.assertRegex(self.wrong(findings, "clock"), rf"scans are stamped (99|100)\.\d s {text}", self.said)
-            self.assertIn("slam runs, but lacks what is told here", self.wrong(findings, "tf"))
+            self.assertIn("slam runs, but lacks the input reported here", self.wrong(findings, "tf"))
 
     def test_a_bag_played_without_its_clock(self):
         silent = rospy.Publisher("/clock", Clock, queue_size=1)  # as rosbag announces it
@@ -252,7 +252,7 @@ class DoctorTest(unittest.TestCase):
             _, findings = self.call(self.robot(static=[]))
         finally:
             silent.unregister()
-        self.assertIn("publishes /tf_static, but nothing of it comes to who listens late: it has to be latched",
+        self.assertIn("publishes /tf_static, but late subscribers receive nothing: it has to be latched",
                       self.wrong(findings, "tf"), self.said)
 
     def test_odometry_without_tf(self):
@@ -261,7 +261,7 @@ class DoctorTest(unittest.TestCase):
             _, findings = self.call(self.robot(odom="odom_combined", pose=False))
         finally:
             topic.unregister()
-        self.assertIn("/wheels is there, but the layers read tf", self.wrong(findings, "tf"), self.said)
+        self.assertIn("/wheels is published, but the layers need tf", self.wrong(findings, "tf"), self.said)
 
     def test_frames_as_the_launch_files_take_them(self):
         status, _ = self.call(self.robot(odom="odom_combined"), "odom_frame:=odom_combined")
@@ -278,10 +278,10 @@ class DoctorTest(unittest.TestCase):
         own = rospy.Publisher("local_map", OccupancyGrid, queue_size=1)
         try:
             _, findings = self.call(self.robot(pose=False, grid=False, says={"localization: localisation": "waiting for a map"}))
-            self.assertIn("localization runs, and says: waiting for a map", self.wrong(findings, "tf"), self.said)
+            self.assertIn("localization runs, and reports: waiting for a map", self.wrong(findings, "tf"), self.said)
             self.assertNotIn("local_map", self.wrong(findings, "map"))
             _, findings = self.call(self.robot(pose=False, says={"localization: localisation": "global, not converged"}))
-            self.assertIn("does not know yet where the robot is", self.wrong(findings, "tf"), self.said)
+            self.assertIn("has not converged yet", self.wrong(findings, "tf"), self.said)
             self.assertIn("2D Pose Estimate", self.wrong(findings, "tf"))
         finally:
             own.unregister()
@@ -305,7 +305,7 @@ class DoctorTest(unittest.TestCase):
             _, findings = self.call(self.robot(topic="elsewhere", pose=False, grid=False, says={"slam: SLAM": "0 keyframes; no scans"}))
         finally:
             announced.unregister()
-        self.assertIn("slam runs, but lacks what is told here", self.wrong(findings, "tf"), self.said)
+        self.assertIn("slam runs, but lacks the input reported here", self.wrong(findings, "tf"), self.said)
         self.assertIn("SLAM has published no /map", self.wrong(findings, "map"))
         self.assertNotIn("ROS_IP", self.wrong(findings, "map"))
 
