@@ -215,11 +215,21 @@ class FlatShow {
     std::vector<std::string> names;
     const ObjectMap truth = after_.truth(&names);
     const std::map<Id, Id> of = match(map_, truth);
+    scores.objects = static_cast<int>(truth.objects.size());
+    const std::set<Id> found = compareInstances(truth, names, of, scores);
+    compareRecall(names, found, scores);
+    compareRelations(truth, names, of, scores);
+    return scores;
+  }
+
+  /// Precision and kinds of the objects of the map. Returns the true objects that were found.
+  std::set<Id> compareInstances(const ObjectMap& truth, const std::vector<std::string>& names,
+                                const std::map<Id, Id>& of, FlatScores& scores) const {
     std::set<Id> found;
-    int believed = 0, named = 0, things_found = 0;
+    int mapped = 0, named = 0, things_found = 0;
     for (const ObjectInstance& object : map_.objects) {
       if (!object.pose || object.existence < 0.5) continue;
-      ++believed;
+      ++mapped;
       const auto pair = of.find(object.id);
       if (pair == of.end()) {
         const Point3& p = object.pose->position;
@@ -238,7 +248,13 @@ class FlatShow {
         scores.faults.push_back("is called " + object.kind + ": " + names[pair->second - 1]);
       }
     }
-    scores.objects = static_cast<int>(truth.objects.size());
+    scores.precision = static_cast<double>(found.size()) / std::max(1, mapped);
+    scores.kinds = static_cast<double>(named) / std::max(1, things_found);
+    return found;
+  }
+
+  void compareRecall(const std::vector<std::string>& names, const std::set<Id>& found,
+                     FlatScores& scores) const {
     int seen_and_found = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const bool is_found = found.count(static_cast<Id>(i + 1)) != 0;
@@ -252,26 +268,27 @@ class FlatShow {
     }
     scores.recall_of_seen =
         static_cast<double>(seen_and_found) / std::max(1, scores.objects - scores.hidden);
-    scores.precision = static_cast<double>(found.size()) / std::max(1, believed);
     scores.recall = static_cast<double>(found.size()) / std::max(1, scores.objects);
-    scores.kinds = static_cast<double>(named) / std::max(1, things_found);
+  }
 
+  void compareRelations(const ObjectMap& truth, const std::vector<std::string>& names,
+                        const std::map<Id, Id>& of, FlatScores& scores) const {
     std::set<std::string> wanted, made;
-    const auto tell = [](const std::string& a, const char* word, const std::string& b) {
+    const auto sentence = [](const std::string& a, const char* word, const std::string& b) {
       return a + " " + word + " " + b;
     };
     for (const ObjectRelation& r : truth.relations) {
-      wanted.insert(tell(names[r.object - 1], toString(r.word),
-                         r.place != 0 ? truth.findPlace(r.place)->name : names[r.other - 1]));
+      wanted.insert(sentence(names[r.object - 1], toString(r.word),
+                             r.place != 0 ? truth.findPlace(r.place)->name : names[r.other - 1]));
     }
+    const auto name = [&](Id id) {
+      const auto pair = of.find(id);
+      return pair == of.end() ? "?" + std::to_string(id) : names[pair->second - 1];
+    };
     for (const ObjectRelation& r : map_.relations) {
-      const auto name = [&](Id id) {
-        const auto pair = of.find(id);
-        return pair == of.end() ? "?" + std::to_string(id) : names[pair->second - 1];
-      };
       if (map_.find(r.object)->existence < 0.5) continue;
-      made.insert(tell(name(r.object), toString(r.word),
-                       r.place != 0 ? map_.findPlace(r.place)->name : name(r.other)));
+      made.insert(sentence(name(r.object), toString(r.word),
+                           r.place != 0 ? map_.findPlace(r.place)->name : name(r.other)));
     }
     int right = 0;
     for (const std::string& each : made) {
@@ -283,7 +300,6 @@ class FlatShow {
     }
     scores.relation_precision = right / std::max(1.0, static_cast<double>(made.size()));
     scores.relation_recall = right / std::max(1.0, static_cast<double>(wanted.size()));
-    return scores;
   }
 
   Furnished furnished_;

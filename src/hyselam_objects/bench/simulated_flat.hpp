@@ -1,10 +1,12 @@
 // A flat with furniture and small things, two tours through it with a camera, and the truth.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -118,110 +120,143 @@ inline Furnished flatOf(const std::string& plan_file) {
 
 /// The same rooms with other furniture and other things in other places, all drawn: for figures
 /// that nothing was tuned on.
-inline Furnished drawnFlat(const std::string& plan_file, std::uint64_t seed) {
-  Furnished out;
-  out.plan = hyselam_sim::loadFloorPlan(plan_file);
-  hyselam::Rng rng(seed);
+class FlatGenerator {
+ public:
+  explicit FlatGenerator(std::uint64_t seed) : rng_(seed) {}
+
+  Furnished run(const std::string& plan_file) {
+    const hyselam_sim::FloorPlan rooms = hyselam_sim::loadFloorPlan(plan_file);
+    flat_.plan = hyselam_sim::parseFloorPlan(planText(), "drawn");
+    flat_.plan.places = rooms.places;
+    putOnFurniture();
+    putBins();
+    moveSome();
+    return std::move(flat_);
+  }
+
+ private:
   struct Top {
     double x, y, lx, ly, height;
   };
-  std::vector<Top> tops;
-  // Two pieces in each room: one along the outer wall, one in the middle.
-  std::string text =
-      "plan: drawn\ndescription: drawn\norigin: [-0.5, -0.5]\nsize: [11.0, 9.0]\n"
-      "wall_thickness: 0.15\nwalls:\n"
-      "  - {name: outer, closed: true, points: [[0, 0], [10, 0], [10, 8], [0, 8]]}\n"
-      "  - {name: across, points: [[5, 0], [5, 8]]}\n"
-      "  - {name: along, points: [[0, 4], [10, 4]]}\nfurniture:\n";
-  for (int room = 0; room < 4; ++room) {
-    const double ox = room % 2 * 5.0, oy = room / 2 * 4.0;
-    for (int piece = 0; piece < 2; ++piece) {
-      Top top{};
-      top.lx = piece == 0 ? rng.uniform(0.45, 0.6) : rng.uniform(0.9, 1.4);
-      top.ly = piece == 0 ? rng.uniform(1.1, 1.6) : rng.uniform(0.6, 0.9);
-      const double wall = room % 2 == 0 ? 0.15 + 0.5 * top.lx : 9.85 - 0.5 * top.lx;
-      top.x = piece == 0 ? wall : ox + rng.uniform(2.3, 2.7);
-      top.y = oy + (piece == 0 ? rng.uniform(1.2, 2.8) : rng.uniform(1.8, 2.2));
-      top.height = rng.uniform(0.42, 0.92);
-      tops.push_back(top);
-      char line[160];
-      std::snprintf(line, sizeof(line),
-                    "  - {name: piece %d, box: [%.3f, %.3f, %.3f, %.3f, 0], height: %.3f}\n",
-                    2 * room + piece, top.x, top.y, top.lx, top.ly, top.height);
-      text += line;
-      out.targets.push_back({top.x, top.y});
-    }
-  }
-  const hyselam_sim::FloorPlan rooms = std::move(out.plan);
-  text +=
-      "places:\n  - {name: none, at: [1.2, 3.3], polygon: [[0.9, 3.1], [1.5, 3.1], [1.5, 3.5], "
-      "[0.9, 3.5]]}\n";
-  out.plan = hyselam_sim::parseFloorPlan(text, "drawn");
-  out.plan.places = rooms.places;
-  // Things on tops, apart from each other; some on the floor.
   struct Spot {
     double x, y;
   };
-  std::vector<Spot> taken;
-  const auto spotOn = [&](const Top& top, Spot* spot) {
-    for (int i = 0; i < 200; ++i) {
-      *spot = {top.x + rng.uniform(-0.5, 0.5) * (top.lx - 0.3),
-               top.y + rng.uniform(-0.5, 0.5) * (top.ly - 0.3)};
-      bool free = true;
-      for (const Spot& other : taken) {
-        free = free && std::hypot(other.x - spot->x, other.y - spot->y) > 0.36;
+
+  /// Two pieces of furniture in each room: one along the outer wall, one in the middle.
+  std::string planText() {
+    std::string text =
+        "plan: drawn\ndescription: drawn\norigin: [-0.5, -0.5]\nsize: [11.0, 9.0]\n"
+        "wall_thickness: 0.15\nwalls:\n"
+        "  - {name: outer, closed: true, points: [[0, 0], [10, 0], [10, 8], [0, 8]]}\n"
+        "  - {name: across, points: [[5, 0], [5, 8]]}\n"
+        "  - {name: along, points: [[0, 4], [10, 4]]}\nfurniture:\n";
+    for (int room = 0; room < 4; ++room) {
+      for (int piece = 0; piece < 2; ++piece) {
+        const Top top = drawTop(room, piece);
+        tops_.push_back(top);
+        char line[160];
+        std::snprintf(line, sizeof(line),
+                      "  - {name: piece %d, box: [%.3f, %.3f, %.3f, %.3f, 0], height: %.3f}\n",
+                      2 * room + piece, top.x, top.y, top.lx, top.ly, top.height);
+        text += line;
+        flat_.targets.push_back({top.x, top.y});
       }
-      if (free) return true;
     }
-    return false;
-  };
-  std::map<std::string, int> numbers;
-  const auto onATop = [&](const std::string& kind, Thing* t) {
-    for (int i = 0; i < 50; ++i) {
-      const Top& top = tops[static_cast<std::size_t>(rng.uniform(0.0, 7.999))];
-      Spot spot{};
-      if (!spotOn(top, &spot)) continue;
-      taken.push_back(spot);
-      *t = at(thing(kind, numbers[kind]), spot.x, spot.y, top.height, rng.uniform(0.0, 180.0));
-      return true;
-    }
-    return false;
-  };
-  const std::vector<std::string> kinds{"cup", "bottle", "cereal box", "book",
-                                       "PC",  "lamp",   "plant pot",  "bowl"};
-  for (int i = 0; i < 23; ++i) {
-    const std::string& kind = kinds[static_cast<std::size_t>(rng.uniform(0.0, 7.999))];
-    ++numbers[kind];
-    Thing t;
-    if (onATop(kind, &t)) {
-      out.before.push_back(t);
-    } else {
-      --numbers[kind];
-    }
+    return text +
+           "places:\n  - {name: none, at: [1.2, 3.3], polygon: [[0.9, 3.1], [1.5, 3.1], "
+           "[1.5, 3.5], [0.9, 3.5]]}\n";
   }
-  for (int room = 0; room < 4; ++room) {
+
+  Top drawTop(int room, int piece) {
     const double ox = room % 2 * 5.0, oy = room / 2 * 4.0;
-    ++numbers["bin"];
-    const double x = ox + (room % 2 == 0 ? rng.uniform(4.0, 4.4) : rng.uniform(0.6, 1.0));
-    const double y = oy + rng.uniform(0.7, 3.3);
-    out.before.push_back(at(thing("bin", numbers["bin"]), x, y, 0.0));
-    out.targets.push_back({x, y});
+    Top top{};
+    top.lx = piece == 0 ? rng_.uniform(0.45, 0.6) : rng_.uniform(0.9, 1.4);
+    top.ly = piece == 0 ? rng_.uniform(1.1, 1.6) : rng_.uniform(0.6, 0.9);
+    const double wall = room % 2 == 0 ? 0.15 + 0.5 * top.lx : 9.85 - 0.5 * top.lx;
+    top.x = piece == 0 ? wall : ox + rng_.uniform(2.3, 2.7);
+    top.y = oy + (piece == 0 ? rng_.uniform(1.2, 2.8) : rng_.uniform(1.8, 2.2));
+    top.height = rng_.uniform(0.42, 0.92);
+    return top;
   }
-  out.after = out.before;
-  while (out.moved.size() < 5) {
-    Thing& t = out.after[static_cast<std::size_t>(
-        rng.uniform(0.0, static_cast<double>(out.after.size()) - 4.001))];
-    if (out.moved.count(t.name) != 0) continue;
-    const std::string name = t.name;
-    Thing moved = t;
-    if (!onATop(t.kind, &moved)) break;
-    const bool far = std::hypot(moved.pose.x - t.pose.x, moved.pose.y - t.pose.y) > 0.6;
-    if (!far) continue;
-    t.pose = moved.pose;
-    t.z = moved.z;
-    out.moved.insert(name);
+
+  /// A spot on a top, apart from other things.
+  std::optional<Spot> spotOn(const Top& top) {
+    constexpr double kApart = 0.36, kMargin = 0.3;
+    for (int i = 0; i < 200; ++i) {
+      const Spot spot{top.x + rng_.uniform(-0.5, 0.5) * (top.lx - kMargin),
+                      top.y + rng_.uniform(-0.5, 0.5) * (top.ly - kMargin)};
+      const bool free = std::none_of(taken_.begin(), taken_.end(), [&](const Spot& other) {
+        return std::hypot(other.x - spot.x, other.y - spot.y) <= kApart;
+      });
+      if (free) return spot;
+    }
+    return std::nullopt;
   }
-  return out;
+
+  std::optional<Thing> onATop(const std::string& kind) {
+    for (int i = 0; i < 50; ++i) {
+      const Top& top = tops_[static_cast<std::size_t>(rng_.uniform(0.0, 7.999))];
+      const std::optional<Spot> spot = spotOn(top);
+      if (!spot) continue;
+      taken_.push_back(*spot);
+      return at(thing(kind, numbers_[kind]), spot->x, spot->y, top.height,
+                rng_.uniform(0.0, 180.0));
+    }
+    return std::nullopt;
+  }
+
+  void putOnFurniture() {
+    const std::vector<std::string> kinds{"cup", "bottle", "cereal box", "book",
+                                         "PC",  "lamp",   "plant pot",  "bowl"};
+    for (int i = 0; i < 23; ++i) {
+      const std::string& kind = kinds[static_cast<std::size_t>(rng_.uniform(0.0, 7.999))];
+      ++numbers_[kind];
+      if (const std::optional<Thing> t = onATop(kind)) {
+        flat_.before.push_back(*t);
+      } else {
+        --numbers_[kind];
+      }
+    }
+  }
+
+  /// On the floor, one in each room.
+  void putBins() {
+    for (int room = 0; room < 4; ++room) {
+      const double ox = room % 2 * 5.0, oy = room / 2 * 4.0;
+      ++numbers_["bin"];
+      const double x = ox + (room % 2 == 0 ? rng_.uniform(4.0, 4.4) : rng_.uniform(0.6, 1.0));
+      const double y = oy + rng_.uniform(0.7, 3.3);
+      flat_.before.push_back(at(thing("bin", numbers_["bin"]), x, y, 0.0));
+      flat_.targets.push_back({x, y});
+    }
+  }
+
+  void moveSome() {
+    constexpr std::size_t kMoved = 5;
+    constexpr double kMinMove = 0.6;
+    flat_.after = flat_.before;
+    while (flat_.moved.size() < kMoved) {
+      const double movable = static_cast<double>(flat_.after.size()) - 4.001;  // not the bins
+      Thing& t = flat_.after[static_cast<std::size_t>(rng_.uniform(0.0, movable))];
+      if (flat_.moved.count(t.name) != 0) continue;
+      const std::optional<Thing> moved = onATop(t.kind);
+      if (!moved) break;
+      if (std::hypot(moved->pose.x - t.pose.x, moved->pose.y - t.pose.y) <= kMinMove) continue;
+      t.pose = moved->pose;
+      t.z = moved->z;
+      flat_.moved.insert(t.name);
+    }
+  }
+
+  hyselam::Rng rng_;
+  Furnished flat_;
+  std::vector<Top> tops_;
+  std::vector<Spot> taken_;
+  std::map<std::string, int> numbers_;
+};
+
+inline Furnished drawnFlat(const std::string& plan_file, std::uint64_t seed) {
+  return FlatGenerator(seed).run(plan_file);
 }
 
 struct Frame {
