@@ -22,8 +22,8 @@ constexpr char kService[] = "name_place";
 constexpr double kPatience = 1.0;  // until the service must be there [s]
 constexpr int kLookAgain = 100;    // for an answer [ms]
 
-/// Calls the service; tells what went wrong.
-QString tell(ros::NodeHandle nh, hyselam_msgs::NamePlace call) {
+/// Calls the service; returns why it failed, empty if it did not.
+QString callService(ros::NodeHandle nh, hyselam_msgs::NamePlace call) {
   auto client = nh.serviceClient<hyselam_msgs::NamePlace>(kService);
   if (!client.waitForExistence(ros::Duration(kPatience)) || !client.call(call)) {
     return QString("Nobody offers the service %1.")
@@ -74,7 +74,7 @@ void NamePlaceTool::nameAt(double x, double y) {
   if (!name.trimmed().isEmpty()) call.request.names = {name.trimmed().toStdString()};
   // On its own: a robot that does not answer must not hold up the display. The thread may outlive
   // this tool; nothing of it is used there.
-  std::packaged_task<QString()> task([nh = nh_, call] { return tell(nh, call); });
+  std::packaged_task<QString()> task([nh = nh_, call] { return callService(nh, call); });
   answers_.push_back(task.get_future());
   std::thread(std::move(task)).detach();
   timer_.start(kLookAgain);

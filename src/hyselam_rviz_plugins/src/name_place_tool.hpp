@@ -22,15 +22,15 @@ class NamePlaceTool : public rviz::Tool {
   int processMouseEvent(rviz::ViewportMouseEvent& event) override;
 
  private:
-  /// Asks for the name and tells the robot, who answers some time later.
+  /// Asks for the name and sends it to the robot, which answers later.
   void nameAt(double x, double y);
-  /// Shows what went wrong with the names that were told.
+  /// Shows why names were refused.
   void showAnswers();
   QWidget* window() const;
 
   ros::NodeHandle nh_;
-  std::vector<std::future<QString>> answers_;  ///< what was wrong; empty: nothing
-  QTimer timer_;                               ///< looks for answers while some are missing
+  std::vector<std::future<QString>> answers_;  ///< why a name was refused; empty: it was accepted
+  QTimer timer_;                               ///< polls for answers while some are missing
 };
 
 }  // namespace hyselam_rviz_plugins

@@ -1,4 +1,4 @@
-// What a localizer does at the moment, and what it says about it.
+// The states of a localizer and the phases that it publishes.
 #pragma once
 
 namespace fsd_localization {

@@ -39,7 +39,7 @@ class FsdMap {
   /// As the constructor, but looks for the result in `cache_path` first and leaves it there after
   /// (atomically). A cache made from another map or other parameters, or a damaged one, is made
   /// anew; `*from_cache` is set accordingly. A cache that cannot be written is no error, but the
-  /// next start takes as long again: `*problem` then says why, otherwise it is empty.
+  /// next start takes as long again: `*problem` is the reason then, otherwise empty.
   static FsdMap cached(const std::string& cache_path, const hyselam::OccupancyGrid& map,
                        const FsdMapParams& params, int threads = 0,
                        const std::function<void(double)>& progress = {}, bool* from_cache = nullptr,

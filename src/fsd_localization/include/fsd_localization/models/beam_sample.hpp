@@ -10,7 +10,8 @@
 namespace fsd_localization {
 
 /// Some beams of a scan, evenly spread, in the base frame. Beams without a return are kept where
-/// the model can use them (range = max_range), beams that say nothing never.
+/// the model can use them (range = max_range), beams without information (NaN, below range_min)
+/// never.
 struct BeamSample {
   std::vector<float> bearing;  ///< in the base frame [rad]
   std::vector<float> range;    ///< [m]

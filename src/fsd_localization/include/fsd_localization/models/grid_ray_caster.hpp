@@ -1,5 +1,5 @@
 // Expected ranges on a grid map, cell by cell along the ray (2.1.1, the basic beam model's inner
-// loop), with leaps over cells that the distance field knows to be open.
+// loop), skipping squares that hold no obstacle by a distance map.
 #pragma once
 
 #include <vector>

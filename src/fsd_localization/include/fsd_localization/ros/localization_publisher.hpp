@@ -1,4 +1,4 @@
-// Everything that the localisation tells the world.
+// Everything that the localisation publishes.
 #pragma once
 
 #include <hyselam_msgs/LocalizationStatus.h>

@@ -42,21 +42,21 @@ double GridRayCaster::range(double x, double y, double direction, double max_ran
     if (open == 0) return t * resolution_;
     // The square of cells around this one that holds no obstacle is left at once; with open == 1 it
     // is this cell alone, and this is the plain step from cell to cell.
-    const int leap = open - 1;
-    const double tx = dx != 0.0 ? ((dx > 0.0 ? cx + leap + 1 : cx - leap) - px) * inv_x
+    const int margin = open - 1;
+    const double tx = dx != 0.0 ? ((dx > 0.0 ? cx + margin + 1 : cx - margin) - px) * inv_x
                                 : std::numeric_limits<double>::infinity();
-    const double ty = dy != 0.0 ? ((dy > 0.0 ? cy + leap + 1 : cy - leap) - py) * inv_y
+    const double ty = dy != 0.0 ? ((dy > 0.0 ? cy + margin + 1 : cy - margin) - py) * inv_y
                                 : std::numeric_limits<double>::infinity();
     if (tx < ty) {
       t = tx;
       const int from = cy;
-      cx = dx > 0.0 ? cx + leap + 1 : cx - leap - 1;
-      cy = std::clamp(static_cast<int>(std::floor(py + t * dy)), from - leap, from + leap);
+      cx = dx > 0.0 ? cx + margin + 1 : cx - margin - 1;
+      cy = std::clamp(static_cast<int>(std::floor(py + t * dy)), from - margin, from + margin);
     } else {
       t = ty;
       const int from = cx;
-      cy = dy > 0.0 ? cy + leap + 1 : cy - leap - 1;
-      cx = std::clamp(static_cast<int>(std::floor(px + t * dx)), from - leap, from + leap);
+      cy = dy > 0.0 ? cy + margin + 1 : cy - margin - 1;
+      cx = std::clamp(static_cast<int>(std::floor(px + t * dx)), from - margin, from + margin);
     }
   }
   return max_range;
