@@ -13,7 +13,7 @@
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace {
 
@@ -46,7 +46,7 @@ hyselam::OccupancyGrid large() {
       hyselam_sim::PlanParams params;
       params.furniture = seed % 2 == 0;
       const hyselam::OccupancyGrid floor =
-          hyselam_sim::rasterise(hyselam_sim::generatePlan(seed++, params), g.resolution, 0.0);
+          hyselam_sim::rasterize(hyselam_sim::generatePlan(seed++, params), g.resolution, 0.0);
       for (int v = 0; v < floor.geometry.height; ++v)
         for (int u = 0; u < floor.geometry.width; ++u)
           if (g.contains({x + u, y + v})) grid.at({x + u, y + v}) = floor.at({u, v});

@@ -8,7 +8,7 @@
 #include "hyselam_gr2to/gr2to_updater.hpp"
 #include "hyselam_gr2to/thesis/thesis.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace {
 
@@ -20,7 +20,7 @@ const cv::Mat& floorMap() {
     hyselam_sim::PlanParams params;
     params.layout = hyselam_sim::PlanParams::Layout::kCorridor;
     params.furniture = true;
-    return obstaclesOf(hyselam_sim::rasterise(hyselam_sim::generatePlan(6, params), 0.02, 0.0), 25,
+    return obstaclesOf(hyselam_sim::rasterize(hyselam_sim::generatePlan(6, params), 0.02, 0.0), 25,
                        65, true);
   }();
   return map;
@@ -115,7 +115,7 @@ const hyselam::OccupancyGrid& nineFloors() {
     std::vector<hyselam::OccupancyGrid> floors;
     int width = 0, height = 0;
     for (std::uint64_t seed = 1; seed <= 9; ++seed) {
-      floors.push_back(hyselam_sim::rasterise(hyselam_sim::generatePlan(seed), 0.05, 0.0));
+      floors.push_back(hyselam_sim::rasterize(hyselam_sim::generatePlan(seed), 0.05, 0.0));
       width = std::max(width, floors.back().geometry.width);
       height = std::max(height, floors.back().geometry.height);
     }

@@ -51,10 +51,10 @@ inline cv::Mat labels(const hyselam_sim::FloorPlan& plan, const OccupancyGrid& g
 inline void shiftBorders(const hyselam_sim::FloorPlan& plan, const OccupancyGrid& grid,
                          double distance, cv::Mat* labels) {
   int k = 0;
-  for (const hyselam_sim::Door& door : plan.doors) {
+  for (const hyselam_sim::PlanDoor& door : plan.doors) {
     // Two doorways close together would become one place.
     const bool alone =
-        std::none_of(plan.doors.begin(), plan.doors.end(), [&](const hyselam_sim::Door& other) {
+        std::none_of(plan.doors.begin(), plan.doors.end(), [&](const hyselam_sim::PlanDoor& other) {
           const double d = std::hypot(other.at.x - door.at.x, other.at.y - door.at.y);
           return d > 0.0 && d < 0.5 * (door.width + other.width) + 2.0 * distance;
         });
@@ -101,7 +101,7 @@ inline Score scoreDoors(const hyselam_sim::FloorPlan& plan,
   score.truth = static_cast<int>(plan.doors.size());
   score.found = static_cast<int>(doors.size());
   std::vector<bool> used(doors.size());
-  for (const hyselam_sim::Door& t : plan.doors) {
+  for (const hyselam_sim::PlanDoor& t : plan.doors) {
     const bool real = t.name.rfind(hyselam_sim::kOpeningPrefix, 0) != 0;
     double best = real ? 0.3 : 0.6;
     std::size_t match = doors.size();

@@ -8,7 +8,7 @@
 #include "hyselam_gr2to/map_builder/borders.hpp"
 #include "hyselam_gr2to/map_builder/doors.hpp"
 #include "hyselam_gr2to/map_builder/map_builder.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "plan_truth.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
@@ -40,7 +40,7 @@ TEST_P(SimulatedPlans, DoorsAndWallsAreFound) {
     params.furniture = c.furniture;
     params.rotation = c.rotation;
     const auto plan = hyselam_sim::generatePlan(seed, params);
-    const auto grid = hyselam_sim::rasterise(plan, c.resolution, 0.0);
+    const auto grid = hyselam_sim::rasterize(plan, c.resolution, 0.0);
     Segmentation s;
     s.labels = plan_truth::labels(plan, grid);
     if (c.shift > 0.0) plan_truth::shiftBorders(plan, grid, c.shift, &s.labels);

@@ -10,7 +10,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_gr2to/gr2to_updater.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 using hyselam::OccupancyGrid;
@@ -18,7 +18,7 @@ using hyselam::OccupancyGrid;
 namespace {
 
 OccupancyGrid floorOf(std::uint64_t seed) {
-  return hyselam_sim::rasterise(hyselam_sim::generatePlan(seed), 0.05, 0.0);
+  return hyselam_sim::rasterize(hyselam_sim::generatePlan(seed), 0.05, 0.0);
 }
 
 void fill(OccupancyGrid* grid, const cv::Rect& box, std::int8_t value) {

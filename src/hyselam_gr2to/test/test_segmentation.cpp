@@ -15,7 +15,7 @@
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_gr2to/segmentation/segmentation.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
 using hyselam::OccupancyGrid;
@@ -83,7 +83,7 @@ OccupancyGrid generated(std::uint64_t seed, double resolution, bool furniture = 
   params.furniture = furniture;
   params.rotation = rotation;
   params.openings = false;
-  return hyselam_sim::rasterise(hyselam_sim::generatePlan(seed, params), resolution, 0.0);
+  return hyselam_sim::rasterize(hyselam_sim::generatePlan(seed, params), resolution, 0.0);
 }
 
 }  // namespace
@@ -253,7 +253,7 @@ TEST(Segmentation, FloorsHaveTheirRoomsHoweverTheyAreTurned) {
       params.openings = false;
       params.rotation = rotation;
       const hyselam_sim::FloorPlan plan = hyselam_sim::generatePlan(seed, params);
-      const OccupancyGrid grid = hyselam_sim::rasterise(plan, 0.05, 0.0);
+      const OccupancyGrid grid = hyselam_sim::rasterize(plan, 0.05, 0.0);
       cv::Mat rooms(grid.geometry.height, grid.geometry.width, CV_16UC1, cv::Scalar(0));
       for (int y = 0; y < rooms.rows; ++y)
         for (int x = 0; x < rooms.cols; ++x)

@@ -26,10 +26,10 @@ inline Thing thing(const std::string& kind, int number) {
   t.kind = kind;
   t.name = kind + " " + std::to_string(number);
   const auto make = [&t](Thing::Shape shape, std::array<double, 3> size,
-                         hyselam_sim::Colour color) {
+                         hyselam_sim::Color color) {
     t.shape = shape;
     t.size = size;
-    t.colour = color;
+    t.color = color;
   };
   const auto box = Thing::Shape::kBox, round = Thing::Shape::kCylinder;
   if (kind == "cup") make(round, {0.10, 0.10, 0.12}, {0.75f, 0.05f, 0.05f});
@@ -357,7 +357,7 @@ class Flat {
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const float z = 0.001f * picture.depth.at<std::uint16_t>(v, u);
-        const auto& bgr = picture.colour.at<cv::Vec3b>(v, u);
+        const auto& bgr = picture.color.at<cv::Vec3b>(v, u);
         cloud.colors.push_back(static_cast<std::uint32_t>(bgr[2] << 16 | bgr[1] << 8 | bgr[0]));
         if (z <= 0.0f) {
           cloud.points.emplace_back(NAN, NAN, NAN);

@@ -4,7 +4,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_sim/route.hpp"
 #include "hyselam_sim/things.hpp"
 
@@ -31,11 +31,11 @@ void floorPlan(const std::uint8_t* data, std::size_t size) {
   RasterOptions raster;
   raster.resolution = std::clamp(std::max(plan.size.x, plan.size.y) / 100.0, 0.005, 10.0);
   try {
-    const hyselam::OccupancyGrid map = rasterise(plan, raster);
+    const hyselam::OccupancyGrid map = rasterize(plan, raster);
     require(map.geometry.width > 0 && map.geometry.height > 0);
   } catch (const hyselam::InputError&) {
   }
-  for (const Place& place : plan.places) require(&plan.place(place.name) == &place);
+  for (const PlanPlace& place : plan.places) require(&plan.place(place.name) == &place);
   for (const DoorConfiguration& doors : plan.configurations) plan.setDoors(doors.name);
   require(plan.configurations.empty() || std::isinf(plan.nextDoorChange(0.0)));
   require(!toYaml(plan).empty());

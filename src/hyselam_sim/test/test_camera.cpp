@@ -9,7 +9,7 @@
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/film.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/ray_caster.hpp"
+#include "hyselam_sim/plan_ray_caster.hpp"
 #include "hyselam_sim/things.hpp"
 
 namespace hyselam_sim {
@@ -42,7 +42,7 @@ CameraFrame look(const Scene& scene, const Pose2& base, double time = 0.0,
 }
 
 double brightness(const CameraFrame& frame) {
-  const cv::Scalar mean = cv::mean(frame.colour);
+  const cv::Scalar mean = cv::mean(frame.color);
   return (mean[0] + mean[1] + mean[2]) / 3.0;
 }
 
@@ -57,11 +57,11 @@ TEST(Camera, MeasuresTheDepthsThatRaysMeasure) {
   params.above_floor = 2.3;  // above furniture and open doors
   FloorPlan bare = plan;
   bare.furniture.clear();
-  const RayCaster walls(edges(wallSolids(bare)));
+  const PlanRayCaster walls(edges(wallSolids(bare)));
   hyselam::Rng rng(7);
   std::size_t compared = 0;
   for (int i = 0; i < 20; ++i) {
-    const Place& place = plan.places[rng.below(static_cast<std::uint32_t>(plan.places.size()))];
+    const PlanPlace& place = plan.places[rng.below(static_cast<std::uint32_t>(plan.places.size()))];
     const Pose2 base{place.at.x, place.at.y, rng.uniform(-3.0, 3.0)};
     const CameraFrame frame = look(scene, base, 0.0, {}, {}, params);
     const Pose2 eye = base * params.camera_in_base;
@@ -138,7 +138,7 @@ TEST(Things, AreReadFromAFile) {
   EXPECT_EQ(things[1].kind, "PC");
   EXPECT_EQ(things[1].shape, Thing::Shape::kBox);
   EXPECT_NEAR(things[1].pose.theta, 0.5 * M_PI, 1e-12);
-  EXPECT_EQ(things[1].colour[1], 0.5f);
+  EXPECT_EQ(things[1].color[1], 0.5f);
 }
 
 TEST(Things, RefusesWhatCannotBe) {
@@ -216,15 +216,14 @@ TEST(Camera, RoomsLookDifferentAndOneSeedLooksTheSame) {
   other.seed = 2;
   const Scene c(loadFloorPlan(planFile("office")), other);
   const auto same = [](const CameraFrame& x, const CameraFrame& y) {
-    return cv::norm(x.colour, y.colour, cv::NORM_INF) == 0.0 &&
+    return cv::norm(x.color, y.color, cv::NORM_INF) == 0.0 &&
            cv::norm(x.depth, y.depth, cv::NORM_INF) == 0.0;
   };
   const Pose2 base{2.0, 11.0, 1.6};
   EXPECT_TRUE(same(look(a, base), look(b, base)));
   EXPECT_FALSE(same(look(a, base), look(c, base)));
-  EXPECT_GT(
-      cv::norm(look(a, {2.0, 11.0, 1.6}).colour, look(a, {6.0, 11.0, 1.6}).colour, cv::NORM_L1),
-      5.0 * 640 * 480);
+  EXPECT_GT(cv::norm(look(a, {2.0, 11.0, 1.6}).color, look(a, {6.0, 11.0, 1.6}).color, cv::NORM_L1),
+            5.0 * 640 * 480);
 }
 
 TEST(Camera, RefusesParametersOutOfRange) {

@@ -7,7 +7,7 @@
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace hyselam_sim {
 namespace {
@@ -43,7 +43,7 @@ TEST(FloorPlan, ReadsEveryElement) {
   EXPECT_EQ(plan.walls[0].segmentCount(), 4U);
   EXPECT_EQ(plan.walls[1].segmentCount(), 1U);
   ASSERT_EQ(plan.doors.size(), 1U);
-  EXPECT_EQ(plan.doors[0].swing, Door::Swing::kLeft);
+  EXPECT_EQ(plan.doors[0].swing, PlanDoor::Swing::kLeft);
   EXPECT_NEAR(plan.doors[0].along.y, 1.0, 1e-12);
   EXPECT_EQ(plan.furniture.at(0).outline.size(), 4U);
   EXPECT_EQ(plan.place("left").at.x, 1.0);
@@ -51,7 +51,7 @@ TEST(FloorPlan, ReadsEveryElement) {
 
 TEST(FloorPlan, DoorFollowsItsSchedule) {
   const FloorPlan plan = parseFloorPlan(kRoom, "room.yaml");
-  const Door& door = plan.doors[0];
+  const PlanDoor& door = plan.doors[0];
   EXPECT_TRUE(door.isOpen(0.0));
   EXPECT_TRUE(door.isOpen(9.99));
   EXPECT_FALSE(door.isOpen(10.0));
@@ -79,7 +79,7 @@ TEST(FloorPlan, OpenLeafStandsOnItsSideAndShutLeafFillsTheOpening) {
 
 TEST(Rasterise, WallsOccupiedInteriorFreeOutsideUnknown) {
   const FloorPlan plan = parseFloorPlan(kRoom, "room.yaml");
-  const OccupancyGrid grid = rasterise(plan, 0.1, 0.0);
+  const OccupancyGrid grid = rasterize(plan, 0.1, 0.0);
   const auto at = [&](double x, double y) { return grid.valueOr(grid.geometry.cellAt({x, y})); };
   EXPECT_EQ(grid.geometry.width, 60);
   EXPECT_EQ(grid.geometry.height, 50);
@@ -98,7 +98,7 @@ TEST(Rasterise, WallsOccupiedInteriorFreeOutsideUnknown) {
 
 TEST(Rasterise, ShutDoorIsOccupiedAndTheRoomBehindItKnown) {
   const FloorPlan plan = parseFloorPlan(kRoom, "room.yaml");
-  const OccupancyGrid grid = rasterise(plan, 0.1, 15.0);
+  const OccupancyGrid grid = rasterize(plan, 0.1, 15.0);
   const auto at = [&](double x, double y) { return grid.at(grid.geometry.cellAt({x, y})); };
   EXPECT_EQ(at(2.01, 1.5), OccupancyGrid::kOccupied);
   EXPECT_EQ(at(3.0, 1.0), OccupancyGrid::kFree);
@@ -107,7 +107,7 @@ TEST(Rasterise, ShutDoorIsOccupiedAndTheRoomBehindItKnown) {
 TEST(Rasterise, FurnitureCanBeLeftOut) {
   RasterOptions options;
   options.with_furniture = false;
-  const OccupancyGrid grid = rasterise(parseFloorPlan(kRoom, "room.yaml"), options);
+  const OccupancyGrid grid = rasterize(parseFloorPlan(kRoom, "room.yaml"), options);
   EXPECT_EQ(grid.at(grid.geometry.cellAt({3.0, 2.5})), OccupancyGrid::kFree);
 }
 
@@ -116,19 +116,19 @@ TEST(Rasterise, RefusesAnOpenBuilding) {
       parseFloorPlan(replaced(kRoom, "closed: true, points: [[0, 0], [4, 0], [4, 3], [0, 3]]",
                               "points: [[0, 0], [4, 0], [4, 3], [0, 3]]"),
                      "room.yaml");
-  EXPECT_THROW(rasterise(plan), hyselam::InputError);
+  EXPECT_THROW(rasterize(plan), hyselam::InputError);
 }
 
 TEST(Rasterise, RefusesAPlanWithoutInterior) {
   FloorPlan plan = parseFloorPlan(kRoom, "room.yaml");
   plan.places.clear();
-  EXPECT_THROW(rasterise(plan), hyselam::InputError);
+  EXPECT_THROW(rasterize(plan), hyselam::InputError);
 }
 
 TEST(Rasterise, RefusesBadResolutions) {
   const FloorPlan plan = parseFloorPlan(kRoom, "room.yaml");
   for (const double bad : {0.0, -0.1, 1e-6, 100.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(rasterise(plan, bad, 0.0), hyselam::ParameterError) << bad;
+    EXPECT_THROW(rasterize(plan, bad, 0.0), hyselam::ParameterError) << bad;
   }
 }
 
@@ -146,7 +146,7 @@ TEST_P(BadPlanTest, IsRefusedNamingThePlace) {
   const BadPlan& bad = GetParam();
   try {
     const FloorPlan plan = parseFloorPlan(replaced(kRoom, bad.from, bad.to), "room.yaml");
-    rasterise(plan);
+    rasterize(plan);
     FAIL() << "was accepted";
   } catch (const hyselam::InputError& e) {
     const std::string message = e.what();

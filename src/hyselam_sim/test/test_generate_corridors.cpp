@@ -7,7 +7,7 @@
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_sim/simulation.hpp"
 
 namespace hyselam_sim {
@@ -24,14 +24,14 @@ TEST(GeneratedCorridors, AreClosedBuildingsWithEveryKindOfPlace) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     SCOPED_TRACE(seed);
     const CorridorBuilding building = generateCorridors(seed);
-    const auto grid = rasterise(building.plan);  // refuses what leaks
+    const auto grid = rasterize(building.plan);  // refuses what leaks
     for (const Area& area : building.plan.areas) {
       ++kinds[area.kind];
       const auto cell = grid.geometry.cellAt(middleOf(area));
       EXPECT_EQ(grid.valueOr(cell), hyselam::OccupancyGrid::kFree) << area.kind;
       EXPECT_EQ(building.plan.kindAt(middleOf(area)), area.kind);
     }
-    for (const Place& place : building.plan.places) {
+    for (const PlanPlace& place : building.plan.places) {
       const std::string& kind = building.plan.kindAt(place.at);
       if (place.name.rfind("end", 0) == 0) {
         EXPECT_EQ(kind, "dead-end") << place.name;
@@ -53,7 +53,7 @@ TEST(GeneratedCorridors, KindsFollowFromTheWaysOut) {
     CorridorParams params;
     params.halls = params.rooms = 0.0;
     const CorridorBuilding building = generateCorridors(seed, params);
-    const auto grid = rasterise(building.plan);
+    const auto grid = rasterize(building.plan);
     const auto isFree = [&](Point2 p) {
       return grid.valueOr(grid.geometry.cellAt(p)) == hyselam::OccupancyGrid::kFree;
     };
@@ -93,7 +93,7 @@ TEST(GeneratedCorridors, AreTheSameFromTheSameSeedAndCanBeWritten) {
     const std::string text = toYaml(plan);
     EXPECT_EQ(text, toYaml(generateCorridors(seed).plan));
     const FloorPlan again = parseFloorPlan(text, "again");
-    EXPECT_EQ(rasterise(plan).cells, rasterise(again).cells);
+    EXPECT_EQ(rasterize(plan).cells, rasterize(again).cells);
     ASSERT_EQ(plan.areas.size(), again.areas.size());
     EXPECT_EQ(again.kindAt(middleOf(plan.areas[0])), plan.areas[0].kind);
     EXPECT_EQ(again.floor_kind, "corridor");

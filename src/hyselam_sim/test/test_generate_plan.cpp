@@ -8,7 +8,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace hyselam_sim {
 namespace {
@@ -32,7 +32,7 @@ TEST(GeneratedPlan, DoorsLeadFromPlaceToPlaceAndReachAll) {
     const FloorPlan plan = generatePlan(seed, params);
     std::vector<int> group(plan.places.size());
     for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<int>(i);
-    for (const Door& door : plan.doors) {
+    for (const PlanDoor& door : plan.doors) {
       const Point2 across{-door.along.y, door.along.x};
       for (const double s : {-0.45, 0.0, 0.45}) {
         const Point2 at = door.at + (s * door.width) * door.along;
@@ -65,7 +65,7 @@ TEST(GeneratedPlan, IsReadBackAsItWasWritten) {
     const FloorPlan plan = generatePlan(seed, params);
     const std::string text = toYaml(plan);
     const FloorPlan again = parseFloorPlan(text, plan.name);
-    const auto a = rasterise(plan), b = rasterise(again);
+    const auto a = rasterize(plan), b = rasterize(again);
     ASSERT_EQ(plan.doors.size(), again.doors.size());
     EXPECT_EQ(a.cells, b.cells) << "seed " << seed;
     EXPECT_EQ(text, toYaml(generatePlan(seed, params))) << "the same seed, another plan";
@@ -81,7 +81,7 @@ TEST(GeneratedPlan, FurnitureLeavesDoorsFree) {
     pieces += plan.furniture.size();
     for (const Furniture& item : plan.furniture) {
       ASSERT_GE(placeOf(plan, 0.5 * (item.outline[0] + item.outline[2])), 0);
-      for (const Door& door : plan.doors) {
+      for (const PlanDoor& door : plan.doors) {
         for (const Point2& p : item.outline) {
           EXPECT_GT(length(p - door.at), 0.5 * door.width + 0.8) << "seed " << seed << item.name;
         }

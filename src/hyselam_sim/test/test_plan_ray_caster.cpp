@@ -109,7 +109,7 @@ TEST(RayCaster, SeesEveryShippedPlanAsTheSlowSearchDoes) {
 }
 
 TEST(RayCaster, EmptyWorldReturnsMaximum) {
-  EXPECT_EQ(RayCaster({}).cast({0, 0}, {1, 0}, 8.0), 8.0);
+  EXPECT_EQ(PlanRayCaster({}).cast({0, 0}, {1, 0}, 8.0), 8.0);
 }
 
 TEST(RayCaster, OneSegmentLongerThanManyBuckets) {

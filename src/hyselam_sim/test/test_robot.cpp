@@ -100,7 +100,7 @@ TEST(Laser, HasTheGeometryOfTheSick) {
   hyselam::Rng rng(1);
   LaserParams params;
   params.sigma = params.dropout = 0.0;
-  const hyselam::LaserScan scan = takeScan(params, RayCaster(kWall), {}, {}, 7.0, rng);
+  const hyselam::LaserScan scan = takeScan(params, PlanRayCaster(kWall), {}, {}, 7.0, rng);
   ASSERT_EQ(scan.ranges.size(), 181U);
   EXPECT_DOUBLE_EQ(scan.angle_min, -hyselam::kPi / 2);
   EXPECT_NEAR(scan.angle_increment, hyselam::radians(1.0), 1e-15);
@@ -115,7 +115,7 @@ TEST(Laser, RangesAreWholeCentimetresWithTheStatedNoise) {
   LaserParams params;
   params.sigma = 0.03;
   params.dropout = 0.01;
-  const RayCaster world(kWall);
+  const PlanRayCaster world(kWall);
   double sum = 0, square = 0;
   int returns = 0, dropped = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -139,14 +139,14 @@ TEST(Laser, SeesPeople) {
   hyselam::Rng rng(1);
   LaserParams params;
   params.sigma = params.dropout = 0.0;
-  const auto scan = takeScan(params, RayCaster(kWall), {{{3.0, 0.0}, 0.25}}, {}, 0.0, rng);
+  const auto scan = takeScan(params, PlanRayCaster(kWall), {{{3.0, 0.0}, 0.25}}, {}, 0.0, rng);
   EXPECT_FLOAT_EQ(scan.ranges[90], 2.65F);
   EXPECT_GT(scan.ranges[110], 4.0F);
 }
 
 TEST(Laser, RefusesImpossibleParameters) {
   hyselam::Rng rng(1);
-  const RayCaster world(kWall);
+  const PlanRayCaster world(kWall);
   const auto refused = [&](auto change) {
     LaserParams params;
     change(params);

@@ -6,7 +6,7 @@
 
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_sim/simulation.hpp"
 
 namespace hyselam_sim {
@@ -29,7 +29,7 @@ TEST(Shipped, EveryPlanLoadsAndIsClosed) {
     const FloorPlan plan = loadFloorPlan(planFile(name));
     EXPECT_EQ(plan.name, name);
     for (const double resolution : {0.05, 0.1}) {
-      const hyselam::OccupancyGrid grid = rasterise(plan, resolution, 0.0);
+      const hyselam::OccupancyGrid grid = rasterize(plan, resolution, 0.0);
       EXPECT_GT(std::count(grid.cells.begin(), grid.cells.end(), 0), 1000) << name;
     }
   }
@@ -104,14 +104,14 @@ TEST(Scenarios, LoopsOfScenarioB) {
 }
 
 // Share of cells whose value is the same after half a turn about the given centre.
-double symmetry(const FloorPlan& plan, Point2 centre) {
-  const hyselam::OccupancyGrid grid = rasterise(plan, 0.1, 0.0);
+double symmetry(const FloorPlan& plan, Point2 center) {
+  const hyselam::OccupancyGrid grid = rasterize(plan, 0.1, 0.0);
   std::size_t free = 0, same = 0;
   for (int y = 0; y < grid.geometry.height; ++y) {
     for (int x = 0; x < grid.geometry.width; ++x) {
       if (grid.at({x, y}) != hyselam::OccupancyGrid::kFree) continue;
       ++free;
-      const Point2 p = 2.0 * centre - grid.geometry.center({x, y});
+      const Point2 p = 2.0 * center - grid.geometry.center({x, y});
       if (grid.valueOr(grid.geometry.cellAt(p)) == hyselam::OccupancyGrid::kFree) ++same;
     }
   }
@@ -128,7 +128,7 @@ TEST(Scenarios, BIsNearlySymmetricAndAIsNot) {
 TEST(Scenarios, CIsTwoTwinGalleriesIn25MetresSquare) {
   const FloorPlan plan = loadFloorPlan(planFile("mcl_c"));
   Point2 low{1e9, 1e9}, high{-1e9, -1e9};
-  for (const Wall& wall : plan.walls) {
+  for (const PlanWall& wall : plan.walls) {
     for (const Point2& p : wall.points) {
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
@@ -137,7 +137,7 @@ TEST(Scenarios, CIsTwoTwinGalleriesIn25MetresSquare) {
   EXPECT_NEAR(high.x - low.x, 25.0, 0.5);
   EXPECT_NEAR(high.y - low.y, 25.0, 0.5);
   // Within the galleries, the right one is the left one moved.
-  const hyselam::OccupancyGrid grid = rasterise(plan, 0.1, 0.0);
+  const hyselam::OccupancyGrid grid = rasterize(plan, 0.1, 0.0);
   int differing = 0;
   for (double y = 0.05; y < 25.0; y += 0.1) {
     for (double x = 0.15; x < 10.35; x += 0.1) {
@@ -151,15 +151,15 @@ TEST(Scenarios, CIsTwoTwinGalleriesIn25MetresSquare) {
 }
 
 TEST(Scenarios, RoutesHaveTheIntendedLengths) {
-  const auto metres = [](const std::string& name) {
+  const auto meters = [](const std::string& name) {
     const Route route = loadRoute(routeFile(name));
     SimulationParams params;
     params.scan_rate = 1.0;
     return simulate(loadFloorPlan(planFile(route.plan)), route, 1, params).distance;
   };
-  EXPECT_NEAR(metres("mcl_a"), 143.0, 5.0);
-  EXPECT_NEAR(metres("mcl_b"), 203.0, 5.0);
-  EXPECT_NEAR(metres("mcl_c"), 120.0, 5.0);
+  EXPECT_NEAR(meters("mcl_a"), 143.0, 5.0);
+  EXPECT_NEAR(meters("mcl_b"), 203.0, 5.0);
+  EXPECT_NEAR(meters("mcl_c"), 120.0, 5.0);
 }
 
 TEST(Layouts, LoopsOfLayoutA) {
@@ -193,7 +193,7 @@ TEST(Layouts, DoorsOfTheUniversity) {
   const auto open = [&](const std::string& configuration) {
     plan.setDoors(configuration);
     std::string sides;
-    for (const Door& door : plan.doors) {
+    for (const PlanDoor& door : plan.doors) {
       if (door.isOpen(0.0)) sides += door.name.front();
     }
     return sides;
@@ -295,7 +295,7 @@ void expectDirectLegs(const std::string& name) {
     const std::string& to = route.steps[i].spot.place;
     for (; truth != run.log.ground_truth.end() && truth->stamp <= run.visits[i].stamp; ++truth) {
       const Point2 p{truth->pose.x, truth->pose.y};
-      for (const Place& place : plan.places) {
+      for (const PlanPlace& place : plan.places) {
         if (place.name == from || place.name == to) continue;
         ASSERT_GT(length(p - place.at), 1.0)
             << "step " << i << ", " << from << " to " << to << ", passes " << place.name;

@@ -15,7 +15,7 @@
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 #include "hyselam_topo/topomerg/topomerg_names.hpp"
 
@@ -276,7 +276,7 @@ int main(int argc, char** argv) {
       Dice dice(seed);
       auto plan = hyselam_sim::generatePlan(seed);
       shutDoors(&plan, shut_doors, seed);
-      const OccupancyGrid grid = hyselam_sim::rasterise(plan, 0.05, 0.0);
+      const OccupancyGrid grid = hyselam_sim::rasterize(plan, 0.05, 0.0);
       const Gr2ToResult found = gr2to(grid);
       const std::map<Id, Id> truth = truthOf(plan, found);
       double heading = 0.0;

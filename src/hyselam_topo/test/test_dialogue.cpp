@@ -9,7 +9,7 @@
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/floor_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
@@ -37,7 +37,7 @@ const hyselam_sim::FloorPlan& plan() {
 }
 
 const hyselam::OccupancyGrid& grid() {
-  static const auto kGrid = hyselam_sim::rasterise(plan(), 0.05, 0.0);
+  static const auto kGrid = hyselam_sim::rasterize(plan(), 0.05, 0.0);
   return kGrid;
 }
 

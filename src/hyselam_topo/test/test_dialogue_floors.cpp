@@ -12,7 +12,7 @@
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 
@@ -60,7 +60,7 @@ class Floor {
 
   void run(Count* count) {
     Dialogue robot;
-    robot.setGrid(hyselam_sim::rasterise(plan_, 0.05, 0.0));
+    robot.setGrid(hyselam_sim::rasterize(plan_, 0.05, 0.0));
     robot.setMap(hyselam_topo::gr2to(*robot.gridWithWalls()).map);
     double time = 0.0;
     const Point2 home = at(home_);

@@ -10,7 +10,7 @@
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/generate_plan.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 
@@ -22,7 +22,7 @@ using Names = std::map<std::string, std::string>;  ///< plan's name -> told name
 /// The office as it was mapped: with all doors open but these.
 hyselam_sim::FloorPlan office(const std::set<std::string>& shut = {}) {
   hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile("office"));
-  for (hyselam_sim::Door& door : plan.doors) {
+  for (hyselam_sim::PlanDoor& door : plan.doors) {
     door.initially_open = shut.count(door.name) == 0;
     door.schedule.clear();
   }
@@ -37,7 +37,7 @@ const hyselam::Pose2 kEastEnd{35.0, 8.0, hyselam::kPi};
 int namedRightly(const hyselam_sim::FloorPlan& plan, const hyselam::Pose2& pose,
                  const std::string& file, const Names& names) {
   Dialogue robot;
-  robot.setGrid(hyselam_sim::rasterise(plan, 0.05, 0.0));
+  robot.setGrid(hyselam_sim::rasterize(plan, 0.05, 0.0));
   robot.setMap(gr2to(*robot.gridWithWalls()).map);
   robot.setPose(1.0, pose);
   robot.hear(hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/told/" + file));
@@ -57,7 +57,7 @@ int namedRightly(const hyselam_sim::FloorPlan& plan, const hyselam::Pose2& pose,
 
 Names officeNames() {
   Names names;
-  for (const hyselam_sim::Place& place : office().places) {
+  for (const hyselam_sim::PlanPlace& place : office().places) {
     const bool corridor = place.name.find("corridor") != std::string::npos;
     names[place.name] = corridor ? "corridor" : place.name;
   }

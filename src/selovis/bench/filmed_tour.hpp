@@ -53,7 +53,7 @@ inline hyselam_sim::Route roundTrip(const hyselam_sim::FloorPlan& plan) {
   route.name = "round trip";
   route.source = plan.name;
   route.start.place = plan.places.front().name;
-  const auto go = [&](const hyselam_sim::Place& place) {
+  const auto go = [&](const hyselam_sim::PlanPlace& place) {
     hyselam_sim::RouteStep step;
     step.spot.place = place.name;
     step.where = place.name;
@@ -62,7 +62,7 @@ inline hyselam_sim::Route roundTrip(const hyselam_sim::FloorPlan& plan) {
   for (std::size_t i = 1; i < plan.places.size(); ++i) go(plan.places[i]);
   for (std::size_t i = plan.places.size(); i-- > 0;) go(plan.places[i]);
   for (std::size_t i = 0; i < plan.places.size(); i += 3) {
-    const hyselam_sim::Place& place = plan.places[i];
+    const hyselam_sim::PlanPlace& place = plan.places[i];
     if (place.outline.size() < 3) continue;
     hyselam_sim::Person person;
     person.name = "somebody in " + place.name;
@@ -110,7 +110,7 @@ inline FilmedTour filmTour(const hyselam_sim::Scene& scene, hyselam_sim::Route r
         frame.camera = f.base * params.camera.camera_in_base;
         const auto odometry = hyselam::poseAt(tour.run.log.odometry, f.stamp, 0.1);
         if (odometry) frame.odometry = *odometry * params.camera.camera_in_base;
-        cv::imencode(".jpg", f.picture.colour, frame.jpeg, {cv::IMWRITE_JPEG_QUALITY, 92});
+        cv::imencode(".jpg", f.picture.color, frame.jpeg, {cv::IMWRITE_JPEG_QUALITY, 92});
         tour.frames.push_back(std::move(frame));
       });
   return tour;
@@ -118,7 +118,7 @@ inline FilmedTour filmTour(const hyselam_sim::Scene& scene, hyselam_sim::Route r
 
 /// Trains on filmed tours.
 inline PlaceModel trainOn(const std::vector<FilmedTour>& tours,
-                          const std::vector<hyselam_sim::Place>& places,
+                          const std::vector<hyselam_sim::PlanPlace>& places,
                           const TrainingOptions& options) {
   std::vector<std::size_t> sizes;
   for (const auto& tour : tours) sizes.push_back(tour.frames.size());

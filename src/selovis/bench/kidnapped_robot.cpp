@@ -10,7 +10,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "selovis/places/topological_places.hpp"
 #include "selovis/recognition/image_recognizer.hpp"
 #include "selovis/recognition/kidnapping_detector.hpp"
@@ -192,7 +192,7 @@ class Experiment {
         map_(topologyOf(scene, o)),
         route_(kidnapRoute(plan, o)),
         run_(hyselam_sim::simulate(plan, route_, o.seed)),
-        laser_(hyselam_sim::rasterise(plan, {}), laserParams(o)),
+        laser_(hyselam_sim::rasterize(plan, {}), laserParams(o)),
         recognizer_(model, model.transitions, recognizerParams()),
         detector_(model.transitions, o.detector) {
     for (const double stamp : run_.teleport_stamps) {
@@ -261,7 +261,7 @@ class Experiment {
     totals_.right_seconds += pose_right_ ? dt : 0.0;
     const auto odom = hyselam::poseAt(run_.log.odometry, f.stamp, 0.1);
     if (!odom || o_.without_camera) return;
-    recognizer_.update(f.picture.colour);
+    recognizer_.update(f.picture.color);
     const int truth =
         f.place < 0
             ? -1

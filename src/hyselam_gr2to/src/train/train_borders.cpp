@@ -22,7 +22,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "room_scores.hpp"
 #include "segmentation/agglomeration.hpp"
 
@@ -130,7 +130,7 @@ std::pair<hyselam::OccupancyGrid, cv::Mat> generated(int i) {
   params.rotation = i % 3 == 0 ? 0.0 : 0.13 * i;
   const hyselam_sim::FloorPlan plan =
       hyselam_sim::generatePlan(1001 + static_cast<std::uint64_t>(i), params);
-  const hyselam::OccupancyGrid grid = hyselam_sim::rasterise(plan, 0.05, 0.0);
+  const hyselam::OccupancyGrid grid = hyselam_sim::rasterize(plan, 0.05, 0.0);
   cv::Mat rooms(grid.geometry.height, grid.geometry.width, CV_32S, cv::Scalar(0));
   for (int y = 0; y < rooms.rows; ++y)
     for (int x = 0; x < rooms.cols; ++x)

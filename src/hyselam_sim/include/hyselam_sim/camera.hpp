@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_sim/scene.hpp"
 
@@ -24,19 +25,22 @@ struct CameraParams {
   double exposure = 0.75;                ///< how far exposure follows the light, 0 .. 1
   double white_balance = 0.6;            ///< how far colours follow the light's colour, 0 .. 1
 
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
+
   /// Focal length [pixel].
   double focalLength() const;
 };
 
-/// What the camera saw.
+/// A picture of the camera.
 struct CameraFrame {
-  cv::Mat colour;  ///< CV_8UC3, BGR
-  cv::Mat depth;   ///< CV_16UC1 along the optical axis [mm], 0: none
-  cv::Mat owner;   ///< CV_32SC1: Body::owner of each pixel, without noise
+  cv::Mat color;  ///< CV_8UC3, BGR
+  cv::Mat depth;  ///< CV_16UC1 along the optical axis [mm], 0: none
+  cv::Mat owner;  ///< CV_32SC1: Body::owner of each pixel, without noise
 };
 
-/// The view of a robot at `base`. The same arguments give the same pixels. `time` [s] tells the
-/// doors and people. Throws hyselam::ParameterError for parameters out of range.
+/// The view of a robot at `base`. The same arguments give the same pixels. `time` [s] is that of
+/// the doors and people. @throws hyselam::ParameterError for parameters out of range.
 CameraFrame takePicture(const CameraParams& params, const Scene& scene, const LightParams& light,
                         const std::vector<Person>& people, const Pose2& base, double time,
                         hyselam::Rng& rng);

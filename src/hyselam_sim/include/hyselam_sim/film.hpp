@@ -1,8 +1,9 @@
-// A run filmed by the robot's camera: one picture after the other along the way it drove.
+// A run filmed by the robot's camera: one picture after the other along its path.
 #pragma once
 
 #include <functional>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/robot_log.hpp"
 #include "hyselam_sim/camera.hpp"
 
@@ -13,6 +14,9 @@ struct FilmParams {
   LightParams light;
   double rate = 2.0;        ///< pictures per second, 0.01 .. 120
   double start_time = 1.0;  ///< stamp at which doors and people begin to move [s]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// One picture with its truth.

@@ -13,7 +13,7 @@
 namespace hyselam_sim {
 
 /// A wall along a polyline (its centre line).
-struct Wall {
+struct PlanWall {
   std::string name;            ///< for messages; may be empty
   std::vector<Point2> points;  ///< at least two
   bool closed = false;         ///< the last point connects to the first
@@ -25,7 +25,7 @@ struct Wall {
 };
 
 /// An opening in a wall with a leaf that is shut or open by the clock.
-struct Door {
+struct PlanDoor {
   /// Where an open leaf stands, seen along the wall's direction. kNone: nothing is in the way (a
   /// sliding door, or a mere gap if it is always open).
   enum class Swing { kNone, kLeft, kRight };
@@ -62,7 +62,7 @@ struct Furniture {
 };
 
 /// A place that people have a name for.
-struct Place {
+struct PlanPlace {
   std::string name;
   Point2 at;        ///< a point on free floor
   Polygon outline;  ///< its area; empty if not given
@@ -84,21 +84,21 @@ struct FloorPlan {
   Point2 origin;               ///< lower left corner of the drawing [m]
   Point2 size{10.0, 10.0};     ///< extent of the drawing [m]
   std::vector<Point2> inside;  ///< points of the interior besides the places
-  std::vector<Wall> walls;
-  std::vector<Door> doors;
+  std::vector<PlanWall> walls;
+  std::vector<PlanDoor> doors;
   std::vector<DoorConfiguration> configurations;
   std::vector<Furniture> furniture;
-  std::vector<Place> places;
+  std::vector<PlanPlace> places;
   std::vector<Area> areas;
-  std::string floor_kind;  ///< of the floor that no area covers; empty: not told
+  std::string floor_kind;  ///< of the floor that no area covers; empty: not given
 
   /// What the floor is there: the kind of the first area that holds the point, else `floor_kind`.
   const std::string& kindAt(Point2 p) const;
 
-  /// The place of that name. Throws hyselam::InputError with the nearest known name.
-  const Place& place(const std::string& place_name) const;
+  /// The place of that name. @throws hyselam::InputError with the nearest known name.
+  const PlanPlace& place(const std::string& place_name) const;
 
-  /// Puts all doors as a configuration says; their schedules end. Throws hyselam::InputError with
+  /// Puts all doors as a configuration says; their schedules end. @throws hyselam::InputError with
   /// the nearest known name.
   void setDoors(const std::string& configuration);
 
@@ -106,7 +106,7 @@ struct FloorPlan {
   double nextDoorChange(double time) const;
 };
 
-/// Reads a plan; README.md describes the format. Throws hyselam::InputError naming file, line, key
+/// Reads a plan; README.md describes the format. @throws hyselam::InputError naming file, line, key
 /// and reason for anything that is not a usable plan.
 FloorPlan loadFloorPlan(const std::string& path);
 

@@ -12,11 +12,11 @@
 namespace hyselam_sim {
 
 /// Rooms are what walls and doorways enclose (doors count as shut). A point belongs to the place
-/// whose outline holds it, else to the place of its room whose point is nearest on the way there.
+/// whose outline holds it, else to the place of its room whose point is nearest by path length.
 /// Immutable after construction; all queries may run concurrently.
 class FloorRegions {
  public:
-  /// Throws what rasterise() throws.
+  /// Throws what rasterize() throws.
   explicit FloorRegions(const FloorPlan& plan, double resolution = 0.1);
 
   /// Number of the room, 0 .. rooms() - 1, of the nearest floor; -1 outside the drawing.

@@ -1,9 +1,10 @@
-// Made-up networks of corridors, each from a seed, with the kind of every place and a way through
+// Random networks of corridors, each from a seed, with the kind of every place and a way through
 // all of them: to learn what corners, bifurcations, dead ends and halls look like.
 #pragma once
 
 #include <cstdint>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 #include "hyselam_sim/route.hpp"
 
@@ -20,6 +21,7 @@ struct CorridorParams {
   double rooms = 0.5;   ///< share of the corridors with an open room at their side
   int legs = 80;        ///< corridors that the route passes, >= 1
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };

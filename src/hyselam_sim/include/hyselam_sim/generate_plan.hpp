@@ -1,4 +1,4 @@
-// Made-up floors of offices and flats, each from a seed: rooms, corridors, halls, doors of many
+// Random floors of offices and flats, each from a seed: rooms, corridors, halls, doors of many
 // widths and open passages, furniture if wanted. All about them is known, so whatever looks for
 // rooms, doors or walls can be measured on as many as are needed.
 #pragma once
@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 
 namespace hyselam_sim {
@@ -24,6 +25,9 @@ struct PlanParams {
   bool leaves = true;      ///< half of the narrow doors have a leaf that stands open
   bool furniture = false;  ///< tables, desks, cupboards, clear of the doors
   double rotation = 0.0;   ///< of the whole floor [rad]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// The name of a Door of a generated plan that is an open passage begins so; those of real doors do
@@ -31,7 +35,7 @@ struct PlanParams {
 extern const char* const kOpeningPrefix;
 
 /// Every place has its outline (the inner faces of its walls); every opening is in `doors`. The
-/// same on every machine. Throws hyselam::ParameterError for a parameter out of range.
+/// same on every machine. @throws hyselam::ParameterError for a parameter out of range.
 FloorPlan generatePlan(std::uint64_t seed, const PlanParams& params = {});
 
 /// The plan in the format that loadFloorPlan() reads. Schedules of doors are kept.

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "hyselam_common/laser_scan.hpp"
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/rng.hpp"
-#include "hyselam_sim/ray_caster.hpp"
+#include "hyselam_sim/plan_ray_caster.hpp"
 
 namespace hyselam_sim {
 
@@ -18,17 +19,20 @@ struct LaserParams {
   double sigma = 0.01;                           ///< standard deviation of a range [m]
   double dropout = 0.001;                        ///< probability that a beam sees no return
   Pose2 laser_in_base{0.1, 0.0, 0.0};            ///< where it is mounted; not in the thesis
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// A standing disc that the laser sees (a person). Plan frame, [m].
 struct Disc {
-  Point2 centre;
+  Point2 center;
   double radius = 0.25;
 };
 
 /// The scan from a robot at `base` (plan frame). A beam without return reads range_max. The number
 /// of random draws depends on the number of beams only.
-hyselam::LaserScan takeScan(const LaserParams& params, const RayCaster& world,
+hyselam::LaserScan takeScan(const LaserParams& params, const PlanRayCaster& world,
                             const std::vector<Disc>& people, const Pose2& base, double stamp,
                             hyselam::Rng& rng);
 

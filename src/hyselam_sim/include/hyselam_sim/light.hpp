@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_sim/floor_regions.hpp"
 #include "hyselam_sim/geometry.hpp"
-#include "hyselam_sim/ray_caster.hpp"
+#include "hyselam_sim/plan_ray_caster.hpp"
 
 namespace hyselam_sim {
 
@@ -23,6 +24,9 @@ struct LightParams {
   double clouds = 0.3;  ///< 0: clear sky .. 1: no direct sun
   enum class Lamps { kByHour, kOn, kOff };
   Lamps lamps = Lamps::kByHour;  ///< kByHour: before 8, after 17, and in rooms without daylight
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// The sky at an hour. y points north; the sun rises in the east at 6 and sets at 18.
@@ -41,8 +45,8 @@ struct Sky {
 class LightMap {
  public:
   /// `walls`: what stops light; `resolution` [m], > 0.
-  LightMap(const FloorRegions& regions, const RayCaster& walls, const std::vector<Window>& windows,
-           double ceiling, double resolution = 0.25);
+  LightMap(const FloorRegions& regions, const PlanRayCaster& walls,
+           const std::vector<Window>& windows, double ceiling, double resolution = 0.25);
 
   /// Light by colour at a point; about 1 in a well-lit room by day.
   std::array<float, 3> at(Point2 p, const Sky& sky) const;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_sim/geometry.hpp"
 #include "hyselam_sim/robot.hpp"
 
@@ -16,6 +17,9 @@ struct FollowerParams {
   double near_look_ahead = 0.3;               ///< in narrow passages [m]
   double open_clearance = 1.0;                ///< from here on the floor counts as open [m]
   double arrival = 0.05;                      ///< this close to the end is there [m]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 struct DriveCommand {
@@ -31,7 +35,7 @@ class PathFollower {
   void start(const std::vector<Point2>& path);
   /// Goes on after the end of the present path; `more` begins where that one ends.
   void extend(const std::vector<Point2>& more);
-  /// Way left [m].
+  /// Path length left [m].
   double remaining() const;
   /// Direction of the present path at its end [rad].
   double endDirection() const;

@@ -24,7 +24,7 @@ std::vector<Solid> wallSolids(const FloorPlan& plan);
 
 /// The leaf of a door at that time: shut in the opening, or standing at a right angle to it. Empty
 /// outline for an open door without a swinging leaf.
-Polygon doorLeaf(const Door& door, double time);
+Polygon doorLeaf(const PlanDoor& door, double time);
 
 /// Everything a robot can hit at that time: walls, door leaves, furniture.
 std::vector<Solid> solids(const FloorPlan& plan, double time, bool with_furniture = true);

@@ -12,7 +12,7 @@ namespace hyselam_sim {
 class PlanRayCaster {
  public:
   /// `bucket_size` [m], > 0: side of a bucket; only speed depends on it.
-  explicit RayCaster(std::vector<Segment> segments, double bucket_size = 1.0);
+  explicit PlanRayCaster(std::vector<Segment> segments, double bucket_size = 1.0);
 
   /// Distance from `origin` along `direction` (unit vector) to the first segment, or `max_range` if
   /// none is nearer. [m]

@@ -1,6 +1,7 @@
 // A Pioneer P3-DX (Maffei 2017, table A.1): two driven wheels, turning on the spot.
 #pragma once
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/pose2.hpp"
 #include "hyselam_common/rng.hpp"
 
@@ -13,6 +14,9 @@ struct RobotParams {
   double turn_acceleration = hyselam::radians(180.0);  ///< [rad/s^2]
   double radius = 0.267;                               ///< of the disc it turns in ("swing") [m]
   double wheel_base = 0.334;  ///< between the wheels' middles: width 381 mm - wheel 47.4 mm [m]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// What the wheels rolled on the ground in one step [m].
@@ -24,7 +28,7 @@ struct WheelMotion {
 /// Where the robot really is. Follows commands within its limits, exactly along arcs.
 class DifferentialRobot {
  public:
-  /// Throws hyselam::ParameterError for limits that are not positive.
+  /// @throws hyselam::ParameterError for limits that are not positive.
   DifferentialRobot(const RobotParams& params, const hyselam::Pose2& start);
 
   /// Moves for `dt` seconds towards the commanded speeds [m/s, rad/s].
@@ -45,18 +49,21 @@ class DifferentialRobot {
 };
 
 /// Errors of dead reckoning: a systematic part (Borenstein and Feng's unequal wheels and uncertain
-/// wheel base) and a random part that grows with the way.
+/// wheel base) and a random part that grows with the path length.
 struct OdometryParams {
-  double left_scale = 1.0005;   ///< believed / true radius of the left wheel
+  double left_scale = 1.0005;   ///< assumed / true radius of the left wheel
   double right_scale = 0.9998;  ///< of the right wheel
-  double base_scale = 1.005;    ///< believed / true wheel base
-  double sigma = 0.002;         ///< per wheel, of 1 m of way; grows with its root [m/sqrt(m)]
+  double base_scale = 1.005;    ///< assumed / true wheel base
+  double sigma = 0.002;         ///< per wheel, of 1 m of path; grows with its root [m/sqrt(m)]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
-/// What the robot believes from its wheels alone. Starts at the identity.
+/// Dead reckoning from the wheels alone. Starts at the identity.
 class Odometry {
  public:
-  /// Throws hyselam::ParameterError for scales that are not positive or a negative sigma.
+  /// @throws hyselam::ParameterError for scales that are not positive or a negative sigma.
   Odometry(const OdometryParams& params, double wheel_base, const hyselam::Rng& rng);
   void update(const WheelMotion& motion);
   const hyselam::Pose2& pose() const { return pose_; }
@@ -68,7 +75,7 @@ class Odometry {
   hyselam::Pose2 pose_;
 };
 
-/// The pose after rolling along an arc.
-hyselam::Pose2 roll(const hyselam::Pose2& pose, double way, double turn);
+/// The pose after rolling along an arc of that length [m] and turn [rad].
+hyselam::Pose2 roll(const hyselam::Pose2& pose, double length, double turn);
 
 }  // namespace hyselam_sim

@@ -18,7 +18,7 @@ struct Spot {
 
 struct RouteStep {
   enum class Kind {
-    kGo,        ///< to a place by the shortest comfortable way, to a point straight on
+    kGo,        ///< to a place by the cheapest path, to a point straight on
     kTeleport,  ///< the robot is carried away: its pose jumps, odometry notices nothing
     kWait       ///< stands still
   };
@@ -64,8 +64,8 @@ struct Route {
   std::vector<Person> people;
 };
 
-/// Reads a route; README.md describes the format. Throws hyselam::InputError naming file, line, key
-/// and reason.
+/// Reads a route; README.md describes the format. @throws hyselam::InputError naming file, line,
+/// key and reason.
 Route loadRoute(const std::string& path);
 Route parseRoute(const std::string& text, const std::string& source);
 

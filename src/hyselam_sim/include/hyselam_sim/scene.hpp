@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 #include "hyselam_sim/floor_regions.hpp"
 #include "hyselam_sim/light.hpp"
@@ -18,7 +19,7 @@
 namespace hyselam_sim {
 
 /// Linear red, green, blue.
-using Colour = std::array<float, 3>;
+using Color = std::array<float, 3>;
 
 enum class Material {
   kPaint,     ///< even, with a skirting board where a wall meets the floor
@@ -36,8 +37,8 @@ enum class Material {
 
 struct Surface {
   Material material = Material::kPlain;
-  Colour colour{0.5f, 0.5f, 0.5f};  ///< share of the light that it throws back, 0 .. 1
-  std::uint32_t seed = 0;           ///< of its pattern
+  Color color{0.5f, 0.5f, 0.5f};  ///< share of the light that it throws back, 0 .. 1
+  std::uint32_t seed = 0;         ///< of its pattern
 };
 
 /// An upright prism.
@@ -62,7 +63,7 @@ struct Thing {
   double z = 0.0;                             ///< height of its underside above the floor [m]
   std::array<double, 3> size{0.1, 0.1, 0.1};  ///< length, width, height [m]; of a cylinder the
                                               ///< length is the diameter
-  Colour colour{0.8f, 0.1f, 0.1f};
+  Color color{0.8f, 0.1f, 0.1f};
 };
 
 struct SceneParams {
@@ -71,13 +72,16 @@ struct SceneParams {
   double window_share = 0.7;  ///< of the spots at outer walls that could have a window, 0 .. 1
   double poster_share = 0.5;  ///< the same for posters at all walls
   std::vector<Thing> things;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// Everything that does not move, with its light. Immutable after construction; all queries may run
 /// concurrently.
 class Scene {
  public:
-  /// Throws hyselam::InputError for a plan that rasterise() refuses, hyselam::ParameterError for a
+  /// @throws hyselam::InputError for a plan that rasterize() refuses, hyselam::ParameterError for a
   /// parameter out of range.
   explicit Scene(const FloorPlan& plan, const SceneParams& params = {});
 

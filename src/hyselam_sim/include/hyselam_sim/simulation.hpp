@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/robot_log.hpp"
 #include "hyselam_sim/floor_plan.hpp"
 #include "hyselam_sim/laser.hpp"
@@ -25,6 +26,9 @@ struct SimulationParams {
   double start_time = 1.0;            ///< stamp of the first sample [s], > 0
   double max_duration = 86400.0;      ///< a longer run is refused [s]
   double stand_after_teleport = 1.0;  ///< [s]
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// When the robot was at the end of a step of the route.
@@ -43,9 +47,9 @@ struct Simulation {
 
 /// Runs the route. The same arguments give the same result, on any number of threads.
 ///
-/// Throws hyselam::InputError naming the route's file and step when a place is unknown, a leg is
+/// @throws hyselam::InputError naming the route's file and step when a place is unknown, a leg is
 /// blocked (by which wall, door or furniture), or a person would walk through a wall;
-/// hyselam::ParameterError for a parameter out of range. `progress` is told the steps done.
+/// hyselam::ParameterError for a parameter out of range. `progress` gets the number of steps done.
 Simulation simulate(const FloorPlan& plan, const Route& route, std::uint64_t seed,
                     const SimulationParams& params = {},
                     const std::function<void(std::size_t)>& progress = {});

@@ -13,29 +13,7 @@ namespace {
 constexpr double kNear = 0.05;     // [m]
 constexpr double kInFront = 0.15;  // how far before a wall its room and light are looked up [m]
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
-constexpr Colour kLampShine{2.4f, 2.1f, 1.7f};
-
-void check(const CameraParams& p) {
-  using hyselam::ParameterError;
-  if (p.width < 16 || p.width > 4096) throw ParameterError("width", p.width, "16 .. 4096");
-  if (p.height < 16 || p.height > 4096) throw ParameterError("height", p.height, "16 .. 4096");
-  if (!(p.view > 0.0 && p.view <= hyselam::radians(170.0))) {
-    throw ParameterError("view", p.view, "within (0, 2.967] rad");
-  }
-  if (!(p.above_floor > 0.0 && p.above_floor < 100.0)) {
-    throw ParameterError("above_floor", p.above_floor, "within (0, 100)");
-  }
-  if (!(p.range > 1.0 && p.range <= 1000.0)) throw ParameterError("range", p.range, "1 .. 1000");
-  if (!(p.depth_min >= 0.0 && p.depth_max > p.depth_min && p.depth_max <= 65.0)) {
-    throw ParameterError("depth_max", p.depth_max, "above depth_min, up to 65");
-  }
-  for (const auto& [name, value] : {std::pair<const char*, double>{"depth_sigma", p.depth_sigma},
-                                    {"noise", p.noise},
-                                    {"exposure", p.exposure},
-                                    {"white_balance", p.white_balance}}) {
-    if (!(value >= 0.0 && value <= 1.0)) throw ParameterError(name, value, "0 .. 1");
-  }
-}
+constexpr Color kLampShine{2.4f, 2.1f, 1.7f};
 
 /// A part of a column that belongs to one face.
 struct Span {
@@ -43,8 +21,8 @@ struct Span {
   enum class Face { kSide, kTop, kUnderside } face = Face::kSide;
   float along = 0.0f;  // of a side: where on its edge [m]
   const Surface* surface = nullptr;
-  Colour light{};  // of a side
-  Point2 front;    // of a side: a point before it
+  Color light{};  // of a side
+  Point2 front;   // of a side: a point before it
 };
 
 struct Crossing {
@@ -66,7 +44,7 @@ class Painter {
         origin_{eye_.x, eye_.y},
         forward_{std::cos(eye_.theta), std::sin(eye_.theta)},
         right_{forward_.y, -forward_.x},
-        colour_(params.height, params.width, CV_32FC3),
+        color_(params.height, params.width, CV_32FC3),
         depth_(params.height, params.width, CV_32FC1),
         owner_(params.height, params.width, CV_32SC1),
         nearest_(static_cast<std::size_t>(params.height)),
@@ -81,7 +59,7 @@ class Painter {
     for (int u = 0; u < params_.width; ++u) paintColumn(u);
   }
 
-  const cv::Mat& colour() const { return colour_; }
+  const cv::Mat& color() const { return color_; }
   const cv::Mat& depth() const { return depth_; }
   const cv::Mat& owner() const { return owner_; }
 
@@ -201,8 +179,8 @@ class Painter {
     }
   }
 
-  Colour sideLight(Point2 front, Point2 out) const {
-    Colour light = scene_.light().at(front, sky_);
+  Color sideLight(Point2 front, Point2 out) const {
+    Color light = scene_.light().at(front, sky_);
     // Sides of a room differ a little in brightness, as they do where light comes from one side.
     const auto shade = static_cast<float>(0.9 + 0.1 * dot(out, Point2{0.8, 0.6}));
     for (float& channel : light) channel *= shade;
@@ -212,15 +190,15 @@ class Painter {
   void paintPixel(int u, int v, Point2 direction) {
     const auto row = static_cast<std::size_t>(v);
     float depth = nearest_[row];
-    Colour colour{};
+    Color color{};
     std::uint32_t owner = 0;
     const bool down = 2 * v + 1 > params_.height;
     const float level = planeDepth(down ? 0.0 : scene_.ceiling(), v);
     if (span_of_[row] >= 0 && depth <= level) {
       const Span& span = spans_[static_cast<std::size_t>(span_of_[row])];
       owner = span.body->owner;
-      colour = span.face == Span::Face::kSide ? sideColour(span, depth, v)
-                                              : levelColour(span, depth, direction);
+      color = span.face == Span::Face::kSide ? sideColor(span, depth, v)
+                                             : levelColor(span, depth, direction);
     } else {
       depth = level;
       if (static_cast<double>(depth) > 4.0 * params_.range) depth = kInfinite;
@@ -228,18 +206,18 @@ class Painter {
         const Point2 p = origin_ + static_cast<double>(depth) * direction;
         const int room = scene_.regions().roomAt(p);
         const Surface& surface = down ? scene_.floor(room) : scene_.ceilingSurface(room);
-        colour = lit(textureAt(surface, static_cast<float>(p.x), static_cast<float>(p.y),
-                               levelBlur(depth, down ? 0.0 : scene_.ceiling()), 0.0f),
-                     scene_.light().at(p, sky_), down ? 1.0f : 0.7f);
+        color = lit(textureAt(surface, static_cast<float>(p.x), static_cast<float>(p.y),
+                              levelBlur(depth, down ? 0.0 : scene_.ceiling()), 0.0f),
+                    scene_.light().at(p, sky_), down ? 1.0f : 0.7f);
       }
     }
     depth_.at<float>(v, u) = depth;
     owner_.at<std::int32_t>(v, u) = static_cast<std::int32_t>(owner);
-    colour_.at<cv::Vec3f>(v, u) = {colour[2], colour[1], colour[0]};
+    color_.at<cv::Vec3f>(v, u) = {color[2], color[1], color[0]};
   }
 
-  static Colour lit(const Colour& albedo, const Colour& light, float share) {
-    Colour out;
+  static Color lit(const Color& albedo, const Color& light, float share) {
+    Color out;
     for (std::size_t i = 0; i < 3; ++i) out[i] = share * albedo[i] * light[i];
     return out;
   }
@@ -251,14 +229,14 @@ class Painter {
     return static_cast<float>(d / focal_ * std::min(6.0, std::max(1.0, 0.5 * d / drop)));
   }
 
-  Colour sideColour(const Span& span, float depth, int v) const {
+  Color sideColor(const Span& span, float depth, int v) const {
     const double z = params_.above_floor -
                      (v + 0.5 - 0.5 * params_.height) * static_cast<double>(depth) / focal_;
     const auto height = static_cast<float>(span.body->to - span.body->from);
     const auto up = static_cast<float>(z - span.body->from);
     switch (span.surface->material) {
       case Material::kWindow:
-        return windowColour(span, up / height);
+        return windowColor(span, up / height);
       case Material::kLamp:
         if (scene_.light().lampsShine(span.front, sky_)) return kLampShine;
         break;
@@ -270,27 +248,27 @@ class Painter {
   }
 
   // Sky above, a dull ground below; a bar in the middle. Windows shine towards the point in front.
-  Colour windowColour(const Span& span, float up) const {
+  Color windowColor(const Span& span, float up) const {
     const Point2 way = span.body->outline[3] - span.body->outline[0];
-    const Colour passed = sky_.through((1.0 / length(way)) * way);
+    const Color passed = sky_.through((1.0 / length(way)) * way);
     const double width = length(span.body->outline[1] - span.body->outline[0]);
     if (std::abs(static_cast<double>(span.along) - 0.5 * width) < 0.025) {
       return lit({0.8f, 0.8f, 0.78f}, span.light, 1.0f);
     }
     const float shine = up > 0.35f ? 1.6f : 0.5f;
-    Colour out;
+    Color out;
     for (std::size_t i = 0; i < 3; ++i) out[i] = shine * passed[i] + 0.03f * span.light[i];
     return out;
   }
 
-  Colour levelColour(const Span& span, float depth, Point2 direction) const {
+  Color levelColor(const Span& span, float depth, Point2 direction) const {
     const Point2 p = origin_ + static_cast<double>(depth) * direction;
     if (span.surface->material == Material::kLamp && scene_.light().lampsShine(p, sky_)) {
       return kLampShine;
     }
     const bool top = span.face == Span::Face::kTop;
-    const Colour albedo = textureAt(*span.surface, static_cast<float>(p.x), static_cast<float>(p.y),
-                                    levelBlur(depth, top ? span.body->to : span.body->from), 0.0f);
+    const Color albedo = textureAt(*span.surface, static_cast<float>(p.x), static_cast<float>(p.y),
+                                   levelBlur(depth, top ? span.body->to : span.body->from), 0.0f);
     return lit(albedo, scene_.light().at(p, sky_), top ? 1.1f : 0.5f);
   }
 
@@ -300,7 +278,7 @@ class Painter {
   double focal_;
   Pose2 eye_;
   Point2 origin_, forward_, right_;
-  cv::Mat colour_, depth_, owner_;
+  cv::Mat color_, depth_, owner_;
   std::vector<float> nearest_;  // depth of each row of the current column
   std::vector<int> span_of_;
   std::vector<Span> spans_;
@@ -322,9 +300,9 @@ cv::Mat develop(const CameraParams& params, const cv::Mat& light, std::uint64_t 
   const double gain = kTarget / kUsual * std::pow(kUsual / luminance, params.exposure);
   std::array<float, 3> gains{};
   for (int c = 0; c < 3; ++c) {
-    const double grey = luminance / std::max(1e-6, mean[c]);
+    const double gray = luminance / std::max(1e-6, mean[c]);
     gains[static_cast<std::size_t>(c)] =
-        static_cast<float>(gain * std::pow(std::clamp(grey, 0.3, 3.0), params.white_balance));
+        static_cast<float>(gain * std::pow(std::clamp(gray, 0.3, 3.0), params.white_balance));
   }
   // Dark pictures are noisier; 2.45 makes the draws' standard deviation 1.
   const auto noise = static_cast<float>(2.45 * params.noise * std::clamp(gain / 4.0, 0.15, 1.5));
@@ -371,6 +349,31 @@ cv::Mat measureDepth(const CameraParams& params, const cv::Mat& depth, std::uint
 
 }  // namespace
 
+void CameraParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("width", width, Range::between(16, 4096), "pixel", "of a picture");
+  visit("height", height, Range::between(16, 4096), "pixel", "of a picture");
+  visit("view", view, Range::aboveUpTo(0.0, hyselam::radians(170.0)), "rad",
+        "horizontal field of view");
+  visit("above_floor", above_floor, Range::inside(0.0, 100.0), "m", "height of the camera");
+  visit("range", range, Range::aboveUpTo(1.0, 1000.0), "m", "what is farther is not drawn");
+  visit("depth_min", depth_min, Range::atLeast(0.0), "m", "nearer depths read 0");
+  visit("depth_max", depth_max, Range::aboveUpTo(0.0, 65.0), "m", "farther depths read 0");
+  visit("depth_sigma", depth_sigma, Range::between(0.0, 1.0), "m",
+        "noise of a depth at 1 m; grows with its square");
+  visit("noise", noise, Range::between(0.0, 1.0), "", "of a color at full gain, of 1");
+  visit("exposure", exposure, Range::between(0.0, 1.0), "", "how far exposure follows the light");
+  visit("white_balance", white_balance, Range::between(0.0, 1.0), "",
+        "how far colors follow that of the light");
+}
+
+void CameraParams::validate() const {
+  hyselam::checkParameters(*this);
+  if (!(depth_max > depth_min)) {
+    throw hyselam::ParameterError("depth_max", depth_max, "above depth_min, up to 65");
+  }
+}
+
 double CameraParams::focalLength() const {
   return 0.5 * width / std::tan(0.5 * view);
 }
@@ -378,7 +381,7 @@ double CameraParams::focalLength() const {
 CameraFrame takePicture(const CameraParams& params, const Scene& scene, const LightParams& light,
                         const std::vector<Person>& people, const Pose2& base, double time,
                         hyselam::Rng& rng) {
-  check(params);
+  params.validate();
   const std::vector<Body> doors = scene.doors(time),
                           persons = scene.people(people, time, {base.x, base.y});
   Painter painter(params, scene, light, base);
@@ -387,7 +390,7 @@ CameraFrame takePicture(const CameraParams& params, const Scene& scene, const Li
   painter.add(persons);
   painter.paint();
   const std::uint64_t seed = rng();
-  return {develop(params, painter.colour(), seed), measureDepth(params, painter.depth(), seed),
+  return {develop(params, painter.color(), seed), measureDepth(params, painter.depth(), seed),
           painter.owner().clone()};
 }
 

@@ -17,8 +17,8 @@ constexpr double kPanelDepth = 0.02;   // posters and windows stand out so far [
 constexpr double kPanelEvery = 2.4;    // one spot per so much wall [m]
 constexpr double kLeastMargin = 0.25;  // from the end of a wall [m]
 
-Colour tinted(Rng& rng, double light, double strength) {
-  Colour out;
+Color tinted(Rng& rng, double light, double strength) {
+  Color out;
   for (float& channel : out) {
     channel = static_cast<float>(std::clamp(light + strength * (rng.uniform() - 0.5), 0.05, 0.95));
   }
@@ -50,11 +50,11 @@ Polygon shrunk(const Polygon& outline, double by) {
   return out;
 }
 
-Polygon disc(Point2 centre, double radius, int corners) {
+Polygon disc(Point2 center, double radius, int corners) {
   Polygon out;
   for (int i = 0; i < corners; ++i) {
     const double a = 2.0 * hyselam::kPi * i / corners;
-    out.push_back(centre + radius * Point2{std::cos(a), std::sin(a)});
+    out.push_back(center + radius * Point2{std::cos(a), std::sin(a)});
   }
   return out;
 }
@@ -101,21 +101,21 @@ RoomStyle roomStyle(std::uint64_t seed, const std::string& name) {
   style.paint.material = rough && rng.uniform() < 0.5 ? Material::kBrick
                          : wet                        ? Material::kTiles
                                                       : Material::kPaint;
-  style.paint.colour = tinted(rng, 0.62, style.paint.material == Material::kBrick ? 0.3 : 0.42);
-  if (style.paint.material == Material::kBrick) style.paint.colour = {0.45f, 0.24f, 0.18f};
+  style.paint.color = tinted(rng, 0.62, style.paint.material == Material::kBrick ? 0.3 : 0.42);
+  if (style.paint.material == Material::kBrick) style.paint.color = {0.45f, 0.24f, 0.18f};
   style.floor.seed = seedOf(rng);
   const double choice = rng.uniform();
   style.floor.material = wet || choice < 0.2 ? Material::kTiles
                          : choice < 0.6      ? Material::kCarpet
                                              : Material::kWood;
-  style.floor.colour = tinted(rng, 0.3, 0.3);
+  style.floor.color = tinted(rng, 0.3, 0.3);
   if (style.floor.material == Material::kWood) {
     const auto tone = static_cast<float>(rng.uniform(0.6, 1.3));
-    style.floor.colour = {0.42f * tone, 0.27f * tone, 0.15f * tone};
+    style.floor.color = {0.42f * tone, 0.27f * tone, 0.15f * tone};
   }
   style.ceiling.seed = seedOf(rng);
   style.ceiling.material = rng.uniform() < 0.5 ? Material::kTiles : Material::kPlain;
-  style.ceiling.colour = tinted(rng, 0.78, 0.06);
+  style.ceiling.color = tinted(rng, 0.78, 0.06);
   return style;
 }
 
@@ -207,10 +207,10 @@ std::vector<Body> furnitureBodies(const Furniture& furniture, std::uint64_t seed
             with(shrunk(furniture.outline, 0.12), 0.0, h, cloth, cloth)};
   }
   if (speaksOf(name, {"shelf", "rack", "book"})) {
-    return {with(furniture.outline, 0.0, h, {Material::kShelf, wood.colour, wood.seed}, wood)};
+    return {with(furniture.outline, 0.0, h, {Material::kShelf, wood.color, wood.seed}, wood)};
   }
   if (h > 1.2 || speaksOf(name, {"cupboard", "kitchenette", "counter", "basin"})) {
-    const Surface front{Material::kCupboard, rng.uniform() < 0.5 ? wood.colour : paint.colour,
+    const Surface front{Material::kCupboard, rng.uniform() < 0.5 ? wood.color : paint.color,
                         wood.seed};
     return {with(furniture.outline, 0.0, h, front, wood)};
   }

@@ -1,4 +1,4 @@
-// What plans do not tell: paint and floors of rooms, windows and posters on walls, doors, the looks
+// What plans do not give: paint and floors of rooms, windows and posters on walls, doors, the looks
 // of furniture. Private to Scene.
 #pragma once
 

@@ -23,10 +23,21 @@ Pose2 truthAt(const std::vector<hyselam::StampedPose2>& truth, double stamp) {
 
 }  // namespace
 
+void FilmParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit.group("camera_", camera);
+  visit.group("light_", light);
+  visit("rate", rate, Range::between(0.01, 120.0), "Hz", "pictures per second");
+  visit("start_time", start_time, Range::any(), "s",
+        "stamp at which doors and people begin to move");
+}
+
+void FilmParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 std::size_t filmLength(const hyselam::RobotLog& log, const FilmParams& params) {
-  if (!(params.rate >= 0.01 && params.rate <= 120.0)) {
-    throw hyselam::ParameterError("rate", params.rate, "0.01 .. 120");
-  }
+  params.validate();
   if (log.ground_truth.empty()) {
     throw hyselam::InputError("log", "", "has no ground truth to film along");
   }

@@ -47,8 +47,8 @@ void requireNewName(const YamlMap& map, const std::string& name, std::set<std::s
   }
 }
 
-Wall readWall(const FloorPlan& plan, const YamlMap& map, double thickness, double height) {
-  Wall wall;
+PlanWall readWall(const FloorPlan& plan, const YamlMap& map, double thickness, double height) {
+  PlanWall wall;
   wall.name = map.textOr("name", "");
   wall.points = map.points("points", 2);
   wall.closed = map.has("closed") && map.boolean("closed");
@@ -66,12 +66,12 @@ Wall readWall(const FloorPlan& plan, const YamlMap& map, double thickness, doubl
 }
 
 // Finds the wall that the door is in.
-void attach(const FloorPlan& plan, const YamlMap& map, Door& door) {
+void attach(const FloorPlan& plan, const YamlMap& map, PlanDoor& door) {
   constexpr double kReach = 0.05;
   double best = kReach;
   bool found = false;
   Segment wall_segment;
-  for (const Wall& wall : plan.walls) {
+  for (const PlanWall& wall : plan.walls) {
     for (std::size_t i = 0; i < wall.segmentCount(); ++i) {
       const Segment s = wall.segment(i);
       const double d = distance(door.at, s);
@@ -92,17 +92,17 @@ void attach(const FloorPlan& plan, const YamlMap& map, Door& door) {
   }
 }
 
-Door readDoor(const FloorPlan& plan, const YamlMap& map) {
-  Door door;
+PlanDoor readDoor(const FloorPlan& plan, const YamlMap& map) {
+  PlanDoor door;
   door.name = map.textOr("name", "");
   door.at = map.point("at");
   door.width = map.numberOr("width", 0.9, 0.1, 50.0);
   const std::string swing = map.choice("swing", {"none", "left", "right"}, "none");
-  door.swing = swing == "left"    ? Door::Swing::kLeft
-               : swing == "right" ? Door::Swing::kRight
-                                  : Door::Swing::kNone;
-  door.hinge = map.choice("hinge", {"start", "end"}, "start") == "end" ? Door::Hinge::kEnd
-                                                                       : Door::Hinge::kStart;
+  door.swing = swing == "left"    ? PlanDoor::Swing::kLeft
+               : swing == "right" ? PlanDoor::Swing::kRight
+                                  : PlanDoor::Swing::kNone;
+  door.hinge = map.choice("hinge", {"start", "end"}, "start") == "end" ? PlanDoor::Hinge::kEnd
+                                                                       : PlanDoor::Hinge::kStart;
   door.initially_open = !map.has("open") || map.boolean("open");
   const std::vector<YAML::Node> changes = map.list("schedule");
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -148,8 +148,8 @@ Furniture readFurniture(const FloorPlan& plan, const YamlMap& map) {
   return item;
 }
 
-Place readPlace(const FloorPlan& plan, const YamlMap& map, const std::vector<Solid>& walls) {
-  Place place;
+PlanPlace readPlace(const FloorPlan& plan, const YamlMap& map, const std::vector<Solid>& walls) {
+  PlanPlace place;
   place.name = map.text("name");
   place.at = map.point("at");
   if (map.has("polygon")) place.outline = map.points("polygon", 3);
@@ -179,7 +179,7 @@ DoorConfiguration readConfiguration(const FloorPlan& plan, const YamlMap& map) {
   DoorConfiguration configuration;
   configuration.name = map.text("name");
   std::vector<std::string> known;
-  for (const Door& door : plan.doors) known.push_back(door.name);
+  for (const PlanDoor& door : plan.doors) known.push_back(door.name);
   const std::vector<YAML::Node> open = map.list("open");
   for (std::size_t i = 0; i < open.size(); ++i) {
     const std::string name = open[i].IsScalar() ? open[i].Scalar() : "";
@@ -193,7 +193,7 @@ DoorConfiguration readConfiguration(const FloorPlan& plan, const YamlMap& map) {
 }
 
 // An opening must lead through: no other wall may cross it.
-void requirePassable(const FloorPlan& plan, const Door& door, const YamlMap& map,
+void requirePassable(const FloorPlan& plan, const PlanDoor& door, const YamlMap& map,
                      const std::vector<Solid>& walls) {
   for (const double along : {-0.45, -0.25, 0.0, 0.25, 0.45}) {
     const Point2 p = door.at + (along * door.width) * door.along;
@@ -204,9 +204,27 @@ void requirePassable(const FloorPlan& plan, const Door& door, const YamlMap& map
   }
 }
 
+/// The doors of the plan, whose walls are there; returns these with the openings cut out.
+std::vector<Solid> readDoors(FloorPlan& plan, const YamlMap& map) {
+  const std::vector<std::string> keys{"name", "at", "width", "swing", "hinge", "open", "schedule"};
+  const std::vector<YAML::Node> doors = map.list("doors");
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < doors.size(); ++i) {
+    const YamlMap m(map.source(), entry("doors", i), doors[i], keys);
+    plan.doors.push_back(readDoor(plan, m));
+    requireNewName(m, plan.doors.back().name, names);
+  }
+  std::vector<Solid> solid_walls = wallSolids(plan);
+  for (std::size_t i = 0; i < doors.size(); ++i) {
+    const YamlMap m(map.source(), entry("doors", i), doors[i], keys);
+    requirePassable(plan, plan.doors[i], m, solid_walls);
+  }
+  return solid_walls;
+}
+
 }  // namespace
 
-bool Door::isOpen(double time) const {
+bool PlanDoor::isOpen(double time) const {
   bool open = initially_open;
   for (const Change& change : schedule) {
     if (change.time > time) break;
@@ -228,9 +246,9 @@ const std::string& FloorPlan::kindAt(Point2 p) const {
   return floor_kind;
 }
 
-const Place& FloorPlan::place(const std::string& place_name) const {
+const PlanPlace& FloorPlan::place(const std::string& place_name) const {
   std::vector<std::string> names;
-  for (const Place& candidate : places) {
+  for (const PlanPlace& candidate : places) {
     if (candidate.name == place_name) return candidate;
     names.push_back(candidate.name);
   }
@@ -243,7 +261,7 @@ void FloorPlan::setDoors(const std::string& configuration) {
   for (const DoorConfiguration& candidate : configurations) {
     names.push_back(candidate.name);
     if (candidate.name != configuration) continue;
-    for (Door& door : doors) {
+    for (PlanDoor& door : doors) {
       door.initially_open = std::find(candidate.open.begin(), candidate.open.end(), door.name) !=
                             candidate.open.end();
       door.schedule.clear();
@@ -257,8 +275,8 @@ void FloorPlan::setDoors(const std::string& configuration) {
 
 double FloorPlan::nextDoorChange(double time) const {
   double next = std::numeric_limits<double>::infinity();
-  for (const Door& door : doors) {
-    for (const Door::Change& change : door.schedule) {
+  for (const PlanDoor& door : doors) {
+    for (const PlanDoor::Change& change : door.schedule) {
       if (change.time > time) next = std::min(next, change.time);
     }
   }
@@ -290,20 +308,7 @@ FloorPlan parseFloorPlan(const std::string& content, const std::string& source) 
     requireNewName(m, plan.walls.back().name, names);
   }
 
-  names.clear();
-  const std::vector<std::string> door_keys{"name",  "at",   "width",   "swing",
-                                           "hinge", "open", "schedule"};
-  const std::vector<YAML::Node> doors = map.list("doors");
-  for (std::size_t i = 0; i < doors.size(); ++i) {
-    const YamlMap m(source, entry("doors", i), doors[i], door_keys);
-    plan.doors.push_back(readDoor(plan, m));
-    requireNewName(m, plan.doors.back().name, names);
-  }
-  const std::vector<Solid> solid_walls = wallSolids(plan);
-  for (std::size_t i = 0; i < doors.size(); ++i) {
-    const YamlMap m(source, entry("doors", i), doors[i], door_keys);
-    requirePassable(plan, plan.doors[i], m, solid_walls);
-  }
+  const std::vector<Solid> solid_walls = readDoors(plan, map);
 
   names.clear();
   const std::vector<YAML::Node> configurations = map.list("configurations");

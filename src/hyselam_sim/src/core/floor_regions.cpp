@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace hyselam_sim {
 namespace {
@@ -44,14 +44,14 @@ std::deque<Cell> labelled(const GridGeometry& g, const std::vector<std::int16_t>
 
 FloorRegions::FloorRegions(const FloorPlan& plan, double resolution) {
   FloorPlan shut = plan;
-  for (Door& door : shut.doors) {
+  for (PlanDoor& door : shut.doors) {
     door.initially_open = false;
     door.schedule.clear();
   }
   RasterOptions options;
   options.resolution = resolution;
   options.with_furniture = false;
-  const OccupancyGrid grid = rasterise(shut, options);
+  const OccupancyGrid grid = rasterize(shut, options);
   geometry_ = grid.geometry;
   const GridGeometry& g = geometry_;
   const auto is_floor = [&grid](Cell c) { return grid.at(c) == OccupancyGrid::kFree; };

@@ -140,8 +140,8 @@ class Builder {
                  along = rng_.uniform(1.5, 5.0), side = rng_.below(2) == 0 ? -1.0 : 1.0;
     const double gap = 0.5 * width_ + 0.2 + 0.5 * depth;
     const Point2 m = middle(e), to = e.east ? Point2{0.0, side} : Point2{side, 0.0};
-    const Point2 centre = m + gap * to, sill = m + (0.5 * width_ + 0.1) * to;
-    const Box room = e.east ? boxAround(centre, along, depth) : boxAround(centre, depth, along);
+    const Point2 center = m + gap * to, sill = m + (0.5 * width_ + 0.1) * to;
+    const Box room = e.east ? boxAround(center, along, depth) : boxAround(center, depth, along);
     const Box clear{room.x0 - 0.3, room.y0 - 0.3, room.x1 + 0.3, room.y1 + 0.3};
     const Box own = corridor(e);
     for (const std::vector<Box>* boxes : {&free_, &taken_}) {
@@ -199,7 +199,7 @@ class Builder {
         next.erase(step);
       }
       loop.pop_back();  // the first vertex again
-      Wall wall;
+      PlanWall wall;
       wall.closed = true;
       wall.thickness = kThickness;
       const std::size_t n = loop.size();
@@ -270,23 +270,34 @@ class Builder {
 
 }  // namespace
 
+void CorridorParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("lines", lines, Range::between(2, 8), "", "corridors that may run north and as many east");
+  visit("min_width", min_width, Range::between(1.2, 10.0), "m", "of the corridors");
+  visit("max_width", max_width, Range::between(1.2, 10.0), "m", "of the corridors");
+  visit("min_spacing", min_spacing, Range::above(0.0), "m",
+        "between center lines; at least max_width + 2");
+  visit("max_spacing", max_spacing, Range::aboveUpTo(0.0, 100.0), "m", "between center lines");
+  visit("loops", loops, Range::between(0.0, 1.0), "",
+        "share of the corridors that are not needed for a connected building");
+  visit("halls", halls, Range::between(0.0, 1.0), "",
+        "share of the meeting points with room for it that are halls");
+  visit("rooms", rooms, Range::between(0.0, 1.0), "",
+        "share of the corridors with an open room at their side");
+  visit("legs", legs, Range::between(1, 100000), "", "corridors that the route passes");
+}
+
 void CorridorParams::validate() const {
-  using hyselam::ParameterError;
-  if (lines < 2 || lines > 8) throw ParameterError("lines", lines, "in 2 .. 8");
-  if (!(min_width >= 1.2)) throw ParameterError("min_width", min_width, ">= 1.2 [m]");
-  if (!(max_width >= min_width && max_width <= 10.0))
-    throw ParameterError("max_width", max_width, "in min_width .. 10 [m]");
-  if (!(min_spacing >= max_width + 2.0))
-    throw ParameterError("min_spacing", min_spacing, ">= max_width + 2 [m]");
-  if (!(max_spacing >= min_spacing && max_spacing <= 100.0))
-    throw ParameterError("max_spacing", max_spacing, "in min_spacing .. 100 [m]");
-  const auto share = [](const char* name, double value) {
-    if (!(value >= 0.0 && value <= 1.0)) throw ParameterError(name, value, "in 0 .. 1");
-  };
-  share("loops", loops);
-  share("halls", halls);
-  share("rooms", rooms);
-  if (legs < 1 || legs > 100000) throw ParameterError("legs", legs, "in 1 .. 100000");
+  hyselam::checkParameters(*this);
+  if (!(max_width >= min_width)) {
+    throw hyselam::ParameterError("max_width", max_width, "in min_width .. 10 [m]");
+  }
+  if (!(min_spacing >= max_width + 2.0)) {
+    throw hyselam::ParameterError("min_spacing", min_spacing, ">= max_width + 2 [m]");
+  }
+  if (!(max_spacing >= min_spacing)) {
+    throw hyselam::ParameterError("max_spacing", max_spacing, "in min_spacing .. 100 [m]");
+  }
 }
 
 CorridorBuilding generateCorridors(std::uint64_t seed, const CorridorParams& params) {

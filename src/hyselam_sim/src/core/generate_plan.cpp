@@ -112,14 +112,14 @@ class Generator {
     double s = 0.5 * l;
     if (l > 2.0 * clear)
       s = chance(0.3) ? (chance(0.5) ? clear : l - clear) : between(clear, l - clear);
-    Door door;
+    PlanDoor door;
     door.width = width;
     door.at = from + std::clamp(s, 0.5 * width, l - 0.5 * width) * u;
     door.along = u;
     door.name = (real ? "door " : kOpeningPrefix) + std::to_string(plan_.doors.size() + 1);
     if (real && params_.leaves && width <= 1.1 && chance(0.5)) {
-      door.swing = chance(0.5) ? Door::Swing::kLeft : Door::Swing::kRight;
-      door.hinge = chance(0.5) ? Door::Hinge::kStart : Door::Hinge::kEnd;
+      door.swing = chance(0.5) ? PlanDoor::Swing::kLeft : PlanDoor::Swing::kRight;
+      door.hinge = chance(0.5) ? PlanDoor::Hinge::kStart : PlanDoor::Hinge::kEnd;
     }
     plan_.doors.push_back(door);
   }
@@ -238,7 +238,7 @@ class Generator {
   }
 
   bool clearOfDoors(const Box& b) const {
-    return std::all_of(plan_.doors.begin(), plan_.doors.end(), [&](const Door& d) {
+    return std::all_of(plan_.doors.begin(), plan_.doors.end(), [&](const PlanDoor& d) {
       const double dx = std::max({b.x0 - d.at.x, d.at.x - b.x1, 0.0}),
                    dy = std::max({b.y0 - d.at.y, d.at.y - b.y1, 0.0});
       return std::hypot(dx, dy) > 0.5 * d.width + 0.9;
@@ -294,7 +294,7 @@ class Generator {
       const double line = 1e-3 * static_cast<double>(wall.line),
                    from = 1e-3 * static_cast<double>(wall.from),
                    to = 1e-3 * static_cast<double>(wall.to);
-      Wall out;
+      PlanWall out;
       out.name = "wall " + std::to_string(plan_.walls.size() + 1);
       out.points = wall.upright ? std::vector<Point2>{{line, from}, {line, to}}
                                 : std::vector<Point2>{{from, line}, {to, line}};
@@ -307,18 +307,18 @@ class Generator {
   void frame() {
     const Pose2 turn{0.0, 0.0, params_.rotation};
     Point2 low{1e9, 1e9}, high{-1e9, -1e9};
-    for (Wall& wall : plan_.walls) {
+    for (PlanWall& wall : plan_.walls) {
       for (Point2& p : wall.points) {
         p = turn * p;
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
       }
     }
-    for (Place& place : plan_.places) {
+    for (PlanPlace& place : plan_.places) {
       place.at = turn * place.at;
       for (Point2& p : place.outline) p = turn * p;
     }
-    for (Door& door : plan_.doors) {
+    for (PlanDoor& door : plan_.doors) {
       door.at = turn * door.at;
       door.along = turn * door.along;
     }
@@ -340,16 +340,31 @@ class Generator {
 
 }  // namespace
 
+void PlanParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("layout", layout,
+        {{"any", Layout::kAny},
+         {"corridor", Layout::kCorridor},
+         {"corner", Layout::kCorner},
+         {"flat", Layout::kFlat}},
+        "of the rooms; any: chosen by the seed");
+  visit("min_door", min_door, Range::between(0.5, 2.2), "m", "narrowest door");
+  visit("max_door", max_door, Range::between(0.5, 2.2), "m", "widest door");
+  visit("openings", openings, "with passages wider than doors");
+  visit("leaves", leaves, "half of the narrow doors have a leaf that stands open");
+  visit("furniture", furniture, "tables, desks, cupboards, clear of the doors");
+  visit("rotation", rotation, Range::between(-1e6, 1e6), "rad", "of the whole floor");
+}
+
+void PlanParams::validate() const {
+  hyselam::checkParameters(*this);
+  if (!(max_door >= min_door)) {
+    throw hyselam::ParameterError("max_door", max_door, "within min_door .. 2.2 m");
+  }
+}
+
 FloorPlan generatePlan(std::uint64_t seed, const PlanParams& params) {
-  if (!(params.min_door >= 0.5 && params.min_door <= 2.2)) {
-    throw hyselam::ParameterError("min_door", params.min_door, "within 0.5 .. 2.2 m");
-  }
-  if (!(params.max_door >= params.min_door && params.max_door <= 2.2)) {
-    throw hyselam::ParameterError("max_door", params.max_door, "within min_door .. 2.2 m");
-  }
-  if (!std::isfinite(params.rotation)) {
-    throw hyselam::ParameterError("rotation", params.rotation, "finite");
-  }
+  params.validate();
   return Generator(seed, params).run();
 }
 

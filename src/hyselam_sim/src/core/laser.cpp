@@ -6,31 +6,31 @@
 #include "hyselam_common/errors.hpp"
 
 namespace hyselam_sim {
-namespace {
-
-void check(const LaserParams& p) {
-  using hyselam::ParameterError;
-  if (p.beams < 2 || p.beams > 100000) throw ParameterError("beams", p.beams, "2 .. 100000");
-  if (!(p.field_of_view > 0.0 && p.field_of_view <= 2.0 * hyselam::kPi)) {
-    throw ParameterError("field_of_view", p.field_of_view, "within (0, 2 pi]");
-  }
-  if (!(p.range_min >= 0.0)) throw ParameterError("range_min", p.range_min, ">= 0");
-  if (!(p.range_max > p.range_min && p.range_max <= 1e4)) {
-    throw ParameterError("range_max", p.range_max, "above range_min, up to 10000");
-  }
-  if (!(p.resolution >= 0.0 && p.resolution <= 1.0)) {
-    throw ParameterError("resolution", p.resolution, "0 .. 1");
-  }
-  if (!(p.sigma >= 0.0 && p.sigma <= 10.0)) throw ParameterError("sigma", p.sigma, "0 .. 10");
-  if (!(p.dropout >= 0.0 && p.dropout <= 1.0)) throw ParameterError("dropout", p.dropout, "0 .. 1");
+void LaserParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("beams", beams, Range::between(2, 100000), "", "of a scan");
+  visit("field_of_view", field_of_view, Range::aboveUpTo(0.0, 2.0 * hyselam::kPi), "rad",
+        "from the first beam to the last");
+  visit("range_min", range_min, Range::atLeast(0.0), "m", "shortest range");
+  visit("range_max", range_max, Range::aboveUpTo(0.0, 1e4), "m",
+        "longest range; no return reads this");
+  visit("resolution", resolution, Range::between(0.0, 1.0), "m",
+        "ranges are multiples of this; 0: exact");
+  visit("sigma", sigma, Range::between(0.0, 10.0), "m", "standard deviation of a range");
+  visit("dropout", dropout, Range::between(0.0, 1.0), "", "probability that a beam has no return");
 }
 
-}  // namespace
+void LaserParams::validate() const {
+  hyselam::checkParameters(*this);
+  if (!(range_max > range_min)) {
+    throw hyselam::ParameterError("range_max", range_max, "above range_min, up to 10000");
+  }
+}
 
-hyselam::LaserScan takeScan(const LaserParams& params, const RayCaster& world,
+hyselam::LaserScan takeScan(const LaserParams& params, const PlanRayCaster& world,
                             const std::vector<Disc>& people, const Pose2& base, double stamp,
                             hyselam::Rng& rng) {
-  check(params);
+  params.validate();
   hyselam::LaserScan scan;
   scan.stamp = stamp;
   scan.angle_min = -0.5 * params.field_of_view;
@@ -47,7 +47,7 @@ hyselam::LaserScan takeScan(const LaserParams& params, const RayCaster& world,
     const Point2 direction{std::cos(angle), std::sin(angle)};
     double range = world.cast(origin, direction, params.range_max);
     for (const Disc& person : people) {
-      range = std::min(range, hitDistance(origin, direction, person.centre, person.radius));
+      range = std::min(range, hitDistance(origin, direction, person.center, person.radius));
     }
     const double noise = params.sigma * rng.gaussian();
     const bool dropped = rng.uniform() < params.dropout;

@@ -15,7 +15,7 @@ constexpr double kWindowPower = 0.55;  // light 1 m before 1 m^2 of window
 constexpr double kBounced = 0.45;      // of a room's mean light that reaches every corner
 constexpr double kReach = 14.0;        // [m]
 constexpr double kDark = 0.03;         // mean share of the windows' light in a dark room
-constexpr std::array<float, 3> kLampColour{1.0f, 0.82f, 0.6f};
+constexpr std::array<float, 3> kLampColor{1.0f, 0.82f, 0.6f};
 
 int sideOf(Point2 inwards) {
   if (std::abs(inwards.x) >= std::abs(inwards.y)) return inwards.x > 0.0 ? 0 : 2;
@@ -28,13 +28,25 @@ Point2 directionOf(int side) {
   return directions[static_cast<std::size_t>(side)];
 }
 
-bool sees(const RayCaster& walls, Point2 from, Point2 to) {
+bool sees(const PlanRayCaster& walls, Point2 from, Point2 to) {
   const Point2 way = to - from;
   const double d = length(way);
   return d < 1e-9 || walls.cast(from, (1.0 / d) * way, d) >= d - 0.02;
 }
 
 }  // namespace
+
+void LightParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("hour", hour, Range::any(), "", "of the day, 0 .. 24");
+  visit("clouds", clouds, Range::any(), "", "0: clear sky .. 1: no direct sun");
+  visit("lamps", lamps, {{"by_hour", Lamps::kByHour}, {"on", Lamps::kOn}, {"off", Lamps::kOff}},
+        "by_hour: before 8, after 17, and in rooms without daylight");
+}
+
+void LightParams::validate() const {
+  hyselam::checkParameters(*this);
+}
 
 Sky::Sky(const LightParams& params)
     : lamps(params.lamps == LightParams::Lamps::kOn ||
@@ -46,9 +58,9 @@ Sky::Sky(const LightParams& params)
   const double up = std::clamp(height + 0.08, 0.0, 1.0);
   const double bright = 0.006 + 0.9 * std::pow(up, 0.6);
   const double low = std::clamp(1.0 - 2.5 * height, 0.0, 1.0);  // red mornings and evenings
-  const auto grey = static_cast<float>(bright * (0.55 + 0.25 * params.clouds));
-  diffuse = {grey * 0.92f, grey * 0.97f, grey * 1.08f};
-  if (height <= -0.08) diffuse = {0.25f * grey, 0.32f * grey, 0.6f * grey};
+  const auto gray = static_cast<float>(bright * (0.55 + 0.25 * params.clouds));
+  diffuse = {gray * 0.92f, gray * 0.97f, gray * 1.08f};
+  if (height <= -0.08) diffuse = {0.25f * gray, 0.32f * gray, 0.6f * gray};
   const auto beam = static_cast<float>(1.5 * std::max(0.0, height) * (1.0 - params.clouds));
   const auto red = static_cast<float>(low);
   sun = {beam, beam * (0.96f - 0.25f * red), beam * (0.88f - 0.5f * red)};
@@ -63,7 +75,7 @@ std::array<float, 3> Sky::through(Point2 inwards) const {
   return out;
 }
 
-LightMap::LightMap(const FloorRegions& regions, const RayCaster& walls,
+LightMap::LightMap(const FloorRegions& regions, const PlanRayCaster& walls,
                    const std::vector<Window>& windows, double ceiling, double resolution) {
   const hyselam::GridGeometry& fine = regions.geometry();
   geometry_ = fine;
@@ -171,7 +183,7 @@ std::array<float, 3> LightMap::at(Point2 p, const Sky& sky) const {
     for (std::size_t c = 0; c < 3; ++c) out[c] += share[static_cast<std::size_t>(side)] * passed[c];
   }
   if (lampsShine(p, sky)) {
-    for (std::size_t c = 0; c < 3; ++c) out[c] += share[kSides] * kLampColour[c];
+    for (std::size_t c = 0; c < 3; ++c) out[c] += share[kSides] * kLampColor[c];
   }
   return out;
 }

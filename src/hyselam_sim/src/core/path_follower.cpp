@@ -14,19 +14,27 @@ constexpr double kTurnUntil = hyselam::radians(8.0);
 constexpr double kSearchAhead = 1.0;  // of the foot point [m]
 constexpr double kCreep = 0.05;       // slowest driving speed [m/s]
 
-void requirePositive(const char* name, double value) {
-  if (!(value > 0.0 && value < 1e6)) throw hyselam::ParameterError(name, value, "positive");
+}  // namespace
+
+void FollowerParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("speed", speed, Range::inside(0.0, 1e6), "m/s", "cruising speed");
+  visit("turn_rate", turn_rate, Range::inside(0.0, 1e6), "rad/s", "cruising turn rate");
+  visit("look_ahead", look_ahead, Range::inside(0.0, 1e6), "m", "on open floor");
+  visit("near_look_ahead", near_look_ahead, Range::inside(0.0, 1e6), "m", "in narrow passages");
+  visit("open_clearance", open_clearance, Range::any(), "m",
+        "from here on the floor counts as open");
+  visit("arrival", arrival, Range::inside(0.0, 1e6), "m",
+        "distance to the end that counts as arrived");
 }
 
-}  // namespace
+void FollowerParams::validate() const {
+  hyselam::checkParameters(*this);
+}
 
 PathFollower::PathFollower(const FollowerParams& params, const RobotParams& robot)
     : params_(params), robot_(robot) {
-  requirePositive("speed", params.speed);
-  requirePositive("turn_rate", params.turn_rate);
-  requirePositive("look_ahead", params.look_ahead);
-  requirePositive("near_look_ahead", params.near_look_ahead);
-  requirePositive("arrival", params.arrival);
+  params.validate();
   if (params.speed > robot.max_speed) {
     throw hyselam::ParameterError("speed", params.speed, "at most the robot's maximum");
   }

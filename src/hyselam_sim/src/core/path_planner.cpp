@@ -171,27 +171,27 @@ ClearanceMap::ClearanceMap(const hyselam::OccupancyGrid& grid) : geometry_(grid.
       free.at<std::uint8_t>(y, x) = grid.at({x, y}) == hyselam::OccupancyGrid::kFree ? 255 : 0;
     }
   }
-  cv::distanceTransform(free, metres_, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::distanceTransform(free, meters_, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   // From the cell's centre to the near side of the obstacle's cell.
-  metres_ = (metres_ - 0.5) * geometry_.resolution;
+  meters_ = (meters_ - 0.5) * geometry_.resolution;
 }
 
 double ClearanceMap::at(Point2 p) const {
   const Cell c = geometry_.cellAt(p);
   if (!geometry_.contains(c)) return 0.0;
-  return std::max(0.0, static_cast<double>(metres_.at<float>(c.y, c.x)));
+  return std::max(0.0, static_cast<double>(meters_.at<float>(c.y, c.x)));
 }
 
-ClearanceMap ClearanceMap::without(const std::vector<Point2>& centres, double radius) const {
+ClearanceMap ClearanceMap::without(const std::vector<Point2>& centers, double radius) const {
   ClearanceMap out(*this);
-  out.metres_ = metres_.clone();
+  out.meters_ = meters_.clone();
   const Point2 reach{radius, radius};
-  for (const Point2& centre : centres) {
-    const Cell low = geometry_.cellAt(centre - reach), high = geometry_.cellAt(centre + reach);
+  for (const Point2& center : centers) {
+    const Cell low = geometry_.cellAt(center - reach), high = geometry_.cellAt(center + reach);
     for (int y = std::max(0, low.y); y <= std::min(geometry_.height - 1, high.y); ++y) {
       for (int x = std::max(0, low.x); x <= std::min(geometry_.width - 1, high.x); ++x) {
-        if (length(geometry_.center({x, y}) - centre) <= radius) {
-          out.metres_.at<float>(y, x) = 0.0F;
+        if (length(geometry_.center({x, y}) - center) <= radius) {
+          out.meters_.at<float>(y, x) = 0.0F;
         }
       }
     }
@@ -206,13 +206,25 @@ std::vector<Point2> straightPath(Point2 from, Point2 to, double spacing) {
   return out;
 }
 
+void PlannerParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("min_clearance", min_clearance, Range::any(), "m", "of the center line from walls");
+  visit("comfortable_clearance", comfortable_clearance, Range::above(0.0), "m",
+        "nearer than this costs extra");
+  visit("discomfort", discomfort, Range::any(), "",
+        "extra cost at no clearance, in multiples of the length");
+  visit("smooth_clearance", smooth_clearance, Range::any(), "m",
+        "kept by the rounding of corners where there is room");
+  visit("spacing", spacing, Range::above(0.0), "m", "of the points of the path");
+}
+
+void PlannerParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 std::optional<std::vector<Point2>> planPath(const ClearanceMap& clearance, Point2 from, Point2 to,
                                             const PlannerParams& params) {
-  if (!(params.spacing > 0.0)) throw hyselam::ParameterError("spacing", params.spacing, "positive");
-  if (!(params.comfortable_clearance > 0.0)) {
-    throw hyselam::ParameterError("comfortable_clearance", params.comfortable_clearance,
-                                  "positive");
-  }
+  params.validate();
   const Planner planner(clearance, params);
   const std::optional<std::vector<Point2>> lattice = planner.search(from, to);
   if (!lattice) return std::nullopt;

@@ -8,7 +8,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace hyselam_sim {
 namespace {
@@ -23,7 +23,7 @@ class Canvas {
  public:
   Canvas(const FloorPlan& plan, const PictureOptions& options) : plan_(plan) {
     const double side = std::max(plan.size.x, plan.size.y);
-    scale_ = std::min(options.pixels_per_metre, options.max_side / side);
+    scale_ = std::min(options.pixels_per_meter, options.max_side / side);
     image =
         cv::Mat(std::max(1, static_cast<int>(std::ceil(plan.size.y * scale_))),
                 std::max(1, static_cast<int>(std::ceil(plan.size.x * scale_))), CV_8UC3, kOutside);
@@ -33,7 +33,7 @@ class Canvas {
     return {(p.x - plan_.origin.x) * scale_, image.rows - (p.y - plan_.origin.y) * scale_};
   }
   /// Middle of a pixel.
-  Point2 metres(int row, int column) const {
+  Point2 meters(int row, int column) const {
     return {plan_.origin.x + (column + 0.5) / scale_,
             plan_.origin.y + (image.rows - row - 0.5) / scale_};
   }
@@ -42,16 +42,16 @@ class Canvas {
     return {static_cast<int>(std::lround((q.x - 0.5) * (1 << kShift))),
             static_cast<int>(std::lround((q.y - 0.5) * (1 << kShift)))};
   }
-  void fill(const Polygon& outline, const cv::Scalar& colour) {
+  void fill(const Polygon& outline, const cv::Scalar& color) {
     std::vector<cv::Point> points;
     for (const Point2& p : outline) points.push_back(fixed(p));
-    cv::fillPoly(image, std::vector<std::vector<cv::Point>>{points}, colour, cv::LINE_AA, kShift);
+    cv::fillPoly(image, std::vector<std::vector<cv::Point>>{points}, color, cv::LINE_AA, kShift);
   }
-  void line(Point2 a, Point2 b, const cv::Scalar& colour, int width) {
-    cv::line(image, fixed(a), fixed(b), colour, width, cv::LINE_AA, kShift);
+  void line(Point2 a, Point2 b, const cv::Scalar& color, int width) {
+    cv::line(image, fixed(a), fixed(b), color, width, cv::LINE_AA, kShift);
   }
-  void disc(Point2 p, double radius_px, const cv::Scalar& colour) {
-    cv::circle(image, fixed(p), static_cast<int>(radius_px * (1 << kShift)), colour, cv::FILLED,
+  void disc(Point2 p, double radius_px, const cv::Scalar& color) {
+    cv::circle(image, fixed(p), static_cast<int>(radius_px * (1 << kShift)), color, cv::FILLED,
                cv::LINE_AA, kShift);
   }
   void name(Point2 p, const std::string& text) {
@@ -78,10 +78,10 @@ void drawFloor(const FloorPlan& plan, Canvas& canvas) {
   RasterOptions options;
   options.resolution = std::max(0.05, 1.0 / canvas.scale());
   options.with_furniture = false;
-  const hyselam::OccupancyGrid grid = rasterise(plan, options);
+  const hyselam::OccupancyGrid grid = rasterize(plan, options);
   for (int row = 0; row < canvas.image.rows; ++row) {
     for (int column = 0; column < canvas.image.cols; ++column) {
-      const hyselam::Cell c = grid.geometry.cellAt(canvas.metres(row, column));
+      const hyselam::Cell c = grid.geometry.cellAt(canvas.meters(row, column));
       if (grid.valueOr(c) != hyselam::OccupancyGrid::kUnknown) {
         canvas.image.at<cv::Vec3b>(row, column) = cv::Vec3b(255, 255, 255);
       }
@@ -127,11 +127,21 @@ void drawWay(const std::vector<hyselam::StampedPose2>& way, Canvas& canvas) {
 
 }  // namespace
 
+void PictureOptions::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("pixels_per_meter", pixels_per_meter, Range::above(0.0), "1/m",
+        "reduced for plans that would exceed max_side");
+  visit("max_side", max_side, Range::any(), "pixel", "of a picture");
+  visit("time", time, Range::any(), "s", "at which the doors are drawn");
+}
+
+void PictureOptions::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 cv::Mat drawPicture(const FloorPlan& plan, const std::vector<hyselam::StampedPose2>& way,
                     const PictureOptions& options) {
-  if (!(options.pixels_per_metre > 0.0)) {
-    throw hyselam::ParameterError("pixels_per_metre", options.pixels_per_metre, "positive");
-  }
+  options.validate();
   Canvas canvas(plan, options);
   drawFloor(plan, canvas);
   for (const Solid& body : solids(plan, options.time)) {
@@ -148,7 +158,7 @@ cv::Mat drawPicture(const FloorPlan& plan, const std::vector<hyselam::StampedPos
     }
   }
   if (!way.empty()) drawWay(way, canvas);
-  for (const Place& place : plan.places) {
+  for (const PlanPlace& place : plan.places) {
     canvas.disc(place.at, 0.1 * canvas.scale(), kName);
     canvas.name(place.at, place.name);
   }

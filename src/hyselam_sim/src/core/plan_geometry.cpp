@@ -16,7 +16,7 @@ std::vector<Gap> gapsIn(const FloorPlan& plan, const Segment& s, double thicknes
   std::vector<Gap> gaps;
   const double l = length(s.b - s.a);
   const Point2 u = (1.0 / l) * (s.b - s.a);
-  for (const Door& door : plan.doors) {
+  for (const PlanDoor& door : plan.doors) {
     const Point2 to_door = door.at - s.a;
     const bool parallel = std::abs(cross(u, door.along)) < 1e-6;
     if (!parallel || std::abs(cross(u, to_door)) > 0.5 * thickness + 1e-6) continue;
@@ -33,7 +33,7 @@ std::vector<Gap> gapsIn(const FloorPlan& plan, const Segment& s, double thicknes
 std::vector<Solid> wallSolids(const FloorPlan& plan) {
   std::vector<Solid> out;
   for (std::size_t w = 0; w < plan.walls.size(); ++w) {
-    const Wall& wall = plan.walls[w];
+    const PlanWall& wall = plan.walls[w];
     for (std::size_t i = 0; i < wall.segmentCount(); ++i) {
       const Segment s = wall.segment(i);
       const double l = length(s.b - s.a);
@@ -56,18 +56,18 @@ std::vector<Solid> wallSolids(const FloorPlan& plan) {
   return out;
 }
 
-Polygon doorLeaf(const Door& door, double time) {
+Polygon doorLeaf(const PlanDoor& door, double time) {
   const Point2 half = (0.5 * door.width) * door.along;
   if (!door.isOpen(time)) {
     return thickSegment(door.at - half, door.at + half, kLeafThickness, 0.0, 0.0);
   }
-  if (door.swing == Door::Swing::kNone) return {};
+  if (door.swing == PlanDoor::Swing::kNone) return {};
   const Point2 left{-door.along.y, door.along.x};
-  const Point2 out = door.swing == Door::Swing::kLeft ? left : -1.0 * left;
+  const Point2 out = door.swing == PlanDoor::Swing::kLeft ? left : -1.0 * left;
   // The leaf stands beside the opening's edge, just within it.
   const double inset = 0.5 * kLeafThickness;
-  const Point2 hinge = door.hinge == Door::Hinge::kStart ? door.at - half + inset * door.along
-                                                         : door.at + half - inset * door.along;
+  const Point2 hinge = door.hinge == PlanDoor::Hinge::kStart ? door.at - half + inset * door.along
+                                                             : door.at + half - inset * door.along;
   return thickSegment(hinge, hinge + door.width * out, kLeafThickness, 0.0, 0.0);
 }
 

@@ -35,7 +35,7 @@ double hitDistance(Point2 origin, Point2 direction, Point2 center, double radius
   return along - std::sqrt(half2);
 }
 
-PlanRayCaster::RayCaster(std::vector<Segment> segments, double bucket_size)
+PlanRayCaster::PlanRayCaster(std::vector<Segment> segments, double bucket_size)
     : segments_(std::move(segments)), bucket_size_(bucket_size) {
   if (segments_.empty()) return;
   min_ = {kInfinity, kInfinity};

@@ -55,11 +55,20 @@ std::vector<Point2> interiorPoints(const FloorPlan& plan) {
 
 }  // namespace
 
+void RasterOptions::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("resolution", resolution, Range::between(0.005, 10.0), "m", "of a cell");
+  visit("time", time, Range::any(), "s", "at which the doors are drawn");
+  visit("with_furniture", with_furniture, "false: the floor under it is free");
+}
+
+void RasterOptions::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 OccupancyGrid rasterize(const FloorPlan& plan, const RasterOptions& options) {
   const double r = options.resolution;
-  if (!(r >= 0.005 && r <= 10.0)) {
-    throw hyselam::ParameterError("resolution", r, "within 0.005 .. 10 m/cell");
-  }
+  options.validate();
   const double columns = std::ceil(plan.size.x / r - 1e-9),
                rows = std::ceil(plan.size.y / r - 1e-9);
   if (columns * rows > kMaxCells) {

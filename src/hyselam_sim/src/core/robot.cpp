@@ -8,15 +8,39 @@
 namespace hyselam_sim {
 namespace {
 
-void requirePositive(const char* name, double value) {
-  if (!(value > 0.0 && value < 1e6)) throw hyselam::ParameterError(name, value, "positive");
-}
-
 double approach(double value, double target, double change) {
   return value + std::clamp(target - value, -change, change);
 }
 
 }  // namespace
+
+void RobotParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("max_speed", max_speed, Range::inside(0.0, 1e6), "m/s", "");
+  visit("max_turn_rate", max_turn_rate, Range::inside(0.0, 1e6), "rad/s", "");
+  visit("acceleration", acceleration, Range::inside(0.0, 1e6), "m/s^2", "");
+  visit("turn_acceleration", turn_acceleration, Range::inside(0.0, 1e6), "rad/s^2", "");
+  visit("radius", radius, Range::inside(0.0, 1e6), "m", "of the disc it turns in");
+  visit("wheel_base", wheel_base, Range::inside(0.0, 1e6), "m",
+        "between the middles of the wheels");
+}
+
+void RobotParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
+void OdometryParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("left_scale", left_scale, Range::inside(0.0, 1e6), "",
+        "assumed / true radius of the left wheel");
+  visit("right_scale", right_scale, Range::inside(0.0, 1e6), "", "of the right wheel");
+  visit("base_scale", base_scale, Range::inside(0.0, 1e6), "", "assumed / true wheel base");
+  visit("sigma", sigma, Range::fromBelow(0.0, 1.0), "m/sqrt(m)", "noise per wheel");
+}
+
+void OdometryParams::validate() const {
+  hyselam::checkParameters(*this);
+}
 
 hyselam::Pose2 roll(const hyselam::Pose2& pose, double way, double turn) {
   // The chord of the arc; sin(x)/x by its series where the quotient loses its digits.
@@ -28,14 +52,7 @@ hyselam::Pose2 roll(const hyselam::Pose2& pose, double way, double turn) {
 }
 
 DifferentialRobot::DifferentialRobot(const RobotParams& params, const hyselam::Pose2& start)
-    : params_(params), pose_(start) {
-  requirePositive("max_speed", params.max_speed);
-  requirePositive("max_turn_rate", params.max_turn_rate);
-  requirePositive("acceleration", params.acceleration);
-  requirePositive("turn_acceleration", params.turn_acceleration);
-  requirePositive("radius", params.radius);
-  requirePositive("wheel_base", params.wheel_base);
-}
+    : params_((params.validate(), params)), pose_(start) {}
 
 WheelMotion DifferentialRobot::step(double speed, double turn_rate, double dt) {
   speed_ = approach(speed_, std::clamp(speed, -params_.max_speed, params_.max_speed),
@@ -55,14 +72,8 @@ void DifferentialRobot::teleport(const hyselam::Pose2& pose) {
 }
 
 Odometry::Odometry(const OdometryParams& params, double wheel_base, const hyselam::Rng& rng)
-    : params_(params), wheel_base_(wheel_base), rng_(rng) {
-  requirePositive("left_scale", params.left_scale);
-  requirePositive("right_scale", params.right_scale);
-  requirePositive("base_scale", params.base_scale);
-  requirePositive("wheel_base", wheel_base);
-  if (!(params.sigma >= 0.0 && params.sigma < 1.0)) {
-    throw hyselam::ParameterError("sigma", params.sigma, "within [0, 1)");
-  }
+    : params_((params.validate(), params)), wheel_base_(wheel_base), rng_(rng) {
+  if (!(wheel_base > 0.0)) throw hyselam::ParameterError("wheel_base", wheel_base, "> 0 m");
 }
 
 void Odometry::update(const WheelMotion& motion) {

@@ -11,26 +11,15 @@
 namespace hyselam_sim {
 namespace {
 
-void check(const SceneParams& p) {
-  using hyselam::ParameterError;
-  if (!(p.door_height >= 1.0 && p.door_height <= 10.0)) {
-    throw ParameterError("door_height", p.door_height, "1 .. 10");
-  }
-  for (const auto& [name, value] : {std::pair<const char*, double>{"window_share", p.window_share},
-                                    {"poster_share", p.poster_share}}) {
-    if (!(value >= 0.0 && value <= 1.0)) throw ParameterError(name, value, "0 .. 1");
-  }
-}
-
 double ceilingOf(const FloorPlan& plan) {
   double height = 0.0;
-  for (const Wall& wall : plan.walls) height = std::max(height, wall.height);
+  for (const PlanWall& wall : plan.walls) height = std::max(height, wall.height);
   return height;
 }
 
-double thicknessAt(const FloorPlan& plan, const Door& door) {
+double thicknessAt(const FloorPlan& plan, const PlanDoor& door) {
   double best = 1e9, thickness = 0.2;
-  for (const Wall& wall : plan.walls) {
+  for (const PlanWall& wall : plan.walls) {
     for (std::size_t i = 0; i < wall.segmentCount(); ++i) {
       const double d = distance(door.at, wall.segment(i));
       if (d < best) {
@@ -42,11 +31,11 @@ double thicknessAt(const FloorPlan& plan, const Door& door) {
   return thickness;
 }
 
-Polygon discOutline(Point2 centre, double radius, int corners) {
+Polygon discOutline(Point2 center, double radius, int corners) {
   Polygon out;
   for (int i = 0; i < corners; ++i) {
     const double a = 2.0 * hyselam::kPi * (i + 0.5) / corners;
-    out.push_back(centre + radius * Point2{std::cos(a), std::sin(a)});
+    out.push_back(center + radius * Point2{std::cos(a), std::sin(a)});
   }
   return out;
 }
@@ -64,7 +53,7 @@ Polygon outlineOf(const Thing& thing) {
 }
 
 std::string nameOfRoom(const FloorPlan& plan, const FloorRegions& regions, int room) {
-  for (const Place& place : plan.places) {
+  for (const PlanPlace& place : plan.places) {
     if (regions.roomAt(place.at) == room) return place.name;
   }
   return "room " + std::to_string(room);
@@ -74,12 +63,12 @@ LightMap lightOf(const FloorPlan& plan, const FloorRegions& regions,
                  const std::vector<Window>& windows, double ceiling) {
   // Light passes open doors; furniture stops too little of it to matter.
   FloorPlan open = plan;
-  for (Door& door : open.doors) {
+  for (PlanDoor& door : open.doors) {
     door.initially_open = true;
     door.schedule.clear();
-    door.swing = Door::Swing::kNone;
+    door.swing = PlanDoor::Swing::kNone;
   }
-  return LightMap(regions, RayCaster(edges(solids(open, 0.0, false))), windows, ceiling);
+  return LightMap(regions, PlanRayCaster(edges(solids(open, 0.0, false))), windows, ceiling);
 }
 
 // What stands still.
@@ -95,7 +84,7 @@ std::vector<Body> build(const FloorPlan& plan, const SceneParams& params, double
     body.painted = true;
     bodies.push_back(std::move(body));
   }
-  for (const Door& door : plan.doors) {
+  for (const PlanDoor& door : plan.doors) {
     if (params.door_height >= ceiling - 0.01 || door.name.rfind("opening ", 0) == 0) continue;
     const Point2 half = (0.5 * door.width) * door.along;
     Body lintel;
@@ -120,7 +109,7 @@ std::vector<Body> build(const FloorPlan& plan, const SceneParams& params, double
     body.outline = outlineOf(thing);
     body.from = thing.z;
     body.to = thing.z + thing.size[2];
-    body.side = body.top = {Material::kPlain, thing.colour, 0};
+    body.side = body.top = {Material::kPlain, thing.color, 0};
     body.owner = static_cast<std::uint32_t>(1 + plan.furniture.size() + i);
     bodies.push_back(std::move(body));
   }
@@ -129,8 +118,22 @@ std::vector<Body> build(const FloorPlan& plan, const SceneParams& params, double
 
 }  // namespace
 
+void SceneParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("seed", seed, Range::atLeast(0), "", "of paint, windows and posters");
+  visit("door_height", door_height, Range::between(1.0, 10.0), "m", "of all doors");
+  visit("window_share", window_share, Range::between(0.0, 1.0), "",
+        "of the spots at outer walls that could have a window");
+  visit("poster_share", poster_share, Range::between(0.0, 1.0), "",
+        "the same for posters at all walls");
+}
+
+void SceneParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 Scene::Scene(const FloorPlan& plan, const SceneParams& params)
-    : plan_((check(params), plan)),
+    : plan_((params.validate(), plan)),
       params_(params),
       regions_(plan),
       ceiling_(ceilingOf(plan)),
@@ -182,9 +185,9 @@ std::vector<Body> Scene::people(const std::vector<Person>& people, double time,
     const Point2 middle = makeRoom(*at, robot);
     hyselam::Rng rng(hashOf(people[i].name, params_.seed + i), 3);
     const auto cloth = [&rng] {
-      Colour colour;
-      for (float& channel : colour) channel = static_cast<float>(rng.uniform(0.03, 0.7));
-      return Surface{Material::kPlain, colour, 0};
+      Color color;
+      for (float& channel : color) channel = static_cast<float>(rng.uniform(0.03, 0.7));
+      return Surface{Material::kPlain, color, 0};
     };
     const Surface trousers = cloth(), shirt = cloth();
     const Surface skin{Material::kPlain, {0.6f, 0.42f, 0.32f}, 0};

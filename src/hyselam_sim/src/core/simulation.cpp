@@ -9,7 +9,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 namespace hyselam_sim {
 namespace {
@@ -31,7 +31,7 @@ struct World {
   World(const FloorPlan& plan, double time)
       : bodies(solids(plan, time)),
         rays(edges(bodies)),
-        clearance(rasterise(plan, kPlannerResolution, time)),
+        clearance(rasterize(plan, kPlannerResolution, time)),
         valid_until(plan.nextDoorChange(time)) {}
 
   struct Nearest {
@@ -52,7 +52,7 @@ struct World {
   }
 
   std::vector<Solid> bodies;
-  RayCaster rays;
+  PlanRayCaster rays;
   ClearanceMap clearance;
   double valid_until;
   std::map<std::pair<std::string, std::string>, std::vector<Point2>> ways;  // by names of places
@@ -98,17 +98,8 @@ class Run {
 
  private:
   static SimulationParams withRoute(SimulationParams params, const Route& route) {
-    using hyselam::ParameterError;
     if (route.speed) params.follower.speed = *route.speed;
-    if (!(params.odometry_rate >= 1.0 && params.odometry_rate <= 1000.0)) {
-      throw ParameterError("odometry_rate", params.odometry_rate, "1 .. 1000 Hz");
-    }
-    if (!(params.scan_rate > 0.0 && params.scan_rate <= params.odometry_rate)) {
-      throw ParameterError("scan_rate", params.scan_rate, "above 0, at most odometry_rate");
-    }
-    if (!(params.start_time > 0.0 && params.start_time < 4e9)) {
-      throw ParameterError("start_time", params.start_time, "within (0, 4e9) s");
-    }
+    params.validate();
     return params;
   }
 
@@ -176,7 +167,7 @@ class Run {
   Pose2 startPose() const { return poseOf(route_.start, "key 'start'", 0); }
 
   void checkPeople() const {
-    const RayCaster walls(edges(wallSolids(plan_)));
+    const PlanRayCaster walls(edges(wallSolids(plan_)));
     for (std::size_t i = 0; i < route_.people.size(); ++i) {
       const Person& person = route_.people[i];
       const std::string where = "key 'people[" + std::to_string(i) + "].points'";
@@ -239,7 +230,7 @@ class Run {
   // The other places as obstacles.
   ClearanceMap withoutPlaces(const ClearanceMap& clearance, Point2 from, Point2 to) const {
     std::vector<Point2> others;
-    for (const Place& place : plan_.places) {
+    for (const PlanPlace& place : plan_.places) {
       if (length(place.at - from) > kPlaceRadius && length(place.at - to) > kPlaceRadius) {
         others.push_back(place.at);
       }
@@ -249,12 +240,12 @@ class Run {
 
   std::string whyNoWay(Point2 from, Point2 to) const {
     FloorPlan open = plan_;
-    for (Door& door : open.doors) {
+    for (PlanDoor& door : open.doors) {
       door.initially_open = true;
       door.schedule.clear();
     }
     const auto way =
-        planPath(ClearanceMap(rasterise(open, kPlannerResolution, 0.0)), from, to, params_.planner);
+        planPath(ClearanceMap(rasterize(open, kPlannerResolution, 0.0)), from, to, params_.planner);
     if (!way) return "blocked: no way is wide enough for the robot";
     std::string shut;
     for (const Solid& body : world_->bodies) {
@@ -380,6 +371,30 @@ class Run {
 };
 
 }  // namespace
+
+void SimulationParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit.group("robot_", robot);
+  visit.group("odometry_", odometry);
+  visit.group("laser_", laser);
+  visit.group("follower_", follower);
+  visit.group("planner_", planner);
+  visit("odometry_rate", odometry_rate, Range::between(1.0, 1000.0), "Hz",
+        "also of control and ground truth");
+  visit("scan_rate", scan_rate, Range::above(0.0), "Hz", "at most odometry_rate");
+  visit("start_time", start_time, Range::inside(0.0, 4e9), "s", "stamp of the first sample");
+  visit("max_duration", max_duration, Range::any(), "s", "a longer run is refused");
+  visit("stand_after_teleport", stand_after_teleport, Range::any(), "s",
+        "before the robot drives on");
+}
+
+void SimulationParams::validate() const {
+  hyselam::checkParameters(*this);
+  laser.validate();
+  if (!(scan_rate <= odometry_rate)) {
+    throw hyselam::ParameterError("scan_rate", scan_rate, "above 0, at most odometry_rate");
+  }
+}
 
 Simulation simulate(const FloorPlan& plan, const Route& route, std::uint64_t seed,
                     const SimulationParams& params,

@@ -43,17 +43,17 @@ float clouds(std::uint32_t seed, float s, float t, float size) {
   return (a * (1 - fx) + b * fx) * (1 - fy) + (c * (1 - fx) + d * fx) * fy;
 }
 
-Colour scaled(const Colour& colour, float by) {
-  return {colour[0] * by, colour[1] * by, colour[2] * by};
+Color scaled(const Color& color, float by) {
+  return {color[0] * by, color[1] * by, color[2] * by};
 }
 
-Colour blend(const Colour& a, const Colour& b, float share) {
-  Colour out;
+Color blend(const Color& a, const Color& b, float share) {
+  Color out;
   for (std::size_t i = 0; i < 3; ++i) out[i] = a[i] + share * (b[i] - a[i]);
   return out;
 }
 
-Colour vivid(std::uint32_t h) {
+Color vivid(std::uint32_t h) {
   const float hue = 6.0f * unit(h), strong = 0.35f + 0.6f * unit(hash(h, 1, 2));
   const float light = 0.12f + 0.6f * unit(hash(h, 3, 4));
   const auto channel = [&](float at) {
@@ -73,9 +73,9 @@ float joint(float v, float spacing, float width, float blur) {
 
 }  // namespace
 
-Colour textureAt(const Surface& surface, float s, float t, float blur, float height) {
+Color textureAt(const Surface& surface, float s, float t, float blur, float height) {
   const std::uint32_t seed = surface.seed;
-  const Colour& base = surface.colour;
+  const Color& base = surface.color;
   switch (surface.material) {
     case Material::kPaint: {
       const float dirt = 1.0f + 0.06f * (clouds(seed, s, t, 0.7f) - 0.5f);
@@ -114,7 +114,7 @@ Colour textureAt(const Surface& surface, float s, float t, float blur, float hei
       const float gap = std::max(joint(s, 0.5f, 0.012f, blur), joint(t, 0.95f, 0.012f, blur));
       const float in_door = s / 0.5f - std::floor(s / 0.5f);
       const bool handle = in_door > 0.8f && in_door < 0.87f && std::abs(t - 0.55f * height) < 0.09f;
-      return handle ? Colour{0.12f, 0.12f, 0.13f} : blend(base, scaled(base, 0.35f), gap);
+      return handle ? Color{0.12f, 0.12f, 0.13f} : blend(base, scaled(base, 0.35f), gap);
     }
     case Material::kShelf: {
       const float board = 0.34f;
@@ -128,7 +128,7 @@ Colour textureAt(const Surface& surface, float s, float t, float blur, float hei
     }
     case Material::kPoster: {
       const float size = 0.12f + 0.04f * static_cast<float>(seed % 4u);
-      const Colour ground = vivid(hash(seed, 11u, 12u));
+      const Color ground = vivid(hash(seed, 11u, 12u));
       const std::uint32_t spot = hash(seed, cellOf(s / size), cellOf(t / size));
       if (t < 0.03f || t > height - 0.03f) return {0.85f, 0.85f, 0.83f};
       return unit(spot) < 0.55f ? vivid(spot) : ground;

@@ -34,7 +34,7 @@ Thing readThing(const YamlMap& map) {
   thing.pose = {at.x, at.y, hyselam::radians(map.numberOr("turn", 0.0, -360.0, 360.0))};
   thing.z = map.numberOr("above_floor", thing.z, 0.0, 100.0);
   readThree(map, "size", kSmallest, kLargest, &thing.size);
-  readThree(map, "colour", 0.0, 1.0, &thing.colour);
+  readThree(map, "colour", 0.0, 1.0, &thing.color);
   return thing;
 }
 

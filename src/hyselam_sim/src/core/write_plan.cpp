@@ -41,23 +41,23 @@ std::string toYaml(const FloorPlan& plan) {
   if (!plan.description.empty()) key("description") << plan.description;
   put(key("origin"), plan.origin);
   put(key("size"), plan.size);
-  list(out, "walls", plan.walls, [&](const Wall& wall) {
+  list(out, "walls", plan.walls, [&](const PlanWall& wall) {
     key("closed") << wall.closed;
     key("thickness") << wall.thickness;
     key("height") << wall.height;
     put(key("points"), wall.points);
   });
-  list(out, "doors", plan.doors, [&](const Door& door) {
+  list(out, "doors", plan.doors, [&](const PlanDoor& door) {
     put(key("at"), door.at);
     key("width") << door.width;
-    if (door.swing != Door::Swing::kNone) {
-      key("swing") << (door.swing == Door::Swing::kLeft ? "left" : "right");
-      key("hinge") << (door.hinge == Door::Hinge::kEnd ? "end" : "start");
+    if (door.swing != PlanDoor::Swing::kNone) {
+      key("swing") << (door.swing == PlanDoor::Swing::kLeft ? "left" : "right");
+      key("hinge") << (door.hinge == PlanDoor::Hinge::kEnd ? "end" : "start");
     }
     if (!door.initially_open) key("open") << false;
     if (!door.schedule.empty()) {
       key("schedule") << YAML::BeginSeq;
-      for (const Door::Change& change : door.schedule) {
+      for (const PlanDoor::Change& change : door.schedule) {
         out << YAML::BeginMap;
         key("from") << change.time;
         key("open") << change.open;
@@ -70,7 +70,7 @@ std::string toYaml(const FloorPlan& plan) {
     put(key("polygon"), item.outline);
     key("height") << item.height;
   });
-  list(out, "places", plan.places, [&](const Place& place) {
+  list(out, "places", plan.places, [&](const PlanPlace& place) {
     put(key("at"), place.at);
     if (!place.outline.empty()) put(key("polygon"), place.outline);
   });

@@ -114,11 +114,10 @@ class FilmedBag {
       sensor_msgs::CompressedImage image;
       image.header = header;
       image.format = "bgr8; jpeg compressed bgr8";
-      cv::imencode(".jpg", frame.picture.colour, image.data, {cv::IMWRITE_JPEG_QUALITY, jpeg_});
+      cv::imencode(".jpg", frame.picture.color, image.data, {cv::IMWRITE_JPEG_QUALITY, jpeg_});
       out_.write("/camera/color/image_raw/compressed", recorded, image);
     } else {
-      out_.write("/camera/color/image_raw", recorded,
-                 imageOf(frame.picture.colour, "bgr8", header));
+      out_.write("/camera/color/image_raw", recorded, imageOf(frame.picture.color, "bgr8", header));
     }
     out_.write("/camera/depth/camera_info", recorded, infoOf(camera_, header));
     out_.write("/camera/depth/image_raw", recorded, imageOf(frame.picture.depth, "16UC1", header));
@@ -178,11 +177,11 @@ class FilmedFiles {
     std::snprintf(number, sizeof number, "%05zu", count_++);
     const std::string rgb = std::string("rgb/") + number + ".jpg";
     const std::string depth = std::string("depth/") + number + ".png";
-    for (const bool colour : {true, false}) {
-      const std::string path = directory_ + "/" + (colour ? rgb : depth);
+    for (const bool color : {true, false}) {
+      const std::string path = directory_ + "/" + (color ? rgb : depth);
       const bool written =
-          colour ? cv::imwrite(path, frame.picture.colour, {cv::IMWRITE_JPEG_QUALITY, 92})
-                 : cv::imwrite(path, frame.picture.depth);
+          color ? cv::imwrite(path, frame.picture.color, {cv::IMWRITE_JPEG_QUALITY, 92})
+                : cv::imwrite(path, frame.picture.depth);
       if (!written) throw hyselam::InputError(path, "", "cannot be written");
     }
     rows_ << rgb << "," << plan_.places[static_cast<std::size_t>(frame.place)].name << "," << depth
@@ -211,6 +210,75 @@ class FilmedFiles {
   std::size_t count_ = 0, scan_ = 0;
 };
 
+struct Options {
+  std::string bag_in, plan, route, things, bag_out, images;
+  std::uint64_t seed = 1;
+  int jpeg = 0;
+  hyselam_sim::FilmParams params;
+  hyselam_sim::SceneParams scene;
+  std::string lamps = "by_hour";
+  double view = 70.0;  // [degrees]
+};
+
+/// Writes the pictures where they are wanted; returns their number.
+std::size_t writePictures(const Options& o, const hyselam_sim::Scene& scene,
+                          const hyselam::RobotLog& log,
+                          const std::vector<hyselam_sim::Person>& people) {
+  std::size_t frames = 0;
+  hyselam::Progress progress("filming", hyselam_sim::filmLength(log, o.params));
+  const auto record = [&](FilmedBag* bag) {
+    std::unique_ptr<FilmedFiles> files;
+    if (!o.images.empty()) files = std::make_unique<FilmedFiles>(o.images, log, scene.plan());
+    hyselam_sim::film(scene, log, people, o.seed, o.params, [&](const FilmFrame& frame) {
+      if (bag != nullptr) bag->write(frame);
+      if (files) files->write(frame);
+      progress.update(++frames);
+    });
+    if (files) files->close();
+  };
+  if (o.bag_out.empty()) {
+    record(nullptr);
+    return frames;
+  }
+  try {
+    hyselam::replaceFileAtomically(o.bag_out, [&](const std::string& temporary) {
+      FilmedBag bag(o.bag_in, temporary, o.params.camera, o.jpeg);
+      record(&bag);
+      bag.close();
+    });
+  } catch (const rosbag::BagException& e) {
+    throw hyselam::InputError(o.bag_out, "", std::string("cannot be written: ") + e.what());
+  }
+  return frames;
+}
+
+nlohmann::json filmRun(Options o) {
+  if (o.bag_out.empty() && o.images.empty()) {
+    throw hyselam::InputError("command line", "", "give --out, --images or both");
+  }
+  hyselam_sim::Route route;
+  if (!o.route.empty()) route = hyselam_sim::loadRoute(hyselam_sim::routeFile(o.route));
+  if (o.plan.empty()) o.plan = route.plan;
+  if (o.plan.empty()) throw hyselam::InputError("command line", "--plan", "is missing");
+  hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile(o.plan));
+  if (!route.doors.empty()) plan.setDoors(route.doors);
+  o.params.camera.view = hyselam::radians(o.view);
+  o.params.light.lamps = o.lamps == "on"    ? hyselam_sim::LightParams::Lamps::kOn
+                         : o.lamps == "off" ? hyselam_sim::LightParams::Lamps::kOff
+                                            : hyselam_sim::LightParams::Lamps::kByHour;
+  const hyselam::RobotLog log = hyselam::readBag(o.bag_in);
+  if (log.ground_truth.empty()) {
+    throw hyselam::InputError(o.bag_in, "/ground_truth", "has no messages: nothing to film along");
+  }
+  o.params.start_time = log.ground_truth.front().stamp;
+  if (!o.things.empty()) o.scene.things = hyselam_sim::loadThings(o.things);
+  const hyselam_sim::Scene scene(plan, o.scene);
+  const std::size_t frames = writePictures(o, scene, log, route.people);
+  std::cout << frames << " pictures of " << plan.name << " at " << o.params.light.hour << " h\n";
+  return {{"plan", plan.name},     {"pictures", frames}, {"hour", o.params.light.hour},
+          {"rate", o.params.rate}, {"seed", o.seed},     {"look", o.scene.seed}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -219,83 +287,28 @@ int main(int argc, char** argv) {
       "ground truth of a bag, by the hour of the day, and writes it into a new bag, as files with "
       "the places' names, or both.",
       "film");
-  std::string bag_in, plan_name, route_name, things, bag_out, images;
-  std::uint64_t seed = 1;
-  int jpeg = 0;
-  hyselam_sim::FilmParams params;
-  hyselam_sim::SceneParams look;
-  std::string lamps = "by_hour";
-  double view = 70.0;
+  Options o;
   app.option_defaults()->always_capture_default();
-  app.add_option("--bag", bag_in, "run to film, from `simulate`")->required();
-  app.add_option("--route", route_name, "route of the run: tells who walks about");
-  app.add_option("--plan", plan_name, "floor plan; the route's own if not given");
-  app.add_option("--things", things, "file of things that stand about");
-  app.add_option("--out", bag_out, "bag to write: the run with /camera/color, /camera/depth");
-  app.add_option("--images", images, "directory for rgb/, depth/ and labels.csv");
-  app.add_option("--rate", params.rate, "pictures per second");
-  app.add_option("--hour", params.light.hour, "of the day")->check(CLI::Range(0.0, 24.0));
-  app.add_option("--clouds", params.light.clouds, "0 clear .. 1 dull")->check(CLI::Range(0.0, 1.0));
-  app.add_option("--lamps", lamps, "by_hour, on, off")
+  app.add_option("--bag", o.bag_in, "run to film, from `simulate`")->required();
+  app.add_option("--route", o.route, "route of the run: with the people that walk about");
+  app.add_option("--plan", o.plan, "floor plan; the route's own if not given");
+  app.add_option("--things", o.things, "file of things that stand about");
+  app.add_option("--out", o.bag_out, "bag to write: the run with /camera/color, /camera/depth");
+  app.add_option("--images", o.images, "directory for rgb/, depth/ and labels.csv");
+  app.add_option("--rate", o.params.rate, "pictures per second");
+  app.add_option("--hour", o.params.light.hour, "of the day")->check(CLI::Range(0.0, 24.0));
+  app.add_option("--clouds", o.params.light.clouds, "0 clear .. 1 dull")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--lamps", o.lamps, "by_hour, on, off")
       ->check(CLI::IsMember({"by_hour", "on", "off"}));
-  app.add_option("--seed", seed, "of the pictures' noise");
-  app.add_option("--look", look.seed, "seed of paint, windows and posters");
-  app.add_option("--width", params.camera.width, "[pixel]");
-  app.add_option("--height", params.camera.height, "[pixel]");
-  app.add_option("--view", view, "horizontal field of view [degrees]");
-  app.add_option("--above-floor", params.camera.above_floor, "of the camera [m]");
-  app.add_option("--jpeg", jpeg, "colour as JPEG of this quality; 0: raw")
+  app.add_option("--seed", o.seed, "of the pictures' noise");
+  app.add_option("--look", o.scene.seed, "seed of paint, windows and posters");
+  app.add_option("--width", o.params.camera.width, "[pixel]");
+  app.add_option("--height", o.params.camera.height, "[pixel]");
+  app.add_option("--view", o.view, "horizontal field of view [degrees]");
+  app.add_option("--above-floor", o.params.camera.above_floor, "of the camera [m]");
+  app.add_option("--jpeg", o.jpeg, "colour as JPEG of this quality; 0: raw")
       ->check(CLI::Range(0, 100));
 
-  return hyselam::runTool(argc, argv, app, [&] {
-    if (bag_out.empty() && images.empty()) {
-      throw hyselam::InputError("command line", "", "give --out, --images or both");
-    }
-    hyselam_sim::Route route;
-    if (!route_name.empty()) route = hyselam_sim::loadRoute(hyselam_sim::routeFile(route_name));
-    if (plan_name.empty()) plan_name = route.plan;
-    if (plan_name.empty()) throw hyselam::InputError("command line", "--plan", "is missing");
-    hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile(plan_name));
-    if (!route.doors.empty()) plan.setDoors(route.doors);
-    params.camera.view = hyselam::radians(view);
-    params.light.lamps = lamps == "on"    ? hyselam_sim::LightParams::Lamps::kOn
-                         : lamps == "off" ? hyselam_sim::LightParams::Lamps::kOff
-                                          : hyselam_sim::LightParams::Lamps::kByHour;
-    const hyselam::RobotLog log = hyselam::readBag(bag_in);
-    if (log.ground_truth.empty()) {
-      throw hyselam::InputError(bag_in, "/ground_truth", "has no messages: nothing to film along");
-    }
-    params.start_time = log.ground_truth.front().stamp;
-    if (!things.empty()) look.things = hyselam_sim::loadThings(things);
-    const hyselam_sim::Scene scene(plan, look);
-
-    std::size_t frames = 0;
-    hyselam::Progress progress("filming", hyselam_sim::filmLength(log, params));
-    const auto record = [&](FilmedBag* bag) {
-      std::unique_ptr<FilmedFiles> files;
-      if (!images.empty()) files = std::make_unique<FilmedFiles>(images, log, scene.plan());
-      hyselam_sim::film(scene, log, route.people, seed, params, [&](const FilmFrame& frame) {
-        if (bag != nullptr) bag->write(frame);
-        if (files) files->write(frame);
-        progress.update(++frames);
-      });
-      if (files) files->close();
-    };
-    if (bag_out.empty()) {
-      record(nullptr);
-    } else {
-      try {
-        hyselam::replaceFileAtomically(bag_out, [&](const std::string& temporary) {
-          FilmedBag bag(bag_in, temporary, params.camera, jpeg);
-          record(&bag);
-          bag.close();
-        });
-      } catch (const rosbag::BagException& e) {
-        throw hyselam::InputError(bag_out, "", std::string("cannot be written: ") + e.what());
-      }
-    }
-    std::cout << frames << " pictures of " << plan.name << " at " << params.light.hour << " h\n";
-    return nlohmann::json{{"plan", plan.name},   {"pictures", frames}, {"hour", params.light.hour},
-                          {"rate", params.rate}, {"seed", seed},       {"look", look.seed}};
-  });
+  return hyselam::runTool(argc, argv, app, [&] { return filmRun(o); });
 }

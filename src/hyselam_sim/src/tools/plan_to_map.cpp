@@ -5,7 +5,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/picture.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Draws a floor plan as a grid map (map_server's YAML and PGM).", "plan_to_map");
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     options.with_furniture = !without_furniture;
     const hyselam_sim::FloorPlan plan =
         hyselam_sim::loadFloorPlan(hyselam_sim::planFile(plan_name));
-    const hyselam::OccupancyGrid grid = hyselam_sim::rasterise(plan, options);
+    const hyselam::OccupancyGrid grid = hyselam_sim::rasterize(plan, options);
     hyselam::saveMap(out, grid);
     if (!picture_out.empty()) {
       hyselam_sim::PictureOptions picture;

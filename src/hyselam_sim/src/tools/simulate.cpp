@@ -9,7 +9,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/picture.hpp"
-#include "hyselam_sim/rasterise.hpp"
+#include "hyselam_sim/rasterize.hpp"
 #include "hyselam_sim/simulation.hpp"
 
 int main(int argc, char** argv) {
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
 
     if (!map_out.empty()) {
       raster.with_furniture = !without_furniture;
-      hyselam::saveMap(map_out, hyselam_sim::rasterise(plan, raster));
+      hyselam::saveMap(map_out, hyselam_sim::rasterize(plan, raster));
     }
     if (!picture_out.empty()) {
       hyselam_sim::savePicture(picture_out, hyselam_sim::drawPicture(plan, run.log.ground_truth));
