@@ -71,7 +71,7 @@ Tours filmTours(const Scene& scene, const Route& route, const Options& o) {
 }
 
 /// Share of the frames whose place is right, by filter.
-nlohmann::json accuraciesOf(const PlaceModel& model, const std::vector<Place>& places,
+nlohmann::json accuraciesOf(const PlaceModel& model, const std::vector<PlanPlace>& places,
                             const bench::FilmedTour& tour) {
   std::vector<std::unique_ptr<PlaceFilter>> filters;
   for (const char* name : kFilters) {
