@@ -42,6 +42,78 @@ std::string textOf(const Syllables& s) {
   return text.str();
 }
 
+/// The path from observation `begin` on: regions as a broad line, density classes as a narrow one.
+void addPathLines(const NgramRecognizer& recognizer, const ShownRun& shown, Position first,
+                  std::uint32_t begin, const std_msgs::Header& header,
+                  visualization_msgs::MarkerArray* array) {
+  const ObservationStore& observations = recognizer.observations();
+  const WordLattice& text = recognizer.text();
+  Marker regions = marker(header, "regions", Marker::LINE_STRIP, 0.45);
+  Marker classes = marker(header, "classes", Marker::LINE_STRIP, 0.12);
+  Position p = first;
+  auto region = shown.regions.begin();
+  for (std::uint32_t i = begin; i < observations.size(); ++i) {
+    const hyselam::Pose2 pose = observations.pose(i);
+    while (region != shown.regions.end() && region->last < i) ++region;
+    regions.points.push_back(at(pose, -0.02));
+    const bool known = region != shown.regions.end() && region->first <= i;
+    regions.colors.push_back(known ? colorOf(region->semantic_class) : color(0.7, 0.7, 0.7));
+    if (p < text.positions() && i >= text.observationEnd(text.realWord(p))) ++p;
+    std_msgs::ColorRGBA c = color(0.7, 0.7, 0.7);
+    if (p < text.positions()) {
+      const int id = text.syllables(text.realWord(p)).density_class;
+      for (const DensityClass& density : recognizer.classes().list()) {
+        if (density.id == id) c = colorOf(density.mode);
+      }
+    }
+    classes.points.push_back(at(pose, 0.05));
+    classes.colors.push_back(c);
+  }
+  if (regions.points.size() < 2) return;
+  if (!shown.regions.empty()) array->markers.push_back(regions);
+  array->markers.push_back(classes);
+}
+
+/// The names of the regions and the syllables of the words.
+void addNames(const NgramRecognizer& recognizer, const ShownRun& shown, Position first,
+              std::uint32_t begin, const std_msgs::Header& header,
+              visualization_msgs::MarkerArray* array) {
+  const ObservationStore& observations = recognizer.observations();
+  const WordLattice& text = recognizer.text();
+  Marker kinds = marker(header, "kinds", Marker::TEXT_VIEW_FACING, 0.0);
+  kinds.scale.z = 0.4;
+  kinds.color = color(0.25, 0.25, 0.25, 0.9);
+  Marker label = marker(header, "words", Marker::TEXT_VIEW_FACING, 0.0);
+  label.scale.z = 0.45;
+  int id = 0;
+  for (const SemanticRegion& r : shown.regions) {
+    if (r.first < begin) continue;
+    addText(*array, kinds, id++, beside(observations, (r.first + r.last) / 2, -0.9),
+            nameOf(r.semantic_class));
+  }
+  for (Position w = first; w < text.positions(); ++w) {
+    const WordIndex word = text.realWord(w);
+    const std::uint32_t middle = (text.observationBegin(word) + text.observationEnd(word) - 1) / 2;
+    addText(*array, label, static_cast<int>(w - first), beside(observations, middle, 0.8),
+            textOf(text.syllables(word)));
+  }
+}
+
+void addMatchLines(const ObservationStore& observations, const ShownRun& shown, std::uint32_t begin,
+                   const std_msgs::Header& header, visualization_msgs::MarkerArray* array) {
+  Marker lines = marker(header, "matches", Marker::LINE_LIST, 0.06);
+  for (const MatchLine& m : shown.matches) {
+    if (m.pair.older < begin || m.pair.newer >= observations.size()) continue;
+    const auto c = m.direction == Direction::kReverse ? color(0.85, 0.1, 0.75, 0.8)
+                                                      : color(0.05, 0.55, 0.1, 0.8);
+    for (std::uint32_t i : {m.pair.newer, m.pair.older}) {
+      lines.points.push_back(at(observations.pose(i), 0.2));
+      lines.colors.push_back(c);
+    }
+  }
+  if (!lines.points.empty()) array->markers.push_back(lines);
+}
+
 }  // namespace
 
 visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recognizer,
@@ -64,60 +136,9 @@ visualization_msgs::MarkerArray wordMarkers(const NgramRecognizer& recognizer,
   }
   const std::uint32_t begin =
       first < text.positions() ? text.observationBegin(text.realWord(first)) : run_begin;
-
-  Marker regions = marker(header, "regions", Marker::LINE_STRIP, 0.45);
-  Marker kinds = marker(header, "kinds", Marker::TEXT_VIEW_FACING, 0.0);
-  kinds.scale.z = 0.4;
-  kinds.color = color(0.25, 0.25, 0.25, 0.9);
-  Marker classes = marker(header, "classes", Marker::LINE_STRIP, 0.12);
-  Marker label = marker(header, "words", Marker::TEXT_VIEW_FACING, 0.0);
-  label.scale.z = 0.45;
-
-  Position p = first;
-  auto region = shown.regions.begin();
-  for (std::uint32_t i = begin; i < observations.size(); ++i) {
-    const hyselam::Pose2 pose = observations.pose(i);
-    while (region != shown.regions.end() && region->last < i) ++region;
-    regions.points.push_back(at(pose, -0.02));
-    const bool known = region != shown.regions.end() && region->first <= i;
-    regions.colors.push_back(known ? colorOf(region->semantic_class) : color(0.7, 0.7, 0.7));
-    if (p < text.positions() && i >= text.observationEnd(text.realWord(p))) ++p;
-    std_msgs::ColorRGBA c = color(0.7, 0.7, 0.7);
-    if (p < text.positions()) {
-      const int id = text.syllables(text.realWord(p)).density_class;
-      for (const DensityClass& density : recognizer.classes().list())
-        if (density.id == id) c = colorOf(density.mode);
-    }
-    classes.points.push_back(at(pose, 0.05));
-    classes.colors.push_back(c);
-  }
-  if (regions.points.size() >= 2) {
-    if (!shown.regions.empty()) array.markers.push_back(regions);
-    array.markers.push_back(classes);
-  }
-  int id = 0;
-  for (const SemanticRegion& r : shown.regions)
-    if (r.first >= begin)
-      addText(array, kinds, id++, beside(observations, (r.first + r.last) / 2, -0.9),
-              nameOf(r.semantic_class));
-  for (Position w = first; w < text.positions(); ++w) {
-    const WordIndex word = text.realWord(w);
-    const std::uint32_t middle = (text.observationBegin(word) + text.observationEnd(word) - 1) / 2;
-    addText(array, label, static_cast<int>(w - first), beside(observations, middle, 0.8),
-            textOf(text.syllables(word)));
-  }
-
-  Marker lines = marker(header, "matches", Marker::LINE_LIST, 0.06);
-  for (const MatchLine& m : shown.matches) {
-    if (m.pair.older < begin || m.pair.newer >= observations.size()) continue;
-    const auto c = m.direction == Direction::kReverse ? color(0.85, 0.1, 0.75, 0.8)
-                                                      : color(0.05, 0.55, 0.1, 0.8);
-    for (std::uint32_t i : {m.pair.newer, m.pair.older}) {
-      lines.points.push_back(at(observations.pose(i), 0.2));
-      lines.colors.push_back(c);
-    }
-  }
-  if (!lines.points.empty()) array.markers.push_back(lines);
+  addPathLines(recognizer, shown, first, begin, header, &array);
+  addNames(recognizer, shown, first, begin, header, &array);
+  addMatchLines(observations, shown, begin, header, &array);
   return array;
 }
 

@@ -91,92 +91,119 @@ void RunStartParams::describe(ParameterVisitor& visit) {
         "old keyframes this near join the local map of a run that has just begun");
 }
 
-void LoopParams::describe(ParameterVisitor& visit) {
-  visit("near_max_uncertainty", near_max_uncertainty, kPositive, "m",
+namespace {
+
+void describeNearLoops(LoopParams& p, ParameterVisitor& visit) {
+  visit("near_max_uncertainty", p.near_max_uncertainty, kPositive, "m",
         "up to this uncertainty of its position a place is searched as near");
-  visit("near_search_angle", near_search_angle, kAngle, "rad", "headings searched for a near loop");
-  visit("near_min_score", near_min_score, kRatio, "", "of the search for a near loop");
-  visit("near_min_inlier_ratio", near_min_inlier_ratio, kRatio, "",
+  visit("near_search_angle", p.near_search_angle, kAngle, "rad",
+        "headings searched for a near loop");
+  visit("near_min_score", p.near_min_score, kRatio, "", "of the search for a near loop");
+  visit("near_min_inlier_ratio", p.near_min_inlier_ratio, kRatio, "",
         "part of the scan on known surfaces");
-  visit("near_min_surface_ratio", near_min_surface_ratio, kRatio, "", "as far_min_surface_ratio");
-  visit("near_segment_half_length", near_segment_half_length, kPositive, "m",
+  visit("near_min_surface_ratio", p.near_min_surface_ratio, kRatio, "", "as far_min_surface_ratio");
+  visit("near_segment_half_length", p.near_segment_half_length, kPositive, "m",
         "of the old path, each side");
-  visit("near_resolution", near_resolution, Range::between(0.01, 1.0), "m",
+  visit("near_resolution", p.near_resolution, Range::between(0.01, 1.0), "m",
         "of the search for a near loop");
-  visit("near_inlier_distance", near_inlier_distance, kPositive, "m",
+  visit("near_inlier_distance", p.near_inlier_distance, kPositive, "m",
         "a point scores up to here from a surface");
-  visit("near_max_points", near_max_points, kCount, "", "of the scan, in the search");
-  visit("near_search_interval", near_search_interval, kCount, "keyframes",
+  visit("near_max_points", p.near_max_points, kCount, "", "of the scan, in the search");
+  visit("near_search_interval", p.near_search_interval, kCount, "keyframes",
         "between searches for near loops");
-  visit("near_max_candidates", near_max_candidates, kCount, "", "places tried in a search");
-  visit("far_search_interval", far_search_interval, kPositive, "m",
+  visit("near_max_candidates", p.near_max_candidates, kCount, "", "places tried in a search");
+}
+
+void describeFarLoops(LoopParams& p, ParameterVisitor& visit) {
+  visit("far_search_interval", p.far_search_interval, kPositive, "m",
         "of path between searches for far loops");
-  visit("far_max_candidates", far_max_candidates, kCount, "", "places tried in a search");
-  visit("far_old_segment_half_length", far_old_segment_half_length, kPositive, "m",
+  visit("far_max_candidates", p.far_max_candidates, kCount, "", "places tried in a search");
+  visit("far_old_segment_half_length", p.far_old_segment_half_length, kPositive, "m",
         "of the old path, each side");
-  visit("far_new_segment_half_length", far_new_segment_half_length, kPositive, "m",
+  visit("far_new_segment_half_length", p.far_new_segment_half_length, kPositive, "m",
         "of the new path, each side");
-  visit("far_resolution", far_resolution, Range::between(0.02, 1.0), "m",
+  visit("far_resolution", p.far_resolution, Range::between(0.02, 1.0), "m",
         "of the search for a far loop, and of what both segments observed");
-  visit("far_min_score", far_min_score, kRatio, "", "of the search for a far loop");
-  visit("far_min_inlier_ratio", far_min_inlier_ratio, kRatio, "",
+  visit("far_min_score", p.far_min_score, kRatio, "", "of the search for a far loop");
+  visit("far_min_inlier_ratio", p.far_min_inlier_ratio, kRatio, "",
         "part of the points on known surfaces");
-  visit("far_min_surface_ratio", far_min_surface_ratio, kRatio, "",
+  visit("far_min_surface_ratio", p.far_min_surface_ratio, kRatio, "",
         "part of the points in space observed by the other segment that lie on its surfaces; both "
         "ways");
-  visit("far_max_points", far_max_points, kCount, "", "in the search");
-  visit("far_max_refined_points", far_max_refined_points, kCount, "",
+  visit("far_max_points", p.far_max_points, kCount, "", "in the search");
+  visit("far_max_refined_points", p.far_max_refined_points, kCount, "",
         "in the refinement of the pose found");
-  visit("min_overlap", min_overlap, kRatio, "",
+}
+
+void describeVerification(LoopParams& p, ParameterVisitor& visit) {
+  visit("min_overlap", p.min_overlap, kRatio, "",
         "part of the new points in space that the old segment observed");
-  visit("observed_space_side", observed_space_side, Range::between(1.0, 150.0), "m",
+  visit("observed_space_side", p.observed_space_side, Range::between(1.0, 150.0), "m",
         "of the square of space around the old place that is compared");
-  visit("ambiguity_distance", ambiguity_distance, kPositive, "m",
+  visit("ambiguity_distance", p.ambiguity_distance, kPositive, "m",
         "a far loop is ambiguous if a pose this far from the best one ...");
-  visit("max_ambiguity_ratio", max_ambiguity_ratio, kRatio, "",
+  visit("max_ambiguity_ratio", p.max_ambiguity_ratio, kRatio, "",
         "... has this part of its score; 1: not checked");
-  visit("word_search_window", word_search_window, kPositive, "m",
+  visit("word_search_window", p.word_search_window, kPositive, "m",
         "positions searched around a match of words");
-  visit("word_search_angle", word_search_angle, kAngle, "rad", "headings searched around it");
-  visit("word_candidate_spacing", word_candidate_spacing, kNotNegative, "m",
+  visit("word_search_angle", p.word_search_angle, kAngle, "rad", "headings searched around it");
+  visit("word_candidate_spacing", p.word_candidate_spacing, kNotNegative, "m",
         "of old path; matches of a new word closer than this are tried once");
-  visit("word_max_candidates", word_max_candidates, kCount, "", "far loops tried for one new word");
-  visit("min_path_length", min_path_length, kPositive, "m",
+  visit("word_max_candidates", p.word_max_candidates, kCount, "",
+        "far loops tried for one new word");
+}
+
+void describeCandidates(LoopParams& p, ParameterVisitor& visit) {
+  visit("min_path_length", p.min_path_length, kPositive, "m",
         "through the graph; nearer keyframes are no loop candidates");
-  visit("candidate_spacing", candidate_spacing, kNotNegative, "m",
+  visit("candidate_spacing", p.candidate_spacing, kNotNegative, "m",
         "of old path between two candidates");
-  visit("visibility_margin", visibility_margin, kNotNegative, "m",
+  visit("visibility_margin", p.visibility_margin, kNotNegative, "m",
         "this far beside a path its surfaces are seen");
-  visit("segment_separation", segment_separation, kNotNegative, "m",
+  visit("segment_separation", p.segment_separation, kNotNegative, "m",
         "of path between the old and the new segment of a run");
-  visit("position_uncertainty", position_uncertainty, kPositive, "m", "of a keyframe, at least");
-  visit("position_uncertainty_per_meter", position_uncertainty_per_meter, kNotNegative, "m/m",
+  visit("position_uncertainty", p.position_uncertainty, kPositive, "m", "of a keyframe, at least");
+  visit("position_uncertainty_per_meter", p.position_uncertainty_per_meter, kNotNegative, "m/m",
         "of path through the graph");
-  visit("position_uncertainty_per_square_meter", position_uncertainty_per_square_meter,
+  visit("position_uncertainty_per_square_meter", p.position_uncertainty_per_square_meter,
         kNotNegative, "1/m", "of path through the graph: a heading that drifts bends it");
-  visit("max_position_uncertainty", max_position_uncertainty, kPositive, "m",
+  visit("max_position_uncertainty", p.max_position_uncertainty, kPositive, "m",
         "search windows are no larger");
-  visit("heading_uncertainty", heading_uncertainty, kNotNegative, "rad", "of a keyframe, at least");
-  visit("heading_uncertainty_per_meter", heading_uncertainty_per_meter, kNotNegative, "rad/m",
+  visit("heading_uncertainty", p.heading_uncertainty, kNotNegative, "rad",
+        "of a keyframe, at least");
+  visit("heading_uncertainty_per_meter", p.heading_uncertainty_per_meter, kNotNegative, "rad/m",
         "of path through the graph");
-  visit("loop_path_length", loop_path_length, kNotNegative, "m",
+  visit("loop_path_length", p.loop_path_length, kNotNegative, "m",
         "of a loop edge in a path through the graph");
-  visit("min_consistent_loops", min_consistent_loops, kCount, "",
+}
+
+void describeConsistency(LoopParams& p, ParameterVisitor& visit) {
+  visit("min_consistent_loops", p.min_consistent_loops, kCount, "",
         "far loops that are pairwise consistent, to be accepted");
-  visit("consistency_max_path_length", consistency_max_path_length, kPositive, "m",
+  visit("consistency_max_path_length", p.consistency_max_path_length, kPositive, "m",
         "between consistent loops");
-  visit("consistency_min_span", consistency_min_span, kNotNegative, "m",
+  visit("consistency_min_span", p.consistency_min_span, kNotNegative, "m",
         "of path that the new ends of consistent loops cover");
-  visit("consistency_distance", consistency_distance, kPositive, "m",
+  visit("consistency_distance", p.consistency_distance, kPositive, "m",
         "consistent loops differ by no more than this ...");
-  visit("consistency_distance_per_meter", consistency_distance_per_meter, kNotNegative, "m/m",
+  visit("consistency_distance_per_meter", p.consistency_distance_per_meter, kNotNegative, "m/m",
         "... and this part of the path between them");
-  visit("consistency_angle", consistency_angle, kPositive, "rad",
+  visit("consistency_angle", p.consistency_angle, kPositive, "rad",
         "and in heading by no more than this");
-  visit("thesis_position_stddev", thesis_position_stddev, kPositive, "m",
+  visit("thesis_position_stddev", p.thesis_position_stddev, kPositive, "m",
         "of the edges of loops = thesis");
-  visit("thesis_heading_stddev", thesis_heading_stddev, kPositive, "rad",
+  visit("thesis_heading_stddev", p.thesis_heading_stddev, kPositive, "rad",
         "of the edges of loops = thesis");
+}
+
+}  // namespace
+
+void LoopParams::describe(ParameterVisitor& visit) {
+  describeNearLoops(*this, visit);
+  describeFarLoops(*this, visit);
+  describeVerification(*this, visit);
+  describeCandidates(*this, visit);
+  describeConsistency(*this, visit);
 }
 
 void SlamParams::describe(ParameterVisitor& visit) {
