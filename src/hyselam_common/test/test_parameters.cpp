@@ -172,7 +172,7 @@ TEST(ParameterDocuments, DynamicReconfigureTakesSomeOfThem) {
       reconfigureCfg(rows, {"color", "share", "side", "loud"}, "p", "n", "Name");
   for (const char* line :
        {"gen.const('red_color', str_t, 'red', 'red')", "'blue', edit_method=color)",
-        "gen.add('share', double_t, 0, 'of | the rest',\n        0.25, min=0, max=1)",
+        "gen.add('share', double_t, 0, 'of | the rest',\n        0.25, min=0.0, max=1.0)",
         "gen.add('side', int_t, 0, 'of a side',\n        3, min=1, max=9)",
         "gen.add('loud', bool_t, 0, 'more in the log',\n        False)",
         "exit(gen.generate('p', 'n', 'Name'))"}) {

@@ -35,14 +35,16 @@ std::string quotedForPython(const std::string& text) {
 }
 
 std::string withUnit(const ParameterRow& row) {
-  return (row.unit.empty() ? "" : "[" + row.unit + "] ") + row.meaning;
+  const std::string space = row.unit.empty() || row.meaning.empty() ? "" : " ";
+  return (row.unit.empty() ? "" : "[" + row.unit + "]") + space + row.meaning;
 }
 
 /// ", low, high"; dynamic_reconfigure knows closed ranges only.
 std::string limits(const ParameterRow& row) {
   const auto text = [&](double value) {
-    return row.type == ParameterType::kInt ? std::to_string(static_cast<long long>(value))
-                                           : formatNumber(value);
+    if (row.type == ParameterType::kInt) return std::to_string(static_cast<long long>(value));
+    const std::string number = formatNumber(value);
+    return number.find_first_of(".e") == std::string::npos ? number + ".0" : number;
   };
   double low = row.range.min, high = row.range.max;
   if (!std::isnan(row.range.special)) {
@@ -72,7 +74,8 @@ std::string parameterYaml(const std::vector<ParameterRow>& rows,
                           const std::set<std::string>& commented_out) {
   std::ostringstream out;
   for (const ParameterRow& r : rows) {
-    out << "\n# " << withUnit(r) << (r.meaning.empty() ? "" : "; ") << r.allowed << "\n";
+    const std::string meaning = withUnit(r);
+    out << "\n# " << meaning << (meaning.empty() ? "" : "; ") << r.allowed << "\n";
     const bool comment = r.default_yaml.empty() || commented_out.count(r.name) > 0;
     out << (comment ? "# " : "") << r.name << ":" << (r.default_yaml.empty() ? "" : " ")
         << r.default_yaml << "\n";

@@ -34,7 +34,7 @@ void FilterParams::describe(hyselam::ParameterVisitor& visit) {
   visit("adaptive_size", adaptive_size, "KLD sampling; off: always max_particles");
   visit("kld_err", kld_error, Range::inside(0.0, 1.0), "", "Kullback-Leibler distance allowed");
   visit("kld_z", kld_z, Range::inside(0.0, 10.0), "", "quantile of the confidence; 2.33 is 99 %");
-  visit.renamed("resample_threshold", "resample_threshold");
+  visit.renamed("resample_below", "resample_threshold");
   visit("resample_threshold", resample_threshold, Range::aboveUpTo(0.0, 1.0), "",
         "resample when the effective sample size falls below this share of the particles");
   visit("recovery_alpha_slow", recovery_alpha_slow, Range::fromBelow(0.0, 1.0), "",
