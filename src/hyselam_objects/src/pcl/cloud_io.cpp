@@ -67,7 +67,7 @@ CloudFile readPcd(const std::string& path) {
     throw InputError(path, "", std::string("is no usable PCD file: ") + e.what());
   }
   const std::size_t size = std::size_t{raw.width} * raw.height;
-  // PCL tells of data that cannot be unpacked by a cloud of another size.
+  // PCL reports data that cannot be unpacked by a cloud of another size.
   if (size != header.points || raw.data.size() < size * raw.point_step) {
     throw InputError(path, "data", "is cut short or damaged");
   }
@@ -107,7 +107,7 @@ CloudFile readPcd(const std::string& path) {
 
 void writePcd(const std::string& path, const OrganizedCloud& cloud,
               const std::vector<std::uint32_t>& labels) {
-  const bool coloured = !cloud.colors.empty();
+  const bool has_color = !cloud.colors.empty();
   pcl::PCLPointCloud2 raw;
   raw.width = static_cast<std::uint32_t>(cloud.width);
   raw.height = static_cast<std::uint32_t>(cloud.height);
@@ -122,14 +122,14 @@ void writePcd(const std::string& path, const OrganizedCloud& cloud,
     raw.point_step += 4;
   };
   for (const char* axis : {"x", "y", "z"}) add(axis, pcl::PCLPointField::FLOAT32);
-  if (coloured) add("rgb", pcl::PCLPointField::FLOAT32);
+  if (has_color) add("rgb", pcl::PCLPointField::FLOAT32);
   add("label", pcl::PCLPointField::UINT32);
   raw.row_step = raw.point_step * raw.width;
   raw.data.resize(cloud.size() * raw.point_step);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     std::uint8_t* at = &raw.data[i * raw.point_step];
     for (int a = 0; a < 3; ++a, at += 4) std::memcpy(at, &cloud.points[i][a], 4);
-    if (coloured) {
+    if (has_color) {
       std::memcpy(at, &cloud.colors[i], 4);
       at += 4;
     }

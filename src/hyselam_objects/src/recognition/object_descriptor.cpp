@@ -16,7 +16,7 @@ constexpr float kDistanceBin = 0.03f;  // [m]
 constexpr int kPairs = 2000;
 // Weights of the parts in a distance; each part alone is at most about 1.
 constexpr float kSizeWeight = 1.2f, kShapeWeight = 0.25f, kColourWeight = 0.45f;
-// Less coloured than this is grey.
+// Less saturated than this is gray.
 constexpr float kLeastSaturation = 0.25f, kLeastValue = 0.12f;
 
 struct Hsv {

@@ -319,7 +319,7 @@ OrganizedCloud cloudFromImages(const sensor_msgs::Image& depth, const sensor_msg
 
 OrganizedCloud cloudFromMsg(const sensor_msgs::PointCloud2& msg) {
   if (msg.height < 2) {
-    throw hyselam::InputError("points", "", "the cloud has no rows: an organised one is needed");
+    throw hyselam::InputError("points", "", "the cloud has no rows: an organized one is needed");
   }
   std::array<std::size_t, 3> offset{};
   const std::array<const char*, 3> names{"x", "y", "z"};

@@ -63,7 +63,7 @@ class PatchMerger {
         const Point way = (grid_.point(a) - grid_.point(b)).normalized();
         const float bend = way.dot(grid_.normal(a) - grid_.normal(b));
         const float turn = std::acos(std::clamp(grid_.normal(a).dot(grid_.normal(b)), -1.0f, 1.0f));
-        // Two faces of one thing meet: the last pixel of each lies on the other. At a step it does
+        // Two faces of one object meet: the last pixel of each lies on the other. At a step it does
         // not.
         const float tolerance = static_cast<float>(params_.max_step) + 2.0f * grid_.sigma(i);
         const bool meet = std::abs(grid_.normal(b).dot(grid_.point(i) - grid_.point(b))) <

@@ -1,4 +1,5 @@
-// describe_objects (TEXT | -) --map OBJECTS.xml: tells the object map what people say, and asks it.
+// describe_objects (TEXT | -) --map OBJECTS.xml: records what people say about objects in an object
+// map, and answers questions.
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -19,14 +20,13 @@ bool exists(const std::string& path) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Takes down in an object map what is told of objects, and answers questions about them.",
+      "Records what people say about objects in an object map, and answers questions about them.",
       "describe_objects");
   std::string text, map_path, topology_path, dictionary_path, place;
   app.add_option("TEXT", text, "sentences; - reads them from the standard input")->required();
-  app.add_option("--map", map_path, "object map to begin with, if it is there, and to write")
-      ->required();
-  app.add_option("--topology", topology_path, "topological map whose places are meant");
-  app.add_option("--dictionary", dictionary_path, "object dictionary: tells which kinds are known");
+  app.add_option("--map", map_path, "object map, loaded if it exists, and written")->required();
+  app.add_option("--topology", topology_path, "topological map whose places are linked");
+  app.add_option("--dictionary", dictionary_path, "object dictionary: the kinds that are known");
   app.add_option("--here", place, "the place where the robot is");
 
   return hyselam::runTool(argc, argv, app, [&] {

@@ -11,10 +11,9 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Splits a point cloud into support and objects, without knowing the objects. Organised "
-      "clouds "
-      "(a picture's rows and columns) are split where surfaces meet concavely; others where there "
-      "is a gap.",
+      "Segments a point cloud into support and objects, without models of them. Organized clouds "
+      "(with the rows and columns of an image) are split where surfaces meet concavely; others "
+      "where there is a gap.",
       "segment_cloud");
   std::string in, out;
   hyselam_objects::SegmentParams params;
@@ -25,12 +24,12 @@ int main(int argc, char** argv) {
   app.add_option("--labels", out,
                  "PCD file to write, with a label per point: 0 invalid, 1 support, 2 ... objects")
       ->required();
-  app.add_option("--reduce", params.downsampling, "work on every n-th row and column");
-  app.add_option("--tallest", params.max_object_height, "highest object above the support [m]");
-  app.add_option("--smallest", params.min_object_pixels,
+  app.add_option("--downsampling,--reduce", params.downsampling, "use every n-th row and column");
+  app.add_option("--max-height,--tallest", params.max_object_height,
+                 "highest object above the support [m]");
+  app.add_option("--min-pixels,--smallest", params.min_object_pixels,
                  "least number of reduced pixels of an object");
-  app.add_option("--gap", loose.cluster_gap,
-                 "between objects, for clouds that are not organised [m]");
+  app.add_option("--gap", loose.cluster_gap, "between objects, for unorganized clouds [m]");
 
   return hyselam::runTool(argc, argv, app, [&] {
     const hyselam_objects::CloudFile file = hyselam_objects::readPcd(in);
