@@ -108,7 +108,7 @@ class ObjectDialogueTest(unittest.TestCase):
         self.assertNotIn("does not answer", said)
 
     def test_one_that_does_not_answer_is_told_of(self):
-        robot = self.robot(with_objects=False, object_patience=0.5)
+        robot = self.robot(with_objects=False, object_answer_timeout=0.5)
         requests = Listener(f"/{self.name}/object_request", ObjectRequest)
         self.addCleanup(requests.close)
         answers = rospy.Publisher(f"/{self.name}/object_answer", ObjectAnswer, queue_size=5)

@@ -81,15 +81,15 @@ TEST(PlaceEvidence, ObjectsDistinguishRoomsOfEqualShape) {
       "there is a bookshelf. In the workshop there is a drill.");
   const auto map = corridorWithRooms();
   const auto building = description();
-  hyselam_topo::MatchParams params;
+  hyselam_topo::SolverParams params;
 
-  const hyselam_topo::Match blind = solveExact(compileMatch(building, map), params);
+  const hyselam_topo::PlaceAssignment blind = solveExact(compileMatch(building, map), params);
   EXPECT_GE(blind.equal, 24u) << "the rooms are ambiguous without objects";
 
   const auto evidence = placeEvidence(told, seenObjects(), building);
   EXPECT_EQ(evidence.size(), 16u);
   const MatchProblem problem = compileMatch(building, map, {}, {}, evidence);
-  const hyselam_topo::Match match = solveExact(problem, params);
+  const hyselam_topo::PlaceAssignment match = solveExact(problem, params);
   ASSERT_TRUE(match.found());
   EXPECT_EQ(match.equal, 1u);
   // vertex (room of the map) -> name

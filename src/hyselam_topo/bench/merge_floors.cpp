@@ -184,7 +184,7 @@ std::map<Id, Id> truthOf(const hyselam_sim::FloorPlan& plan, const Gr2ToResult& 
 }
 
 /// Names whose largest place is theirs.
-std::vector<bool> rightNames(const MatchProblem& problem, const Match& match,
+std::vector<bool> rightNames(const MatchProblem& problem, const PlaceAssignment& match,
                              const std::map<Id, Id>& truth) {
   std::vector<bool> out;
   for (std::size_t i = 0; i < problem.nameCount(); ++i) {
@@ -216,7 +216,8 @@ Assignment trueNames(const MatchProblem& problem, const std::map<Id, Id>& truth)
 
 /// What was told, what is true and what was found, name by name.
 void show(std::ostream& out, const DescribedBuilding& building, const MatchProblem& problem,
-          const FitnessParams& params, const Match& match, const std::map<Id, Id>& truth) {
+          const FitnessParams& params, const PlaceAssignment& match,
+          const std::map<Id, Id>& truth) {
   const Assignment is = trueNames(problem, truth);
   const auto places = [&](const Assignment& names, std::size_t i) {
     std::string text;
@@ -229,7 +230,7 @@ void show(std::ostream& out, const DescribedBuilding& building, const MatchProbl
   for (std::size_t i = 0; i < problem.nameCount(); ++i) {
     const Id id = problem.names[i];
     out << (places(is, i) == places(match.best().assignment, i) ? "  " : "* ")
-        << building.findPlace(id)->name << " (" << problem.told[i].area << " m2)";
+        << building.findPlace(id)->name << " (" << problem.attributes[i].area << " m2)";
     for (const DescribedConnection& c : building.connections)
       if (c.to == id)
         out << ", " << toString(c.side) << ' ' << c.order << " of "
@@ -245,7 +246,7 @@ int main(int argc, char** argv) {
   int floors = 12;
   std::uint64_t first = 1;
   Speaker speaker;
-  MatchParams params;
+  SolverParams params;
   params.time_limit = 1.0;
   params.keep_within = 0.01;
   bool thesis_sides = false, know_heading = true, show_names = false;
@@ -258,15 +259,15 @@ int main(int argc, char** argv) {
   app.add_option("--confused-sides", speaker.confused_sides, "left for right, front for back");
   app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
   app.add_option("--weight-orders", params.fitness.orders, "A, then B");
-  app.add_option("--forgotten-edge", params.fitness.forgotten_edge, "as of topomerg");
-  app.add_option("--shut-door", params.fitness.shut_door, "as of topomerg");
+  app.add_option("--forgotten-edge", params.fitness.undescribed_edge_credit, "as of topomerg");
+  app.add_option("--shut-door", params.fitness.closed_door_credit, "as of topomerg");
   app.add_option("--shut-doors", shut_doors, "doors that are shut when the robot maps the floor");
   app.add_flag("--thesis-sides", thesis_sides, "of centres, spread in the order told (Eq. 5.7)");
   app.add_option("--time-limit", params.time_limit, "of each search [s]");
   app.add_option("--know-heading", know_heading, "the robot knows where it looks");
   app.add_flag("--show", show_names, "names told, true and found of each floor, to standard error");
   return hyselam::runTool(argc, argv, app, [&] {
-    if (thesis_sides) params.fitness.sides = SideRule::kCentres;
+    if (thesis_sides) params.fitness.sides = SideRule::kCenters;
     hyselam::Progress progress("merge_floors", static_cast<std::size_t>(floors));
     nlohmann::json records = nlohmann::json::array();
     std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0, lost = 0;
@@ -299,7 +300,7 @@ int main(int argc, char** argv) {
       double fitness_at_once = 0.0;
       while (true) {
         const MatchProblem problem = compileMatch(building, found.map, observer, constraints);
-        const Match match = solveExact(problem, params);
+        const PlaceAssignment match = solveExact(problem, params);
         if (!match.found()) break;
         const std::vector<bool> right = rightNames(problem, match, truth);
         std::size_t count = 0;

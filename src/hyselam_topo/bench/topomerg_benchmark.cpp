@@ -21,8 +21,8 @@ MatchProblem scenario() {
                       hyselam_topo::loadXml(data + "scenario_532_map.xml"), {4, 0.0});
 }
 
-MatchParams thesis(bool connected) {
-  MatchParams params;
+SolverParams thesis(bool connected) {
+  SolverParams params;
   params.dummy = false;
   params.connected = connected;
   return params;
@@ -73,7 +73,7 @@ double median(std::vector<double> values) {
 /// One iteration solves all floors; the counters tell the CPU time of the median floor.
 void many(benchmark::State& state, int names, int places, double limit) {
   const std::vector<MatchProblem> problems = floors(names, places);
-  MatchParams params;
+  SolverParams params;
   if (limit > 0.0) params.time_limit = limit;
   std::vector<double> ms, gaps;
   double proven = 0.0;
@@ -83,7 +83,7 @@ void many(benchmark::State& state, int names, int places, double limit) {
     proven = 0.0;
     for (const MatchProblem& problem : problems) {
       const std::clock_t start = std::clock();
-      const Match match = solveExact(problem, params);
+      const PlaceAssignment match = solveExact(problem, params);
       ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
       gaps.push_back(match.gap);
       proven += match.optimal ? 1.0 : 0.0;

@@ -272,7 +272,7 @@ TEST(Dialogue, ForgetsAllThatItWasToldOfTheBuilding) {
 
 TEST(Dialogue, AsksByItselfAsItsParametersSay) {
   DialogueParams params;
-  params.ask = DialogueParams::Ask::kAlways;
+  params.ask = AskPolicy::kAlways;
   Visit always(params);
   always.segment();
   EXPECT_TRUE(has(always.at(-2.0, 1.0, 0.0), "What is the name of this place?"));
@@ -286,7 +286,7 @@ TEST(Dialogue, AsksByItselfAsItsParametersSay) {
   EXPECT_TRUE(has(always.say("I do not know."), "All right."));
   EXPECT_EQ(always.dialogue.question().kind, Question::Kind::kNone);
 
-  params.ask = DialogueParams::Ask::kNever;
+  params.ask = AskPolicy::kNever;
   Visit never(params);
   describe(&never);
   EXPECT_TRUE(never.at(3.0, 6.0, 0.0).sentences.empty());
@@ -294,7 +294,7 @@ TEST(Dialogue, AsksByItselfAsItsParametersSay) {
 
 TEST(Dialogue, AsksForThePlaceThatANewMapFindsItIn) {
   DialogueParams params;
-  params.ask = DialogueParams::Ask::kAlways;
+  params.ask = AskPolicy::kAlways;
   Visit visit(params);
   const Point2 here = plan().places.front().at;
   visit.at(here.x, here.y, 0.0);  // there is no map yet

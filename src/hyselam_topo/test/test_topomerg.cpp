@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "agreement_of_matches.hpp"
+#include "agreement_of_assignments.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_language/building/description_xml.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
@@ -32,15 +32,15 @@ struct Scenario {
   MatchProblem problem = compileMatch(building, map, observer);
 };
 
-MatchParams tableRun(double e, double v, double d, double a) {
-  MatchParams params;
+SolverParams tableRun(double e, double v, double d, double a) {
+  SolverParams params;
   params.dummy = false;
   params.connected = false;
   params.fitness.edges = e;
   params.fitness.vertices = v;
   params.fitness.orientations = d;
   params.fitness.areas = a;
-  params.fitness.sides = SideRule::kCentres;
+  params.fitness.sides = SideRule::kCenters;
   return params;
 }
 
@@ -143,7 +143,7 @@ TEST(TopoMergFitness, SidesByDoorsAndTheirOrder) {
   // Exchanged: the sides are right, of the four weights the one of the order is lost.
   EXPECT_NEAR(0.75, fitness(p, {}, {0, 2, 1}), 1e-12);
   FitnessParams thesis;
-  thesis.sides = SideRule::kCentres;
+  thesis.sides = SideRule::kCenters;
   EXPECT_LT(fitness(p, thesis, {0, 1, 2}), 0.99);
 }
 
@@ -165,7 +165,7 @@ TEST(TopoMergFitness, ForgottenDoorsMayCostLess) {
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
   FitnessParams params;
   EXPECT_NEAR((1.0 + 0.8 + 2.0 / 3 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
-  params.forgotten_edge = 0.5;
+  params.undescribed_edge_credit = 0.5;
   EXPECT_NEAR((1.0 + 0.8 + 2.5 / 3 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
 }
 
@@ -194,7 +194,7 @@ TEST(TopoMergFitness, WallsMayHideShutDoors) {
   building.places = {told(1, "corridor"), told(2, "office")};
   building.connections = {{1, 2, Side::kRight}};
   building.robot_place = 1;
-  MatchParams params;
+  SolverParams params;
   const MatchProblem problem = compileMatch(building, map, {1, 0.0});
   ASSERT_EQ(problem.walls.size(), 5u);
   ASSERT_EQ(problem.walls[0].size(), 1u);
@@ -211,14 +211,14 @@ TEST(TopoMergFitness, WallsMayHideShutDoors) {
   EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3 + 0.3 * 2.0 / 3, 1e-12);
   EXPECT_NEAR(value({0, -1, -1, -1, 1}), 1.0 / 3, 1e-12);
   EXPECT_NEAR(value({0, 1, -1, -1, -1}), 2.0 / 3, 1e-12);
-  params.fitness.shut_door = 0.8;
+  params.fitness.closed_door_credit = 0.8;
   EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3 + 0.8 * 2.0 / 3, 1e-12);
   EXPECT_EQ(solveExact(problem, params).best().assignment, (Assignment{0, -1, -1, 1, -1}));
   // The thesis knows no such doors.
-  params.fitness.shut_door = 0.0;
+  params.fitness.closed_door_credit = 0.0;
   EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3, 1e-12);
-  params.fitness.shut_door = 0.8;
-  params.fitness.sides = SideRule::kCentres;
+  params.fitness.closed_door_credit = 0.8;
+  params.fitness.sides = SideRule::kCenters;
   EXPECT_NEAR(value({0, -1, -1, 1, -1}), 1.0 / 3, 1e-12);
 }
 
@@ -237,7 +237,7 @@ TEST(TopoMergFitness, RelationsPreferWhereTheyHold) {
     b.relations = {{kind, a, kind == RelationKind::kAtEndOf ? 1u : 3u, c}};
     return fitness(compileMatch(b, map, {1, 0.0}), {}, assignment);
   };
-  // Vertices: 1 corridor, 2..6 the row from the west, 7 across the first.
+  // VertexSet: 1 corridor, 2..6 the row from the west, 7 across the first.
   const Assignment beside{0, 1, 2, -1, -1, 3, -1}, apart{0, 1, -1, -1, 2, 3, -1};
   EXPECT_GT(value(RelationKind::kNextTo, 2, 0, beside), value(RelationKind::kNextTo, 2, 0, apart));
   const Assignment across{0, 2, -1, 3, -1, -1, 1};
@@ -272,12 +272,12 @@ TEST(TopoMergScenario, ExplorerVisitsAllOfEquation55) {
   const Scenario s;
   ASSERT_EQ(7u, s.problem.nameCount());
   ASSERT_EQ(8u, s.problem.vertexCount());
-  const MatchParams params = tableRun(1, 0, 0, 0);
-  EXPECT_EQ(823543.0, countAnswers(s.problem, params));
+  const SolverParams params = tableRun(1, 0, 0, 0);
+  EXPECT_EQ(823543.0, countAssignments(s.problem, params));
   EXPECT_EQ(823543u, exploreAll(s.problem, params).nodes);
-  MatchParams with_dummy = params;
+  SolverParams with_dummy = params;
   with_dummy.dummy = true;
-  EXPECT_EQ(2097152.0, countAnswers(s.problem, with_dummy));
+  EXPECT_EQ(2097152.0, countAssignments(s.problem, with_dummy));
 }
 
 TEST(TopoMergScenario, PatternOfTable51) {
@@ -290,8 +290,8 @@ TEST(TopoMergScenario, PatternOfTable51) {
   double third = 0.0;
   for (const Run& run : {Run{1, 0, 0, 0, 48, 1.0}, Run{1, 1, 0, 0, 48, 1.0},
                          Run{1, 1, 1, 0, 1, 0.948}, Run{1, 1, 1, 1, 1, 0.953}}) {
-    MatchParams params = tableRun(run.e, run.v, run.d, run.a);
-    const Match all = exploreAll(s.problem, params);
+    SolverParams params = tableRun(run.e, run.v, run.d, run.a);
+    const PlaceAssignment all = exploreAll(s.problem, params);
     EXPECT_EQ(run.equal, all.equal);
     EXPECT_NEAR(run.fitness, all.best().fitness, run.fitness == 1.0 ? 1e-12 : 0.01);
     expectSame(all, solveExact(s.problem, params), "table 5.1");
@@ -311,8 +311,8 @@ TEST(TopoMergScenario, PatternOfTable51) {
 
 TEST(TopoMergScenario, TreeSearchFindsIt) {
   const Scenario s;
-  MatchParams params = tableRun(1, 1, 1, 1);
-  const Match tree = treeSearch(s.problem, params);
+  SolverParams params = tableRun(1, 1, 1, 1);
+  const PlaceAssignment tree = treeSearch(s.problem, params);
   ASSERT_TRUE(tree.found());
   EXPECT_NEAR(solveExact(s.problem, params).best().fitness, tree.best().fitness, 1e-9);
   EXPECT_FALSE(tree.optimal);
@@ -331,29 +331,29 @@ TEST(TopoMergExact, EqualsTheExplorer) {
     Instance in = dice.chance(0.5) ? wild(seed, names, places)
                                    : floor(seed, std::min(names, places), places,
                                            {0.6, 0.2, 0.1, 0.1, dice.chance(0.7), seed % 3 != 0});
-    MatchParams params;
+    SolverParams params;
     params.dummy = dice.chance(0.5);
     params.connected = dice.chance(0.5);
     params.max_solutions = 5000000;
-    params.fitness.forgotten_edge = dice.chance(0.3) ? 0.5 : 0.0;
+    params.fitness.undescribed_edge_credit = dice.chance(0.3) ? 0.5 : 0.0;
     params.fitness.kinds = dice.chance(0.3) ? 0.25 : 0.0;
     params.keep_within = dice.chance(0.2) ? 0.01 : 0.0;
-    if (seed % 5 == 0) params.fitness.sides = SideRule::kCentres;
+    if (seed % 5 == 0) params.fitness.sides = SideRule::kCenters;
     if (seed % 4 < 2) addWalls(seed, &in.map);
-    if (seed % 8 == 1) params.fitness.shut_door = 0.8;
+    if (seed % 8 == 1) params.fitness.closed_door_credit = 0.8;
     MatchProblem problem;
     try {
       problem = compile(in);
     } catch (const hyselam::InputError&) {
       continue;  // excluded where it is confirmed
     }
-    if (countAnswers(problem, params) > (problem.heading ? most : 0.1 * most)) continue;
+    if (countAssignments(problem, params) > (problem.heading ? most : 0.1 * most)) continue;
     ++compared;
-    const Match oracle = exploreAll(problem, params);
-    const Match exact = solveExact(problem, params);
+    const PlaceAssignment oracle = exploreAll(problem, params);
+    const PlaceAssignment exact = solveExact(problem, params);
     expectSame(oracle, exact, "seed " + std::to_string(seed));
     EXPECT_TRUE(exact.optimal);
-    const Match tree = treeSearch(problem, params);
+    const PlaceAssignment tree = treeSearch(problem, params);
     if (!oracle.found()) continue;
     without += !tree.found();
     if (!tree.found()) continue;
@@ -374,7 +374,7 @@ TEST(TopoMergExact, LargeFloorsAreNoWorseThanTheTruth) {
     options.wrong_size = 0.1;
     const Instance in = floor(seed, 12, 18, options);
     const MatchProblem problem = compile(in);
-    const Match match = solveExact(problem, {});
+    const PlaceAssignment match = solveExact(problem, {});
     ASSERT_TRUE(match.found());
     EXPECT_TRUE(match.optimal);
     Assignment truth;
@@ -387,9 +387,9 @@ TEST(TopoMergExact, LargeFloorsAreNoWorseThanTheTruth) {
 TEST(TopoMergExact, StopsInTimeAndTellsTheGap) {
   const Instance in = floor(1, 40, 60, {});
   const MatchProblem problem = compile(in);
-  MatchParams params;
+  SolverParams params;
   params.time_limit = 0.02;
-  const Match match = solveExact(problem, params);
+  const PlaceAssignment match = solveExact(problem, params);
   ASSERT_TRUE(match.found());
   EXPECT_FALSE(match.optimal);
   EXPECT_GT(match.gap, 0.0);
@@ -401,17 +401,17 @@ TEST(TopoMergExact, StopsInTimeAndTellsTheGap) {
 
 TEST(TopoMergTreeSearch, TriesNothingAgainWhenTimeIsUp) {
   const Scenario s;
-  MatchParams params = tableRun(1.0, 1.0, 0.0, 0.0);  // many equally good choices
-  const Match all = treeSearch(s.problem, params);
+  SolverParams params = tableRun(1.0, 1.0, 0.0, 0.0);  // many equally good choices
+  const PlaceAssignment all = treeSearch(s.problem, params);
   params.time_limit = 0.0;
-  const Match first = treeSearch(s.problem, params);
+  const PlaceAssignment first = treeSearch(s.problem, params);
   ASSERT_TRUE(first.found());
   EXPECT_LT(first.nodes, all.nodes);
 }
 
 TEST(TopoMergExact, SameInputSameAnswer) {
   const MatchProblem problem = compile(floor(5, 10, 15, {}));
-  MatchParams params;
+  SolverParams params;
   params.keep_within = 0.005;
   expectSame(solveExact(problem, params), solveExact(problem, params), "twice");
 }
@@ -422,7 +422,7 @@ TEST(TopoMergExact, FewerPlacesAmongEquallyGood) {
   s.map.places.push_back(mapPlace(4, 0, -6, 4));
   s.map.edges.push_back(mapEdge(3, 4));
   normalise(&s.map);
-  const Match match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), {});
+  const PlaceAssignment match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), {});
   // Without it, with it, or as the right room behind a longer corridor.
   EXPECT_EQ(3u, match.equal);
   EXPECT_EQ((Assignment{0, 1, 2, -1}), match.best().assignment);
@@ -440,9 +440,9 @@ TEST(TopoMergExact, FewestEvenIfNotAllAreKept) {
   s.map.edges.push_back(mapEdge(3, 4));
   s.map.edges.push_back(mapEdge(4, 5));
   normalise(&s.map);
-  MatchParams params;
+  SolverParams params;
   params.max_solutions = 1;
-  const Match match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), params);
+  const PlaceAssignment match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), params);
   EXPECT_EQ(3u, match.best().vertices);
   EXPECT_TRUE(match.more);
 }
@@ -455,7 +455,7 @@ TEST(TopoMergConstraints, ConfirmedExcludedUnnamed) {
   EXPECT_EQ((Assignment{0, 2, 1}), solveExact(confirmed, {}).best().assignment);
   c = {};
   c.excluded = {{2, 2}};
-  const Match other = solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), {});
+  const PlaceAssignment other = solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), {});
   EXPECT_NE(1, other.best().assignment[1]);
   c = {};
   c.unnamed = {2};
@@ -488,39 +488,39 @@ TEST(TopoMergBadInput, IsRefused) {
 TEST(TopoMergBadInput, ParametersOutOfRange) {
   const MatchProblem p = compile(floor(1, 3, 3, {}));
   const auto refused = [&](auto change) {
-    MatchParams params;
+    SolverParams params;
     change(&params);
     EXPECT_THROW(solveExact(p, params), hyselam::ParameterError);
   };
-  refused([](MatchParams* m) { m->fitness.areas = -1; });
-  refused([](MatchParams* m) { m->fitness.kinds = std::nan(""); });
-  refused([](MatchParams* m) {
+  refused([](SolverParams* m) { m->fitness.areas = -1; });
+  refused([](SolverParams* m) { m->fitness.kinds = std::nan(""); });
+  refused([](SolverParams* m) {
     m->fitness.vertices = m->fitness.areas = m->fitness.edges = m->fitness.orientations = 0;
   });
-  refused([](MatchParams* m) { m->fitness.forgotten_edge = 1.5; });
-  refused([](MatchParams* m) { m->fitness.shut_door = -0.1; });
-  refused([](MatchParams* m) { m->time_limit = -1; });
-  refused([](MatchParams* m) { m->max_solutions = 0; });
-  refused([](MatchParams* m) { m->keep_within = 2; });
+  refused([](SolverParams* m) { m->fitness.undescribed_edge_credit = 1.5; });
+  refused([](SolverParams* m) { m->fitness.closed_door_credit = -0.1; });
+  refused([](SolverParams* m) { m->time_limit = -1; });
+  refused([](SolverParams* m) { m->max_solutions = 0; });
+  refused([](SolverParams* m) { m->keep_within = 2; });
 }
 
 TEST(TopoMergBadInput, EmptyMapsAndDescriptions) {
   const Small s;
-  const Match no_names = solveExact(compileMatch({}, s.map), {});
+  const PlaceAssignment no_names = solveExact(compileMatch({}, s.map), {});
   ASSERT_TRUE(no_names.found());
   EXPECT_EQ((Assignment{-1, -1, -1}), no_names.best().assignment);
-  const Match no_places = solveExact(compileMatch(s.building, {}), {});
+  const PlaceAssignment no_places = solveExact(compileMatch(s.building, {}), {});
   ASSERT_TRUE(no_places.found());
   EXPECT_TRUE(no_places.best().assignment.empty());
-  MatchParams all_named;
+  SolverParams all_named;
   all_named.dummy = false;
   EXPECT_FALSE(solveExact(compileMatch({}, s.map), all_named).found());
 }
 
 TEST(TopoMergNames, UncertaintyIsTheDropOfTheBestOtherAnswer) {
   const Scenario s;
-  MatchParams params = tableRun(1, 1, 1, 1);
-  const Match match = solveExact(s.problem, params);
+  SolverParams params = tableRun(1, 1, 1, 1);
+  const PlaceAssignment match = solveExact(s.problem, params);
   for (const NameUncertainty& u : nameUncertainties(s.problem, params, match)) {
     if (u.name == *s.building.robot_place) {
       EXPECT_EQ(1.0, u.drop);
@@ -528,7 +528,8 @@ TEST(TopoMergNames, UncertaintyIsTheDropOfTheBestOtherAnswer) {
     }
     MatchConstraints c;
     c.excluded = {{u.place, u.name}};
-    const Match other = exploreAll(compileMatch(s.building, s.map, s.observer, c), params);
+    const PlaceAssignment other =
+        exploreAll(compileMatch(s.building, s.map, s.observer, c), params);
     EXPECT_NEAR(match.best().fitness - other.best().fitness, u.drop, 1e-9);
     EXPECT_GT(u.drop, 0.0);
   }
@@ -536,8 +537,8 @@ TEST(TopoMergNames, UncertaintyIsTheDropOfTheBestOtherAnswer) {
 
 TEST(TopoMergNames, WithoutTimeNothingIsSure) {
   const MatchProblem problem = compile(floor(1, 6, 8));
-  MatchParams params;
-  const Match match = solveExact(problem, params);
+  SolverParams params;
+  const PlaceAssignment match = solveExact(problem, params);
   params.time_limit = 0.0;
   const auto none = nameUncertainties(problem, params, match);
   const auto all = nameUncertainties(problem, {}, match);
@@ -551,7 +552,7 @@ TEST(TopoMergNames, AsksWhereAnswersDiffer) {
   s.building.places[1].area.reset();
   for (auto& c : s.building.connections) c.side = Side::kUnknown;
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
-  const Match match = solveExact(p, {});
+  const PlaceAssignment match = solveExact(p, {});
   EXPECT_EQ(2u, match.equal);
   const auto question = mostInformativeQuestion(p, match);
   ASSERT_TRUE(question.has_value());
@@ -562,7 +563,7 @@ TEST(TopoMergNames, AsksWhereAnswersDiffer) {
   MatchConstraints c;
   c.confirmed = {{question->place, 3}};
   const MatchProblem answered = compileMatch(s.building, s.map, {1, 0.0}, c);
-  const Match sure = solveExact(answered, {});
+  const PlaceAssignment sure = solveExact(answered, {});
   EXPECT_EQ((Assignment{0, 2, 1}), sure.best().assignment);
   EXPECT_FALSE(mostInformativeQuestion(answered, sure).has_value());
 }

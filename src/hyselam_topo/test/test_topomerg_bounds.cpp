@@ -9,7 +9,7 @@
 #include <iostream>
 #include <string>
 
-#include "agreement_of_matches.hpp"
+#include "agreement_of_assignments.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 #include "random_matches.hpp"
@@ -29,23 +29,23 @@ void compare(std::uint64_t seed, int count, double most,
   for (; compared < count; ++seed) {
     Dice dice(seed * 104729 + 7);
     const Instance in = make(seed, &dice);
-    MatchParams params;
+    SolverParams params;
     params.dummy = dice.chance(0.7);
     params.connected = dice.chance(0.8);
     params.max_solutions = 5000000;
-    params.fitness.forgotten_edge = dice.chance(0.3) ? 0.5 : 0.0;
+    params.fitness.undescribed_edge_credit = dice.chance(0.3) ? 0.5 : 0.0;
     params.keep_within = dice.chance(0.3) ? 0.01 : 0.0;
-    if (dice.chance(0.3)) params.fitness.shut_door = 0.8;
+    if (dice.chance(0.3)) params.fitness.closed_door_credit = 0.8;
     MatchProblem problem;
     try {
       problem = compile(in);
     } catch (const hyselam::InputError&) {
       continue;  // excluded where it is confirmed
     }
-    if (countAnswers(problem, params) > most) continue;
+    if (countAssignments(problem, params) > most) continue;
     ++compared;
     without_heading += !problem.heading;
-    const Match exact = solveExact(problem, params);
+    const PlaceAssignment exact = solveExact(problem, params);
     EXPECT_TRUE(exact.optimal);
     expectSame(exploreAll(problem, params), exact, "seed " + std::to_string(seed));
     if (testing::Test::HasFatalFailure()) return;

@@ -190,7 +190,8 @@ TEST(CarryOver, NamedPlaceSurvivesAMergeAndWordsAreUnited) {
   CarryOverReport report;
   auto result = carryOver(known(), drawn(merged), {}, &report);
   EXPECT_EQ(report.merged, (std::vector<std::pair<Id, Id>>{{2, 1}}));
-  EXPECT_EQ(result.findPlace(1)->words, (std::vector<Word>{{"kitchen", true}, {"office", false}}));
+  EXPECT_EQ(result.findPlace(1)->words,
+            (std::vector<PlaceTerm>{{"kitchen", true}, {"office", false}}));
   EXPECT_EQ(result.findPlace(1)->signatures.size(), 2u);
   // A confirmed name is stronger than a guess and an older id.
   auto old = known();

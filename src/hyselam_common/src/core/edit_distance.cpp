@@ -21,4 +21,17 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+bool isOneEditApart(std::string_view a, std::string_view b) {
+  if (a.size() > b.size()) return isOneEditApart(b, a);
+  if (b.size() - a.size() > 1 || a == b) return false;
+  std::size_t i = 0;
+  while (i < a.size() && a[i] == b[i]) ++i;
+  const auto restIsSame = [&](std::size_t from_a, std::size_t from_b) {
+    return a.compare(from_a, std::string_view::npos, b, from_b, std::string_view::npos) == 0;
+  };
+  if (a.size() < b.size()) return restIsSame(i, i + 1);
+  if (restIsSame(i + 1, i + 1)) return true;
+  return i + 1 < a.size() && a[i] == b[i + 1] && a[i + 1] == b[i] && restIsSame(i + 2, i + 2);
+}
+
 }  // namespace hyselam

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "grammar/compiled_grammar.hpp"
-#include "grammar/letters.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "hyselam_language/building/place_names.hpp"
 
 namespace hyselam_topo {
@@ -93,7 +93,7 @@ class Teller {
     std::string quoted = plain(name);
     if (quoted != name) return quoted;
     const auto* type = grammar_.compiled().nameType("place");
-    const std::string folded = language::folded(name);
+    const std::string folded = hyselam::utf8Fold(name);
     const bool common = type != nullptr && std::all_of(name.begin(), name.end(), [](char c) {
                           return !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '\'';
                         });

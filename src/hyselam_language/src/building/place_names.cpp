@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "grammar/compiled_grammar.hpp"
-#include "grammar/letters.hpp"
 #include "hyselam_common/utf8.hpp"
 
 namespace hyselam_topo {
@@ -13,13 +12,13 @@ using language::NameType;
 
 /// Words of letters and digits, folded, without the s of possessives.
 std::vector<std::string> wordsOf(const std::string& name) {
-  const std::string text = language::folded(name);
+  const std::string text = hyselam::utf8Fold(name);
   std::vector<std::string> words;
   bool in_word = false;
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t length = std::max<std::size_t>(hyselam::utf8CharacterAt(text, i, &code), 1);
-    if (language::isLetterOrDigit(code)) {
+    if (hyselam::isUnicodeLetterOrDigit(code)) {
       if (!in_word) words.emplace_back();
       words.back().append(text, i, length);
       in_word = true;

@@ -2,17 +2,18 @@
 
 #include <algorithm>
 
-#include "letters.hpp"
+#include "hyselam_common/edit_distance.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "matching_costs.hpp"
 
 namespace hyselam_topo {
 namespace language {
 
 int Vocabulary::add(const std::string& word) {
-  const std::string lower = lowered(word);
+  const std::string lower = hyselam::utf8Lower(word);
   const auto [at, is_new] = by_lower_.emplace(lower, static_cast<int>(entries_.size()));
   if (is_new) {
-    entries_.push_back({lower, folded(word)});
+    entries_.push_back({lower, hyselam::utf8Fold(word)});
     by_folded_.emplace(entries_.back().folded, at->second);
   }
   return at->second;
@@ -31,7 +32,7 @@ std::vector<Vocabulary::Match> Vocabulary::matches(const Token& token, bool may_
   }
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const std::string& word = entries_[i].folded;
-    if (word.size() >= kShortestMisspelt && isOneSlipApart(token.folded, word)) {
+    if (word.size() >= kShortestMisspelt && hyselam::isOneEditApart(token.folded, word)) {
       found.push_back({static_cast<int>(i), kSlipCost});
     }
   }

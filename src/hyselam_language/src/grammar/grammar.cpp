@@ -6,7 +6,7 @@
 #include "grammar_reader.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "matcher.hpp"
+#include "sentence_matcher.hpp"
 #include "shipped_grammars.hpp"
 
 namespace hyselam_topo {

@@ -6,8 +6,8 @@
 
 #include "grammar_node.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "intent_reader.hpp"
-#include "letters.hpp"
 #include "measure_reader.hpp"
 #include "name_type_reader.hpp"
 #include "pattern.hpp"
@@ -128,12 +128,13 @@ class Reader {
   }
 
   void readAbbreviations(const GrammarNode& node) {
-    for (const std::string& word : node.texts()) grammar_->abbreviations.insert(lowered(word));
+    for (const std::string& word : node.texts())
+      grammar_->abbreviations.insert(hyselam::utf8Lower(word));
   }
 
   void readContractions(const GrammarNode& node) {
     node.each([&](const std::string& word, const GrammarNode& meaning) {
-      grammar_->contractions[lowered(word)] = splitWords(meaning.text());
+      grammar_->contractions[hyselam::utf8Lower(word)] = splitWords(meaning.text());
     });
   }
 
@@ -182,7 +183,7 @@ class Reader {
     CompiledGrammar& g = *grammar_;
     auto& known = g.known_words;
     for (std::size_t i = 0; i < g.vocabulary.size(); ++i) {
-      known.insert(folded(g.vocabulary.text(static_cast<int>(i))));
+      known.insert(hyselam::utf8Fold(g.vocabulary.text(static_cast<int>(i))));
     }
     for (const auto& [word, value] : g.number_words) known.insert(word);
     for (const NameType& type : g.name_types) {

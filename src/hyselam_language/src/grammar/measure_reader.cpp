@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "hyselam_common/numbers.hpp"
-#include "letters.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "word_lists.hpp"
 
 namespace hyselam_topo {
@@ -14,7 +14,7 @@ void readNumbers(const GrammarNode& node, CompiledGrammar* grammar) {
   node.each([&](const std::string& key, const GrammarNode& value) {
     if (key == "words" || key == "tens") {
       value.each([&](const std::string& word, const GrammarNode& number) {
-        grammar->number_words[folded(word)] = {number.number(), key == "tens"};
+        grammar->number_words[hyselam::utf8Fold(word)] = {number.number(), key == "tens"};
       });
     } else if (key == "joiners") {
       addFolded(value, &grammar->number_joiners);
@@ -45,7 +45,7 @@ void readQuantity(const std::string& name, const GrammarNode& node, CompiledGram
     unit.factor = *factor;
     addPhrases(value, &grammar->vocabulary, &unit.phrases);
     for (const std::string& text : value.texts()) {
-      if (splitWords(text).size() == 1) grammar->unit_words.insert(folded(text));
+      if (splitWords(text).size() == 1) grammar->unit_words.insert(hyselam::utf8Fold(text));
     }
     quantity.units.push_back(std::move(unit));
   });

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "hyselam_common/edit_distance.hpp"
 #include "hyselam_common/utf8.hpp"
-#include "letters.hpp"
 #include "matching_costs.hpp"
 
 namespace hyselam_topo {
@@ -209,7 +209,7 @@ bool NameFinder::mayBeMisspelt(std::size_t at, const NameType& type) const {
     return false;
   }
   return std::any_of(type.stop.begin(), type.stop.end(), [&](const std::string& stop) {
-    return stop.size() >= 2 && isOneSlipApart(stop, token.folded);
+    return stop.size() >= 2 && hyselam::isOneEditApart(stop, token.folded);
   });
 }
 
@@ -267,10 +267,11 @@ SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
   if (last.kind == TokenKind::kQuoted) {
     name.quoted = true;
     const std::string before = text_.substr(name.range.begin, last.range.begin - name.range.begin);
-    name.text = singleSpaced(before + " " + last.text);
+    name.text = hyselam::singleSpaced(before + " " + last.text);
     if (name.text.compare(0, 1, " ") == 0) name.text.erase(0, 1);
   } else {
-    name.text = singleSpaced(text_.substr(name.range.begin, name.range.end - name.range.begin));
+    name.text =
+        hyselam::singleSpaced(text_.substr(name.range.begin, name.range.end - name.range.begin));
   }
   // "Room A" at the beginning of a sentence is "room A".
   const Token& first = tokens_[begin];

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "letters.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "word_lists.hpp"
 
 namespace hyselam_topo {
@@ -36,8 +36,8 @@ const std::map<std::string, std::map<std::string, std::string> NameType::*>& mea
 void addStops(const std::vector<std::string>& words, std::set<std::string>* set) {
   constexpr std::size_t kLong = 4;
   for (const std::string& word : words) {
-    set->insert(lowered(word));
-    if (folded(word).size() >= kLong) set->insert(folded(word));
+    set->insert(hyselam::utf8Lower(word));
+    if (hyselam::utf8Fold(word).size() >= kLong) set->insert(hyselam::utf8Fold(word));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "letters.hpp"
+#include "hyselam_common/utf8.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -306,7 +306,7 @@ class Compiler {
 
   /// "room", "door": words that names hold, too.
   bool isCommon(int word) const {
-    const std::string text = folded(grammar_->vocabulary.text(word));
+    const std::string text = hyselam::utf8Fold(grammar_->vocabulary.text(word));
     const auto& types = grammar_->name_types;
     return std::any_of(types.begin(), types.end(), [&](const NameType& type) {
       return type.nouns.count(text) != 0 || type.generic.count(text) != 0 ||

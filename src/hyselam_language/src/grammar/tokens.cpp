@@ -6,7 +6,6 @@
 
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_common/utf8.hpp"
-#include "letters.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -42,7 +41,9 @@ std::optional<Quoted> quotedAt(const std::string& text, std::size_t i, std::size
   for (const Quotes& quotes : kQuotes) {
     if (!startsWith(text, i, quotes.open)) continue;
     // "the nurses' room": an apostrophe behind a word opens nothing.
-    if (quotes.open[0] == '\'' && i > 0 && isLetterOrDigit(codeAt(text, i - 1, end))) continue;
+    if (quotes.open[0] == '\'' && i > 0 &&
+        hyselam::isUnicodeLetterOrDigit(hyselam::utf8CodeAt(text, i - 1, end)))
+      continue;
     const std::size_t begin = i + std::strlen(quotes.open);
     const std::size_t limit = std::min(end, begin + kMaxQuoted);
     // Not to the end of a long text for each mark that is never closed.
@@ -50,7 +51,8 @@ std::optional<Quoted> quotedAt(const std::string& text, std::size_t i, std::size
       if (!startsWith(text, at, quotes.close)) continue;
       const std::size_t after = at + std::strlen(quotes.close);
       // An apostrophe within a word closes nothing.
-      if (std::strcmp(quotes.close, "\"") != 0 && isLetterOrDigit(codeAt(text, after, end))) {
+      if (std::strcmp(quotes.close, "\"") != 0 &&
+          hyselam::isUnicodeLetterOrDigit(hyselam::utf8CodeAt(text, after, end))) {
         continue;
       }
       if (text.substr(begin, at - begin).find('\n') != std::string::npos) break;
@@ -64,11 +66,14 @@ std::optional<Quoted> quotedAt(const std::string& text, std::size_t i, std::size
 std::size_t wordEnd(const std::string& text, std::size_t i, std::size_t end) {
   std::size_t length = 0;
   while (true) {
-    while (isLetterOrDigit(codeAt(text, i, end, &length)) && length > 0) i += length;
-    const std::uint32_t joint = codeAt(text, i, end, &length);
+    while (hyselam::isUnicodeLetterOrDigit(hyselam::utf8CodeAt(text, i, end, &length)) &&
+           length > 0)
+      i += length;
+    const std::uint32_t joint = hyselam::utf8CodeAt(text, i, end, &length);
     const bool joins = joint == '-' || joint == '\'' || joint == '.' || joint == '/' ||
                        joint == '_' || joint == 0x2019 || joint == 0x2010 || joint == 0x2011;
-    if (!joins || !isLetterOrDigit(codeAt(text, i + length, end))) return i;
+    if (!joins || !hyselam::isUnicodeLetterOrDigit(hyselam::utf8CodeAt(text, i + length, end)))
+      return i;
     i += length;
   }
 }
@@ -76,10 +81,10 @@ std::size_t wordEnd(const std::string& text, std::size_t i, std::size_t end) {
 /// A decimal number at the start of `word`: its length, 0 for none.
 std::size_t numberLength(const std::string& word) {
   std::size_t n = 0;
-  while (n < word.size() && isDigit(static_cast<unsigned char>(word[n]))) ++n;
+  while (n < word.size() && hyselam::isUnicodeDigit(static_cast<unsigned char>(word[n]))) ++n;
   if (n == 0 || n + 1 >= word.size() || (word[n] != '.' && word[n] != ',')) return n;
   std::size_t k = n + 1;
-  while (k < word.size() && isDigit(static_cast<unsigned char>(word[k]))) ++k;
+  while (k < word.size() && hyselam::isUnicodeDigit(static_cast<unsigned char>(word[k]))) ++k;
   return k > n + 1 ? k : n;
 }
 
@@ -96,16 +101,16 @@ class Tokenizer {
  private:
   void next() {
     std::size_t length = 0;
-    const std::uint32_t code = codeAt(text_, at_, end_, &length);
-    if (isSpace(code)) {
+    const std::uint32_t code = hyselam::utf8CodeAt(text_, at_, end_, &length);
+    if (hyselam::isUnicodeSpace(code)) {
       at_ += length;
-    } else if (isLetterOrDigit(code)) {
+    } else if (hyselam::isUnicodeLetterOrDigit(code)) {
       word();
     } else if (const auto quoted = quotedAt(text_, at_, end_)) {
       Token token;
       token.kind = TokenKind::kQuoted;
       token.range = {at_, quoted->end};
-      token.text = singleSpaced(
+      token.text = hyselam::singleSpaced(
           text_.substr(quoted->inside.begin, quoted->inside.end - quoted->inside.begin));
       tokens_.push_back(std::move(token));
       at_ = quoted->end;
@@ -115,8 +120,9 @@ class Tokenizer {
   }
 
   void mark(std::uint32_t code, std::size_t length) {
-    const bool alone = (at_ == 0 || isSpace(codeAt(text_, at_ - 1, end_))) &&
-                       isSpace(codeAt(text_, at_ + length, end_));
+    const bool alone =
+        (at_ == 0 || hyselam::isUnicodeSpace(hyselam::utf8CodeAt(text_, at_ - 1, end_))) &&
+        hyselam::isUnicodeSpace(hyselam::utf8CodeAt(text_, at_ + length, end_));
     const bool dash = code == '-' || (code >= 0x2010 && code <= 0x2015) || code == 0x2212;
     const bool long_dash = code == 0x2013 || code == 0x2014;
     if (code == 0xd7) {
@@ -143,16 +149,17 @@ class Tokenizer {
     std::size_t end = wordEnd(text_, at_, end_);
     // "1,5", but not "1,2,3".
     const auto digitsFrom = [&](std::size_t i) {
-      while (isDigit(codeAt(text_, i, end_))) ++i;
+      while (hyselam::isUnicodeDigit(hyselam::utf8CodeAt(text_, i, end_))) ++i;
       return i;
     };
-    if (digitsFrom(at_) == end && codeAt(text_, end, end_) == ',') {
+    if (digitsFrom(at_) == end && hyselam::utf8CodeAt(text_, end, end_) == ',') {
       const std::size_t more = digitsFrom(end + 1);
-      const bool list = codeAt(text_, more, end_) == ',' && isDigit(codeAt(text_, more + 1, end_));
+      const bool list = hyselam::utf8CodeAt(text_, more, end_) == ',' &&
+                        hyselam::isUnicodeDigit(hyselam::utf8CodeAt(text_, more + 1, end_));
       if (more > end + 1 && !list) end = std::max(more, wordEnd(text_, more, end_));
     }
     const std::string word = text_.substr(at_, end - at_);
-    if (isDigit(static_cast<unsigned char>(word[0])) && measures(word)) {
+    if (hyselam::isUnicodeDigit(static_cast<unsigned char>(word[0])) && measures(word)) {
       at_ = end;
       return;
     }
@@ -160,7 +167,7 @@ class Tokenizer {
     end = wordEnd(text_, at_, end_);
     const std::string plain = text_.substr(at_, end - at_);
     const TextRange range{at_, end};
-    if (const auto* expansion = rules_.expansion(lowered(plain))) {
+    if (const auto* expansion = rules_.expansion(hyselam::utf8Lower(plain))) {
       for (const std::string& each : *expansion) tokens_.push_back(wordToken(each, range));
     } else {
       tokens_.push_back(wordToken(plain, range));
@@ -187,13 +194,14 @@ class Tokenizer {
       i += length;
       if (i == word.size()) break;
       const std::string rest = word.substr(i);
-      if (rules_.is_unit(folded(rest))) {
+      if (rules_.is_unit(hyselam::utf8Fold(rest))) {
         parts.push_back(wordToken(rest, {at_ + i, at_ + word.size()}));
         break;
       }
       // Between two numbers; a unit may stand before: "6mx8m".
       const std::size_t x = rest.find_first_of("xX");
-      if (x == std::string::npos || (x > 0 && !rules_.is_unit(folded(rest.substr(0, x))))) {
+      if (x == std::string::npos ||
+          (x > 0 && !rules_.is_unit(hyselam::utf8Fold(rest.substr(0, x))))) {
         return false;
       }
       if (x > 0) parts.push_back(wordToken(rest.substr(0, x), {at_ + i, at_ + i + x}));
@@ -216,23 +224,24 @@ bool isInnerStop(const std::string& text, std::size_t i, std::size_t begin,
                  const TokenRules& rules) {
   std::size_t word = i;
   while (word > begin && i - word <= kMaxAbbreviation &&
-         !isSpace(static_cast<unsigned char>(text[word - 1]))) {
+         !hyselam::isUnicodeSpace(static_cast<unsigned char>(text[word - 1]))) {
     --word;
   }
   const std::string before = text.substr(word, i - word);
   std::size_t length = 0;
-  const std::uint32_t next = codeAt(text, i + 1, text.size(), &length);
-  if (isLetterOrDigit(next)) {
+  const std::uint32_t next = hyselam::utf8CodeAt(text, i + 1, text.size(), &length);
+  if (hyselam::isUnicodeLetterOrDigit(next)) {
     // "I-109.On your left": a forgotten space; "B.Lab" and "Dr.No" stay whole.
-    const std::uint32_t after = codeAt(text, i + 1 + length, text.size());
-    const bool begins_sentence =
-        isUpper(next) && isLetterOrDigit(after) && !isUpper(after) && !isDigit(after);
-    if (!begins_sentence || rules.is_abbreviation(lowered(before))) return true;
+    const std::uint32_t after = hyselam::utf8CodeAt(text, i + 1 + length, text.size());
+    const bool begins_sentence = hyselam::isUnicodeUpper(next) &&
+                                 hyselam::isUnicodeLetterOrDigit(after) &&
+                                 !hyselam::isUnicodeUpper(after) && !hyselam::isUnicodeDigit(after);
+    if (!begins_sentence || rules.is_abbreviation(hyselam::utf8Lower(before))) return true;
     if (before.size() >= 2) return false;
     const std::size_t end = wordEnd(text, i + 1, text.size());
-    return !rules.may_begin(folded(text.substr(i + 1, end - i - 1)));
+    return !rules.may_begin(hyselam::utf8Fold(text.substr(i + 1, end - i - 1)));
   }
-  return isSpace(next) && rules.is_abbreviation(lowered(before));
+  return hyselam::isUnicodeSpace(next) && rules.is_abbreviation(hyselam::utf8Lower(before));
 }
 
 }  // namespace
@@ -241,9 +250,9 @@ Token wordToken(const std::string& text, TextRange range) {
   Token token;
   token.range = range;
   token.text = text;
-  token.lower = lowered(text);
-  token.folded = folded(text);
-  token.starts_upper = isUpper(codeAt(text, 0, text.size()));
+  token.lower = hyselam::utf8Lower(text);
+  token.folded = hyselam::utf8Fold(text);
+  token.starts_upper = hyselam::isUnicodeUpper(hyselam::utf8CodeAt(text, 0, text.size()));
   token.only_lower_letters =
       token.lower == text && std::all_of(token.folded.begin(), token.folded.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || c == '\'';
@@ -257,9 +266,10 @@ std::vector<Sentence> splitSentences(const std::string& text, const TokenRules& 
   bool question = false;
   const auto end = [&](std::size_t at) {
     std::size_t from = begin, length = 0;
-    while (from < at && isSpace(codeAt(text, from, at, &length))) from += length;
+    while (from < at && hyselam::isUnicodeSpace(hyselam::utf8CodeAt(text, from, at, &length)))
+      from += length;
     std::size_t to = at;
-    while (to > from && isSpace(static_cast<unsigned char>(text[to - 1]))) --to;
+    while (to > from && hyselam::isUnicodeSpace(static_cast<unsigned char>(text[to - 1]))) --to;
     const bool says_something =
         std::any_of(text.begin() + static_cast<std::ptrdiff_t>(from),
                     text.begin() + static_cast<std::ptrdiff_t>(to),
@@ -270,9 +280,11 @@ std::vector<Sentence> splitSentences(const std::string& text, const TokenRules& 
   };
   std::size_t length = 0;
   for (std::size_t i = 0; i < text.size(); i += length) {
-    const std::uint32_t code = codeAt(text, i, text.size(), &length);
-    const bool quote_may_open = i == 0 || !isLetterOrDigit(codeAt(text, i - 1, text.size()));
-    if (quote_may_open && !isLetterOrDigit(code) && !isSpace(code)) {
+    const std::uint32_t code = hyselam::utf8CodeAt(text, i, text.size(), &length);
+    const bool quote_may_open =
+        i == 0 || !hyselam::isUnicodeLetterOrDigit(hyselam::utf8CodeAt(text, i - 1, text.size()));
+    if (quote_may_open && !hyselam::isUnicodeLetterOrDigit(code) &&
+        !hyselam::isUnicodeSpace(code)) {
       if (const auto quoted = quotedAt(text, i, text.size())) {
         length = quoted->end - i;
         continue;

@@ -6,7 +6,7 @@
 #include "compiled_grammar.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/utf8.hpp"
-#include "matcher.hpp"
+#include "sentence_matcher.hpp"
 
 namespace hyselam_topo {
 namespace {

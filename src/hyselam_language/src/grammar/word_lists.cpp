@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "hyselam_common/numbers.hpp"
-#include "letters.hpp"
+#include "hyselam_common/utf8.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -28,12 +28,12 @@ void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phr
 }
 
 void addFolded(const GrammarNode& node, std::set<std::string>* words) {
-  for (const std::string& word : node.texts()) words->insert(folded(word));
+  for (const std::string& word : node.texts()) words->insert(hyselam::utf8Fold(word));
 }
 
 void addMeanings(const GrammarNode& node, std::map<std::string, std::string>* meanings) {
   node.each([&](const std::string& meaning, const GrammarNode& words) {
-    for (const std::string& word : words.texts()) (*meanings)[folded(word)] = meaning;
+    for (const std::string& word : words.texts()) (*meanings)[hyselam::utf8Fold(word)] = meaning;
   });
 }
 

@@ -14,7 +14,7 @@ std::size_t linkPlaces(ObjectMap& map, const hyselam_topo::AugmentedTopologicalM
   std::vector<std::vector<std::string>> words;
   for (const hyselam_topo::Place& place : topology.places) {
     words.emplace_back();
-    for (const hyselam_topo::Word& word : place.words) words.back().push_back(word.text);
+    for (const hyselam_topo::PlaceTerm& word : place.words) words.back().push_back(word.text);
     if (words.back().empty()) words.back().push_back(nameOf(place));
   }
   std::size_t left = 0;

@@ -1,4 +1,4 @@
-// Ways, and questions about the building.
+// Driving, and answers to questions about the building.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@
 namespace hyselam_topo {
 namespace {
 
-std::vector<Id> neighboursOf(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
+std::vector<Id> neighborsOf(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
   std::set<Id> all;
   for (const Edge& edge : map.edges) {
     for (const Id place : places) {
@@ -39,8 +39,8 @@ bool hasClosedDoor(const AugmentedTopologicalMap& map, const RouteLeg& leg) {
 
 // ---- Going ----
 
-void Dialogue::goTo(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::goTo(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const std::vector<SaidName> near = u.names("near");
   std::vector<Id> beside;
   if (!near.empty()) {
@@ -51,25 +51,77 @@ void Dialogue::goTo(const Utterance& u, Turn* turn) {
     std::vector<Id> found = resolve(name, out);
     if (found.empty()) continue;
     if (!beside.empty()) {
-      const std::vector<Id> good = neighboursOf(places_.map(), beside);
+      const std::vector<Id> good = neighborsOf(places_.map(), beside);
       std::vector<Id> both;
       for (const Id id : found) {
         if (std::count(good.begin(), good.end(), id) > 0) both.push_back(id);
       }
       if (!both.empty()) found = both;
     }
-    turn->goals.emplace_back(name.text, std::move(found));
+    turn.goals.emplace_back(name.text, std::move(found));
   }
 }
 
-void Dialogue::setOut(Turn* turn) {
-  if (turn->goals.empty()) return;
-  Reply* out = &turn->reply;
+void Dialogue::goBack(const Utterance&, Turn& turn) {
+  const Id previous = robot().previous;
+  if (previous == 0) {
+    say("no_previous", turn);
+  } else {
+    turn.goals.emplace_back(shortName(previous), std::vector<Id>{previous});
+  }
+}
+
+void Dialogue::followPerson(const Utterance&, Turn& turn) {
+  turn.reply.actions.push_back({DialogueAction::Kind::kFollow, {}, 0.0});
+  say("following", turn);
+}
+
+void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
+  const auto side = sideOf(u.word("direction"));
+  if (!side || *side == Side::kUnknown) {
+    say("cannot_do", turn);
+    return;
+  }
+  const double angle = *side == Side::kLeft    ? 0.5 * hyselam::kPi
+                       : *side == Side::kRight ? -0.5 * hyselam::kPi
+                                               : hyselam::kPi;
+  turn.reply.actions.push_back({DialogueAction::Kind::kTurn, {}, angle});
+  turn.reply.sentences.push_back(phrases().say("turning", {{"side", phrases().side(*side)}}));
+}
+
+void Dialogue::stop(const Utterance&, Turn& turn) {
+  question_ = {};
+  turn.reply.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
+  say("stopped", turn);
+}
+
+void Dialogue::cancel(const Utterance&, Turn& turn) {
+  question_ = {};
+  turn.goals.clear();
+  turn.reply.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
+  say("cancelled", turn);
+}
+
+Reply Dialogue::goTo(const std::string& name, const std::vector<Id>& places) {
+  Turn turn;
+  turn.reply = reply();
+  if (places.empty()) {
+    turn.reply.sentences.push_back(phrases().say("unknown_place", {{"name", name}}));
+    return turn.reply;
+  }
+  turn.goals.emplace_back(name, places);
+  startGoal(turn);
+  return turn.reply;
+}
+
+void Dialogue::startGoal(Turn& turn) {
+  if (turn.goals.empty()) return;
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
-  const auto goals = std::move(turn->goals);
-  turn->goals.clear();
+  const auto goals = std::move(turn.goals);
+  turn.goals.clear();
   if (!robot().has_pose) {
-    out->sentences.push_back(p.say("at_unknown"));
+    out.sentences.push_back(p.say("at_unknown"));
     return;
   }
   DialogueAction action;
@@ -80,7 +132,7 @@ void Dialogue::setOut(Turn* turn) {
   for (const auto& [name, places] : goals) {
     const auto leg = planRoute(places_.map(), from, places, params_.route);
     if (!leg) {
-      out->sentences.push_back(p.say("no_way", {{"place", name}}));
+      out.sentences.push_back(p.say("no_way", {{"place", name}}));
       return;
     }
     from = leg->waypoints.back();
@@ -88,35 +140,35 @@ void Dialogue::setOut(Turn* turn) {
     closed = closed || hasClosedDoor(places_.map(), *leg);
     action.legs.push_back(*leg);
   }
-  out->sentences.push_back(p.say("going", {{"places", p.list(labels(stops))}}));
-  if (closed) out->sentences.push_back(p.say("door_closed"));
-  out->actions.push_back(std::move(action));
+  out.sentences.push_back(p.say("going", {{"places", p.list(labels(stops))}}));
+  if (closed) out.sentences.push_back(p.say("door_closed"));
+  out.actions.push_back(std::move(action));
 }
 
 // ---- Questions ----
 
-void Dialogue::whereAreYou(Reply* out) {
+void Dialogue::answerWhereAreYou(const Utterance&, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const Id here = robot().place;
   if (here == 0) {
-    out->sentences.push_back(p.say("at_unknown"));
+    out.sentences.push_back(p.say("at_unknown"));
     return;
   }
   subject_ = here;
   const Place& place = *places_.map().findPlace(here);
   const std::string code = codeOf(place);
   if (nameStateOf(place) == NameState::kConfirmed) {
-    out->sentences.push_back(
-        p.say("at_named", {{"code", code}, {"names", p.list(namesOf(place))}}));
+    out.sentences.push_back(p.say("at_named", {{"code", code}, {"names", p.list(namesOf(place))}}));
   } else {
-    out->sentences.push_back(p.say("at_code", {{"code", code}}));
+    out.sentences.push_back(p.say("at_code", {{"code", code}}));
   }
-  if (robot().in_doorway) out->sentences.push_back(p.say("in_doorway"));
+  if (robot().in_doorway) out.sentences.push_back(p.say("in_doorway"));
   if (nameStateOf(place) == NameState::kUnconfirmed) askConfirm(here, out);
 }
 
-void Dialogue::whereIs(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
@@ -126,12 +178,12 @@ void Dialogue::whereIs(const Utterance& u, Turn* turn) {
   const Place& asked_for = *places_.map().findPlace(at ? here : found.front());
   const bool guessed = nameStateOf(asked_for) == NameState::kUnconfirmed;
   if (u.intent == "is_here" && here != 0 && !guessed) {
-    out->sentences.push_back(p.say(at ? "yes" : "no"));
+    out.sentences.push_back(p.say(at ? "yes" : "no"));
   }
   if (guessed) name = p.say("perhaps", {{"name", name}});
   if (at) {
     const Place& place = asked_for;
-    out->sentences.push_back(p.say("where_is_here", {{"name", name}, {"code", codeOf(place)}}));
+    out.sentences.push_back(p.say("where_is_here", {{"name", name}, {"code", codeOf(place)}}));
     if (guessed) askConfirm(here, out);
     return;
   }
@@ -140,15 +192,15 @@ void Dialogue::whereIs(const Utterance& u, Turn* turn) {
   const Id nearest = leg ? leg->places.back() : found.front();
   const std::string code = codeOf(*places_.map().findPlace(nearest));
   if (leg) {
-    out->sentences.push_back(
+    out.sentences.push_back(
         p.say("where_is", {{"name", name}, {"code", code}, {"length", p.number(leg->length, 0)}}));
   } else {
-    out->sentences.push_back(p.say("where_is_no_way", {{"name", name}, {"code", code}}));
+    out.sentences.push_back(p.say("where_is_no_way", {{"name", name}, {"code", code}}));
   }
 }
 
-void Dialogue::wayTo(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::answerWayTo(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const std::vector<Id> goals = resolve(u, "place", out);
   if (goals.empty()) return;
@@ -164,60 +216,60 @@ void Dialogue::wayTo(const Utterance& u, Turn* turn) {
       from ? planRoute(places_.map(), *from, goals, params_.route) : std::optional<RouteLeg>();
   const std::string place = shortName(goals.front());
   if (!leg) {
-    out->sentences.push_back(p.say("no_way", {{"place", place}}));
+    out.sentences.push_back(p.say("no_way", {{"place", place}}));
     return;
   }
-  out->sentences.push_back(p.say("way", {{"place", place},
-                                         {"length", p.number(leg->length, 0)},
-                                         {"places", p.list(labels(leg->places))}}));
-  if (hasClosedDoor(places_.map(), *leg)) out->sentences.push_back(p.say("door_closed"));
+  out.sentences.push_back(p.say("way", {{"place", place},
+                                        {"length", p.number(leg->length, 0)},
+                                        {"places", p.list(labels(leg->places))}}));
+  if (hasClosedDoor(places_.map(), *leg)) out.sentences.push_back(p.say("door_closed"));
 }
 
-void Dialogue::nextTo(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::answerNextTo(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
-  const std::vector<Id> neighbours = neighboursOf(places_.map(), found);
+  const std::vector<Id> neighbors = neighborsOf(places_.map(), found);
   const std::string place = shortName(found.front());
-  if (neighbours.empty()) {
-    out->sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
+  if (neighbors.empty()) {
+    out.sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
   } else {
-    out->sentences.push_back(
-        p.say("next_to", {{"place", place}, {"places", p.list(labels(neighbours))}}));
+    out.sentences.push_back(
+        p.say("next_to", {{"place", place}, {"places", p.list(labels(neighbors))}}));
   }
 }
 
-/// What has been told; geometry would not know what people take for opposite.
-void Dialogue::opposite(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+/// What was described; geometry would not know what people take for opposite.
+void Dialogue::answerOpposite(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const auto names = textsOf(u.names("place"));
-  std::vector<std::string> told;
+  std::vector<std::string> described;
   if (!names.empty()) {
     const std::vector<Id> found = builder_.find(names.front());
     for (const DescribedRelation& r : builder_.building().relations) {
       if (r.kind != RelationKind::kOpposite) continue;
       for (const Id id : found) {
         const Id other = r.a == id ? r.b : r.b == id ? r.a : 0;
-        if (other != 0) told.push_back(builder_.building().findPlace(other)->name);
+        if (other != 0) described.push_back(builder_.building().findPlace(other)->name);
       }
     }
   }
   const std::string place = names.empty() ? "" : names.front();
-  if (told.empty()) {
-    out->sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
+  if (described.empty()) {
+    out.sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
   } else {
-    out->sentences.push_back(p.say("opposite", {{"place", place}, {"places", p.list(told)}}));
+    out.sentences.push_back(p.say("opposite", {{"place", place}, {"places", p.list(described)}}));
   }
 }
 
-void Dialogue::onSide(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::answerOnSide(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const auto side = sideOf(u.word("side"));
   if (!side || *side == Side::kUnknown || robot().place == 0) {
-    out->sentences.push_back(p.say("at_unknown"));
+    out.sentences.push_back(p.say("at_unknown"));
     return;
   }
   const double direction = *side == Side::kLeft    ? 0.5 * hyselam::kPi
@@ -245,15 +297,15 @@ void Dialogue::onSide(const Utterance& u, Turn* turn) {
     if (std::count(places.begin(), places.end(), id) == 0) places.push_back(id);
   }
   if (places.empty()) {
-    out->sentences.push_back(p.say("nothing_on_side", {{"side", p.side(*side)}}));
+    out.sentences.push_back(p.say("nothing_on_side", {{"side", p.side(*side)}}));
   } else {
-    out->sentences.push_back(
+    out.sentences.push_back(
         p.say("on_side", {{"side", p.side(*side)}, {"places", p.list(labels(places))}}));
   }
 }
 
-void Dialogue::size(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::answerSize(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
@@ -261,13 +313,14 @@ void Dialogue::size(const Utterance& u, Turn* turn) {
   for (const Id id : found) area += places_.map().findPlace(id)->area;
   const std::string place = shortName(found.front());
   if (area > 0.0) {
-    out->sentences.push_back(p.say("size", {{"place", place}, {"area", p.number(area, 1)}}));
+    out.sentences.push_back(p.say("size", {{"place", place}, {"area", p.number(area, 1)}}));
   } else {
-    out->sentences.push_back(p.say("size_unknown", {{"place", place}}));
+    out.sentences.push_back(p.say("size_unknown", {{"place", place}}));
   }
 }
 
-void Dialogue::whichPlaces(Reply* out) {
+void Dialogue::answerWhichPlaces(const Utterance&, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   std::vector<Id> named;
   for (const Place& place : places_.map().places) {
@@ -275,13 +328,13 @@ void Dialogue::whichPlaces(Reply* out) {
   }
   const std::size_t count = places_.map().places.size();
   if (count == 0) {
-    out->sentences.push_back(p.say("no_map"));
+    out.sentences.push_back(p.say("no_map"));
     return;
   }
   if (named.empty()) {
     for (const Place& place : places_.map().places) named.push_back(place.id);
   }
-  out->sentences.push_back(
+  out.sentences.push_back(
       p.say("places", {{"count", std::to_string(count)}, {"places", p.list(labels(named))}}));
 }
 

@@ -26,20 +26,20 @@ bool Dialogue::isNamedOtherwise(Id place, const std::vector<std::string>& names)
   return true;
 }
 
-void Dialogue::nameHere(Id place, const std::vector<std::string>& names, Reply* out) {
+void Dialogue::nameHere(Id place, const std::vector<std::string>& names, Reply& out) {
   const Phrases& p = phrases();
   const std::vector<Id> losers = places_.confirm(place, names);
   const Place& named = *places_.map().findPlace(place);
-  out->sentences.push_back(
+  out.sentences.push_back(
       p.say("named", {{"code", codeOf(named)}, {"names", p.list(namesOf(named))}}));
   for (const Id loser : losers) {
-    out->sentences.push_back(
+    out.sentences.push_back(
         p.say("moved_name", {{"code", codeOf(*places_.map().findPlace(loser))}}));
   }
   if (question_.place == place) question_ = {};
   subject_ = place;
-  solve(out, false);
-  out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+  matchDescription(out, false);
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
 
 Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
@@ -48,7 +48,7 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
     throw hyselam::InputError("places", "id " + std::to_string(place), "there is no such place");
   }
   Reply out = reply();
-  nameHere(place, names, &out);
+  nameHere(place, names, out);
   return out;
 }
 
@@ -60,10 +60,10 @@ Reply Dialogue::forget(Id place) {
   return out;
 }
 
-void Dialogue::thisIs(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   if (robot().place == 0) {
-    out->sentences.push_back(phrases().say(places_.hasMap() ? "no_place_here" : "no_map"));
+    out.sentences.push_back(phrases().say(places_.hasMap() ? "no_place_here" : "no_map"));
     return;
   }
   std::vector<std::string> names = textsOf(u.names("place"));
@@ -79,16 +79,16 @@ void Dialogue::thisIs(const Utterance& u, Turn* turn) {
   }
 }
 
-void Dialogue::forgetNames(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   if (!u.word("all").empty() || u.find("all") != nullptr) {
     places_.forgetAllNames();
     builder_ = DescriptionBuilder(parser_);  // or the next sentence would bring them back
     match_.reset();
     question_ = {};
-    out->sentences.push_back(p.say("forgot_all"));
-    out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+    out.sentences.push_back(p.say("forgot_all"));
+    out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
     return;
   }
   const std::vector<SaidName> said = u.names("place");
@@ -103,12 +103,12 @@ void Dialogue::forgetNames(const Utterance& u, Turn* turn) {
   }
   if (by_name) had = !places_.forgetName(said.front().text).empty();
   if (question_.kind == Question::Kind::kConfirmName) question_ = {};
-  out->sentences.push_back(p.say(had ? "forgot_names" : "no_names", {{"places", p.list(codes)}}));
-  out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+  out.sentences.push_back(p.say(had ? "forgot_names" : "no_names", {{"places", p.list(codes)}}));
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
 
-void Dialogue::rename(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::rename(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const std::vector<Id> found = resolve(u, "place", out);
   const auto names = textsOf(u.names("name"));
   if (found.empty() || names.empty()) return;

@@ -38,7 +38,7 @@ std::string toText(const DialogueState& state) {
       state.description.places.empty() ? "" : toXml(state.description, "description");
   if (state.heading) j["heading"] = *state.heading;
   j["walls"] = json::array();
-  for (const ToldWall& wall : state.places.walls) {
+  for (const DescribedWall& wall : state.places.walls) {
     j["walls"].push_back({{"ax", wall.line.a.x},
                           {"ay", wall.line.a.y},
                           {"bx", wall.line.b.x},
@@ -87,7 +87,7 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
     }
     if (j.contains("heading")) state.heading = numberAt(j, "heading");
     for (const json& w : j.at("walls")) {
-      ToldWall wall;
+      DescribedWall wall;
       wall.line = {{numberAt(w, "ax"), numberAt(w, "ay")}, {numberAt(w, "bx"), numberAt(w, "by")}};
       const auto kind = wallKindOf(numberAt(w, "existence"));
       if (!kind) throw std::runtime_error("the existence of a wall is 0 or 0.5");

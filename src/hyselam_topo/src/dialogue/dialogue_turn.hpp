@@ -10,11 +10,15 @@
 namespace hyselam_topo {
 
 struct Dialogue::Turn {
+  std::string text;
+  HearOptions options;
+  std::size_t end = 0;  ///< of the utterance before, in the text
   Reply reply;
-  bool described = false;         ///< statements about the building were taken down
-  bool beyond_here = false;       ///< ... about more than where the robot is
-  bool sides = false;             ///< ... with sides
-  std::vector<std::string> here;  ///< ... where the robot is; empty: not told
+  std::vector<std::string> not_understood;  ///< answers to what was not understood
+  bool described = false;                   ///< statements about the building were recorded
+  bool beyond_here = false;                 ///< ... about more than where the robot is
+  bool sides = false;                       ///< ... with sides
+  std::vector<std::string> here;            ///< ... where the robot is; empty: not described
   std::vector<DescriptionIssue> issues;
   std::vector<std::pair<std::string, std::vector<Id>>> goals;  ///< where to go, in order
 };

@@ -9,53 +9,53 @@
 
 namespace hyselam_topo {
 
-void Dialogue::wall(const Utterance& u, WallKind kind, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::addWall(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const auto side = sideOf(u.word("side"));
   if (!side || *side == Side::kUnknown) {
-    out->sentences.push_back(p.say("cannot_do"));
+    out.sentences.push_back(p.say("cannot_do"));
     return;
   }
   if (!grid_ || !robot().has_pose) {
-    out->sentences.push_back(p.say(grid_ ? "at_unknown" : "no_grid"));
+    out.sentences.push_back(p.say(grid_ ? "at_unknown" : "no_grid"));
     return;
   }
   question_ = {};
   try {
-    // Walls told before are seen: their posts are no corners any more.
+    // Walls described before are seen: their posts are no corners any more.
     question_.search = std::make_shared<GlassWallSearch>(places_.withWalls(*grid_), robot().pose,
                                                          *side, params_.glass);
   } catch (const hyselam::InputError& e) {
-    out->sentences.push_back(p.say("not_possible", {{"reason", e.what()}}));
+    out.sentences.push_back(p.say("not_possible", {{"reason", e.what()}}));
     return;
   }
-  question_.wall.kind = kind;
+  question_.wall.kind = u.intent == "virtual_wall" ? WallKind::kVirtual : WallKind::kGlass;
   const auto length = u.number("length");
   askWall(length ? question_.search->ofLength(*length) : question_.search->likeliest(), out);
 }
 
-void Dialogue::askWall(const std::optional<GlassWall>& found, Reply* out) {
+void Dialogue::askWall(const std::optional<GlassWall>& found, Reply& out) {
   const Phrases& p = phrases();
   const GlassWallSearch& search = *question_.search;
   const std::string& kind = p.wall(question_.wall.kind);
   const std::string& side = p.side(search.side());
   if (!found) {
-    out->sentences.push_back(p.say("no_corners", {{"side", side}, {"wall", kind}}));
+    out.sentences.push_back(p.say("no_corners", {{"side", side}, {"wall", kind}}));
     question_ = {};
     return;
   }
   question_.kind = Question::Kind::kWall;
   question_.wall.line = *found;
   const double distance = found->distanceTo({search.robot().x, search.robot().y});
-  out->sentences.push_back(p.say("ask_wall", {{"wall", kind},
-                                              {"side", side},
-                                              {"distance", p.number(distance, 2)},
-                                              {"length", p.number(found->length(), 2)}}));
+  out.sentences.push_back(p.say("ask_wall", {{"wall", kind},
+                                             {"side", side},
+                                             {"distance", p.number(distance, 2)},
+                                             {"length", p.number(found->length(), 2)}}));
 }
 
-void Dialogue::forgetWall(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::forgetWall(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   const Phrases& p = phrases();
   const auto& walls = places_.walls();
   std::size_t chosen = walls.empty() ? 0 : walls.size() - 1;
@@ -83,20 +83,20 @@ void Dialogue::forgetWall(const Utterance& u, Turn* turn) {
     }
   }
   if (!found) {
-    out->sentences.push_back(p.say("no_wall"));
+    out.sentences.push_back(p.say("no_wall"));
     return;
   }
   const WallKind kind = walls[chosen].kind;
   places_.removeWall(chosen);
-  out->sentences.push_back(p.say("wall_forgotten", {{"wall", p.wall(kind)}}));
-  out->actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
-  out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+  out.sentences.push_back(p.say("wall_forgotten", {{"wall", p.wall(kind)}}));
+  out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
 
-void Dialogue::virtualPlace(const Utterance& u, Turn* turn) {
-  Reply* out = &turn->reply;
+void Dialogue::addVirtualPlace(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
   if (robot().place == 0) {
-    out->sentences.push_back(phrases().say(places_.hasMap() ? "no_place_here" : "no_map"));
+    out.sentences.push_back(phrases().say(places_.hasMap() ? "no_place_here" : "no_map"));
     return;
   }
   const hyselam::Point2 centre{robot().pose.x, robot().pose.y};
@@ -109,22 +109,21 @@ void Dialogue::virtualPlace(const Utterance& u, Turn* turn) {
   question_.kind = Question::Kind::kRadius;
   question_.point = centre;
   question_.names = names;
-  out->sentences.push_back(phrases().say("ask_radius"));
+  out.sentences.push_back(phrases().say("ask_radius"));
 }
 
 void Dialogue::addVirtualAndAsk(hyselam::Point2 centre, double radius,
-                                const std::vector<std::string>& names, Reply* out) {
+                                const std::vector<std::string>& names, Reply& out) {
   const Phrases& p = phrases();
   Id id = 0;
   try {
     id = places_.addVirtualPlace(centre, radius, names);
   } catch (const hyselam::InputError& e) {
-    out->sentences.push_back(p.say("not_possible", {{"reason", e.what()}}));
+    out.sentences.push_back(p.say("not_possible", {{"reason", e.what()}}));
     return;
   }
-  out->sentences.push_back(
-      p.say("virtual_added", {{"code", codeOf(*places_.map().findPlace(id))}}));
-  out->actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+  out.sentences.push_back(p.say("virtual_added", {{"code", codeOf(*places_.map().findPlace(id))}}));
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   subject_ = id;
   topo_state_.mapChanged(places_.map());
   if (robot().has_pose) topo_state_.update(places_.map(), robot().stamp, robot().pose);
@@ -142,10 +141,10 @@ Reply Dialogue::addVirtualPlace(hyselam::Point2 centre, double radius,
   return out;
 }
 
-Reply Dialogue::addWall(const ToldWall& told) {
+Reply Dialogue::addWall(const DescribedWall& wall) {
   Reply out = reply();
-  places_.addWall(told);
-  out.sentences.push_back(phrases().say("wall_added", {{"wall", phrases().wall(told.kind)}}));
+  places_.addWall(wall);
+  out.sentences.push_back(phrases().say("wall_added", {{"wall", phrases().wall(wall.kind)}}));
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;

@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/require.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
@@ -95,18 +94,26 @@ struct Walls {
 
 }  // namespace
 
-void checkGlassWallParams(const GlassWallParams& p) {
-  hyselam::require("aperture", p.aperture, p.aperture > 0.0 && p.aperture <= 2.0 * hyselam::kPi,
-                   "in (0, 2 pi]");
-  hyselam::require("range", p.range, p.range > 0.0 && p.range <= 1000.0, "in (0, 1000]");
-  hyselam::require("corner_cells", p.corner_cells, p.corner_cells >= 2 && p.corner_cells <= 100,
-                   "in [2, 100]");
-  hyselam::require("corner_angle", p.corner_angle,
-                   p.corner_angle > 0.0 && p.corner_angle < hyselam::kPi, "in (0, pi)");
-  hyselam::require("min_length", p.min_length, p.min_length > 0.0, "> 0");
-  hyselam::require("max_length", p.max_length, p.max_length > p.min_length, "> min_length");
-  hyselam::require("occupied_min", p.occupied_min, p.occupied_min >= 1 && p.occupied_min <= 100,
-                   "in [1, 100]");
+void GlassWallParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("aperture", aperture, Range::between(0.1, 2.0 * hyselam::kPi), "rad",
+        "aperture of the search for walls of glass (alpha_laser)");
+  visit("range", range, Range::between(0.5, 50.0), "m", "range of that search (l_laser)");
+  visit("corner_cells", corner_cells, Range::between(2, 100), "cells",
+        "radius of the corner test (l_corner)");
+  visit("corner_angle", corner_angle, Range::between(0.01, 3.14), "rad",
+        "a convex corner has a free angle this much wider than a straight wall (alpha_corner)");
+  visit("min_length", min_length, Range::between(0.05, 10.0), "m",
+        "two corners nearer than this are one post");
+  visit("max_length", max_length, Range::between(0.1, 50.0), "m", "of a wall of glass");
+  visit("occupied_min", occupied_min, Range::between(1, 100), "",
+        "cells of this or more are occupied");
+}
+
+void GlassWallParams::validate() const {
+  hyselam::checkParameters(*this);
+  if (!(max_length > min_length))
+    throw hyselam::ParameterError("max_length", max_length, "> min_length");
 }
 
 double GlassWall::length() const {
@@ -130,7 +137,7 @@ bool operator==(const GlassWall& a, const GlassWall& b) {
 GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2& robot, Side side,
                                  const GlassWallParams& params)
     : robot_(robot), side_(side), params_(params) {
-  checkGlassWallParams(params);
+  params.validate();
   const double direction = directionOf(side);
   const auto& g = grid.geometry;
   if (!robot.isFinite()) throw hyselam::InputError("glass wall", "pose", "it is not finite");

@@ -43,7 +43,7 @@ int nameAt(const MatchSolution& solution, std::size_t vertex) {
   return solution.assignment[vertex];
 }
 
-EqualAnswers equalAnswers(const Match& match) {
+EqualAnswers equalAnswers(const PlaceAssignment& match) {
   EqualAnswers answers;
   const MatchSolution& best = match.best();
   const std::size_t known = std::min(match.equal, match.solutions.size());

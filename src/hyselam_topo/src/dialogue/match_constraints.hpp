@@ -23,6 +23,6 @@ struct EqualAnswers {
 
 /// Answers that only give a name more places say less than the one with the fewest, which is taken:
 /// they do not count.
-EqualAnswers equalAnswers(const Match& match);
+EqualAnswers equalAnswers(const PlaceAssignment& match);
 
 }  // namespace hyselam_topo

@@ -23,7 +23,7 @@ bool isFinite(Point2 p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
 }
 
-void checkWall(const ToldWall& wall) {
+void checkWall(const DescribedWall& wall) {
   if (!isFinite(wall.line.a) || !isFinite(wall.line.b) || !(wall.line.length() > 0.0)) {
     throw InputError("wall", "", "its ends must be two different, finite points");
   }
@@ -41,7 +41,7 @@ void checkNames(const std::vector<std::string>& names) {
 
 bool hasConfirmed(const Place& place) {
   return std::any_of(place.words.begin(), place.words.end(),
-                     [](const Word& word) { return word.confirmed; });
+                     [](const PlaceTerm& word) { return word.confirmed; });
 }
 
 }  // namespace
@@ -63,13 +63,13 @@ NameState nameStateOf(const Place& place) {
 std::vector<std::string> namesOf(const Place& place) {
   const bool confirmed = hasConfirmed(place);
   std::vector<std::string> names;
-  for (const Word& word : place.words) {
+  for (const PlaceTerm& word : place.words) {
     if (word.confirmed == confirmed) names.push_back(word.text);
   }
   return names;
 }
 
-bool operator==(const ToldWall& a, const ToldWall& b) {
+bool operator==(const DescribedWall& a, const DescribedWall& b) {
   return a.line == b.line && a.kind == b.kind;
 }
 
@@ -77,7 +77,7 @@ PlaceMan::PlaceMan(PlaceNames names) : names_(std::move(names)) {}
 
 void PlaceMan::restore(State state) {
   if (!state.map.places.empty()) checkMap(state.map, "kept map");
-  for (const ToldWall& wall : state.walls) checkWall(wall);
+  for (const DescribedWall& wall : state.walls) checkWall(wall);
   state_ = std::move(state);
 }
 
@@ -115,7 +115,7 @@ CarryOverReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
 void PlaceMan::dropWord(Place* place, const std::string& name) {
   auto& words = place->words;
   words.erase(std::remove_if(words.begin(), words.end(),
-                             [&](const Word& word) { return sameName(word.text, name); }),
+                             [&](const PlaceTerm& word) { return sameName(word.text, name); }),
               words.end());
 }
 
@@ -128,21 +128,21 @@ std::vector<Id> PlaceMan::confirm(Id id, const std::vector<std::string>& names) 
     // Rooms may be cut into several places: those side by side may have one name.
     const bool beside = state_.map.findEdge(id, other.id) != nullptr;
     for (const std::string& name : names) {
-      const bool had = std::any_of(other.words.begin(), other.words.end(), [&](const Word& word) {
-        return word.confirmed && sameName(word.text, name);
-      });
+      const bool had = std::any_of(
+          other.words.begin(), other.words.end(),
+          [&](const PlaceTerm& word) { return word.confirmed && sameName(word.text, name); });
       if (had && beside) continue;
       if (had) losers.push_back(other.id);
       dropWord(&other, name);
     }
   }
   auto& words = place.words;
-  words.erase(
-      std::remove_if(words.begin(), words.end(), [](const Word& word) { return !word.confirmed; }),
-      words.end());
+  words.erase(std::remove_if(words.begin(), words.end(),
+                             [](const PlaceTerm& word) { return !word.confirmed; }),
+              words.end());
   for (const std::string& name : names) {
     const bool known = std::any_of(words.begin(), words.end(),
-                                   [&](const Word& word) { return word.text == name; });
+                                   [&](const PlaceTerm& word) { return word.text == name; });
     if (!known) words.push_back({name, true});
   }
   auto& rejected = state_.rejected;
@@ -183,7 +183,7 @@ void PlaceMan::guess(const std::vector<std::pair<Id, std::vector<std::string>>>&
   for (Place& place : state_.map.places) {
     auto& words = place.words;
     words.erase(std::remove_if(words.begin(), words.end(),
-                               [](const Word& word) { return !word.confirmed; }),
+                               [](const PlaceTerm& word) { return !word.confirmed; }),
                 words.end());
   }
   for (const auto& [id, names] : guesses) {
@@ -218,7 +218,7 @@ void PlaceMan::forgetAllNames() {
 }
 
 void PlaceMan::rename(Id id, const std::string& name) {
-  const std::vector<Word> before = at(id).words;
+  const std::vector<PlaceTerm> before = at(id).words;
   at(id).words.clear();
   try {
     confirm(id, {name});
@@ -234,7 +234,7 @@ std::vector<Id> PlaceMan::find(const std::string& name) const {
     for (const Place& place : state_.map.places) {
       lists.emplace_back();
       if (confirmed) lists.back().push_back(codeOf(place));
-      for (const Word& word : place.words) {
+      for (const PlaceTerm& word : place.words) {
         if (word.confirmed == confirmed) lists.back().push_back(word.text);
       }
     }
@@ -349,14 +349,14 @@ void PlaceMan::drawVirtualPlaces() {
 }
 
 void PlaceMan::putWalls() {
-  for (const ToldWall& wall : state_.walls) addGlassWalls({wall.line}, &state_.map, wall.kind);
+  for (const DescribedWall& wall : state_.walls) addGlassWalls({wall.line}, &state_.map, wall.kind);
 }
 
-void PlaceMan::addWall(const ToldWall& wall) {
+void PlaceMan::addWall(const DescribedWall& wall) {
   checkWall(wall);
-  const bool known = std::any_of(state_.walls.begin(), state_.walls.end(), [&](const ToldWall& w) {
-    return w.kind == wall.kind && sameWall(w.line, wall.line);
-  });
+  const bool known = std::any_of(
+      state_.walls.begin(), state_.walls.end(),
+      [&](const DescribedWall& w) { return w.kind == wall.kind && sameWall(w.line, wall.line); });
   if (known) return;
   state_.walls.push_back(wall);
   putWalls();
@@ -364,7 +364,7 @@ void PlaceMan::addWall(const ToldWall& wall) {
 
 bool PlaceMan::removeWall(std::size_t index) {
   if (index >= state_.walls.size()) return false;
-  const ToldWall gone = state_.walls[index];
+  const DescribedWall gone = state_.walls[index];
   state_.walls.erase(state_.walls.begin() + static_cast<std::ptrdiff_t>(index));
   for (Place& place : state_.map.places) {
     auto& walls = place.walls;
@@ -382,7 +382,7 @@ bool PlaceMan::removeWall(std::size_t index) {
 hyselam::OccupancyGrid PlaceMan::withWalls(const hyselam::OccupancyGrid& grid) const {
   hyselam::OccupancyGrid copy = grid;
   std::vector<GlassWall> lines;
-  for (const ToldWall& wall : state_.walls) lines.push_back(wall.line);
+  for (const DescribedWall& wall : state_.walls) lines.push_back(wall.line);
   drawGlassWalls(lines, &copy);
   return copy;
 }

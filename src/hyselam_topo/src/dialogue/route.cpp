@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 #include <queue>
 
-#include "hyselam_common/require.hpp"
 #include "hyselam_topo/dialogue/place_pose.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
@@ -150,8 +149,8 @@ class CellWays {
     const double d = clearanceOf(c);
     // Within the clearance only where there is no other way.
     if (d < params_.clearance) return 10.0 * (params_.discomfort + 1.0);
-    if (d >= params_.comfortable) return 0.0;
-    return params_.discomfort * (1.0 - d / params_.comfortable);
+    if (d >= params_.comfortable_clearance) return 0.0;
+    return params_.discomfort * (1.0 - d / params_.comfortable_clearance);
   }
 
   Cell nearestFree(Point2 p) const {
@@ -254,20 +253,27 @@ struct GraphSearch {
 
 }  // namespace
 
-void checkRouteParams(const RouteParams& p) {
-  hyselam::require("clearance", p.clearance, p.clearance >= 0.0 && std::isfinite(p.clearance),
-                   ">= 0");
-  hyselam::require("comfortable", p.comfortable,
-                   p.comfortable >= 0.0 && std::isfinite(p.comfortable), ">= 0");
-  hyselam::require("discomfort", p.discomfort, p.discomfort >= 0.0 && std::isfinite(p.discomfort),
-                   ">= 0");
-  hyselam::require("closed_door", p.closed_door, p.closed_door >= 0.0, ">= 0");
-  hyselam::require("spacing", p.spacing, p.spacing > 0.0, "> 0");
+void RouteParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit.renamed("comfortable", "comfortable_clearance");
+  visit("clearance", clearance, Range::between(0.0, 5.0), "m",
+        "paths keep this from walls where there is room");
+  visit("comfortable_clearance", comfortable_clearance, Range::between(0.0, 10.0), "m",
+        "nearer to a wall than this costs extra");
+  visit("discomfort", discomfort, Range::between(0.0, 1e6), "",
+        "extra cost at a wall, in multiples of the path length");
+  visit("closed_door", closed_door, Range::atLeast(0.0), "m",
+        "extra cost of a door that is known to be closed");
+  visit("spacing", spacing, Range::above(0.0), "m", "of the poses of the path");
+}
+
+void RouteParams::validate() const {
+  hyselam::checkParameters(*this);
 }
 
 std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const Pose2& from,
                                   const std::vector<Id>& goals, const RouteParams& params) {
-  checkRouteParams(params);
+  params.validate();
   if (!map.grid) return std::nullopt;
   const Point2 start{from.x, from.y};
   const auto here = placeAt(map, start, kReach);

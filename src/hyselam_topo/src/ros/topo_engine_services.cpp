@@ -35,7 +35,7 @@ hyselam::Point2 TopoEngineServer::pointOf(const geometry_msgs::PointStamped& poi
 bool TopoEngineServer::onTell(hyselam_msgs::TellRobot::Request& request,
                               hyselam_msgs::TellRobot::Response& response) {
   if (request.text.size() > static_cast<std::size_t>(params_.max_text_bytes)) {
-    ++refused_;
+    ++input_.refused;
     response.answers = {"the text has more than max_text_bytes"};
     return true;
   }
@@ -48,7 +48,7 @@ bool TopoEngineServer::onTell(hyselam_msgs::TellRobot::Request& request,
 bool TopoEngineServer::onName(hyselam_msgs::NamePlace::Request& request,
                               hyselam_msgs::NamePlace::Response& response) {
   try {
-    lookForRobot();
+    updatePose();
     Id place = request.place;
     if (place == 0 && request.point.header.frame_id.empty()) {
       place = dialogue_.robot().place;
@@ -74,7 +74,7 @@ bool TopoEngineServer::onName(hyselam_msgs::NamePlace::Request& request,
 
 bool TopoEngineServer::onWhere(hyselam_msgs::WhereAmI::Request&,
                                hyselam_msgs::WhereAmI::Response& response) {
-  lookForRobot();
+  updatePose();
   publishPlace();
   response.state = last_place_;
   const Place* place = dialogue_.map().findPlace(last_place_.place);
@@ -107,14 +107,14 @@ bool TopoEngineServer::onPose(hyselam_msgs::WordToPose::Request& request,
 bool TopoEngineServer::onInitialPlace(hyselam_msgs::WordToPose::Request& request,
                                       hyselam_msgs::WordToPose::Response& response) {
   onPose(request, response);
-  if (response.found) pose_publisher_.publish(response.pose);
+  if (response.found) publishers_.initial_pose.publish(response.pose);
   return true;
 }
 
 bool TopoEngineServer::onVirtualPlace(hyselam_msgs::AddVirtualPlace::Request& request,
                                       hyselam_msgs::AddVirtualPlace::Response& response) {
   try {
-    lookForRobot();
+    updatePose();
     const Reply reply =
         dialogue_.addVirtualPlace(pointOf(request.centre), request.radius, request.names);
     act(reply);
@@ -135,7 +135,7 @@ bool TopoEngineServer::onGlassWall(hyselam_msgs::AddGlassWall::Request& request,
       throw InputError("wall", "frame_id",
                        "the map is in frame '" + frame() + "', not in '" + given + "'");
     }
-    ToldWall wall;
+    DescribedWall wall;
     wall.line = {{request.a.x, request.a.y}, {request.b.x, request.b.y}};
     wall.kind = request.is_virtual ? WallKind::kVirtual : WallKind::kGlass;
     const Reply reply = dialogue_.addWall(wall);

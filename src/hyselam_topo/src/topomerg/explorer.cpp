@@ -2,21 +2,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitness_terms.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
-#include "merge_terms.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {
 namespace {
 
-using merging::Terms;
-using merging::Vertices;
+using merging::FitnessTerms;
+using merging::VertexSet;
 
 /// The losses of names and pairs; only those of names that have changed are computed again.
 class Ledger {
  public:
-  explicit Ledger(const Terms& terms)
+  explicit Ledger(const FitnessTerms& terms)
       : terms_(terms),
         n_(static_cast<int>(terms.problem.nameCount())),
         names_(terms.problem.nameCount()),
@@ -38,7 +38,7 @@ class Ledger {
       for (int j = i; j < n_; ++j) {
         if (!changed[static_cast<std::size_t>(i)] && !changed[static_cast<std::size_t>(j)])
           continue;
-        pairs_[at(i, j)].loss = i == j ? terms_.alone(i, of(i)) : pairLoss(i, j);
+        pairs_[at(i, j)].loss = i == j ? terms_.unaryLoss(i, of(i)) : pairLoss(i, j);
       }
     }
   }
@@ -47,22 +47,22 @@ class Ledger {
     double sum = 0.0;
     for (int i = 0; i < n_; ++i)
       for (int j = i; j < n_; ++j) sum += pairs_[at(i, j)].loss;
-    for (const Terms::Clause& clause : terms_.clauses)
-      sum += terms_.clauseLoss(clause, [this](int i) -> const Vertices& { return of(i); });
+    for (const FitnessTerms::Clause& clause : terms_.clauses)
+      sum += terms_.clauseLoss(clause, [this](int i) -> const VertexSet& { return of(i); });
     return sum;
   }
 
  private:
   struct Pair {
     double loss = 0.0;
-    int side = -1;  ///< told of this pair in this order
+    int side = -1;  ///< described of this pair in this order
   };
   std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(i) * names_.size() + static_cast<std::size_t>(j);
   }
-  const Vertices& of(int i) const { return names_[static_cast<std::size_t>(i)]; }
+  const VertexSet& of(int i) const { return names_[static_cast<std::size_t>(i)]; }
   double pairLoss(int i, int j) const {
-    double loss = terms_.edge(i, j, terms_.contact(of(i), of(j)));
+    double loss = terms_.edgeLoss(i, j, terms_.contact(of(i), of(j)));
     for (const int s : {pairs_[at(i, j)].side, pairs_[at(j, i)].side}) {
       if (s < 0) continue;
       const auto& side = terms_.problem.sides[static_cast<std::size_t>(s)];
@@ -71,35 +71,35 @@ class Ledger {
     return loss;
   }
 
-  const Terms& terms_;
+  const FitnessTerms& terms_;
   const int n_;
-  std::vector<Vertices> names_;
+  std::vector<VertexSet> names_;
   std::vector<Pair> pairs_;
 };
 
 }  // namespace
 
-double countAnswers(const MatchProblem& problem, const MatchParams& params) {
-  const auto free = std::count(problem.fixed.begin(), problem.fixed.end(), -1);
+double countAssignments(const MatchProblem& problem, const SolverParams& params) {
+  const auto free = std::count(problem.confirmed_name.begin(), problem.confirmed_name.end(), -1);
   return std::pow(static_cast<double>(problem.nameCount()) + (params.dummy ? 1.0 : 0.0),
                   static_cast<double>(free));
 }
 
-Match exploreAll(const MatchProblem& problem, const MatchParams& params,
-                 std::uint64_t max_answers) {
-  checkMatchParams(params);
-  const double count = countAnswers(problem, params);
-  if (count > static_cast<double>(max_answers))
-    throw hyselam::InputError("map", "", "has too many places to explore all answers");
+PlaceAssignment exploreAll(const MatchProblem& problem, const SolverParams& params,
+                           std::uint64_t max_assignments) {
+  params.validate();
+  const double count = countAssignments(problem, params);
+  if (count > static_cast<double>(max_assignments))
+    throw hyselam::InputError("map", "", "has too many places to explore all assignments");
   const merging::Stopwatch watch;
-  const Terms terms(problem, params.fitness);
+  const FitnessTerms terms(problem, params.fitness);
   const std::size_t n = problem.nameCount(), m = problem.vertexCount();
   const int lowest = params.dummy ? -1 : 0;
 
-  Assignment assignment = problem.fixed;
+  Assignment assignment = problem.confirmed_name;
   std::vector<std::size_t> digits;
   for (std::size_t v = 0; v < m; ++v) {
-    if (problem.fixed[v] >= 0) continue;
+    if (problem.confirmed_name[v] >= 0) continue;
     digits.push_back(v);
     assignment[v] = lowest;
   }
@@ -121,9 +121,9 @@ Match exploreAll(const MatchProblem& problem, const MatchParams& params,
       }
       if (good) {
         MatchSolution s;
-        const std::vector<Vertices> names = merging::verticesOf(problem, assignment);
-        for (const Vertices& v : names) {
-          good = good && (!params.connected || merging::hangTogether(problem, v.members));
+        const std::vector<VertexSet> names = merging::verticesOf(problem, assignment);
+        for (const VertexSet& v : names) {
+          good = good && (!params.connected || merging::isConnected(problem, v.members));
           s.vertices += static_cast<std::size_t>(v.count);
         }
         if (good) {
@@ -145,7 +145,7 @@ Match exploreAll(const MatchProblem& problem, const MatchParams& params,
       }
     }
   }
-  Match match = solutions.finish();
+  PlaceAssignment match = solutions.finish();
   match.optimal = true;
   match.nodes = visited;
   match.microseconds = watch.seconds() * 1e6;

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 
-#include "hyselam_common/errors.hpp"
-
-namespace hyselam_topo {
-namespace merging {
+namespace hyselam_topo::merging {
 
 bool preferred(const MatchSolution& a, const MatchSolution& b) {
   if (a.vertices != b.vertices) return a.vertices < b.vertices;
@@ -55,9 +52,9 @@ void Solutions::trim() {
   }
 }
 
-Match Solutions::finish() {
+PlaceAssignment Solutions::finish() {
   trim();
-  Match match;
+  PlaceAssignment match;
   match.equal = static_cast<std::size_t>(
       std::count_if(kept_.begin(), kept_.end(),
                     [this](const MatchSolution& s) { return s.fitness >= best_ - kEqualFitness; }));
@@ -66,16 +63,4 @@ Match Solutions::finish() {
   return match;
 }
 
-}  // namespace merging
-
-void checkMatchParams(const MatchParams& params) {
-  checkFitnessParams(params.fitness);
-  if (!(params.time_limit >= 0.0))
-    throw hyselam::ParameterError("time_limit", params.time_limit, "a number >= 0");
-  if (params.max_solutions < 1)
-    throw hyselam::ParameterError("max_solutions", params.max_solutions, ">= 1");
-  if (!(params.keep_within >= 0.0 && params.keep_within <= 1.0))
-    throw hyselam::ParameterError("keep_within", params.keep_within, "within 0 .. 1");
-}
-
-}  // namespace hyselam_topo
+}  // namespace hyselam_topo::merging

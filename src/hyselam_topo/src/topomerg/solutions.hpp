@@ -1,12 +1,12 @@
-// The answers that are worth keeping, the best first.
+// The assignments that are worth keeping, the best first.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <vector>
 
+#include "fitness_terms.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
-#include "merge_terms.hpp"
 
 namespace hyselam_topo::merging {
 
@@ -25,30 +25,30 @@ bool preferred(const MatchSolution& a, const MatchSolution& b);
 
 class Solutions {
  public:
-  explicit Solutions(const MatchParams& params) : params_(params) {}
+  explicit Solutions(const SolverParams& params) : params_(params) {}
 
   bool any() const { return !kept_.empty(); }
   double best() const { return best_; }
-  /// An answer that is worse than this is of no use.
+  /// An assignment that is worse than this is of no use.
   double needed() const { return floor_ - params_.keep_within - kEqualFitness; }
-  /// An answer of this fitness is known to exist, and will be offered if nothing better comes.
+  /// An assignment of this fitness is known to exist, and will be offered if nothing better comes.
   void expect(double fitness) { floor_ = std::max(floor_, fitness); }
-  /// No further answer is needed that is only as good as the best and names as many places.
+  /// No further assignment is needed that is only as good as the best and names as many places.
   bool full() const { return full_; }
   std::size_t fewest() const { return fewest_; }
   const std::vector<MatchSolution>& kept() const { return kept_; }
 
-  /// Takes an answer if it is good enough; each answer may come once only.
+  /// Takes an assignment if it is good enough; each assignment may come once only.
   void offer(MatchSolution solution);
-  /// Forgets all answers; those that come must be about as good as `fitness`.
+  /// Forgets all assignments; those that come must be about as good as `fitness`.
   void restart(double fitness);
   /// What is left, in order.
-  Match finish();
+  PlaceAssignment finish();
 
  private:
   void trim();
 
-  const MatchParams params_;
+  const SolverParams params_;
   std::vector<MatchSolution> kept_;
   double best_ = -1.0;
   double floor_ = -1.0;  ///< >= best_

@@ -1,29 +1,29 @@
 // The thesis' tree search (Alg. 3). The names are visited from those that are confirmed outwards,
-// those with most attributes first; each takes the vertex that fits best, and then neighbours of
+// those with most attributes first; each takes the vertex that fits best, and then neighbors of
 // its vertices while the number of edges or the size asks for more.
 #include <algorithm>
 #include <cstdlib>
 #include <set>
 
+#include "fitness_terms.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
-#include "merge_terms.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {
 namespace {
 
-using merging::Terms;
-using merging::Vertices;
+using merging::FitnessTerms;
+using merging::VertexSet;
 
 /// epsilon_A: a size that is met this closely needs no more places.
 constexpr double kAreaTolerance = 0.1;
 
 class TreeSearch {
  public:
-  TreeSearch(const MatchProblem& problem, const MatchParams& params)
+  TreeSearch(const MatchProblem& problem, const SolverParams& params)
       : problem_(problem), params_(params), terms_(problem, params.fitness) {}
 
-  Match run(std::size_t max_revisits) {
+  PlaceAssignment run(std::size_t max_revisits) {
     const merging::Stopwatch watch;
     merging::Solutions best(params_);
     std::vector<State> waiting{first()};
@@ -41,7 +41,7 @@ class TreeSearch {
       s.assignment = std::move(state.assignment);
       best.offer(std::move(s));
     }
-    Match match = best.finish();
+    PlaceAssignment match = best.finish();
     match.nodes = nodes_;
     match.gap = match.found() ? 1.0 - match.best().fitness : 1.0;
     match.microseconds = watch.seconds() * 1e6;
@@ -55,7 +55,9 @@ class TreeSearch {
     int name = -1;              ///< being built; -1: the next one is to be chosen
   };
 
-  State first() const { return {problem_.fixed, std::vector<char>(problem_.nameCount(), 0), -1}; }
+  State first() const {
+    return {problem_.confirmed_name, std::vector<char>(problem_.nameCount(), 0), -1};
+  }
 
   double value(const Assignment& assignment, double* heading = nullptr) {
     ++nodes_;
@@ -63,12 +65,12 @@ class TreeSearch {
   }
 
   int attributes(int i) const {
-    const auto& told = problem_.told[static_cast<std::size_t>(i)];
-    return (told.area > 0.0) + (told.parts > 0) +
+    const auto& described = problem_.attributes[static_cast<std::size_t>(i)];
+    return (described.area > 0.0) + (described.parts > 0) +
            static_cast<int>(terms_.sides_of[static_cast<std::size_t>(i)].size());
   }
 
-  /// Graphexplorer: joined to what has been visited, with most attributes, with most such edges.
+  /// Graphexplorer: connected to what has been visited, with most attributes, with most such edges.
   int nextName(const State& state) const {
     const int n = static_cast<int>(problem_.nameCount());
     int best = -1;
@@ -76,11 +78,12 @@ class TreeSearch {
     for (int i = 0; i < n; ++i) {
       if (state.visited[static_cast<std::size_t>(i)]) continue;
       const bool confirmed =
-          std::find(problem_.fixed.begin(), problem_.fixed.end(), i) != problem_.fixed.end();
+          std::find(problem_.confirmed_name.begin(), problem_.confirmed_name.end(), i) !=
+          problem_.confirmed_name.end();
       int edges = 0;
       for (int j = 0; j < n; ++j)
         edges += state.visited[static_cast<std::size_t>(j)] &&
-                 problem_.areJoined(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+                 problem_.areConnected(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
       const std::array<int, 4> key{confirmed, edges > 0, attributes(i), edges};
       if (best < 0 || key > best_key) {
         best = i;
@@ -91,18 +94,18 @@ class TreeSearch {
   }
 
   /// Difference of the numbers of edges, of the name and of its vertices to others.
-  int edgeError(int i, const Vertices& v) const {
-    int told = 0;
+  int edgeError(int i, const VertexSet& v) const {
+    int described = 0;
     for (std::size_t j = 0; j < problem_.nameCount(); ++j)
-      told += problem_.areJoined(static_cast<std::size_t>(i), j);
-    return std::abs(told - static_cast<int>(v.around.size()));
+      described += problem_.areConnected(static_cast<std::size_t>(i), j);
+    return std::abs(described - static_cast<int>(v.neighbors.size()));
   }
 
   /// GraphAddVertice: the vertices that are equally good to add, none if there is no reason to.
   std::vector<std::size_t> choices(const State& state) {
     const int i = state.name;
-    const std::vector<Vertices> names = merging::verticesOf(problem_, state.assignment);
-    const Vertices& mine = names[static_cast<std::size_t>(i)];
+    const std::vector<VertexSet> names = merging::verticesOf(problem_, state.assignment);
+    const VertexSet& mine = names[static_cast<std::size_t>(i)];
     std::vector<std::size_t> equal;
     double best = 0.0;
     int best_error = 0;
@@ -110,10 +113,10 @@ class TreeSearch {
     for (std::size_t v = 0; v < problem_.vertexCount(); ++v) {
       if (state.assignment[v] >= 0 || !problem_.allowed[static_cast<std::size_t>(i)].contains(v))
         continue;
-      if (!mine.empty() && !mine.around.contains(v)) continue;
+      if (!mine.empty() && !mine.neighbors.contains(v)) continue;
       Assignment with = state.assignment;
       with[v] = i;
-      Vertices grown = mine;
+      VertexSet grown = mine;
       grown.add(problem_, v);
       const int error = mine.empty() ? 0 : edgeError(i, grown);
       const double f = value(with);
@@ -133,10 +136,10 @@ class TreeSearch {
 
   bool wantsMore(const State& state) const {
     const auto names = merging::verticesOf(problem_, state.assignment);
-    const Vertices& mine = names[static_cast<std::size_t>(state.name)];
+    const VertexSet& mine = names[static_cast<std::size_t>(state.name)];
     if (mine.empty()) return true;
-    const double told = problem_.told[static_cast<std::size_t>(state.name)].area;
-    if (told > 0.0 && mine.area < (1.0 - kAreaTolerance) * told) return true;
+    const double described = problem_.attributes[static_cast<std::size_t>(state.name)].area;
+    if (described > 0.0 && mine.area < (1.0 - kAreaTolerance) * described) return true;
     return edgeError(state.name, mine) != 0;
   }
 
@@ -159,7 +162,7 @@ class TreeSearch {
     }
   }
 
-  /// Without dummy each vertex needs a name: that of the neighbours that fits best.
+  /// Without dummy each vertex needs a name: that of the neighbors that fits best.
   void takeRest(State* state) {
     for (std::size_t rounds = 0; rounds < problem_.vertexCount(); ++rounds) {
       double best = -1.0;
@@ -191,22 +194,23 @@ class TreeSearch {
       return false;
     if (!params_.connected) return true;
     const auto names = merging::verticesOf(problem_, assignment);
-    return std::all_of(names.begin(), names.end(), [&](const Vertices& v) {
-      return merging::hangTogether(problem_, v.members);
+    return std::all_of(names.begin(), names.end(), [&](const VertexSet& v) {
+      return merging::isConnected(problem_, v.members);
     });
   }
 
   const MatchProblem& problem_;
-  const MatchParams& params_;
-  const Terms terms_;
+  const SolverParams& params_;
+  const FitnessTerms terms_;
   std::set<Assignment> seen_;
   std::uint64_t nodes_ = 0;
 };
 
 }  // namespace
 
-Match treeSearch(const MatchProblem& problem, const MatchParams& params, std::size_t max_revisits) {
-  checkMatchParams(params);
+PlaceAssignment treeSearch(const MatchProblem& problem, const SolverParams& params,
+                           std::size_t max_revisits) {
+  params.validate();
   return TreeSearch(problem, params).run(max_revisits);
 }
 

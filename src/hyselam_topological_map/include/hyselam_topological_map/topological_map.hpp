@@ -31,7 +31,7 @@ using hyselam::Point3;
 using Extras = hyselam::XmlExtras;
 
 /// A word or name that people use for a place or a connection.
-struct Word {
+struct PlaceTerm {
   std::string text;        ///< UTF-8, not empty
   bool confirmed = false;  ///< a person has said or confirmed it; otherwise it is a guess
 };
@@ -92,7 +92,7 @@ struct Door {
 struct Edge {
   Id a = 0;  ///< id of a place; a < b
   Id b = 0;
-  std::vector<Word> words;
+  std::vector<PlaceTerm> words;
   std::vector<Door> doors;  ///< may be empty: people may say that places are connected, not how
   Extras extras;
 };
@@ -119,7 +119,7 @@ enum class PlaceKind {
 struct Place {
   Id id = 0;
   PlaceKind kind = PlaceKind::kRoom;
-  std::vector<Word> words;
+  std::vector<PlaceTerm> words;
   std::vector<Wall> walls;
   std::vector<VisualSignature> signatures;
   double area = 0.0;  ///< [m^2], 0: not known
@@ -166,7 +166,7 @@ struct AugmentedTopologicalMap {
 };
 
 /// All fields, exactly.
-bool operator==(const Word& a, const Word& b);
+bool operator==(const PlaceTerm& a, const PlaceTerm& b);
 bool operator==(const Appearance& a, const Appearance& b);
 bool operator==(const Wall& a, const Wall& b);
 bool operator==(const Door& a, const Door& b);

@@ -11,10 +11,10 @@
 namespace hyselam_topo {
 namespace {
 
-void unite(const std::vector<Word>& more, std::vector<Word>* words) {
-  for (const Word& word : more) {
+void unite(const std::vector<PlaceTerm>& more, std::vector<PlaceTerm>* words) {
+  for (const PlaceTerm& word : more) {
     const auto same = std::find_if(words->begin(), words->end(),
-                                   [&](const Word& w) { return w.text == word.text; });
+                                   [&](const PlaceTerm& w) { return w.text == word.text; });
     if (same == words->end()) {
       words->push_back(word);
     } else {
@@ -151,7 +151,7 @@ class CarryOver {
       } else {
         place.id = ancestors->second.front();
         report->kept.push_back(place.id);
-        std::vector<Word> words;
+        std::vector<PlaceTerm> words;
         std::vector<VisualSignature> signatures;
         for (const Id id : ancestors->second) {
           const Place& ancestor = *old_.findPlace(id);

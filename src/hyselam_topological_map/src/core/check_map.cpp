@@ -82,8 +82,8 @@ class Checker {
     require(known->insert(value).second,
             std::string("two ") + kind + "s have the id " + std::to_string(value));
   }
-  void words(const std::vector<Word>& list) const {
-    for (const Word& word : list) text(word.text, "a word");
+  void words(const std::vector<PlaceTerm>& list) const {
+    for (const PlaceTerm& word : list) text(word.text, "a word");
   }
   void appearance(const Appearance& a) const {
     text(a.type, "the type of an appearance");

@@ -19,9 +19,9 @@ constexpr Key kKeys[] = {{"label", "all", "string"},  {"words", "node", "string"
                          {"doors", "edge", "int"},    {"width", "edge", "double"},
                          {"real", "edge", "boolean"}, {"closed", "edge", "boolean"}};
 
-std::string joined(const std::vector<Word>& words) {
+std::string joined(const std::vector<PlaceTerm>& words) {
   std::string text;
-  for (const Word& word : words) text += (text.empty() ? "" : ", ") + word.text;
+  for (const PlaceTerm& word : words) text += (text.empty() ? "" : ", ") + word.text;
   return text;
 }
 

@@ -66,7 +66,7 @@ Overlaps overlapsOf(const PlaceGrid& old, const PlaceGrid& fresh) {
 /// 2: a person has named the place, 1: there are guesses, 0: no words.
 int nameRank(const Place& place) {
   const bool confirmed = std::any_of(place.words.begin(), place.words.end(),
-                                     [](const Word& word) { return word.confirmed; });
+                                     [](const PlaceTerm& word) { return word.confirmed; });
   return confirmed ? 2 : place.words.empty() ? 0 : 1;
 }
 

@@ -87,7 +87,7 @@ Edge* AugmentedTopologicalMap::findEdge(Id a, Id b) {
   return const_cast<Edge*>(static_cast<const AugmentedTopologicalMap*>(this)->findEdge(a, b));
 }
 
-bool operator==(const Word& a, const Word& b) {
+bool operator==(const PlaceTerm& a, const PlaceTerm& b) {
   return a.text == b.text && a.confirmed == b.confirmed;
 }
 
@@ -145,7 +145,7 @@ bool operator==(const AugmentedTopologicalMap& a, const AugmentedTopologicalMap&
 
 std::string nameOf(const Place& place) {
   const auto confirmed = std::find_if(place.words.begin(), place.words.end(),
-                                      [](const Word& word) { return word.confirmed; });
+                                      [](const PlaceTerm& word) { return word.confirmed; });
   if (confirmed != place.words.end()) return confirmed->text;
   if (!place.words.empty()) return place.words.front().text;
   return std::string(toString(place.kind)) + " " + std::to_string(place.id);

@@ -87,8 +87,8 @@ class Reader {
     return p;
   }
 
-  static Word word(hyselam::XmlElement& e) {
-    Word word{e.text("text"), e.truth("confirmed")};
+  static PlaceTerm word(hyselam::XmlElement& e) {
+    PlaceTerm word{e.text("text"), e.truth("confirmed")};
     e.finish();
     return word;
   }

@@ -92,8 +92,8 @@ class Writer {
     close();
   }
 
-  void words(const std::vector<Word>& list) {
-    for (const Word& word : list) {
+  void words(const std::vector<PlaceTerm>& list) {
+    for (const PlaceTerm& word : list) {
       open("word");
       attribute("text", word.text);
       attribute("confirmed", word.confirmed);

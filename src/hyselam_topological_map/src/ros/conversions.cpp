@@ -57,7 +57,7 @@ hyselam_msgs::XmlExtras toMsg(const Extras& extras) {
   return msg;
 }
 
-std::vector<hyselam_msgs::PlaceWord> toMsg(const std::vector<Word>& words) {
+std::vector<hyselam_msgs::PlaceWord> toMsg(const std::vector<PlaceTerm>& words) {
   std::vector<hyselam_msgs::PlaceWord> list(words.size());
   for (std::size_t i = 0; i < words.size(); ++i) {
     list[i].text = words[i].text;
@@ -166,8 +166,8 @@ class Reader {
     return extras;
   }
 
-  static std::vector<Word> words(const std::vector<hyselam_msgs::PlaceWord>& list) {
-    std::vector<Word> words;
+  static std::vector<PlaceTerm> words(const std::vector<hyselam_msgs::PlaceWord>& list) {
+    std::vector<PlaceTerm> words;
     words.reserve(list.size());
     for (const auto& word : list) words.push_back({word.text, word.confirmed != 0});
     return words;

@@ -1,6 +1,6 @@
-// Where a glass wall stands that a person tells of and no laser sees (dos Santos, section 7.2).
+// Where a glass wall stands that a person describes and no laser sees (dos Santos, section 7.2).
 //
-// "On your left there is a glass wall": the grid map is looked at as a laser at the robot would see
+// "On your left there is a glass wall": the grid map is searched as a laser at the robot would see
 // it, turned to that side. Glass walls are held by something solid, so they stand between two
 // convex corners: the one nearest to the robot, and the next one to it.
 #pragma once
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hyselam_common/occupancy_grid.hpp"
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_language/building/described_building.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
@@ -24,10 +25,11 @@ struct GlassWallParams {
   double min_length = 0.5;  ///< k [m]: two corners nearer than this are one post, > 0
   double max_length = 6.0;  ///< [m], > min_length
   int occupied_min = 65;    ///< cells of this or more are occupied, 1 .. 100
-};
 
-/// Throws hyselam::ParameterError for a parameter out of range.
-void checkGlassWallParams(const GlassWallParams& params);
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError for a parameter out of range.
+  void validate() const;
+};
 
 /// A glass wall on the floor, from corner to corner, in the frame of the map [m].
 struct GlassWall {
@@ -52,7 +54,7 @@ class GlassWallSearch {
   /// Between the corner nearest to the robot and the next one to it that it can be joined with; if
   /// it has none, the second nearest, and so on. Not one that was rejected.
   std::optional<GlassWall> likeliest() const;
-  /// The one whose length is nearest to what was told [m]; of equal ones the nearest to the robot.
+  /// The one whose length is nearest to the described one [m]; of equal ones the nearest to the robot.
   /// Not one that was rejected, unless it fits better by more than 0.3 m.
   std::optional<GlassWall> ofLength(double length) const;
   /// A person has said that there is none.

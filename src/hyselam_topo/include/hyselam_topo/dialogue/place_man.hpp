@@ -30,19 +30,19 @@ NameState nameStateOf(const Place& place);
 /// The words of a place, confirmed ones only if there are any.
 std::vector<std::string> namesOf(const Place& place);
 
-/// A wall that a person has told of.
-struct ToldWall {
+/// A wall that a person has described.
+struct DescribedWall {
   GlassWall line;
   WallKind kind = WallKind::kGlass;  ///< or kVirtual
 };
-bool operator==(const ToldWall& a, const ToldWall& b);
+bool operator==(const DescribedWall& a, const DescribedWall& b);
 
 class PlaceMan {
  public:
   /// All that is kept; a plain value, for files.
   struct State {
     AugmentedTopologicalMap map;  ///< with the names; no places: there was no map yet
-    std::vector<ToldWall> walls;
+    std::vector<DescribedWall> walls;
     /// This place does not have that name: a person has said no.
     std::vector<std::pair<Id, std::string>> rejected;
   };
@@ -95,10 +95,10 @@ class PlaceMan {
   /// Its cells go back to the place around it. False if there is no such virtual place.
   bool removeVirtualPlace(Id place);
   /// Throws hyselam::InputError for a wall that is not finite or has no length.
-  void addWall(const ToldWall& wall);
+  void addWall(const DescribedWall& wall);
   /// The wall of that number in walls(). False if there is none.
   bool removeWall(std::size_t index);
-  const std::vector<ToldWall>& walls() const { return state_.walls; }
+  const std::vector<DescribedWall>& walls() const { return state_.walls; }
   /// A copy of the grid map with all walls of glass and virtual walls drawn into it.
   hyselam::OccupancyGrid withWalls(const hyselam::OccupancyGrid& grid) const;
 

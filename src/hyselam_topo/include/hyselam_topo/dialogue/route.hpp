@@ -4,20 +4,22 @@
 #include <optional>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
 
 struct RouteParams {
-  double clearance = 0.35;      ///< no nearer to a wall than this where there is room [m], >= 0
-  double comfortable = 0.8;     ///< nearer than this costs extra [m], >= 0
-  double discomfort = 4.0;      ///< extra cost at a wall, in multiples of the way, >= 0
+  double clearance = 0.35;  ///< no nearer to a wall than this where there is room [m], >= 0
+  double comfortable_clearance = 0.8;  ///< nearer than this costs extra [m], >= 0
+  double discomfort = 4.0;             ///< extra cost at a wall, in multiples of the way, >= 0
   double closed_door = 1000.0;  ///< extra cost of a door that is known to be closed [m], >= 0
   double spacing = 0.1;         ///< of the poses of the path [m], > 0
-};
 
-/// Throws hyselam::ParameterError for a parameter out of range.
-void checkRouteParams(const RouteParams& params);
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError for a parameter out of range.
+  void validate() const;
+};
 
 /// A way to one place.
 struct RouteLeg {

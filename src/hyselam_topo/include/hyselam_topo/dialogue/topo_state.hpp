@@ -2,23 +2,25 @@
 // the grid map, without flickering at doors.
 #pragma once
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
 
 struct TopoStateParams {
   /// Within this of a door the robot is in the doorway, where its place stays what it was. [m] >= 0
-  double inside = 0.4;
+  double doorway_distance = 0.4;
   /// A pose on no place counts to the nearest place within this. [m] >= 0
-  double reach = 0.3;
-  /// In a place that is too narrow to be well inside it is believed after this time. [s] >= 0
-  double settle = 3.0;
+  double max_place_distance = 0.3;
+  /// In a place that is too narrow to be well inside it is accepted after this time. [s] >= 0
+  double settle_time = 3.0;
   /// A pose that moves by more than this at once is a new one: no doorway holds it. [m] > 0
-  double jump = 1.0;
-};
+  double max_pose_step = 1.0;
 
-/// Throws hyselam::ParameterError for a parameter out of range.
-void checkTopoStateParams(const TopoStateParams& params);
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError for a parameter out of range.
+  void validate() const;
+};
 
 struct RobotPlace {
   double stamp = 0.0;  ///< of the pose [s]
@@ -31,7 +33,7 @@ struct RobotPlace {
 
 class TopoState {
  public:
-  /// Throws as checkTopoStateParams().
+  /// @throws hyselam::ParameterError for a parameter out of range.
   explicit TopoState(const TopoStateParams& params = {});
 
   /// The pose at a time, in the frame of the map. True if place, previous or in_doorway changed.

@@ -1,4 +1,4 @@
-// Maps, poses and human text in; names, places, answers and ways out.
+// Maps, poses and human text in; names, places, answers and paths out.
 #pragma once
 
 #include <hyselam_msgs/AddGlassWall.h>
@@ -23,7 +23,7 @@
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topo/ros/goal_driver.hpp"
-#include "hyselam_topo/ros/object_talk.hpp"
+#include "hyselam_topo/ros/sentence_forwarder.hpp"
 #include "hyselam_topo/ros/topo_engine_parameters.hpp"
 
 namespace hyselam_topo {
@@ -42,16 +42,16 @@ class TopoEngineServer {
   void onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg);
   void onText(const std_msgs::String::ConstPtr& msg);
   void onTimer();
-  void lookForRobot();
+  void updatePose();
 
-  /// Any text of a person: answers what it is for, passes on what is for others.
+  /// Any text of a person: answers it, or forwards sentences that are for other nodes.
   Reply hear(const std::string& text);
-  void answered(const PassedOn& sentence, const hyselam_msgs::ObjectAnswer* answer);
-  /// Says what is to be said and does what is to be done.
+  void onObjectAnswer(const ForwardedSentence& sentence, const hyselam_msgs::ObjectAnswer* answer);
+  /// Publishes the sentences of a reply and carries its actions out.
   void act(const Reply& reply);
   void say(const std::string& sentence);
-  /// Takes down what a person has said, in the order with what the robot says.
-  void heard(const std::string& text);
+  /// What a person has said into `conversation`, in the order with what the robot says.
+  void publishHumanText(const std::string& text);
   void go(const std::vector<RouteLeg>& legs);
   void turn(double angle);
   void halt();
@@ -60,6 +60,11 @@ class TopoEngineServer {
   void publishPlace();
   void publishQuestion();
 
+  void advertise(ros::NodeHandle& nh);
+  void offerServices(ros::NodeHandle& nh);
+
+  /// Loads the state file if there is one; a damaged one is renamed.
+  void restoreState();
   void load(const std::string& path);
   void save(const std::string& path);
   void autosave();
@@ -96,24 +101,27 @@ class TopoEngineServer {
   ros::Time grid_stamp_;
   bool changed_ = false;  // since the state was saved
 
-  std::size_t maps_ = 0, texts_ = 0, refused_ = 0;
-  // Of the last input of a topic that was refused; empty: the last one was used.
-  std::string map_error_, grid_error_, text_error_;
-  std::string file_error_;  // of the state file
-  std::string pose_error_;
-  ros::WallTime begun_ = ros::WallTime::now();
+  struct InputStatus {
+    std::size_t maps = 0, texts = 0, refused = 0;
+    // Of the last input of a topic that was refused; empty: the last one was used.
+    std::string map_error, grid_error, text_error;
+    std::string file_error;  ///< of the state file
+    std::string pose_error;
+  } input_;
+  ros::WallTime started_ = ros::WallTime::now();
   ros::WallTime place_published_, saved_;
   hyselam_msgs::PlaceState last_place_;
 
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
   GoalDriver driver_;
-  std::optional<ObjectTalk> objects_;
-  bool of_things_ = false;      // objects were spoken of last
-  bool objects_asked_ = false;  // and the last question was about them
-  ros::Publisher text_publisher_, talk_publisher_, place_publisher_, map_publisher_,
-      marker_publisher_, question_publisher_, grid_publisher_, path_publisher_, poses_publisher_,
-      pose_publisher_, follow_publisher_, names_publisher_;
+  std::optional<SentenceForwarder> forwarder_;
+  bool objects_spoken_of_ = false;  // in the last sentence
+  bool object_asked_last_ = false;  // the last question was about an object
+  struct Publishers {
+    ros::Publisher text, conversation, place, map, markers, question, grid, path, poses,
+        initial_pose, follow, names;
+  } publishers_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer timer_;

@@ -12,23 +12,24 @@ namespace hyselam_topo {
 struct NameUncertainty {
   Id name = 0;
   Id place = 0;  ///< of the map: the largest that the name was given to; 0: none
-  /// By how much at least the best fitness drops if the name is not there: 0 if another answer is
-  /// as good, large if the name cannot be elsewhere. For a confirmed name 1.
+  /// By how much at least the best fitness drops if the name is not there: 0 if another assignment
+  /// is as good, large if the name cannot be elsewhere. For a confirmed name 1.
   double drop = 0.0;
   bool proven = true;  ///< false: time was too short, the drop may be larger
 };
 
-/// One search for each name that is the same in all best answers; `time_limit` holds for all of
+/// One search for each name that is the same in all best assignments; `time_limit` holds for all of
 /// them together, each gets an equal share of what the others have left.
 /// In the order of the names. Empty if the match has none.
 std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
-                                               const MatchParams& params, const Match& match);
+                                               const SolverParams& params,
+                                               const PlaceAssignment& match);
 
 /// What to ask the person.
 struct MatchQuestion {
   Id place = 0;              ///< of the map: "what is the name of this place?"
   Id name = 0;               ///< its likeliest name: "is this ...?"; 0: none of the description
-  double probability = 0.0;  ///< of that name, among the answers that are kept
+  double probability = 0.0;  ///< of that name, among the assignments that are kept
   double bits = 0.0;         ///< that the true name of the place takes from what is unsure
 };
 
@@ -37,11 +38,12 @@ struct QuestionParams {
   double tolerance = 0.01;
 };
 
-/// The place whose name tells the answers apart best: that with the largest entropy of its name
-/// over the answers of `match`, which should have been kept within a few tolerances (keep_within).
-/// Of equally good places that with the smallest id. Nothing if all answers agree.
+/// The place whose name tells the assignments apart best: that with the largest entropy of its name
+/// over the assignments of `match`, which should have been kept within a few tolerances
+/// (keep_within). Of equally good places that with the smallest id. Nothing if all assignments
+/// agree.
 std::optional<MatchQuestion> mostInformativeQuestion(const MatchProblem& problem,
-                                                     const Match& match,
+                                                     const PlaceAssignment& match,
                                                      const QuestionParams& params = {});
 
 /// The map with the names of the solution as words, first the name, then its aliases. They are

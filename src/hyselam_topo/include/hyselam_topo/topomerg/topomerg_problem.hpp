@@ -1,6 +1,6 @@
-// TopoMerg's question (dos Santos, section 5.3): which places of the robot's map M are meant by the
-// names of a person's description G? Here: both graphs as compact numbers, and how well an answer
-// fits (Eq. 5.2 to 5.8).
+// TopoMerg's problem (dos Santos, section 5.3): which places of the robot's map M are meant by the
+// names of a person's description G? Here: both graphs as compact numbers. How well an assignment
+// fits is in fitness.hpp.
 //
 // Plain values. Lengths [m], angles [rad], positions in the frame of the map.
 #pragma once
@@ -27,29 +27,30 @@ struct MatchConstraints {
 /// Where the robot was when the person spoke. If it knows its place and the description tells the
 /// robot's place, the two are confirmed to be the same.
 struct MatchObserver {
-  std::optional<Id> place;        ///< of the map
-  std::optional<double> heading;  ///< nothing: the heading that fits best is taken for each answer
+  std::optional<Id> place;  ///< of the map
+  std::optional<double>
+      heading;  ///< nothing: the heading that fits best is taken for each assignment
 };
 
 /// Both graphs by number: name i is places[i] of the description, vertex v is places[v] of the map.
 struct MatchProblem {
-  struct ToldSide {
-    int from = 0;         ///< number of the name that the side is seen from
-    int to = 0;           ///< and of the one that lies there
-    double angle = 0.0;   ///< seen by the robot, left > 0, spread in the order told
-    double middle = 0.0;  ///< of the side, not spread
-    double turn = 0.0;    ///< from the direction through the doors to that of the order told
-    int before = 0;       ///< as many others were told before it on that side, ...
-    int after = 0;        ///< and as many after it
+  struct DescribedSide {
+    int from = 0;             ///< number of the name that the side is seen from
+    int to = 0;               ///< and of the one that lies there
+    double angle = 0.0;       ///< seen by the robot, left > 0, spread in the order described
+    double side_angle = 0.0;  ///< of the side, not spread
+    double turn = 0.0;  ///< from the direction through the doors to that of the described order
+    int before = 0;     ///< as many others were described before it on that side, ...
+    int after = 0;      ///< and as many after it
   };
   /// "A, then B" on one side of a place.
-  struct ToldOrder {
+  struct DescribedOrder {
     int from = 0;  ///< numbers of the names: of the place that both are seen from, ...
     int first = 0;
     int then = 0;
     double turn = 0.0;  ///< from the direction through their doors to that from first to then
   };
-  /// A way out of a vertex, or a wall where a shut door may be one.
+  /// A way out of a vertex, or a wall where a closed door may be one.
   struct Passage {
     std::size_t to = 0;    ///< the vertex behind it
     double bearing = 0.0;  ///< through it, and the same as a vector
@@ -62,40 +63,42 @@ struct MatchProblem {
     int b = 0;
     int c = -1;
   };
-  struct Told {
-    double area = 0.0;  ///< [m^2], 0: not told
-    int parts = 0;      ///< 0: not told
+  struct NameAttributes {
+    double area = 0.0;  ///< [m^2], 0: not described
+    int parts = 0;      ///< 0: not described
     std::optional<PlaceKind> kind;
   };
 
-  std::vector<Id> names;     ///< ids in the description
-  std::vector<Id> vertices;  ///< ids in the map
-  std::vector<Told> told;    ///< of each name
-  std::vector<char> joined;  ///< names x names: told to be connected
-  std::vector<ToldSide> sides;
-  std::vector<ToldOrder> orders;
+  std::vector<Id> names;                   ///< ids in the description
+  std::vector<Id> vertices;                ///< ids in the map
+  std::vector<NameAttributes> attributes;  ///< of each name
+  std::vector<char> described_edges;       ///< names x names: described as connected
+  std::vector<DescribedSide> sides;
+  std::vector<DescribedOrder> orders;
   std::vector<Relation> relations;
 
-  std::vector<double> area;          ///< of each vertex; 0: not known
-  std::vector<double> x, y;          ///< its centre
-  std::vector<double> weight;        ///< of its centre in a common centre; 0: it has no position
-  std::vector<PlaceKind> kind;       ///< of each vertex
-  std::vector<PlaceSet> neighbours;  ///< of each vertex in the map
+  std::vector<double> area;         ///< of each vertex; 0: not known
+  std::vector<double> x, y;         ///< its centre
+  std::vector<double> weight;       ///< of its centre in a common centre; 0: it has no position
+  std::vector<PlaceKind> kind;      ///< of each vertex
+  std::vector<PlaceSet> neighbors;  ///< of each vertex in the map
   /// Of each vertex: through each door; through edges without doors on the line of the centres.
   std::vector<std::vector<Passage>> passages;
   bool has_doors = false;  ///< any edge has a door
   /// Of each vertex: walls between it and others that it has no edge to; empty: none are known.
   std::vector<std::vector<Passage>> walls;
-  std::vector<PlaceSet> behind;  ///< of each vertex: the others behind these walls
-  std::vector<double> evidence;  ///< names x vertices, empty: none
+  std::vector<PlaceSet> across_walls;  ///< of each vertex: the others behind these walls
+  std::vector<double> evidence;        ///< names x vertices, empty: none
 
-  std::vector<int> fixed;         ///< name of each vertex, -1: not known
-  std::vector<PlaceSet> allowed;  ///< vertices that may have name i
-  std::optional<double> heading;  ///< of the robot
+  std::vector<int> confirmed_name;  ///< of each vertex, -1: not known
+  std::vector<PlaceSet> allowed;    ///< vertices that may have name i
+  std::optional<double> heading;    ///< of the robot
 
   std::size_t nameCount() const { return names.size(); }
   std::size_t vertexCount() const { return vertices.size(); }
-  bool areJoined(std::size_t i, std::size_t j) const { return joined[i * names.size() + j] != 0; }
+  bool areConnected(std::size_t i, std::size_t j) const {
+    return described_edges[i * names.size() + j] != 0;
+  }
 };
 
 /// Both graphs, constraints and observer in numbers. Sides become angles (section 5.3.2 with
@@ -103,7 +106,7 @@ struct MatchProblem {
 /// apart around it, the first one nearest to the back (on the front and back: the left one first).
 /// With doors (SideRule) they are not spread, but come one after the other.
 /// A place without area counts with that of its outline. Where walls of two places without an edge
-/// lie back to back for at least the width of a door, a shut door may be in them.
+/// lie back to back for at least the width of a door, a closed door may be in them.
 ///
 /// Throws hyselam::InputError for a description or map that is none, with more than
 /// PlaceSet::kCapacity places, for constraints and evidence about places that do not exist, that
@@ -112,48 +115,5 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
                           const MatchObserver& observer = {},
                           const MatchConstraints& constraints = {},
                           const std::vector<MatchEvidence>& evidence = {});
-
-/// What the side of a place is in the map.
-enum class SideRule {
-  /// The direction through its door, as people who pass it see it; of several doors the one that
-  /// fits best. The order told counts on its own. A map without any doors goes by centres.
-  kDoors,
-  kCentres  ///< Eq. 5.7: the bearing of its centre, spread in the order told
-};
-
-/// Weights of the fitness. Each is shared equally by what has been told of its kind; what has not
-/// been told at all drops out and the others are scaled to a sum of 1. So the values of relations
-/// do nothing where no relation has been told.
-struct FitnessParams {
-  double vertices = 0.25;      ///< gamma_v: every name has a place
-  double areas = 0.25;         ///< gamma_a: of the right size
-  double edges = 0.25;         ///< gamma_e: joined as told
-  double orientations = 0.25;  ///< gamma_d: on the side that was told
-  SideRule sides = SideRule::kDoors;
-  double orders = 0.25;     ///< "A, then B", only with doors
-  double relations = 0.25;  ///< next to, opposite, between, at the end of, inside
-  double parts = 0.25;      ///< "divided into six rooms"
-  double kinds = 0.0;       ///< corridor or room; also guessed from names, so 0 unless wanted
-  double evidence = 0.25;   ///< of objects and pictures
-  /// C of two places that are joined in the map although nobody has said so, 0 .. 1: 0 as if it
-  /// had been told wrongly, 1 as if people forgot such things all the time.
-  double forgotten_edge = 0.0;
-  /// So much of the value of C and D is left where two places were told to be joined and are not
-  /// in the map, but share a wall: 0 .. 1. A door may be there that was shut when the robot passed.
-  /// Only with doors (SideRule).
-  double shut_door = 0.3;
-};
-
-/// Throws hyselam::ParameterError unless all weights are finite and >= 0, one of the first four is
-/// > 0, and `forgotten_edge` and `shut_door` lie in 0 .. 1.
-void checkFitnessParams(const FitnessParams& params);
-
-/// Name of each vertex, -1: none.
-using Assignment = std::vector<int>;
-
-/// f of Eq. 5.2, 0 .. 1. `heading`, if given, receives the robot's heading that it holds for.
-/// `assignment` has a value for each vertex; constraints are not looked at.
-double fitness(const MatchProblem& problem, const FitnessParams& params,
-               const Assignment& assignment, double* heading = nullptr);
 
 }  // namespace hyselam_topo

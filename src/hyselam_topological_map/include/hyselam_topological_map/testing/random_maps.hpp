@@ -58,8 +58,8 @@ class RandomMaps {
         "]]>",     "&amp;"};
     return kTexts[static_cast<std::size_t>(upTo(static_cast<int>(kTexts.size()) - 1))];
   }
-  std::vector<Word> words() {
-    std::vector<Word> list;
+  std::vector<PlaceTerm> words() {
+    std::vector<PlaceTerm> list;
     for (int i = upTo(2); i > 0; --i) list.push_back({text(), chance(0.5)});
     return list;
   }

@@ -1,4 +1,4 @@
-#include "matcher.hpp"
+#include "sentence_matcher.hpp"
 
 #include <algorithm>
 #include <utility>

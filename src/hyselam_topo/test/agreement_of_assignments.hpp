@@ -8,8 +8,8 @@
 #include "hyselam_topo/topomerg/topomerg.hpp"
 
 /// The same answers in the same order.
-inline void expectSame(const hyselam_topo::Match& a, const hyselam_topo::Match& b,
-                       const std::string& what) {
+inline void expectSame(const hyselam_topo::PlaceAssignment& a,
+                       const hyselam_topo::PlaceAssignment& b, const std::string& what) {
   ASSERT_EQ(a.found(), b.found()) << what;
   ASSERT_EQ(a.solutions.size(), b.solutions.size()) << what;
   EXPECT_EQ(a.equal, b.equal) << what;

@@ -1,9 +1,10 @@
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topomerg/topomerg_names.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {
@@ -23,11 +24,12 @@ std::optional<std::size_t> mainVertex(const MatchProblem& problem, const Assignm
 }  // namespace
 
 std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
-                                               const MatchParams& params, const Match& match) {
+                                               const SolverParams& params,
+                                               const PlaceAssignment& match) {
   std::vector<NameUncertainty> out;
   if (!match.found()) return out;
   const MatchSolution& best = match.best();
-  MatchParams again = params;
+  SolverParams again = params;
   again.keep_within = 0.0;
   again.max_solutions = 1;
   const merging::Stopwatch watch;
@@ -36,12 +38,12 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
     u.name = problem.names[i];
     const auto main = mainVertex(problem, best.assignment, i);
     if (main) u.place = problem.vertices[*main];
-    if (main && problem.fixed[*main] == static_cast<int>(i)) {
+    if (main && problem.confirmed_name[*main] == static_cast<int>(i)) {
       u.drop = 1.0;
       out.push_back(u);
       continue;
     }
-    // Some answer that is kept may have the name elsewhere.
+    // Some assignment that is kept may have the name elsewhere.
     double other = -1.0;
     for (const MatchSolution& s : match.solutions) {
       const bool elsewhere = main ? s.assignment[*main] != static_cast<int>(i)
@@ -54,7 +56,7 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
       without.allowed[i].erase(*main);
       again.time_limit = std::max(0.0, params.time_limit - watch.seconds()) /
                          static_cast<double>(problem.nameCount() - i);
-      const Match second = solveExact(without, again);
+      const PlaceAssignment second = solveExact(without, again);
       if (second.found()) other = std::max(other, second.best().fitness);
       // What was not looked at in time may be as good as the gap says.
       u.proven = second.optimal;
@@ -68,7 +70,7 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
 }
 
 std::optional<MatchQuestion> mostInformativeQuestion(const MatchProblem& problem,
-                                                     const Match& match,
+                                                     const PlaceAssignment& match,
                                                      const QuestionParams& params) {
   if (!(params.tolerance > 0.0))
     throw hyselam::ParameterError("tolerance", params.tolerance, "> 0");
@@ -81,7 +83,7 @@ std::optional<MatchQuestion> mostInformativeQuestion(const MatchProblem& problem
   }
   std::optional<MatchQuestion> best;
   for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
-    if (problem.fixed[v] >= 0) continue;
+    if (problem.confirmed_name[v] >= 0) continue;
     std::map<int, double> share;
     for (std::size_t k = 0; k < likely.size(); ++k)
       share[match.solutions[k].assignment[v]] += likely[k] / sum;
@@ -105,17 +107,17 @@ AugmentedTopologicalMap withNames(const AugmentedTopologicalMap& map,
   for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
     const int i = solution.assignment[v];
     Place* place = out.findPlace(problem.vertices[v]);
-    const DescribedPlace* told =
+    const DescribedPlace* described =
         i < 0 ? nullptr : building.findPlace(problem.names[static_cast<std::size_t>(i)]);
-    if (place == nullptr || told == nullptr) continue;
-    const bool confirmed = problem.fixed[v] >= 0;
-    std::vector<Word>& words = place->words;
+    if (place == nullptr || described == nullptr) continue;
+    const bool confirmed = problem.confirmed_name[v] >= 0;
+    std::vector<PlaceTerm>& words = place->words;
     words.erase(std::remove_if(words.begin(), words.end(),
-                               [](const Word& word) { return !word.confirmed; }),
+                               [](const PlaceTerm& word) { return !word.confirmed; }),
                 words.end());
-    for (const std::string& text : allNamesOf(*told)) {
+    for (const std::string& text : allNamesOf(*described)) {
       const bool has = std::any_of(words.begin(), words.end(),
-                                   [&](const Word& word) { return word.text == text; });
+                                   [&](const PlaceTerm& word) { return word.text == text; });
       if (!has) words.push_back({text, confirmed});
     }
   }

@@ -1,12 +1,13 @@
+#include "hyselam_topo/topomerg/topomerg_problem.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "angles.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topo/topomerg/topomerg_problem.hpp"
-#include "merge_terms.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -24,7 +25,7 @@ double areaOf(const Place& place) {
   return 0.5 * std::abs(twice);
 }
 
-double middleOf(Side side) {
+double angleOf(Side side) {
   switch (side) {
     case Side::kLeft:
       return 0.5 * hyselam::kPi;
@@ -60,7 +61,7 @@ class Numbers {
 };
 
 void addSides(const DescribedBuilding& building, const Numbers& name, MatchProblem* out) {
-  // The places on one side of a place, in the order told.
+  // The places on one side of a place, in the described order.
   std::map<std::pair<Id, Side>, std::vector<const DescribedConnection*>> rows;
   for (const DescribedConnection& c : building.connections)
     if (c.side != Side::kUnknown) rows[{c.from, c.side}].push_back(&c);
@@ -68,9 +69,9 @@ void addSides(const DescribedBuilding& building, const Numbers& name, MatchProbl
     std::stable_sort(row.begin(), row.end(),
                      [](const auto* a, const auto* b) { return a->order < b->order; });
     const double count = static_cast<double>(row.size());
-    const double middle = middleOf(key.second);
+    const double side_angle = angleOf(key.second);
     // The first is nearest to the back: on the right hand that is the smallest angle. Front and
-    // back are told from left to right.
+    // back are described from left to right.
     const double sign = key.second == Side::kRight || key.second == Side::kBack ? -1.0 : 1.0;
     for (std::size_t k = 0; k < row.size(); ++k) {
       const double offset =
@@ -84,8 +85,8 @@ void addSides(const DescribedBuilding& building, const Numbers& name, MatchProbl
       // Forwards along the left and the right, from left to right on the front and back.
       const double turn = sign * -0.5 * hyselam::kPi;
       out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
-                            merging::wrapped(middle + sign * offset), middle, turn, earlier,
-                            later});
+                            merging::wrapAngleOnce(side_angle + sign * offset), side_angle, turn,
+                            earlier, later});
       if (k > 0 && before(row[k - 1], row[k]))
         out->orders.push_back({out->sides.back().from, name(row[k - 1]->to, "description"),
                                out->sides.back().to, turn});
@@ -142,7 +143,7 @@ void addWalls(const AugmentedTopologicalMap& map, MatchProblem* out) {
   bool any = false;
   for (std::size_t a = 0; a < map.places.size(); ++a) {
     for (std::size_t b = a + 1; b < map.places.size(); ++b) {
-      if (out->neighbours[a].contains(b)) continue;
+      if (out->neighbors[a].contains(b)) continue;
       for (const Wall& wall : map.places[a].walls) {
         for (const Wall& other : map.places[b].walls) {
           const auto at = commonStretch(wall, other);
@@ -160,7 +161,7 @@ void addWalls(const AugmentedTopologicalMap& map, MatchProblem* out) {
   }
   if (!any) return;
   out->walls = std::move(walls);
-  out->behind = std::move(behind);
+  out->across_walls = std::move(behind);
 }
 
 void addConstraints(const MatchConstraints& constraints, const Numbers& name, const Numbers& vertex,
@@ -168,11 +169,11 @@ void addConstraints(const MatchConstraints& constraints, const Numbers& name, co
   PlaceSet all;
   for (std::size_t v = 0; v < out->vertexCount(); ++v) all.insert(v);
   out->allowed.assign(out->nameCount(), all);
-  out->fixed.assign(out->vertexCount(), -1);
-  for (const auto& [place, told] : constraints.confirmed) {
+  out->confirmed_name.assign(out->vertexCount(), -1);
+  for (const auto& [place, described] : constraints.confirmed) {
     const int v = vertex(place, "constraints");
-    const int i = name(told, "constraints");
-    int& fixed = out->fixed[static_cast<std::size_t>(v)];
+    const int i = name(described, "constraints");
+    int& fixed = out->confirmed_name[static_cast<std::size_t>(v)];
     if (fixed >= 0 && fixed != i)
       throw InputError("constraints", "place " + std::to_string(place),
                        "is confirmed to have two names");
@@ -182,13 +183,13 @@ void addConstraints(const MatchConstraints& constraints, const Numbers& name, co
     const auto v = static_cast<std::size_t>(vertex(place, "constraints"));
     for (PlaceSet& allowed : out->allowed) allowed.erase(v);
   }
-  for (const auto& [place, told] : constraints.excluded) {
+  for (const auto& [place, described] : constraints.excluded) {
     const auto v = static_cast<std::size_t>(vertex(place, "constraints"));
-    out->allowed[static_cast<std::size_t>(name(told, "constraints"))].erase(v);
+    out->allowed[static_cast<std::size_t>(name(described, "constraints"))].erase(v);
   }
   for (std::size_t v = 0; v < out->vertexCount(); ++v) {
-    if (out->fixed[v] < 0) continue;
-    const auto i = static_cast<std::size_t>(out->fixed[v]);
+    if (out->confirmed_name[v] < 0) continue;
+    const auto i = static_cast<std::size_t>(out->confirmed_name[v]);
     if (!out->allowed[i].contains(v))
       throw InputError("constraints", "place " + std::to_string(out->vertices[v]),
                        "a name is both confirmed and excluded");
@@ -215,7 +216,7 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     out.names.push_back(place.id);
     double area = place.area.value_or(0.0);
     if (area <= 0.0 && place.length && place.width) area = *place.length * *place.width;
-    out.told.push_back({area, place.parts.value_or(0), place.kind});
+    out.attributes.push_back({area, place.parts.value_or(0), place.kind});
   }
   for (const Place& place : map.places) {
     out.vertices.push_back(place.id);
@@ -232,20 +233,20 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     out.weight.push_back(!map.places[v].centre ? 0.0 : weighed ? out.area[v] : 1.0);
 
   const Numbers name(out.names, "place", "description"), vertex(out.vertices, "place", "map");
-  out.neighbours.resize(m);
+  out.neighbors.resize(m);
   for (const Edge& edge : map.edges) {
     const auto a = static_cast<std::size_t>(vertex(edge.a, "map"));
     const auto b = static_cast<std::size_t>(vertex(edge.b, "map"));
-    out.neighbours[a].insert(b);
-    out.neighbours[b].insert(a);
+    out.neighbors[a].insert(b);
+    out.neighbors[b].insert(a);
   }
   addPassages(map, vertex, &out);
   addWalls(map, &out);
-  out.joined.assign(n * n, 0);
+  out.described_edges.assign(n * n, 0);
   for (const DescribedConnection& c : building.connections) {
     const auto a = static_cast<std::size_t>(name(c.from, "description"));
     const auto b = static_cast<std::size_t>(name(c.to, "description"));
-    out.joined[a * n + b] = out.joined[b * n + a] = 1;
+    out.described_edges[a * n + b] = out.described_edges[b * n + a] = 1;
   }
   addSides(building, name, &out);
   for (const DescribedRelation& r : building.relations)
@@ -269,25 +270,6 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     out.evidence[i * m + v] = e.value;
   }
   return out;
-}
-
-void checkFitnessParams(const FitnessParams& params) {
-  const std::pair<const char*, double> weights[] = {
-      {"vertices", params.vertices}, {"areas", params.areas},
-      {"edges", params.edges},       {"orientations", params.orientations},
-      {"orders", params.orders},     {"relations", params.relations},
-      {"parts", params.parts},       {"kinds", params.kinds},
-      {"evidence", params.evidence}};
-  for (const auto& [weight_name, value] : weights)
-    if (!(value >= 0.0 && std::isfinite(value)))
-      throw hyselam::ParameterError(weight_name, value, "a number >= 0");
-  if (!(params.vertices + params.areas + params.edges + params.orientations > 0.0))
-    throw hyselam::ParameterError("vertices", params.vertices,
-                                  "> 0 if areas, edges and orientations are 0");
-  if (!(params.forgotten_edge >= 0.0 && params.forgotten_edge <= 1.0))
-    throw hyselam::ParameterError("forgotten_edge", params.forgotten_edge, "within 0 .. 1");
-  if (!(params.shut_door >= 0.0 && params.shut_door <= 1.0))
-    throw hyselam::ParameterError("shut_door", params.shut_door, "within 0 .. 1");
 }
 
 }  // namespace hyselam_topo

@@ -40,7 +40,8 @@ int namedRightly(const hyselam_sim::FloorPlan& plan, const hyselam::Pose2& pose,
   robot.setGrid(hyselam_sim::rasterize(plan, 0.05, 0.0));
   robot.setMap(gr2to(*robot.gridWithWalls()).map);
   robot.setPose(1.0, pose);
-  robot.hear(hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/told/" + file));
+  robot.hear(
+      hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/described/" + file));
   int right = 0;
   for (const auto& [place, told] : names) {
     const auto there = placeAt(robot.map(), plan.place(place).at, 0.3);

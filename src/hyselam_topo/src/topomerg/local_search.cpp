@@ -1,4 +1,4 @@
-#include "improve.hpp"
+#include "local_search.hpp"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace {
 
 class Improver {
  public:
-  Improver(const MatchProblem& problem, const MatchParams& params, const Terms& terms,
+  Improver(const MatchProblem& problem, const SolverParams& params, const FitnessTerms& terms,
            MatchSolution start, double seconds)
       : problem_(problem),
         params_(params),
@@ -35,17 +35,17 @@ class Improver {
  private:
   bool late() const { return watch_.seconds() > seconds_; }
 
-  Vertices collect(const PlaceSet& members) const {
-    Vertices out;
+  VertexSet collect(const PlaceSet& members) const {
+    VertexSet out;
     members.forEach([&](std::size_t v) { out.add(problem_, v); });
     return out;
   }
   bool fits(int name, const PlaceSet& members) const {
     return problem_.allowed[static_cast<std::size_t>(name)].containsAll(members) &&
-           (!params_.connected || hangTogether(problem_, members));
+           (!params_.connected || isConnected(problem_, members));
   }
   /// Keeps `names_` as they are now if that is better.
-  bool keep(const std::vector<std::pair<int, Vertices>>& before) {
+  bool keep(const std::vector<std::pair<int, VertexSet>>& before) {
     double heading = 0.0;
     const double f = evaluate(terms_, names_, &heading);
     if (f <= best_.fitness + kEqualFitness) {
@@ -63,12 +63,12 @@ class Improver {
   }
 
   bool moveVertex(std::size_t v) {
-    if (problem_.fixed[v] >= 0) return false;
+    if (problem_.confirmed_name[v] >= 0) return false;
     bool better = false;
     for (int to = params_.dummy ? -1 : 0; to < static_cast<int>(problem_.nameCount()); ++to) {
       const int from = best_.assignment[v];
       if (to == from) continue;
-      std::vector<std::pair<int, Vertices>> before;
+      std::vector<std::pair<int, VertexSet>> before;
       bool good = true;
       if (from >= 0) {
         before.emplace_back(from, names_[static_cast<std::size_t>(from)]);
@@ -101,12 +101,12 @@ class Improver {
   }
 
   bool exchange(std::size_t i, std::size_t j) {
-    const Vertices a = names_[i], b = names_[j];
+    const VertexSet a = names_[i], b = names_[j];
     if (!fits(static_cast<int>(i), b.members) || !fits(static_cast<int>(j), a.members))
       return false;
-    const auto confirmed = [&](const Vertices& v) {
+    const auto confirmed = [&](const VertexSet& v) {
       bool any = false;
-      v.members.forEach([&](std::size_t m) { any = any || problem_.fixed[m] >= 0; });
+      v.members.forEach([&](std::size_t m) { any = any || problem_.confirmed_name[m] >= 0; });
       return any;
     };
     if (confirmed(a) || confirmed(b)) return false;
@@ -116,18 +116,18 @@ class Improver {
   }
 
   const MatchProblem& problem_;
-  const MatchParams& params_;
-  const Terms& terms_;
+  const SolverParams& params_;
+  const FitnessTerms& terms_;
   MatchSolution best_;
-  std::vector<Vertices> names_;
+  std::vector<VertexSet> names_;
   const double seconds_;
   const Stopwatch watch_;
 };
 
 }  // namespace
 
-MatchSolution improved(const MatchProblem& problem, const MatchParams& params, const Terms& terms,
-                       MatchSolution start, double seconds) {
+MatchSolution searchLocally(const MatchProblem& problem, const SolverParams& params,
+                            const FitnessTerms& terms, MatchSolution start, double seconds) {
   return Improver(problem, params, terms, std::move(start), seconds).run();
 }
 

@@ -1,4 +1,4 @@
-#include "hyselam_topo/ros/object_talk.hpp"
+#include "hyselam_topo/ros/sentence_forwarder.hpp"
 
 #include <hyselam_msgs/ObjectRequest.h>
 
@@ -6,16 +6,16 @@
 
 namespace hyselam_topo {
 
-ObjectTalk::ObjectTalk(ros::NodeHandle nh, double patience, Answered answered)
-    : patience_(patience),
+SentenceForwarder::SentenceForwarder(ros::NodeHandle nh, double timeout, Answered answered)
+    : timeout_(timeout),
       answered_(std::move(answered)),
       // Answers to somebody before it, or beside it, are not taken for its own.
       next_id_(static_cast<std::uint32_t>(ros::WallTime::now().toNSec() / 1000)) {
   publisher_ = nh.advertise<hyselam_msgs::ObjectRequest>("object_request", 20);
-  subscriber_ = nh.subscribe("object_answer", 20, &ObjectTalk::onAnswer, this);
+  subscriber_ = nh.subscribe("object_answer", 20, &SentenceForwarder::onAnswer, this);
 }
 
-void ObjectTalk::pass(const PassedOn& sentence) {
+void SentenceForwarder::forward(const ForwardedSentence& sentence) {
   hyselam_msgs::ObjectRequest msg;
   msg.id = next_id_++;
   msg.text = sentence.text;
@@ -23,26 +23,26 @@ void ObjectTalk::pass(const PassedOn& sentence) {
   publisher_.publish(msg);
 }
 
-void ObjectTalk::onAnswer(const hyselam_msgs::ObjectAnswer::ConstPtr& msg) {
+void SentenceForwarder::onAnswer(const hyselam_msgs::ObjectAnswer::ConstPtr& msg) {
   const auto found = pending_.find(msg->id);
   if (found == pending_.end()) return;  // too late, or not for us
-  const PassedOn sentence = found->second.sentence;
+  const ForwardedSentence sentence = found->second.sentence;
   pending_.erase(found);
   answered_(sentence, msg.get());
 }
 
-void ObjectTalk::giveUp() {
+void SentenceForwarder::dropOverdue() {
   const ros::WallTime now = ros::WallTime::now();
-  std::vector<PassedOn> late;
+  std::vector<ForwardedSentence> late;
   for (auto each = pending_.begin(); each != pending_.end();) {
-    if ((now - each->second.since).toSec() < patience_) {
+    if ((now - each->second.since).toSec() < timeout_) {
       ++each;
       continue;
     }
     late.push_back(each->second.sentence);
     each = pending_.erase(each);
   }
-  for (const PassedOn& sentence : late) answered_(sentence, nullptr);
+  for (const ForwardedSentence& sentence : late) answered_(sentence, nullptr);
 }
 
 }  // namespace hyselam_topo

@@ -1,0 +1,161 @@
+// What TopoEngine says, publishes and drives.
+#include <geometry_msgs/PoseArray.h>
+#include <nav_msgs/Path.h>
+#include <std_msgs/Bool.h>
+
+#include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_topo/ros/dialogue_markers.hpp"
+#include "hyselam_topo/ros/topo_engine_server.hpp"
+#include "hyselam_topological_map/ros/conversions.hpp"
+
+namespace hyselam_topo {
+
+void TopoEngineServer::say(const std::string& sentence) {
+  std_msgs::String msg;
+  msg.data = sentence;
+  publishers_.text.publish(msg);
+  msg.data = "robot: " + sentence;
+  publishers_.conversation.publish(msg);
+  ROS_INFO_STREAM(who_ << " says: " << sentence);
+}
+
+void TopoEngineServer::publishHumanText(const std::string& text) {
+  ++input_.texts;
+  std_msgs::String msg;
+  msg.data = "human: " + text;
+  publishers_.conversation.publish(msg);
+}
+
+void TopoEngineServer::act(const Reply& reply) {
+  bool map = false;
+  using Kind = DialogueAction::Kind;
+  for (const DialogueAction& action : reply.actions) {
+    switch (action.kind) {
+      case Kind::kMap:
+        map = true;
+        break;
+      case Kind::kWalls:
+        publishWalls();
+        break;
+      case Kind::kGo:
+        go(action.legs);
+        break;
+      case Kind::kStop:
+        halt();
+        break;
+      case Kind::kFollow: {
+        halt();
+        std_msgs::Bool msg;
+        msg.data = 1;
+        publishers_.follow.publish(msg);
+        break;
+      }
+      case Kind::kTurn:
+        turn(action.angle);
+        break;
+    }
+  }
+  if (map) publishMap();
+  if (!reply.actions.empty() || !reply.sentences.empty()) {
+    changed_ = true;
+    publishQuestion();
+  }
+  for (const std::string& sentence : reply.sentences) say(sentence);
+}
+
+void TopoEngineServer::halt() {
+  driver_.stop();
+  std_msgs::Bool follow;
+  publishers_.follow.publish(follow);
+  nav_msgs::Path path;
+  path.header.frame_id = frame();
+  publishers_.path.publish(path);
+  geometry_msgs::PoseArray poses;
+  poses.header.frame_id = frame();
+  publishers_.poses.publish(poses);
+}
+
+void TopoEngineServer::go(const std::vector<RouteLeg>& legs) {
+  nav_msgs::Path path;
+  geometry_msgs::PoseArray poses;
+  path.header.frame_id = poses.header.frame_id = frame();
+  path.header.stamp = poses.header.stamp = ros::Time::now();
+  std::vector<hyselam::Pose2> goals;
+  for (const RouteLeg& leg : legs) {
+    for (const hyselam::Pose2& pose : leg.path) {
+      geometry_msgs::PoseStamped stamped;
+      stamped.header = path.header;
+      stamped.pose = hyselam::toPoseMsg(pose);
+      path.poses.push_back(stamped);
+    }
+    for (const hyselam::Pose2& pose : leg.waypoints) {
+      poses.poses.push_back(hyselam::toPoseMsg(pose));
+      goals.push_back(pose);
+    }
+  }
+  std_msgs::Bool follow;
+  publishers_.follow.publish(follow);
+  publishers_.path.publish(path);
+  publishers_.poses.publish(poses);
+  if (params_.use_move_base) driver_.drive(std::move(goals), frame());
+}
+
+void TopoEngineServer::turn(double angle) {
+  if (!dialogue_.robot().has_pose) return;
+  RouteLeg leg;
+  leg.waypoints = leg.path = {dialogue_.robot().pose * hyselam::Pose2{0.0, 0.0, angle}};
+  go({leg});
+}
+
+void TopoEngineServer::publishMap() {
+  if (!dialogue_.places().hasMap()) return;
+  try {
+    publishers_.map.publish(toMsg(dialogue_.map()));
+    publishers_.markers.publish(namedMapMarkers(dialogue_.map(), params_.markers));
+  } catch (const std::exception& e) {
+    input_.map_error = e.what();
+    ROS_ERROR_STREAM(who_ << " the map is not published: " << e.what());
+  }
+  std_msgs::String names;
+  for (const std::string& name : dialogue_.knownNames()) names.data += name + "\n";
+  publishers_.names.publish(names);
+}
+
+void TopoEngineServer::publishWalls() {
+  const auto grid = dialogue_.gridWithWalls();
+  if (grid) publishers_.grid.publish(hyselam::toMsg(*grid, grid_frame_, grid_stamp_));
+}
+
+void TopoEngineServer::publishQuestion() {
+  publishers_.question.publish(questionMarkers(dialogue_.question(), frame()));
+}
+
+void TopoEngineServer::publishPlace() {
+  const RobotPlace& robot = dialogue_.robot();
+  hyselam_msgs::PlaceState msg;
+  msg.header.frame_id = frame();
+  msg.header.stamp = robot.stamp > 0.0 ? ros::Time(robot.stamp) : ros::Time::now();
+  msg.place = robot.place;
+  msg.previous = robot.previous;
+  msg.in_doorway = robot.in_doorway;
+  if (robot.has_pose) {
+    msg.pose.x = robot.pose.x;
+    msg.pose.y = robot.pose.y;
+    msg.pose.theta = robot.pose.theta;
+  }
+  if (const Place* place = dialogue_.map().findPlace(robot.place)) {
+    const auto names = namesOf(*place);
+    if (!names.empty()) msg.name = names.front();
+    msg.confirmed = nameStateOf(*place) == NameState::kConfirmed;
+    for (const PlaceTerm& word : place->words) {
+      msg.words.emplace_back();
+      msg.words.back().text = word.text;
+      msg.words.back().confirmed = word.confirmed;
+    }
+  }
+  last_place_ = msg;
+  place_published_ = ros::WallTime::now();
+  publishers_.place.publish(msg);
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,97 @@
+// The fitness of a whole assignment. Where the robot's heading is not known, the best one is found.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fitness_terms.hpp"
+
+namespace hyselam_topo::merging {
+namespace {
+
+/// A heading is better than another only if its deviations are smaller by more than this [rad].
+constexpr double kEqualDeviation = 1e-12;
+
+/// Where one described side is right.
+struct RightHeadings {
+  std::vector<double> headings;
+  double share = 1.0;  ///< of the side's value, that it has there
+};
+
+/// The best heading and the sum of deviations there.
+struct BestHeading {
+  double heading = 0.0;
+  double deviation = 0.0;
+};
+
+/// The sum of deviations is piecewise linear in the heading and bends upwards only where one of
+/// them is 0: the best heading is there.
+BestHeading bestHeading(const std::vector<RightHeadings>& sides) {
+  BestHeading best;
+  bool first = true;
+  for (const RightHeadings& tried : sides) {
+    for (const double value : tried.headings) {
+      double sum = 0.0;
+      for (const RightHeadings& others : sides) {
+        double off = kPi;
+        for (const double other : others.headings)
+          off = std::min(off, std::abs(wrapAngleOnce(other - value)));
+        sum += others.share * off;
+      }
+      if (!first && !(sum < best.deviation - kEqualDeviation)) continue;
+      first = false;
+      best = {value, sum};
+    }
+  }
+  return best;
+}
+
+RightHeadings rightHeadings(const FitnessTerms& terms, const MatchProblem::DescribedSide& side,
+                            const VertexSet& from, const VertexSet& to) {
+  RightHeadings right;
+  if (terms.by_doors)
+    right.share = terms.forEachDoor(from.members, to.members, [&](const MatchProblem::Passage& p) {
+      right.headings.push_back(wrapAngleOnce(p.bearing - side.side_angle));
+    });
+  else if (FitnessTerms::comparable(from, to))
+    right.headings.push_back(wrapAngleOnce(FitnessTerms::bearing(from, to) - side.angle));
+  return right;
+}
+
+}  // namespace
+
+double evaluate(const FitnessTerms& terms, const std::vector<VertexSet>& names, double* heading) {
+  const MatchProblem& problem = terms.problem;
+  const auto of = [&names](int i) -> const VertexSet& {
+    return names[static_cast<std::size_t>(i)];
+  };
+  const int n = static_cast<int>(names.size());
+  double loss = 0.0;
+  for (int i = 0; i < n; ++i) loss += terms.unaryLoss(i, of(i));
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n; ++j) loss += terms.edgeLoss(i, j, terms.contact(of(i), of(j)));
+  for (const FitnessTerms::Clause& clause : terms.clauses) loss += terms.clauseLoss(clause, of);
+
+  if (problem.heading) {
+    for (const MatchProblem::DescribedSide& s : problem.sides)
+      loss += terms.sideLoss(s, of(s.from), of(s.to), {*problem.heading, 0.0});
+    if (heading != nullptr) *heading = *problem.heading;
+    return 1.0 - loss;
+  }
+  std::vector<RightHeadings> comparable;
+  for (const MatchProblem::DescribedSide& s : problem.sides) {
+    RightHeadings right = rightHeadings(terms, s, of(s.from), of(s.to));
+    if (right.headings.empty()) {
+      loss += terms.missingSideLoss(s);
+      continue;
+    }
+    if (terms.by_doors) loss += terms.rankLoss(s, of(s.from).members, of(s.to).members);
+    loss += terms.weight(Term::kSide) * (1.0 - right.share);
+    comparable.push_back(std::move(right));
+  }
+  const BestHeading best = bestHeading(comparable);
+  loss += terms.weight(Term::kSide) * best.deviation / kPi;
+  if (heading != nullptr) *heading = best.heading;
+  return 1.0 - loss;
+}
+
+}  // namespace hyselam_topo::merging
