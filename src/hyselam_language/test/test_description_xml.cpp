@@ -49,12 +49,12 @@ std::string errorWith(const std::string& from, const std::string& to) {
   return errorOf(hyselam::testing::replaced(toXml(flat()), from, to));
 }
 
-TEST(DescriptionXml, DescriptionComesBackAsItWas) {
+TEST(DescriptionXml, DescriptionsAreReadBackEqual) {
   EXPECT_EQ(descriptionFromXml(toXml(flat())), flat());
   EXPECT_EQ(descriptionFromXml(toXml(DescribedBuilding{})), DescribedBuilding{});
 }
 
-TEST(DescriptionXml, RandomDescriptionsComeBackAsTheyWere) {
+TEST(DescriptionXml, RandomDescriptionsAreReadBackEqual) {
   for (unsigned seed = 0; seed < 500; ++seed) {
     const DescribedBuilding building = testing::RandomDescriptions(seed).description();
     const std::string text = toXml(building);
@@ -75,7 +75,7 @@ RC_GTEST_PROP(DescriptionXml, DamagedFilesNeverCrash, (unsigned seed)) {
 }
 #endif
 
-TEST(DescriptionXml, WhatIsWrittenFollowsTheSchema) {
+TEST(DescriptionXml, FilesFollowTheSchema) {
   if (!hyselam::testing::haveXmllint()) GTEST_SKIP() << "no xmllint here";
   const auto valid = [](const std::string& text) {
     return hyselam::testing::follows("description.xsd", text);
@@ -94,7 +94,7 @@ TEST(DescriptionXml, WhatIsWrittenFollowsTheSchema) {
   }
 }
 
-TEST(DescriptionXml, WhatIsNoDescriptionIsRefused) {
+TEST(DescriptionXml, RefusesOtherFiles) {
   expectError(errorOf(""), {"h.xml", "no XML"});
   expectError(errorOf("on your left"), {"h.xml", "no XML"});
   expectError(errorOf("<a/><b/>"), {"one outermost element"});
@@ -114,7 +114,7 @@ TEST(DescriptionXml, WhatIsNoDescriptionIsRefused) {
   expectError(errorOf(hyselam::testing::nested(40)), {"nested too deeply"});
 }
 
-TEST(DescriptionXml, PartsThatMeanNothingAreRefused) {
+TEST(DescriptionXml, RefusesUnknownParts) {
   expectError(errorWith("side=\"left\"", "side=\"up\""), {"<connection>", "'side' must be"});
   expectError(errorWith("side=\"left\"", ""), {"<connection>", "'side' is missing"});
   expectError(errorWith("order=\"3\"", "order=\"-1\""), {"<connection>", "'order' is negative"});

@@ -72,7 +72,7 @@ TEST(Grammar, FurtherFilesAddToTheFirst) {
               {"other.yaml", "'yy'", "'xx'"});
 }
 
-TEST(Grammar, WhatIsWrongWithAFileIsTold) {
+TEST(Grammar, ErrorsNameFileLineAndKey) {
   expectParts(errorWith("format: hyselam_grammar", "format: cake"), {"g.yaml", "'format'"});
   expectParts(errorWith("version: 1", "version: 2"), {"'version'", "'2'"});
   expectParts(errorWith("language: xx\n", ""), {"'language' is missing"});
@@ -146,7 +146,7 @@ TEST(TopoParser, RangesAndReasonsPointAtTheWords) {
   EXPECT_GE(said[1].culprit.begin, said[1].range.begin);
 }
 
-TEST(TopoParser, MisspeltWordsAreTold) {
+TEST(TopoParser, ReportsMisspeltWords) {
   const auto said = parser().parse("folow me").utterances;
   ASSERT_EQ(said.size(), 1u);
   ASSERT_EQ(said[0].spelling.size(), 1u);
@@ -154,7 +154,7 @@ TEST(TopoParser, MisspeltWordsAreTold) {
   EXPECT_EQ(said[0].spelling[0].taken_as, "follow");
 }
 
-TEST(TopoParser, WhatIsNoTextIsNotUnderstood) {
+TEST(TopoParser, RefusesWhatIsNoText) {
   const auto code = [](const std::string& text, std::size_t limit = 1000) {
     ParseOptions options;
     options.max_bytes = limit;
@@ -212,7 +212,7 @@ TEST(PlaceNames, VariantsOfANameMeanOnePlace) {
   EXPECT_EQ(names.kindOf("I-110"), std::nullopt);
 }
 
-TEST(DescriptionBuilder, GoesOnWithWhatWasToldBefore) {
+TEST(DescriptionBuilder, ContinuesAnEarlierDescription) {
   DescriptionBuilder first(parser());
   first.add(parser().parse("You are in the corridor. On your left you have room A."));
   DescriptionBuilder second(parser());
@@ -225,7 +225,7 @@ TEST(DescriptionBuilder, GoesOnWithWhatWasToldBefore) {
   EXPECT_EQ(second.building().places.size(), 5u);
 }
 
-TEST(DescriptionBuilder, WhatFailsLeavesNothingBehind) {
+TEST(DescriptionBuilder, FailedStatementsChangeNothing) {
   DescriptionBuilder builder(parser());
   const auto issues = builder.add(parser().parse("Room A is 6 by 0 meters."));
   ASSERT_EQ(issues.size(), 1u);
@@ -233,7 +233,7 @@ TEST(DescriptionBuilder, WhatFailsLeavesNothingBehind) {
   EXPECT_TRUE(builder.building().places.empty());
 }
 
-TEST(DescribeBuilding, WhatIsToldIsUnderstoodAsItWas) {
+TEST(DescribeBuilding, TextIsParsedBackToTheSameBuilding) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     for (const Grammar& grammar : parser().grammars()) {
       const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();
@@ -251,7 +251,7 @@ TEST(DescribeBuilding, WhatIsToldIsUnderstoodAsItWas) {
 }
 
 #ifdef HYSELAM_HAVE_RAPIDCHECK
-RC_GTEST_PROP(DescribeBuilding, EveryBuildingIsUnderstoodAsItWas, (unsigned seed)) {
+RC_GTEST_PROP(DescribeBuilding, EveryBuildingIsParsedBack, (unsigned seed)) {
   for (const Grammar& grammar : parser().grammars()) {
     const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();
     ParseOptions options;
@@ -263,7 +263,7 @@ RC_GTEST_PROP(DescribeBuilding, EveryBuildingIsUnderstoodAsItWas, (unsigned seed
 }
 #endif
 
-TEST(DescribeBuilding, NamesThatNoMarksCanHoldAreRefused) {
+TEST(DescribeBuilding, RefusesNamesThatCannotBeQuoted) {
   DescribedBuilding building;
   building.places.resize(1);
   building.places[0].id = 1;

@@ -134,7 +134,7 @@ void expectGood(const std::string& name, double least) {
   if (score.told > 0 && std::getenv("HYSELAM_SHOW_CORPUS") != nullptr) std::cout << score.report;
 }
 
-TEST(LanguageCorpus, TheThesisIsUnderstood) {
+TEST(LanguageCorpus, UnderstandsTheThesis) {
   expectGood("thesis", 1.0);
 }
 
@@ -146,7 +146,7 @@ TEST(LanguageCorpus, Portuguese) {
   expectGood("corpus_pt", 0.97);
 }
 
-TEST(LanguageCorpus, WhatMustBeRefusedIsRefused) {
+TEST(LanguageCorpus, RefusesWhatItMust) {
   expectGood("refused", 1.0);
 }
 

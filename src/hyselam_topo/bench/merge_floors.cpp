@@ -154,7 +154,7 @@ DescribedBuilding describe(const hyselam_sim::FloorPlan& plan, const Speaker& sp
   return out;
 }
 
-/// Shuts as many doors: rooms behind them are on the map, but no way leads into them.
+/// Closes as many doors: rooms behind them are on the map, but no path leads into them.
 void shutDoors(hyselam_sim::FloorPlan* plan, int count, std::uint64_t seed) {
   Dice dice(seed ^ 0x5A5A5A5Au);
   std::vector<std::size_t> open(plan->doors.size());
@@ -214,7 +214,7 @@ Assignment trueNames(const MatchProblem& problem, const std::map<Id, Id>& truth)
   return out;
 }
 
-/// What was told, what is true and what was found, name by name.
+/// What was described, what is true and what was found, name by name.
 void show(std::ostream& out, const DescribedBuilding& building, const MatchProblem& problem,
           const FitnessParams& params, const PlaceAssignment& match,
           const std::map<Id, Id>& truth) {
@@ -239,134 +239,170 @@ void show(std::ostream& out, const DescribedBuilding& building, const MatchProbl
   }
 }
 
+struct Options {
+  int floors = 12;
+  std::uint64_t first_seed = 1;
+  Speaker speaker;
+  SolverParams params;
+  bool thesis_sides = false, know_heading = true, show_names = false;
+  int closed_doors = 0;
+};
+
+/// One floor, from its plan to the description and the map.
+struct Floor {
+  DescribedBuilding building;
+  AugmentedTopologicalMap map;
+  std::map<Id, Id> truth;
+  std::set<Id> in_map;  ///< names that the map has a place for
+  MatchObserver observer;
+};
+
+Floor makeFloor(const Options& o, std::uint64_t seed) {
+  Floor floor;
+  Dice dice(seed);
+  auto plan = hyselam_sim::generatePlan(seed);
+  shutDoors(&plan, o.closed_doors, seed);
+  const OccupancyGrid grid = hyselam_sim::rasterize(plan, 0.05, 0.0);
+  const Gr2ToResult found = gr2to(grid);
+  floor.map = found.map;
+  floor.truth = truthOf(plan, found);
+  double heading = 0.0;
+  floor.building = describe(plan, o.speaker, &dice, &heading);
+  double largest = 0.0;
+  for (const Place& place : floor.map.places) {
+    const auto is = floor.truth.find(place.id);
+    if (is == floor.truth.end() || is->second != *floor.building.robot_place ||
+        place.area <= largest)
+      continue;
+    largest = place.area;
+    floor.observer.place = place.id;
+  }
+  if (o.know_heading) floor.observer.heading = heading;
+  for (const auto& [place, name] : floor.truth) floor.in_map.insert(name);
+  return floor;
+}
+
+/// The place that tells most; if all assignments agree, that of the least certain name; 0: none.
+Id placeToAsk(const MatchProblem& problem, const SolverParams& params,
+              const PlaceAssignment& match) {
+  if (const auto question = mostInformativeQuestion(problem, match)) return question->place;
+  Id place = 0;
+  double least = 1.0;
+  for (const NameUncertainty& u : nameUncertainties(problem, params, match)) {
+    if (u.place == 0 || u.drop >= least) continue;
+    least = u.drop;
+    place = u.place;
+  }
+  return place;
+}
+
+struct Outcome {
+  std::size_t questions = 0;
+  std::size_t right_at_once = 0;
+  double fitness_at_once = 0.0;
+};
+
+/// Asks until all names are right.
+Outcome askUntilRight(const Options& o, std::uint64_t seed, const Floor& floor) {
+  Outcome outcome;
+  MatchConstraints constraints;
+  while (true) {
+    const MatchProblem problem =
+        compileMatch(floor.building, floor.map, floor.observer, constraints);
+    const PlaceAssignment match = solveExact(problem, o.params);
+    if (!match.found()) break;
+    const std::vector<bool> right = rightNames(problem, match, floor.truth);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < right.size(); ++i)
+      count += right[i] && floor.in_map.count(problem.names[i]) > 0;
+    if (outcome.questions == 0) {
+      outcome.right_at_once = count;
+      outcome.fitness_at_once = match.best().fitness;
+      if (o.show_names) {
+        std::cerr << "floor " << seed << ": ";
+        show(std::cerr, floor.building, problem, o.params.fitness, match, floor.truth);
+      }
+    }
+    if (count == floor.in_map.size() || outcome.questions == floor.map.places.size()) break;
+    const Id place = placeToAsk(problem, o.params, match);
+    if (place == 0) break;
+    ++outcome.questions;
+    const auto answer = floor.truth.find(place);
+    if (answer == floor.truth.end())
+      constraints.unnamed.push_back(place);
+    else
+      constraints.confirmed.emplace_back(place, answer->second);
+  }
+  return outcome;
+}
+
+nlohmann::json run(Options o) {
+  if (o.thesis_sides) o.params.fitness.sides = SideRule::kCenters;
+  hyselam::Progress progress("merge_floors", static_cast<std::size_t>(o.floors));
+  nlohmann::json records = nlohmann::json::array();
+  std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0, lost = 0;
+  std::size_t whole_map_names = 0, whole_map_right = 0;
+  for (int k = 0; k < o.floors; ++k) {
+    const std::uint64_t seed = o.first_seed + static_cast<std::uint64_t>(k);
+    const Floor floor = makeFloor(o, seed);
+    const Outcome outcome = askUntilRight(o, seed, floor);
+    const std::size_t in_map = floor.in_map.size(), described = floor.building.places.size();
+    names += in_map;
+    at_once += outcome.right_at_once;
+    all_questions += outcome.questions;
+    whole += outcome.questions == 0;
+    // Rooms that the map has no place for, because gr2to joined them to another.
+    lost += described - in_map;
+    if (described == in_map) {
+      whole_map_names += in_map;
+      whole_map_right += outcome.right_at_once;
+    }
+    records.push_back({{"seed", seed},
+                       {"told", described},
+                       {"places", floor.map.places.size()},
+                       {"in_map", in_map},
+                       {"right_at_once", outcome.right_at_once},
+                       {"questions", outcome.questions},
+                       {"fitness", outcome.fitness_at_once}});
+    progress.update(static_cast<std::size_t>(k + 1));
+  }
+  const double share =
+      static_cast<double>(at_once) / static_cast<double>(std::max<std::size_t>(1, names));
+  std::cout << o.floors << " floors, " << names << " names: " << at_once << " right at once ("
+            << std::lround(1000.0 * share) / 10.0 << " %), " << whole
+            << " floors without a question, " << all_questions
+            << " questions until all are right\n";
+  return {{"names", names},
+          {"right_at_once", at_once},
+          {"names_without_place", lost},
+          {"names_in_whole_maps", whole_map_names},
+          {"right_in_whole_maps", whole_map_right},
+          {"questions", all_questions},
+          {"floors_without_question", whole},
+          {"floors", records}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Measures how many names are right on made-up floors.", "merge_floors");
-  int floors = 12;
-  std::uint64_t first = 1;
-  Speaker speaker;
-  SolverParams params;
-  params.time_limit = 1.0;
-  params.keep_within = 0.01;
-  bool thesis_sides = false, know_heading = true, show_names = false;
-  int shut_doors = 0;
+  Options o;
+  o.params.time_limit = 1.0;
+  o.params.keep_within = 0.01;
   app.option_defaults()->always_capture_default();
-  app.add_option("--floors", floors, "number of floors");
-  app.add_option("--seed", first, "of the first floor");
-  app.add_option("--told-sizes", speaker.told_sizes, "share of the sizes that are told");
-  app.add_option("--wrong-sizes", speaker.wrong_sizes, "share of those that are half or twice");
-  app.add_option("--confused-sides", speaker.confused_sides, "left for right, front for back");
-  app.add_option("--weight-kinds", params.fitness.kinds, "corridor or room");
-  app.add_option("--weight-orders", params.fitness.orders, "A, then B");
-  app.add_option("--forgotten-edge", params.fitness.undescribed_edge_credit, "as of topomerg");
-  app.add_option("--shut-door", params.fitness.closed_door_credit, "as of topomerg");
-  app.add_option("--shut-doors", shut_doors, "doors that are shut when the robot maps the floor");
-  app.add_flag("--thesis-sides", thesis_sides, "of centres, spread in the order told (Eq. 5.7)");
-  app.add_option("--time-limit", params.time_limit, "of each search [s]");
-  app.add_option("--know-heading", know_heading, "the robot knows where it looks");
-  app.add_flag("--show", show_names, "names told, true and found of each floor, to standard error");
-  return hyselam::runTool(argc, argv, app, [&] {
-    if (thesis_sides) params.fitness.sides = SideRule::kCenters;
-    hyselam::Progress progress("merge_floors", static_cast<std::size_t>(floors));
-    nlohmann::json records = nlohmann::json::array();
-    std::size_t names = 0, at_once = 0, all_questions = 0, whole = 0, lost = 0;
-    std::size_t whole_map_names = 0, whole_map_right = 0;
-    for (int k = 0; k < floors; ++k) {
-      const std::uint64_t seed = first + static_cast<std::uint64_t>(k);
-      Dice dice(seed);
-      auto plan = hyselam_sim::generatePlan(seed);
-      shutDoors(&plan, shut_doors, seed);
-      const OccupancyGrid grid = hyselam_sim::rasterize(plan, 0.05, 0.0);
-      const Gr2ToResult found = gr2to(grid);
-      const std::map<Id, Id> truth = truthOf(plan, found);
-      double heading = 0.0;
-      const DescribedBuilding building = describe(plan, speaker, &dice, &heading);
-      MatchObserver observer;
-      double largest = 0.0;
-      for (const Place& place : found.map.places) {
-        const auto is = truth.find(place.id);
-        if (is == truth.end() || is->second != *building.robot_place || place.area <= largest)
-          continue;
-        largest = place.area;
-        observer.place = place.id;
-      }
-      if (know_heading) observer.heading = heading;
-      std::set<Id> in_map;
-      for (const auto& [place, name] : truth) in_map.insert(name);
-
-      MatchConstraints constraints;
-      std::size_t questions = 0, right_at_once = 0;
-      double fitness_at_once = 0.0;
-      while (true) {
-        const MatchProblem problem = compileMatch(building, found.map, observer, constraints);
-        const PlaceAssignment match = solveExact(problem, params);
-        if (!match.found()) break;
-        const std::vector<bool> right = rightNames(problem, match, truth);
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < right.size(); ++i)
-          count += right[i] && in_map.count(problem.names[i]) > 0;
-        if (questions == 0) {
-          right_at_once = count;
-          fitness_at_once = match.best().fitness;
-          if (show_names) {
-            std::cerr << "floor " << seed << ": ";
-            show(std::cerr, building, problem, params.fitness, match, truth);
-          }
-        }
-        if (count == in_map.size() || questions == found.map.places.size()) break;
-        // The place that tells most; if all answers agree, that of the least certain name.
-        Id place = 0;
-        if (const auto question = mostInformativeQuestion(problem, match)) {
-          place = question->place;
-        } else {
-          double least = 1.0;
-          for (const NameUncertainty& u : nameUncertainties(problem, params, match)) {
-            if (u.place == 0 || u.drop >= least) continue;
-            least = u.drop;
-            place = u.place;
-          }
-        }
-        if (place == 0) break;
-        ++questions;
-        const auto answer = truth.find(place);
-        if (answer == truth.end())
-          constraints.unnamed.push_back(place);
-        else
-          constraints.confirmed.emplace_back(place, answer->second);
-      }
-      names += in_map.size();
-      at_once += right_at_once;
-      all_questions += questions;
-      whole += questions == 0;
-      // Rooms that the map has no place for, because gr2to joined them to another.
-      lost += building.places.size() - in_map.size();
-      if (building.places.size() == in_map.size()) {
-        whole_map_names += in_map.size();
-        whole_map_right += right_at_once;
-      }
-      records.push_back({{"seed", seed},
-                         {"told", building.places.size()},
-                         {"places", found.map.places.size()},
-                         {"in_map", in_map.size()},
-                         {"right_at_once", right_at_once},
-                         {"questions", questions},
-                         {"fitness", fitness_at_once}});
-      progress.update(static_cast<std::size_t>(k + 1));
-    }
-    std::cout << floors << " floors, " << names << " names: " << at_once << " right at once ("
-              << std::lround(1000.0 * static_cast<double>(at_once) /
-                             static_cast<double>(std::max<std::size_t>(1, names))) /
-                     10.0
-              << " %), " << whole << " floors without a question, " << all_questions
-              << " questions until all are right\n";
-    return nlohmann::json{{"names", names},
-                          {"right_at_once", at_once},
-                          {"names_without_place", lost},
-                          {"names_in_whole_maps", whole_map_names},
-                          {"right_in_whole_maps", whole_map_right},
-                          {"questions", all_questions},
-                          {"floors_without_question", whole},
-                          {"floors", records}};
-  });
+  app.add_option("--floors", o.floors, "number of floors");
+  app.add_option("--seed", o.first_seed, "of the first floor");
+  app.add_option("--told-sizes", o.speaker.told_sizes, "share of the sizes that are described");
+  app.add_option("--wrong-sizes", o.speaker.wrong_sizes, "share of those that are half or twice");
+  app.add_option("--confused-sides", o.speaker.confused_sides, "left for right, front for back");
+  app.add_option("--weight-kinds", o.params.fitness.kinds, "corridor or room");
+  app.add_option("--weight-orders", o.params.fitness.orders, "A, then B");
+  app.add_option("--forgotten-edge", o.params.fitness.undescribed_edge_credit, "as of topomerg");
+  app.add_option("--shut-door", o.params.fitness.closed_door_credit, "as of topomerg");
+  app.add_option("--shut-doors", o.closed_doors, "doors that are closed during the mapping");
+  app.add_flag("--thesis-sides", o.thesis_sides, "by centers, spread as described (Eq. 5.7)");
+  app.add_option("--time-limit", o.params.time_limit, "of each search [s]");
+  app.add_option("--know-heading", o.know_heading, "the robot's heading is known");
+  app.add_flag("--show", o.show_names, "names described, true and found, to standard error");
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

@@ -65,18 +65,18 @@ Names officeNames() {
   return names;
 }
 
-TEST(ToldBuildings, OfficeInEnglish) {
+TEST(DescribedBuildings, OfficeInEnglish) {
   EXPECT_EQ(namedRightly(office(), kEastEnd, "office_en.txt", officeNames()), 22);
 }
 
 // As on the day that the routes are driven: no way leads into these rooms on the map.
-TEST(ToldBuildings, OfficeWithTwoDoorsShut) {
+TEST(DescribedBuildings, OfficeWithTwoDoorsClosed) {
   EXPECT_EQ(namedRightly(office({"server room door", "store room door"}), kEastEnd, "office_en.txt",
                          officeNames()),
             22);
 }
 
-TEST(ToldBuildings, OfficeWithThreeDoorsShut) {
+TEST(DescribedBuildings, OfficeWithThreeDoorsClosed) {
   EXPECT_EQ(namedRightly(office({"server room door", "store room door", "library door"}), kEastEnd,
                          "office_en.txt", officeNames()),
             22);
@@ -84,7 +84,7 @@ TEST(ToldBuildings, OfficeWithThreeDoorsShut) {
 
 // A corridor that turns left, told at its west end: five rooms on the right, three on the left,
 // three around the corner.
-TEST(ToldBuildings, FloorAroundACornerInEnglish) {
+TEST(DescribedBuildings, FloorAroundACornerInEnglish) {
   EXPECT_EQ(namedRightly(hyselam_sim::generatePlan(4), {0.8, 4.6, 0.0}, "floor_4_en.txt",
                          {{"corridor", "corridor"},
                           {"room 1", "porter's lodge"},
@@ -101,7 +101,7 @@ TEST(ToldBuildings, FloorAroundACornerInEnglish) {
             12);
 }
 
-TEST(ToldBuildings, FloorAroundACornerInPortuguese) {
+TEST(DescribedBuildings, FloorAroundACornerInPortuguese) {
   EXPECT_EQ(namedRightly(hyselam_sim::generatePlan(7), {0.8, 5.5, 0.0}, "floor_7_pt.txt",
                          {{"corridor", "corredor"},
                           {"room 1", "sala de aula"},
@@ -113,7 +113,7 @@ TEST(ToldBuildings, FloorAroundACornerInPortuguese) {
             7);
 }
 
-TEST(ToldBuildings, OfficeInPortuguese) {
+TEST(DescribedBuildings, OfficeInPortuguese) {
   EXPECT_EQ(namedRightly(office(), kEastEnd, "office_pt.txt",
                          {{"west corridor", "corredor"},
                           {"Renan's office", "sala do Renan"},

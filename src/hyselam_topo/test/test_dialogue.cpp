@@ -17,6 +17,7 @@
 using hyselam::InputError;
 using hyselam::Point2;
 using hyselam::Pose2;
+using hyselam_topo::AskPolicy;
 using hyselam_topo::Dialogue;
 using hyselam_topo::DialogueAction;
 using hyselam_topo::DialogueParams;
@@ -190,7 +191,7 @@ TEST(Dialogue, TheConversationOfSection731) {
   }
 }
 
-TEST(Dialogue, NoToAGlassWallAsksForItsSize) {
+TEST(Dialogue, RejectedGlassWallAsksForItsLength) {
   Visit v;
   v.at(7.2, 1.2, 0.0);  // the door of i-110 is nearer than the glass
   const Reply first = v.say("On your left there is a glass wall.");
@@ -206,7 +207,7 @@ TEST(Dialogue, NoToAGlassWallAsksForItsSize) {
   EXPECT_TRUE(has(v.say("Forget the last wall."), "no such wall"));
 }
 
-TEST(Dialogue, NoToANameAsksForTheRightOne) {
+TEST(Dialogue, RejectedNameAsksForTheRightOne) {
   Visit v;
   describe(&v);
   v.at(9.0, 6.0, 0.0);
@@ -256,7 +257,7 @@ TEST(Dialogue, AsksToConfirmAGuessThatItIsAskedFor) {
   EXPECT_TRUE(has(v.say("Is this " + name + "?"), "No. " + name));
 }
 
-TEST(Dialogue, ForgetsAllThatItWasToldOfTheBuilding) {
+TEST(Dialogue, ForgetsTheWholeDescription) {
   Visit v;
   describe(&v);
   v.say("Forget all names.");
@@ -304,7 +305,7 @@ TEST(Dialogue, AsksForThePlaceThatANewMapFindsItIn) {
   EXPECT_TRUE(visit.at(here.x, here.y, 0.0).sentences.empty());  // once
 }
 
-TEST(Dialogue, AsksForWhatTellsEqualAnswersApart) {
+TEST(Dialogue, AsksForTheNameThatSeparatesEqualAssignments) {
   DialogueParams params;
   params.ask_from_afar = true;
   Visit v(params);
@@ -326,7 +327,7 @@ TEST(Dialogue, AsksForWhatTellsEqualAnswersApart) {
   EXPECT_LT(v.dialogue.match()->equal, before);
 }
 
-TEST(Dialogue, CorrectionsReplaceWhatWasTold) {
+TEST(Dialogue, CorrectionsReplaceStatements) {
   Visit v;
   tellOfGlass(&v);
   v.segment();
@@ -359,7 +360,7 @@ TEST(Dialogue, VirtualPlacesAreAddedAndNamed) {
   EXPECT_TRUE(v.say("Go to the charging station.").has(DialogueAction::Kind::kGo));
 }
 
-TEST(Dialogue, GoesOnAfterARestart) {
+TEST(Dialogue, ContinuesAfterARestart) {
   hyselam::testing::TemporaryDirectory directory;
   const std::string path = directory / "state";
   Visit v;
@@ -391,7 +392,7 @@ TEST(Dialogue, GoesOnAfterARestart) {
   EXPECT_EQ(messageOf("hyselam_dialogue 2 0 0\n"), "f: line 1: only version 1 can be read, not 2");
 }
 
-TEST(Dialogue, SpeaksAsItIsSpokenTo) {
+TEST(Dialogue, AnswersInTheLanguageOfThePerson) {
   Visit v;
   describe(&v);
   v.at(3.0, 6.0, 0.0);
@@ -402,7 +403,7 @@ TEST(Dialogue, SpeaksAsItIsSpokenTo) {
   EXPECT_TRUE(has(v.say("Where are you?"), "I am at"));
 }
 
-TEST(Dialogue, AnythingHeardIsAnswered) {
+TEST(Dialogue, AnswersAnyText) {
   Visit v;
   describe(&v);
   for (const std::string& text :

@@ -68,7 +68,7 @@ void expectAt(const std::optional<GlassWall>& found, const Corridor& c, double f
 
 }  // namespace
 
-TEST(GlassWall, IsFoundOnTheSideThatWasTold) {
+TEST(GlassWall, IsFoundOnTheDescribedSide) {
   Corridor c;
   c.glassOnTheLeft(4.0, 5.35);
   c.glassOnTheRight(5.0, 8.58);
@@ -113,7 +113,7 @@ TEST(GlassWall, IsNotFoundInPlainWallsAndInnerCorners) {
   }
 }
 
-TEST(GlassWall, OfTheLengthThatWasToldIsTakenAfterNo) {
+TEST(GlassWall, AfterNoTheDescribedLengthDecides) {
   Corridor c;
   c.glassOnTheLeft(6.0, 6.9);  // an open door, nearer
   c.glassOnTheLeft(8.0, 10.0);
@@ -134,7 +134,7 @@ TEST(GlassWall, ThinWallsOfALaserMapHaveCornersToo) {
            1.22);
 }
 
-TEST(GlassWall, RefusesWhatMakesNoSense) {
+TEST(GlassWall, RefusesInvalidInput) {
   Corridor c;
   EXPECT_THROW(GlassWallSearch(c.grid, c.at(6.0, 0.0, 0.0), Side::kUnknown), hyselam::InputError);
   EXPECT_THROW(GlassWallSearch(c.grid, c.at(600.0, 0.0, 0.0), Side::kLeft), hyselam::InputError);
@@ -145,7 +145,7 @@ TEST(GlassWall, RefusesWhatMakesNoSense) {
                hyselam::ParameterError);
 }
 
-TEST(GlassWall, DrawnIntoACopyNoWayLeadsThrough) {
+TEST(GlassWall, DrawnWallsBlockEveryPath) {
   for (const double turn : {0.0, 0.4, 0.8, 2.5}) {
     Corridor c({0.0, 0.0, turn});
     c.glassOnTheLeft(6.0, 8.0);

@@ -45,7 +45,7 @@ TEST(ParseDescriptionTool, WritesTheGraph) {
   expectParts(hyselam::testing::fileBytes(dir / "h.json"), {"\"code\": \"too_long\""});
 }
 
-TEST(ParseDescriptionTool, WhatCannotBeUsedEndsWithTwo) {
+TEST(ParseDescriptionTool, UnusableInputEndsWithStatusTwo) {
   const hyselam::testing::TemporaryDirectory dir;
   const std::string out = " --out " + (dir / "h.xml");
   EXPECT_EQ(status(""), 2);

@@ -94,7 +94,7 @@ TEST(PlaceMan, ANameMovesUnlessThePlacesLieSideBySide) {
   EXPECT_EQ(other.find("kitchen"), Ids{2});
 }
 
-TEST(PlaceMan, WhatWasToldStaysWhenTheMapIsSegmentedAgain) {
+TEST(PlaceMan, NamesAndWallsSurviveANewSegmentation) {
   PlaceMan man = twoRooms();
   man.confirm(1, {"kitchen"});
   man.reject(2, {"attic"});
@@ -141,7 +141,7 @@ TEST(PlaceMan, WallsAreDrawnIntoACopy) {
   EXPECT_EQ(grid.at(grid.geometry.cellAt({1.0, 1.5})), hyselam::OccupancyGrid::kFree);
 }
 
-TEST(PlaceMan, RefusesWhatCannotBe) {
+TEST(PlaceMan, RefusesInvalidInput) {
   PlaceMan man = twoRooms();
   EXPECT_THROW(man.addVirtualPlace({50.0, 0.0}, 1.0, {}), InputError);
   EXPECT_THROW(man.addVirtualPlace({1.0, 1.0}, 0.0, {}), InputError);

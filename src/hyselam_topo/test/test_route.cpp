@@ -50,7 +50,7 @@ TEST(Route, ToTheNearestOfSeveral) {
   EXPECT_EQ(leg->places.back(), 2u);
 }
 
-TEST(Route, AClosedDoorIsTakenOnlyIfThereIsNoOther) {
+TEST(Route, TakesAClosedDoorOnlyWithoutAnother) {
   auto map = two_rooms::map();
   map.edges[0].doors[0].state = hyselam_topo::DoorState::kClosed;
   EXPECT_TRUE(planRoute(map, {1.0, 2.5, 0.0}, {2}));
@@ -61,7 +61,7 @@ TEST(Route, AClosedDoorIsTakenOnlyIfThereIsNoOther) {
   EXPECT_EQ(leg->doors, std::vector<Id>{2});
 }
 
-TEST(Route, WithoutADoorOnRecordGoesWherePlacesMeet) {
+TEST(Route, WithoutADoorPassesWherePlacesMeet) {
   auto map = two_rooms::map();
   map.edges[0].doors.clear();
   const auto leg = planRoute(map, {1.0, 2.5, 0.0}, {2});
@@ -70,7 +70,7 @@ TEST(Route, WithoutADoorOnRecordGoesWherePlacesMeet) {
   EXPECT_NEAR(leg->waypoints[0].x, 4.05, 0.1);
 }
 
-TEST(Route, IsNoneWithoutAWay) {
+TEST(Route, NoRouteWithoutAPath) {
   auto map = two_rooms::map();
   EXPECT_FALSE(planRoute(map, {100.0, 0.0, 0.0}, {2})) << "the robot is nowhere";
   EXPECT_FALSE(planRoute(map, {1.0, 1.0, 0.0}, {7})) << "no such place";

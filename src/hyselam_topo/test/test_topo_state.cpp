@@ -49,7 +49,7 @@ TEST(TopoState, HoldsThePlaceInTheDoorwayAndChangesItWellInside) {
   EXPECT_FALSE(state.robot().in_doorway);
 }
 
-TEST(TopoState, BelievesAPlaceInWhichItStays) {
+TEST(TopoState, AcceptsAPlaceAfterSettleTime) {
   TopoState state;
   state.update(kMap, 0.0, {3.8, 1.5, 0.0});
   state.update(kMap, 1.0, {4.3, 1.5, 0.0});
@@ -59,7 +59,7 @@ TEST(TopoState, BelievesAPlaceInWhichItStays) {
   EXPECT_EQ(state.robot().place, 2u);
 }
 
-TEST(TopoState, NoDoorwayHoldsARobotThatWasCarriedAway) {
+TEST(TopoState, NoDoorwayHoldsAKidnappedRobot) {
   TopoState state;
   state.update(kMap, 0.0, {1.0, 1.5, 0.0});
   state.update(kMap, 0.1, {4.3, 1.5, 0.0});
@@ -111,7 +111,7 @@ TEST(PlacePose, LiesInsideFarFromTheWallsAndLooksInside) {
   EXPECT_NEAR(pose->covariance[8], std::pow(hyselam::kPi, 2) / 3.0, 1e-9);
 }
 
-TEST(PlacePose, OfAPlaceThatIsNotThereIsNone) {
+TEST(PlacePose, NoneOfAPlaceThatDoesNotExist) {
   EXPECT_FALSE(hyselam_topo::placePose(kMap, 7));
   auto told = kMap;
   told.places.push_back({});

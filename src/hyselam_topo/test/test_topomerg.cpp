@@ -96,7 +96,7 @@ TEST(TopoMergFitness, TermsOfEquation52ByHand) {
   EXPECT_NEAR(0.0, heading, 1e-12);
 }
 
-TEST(TopoMergFitness, WeightsOfWhatIsNotToldDropOut) {
+TEST(TopoMergFitness, WeightsOfWhatIsNotDescribedDropOut) {
   Small s;
   s.building.places[1].area.reset();
   for (auto& c : s.building.connections) c.side = Side::kUnknown;
@@ -105,7 +105,7 @@ TEST(TopoMergFitness, WeightsOfWhatIsNotToldDropOut) {
   EXPECT_NEAR(0.5 * 2 / 3 + 0.5 * 2 / 3, fitness(p, {}, {0, 1, -1}), 1e-12);
 }
 
-TEST(TopoMergFitness, SidesAreSpreadInTheOrderTold) {
+TEST(TopoMergFitness, SidesAreSpreadInTheDescribedOrder) {
   DescribedBuilding b;
   for (Id id = 1; id <= 6; ++id) b.places.push_back(told(id, "p" + std::to_string(id)));
   b.connections = {connection(1, 2, Side::kLeft, 0), connection(1, 3, Side::kLeft, 1),
@@ -158,7 +158,7 @@ TEST(TopoMergFitness, OneNameForSeveralPlaces) {
   EXPECT_NEAR((4.0 - off) / 4, fitness(p, {}, {0, 1, 2, 1}), 1e-12);
 }
 
-TEST(TopoMergFitness, ForgottenDoorsMayCostLess) {
+TEST(TopoMergFitness, UndescribedDoorsMayCostLess) {
   Small s;
   s.map.edges.push_back(mapEdge(2, 3));
   normalise(&s.map);
@@ -171,7 +171,7 @@ TEST(TopoMergFitness, ForgottenDoorsMayCostLess) {
 
 /// A corridor (1) along x with doors to rooms 2 and 3 on its left; room 4 has a wall on its right,
 /// but no door, and 5 is far away.
-TEST(TopoMergFitness, WallsMayHideShutDoors) {
+TEST(TopoMergFitness, WallsMayHideClosedDoors) {
   AugmentedTopologicalMap map;
   map.places = {mapPlace(1, 5, 0, 20), mapPlace(2, 2, 3, 12), mapPlace(3, 6, 3, 12),
                 mapPlace(4, 3, -3, 12), mapPlace(5, 30, 3, 12)};
@@ -384,7 +384,7 @@ TEST(TopoMergExact, LargeFloorsAreNoWorseThanTheTruth) {
   }
 }
 
-TEST(TopoMergExact, StopsInTimeAndTellsTheGap) {
+TEST(TopoMergExact, StopsInTimeAndReportsTheGap) {
   const Instance in = floor(1, 40, 60, {});
   const MatchProblem problem = compile(in);
   SolverParams params;
@@ -399,7 +399,7 @@ TEST(TopoMergExact, StopsInTimeAndTellsTheGap) {
   EXPECT_GE(match.best().fitness + match.gap, fitness(problem, {}, truth) - 1e-9);
 }
 
-TEST(TopoMergTreeSearch, TriesNothingAgainWhenTimeIsUp) {
+TEST(TopoMergTreeSearch, StopsRevisitsWhenTimeIsUp) {
   const Scenario s;
   SolverParams params = tableRun(1.0, 1.0, 0.0, 0.0);  // many equally good choices
   const PlaceAssignment all = treeSearch(s.problem, params);
@@ -409,7 +409,7 @@ TEST(TopoMergTreeSearch, TriesNothingAgainWhenTimeIsUp) {
   EXPECT_LT(first.nodes, all.nodes);
 }
 
-TEST(TopoMergExact, SameInputSameAnswer) {
+TEST(TopoMergExact, SameInputSameAssignment) {
   const MatchProblem problem = compile(floor(5, 10, 15, {}));
   SolverParams params;
   params.keep_within = 0.005;

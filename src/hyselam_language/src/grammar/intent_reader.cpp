@@ -31,7 +31,7 @@ void addPatterns(const GrammarNode& value, const PatternContext& context, Compil
   for (const std::string& pattern : value.texts()) {
     try {
       intent->patterns.push_back(compilePattern(pattern, context, grammar));
-    } catch (const std::invalid_argument& e) {
+    } catch (const PatternError& e) {
       value.fail("pattern '" + pattern + "': " + e.what());
     }
   }

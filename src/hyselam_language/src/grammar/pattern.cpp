@@ -24,7 +24,7 @@ class Compiler {
   Automaton compile(const std::string& pattern) {
     const int end = whole(pattern, 0, 0);
     automaton_.accept = end;
-    if (reachableByNothing(0, end)) throw std::invalid_argument("it matches nothing at all");
+    if (reachableByNothing(0, end)) throw PatternError("it matches nothing at all");
     findFirstWords();
     findNeededWords();
     return std::move(automaton_);
@@ -32,7 +32,7 @@ class Compiler {
 
  private:
   int newState() {
-    if (automaton_.states.size() >= kMaxStates) throw std::invalid_argument("it is too large");
+    if (automaton_.states.size() >= kMaxStates) throw PatternError("it is too large");
     automaton_.states.emplace_back();
     return static_cast<int>(automaton_.states.size()) - 1;
   }
@@ -45,14 +45,14 @@ class Compiler {
 
   /// A text of its own: a pattern, an entry of a macro or class.
   int whole(const std::string& text, int from, int depth) {
-    if (depth > kMaxDepth) throw std::invalid_argument("macros contain one another");
+    if (depth > kMaxDepth) throw PatternError("macros contain one another");
     std::size_t at = 0;
     const int end = alternatives(text, &at, from, '\0', depth);
     return end;
   }
 
   int anyOf(const std::vector<std::string>& texts, int from, int depth) {
-    if (texts.empty()) throw std::invalid_argument("there are no alternatives");
+    if (texts.empty()) throw PatternError("there are no alternatives");
     std::vector<int> ends;
     ends.reserve(texts.size());
     for (const std::string& text : texts) {
@@ -79,8 +79,8 @@ class Compiler {
     }
     const char here = *at < text.size() ? text[*at] : '\0';
     if (here != close) {
-      throw std::invalid_argument(close == '\0' ? "'" + std::string(1, here) + "' closes nothing"
-                                                : "'" + std::string(1, close) + "' is missing");
+      throw PatternError(close == '\0' ? "'" + std::string(1, here) + "' closes nothing"
+                                       : "'" + std::string(1, close) + "' is missing");
     }
     if (close != '\0') ++*at;
     return joined(ends);
@@ -89,7 +89,7 @@ class Compiler {
   std::string upTo(const std::string& text, std::size_t* at, char close) {
     const std::size_t end = text.find(close, *at);
     if (end == std::string::npos) {
-      throw std::invalid_argument("'" + std::string(1, close) + "' is missing");
+      throw PatternError("'" + std::string(1, close) + "' is missing");
     }
     std::string inside = text.substr(*at, end - *at);
     *at = end + 1;
@@ -117,7 +117,7 @@ class Compiler {
         ++*at;
         state = slot(upTo(text, at, '}'), state, depth);
       } else if (c == ',') {
-        throw std::invalid_argument("commas are never part of a pattern");
+        throw PatternError("commas are never part of a pattern");
       } else if (kSpecial.find(c) != std::string::npos) {
         return state;
       } else {
@@ -135,7 +135,7 @@ class Compiler {
     if (macro != context_.macros.end()) return anyOf(macro->second, state, depth + 1);
     const auto word_class = context_.classes.find(name);
     if (word_class == context_.classes.end()) {
-      throw std::invalid_argument("there is no macro or word class '" + name + "'");
+      throw PatternError("there is no macro or word class '" + name + "'");
     }
     std::vector<std::string> all;
     for (const auto& [value, texts] : word_class->second) {
@@ -152,7 +152,7 @@ class Compiler {
       return static_cast<int>(automaton_.slots.size()) - 1;
     }
     if (found->type != slot.type) {
-      throw std::invalid_argument("slot '" + slot.name + "' has two types");
+      throw PatternError("slot '" + slot.name + "' has two types");
     }
     return static_cast<int>(found - automaton_.slots.begin());
   }
@@ -196,7 +196,7 @@ class Compiler {
     }
     const std::size_t colon = text.find(':');
     if (colon == std::string::npos || colon == 0) {
-      throw std::invalid_argument("'{" + text + "}' must be {slot:type} or {slot=value}");
+      throw PatternError("'{" + text + "}' must be {slot:type} or {slot=value}");
     }
     SlotType type{text.substr(0, colon), text.substr(colon + 1), false};
     if (!type.type.empty() && type.type.back() == '+') {
@@ -218,7 +218,7 @@ class Compiler {
       for (const std::string& separator : context_.list_separators) {
         const int behind = whole(separator, step(end, EdgeKind::kSkip), depth + 1);
         if (reachableByNothing(end, behind)) {
-          throw std::invalid_argument("a separator of lists matches nothing at all");
+          throw PatternError("a separator of lists matches nothing at all");
         }
         edge(behind, {EdgeKind::kSkip, begin, -1, -1});
       }
@@ -226,7 +226,7 @@ class Compiler {
       edge(end, {EdgeKind::kComma, begin, -1, -1});
       return step(end, EdgeKind::kSkip);
     }
-    if (type.is_list) throw std::invalid_argument("only names make lists, not '" + type.type + "'");
+    if (type.is_list) throw PatternError("only names make lists, not '" + type.type + "'");
     if (type.type == "count") return step(state, EdgeKind::kCount, slotNumber(type));
     if (type.type == "number") return step(state, EdgeKind::kNumber, slotNumber(type));
     const auto& quantities = grammar_->quantities;
@@ -236,7 +236,7 @@ class Compiler {
     }
     const auto word_class = context_.classes.find(type.type);
     if (word_class == context_.classes.end()) {
-      throw std::invalid_argument("there is no type '" + type.type + "' of slots");
+      throw PatternError("there is no type '" + type.type + "' of slots");
     }
     return entries(word_class->second, slotNumber(type), state, depth);
   }

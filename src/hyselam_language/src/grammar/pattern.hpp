@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,12 @@ struct PatternContext {
   std::map<std::string, std::map<std::string, std::vector<std::string>>> references;
 };
 
-/// Throws std::invalid_argument with the reason. Adds words and values to the grammar.
+/// Why a pattern cannot be compiled; grammar files add their name, line and key.
+struct PatternError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// @throws PatternError with the reason. Adds words and values to the grammar.
 Automaton compilePattern(const std::string& pattern, const PatternContext& context,
                          CompiledGrammar* grammar);
 

@@ -92,6 +92,38 @@ struct Walls {
   }
 };
 
+/// A cell that passes the corner test.
+struct Corner {
+  Cell cell;
+  double free = 0.0;      ///< angle around it [rad]
+  double nearness = 0.0;  ///< distance from the robot [cells]
+};
+
+/// The faces of one post pass the test in many cells: the sharpest one stands for it. The nearest
+/// first.
+std::vector<Cell> sharpestOfPosts(std::vector<Corner> found, int corner_cells) {
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Corner& a, const Corner& b) { return a.nearness < b.nearness; });
+  std::vector<std::vector<Corner>> posts;
+  for (const Corner& c : found) {
+    const auto post = std::find_if(posts.begin(), posts.end(), [&](const auto& p) {
+      return std::hypot(c.cell.x - p[0].cell.x, c.cell.y - p[0].cell.y) <= corner_cells;
+    });
+    if (post == posts.end()) {
+      posts.push_back({c});
+    } else {
+      post->push_back(c);
+    }
+  }
+  std::vector<Cell> corners;
+  for (const auto& p : posts) {
+    const auto sharpest = std::max_element(
+        p.begin(), p.end(), [](const Corner& a, const Corner& b) { return a.free < b.free; });
+    corners.push_back(sharpest->cell);
+  }
+  return corners;
+}
+
 }  // namespace
 
 void GlassWallParams::describe(hyselam::ParameterVisitor& visit) {
@@ -151,11 +183,6 @@ GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2
   // At its far end two neighbouring beams are a cell apart.
   const int beams = 1 + static_cast<int>(std::ceil(params.aperture * range));
   const double first = in_grid.theta + direction - 0.5 * params.aperture;
-  struct Corner {
-    Cell cell;
-    double free = 0.0;
-    double nearness = 0.0;
-  };
   std::vector<Corner> found;
   for (int i = 0; i < beams; ++i) {
     const double angle = first + params.aperture * i / (beams - 1);
@@ -171,38 +198,27 @@ GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2
       found.push_back({*hit, free, std::hypot(hit->x + 0.5 - from.x, hit->y + 0.5 - from.y)});
     }
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Corner& a, const Corner& b) { return a.nearness < b.nearness; });
-  // The faces of one post pass the test in many cells: the sharpest one stands for it.
-  std::vector<std::vector<Corner>> posts;
-  for (const Corner& c : found) {
-    const auto post = std::find_if(posts.begin(), posts.end(), [&](const auto& p) {
-      return std::hypot(c.cell.x - p[0].cell.x, c.cell.y - p[0].cell.y) <= params.corner_cells;
-    });
-    if (post == posts.end()) {
-      posts.push_back({c});
-    } else {
-      post->push_back(c);
-    }
-  }
-  std::vector<Cell> corners;
-  for (const auto& p : posts) {
-    const auto sharpest = std::max_element(
-        p.begin(), p.end(), [](const Corner& a, const Corner& b) { return a.free < b.free; });
-    corners.push_back(sharpest->cell);
-    corners_.push_back(g.center(sharpest->cell));
-  }
+  const std::vector<Cell> corners = sharpestOfPosts(std::move(found), params.corner_cells);
+  for (const Cell& cell : corners) corners_.push_back(g.center(cell));
   const double post = 0.5 * params.corner_cells + 1.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
+  joinCorners([&](std::size_t i, std::size_t j) {
+    return walls.nothingBetween(corners[i], corners[j], post);
+  });
+}
+
+void GlassWallSearch::joinCorners(const std::function<bool(std::size_t, std::size_t)>& is_free) {
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const auto distanceTo = [&](std::size_t j) {
+      return distanceBetween(corners_[i], corners_[j]);
+    };
     std::vector<std::size_t> partners;
-    for (std::size_t j = 0; j < corners.size(); ++j) {
-      const double length = distanceBetween(corners_[i], corners_[j]);
-      if (j == i || length < params.min_length || length > params.max_length) continue;
-      if (walls.nothingBetween(corners[i], corners[j], post)) partners.push_back(j);
+    for (std::size_t j = 0; j < corners_.size(); ++j) {
+      if (j == i || distanceTo(j) < params_.min_length || distanceTo(j) > params_.max_length)
+        continue;
+      if (is_free(i, j)) partners.push_back(j);
     }
-    std::stable_sort(partners.begin(), partners.end(), [&](std::size_t a, std::size_t b) {
-      return distanceBetween(corners_[i], corners_[a]) < distanceBetween(corners_[i], corners_[b]);
-    });
+    std::stable_sort(partners.begin(), partners.end(),
+                     [&](std::size_t a, std::size_t b) { return distanceTo(a) < distanceTo(b); });
     for (const std::size_t j : partners) {
       const GlassWall wall{corners_[i], corners_[j]};
       const bool known = std::any_of(pairs_.begin(), pairs_.end(), [&](const GlassWall& o) {

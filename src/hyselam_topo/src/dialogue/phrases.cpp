@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
@@ -15,77 +17,87 @@ namespace {
 
 using hyselam::InputError;
 
-/// All phrases and what may be filled into them.
+/// All phrases and the words that may be filled into them.
+constexpr std::pair<const char*, const char*> kPhrases[] = {
+    {"at_unknown", ""},
+    {"at_code", "code"},
+    {"at_named", "code names"},
+    {"in_doorway", ""},
+    {"perhaps", "name"},
+    {"ask_confirm", "names"},
+    {"ask_confirm_there", "code names"},
+    {"ask_also", "known names name"},
+    {"ask_name", ""},
+    {"ask_name_there", "code"},
+    {"named", "code names"},
+    {"moved_name", "code"},
+    {"rejected", "names"},
+    {"forgot_names", "places"},
+    {"no_names", "places"},
+    {"forgot_all", ""},
+    {"no_place_here", ""},
+    {"wait", ""},
+    {"done", ""},
+    {"found", "found told confirmed"},
+    {"not_found", "names"},
+    {"several", "number names"},
+    {"no_map", ""},
+    {"cannot_match", "reason"},
+    {"issue", "text reason"},
+    {"notice", "text reason"},
+    {"taken_down", ""},
+    {"ask_wall", "wall distance side length"},
+    {"ask_wall_length", "wall"},
+    {"no_corners", "side wall"},
+    {"wall_added", "wall"},
+    {"wall_forgotten", "wall"},
+    {"no_wall", ""},
+    {"no_grid", ""},
+    {"ask_radius", ""},
+    {"virtual_added", "code"},
+    {"not_possible", "reason"},
+    {"going", "places"},
+    {"no_way", "place"},
+    {"door_closed", ""},
+    {"unknown_place", "name"},
+    {"no_previous", ""},
+    {"following", ""},
+    {"stopped", ""},
+    {"turning", "side"},
+    {"cancelled", ""},
+    {"yes", ""},
+    {"no", ""},
+    {"where_is", "name code length"},
+    {"where_is_here", "name code"},
+    {"where_is_no_way", "name code"},
+    {"way", "place length places"},
+    {"next_to", "place places"},
+    {"next_to_nothing", "place"},
+    {"opposite", "place places"},
+    {"on_side", "side places"},
+    {"nothing_on_side", "side"},
+    {"size", "place area"},
+    {"size_unknown", "place"},
+    {"places", "count places"},
+    {"help", ""},
+    {"hello", ""},
+    {"welcome", ""},
+    {"not_understood", "text reason"},
+    {"nothing_asked", ""},
+    {"nobody_answers", ""},
+    {"cannot_do", ""}};
+
 const std::map<std::string, std::set<std::string>>& knownPhrases() {
-  static const std::map<std::string, std::set<std::string>> kKnown{
-      {"at_unknown", {}},
-      {"at_code", {"code"}},
-      {"at_named", {"code", "names"}},
-      {"in_doorway", {}},
-      {"perhaps", {"name"}},
-      {"ask_confirm", {"names"}},
-      {"ask_confirm_there", {"code", "names"}},
-      {"ask_also", {"known", "names", "name"}},
-      {"ask_name", {}},
-      {"ask_name_there", {"code"}},
-      {"named", {"code", "names"}},
-      {"moved_name", {"code"}},
-      {"rejected", {"names"}},
-      {"forgot_names", {"places"}},
-      {"no_names", {"places"}},
-      {"forgot_all", {}},
-      {"no_place_here", {}},
-      {"wait", {}},
-      {"done", {}},
-      {"found", {"found", "told", "confirmed"}},
-      {"not_found", {"names"}},
-      {"several", {"number", "names"}},
-      {"no_map", {}},
-      {"cannot_match", {"reason"}},
-      {"issue", {"text", "reason"}},
-      {"notice", {"text", "reason"}},
-      {"taken_down", {}},
-      {"ask_wall", {"wall", "distance", "side", "length"}},
-      {"ask_wall_length", {"wall"}},
-      {"no_corners", {"side", "wall"}},
-      {"wall_added", {"wall"}},
-      {"wall_forgotten", {"wall"}},
-      {"no_wall", {}},
-      {"no_grid", {}},
-      {"ask_radius", {}},
-      {"virtual_added", {"code"}},
-      {"not_possible", {"reason"}},
-      {"going", {"places"}},
-      {"no_way", {"place"}},
-      {"door_closed", {}},
-      {"unknown_place", {"name"}},
-      {"no_previous", {}},
-      {"following", {}},
-      {"stopped", {}},
-      {"turning", {"side"}},
-      {"cancelled", {}},
-      {"yes", {}},
-      {"no", {}},
-      {"where_is", {"name", "code", "length"}},
-      {"where_is_here", {"name", "code"}},
-      {"where_is_no_way", {"name", "code"}},
-      {"way", {"place", "length", "places"}},
-      {"next_to", {"place", "places"}},
-      {"next_to_nothing", {"place"}},
-      {"opposite", {"place", "places"}},
-      {"on_side", {"side", "places"}},
-      {"nothing_on_side", {"side"}},
-      {"size", {"place", "area"}},
-      {"size_unknown", {"place"}},
-      {"places", {"count", "places"}},
-      {"help", {}},
-      {"hello", {}},
-      {"welcome", {}},
-      {"not_understood", {"text", "reason"}},
-      {"nothing_asked", {}},
-      {"nobody_answers", {}},
-      {"cannot_do", {}}};
-  return kKnown;
+  static const auto known = [] {
+    std::map<std::string, std::set<std::string>> all;
+    for (const auto& [key, words] : kPhrases) {
+      std::istringstream list(words);
+      std::set<std::string>& slots = all[key];
+      for (std::string word; list >> word;) slots.insert(word);
+    }
+    return all;
+  }();
+  return known;
 }
 
 /// The words in braces. Throws with the reason if a brace is left open.
@@ -93,7 +105,7 @@ std::set<std::string> slotsOf(const std::string& text) {
   std::set<std::string> slots;
   for (std::size_t i = text.find('{'); i != std::string::npos; i = text.find('{', i + 1)) {
     const std::size_t end = text.find('}', i);
-    if (end == std::string::npos) throw std::invalid_argument("a brace is not closed");
+    if (end == std::string::npos) throw std::runtime_error("a brace is not closed");
     slots.insert(text.substr(i + 1, end - i - 1));
   }
   return slots;
@@ -171,10 +183,10 @@ Phrases Phrases::fromYaml(const std::string& source, const std::string& yaml) {
     try {
       for (const std::string& slot : slotsOf(text)) {
         if (knownPhrases().at(key).count(slot) == 0) {
-          throw std::invalid_argument("nothing is known for '{" + slot + "}'");
+          throw std::runtime_error("nothing is known for '{" + slot + "}'");
         }
       }
-    } catch (const std::invalid_argument& e) {
+    } catch (const std::runtime_error& e) {
       reader.fail("phrases/" + key, e.what());
     }
   }

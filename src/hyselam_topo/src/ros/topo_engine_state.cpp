@@ -101,7 +101,7 @@ void TopoEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   addValue(status, "places", dialogue_.map().places.size());
   addValue(status, "names confirmed", confirmed);
   addValue(status, "names guessed", guessed);
-  addValue(status, "told walls", dialogue_.places().walls().size());
+  addValue(status, "described walls", dialogue_.places().walls().size());
   addValue(status, "place", dialogue_.robot().place);
   addValue(status, "in doorway", dialogue_.robot().in_doorway);
   addValue(status, "waits for an answer", dialogue_.question().kind != Question::Kind::kNone);

@@ -15,6 +15,7 @@ namespace {
 
 using hyselam_topo::DescribedBuilding;
 using hyselam_topo::DescriptionIssue;
+using hyselam_topo::ParsedText;
 using hyselam_topo::Slot;
 using hyselam_topo::TextRange;
 using hyselam_topo::Utterance;
@@ -112,6 +113,78 @@ json issueOf(const DescriptionIssue& issue) {
           {"reason", issue.reason}};
 }
 
+struct Options {
+  std::string text, out, language = "auto";
+  std::vector<std::string> grammars;
+};
+
+json resultOf(const ParsedText& parsed, const DescribedBuilding& building,
+              const std::vector<DescriptionIssue>& issues, double microseconds) {
+  json result;
+  result["language"] = parsed.language;
+  result["places"] = placesOf(building);
+  result["connections"] = json::array();
+  for (const auto& each : building.connections) {
+    result["connections"].push_back({{"from", each.from},
+                                     {"to", each.to},
+                                     {"side", toString(each.side)},
+                                     {"order", each.order}});
+  }
+  result["relations"] = json::array();
+  for (const auto& each : building.relations) {
+    json relation = {{"kind", toString(each.kind)}, {"a", each.a}, {"b", each.b}};
+    if (each.c != 0) relation["c"] = each.c;
+    result["relations"].push_back(relation);
+  }
+  result["robot_place"] = maybe(building.robot_place);
+  result["place_count"] = maybe(building.place_count);
+  result["understood"] = json::array();
+  result["not_understood"] = json::array();
+  for (const Utterance& utterance : parsed.utterances) {
+    if (utterance.understood()) {
+      result["understood"].push_back(understood(utterance));
+    } else {
+      result["not_understood"].push_back(notUnderstood(utterance));
+    }
+  }
+  result["issues"] = json::array();
+  for (const DescriptionIssue& issue : issues) result["issues"].push_back(issueOf(issue));
+  result["microseconds"] = microseconds;
+  return result;
+}
+
+json run(const Options& o) {
+  using Clock = std::chrono::steady_clock;
+  const Input input = inputOf(o.text);
+  const hyselam_topo::TopoParser parser =
+      o.grammars.empty() ? hyselam_topo::TopoParser()
+                         : hyselam_topo::TopoParser({hyselam_topo::Grammar::load(o.grammars)});
+  hyselam_topo::ParseOptions options;
+  options.language = o.language;
+  options.max_bytes = kMaxBytes;
+  const auto begin = Clock::now();
+  const ParsedText parsed = parser.parse(input.text, options);
+  hyselam_topo::DescriptionBuilder builder(parser);
+  const std::vector<DescriptionIssue> issues = builder.add(parsed);
+  const double microseconds =
+      std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  const bool unusable =
+      !parsed.utterances.empty() &&
+      (parsed.utterances[0].reason_code == "not_text" || input.text.size() > options.max_bytes);
+  if (unusable) throw hyselam::InputError(input.name, "", parsed.utterances[0].reason);
+  const DescribedBuilding& building = builder.building();
+  hyselam_topo::saveXml(o.out, building);
+  std::cout << parsed.language << ": " << building.places.size() << " places, "
+            << building.connections.size() << " connections, " << building.relations.size()
+            << " relations -> " << o.out << '\n';
+  for (const Utterance& utterance : parsed.utterances)
+    if (!utterance.understood())
+      std::cout << "not understood: " << utterance.text << " (" << utterance.reason << ")\n";
+  for (const DescriptionIssue& issue : issues)
+    std::cout << "not taken down: " << issue.text << " (" << issue.reason << ")\n";
+  return resultOf(parsed, building, issues, microseconds);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -120,78 +193,15 @@ int main(int argc, char** argv) {
       "and where the robot is. Sentences that are not understood are listed with the reason; the "
       "status is 0 all the same.",
       "parse_description");
-  std::string argument, out, language = "auto";
-  std::vector<std::string> grammars;
-  app.add_option("TEXT", argument,
+  Options options;
+  app.add_option("TEXT", options.text,
                  "what was said; the file of that name, if there is one; - for the standard input")
       ->required();
-  app.add_option("--out", out, "XML of the described building")->required();
-  app.add_option("--language", language, "en, pt, or auto: the one that understands most")
+  app.add_option("--out", options.out, "XML of the described building")->required();
+  app.add_option("--language", options.language, "en, pt, or auto: the one that understands most")
       ->capture_default_str();
-  app.add_option("--grammar", grammars,
+  app.add_option("--grammar", options.grammars,
                  "grammar files (YAML) of one language instead of the shipped ones; later ones add "
                  "to the first");
-
-  return hyselam::runTool(argc, argv, app, [&] {
-    using Clock = std::chrono::steady_clock;
-    const Input input = inputOf(argument);
-    const hyselam_topo::TopoParser parser =
-        grammars.empty() ? hyselam_topo::TopoParser()
-                         : hyselam_topo::TopoParser({hyselam_topo::Grammar::load(grammars)});
-    hyselam_topo::ParseOptions options;
-    options.language = language;
-    options.max_bytes = kMaxBytes;
-    const auto begin = Clock::now();
-    const hyselam_topo::ParsedText parsed = parser.parse(input.text, options);
-    hyselam_topo::DescriptionBuilder builder(parser);
-    const std::vector<DescriptionIssue> issues = builder.add(parsed);
-    const double microseconds =
-        std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-    const bool unusable =
-        !parsed.utterances.empty() &&
-        (parsed.utterances[0].reason_code == "not_text" || input.text.size() > options.max_bytes);
-    if (unusable) throw hyselam::InputError(input.name, "", parsed.utterances[0].reason);
-    const DescribedBuilding& building = builder.building();
-    hyselam_topo::saveXml(out, building);
-
-    json result;
-    result["language"] = parsed.language;
-    result["places"] = placesOf(building);
-    result["connections"] = json::array();
-    for (const auto& each : building.connections) {
-      result["connections"].push_back({{"from", each.from},
-                                       {"to", each.to},
-                                       {"side", toString(each.side)},
-                                       {"order", each.order}});
-    }
-    result["relations"] = json::array();
-    for (const auto& each : building.relations) {
-      json relation = {{"kind", toString(each.kind)}, {"a", each.a}, {"b", each.b}};
-      if (each.c != 0) relation["c"] = each.c;
-      result["relations"].push_back(relation);
-    }
-    result["robot_place"] = maybe(building.robot_place);
-    result["place_count"] = maybe(building.place_count);
-    result["understood"] = json::array();
-    result["not_understood"] = json::array();
-    for (const Utterance& utterance : parsed.utterances) {
-      if (utterance.understood()) {
-        result["understood"].push_back(understood(utterance));
-      } else {
-        result["not_understood"].push_back(notUnderstood(utterance));
-      }
-    }
-    result["issues"] = json::array();
-    for (const DescriptionIssue& issue : issues) result["issues"].push_back(issueOf(issue));
-    result["microseconds"] = microseconds;
-    std::cout << parsed.language << ": " << building.places.size() << " places, "
-              << building.connections.size() << " connections, " << building.relations.size()
-              << " relations -> " << out << '\n';
-    for (const Utterance& utterance : parsed.utterances)
-      if (!utterance.understood())
-        std::cout << "not understood: " << utterance.text << " (" << utterance.reason << ")\n";
-    for (const DescriptionIssue& issue : issues)
-      std::cout << "not taken down: " << issue.text << " (" << issue.reason << ")\n";
-    return result;
-  });
+  return hyselam::runTool(argc, argv, app, [&] { return run(options); });
 }

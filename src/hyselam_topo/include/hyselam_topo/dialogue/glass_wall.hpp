@@ -5,6 +5,7 @@
 // convex corners: the one nearest to the robot, and the next one to it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -54,8 +55,8 @@ class GlassWallSearch {
   /// Between the corner nearest to the robot and the next one to it that it can be joined with; if
   /// it has none, the second nearest, and so on. Not one that was rejected.
   std::optional<GlassWall> likeliest() const;
-  /// The one whose length is nearest to the described one [m]; of equal ones the nearest to the robot.
-  /// Not one that was rejected, unless it fits better by more than 0.3 m.
+  /// The one whose length is nearest to the described one [m]; of equal ones the nearest to the
+  /// robot. Not one that was rejected, unless it fits better by more than 0.3 m.
   std::optional<GlassWall> ofLength(double length) const;
   /// A person has said that there is none.
   void reject(const GlassWall& wall);
@@ -68,6 +69,8 @@ class GlassWallSearch {
   Side side() const { return side_; }
 
  private:
+  /// The walls between two corners, where `is_free` of their numbers.
+  void joinCorners(const std::function<bool(std::size_t, std::size_t)>& is_free);
   bool rejected(const GlassWall& wall) const;
 
   hyselam::Pose2 robot_;
