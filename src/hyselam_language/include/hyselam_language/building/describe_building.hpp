@@ -1,4 +1,4 @@
-// A description as a person would tell it: the way back from DescribedBuilding to text, for
+// A description in the words of a person: from DescribedBuilding back to text, for
 // simulated people and for tests.
 #pragma once
 
@@ -11,10 +11,10 @@ namespace hyselam_topo {
 
 /// Sentences of the grammar's section `say`, in this order: the number of places, the neighbours of
 /// each place as the robot sees them from there, other connections, sizes, parts, kinds that the
-/// names do not tell, aliases, relations, places that nothing else is told of, the robot's place.
+/// names do not imply, aliases, relations, places without any other statement, the robot's place.
 /// TopoParser and DescriptionBuilder make the same description of it again, save for ids, if
 /// - the orders of each place and side are 0, 1, 2, ...,
-/// - the robot is somewhere if any side is told,
+/// - the robot is somewhere if any side is described,
 /// - places at the end of another are connected with it, an area beside length and width is their
 ///   product, and no place is virtual by kind,
 /// - no two places have names that may mean the same (place_names.hpp).

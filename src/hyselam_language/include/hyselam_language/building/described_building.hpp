@@ -1,4 +1,4 @@
-// What a person has told about a building (dos Santos, section 5.1, Fig. 5.5): places with names
+// What a person has described of a building (dos Santos, section 5.1, Fig. 5.5): places with names
 // and sizes, which of them are joined, on which side they lie, and where the robot stood meanwhile.
 // It is G_human of section 5.3; TopoParser makes it from text, TopoMerg matches it with the robot's
 // map.
@@ -22,30 +22,31 @@ enum class Side { kUnknown, kFront, kLeft, kBack, kRight };
 const char* toString(Side side);
 std::optional<Side> sideOf(const std::string& text);
 
-/// A place as people told of it.
+/// A place as people described it.
 struct DescribedPlace {
   Id id = 0;                         ///< unique in the description, never 0
-  std::string name;                  ///< as it was first told, without article: "room I-109"
+  std::string name;                  ///< as first mentioned, without article: "room I-109"
   std::vector<std::string> aliases;  ///< "also known as"
   /// Told or guessed from the name's words ("corridor", "hall"); nothing: not known.
   std::optional<PlaceKind> kind;
   std::optional<double> length;  ///< the first and ...
   std::optional<double> width;   ///< ... the second of "6 by 8 metres"
-  std::optional<double> area;    ///< told as such, or length times width
+  std::optional<double> area;    ///< described as such, or length times width
   /// "divided into six rooms": how many places of a map this one may be made of.
   std::optional<int> parts;
 };
 
-/// The name and the aliases, in the order in which they were told.
+/// The name and the aliases, in the order in which they were mentioned.
 std::vector<std::string> allNamesOf(const DescribedPlace& place);
 
-/// Two joined places: "On your left you have A", told while the robot is in `from`; "in the kitchen
+/// Two joined places: "On your left you have A", said while the robot is in `from`; "in the kitchen
 /// you have the laundry" joins kitchen and laundry without a side.
 struct DescribedConnection {
   Id from = 0;  ///< the place that the side is seen from (the "main vertex" of section 5.3.2)
   Id to = 0;
   Side side = Side::kUnknown;
-  /// Place in the row of those told of the same `from` and side, from 0: "A, then B" gives 0 and 1.
+  /// Place in the row of those described of the same `from` and side, from 0: "A, then B" gives 0
+  /// and 1.
   std::size_t order = 0;
 };
 
@@ -71,9 +72,9 @@ struct DescribedRelation {
 /// The whole description.
 struct DescribedBuilding {
   std::vector<DescribedPlace> places;            ///< in the order of their ids
-  std::vector<DescribedConnection> connections;  ///< at most one between two places, as told
+  std::vector<DescribedConnection> connections;  ///< at most one between two places, as described
   std::vector<DescribedRelation> relations;
-  std::optional<Id> robot_place;  ///< where the robot was told that it is, the last time
+  std::optional<Id> robot_place;  ///< where people last said that the robot is
   /// "This house is divided into six rooms": of how many places, corridors among them, it is made.
   std::optional<int> place_count;
 

@@ -1,6 +1,6 @@
 // Statements, one after another, into the description of a building (the graph of Fig. 5.5), with
 // the context that they need: where the robot is, what "it" means. Corrections replace what was
-// told; what contradicts it is reported and left out.
+// said; what contradicts it is reported and left out.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@
 namespace hyselam_topo {
 
 enum class IssueKind {
-  kContradiction,  ///< something else was told before, and is kept
+  kContradiction,  ///< something else was said before, and is kept
   kAmbiguous,      ///< a name or "it" may mean several places
   kNoContext,      ///< a side without the robot's place, a correction of nothing, "it" of nothing
   kMeaningless,    ///< a place beside itself, more names than announced, a size out of range
@@ -36,20 +36,20 @@ struct DescriptionIssue {
 
 class DescriptionBuilder {
  public:
-  /// The word lists of all the parser's languages tell which names mean the same place.
+  /// The word lists of all the parser's languages decide which names mean the same place.
   explicit DescriptionBuilder(const TopoParser& parser);
 
-  /// Goes on with a description told before.
+  /// Continues an earlier description.
   void continueFrom(DescribedBuilding building);
 
-  /// Whether the intent tells of the building: "neighbours", "size", ...; false for commands.
+  /// Whether the intent describes the building: "neighbours", "size", ...; false for commands.
   static bool handles(const std::string& intent);
 
   /// Takes down one statement; returns what could not be. Others are passed over.
   std::vector<DescriptionIssue> add(const Utterance& utterance);
   std::vector<DescriptionIssue> add(const ParsedText& text);
 
-  /// Where the robot is, known otherwise than by being told; makes the place if it is new.
+  /// Where the robot is, known otherwise than from a description; makes the place if it is new.
   void setRobotPlace(const std::string& name);
 
   const DescribedBuilding& building() const { return building_; }

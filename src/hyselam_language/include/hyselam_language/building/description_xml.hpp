@@ -1,4 +1,4 @@
-// What people have told about a building, as XML. The schema is
+// The description of a building as XML. The schema is
 // share/hyselam_topo/xsd/description.xsd.
 #pragma once
 

@@ -1,6 +1,6 @@
 // A language as data: sentence patterns, word classes, number words, units, what may be a name.
-// The files are share/hyselam_language/grammar/*.yaml; their format is told in their comments and
-// in the README. The library carries the shipped ones within itself.
+// The files are share/hyselam_language/grammar/*.yaml; their format is explained in their comments
+// and in the README. The library carries the shipped ones within itself.
 #pragma once
 
 #include <memory>
@@ -30,7 +30,7 @@ class Grammar {
     UtteranceKind kind = UtteranceKind::kStatement;
     std::vector<std::string> examples;
     bool only_expected = false;  ///< understood only when ParseOptions::expected names it
-    bool refused = false;        ///< recognised in order to tell why it is not understood
+    bool refused = false;        ///< recognized in order to say why it is not understood
   };
 
   /// One grammar of one or several sources of one language: later ones add word classes, macros,

@@ -36,7 +36,7 @@ struct SaidName {
 struct Slot {
   std::string name;              ///< as in the pattern: {places:place+} has the name "places"
   std::string type;              ///< "place", "length", "count", or the word class: "side"
-  std::vector<SaidName> names;   ///< of names: one, or those of a list in the order told
+  std::vector<SaidName> names;   ///< of names: one, or those of a list in their order
   std::optional<double> number;  ///< of numbers and quantities, in SI units
   bool unit_assumed = false;     ///< no unit was said with the number
   std::string word;              ///< of word classes: the entry, e.g. "left"
@@ -54,7 +54,7 @@ struct Utterance {
   UtteranceKind kind = UtteranceKind::kNotUnderstood;
   std::string intent;       ///< name in the grammar: "neighbours", "go_to"; "" not understood
   std::vector<Slot> slots;  ///< in the order said
-  bool correction = false;  ///< "no, ...", "sorry, ...": replaces what was told before
+  bool correction = false;  ///< "no, ...", "sorry, ...": replaces what was said before
   std::vector<Spelling> spelling;
   std::string text;  ///< what was said
   TextRange range;   ///< where it stands

@@ -19,10 +19,10 @@ inline std::string shown(double value) {
   return hyselam::formatNumber(std::round(value * 1000.0) / 1000.0);
 }
 
-/// Sorted lines, the same for descriptions that differ in ids and in the order of telling only:
+/// Sorted lines, the same for descriptions that differ in ids and in the order of statements only:
 ///   at corridor | corridor left A > B | kitchen joins laundry | A size 6x8 | A area 48 | A length
 ///   6 A aka B > C | A parts 3 | A kind corridor (with `kinds`) | count 6 | A next_to B | A between
-///   B | C | place A (nothing else told)
+///   B | C | place A (nothing else described)
 inline std::vector<std::string> outline(const DescribedBuilding& building, bool kinds = false) {
   std::vector<std::string> lines;
   std::map<Id, bool> told;

@@ -38,7 +38,7 @@ struct QuestionParams {
   double tolerance = 0.01;
 };
 
-/// The place whose name tells the assignments apart best: that with the largest entropy of its name
+/// The place whose name separates the assignments best: that with the largest entropy of its name
 /// over the assignments of `match`, which should have been kept within a few tolerances
 /// (keep_within). Of equally good places that with the smallest id. Nothing if all assignments
 /// agree.

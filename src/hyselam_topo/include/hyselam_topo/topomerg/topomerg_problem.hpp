@@ -24,7 +24,7 @@ struct MatchConstraints {
   std::vector<Id> unnamed;                   ///< places of the map that nobody has described
 };
 
-/// Where the robot was when the person spoke. If it knows its place and the description tells the
+/// Where the robot was when the person spoke. If it knows its place and the description says the
 /// robot's place, the two are confirmed to be the same.
 struct MatchObserver {
   std::optional<Id> place;  ///< of the map
