@@ -149,9 +149,10 @@ void oneWord(benchmark::State& state, Place place, const char* baseline) {
       static_cast<double>(s.text.bytes()) / static_cast<double>(s.text.words());
   state.counters["index_bytes_per_word"] =
       static_cast<double>(s.matcher.bytes()) / static_cast<double>(s.text.words());
-  if (baseline != nullptr)
+  if (baseline != nullptr) {
     state.SetLabel(std::string("baseline=") + baseline + "/" + std::to_string(words) +
                    "/iterations:3");
+  }
 }
 
 void OneWord_Circuit(benchmark::State& state) {
@@ -187,11 +188,12 @@ void OneLap_Circuit(benchmark::State& state) {
     writer.write(text);
     matcher.update();
   }
-  for (auto _ : state)
+  for (auto _ : state) {
     for (int i = 0; i < 24; ++i) {
       writer.write(text);
       benchmark::DoNotOptimize(matcher.update().size());
     }
+  }
 }
 BENCHMARK(OneLap_Circuit)->Iterations(40)->Unit(benchmark::kMillisecond);
 
@@ -204,8 +206,9 @@ void CompareWords(benchmark::State& state) {
   const Syllables newest = text.syllables(0);
   for (auto _ : state) {
     int matches = 0;
-    for (WordIndex i = 0; i < 10000; ++i)
+    for (WordIndex i = 0; i < 10000; ++i) {
       matches += wordsMatch(newest, text.syllables(i), tolerance);
+    }
     benchmark::DoNotOptimize(matches);
   }
   state.counters["comparisons_per_100ms"] =
@@ -272,12 +275,16 @@ void OneWord_Building_Scan(benchmark::State& state) {
       int n = 0;
       for (; n < params.min_n.back() && !layer.empty(); ++n) {
         std::set<std::pair<std::size_t, std::size_t>> next;
-        for (const auto& [a, b] : layer)
-          for (std::size_t p : words[a].P)
-            for (std::size_t q : words[b].P)
+        for (const auto& [a, b] : layer) {
+          for (std::size_t p : words[a].P) {
+            for (std::size_t q : words[b].P) {
               if (words[q].last < words[p].first &&
-                  transcription::equal(words[p], words[q], params.tolerance))
+                  transcription::equal(words[p], words[q], params.tolerance)) {
                 next.insert({p, q});
+              }
+            }
+          }
+        }
         layer = std::move(next);
       }
       matches += n >= params.min_n.back();

@@ -51,8 +51,9 @@ BENCHMARK(PairOfPlaces_Context)->Unit(benchmark::kMicrosecond);
 
 void PairOfPlaces_Words(benchmark::State& state) {
   std::vector<ngram_slam::Syllables> words;
-  for (unsigned i = 0; i < 997; ++i)
+  for (unsigned i = 0; i < 997; ++i) {
     words.push_back({static_cast<int>(i % 5), 5 + i * 37 % 90, static_cast<float>(i % 3) - 1.0F});
+  }
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(

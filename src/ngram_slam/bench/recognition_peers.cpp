@@ -35,11 +35,13 @@ struct Compared {
 };
 
 nlohmann::json run(const Options& o) {
-  if (!o.references.empty() && o.references.size() != o.logs.size())
+  if (!o.references.empty() && o.references.size() != o.logs.size()) {
     throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
+  }
   if (o.queries < 1) throw hyselam::ParameterError("--queries", o.queries, ">= 1");
-  if (!(o.stations.stride > 0.0))
+  if (!(o.stations.stride > 0.0)) {
     throw hyselam::ParameterError("--stride", o.stations.stride, "> 0 [m]");
+  }
   std::vector<Station> stations;
   std::vector<std::optional<hyselam::Pose2>> poses;
   std::vector<std::uint32_t> runs;
@@ -82,7 +84,7 @@ nlohmann::json run(const Options& o) {
   for (std::size_t k = 0; k < queries.size(); ++k) {
     const std::uint32_t query = queries[k];
     for (std::uint32_t older = 0; older < query; ++older) {
-      if (!truth->verdict(query, older, Direction::kSame)) continue;
+      if (!truth->isTrue(query, older, Direction::kSame)) continue;
       all.push_back({distance(query, older), query, older});
     }
     progress.update(k + 1);
@@ -101,9 +103,9 @@ nlohmann::json run(const Options& o) {
       f.pairs += with.pairs - before.pairs;
       f.true_pairs += with.true_pairs - before.true_pairs;
       f.revisits += with.revisits - before.revisits;
-      f.recognised += with.recognised - before.recognised;
+      f.recognized += with.recognized - before.recognized;
       f.passes += with.passes - before.passes;
-      f.recognised_passes += with.recognised_passes - before.recognised_passes;
+      f.recognized_passes += with.recognized_passes - before.recognized_passes;
     }
     return f;
   };

@@ -28,13 +28,14 @@ class Way {
  public:
   explicit Way(std::uint64_t seed) : seed_(seed) {
     hyselam::Rng rng(seed);
-    for (auto& corridor : corridors_)
+    for (auto& corridor : corridors_) {
       for (std::size_t i = 0; i < corridor.size(); ++i) {
         Stretch& s = corridor[i];
         s.density = (rng.below(4) * 2 + i % 2 + 0.5) / 8.0;
         s.size = 8 + rng.below(i % 2 == 0 ? 30 : 14);
         s.turn = i % 2 == 0 || rng.below(2) == 0 ? 0.0 : rng.below(2) == 0 ? 1.57 : -1.57;
       }
+    }
   }
   DensityObservation next() {
     while (at_ == visit_.size()) write();
@@ -85,8 +86,9 @@ class Way {
 
 double residentMb() {
   std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
+  for (std::string line; std::getline(status, line);) {
     if (line.rfind("VmRSS:", 0) == 0) return std::stod(line.substr(6)) / 1024.0;
+  }
   return 0.0;
 }
 
@@ -115,8 +117,9 @@ nlohmann::json run(const Options& o) {
   const ObservationStore& known = loaded.corpus.observations;
   for (std::uint32_t i = 0; i < known.size(); ++i) {
     const DensityObservation expected = way.next();
-    if (std::abs(known.soft(i) - expected.soft) > 1e-4 || known.stamp(i) != expected.stamp)
+    if (std::abs(known.soft(i) - expected.soft) > 1e-4 || known.stamp(i) != expected.stamp) {
       throw std::runtime_error("observation " + std::to_string(i) + " is not what was saved");
+    }
   }
   NgramRecognizer r(o.improved ? NgramRecognizerParams::improved() : NgramRecognizerParams{},
                     std::move(loaded.corpus));

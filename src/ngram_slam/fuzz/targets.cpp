@@ -70,33 +70,37 @@ void slamState(const std::uint8_t* data, std::size_t size) {
           same.matches.size() == state.matches.size());
 }
 
-/// What is behind the first line of a forest of semantic classes, whose checksum is put right:
-/// refused, or a class for any features, and saved and loaded as the same.
+/// The trees of a forest of semantic classes, whose head and checksum are put right: refused, or a
+/// class for any features, and saved and loaded as the same.
 void semanticForest(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
-  const std::string body = hyselam::testing::textOf(data, size);
-  const std::string head = "ngram_slam semantic forest 2, " + std::to_string(kSemanticFeatures) +
-                           " features, crc32 " + hyselam::crc32Text(body) + "\n";
-  const auto verdictsOf = [](const SemanticForest& forest) {
-    std::vector<SemanticVerdict> verdicts;
+  std::string text =
+      "ngram_slam semantic forest 3\ncommand: \ndata: \nin sample: \nout of sample: \nfeatures:";
+  for (const SemanticFeature& feature : kSemanticFeatureList) {
+    text += std::string(" ") + feature.name;
+  }
+  text += "\n" + hyselam::testing::textOf(data, size);
+  text += "crc32 " + hyselam::crc32Text(text) + "\n";
+  const auto predictionsOf = [](const SemanticForest& forest) {
+    std::vector<SemanticPrediction> predictions;
     for (const double value : {0.0, -1.0, 0.5, 1e6}) {
       SemanticFeatures features{};
       features.length = value;
-      verdicts.push_back(forest.classify(features));
+      predictions.push_back(forest.classify(features));
     }
-    return verdicts;
+    return predictions;
   };
   try {
-    const SemanticForest forest = SemanticForest::load(folder.put("forest.txt", head + body));
-    const auto verdicts = verdictsOf(forest);
-    for (const SemanticVerdict& verdict : verdicts) {
-      require(verdict.confidence >= 0.0 && verdict.confidence <= 1.0);
+    const SemanticForest forest = SemanticForest::load(folder.put("forest.txt", text));
+    const auto predictions = predictionsOf(forest);
+    for (const SemanticPrediction& prediction : predictions) {
+      require(prediction.confidence >= 0.0 && prediction.confidence <= 1.0);
     }
     forest.save(folder.path("again.txt"));
-    const auto again = verdictsOf(SemanticForest::load(folder.path("again.txt")));
-    for (std::size_t i = 0; i < verdicts.size(); ++i) {
-      require(again[i].semantic_class == verdicts[i].semantic_class &&
-              again[i].confidence == verdicts[i].confidence);
+    const auto again = predictionsOf(SemanticForest::load(folder.path("again.txt")));
+    for (std::size_t i = 0; i < predictions.size(); ++i) {
+      require(again[i].semantic_class == predictions[i].semantic_class &&
+              again[i].confidence == predictions[i].confidence);
     }
   } catch (const hyselam::InputError&) {
   }

@@ -44,8 +44,9 @@ inline void write(ngram_slam::WordLattice& text, std::size_t positions, hyselam:
         w.angle = static_cast<float>(
             hyselam::normalizeAngle(rng.below(angles) * hyselam::kPi / 2 + rng.uniform(-0.1, 0.1)));
       }
-      if (!real.empty() && w.density_class == real.back().density_class)
+      if (!real.empty() && w.density_class == real.back().density_class) {
         w.density_class = (w.density_class + 1) % static_cast<int>(classes);
+      }
       real.push_back(w);
       text.push(w);
     }

@@ -119,7 +119,7 @@ DensityObservation at(double way, double density) {
 
 }  // namespace
 
-TEST(ObservationSensor, fullDensitiesAreTheSameBothWays) {
+TEST(ObservationSensor, fullDensitiesAreTheSameInBothDirections) {
   const double soft = differenceBothWays(WordDensity::kSoft);
   const double full = differenceBothWays(WordDensity::kFull);
   EXPECT_GT(soft, 0.01);  // round the corner lies what the robot does not see yet
@@ -127,7 +127,7 @@ TEST(ObservationSensor, fullDensitiesAreTheSameBothWays) {
   EXPECT_LT(full, soft / 3.0);
 }
 
-TEST(ObservationSensor, looksBackLaterButAtTheSameSpots) {
+TEST(ObservationSensor, fullDensitiesComeLaterForTheSameSpots) {
   const auto now = drive(false, 0.0), later = drive(false, 3.0);
   ASSERT_EQ(now.size(), later.size());
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -146,7 +146,7 @@ TEST(ObservationSensor, looksBackLaterButAtTheSameSpots) {
   EXPECT_EQ(told + sensor.finish().size(), now.size());
 }
 
-TEST(ObservationSensor, keepsWhatWaitsWhenTheScanAfterAJumpIsRefused) {
+TEST(ObservationSensor, keepsPendingObservationsWhenTheScanAfterAJumpIsRefused) {
   ObservationSensorParams params;
   params.look_back = 3.0;
   const auto drive = [&](bool refused) {
@@ -169,7 +169,7 @@ TEST(ObservationSensor, keepsWhatWaitsWhenTheScanAfterAJumpIsRefused) {
   EXPECT_EQ(drive(true), 21u);
 }
 
-TEST(ObservationSensor, refusesWhatIsNoLookBack) {
+TEST(ObservationSensor, refusesALookBackOutOfRange) {
   ObservationSensorParams params;
   for (double bad : {-1.0, 21.0, std::nan("")}) {
     params.look_back = bad;
@@ -177,7 +177,7 @@ TEST(ObservationSensor, refusesWhatIsNoLookBack) {
   }
 }
 
-TEST(Classes, hysteresisKeepsTheClassNearItsBounds) {
+TEST(DensityClasses, hysteresisKeepsTheClassNearItsBounds) {
   const DensityClasses classes = DensityClasses::uniform(4);
   EXPECT_EQ(classes.classOf(0.26, 0, 0.02), 0);
   EXPECT_EQ(classes.classOf(0.28, 0, 0.02), 1);
@@ -185,19 +185,22 @@ TEST(Classes, hysteresisKeepsTheClassNearItsBounds) {
   EXPECT_EQ(classes.classOf(0.22, 1, 0.02), 0);
   EXPECT_EQ(classes.classOf(0.99, 3, 0.02), 3);
   EXPECT_EQ(classes.classOf(0.6, 77, 0.02), 2);  // an id that is gone
-  for (double d = 0.0; d <= 1.0; d += 0.01)
-    for (int before = 0; before < 4; ++before)
+  for (double d = 0.0; d <= 1.0; d += 0.01) {
+    for (int before = 0; before < 4; ++before) {
       EXPECT_EQ(classes.classOf(d, before, 0.0), classes.classOf(d)) << d;
+    }
+  }
 }
 
-TEST(Classes, hysteresisSparesWordsWhereADensityTrembles) {
+TEST(DensityClasses, hysteresisAvoidsWordsFromNoiseAtABound) {
   NgramRecognizerParams params;
   params.min_region = 1;
   const auto words = [&](double hysteresis) {
     params.class_hysteresis = hysteresis;
     NgramRecognizer r(params);
-    for (int i = 0; i < 400; ++i)
+    for (int i = 0; i < 400; ++i) {
       r.add(at(0.1 * i, (i < 200 ? 0.25 : 0.6) + (i % 2 == 0 ? 0.005 : -0.005)));
+    }
     r.endRun();
     return r.text().positions();
   };
@@ -205,7 +208,7 @@ TEST(Classes, hysteresisSparesWordsWhereADensityTrembles) {
   EXPECT_EQ(words(0.02), 2u);
 }
 
-TEST(LanguageModel, probabilitiesOfEverythingAddUp) {
+TEST(LanguageModel, probabilitiesSumToOne) {
   // Sizes that no two of match each other, angles likewise: chances are a distribution.
   LanguageModel model;
   hyselam::Rng rng(5);
@@ -225,9 +228,11 @@ TEST(LanguageModel, probabilitiesOfEverythingAddUp) {
   for (bool after : {false, true}) {
     const Syllables* context = after ? &before : nullptr;
     double sum = 0.0;
-    for (int c = 0; c < 3; ++c)
-      for (int s = 0; s < 3; ++s)
+    for (int c = 0; c < 3; ++c) {
+      for (int s = 0; s < 3; ++s) {
         for (int a = 0; a < 2; ++a) sum += model.chanceOfMatch(word(c, s, a), context, tolerance);
+      }
+    }
     // In a context each of the 18 leaves one pair out that it takes for its own.
     if (after) {
       EXPECT_GT(sum, 1.0 - 18.0 / 100.0);
@@ -239,17 +244,18 @@ TEST(LanguageModel, probabilitiesOfEverythingAddUp) {
   EXPECT_NEAR(model.chanceOfMatch(word(1, 1, 1), &before, tolerance), 1.0 / 18, 0.03);
 }
 
-TEST(LanguageModel, knowsWhatFollowsWhat) {
+TEST(LanguageModel, learnsBigrams) {
   LanguageModel model;
   const WordTolerance tolerance;
   const Syllables a{0, 50, 0.0f}, b{1, 20, 1.5f}, c{0, 200, 0.0f}, d{1, 20, -1.5f};
   const Syllables* before = nullptr;
-  for (int i = 0; i < 40; ++i)
+  for (int i = 0; i < 40; ++i) {
     for (const Syllables* w : {&a, &b, &c, &d}) {
       model.add(*w, before);
       if (before != nullptr) model.addPair(*before, *w);
       before = w;
     }
+  }
   EXPECT_GT(model.chanceOfMatch(b, &a, tolerance), 0.9);
   EXPECT_LT(model.chanceOfMatch(d, &a, tolerance), 0.05);
   EXPECT_NEAR(model.chanceOfMatch(b, nullptr, tolerance), 0.25, 0.05);
@@ -258,7 +264,7 @@ TEST(LanguageModel, knowsWhatFollowsWhat) {
   EXPECT_LT(model.chanceOfMatch({7, 33, 0.0f}, &a, tolerance), 0.01);
 }
 
-TEST(LanguageModel, costsTheSameWhateverItHasRead) {
+TEST(LanguageModel, queryTimeDoesNotDependOnTheTextLength) {
   LanguageModel model;
   hyselam::Rng rng(2);
   Syllables before{0, 5, 0.0f};
@@ -273,24 +279,25 @@ TEST(LanguageModel, costsTheSameWhateverItHasRead) {
   EXPECT_EQ(model.bytes(), bytes);
 }
 
-TEST(MatchConfidence, tellsRareWordsFromCommonOnes) {
+TEST(MatchConfidence, isHigherForRareWordsThanForCommonOnes) {
   // Two stretches of six words come back: one of corridors that are all alike, one of odd rooms.
   WordLattice text(1);
   ObservationStore observations;
   const WordTolerance tolerance;
-  MatchConfidence judge(text, observations, tolerance, WordDensity::kSoft);
+  MatchConfidence confidence(text, observations, tolerance, WordDensity::kSoft);
   Position learnt = 0;
   const auto push = [&](Syllables w) {
     text.push(w);
-    judge.learn(learnt++);
+    confidence.learn(learnt++);
   };
   const std::vector<Syllables> common = {{0, 40, 0.0f}, {1, 12, 0.0f}, {0, 41, 0.0f},
                                          {1, 12, 0.0f}, {0, 39, 0.0f}, {1, 13, 0.0f}};
   const std::vector<Syllables> odd = {{2, 8, 1.5f},  {0, 17, 0.0f}, {3, 90, -1.5f},
                                       {1, 55, 0.4f}, {4, 20, 3.0f}, {2, 150, 0.0f}};
   for (const auto& w : odd) push(w);
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < 20; ++i) {
     for (const auto& w : common) push(w);
+  }
   const Position end_of_common = text.positions() - 1;
   for (const auto& w : odd) push(w);
   const auto chanceOf = [&](Position newer, Position older) {
@@ -298,8 +305,8 @@ TEST(MatchConfidence, tellsRareWordsFromCommonOnes) {
     m.newer = text.realWord(newer);
     m.older = text.realWord(older);
     m.n = 6;
-    MatchConfidence fresh = judge;
-    fresh.judge(m, false);
+    MatchConfidence fresh = confidence;
+    fresh.estimate(m, false);
     EXPECT_LT(m.probability, 0.0);  // not asked for
     return m.chance;
   };
@@ -307,7 +314,7 @@ TEST(MatchConfidence, tellsRareWordsFromCommonOnes) {
   EXPECT_LT(chanceOf(text.positions() - 1, 5), 1e-3);
 }
 
-TEST(Judgement, leavesTheProbableMatchesOfAWayThatComesBackBothWays) {
+TEST(MatchConfidence, keepsTheProbableMatchesInBothDirections) {
   // A way of regions of random densities and lengths, then the same, then the same backwards.
   hyselam::Rng rng(11);
   std::vector<double> densities;
@@ -355,15 +362,15 @@ TEST(Judgement, leavesTheProbableMatchesOfAWayThatComesBackBothWays) {
   EXPECT_GE(right, (told[Direction::kSame] + told[Direction::kReverse]) * 9 / 10);
 }
 
-TEST(Judgement, improvedParametersAreValid) {
+TEST(NgramRecognizerParams, improvedOnesAreValid) {
   const NgramRecognizerParams p = NgramRecognizerParams::improved();
   p.validate();
-  EXPECT_TRUE(p.judges());
-  EXPECT_FALSE(NgramRecognizerParams{}.judges());
+  EXPECT_TRUE(p.needsConfidence());
+  EXPECT_FALSE(NgramRecognizerParams{}.needsConfidence());
   EXPECT_EQ(p.matcher.min_n.size(), static_cast<std::size_t>(p.levels));
 }
 
-TEST(Judgement, refusesBadParameters) {
+TEST(NgramRecognizerParams, refusesValuesOutOfRange) {
   const auto refused = [](auto change) {
     NgramRecognizerParams p;
     change(p);
@@ -374,12 +381,12 @@ TEST(Judgement, refusesBadParameters) {
   refused([](NgramRecognizerParams& p) { p.max_chance = -1.0; });
   refused([](NgramRecognizerParams& p) { p.max_chance = std::nan(""); });
   refused([](NgramRecognizerParams& p) { p.min_probability = 1.1; });
-  refused([](NgramRecognizerParams& p) { p.judge.misfit_floor = 0.0; });
-  refused([](NgramRecognizerParams& p) { p.judge.max_words = 0; });
-  refused([](NgramRecognizerParams& p) { p.judge.bias = std::nan(""); });
+  refused([](NgramRecognizerParams& p) { p.confidence.misfit_floor = 0.0; });
+  refused([](NgramRecognizerParams& p) { p.confidence.max_words = 0; });
+  refused([](NgramRecognizerParams& p) { p.confidence.bias = std::nan(""); });
 }
 
-TEST(Alignment, inReverseLiesTheOlderPartBackwards) {
+TEST(Alignment, alignsBackwardsInReverse) {
   ObservationStore store;
   hyselam::Rng rng(4);
   std::vector<double> densities;

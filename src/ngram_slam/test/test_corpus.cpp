@@ -85,10 +85,11 @@ Corpus someCorpus() {
 std::vector<std::vector<double>> matchesOf(const std::vector<NgramMatch>& matches,
                                            const WordLattice& text) {
   std::vector<std::vector<double>> out;
-  for (const NgramMatch& m : matches)
+  for (const NgramMatch& m : matches) {
     out.push_back({static_cast<double>(text.last(m.newer)), static_cast<double>(text.last(m.older)),
                    static_cast<double>(text.level(m.older)), static_cast<double>(m.levels),
                    static_cast<double>(m.n)});
+  }
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -136,7 +137,7 @@ TEST(Alignment, findsTheShiftOfEquation53) {
             "");
 }
 
-TEST(Alignment, equalsTheEquationWrittenDown) {
+TEST(Alignment, equalsATranscriptionOfEquation53) {
   ObservationStore store;
   hyselam::Rng rng(10);
   for (int i = 0; i < 2000; ++i) {
@@ -168,7 +169,7 @@ TEST(Alignment, equalsTheEquationWrittenDown) {
   }
 }
 
-TEST(NgramRecognizer, recognisesTheSecondLapAndAlignsIt) {
+TEST(NgramRecognizer, recognizesTheSecondLapAndAlignsIt) {
   const Circuit c;
   NgramRecognizer r(circuitParams());
   hyselam::Rng rng(1);
@@ -210,7 +211,7 @@ TEST(NgramRecognizer, recognisesTheSecondLapAndAlignsIt) {
   EXPECT_LT(error / static_cast<double>(pairs), 10.0);  // less than a metre
 }
 
-TEST(NgramRecognizer, aRequantisationBuildsEverythingAgain) {
+TEST(NgramRecognizer, newClassesRebuildWordsAndMatches) {
   NgramRecognizerParams p = circuitParams();
   p.learn_classes = true;
   NgramRecognizer learning(p);
@@ -232,12 +233,14 @@ TEST(NgramRecognizer, aRequantisationBuildsEverythingAgain) {
   WordLattice text(p.levels, [&](std::uint32_t b, std::uint32_t e) {
     return angleVariation(learning.observations(), b, e);
   });
-  for (std::uint32_t i = 0; i < learning.observations().size(); ++i)
+  for (std::uint32_t i = 0; i < learning.observations().size(); ++i) {
     if (const auto region =
-            regions.add(learning.classes().classOf(learning.observations().soft(i))))
+            regions.add(learning.classes().classOf(learning.observations().soft(i)))) {
       text.push({region->density_class, region->size(),
                  static_cast<float>(
                      angleVariation(learning.observations(), region->begin, region->end))});
+    }
+  }
   NgramMatcher matcher(text, p.matcher);
   ASSERT_EQ(text.words(), learning.text().words());
   EXPECT_EQ(matchesOf(matcher.update(), text), matchesOf(told, learning.text()));
@@ -270,7 +273,7 @@ TEST(Corpus, isTheSameAfterSavingAndLoading) {
   EXPECT_EQ(CorpusFile::load(dir / "empty").observations.size(), 0u);
 }
 
-TEST(Corpus, aRunAfterLoadingMatchesAsIfThereHadBeenNoPause) {
+TEST(Corpus, aRunAfterLoadingMatchesAsWithoutARestart) {
   for (const bool learn : {false, true}) {
     SCOPED_TRACE(learn ? "learnt classes" : "uniform classes");
     const TemporaryDirectory dir;
@@ -296,7 +299,7 @@ TEST(Corpus, aRunAfterLoadingMatchesAsIfThereHadBeenNoPause) {
   }
 }
 
-TEST(Corpus, everyDamageIsToldAndNamed) {
+TEST(Corpus, refusesDamageAnywhereAndNamesThePlace) {
   const TemporaryDirectory dir;
   CorpusFile::save(dir / "good", someCorpus());
   const std::string good = fileBytes(dir / "good");
@@ -324,7 +327,7 @@ TEST(Corpus, everyDamageIsToldAndNamed) {
   EXPECT_NE(messageOf<InputError>([&] { CorpusFile::save("/nowhere/at/all", Corpus{}); }), "");
 }
 
-TEST(Corpus, whoIsKilledWhileSavingLosesNothing) {
+TEST(Corpus, keepsTheOldFileWhenKilledWhileSaving) {
   const TemporaryDirectory dir;
   const std::string path = dir / "text";
   const Corpus corpus = someCorpus();

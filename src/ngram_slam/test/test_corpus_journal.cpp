@@ -87,7 +87,7 @@ TEST(CorpusJournal, holdsWhatAWholeFileHolds) {
   EXPECT_EQ(bytesOf(CorpusJournal(folder / "c").load().corpus, folder), bytesOf(corpus, folder));
 }
 
-TEST(CorpusJournal, losesOnlyABlockThatIsCutOffAndGoesOn) {
+TEST(CorpusJournal, losesOnlyATruncatedBlockAndContinues) {
   const TemporaryDirectory folder;
   Growing g(folder);
   g.save(100);
@@ -111,7 +111,7 @@ TEST(CorpusJournal, losesOnlyABlockThatIsCutOffAndGoesOn) {
   }
 }
 
-TEST(CorpusJournal, refusesDamageAndTellsWhere) {
+TEST(CorpusJournal, refusesDamageAndNamesThePlace) {
   const TemporaryDirectory folder;
   Growing g(folder);
   g.save(100);
@@ -137,7 +137,7 @@ TEST(CorpusJournal, refusesDamageAndTellsWhere) {
             std::string::npos);
 }
 
-TEST(CorpusJournal, isWrittenWholeWhereTheDiskIsNotAsItWasLeft) {
+TEST(CorpusJournal, isWrittenWholeWhenTheFilesWereChanged) {
   const auto afterwards =
       [](const std::function<void(const TemporaryDirectory&, Growing&)>& meddle) {
         const TemporaryDirectory folder;
@@ -180,7 +180,7 @@ TEST(CorpusJournal, isNotUsedWithAnotherFile) {
   EXPECT_EQ(CorpusJournal(folder / "c").load().corpus.observations.size(), 130u);
 }
 
-TEST(CorpusJournal, isFoldedIntoTheFileWhenItOutgrowsIt) {
+TEST(CorpusJournal, isMergedIntoTheFileWhenItOutgrowsIt) {
   const TemporaryDirectory folder;
   Growing g(folder);
   g.save(100);
@@ -197,7 +197,7 @@ TEST(CorpusJournal, isFoldedIntoTheFileWhenItOutgrowsIt) {
   EXPECT_LT(most, 2 * CorpusJournal::kSmallJournal + g.journal.fileBytes());
 }
 
-TEST(CorpusJournal, failsWithoutHarmWhereItCannotWrite) {
+TEST(CorpusJournal, failsWithoutLossWhereItCannotWrite) {
   const TemporaryDirectory folder;
   CorpusJournal journal(folder / "missing/c");
   EXPECT_EQ(journal.load().corpus.observations.size(), 0u);

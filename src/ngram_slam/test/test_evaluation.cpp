@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <sstream>
 
@@ -52,20 +51,20 @@ ScoreParams narrow() {
 
 }  // namespace
 
-TEST(Truth, ofACorridorTravelledToAndFroAndToAgain) {
+TEST(RecognitionTruth, findsThePassesOfACorridorInBothDirections) {
   const RecognitionTruth truth(toAndFro(), std::vector<std::uint32_t>(30, 0), narrow());
   // Where the robot turns the last five observations do not count: 10..12 repeat 9..7.
   for (std::uint32_t i = 0; i < 30; ++i) {
     EXPECT_EQ(truth.revisit(i), i >= 20) << i;
     EXPECT_EQ(truth.revisitAnyDirection(i), i >= 12) << i;
   }
-  EXPECT_EQ(truth.verdict(25, 5, Direction::kSame), true);
-  EXPECT_EQ(truth.verdict(5, 25, Direction::kSame), true);  // in whichever order
-  EXPECT_EQ(truth.verdict(25, 5, Direction::kReverse), false);
-  EXPECT_EQ(truth.verdict(25, 14, Direction::kReverse), true);
-  EXPECT_EQ(truth.verdict(25, 14, Direction::kSame), false);
-  EXPECT_EQ(truth.verdict(25, 6, Direction::kSame), false);  // 1 m off
-  EXPECT_EQ(truth.verdict(25, 21, Direction::kSame), std::nullopt);
+  EXPECT_EQ(truth.isTrue(25, 5, Direction::kSame), true);
+  EXPECT_EQ(truth.isTrue(5, 25, Direction::kSame), true);  // in whichever order
+  EXPECT_EQ(truth.isTrue(25, 5, Direction::kReverse), false);
+  EXPECT_EQ(truth.isTrue(25, 14, Direction::kReverse), true);
+  EXPECT_EQ(truth.isTrue(25, 14, Direction::kSame), false);
+  EXPECT_EQ(truth.isTrue(25, 6, Direction::kSame), false);  // 1 m off
+  EXPECT_EQ(truth.isTrue(25, 21, Direction::kSame), std::nullopt);
   // Observation 25 was there twice: once this way, once the other.
   ASSERT_EQ(truth.passesEnd(25) - truth.passesBegin(25), 2u);
   const auto& same = truth.passes()[truth.passesBegin(25)];
@@ -77,7 +76,7 @@ TEST(Truth, ofACorridorTravelledToAndFroAndToAgain) {
   EXPECT_EQ(reverse.first, 14u);
 }
 
-TEST(Score, ofHandMadePairs) {
+TEST(RecognitionScore, countsHandMadePairs) {
   RecognitionScore score = scoreOf(toAndFro(), std::vector<std::uint32_t>(30, 0), narrow());
   EXPECT_EQ(score.figures().precision(), 1.0);
   EXPECT_EQ(score.figures().recall(), 0.0);
@@ -102,7 +101,7 @@ TEST(Score, ofHandMadePairs) {
 }
 
 // A pass ends with the run, even where the next one begins at the same spot.
-TEST(Truth, passesDoNotReachAcrossRuns) {
+TEST(RecognitionTruth, passesDoNotReachAcrossRuns) {
   Poses poses(12, Pose2{});
   const RecognitionTruth truth(poses, {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}, narrow());
   ASSERT_EQ(truth.passesEnd(11) - truth.passesBegin(11), 2u);
@@ -111,17 +110,17 @@ TEST(Truth, passesDoNotReachAcrossRuns) {
   EXPECT_EQ(truth.passes()[truth.passesBegin(11) + 1].last, 7u);
 }
 
-TEST(Truth, refusesWhatIsNoTruth) {
+TEST(RecognitionTruth, refusesInvalidParametersAndLists) {
   ScoreParams params;
   params.distance = 0.0;
   EXPECT_NE(messageOf<hyselam::ParameterError>([&] { RecognitionTruth({}, {}, params); }), "");
   params = {};
   params.heading = 2.0;  // same and opposite would be one
   EXPECT_NE(messageOf<hyselam::ParameterError>([&] { RecognitionTruth({}, {}, params); }), "");
-  EXPECT_THROW(RecognitionTruth({Pose2{}}, {}), std::invalid_argument);
+  EXPECT_THROW(RecognitionTruth({Pose2{}}, {}), hyselam::ParameterError);
 }
 
-TEST(Score, countsAsIfEveryPairWereLookedAt) {
+TEST(RecognitionScore, equalsTheCountOverAllPairs) {
   for (int round = 0; round < 50; ++round) {
     SCOPED_TRACE(round);
     hyselam::Rng rng(77, static_cast<std::uint64_t>(round));
@@ -154,7 +153,7 @@ TEST(Score, countsAsIfEveryPairWereLookedAt) {
     std::map<std::tuple<std::uint32_t, std::uint32_t, Direction>, int> pass_of;
     std::set<Visit> visits, found;
     std::set<std::uint32_t> any, found_any, found_same;
-    for (std::uint32_t a = 0; a < n; ++a)
+    for (std::uint32_t a = 0; a < n; ++a) {
       for (const Direction direction : {Direction::kSame, Direction::kReverse}) {
         int pass = 0;
         std::optional<std::uint32_t> last;
@@ -168,6 +167,7 @@ TEST(Score, countsAsIfEveryPairWereLookedAt) {
           pass_of[{a, b, direction}] = pass;
         }
       }
+    }
     std::set<std::tuple<std::uint32_t, std::uint32_t, Direction>> added;
     std::size_t right = 0;
     for (int k = 0; k < 4000; ++k) {
@@ -190,19 +190,20 @@ TEST(Score, countsAsIfEveryPairWereLookedAt) {
       }));
     };
     std::set<std::uint32_t> revisits;
-    for (const Visit& v : visits)
+    for (const Visit& v : visits) {
       if (std::get<1>(v) == Direction::kSame) revisits.insert(std::get<0>(v));
+    }
     const RecognitionFigures f = score.figures();
     ASSERT_EQ(f.pairs, added.size());
     ASSERT_EQ(f.true_pairs, right);
     ASSERT_EQ(f.revisits, revisits.size());
-    ASSERT_EQ(f.recognised, found_same.size());
+    ASSERT_EQ(f.recognized, found_same.size());
     ASSERT_EQ(f.revisits_any, any.size());
-    ASSERT_EQ(f.recognised_any, found_any.size());
+    ASSERT_EQ(f.recognized_any, found_any.size());
     ASSERT_EQ(f.passes_any, visits.size());
-    ASSERT_EQ(f.recognised_passes_any, found.size());
+    ASSERT_EQ(f.recognized_passes_any, found.size());
     ASSERT_EQ(f.passes, same(visits));
-    ASSERT_EQ(f.recognised_passes, same(found));
+    ASSERT_EQ(f.recognized_passes, same(found));
     std::size_t told = 0;
     score.forEachPair([&](std::uint32_t newer, std::uint32_t older, Direction direction) {
       told += added.count({newer, older, direction});
@@ -228,7 +229,7 @@ class Evaluator : public ::testing::Test {
   }
   int run(const std::string& options) {
     const int status =
-        std::system((std::string(NGRAM_SLAM_TOOLS) + "/evaluate_recognition " + d / "1.bag" +
+        std::system((std::string(HYSELAM_TOOLS) + "/evaluate_recognition " + d / "1.bag" +
                      " --bandwidth 4 " + options + " >" + d / "stdout" + " 2>" + d / "stderr")
                         .c_str());
     errors = fileBytes(d / "stderr");
@@ -259,9 +260,11 @@ TEST_F(Evaluator, tableHasTheFiguresOfSingleRuns) {
     options << "--levels 2 --min-n " << n << ',' << n + 2 << " --size-tolerance "
             << row["size_tolerance"];
     const auto single = json(options.str());
-    for (const char* figure : {"matches", "match_precision", "pairs", "precision", "recall",
-                               "pass_recall", "recall_any_direction", "pass_recall_any_direction"})
+    for (const char* figure :
+         {"matches", "match_precision", "pairs", "precision", "recall", "pass_recall",
+          "recall_any_direction", "pass_recall_any_direction"}) {
       EXPECT_EQ(row[figure], single[figure]) << figure;
+    }
     EXPECT_EQ(row["over_time"].back()[0], single["precision"]);
     EXPECT_EQ(row["over_time"].back()[1], single["recall"]);
     matches.insert(row["matches"].get<int>());
@@ -276,33 +279,41 @@ TEST_F(Evaluator, curveGoesThroughSingleRuns) {
   for (const auto& point : {curve[1], curve[curve.size() / 2], curve.back()}) {
     const auto single =
         json("--levels 1 --min-n " + std::to_string(static_cast<int>(point["threshold"])));
-    for (const char* figure : {"matches", "precision", "recall", "pass_recall"})
+    for (const char* figure : {"matches", "precision", "recall", "pass_recall"}) {
       EXPECT_EQ(point[figure], single[figure]) << figure << ' ' << point["threshold"];
+    }
   }
 }
 
-TEST_F(Evaluator, drawsASimilarityMatrix) {
-  ASSERT_EQ(run("--levels 1 --min-n 4 --similarity " + d / "s.png"), 0) << errors;
-  const cv::Mat picture = cv::imread(d / "s.png");
-  ASSERT_FALSE(picture.empty());
-  std::size_t blue = 0, grey = 0;
-  for (int y = 0; y < picture.rows; ++y)
-    for (int x = 0; x < picture.cols; ++x) {
-      const auto p = picture.at<cv::Vec3b>(y, x);
-      blue += p == cv::Vec3b(170, 90, 20);
-      grey += p == cv::Vec3b(190, 190, 190);
+TEST_F(Evaluator, writesASimilarityMatrix) {
+  ASSERT_EQ(run("--levels 1 --min-n 4 --similarity " + d / "s.json"), 0) << errors;
+  const auto matrix = nlohmann::json::parse(fileBytes(d / "s.json"));
+  const int cells = matrix["observations"].get<int>() / matrix["step"].get<int>() + 1;
+  EXPECT_LE(cells, 1001);
+  const auto& kinds = matrix["cells"];
+  EXPECT_GT(kinds["recognized_same"].size(), 300u);
+  EXPECT_GT(kinds["true_same"].size(), 700u);
+  std::set<nlohmann::json> marked;
+  for (const auto& kind : kinds) {
+    for (const auto& cell : kind) {
+      EXPECT_LE(cell[1], cell[0]);  // earlier observations only
+      EXPECT_LT(cell[0], cells);
+      EXPECT_TRUE(marked.insert(cell).second);  // one kind each
     }
-  // 256 of each are the legend.
-  EXPECT_GT(blue, 600u);
-  EXPECT_GT(grey, 1000u);
+  }
+  ASSERT_EQ(std::system(("/usr/bin/python3 " HYSELAM_PACKAGE_DIR "/../../scripts/plot_similarity " +
+                         d / "s.json " + d / "s.png")
+                            .c_str()),
+            0);
+  EXPECT_EQ(fileBytes(d / "s.png").substr(1, 3), "PNG");
 }
 
-TEST_F(Evaluator, refusesListsThatAreNone) {
+TEST_F(Evaluator, refusesInvalidLists) {
   for (const char* bad : {"x", "0..3", "5..2", "1..", "1,,2", "1..3x"}) {
     EXPECT_EQ(run("--n " + std::string(bad)), 2) << bad;
     EXPECT_NE(errors.find("--n"), std::string::npos) << errors;
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
   }
   EXPECT_EQ(run("--table /nowhere/t.csv"), 2);
-  EXPECT_EQ(run("--similarity /nowhere/s.png"), 2);
+  EXPECT_EQ(run("--similarity /nowhere/s.json"), 2);
 }

@@ -174,9 +174,11 @@ TEST(NgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
       const transcription::AllPairs table(words, k, params.tolerance);
       for (WordIndex a = 0; a < words.size(); ++a) {
         if (words[a].level != 0) continue;
-        for (WordIndex b = 0; b < a; ++b)
-          if (table.at(a, b) >= params.min_n[static_cast<std::size_t>(k - 1)])
+        for (WordIndex b = 0; b < a; ++b) {
+          if (table.at(a, b) >= params.min_n[static_cast<std::size_t>(k - 1)]) {
             expected.emplace(std::make_pair(a, b), std::make_pair(k, table.at(a, b)));
+          }
+        }
       }
     }
     ASSERT_EQ(byPair(found), expected);
@@ -206,8 +208,9 @@ TEST(NgramMatcher, equalsAlgorithm53OnRandomTexts) {
     // Only the newest word: the words before are context.
     const WordIndex newest = text.realWord(text.positions() - 1);
     std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> found;
-    for (const NgramMatch& m : matcher.update())
+    for (const NgramMatch& m : matcher.update()) {
       if (m.newer == newest) found[{m.newer, m.older}] = {m.levels, m.n};
+    }
 
     const auto words = transcription::plainWords(text);
     std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> expected;
@@ -219,8 +222,9 @@ TEST(NgramMatcher, equalsAlgorithm53OnRandomTexts) {
         int& n = longest[static_cast<WordIndex>(g.back().second)];
         n = std::max(n, static_cast<int>(g.size()));
       }
-      for (const auto& [older, n] : longest)
+      for (const auto& [older, n] : longest) {
         expected.emplace(std::make_pair(newest, older), std::make_pair(k, n));
+      }
 
       // The words of the matches, asked for one by one, are the same set.
       std::set<std::vector<std::pair<std::size_t, std::size_t>>> listed;
@@ -230,9 +234,10 @@ TEST(NgramMatcher, equalsAlgorithm53OnRandomTexts) {
                               std::vector<std::pair<std::size_t, std::size_t>> g;
                               for (const WordPair& p : pairs) g.push_back({p.newer, p.older});
                               if (g.size() >= min_n) listed.insert(g);
-                              for (const auto& p : g)
+                              for (const auto& p : g) {
                                 mixed += text.level(static_cast<WordIndex>(p.first)) !=
                                          text.level(static_cast<WordIndex>(p.second));
+                              }
                               return true;
                             });
         const auto chain = longestNgram(text, params.tolerance, {newest, older}, k);
@@ -272,7 +277,7 @@ TEST(NgramMatcher, keepsRunsApart) {
   EXPECT_EQ(write({8, 5}), 0u);  // the newest run is too short by itself
 }
 
-TEST(NgramMatcher, findsARegionAgainBehindADoorThatIsOpenNow) {
+TEST(NgramMatcher, recognizesARegionBehindADoorThatIsNowOpen) {
   // Fig. 5.1: a corridor is one word; with a door open it is three. Level 1 sees through it.
   const std::vector<Syllables> tail = {{1, 30, 0.0f}, {2, 55, 0.0f}, {1, 31, 1.5f}};
   WordLattice text(2);
@@ -303,7 +308,7 @@ TEST(NgramMatcher, findsARegionAgainBehindADoorThatIsOpenNow) {
   EXPECT_EQ(text.level(chain[1].older), 0);
 }
 
-TEST(NgramMatcher, skippedRunsAreSearchedButNotSearching) {
+TEST(NgramMatcher, skippedRunsCanBeMatchedLater) {
   hyselam::Rng rng(8);
   for (int round = 0; round < 200; ++round) {
     WordLattice text(3);
@@ -317,13 +322,14 @@ TEST(NgramMatcher, skippedRunsAreSearchedButNotSearching) {
     const Position begin = text.positions();
     random_texts::write(text, 40, rng);
     std::vector<NgramMatch> expected;
-    for (const NgramMatch& m : all.update())
+    for (const NgramMatch& m : all.update()) {
       if (text.last(m.newer) >= begin) expected.push_back(m);
+    }
     ASSERT_EQ(byPair(late.update()), byPair(expected));
   }
 }
 
-TEST(NgramMatcher, doesNotLookAtWordsThatCannotContinueAGram) {
+TEST(NgramMatcher, doesNotCompareWordsThatCannotContinueAGram) {
   // Words of 60 kinds in random order: grams of 7 words never come back by chance.
   const auto comparisonsPerWord = [](std::size_t positions) {
     hyselam::Rng rng(1);
@@ -362,7 +368,7 @@ TEST(NgramMatcher, followsTheNewestPlacesOfTooMany) {
   }
 }
 
-TEST(NgramMatcher, isExactWhileItMayFollowAll) {
+TEST(NgramMatcher, isExactBelowMaxFollowed) {
   // The same texts with room for few grams and with room for all.
   std::size_t complete_texts = 0, short_texts = 0;
   for (std::uint64_t round = 0; round < 2000; ++round) {

@@ -40,7 +40,7 @@ std::string refusal(const Values& values) {
 
 }  // namespace
 
-TEST(Written, readmeHasEveryParameter) {
+TEST(WrittenWordsParameters, readmeHasEveryParameter) {
   const std::string readme = written("README.md");
   const auto all = defaults();
   EXPECT_GT(all.size(), 25U);
@@ -53,25 +53,25 @@ TEST(Written, readmeHasEveryParameter) {
 
 TEST(WordsParameters, aPresetSetsDefaultsThatCanBeChanged) {
   const WordsServerParams thesis = load({});
-  EXPECT_EQ(thesis.recogniser.matcher.min_n, (std::vector<int>{7, 10, 13}));
-  EXPECT_FALSE(thesis.recogniser.reverse);
+  EXPECT_EQ(thesis.recognizer.matcher.min_n, (std::vector<int>{7, 10, 13}));
+  EXPECT_FALSE(thesis.recognizer.reverse);
   const WordsServerParams improved =
       load({{"preset", "improved"}, {"input", "scan"}, {"bandwidth", 4.0}});
   const NgramRecognizerParams expected = NgramRecognizerParams::improved();
-  EXPECT_EQ(improved.recogniser.matcher.min_n, expected.matcher.min_n);
-  EXPECT_EQ(improved.recogniser.min_probability, expected.min_probability);
-  EXPECT_TRUE(improved.recogniser.reverse && improved.recogniser.with_probability);
-  EXPECT_EQ(improved.recogniser.word_density, WordDensity::kFull);
+  EXPECT_EQ(improved.recognizer.matcher.min_n, expected.matcher.min_n);
+  EXPECT_EQ(improved.recognizer.min_probability, expected.min_probability);
+  EXPECT_TRUE(improved.recognizer.reverse && improved.recognizer.with_probability);
+  EXPECT_EQ(improved.recognizer.word_density, WordDensity::kFull);
   EXPECT_EQ(improved.sensor.look_back, 4.5);
   const WordsServerParams changed =
       load({{"preset", "improved"}, {"input", "scan"}, {"min_probability", 0.5}, {"levels", 5}});
-  EXPECT_EQ(changed.recogniser.min_probability, 0.5);
-  EXPECT_EQ(changed.recogniser.matcher.min_n, (std::vector<int>{3, 3, 3, 3, 3}));
-  EXPECT_EQ(load({{"levels", 4}}).recogniser.matcher.min_n, (std::vector<int>{7, 10, 13, 16}));
-  EXPECT_EQ(load({{"levels", 1}}).recogniser.matcher.min_n, (std::vector<int>{7}));
+  EXPECT_EQ(changed.recognizer.min_probability, 0.5);
+  EXPECT_EQ(changed.recognizer.matcher.min_n, (std::vector<int>{3, 3, 3, 3, 3}));
+  EXPECT_EQ(load({{"levels", 4}}).recognizer.matcher.min_n, (std::vector<int>{7, 10, 13, 16}));
+  EXPECT_EQ(load({{"levels", 1}}).recognizer.matcher.min_n, (std::vector<int>{7}));
 }
 
-TEST(WordsParameters, impossibleOnesAreNamed) {
+TEST(WordsParameters, refusalsNameTheParameter) {
   EXPECT_NE(refusal({{"preset", "improved"}}).find("preset"), std::string::npos);
   EXPECT_NE(refusal({{"look_back", 2.0}}).find("look_back"), std::string::npos);
   EXPECT_NE(refusal({{"max_followed", 0}}).find("max_followed"), std::string::npos);

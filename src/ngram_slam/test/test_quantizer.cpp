@@ -62,7 +62,7 @@ void feed(MeanShiftQuantizer& q, double mean, int count, std::uint64_t seed, int
 
 }  // namespace
 
-TEST(Classes, uniformOnesHaveEqualWidth) {
+TEST(DensityClasses, uniformOnesHaveEqualWidth) {
   const auto c = DensityClasses::uniform(8);
   EXPECT_EQ(c.classOf(0.0), 0);
   EXPECT_EQ(c.classOf(0.124), 0);
@@ -112,7 +112,7 @@ TEST(MeanShift, modesAreWhereEveryBinClimbsTo) {
   EXPECT_LE(astray, bins / 200);
 }
 
-TEST(MeanShift, findsThreeKindsOfPlacesByItself) {
+TEST(MeanShift, findsThreeClassesFromTheData) {
   // Fig. 4.3: corridors, corners, crossroads.
   const DensityHistogram h = histogramOf({{0.38, 0.7}, {0.52, 0.2}, {0.68, 0.1}}, 4000, 7);
   const double bandwidth = bandwidthOf(h, 0.02, 12);
@@ -152,7 +152,7 @@ TEST(MeanShift, idsStayWhereModesPersist) {
   EXPECT_NEAR(classes[0].upper, 90.0 / 256, 1e-9);
 }
 
-TEST(Quantizer, changesOnlyWhenThereIsSomethingNew) {
+TEST(MeanShiftQuantizer, changesClassesOnlyForNewModes) {
   MeanShiftQuantizer q;
   int changes = 0;
   feed(q, 0.38, 400, 1, &changes);
@@ -180,7 +180,7 @@ TEST(Quantizer, changesOnlyWhenThereIsSomethingNew) {
   EXPECT_EQ(q.classes().list()[1].id, ids[1]);
 }
 
-TEST(Quantizer, goesOnFromASavedState) {
+TEST(MeanShiftQuantizer, continuesFromASavedState) {
   MeanShiftQuantizer a;
   int ignored = 0;
   feed(a, 0.38, 700, 1, &ignored);
@@ -195,7 +195,7 @@ TEST(Quantizer, goesOnFromASavedState) {
   EXPECT_NE(messageOf<ParameterError>([&] { b.restore(a.classes(), DensityHistogram(3, 1)); }), "");
 }
 
-TEST(Quantizer, refusesParametersOutOfRange) {
+TEST(MeanShiftQuantizer, refusesParametersOutOfRange) {
   const auto messageFor = [](const std::function<void(MeanShiftParams&)>& change) {
     MeanShiftParams p;
     change(p);

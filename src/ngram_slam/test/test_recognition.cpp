@@ -32,13 +32,16 @@ const hyselam::OccupancyGrid& building() {
     g.resolution = 0.1;
     hyselam::OccupancyGrid m(g, 100);
     const auto open = [&](double x0, double y0, double x1, double y1) {
-      for (int y = static_cast<int>(y0 * 10); y < static_cast<int>(y1 * 10); ++y)
-        for (int x = static_cast<int>(x0 * 10); x < static_cast<int>(x1 * 10); ++x)
+      for (int y = static_cast<int>(y0 * 10); y < static_cast<int>(y1 * 10); ++y) {
+        for (int x = static_cast<int>(x0 * 10); x < static_cast<int>(x1 * 10); ++x) {
           m.at({x, y}) = 0;
+        }
+      }
     };
     open(4, 4, 24, 20);
-    for (int y = 60; y < 180; ++y)
+    for (int y = 60; y < 180; ++y) {
       for (int x = 60; x < 220; ++x) m.at({x, y}) = 100;
+    }
     open(9, 2, 12, 4);  // niches
     open(24, 13, 26, 17);
     open(10, 20, 16, 22);
@@ -64,10 +67,11 @@ hyselam::RobotLog drive(int laps) {
     s.angle_increment = hyselam::kPi / 90;
     s.range_min = 0.05;
     s.range_max = 20.0;
-    for (int b = 0; b < 91; ++b)
+    for (int b = 0; b < 91; ++b) {
       s.ranges.push_back(static_cast<float>(
           rays.range(at.x, at.y, at.theta + s.angle_min + b * s.angle_increment, s.range_max) +
           rng.gaussian(0.0, 0.01)));
+    }
     log.scans.push_back(s);
     log.odometry.push_back({s.stamp, start.inverse() * at});
     log.ground_truth.push_back({s.stamp, at});
@@ -82,15 +86,16 @@ hyselam::RobotLog drive(int laps) {
 
 }  // namespace
 
-TEST(LogObservations, areEveryStepOfTheWayAndSeeTheBuilding) {
+TEST(LogObservations, comeAtEveryStepOfThePath) {
   hyselam::RobotLog log = drive(1);
   LogObservationParams params;
   params.bandwidth = 1.5;
   const LogObservations seen = observationsOf(log, params);
   EXPECT_EQ(seen.scans_refused, 0u);
   double way = 0.0;
-  for (std::size_t i = 1; i < log.odometry.size(); ++i)
+  for (std::size_t i = 1; i < log.odometry.size(); ++i) {
     way += hyselam::distance(log.odometry[i - 1].pose, log.odometry[i].pose);
+  }
   EXPECT_NEAR(static_cast<double>(seen.observations.size()), way / 0.1, 0.05 * way / 0.1);
   // A corridor is narrower than the place beside a niche.
   const auto densityNear = [&](double x, double y) {
@@ -133,7 +138,7 @@ class Tools : public ::testing::Test {
   }
   int run(const std::string& command) {
     const int status = std::system(
-        (std::string(NGRAM_SLAM_TOOLS) + "/" + command + " >" + d / "stdout" + " 2>" + d / "stderr")
+        (std::string(HYSELAM_TOOLS) + "/" + command + " >" + d / "stdout" + " 2>" + d / "stderr")
             .c_str());
     errors = fileBytes(d / "stderr");
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -191,7 +196,7 @@ TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
   EXPECT_GE(j["match_precision"], 0.95);
 }
 
-TEST_F(Tools, refuseWhatTheyCannotUseInOneLine) {
+TEST_F(Tools, refuseUnusableInputInOneLine) {
   expectRefused("words_offline /nowhere.bag --out " + d / "x", "/nowhere.bag");
   writeFile(d / "bad.log", "FLASER nonsense\n");
   expectRefused("words_offline " + d / "bad.log" + " --out " + d / "x", "bad.log");

@@ -21,20 +21,24 @@ class AllReversePairs {
                   const WordTolerance& tolerance)
       : n_(words.size()), length_(n_ * n_, 0) {
     std::vector<std::vector<std::size_t>> after(n_);
-    for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t p : words[i].P) after[p].push_back(i);
-    for (std::size_t a = 0; a < n_; ++a)
+    }
+    for (std::size_t a = 0; a < n_; ++a) {
       for (std::size_t b = a; b-- > 0;) {
         if (words[a].level >= levels || words[b].level >= levels) continue;
         transcription::PlainWord turned = words[b];
         turned.s.angle = -turned.s.angle;
-        if (words[b].last >= words[a].first || !transcription::equal(words[a], turned, tolerance))
+        if (words[b].last >= words[a].first || !transcription::equal(words[a], turned, tolerance)) {
           continue;
+        }
         int longest = 0;
-        for (std::size_t p : words[a].P)
+        for (std::size_t p : words[a].P) {
           for (std::size_t q : after[b]) longest = std::max(longest, at(p, q));
+        }
         length_[a * n_ + b] = longest + 1;
       }
+    }
   }
   int at(std::size_t newer, std::size_t older) const { return length_[newer * n_ + older]; }
 
@@ -59,8 +63,9 @@ void writeBothWays(WordLattice& text, std::size_t positions, hyselam::Rng& rng) 
     std::size_t from =
         rng.below(3) == 0 ? real.size() - 1 : rng.below(static_cast<std::uint32_t>(real.size()));
     const std::size_t count = 2 + rng.below(10);
-    for (std::size_t k = 0; k < count && k <= from && text.positions() < 2 * positions; ++k)
+    for (std::size_t k = 0; k < count && k <= from && text.positions() < 2 * positions; ++k) {
       text.push(random_texts::noisy(reversed(real[from - k]), rng, 0.15, 0.3));
+    }
   }
 }
 
@@ -81,7 +86,7 @@ NgramMatcherParams randomParams(hyselam::Rng& rng, int levels) {
 
 }  // namespace
 
-TEST(Reversed, twiceIsTheSame) {
+TEST(ReversedWord, twiceIsTheSame) {
   for (float angle : {0.0f, 1.5f, -3.0f, static_cast<float>(hyselam::kPi)}) {
     const Syllables w{3, 17, angle};
     EXPECT_EQ(reversed(reversed(w)).angle, angle);
@@ -91,7 +96,7 @@ TEST(Reversed, twiceIsTheSame) {
   EXPECT_EQ(reversed({0, 1, 1.5f}).angle, -1.5f);
 }
 
-TEST(Reversed, isTheAngleOfTheWayBack) {
+TEST(ReversedWord, hasTheAngleOfTheReversePath) {
   hyselam::Rng rng(3);
   for (int round = 0; round < 1000; ++round) {
     const auto pose = [&] {
@@ -136,9 +141,11 @@ TEST(ReverseNgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
       const AllReversePairs table(words, k, params.tolerance);
       for (WordIndex a = 0; a < words.size(); ++a) {
         if (words[a].level != 0) continue;
-        for (WordIndex b = 0; b < a; ++b)
-          if (table.at(a, b) >= params.min_n[static_cast<std::size_t>(k - 1)])
+        for (WordIndex b = 0; b < a; ++b) {
+          if (table.at(a, b) >= params.min_n[static_cast<std::size_t>(k - 1)]) {
             expected.emplace(std::make_pair(a, b), std::make_pair(k, table.at(a, b)));
+          }
+        }
       }
     }
     ASSERT_EQ(got, expected);
@@ -163,7 +170,7 @@ TEST(ReverseNgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
   EXPECT_GT(long_ones, 3000u);
 }
 
-TEST(ReverseNgramMatcher, findsTheWayBackOutOfADeadEnd) {
+TEST(ReverseNgramMatcher, recognizesThePathBackOutOfADeadEnd) {
   const std::vector<Syllables> way = {{0, 100, 0.0f}, {1, 30, 1.5f},  {0, 60, 0.0f}, {2, 25, 0.0f},
                                       {0, 80, 0.0f},  {1, 31, -1.5f}, {3, 40, 0.0f}};
   WordLattice text(1);
@@ -187,7 +194,7 @@ TEST(ReverseNgramMatcher, findsTheWayBackOutOfADeadEnd) {
   EXPECT_EQ(told, 4u);  // from the fourth word on
 }
 
-TEST(ReverseNgramMatcher, skippedRunsAreSearchedButNotSearching) {
+TEST(ReverseNgramMatcher, skippedRunsCanBeMatchedLater) {
   hyselam::Rng rng(9);
   std::size_t compared = 0;
   for (int round = 0; round < 200; ++round) {
@@ -202,8 +209,9 @@ TEST(ReverseNgramMatcher, skippedRunsAreSearchedButNotSearching) {
     const Position begin = text.positions();
     writeBothWays(text, 30, rng);
     Found expected, got;
-    for (const NgramMatch& m : all.update())
+    for (const NgramMatch& m : all.update()) {
       if (text.last(m.newer) >= begin) expected[{m.newer, m.older}] = {m.levels, m.n};
+    }
     for (const NgramMatch& m : late.update()) got[{m.newer, m.older}] = {m.levels, m.n};
     ASSERT_EQ(got, expected);
     compared += got.size();

@@ -9,6 +9,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "ngram_slam/semantics/semantic_examples.hpp"
 #include "ngram_slam/semantics/semantic_forest.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "ngram_slam/semantics/semantic_score.hpp"
@@ -53,14 +54,14 @@ std::vector<DensityObservation> randomRun(Rng& rng, std::size_t length) {
 SemanticParams randomParams(Rng& rng) {
   SemanticParams p;
   p.cut.smoothing = static_cast<int>(rng.below(6));
-  p.cut.leave = rng.uniform(0.015, 0.08);
-  p.cut.settled = p.cut.leave * rng.uniform(0.2, 1.0);
-  p.cut.settled_for = 2 + static_cast<int>(rng.below(15));
-  p.cut.border = rng.uniform(0.2, 0.8);
-  p.shortest_gap = static_cast<int>(rng.below(12));
-  p.longest_bend = p.shortest_gap + static_cast<int>(rng.below(30));
-  p.shortest_stretch = static_cast<int>(rng.below(8));
-  p.widest_rim = static_cast<int>(rng.below(15));
+  p.cut.change_threshold = rng.uniform(0.015, 0.08);
+  p.cut.steady_tolerance = p.cut.change_threshold * rng.uniform(0.2, 1.0);
+  p.cut.steady_length = 2 + static_cast<int>(rng.below(15));
+  p.cut.border_share = rng.uniform(0.2, 0.8);
+  p.min_gap = static_cast<int>(rng.below(12));
+  p.max_bend = p.min_gap + static_cast<int>(rng.below(30));
+  p.min_frontier_run = static_cast<int>(rng.below(8));
+  p.max_rim = static_cast<int>(rng.below(15));
   return p;
 }
 
@@ -92,7 +93,7 @@ transcription::Run plain(const std::vector<DensityObservation>& run) {
 
 }  // namespace
 
-TEST(SemanticCutter, equalsThePlainOneOnTenThousandStreams) {
+TEST(SemanticCutter, equalsItsTranscriptionOnTenThousandStreams) {
   for (std::uint64_t round = 0; round < 10000; ++round) {
     SCOPED_TRACE(round);
     Rng rng(round, 1);
@@ -105,7 +106,7 @@ TEST(SemanticCutter, equalsThePlainOneOnTenThousandStreams) {
       densities.push_back(o.soft);
       for (const SemanticCut& c : cutter.add(o.soft)) cuts.push_back(c);
       if (!cuts.empty()) {
-        ASSERT_LE(cuts.back().last + cutter.grown(), densities.size());
+        ASSERT_LE(cuts.back().last + cutter.minLength(), densities.size());
       }
     }
     for (const SemanticCut& c : cutter.finish()) cuts.push_back(c);
@@ -115,7 +116,7 @@ TEST(SemanticCutter, equalsThePlainOneOnTenThousandStreams) {
       ASSERT_EQ(cuts[k].first, expected[k].first);
       ASSERT_EQ(cuts[k].last, expected[k].last);
       ASSERT_DOUBLE_EQ(cuts[k].level, expected[k].level);
-      ASSERT_EQ(cuts[k].stands, expected[k].stands);
+      ASSERT_EQ(cuts[k].steady, expected[k].steady);
       ASSERT_EQ(cuts[k].before.has_value(), expected[k].has_before);
       ASSERT_EQ(cuts[k].after.has_value(), expected[k].has_after);
       ASSERT_DOUBLE_EQ(cuts[k].before.value_or(0.0), expected[k].before);
@@ -124,7 +125,7 @@ TEST(SemanticCutter, equalsThePlainOneOnTenThousandStreams) {
   }
 }
 
-TEST(SemanticSegmenter, equalsThePlainOneOnTenThousandStreams) {
+TEST(SemanticSegmenter, equalsItsTranscriptionOnTenThousandStreams) {
   std::array<std::size_t, kSemanticClasses> seen{};
   std::size_t regions = 0;
   for (std::uint64_t round = 0; round < 10000; ++round) {
@@ -146,7 +147,7 @@ TEST(SemanticSegmenter, equalsThePlainOneOnTenThousandStreams) {
         ASSERT_EQ(got[k].first, next);
         next = got[k].last + 1;
         ASSERT_DOUBLE_EQ(got[k].features.level, expected[k].level);
-        ASSERT_EQ(got[k].features.stands, expected[k].stands ? 1.0 : 0.0);
+        ASSERT_EQ(got[k].features.steady, expected[k].steady ? 1.0 : 0.0);
         ASSERT_EQ(got[k].semantic_class, transcription::tree(got[k].features, tree));
         ASSERT_GT(got[k].confidence, 0.49);
         ASSERT_LE(got[k].confidence, 1.0);
@@ -157,11 +158,12 @@ TEST(SemanticSegmenter, equalsThePlainOneOnTenThousandStreams) {
       begin = next;
     }
   }
-  for (SemanticClass c : kAllSemanticClasses)
-    EXPECT_GT(seen[indexOf(c)], regions / 2000) << nameOf(c);
+  for (SemanticClass c : kAllSemanticClasses) {
+    EXPECT_GT(seen[indexOf(c)], regions / 2000) << toString(c);
+  }
 }
 
-TEST(DecisionTree, equalsThePlainOneOnTenThousandRegions) {
+TEST(DecisionTree, equalsItsTranscriptionOnTenThousandRegions) {
   Rng rng(5);
   for (int round = 0; round < 10000; ++round) {
     SemanticFeatures f;
@@ -178,7 +180,7 @@ TEST(DecisionTree, equalsThePlainOneOnTenThousandRegions) {
   }
 }
 
-TEST(DecisionTree, table64Holds) {
+TEST(DecisionTree, followsTable64) {
   const DecisionTree tree;
   SemanticFeatures f;
   const auto classOf = [&] { return tree.classify(f).semantic_class; };
@@ -205,7 +207,7 @@ TEST(DecisionTree, table64Holds) {
   EXPECT_EQ(classOf(), SemanticClass::kCorridor);  // very long
 }
 
-TEST(SemanticSegmenter, tellsARegionBeforeTheNextOneEnds) {
+TEST(SemanticSegmenter, returnsARegionBeforeTheNextOneEnds) {
   // A corridor, a bifurcation, a corridor that goes on and on.
   SemanticSegmenter segmenter;
   std::vector<SemanticRegion> told;
@@ -224,7 +226,7 @@ TEST(SemanticSegmenter, tellsARegionBeforeTheNextOneEnds) {
   EXPECT_NEAR(told[1].last, 88, 2);
 }
 
-TEST(SemanticSegmenter, refusesObservationsThatCannotBeUsedAndGoesOn) {
+TEST(SemanticSegmenter, refusesInvalidObservationsAndContinues) {
   Rng rng(3);
   const auto run = randomRun(rng, 300);
   SemanticSegmenter clean, disturbed;
@@ -256,16 +258,17 @@ TEST(SemanticSegmenter, refusesParametersOutOfRange) {
     return !messageOf<hyselam::ParameterError>([&] { SemanticSegmenter s(p); }).empty();
   };
   EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.smoothing = -1; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.leave = 0.0; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.settled = 2 * p.cut.leave; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.settled_for = 1; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.border = 1.0; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.shortest_gap = -1; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.longest_bend = p.shortest_gap - 1; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.turning = std::nan(""); }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.bend = 0.0; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.shortest_stretch = -1; }));
-  EXPECT_TRUE(refused([](SemanticParams& p) { p.widest_rim = -1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.change_threshold = 0.0; }));
+  EXPECT_TRUE(
+      refused([](SemanticParams& p) { p.cut.steady_tolerance = 2 * p.cut.change_threshold; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.steady_length = 1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.cut.border_share = 1.0; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.min_gap = -1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.max_bend = p.min_gap - 1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.min_turn = std::nan(""); }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.bend_angle = 0.0; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.min_frontier_run = -1; }));
+  EXPECT_TRUE(refused([](SemanticParams& p) { p.max_rim = -1; }));
   EXPECT_FALSE(refused([](SemanticParams&) {}));
   DecisionTreeParams t;
   t.small_turn = 2 * t.huge_turn;
@@ -329,12 +332,12 @@ std::vector<SemanticExample> examples(int n) {
 
 }  // namespace
 
-TEST(SemanticForest, learnsAndKeepsWhatItLearned) {
+TEST(SemanticForest, trainsAndIsTheSameAfterLoading) {
   const auto lesson = examples(400);
   const SemanticForest forest = SemanticForest::train(lesson);
   int right = 0;
   for (const SemanticExample& e : lesson) {
-    const SemanticVerdict v = forest.classify(e.features);
+    const SemanticPrediction v = forest.classify(e.features);
     right += v.semantic_class == e.semantic_class;
     EXPECT_GT(v.confidence, 0.2);
     EXPECT_LE(v.confidence, 1.0);
@@ -344,9 +347,7 @@ TEST(SemanticForest, learnsAndKeepsWhatItLearned) {
   forest.save(dir / "a");
   SemanticForest::train(lesson).save(dir / "b");
   EXPECT_EQ(fileBytes(dir / "a"), fileBytes(dir / "b"));
-  forest.save(dir / "a.gz");
-  EXPECT_LT(fileBytes(dir / "a.gz").size(), fileBytes(dir / "a").size() / 3);
-  SemanticForest::load(dir / "a.gz").save(dir / "c");
+  SemanticForest::load(dir / "a").save(dir / "c");
   EXPECT_EQ(fileBytes(dir / "a"), fileBytes(dir / "c"));
   const SemanticForest loaded = SemanticForest::load(dir / "a");
   for (const SemanticExample& e : lesson) {
@@ -356,10 +357,9 @@ TEST(SemanticForest, learnsAndKeepsWhatItLearned) {
   }
   EXPECT_NE(messageOf<hyselam::ParameterError>([] { SemanticForest::train({}); }), "");
   EXPECT_NE(messageOf<hyselam::InputError>([&] { forest.save(dir / "none/a"); }), "");
-  EXPECT_NE(messageOf<hyselam::InputError>([&] { forest.save(dir / "none/a.gz"); }), "");
 }
 
-TEST(SemanticForest, refusesFilesThatAreNone) {
+TEST(SemanticForest, refusesInvalidFiles) {
   TemporaryDirectory dir;
   SemanticForest::train(examples(100)).save(dir / "good");
   const std::string good = fileBytes(dir / "good");
@@ -370,8 +370,9 @@ TEST(SemanticForest, refusesFilesThatAreNone) {
   };
   EXPECT_TRUE(refused(""));
   EXPECT_TRUE(refused("%YAML:1.0\n---\nmap: 1\n"));
-  for (std::size_t n = 1; n < good.size(); n += good.size() / 60 + 1)
+  for (std::size_t n = 1; n < good.size(); n += good.size() / 60 + 1) {
     EXPECT_TRUE(refused(good.substr(0, n))) << n;
+  }
   Rng rng(4);
   for (int i = 0; i < 300; ++i) {
     std::string bytes = good;
@@ -379,51 +380,112 @@ TEST(SemanticForest, refusesFilesThatAreNone) {
         static_cast<char>(1 + rng.below(255));
     EXPECT_TRUE(refused(bytes)) << i;
   }
-  std::string other = good;
-  other.replace(other.find(" features") - 2, 2, "99");
-  EXPECT_TRUE(refused(other));
   // A right checksum over something else.
-  EXPECT_TRUE(refused("ngram_slam semantic forest 2, 13 features, crc32 00000000\n"));
-  EXPECT_TRUE(refused("ngram_slam semantic forest 1, 13 features, crc32 0\n"));
+  const auto sealed = [](const std::string& text) {
+    return text + "crc32 " + hyselam::crc32Text(text) + "\n";
+  };
+  const std::string unsealed = good.substr(0, good.rfind("crc32 "));
+  EXPECT_FALSE(refused(sealed(unsealed)));
+  EXPECT_TRUE(refused(sealed("ngram_slam semantic forest 3\n")));
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"forest 3", "forest 2"},
+                                                        {"\ncommand: ", "\ncommands: "},
+                                                        {"\nin sample: ", "\n"},
+                                                        {" turn", ""},
+                                                        {" turn", " turns"},
+                                                        {"level rise_before", "rise_before level"},
+                                                        {"features:", "features: height"}}) {
+    std::string other = unsealed;
+    other.replace(other.find(from), from.size(), to);
+    EXPECT_TRUE(refused(sealed(other))) << to;
+  }
   EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "none"); }), "");
   EXPECT_NE(messageOf<hyselam::InputError>([&] { SemanticForest::load(dir.path()); }), "");
 }
 
-TEST(SemanticForest, refusesTreesThatAreNotWhole) {
+TEST(SemanticForest, refusesIncompleteTrees) {
   TemporaryDirectory dir;
   SemanticForest::train(examples(100)).save(dir / "good");
   const std::string good = fileBytes(dir / "good");
-  const std::size_t line = good.find('\n');
+  const std::size_t trees = good.find("tree\n");
   // A right checksum over `to` in place of the first `from`.
   const auto messageWith = [&](const std::string& from, const std::string& to) {
-    std::string body = good.substr(line + 1);
-    const std::size_t at = body.find(from);
+    std::string text = good.substr(0, good.rfind("crc32 "));
+    const std::size_t at = text.find(from, trees);
     if (at == std::string::npos) return "no " + from;
-    body.replace(at, from.size(), to);
-    writeFile(dir / "bad",
-              good.substr(0, good.find("crc32 ") + 6) + hyselam::crc32Text(body) + "\n" + body);
+    text.replace(at, from.size(), to);
+    writeFile(dir / "bad", text + "crc32 " + hyselam::crc32Text(text) + "\n");
     return messageOf<hyselam::InputError>([&] { SemanticForest::load(dir / "bad"); });
   };
   EXPECT_EQ(messageWith("", ""), "");
-  const std::size_t root = good.find('\n', line + 1) + 1;  // behind "tree"
+  const std::size_t root = trees + std::string("tree\n").size();
   const std::string first = good.substr(root, good.find('\n', root) + 1 - root);
+  const std::string all_trees = good.substr(trees, good.rfind("crc32 ") - trees);
   for (const auto& [from, to] :
-       std::vector<std::pair<std::string, std::string>>{{first, "13 0.5\n"},
-                                                        {first, "-1 0.5\n"},
-                                                        {first, "1.5 0.5\n"},
-                                                        {first, "1 nan\n"},
-                                                        {first, "1 1e99\n"},
-                                                        {first, "1 2 3\n"},
+       std::vector<std::pair<std::string, std::string>>{{first, "height 0.5\n"},
+                                                        {first, "1 0.5\n"},
+                                                        {first, "Level 0.5\n"},
+                                                        {first, "level nan\n"},
+                                                        {first, "level 1e99\n"},
+                                                        {first, "level 2 3\n"},
                                                         {first, "\n"},
                                                         {"tree\n", ""},
                                                         {"tree\n", "tree\ntree\n"},
                                                         {first, first + first},
                                                         {first, first + "corridor\n"},
                                                         {"corridor\n", "corridors\n"},
-                                                        {good.substr(line + 1), ""},
-                                                        {good.substr(line + 1), first}}) {
+                                                        {all_trees, ""},
+                                                        {all_trees, first}}) {
     EXPECT_EQ(messageWith(from, to).find(dir / "bad"), 0u) << to;
   }
+}
+
+// The data beside it are regions of one simulated building.
+TEST(SemanticForest, trainingAnewGivesTheStoredBytes) {
+  const std::string data = std::string(HYSELAM_PACKAGE_DIR) + "/test/data/semantic_forest/";
+  const std::vector<SemanticExample> lesson = readExamples(data + "examples.csv");
+  EXPECT_EQ(textOf(lesson), fileBytes(data + "examples.csv"));
+  const SemanticForest stored = SemanticForest::load(data + "five_trees.txt");
+  ForestParams params;
+  params.trees = 5;
+  SemanticForest forest = SemanticForest::train(lesson, params);
+  forest.setOrigin(stored.origin());
+  EXPECT_EQ(forest.text(), fileBytes(data + "five_trees.txt"));
+  EXPECT_NE(stored.origin().data.find(hyselam::crc32Text(textOf(lesson))), std::string::npos);
+  EXPECT_NE(messageOf<hyselam::ParameterError>([&] {
+              forest.setOrigin({"two\nlines", "", "", ""});
+            }),
+            "");
+}
+
+TEST(SemanticForest, theShippedOneSaysWhereItComesFrom) {
+  const SemanticForest shipped = SemanticForest::shipped();
+  EXPECT_EQ(shipped.text(),
+            fileBytes(std::string(HYSELAM_PACKAGE_DIR) + "/models/semantic_forest.txt"));
+  EXPECT_EQ(shipped.origin().command, "train_semantic");
+  EXPECT_NE(shipped.origin().data.find("crc32"), std::string::npos);
+  EXPECT_NE(shipped.origin().in_sample.find("regions right"), std::string::npos);
+  EXPECT_NE(shipped.origin().out_of_sample.find("other simulated buildings"), std::string::npos);
+}
+
+TEST(SemanticExamples, refusesTablesOfOtherFeatures) {
+  TemporaryDirectory dir;
+  const std::string good = textOf(examples(3));
+  const auto messageWith = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    writeFile(dir / "t.csv", text);
+    return messageOf<hyselam::InputError>([&] { readExamples(dir / "t.csv"); });
+  };
+  EXPECT_EQ(messageWith("", ""), "");
+  EXPECT_NE(messageWith("turn,", "").find("line 1"), std::string::npos);
+  EXPECT_NE(messageWith("level,rise_before", "rise_before,level").find("line 1"),
+            std::string::npos);
+  EXPECT_NE(messageWith("class\n", "class\nx,").find("line 2"), std::string::npos);
+  EXPECT_NE(messageWith("class\n", "class\n1,2\n").find("line 2"), std::string::npos);
+  const std::string last = good.substr(good.rfind(','));
+  EXPECT_NE(messageWith(last, ",bridge\n").find("bridge"), std::string::npos);
+  EXPECT_NE(messageOf<hyselam::InputError>([&] { readExamples(dir / "none"); }), "");
 }
 
 TEST(SemanticRegions, areWrittenAsATable) {

@@ -42,7 +42,7 @@ struct SlamOffline : testing::Test {
     directory = nullptr;
   }
   int run(const std::string& arguments) {
-    const int status = std::system((std::string(NGRAM_SLAM_TOOLS) + "/slam_offline " + arguments +
+    const int status = std::system((std::string(HYSELAM_TOOLS) + "/slam_offline " + arguments +
                                     " >" + d / "stdout" + " 2>" + d / "stderr")
                                        .c_str());
     errors = fileBytes(d / "stderr");

@@ -21,8 +21,9 @@ namespace {
 std::vector<DensityRegion> regionsOf(const std::string& classes, int t_o) {
   DensityRegionBuilder builder(t_o);
   std::vector<DensityRegion> out;
-  for (char c : classes)
+  for (char c : classes) {
     if (const auto r = builder.add(c)) out.push_back(*r);
+  }
   if (const auto r = builder.finish()) out.push_back(*r);
   return out;
 }
@@ -30,9 +31,10 @@ std::vector<DensityRegion> regionsOf(const std::string& classes, int t_o) {
 /// "A5 B7": class and size of each region.
 std::string told(const std::vector<DensityRegion>& regions) {
   std::string text;
-  for (const DensityRegion& r : regions)
+  for (const DensityRegion& r : regions) {
     text += (text.empty() ? "" : " ") + std::string(1, static_cast<char>(r.density_class)) +
             std::to_string(r.size());
+  }
   return text;
 }
 
@@ -49,7 +51,7 @@ std::vector<int> randomClasses(hyselam::Rng& rng, std::size_t n, std::uint32_t s
 
 }  // namespace
 
-TEST(Observations, areGivenBackAsTheyWereButForRounding) {
+TEST(ObservationStore, returnsObservationsUpToRounding) {
   ObservationStore store;
   hyselam::Rng rng(3);
   std::vector<DensityObservation> all;
@@ -84,7 +86,7 @@ TEST(Observations, areGivenBackAsTheyWereButForRounding) {
   }
 }
 
-TEST(Observations, thatCannotBeUsedAreRefusedByName) {
+TEST(ObservationStore, refusesInvalidObservationsByName) {
   ObservationStore store;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refusal = [&](const std::function<void(DensityObservation&)>& change) {
@@ -109,12 +111,12 @@ TEST(Observations, thatCannotBeUsedAreRefusedByName) {
   EXPECT_EQ(store.size(), 1u);
 }
 
-TEST(Sampler, countsLengthWhateverTheScanRate) {
+TEST(DistanceSampler, measuresLengthAtAnyScanRate) {
   for (double scan_step : {0.01, 0.07, 0.1, 0.25, 1.3}) {
     DistanceSampler sampler(0.1);
     std::size_t count = 0;
     Pose2 last;
-    for (int i = 0; i * scan_step <= 26.0 + 1e-9; ++i)
+    for (int i = 0; i * scan_step <= 26.0 + 1e-9; ++i) {
       for (const Pose2& p : sampler.due({i * scan_step, 2.0, 0.5})) {
         if (count > 0) {
           EXPECT_GE(hyselam::distance(last, p), 0.1 - 1e-6);
@@ -122,13 +124,14 @@ TEST(Sampler, countsLengthWhateverTheScanRate) {
         last = p;
         ++count;
       }
+    }
     // One for the start; scans that do not fall on steps lose a fraction of one each.
     EXPECT_NEAR(static_cast<double>(count), 1 + 26.0 / 0.1, scan_step == 0.07 ? 80 : 2)
         << scan_step;
   }
 }
 
-TEST(Sampler, standingStillOrJumpingIsNotAWay) {
+TEST(DistanceSampler, standingStillOrJumpingIsNoPath) {
   DistanceSampler sampler(0.1);
   EXPECT_EQ(sampler.due({0, 0, 0}).size(), 1u);
   EXPECT_EQ(sampler.due({0.03, 0, 1}).size(), 0u);
@@ -137,7 +140,7 @@ TEST(Sampler, standingStillOrJumpingIsNotAWay) {
   EXPECT_NE(messageOf<ParameterError>([] { DistanceSampler s(0.0); }), "");
 }
 
-TEST(Regions, anInterruptionNeitherMakesARegionNorSplitsOne) {
+TEST(DensityRegions, anInterruptionNeitherMakesARegionNorSplitsOne) {
   EXPECT_EQ(told(regionsOf("AAAAAAAABBBBBBAAAAAAA", 4)), "A8 B6 A7");
   EXPECT_EQ(told(regionsOf("AAAAAAAABBBAAAAAAA", 4)), "A18");        // shorter than t_o
   EXPECT_EQ(told(regionsOf("AAAAAAAABBBBAAAAAAA", 4)), "A8 B4 A7");  // just long enough
@@ -153,7 +156,7 @@ TEST(Regions, anInterruptionNeitherMakesARegionNorSplitsOne) {
   EXPECT_EQ(transcription::buildRegion(pending, 4).size(), 8u);
 }
 
-TEST(Regions, equalAlgorithm42WhereNothingIsShort) {
+TEST(DensityRegions, equalAlgorithm42WhereNothingIsShort) {
   for (int round = 0; round < 10000; ++round) {
     hyselam::Rng rng(42, static_cast<std::uint64_t>(round));
     const std::uint32_t t_o = 1 + rng.below(6);
@@ -170,14 +173,15 @@ TEST(Regions, equalAlgorithm42WhereNothingIsShort) {
     }
     DensityRegionBuilder builder(static_cast<int>(t_o));
     std::vector<DensityRegion> found;
-    for (int c : classes)
+    for (int c : classes) {
       if (const auto r = builder.add(c)) found.push_back(*r);
+    }
     if (const auto r = builder.finish()) found.push_back(*r);
     ASSERT_TRUE(found == expected) << "round " << round;
   }
 }
 
-TEST(Regions, equalTheCorrectedRuleOnAnything) {
+TEST(DensityRegions, equalTheCorrectedRuleOnRandomClasses) {
   std::size_t absorbed = 0;
   for (int round = 0; round < 10000; ++round) {
     hyselam::Rng rng(43, static_cast<std::uint64_t>(round));
@@ -186,8 +190,9 @@ TEST(Regions, equalTheCorrectedRuleOnAnything) {
     const auto expected = transcription::regionsOfRun(classes, t_o);
     DensityRegionBuilder builder(static_cast<int>(t_o), 1000);
     std::vector<DensityRegion> found;
-    for (int c : classes)
+    for (int c : classes) {
       if (const auto r = builder.add(c)) found.push_back(*r);
+    }
     if (const auto r = builder.finish()) found.push_back(*r);
     ASSERT_EQ(found.size(), expected.size()) << "round " << round;
     std::uint32_t begin = 1000;
@@ -205,7 +210,7 @@ TEST(Regions, equalTheCorrectedRuleOnAnything) {
   EXPECT_GT(absorbed, 1000u);
 }
 
-TEST(Words, angleIsTheTurnInTheRegion) {
+TEST(AngleVariation, isTheTurnInTheRegion) {
   // Fig. 4.7: along x, then along y.
   EXPECT_NEAR(angleVariation({0, 0, 0}, {3, 0.26, 0}, {3.05, 3, 1.5}), hyselam::radians(84), 0.02);
   EXPECT_NEAR(angleVariation({0, 0, 0}, {-3, 0, 0}, {-3, -3, 0}), hyselam::radians(90), 1e-9);
@@ -217,7 +222,7 @@ TEST(Words, angleIsTheTurnInTheRegion) {
   EXPECT_NEAR(angleVariation({1, 1, 0.2}, {1.01, 1, 0.7}, {1.01, 1.01, 1.4}), 1.2, 1e-9);
 }
 
-TEST(Words, levelsEqualAlgorithm52) {
+TEST(WordLattice, levelsEqualAlgorithm52) {
   std::size_t alternatives = 0;
   for (int round = 0; round < 2000; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
@@ -288,7 +293,7 @@ TEST(Words, levelsEqualAlgorithm52) {
   EXPECT_GT(alternatives, 10000u);
 }
 
-TEST(Words, textRefusesWhatItCannotHold) {
+TEST(WordLattice, refusesWordsOutOfRange) {
   EXPECT_NE(messageOf<ParameterError>([] { WordLattice t(0); }).find("levels"), std::string::npos);
   EXPECT_NE(messageOf<ParameterError>([] { WordLattice t(17); }).find("levels"), std::string::npos);
   WordLattice text;

@@ -17,8 +17,9 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 inline Cloud::Ptr cloudOf(const Station& station) {
   auto cloud = Cloud::Ptr(new Cloud);
-  for (const hyselam::Point2& p : station.points)
+  for (const hyselam::Point2& p : station.points) {
     cloud->push_back(pcl::PointXYZ(static_cast<float>(p.x), static_cast<float>(p.y), 0.0F));
+  }
   return cloud;
 }
 

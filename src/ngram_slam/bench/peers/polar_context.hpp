@@ -51,12 +51,14 @@ inline double contextDistance(const PolarContext& a, const PolarContext& b) {
       ++columns;  // one that only one of them has is a difference
       if (a.norms[s] == 0.0F || b.norms[t] == 0.0F) continue;
       float dot = 0.0F;
-      for (std::size_t r = 0; r < PolarContext::kRings; ++r)
+      for (std::size_t r = 0; r < PolarContext::kRings; ++r) {
         dot += a.columns[s][r] * b.columns[t][r];
+      }
       sum += dot / (a.norms[s] * b.norms[t]);
     }
-    if (columns > 0)
+    if (columns > 0) {
       best = std::min(best, 1.0 - static_cast<double>(sum) / static_cast<double>(columns));
+    }
   }
   return best;
 }

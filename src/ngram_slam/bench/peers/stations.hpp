@@ -64,15 +64,17 @@ inline std::vector<Station> stationsOf(const hyselam::RobotLog& log, const Stati
       for (const hyselam::Point2& p : returnsOf(*seen.scan)) {
         const hyselam::Point2 q = relative * p;
         if (std::hypot(q.x, q.y) > params.radius) continue;
-        if (cells.emplace(std::lround(q.x * 10), std::lround(q.y * 10)).second)
+        if (cells.emplace(std::lround(q.x * 10), std::lround(q.y * 10)).second) {
           station.points.push_back(q);
+        }
       }
     }
     // Evenly from all of them.
     const std::size_t all = station.points.size();
     if (all > params.points) {
-      for (std::size_t i = 0; i < params.points; ++i)
+      for (std::size_t i = 0; i < params.points; ++i) {
         station.points[i] = station.points[i * all / params.points];
+      }
       station.points.resize(params.points);
     }
     stations.push_back(std::move(station));

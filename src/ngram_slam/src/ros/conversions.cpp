@@ -102,7 +102,7 @@ hyselam_msgs::SemanticRegion regionMsg(const ObservationStore& observations,
                                        const SemanticRegion& region, double step) {
   hyselam_msgs::SemanticRegion msg;
   msg.semantic_class = static_cast<std::uint8_t>(indexOf(region.semantic_class));
-  msg.class_name = nameOf(region.semantic_class);
+  msg.class_name = toString(region.semantic_class);
   msg.confidence = static_cast<float>(region.confidence);
   msg.run = observations.runOf(region.first);
   msg.first = region.first;

@@ -49,7 +49,7 @@ hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header
     hyselam_msgs::RegionNode n;
     n.id = static_cast<std::uint32_t>(msg.nodes.size());
     n.semantic_class = static_cast<std::uint8_t>(indexOf(node.semantic_class));
-    n.class_name = nameOf(node.semantic_class);
+    n.class_name = toString(node.semantic_class);
     n.confidence = static_cast<float>(node.confidence);
     n.run = node.run;
     n.pose = pose2d(node.pose);
@@ -154,7 +154,7 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   for (const RegionNode& node : graph.nodes) {
     name.id = static_cast<int>(&node - graph.nodes.data());
     name.pose.position = at(node.pose * hyselam::Pose2{0.0, 0.6, 0.0}, 1.3);
-    name.text = nameOf(node.semantic_class);
+    name.text = toString(node.semantic_class);
     array.markers.push_back(name);
   }
   return array;

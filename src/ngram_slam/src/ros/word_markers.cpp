@@ -89,7 +89,7 @@ void addNames(const NgramRecognizer& recognizer, const ShownRun& shown, Position
   for (const SemanticRegion& r : shown.regions) {
     if (r.first < begin) continue;
     addText(*array, kinds, id++, beside(observations, (r.first + r.last) / 2, -0.9),
-            nameOf(r.semantic_class));
+            toString(r.semantic_class));
   }
   for (Position w = first; w < text.positions(); ++w) {
     const WordIndex word = text.realWord(w);

@@ -12,6 +12,7 @@
 #include "hyselam_common/ros/server_setup.hpp"
 #include "ngram_slam/matching/match_place.hpp"
 #include "ngram_slam/ros/conversions.hpp"
+#include "ngram_slam/semantics/semantic_forest.hpp"
 #include "wall_milliseconds.hpp"
 
 namespace ngram_slam {
@@ -25,12 +26,24 @@ constexpr std::uint32_t kQueue = 1000;
 constexpr double kStampSlack = 2.0;  // [s] an older observation is not late: the bag began again
 constexpr std::size_t kShownLines = 2000;  // matches
 constexpr std::size_t kRegionsPerWord = 4;
+
+/// @throws hyselam::InputError for a file of a forest that cannot be used
+std::shared_ptr<const SemanticClassifier> classifierOf(const WordsServerParams& p) {
+  if (p.semantic_classifier == SemanticClassifierKind::kTree) {
+    return std::make_shared<DecisionTree>();
+  }
+  return std::make_shared<SemanticForest>(p.semantic_forest.empty()
+                                              ? SemanticForest::shipped()
+                                              : SemanticForest::load(p.semantic_forest));
+}
+
 }  // namespace
 
 WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : log_name_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndLogParams(private_nh, loadWordsParams)),
-      segmenter_(params_.semantic),
+      classifier_(classifierOf(params_)),
+      segmenter_(params_.semantic, classifier_),
       sensor_(params_.sensor),
       sampler_(params_.sensor.step),
       drops_(log_name_, "observation"),
@@ -52,7 +65,7 @@ WordsServer::WordsServer(ros::NodeHandle nh, ros::NodeHandle private_nh)
         nh.createWallTimer(ros::WallDuration(params_.save_period),
                            [this](const ros::WallTimerEvent&) { saveIfChanged("now and then"); });
   }
-  if (params_.from_scan) {
+  if (params_.fromScan()) {
     scan_input_ = std::make_unique<hyselam::ScanInput>(
         nh, params_.input, log_name_,
         [this](const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
@@ -89,7 +102,7 @@ WordsServer::~WordsServer() {
     service->shutdown();
   }
   try {
-    if (params_.from_scan) addObservations(sensor_.finish());
+    if (params_.fromScan()) addObservations(sensor_.finish());
   } catch (const std::exception& e) {
     ROS_ERROR_STREAM(log_name_ << " " << e.what());
   }
@@ -99,7 +112,7 @@ WordsServer::~WordsServer() {
 /// Goes on from a corpus.
 void WordsServer::goOnFrom(Corpus corpus) {
   recognizer_ = std::make_unique<NgramRecognizer>(params_.recognizer, std::move(corpus));
-  segmenter_ = SemanticSegmenter(params_.semantic);
+  segmenter_ = SemanticSegmenter(params_.semantic, classifier_);
   segmenter_begin_ = recognizer_->observations().size();
   published_words_ = recognizer_->text().words();
   sensor_.finish();
@@ -177,7 +190,7 @@ void WordsServer::addObservation(const DensityObservation& observation) {
 
 /// What follows is another run, and nothing lies between it and what was seen.
 void WordsServer::startNewRun(const std::string& reason) {
-  if (params_.from_scan) addObservations(sensor_.finish());
+  if (params_.fromScan()) addObservations(sensor_.finish());
   sampler_.reset();
   endRun(reason);
 }

@@ -1,4 +1,4 @@
-// evaluate_recognition: what is recognised in recorded runs, against reference poses.
+// evaluate_recognition: what is recognized in recorded runs, against reference poses.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -10,7 +10,7 @@
 #include "hyselam_common/trajectory_io.hpp"
 #include "ngram_slam/matching/match_evaluation.hpp"
 #include "recognition_options.hpp"
-#include "similarity_picture.hpp"
+#include "similarity_matrix.hpp"
 
 namespace {
 
@@ -36,8 +36,9 @@ std::vector<hyselam::StampedPose2> referenceOf(const Options& o, std::size_t run
   if (run < o.references.size()) return hyselam::readPoses(o.references[run]).poses;
   auto truth =
       hyselam::readRobotLog(o.recognition.logs[run], o.recognition.bag_options).ground_truth;
-  if (truth.empty())
+  if (truth.empty()) {
     throw hyselam::InputError(o.recognition.logs[run], "", "has no ground truth: give --reference");
+  }
   return truth;
 }
 
@@ -79,21 +80,23 @@ std::vector<int> listOf(const std::string& name, const std::string& text) {
     int first = 0, last = 0;
     char rest = 0;
     const int read = std::sscanf(part.c_str(), "%d..%d%c", &first, &last, &rest);
-    if (read == 1 && std::to_string(first) == part)
+    if (read == 1 && std::to_string(first) == part) {
       last = first;
-    else if (read != 2)
+    } else if (read != 2) {
       throw hyselam::ParameterError(name, text, "numbers like 7,10 or 1..20");
-    if (first < 1 || last < first || last > 65535)
+    }
+    if (first < 1 || last < first || last > 65535) {
       throw hyselam::ParameterError(name, text, "rising numbers from 1 to 65535");
+    }
     for (int i = first; i <= last; ++i) list.push_back(i);
   }
   if (list.empty()) throw hyselam::ParameterError(name, text, "numbers like 7,10 or 1..20");
   return list;
 }
 
-std::vector<NgramMatch> recognise(NgramRecognizer& recogniser, const std::vector<Run>& runs) {
+std::vector<NgramMatch> recognise(NgramRecognizer& recognizer, const std::vector<Run>& runs) {
   std::vector<NgramMatch> matches;
-  feed(runs, recogniser, [&](const NgramRecognizerUpdate& u) {
+  feed(runs, recognizer, [&](const NgramRecognizerUpdate& u) {
     if (u.requantised) matches.clear();
     matches.insert(matches.end(), u.matches.begin(), u.matches.end());
   });
@@ -113,12 +116,13 @@ nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth
     for (const int n : list) {
       NgramRecognizerParams params = base;
       params.matcher.tolerance.size = size;
-      for (std::size_t l = 0; l < params.matcher.min_n.size(); ++l)
+      for (std::size_t l = 0; l < params.matcher.min_n.size(); ++l) {
         params.matcher.min_n[l] = n + base.matcher.min_n[l] - base.matcher.min_n[0];
+      }
       params.validate();
-      NgramRecognizer recogniser(params);
-      MatchEvaluation evaluation(recogniser, truth);
-      evaluation.add(recognise(recogniser, runs));
+      NgramRecognizer recognizer(params);
+      MatchEvaluation evaluation(recognizer, truth);
+      evaluation.add(recognise(recognizer, runs));
       nlohmann::json row = summary(evaluation);
       row["n"] = n;
       row["size_tolerance"] = size;
@@ -146,18 +150,20 @@ nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth
                                              "recall_any_direction",
                                              "pass_recall_any_direction"};
       for (const char* column : columns) out << column << (column == columns.back() ? "\n" : ",");
-      for (const auto& row : rows)
-        for (const char* column : columns)
+      for (const auto& row : rows) {
+        for (const char* column : columns) {
           out << row[column] << (column == columns.back() ? "\n" : ",");
+        }
+      }
     });
   }
   return rows;
 }
 
 /// Precision and recall while ever less sure matches are taken in.
-nlohmann::json curve(const Options& o, const NgramRecognizer& recogniser,
+nlohmann::json curve(const Options& o, const NgramRecognizer& recognizer,
                      std::vector<NgramMatch> matches, const Truth& truth) {
-  const NgramRecognizerParams& params = recogniser.params();
+  const NgramRecognizerParams& params = recognizer.params();
   const auto key = [&](const NgramMatch& m) {
     if (params.with_probability) return m.probability;
     return params.max_chance > 0.0 ? -m.chance : static_cast<double>(m.n);
@@ -165,14 +171,15 @@ nlohmann::json curve(const Options& o, const NgramRecognizer& recogniser,
   std::stable_sort(matches.begin(), matches.end(),
                    [&](const NgramMatch& a, const NgramMatch& b) { return key(a) > key(b); });
   nlohmann::json points = nlohmann::json::array();
-  MatchEvaluation evaluation(recogniser, truth);
+  MatchEvaluation evaluation(recognizer, truth);
   std::size_t told = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     evaluation.add(matches[i]);
     const bool last = i + 1 == matches.size();
     if (!last &&
-        (key(matches[i]) == key(matches[i + 1]) || (i + 1) * kPoints < told * matches.size()))
+        (key(matches[i]) == key(matches[i + 1]) || (i + 1) * kPoints < told * matches.size())) {
       continue;
+    }
     told = (i + 1) * kPoints / matches.size() + 1;
     nlohmann::json point = summary(evaluation);
     point["threshold"] = std::abs(key(matches[i]));
@@ -182,36 +189,38 @@ nlohmann::json curve(const Options& o, const NgramRecognizer& recogniser,
     hyselam::writeFileAtomically(o.curve, [&](std::ostream& out) {
       out << "threshold,matches,precision,recall,pass_recall,recall_any_direction,"
              "pass_recall_any_direction\n";
-      for (const auto& p : points)
+      for (const auto& p : points) {
         out << p["threshold"] << ',' << p["matches"] << ',' << p["precision"] << ',' << p["recall"]
             << ',' << p["pass_recall"] << ',' << p["recall_any_direction"] << ','
             << p["pass_recall_any_direction"] << '\n';
+      }
     });
   }
   return points;
 }
 
 nlohmann::json run(const Options& o) {
-  if (!o.references.empty() && o.references.size() != o.recognition.logs.size())
+  if (!o.references.empty() && o.references.size() != o.recognition.logs.size()) {
     throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
+  }
   if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
-  NgramRecognizer recogniser(o.recognition.params());
+  NgramRecognizer recognizer(o.recognition.params());
   const std::vector<Run> runs = readRuns(o.recognition);
   const std::clock_t begin = std::clock();
-  const std::vector<NgramMatch> matches = recognise(recogniser, runs);
+  const std::vector<NgramMatch> matches = recognise(recognizer, runs);
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  const Truth truth = truthOf(o, recogniser.observations(), runs);
-  MatchEvaluation evaluation(recogniser, truth);
+  const Truth truth = truthOf(o, recognizer.observations(), runs);
+  MatchEvaluation evaluation(recognizer, truth);
   evaluation.add(matches);
 
   nlohmann::json j = summary(evaluation);
-  j["observations"] = recogniser.observations().size();
-  j["words"] = recogniser.text().positions();
+  j["observations"] = recognizer.observations().size();
+  j["words"] = recognizer.text().positions();
   std::cout << j.dump(2) << "\n";
   j["matching_s"] = seconds;  // words, matches and what judges them, without densities
-  if (!o.similarity.empty()) saveSimilarityPicture(o.similarity, evaluation.score());
+  if (!o.similarity.empty()) writeSimilarityMatrix(o.similarity, evaluation.score());
   if (!o.table.empty() || !o.n.empty() || !o.sizes.empty()) j["sweep"] = sweep(o, runs, truth);
-  if (!o.curve.empty()) j["curve"] = curve(o, recogniser, matches, truth);
+  if (!o.curve.empty()) j["curve"] = curve(o, recognizer, matches, truth);
   return j;
 }
 
@@ -222,7 +231,7 @@ int main(int argc, char** argv) {
       "Recognises places in recorded runs and compares with reference poses. A pair of "
       "observations is true if they were made within --distance and --heading of each other (or "
       "of the opposite heading, where a match in reverse is told). A revisit is an observation "
-      "for which such an earlier one exists; recall is the share of revisits recognised, pass "
+      "for which such an earlier one exists; recall is the share of revisits recognized, pass "
       "recall the share of all earlier passes of all revisits.",
       "evaluate_recognition");
   Options o;
@@ -243,6 +252,7 @@ int main(int argc, char** argv) {
                  "precision and recall as CSV while ever shorter (with --max-chance: likelier by "
                  "chance; with --probability: less probable) matches are taken in");
   app.add_option("--similarity", o.similarity,
-                 "similarity matrix as PNG: what is true, and what was recognised");
+                 "similarity matrix to write (JSON): what is true, and what was recognized; for "
+                 "scripts/plot_similarity");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

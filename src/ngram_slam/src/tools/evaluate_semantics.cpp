@@ -1,12 +1,11 @@
 // evaluate_semantics: the classes of regions in recorded runs, against the plan of the building.
 #include <iostream>
 
-#include "confusion_picture.hpp"
+#include "hyselam_common/confusion_csv.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_sim/data.hpp"
-#include "hyselam_sim/picture.hpp"
 #include "ngram_slam/semantics/semantic_forest.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "semantic_runs.hpp"
@@ -19,30 +18,58 @@ struct Options {
   SemanticRunOptions run;
   DecisionTreeParams tree;
   std::vector<std::string> logs;
-  std::string plan, model, confusion, regions, title;
+  std::string plan, model, confusion, regions;
   std::uint32_t tolerance = 10;
 };
 
+hyselam::ConfusionTable tableOf(const SemanticConfusion& confusion) {
+  hyselam::ConfusionTable table;
+  for (const SemanticClass truth : kAllSemanticClasses) {
+    table.truth.emplace_back(toString(truth));
+    table.predicted.emplace_back(toString(truth));
+    const auto& row = confusion.counts[indexOf(truth)];
+    table.counts.emplace_back(row.begin(), row.end());
+  }
+  return table;
+}
+
+/// A table, not a picture: scripts/plot_confusion draws it.
+void requireCsv(const std::string& option, const std::string& path) {
+  const std::string ending = ".csv";
+  if (path.empty()) return;
+  if (path.size() < ending.size() ||
+      path.compare(path.size() - ending.size(), ending.size(), ending) != 0) {
+    throw hyselam::ParameterError(option, path, "a .csv file; scripts/plot_confusion draws it");
+  }
+}
+
 nlohmann::json evaluate(const Options& o) {
   o.run.semantics.validate();
+  requireCsv("--confusion", o.confusion);
   std::shared_ptr<const SemanticClassifier> classifier;
-  if (o.model.empty())
+  if (o.model.empty()) {
     classifier = std::make_shared<DecisionTree>(o.tree);
-  else
+  } else if (o.model == "shipped") {
+    classifier = std::make_shared<SemanticForest>(SemanticForest::shipped());
+  } else {
     classifier = std::make_shared<SemanticForest>(SemanticForest::load(o.model));
-  if (!o.regions.empty() && o.logs.size() != 1)
+  }
+  if (!o.regions.empty() && o.logs.size() != 1) {
     throw hyselam::ParameterError("--regions", o.regions, "used with one log only");
+  }
   const hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile(o.plan));
-  if (plan.areas.empty() && plan.floor_kind.empty())
+  if (plan.areas.empty() && plan.floor_kind.empty()) {
     throw hyselam::InputError(plan.source, "keys 'areas', 'floor_kind'",
                               "missing: the plan does not say what its places are");
+  }
 
   SemanticConfusion confusion, strict;
   std::size_t regions = 0, observations = 0;
   for (const std::string& path : o.logs) {
     const hyselam::RobotLog log = hyselam::readRobotLog(path);
-    if (log.ground_truth.empty())
+    if (log.ground_truth.empty()) {
       throw hyselam::InputError(path, "", "has no ground truth to look up in the plan");
+    }
     hyselam::Progress progress("densities of " + path, log.scans.size());
     const SemanticRun run = semanticRun(log, o.run, classifier, &plan,
                                         [&](std::size_t done) { progress.update(done); });
@@ -53,11 +80,7 @@ nlohmann::json evaluate(const Options& o) {
     observations += run.stamps.size();
     if (!o.regions.empty()) writeRegions(o.regions, run.regions, run.stamps);
   }
-  if (!o.confusion.empty()) {
-    const std::string title =
-        o.title.empty() ? plan.name + (o.model.empty() ? ", decision tree" : ", forest") : o.title;
-    hyselam_sim::savePicture(o.confusion, drawConfusion(confusion, title));
-  }
+  if (!o.confusion.empty()) hyselam::writeConfusionCsv(o.confusion, tableOf(confusion));
   nlohmann::json j = toJson(confusion);
   j["strict"] = toJson(strict);
   j["plan"] = plan.name;
@@ -72,20 +95,21 @@ nlohmann::json evaluate(const Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Cuts recorded runs into regions, tells corridors, corners, bifurcations, dead ends and "
-      "halls, "
-      "and compares with the plan of the building. Counted in observations; a border may be drawn "
-      "--tolerance observations too early or late ('strict': only where both places were found).",
+      "Cuts recorded runs into regions, classifies them as corridors, corners, bifurcations, dead "
+      "ends and halls, and compares with the plan of the building. Counted in observations; a "
+      "border may be drawn --tolerance observations too early or late ('strict': only where both "
+      "places were found).",
       "evaluate_semantics");
   Options o;
   app.add_option("logs", o.logs, "bags with ground truth, each a run")->required();
   o.run.addTo(app);
   app.add_option("--plan", o.plan, "floor plan with areas: a .yaml file or a shipped one's name")
       ->required();
-  app.add_option("--model", o.model, "forest of train_semantic; without: the decision tree");
+  app.add_option("--model", o.model,
+                 "forest of train_semantic, or 'shipped'; without: the decision tree");
   app.add_option("--tolerance", o.tolerance, "of borders [observations]");
-  app.add_option("--confusion", o.confusion, "picture of the confusion matrix to write (PNG)");
-  app.add_option("--title", o.title, "of the picture");
+  app.add_option("--confusion", o.confusion,
+                 "confusion matrix to write (CSV), for scripts/plot_confusion");
   app.add_option("--regions", o.regions, "table of the regions to write (CSV)");
   app.add_option("--high-variation", o.tree.high_variation,
                  "of the density, Table 6.4 (there 0.1)");

@@ -1,4 +1,4 @@
-// What the tools of semantic classes have in common: options, runs with what is true of them.
+// What the tools of semantic classes have in common: options, runs with their true classes.
 #pragma once
 
 #include <string>
@@ -20,12 +20,12 @@ struct SemanticRunOptions {
     app.option_defaults()->always_capture_default();
     app.add_option("--bandwidth", observations.bandwidth, "radius of the density kernel [m]");
     app.add_option("--usable-range", observations.usable_range,
-                   "beams say nothing beyond it [m]; 0: all that fits the local map");
+                   "beams are cut at this range [m]; 0: as the local map is wide");
     app.add_option("--smoothing", semantics.cut.smoothing,
                    "observations on each side in the mean of densities");
-    app.add_option("--leave", semantics.cut.leave, "density varies from this change on");
-    app.add_option("--settled", semantics.cut.settled, "density stands within this range");
-    app.add_option("--border", semantics.cut.border,
+    app.add_option("--leave", semantics.cut.change_threshold, "density varies from this change on");
+    app.add_option("--settled", semantics.cut.steady_tolerance, "density steady within this range");
+    app.add_option("--border", semantics.cut.border_share,
                    "share of the change of density that is made at a border");
   }
 };
@@ -52,7 +52,8 @@ inline SemanticRun semanticRun(const hyselam::RobotLog& log, const SemanticRunOp
     keep(segmenter.add(o));
     if (plan == nullptr) continue;
     const auto pose = hyselam::poseAt(log.ground_truth, o.stamp, 0.5);
-    run.truth.push_back(pose ? semanticClassOf(plan->kindAt({pose->x, pose->y})) : std::nullopt);
+    run.truth.push_back(pose ? semanticClassFromString(plan->kindAt({pose->x, pose->y}))
+                             : std::nullopt);
   }
   keep(segmenter.finish());
   return run;
@@ -60,8 +61,9 @@ inline SemanticRun semanticRun(const hyselam::RobotLog& log, const SemanticRunOp
 
 inline std::vector<SemanticClass> classesOf(const SemanticRun& run) {
   std::vector<SemanticClass> out;
-  for (const SemanticRegion& r : run.regions)
+  for (const SemanticRegion& r : run.regions) {
     out.insert(out.end(), r.last - r.first + 1, r.semantic_class);
+  }
   return out;
 }
 
@@ -70,11 +72,12 @@ inline nlohmann::json toJson(const SemanticConfusion& confusion) {
   const auto number = [](const std::optional<double>& x) {
     return x ? nlohmann::json(*x) : nlohmann::json(nullptr);
   };
-  for (SemanticClass c : kAllSemanticClasses)
-    j["classes"][nameOf(c)] = {{"actual", confusion.actual(c)},
-                               {"predicted", confusion.predicted(c)},
-                               {"precision", number(confusion.precision(c))},
-                               {"recall", number(confusion.recall(c))}};
+  for (SemanticClass c : kAllSemanticClasses) {
+    j["classes"][toString(c)] = {{"actual", confusion.actual(c)},
+                                 {"predicted", confusion.predicted(c)},
+                                 {"precision", number(confusion.precision(c))},
+                                 {"recall", number(confusion.recall(c))}};
+  }
   j["average_precision"] = confusion.averagePrecision();
   j["average_recall"] = confusion.averageRecall();
   j["accuracy"] = confusion.accuracy();

@@ -32,7 +32,7 @@ inline nlohmann::json figureJson(const std::string& title, const std::string& ma
   }
   for (const RegionNode& n : regionGraph(engine).nodes) {
     regions.push_back(
-        json::array({rounded(n.pose.x), rounded(n.pose.y), nameOf(n.semantic_class)}));
+        json::array({rounded(n.pose.x), rounded(n.pose.y), toString(n.semantic_class)}));
   }
   return {{"title", title},           {"map", map},
           {"trajectory", trajectory}, {"proximity_loops", proximity},

@@ -53,15 +53,17 @@ nlohmann::json run(const Options& o) {
   feed(o.recognition, r, [&](const NgramRecognizerUpdate& u) {
     if (u.requantised) matches.clear();
     // Now, as a robot would: later observations could move the pair a little.
-    for (const NgramMatch& m : u.matches)
+    for (const NgramMatch& m : u.matches) {
       if (const auto place = placeOf(r, m)) matches.push_back({m, *place});
+    }
   });
   writeWords(o.out + "/words.csv", r);
   writeMatches(o.out + "/matches.csv", r, matches);
   const std::vector<SemanticRegion> regions = semanticRegions(r.observations());
   std::vector<double> stamps;
-  for (std::uint32_t i = 0; i < r.observations().size(); ++i)
+  for (std::uint32_t i = 0; i < r.observations().size(); ++i) {
     stamps.push_back(r.observations().stamp(i));
+  }
   writeRegions(o.out + "/regions.csv", regions, stamps);
   if (!o.corpus.empty()) CorpusFile::save(o.corpus, r.corpus());
   const auto words = static_cast<double>(r.text().words());

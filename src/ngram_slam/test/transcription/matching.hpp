@@ -55,20 +55,23 @@ inline std::set<std::vector<std::pair<std::size_t, std::size_t>>> findMatches(
   };
   std::set<std::vector<std::pair<std::size_t, std::size_t>>> M;
   std::list<Gram> M_temp;
-  for (std::size_t matched = 0; matched < words.size(); ++matched)
+  for (std::size_t matched = 0; matched < words.size(); ++matched) {
     if (pairable(w_last, matched)) M_temp.push_front({{w_last, matched}});
+  }
   while (!M_temp.empty()) {
     const Gram g = M_temp.front();
     M_temp.pop_front();
     bool expanded = false;
-    for (std::size_t prev_i : words[g.front().first].P)
-      for (std::size_t prev_ii : words[g.front().second].P)
+    for (std::size_t prev_i : words[g.front().first].P) {
+      for (std::size_t prev_ii : words[g.front().second].P) {
         if (pairable(prev_i, prev_ii)) {
           Gram longer = g;
           longer.push_front({prev_i, prev_ii});
           M_temp.push_front(longer);
           expanded = true;
         }
+      }
+    }
     if (!expanded && g.size() >= min_n) M.insert({g.begin(), g.end()});
   }
   return M;
@@ -80,15 +83,17 @@ class AllPairs {
   AllPairs(const std::vector<PlainWord>& words, int levels,
            const ngram_slam::WordTolerance& tolerance)
       : n_(words.size()), length_(n_ * n_, 0) {
-    for (std::size_t a = 0; a < n_; ++a)
+    for (std::size_t a = 0; a < n_; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         if (words[a].level >= levels || words[b].level >= levels) continue;
         if (words[b].last >= words[a].first || !equal(words[a], words[b], tolerance)) continue;
         int longest = 0;
-        for (std::size_t p : words[a].P)
+        for (std::size_t p : words[a].P) {
           for (std::size_t q : words[b].P) longest = std::max(longest, at(p, q));
+        }
         length_[a * n_ + b] = longest + 1;
       }
+    }
   }
   int at(std::size_t newer, std::size_t older) const { return length_[newer * n_ + older]; }
 

@@ -18,13 +18,13 @@ struct Level {
   double reached;          // as known when it was reached: what the cut before is told
   double value;            // as known when it was left
   std::size_t begin, end;  // where the density stood or turned
-  bool stands;
+  bool steady;
 };
 
 struct Piece {
   std::size_t first, last;
   double level;
-  bool stands;
+  bool steady;
   bool has_before, has_after;
   double before, after;
 };
@@ -44,45 +44,48 @@ inline std::vector<double> meanFiltered(const std::vector<double>& d, int reach)
   return x;
 }
 
-/// The density stands from `begin` on; its first `sure` values belong to it in any case.
+/// The density steady from `begin` on; its first `sure` values belong to it in any case.
 inline Level standing(const std::vector<double>& x, std::size_t begin, std::size_t sure,
-                      double leave) {
+                      double change_threshold) {
   double sum = 0.0;
   std::size_t end = begin;
   while (end < begin + sure) sum += x[end++];
   const double reached = sum / static_cast<double>(sure);
-  while (end < x.size() && std::abs(x[end] - sum / static_cast<double>(end - begin)) <= leave)
+  while (end < x.size() &&
+         std::abs(x[end] - sum / static_cast<double>(end - begin)) <= change_threshold) {
     sum += x[end++];
+  }
   return {reached, sum / static_cast<double>(end - begin), begin, end, true};
 }
 
 inline std::vector<Level> levels(const std::vector<double>& x,
                                  const ngram_slam::SemanticCutParams& p) {
-  std::vector<Level> out{standing(x, 0, 1, p.leave)};
+  std::vector<Level> out{standing(x, 0, 1, p.change_threshold)};
   std::size_t since = out[0].end;  // of the move
   bool up = since < x.size() && x[since] > out[0].value;
   const auto extreme = [&](std::size_t to) {
     std::size_t e = since;
-    for (std::size_t k = since; k <= to; ++k)
+    for (std::size_t k = since; k <= to; ++k) {
       if (up ? x[k] > x[e] : x[k] < x[e]) e = k;
+    }
     return e;
   };
   for (std::size_t i = since; i < x.size(); ++i) {
     const std::size_t e = extreme(i);
-    if ((up ? x[e] - x[i] : x[i] - x[e]) > p.leave) {
+    if ((up ? x[e] - x[i] : x[i] - x[e]) > p.change_threshold) {
       out.push_back({x[e], x[e], e, e + 1, false});
       since = e + 1;
       up = !up;
     }
-    const auto n = static_cast<std::size_t>(p.settled_for);
+    const auto n = static_cast<std::size_t>(p.steady_length);
     if (i + 1 < since + n) continue;
     double low = x[i], high = x[i];
     for (std::size_t k = i + 1 - n; k <= i; ++k) {
       low = std::min(low, x[k]);
       high = std::max(high, x[k]);
     }
-    if (high - low >= p.settled) continue;
-    out.push_back(standing(x, i + 1 - n, n, p.leave));
+    if (high - low >= p.steady_tolerance) continue;
+    out.push_back(standing(x, i + 1 - n, n, p.change_threshold));
     since = out.back().end;
     if (since == x.size()) return out;
     up = x[since] > out.back().value;
@@ -103,15 +106,16 @@ inline std::vector<Piece> cuts(const std::vector<double>& densities,
   std::vector<Piece> out;
   std::size_t first = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    Piece c{first, x.size() - 1, all[k].value, all[k].stands, k > 0, k + 1 < all.size(), 0.0, 0.0};
+    Piece c{first, x.size() - 1, all[k].value, all[k].steady, k > 0, k + 1 < all.size(), 0.0, 0.0};
     if (c.has_before) c.before = all[k - 1].value;
     if (c.has_after) {
       c.after = all[k + 1].reached;
-      const double share = c.after > c.level ? p.border : 1.0 - p.border;
+      const double share = c.after > c.level ? p.border_share : 1.0 - p.border_share;
       std::size_t border = all[k].end;
       while (border < all[k + 1].begin &&
-             std::abs(x[border] - c.level) < share * std::abs(c.after - c.level))
+             std::abs(x[border] - c.level) < share * std::abs(c.after - c.level)) {
         ++border;
+      }
       c.last = border - 1;
       first = border;
     }
@@ -141,8 +145,8 @@ inline std::vector<Piece> joined(const std::vector<Piece>& all, const Run& run,
     const Piece& c = all[k];
     const bool trough = c.has_before && c.has_after && c.before > c.level && c.after > c.level;
     const auto length = static_cast<int>(c.last - c.first + 1);
-    const bool gap = length < p.shortest_gap ||
-                     (length <= p.longest_bend && turn(run, c.first, c.last) > p.turning);
+    const bool gap =
+        length < p.min_gap || (length <= p.max_bend && turn(run, c.first, c.last) > p.min_turn);
     if (!(trough && gap)) {
       out.push_back(c);
       continue;
@@ -159,11 +163,11 @@ inline std::vector<Piece> joined(const std::vector<Piece>& all, const Run& run,
 
 inline std::vector<Piece> bent(const Piece& c, const Run& run,
                                const ngram_slam::SemanticParams& p) {
-  if (turn(run, c.first, c.last) < p.bend) return {c};
+  if (turn(run, c.first, c.last) < p.bend_angle) return {c};
   std::vector<bool> turns;
   for (std::size_t i = c.first; i <= c.last; ++i) {
     const std::size_t from = i < c.first + 5 ? c.first : i - 5, to = std::min(c.last, i + 5);
-    turns.push_back(std::abs(run.heading[to] - run.heading[from]) > p.turning);
+    turns.push_back(std::abs(run.heading[to] - run.heading[from]) > p.min_turn);
   }
   const auto begin = std::find(turns.begin(), turns.end(), true);
   const auto rend = std::find(turns.rbegin(), turns.rend(), true);
@@ -172,17 +176,17 @@ inline std::vector<Piece> bent(const Piece& c, const Run& run,
     first = c.first + static_cast<std::size_t>(begin - turns.begin());
     last = c.last - static_cast<std::size_t>(rend - turns.rbegin());
   }
-  if (first - c.first <= static_cast<std::size_t>(p.widest_rim)) first = c.first;
-  if (c.last - last <= static_cast<std::size_t>(p.widest_rim)) last = c.last;
+  if (first - c.first <= static_cast<std::size_t>(p.max_rim)) first = c.first;
+  if (c.last - last <= static_cast<std::size_t>(p.max_rim)) last = c.last;
   std::vector<Piece> out;
   Piece before = c, itself = c, behind = c;
   before.last = first - 1;
-  before.stands = before.has_after = true;
+  before.steady = before.has_after = true;
   before.after = c.level;
   itself.first = first;
   itself.last = last;
   behind.first = last + 1;
-  behind.stands = behind.has_before = true;
+  behind.steady = behind.has_before = true;
   behind.before = c.level;
   if (first > c.first) out.push_back(before);
   out.push_back(itself);
@@ -200,10 +204,10 @@ inline std::vector<Piece> divided(const Piece& c, const Run& run,
   // what follows.
   std::vector<Stretch> parts;
   std::size_t unclaimed = c.first;
-  for (std::size_t i = c.first, end; p.shortest_stretch > 0 && i <= c.last; i = end) {
+  for (std::size_t i = c.first, end; p.min_frontier_run > 0 && i <= c.last; i = end) {
     const bool many = run.frontiers[i] >= 3;
     for (end = i; end <= c.last && (run.frontiers[end] >= 3) == many;) ++end;
-    if (static_cast<int>(end - i) >= p.shortest_stretch &&
+    if (static_cast<int>(end - i) >= p.min_frontier_run &&
         (parts.empty() || parts.back().many != many)) {
       parts.push_back({many, parts.empty() ? unclaimed : i, end - 1});
     } else if (!parts.empty()) {
@@ -211,7 +215,7 @@ inline std::vector<Piece> divided(const Piece& c, const Run& run,
     }
   }
   const auto rim = [&](const Stretch& s) {
-    return !s.many && static_cast<int>(s.last - s.first) + 1 <= p.widest_rim;
+    return !s.many && static_cast<int>(s.last - s.first) + 1 <= p.max_rim;
   };
   if (parts.size() > 1 && rim(parts.front())) {
     parts[1].first = c.first;
@@ -224,7 +228,7 @@ inline std::vector<Piece> divided(const Piece& c, const Run& run,
   if (parts.empty() || (parts.size() == 1 && !parts[0].many)) return bent(c, run, p);
   if (parts.size() == 1) {
     Piece whole = c;
-    whole.stands = false;
+    whole.steady = false;
     return {whole};
   }
   std::vector<Piece> out;
@@ -242,7 +246,7 @@ inline std::vector<Piece> divided(const Piece& c, const Run& run,
     part.first = parts[k].first;
     part.last = parts[k].last;
     part.level = value[k];
-    part.stands = !parts[k].many;
+    part.steady = !parts[k].many;
     if (k > 0) {
       part.has_before = true;
       part.before = value[k - 1];
@@ -262,8 +266,9 @@ inline std::vector<Piece> divided(const Piece& c, const Run& run,
 
 inline std::vector<Piece> regions(const Run& run, const ngram_slam::SemanticParams& p) {
   std::vector<Piece> out;
-  for (const Piece& whole : joined(cuts(run.soft, p.cut), run, p))
+  for (const Piece& whole : joined(cuts(run.soft, p.cut), run, p)) {
     for (const Piece& part : divided(whole, run, p)) out.push_back(part);
+  }
   return out;
 }
 

@@ -112,8 +112,9 @@ struct MultiLevelWords {
       const ExtendedWord* w_first = W[0][n - l - 2].get();
       if (w_first->d != w_last->d) continue;
       Region joined;
-      for (std::size_t k = n - l - 2; k < n; ++k)
+      for (std::size_t k = n - l - 2; k < n; ++k) {
         joined.insert(joined.end(), W[0][k]->O.begin(), W[0][k]->O.end());
+      }
       auto w_alt = std::make_unique<ExtendedWord>(buildExtendedWord(joined));
       w_alt->P = w_first->P;
       w_alt->level = static_cast<int>(l);

@@ -1,5 +1,5 @@
-// From matched words to matched observations: the raw densities of both are laid over each other
-// (5.2.4, Eq. 5.3).
+// From matched words to matched observations: the raw densities of both are aligned (5.2.4,
+// Eq. 5.3).
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,10 @@ namespace ngram_slam {
 
 struct AlignmentParams {
   int max_shift = 20;        ///< delta_max: shifts of less than this are tried [observations], >= 1
-  double min_overlap = 0.5;  ///< least share of the n terms that must exist for a shift, (0, 1]
+  double min_overlap = 0.5;  ///< share of the n terms that must exist for a shift, (0, 1]
   WordDensity density = WordDensity::kFull;  ///< which are compared; soft where full is missing
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
@@ -45,7 +46,7 @@ struct ObservationPair {
 };
 
 /// The observations of an n-gram: each pair of words is aligned (n: the size of the smaller one),
-/// and every `step`-th pair of observations is given out, in the order of the words and, within
+/// and every `step`-th pair of observations is returned, in the order of the words and, within
 /// them, of the newer ones.
 /// @throws hyselam::ParameterError unless step >= 1.
 std::vector<ObservationPair> alignedObservations(const WordLattice& text,

@@ -1,4 +1,4 @@
-// Finds old grams whose words may match the words of a new gram, without looking at the others.
+// Finds old grams whose words may match the words of a new gram, without visiting the others.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,17 @@
 namespace ngram_slam {
 
 /// Words are sorted into buckets of class, logarithm of the size and angle, about twice as wide as
-/// the tolerance; a gram into a list by the buckets of its words. A new gram asks the lists of all
+/// the tolerance; a gram into a list by the buckets of its words. A query reads the lists of all
 /// combinations of buckets that can hold matching words: every gram that matches is among the
 /// answers, others may be.
 class GramIndex {
  public:
-  /// Grams of `n` words, 2^bits lists. `backwards`: grams are asked for by what the text says when
-  /// it is read the other way, as reversed words.
+  /// Grams of `n` words, 2^bits lists. `backwards`: queries are grams of the text read
+  /// backwards, as reversed words.
   GramIndex(const WordLattice& text, const WordTolerance& tolerance, int n, int bits,
             bool backwards = false);
 
-  /// Takes in all grams that end with this word, through all its predecessors.
+  /// Adds all grams that end with this word, through all its predecessors.
   void insert(WordIndex last);
   /// An old gram by the word that matches the newest one, its last word, backwards its first:
   /// first position << 4 | level.
@@ -28,12 +28,12 @@ class GramIndex {
   static Position firstOf(Entry e) { return e >> 4; }
   static int levelOf(Entry e) { return static_cast<int>(e & 15u); }
   static Position endOf(Entry e) { return firstOf(e) + ((e & 15u) == 0 ? 0 : (e & 15u) + 1); }
-  /// Asks for every gram that may match one of those that end with `last`.
-  void ask(WordIndex last);
+  /// Starts a query for every gram that may match one of those that end with `last`.
+  void startQuery(WordIndex last);
   /// Writes the next part of the answer, newest grams first: all of a part end later than all of
   /// the next one (backwards: nearly so); within a part in no particular order, some perhaps
   /// several times. False: no more.
-  bool answer(std::vector<Entry>& part);
+  bool nextPart(std::vector<Entry>& part);
 
   std::size_t bytes() const { return heads_.capacity() * sizeof(std::uint32_t) + pool_.bytes(); }
 
@@ -79,7 +79,7 @@ class GramIndex {
   };
   std::vector<Target> targets_;
   std::vector<Cursor> cursors_;
-  Position until_ = 0;  // the parts before held all that ends here or later
+  Position until_ = 0;  // all that ends here or later was in an earlier part
   Position reach_ = 0;  // positions of the next part
 };
 

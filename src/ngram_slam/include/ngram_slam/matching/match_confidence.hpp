@@ -1,5 +1,5 @@
-// How far a match can be trusted: how often its like is expected by chance, and how probable it is
-// that it is right. The thesis leaves both open (4.4, 7) and knows only a least number of words.
+// How far a match can be trusted: how many such matches are expected by chance, and how probable it
+// is that it is right. The thesis leaves both open (4.4, 7) and has only a minimum number of words.
 #pragma once
 
 #include <cstdint>
@@ -12,37 +12,38 @@
 namespace ngram_slam {
 
 /// Logistic regression: log odds = bias - by_chance * ln(chance) + by_misfit * ln(misfit +
-/// misfit_floor). Learnt from the matches of 3 words and more on the simulated building B of 4.3.1,
-/// kernels of 2.5 m and 4 m, where the true pose tells which are right.
+/// misfit_floor). Fitted to the matches of 3 words and more on the simulated building B of 4.3.1,
+/// kernels of 2.5 m and 4 m, where the true poses are known.
 struct MatchConfidenceParams {
   double bias = -8.97;
   double by_chance = 0.209;
   double by_misfit = -1.79;
   double misfit_floor = 0.003;
-  int max_words = 64;  ///< the newest words of a match that are looked at, >= 1
+  int max_words = 64;  ///< the newest words of a match that are used, >= 1
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
-/// Follows a text and judges its matches.
+/// Reads a text as it grows and estimates chance and probability of its matches.
 ///
 /// Chance: the expected number of old n-grams that match the newer words although they are others:
 /// the words of the text times the product of the probabilities of each further match, by the
-/// bigram model of the text so far. A corridor of a length that all have is worth little, a rare
-/// sequence of rooms much. Misfit: root of the mean squared difference of the densities of the
+/// bigram model of the text so far. A corridor of a common length says little, a rare sequence
+/// of rooms much. Misfit: root of the mean squared difference of the densities of the
 /// matched words, aligned (Eq. 5.3).
 class MatchConfidence {
  public:
-  /// `text` and `observations` must outlive the judge; `density`: the one that words are made of.
+  /// `text` and `observations` must outlive it; `density`: the one that words are made of.
   MatchConfidence(const WordLattice& text, const ObservationStore& observations,
                   const WordTolerance& tolerance, WordDensity density,
                   const MatchConfidenceParams& params = {});
 
   /// Learns from the word at this position, the next one.
   void learn(Position p);
-  /// Fills in the match's chance and, if wanted, its probability.
-  void judge(NgramMatch& match, bool with_probability);
+  /// Sets the chance of a match and, if asked for, its probability.
+  void estimate(NgramMatch& match, bool with_probability);
 
   const LanguageModel& model() const { return model_; }
   std::size_t bytes() const;
@@ -52,8 +53,8 @@ class MatchConfidence {
     float squares = 0.0f;  // sum
     float terms = 0.0f;
   };
-  double chance(const std::vector<WordPair>& chain, Direction direction);
-  double misfit(const std::vector<WordPair>& chain, Direction direction);
+  double chanceOf(const std::vector<WordPair>& chain, Direction direction);
+  double misfitOf(const std::vector<WordPair>& chain, Direction direction);
 
   const WordLattice& text_;
   const ObservationStore& observations_;

@@ -12,15 +12,15 @@
 
 namespace ngram_slam {
 
-/// Takes in matches of a text and counts the observations that they take for the same place.
+/// Counts the observations that the matches of a text identify as the same place.
 ///
 /// The words of a match's longest n-gram (its last 64) are aligned by density, and every pair of
 /// observations of two words that are paired counts once (RecognitionScore). A match itself is true
 /// if most pairs of its last words are.
 class MatchEvaluation {
  public:
-  /// `recogniser` must outlive the evaluation, and its text must not change meanwhile.
-  MatchEvaluation(const NgramRecognizer& recogniser, std::shared_ptr<const RecognitionTruth> truth);
+  /// `recognizer` must outlive the evaluation, and its text must not change meanwhile.
+  MatchEvaluation(const NgramRecognizer& recognizer, std::shared_ptr<const RecognitionTruth> truth);
 
   /// Order does not matter.
   void add(const NgramMatch& match);
@@ -33,7 +33,7 @@ class MatchEvaluation {
   double matchPrecision() const { return RecognitionFigures::share(true_matches_, matches_, 1.0); }
 
  private:
-  const NgramRecognizer& recogniser_;
+  const NgramRecognizer& recognizer_;
   RecognitionScore score_;
   AlignmentParams alignment_;
   std::size_t matches_ = 0, true_matches_ = 0;

@@ -1,4 +1,5 @@
-// The words of a match (Eq. 5.2), looked up when somebody asks for them.
+// The n-grams of a match (Eq. 5.2), computed on demand: the matcher returns only their last words
+// and their length.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ inline bool operator==(const WordPair& a, const WordPair& b) {
   return a.newer == b.newer && a.older == b.older;
 }
 
-/// May these two words belong to a match when `levels` levels are in use? They match by the
+/// Whether two words may belong to a match when `levels` levels are in use? They match by the
 /// tolerances, the older one reversed if the direction is, and the older one ends before the newer
 /// one begins.
 bool mayPair(const WordLattice& text, const WordTolerance& tolerance, const WordPair& pair,

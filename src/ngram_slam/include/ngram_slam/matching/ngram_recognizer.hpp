@@ -1,4 +1,4 @@
-// Everything together: observations in, words and matches out, while the classes are being learnt.
+// The whole recognition: observations in, words and matches out, while classes are being learned.
 #pragma once
 
 #include <memory>
@@ -23,32 +23,39 @@ struct NgramRecognizerParams {
 
   // Beyond the thesis.
   WordDensity word_density = WordDensity::kSoft;  ///< (a), (b): words of which density
-  bool reverse = false;  ///< (a): also look for places that were travelled the other way
+  bool reverse = false;  ///< (a): also places travelled in the reverse direction
   /// (b): a density keeps the class of the one before while it lies within this of its bounds; 0:
   /// classes as they are. [0, 0.5)
   double class_hysteresis = 0.0;
-  /// (c): a match is told if fewer than this many of its kind are expected by chance, whatever its
+  /// (c): a match is accepted if fewer than this many like it are expected by chance, whatever its
   /// length (matcher.min_n should then be small); 0: matcher.min_n alone decides.
   double max_chance = 0.0;
-  bool with_probability = false;  ///< (d): tell NgramMatch::probability
-  double min_probability = 0.0;   ///< (d): tell only matches at least this probable, [0, 1]
-  MatchConfidenceParams judge;    ///< (c), (d)
+  bool with_probability = false;     ///< (d): set NgramMatch::probability
+  double min_probability = 0.0;      ///< (d): of a match that is accepted, [0, 1]
+  MatchConfidenceParams confidence;  ///< (c), (d)
 
-  /// Matches get a chance and a probability.
-  bool judges() const { return max_chance > 0.0 || with_probability || min_probability > 0.0; }
+  /// Whether matches get a chance and a probability.
+  bool needsConfidence() const {
+    return max_chance > 0.0 || with_probability || min_probability > 0.0;
+  }
 
-  /// The same with (a), (b) and (d) on and matches of 3 words and more told by their probability:
-  /// what is best in all buildings tried. Observations need a look back (see
+  /// The same with (a), (b) and (d) on and matches of 3 words and more accepted by their
+  /// probability: the best in all buildings tried. Observations need a look_back (see
   /// ObservationSensorParams) of half a metre more than the kernel's radius.
   static NgramRecognizerParams improved();
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
+
+ private:
+  static constexpr int kMinNStep = 3;  // words more of each further level
+  void fitMinN();
 };
 
-/// What one observation brought about.
+/// The result of one observation.
 struct NgramRecognizerUpdate {
-  bool word = false;                ///< a word was completed: the last position of the text
+  bool word = false;                ///< a word is complete: the last position of the text
   bool requantised = false;         ///< the classes changed: all words and matches before are void
   std::vector<NgramMatch> matches;  ///< of the new word; after a requantisation of all words
 };
@@ -57,14 +64,14 @@ struct NgramRecognizerUpdate {
 class NgramRecognizer {
  public:
   explicit NgramRecognizer(const NgramRecognizerParams& params = {});
-  /// Goes on with a corpus: its runs are old ones, the next observation starts a new one. Words are
-  /// built with the corpus' classes if classes are learnt, else with the uniform ones of `params`.
+  /// Continues a corpus: the next observation starts a new run. Words are
+  /// built with the corpus' classes if classes are learned, else with the uniform ones of `params`.
   /// @throws hyselam::ParameterError
   NgramRecognizer(const NgramRecognizerParams& params, Corpus corpus);
   NgramRecognizer(const NgramRecognizer&) = delete;
   NgramRecognizer& operator=(const NgramRecognizer&) = delete;
 
-  /// Takes an observation in. @throws hyselam::InputError for one that cannot be used; nothing is
+  /// Adds an observation. @throws hyselam::InputError for one that cannot be used; nothing is
   /// changed then.
   NgramRecognizerUpdate add(const DensityObservation& observation);
   /// Ends the run: its last region becomes a word (4.3.2: an incomplete one). What comes next
@@ -89,11 +96,11 @@ class NgramRecognizer {
   Corpus corpus() const;
 
  private:
-  void startAnew();
+  void reset();
   void startRun(std::uint32_t first_observation);
   std::vector<NgramMatch> rebuild(bool match_old_runs);
   std::vector<NgramMatch> newMatches();
-  std::vector<NgramMatch> judge(std::vector<NgramMatch> matches);
+  std::vector<NgramMatch> withConfidence(std::vector<NgramMatch> matches);
   double densityOf(std::uint32_t i) const { return observations_.density(i, params_.word_density); }
   int classOf(std::uint32_t i);
   void write(const DensityRegion& region);
@@ -106,8 +113,8 @@ class NgramRecognizer {
   std::unique_ptr<WordLattice> text_;
   std::unique_ptr<NgramMatcher> matcher_;
   std::unique_ptr<ReverseNgramMatcher> reverse_matcher_;
-  std::unique_ptr<MatchConfidence> judge_;
-  Position judged_ = 0;            // words before it are known to judge_
+  std::unique_ptr<MatchConfidence> confidence_;
+  Position learnt_ = 0;            // words before it are known to confidence_
   std::optional<int> last_class_;  // of the observation before, in this run
   bool run_open_ = false;
   int requantisations_ = 0;

@@ -1,4 +1,4 @@
-// How much of what was recognised is true, and how much of what is true was recognised, against
+// Precision and recall of recognized places against
 // reference poses of the observations.
 #pragma once
 
@@ -17,14 +17,15 @@ struct ScoreParams {
   double distance = 2.0;                  ///< two observations of one place are this near [m], > 0
   double heading = hyselam::radians(45);  ///< and look the same way, or opposite ways where a match
                                           ///< in reverse is meant, by this much [rad], in (0, pi/2]
-  std::uint32_t separation = 100;         ///< pairs with fewer observations between them in one run
+  std::size_t separation = 100;           ///< pairs with fewer observations between them in one run
                                           ///< are no recognition: neither right nor wrong
-  std::uint32_t pass_gap = 20;            ///< observations between two passes at least, >= 1
+  std::size_t pass_gap = 20;              ///< observations between two passes at least, >= 1
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
-/// What there is to recognise.
+/// What can be recognized.
 ///
 /// A pair of observations is true if the reference poses lie within `distance` and their headings
 /// differ by at most `heading` (kSame), or by at least pi - `heading` (kReverse). Observations
@@ -40,14 +41,14 @@ class RecognitionTruth {
   };
 
   /// `reference`: the pose of each observation in one common frame, if known; `run`: its run.
-  /// @throws hyselam::ParameterError; std::invalid_argument for lists of different length.
+  /// @throws hyselam::ParameterError, also for lists of different length.
   RecognitionTruth(std::vector<std::optional<hyselam::Pose2>> reference,
                    std::vector<std::uint32_t> run, const ScoreParams& params = {});
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(run_.size()); }
   const ScoreParams& params() const { return params_; }
-  /// Is this pair, told with that direction, true? Nothing if it does not count.
-  std::optional<bool> verdict(std::uint32_t newer, std::uint32_t older, Direction direction) const;
+  /// Whether a pair recognized with that direction is true. Nothing if it does not count.
+  std::optional<bool> isTrue(std::uint32_t newer, std::uint32_t older, Direction direction) const;
 
   /// The passes of an observation: indices into passes() from begin to end; by direction, then
   /// time.
@@ -76,31 +77,31 @@ class RecognitionTruth {
 /// Precision and recall, and what they are made of.
 struct RecognitionFigures {
   std::size_t pairs = 0, true_pairs = 0;
-  std::size_t revisits = 0, recognised = 0;          ///< same direction
-  std::size_t revisits_any = 0, recognised_any = 0;  ///< either direction
-  std::size_t passes = 0, recognised_passes = 0;     ///< same direction
-  std::size_t passes_any = 0, recognised_passes_any = 0;
+  std::size_t revisits = 0, recognized = 0;          ///< same direction
+  std::size_t revisits_any = 0, recognized_any = 0;  ///< either direction
+  std::size_t passes = 0, recognized_passes = 0;     ///< same direction
+  std::size_t passes_any = 0, recognized_passes_any = 0;
 
   static double share(std::size_t part, std::size_t of, double of_nothing) {
     return of == 0 ? of_nothing : static_cast<double>(part) / static_cast<double>(of);
   }
   /// Share of the pairs that are true; 1 without pairs.
   double precision() const { return share(true_pairs, pairs, 1.0); }
-  /// Share of the revisits that were recognised: the robot knew that it had been there.
-  double recall() const { return share(recognised, revisits, 0.0); }
-  double recallAnyDirection() const { return share(recognised_any, revisits_any, 0.0); }
-  /// Share of all passes of all revisits that were recognised, the stricter measure: after ten laps
+  /// Share of the revisits that were recognized: the robot knew that it had been there.
+  double recall() const { return share(recognized, revisits, 0.0); }
+  double recallAnyDirection() const { return share(recognized_any, revisits_any, 0.0); }
+  /// Share of all passes of all revisits that were recognized, the stricter measure: after ten laps
   /// a revisit must be matched with each of them.
-  double passRecall() const { return share(recognised_passes, passes, 0.0); }
-  double passRecallAnyDirection() const { return share(recognised_passes_any, passes_any, 0.0); }
+  double passRecall() const { return share(recognized_passes, passes, 0.0); }
+  double passRecallAnyDirection() const { return share(recognized_passes_any, passes_any, 0.0); }
 };
 
-/// Counts pairs of observations that a recogniser takes for one place.
+/// Counts pairs of observations that a recognizer identifies as one place.
 class RecognitionScore {
  public:
   explicit RecognitionScore(std::shared_ptr<const RecognitionTruth> truth);
 
-  /// Takes a pair in; one that was taken in before changes nothing. True if it is true; nothing if
+  /// Adds a pair; one that was added before changes nothing. True if it is true; nothing if
   /// it does not count.
   std::optional<bool> add(std::uint32_t newer, std::uint32_t older,
                           Direction direction = Direction::kSame);
@@ -110,15 +111,16 @@ class RecognitionScore {
   /// Calls `use(newer, older, direction)` with every pair that counts, in no particular order.
   template <typename Use>
   void forEachPair(Use&& use) const {
-    for (const std::uint64_t pair : seen_)
+    for (const std::uint64_t pair : seen_) {
       use(static_cast<std::uint32_t>(pair >> 32 & 0x7fffffff), static_cast<std::uint32_t>(pair),
           pair >> 63 != 0 ? Direction::kReverse : Direction::kSame);
+    }
   }
 
  private:
   std::shared_ptr<const RecognitionTruth> truth_;
   std::vector<std::uint32_t> pairs_, true_pairs_;         // by newer observation
-  std::vector<char> recognised_, recognised_any_, pass_;  // by observation, by pass
+  std::vector<char> recognized_, recognized_any_, pass_;  // by observation, by pass
   std::unordered_set<std::uint64_t> seen_;
 };
 

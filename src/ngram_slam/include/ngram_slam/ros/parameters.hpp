@@ -11,18 +11,40 @@
 
 namespace ngram_slam {
 
+/// Defaults of the recognition.
+enum class WordsPreset {
+  kThesis,
+  kImproved  ///< NgramRecognizerParams::improved()
+};
+
+/// What observations are made from.
+enum class WordsInput {
+  kFsdObservation,  ///< topic `fsd_observation`
+  kScan             ///< topic `scan` and tf
+};
+
+enum class SemanticClassifierKind { kTree, kForest };
+
 struct WordsServerParams {
-  bool from_scan = false;  ///< observations from `scan` and tf, else from `fsd_observation`
+  WordsPreset preset = WordsPreset::kThesis;
+  WordsInput input_topic = WordsInput::kFsdObservation;
   hyselam::ScanInputParams input;
   ObservationSensorParams sensor;  ///< with `fsd_observation` only bandwidth and step count
   NgramRecognizerParams recognizer;
   bool semantics = true;
   SemanticParams semantic;
+  SemanticClassifierKind semantic_classifier = SemanticClassifierKind::kTree;
+  std::string semantic_forest;     ///< file; empty: the shipped forest
   std::string corpus;              ///< file loaded at the start and saved; empty: none
-  double save_period = 60.0;       ///< [s] of wall time; 0: only at the end and when asked
+  double save_period = 60.0;       ///< [s] of wall time; 0: only at the end and when requested
   double gui_publish_rate = 1.0;   ///< of word_markers [Hz]; -1: no limit
   int shown_words = 300;           ///< in word_markers, the newest
   double diagnostic_period = 1.0;  ///< [s]
+
+  bool fromScan() const { return input_topic == WordsInput::kScan; }
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError
+  void validate() const;
 };
 
 /// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.

@@ -71,6 +71,7 @@ class WordsServer {
   WordsServerParams params_;
   std::unique_ptr<CorpusJournal> journal_;  // empty: no corpus is kept
   std::unique_ptr<NgramRecognizer> recognizer_;
+  std::shared_ptr<const SemanticClassifier> classifier_;
   SemanticSegmenter segmenter_;
   std::uint32_t segmenter_begin_ = 0;  // observations of the corpus before the segmenter's first
   ObservationSensor sensor_;           // with input scan

@@ -28,16 +28,17 @@ constexpr std::size_t indexOf(SemanticClass c) {
 }
 
 /// "bifurcation", "corner", "corridor", "dead-end", "hall".
-inline const char* nameOf(SemanticClass c) {
+inline const char* toString(SemanticClass c) {
   constexpr std::array<const char*, kSemanticClasses> names{"bifurcation", "corner", "corridor",
                                                             "dead-end", "hall"};
   return names[indexOf(c)];
 }
 
 /// The class of that name; nothing for any other word.
-inline std::optional<SemanticClass> semanticClassOf(const std::string& name) {
-  for (const SemanticClass c : kAllSemanticClasses)
-    if (name == nameOf(c)) return c;
+inline std::optional<SemanticClass> semanticClassFromString(const std::string& name) {
+  for (const SemanticClass c : kAllSemanticClasses) {
+    if (name == toString(c)) return c;
+  }
   return std::nullopt;
 }
 

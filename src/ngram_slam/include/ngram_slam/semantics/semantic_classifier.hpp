@@ -1,22 +1,23 @@
 // The class of a region: the decision tree of the thesis (Fig. 6.8, Table 6.4).
 #pragma once
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/pose2.hpp"
 #include "ngram_slam/semantics/semantic_class.hpp"
 #include "ngram_slam/semantics/semantic_features.hpp"
 
 namespace ngram_slam {
 
-struct SemanticVerdict {
+struct SemanticPrediction {
   SemanticClass semantic_class = SemanticClass::kCorridor;
   double confidence = 1.0;  ///< 0..1
 };
 
-/// Tells the class of a region. Const calls may run in several threads at once.
+/// Classifies regions. Const calls may run in several threads at once.
 class SemanticClassifier {
  public:
   virtual ~SemanticClassifier() = default;
-  virtual SemanticVerdict classify(const SemanticFeatures& features) const = 0;
+  virtual SemanticPrediction classify(const SemanticFeatures& features) const = 0;
 };
 
 /// Thresholds of Table 6.4. Those of the density and of the frontiers depend on the kernel's
@@ -33,6 +34,7 @@ struct DecisionTreeParams {
   /// low variation only if the robot turns by less than this in it [rad]; the thesis asks not.
   double straight = hyselam::radians(45.0);
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
@@ -41,12 +43,12 @@ struct DecisionTreeParams {
 /// make a hall (dense) or a corridor, many a bifurcation; then a huge turn makes a dead end, a
 /// small one a corridor; the rest are corners.
 ///
-/// The confidence is the least of those of the tests on the way: 0.5 at a threshold, 1 far from it.
+/// The confidence is the smallest of those of the tests passed: 0.5 at a threshold, 1 far from it.
 class DecisionTree : public SemanticClassifier {
  public:
   /// @throws hyselam::ParameterError
   explicit DecisionTree(const DecisionTreeParams& params = {});
-  SemanticVerdict classify(const SemanticFeatures& features) const override;
+  SemanticPrediction classify(const SemanticFeatures& features) const override;
   const DecisionTreeParams& params() const { return params_; }
 
  private:

@@ -1,4 +1,4 @@
-// Regions with a meaning, while the robot drives: observations in, classified regions out.
+// Semantic regions, while the robot drives: observations in, classified regions out.
 #pragma once
 
 #include <cstdint>
@@ -25,26 +25,27 @@ struct SemanticRegion {
 struct SemanticParams {
   SemanticCutParams cut;
   /// A trough between two higher regions joins them to one if it is shorter than this ...
-  int shortest_gap = 8;  ///< [observations], >= 0
-  /// ... or if the robot turns by more than `turning` in it and it is no longer than this: the
+  int min_gap = 8;  ///< [observations], >= 0
+  /// ... or if the robot turns by more than `min_turn` in it and it is no longer than this: the
   /// inside of a wide corner.
-  int longest_bend = 30;                    ///< [observations], >= shortest_gap
-  double turning = hyselam::radians(20.0);  ///< [rad], > 0
+  int max_bend = 30;                         ///< [observations], >= min_gap
+  double min_turn = hyselam::radians(20.0);  ///< [rad], > 0
   /// Where bifurcations follow each other closely the density hardly falls between them, but the
   /// number of frontiers does: a region is divided where three or more frontiers, or fewer, are
   /// seen so many times in a row. 0: never, as in the thesis.
-  int shortest_stretch = 6;  ///< [observations], >= 0
+  int min_frontier_run = 6;  ///< [observations], >= 0
   /// Fewer frontiers at the rim of a region are no reason to divide it up to this length.
-  int widest_rim = 10;  ///< [observations], >= 0
-  /// Where the density stands and the robot turns by more than this, the bend is a region of its
+  int max_rim = 10;  ///< [observations], >= 0
+  /// Where the density is steady and the robot turns by more than this, the bend is a region of its
   /// own. Infinite: never, as in the thesis.
-  double bend = hyselam::radians(45.0);  ///< [rad], > 0
+  double bend_angle = hyselam::radians(45.0);  ///< [rad], > 0
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
-/// Cuts the way into regions and classifies each as soon as it is known where it ends. The same
+/// Cuts the path into regions and classifies each as soon as it is known where it ends. The same
 /// observations give the same regions, whether they come one by one from a robot or from a file.
 /// Regions follow each other without gap and hold every observation.
 class SemanticSegmenter {
@@ -65,10 +66,10 @@ class SemanticSegmenter {
     hyselam::Pose2 pose;
     double heading;  // unwrapped
   };
-  void take(const SemanticCut& cut, std::vector<SemanticRegion>& out);
-  void tell(std::vector<SemanticRegion>& out);
-  std::vector<SemanticCut> divided(const SemanticCut& cut) const;
-  std::vector<SemanticCut> bendOf(const SemanticCut& cut) const;
+  void addCut(const SemanticCut& cut, std::vector<SemanticRegion>& out);
+  void closeRegion(std::vector<SemanticRegion>& out);
+  std::vector<SemanticCut> divideAtFrontiers(const SemanticCut& cut) const;
+  std::vector<SemanticCut> divideAtBend(const SemanticCut& cut) const;
   SemanticFeatures featuresOf(const SemanticCut& cut) const;
   double turnIn(std::uint32_t first, std::uint32_t last) const;
 
@@ -77,9 +78,9 @@ class SemanticSegmenter {
   SemanticCutter cutter_;
   std::deque<Seen> seen_;  // of the run, from seen_begin_ on
   std::uint32_t seen_begin_ = 0;
-  std::uint32_t run_begin_ = 0;      // observations of the runs before
-  std::optional<SemanticCut> held_;  // complete, but what follows may join it
-  bool open_ = false;                // its last part was a gap: what follows joins it
+  std::uint32_t run_begin_ = 0;         // observations of the runs before
+  std::optional<SemanticCut> pending_;  // complete, but what follows may join it
+  bool open_ = false;                   // its last part was a gap: what follows joins it
 };
 
 /// The regions of all runs, in order, by the decision tree. @throws hyselam::ParameterError

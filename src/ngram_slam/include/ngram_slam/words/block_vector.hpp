@@ -22,8 +22,9 @@ class BlockVector {
     blocks_.clear();
     size_ = 0;
     grow(other.size_);
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
       std::copy_n(other.blocks_[b].get(), kMask + 1, blocks_[b].get());
+    }
     return *this;
   }
 

@@ -12,8 +12,8 @@ namespace ngram_slam {
 ///
 /// A saving appends one block and waits for the disk; a process that is killed meanwhile leaves a
 /// block that is cut off, which the next one to load passes over: nothing before the last finished
-/// saving is lost. When the journal outgrows the file, the file is written anew, at once, and the
-/// journal begins again.
+/// saving is lost. When the journal outgrows the file, the file is written again as a whole,
+/// replaced at once, and the journal starts empty.
 ///
 /// Journal, numbers little-endian: "NGRAMJNL", version (u32), checksum of the file that it belongs
 /// to (u32), CRC-32 of these 16 bytes (u32). Block: "BLCK", bytes of its body (u32), first
@@ -38,12 +38,12 @@ class CorpusJournal {
   /// than at its end.
   Loaded load();
   /// Makes the disk equal to this corpus, which must have grown from the one loaded or saved last.
-  /// Where file or journal are no longer what was left there, the file is written anew.
+  /// Where file or journal were changed by others, the file is written again as a whole.
   /// @throws hyselam::InputError if it cannot be written; what was saved before is still there
   /// then.
   void save(const ObservationStore& observations, const DensityClasses& classes,
             const DensityHistogram& histogram);
-  /// Writes the file anew whatever it holds; to be used where the corpus has not grown from it.
+  /// Writes the whole file whatever it holds; to be used where the corpus has not grown from it.
   void saveWhole(const ObservationStore& observations, const DensityClasses& classes,
                  const DensityHistogram& histogram);
 

@@ -1,5 +1,5 @@
-// What the robot writes down every step of its way: pose and free-space density (Eq. 4.1 without
-// the class, which may change later), and millions of such notes in little memory.
+// Observations at equal steps of the path: pose and free-space density (Eq. 4.1 without the class,
+// which may change later), and a store for millions of them.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +18,19 @@ struct DensityObservation {
   double soft = 0.0;            ///< Psi, 0..1: always defined
   std::optional<double> hard;   ///< Psi-diamond, 0..1: empty where unknown cells are in reach
   int frontiers = 0;            ///< frontiers of free space, 0..255
-  /// Psi of the same spot, 0..1, from a map in which all around it has been seen, also what lies
-  /// behind the robot and round the corner: the same in whichever direction the robot passes. Empty
-  /// where nobody looked back.
+  /// Psi of the same spot, 0..1, from a map in which all around it has been observed, also what
+  /// lies behind the robot and around the corner: the same in both directions of travel. Empty
+  /// where it was not computed (ObservationSensorParams::look_back).
   std::optional<double> full;
 };
 
 /// Which density words are made of.
 enum class WordDensity {
-  kSoft,  ///< DensityObservation::soft, what the robot sees when it comes by (4.2.1)
-  kFull   ///< DensityObservation::full, seen from farther on; soft where it is missing
+  kSoft,  ///< DensityObservation::soft, from the map at that moment (4.2.1)
+  kFull   ///< DensityObservation::full, from the map some metres later; soft where it is missing
 };
 
-/// Says where along the way observations are due: one for every `step` metres of displacement.
+/// Where along the path observations are due: one for every `step` metres of displacement.
 class DistanceSampler {
  public:
   /// @throws hyselam::ParameterError unless step > 0.
@@ -38,7 +38,7 @@ class DistanceSampler {
   /// The poses on the straight line from the last one given out to `pose` at which an observation
   /// is due, in order; several if the robot came further than a step, so that a count of
   /// observations is a length (Eq. 4.4). The first pose of all is due itself. More than `kMaxGap`
-  /// metres at once are a jump of the odometry, not a way: one pose, the new one.
+  /// metres at once are an odometry jump, not a path: one pose, the new one.
   std::vector<hyselam::Pose2> due(const hyselam::Pose2& pose);
   /// The next pose is a first one again.
   void reset() { last_.reset(); }
@@ -50,14 +50,14 @@ class DistanceSampler {
   std::optional<hyselam::Pose2> last_;
 };
 
-/// All observations of all runs in 27 bytes each; nothing is moved when they become more. Values
-/// are rounded when they are taken in (positions to 0.1 mm, densities to 1/65534), so that what is
+/// All observations of all runs in 27 bytes each; nothing is moved when the store grows. Values
+/// are rounded when they are added (positions to 0.1 mm, densities to 1/65534), so that what is
 /// built from the store is the same before it is saved and after it is loaded.
 class ObservationStore {
  public:
   /// What comes next belongs to another run, in another odometry frame.
   void startRun();
-  /// Takes an observation in; starts a run if there is none. Returns its index.
+  /// Adds an observation; starts a run if there is none. Returns its index.
   /// @throws hyselam::InputError for values that are not finite or not in range, and for a position
   /// more than 200 km from the first one of the run; the store is unchanged then.
   std::uint32_t append(const DensityObservation& o);
@@ -65,7 +65,7 @@ class ObservationStore {
   std::uint32_t size() const { return static_cast<std::uint32_t>(stamps_.size()); }
   DensityObservation operator[](std::uint32_t i) const;
   double soft(std::uint32_t i) const { return soft_[i] * (1.0 / kDensitySteps); }
-  /// What words are made of. Where nobody looked back, the soft density takes the full one's place.
+  /// What words are made of. Where there is no full density, the soft one takes its place.
   double density(std::uint32_t i, WordDensity which) const {
     return which == WordDensity::kFull && full_[i] != kUndefined ? full_[i] * (1.0 / kDensitySteps)
                                                                  : soft(i);

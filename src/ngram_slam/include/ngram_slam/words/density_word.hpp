@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/pose2.hpp"
 #include "ngram_slam/words/density_observation.hpp"
 
@@ -16,10 +17,11 @@ struct Syllables {
   float angle = 0.0f;      ///< a: change of direction in the region [rad], (-pi, pi], left positive
 };
 
-/// Which way the robot went when it passed a place before.
+/// In which direction the robot travelled when it passed a place before.
 enum class Direction : std::uint8_t { kSame, kReverse };
 
-/// The word of the same region passed the other way: a turn to the left becomes one to the right.
+/// The word of the same region travelled in the reverse direction: a turn to the left becomes one
+/// to the right.
 inline Syllables reversed(Syllables s) {
   // Half a turn is its own reverse: angles lie in (-pi, pi].
   if (s.angle < static_cast<float>(hyselam::kPi)) s.angle = -s.angle;
@@ -39,6 +41,7 @@ struct WordTolerance {
   double angle =
       hyselam::radians(30);  ///< epsilon_a: bound of the angles' difference, (0, pi) [rad]
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };

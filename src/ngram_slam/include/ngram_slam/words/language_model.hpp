@@ -1,5 +1,5 @@
-// What a text usually says after what, and hence how often words match by chance: a bigram model of
-// words with back-off.
+// Which words follow which in a text, and hence how often words match by chance: a bigram model
+// with back-off.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ namespace ngram_slam {
 
 /// Counts words and pairs of words that follow each other.
 ///
-/// How often a word follows another one is asked of a fair sample of the text, with the tolerances
-/// of the matcher: among the words whose predecessor matches, the share that matches too. Where few
-/// predecessors match, it backs off to what the class usually looks like and which class follows
-/// which (Witten and Bell 1991), and that again to all classes. Its answers cost the same whatever
-/// the length of the text.
+/// How often a word follows another one is estimated from a uniform sample of the text, with the
+/// tolerances of the matcher: among the words whose predecessor matches, the share that matches
+/// too. Where few predecessors match, it backs off to the distribution of sizes and angles of the
+/// class and to the bigrams of classes (Witten and Bell 1991), and these again to all classes. A
+/// query costs the same whatever the length of the text.
 class LanguageModel {
  public:
   LanguageModel();
@@ -30,7 +30,7 @@ class LanguageModel {
   /// Real words counted.
   std::uint64_t words() const { return words_; }
   /// Probability that a word that follows a match of `before` (any word, if null) matches `word`,
-  /// where one such pair is known and does not count.
+  /// where one such pair is known and not counted.
   double chanceOfMatch(const Syllables& word, const Syllables* before,
                        const WordTolerance& tolerance) const;
   std::size_t bytes() const;

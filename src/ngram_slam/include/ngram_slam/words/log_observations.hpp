@@ -1,4 +1,4 @@
-// Observations every step of a recorded way: local map and density kernel over a log.
+// Observations at equal steps of a recorded path: local map and density kernel over a log.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace ngram_slam {
 
 using LogObservationParams = ObservationSensorParams;
 
-/// What a scan of the log was good for.
+/// The observations, and what could not be used.
 struct LogObservations {
   std::vector<DensityObservation> observations;
   std::size_t scans_without_odometry = 0;

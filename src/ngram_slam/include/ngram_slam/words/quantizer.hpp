@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
+
 namespace ngram_slam {
 
 /// One class: an interval of densities.
 struct DensityClass {
-  int id = 0;          ///< 0..255, what words carry
+  int id = 0;          ///< 0..255, as in words
   double mode = 0.0;   ///< its typical density
   double upper = 0.0;  ///< densities below it belong here, if not to a class before
 };
@@ -55,33 +57,35 @@ struct DensityMode {
 std::vector<DensityMode> densityModes(const DensityHistogram& histogram, double bandwidth,
                                       double min_share = 0.0);
 
-/// A bandwidth from the data: of all numbers of modes up to `max_modes` the one that lives longest
-/// while the window widens from 0.006 to 0.1 (in its logarithm); the geometric middle of its life.
+/// A bandwidth from the data: of all numbers of modes up to `max_modes` the one that persists
+/// longest while the window widens from 0.006 to 0.1 (in its logarithm); the geometric mean of the
+/// ends of that interval.
 double bandwidthOf(const DensityHistogram& histogram, double min_share, int max_modes);
 
 struct MeanShiftParams {
   double bandwidth = 0.0;  ///< sigma of the window, in densities; 0: from the data
   double min_share =
       0.02;  ///< of the observations; weaker modes are no class of their own, [0, 0.5]
-  double tolerance = 0.02;  ///< modes and bounds may wander this far before the classes change, > 0
+  double tolerance = 0.02;  ///< modes and bounds may move this far before the classes change, > 0
   int max_classes = 12;     ///< for a bandwidth from the data, 1..64
   int uniform_classes = 8;  ///< classes before the first estimate, 1..256
   int first_update = 500;   ///< observations before the first estimate, >= 1
   double update_growth = 1.25;  ///< next estimate after so many times the observations, > 1
 
+  void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
-/// Learns classes from the densities that it is given.
+/// Learns classes from densities.
 class MeanShiftQuantizer {
  public:
   explicit MeanShiftQuantizer(const MeanShiftParams& params = {});
 
-  /// Counts a density in [0, 1]; now and then looks whether the classes still fit. True if they
-  /// have changed: all words are to be built again then.
+  /// Counts a density in [0, 1]; at growing intervals checks whether the classes still fit. True if
+  /// they have changed: all words must be built again then.
   bool add(double density);
-  /// Looks now. True if the classes have changed.
+  /// Checks now. True if the classes have changed.
   bool update();
 
   const DensityClasses& classes() const { return classes_; }

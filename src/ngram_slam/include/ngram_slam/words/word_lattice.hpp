@@ -1,6 +1,6 @@
-// The text of a robot's way: real words and, on higher levels, the words that would have been there
-// had an interruption been absent (Eq. 5.1, Alg. 5.1, Alg. 5.2 with its erratum), for any number
-// of levels.
+// The text of a robot's path as a lattice of words on several levels: real words and, on higher
+// levels, the alternative words that would have been there had an interruption been absent
+// (Eq. 5.1, Alg. 5.1, Alg. 5.2 with its erratum), for any number of levels.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ using WordIndex = std::uint32_t;
 /// Real words are counted by position, over all runs.
 using Position = std::uint32_t;
 
-/// A word as seen from outside.
+/// A word, unpacked.
 struct DensityWord {
   Syllables syllables;
   int level = 0;       ///< 0: real; l: stands for l + 2 real words
@@ -92,7 +92,7 @@ class WordLattice {
     return {blocks_[p].begin, p + 1 < positions() ? static_cast<WordIndex>(blocks_[p + 1].begin)
                                                   : static_cast<WordIndex>(words())};
   }
-  /// The list P of Eq. 5.1: the words just before. Empty at the start of a run.
+  /// The list P of Eq. 5.1: the words just before this one. Empty at the start of a run.
   WordRange predecessors(WordIndex i) const {
     const Position p = first(i);
     return startsRun(p) ? WordRange{} : endingAt(p - 1);
@@ -117,7 +117,7 @@ class WordLattice {
   /// The word of a level that ends at a position, if there is one: true and its index.
   bool findEndingAt(Position p, int level, WordIndex* found) const;
 
-  /// Fetches into the cache what findEndingAt will look at: first where the words are, then they.
+  /// Fetches into the cache what findEndingAt() reads: first where the words are, then the words.
   void prefetchPosition(Position p) const { prefetch(blocks_[p]); }
   void prefetchWords(Position p) const { prefetch(words_[blocks_[p].begin]); }
 

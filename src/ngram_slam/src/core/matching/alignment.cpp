@@ -7,10 +7,15 @@
 
 namespace ngram_slam {
 
+void AlignmentParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("max_shift", max_shift, Range::atLeast(1), "observations", "shifts below it are tried");
+  visit("min_overlap", min_overlap, Range::aboveUpTo(0.0, 1.0), "",
+        "share of the observations that must have a partner");
+}
+
 void AlignmentParams::validate() const {
-  if (max_shift < 1) throw hyselam::ParameterError("max_shift", max_shift, ">= 1 [observations]");
-  if (!(min_overlap > 0.0 && min_overlap <= 1.0))
-    throw hyselam::ParameterError("min_overlap", min_overlap, "in (0, 1]");
+  hyselam::checkParameters(*this);
 }
 
 std::optional<Alignment> align(const ObservationStore& observations, std::uint32_t s1,

@@ -60,8 +60,9 @@ void GramIndex::insert(WordIndex last) {
   });
   const Target* before = nullptr;
   for (const Target& t : targets_) {
-    if (before == nullptr || before->list != t.list || before->entry != t.entry)
+    if (before == nullptr || before->list != t.list || before->entry != t.entry) {
       add(t.list, t.entry);
+    }
     before = &t;
   }
 }
@@ -76,22 +77,24 @@ void GramIndex::insertPaths(WordIndex word, int depth, std::uint64_t key) {
   const std::size_t from = targets_.size();
   const WordRange before = text_.predecessors(word);
   for (WordIndex w = before.begin; w < before.end; ++w) insertPaths(w, depth + 1, key);
-  if (depth == 0 && !backwards_)
+  if (depth == 0 && !backwards_) {
     for (std::size_t i = from; i < targets_.size(); ++i) targets_[i].entry = entry;
+  }
 }
 
-void GramIndex::ask(WordIndex last) {
+void GramIndex::startQuery(WordIndex last) {
   lists_.clear();
   collect(last, 0, 0);
   sortLists();
   cursors_.clear();
-  for (std::uint32_t list : lists_)
+  for (std::uint32_t list : lists_) {
     if (heads_[list] != 0) cursors_.push_back({heads_[list], pool_[heads_[list] + 1]});
+  }
   until_ = text_.positions();
   reach_ = kFirstReach;
 }
 
-bool GramIndex::answer(std::vector<Entry>& part) {
+bool GramIndex::nextPart(std::vector<Entry>& part) {
   part.clear();
   while (part.empty() && !cursors_.empty()) {
     until_ = until_ > reach_ ? until_ - reach_ : 0;
@@ -100,8 +103,9 @@ bool GramIndex::answer(std::vector<Entry>& part) {
     for (Cursor c : cursors_) {
       for (;;) {
         const Entry* entries = &pool_[c.chunk + kHeader];
-        while (c.left > 0 && endOf(entries[c.left - 1]) >= until_)
+        while (c.left > 0 && endOf(entries[c.left - 1]) >= until_) {
           part.push_back(entries[--c.left]);
+        }
         if (c.left > 0) break;
         c.chunk = pool_[c.chunk];
         if (c.chunk == 0) break;

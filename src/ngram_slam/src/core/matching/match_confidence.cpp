@@ -9,7 +9,7 @@
 namespace ngram_slam {
 namespace {
 
-constexpr std::size_t kRemembered = 1u << 16;  // pairs of words
+constexpr std::size_t kMaxCached = 1u << 16;  // pairs of words
 
 /// The key of two words, which are below 2^31, and a direction.
 std::uint64_t keyOf(WordIndex a, WordIndex b, Direction direction) {
@@ -19,11 +19,21 @@ std::uint64_t keyOf(WordIndex a, WordIndex b, Direction direction) {
 
 }  // namespace
 
+void MatchConfidenceParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("bias", bias, Range::any(), "", "log odds of a match at chance 1 and misfit 1");
+  visit("by_chance", by_chance, Range::any(), "", "log odds by -ln(chance)");
+  visit("by_misfit", by_misfit, Range::any(), "", "log odds by ln(misfit + misfit_floor)");
+  visit("misfit_floor", misfit_floor, Range::above(0.0), "", "added to the misfit of densities");
+  visit("max_words", max_words, Range::atLeast(1), "words",
+        "the newest ones of a match that are used");
+}
+
 void MatchConfidenceParams::validate() const {
-  for (double v : {bias, by_chance, by_misfit})
-    if (!std::isfinite(v)) throw hyselam::ParameterError("judge", v, "finite");
-  if (!(misfit_floor > 0.0)) throw hyselam::ParameterError("misfit_floor", misfit_floor, "> 0");
-  if (max_words < 1) throw hyselam::ParameterError("max_words", max_words, ">= 1");
+  hyselam::checkParameters(*this);
+  for (const double weight : {bias, by_chance, by_misfit}) {
+    if (!std::isfinite(weight)) throw hyselam::ParameterError("weight", weight, "finite");
+  }
 }
 
 MatchConfidence::MatchConfidence(const WordLattice& text, const ObservationStore& observations,
@@ -52,19 +62,19 @@ void MatchConfidence::learn(Position p) {
   }
 }
 
-void MatchConfidence::judge(NgramMatch& match, bool with_probability) {
+void MatchConfidence::estimate(NgramMatch& match, bool with_probability) {
   const auto chain = longestNgram(text_, tolerance_, {match.newer, match.older}, match.levels,
                                   static_cast<std::size_t>(params_.max_words), match.direction);
-  match.chance = chance(chain, match.direction);
+  match.chance = chanceOf(chain, match.direction);
   if (!with_probability) return;
   const double odds =
       params_.bias - params_.by_chance * std::log(std::max(match.chance, 1e-300)) +
-      params_.by_misfit * std::log(misfit(chain, match.direction) + params_.misfit_floor);
+      params_.by_misfit * std::log(misfitOf(chain, match.direction) + params_.misfit_floor);
   match.probability = 1.0 / (1.0 + std::exp(-odds));
 }
 
-double MatchConfidence::chance(const std::vector<WordPair>& chain, Direction direction) {
-  if (chances_.size() > kRemembered) chances_.clear();
+double MatchConfidence::chanceOf(const std::vector<WordPair>& chain, Direction direction) {
+  if (chances_.size() > kMaxCached) chances_.clear();
   const bool reverse = direction == Direction::kReverse;
   const auto syllables = [&](WordIndex w) {
     return reverse ? reversed(text_.syllables(w)) : text_.syllables(w);
@@ -88,8 +98,8 @@ double MatchConfidence::chance(const std::vector<WordPair>& chain, Direction dir
   return expected;
 }
 
-double MatchConfidence::misfit(const std::vector<WordPair>& chain, Direction direction) {
-  if (misfits_.size() > kRemembered) misfits_.clear();
+double MatchConfidence::misfitOf(const std::vector<WordPair>& chain, Direction direction) {
+  if (misfits_.size() > kMaxCached) misfits_.clear();
   double squares = 0.0, terms = 0.0;
   for (const WordPair& words : chain) {
     const auto [at, fresh] = misfits_.try_emplace(keyOf(words.newer, words.older, direction));
@@ -99,8 +109,9 @@ double MatchConfidence::misfit(const std::vector<WordPair>& chain, Direction dir
                           end2 = text_.observationEnd(words.older);
       const std::uint32_t n = std::min(text_.observationEnd(words.newer) - s1, end2 - begin2);
       if (const auto a = align(observations_, s1, direction == Direction::kSame ? begin2 : end2 - 1,
-                               n, alignment_, direction))
+                               n, alignment_, direction)) {
         at->second = {static_cast<float>(a->rms * a->rms * a->terms), static_cast<float>(a->terms)};
+      }
     }
     squares += static_cast<double>(at->second.squares);
     terms += static_cast<double>(at->second.terms);

@@ -68,16 +68,19 @@ std::vector<WordPair> longestNgram(const WordLattice& text, const WordTolerance&
   // A predecessor has a smaller index than its successor.
   std::sort(order.begin(), order.end(),
             [](const Node* a, const Node* b) { return key(a->pair) < key(b->pair); });
-  for (Node* node : order)
+  for (Node* node : order) {
     for (const WordPair& pair : node->before) {
       const auto at = nodes.find(key(pair));
       if (at == nodes.end() || at->second.length + 1 <= node->length) continue;
       node->length = at->second.length + 1;
       node->best = &at->second;
     }
+  }
   std::vector<WordPair> chain;
-  for (const Node* n = &nodes.at(key(last)); n != nullptr && chain.size() < max_words; n = n->best)
+  for (const Node* n = &nodes.at(key(last)); n != nullptr && chain.size() < max_words;
+       n = n->best) {
     chain.push_back(n->pair);
+  }
   std::reverse(chain.begin(), chain.end());
   return chain;
 }

@@ -7,18 +7,48 @@
 
 namespace ngram_slam {
 
+void NgramRecognizerParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("levels", levels, Range::between(1, WordLattice::kMaxLevels), "", "levels of words");
+  // What is not given for the levels depends on their number.
+  fitMinN();
+  visit.group("", matcher, {{"index_gram", visit.kNotOffered}, {"index_bits", visit.kNotOffered}});
+  visit("min_region", min_region, Range::between(1, 10000), "observations",
+        "t_o: smallest length of a region");
+  visit("uniform_classes", uniform_classes, Range::between(1, WordLattice::kMaxClasses), "",
+        "density classes of equal width");
+  visit("learn_classes", learn_classes, "density classes by mean shift instead");
+  visit("class_hysteresis", class_hysteresis, Range::fromBelow(0.0, 0.5), "",
+        "a class is kept while the density lies within this of its bounds");
+  visit("word_density", word_density, {{"soft", WordDensity::kSoft}, {"full", WordDensity::kFull}},
+        "density that words are made of");
+  visit("reverse", reverse, "also recognize places travelled in the reverse direction");
+  visit("max_chance", max_chance, Range::atLeast(0.0), "",
+        "matches with fewer expected by chance are accepted whatever their length; 0: off");
+  visit("with_probability", with_probability, "estimate the probability that a match is right");
+  visit("min_probability", min_probability, Range::between(0.0, 1.0), "",
+        "of a match that is accepted");
+}
+
 void NgramRecognizerParams::validate() const {
-  const WordLattice level_check(levels);
-  const DensityRegionBuilder region_check(min_region);
+  hyselam::checkParameters(*this);
+  if (matcher.min_n.size() != static_cast<std::size_t>(levels)) {
+    throw hyselam::ParameterError("min_n", std::to_string(matcher.min_n.size()) + " numbers",
+                                  "one per level, " + std::to_string(levels));
+  }
   mean_shift.validate();
-  judge.validate();
+  confidence.validate();
   matcher.validate();
-  const DensityClasses class_check = DensityClasses::uniform(uniform_classes);
-  if (!(class_hysteresis >= 0.0 && class_hysteresis < 0.5))
-    throw hyselam::ParameterError("class_hysteresis", class_hysteresis, "in [0, 0.5)");
-  if (!(max_chance >= 0.0)) throw hyselam::ParameterError("max_chance", max_chance, ">= 0");
-  if (!(min_probability >= 0.0 && min_probability <= 1.0))
-    throw hyselam::ParameterError("min_probability", min_probability, "in [0, 1]");
+}
+
+/// As many numbers as levels: each further level asks for three words more, as 7, 10, 13 do, or
+/// for as many where all levels ask for the same.
+void NgramRecognizerParams::fitMinN() {
+  std::vector<int>& min_n = matcher.min_n;
+  if (min_n.empty() || levels < 1 || levels > WordLattice::kMaxLevels) return;
+  const int step = min_n.back() > min_n.front() ? kMinNStep : 0;
+  while (min_n.size() < static_cast<std::size_t>(levels)) min_n.push_back(min_n.back() + step);
+  min_n.resize(static_cast<std::size_t>(levels));
 }
 
 NgramRecognizerParams NgramRecognizerParams::improved() {
@@ -50,34 +80,36 @@ NgramRecognizer::NgramRecognizer(const NgramRecognizerParams& params, Corpus cor
   rebuild(false);
 }
 
-void NgramRecognizer::startAnew() {
-  judged_ = 0;
+void NgramRecognizer::reset() {
+  learnt_ = 0;
   text_ =
       std::make_unique<WordLattice>(params_.levels, [this](std::uint32_t begin, std::uint32_t end) {
         return angleVariation(observations_, begin, end);
       });
   matcher_ = std::make_unique<NgramMatcher>(*text_, params_.matcher);
-  judge_ = std::make_unique<MatchConfidence>(*text_, observations_, params_.matcher.tolerance,
-                                             params_.word_density, params_.judge);
-  if (params_.reverse)
+  confidence_ = std::make_unique<MatchConfidence>(*text_, observations_, params_.matcher.tolerance,
+                                                  params_.word_density, params_.confidence);
+  if (params_.reverse) {
     reverse_matcher_ = std::make_unique<ReverseNgramMatcher>(*text_, params_.matcher);
+  }
 }
 
 /// Writes the text of all observations again.
 std::vector<NgramMatch> NgramRecognizer::rebuild(bool match_old_runs) {
-  startAnew();
+  reset();
   for (std::uint32_t run = 0; run < observations_.runs(); ++run) {
     const std::uint32_t begin = observations_.runBegin(run), end = observations_.runEnd(run);
     startRun(begin);
-    for (std::uint32_t i = begin; i < end; ++i)
+    for (std::uint32_t i = begin; i < end; ++i) {
       if (const auto region = regions_.add(classOf(i))) write(*region);
+    }
     if (run_open_ && run + 1 == observations_.runs()) break;
     if (const auto region = regions_.finish()) write(*region);
   }
   if (match_old_runs) return newMatches();
   matcher_->skip();
   if (reverse_matcher_) reverse_matcher_->skip();
-  judge({});
+  withConfidence({});
   return {};
 }
 
@@ -89,18 +121,19 @@ std::vector<NgramMatch> NgramRecognizer::newMatches() {
     std::stable_sort(matches.begin(), matches.end(),
                      [](const NgramMatch& a, const NgramMatch& b) { return a.newer < b.newer; });
   }
-  return judge(std::move(matches));
+  return withConfidence(std::move(matches));
 }
 
 /// What chance and probability leave of the matches of the newest words, given in the order of
 /// these.
-std::vector<NgramMatch> NgramRecognizer::judge(std::vector<NgramMatch> matches) {
-  if (!params_.judges()) return matches;
+std::vector<NgramMatch> NgramRecognizer::withConfidence(std::vector<NgramMatch> matches) {
+  if (!params_.needsConfidence()) return matches;
   auto at = matches.begin();
-  for (; judged_ < text_->positions(); ++judged_) {
-    for (; at != matches.end() && at->newer == text_->realWord(judged_); ++at)
-      judge_->judge(*at, params_.with_probability || params_.min_probability > 0.0);
-    judge_->learn(judged_);
+  for (; learnt_ < text_->positions(); ++learnt_) {
+    for (; at != matches.end() && at->newer == text_->realWord(learnt_); ++at) {
+      confidence_->estimate(*at, params_.with_probability || params_.min_probability > 0.0);
+    }
+    confidence_->learn(learnt_);
   }
   const auto unlikely = [&](const NgramMatch& m) {
     return (params_.max_chance > 0.0 && m.chance >= params_.max_chance) ||
@@ -167,7 +200,7 @@ NgramRecognizerUpdate NgramRecognizer::endRun() {
 
 std::size_t NgramRecognizer::bytes() const {
   return observations_.bytes() + text_->bytes() + matcher_->bytes() +
-         (reverse_matcher_ ? reverse_matcher_->bytes() : 0) + judge_->bytes();
+         (reverse_matcher_ ? reverse_matcher_->bytes() : 0) + confidence_->bytes();
 }
 
 Corpus NgramRecognizer::corpus() const {

@@ -18,20 +18,28 @@ struct Interval {
 
 }  // namespace
 
+void ScoreParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("distance", distance, Range::above(0.0), "m", "of a true pair at most");
+  visit("heading", heading, Range::aboveUpTo(0.0, 0.5 * hyselam::kPi), "rad",
+        "difference of the headings of a true pair at most");
+  visit("separation", separation, Range::atLeast(0), "observations",
+        "between the two of a pair in one run at least");
+  visit("pass_gap", pass_gap, Range::atLeast(1), "observations", "between two passes at least");
+}
+
 void ScoreParams::validate() const {
-  if (!(distance > 0.0 && std::isfinite(distance)))
-    throw hyselam::ParameterError("distance", distance, "> 0 [m]");
-  if (!(heading > 0.0 && heading <= 0.5 * hyselam::kPi))
-    throw hyselam::ParameterError("heading", heading, "in (0, pi/2] [rad]");
-  if (pass_gap < 1) throw hyselam::ParameterError("pass_gap", pass_gap, ">= 1");
+  hyselam::checkParameters(*this);
 }
 
 RecognitionTruth::RecognitionTruth(std::vector<std::optional<hyselam::Pose2>> reference,
                                    std::vector<std::uint32_t> run, const ScoreParams& params)
     : reference_(std::move(reference)), run_(std::move(run)), params_(params) {
   params.validate();
-  if (run_.size() != reference_.size())
-    throw std::invalid_argument("RecognitionTruth: as many runs as reference poses are needed");
+  if (run_.size() != reference_.size()) {
+    throw hyselam::ParameterError(
+        "runs", run_.size(), "as many as reference poses, " + std::to_string(reference_.size()));
+  }
   any_.assign(run_.size(), 0);
   begin_.assign(1, 0);
   findPasses();
@@ -52,8 +60,8 @@ bool RecognitionTruth::headingsFit(std::uint32_t a, std::uint32_t b, Direction d
                                        : turn >= hyselam::kPi - params_.heading;
 }
 
-std::optional<bool> RecognitionTruth::verdict(std::uint32_t newer, std::uint32_t older,
-                                              Direction direction) const {
+std::optional<bool> RecognitionTruth::isTrue(std::uint32_t newer, std::uint32_t older,
+                                             Direction direction) const {
   if (newer < older) std::swap(newer, older);
   if (!counts(newer, older)) return std::nullopt;
   return near(newer, older) && headingsFit(newer, older, direction);
@@ -88,10 +96,11 @@ void RecognitionTruth::findPasses() {
               if (!headingsFit(i, older, direction)) continue;
               auto& passes = found[direction == Direction::kReverse];
               if (!passes.empty() && passes.back().last + 1 == older &&
-                  run_[passes.back().last] == run_[older])
+                  run_[passes.back().last] == run_[older]) {
                 passes.back().last = older;
-              else
+              } else {
                 passes.push_back({older, older, direction});
+              }
             }
           }
         }
@@ -103,18 +112,20 @@ void RecognitionTruth::findPasses() {
         for (const Pass& pass : passes) {
           joined = joined && run_[pass.first] == run_[passes_.back().last] &&
                    pass.first - passes_.back().last < params_.pass_gap;
-          if (joined)
+          if (joined) {
             passes_.back().last = std::max(passes_.back().last, pass.last);
-          else
+          } else {
             passes_.push_back(pass);
+          }
           joined = true;
         }
       }
       auto& intervals = squares[square(at, 0, 0)];
-      if (!intervals.empty() && intervals.back().last + 1 == i)
+      if (!intervals.empty() && intervals.back().last + 1 == i) {
         intervals.back().last = i;
-      else
+      } else {
         intervals.push_back({i, i});
+      }
     }
     begin_.push_back(passes_.size());
   }
@@ -124,28 +135,29 @@ RecognitionScore::RecognitionScore(std::shared_ptr<const RecognitionTruth> truth
     : truth_(std::move(truth)) {
   pairs_.assign(truth_->size(), 0);
   true_pairs_ = pairs_;
-  recognised_.assign(truth_->size(), 0);
-  recognised_any_ = recognised_;
+  recognized_.assign(truth_->size(), 0);
+  recognized_any_ = recognized_;
   pass_.assign(truth_->passes().size(), 0);
 }
 
 std::optional<bool> RecognitionScore::add(std::uint32_t newer, std::uint32_t older,
                                           Direction direction) {
   if (newer < older) std::swap(newer, older);
-  const std::optional<bool> right = truth_->verdict(newer, older, direction);
+  const std::optional<bool> right = truth_->isTrue(newer, older, direction);
   if (!right) return std::nullopt;
   const bool reverse = direction == Direction::kReverse;
   // Observations are fewer than 2^31: the topmost bit is free.
   if (!seen_
            .insert(static_cast<std::uint64_t>(reverse) << 63 |
                    static_cast<std::uint64_t>(newer) << 32 | older)
-           .second)
+           .second) {
     return right;
+  }
   ++pairs_[newer];
   if (!*right) return right;
   ++true_pairs_[newer];
-  recognised_any_[newer] = 1;
-  if (!reverse) recognised_[newer] = 1;
+  recognized_any_[newer] = 1;
+  if (!reverse) recognized_[newer] = 1;
   const auto begin =
       truth_->passes().begin() + static_cast<std::ptrdiff_t>(truth_->passesBegin(newer));
   const auto end = truth_->passes().begin() + static_cast<std::ptrdiff_t>(truth_->passesEnd(newer));
@@ -164,18 +176,18 @@ RecognitionFigures RecognitionScore::figures(std::uint32_t until) const {
     f.true_pairs += true_pairs_[i];
     if (truth_->revisit(i)) {
       ++f.revisits;
-      f.recognised += recognised_[i] != 0;
+      f.recognized += recognized_[i] != 0;
     }
     if (truth_->revisitAnyDirection(i)) {
       ++f.revisits_any;
-      f.recognised_any += recognised_any_[i] != 0;
+      f.recognized_any += recognized_any_[i] != 0;
     }
     for (std::size_t k = truth_->passesBegin(i); k < truth_->passesEnd(i); ++k) {
       ++f.passes_any;
-      f.recognised_passes_any += pass_[k] != 0;
+      f.recognized_passes_any += pass_[k] != 0;
       if (truth_->passes()[k].direction == Direction::kReverse) continue;
       ++f.passes;
-      f.recognised_passes += pass_[k] != 0;
+      f.recognized_passes += pass_[k] != 0;
     }
   }
   return f;

@@ -16,26 +16,33 @@ double certainty(double value, double threshold) {
 
 }  // namespace
 
+void DecisionTreeParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  const Range angle = Range::aboveUpTo(0.0, 1e3);
+  visit("high_variation", high_variation, Range::aboveUpTo(0.0, 1.0), "",
+        "of the density; more is high");
+  visit("high_density", high_density, Range::aboveUpTo(0.0, 1.0), "", "more is high");
+  visit("few_frontiers", few_frontiers, Range::aboveUpTo(0.0, 255.0), "", "fewer are low");
+  visit("many_frontiers", many_frontiers, Range::aboveUpTo(0.0, 255.0), "", "more are high");
+  visit("huge_turn", huge_turn, angle, "rad", "more is very high");
+  visit("small_turn", small_turn, angle, "rad", "less is low");
+  visit("straight", straight, angle, "rad", "turns below it may be a corridor for low variation");
+  visit("very_long", very_long, Range::aboveUpTo(0.0, 1e9), "observations",
+        "longer regions are corridors");
+}
+
 void DecisionTreeParams::validate() const {
-  const auto require = [](const char* name, double value, double low, double high,
-                          const char* allowed) {
-    if (!(value > low && value <= high)) throw hyselam::ParameterError(name, value, allowed);
-  };
-  require("high_variation", high_variation, 0.0, 1.0, "in (0, 1]");
-  require("high_density", high_density, 0.0, 1.0, "in (0, 1]");
-  require("few_frontiers", few_frontiers, 0.0, 255.0, "in (0, 255]");
-  require("many_frontiers", many_frontiers, 0.0, 255.0, "in (0, 255]");
-  require("huge_turn", huge_turn, 0.0, 1e3, "positive [rad]");
-  require("small_turn", small_turn, 0.0, huge_turn, "positive and at most 'huge_turn' [rad]");
-  require("straight", straight, 0.0, 1e3, "positive [rad]");
-  require("very_long", very_long, 0.0, 1e9, "positive [observations]");
+  hyselam::checkParameters(*this);
+  if (small_turn > huge_turn) {
+    throw hyselam::ParameterError("small_turn", small_turn, "at most 'huge_turn' [rad]");
+  }
 }
 
 DecisionTree::DecisionTree(const DecisionTreeParams& params) : params_(params) {
   params_.validate();
 }
 
-SemanticVerdict DecisionTree::classify(const SemanticFeatures& f) const {
+SemanticPrediction DecisionTree::classify(const SemanticFeatures& f) const {
   const DecisionTreeParams& p = params_;
   const bool very_long = f.length > p.very_long;
   const bool flat = f.variation <= p.high_variation, straight = f.turn < p.straight;

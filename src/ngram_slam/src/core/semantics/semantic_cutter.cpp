@@ -7,15 +7,26 @@
 
 namespace ngram_slam {
 
+void SemanticCutParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("smoothing", smoothing, Range::between(0, 100), "observations",
+        "on each side in the mean filter of densities");
+  visit("change_threshold", change_threshold, Range::aboveUpTo(0.0, 1.0), "",
+        "the density varies once it is this far from where it was steady or turned");
+  visit("steady_tolerance", steady_tolerance, Range::aboveUpTo(0.0, 1.0), "",
+        "it is steady once it keeps within this");
+  visit("steady_length", steady_length, Range::between(2, 100000), "observations",
+        "for which it must keep within 'steady_tolerance'");
+  visit("border_share", border_share, Range::inside(0.0, 1.0), "",
+        "share of the rise from the lower level to the higher one at the border of two regions");
+}
+
 void SemanticCutParams::validate() const {
-  if (smoothing < 0 || smoothing > 100)
-    throw hyselam::ParameterError("smoothing", smoothing, "in 0 .. 100 [observations]");
-  if (!(leave > 0.0 && leave <= 1.0)) throw hyselam::ParameterError("leave", leave, "in (0, 1]");
-  if (!(settled > 0.0 && settled <= leave))
-    throw hyselam::ParameterError("settled", settled, "positive and at most 'leave'");
-  if (settled_for < 2 || settled_for > 100000)
-    throw hyselam::ParameterError("settled_for", settled_for, "in 2 .. 100000 [observations]");
-  if (!(border > 0.0 && border < 1.0)) throw hyselam::ParameterError("border", border, "in (0, 1)");
+  hyselam::checkParameters(*this);
+  if (steady_tolerance > change_threshold) {
+    throw hyselam::ParameterError("steady_tolerance", steady_tolerance,
+                                  "at most 'change_threshold'");
+  }
 }
 
 SemanticCutter::SemanticCutter(const SemanticCutParams& params) : params_(params) {
@@ -31,7 +42,7 @@ std::vector<SemanticCut> SemanticCutter::add(double density) {
   if (raw_end_ > reach) {
     double sum = 0.0;
     for (double d : raw_) sum += d;
-    take(sum / static_cast<double>(raw_.size()), out);
+    addSmoothed(sum / static_cast<double>(raw_.size()), out);
   }
   return out;
 }
@@ -45,10 +56,10 @@ std::vector<SemanticCut> SemanticCutter::finish() {
     if (next_ > reach && begin < next_ - reach) raw_.pop_front();
     double sum = 0.0;
     for (double d : raw_) sum += d;
-    take(sum / static_cast<double>(raw_.size()), out);
+    addSmoothed(sum / static_cast<double>(raw_.size()), out);
   }
   if (next_ > 0) {
-    if (!standing_) this->reach(at(extreme_), extreme_, false, out);
+    if (!steady_) addLevel(at(extreme_), extreme_, false, out);
     growing_.last = next_ - 1;
     out.push_back(growing_);
   }
@@ -57,9 +68,9 @@ std::vector<SemanticCut> SemanticCutter::finish() {
 }
 
 /// A new level from observation `begin` on: the border to the one before, and that one's cut.
-void SemanticCutter::reach(double level, std::uint32_t begin, bool stands,
-                           std::vector<SemanticCut>& out) {
-  const double share = level > growing_.level ? params_.border : 1.0 - params_.border;
+void SemanticCutter::addLevel(double level, std::uint32_t begin, bool steady,
+                              std::vector<SemanticCut>& out) {
+  const double share = level > growing_.level ? params_.border_share : 1.0 - params_.border_share;
   const double way = share * std::abs(level - growing_.level);
   std::uint32_t border = since_;
   while (border < begin && std::abs(at(border) - growing_.level) < way) ++border;
@@ -67,25 +78,25 @@ void SemanticCutter::reach(double level, std::uint32_t begin, bool stands,
   growing_.after = level;
   out.push_back(growing_);
   const double before = growing_.level;
-  growing_ = {border, 0, level, stands, before, std::nullopt};
+  growing_ = {border, 0, level, steady, before, std::nullopt};
 }
 
-void SemanticCutter::take(double x, std::vector<SemanticCut>& out) {
+void SemanticCutter::addSmoothed(double x, std::vector<SemanticCut>& out) {
   const std::uint32_t i = next_++;
   if (i == 0) {
     growing_ = {0, 0, x, true, std::nullopt, std::nullopt};
-    standing_ = true;
+    steady_ = true;
     sum_ = x;
     count_ = 1;
     return;
   }
-  if (standing_) {
-    if (std::abs(x - growing_.level) <= params_.leave) {
+  if (steady_) {
+    if (std::abs(x - growing_.level) <= params_.change_threshold) {
       sum_ += x;
       growing_.level = sum_ / ++count_;
       return;
     }
-    standing_ = false;
+    steady_ = false;
     direction_ = x > growing_.level ? 1 : -1;
     moved_.assign(1, x);
     since_ = extreme_ = i;
@@ -94,24 +105,24 @@ void SemanticCutter::take(double x, std::vector<SemanticCut>& out) {
   moved_.push_back(x);
   if (direction_ * (x - at(extreme_)) > 0.0) {
     extreme_ = i;
-  } else if (direction_ * (at(extreme_) - x) > params_.leave) {
-    reach(at(extreme_), extreme_, false, out);
+  } else if (direction_ * (at(extreme_) - x) > params_.change_threshold) {
+    addLevel(at(extreme_), extreme_, false, out);
     moved_.erase(moved_.begin(), moved_.begin() + (extreme_ + 1 - since_));
     since_ = extreme_ + 1;
     direction_ = -direction_;
-    // Whatever lay between is nearer to the extreme than `leave`.
+    // Whatever lay between is nearer to the extreme than `change_threshold`.
     extreme_ = i;
   }
-  const auto n = static_cast<std::size_t>(params_.settled_for);
+  const auto n = static_cast<std::size_t>(params_.steady_length);
   if (moved_.size() < n) return;
   const auto window = moved_.end() - static_cast<std::ptrdiff_t>(n);
   const auto range = std::minmax_element(window, moved_.end());
-  if (*range.second - *range.first >= params_.settled) return;
+  if (*range.second - *range.first >= params_.steady_tolerance) return;
   sum_ = 0.0;
   for (auto w = window; w != moved_.end(); ++w) sum_ += *w;
   count_ = static_cast<std::uint32_t>(n);
-  reach(sum_ / count_, i + 1 - count_, true, out);
-  standing_ = true;
+  addLevel(sum_ / count_, i + 1 - count_, true, out);
+  steady_ = true;
   moved_.clear();
 }
 

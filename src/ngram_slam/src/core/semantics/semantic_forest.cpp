@@ -1,13 +1,15 @@
 #include "ngram_slam/semantics/semantic_forest.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <locale>
 #include <opencv2/core.hpp>
 #include <opencv2/ml.hpp>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/checksum.hpp"
@@ -18,7 +20,8 @@
 namespace ngram_slam {
 namespace {
 
-constexpr const char* kMagic = "ngram_slam semantic forest 2";
+constexpr const char* kMagic = "ngram_slam semantic forest 3";
+constexpr const char* kSumName = "crc32 ";
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 cv::Mat rowOf(const SemanticFeatures& features) {
@@ -26,12 +29,48 @@ cv::Mat rowOf(const SemanticFeatures& features) {
   return cv::Mat(1, static_cast<int>(v.size()), CV_32F, const_cast<float*>(v.data())).clone();
 }
 
-/// The first line of a file with that body.
-std::string headOf(const std::string& body) {
-  std::ostringstream out;
-  out << kMagic << ", " << kSemanticFeatures << " features, crc32 " << hyselam::crc32Text(body);
-  return out.str();
+/// The line of a file that names its features.
+std::string featureLine() {
+  std::string line = "features:";
+  for (const SemanticFeature& feature : kSemanticFeatureList) {
+    line += std::string(" ") + feature.name;
+  }
+  return line;
 }
+
+/// The lines of a file about its origin, in order.
+struct OriginLine {
+  const char* name;
+  std::string ForestOrigin::*member;
+};
+constexpr std::array<OriginLine, 4> kOriginLines{
+    {{"command: ", &ForestOrigin::command},
+     {"data: ", &ForestOrigin::data},
+     {"in sample: ", &ForestOrigin::in_sample},
+     {"out of sample: ", &ForestOrigin::out_of_sample}}};
+
+/// The index of a feature; nothing for any other word.
+std::optional<int> featureIndex(std::string_view name) {
+  for (std::size_t i = 0; i < kSemanticFeatures; ++i) {
+    if (name == kSemanticFeatureList[i].name) return static_cast<int>(i);
+  }
+  return std::nullopt;
+}
+
+/// What is between the head and the checksum of a file, line by line.
+struct Lines {
+  std::string_view rest;
+  std::size_t number = 0;  ///< of the line taken last, from 1
+
+  bool next(std::string_view* line) {
+    if (rest.empty()) return false;
+    const std::size_t end = rest.find('\n');
+    *line = rest.substr(0, end);
+    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    ++number;
+    return true;
+  }
+};
 
 }  // namespace
 
@@ -74,7 +113,8 @@ struct SemanticForest::Model {
     add(trees, given.right);
   }
 
-  /// A line "tree" before each, then a node a line: "FEATURE THRESHOLD" or the name of a class.
+  /// A line "tree" before each, then a node a line: "FEATURE THRESHOLD" or the name of a
+  /// class.
   std::string text() const {
     std::ostringstream out;
     out.imbue(std::locale::classic());
@@ -87,67 +127,73 @@ struct SemanticForest::Model {
         ++root;
       }
       if (node.feature < 0) {
-        out << nameOf(node.semantic_class) << "\n";
+        out << toString(node.semantic_class) << "\n";
       } else {
-        out << node.feature << " " << node.threshold << "\n";
+        out << kSemanticFeatureList[static_cast<std::size_t>(node.feature)].name << " "
+            << node.threshold << "\n";
       }
     }
     return out.str();
   }
 
-  static Model read(const std::string& body, const std::string& path);
+  static Model read(Lines lines, const std::string& source);
+
+ private:
+  static Node readNode(std::string_view line, std::vector<std::string_view>& fields,
+                       const std::function<void(const char*)>& fail);
 };
 
-SemanticForest::Model SemanticForest::Model::read(const std::string& body,
-                                                  const std::string& path) {
+SemanticForest::Model::Node SemanticForest::Model::readNode(
+    std::string_view line, std::vector<std::string_view>& fields,
+    const std::function<void(const char*)>& fail) {
+  Node node;
+  hyselam::splitFields(line, &fields);
+  if (fields.size() == 1) {
+    const auto semantic_class = semanticClassFromString(std::string(fields[0]));
+    if (!semantic_class) fail("is no class");
+    node.semantic_class = *semantic_class;
+  } else if (fields.size() == 2) {
+    const auto feature = featureIndex(fields[0]);
+    const auto threshold = hyselam::parseNumber(fields[1]);
+    if (!feature) fail("names a feature that there is not");
+    if (!threshold || std::abs(*threshold) > std::numeric_limits<float>::max()) {
+      fail("has a threshold that is no number");
+    }
+    node.feature = *feature;
+    node.threshold = static_cast<float>(*threshold);
+  } else {
+    fail("must be a class, or a feature and a threshold");
+  }
+  return node;
+}
+
+SemanticForest::Model SemanticForest::Model::read(Lines lines, const std::string& source) {
   Model model;
   std::vector<std::size_t> waiting;  // splits without their right side
   bool ended = true;                 // a side, or a tree; else a node must follow
   std::vector<std::string_view> fields;
-  hyselam::forEachLine(body, [&](std::size_t number, std::string_view line) {
-    const auto fail = [&](const char* reason) {
-      throw hyselam::InputError(path, "line " + std::to_string(number + 1), reason);
-    };
+  const auto fail = [&](const char* reason) {
+    throw hyselam::InputError(source, "line " + std::to_string(lines.number), reason);
+  };
+  for (std::string_view line; lines.next(&line);) {
     const std::size_t own = model.nodes.size();
     if (line == "tree") {
       if (!ended || !waiting.empty()) fail("begins a tree within a tree");
       model.roots.push_back(own);
       ended = false;
-      return;
+      continue;
     }
     if (ended) {
       if (waiting.empty()) fail("stands outside of a tree");
       model.nodes[waiting.back()].right = own;
       waiting.pop_back();
     }
-    Node node;
-    hyselam::splitFields(line, &fields);
-    if (fields.size() == 1) {
-      const auto semantic_class = semanticClassOf(std::string(fields[0]));
-      if (!semantic_class) fail("is no class");
-      node.semantic_class = *semantic_class;
-      ended = true;
-    } else if (fields.size() == 2) {
-      const auto feature = hyselam::parseNumber(fields[0]);
-      const auto threshold = hyselam::parseNumber(fields[1]);
-      if (!feature || *feature != std::floor(*feature) || *feature < 0.0 ||
-          *feature >= kSemanticFeatures) {
-        fail("names a feature that there is not");
-      }
-      if (!threshold || std::abs(*threshold) > std::numeric_limits<float>::max()) {
-        fail("has a threshold that is no number");
-      }
-      node.feature = static_cast<int>(*feature);
-      node.threshold = static_cast<float>(*threshold);
-      waiting.push_back(own);
-      ended = false;
-    } else {
-      fail("must be a class, or a feature and a threshold");
-    }
-    model.nodes.push_back(node);
-  });
+    model.nodes.push_back(readNode(line, fields, fail));
+    ended = model.nodes.back().feature < 0;
+    if (!ended) waiting.push_back(own);
+  }
   if (model.roots.empty() || !ended || !waiting.empty()) {
-    throw hyselam::InputError(path, "", "ends within a tree");
+    throw hyselam::InputError(source, "", "ends within a tree");
   }
   return model;
 }
@@ -157,14 +203,19 @@ SemanticForest::SemanticForest(SemanticForest&&) noexcept = default;
 SemanticForest& SemanticForest::operator=(SemanticForest&&) noexcept = default;
 SemanticForest::~SemanticForest() = default;
 
+void ForestParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("trees", trees, Range::between(1, 1000), "", "of the forest");
+  visit("depth", depth, Range::between(1, 24), "", "of a tree at most");
+  visit("min_examples", min_examples, Range::between(1, 1 << 20), "",
+        "examples in a node that is divided further");
+  visit("features_per_split", features_per_split,
+        Range::between(1, static_cast<double>(kSemanticFeatures)), "",
+        "features that a node chooses from");
+}
+
 void ForestParams::validate() const {
-  const auto require = [](const char* name, int value, int low, int high, const char* allowed) {
-    if (value < low || value > high) throw hyselam::ParameterError(name, value, allowed);
-  };
-  require("trees", trees, 1, 1000, "in 1 .. 1000");
-  require("depth", depth, 1, 24, "in 1 .. 24");
-  require("smallest", smallest, 1, 1 << 20, ">= 1");
-  require("choice", choice, 1, static_cast<int>(kSemanticFeatures), "in 1 .. number of features");
+  hyselam::checkParameters(*this);
 }
 
 SemanticForest SemanticForest::train(const std::vector<SemanticExample>& examples,
@@ -178,8 +229,8 @@ SemanticForest SemanticForest::train(const std::vector<SemanticExample>& example
   }
   const auto trees = cv::ml::RTrees::create();
   trees->setMaxDepth(params.depth);
-  trees->setMinSampleCount(params.smallest);
-  trees->setActiveVarCount(params.choice);
+  trees->setMinSampleCount(params.min_examples);
+  trees->setActiveVarCount(params.features_per_split);
   trees->setTermCriteria({cv::TermCriteria::MAX_ITER, params.trees, 0.0});
   cv::Mat types(samples.cols + 1, 1, CV_8U, cv::Scalar(cv::ml::VAR_ORDERED));
   types.at<uchar>(samples.cols) = cv::ml::VAR_CATEGORICAL;
@@ -197,41 +248,61 @@ SemanticForest SemanticForest::train(const std::vector<SemanticExample>& example
   return SemanticForest(std::move(model));
 }
 
-void SemanticForest::save(const std::string& path) const {
-  const std::string body = model_->text();
-  const std::string text = headOf(body) + "\n" + body;
-  if (path.size() < 3 || path.compare(path.size() - 3, 3, ".gz") != 0) {
-    hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << text; });
-    return;
+void SemanticForest::setOrigin(const ForestOrigin& origin) {
+  for (const OriginLine& line : kOriginLines) {
+    if ((origin.*line.member).find('\n') != std::string::npos) {
+      throw hyselam::ParameterError("origin of the forest", origin.*line.member, "one line");
+    }
   }
-  hyselam::replaceFileAtomically(path, [&](const std::string& temporary) {
-    const gzFile packed = gzopen(temporary.c_str(), "wb9");
-    const bool written =
-        packed != nullptr && gzwrite(packed, text.data(), static_cast<unsigned>(text.size())) ==
-                                 static_cast<int>(text.size());
-    const bool closed = packed != nullptr && gzclose(packed) == Z_OK;
-    if (!written || !closed) throw hyselam::InputError(path, "", "cannot be written");
-  });
+  origin_ = origin;
+}
+
+std::string SemanticForest::text() const {
+  std::string text = std::string(kMagic) + "\n";
+  for (const OriginLine& line : kOriginLines) text += line.name + origin_.*line.member + "\n";
+  text += featureLine() + "\n" + model_->text();
+  return text + kSumName + hyselam::crc32Text(text) + "\n";
+}
+
+void SemanticForest::save(const std::string& path) const {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << text(); });
 }
 
 SemanticForest SemanticForest::load(const std::string& path) {
-  const std::string text = hyselam::readTextFile(path, kMaxBytes);
-  const std::size_t line = text.find('\n');
-  const std::string head = text.substr(0, line);
-  if (head.compare(0, std::string(kMagic).size(), kMagic) != 0)
-    throw hyselam::InputError(path, "line 1", "is no forest of semantic classes of this version");
-  const std::string body = line == std::string::npos ? "" : text.substr(line + 1);
-  const std::string expected = headOf(body);
-  const std::size_t sum = expected.rfind(' ');
-  if (head.compare(0, sum, expected, 0, sum) != 0)
-    throw hyselam::InputError(path, "line 1",
-                              "was made for other features: train it again with train_semantic");
-  if (head != expected)
-    throw hyselam::InputError(path, "", "is damaged or cut off: its checksum is wrong");
-  return SemanticForest(std::make_unique<Model>(Model::read(body, path)));
+  return parse(hyselam::readTextFile(path, kMaxBytes), path);
 }
 
-SemanticVerdict SemanticForest::classify(const SemanticFeatures& features) const {
+SemanticForest SemanticForest::parse(const std::string& text, const std::string& source) {
+  if (text.compare(0, std::string(kMagic).size() + 1, std::string(kMagic) + "\n") != 0) {
+    throw hyselam::InputError(source, "line 1", "is no forest of semantic classes of this version");
+  }
+  const std::string example = kSumName + hyselam::crc32Text("") + "\n";
+  const std::size_t end = text.size() - std::min(text.size(), example.size());
+  if (text.substr(end) != kSumName + hyselam::crc32Text(text.substr(0, end)) + "\n") {
+    throw hyselam::InputError(source, "", "is damaged or cut off: its checksum is wrong");
+  }
+  Lines lines{std::string_view(text).substr(0, end)};
+  std::string_view line;
+  lines.next(&line);
+  ForestOrigin origin;
+  for (const OriginLine& expected : kOriginLines) {
+    const std::string name = expected.name;
+    if (!lines.next(&line) || line.substr(0, name.size()) != name) {
+      throw hyselam::InputError(source, "line " + std::to_string(lines.number),
+                                "does not begin with '" + name + "'");
+    }
+    origin.*expected.member = std::string(line.substr(name.size()));
+  }
+  if (!lines.next(&line) || line != featureLine()) {
+    throw hyselam::InputError(source, "line " + std::to_string(lines.number),
+                              "was made for other features: train it again with train_semantic");
+  }
+  SemanticForest forest(std::make_unique<Model>(Model::read(lines, source)));
+  forest.origin_ = origin;
+  return forest;
+}
+
+SemanticPrediction SemanticForest::classify(const SemanticFeatures& features) const {
   const auto values = vectorOf(features);
   std::array<std::size_t, kSemanticClasses> votes{};
   for (const std::size_t root : model_->roots) ++votes[indexOf(model_->ask(root, values))];

@@ -20,7 +20,7 @@ double rise(const SemanticCut& cut, const std::optional<double>& neighbour) {
 /// neighbours, as in a hall. Corridors stand below what they join.
 double variationOf(const SemanticCut& cut) {
   const double before = rise(cut, cut.before), after = rise(cut, cut.after);
-  if (!cut.stands) return std::max(std::abs(before), std::abs(after));
+  if (!cut.steady) return std::max(std::abs(before), std::abs(after));
   if (!cut.before || !cut.after) return std::max(0.0, before + after);
   return std::max(0.0, std::min(before, after));
 }
@@ -37,41 +37,44 @@ double SemanticSegmenter::turnIn(std::uint32_t first, std::uint32_t last) const 
 }
 
 /// A bend in a region without many frontiers: the way before it, itself, the way behind it.
-std::vector<SemanticCut> SemanticSegmenter::bendOf(const SemanticCut& cut) const {
-  if (turnIn(cut.first, cut.last) < params_.bend) return {cut};
+std::vector<SemanticCut> SemanticSegmenter::divideAtBend(const SemanticCut& cut) const {
+  if (turnIn(cut.first, cut.last) < params_.bend_angle) return {cut};
   const auto heading = [&](std::uint32_t i) { return seen_[i - seen_begin_].heading; };
   // The robot turns where its heading changes within a metre.
   const auto turns = [&](std::uint32_t i) {
     const std::uint32_t from = i - std::min(i - cut.first, kTurnReach);
     const std::uint32_t to = std::min(cut.last, i + kTurnReach);
-    return std::abs(heading(to) - heading(from)) > params_.turning;
+    return std::abs(heading(to) - heading(from)) > params_.min_turn;
   };
   std::uint32_t first = cut.first, last = cut.last;
   while (first < last && !turns(first)) ++first;
   while (last > first && !turns(last)) --last;
-  const auto rim = static_cast<std::uint32_t>(params_.widest_rim);
+  const auto rim = static_cast<std::uint32_t>(params_.max_rim);
   if (first - cut.first <= rim) first = cut.first;
   if (cut.last - last <= rim) last = cut.last;
   std::vector<SemanticCut> out;
-  if (first > cut.first)
+  if (first > cut.first) {
     out.push_back({cut.first, first - 1, cut.level, true, cut.before, cut.level});
-  out.push_back({first, last, cut.level, cut.stands, cut.before, cut.after});
+  }
+  out.push_back({first, last, cut.level, cut.steady, cut.before, cut.after});
   if (last < cut.last) out.push_back({last + 1, cut.last, cut.level, true, cut.level, cut.after});
   return out;
 }
 
 /// Along the number of frontiers, then along bends.
-std::vector<SemanticCut> SemanticSegmenter::divided(const SemanticCut& cut) const {
-  if (params_.shortest_stretch == 0) return bendOf(cut);
+std::vector<SemanticCut> SemanticSegmenter::divideAtFrontiers(const SemanticCut& cut) const {
+  if (params_.min_frontier_run == 0) return divideAtBend(cut);
   const auto seen = [&](std::uint32_t i) -> const Seen& { return seen_[i - seen_begin_]; };
   std::vector<DensityRegion> parts;  // of class 1 where there are many frontiers, else 0
-  DensityRegionBuilder builder(params_.shortest_stretch, cut.first);
-  for (std::uint32_t i = cut.first; i <= cut.last; ++i)
-    if (const auto part = builder.add(seen(i).frontiers >= kManyFrontiers ? 1 : 0))
+  DensityRegionBuilder builder(params_.min_frontier_run, cut.first);
+  for (std::uint32_t i = cut.first; i <= cut.last; ++i) {
+    if (const auto part = builder.add(seen(i).frontiers >= kManyFrontiers ? 1 : 0)) {
       parts.push_back(*part);
+    }
+  }
   if (const auto part = builder.finish()) parts.push_back(*part);
   const auto isRim = [&](const DensityRegion& part) {
-    return part.density_class == 0 && part.size() <= static_cast<std::uint32_t>(params_.widest_rim);
+    return part.density_class == 0 && part.size() <= static_cast<std::uint32_t>(params_.max_rim);
   };
   if (parts.size() > 1 && isRim(parts.front())) {
     parts[1].begin = parts[0].begin;
@@ -81,11 +84,11 @@ std::vector<SemanticCut> SemanticSegmenter::divided(const SemanticCut& cut) cons
     parts[parts.size() - 2].end = parts.back().end;
     parts.pop_back();
   }
-  if (parts.empty()) return bendOf(cut);
+  if (parts.empty()) return divideAtBend(cut);
   if (parts.size() == 1) {
-    if (parts[0].density_class == 0) return bendOf(cut);
+    if (parts[0].density_class == 0) return divideAtBend(cut);
     SemanticCut whole = cut;
-    whole.stands = false;
+    whole.steady = false;
     return {whole};
   }
   std::vector<SemanticCut> out;
@@ -96,7 +99,7 @@ std::vector<SemanticCut> SemanticSegmenter::divided(const SemanticCut& cut) cons
       sum += seen(i).soft;
       c.level = std::max(c.level, static_cast<double>(seen(i).soft));
     }
-    if (c.stands) c.level = sum / part.size();
+    if (c.steady) c.level = sum / part.size();
     if (!out.empty()) {
       out.back().after = c.level;
       c.before = out.back().level;
@@ -105,7 +108,7 @@ std::vector<SemanticCut> SemanticSegmenter::divided(const SemanticCut& cut) cons
   }
   std::vector<SemanticCut> all;
   for (const SemanticCut& c : out) {
-    const std::vector<SemanticCut> bent = c.stands ? bendOf(c) : std::vector<SemanticCut>{c};
+    const std::vector<SemanticCut> bent = c.steady ? divideAtBend(c) : std::vector<SemanticCut>{c};
     all.insert(all.end(), bent.begin(), bent.end());
   }
   return all;
@@ -129,8 +132,9 @@ SemanticFeatures SemanticSegmenter::featuresOf(const SemanticCut& cut) const {
   }
   // Where one region passes into the next, frontiers come and go.
   const std::uint32_t quarter = (cut.last - cut.first + 1) / 4;
-  for (std::uint32_t i = cut.first + quarter; i <= cut.last - quarter; ++i)
+  for (std::uint32_t i = cut.first + quarter; i <= cut.last - quarter; ++i) {
     f.frontiers += seen(i).frontiers;
+  }
   f.frontiers /= f.length - 2.0 * quarter;
   f.few_frontiers /= f.length;
   f.many_frontiers /= f.length;
@@ -138,7 +142,7 @@ SemanticFeatures SemanticSegmenter::featuresOf(const SemanticCut& cut) const {
   f.angle = std::abs(angleVariation(seen(cut.first).pose,
                                     seen(cut.first + (cut.last - cut.first) / 2).pose,
                                     seen(cut.last).pose));
-  f.stands = cut.stands ? 1.0 : 0.0;
+  f.steady = cut.steady ? 1.0 : 0.0;
   return f;
 }
 

@@ -24,8 +24,9 @@ std::vector<bool> stretchFound(const std::vector<T>& key, const std::vector<bool
 }  // namespace
 
 void SemanticConfusion::add(const SemanticConfusion& other) {
-  for (std::size_t t = 0; t < kSemanticClasses; ++t)
+  for (std::size_t t = 0; t < kSemanticClasses; ++t) {
     for (std::size_t p = 0; p < kSemanticClasses; ++p) counts[t][p] += other.counts[t][p];
+  }
 }
 
 std::uint64_t SemanticConfusion::actual(SemanticClass c) const {
@@ -90,8 +91,9 @@ SemanticConfusion compareClasses(const std::vector<Truth>& truth,
                                  const std::vector<SemanticClass>& predicted,
                                  std::uint32_t tolerance, BorderRule rule) {
   const std::size_t n = truth.size();
-  if (predicted.size() != n)
+  if (predicted.size() != n) {
     throw hyselam::ParameterError("predicted", predicted.size(), "as many as there are truths");
+  }
   std::vector<bool> right(n);
   for (std::size_t i = 0; i < n; ++i) right[i] = truth[i] == predicted[i];
   const std::vector<bool> place_found = stretchFound(truth, right);

@@ -1,6 +1,7 @@
 #include "ngram_slam/words/corpus.hpp"
 
 #include <cmath>
+#include <functional>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/binary_io.hpp"
@@ -62,53 +63,57 @@ Corpus CorpusFile::load(const std::string& path) {
   return parse(hyselam::readTextFile(path), path);
 }
 
-Corpus CorpusFile::parse(const std::string& text, const std::string& path) {
-  const auto refuse = [&](const std::string& place, const std::string& reason) {
-    throw InputError(path, place, reason);
-  };
+namespace {
+
+/// The numbers of the header, checked.
+struct Sizes {
+  std::uint32_t runs, observations, classes, bins;
+};
+
+using Refuse = std::function<void(const std::string& place, const std::string& reason)>;
+
+/// Reads the header and checks that the whole file fits it.
+Sizes readHeader(const std::string& text, hyselam::BinaryReader& r, const Refuse& refuse) {
   if (text.compare(0, 8, kMagic) != 0) refuse("byte 0", "is no corpus of words");
   if (text.size() < kHeaderBytes + 4) refuse("header", "ends too early (truncated)");
-  hyselam::BinaryReader r(text);
   r.skip(8);
   const auto version = r.get<std::uint32_t>();
-  if (version != kVersion)
+  if (version != kVersion) {
     refuse("version", "is " + std::to_string(version) + ", but only 2 is known");
-  const auto runs = r.get<std::uint32_t>(), observations = r.get<std::uint32_t>(),
-             classes = r.get<std::uint32_t>(), bins = r.get<std::uint32_t>();
-  if (r.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes))
+  }
+  Sizes n{};
+  n.runs = r.get<std::uint32_t>();
+  n.observations = r.get<std::uint32_t>();
+  n.classes = r.get<std::uint32_t>();
+  n.bins = r.get<std::uint32_t>();
+  if (r.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes)) {
     refuse("header", "is damaged (wrong checksum)");
-  if (classes < 1 || classes > 256) refuse("header", "has a number of classes outside 1..256");
-  if (bins != 0 && bins != MeanShiftQuantizer::kBins)
-    refuse("header", "has a histogram of " + std::to_string(bins) + " bins");
-  if (runs > observations + 1ull) refuse("header", "has more runs than observations");
+  }
+  if (n.classes < 1 || n.classes > 256) refuse("header", "has a number of classes outside 1..256");
+  if (n.bins != 0 && n.bins != MeanShiftQuantizer::kBins) {
+    refuse("header", "has a histogram of " + std::to_string(n.bins) + " bins");
+  }
+  if (n.runs > n.observations + 1ull) refuse("header", "has more runs than observations");
   // 64 bits hold the sum whatever the counts.
-  const std::uint64_t body = 20ull * runs + 20ull * classes + 8ull * bins + 27ull * observations;
+  const std::uint64_t body =
+      20ull * n.runs + 20ull * n.classes + 8ull * n.bins + 27ull * n.observations;
   const std::uint64_t expected = kHeaderBytes + 4 + body + 4;
-  if (text.size() != expected)
+  if (text.size() != expected) {
     refuse("end", "has " + std::to_string(text.size()) + " bytes instead of " +
                       std::to_string(expected) + (text.size() < expected ? " (truncated)" : ""));
+  }
   const std::size_t body_begin = r.at(), body_end = text.size() - 4;
   hyselam::BinaryReader tail(text);
   tail.skip(body_end);
-  if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, body_begin, body_end))
+  if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, body_begin, body_end)) {
     refuse("body", "is damaged (wrong checksum)");
-
-  Corpus corpus;
-  ObservationStore& o = corpus.observations;
-  for (std::uint32_t i = 0; i < runs; ++i) {
-    ObservationStore::Run run{};
-    run.begin = r.get<std::uint32_t>();
-    run.x = r.get<double>();
-    run.y = r.get<double>();
-    const bool in_order = i == 0 ? run.begin == 0 : run.begin > o.runs_.back().begin;
-    if (!in_order || run.begin > observations || (run.begin == observations && i + 1 < runs) ||
-        !std::isfinite(run.x) || !std::isfinite(run.y))
-      refuse("run " + std::to_string(i), "is out of order or not finite");
-    o.runs_.push_back(run);
   }
-  if (observations > 0 && runs == 0) refuse("runs", "are missing");
+  return n;
+}
+
+DensityClasses readClasses(std::uint32_t count, hyselam::BinaryReader& r, const Refuse& refuse) {
   std::vector<DensityClass> list;
-  for (std::uint32_t i = 0; i < classes; ++i) {
+  for (std::uint32_t i = 0; i < count; ++i) {
     DensityClass c;
     const auto id = r.get<std::uint32_t>();
     c.id = id > 255 ? 256 : static_cast<int>(id);
@@ -117,24 +122,54 @@ Corpus CorpusFile::parse(const std::string& text, const std::string& path) {
     list.push_back(c);
   }
   try {
-    corpus.classes = DensityClasses(std::move(list));
+    return DensityClasses(std::move(list));
   } catch (const hyselam::ParameterError& e) {
     refuse("classes", e.what());
+    throw;
   }
-  r.getAll(corpus.histogram, bins);
-  r.getAll(o.stamps_, observations);
-  r.getAll(o.x_, observations);
-  r.getAll(o.y_, observations);
-  r.getAll(o.theta_, observations);
-  r.getAll(o.soft_, observations);
-  r.getAll(o.hard_, observations);
-  r.getAll(o.full_, observations);
-  r.getAll(o.frontiers_, observations);
-  for (std::uint32_t i = 0; i < observations; ++i) {
-    if (!std::isfinite(o.stamps_[i]))
+}
+
+}  // namespace
+
+Corpus CorpusFile::parse(const std::string& text, const std::string& path) {
+  const Refuse refuse = [&](const std::string& place, const std::string& reason) {
+    throw InputError(path, place, reason);
+  };
+  hyselam::BinaryReader r(text);
+  const Sizes n = readHeader(text, r, refuse);
+  Corpus corpus;
+  ObservationStore& o = corpus.observations;
+  for (std::uint32_t i = 0; i < n.runs; ++i) {
+    ObservationStore::Run run{};
+    run.begin = r.get<std::uint32_t>();
+    run.x = r.get<double>();
+    run.y = r.get<double>();
+    const bool in_order = i == 0 ? run.begin == 0 : run.begin > o.runs_.back().begin;
+    if (!in_order || run.begin > n.observations ||
+        (run.begin == n.observations && i + 1 < n.runs) || !std::isfinite(run.x) ||
+        !std::isfinite(run.y)) {
+      refuse("run " + std::to_string(i), "is out of order or not finite");
+    }
+    o.runs_.push_back(run);
+  }
+  if (n.observations > 0 && n.runs == 0) refuse("runs", "are missing");
+  corpus.classes = readClasses(n.classes, r, refuse);
+  r.getAll(corpus.histogram, n.bins);
+  r.getAll(o.stamps_, n.observations);
+  r.getAll(o.x_, n.observations);
+  r.getAll(o.y_, n.observations);
+  r.getAll(o.theta_, n.observations);
+  r.getAll(o.soft_, n.observations);
+  r.getAll(o.hard_, n.observations);
+  r.getAll(o.full_, n.observations);
+  r.getAll(o.frontiers_, n.observations);
+  for (std::uint32_t i = 0; i < n.observations; ++i) {
+    if (!std::isfinite(o.stamps_[i])) {
       refuse("observation " + std::to_string(i), "has a stamp that is not finite");
-    if (o.soft_[i] > ObservationStore::kDensitySteps)
+    }
+    if (o.soft_[i] > ObservationStore::kDensitySteps) {
       refuse("observation " + std::to_string(i), "has a soft density above 1");
+    }
   }
   return corpus;
 }

@@ -59,8 +59,9 @@ class File {
     }
   }
   void cut(std::uint64_t bytes) {
-    if (::ftruncate(fd_, static_cast<off_t>(bytes)) != 0)
+    if (::ftruncate(fd_, static_cast<off_t>(bytes)) != 0) {
       throw InputError(path_, "", "cannot be cut: " + reason());
+    }
   }
   void toDisk() {
     if (::fsync(fd_) != 0) throw InputError(path_, "", "cannot be flushed: " + reason());
@@ -123,8 +124,9 @@ std::string blockFrom(const ObservationStore& observations, const DensityClasses
     const DensityObservation o = observations[i];
     w.put(static_cast<std::uint8_t>(observations.runBegin(observations.runOf(i)) == i));
     for (double v : {o.stamp, o.base_in_odom.x, o.base_in_odom.y, o.base_in_odom.theta, o.soft,
-                     orNan(o.hard), orNan(o.full)})
+                     orNan(o.hard), orNan(o.full)}) {
       w.put(v);
+    }
     w.put(static_cast<std::uint8_t>(o.frontiers));
   }
   w.putChecksum();
@@ -145,8 +147,10 @@ void addBlock(const std::string& body, Corpus& corpus) {
              bins = r.get<std::uint32_t>();
   const std::uint64_t expected =
       12ull + 20ull * classes + 8ull * bins + static_cast<std::uint64_t>(kObservation) * n + 4;
-  if (body.size() != expected || classes > 256 || (bins != 0 && bins != MeanShiftQuantizer::kBins))
+  if (body.size() != expected || classes > 256 ||
+      (bins != 0 && bins != MeanShiftQuantizer::kBins)) {
     throw InputError("block", "", "has a wrong length");
+  }
   std::vector<DensityClass> list;
   for (std::uint32_t i = 0; i < classes; ++i) {
     DensityClass c;
@@ -213,12 +217,15 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
   hyselam::BinaryReader header(text);
   header.skip(8);
   const auto version = header.get<std::uint32_t>(), belongs_to = header.get<std::uint32_t>();
-  if (text.compare(0, 8, kMagic) != 0)
+  if (text.compare(0, 8, kMagic) != 0) {
     throw InputError(path, "byte 0", "is no journal of a corpus");
-  if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeader - 4))
+  }
+  if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeader - 4)) {
     throw InputError(path, "header", "is damaged (wrong checksum)");
-  if (version != kVersion)
+  }
+  if (version != kVersion) {
     throw InputError(path, "version", "is " + std::to_string(version) + ", but only 1 is known");
+  }
   if (belongs_to != file_checksum_) {
     // The file was written anew and holds all of it, or it is another one.
     loaded.remark = path + ": belongs to another version of the corpus, not used";
@@ -239,8 +246,9 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
     r.skip(at + 4);
     const auto bytes = r.get<std::uint32_t>(), first = r.get<std::uint32_t>();
     if (text.compare(at, 4, kBlock) != 0 ||
-        r.get<std::uint32_t>() != hyselam::checksumOf(text, at, at + kBlockHeader - 4))
+        r.get<std::uint32_t>() != hyselam::checksumOf(text, at, at + kBlockHeader - 4)) {
       throw InputError(path, place, "is damaged (wrong checksum)");
+    }
     const std::size_t begin = at + kBlockHeader;
     if (text.size() - begin < bytes) {
       cutOff();
@@ -249,10 +257,12 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
     if (bytes < 16) throw InputError(path, place, "has a wrong length");
     hyselam::BinaryReader tail(text);
     tail.skip(begin + bytes - 4);
-    if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, begin, begin + bytes - 4))
+    if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, begin, begin + bytes - 4)) {
       throw InputError(path, place, "is damaged (wrong checksum)");
-    if (first != loaded.corpus.observations.size())
+    }
+    if (first != loaded.corpus.observations.size()) {
       throw InputError(path, place, "does not follow what is before it");
+    }
     try {
       addBlock(text.substr(begin, bytes), loaded.corpus);
     } catch (const std::exception& e) {

@@ -12,8 +12,9 @@ using hyselam::InputError;
 using hyselam::Pose2;
 
 DistanceSampler::DistanceSampler(double step) : step_(step) {
-  if (!(step > 0.0 && std::isfinite(step)))
+  if (!(step > 0.0 && std::isfinite(step))) {
     throw hyselam::ParameterError("observation step", step, "> 0 [m]");
+  }
 }
 
 std::vector<Pose2> DistanceSampler::due(const Pose2& pose) {
@@ -56,8 +57,9 @@ std::uint32_t ObservationStore::append(const DensityObservation& o) {
   const double x0 = first ? o.base_in_odom.x : runs_.back().x;
   const double y0 = first ? o.base_in_odom.y : runs_.back().y;
   const double dx = (o.base_in_odom.x - x0) / kLength, dy = (o.base_in_odom.y - y0) / kLength;
-  if (std::abs(dx) > 2e9 || std::abs(dy) > 2e9)
+  if (std::abs(dx) > 2e9 || std::abs(dy) > 2e9) {
     refuse("position (200 km from the start of the run)");
+  }
   if (runs_.empty()) startRun();
   runs_.back().x = x0;
   runs_.back().y = y0;

@@ -23,11 +23,16 @@ double angleVariation(const ObservationStore& observations, std::uint32_t begin,
                         observations.pose(end - 1));
 }
 
+void WordTolerance::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("size_tolerance", size, Range::inside(0.0, 1.0), "",
+        "epsilon_s: by how much of the larger one the sizes of matching words differ, at most");
+  visit("angle_tolerance", angle, Range::inside(0.0, hyselam::kPi), "rad",
+        "epsilon_a: difference of the angles of matching words at most");
+}
+
 void WordTolerance::validate() const {
-  if (!(size > 0.0 && size < 1.0))
-    throw hyselam::ParameterError("size tolerance", size, "in (0, 1)");
-  if (!(angle > 0.0 && angle < hyselam::kPi))
-    throw hyselam::ParameterError("angle tolerance", angle, "in (0, pi) [rad]");
+  hyselam::checkParameters(*this);
 }
 
 }  // namespace ngram_slam

@@ -17,6 +17,9 @@ using hyselam::Pose2;
 
 namespace {
 
+constexpr double kFreeCellDistance = 0.3;  // [m]
+constexpr double kWindowMargin = 1.0;      // of the free space computed around the robot [m]
+
 FsdSensorParams sensorParams(const ObservationSensorParams& p) {
   p.validate();
   FsdSensorParams out;
@@ -37,10 +40,29 @@ double inUnitRange(double density) {
 
 }  // namespace
 
+void ObservationSensorParams::describe(hyselam::ParameterVisitor& visit) {
+  describeObservations(visit);
+  describeLookBack(visit);
+}
+
+void ObservationSensorParams::describeObservations(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("bandwidth", bandwidth, Range::between(0.2, 50.0), "m", "radius of the uniform kernel");
+  visit("step", step, Range::between(0.01, 10.0), "m", "path length between observations");
+  visit("resolution", resolution, Range::between(0.01, 1.0), "m/cell",
+        "of the local map; with input scan");
+  visit("usable_range", usable_range, Range::atLeast(0.0), "m",
+        "beams are cut at this range; 0: as the local map is wide; with input scan");
+}
+
+void ObservationSensorParams::describeLookBack(hyselam::ParameterVisitor& visit) {
+  visit("look_back", look_back, hyselam::Range::between(0.0, 20.0), "m",
+        "driven before the density of a spot is computed again, for word_density full; with input "
+        "scan");
+}
+
 void ObservationSensorParams::validate() const {
-  if (!(look_back >= 0.0 && look_back <= 20.0))
-    throw hyselam::ParameterError("look_back", look_back, "0..20 [m]");
-  const DistanceSampler step_check(step);
+  hyselam::checkParameters(*this);
 }
 
 ObservationSensor::ObservationSensor(const ObservationSensorParams& params)
@@ -52,17 +74,17 @@ ObservationSensor::ObservationSensor(const ObservationSensorParams& params)
 std::vector<DensityObservation> ObservationSensor::add(const hyselam::LaserScan& scan,
                                                        const Pose2& base_in_odom) {
   std::vector<DensityObservation> complete;
-  std::deque<Waiting> held_back;
-  // After a jump of the odometry the map no longer shows what waits.
+  std::deque<Pending> held_back;
+  // After an odometry jump the map no longer shows the spots that are pending.
   const bool jump = params_.look_back > 0.0 && sampler_.isJump(base_in_odom);
   if (jump) {
-    held_back = waiting_;
-    complete = release(std::numeric_limits<double>::max());
+    held_back = pending_;
+    complete = releaseUpTo(std::numeric_limits<double>::max());
   }
   try {
     sensor_.integrate(scan, base_in_odom);
   } catch (const hyselam::InputError&) {
-    if (jump) waiting_ = std::move(held_back);
+    if (jump) pending_ = std::move(held_back);
     throw;
   }
   const std::vector<Pose2> due = sampler_.due(base_in_odom);
@@ -75,56 +97,59 @@ std::vector<DensityObservation> ObservationSensor::add(const hyselam::LaserScan&
   if (reading.density.hard) now.hard = inUnitRange(*reading.density.hard);
   now.frontiers = std::min(reading.frontiers, 255);
   for (const DensityObservation& o : sampler_.sampleAt(now, due)) {
-    way_ += params_.step;
-    waiting_.push_back({o, way_});
+    path_length_ += params_.step;
+    pending_.push_back({o, path_length_});
   }
-  const std::vector<DensityObservation> more = release(way_ - params_.look_back);
+  const std::vector<DensityObservation> more = releaseUpTo(path_length_ - params_.look_back);
   complete.insert(complete.end(), more.begin(), more.end());
   return complete;
 }
 
 std::vector<DensityObservation> ObservationSensor::finish() {
-  std::vector<DensityObservation> complete = release(std::numeric_limits<double>::max());
+  std::vector<DensityObservation> complete = releaseUpTo(std::numeric_limits<double>::max());
   sensor_.reset();
   sampler_.reset();
   return complete;
 }
 
-std::vector<DensityObservation> ObservationSensor::release(double until) {
+std::vector<DensityObservation> ObservationSensor::releaseUpTo(double path_length) {
   std::vector<DensityObservation> complete;
-  if (waiting_.empty() || waiting_.front().way > until) return complete;
+  if (pending_.empty() || pending_.front().path_length > path_length) return complete;
   if (params_.look_back > 0.0) {
-    const double reach = params_.bandwidth + params_.look_back + 1.0;
+    const double reach = params_.bandwidth + params_.look_back + kWindowMargin;
     sensor_.localMap().freeSpace(static_cast<int>(std::ceil(reach / params_.resolution)), space_);
   }
-  while (!waiting_.empty() && waiting_.front().way <= until) {
-    DensityObservation o = waiting_.front().observation;
-    waiting_.pop_front();
-    if (params_.look_back > 0.0) o.full = lookBack(o.base_in_odom);
+  while (!pending_.empty() && pending_.front().path_length <= path_length) {
+    DensityObservation o = pending_.front().observation;
+    pending_.pop_front();
+    if (params_.look_back > 0.0) o.full = fullDensity(o.base_in_odom);
     complete.push_back(o);
   }
   return complete;
 }
 
-/// The density of a spot on the map as it is now. Where something stands by now, of the nearest
-/// free cell within 0.3 m.
-std::optional<double> ObservationSensor::lookBack(const Pose2& pose) {
+/// The density of a spot in the map of now. Where the spot is not free in it, of the nearest free
+/// cell within kFreeCellDistance.
+std::optional<double> ObservationSensor::fullDensity(const Pose2& pose) {
   const fsd_localization::LocalMap& map = sensor_.localMap();
   const Cell spot{static_cast<int>(std::floor(pose.x / params_.resolution)) - map.windowInOdom().x,
                   static_cast<int>(std::floor(pose.y / params_.resolution)) - map.windowInOdom().y};
   const int edge = kernel_.kernel().radius() + 1;
-  if (spot.x < edge || spot.y < edge || spot.x >= map.side() - edge || spot.y >= map.side() - edge)
+  if (spot.x < edge || spot.y < edge || spot.x >= map.side() - edge ||
+      spot.y >= map.side() - edge) {
     return std::nullopt;
-  const int reach = static_cast<int>(0.3 / params_.resolution);
+  }
+  const int reach = static_cast<int>(kFreeCellDistance / params_.resolution);
   std::optional<Cell> nearest;
-  int least = reach * reach + 1;
-  for (int dy = -reach; dy <= reach; ++dy)
+  int min_squared = reach * reach + 1;
+  for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
       const int d = dx * dx + dy * dy;
-      if (d >= least || !space_.free.get(spot.x + dx, spot.y + dy)) continue;
-      least = d;
+      if (d >= min_squared || !space_.free.get(spot.x + dx, spot.y + dy)) continue;
+      min_squared = d;
       nearest = Cell{spot.x + dx, spot.y + dy};
     }
+  }
   if (!nearest) return std::nullopt;
   return inUnitRange(kernel_.soft(space_, *nearest));
 }

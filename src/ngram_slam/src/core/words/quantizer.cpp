@@ -20,8 +20,9 @@ DensityClasses::DensityClasses(std::vector<DensityClass> classes) : classes_(std
     if (c.id < 0 || c.id > 255) throw ParameterError("density class id", c.id, "0..255");
     if (!ids.insert(c.id).second) throw ParameterError("density class id", c.id, "unique");
     if (!(std::isfinite(c.upper) && std::isfinite(c.mode)) ||
-        (i > 0 && c.upper <= classes_[i - 1].upper))
+        (i > 0 && c.upper <= classes_[i - 1].upper)) {
       throw ParameterError("upper bound of density class", c.upper, "above the one before");
+    }
   }
 }
 
@@ -29,8 +30,9 @@ DensityClasses DensityClasses::uniform(int count) {
   if (count < 1 || count > 256) throw ParameterError("number of density classes", count, "1..256");
   std::vector<DensityClass> classes;
   classes.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i) {
     classes.push_back({i, (i + 0.5) / count, static_cast<double>(i + 1) / count});
+  }
   return DensityClasses(std::move(classes));
 }
 
@@ -69,8 +71,9 @@ std::vector<double> smoothed(const DensityHistogram& histogram, double bandwidth
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const auto count = static_cast<double>(histogram[static_cast<std::size_t>(i)]);
     if (count == 0.0) continue;
-    for (std::ptrdiff_t k = 0; k < n; ++k)
+    for (std::ptrdiff_t k = 0; k < n; ++k) {
       out[static_cast<std::size_t>(k)] += count * window[static_cast<std::size_t>(std::abs(k - i))];
+    }
   }
   return out;
 }
@@ -127,8 +130,9 @@ std::vector<DensityMode> densityModes(const DensityHistogram& histogram, double 
   }
   std::vector<DensityMode> modes;
   modes.reserve(basins.size());
-  for (const Basin& b : basins)
+  for (const Basin& b : basins) {
     modes.push_back({centreOf(peak(f, b.top), f.size()), b.begin, b.end, b.mass / total});
+  }
   return modes;
 }
 
@@ -158,9 +162,11 @@ double bandwidthOf(const DensityHistogram& histogram, double min_share, int max_
 std::vector<DensityClass> classesOf(const std::vector<DensityMode>& modes, std::size_t bins,
                                     const std::vector<DensityClass>& old, double reach) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < modes.size(); ++i)
-    for (std::size_t k = 0; k < old.size(); ++k)
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    for (std::size_t k = 0; k < old.size(); ++k) {
       pairs.push_back({std::abs(modes[i].mode - old[k].mode), i, k});
+    }
+  }
   std::sort(pairs.begin(), pairs.end());
   std::vector<int> id(modes.size(), -1);
   std::set<int> taken;
@@ -171,26 +177,34 @@ std::vector<DensityClass> classesOf(const std::vector<DensityMode>& modes, std::
   }
   std::vector<DensityClass> classes;
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    for (int next = 0; id[i] < 0; ++next)
+    for (int next = 0; id[i] < 0; ++next) {
       if (taken.insert(next).second) id[i] = next;
+    }
     classes.push_back(
         {id[i], modes[i].mode, static_cast<double>(modes[i].end) / static_cast<double>(bins)});
   }
   return classes;
 }
 
+void MeanShiftParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("bandwidth", bandwidth, Range::between(0.0, 0.5), "",
+        "sigma of the window, in densities; 0: from the data");
+  visit("min_share", min_share, Range::between(0.0, 0.5), "",
+        "of the observations; weaker modes are no class of their own");
+  visit("tolerance", tolerance, Range::aboveUpTo(0.0, 1.0), "",
+        "modes and bounds may move this far before the classes change");
+  visit("max_classes", max_classes, Range::between(1, 64), "", "for a bandwidth from the data");
+  visit("uniform_classes", uniform_classes, Range::between(1, 256), "",
+        "classes before the first estimate");
+  visit("first_update", first_update, Range::atLeast(1), "observations",
+        "before the first estimate");
+  visit("update_growth", update_growth, Range::aboveUpTo(1.0, 100.0), "",
+        "the next estimate comes after so many times the observations");
+}
+
 void MeanShiftParams::validate() const {
-  if (!(bandwidth >= 0.0 && bandwidth <= 0.5))
-    throw ParameterError("bandwidth", bandwidth, "0 (from the data) .. 0.5");
-  if (!(min_share >= 0.0 && min_share <= 0.5))
-    throw ParameterError("min_share", min_share, "0..0.5");
-  if (!(tolerance > 0.0 && tolerance <= 1.0))
-    throw ParameterError("tolerance", tolerance, "in (0, 1]");
-  if (max_classes < 1 || max_classes > 64)
-    throw ParameterError("max_classes", max_classes, "1..64");
-  if (first_update < 1) throw ParameterError("first_update", first_update, ">= 1 [observations]");
-  if (!(update_growth > 1.0 && update_growth <= 100.0))
-    throw ParameterError("update_growth", update_growth, "in (1, 100]");
+  hyselam::checkParameters(*this);
 }
 
 MeanShiftQuantizer::MeanShiftQuantizer(const MeanShiftParams& params)
@@ -216,8 +230,9 @@ bool MeanShiftQuantizer::update() {
                                : bandwidthOf(histogram_, params_.min_share, params_.max_classes);
   std::vector<DensityMode> modes = densityModes(histogram_, bandwidth, params_.min_share);
   // Words know 256 classes; a bandwidth chosen far too small is widened.
-  for (double wider = bandwidth; modes.size() > 256;)
+  for (double wider = bandwidth; modes.size() > 256;) {
     modes = densityModes(histogram_, wider *= 1.5, params_.min_share);
+  }
   const std::vector<DensityClass>& old = classes_.list();
   const std::vector<DensityClass> fresh =
       classesOf(modes, kBins, learnt_ ? old : std::vector<DensityClass>{},
@@ -234,8 +249,9 @@ bool MeanShiftQuantizer::update() {
 }
 
 void MeanShiftQuantizer::restore(const DensityClasses& classes, const DensityHistogram& histogram) {
-  if (histogram.size() != kBins)
+  if (histogram.size() != kBins) {
     throw ParameterError("bins of the histogram", histogram.size(), std::to_string(kBins));
+  }
   classes_ = classes;
   histogram_ = histogram;
   count_ = 0;
@@ -243,9 +259,10 @@ void MeanShiftQuantizer::restore(const DensityClasses& classes, const DensityHis
   const auto first = static_cast<std::uint64_t>(params_.first_update);
   learnt_ = count_ >= first;
   next_update_ = first;
-  while (next_update_ <= count_)
+  while (next_update_ <= count_) {
     next_update_ =
         static_cast<std::uint64_t>(static_cast<double>(next_update_) * params_.update_growth) + 1;
+  }
 }
 
 }  // namespace ngram_slam

@@ -9,8 +9,9 @@ namespace ngram_slam {
 
 WordLattice::WordLattice(int levels, AngleOf angle_of)
     : levels_(levels), angle_of_(std::move(angle_of)) {
-  if (levels < 1 || levels > kMaxLevels)
+  if (levels < 1 || levels > kMaxLevels) {
     throw hyselam::ParameterError("levels", levels, "1.." + std::to_string(kMaxLevels));
+  }
 }
 
 void WordLattice::startRun() {
@@ -23,13 +24,15 @@ void WordLattice::startRun(std::uint32_t first_observation) {
 }
 
 Position WordLattice::push(const Syllables& word) {
-  if (word.density_class < 0 || word.density_class >= kMaxClasses)
+  if (word.density_class < 0 || word.density_class >= kMaxClasses) {
     throw hyselam::ParameterError("density class", word.density_class,
                                   "0.." + std::to_string(kMaxClasses - 1));
+  }
   if (word.size < 1) throw hyselam::ParameterError("word size", word.size, ">= 1 [observations]");
   if (blocks_.size() >= kMaxPositions ||
-      words_.size() + static_cast<std::size_t>(levels_) >= (std::size_t{1} << 31))
+      words_.size() + static_cast<std::size_t>(levels_) >= (std::size_t{1} << 31)) {
     throw hyselam::InputError("text", "", "is full");
+  }
 
   if (!starts_run_) writeAlternatives();
   const Position here = positions();
