@@ -101,7 +101,8 @@ std::vector<Reconfigurable> reconfigurable() {
   return {{"hyselam_topo",
            "gr2to",
            "Gr2To",
-           {"mode", "free_max", "working_resolution", "clutter", "smallest_place",
+           {"mode", "free_max", "working_resolution", "max_clutter_size", "min_place_area",
+            "thesis_door_min", "thesis_door_max", "thesis_critical_radius", "thesis_wall_share",
             "max_free_height", "min_occupied_height", "marker_alpha"}}};
 }
 

@@ -55,7 +55,7 @@ AugmentedTopologicalMap building(int side) {
     }
   }
   map.grid = grid;
-  normalise(&map);
+  normalize(map);
   return map;
 }
 

@@ -188,7 +188,7 @@ void Gr2ToMap_Update(benchmark::State& state) {
         updater.update(clear ? nineFloors() : maps[i / 2 % maps.size()]).map.places.size());
     ++i;
     all += 1.0;
-    partial += updater.lastWay() == Gr2ToUpdater::Way::kPartial ? 1.0 : 0.0;
+    partial += updater.lastUpdate() == Gr2ToUpdater::UpdateKind::kPartial ? 1.0 : 0.0;
   }
   state.counters["in_part_share"] = partial / all;
   state.SetLabel("baseline=Gr2ToMap_FromScratch");

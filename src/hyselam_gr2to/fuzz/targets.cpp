@@ -1,8 +1,10 @@
 #include <string>
 
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_gr2to/octomap/octomap_reader.hpp"
+#include "hyselam_gr2to/segmentation/border_model.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -28,10 +30,29 @@ void octoMap(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// The file of a border model: refused, or trees whose text is the same again, and whose odds of
+/// any border are found. The checksum is made right first, or nearly all would end there.
+void borderTrees(const std::uint8_t* data, std::size_t size) {
+  std::string text = textOf(data, size);
+  const std::size_t last = text.rfind("checksum ");
+  if (last != std::string::npos) {
+    text.resize(last);
+    text += "checksum " + hyselam::crc32Text(text) + "\n";
+  }
+  try {
+    const BorderModel model = BorderModel::fromText(text, "fuzz");
+    const std::string written = model.toText();
+    require(BorderModel::fromText(written, "written").toText() == written);
+    model.oddsOfOnePlace({});
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+}
+
 }  // namespace
 }  // namespace hyselam_topo
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace hyselam_topo;  // NOLINT: its own targets
-  return {{"octoMap", octoMap}};
+  return {{"octoMap", octoMap}, {"borderTrees", borderTrees}};
 }

@@ -8,7 +8,7 @@
 
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_gr2to/map_builder/walls.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"

@@ -140,7 +140,7 @@ TEST(Background, SameGridIsNotSegmentedAgain) {
   EXPECT_EQ(gate.widths().size(), 3u);
 }
 
-TEST(Background, NamesOfAMapFromElsewhereAreCarriedOn) {
+TEST(Background, NamesOfALoadedMapAreCarriedOver) {
   Gate gate;
   Outcomes outcomes;
   BackgroundGr2To background(outcomes.sink(), gate.pipeline());
@@ -158,7 +158,7 @@ TEST(Background, NamesOfAMapFromElsewhereAreCarriedOn) {
   EXPECT_EQ(outcome.report.kept, (std::vector<Id>{7}));
 }
 
-TEST(Background, MapReplacedDuringTheWorkCounts) {
+TEST(Background, MapLoadedDuringASegmentationIsCarriedOver) {
   Gate gate;
   Outcomes outcomes;
   BackgroundGr2To background(outcomes.sink(), gate.pipeline());
@@ -211,12 +211,12 @@ OccupancyGrid rooms(double x, double size) {
   return grid;
 }
 
-TEST(Background, UpdatesAreAsGoodAsStartsFromScratch) {
-  for (const int most_updates : {0, 2, 50}) {
-    const auto pipeline = BackgroundGr2To::updating(most_updates);
+TEST(Background, PartialUpdatesAreAsGoodAsFromScratch) {
+  for (const int max_partial_updates : {0, 2, 50}) {
+    const auto pipeline = BackgroundGr2To::updating(max_partial_updates);
     for (int i = 0; i < 6; ++i) {
       const Gr2ToResult result = pipeline(rooms(1.0 + 0.2 * i, 0.3), {});
-      ASSERT_EQ(result.map.places.size(), 2u) << most_updates << " " << i;
+      ASSERT_EQ(result.map.places.size(), 2u) << max_partial_updates << " " << i;
       ASSERT_EQ(result.map.edges.size(), 1u);
       EXPECT_EQ(result.map.edges[0].doors.size(), 1u);
     }

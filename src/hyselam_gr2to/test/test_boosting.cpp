@@ -35,12 +35,12 @@ double wrong(const BoostedTrees& trees, const Samples& s) {
 
 }  // namespace
 
-TEST(Boosting, LearnsWhatIsThere) {
+TEST(Boosting, LearnsTheRuleDespiteErrors) {
   const BoostedTrees trees = boost(made(3000, 0.1, 1), {});
   EXPECT_LT(wrong(trees, made(2000, 0.0, 2)), 0.06);
 }
 
-TEST(Boosting, KeepsToWhatMayOnlyRise) {
+TEST(Boosting, RespectsMonotoneFeatures) {
   BoostingParams params;
   params.monotone = {1, 1, 0};
   const BoostedTrees trees = boost(made(1000, 0.3, 3), params);
@@ -63,7 +63,7 @@ TEST(Boosting, SameSamplesSameTrees) {
     EXPECT_EQ(a.nodes()[i].threshold, b.nodes()[i].threshold);
 }
 
-TEST(Boosting, WeightsCount) {
+TEST(Boosting, HeavierSamplesWin) {
   // Twice the same place in the space of features, opposite answers: the heavier one wins.
   Samples s;
   s.features = 1;
@@ -77,7 +77,7 @@ TEST(Boosting, WeightsCount) {
 }
 
 // The cases of score_segmentation.py --self-test.
-TEST(RoomScores, AsTheScriptHasThem) {
+TEST(RoomScores, EqualTheReferenceScript) {
   const RoomScores same = scoreRooms({{0, 400, 0}, {0, 0, 400}}, 2);
   EXPECT_DOUBLE_EQ(1.0, same.precision);
   EXPECT_DOUBLE_EQ(1.0, same.recall);

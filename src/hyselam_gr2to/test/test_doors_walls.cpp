@@ -41,7 +41,7 @@ TEST_P(SimulatedPlans, DoorsAndWallsAreFound) {
     params.rotation = c.rotation;
     const auto plan = hyselam_sim::generatePlan(seed, params);
     const auto grid = hyselam_sim::rasterize(plan, c.resolution, 0.0);
-    Segmentation s;
+    PlaceSegmentation s;
     s.labels = plan_truth::labels(plan, grid);
     if (c.shift > 0.0) plan_truth::shiftBorders(plan, grid, c.shift, &s.labels);
     s.places = static_cast<int>(plan.places.size());

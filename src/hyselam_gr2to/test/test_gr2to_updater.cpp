@@ -64,11 +64,11 @@ void expectSound(const OccupancyGrid& grid, const Gr2ToResult& r) {
 
 }  // namespace
 
-TEST(Gr2ToUpdater, FirstAndUnchanged) {
+TEST(Gr2ToUpdater, FirstGridIsFromScratchTheSameIsUnchanged) {
   const OccupancyGrid grid = floorOf(3);
   Gr2ToUpdater updater;
   const Gr2ToResult& r = updater.update(grid);
-  EXPECT_EQ(Gr2ToUpdater::Way::kFromScratch, updater.lastWay());
+  EXPECT_EQ(Gr2ToUpdater::UpdateKind::kFromScratch, updater.lastUpdate());
   const Gr2ToResult fresh = gr2to(grid);
   EXPECT_EQ(0, cv::countNonZero(fresh.labels != r.labels));
   EXPECT_TRUE(fresh.map == r.map);
@@ -77,14 +77,14 @@ TEST(Gr2ToUpdater, FirstAndUnchanged) {
     if (v == 0) v = 7;  // still free
   }
   EXPECT_TRUE(fresh.map == updater.update(nearly).map);
-  EXPECT_EQ(Gr2ToUpdater::Way::kUnchanged, updater.lastWay());
+  EXPECT_EQ(Gr2ToUpdater::UpdateKind::kUnchanged, updater.lastUpdate());
   Gr2ToParams other;
-  other.segmentation.smallest_place = 2.0;
+  other.segmentation.min_place_area = 2.0;
   updater.update(grid, other);
-  EXPECT_EQ(Gr2ToUpdater::Way::kFromScratch, updater.lastWay());
+  EXPECT_EQ(Gr2ToUpdater::UpdateKind::kFromScratch, updater.lastUpdate());
 }
 
-TEST(Gr2ToUpdater, ATableLeavesTheOtherPlacesAlone) {
+TEST(Gr2ToUpdater, TableChangesItsPlaceOnly) {
   const OccupancyGrid grid = floorOf(6);
   Gr2ToUpdater updater;
   const Gr2ToResult before = updater.update(grid);
@@ -94,7 +94,7 @@ TEST(Gr2ToUpdater, ATableLeavesTheOtherPlacesAlone) {
   OccupancyGrid with = grid;
   fill(&with, {c.x - 8, c.y - 6, 16, 12}, OccupancyGrid::kOccupied);
   const Gr2ToResult& after = updater.update(with);
-  EXPECT_EQ(Gr2ToUpdater::Way::kPartial, updater.lastWay());
+  EXPECT_EQ(Gr2ToUpdater::UpdateKind::kPartial, updater.lastUpdate());
   expectSound(with, after);
   ASSERT_EQ(before.map.places.size(), after.map.places.size());
   cv::Mat rest = before.labels.clone(), rest_after = after.labels.clone();
@@ -102,13 +102,13 @@ TEST(Gr2ToUpdater, ATableLeavesTheOtherPlacesAlone) {
   rest_after.setTo(0, before.labels == 3);
   EXPECT_EQ(0, cv::countNonZero(rest != rest_after));
   updater.update(grid);
-  EXPECT_EQ(Gr2ToUpdater::Way::kPartial, updater.lastWay());
+  EXPECT_EQ(Gr2ToUpdater::UpdateKind::kPartial, updater.lastUpdate());
 }
 
-TEST(Gr2ToUpdater, RandomEditsGiveSoundMapsLikeThoseFromScratch) {
+TEST(Gr2ToUpdater, RandomEditsGiveValidMapsCloseToThoseFromScratch) {
   int partial = 0, all = 0;
   double sum = 0.0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     hyselam::Rng rng(seed, 77);
     const auto upTo = [&](int n) {
       return static_cast<int>(rng.below(static_cast<std::uint32_t>(n)));
@@ -136,9 +136,9 @@ TEST(Gr2ToUpdater, RandomEditsGiveSoundMapsLikeThoseFromScratch) {
         }
       }
       const Gr2ToResult& r = updater.update(grid);
-      if (updater.lastWay() == Gr2ToUpdater::Way::kUnchanged) continue;
+      if (updater.lastUpdate() == Gr2ToUpdater::UpdateKind::kUnchanged) continue;
       ++all;
-      partial += updater.lastWay() == Gr2ToUpdater::Way::kPartial ? 1 : 0;
+      partial += updater.lastUpdate() == Gr2ToUpdater::UpdateKind::kPartial ? 1 : 0;
       expectSound(grid, r);
       if (HasFatalFailure() || HasNonfatalFailure()) FAIL() << "seed " << seed << ", " << step;
       sum += agreement(r.labels, gr2to(grid).labels);
@@ -150,7 +150,7 @@ TEST(Gr2ToUpdater, RandomEditsGiveSoundMapsLikeThoseFromScratch) {
   std::cout << partial << " of " << all << " in part, agreement " << sum / all << "\n";
 }
 
-TEST(Gr2ToUpdater, AWallAcrossACorridorPartsIt) {
+TEST(Gr2ToUpdater, WallAcrossACorridorSplitsIt) {
   // A corridor of 20 x 2 m without rooms.
   hyselam::GridGeometry g;
   g.width = 408;
@@ -167,7 +167,7 @@ TEST(Gr2ToUpdater, AWallAcrossACorridorPartsIt) {
   EXPECT_GT(r.map.places.size(), before);
 }
 
-TEST(Gr2ToUpdater, AMistakeDoesNotStay) {
+TEST(Gr2ToUpdater, FailedUpdateIsFollowedByOneFromScratch) {
   const OccupancyGrid grid = floorOf(3);
   Gr2ToUpdater updater;
   updater.update(grid);
@@ -179,6 +179,6 @@ TEST(Gr2ToUpdater, AMistakeDoesNotStay) {
   params.context = 0.0;
   EXPECT_THROW(Gr2ToUpdater{params}, hyselam::ParameterError);
   params = UpdateParams();
-  params.largest = 2.0;
+  params.max_share = 2.0;
   EXPECT_THROW(Gr2ToUpdater{params}, hyselam::ParameterError);
 }

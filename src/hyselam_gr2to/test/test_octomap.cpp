@@ -187,7 +187,7 @@ std::int8_t valueAt(const OccupancyGrid& grid, double x, double y) {
   return grid.valueOr(grid.geometry.cellAt({x, y}));
 }
 
-TEST(Compression, FurnitureGoesWallsAndDoorsStay) {
+TEST(Compression, RemovesFurnitureKeepsWallsAndDoors) {
   Building building(0.1);
   building.addStorey(0.0);
   const Compression result = compress(building.map(), {}, "building");
@@ -233,7 +233,7 @@ TEST(Compression, SeveralStoreysMustBeChosen) {
   EXPECT_EQ(valueAt(compress(map, params, "b").grid, 3.0, 1.5), OccupancyGrid::kFree);
 }
 
-TEST(Compression, WhatCannotBePressedIsRefused) {
+TEST(Compression, RefusesWhatCannotBeProjected) {
   VoxelMap empty;
   expectIn("no level floor", messageOf<hyselam::InputError>([&] { compress(empty, {}, "m"); }));
   CompressionParams params;
@@ -256,8 +256,8 @@ TEST(Compression, WhatCannotBePressedIsRefused) {
 }
 
 /// Eq. 4.1 cell by cell, with the filter.
-OccupancyGrid pressedByHand(const VoxelMap& map, const CompressionParams& p,
-                            const hyselam::GridGeometry& geometry) {
+OccupancyGrid projectedByHand(const VoxelMap& map, const CompressionParams& p,
+                              const hyselam::GridGeometry& geometry) {
   OccupancyGrid grid(geometry);
   const auto base = [&](double v) { return static_cast<int>(std::lround(v / map.resolution)); };
   std::map<std::pair<int, int>, std::pair<int, int>> columns;
@@ -309,7 +309,7 @@ TEST(Compression, AgreesWithCountingByHand) {
     params.max_free_height = 0.1 * (seed % 5);
     params.min_occupied_height = 0.1 * (seed % 2);
     const OccupancyGrid grid = compress(map, params, "m").grid;
-    EXPECT_EQ(grid.cells, pressedByHand(map, params, grid.geometry).cells) << seed;
+    EXPECT_EQ(grid.cells, projectedByHand(map, params, grid.geometry).cells) << seed;
   }
 }
 
@@ -317,7 +317,7 @@ std::size_t count(const OccupancyGrid& grid, std::int8_t value) {
   return static_cast<std::size_t>(std::count(grid.cells.begin(), grid.cells.end(), value));
 }
 
-TEST(Compression, FurnitureGoesOnRealOctoMaps) {
+TEST(Compression, RemovesFurnitureOfRealOctoMaps) {
   HYSELAM_NEED_DATA(data);
   for (const char* name : {"geb079.bt", "fr_079.bt"}) {
     const VoxelMap map = loadOctoMap(data + "/octomaps/" + name);
@@ -350,7 +350,7 @@ TEST(Compression, RealOctoMapsOfOtherKinds) {
   params.z_min = 0.1;
   params.z_max = 2.2;
   EXPECT_GT(count(compress(room, params, "room").grid, OccupancyGrid::kFree), 10000u);
-  // Out of doors: large, but it can be pressed.
+  // Out of doors: large, but it can be projected.
   EXPECT_GT(compress(load("fr_campus.bt"), {}, "campus").grid.cells.size(), 1000000u);
 }
 

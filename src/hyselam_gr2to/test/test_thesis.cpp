@@ -8,6 +8,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/drawn_grid.hpp"
+#include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_gr2to/thesis/door_candidates.hpp"
 #include "hyselam_gr2to/thesis/thesis.hpp"
 #include "transcription/thesis.hpp"
@@ -95,12 +96,9 @@ TEST(ThesisOracle, StoredCirclesDoNotOverlap) {
   }
 }
 
-TEST(ThesisFilter, LonelyCellsGo) {
-  const OccupancyGrid out = filterIsolatedCells(drawnGrid({"#####     ",  //
-                                                           "#...#     ",  //
-                                                           "#.......  ",  //
-                                                           "#...#    .",  //
-                                                           "#####     "}));
+TEST(ThesisFilter, RemovesIsolatedCells) {
+  const OccupancyGrid out = filterIsolatedCells(
+      drawnGrid({"#####     ", "#...#     ", "#.......  ", "#...#    .", "#####     "}));
   EXPECT_EQ(OccupancyGrid::kUnknown, out.at({9, 1}));
   EXPECT_EQ(OccupancyGrid::kFree, out.at({7, 2}));
   EXPECT_EQ(OccupancyGrid::kOccupied, out.at({4, 1}));
@@ -179,7 +177,7 @@ TEST(ThesisPlaces, EveryLabelIsConnectedAndOnTheFloor) {
   }
 }
 
-TEST(ThesisPlaces, EmptyAndHostileMaps) {
+TEST(ThesisPlaces, HandlesEmptyAndInvalidMaps) {
   hyselam::GridGeometry g;
   g.width = 20;
   g.height = 10;
@@ -193,6 +191,37 @@ TEST(ThesisPlaces, EmptyAndHostileMaps) {
   ThesisParams params;
   params.door_max = 0.1;
   EXPECT_THROW(segmentThesis(OccupancyGrid(g), params), hyselam::ParameterError);
+}
+
+TEST(ThesisParameters, ReachThePipelineThroughGr2To) {
+  const auto doors = [](const Gr2ToParams& params) {
+    int real = 0;
+    for (const DoorLine& d : gr2to(roomsInARow(3, 9), params).doors) real += d.real ? 1 : 0;
+    return real;
+  };
+  Gr2ToParams params;
+  params.mode = Gr2ToParams::Mode::kThesis;
+  EXPECT_EQ(2, doors(params));
+  params.thesis.door_max = 0.7;
+  EXPECT_EQ(0, doors(params));
+  params.thesis.door_max = 0.5;  // below Door_min
+  EXPECT_THROW(doors(params), hyselam::ParameterError);
+}
+
+TEST(ThesisParameters, FreeMaxHoldsInBothModes) {
+  OccupancyGrid grid = roomsInARow(3, 9);
+  for (std::int8_t& cell : grid.cells) cell = cell == OccupancyGrid::kFree ? 40 : cell;
+  for (const auto mode : {Gr2ToParams::Mode::kDefault, Gr2ToParams::Mode::kThesis}) {
+    Gr2ToParams params;
+    params.mode = mode;
+    EXPECT_EQ(0u, gr2to(grid, params).map.places.size());
+    params.segmentation.free_max = 40;
+    const Gr2ToResult result = gr2to(grid, params);
+    ASSERT_EQ(3u, result.map.places.size());
+    int solid = 0;
+    for (const Wall& wall : result.map.places[0].walls) solid += wall.kind == WallKind::kSolid;
+    EXPECT_GE(solid, 4);
+  }
 }
 
 TEST(ThesisPicture, EveryStageCanBeDrawn) {

@@ -112,7 +112,7 @@ TEST(DistanceMap, UpdatedEqualsBruteForceAfterRandomEdits) {
   }
 }
 
-TEST(DistanceMap, SmallEditsTouchLittle) {
+TEST(DistanceMap, SmallEditsUpdateFewCells) {
   cv::Mat obstacles(400, 400, CV_8UC1, cv::Scalar(0));
   for (int i = 0; i < 400; i += 20) {
     obstacles.row(i).setTo(1);
@@ -127,7 +127,7 @@ TEST(DistanceMap, SmallEditsTouchLittle) {
   EXPECT_TRUE(map.update().empty());
 }
 
-TEST(DistanceMap, WithoutObstaclesAllIsFar) {
+TEST(DistanceMap, WithoutObstaclesDistancesAreInfinite) {
   DistanceMap map(cv::Mat(3, 5, CV_8UC1, cv::Scalar(0)));
   EXPECT_EQ(DistanceMap::kFar, map.squared({4, 2}));
   EXPECT_TRUE(std::isinf(map.distance({0, 0})));
@@ -139,12 +139,12 @@ TEST(DistanceMap, WithoutObstaclesAllIsFar) {
   EXPECT_EQ((Cell{1, 1}), map.site({4, 2}));
 }
 
-TEST(DistanceMap, RefusesWhatIsNoMap) {
-  EXPECT_THROW(DistanceMap{cv::Mat()}, std::invalid_argument);
-  EXPECT_THROW(DistanceMap(cv::Mat(3, 3, CV_32F)), std::invalid_argument);
-  EXPECT_THROW(DistanceMap(cv::Mat(1, 40000, CV_8U, cv::Scalar(0))), std::invalid_argument);
+TEST(DistanceMap, RefusesInvalidImages) {
+  EXPECT_THROW(DistanceMap{cv::Mat()}, hyselam::InputError);
+  EXPECT_THROW(DistanceMap(cv::Mat(3, 3, CV_32F)), hyselam::InputError);
+  EXPECT_THROW(DistanceMap(cv::Mat(1, 40000, CV_8U, cv::Scalar(0))), hyselam::InputError);
   DistanceMap map(cv::Mat(3, 5, CV_8UC1, cv::Scalar(0)));
-  EXPECT_THROW(map.update(cv::Mat(5, 3, CV_8UC1, cv::Scalar(0))), std::invalid_argument);
+  EXPECT_THROW(map.update(cv::Mat(5, 3, CV_8UC1, cv::Scalar(0))), hyselam::InputError);
 }
 
 TEST(Voronoi, EqualsItsDefinitionOnRandomMaps) {

@@ -19,7 +19,7 @@ namespace {
 
 struct Drawing {
   OccupancyGrid grid;
-  Segmentation segmentation;
+  PlaceSegmentation segmentation;
 };
 
 OccupancyGrid gridOf(int width, int height, double resolution, std::int8_t value) {
@@ -31,8 +31,8 @@ OccupancyGrid gridOf(int width, int height, double resolution, std::int8_t value
 }
 
 // All of the floor is one place.
-Segmentation onePlace(const OccupancyGrid& grid) {
-  Segmentation s;
+PlaceSegmentation onePlace(const OccupancyGrid& grid) {
+  PlaceSegmentation s;
   s.labels = cv::Mat(grid.geometry.height, grid.geometry.width, CV_16UC1, cv::Scalar(0));
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     s.labels.ptr<std::uint16_t>(0)[i] = grid.cells[i] == 0 ? 1 : 0;
@@ -149,7 +149,7 @@ TEST(Doors, DoorsAtTheSideMakeNoJambs) {
 }
 
 // A room that was cut in two beside a desk: the ways past it are no doors.
-TEST(Doors, WaysPastATableAreOpenBorders) {
+TEST(Doors, PassagesAroundATableAreOpenBorders) {
   OccupancyGrid grid = gridOf(88, 128, 0.05, OccupancyGrid::kOccupied);
   cv::Mat labels(128, 88, CV_16UC1, cv::Scalar(0));
   for (int y = 4; y < 124; ++y) {
@@ -174,9 +174,9 @@ TEST(Doors, WaysPastATableAreOpenBorders) {
   EXPECT_TRUE(doors[0].real);
 }
 
-TEST(Doors, RefusesWhatDoesNotFit) {
+TEST(Doors, RefusesLabelsOfAnotherSize) {
   const Drawing d = twoRooms();
-  EXPECT_THROW(refineDoors(d.grid, cv::Mat(3, 3, CV_16UC1, cv::Scalar(0))), std::invalid_argument);
+  EXPECT_THROW(refineDoors(d.grid, cv::Mat(3, 3, CV_16UC1, cv::Scalar(0))), hyselam::InputError);
   DoorParams params;
   params.max_width = 0.1;
   EXPECT_THROW(refineDoors(d.grid, d.segmentation.labels, params), hyselam::ParameterError);
@@ -248,7 +248,7 @@ TEST(Walls, RefusesParametersOutOfRange) {
   WallParams params;
   params.tolerance = 0.0;
   EXPECT_THROW(extractWalls(grid, onePlace(grid), params), hyselam::ParameterError);
-  EXPECT_THROW(extractWalls(grid, cv::Mat(3, 3, CV_16UC1, cv::Scalar(0))), std::invalid_argument);
+  EXPECT_THROW(extractWalls(grid, cv::Mat(3, 3, CV_16UC1, cv::Scalar(0))), hyselam::InputError);
 }
 
 TEST(MapBuilder, TwoRoomsAndTheirDoor) {
@@ -278,7 +278,7 @@ TEST(MapBuilder, TwoRoomsAndTheirDoor) {
   }
 }
 
-TEST(MapBuilder, CentreOfABentPlaceLiesInIt) {
+TEST(MapBuilder, CenterOfABentPlaceLiesInIt) {
   OccupancyGrid grid = gridOf(100, 100, 0.1, OccupancyGrid::kOccupied);
   for (int i = 5; i < 95; ++i) {
     for (int k = 5; k < 20; ++k) {
@@ -286,7 +286,7 @@ TEST(MapBuilder, CentreOfABentPlaceLiesInIt) {
       grid.at({k, i}) = OccupancyGrid::kFree;
     }
   }
-  Segmentation s = onePlace(grid);
+  PlaceSegmentation s = onePlace(grid);
   const auto map = buildTopologicalMap(grid, s);
   const auto centre = *map.places[0].centre;
   EXPECT_EQ(1u, map.grid->placeOf(map.grid->geometry.cellAt({centre.x, centre.y})));

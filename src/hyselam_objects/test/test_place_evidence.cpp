@@ -27,7 +27,7 @@ hyselam_topo::AugmentedTopologicalMap corridorWithRooms() {
     edge.b = id;
     map.edges.push_back(edge);
   }
-  normalise(&map);
+  normalize(map);
   return map;
 }
 

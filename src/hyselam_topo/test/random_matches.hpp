@@ -69,7 +69,7 @@ inline void finish(AugmentedTopologicalMap* map) {
   Id id = 0;
   for (Edge& edge : map->edges)
     for (Door& door : edge.doors) door.id = ++id;
-  normalise(map);
+  normalize(*map);
 }
 
 /// Anything goes: graphs, sizes and sides have little to do with each other.

@@ -12,6 +12,7 @@
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_gr2to/overview.hpp"
+#include "hyselam_gr2to/segmentation/border_model.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 
 using namespace hyselam_topo;  // NOLINT: a test, not a header
@@ -61,7 +62,7 @@ class Gr2ToTool : public testing::Test {
 
 }  // namespace
 
-TEST_F(Gr2ToTool, WritesWhatItPromises) {
+TEST_F(Gr2ToTool, WritesAllFiles) {
   hyselam::saveMap(folder_ / "map.yaml", twoRooms());
   const std::string out = folder_ / "a/b";
   ASSERT_EQ(0, run((folder_ / "map.yaml") + " --graphml --out " + out))
@@ -102,7 +103,7 @@ TEST_F(Gr2ToTool, WritesWhatItPromises) {
   EXPECT_NE(std::string::npos, fileBytes(out + "/topo.graphml").find("<graphml"));
 }
 
-TEST_F(Gr2ToTool, SameMapSameBytes) {
+TEST_F(Gr2ToTool, SameMapGivesTheSameBytes) {
   hyselam::saveMap(folder_ / "map.yaml", twoRooms());
   for (const char* out : {"a", "b"})
     ASSERT_EQ(0, run((folder_ / "map.yaml") + " --out " + (folder_ / out)));
@@ -110,7 +111,7 @@ TEST_F(Gr2ToTool, SameMapSameBytes) {
     EXPECT_EQ(fileBytes(folder_ / "a" + "/" + name), fileBytes(folder_ / "b" + "/" + name)) << name;
 }
 
-TEST_F(Gr2ToTool, ThesisModeToo) {
+TEST_F(Gr2ToTool, RunsThesisMode) {
   hyselam::saveMap(folder_ / "map.yaml", twoRooms());
   ASSERT_EQ(0, run((folder_ / "map.yaml") + " --mode thesis --out " + (folder_ / "out")));
   const nlohmann::json summary =
@@ -118,7 +119,34 @@ TEST_F(Gr2ToTool, ThesisModeToo) {
   EXPECT_EQ("thesis", summary.at("mode"));
 }
 
-TEST_F(Gr2ToTool, SaysWhyNot) {
+TEST_F(Gr2ToTool, WidthsOfDoorsOfThesisMode) {
+  hyselam::saveMap(folder_ / "map.yaml", twoRooms());
+  const auto doors = [&](const std::string& options) {
+    EXPECT_EQ(0, run((folder_ / "map.yaml") + " --mode thesis " + options + " --out " +
+                     (folder_ / "out")))
+        << fileBytes(folder_ / "stderr");
+    return nlohmann::json::parse(fileBytes(folder_ / "out" + "/summary.json")).at("doors");
+  };
+  EXPECT_EQ(1, doors(""));
+  EXPECT_EQ(0, doors("--door-max 0.8"));
+  EXPECT_EQ(0, doors("--door-min 1.2 --door-max 1.5"));
+}
+
+TEST_F(Gr2ToTool, BorderModelOfAFile) {
+  hyselam::saveMap(folder_ / "map.yaml", twoRooms());
+  const std::string map = folder_ / "map.yaml", model = folder_ / "model.txt";
+  hyselam::testing::writeFile(model, BorderModel::shipped().toText());
+  ASSERT_EQ(0, run(map + " --out " + (folder_ / "a")));
+  ASSERT_EQ(0, run(map + " --border-model " + model + " --out " + (folder_ / "b")));
+  EXPECT_EQ(fileBytes(folder_ / "a" + "/topo.xml"), fileBytes(folder_ / "b" + "/topo.xml"));
+  // Trees to whom everything is one place.
+  const BorderModel joins_all(BoostedTrees({{-1, 1.0, 0}}, {0}), {"-", "-", "-", "-"});
+  hyselam::testing::writeFile(model, joins_all.toText());
+  ASSERT_EQ(0, run(map + " --border-model " + model + " --out " + (folder_ / "b")));
+  EXPECT_EQ(1u, loadXml(folder_ / "b" + "/topo.xml").places.size());
+}
+
+TEST_F(Gr2ToTool, RefusesWithOneLine) {
   expectError(run("--out " + (folder_ / "out")), "MAP");
   expectError(run((folder_ / "none.yaml") + " --out " + (folder_ / "out")), "none.yaml");
   expectError(run((folder_ / "none.bt") + " --out " + (folder_ / "out")), "none.bt");
@@ -127,6 +155,8 @@ TEST_F(Gr2ToTool, SaysWhyNot) {
   expectError(run(map), "--out");
   expectError(run(map + " --mode best --out " + (folder_ / "out")), "best");
   expectError(run(map + " --clutter -1 --out " + (folder_ / "out")), "clutter");
+  expectError(run(map + " --door-max 0.5 --mode thesis --out " + (folder_ / "out")), "door_max");
+  expectError(run(map + " --border-model " + map + " --out " + (folder_ / "out")), "map.yaml");
   expectError(run(map + " --picture-side 5 --out " + (folder_ / "out")), "side");
   expectError(run(map + " --out " + map), "map.yaml");
   expectError(run(map + " --max-cells 36399 --out " + (folder_ / "out")), "limit of 36399");

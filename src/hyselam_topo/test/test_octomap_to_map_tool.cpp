@@ -32,7 +32,7 @@ int octomapToMap(const TemporaryDirectory& dir, const std::string& arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST(OctomapToMap, WritesMapAndPictureOrSaysWhyNot) {
+TEST(OctomapToMap, WritesMapAndPictureOrRefuses) {
   const TemporaryDirectory dir;
   octomap::OcTree tree(0.1);
   Building building(0.1);

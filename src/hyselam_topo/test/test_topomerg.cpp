@@ -71,7 +71,7 @@ struct Small {
     building.robot_place = 1;
     map.places = {mapPlace(1, 0, 0, 20), mapPlace(2, 0, 4, 8), mapPlace(3, 0, -4, 12)};
     map.edges = {mapEdge(1, 2), mapEdge(1, 3)};
-    normalise(&map);
+    normalize(map);
   }
 };
 
@@ -113,7 +113,7 @@ TEST(TopoMergFitness, SidesAreSpreadInTheDescribedOrder) {
                    connection(1, 6, Side::kBack, 0)};
   AugmentedTopologicalMap map;
   map.places = {mapPlace(1, 0, 0, 1)};
-  normalise(&map);
+  normalize(map);
   const MatchProblem p = compileMatch(b, map);
   std::map<int, double> angle;
   for (const auto& side : p.sides) angle[side.to] = side.angle;
@@ -151,7 +151,7 @@ TEST(TopoMergFitness, OneNameForSeveralPlaces) {
   Small s;
   s.map.places.push_back(mapPlace(4, 2, 4, 2));  // a piece of the left room
   s.map.edges.push_back(mapEdge(2, 4));
-  normalise(&s.map);
+  normalize(s.map);
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
   // 8 + 2 m^2 are the 10 told; the common centre lies at (0.4, 4).
   const double off = std::abs(std::atan2(4.0, 0.4) - kPi / 2) / kPi / 2;
@@ -161,7 +161,7 @@ TEST(TopoMergFitness, OneNameForSeveralPlaces) {
 TEST(TopoMergFitness, UndescribedDoorsMayCostLess) {
   Small s;
   s.map.edges.push_back(mapEdge(2, 3));
-  normalise(&s.map);
+  normalize(s.map);
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
   FitnessParams params;
   EXPECT_NEAR((1.0 + 0.8 + 2.0 / 3 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
@@ -228,7 +228,7 @@ TEST(TopoMergFitness, RelationsPreferWhereTheyHold) {
   map.places = {mapPlace(1, 10, 0, 40), mapPlace(7, 2, -4, 16)};
   for (int k = 0; k < 5; ++k) map.places.push_back(mapPlace(2 + k, 2.0 + 4 * k, 4, 16));
   for (Id v = 2; v <= 7; ++v) map.edges.push_back(mapEdge(1, v));
-  normalise(&map);
+  normalize(map);
   DescribedBuilding b;
   b.places = {told(1, "corridor"), told(2, "a"), told(3, "b"), told(4, "c")};
   b.connections = {connection(1, 2), connection(1, 3), connection(1, 4)};
@@ -421,7 +421,7 @@ TEST(TopoMergExact, FewerPlacesAmongEquallyGood) {
   Small s;
   s.map.places.push_back(mapPlace(4, 0, -6, 4));
   s.map.edges.push_back(mapEdge(3, 4));
-  normalise(&s.map);
+  normalize(s.map);
   const PlaceAssignment match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), {});
   // Without it, with it, or as the right room behind a longer corridor.
   EXPECT_EQ(3u, match.equal);
@@ -439,7 +439,7 @@ TEST(TopoMergExact, FewestEvenIfNotAllAreKept) {
   s.map.places.push_back(mapPlace(5, 0, -8, 4));
   s.map.edges.push_back(mapEdge(3, 4));
   s.map.edges.push_back(mapEdge(4, 5));
-  normalise(&s.map);
+  normalize(s.map);
   SolverParams params;
   params.max_solutions = 1;
   const PlaceAssignment match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), params);
@@ -479,7 +479,7 @@ TEST(TopoMergBadInput, IsRefused) {
   refused({}, {}, {{1, 9, 0.5}});
   AugmentedTopologicalMap large;
   for (Id v = 1; v <= 257; ++v) large.places.push_back(mapPlace(v, v, 0, 1));
-  normalise(&large);
+  normalize(large);
   EXPECT_THROW(compileMatch(s.building, large), hyselam::InputError);
   const MatchProblem p = compileMatch(s.building, s.map);
   EXPECT_THROW(exploreAll(p, {}, 10), hyselam::InputError);

@@ -38,7 +38,7 @@ inline hyselam_topo::AugmentedTopologicalMap map() {
   edge.doors.back().id = 1;
   map.edges.push_back(edge);
   map.grid = grid;
-  hyselam_topo::normalise(&map);
+  hyselam_topo::normalize(map);
   return map;
 }
 

@@ -79,7 +79,7 @@ AugmentedTopologicalMap drawn(const Drawing& rows, double resolution = 1.0, Poin
     place.outline = corners;
   }
   map.grid = grid;
-  normalise(&map);
+  normalize(map);
   return map;
 }
 
@@ -113,7 +113,7 @@ TEST(CarryOver, MapCarriedOverToItselfIsUnchanged) {
   EXPECT_EQ(carryOver(known(), known()), known());
 }
 
-TEST(CarryOver, FreshNumbersDoNotMatter) {
+TEST(CarryOver, IsIndependentOfFreshIds) {
   // The same rooms under other letters, hence other ids.
   Drawing renamed = kThreeRooms;
   for (std::string& row : renamed) {
@@ -145,7 +145,7 @@ TEST(CarryOver, GrownMovedAndFinerMapKeepsIds) {
   fine.insert(fine.begin(), {blank, blank});
   fine.insert(fine.end(), {blank, blank});
   CarryOverReport report;
-  const auto result = carryOver(known(), drawn(fine, 0.5, {-2.0, -1.0}), {}, &report);
+  const auto result = carryOver(known(), drawn(fine, 0.5, {-2.0, -1.0}), {}, report);
   EXPECT_EQ(report.kept, (std::vector<Id>{1, 2, 3}));
   EXPECT_TRUE(report.created.empty() && report.lost.empty() && report.merged.empty());
   EXPECT_EQ(result.places[0].words, known().places[0].words);
@@ -165,7 +165,7 @@ TEST(CarryOver, BiggerPartKeepsTheId) {
                                        "aaaa.bbbb",  //
                                        "ddddcbbbb",  //
                                        "ccccccccc"}),
-                                {}, &report);
+                                {}, report);
   EXPECT_EQ(report.kept, (std::vector<Id>{1, 2, 3}));
   EXPECT_EQ(report.created, (std::vector<Id>{4}));
   ASSERT_EQ(report.split_off.size(), 1u);
@@ -188,7 +188,7 @@ TEST(CarryOver, NamedPlaceSurvivesAMergeAndWordsAreUnited) {
                           "bbbbcbbbb",  //
                           "ccccccccc"};
   CarryOverReport report;
-  auto result = carryOver(known(), drawn(merged), {}, &report);
+  auto result = carryOver(known(), drawn(merged), {}, report);
   EXPECT_EQ(report.merged, (std::vector<std::pair<Id, Id>>{{2, 1}}));
   EXPECT_EQ(result.findPlace(1)->words,
             (std::vector<PlaceTerm>{{"kitchen", true}, {"office", false}}));
@@ -234,7 +234,7 @@ TEST(CarryOver, WhatPeopleAddedStays) {
   glass.id = old.next_wall_id++;
   glass.kind = WallKind::kGlass;
   old.places[0].walls.push_back(glass);
-  normalise(&old);
+  normalize(old);
   const auto result = carryOver(old, drawn(kThreeRooms));
   EXPECT_EQ(*result.findPlace(corner.id), corner);
   ASSERT_NE(result.findEdge(1, corner.id), nullptr);
@@ -244,28 +244,28 @@ TEST(CarryOver, WhatPeopleAddedStays) {
   EXPECT_EQ(carryOver(result, result), result);
 }
 
-TEST(CarryOver, LostAndNewPlacesAreTold) {
+TEST(CarryOver, ReportsLostAndNewPlaces) {
   CarryOverReport report;
   const auto result = carryOver(known(),
                                 drawn({"........z",  //
                                        "aaaa....z",  //
                                        "aaaac...z",  //
                                        "ccccccccc"}),
-                                {}, &report);
+                                {}, report);
   EXPECT_EQ(report.kept, (std::vector<Id>{1, 2, 3}));
-  const auto far = carryOver(known(), drawn({"aa"}, 1.0, {50.0, 50.0}), {}, &report);
+  const auto far = carryOver(known(), drawn({"aa"}, 1.0, {50.0, 50.0}), {}, report);
   EXPECT_EQ(report.lost, (std::vector<Id>{1, 2, 3}));
   EXPECT_EQ(report.created, (std::vector<Id>{4}));
   EXPECT_EQ(far.places.size(), 1u);
   EXPECT_EQ(far.places[0].id, 4u);
 }
 
-TEST(CarryOver, TouchingIsNotEnough) {
+TEST(CarryOver, RequiresOverlap) {
   const auto old = drawn({"aaaa......"});
   EXPECT_EQ(carryOver(old, drawn({"..aaaaaaaa"})).places.at(0).id, 1u);
   // One cell of four is less than 30 %.
   CarryOverReport report;
-  EXPECT_EQ(carryOver(old, drawn({"...aaaaaaa"}), {}, &report).places.at(0).id, 2u);
+  EXPECT_EQ(carryOver(old, drawn({"...aaaaaaa"}), {}, report).places.at(0).id, 2u);
   EXPECT_EQ(report.lost, (std::vector<Id>{1}));
 }
 
@@ -297,7 +297,7 @@ TEST(CarryOver, IdsAreNeverUsedAgain) {
   EXPECT_FALSE(gone.empty());
 }
 
-TEST(CarryOver, RefusesWhatItHasNoIdsFor) {
+TEST(CarryOver, RefusesWhenIdsRunOut) {
   auto full = known();
   full.next_wall_id = full.next_door_id = full.next_place_id = std::numeric_limits<Id>::max();
   checkMap(full, "full");
@@ -307,7 +307,7 @@ TEST(CarryOver, RefusesWhatItHasNoIdsFor) {
   EXPECT_THROW(carryOver(full, drawn(more)), hyselam::InputError);
 }
 
-TEST(CarryOver, RefusesWhatCannotBeCompared) {
+TEST(CarryOver, RefusesMapsWithoutGridOrInAnotherFrame) {
   auto no_grid = known();
   no_grid.grid.reset();
   EXPECT_THROW(carryOver(no_grid, known()), hyselam::InputError);

@@ -23,7 +23,7 @@ AugmentedTopologicalMap randomMap(unsigned seed) {
   return map;
 }
 
-TEST(Conversions, MapsComeBackFromTheWire) {
+TEST(Conversions, MapsRoundTripThroughMessages) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const AugmentedTopologicalMap map = randomMap(seed);
     const auto wire = ros::serialization::serializeMessage(toMsg(map));
@@ -89,7 +89,7 @@ AugmentedTopologicalMap corridorAndRoom() {
   Id id = 0;
   for (Wall& wall : map.places[0].walls) wall.id = ++id;
   map.edges[0].doors[0].id = 1;
-  normalise(&map);
+  normalize(map);
   checkMap(map, "test");
   return map;
 }

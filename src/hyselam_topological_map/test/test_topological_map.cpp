@@ -36,7 +36,7 @@ TEST(MapGeometry, WallsAndDoorsKeepTheirEnds) {
   EXPECT_EQ(straightWall({0, 0}, {1, 0}).normal.y, 1.0);
 }
 
-TEST(MapGeometry, CurvedWallIsAnArcAroundItsMassCentre) {
+TEST(MapGeometry, CurvedWallIsAnArcAroundItsMassCenter) {
   for (const double curvature : {0.5, -0.5, 0.02, -1.9}) {
     Wall wall;
     wall.position = {3.0, -1.0, 0.0};
@@ -88,7 +88,7 @@ AugmentedTopologicalMap mapWithGrid() {
   // A virtual place in the free-standing outline.
   map.places[2].outline = {{30, 30}, {32, 30}, {32, 32}, {30, 32}};
   map.places[2].area = 4.0;
-  normalise(&map);
+  normalize(map);
   return map;
 }
 
@@ -168,7 +168,7 @@ TEST(Ways, GoAroundCornersAndStayInThePlace) {
   EXPECT_TRUE(waysWithin(grid, 8, boxes.at(7), {at(1, 1)}, at(2, 1))[0].empty());
 }
 
-TEST(TopologicalMap, NormaliseOrdersAndTurnsDoors) {
+TEST(TopologicalMap, NormalizeSortsAndTurnsDoors) {
   AugmentedTopologicalMap map;
   for (const Id id : {7u, 3u}) {
     Place place;
@@ -181,7 +181,7 @@ TEST(TopologicalMap, NormaliseOrdersAndTurnsDoors) {
   edge.doors = {doorBetween({0, 0}, {1, 0})};
   edge.doors[0].id = 4;
   map.edges = {edge};
-  normalise(&map);
+  normalize(map);
   EXPECT_EQ(map.places[0].id, 3u);
   EXPECT_EQ(map.next_place_id, 8u);
   EXPECT_EQ(map.next_door_id, 5u);

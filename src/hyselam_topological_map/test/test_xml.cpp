@@ -50,7 +50,7 @@ AugmentedTopologicalMap twoRooms() {
   grid.labels = {1, 1, 2, 0, 1, 2};
   grid.places = {1, 2};
   map.grid = grid;
-  normalise(&map);
+  normalize(map);
   return map;
 }
 
@@ -60,12 +60,12 @@ std::string errorWith(const std::string& from, const std::string& to) {
   return messageOf<hyselam::InputError>([&] { fromXml(text, "m.xml"); });
 }
 
-TEST(Xml, MapComesBackAsItWas) {
+TEST(Xml, MapRoundTrips) {
   const AugmentedTopologicalMap map = twoRooms();
   EXPECT_EQ(fromXml(toXml(map)), map);
 }
 
-TEST(Xml, RandomMapsComeBackAsTheyWere) {
+TEST(Xml, RandomMapsRoundTrip) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     const AugmentedTopologicalMap map = testing::RandomMaps(seed).map();
     const std::string text = toXml(map);
@@ -158,7 +158,7 @@ TEST(Xml, ExtrasThatAreNoXmlAreRefused) {
   EXPECT_THROW(toXml(map), hyselam::InputError);
 }
 
-TEST(Xml, WhatIsNoMapIsRefused) {
+TEST(Xml, RefusesOtherFormats) {
   const auto error = [](const std::string& text) {
     return messageOf<hyselam::InputError>([&] { fromXml(text, "m.xml"); });
   };

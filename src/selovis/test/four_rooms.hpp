@@ -30,7 +30,7 @@ inline hyselam_topo::AugmentedTopologicalMap fourRooms() {
     for (int x = 0; x < 40; ++x) grid.labels.push_back(static_cast<std::uint16_t>(1 + x / 10));
   }
   map.grid = grid;
-  hyselam_topo::normalise(&map);
+  hyselam_topo::normalize(map);
   return map;
 }
 

@@ -1,5 +1,5 @@
-// Gr2To in a thread of its own: maps go in, the newest wins, and the topological map that comes out
-// carries on what was known before.
+// Gr2To in a thread of its own: the newest grid map is segmented, and its topological map gets the
+// ids and names of the one before (carry_over.hpp).
 #pragma once
 
 #include <condition_variable>
@@ -34,8 +34,8 @@ class BackgroundGr2To {
 
   struct Outcome {
     MapPtr map;         ///< null if the input could not be used; then the map before stays
-    std::string error;  ///< why; empty: it could
-    /// Something that a person should know: what was known before could not be carried over.
+    std::string error;  ///< why not; empty: it could
+    /// Why the ids and names of the map before could not be carried over; empty: they were.
     std::string warning;
     bool unchanged = false;  ///< the grid and the parameters are those of the map before
     std::shared_ptr<const hyselam::OccupancyGrid> grid;
@@ -47,34 +47,34 @@ class BackgroundGr2To {
   /// `done` is called in the thread after each input.
   BackgroundGr2To(std::function<void(const Outcome&)> done, Pipeline pipeline);
 
-  /// Gr2To that looks again only at the places around a change (Gr2ToUpdater), and after
-  /// `most_updates` of them at everything, because places far from the changes were not weighed
-  /// anew. 0: always at everything.
-  static Pipeline updating(int most_updates = 50);
-  /// Waits for what is being done.
+  /// Gr2To that segments only the places around a change (Gr2ToUpdater), and after
+  /// `max_partial_updates` of them the whole map, because places far from the changes were not
+  /// segmented again. 0: always the whole map.
+  static Pipeline updating(int max_partial_updates = 50);
+  /// Waits for the segmentation in progress.
   ~BackgroundGr2To();
   BackgroundGr2To(const BackgroundGr2To&) = delete;
   BackgroundGr2To& operator=(const BackgroundGr2To&) = delete;
 
-  /// An input that waits is replaced; one that is in work is finished, and its map counts as known
-  /// for the next one.
+  /// An input that waits is replaced; a segmentation in progress is finished, and its map is
+  /// carried over to the next one.
   void start(Input input);
 
   /// The newest map; null before the first.
   MapPtr current() const;
 
-  /// A map from elsewhere takes the place of the newest one; later inputs carry it on. It must have
-  /// a grid. Throws hyselam::InputError, as checkMap().
+  /// Replaces the newest map by another one, which later inputs carry over. It must have a grid.
+  /// @throws hyselam::InputError, as checkMap().
   void replace(const AugmentedTopologicalMap& map, const std::string& source);
 
-  /// Whether an input waits or is in work.
+  /// Whether an input waits or is being segmented.
   bool busy() const;
 
  private:
   void run();
   Outcome work(const Input& input);
   /// Fits the fresh map to the newest one and puts it in its place.
-  void adopt(const AugmentedTopologicalMap& fresh, Outcome* outcome);
+  void adopt(const AugmentedTopologicalMap& fresh, Outcome& outcome);
 
   std::function<void(const Outcome&)> on_done_;
   Pipeline pipeline_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <stdexcept>
 #include <tuple>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/union_find.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -38,82 +40,95 @@ std::vector<Side> sidesBetween(const cv::Mat& labels) {
   return sides;
 }
 
-void farthest(const std::vector<cv::Point>& from, Border* border) {
+/// A corner of cells, and a side between two labels that ends in it.
+struct Corner {
+  cv::Point at;
+  int side;
+};
+
+/// The corners of sides, those at one point one after another, sorted by y, then x.
+std::vector<Corner> cornersOf(const std::vector<Side>& sides) {
+  std::vector<Corner> corners;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    corners.push_back({sides[i].from, static_cast<int>(i)});
+    corners.push_back({sides[i].to, static_cast<int>(i)});
+  }
+  std::stable_sort(corners.begin(), corners.end(),
+                   [](const Corner& p, const Corner& q) { return before(p.at, q.at); });
+  return corners;
+}
+
+/// Sides that meet in a corner belong to one line.
+hyselam::UnionFind connectedSides(const std::vector<Corner>& corners, std::size_t sides) {
+  hyselam::UnionFind lines(sides);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (corners[i].at == corners[i - 1].at) lines.unite(corners[i].side, corners[i - 1].side);
+  }
+  return lines;
+}
+
+/// Sets the ends of a border to the two points that are farthest apart.
+void setEnds(const std::vector<cv::Point>& points, Border& border) {
   std::int64_t best = -1;
   // Long closed lines are thinned: their ends need not be exact.
-  const std::size_t step = from.size() / 512 + 1;
-  for (std::size_t i = 0; i < from.size(); i += step) {
-    for (std::size_t j = i; j < from.size(); j += step) {
-      const std::int64_t dx = from[i].x - from[j].x, dy = from[i].y - from[j].y;
+  const std::size_t step = points.size() / 512 + 1;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    for (std::size_t j = i; j < points.size(); j += step) {
+      const std::int64_t dx = points[i].x - points[j].x, dy = points[i].y - points[j].y;
       if (dx * dx + dy * dy <= best) continue;
       best = dx * dx + dy * dy;
-      border->first = from[i];
-      border->last = from[j];
+      border.first = points[i];
+      border.last = points[j];
     }
   }
+}
+
+/// The connected lines of the sides between two labels, in the order of their lowest points.
+std::vector<Border> bordersAlong(const std::vector<Side>& sides) {
+  const std::vector<Corner> corners = cornersOf(sides);
+  hyselam::UnionFind lines = connectedSides(corners, sides.size());
+  std::vector<int> border_of_line(sides.size(), -1);
+  std::vector<Border> borders;
+  std::vector<std::vector<cv::Point>> ends;  // corners in which an odd number of sides meet
+  for (std::size_t i = 0; i < corners.size();) {
+    std::size_t next = i;
+    while (next < corners.size() && corners[next].at == corners[i].at) ++next;
+    int& index = border_of_line[static_cast<std::size_t>(lines.find(corners[i].side))];
+    if (index < 0) {
+      index = static_cast<int>(borders.size());
+      borders.emplace_back();
+      borders.back().a = sides.front().a;
+      borders.back().b = sides.front().b;
+      ends.emplace_back();
+    }
+    Border& border = borders[static_cast<std::size_t>(index)];
+    border.points.push_back(corners[i].at);
+    border.length += static_cast<int>(next - i);  // each side twice, in both of its corners
+    if ((next - i) % 2 == 1) ends[static_cast<std::size_t>(index)].push_back(corners[i].at);
+    i = next;
+  }
+  for (std::size_t k = 0; k < borders.size(); ++k) {
+    borders[k].length /= 2;
+    borders[k].closed = ends[k].empty();
+    setEnds(borders[k].closed ? borders[k].points : ends[k], borders[k]);
+  }
+  return borders;
 }
 
 }  // namespace
 
 std::vector<Border> findBorders(const cv::Mat& labels) {
-  if (labels.type() != CV_16UC1) throw std::invalid_argument("labels must be 16 bit");
+  if (labels.type() != CV_16UC1) throw hyselam::InputError("labels", "", "they are not 16 bit");
   const std::vector<Side> sides = sidesBetween(labels);
-  std::vector<Border> out;
-  for (std::size_t begin = 0; begin < sides.size();) {
-    std::size_t end = begin;
-    while (end < sides.size() && sides[end].a == sides[begin].a && sides[end].b == sides[begin].b) {
-      ++end;
-    }
-    // Corners with the sides that meet in them.
-    std::vector<std::pair<cv::Point, std::size_t>> corners;
-    for (std::size_t i = begin; i < end; ++i) {
-      corners.push_back({sides[i].from, i});
-      corners.push_back({sides[i].to, i});
-    }
-    std::stable_sort(corners.begin(), corners.end(),
-                     [](const auto& p, const auto& q) { return before(p.first, q.first); });
-    std::vector<std::size_t> parent(end - begin);
-    for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = i;
-    const auto root = [&](std::size_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    for (std::size_t i = 1; i < corners.size(); ++i) {
-      if (corners[i].first != corners[i - 1].first) continue;
-      const std::size_t p = root(corners[i].second - begin),
-                        q = root(corners[i - 1].second - begin);
-      parent[std::max(p, q)] = std::min(p, q);
-    }
-    std::vector<std::size_t> number(parent.size(), parent.size());
-    const std::size_t offset = out.size();
-    std::vector<std::vector<cv::Point>> ends;
-    for (std::size_t i = 0; i < corners.size();) {
-      std::size_t next = i;
-      while (next < corners.size() && corners[next].first == corners[i].first) ++next;
-      const std::size_t r = root(corners[i].second - begin);
-      if (number[r] == parent.size()) {
-        number[r] = out.size() - offset;
-        Border border;
-        border.a = sides[begin].a;
-        border.b = sides[begin].b;
-        out.push_back(border);
-        ends.emplace_back();
-      }
-      Border& border = out[offset + number[r]];
-      border.points.push_back(corners[i].first);
-      border.length += static_cast<int>(next - i);  // twice
-      if ((next - i) % 2 == 1) ends[number[r]].push_back(corners[i].first);
-      i = next;
-    }
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      Border& border = out[offset + k];
-      border.length /= 2;
-      border.closed = ends[k].empty();
-      farthest(border.closed ? border.points : ends[k], &border);
-    }
+  std::vector<Border> borders;
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    const auto end = std::find_if(begin, sides.end(), [&](const Side& side) {
+      return side.a != begin->a || side.b != begin->b;
+    });
+    for (Border& border : bordersAlong({begin, end})) borders.push_back(std::move(border));
     begin = end;
   }
-  return out;
+  return borders;
 }
 
 }  // namespace hyselam_topo

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <tuple>
 
 #include "hyselam_common/require.hpp"
@@ -36,7 +35,7 @@ class DoorFinder {
     Line line{border.first, border.last, false, false};
     line.wall_a = atWall(border.first);
     line.wall_b = atWall(border.last);
-    if (!border.closed && line.wall_a && line.wall_b) narrowest(&line);
+    if (!border.closed && line.wall_a && line.wall_b) narrowest(line);
     DoorLine door;
     door.place_a = border.a;
     door.place_b = border.b;
@@ -129,7 +128,7 @@ class DoorFinder {
            (!blocked(x + 1, y) || !blocked(x - 1, y) || !blocked(x, y + 1) || !blocked(x, y - 1));
   }
 
-  // The face of the wall at one end of the line: blocked cells beside free ones that hang together
+  // The face of the wall at one end of the line: blocked cells beside free ones that are connected
   // with it (over gaps of a cell), within the radius and nearer to this end than to the other. What
   // stands free in a place is no part of it: a line to it would not part the places.
   std::vector<Cell> face(cv::Point2d at, cv::Point2d other, double radius) const {
@@ -161,16 +160,16 @@ class DoorFinder {
 
   // Moves the line to where the passage is narrowest between the walls at its ends. Its length
   // counts most, but a line that is about as short as others stays where it is.
-  void narrowest(Line* line) const {
+  void narrowest(Line& line) const {
     constexpr double kPerMove = 0.1;
-    const double reach = params_.search * cells_;
-    const cv::Point2d start = 0.5 * (line->a + line->b);
+    const double reach = params_.search_radius * cells_;
+    const cv::Point2d start = 0.5 * (line.a + line.b);
     const auto middle = [](const Cell& p, const Cell& q) {
       return cv::Point2d(0.5 * (p.x + q.x + 1), 0.5 * (p.y + q.y + 1));
     };
     for (int round = 0; round < 3; ++round) {
-      const std::vector<Cell> left = face(line->a, line->b, reach),
-                              right = face(line->b, line->a, reach);
+      const std::vector<Cell> left = face(line.a, line.b, reach),
+                              right = face(line.b, line.a, reach);
       double least = std::numeric_limits<double>::infinity();
       std::vector<std::tuple<double, Cell, Cell>> pairs;
       for (const Cell& p : left) {
@@ -195,7 +194,7 @@ class DoorFinder {
       }
       mean *= 1.0 / count;
       double best = std::numeric_limits<double>::infinity();
-      Line found = *line;
+      Line found = line;
       for (const auto& [cost, p, q] : pairs) {
         if (cost > least + 1.0) continue;
         const double d = std::hypot(p.x - q.x, p.y - q.y);
@@ -210,9 +209,9 @@ class DoorFinder {
         found.a = from + half * u;
         found.b = to - half * u;
       }
-      const double moved = length(found.a - line->a) + length(found.b - line->b);
-      line->a = found.a;
-      line->b = found.b;
+      const double moved = length(found.a - line.a) + length(found.b - line.b);
+      line.a = found.a;
+      line.b = found.b;
       if (moved < 1.0) return;
     }
   }
@@ -236,10 +235,10 @@ class DoorFinder {
   bool widens(const Line& line, cv::Point2d across, const DoorLine& door) const {
     const double width = length(line.b - line.a);
     const cv::Point2d u = (1.0 / width) * (line.b - line.a), middle = 0.5 * (line.a + line.b);
-    const double more = std::max(params_.jambs * cells_, 1.5);
+    const double more = std::max(params_.min_jambs * cells_, 1.5);
     const double limit = 0.5 * width + more;
     int wide = 0;
-    for (int t = 1; t <= params_.depth * cells_; ++t) {
+    for (int t = 1; t <= params_.jamb_depth * cells_; ++t) {
       const cv::Point2d p = middle + t * across;
       if (blocked(p)) break;
       // Both sides together: a door in the corner of a room has a jamb on one side only.
@@ -269,33 +268,45 @@ Point2 middleOf(const DoorLine& d) {
 
 // Borders too narrow to pass (behind the leaf of a door, through a gap in a wall) count only where
 // no wider one joins the same places.
-void dropChinks(double min_width, std::vector<DoorLine>* doors) {
-  const std::vector<DoorLine> all = *doors;
-  doors->erase(std::remove_if(doors->begin(), doors->end(),
-                              [&](const DoorLine& d) {
-                                return d.width < 0.5 * min_width &&
-                                       std::any_of(all.begin(), all.end(), [&](const DoorLine& o) {
-                                         return o.place_a == d.place_a && o.place_b == d.place_b &&
-                                                o.width >= min_width;
-                                       });
-                              }),
-               doors->end());
+void dropChinks(double min_width, std::vector<DoorLine>& doors) {
+  const std::vector<DoorLine> all = doors;
+  doors.erase(std::remove_if(doors.begin(), doors.end(),
+                             [&](const DoorLine& d) {
+                               return d.width < 0.5 * min_width &&
+                                      std::any_of(all.begin(), all.end(), [&](const DoorLine& o) {
+                                        return o.place_a == d.place_a && o.place_b == d.place_b &&
+                                               o.width >= min_width;
+                                      });
+                             }),
+              doors.end());
 }
 
 }  // namespace
 
+void DoorParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("min_width", min_width, Range::above(0.0), "m", "width of a real door, at least");
+  visit("max_width", max_width, Range::above(0.0), "m", "width of a real door, at most");
+  visit("search_radius", search_radius, Range::between(0.0, 10.0), "m",
+        "of the line's way to where the passage is narrowest");
+  visit("min_jambs", min_jambs, Range::above(0.0), "m",
+        "by which both places are wider than a real door");
+  visit("jamb_depth", jamb_depth, Range::aboveUpTo(0.0, 10.0), "m",
+        "from the door within which the places become wider");
+  visit("free_max", free_max, Range::between(0, 99), "", "cells of 0 .. this value are free");
+}
+
+void DoorParams::validate() const {
+  hyselam::checkParameters(*this);
+  hyselam::require("max_width", max_width, max_width > min_width, "> min_width");
+}
+
 std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labels,
                                   const DoorParams& params) {
-  hyselam::require("door_min_width", params.min_width, params.min_width > 0.0, "> 0 m");
-  hyselam::require("door_max_width", params.max_width, params.max_width > params.min_width,
-                   "> door_min_width");
-  hyselam::require("door_search", params.search, params.search >= 0.0 && params.search <= 10.0,
-                   "0 .. 10 m");
-  hyselam::require("door_jambs", params.jambs, params.jambs > 0.0, "> 0 m");
-  hyselam::require("door_depth", params.depth, params.depth > 0.0 && params.depth <= 10.0,
-                   "0 .. 10 m");
-  if (labels.cols != grid.geometry.width || labels.rows != grid.geometry.height) {
-    throw std::invalid_argument("the labels do not have the size of the grid");
+  params.validate();
+  if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
+      labels.rows != grid.geometry.height) {
+    throw hyselam::InputError("labels", "", "they do not fit the grid");
   }
   const DoorFinder finder(grid, labels, params);
   std::vector<DoorLine> out;
@@ -308,7 +319,7 @@ std::vector<DoorLine> refineDoors(const OccupancyGrid& grid, const cv::Mat& labe
     });
     if (!known) out.push_back(door);
   }
-  dropChinks(params.min_width, &out);
+  dropChinks(params.min_width, out);
   // Ways past a table on either side of it are no doors.
   std::map<std::pair<int, int>, int> ways;
   for (const DoorLine& d : out) ++ways[{d.place_a, d.place_b}];

@@ -6,10 +6,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <set>
-#include <stdexcept>
 
 #include "contour_walls.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/require.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "place_builder.hpp"
 
@@ -34,7 +34,7 @@ struct Region {
 };
 
 // Gives the cells inside of a hole that are in no place to the place around it.
-void fillHole(const Contour& hole, cv::Point offset, cv::Mat* labels) {
+void fillHole(const Contour& hole, cv::Point offset, cv::Mat& labels) {
   std::vector<cv::Point> crossings;  // upright sides: row and column
   for (const ContourSide& side : hole.sides) {
     if (side.direction % 2 == 0) continue;
@@ -45,7 +45,7 @@ void fillHole(const Contour& hole, cv::Point offset, cv::Mat* labels) {
     return p.y != q.y ? p.y < q.y : p.x < q.x;
   });
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-    auto* row = labels->ptr<std::uint16_t>(crossings[i].y);
+    auto* row = labels.ptr<std::uint16_t>(crossings[i].y);
     for (int x = crossings[i].x; x < crossings[i + 1].x; ++x) {
       if (row[x] == 0) row[x] = hole.label;
     }
@@ -103,7 +103,7 @@ std::vector<Region> measure(const cv::Mat& all_labels, const std::vector<Contour
   cv::Mat filled = labels.clone();
   for (const Contour& contour : contours) {
     if (chosen(selection.measured, contour.label) && isIsland(contour, resolution, walls)) {
-      fillHole(contour, box.tl(), &filled);
+      fillHole(contour, box.tl(), filled);
     }
   }
   const cv::Mat distance = distancesWithin(filled);
@@ -168,36 +168,47 @@ Door doorOf(const DoorLine& line, const PlaceGrid& grid) {
   return door;
 }
 
-void check(const CorridorRule& rule) {
-  if (!(rule.max_width > 0.0)) {
-    throw hyselam::ParameterError("corridor_max_width", rule.max_width, "> 0 m");
-  }
-  if (!(rule.min_elongation >= 1.0)) {
-    throw hyselam::ParameterError("corridor_min_elongation", rule.min_elongation, ">= 1");
-  }
-  if (!(rule.long_elongation >= rule.min_elongation)) {
-    throw hyselam::ParameterError("corridor_long_elongation", rule.long_elongation,
-                                  ">= corridor_min_elongation");
-  }
-}
-
-// `neighbours`: how many other places it leads to.
-PlaceKind kindOf(const Region& region, double resolution, int neighbours,
-                 const CorridorRule& rule) {
+// `neighbors`: how many other places it leads to.
+PlaceKind kindOf(const Region& region, double resolution, int neighbors, const CorridorRule& rule) {
   if (region.filled <= 0.0) return PlaceKind::kRoom;
   // In a long strip the mean distance to its limits is a quarter of its width.
   const double width = 4.0 * resolution * region.distances / region.filled;
   const double elongation = region.filled * resolution * resolution / (width * width);
   const bool corridor = width <= rule.max_width &&
-                        ((neighbours >= rule.min_neighbours && elongation >= rule.min_elongation) ||
-                         (neighbours >= 2 && elongation >= rule.long_elongation));
+                        ((neighbors >= rule.min_neighbors && elongation >= rule.min_elongation) ||
+                         (neighbors >= 2 && elongation >= rule.long_elongation));
   return corridor ? PlaceKind::kCorridor : PlaceKind::kRoom;
 }
 
 }  // namespace
 
-Neighbours neighboursOf(const std::vector<DoorLine>& doors) {
-  Neighbours out;
+void CorridorRule::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("max_width", max_width, Range::above(0.0), "m", "of a corridor");
+  visit("min_neighbors", min_neighbors, Range::atLeast(0), "", "places that a corridor leads to");
+  visit("min_elongation", min_elongation, Range::atLeast(1.0), "", "of a corridor then");
+  visit("long_elongation", long_elongation, Range::atLeast(1.0), "",
+        "of a corridor with two or three neighbors");
+}
+
+void CorridorRule::validate() const {
+  hyselam::checkParameters(*this);
+  hyselam::require("long_elongation", long_elongation, long_elongation >= min_elongation,
+                   ">= min_elongation");
+}
+
+void MapBuilderParams::describe(hyselam::ParameterVisitor& visit) {
+  visit.group("wall_", walls);
+  visit.group("corridor_", corridor);
+}
+
+void MapBuilderParams::validate() const {
+  walls.validate();
+  corridor.validate();
+}
+
+Neighbors neighborsOf(const std::vector<DoorLine>& doors) {
+  Neighbors out;
   for (const DoorLine& d : doors) {
     out[d.place_a].insert(d.place_b);
     out[d.place_b].insert(d.place_a);
@@ -206,7 +217,7 @@ Neighbours neighboursOf(const std::vector<DoorLine>& doors) {
 }
 
 std::vector<Place> buildPlaces(const OccupancyGrid& grid, const cv::Mat& labels, int places,
-                               const Neighbours& neighbours, const MapBuilderParams& params,
+                               const Neighbors& neighbors, const MapBuilderParams& params,
                                const PlaceSelection& selection) {
   const double r = grid.geometry.resolution;
   std::vector<Contour> contours = traceContours(labels, selection.box, selection.wanted);
@@ -224,9 +235,9 @@ std::vector<Place> buildPlaces(const OccupancyGrid& grid, const cv::Mat& labels,
       const Point2 c = grid.geometry.center({region.centre.x, region.centre.y});
       place.centre = Point3{c.x, c.y, 0.0};
     }
-    const auto around = neighbours.find(label);
+    const auto around = neighbors.find(label);
     place.kind =
-        kindOf(region, r, around == neighbours.end() ? 0 : static_cast<int>(around->second.size()),
+        kindOf(region, r, around == neighbors.end() ? 0 : static_cast<int>(around->second.size()),
                params.corridor);
     PlaceWalls& own = walls[static_cast<std::size_t>(label - 1)];
     place.walls = std::move(own.walls);
@@ -264,25 +275,25 @@ AugmentedTopologicalMap assembleMap(const OccupancyGrid& grid, const cv::Mat& la
     door.id = map.next_door_id++;
     edge->doors.push_back(std::move(door));
   }
-  normalise(&map);
+  normalize(map);
   return map;
 }
 
 AugmentedTopologicalMap buildTopologicalMap(const OccupancyGrid& grid,
-                                            const Segmentation& segmentation,
+                                            const PlaceSegmentation& segmentation,
                                             const MapBuilderParams& params) {
-  check(params.corridor);
+  params.validate();
   const cv::Mat labels =
       segmentation.labels.isContinuous() ? segmentation.labels : segmentation.labels.clone();
   if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
       labels.rows != grid.geometry.height) {
-    throw std::invalid_argument("the labels do not fit the grid");
+    throw hyselam::InputError("labels", "", "they do not fit the grid");
   }
   PlaceSelection all;
   all.box = all.measured_box = cv::Rect(0, 0, labels.cols, labels.rows);
   return assembleMap(
       grid, labels,
-      buildPlaces(grid, labels, segmentation.places, neighboursOf(segmentation.doors), params, all),
+      buildPlaces(grid, labels, segmentation.places, neighborsOf(segmentation.doors), params, all),
       segmentation.doors);
 }
 

@@ -19,12 +19,12 @@ struct PlaceSelection {
   cv::Rect measured_box;       ///< holds all cells of the measured ones
 };
 
-using Neighbours = std::map<int, std::set<int>>;
-Neighbours neighboursOf(const std::vector<DoorLine>& doors);
+using Neighbors = std::map<int, std::set<int>>;
+Neighbors neighborsOf(const std::vector<DoorLine>& doors);
 
 /// The selected places in the order of their labels, ids = labels, ids of walls 0.
 std::vector<Place> buildPlaces(const hyselam::OccupancyGrid& grid, const cv::Mat& labels,
-                               int places, const Neighbours& neighbours,
+                               int places, const Neighbors& neighbors,
                                const MapBuilderParams& params, const PlaceSelection& selection);
 
 /// Puts places into a map whose place k has label k, with edges, relation to the grid and all ids.

@@ -36,7 +36,7 @@ std::pair<std::size_t, double> farthest(const std::vector<Point2d>& p, std::size
 }
 
 void split(const std::vector<Point2d>& p, std::size_t first, std::size_t last, double tolerance,
-           std::vector<std::size_t>* cuts) {
+           std::vector<std::size_t>& cuts) {
   std::vector<std::pair<std::size_t, std::size_t>> open{{first, last}};
   while (!open.empty()) {
     const auto [a, b] = open.back();
@@ -46,7 +46,7 @@ void split(const std::vector<Point2d>& p, std::size_t first, std::size_t last, d
       open.push_back({at, b});
       open.push_back({a, at});
     } else {
-      cuts->push_back(b);
+      cuts.push_back(b);
     }
   }
 }
@@ -54,17 +54,17 @@ void split(const std::vector<Point2d>& p, std::size_t first, std::size_t last, d
 // Two neighbouring straight pieces that are one within the tolerance become one: splitting may have
 // cut where the noise was.
 void joinStraight(const std::vector<Point2d>& p, double tolerance,
-                  std::vector<ChainPiece>* pieces) {
-  for (std::size_t i = 0; i + 1 < pieces->size();) {
-    const ChainPiece joined{(*pieces)[i].first, (*pieces)[i + 1].last, {}};
+                  std::vector<ChainPiece>& pieces) {
+  for (std::size_t i = 0; i + 1 < pieces.size();) {
+    const ChainPiece joined{pieces[i].first, pieces[i + 1].last, {}};
     const LineFit line = fitLine(&p[joined.first], joined.last - joined.first);
     double worst = 0.0;
     for (std::size_t k = joined.first; k < joined.last; ++k) {
       worst = std::max(worst, std::abs(cross(line.along, p[k] - line.mean)));
     }
     if (worst <= tolerance) {
-      (*pieces)[i] = joined;
-      pieces->erase(pieces->begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      pieces[i] = joined;
+      pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       if (i > 0) --i;
     } else {
       ++i;
@@ -138,9 +138,9 @@ std::optional<CircleFit> fitCircle(const Point2d* first, std::size_t count) {
   return fit;
 }
 
-std::vector<ChainPiece> cutChain(std::vector<Point2d>* points, bool closed, double tolerance,
+std::vector<ChainPiece> cutChain(std::vector<Point2d>& points, bool closed, double tolerance,
                                  double max_radius) {
-  std::vector<Point2d>& p = *points;
+  std::vector<Point2d>& p = points;
   if (p.empty()) return {};
   if (closed && p.size() > 4) {
     // The point farthest from the middle is a corner of the chain, or as good a start as any.
@@ -159,10 +159,10 @@ std::vector<ChainPiece> cutChain(std::vector<Point2d>* points, bool closed, doub
     for (std::size_t i = 1; i < p.size(); ++i) {
       if (length(p[i] - p[0]) > length(p[opposite] - p[0])) opposite = i;
     }
-    split(p, 0, opposite, tolerance, &cuts);
-    if (opposite < end) split(p, opposite, end, tolerance, &cuts);
+    split(p, 0, opposite, tolerance, cuts);
+    if (opposite < end) split(p, opposite, end, tolerance, cuts);
   } else {
-    split(p, 0, end, tolerance, &cuts);
+    split(p, 0, end, tolerance, cuts);
   }
   std::vector<ChainPiece> pieces;
   std::size_t first = 0;
@@ -173,7 +173,7 @@ std::vector<ChainPiece> cutChain(std::vector<Point2d>* points, bool closed, doub
     pieces.push_back({first, last, {}});
     first = last;
   }
-  joinStraight(p, tolerance, &pieces);
+  joinStraight(p, tolerance, pieces);
   // Around something thin the way there and the way back are two walls.
   if (closed && pieces.size() == 1 && p.size() >= 4) {
     const auto far = std::max_element(p.begin(), p.end(), [&](Point2d a, Point2d b) {

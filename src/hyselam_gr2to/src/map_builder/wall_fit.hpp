@@ -36,7 +36,7 @@ struct ChainPiece {
 /// Cuts a chain of points into pieces that no point leaves by more than `tolerance` (Ramer,
 /// Douglas, Peucker), then joins three or more that lie on one arc of at most `max_radius`. A
 /// closed chain is first turned so that it begins at a corner: `points` changes.
-std::vector<ChainPiece> cutChain(std::vector<cv::Point2d>* points, bool closed, double tolerance,
+std::vector<ChainPiece> cutChain(std::vector<cv::Point2d>& points, bool closed, double tolerance,
                                  double max_radius);
 
 }  // namespace hyselam_topo

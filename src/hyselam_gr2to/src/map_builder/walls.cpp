@@ -43,7 +43,7 @@ class WallMaker {
   WallMaker(const OccupancyGrid& grid, const cv::Mat& labels, const WallParams& params)
       : grid_(grid), labels_(labels), params_(params), resolution_(grid.geometry.resolution) {}
 
-  void add(const Contour& contour, PlaceWalls* out) const {
+  void add(const Contour& contour, PlaceWalls& out) const {
     if (isIsland(contour, resolution_, params_)) return;
     std::vector<Piece> pieces = cut(contour);
     if (pieces.empty()) return;
@@ -54,7 +54,7 @@ class WallMaker {
       const Wall wall = n == 1 && !pieces[k].arc
                             ? straight(pieces[k], pieces[k].points.front(), pieces[k].points.back())
                             : make(pieces[k], corners[k], corners[(k + 1) % n]);
-      if (wall.length >= params_.min_length) out->walls.push_back(wall);
+      if (wall.length >= params_.min_length) out.walls.push_back(wall);
     }
     if (contour.hole) return;
     // Of several parts of a place the largest gives the outline.
@@ -67,7 +67,7 @@ class WallMaker {
         outline.push_back(toMap(pieces[k].points[i]));
       }
     }
-    if (signedArea(outline) > signedArea(out->outline)) out->outline = std::move(outline);
+    if (signedArea(outline) > signedArea(out.outline)) out.outline = std::move(outline);
   }
 
  private:
@@ -110,12 +110,12 @@ class WallMaker {
       if (runs.empty() || runs.back().kind != kinds[i]) runs.push_back({kinds[i], {}, {}, {}});
       runs.back().points.push_back(contour.sides[i].middle());
     }
-    closeGaps(&runs);
+    closeGaps(runs);
     std::vector<Piece> pieces;
     for (Piece& run : runs) {
       const double tolerance = run.kind == kSolid ? std::max(params_.tolerance / resolution_, 0.9)
                                                   : std::max(kOpenTolerance / resolution_, 2.0);
-      for (const ChainPiece& c : cutChain(&run.points, closed || runs.size() == 1, tolerance,
+      for (const ChainPiece& c : cutChain(run.points, closed || runs.size() == 1, tolerance,
                                           params_.max_radius / resolution_)) {
         Piece piece;
         piece.kind = run.kind;
@@ -131,19 +131,19 @@ class WallMaker {
   }
 
   // Short unknown runs between walls are wall.
-  void closeGaps(std::vector<Piece>* runs) const {
-    for (std::size_t i = 1; i + 1 < runs->size();) {
-      Piece &before = (*runs)[i - 1], &gap = (*runs)[i], &after = (*runs)[i + 1];
+  void closeGaps(std::vector<Piece>& runs) const {
+    for (std::size_t i = 1; i + 1 < runs.size();) {
+      Piece &before = runs[i - 1], &gap = runs[i], &after = runs[i + 1];
       const double l = static_cast<double>(gap.points.size()) * resolution_;
       if (gap.kind != kUnknown || before.kind != kSolid || after.kind != kSolid ||
-          l > params_.close_gaps) {
+          l > params_.max_gap) {
         ++i;
         continue;
       }
       before.points.insert(before.points.end(), gap.points.begin(), gap.points.end());
       before.points.insert(before.points.end(), after.points.begin(), after.points.end());
-      runs->erase(runs->begin() + static_cast<std::ptrdiff_t>(i),
-                  runs->begin() + static_cast<std::ptrdiff_t>(i) + 2);
+      runs.erase(runs.begin() + static_cast<std::ptrdiff_t>(i),
+                 runs.begin() + static_cast<std::ptrdiff_t>(i) + 2);
     }
   }
 
@@ -177,7 +177,7 @@ class WallMaker {
     if (piece.kind != kSolid) {
       wall.kind = WallKind::kVirtual;
     } else if (piece.points.size() >= 3) {
-      addCovariance(piece.line.rms, piece.points.size(), &wall);
+      addCovariance(piece.line.rms, piece.points.size(), wall);
     }
     return wall;
   }
@@ -208,38 +208,38 @@ class WallMaker {
     wall.normal = {normal.x, normal.y, 0.0};
     const Point2 mass = toMap(circle.centre + (circle.radius * std::sin(half) / half) * out);
     wall.position = {mass.x, mass.y, 0.0};
-    addCovariance(circle.worst / std::sqrt(3.0), piece.points.size(), &wall);
+    addCovariance(circle.worst / std::sqrt(3.0), piece.points.size(), wall);
     return wall;
   }
 
   // Of a line through `count` points with that deviation [cells]; ends are known to a cell.
-  void addCovariance(double rms, std::size_t count, Wall* wall) const {
+  void addCovariance(double rms, std::size_t count, Wall& wall) const {
     const double n = static_cast<double>(count);
     const double point = (rms * rms + 1.0 / 12.0) * resolution_ * resolution_;
     const double end = resolution_ * resolution_ / 12.0;
     const double across = point / n, along = 0.5 * end;
-    const double nx = wall->normal.x, ny = wall->normal.y;
-    wall->position_covariance = Covariance3{across * nx * nx + along * ny * ny,
-                                            (across - along) * nx * ny,
-                                            0.0,
-                                            (across - along) * nx * ny,
-                                            across * ny * ny + along * nx * nx,
-                                            0.0,
-                                            0.0,
-                                            0.0,
-                                            0.0};
-    const double l = std::max(wall->length, resolution_);
+    const double nx = wall.normal.x, ny = wall.normal.y;
+    wall.position_covariance = Covariance3{across * nx * nx + along * ny * ny,
+                                           (across - along) * nx * ny,
+                                           0.0,
+                                           (across - along) * nx * ny,
+                                           across * ny * ny + along * nx * nx,
+                                           0.0,
+                                           0.0,
+                                           0.0,
+                                           0.0};
+    const double l = std::max(wall.length, resolution_);
     const double angle = 12.0 * point / (n * l * l);
-    wall->normal_covariance = Covariance3{angle * ny * ny,
-                                          -angle * nx * ny,
-                                          0.0,
-                                          -angle * nx * ny,
-                                          angle * nx * nx,
-                                          0.0,
-                                          0.0,
-                                          0.0,
-                                          0.0};
-    wall->size_covariance = Covariance2{2.0 * end, 0.0, 0.0, 0.0};
+    wall.normal_covariance = Covariance3{angle * ny * ny,
+                                         -angle * nx * ny,
+                                         0.0,
+                                         -angle * nx * ny,
+                                         angle * nx * nx,
+                                         0.0,
+                                         0.0,
+                                         0.0,
+                                         0.0};
+    wall.size_covariance = Covariance2{2.0 * end, 0.0, 0.0, 0.0};
   }
 
   const OccupancyGrid& grid_;
@@ -250,24 +250,37 @@ class WallMaker {
 
 }  // namespace
 
+void WallParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("tolerance", tolerance, Range::above(0.0), "m", "of a wall from the cells' faces, at most");
+  visit("min_length", min_length, Range::atLeast(0.0), "m",
+        "shorter pieces join their neighbors or are left out");
+  visit("min_island", min_island, Range::atLeast(0.0), "m",
+        "around an obstacle within a place; smaller ones are no walls");
+  visit("max_gap", max_gap, Range::atLeast(0.0), "m", "unknown gaps up to this are wall");
+  visit("max_radius", max_radius, Range::above(0.0), "m", "arcs with a larger one are straight");
+  visit("free_max", free_max, Range::between(0, 99), "", "cells of 0 .. this value are free");
+  visit("occupied_min", occupied_min, Range::between(1, 100), "",
+        "cells of this value and more are walls");
+}
+
+void WallParams::validate() const {
+  hyselam::checkParameters(*this);
+  hyselam::require("occupied_min", occupied_min, occupied_min > free_max, "> free_max");
+}
+
 bool isIsland(const Contour& contour, double resolution, const WallParams& params) {
   return contour.hole && static_cast<double>(contour.sides.size()) * resolution < params.min_island;
 }
 
 std::vector<PlaceWalls> wallsAlong(const std::vector<Contour>& contours, const OccupancyGrid& grid,
                                    const cv::Mat& labels, const WallParams& params) {
-  hyselam::require("wall_tolerance", params.tolerance, params.tolerance > 0.0, "> 0 m");
-  hyselam::require("wall_min_length", params.min_length, params.min_length >= 0.0, ">= 0 m");
-  hyselam::require("wall_min_island", params.min_island, params.min_island >= 0.0, ">= 0 m");
-  hyselam::require("wall_close_gaps", params.close_gaps, params.close_gaps >= 0.0, ">= 0 m");
-  hyselam::require("wall_max_radius", params.max_radius, params.max_radius > 0.0, "> 0 m");
-  hyselam::require("occupied_min", params.occupied_min, params.occupied_min > params.free_max,
-                   "> free_max");
+  params.validate();
   const WallMaker maker(grid, labels, params);
   std::vector<PlaceWalls> out;
   for (const Contour& contour : contours) {
     if (out.size() < contour.label) out.resize(contour.label);
-    maker.add(contour, &out[contour.label - 1u]);
+    maker.add(contour, out[contour.label - 1u]);
   }
   return out;
 }
@@ -276,7 +289,7 @@ std::vector<PlaceWalls> extractWalls(const OccupancyGrid& grid, const cv::Mat& l
                                      const WallParams& params) {
   if (labels.type() != CV_16UC1 || labels.cols != grid.geometry.width ||
       labels.rows != grid.geometry.height) {
-    throw std::invalid_argument("the labels do not fit the grid");
+    throw hyselam::InputError("labels", "", "they do not fit the grid");
   }
   return wallsAlong(traceContours(labels), grid, labels, params);
 }

@@ -134,7 +134,7 @@ OccupancyGrid gridOf(const Columns& columns, const Rule& rule) {
   return grid;
 }
 
-OccupancyGrid withoutLonelyCells(const OccupancyGrid& grid) {
+OccupancyGrid withoutIsolatedCells(const OccupancyGrid& grid) {
   OccupancyGrid result = grid;
   for (int y = 0; y < grid.geometry.height; ++y) {
     for (int x = 0; x < grid.geometry.width; ++x) {
@@ -152,23 +152,6 @@ OccupancyGrid withoutLonelyCells(const OccupancyGrid& grid) {
   return result;
 }
 
-void check(const CompressionParams& p) {
-  if (p.z_min) hyselam::require("z_min", *p.z_min, std::isfinite(*p.z_min), "a finite number");
-  if (p.z_max) hyselam::require("z_max", *p.z_max, std::isfinite(*p.z_max), "a finite number");
-  if (p.z_min && p.z_max)
-    hyselam::require("z_max", *p.z_max, *p.z_max > *p.z_min, "greater than z_min");
-  hyselam::require("floor_margin", p.floor_margin, p.floor_margin >= 0.0, ">= 0");
-  hyselam::require("ceiling_margin", p.ceiling_margin, p.ceiling_margin >= 0.0, ">= 0");
-  hyselam::require("max_height", p.max_height, p.max_height > 0.0, "> 0");
-  hyselam::require("max_free_height", p.max_free_height, p.max_free_height >= 0.0, ">= 0");
-  hyselam::require("min_occupied_height", p.min_occupied_height, p.min_occupied_height >= 0.0,
-                   ">= 0");
-  hyselam::require("free_below", p.free_below, p.free_below >= 0.0 && p.free_below < 1.0,
-                   "in [0, 1)");
-  hyselam::require("occupied_from", p.occupied_from,
-                   p.occupied_from > p.free_below && p.occupied_from <= 1.0, "in (free_below, 1]");
-}
-
 std::string list(const std::vector<Storey>& storeys) {
   std::string text;
   for (std::size_t i = 0; i < storeys.size(); ++i) {
@@ -181,43 +164,71 @@ std::string list(const std::vector<Storey>& storeys) {
 }
 
 /// Fills in what of z_min and z_max is not given.
-void chooseStorey(const CompressionParams& params, const std::string& source, Compression* result) {
-  const std::vector<Storey>& storeys = result->storeys;
+void chooseStorey(const CompressionParams& params, const std::string& source, Compression& result) {
+  const std::vector<Storey>& storeys = result.storeys;
   if (storeys.empty()) {
     throw hyselam::InputError(source, "", "the OctoMap has no level floor: give z_min and z_max");
   }
-  if (!params.storey && storeys.size() > 1) {
+  if (params.storey < 0 && storeys.size() > 1) {
     throw hyselam::InputError(source, "",
                               "the OctoMap has " + std::to_string(storeys.size()) + " storeys (" +
                                   list(storeys) + "): choose a storey, or give z_min and z_max");
   }
-  const int index = params.storey.value_or(0);
-  if (index < 0 || index >= static_cast<int>(storeys.size())) {
+  const int index = std::max(params.storey, 0);
+  if (index >= static_cast<int>(storeys.size())) {
     throw hyselam::InputError(
         source, "",
         "there is no storey " + std::to_string(index) + " in the OctoMap, only " + list(storeys));
   }
   const Storey& storey = storeys[static_cast<std::size_t>(index)];
-  result->z_min = params.z_min.value_or(storey.floor + params.floor_margin);
-  result->z_max = params.z_max.value_or(
+  result.z_min = params.z_min.value_or(storey.floor + params.floor_margin);
+  result.z_max = params.z_max.value_or(
       std::min(storey.ceiling - params.ceiling_margin, storey.floor + params.max_height));
-  if (!(result->z_max > result->z_min)) {
+  if (!(result.z_max > result.z_min)) {
     throw hyselam::InputError(source, "", "nothing is left between z_min and z_max");
   }
 }
 
 }  // namespace
 
+void CompressionParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("z_min", z_min, Range::between(-10000.0, 10000.0), "m",
+        "lower limit of the heights that are projected; unset: that of the storey");
+  visit("z_max", z_max, Range::between(-10000.0, 10000.0), "m", "upper limit");
+  visit("floor_margin", floor_margin, Range::between(0.0, 10.0), "m", "kept from the floor");
+  visit("ceiling_margin", ceiling_margin, Range::between(0.0, 10.0), "m", "kept from the ceiling");
+  visit("max_height", max_height, Range::above(0.0), "m", "above the floor, in high halls");
+  visit("storey", storey, Range::between(-1, 1000), "",
+        "of the OctoMap, 0 for the lowest; -1: the only one");
+  visit("max_free_height", max_free_height, Range::between(0.0, 100.0), "m",
+        "NF_max: a column with more free space is free");
+  visit("min_occupied_height", min_occupied_height, Range::between(0.0, 100.0), "m",
+        "NO_min: else a column with more than this is occupied");
+  visit("free_below", free_below, Range::fromBelow(0.0, 1.0), "",
+        "P_max: voxels of up to this probability count as free");
+  visit("occupied_from", occupied_from, Range::aboveUpTo(0.0, 1.0), "",
+        "P_min: voxels of at least this probability count as occupied");
+  visit("filter", filter, "isolated cells become unknown");
+  visit("max_cells", max_cells, Range::atLeast(1.0), "", "of the grid map; more are refused");
+}
+
+void CompressionParams::validate() const {
+  hyselam::checkParameters(*this);
+  if (z_min && z_max) hyselam::require("z_max", *z_max, *z_max > *z_min, "greater than z_min");
+  hyselam::require("occupied_from", occupied_from, occupied_from > free_below, "> free_below");
+}
+
 Compression compress(const VoxelMap& map, const CompressionParams& params,
                      const std::string& source) {
-  check(params);
+  params.validate();
   Compression result;
   if (params.z_min && params.z_max) {
     result.z_min = *params.z_min;
     result.z_max = *params.z_max;
   } else {
     result.storeys = findStoreys(map);
-    chooseStorey(params, source, &result);
+    chooseStorey(params, source, result);
   }
   const Layers layers = layersBetween(result.z_min, result.z_max, map.resolution);
   const Columns columns =
@@ -228,7 +239,7 @@ Compression compress(const VoxelMap& map, const CompressionParams& params,
     if (free > nf_max) return OccupancyGrid::kFree;
     return occupied > no_min ? OccupancyGrid::kOccupied : OccupancyGrid::kUnknown;
   });
-  if (params.filter) result.grid = withoutLonelyCells(result.grid);
+  if (params.filter) result.grid = withoutIsolatedCells(result.grid);
   return result;
 }
 

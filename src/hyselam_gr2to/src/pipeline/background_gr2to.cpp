@@ -19,20 +19,20 @@ bool sameGrid(const hyselam::OccupancyGrid& a, const hyselam::OccupancyGrid& b) 
 
 }  // namespace
 
-BackgroundGr2To::Pipeline BackgroundGr2To::updating(int most_updates) {
+BackgroundGr2To::Pipeline BackgroundGr2To::updating(int max_partial_updates) {
   struct Memory {
     std::optional<Gr2ToUpdater> updater;
-    int updates = 0;  // since everything was looked at
+    int updates = 0;  // since the whole map was segmented
   };
-  return [memory = std::make_shared<Memory>(), most_updates](const hyselam::OccupancyGrid& grid,
-                                                             const Gr2ToParams& params) {
-    if (!memory->updater || memory->updates >= most_updates) {
+  return [memory = std::make_shared<Memory>(), max_partial_updates](
+             const hyselam::OccupancyGrid& grid, const Gr2ToParams& params) {
+    if (!memory->updater || memory->updates >= max_partial_updates) {
       memory->updater.emplace();
       memory->updates = 0;
     }
     Gr2ToResult result = memory->updater->update(grid, params);
-    const bool everything = memory->updater->lastWay() == Gr2ToUpdater::Way::kFromScratch;
-    memory->updates = everything ? 0 : memory->updates + 1;
+    const bool whole_map = memory->updater->lastUpdate() == Gr2ToUpdater::UpdateKind::kFromScratch;
+    memory->updates = whole_map ? 0 : memory->updates + 1;
     return result;
   };
 }
@@ -66,7 +66,7 @@ void BackgroundGr2To::replace(const AugmentedTopologicalMap& map, const std::str
   checkMap(map, source);
   if (!map.grid) throw hyselam::InputError(source, "", "it has no grid");
   auto copy = std::make_shared<AugmentedTopologicalMap>(map);
-  normalise(copy.get());
+  normalize(*copy);
   const std::lock_guard<std::mutex> lock(mutex_);
   current_ = std::move(copy);
   last_grid_.reset();
@@ -110,10 +110,10 @@ BackgroundGr2To::Outcome BackgroundGr2To::work(const Input& input) {
     Gr2ToResult result = pipeline_(*grid, input.params);
     result.map.frame_id = input.frame_id;
     result.map.stamp = input.stamp;
-    normalise(&result.map);
+    normalize(result.map);
     outcome.seconds = std::move(result.seconds);
     outcome.grid = grid;
-    adopt(result.map, &outcome);
+    adopt(result.map, outcome);
     const std::lock_guard<std::mutex> lock(mutex_);
     if (current_ == outcome.map) {
       last_grid_ = grid;
@@ -130,26 +130,26 @@ BackgroundGr2To::Outcome BackgroundGr2To::work(const Input& input) {
   return outcome;
 }
 
-void BackgroundGr2To::adopt(const AugmentedTopologicalMap& fresh, Outcome* outcome) {
+void BackgroundGr2To::adopt(const AugmentedTopologicalMap& fresh, Outcome& outcome) {
   for (;;) {
     const MapPtr base = current();
     auto map = std::make_shared<AugmentedTopologicalMap>(fresh);
-    outcome->warning.clear();
+    outcome.warning.clear();
     if (base && base->frame_id != fresh.frame_id) {
-      outcome->warning = "the map is in frame '" + fresh.frame_id + "' now, not in '" +
-                         base->frame_id + "': places and their names begin anew";
+      outcome.warning = "the map is in frame '" + fresh.frame_id + "' now, not in '" +
+                        base->frame_id + "': its places and names are new";
     }
-    if (base && outcome->warning.empty()) {
-      *map = carryOver(*base, fresh, {}, &outcome->report);
+    if (base && outcome.warning.empty()) {
+      *map = carryOver(*base, fresh, {}, outcome.report);
     } else {
       checkMap(fresh, "new map");
-      outcome->report = {};
-      for (const Place& place : fresh.places) outcome->report.created.push_back(place.id);
+      outcome.report = {};
+      for (const Place& place : fresh.places) outcome.report.created.push_back(place.id);
     }
     const std::lock_guard<std::mutex> lock(mutex_);
     if (current_ != base) continue;  // replaced meanwhile: what is known is something else now
     current_ = map;
-    outcome->map = std::move(map);
+    outcome.map = std::move(map);
     return;
   }
 }

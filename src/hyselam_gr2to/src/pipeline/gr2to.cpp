@@ -1,9 +1,7 @@
 #include "hyselam_gr2to/gr2to.hpp"
 
+#include <algorithm>
 #include <chrono>
-
-#include "hyselam_gr2to/map_builder/map_builder.hpp"
-#include "hyselam_gr2to/thesis/thesis.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -23,14 +21,51 @@ class StageClock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// Those of mode thesis as gr2to() uses them.
+ThesisParams thesisParams(const Gr2ToParams& params) {
+  ThesisParams thesis = params.thesis;
+  thesis.free_max = params.segmentation.free_max;
+  return thesis;
+}
+
+const std::vector<std::pair<std::string, Gr2ToParams::Mode>> kModes = {
+    {"default", Gr2ToParams::Mode::kDefault}, {"thesis", Gr2ToParams::Mode::kThesis}};
+
 }  // namespace
+
+void Gr2ToParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("mode", mode, kModes,
+        "default: merged places, clutter does not separate them; thesis: the pipeline of the "
+        "thesis");
+  visit.group("", segmentation);
+  visit.group("thesis_", thesis, {{"free_max", hyselam::ParameterVisitor::kNotOffered}});
+}
+
+void Gr2ToParams::validate() const {
+  segmentation.validate();
+  if (mode == Mode::kThesis) thesisParams(*this).validate();
+}
+
+const char* toString(Gr2ToParams::Mode mode) {
+  for (const auto& [word, value] : kModes) {
+    if (value == mode) return word.c_str();
+  }
+  return "";
+}
+
+MapBuilderParams mapBuilderParams(const Gr2ToParams& params) {
+  MapBuilderParams builder;
+  builder.walls.free_max = params.segmentation.free_max;
+  builder.walls.occupied_min = std::max(builder.walls.occupied_min, builder.walls.free_max + 1);
+  return builder;
+}
 
 Gr2ToResult gr2to(const hyselam::OccupancyGrid& grid, const Gr2ToParams& params) {
   Gr2ToResult result;
   StageClock clock(result.seconds);
-  Segmentation places;
+  PlaceSegmentation places;
   if (params.mode == Gr2ToParams::Mode::kThesis) {
-    places = segmentThesis(grid);
+    places = segmentThesis(grid, thesisParams(params));
     clock.done("places and doors");
   } else {
     places = segmentPlaces(grid, params.segmentation);
@@ -38,7 +73,7 @@ Gr2ToResult gr2to(const hyselam::OccupancyGrid& grid, const Gr2ToParams& params)
     addDoors(grid, places, params.segmentation);
     clock.done("doors");
   }
-  result.map = buildTopologicalMap(grid, places);
+  result.map = buildTopologicalMap(grid, places, mapBuilderParams(params));
   clock.done("walls and map");
   result.labels = places.labels;
   result.doors = std::move(places.doors);

@@ -8,66 +8,89 @@
 
 namespace hyselam_topo {
 
-std::set<int> joinAtRim(const cv::Mat& labels, const Patch& patch,
-                        std::map<int, int>* piece_to_label) {
-  std::map<std::pair<int, int>, int> common;  // of piece and label
-  std::set<int> doubtful;
-  int run_label = 0;
-  bool run_met = true;
-  const auto end_run = [&]() {
-    if (!run_met) doubtful.insert(run_label);
-    run_label = 0;
-    run_met = true;
-  };
-  const auto look = [&](int x, int y, int ox, int oy) {
-    if (ox < 0 || oy < 0 || ox >= labels.cols || oy >= labels.rows) return end_run();
-    const int own = labels.at<std::uint16_t>(y, x), beyond = labels.at<std::uint16_t>(oy, ox);
-    if (own == 0 || own != beyond || patch.touched.count(own) == 0) return end_run();
-    if (own != run_label) {
-      end_run();
-      run_label = own;
-      run_met = false;
+namespace {
+
+/// Goes along the rim of a patch: which pieces touch which labels beyond it.
+class RimWalk {
+ public:
+  RimWalk(const cv::Mat& labels, const Patch& patch) : labels_(labels), patch_(patch) {
+    const cv::Rect& b = patch.box;
+    const int right = b.x + b.width - 1, top = b.y + b.height - 1;
+    for (int x = b.x; x <= right; ++x) visit({x, b.y}, {x, b.y - 1});
+    endRun();
+    for (int x = b.x; x <= right; ++x) visit({x, top}, {x, top + 1});
+    endRun();
+    for (int y = b.y; y <= top; ++y) visit({b.x, y}, {b.x - 1, y});
+    endRun();
+    for (int y = b.y; y <= top; ++y) visit({right, y}, {right + 1, y});
+    endRun();
+  }
+
+  std::map<std::pair<int, int>, int> common;  ///< cells of (piece, label) side by side
+  std::set<int> lost;                         ///< labels with a run of the rim without a piece
+
+ private:
+  void endRun() {
+    if (!run_met_) lost.insert(run_label_);
+    run_label_ = 0;
+    run_met_ = true;
+  }
+
+  void visit(cv::Point inside, cv::Point beyond) {
+    if (!cv::Rect({0, 0}, labels_.size()).contains(beyond)) return endRun();
+    const int own = labels_.at<std::uint16_t>(inside);
+    if (own == 0 || own != labels_.at<std::uint16_t>(beyond) || patch_.touched.count(own) == 0) {
+      return endRun();
     }
-    const int piece = patch.pieces.labels.at<std::uint16_t>(y - patch.box.y, x - patch.box.x);
+    if (own != run_label_) {
+      endRun();
+      run_label_ = own;
+      run_met_ = false;
+    }
+    const int piece = patch_.pieces.labels.at<std::uint16_t>(inside - patch_.box.tl());
     if (piece == 0) return;
-    run_met = true;
+    run_met_ = true;
     ++common[{piece, own}];
-  };
-  const cv::Rect& b = patch.box;
-  for (int x = b.x; x < b.x + b.width; ++x) look(x, b.y, x, b.y - 1);
-  end_run();
-  for (int x = b.x; x < b.x + b.width; ++x) look(x, b.y + b.height - 1, x, b.y + b.height);
-  end_run();
-  for (int y = b.y; y < b.y + b.height; ++y) look(b.x, y, b.x - 1, y);
-  end_run();
-  for (int y = b.y; y < b.y + b.height; ++y) look(b.x + b.width - 1, y, b.x + b.width, y);
-  end_run();
+  }
+
+  const cv::Mat& labels_;
+  const Patch& patch_;
+  int run_label_ = 0;
+  bool run_met_ = true;
+};
+
+}  // namespace
+
+RimJoin joinAtRim(const cv::Mat& labels, const Patch& patch) {
+  const RimWalk rim(labels, patch);
+  RimJoin join;
+  join.doubtful = rim.lost;
   std::map<int, int> longest, pieces;
-  for (const auto& [pair, cells] : common) {
+  for (const auto& [pair, cells] : rim.common) {
     const auto& [piece, label] = pair;
     int& best = longest[piece];
     if (best > 0) {
-      doubtful.insert(label);
-      doubtful.insert((*piece_to_label)[piece]);
+      join.doubtful.insert(label);
+      join.doubtful.insert(join.label_of_piece[piece]);
     }
     if (cells <= best) continue;
     best = cells;
-    (*piece_to_label)[piece] = label;
+    join.label_of_piece[piece] = label;
   }
-  for (const auto& [piece, label] : *piece_to_label) ++pieces[label];
+  for (const auto& [piece, label] : join.label_of_piece) ++pieces[label];
   for (const int label : patch.cut) {
-    if (pieces[label] != 1) doubtful.insert(label);
+    if (pieces[label] != 1) join.doubtful.insert(label);
   }
-  return doubtful;
+  return join;
 }
 
-bool inOnePart(const cv::Mat& labels, const cv::Rect& box, int label) {
+bool isConnected(const cv::Mat& labels, const cv::Rect& box, int label) {
   cv::Mat parts;
   return cv::connectedComponents(labels(box) == label, parts, 4) == 2;
 }
 
-void nameByOverlap(const cv::Mat& labels, const Patch& patch, int places,
-                   std::map<int, int>* piece_to_label) {
+void labelByOverlap(const cv::Mat& labels, const Patch& patch, int places,
+                    LabelOfPiece& label_of_piece) {
   std::map<std::pair<int, int>, int> overlap;
   for (int y = 0; y < patch.box.height; ++y) {
     const auto* piece = patch.pieces.labels.ptr<std::uint16_t>(y);
@@ -84,10 +107,10 @@ void nameByOverlap(const cv::Mat& labels, const Patch& patch, int places,
   std::set<int> used = patch.cut;
   for (const auto& [cells, pair] : pairs) {
     if (patch.touched.count(pair.second) == 0 || used.count(pair.second) != 0 ||
-        piece_to_label->count(pair.first) != 0) {
+        label_of_piece.count(pair.first) != 0) {
       continue;
     }
-    (*piece_to_label)[pair.first] = pair.second;
+    label_of_piece[pair.first] = pair.second;
     used.insert(pair.second);
   }
   // New places take the labels that went, then new ones.
@@ -98,8 +121,8 @@ void nameByOverlap(const cv::Mat& labels, const Patch& patch, int places,
   std::size_t next_spare = 0;
   int next = places;
   for (int piece = 1; piece <= patch.pieces.places; ++piece) {
-    if (piece_to_label->count(piece) != 0) continue;
-    (*piece_to_label)[piece] = next_spare < spare.size() ? spare[next_spare++] : ++next;
+    if (label_of_piece.count(piece) != 0) continue;
+    label_of_piece[piece] = next_spare < spare.size() ? spare[next_spare++] : ++next;
   }
 }
 

@@ -285,10 +285,19 @@ void drawLegend(const Gr2ToResult& result, Canvas& canvas, double pixels_per_met
 
 }  // namespace
 
+void OverviewOptions::describe(hyselam::ParameterVisitor& visit) {
+  visit("side", side, hyselam::Range::between(200, 10000), "pixel", "longer side, about");
+  visit("graph", graph, "the graph of places through their doors");
+  visit("walls", walls, "walls");
+}
+
+void OverviewOptions::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 cv::Mat drawOverview(const hyselam::OccupancyGrid& grid, const Gr2ToResult& result,
                      const OverviewOptions& options) {
-  if (options.side < 200 || options.side > 10000)
-    throw hyselam::ParameterError("side", options.side, "within 200 .. 10000 pixels");
+  options.validate();
   const cv::Rect box = knownPart(grid, result.labels);
   const double scale = static_cast<double>(options.side) / std::max(box.width, box.height);
   const double text = std::max(0.35, options.side / 2600.0);

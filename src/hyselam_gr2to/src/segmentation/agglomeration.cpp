@@ -21,7 +21,7 @@ struct Candidate {
 
 }  // namespace
 
-void agglomerate(PlaceGraph& graph, const OnePlace& odds) {
+void agglomerate(RegionAdjacencyGraph& graph, const OnePlace& odds) {
   std::priority_queue<Candidate> queue;
   std::vector<int> versions(static_cast<std::size_t>(graph.size()) + 1, 0);
   const auto version = [&](int i) -> int& { return versions[static_cast<std::size_t>(i)]; };
@@ -51,7 +51,7 @@ PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const Segmentat
   if (prepared.space.free.empty()) return prepared;
   cv::distanceTransform(prepared.space.free, prepared.clearance, cv::DIST_L2, cv::DIST_MASK_5);
   BasinParams basins;
-  basins.smallest = params.smallest_place;
+  basins.smallest = params.min_place_area;
   prepared.basins = findBasins(prepared.clearance, prepared.space.resolution, basins);
   return prepared;
 }

@@ -134,7 +134,7 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
   space.free = masks.free;
   clean(space, masks.occupied);
   findPieces(space);
-  seeThroughClutter(space, params.clutter);
+  seeThroughClutter(space, params.max_clutter_size);
   return space;
 }
 

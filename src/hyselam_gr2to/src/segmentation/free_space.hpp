@@ -8,7 +8,7 @@
 
 #include "cell_runs.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 
 namespace hyselam_topo {
 

@@ -16,7 +16,7 @@ std::size_t index(int i) {
 }
 
 /// The label that each piece is to have: 0 for all but the largest of a label.
-std::vector<int> largestPieces(const CellRuns& cells, bool* torn) {
+std::vector<int> largestPieces(const CellRuns& cells) {
   std::vector<int> sizes(index(cells.pieces), 0), labels(index(cells.pieces), 0);
   for (const CellRun& run : cells.runs) {
     sizes[index(run.piece)] += run.last - run.first + 1;
@@ -30,14 +30,12 @@ std::vector<int> largestPieces(const CellRuns& cells, bool* torn) {
   for (int piece = 0; piece < cells.pieces; ++piece) {
     if (largest[index(labels[index(piece)])] == piece) continue;
     labels[index(piece)] = 0;
-    *torn = true;
   }
   return labels;
 }
 
-/// What is not a largest piece looks for a neighbour that is, until nothing changes: such pieces
-/// are few and small.
-void askNeighbours(const CellRuns& cells, std::vector<int>& labels) {
+/// Pieces without a label get that of a neighbor, until nothing changes: they are few and small.
+void joinNeighbors(const CellRuns& cells, std::vector<int>& labels) {
   bool changed = true;
   const auto touch = [&](const CellRun& run, const CellRun& other) {
     int& own = labels[index(run.piece)];
@@ -68,9 +66,8 @@ void askNeighbours(const CellRuns& cells, std::vector<int>& labels) {
 
 int numberPlaces(cv::Mat& labels) {
   const CellRuns cells = connectedRuns(labels, 0, false);
-  bool torn = false;
-  std::vector<int> becomes = largestPieces(cells, &torn);
-  if (torn) askNeighbours(cells, becomes);
+  std::vector<int> becomes = largestPieces(cells);
+  if (std::count(becomes.begin(), becomes.end(), 0) > 0) joinNeighbors(cells, becomes);
   std::vector<int> names(std::numeric_limits<std::uint16_t>::max() + std::size_t{1}, 0);
   int count = 0;
   for (const CellRun& run : cells.runs) {

@@ -57,11 +57,11 @@ std::optional<DoorLine> lineOf(const ConfirmedDoor& door, const hyselam::GridGeo
 }
 
 /// Puts a door in, in place of the border that was found there.
-void put(const DoorLine& door, double door_max, std::vector<DoorLine>* lines) {
+void put(const DoorLine& door, double door_max, std::vector<DoorLine>& lines) {
   const Point2 middle = middleOf(door);
-  auto border = lines->end();
+  auto border = lines.end();
   double nearest = door_max;
-  for (auto it = lines->begin(); it != lines->end(); ++it) {
+  for (auto it = lines.begin(); it != lines.end(); ++it) {
     const Point2 there = middleOf(*it);
     const double d = std::hypot(there.x - middle.x, there.y - middle.y);
     if (it->place_a != door.place_a || it->place_b != door.place_b || it->real || d >= nearest) {
@@ -70,8 +70,8 @@ void put(const DoorLine& door, double door_max, std::vector<DoorLine>* lines) {
     nearest = d;
     border = it;
   }
-  if (border == lines->end()) {
-    lines->push_back(door);
+  if (border == lines.end()) {
+    lines.push_back(door);
   } else {
     *border = door;
   }
@@ -120,7 +120,7 @@ std::vector<DoorLine> doorLines(const OccupancyGrid& grid, const cv::Mat& labels
     if (!line) continue;
     line->place_a = p;
     line->place_b = q;
-    put(*line, params.door_max, &out);
+    put(*line, params.door_max, out);
   }
   std::sort(out.begin(), out.end(), [](const DoorLine& p, const DoorLine& q) {
     if (p.place_a != q.place_a) return p.place_a < q.place_a;

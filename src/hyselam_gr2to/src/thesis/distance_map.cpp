@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
+
+#include "hyselam_common/errors.hpp"
 
 namespace hyselam_topo {
 
@@ -20,16 +21,16 @@ std::int32_t square(std::int32_t v) {
 }
 
 // By x, then y, in two counting passes.
-void sortByColumn(std::vector<Cell>* cells, int width, int height) {
-  std::vector<Cell> other(cells->size());
+void sortByColumn(std::vector<Cell>& cells, int width, int height) {
+  std::vector<Cell> other(cells.size());
   std::vector<std::size_t> start(static_cast<std::size_t>(std::max(width, height)) + 1);
-  const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>* to, int Cell::*key) {
+  const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>& to, int Cell::*key) {
     std::fill(start.begin(), start.end(), std::size_t{0});
     for (const Cell& c : from) ++start[static_cast<std::size_t>(c.*key) + 1];
     for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-    for (const Cell& c : from) (*to)[start[static_cast<std::size_t>(c.*key)]++] = c;
+    for (const Cell& c : from) to[start[static_cast<std::size_t>(c.*key)]++] = c;
   };
-  pass(*cells, &other, &Cell::y);
+  pass(cells, other, &Cell::y);
   pass(other, cells, &Cell::x);
 }
 
@@ -38,10 +39,10 @@ void sortByColumn(std::vector<Cell>* cells, int width, int height) {
 DistanceMap::DistanceMap(const cv::Mat& obstacles)
     : width_(obstacles.cols), height_(obstacles.rows) {
   if (obstacles.type() != CV_8UC1 || obstacles.empty()) {
-    throw std::invalid_argument("a distance map needs an 8 bit image with cells");
+    throw hyselam::InputError("obstacles", "", "they must be an 8 bit image with cells");
   }
   if (width_ > kMaxSide || height_ > kMaxSide) {
-    throw std::invalid_argument("a distance map can have at most 32767 x 32767 cells");
+    throw hyselam::InputError("obstacles", "", "they have more than 32767 x 32767 cells");
   }
   const std::size_t cells = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   obstacle_.resize(cells);
@@ -201,7 +202,7 @@ std::vector<RowSpan> DistanceMap::update() {
     for (int y = 0; y < height_; ++y) spans.push_back({y, 0, width_ - 1});
     return spans;
   }
-  sortByColumn(&edited_, width_, height_);
+  sortByColumn(edited_, width_, height_);
   // A column changes between the obstacles that enclose its edited cells.
   int lowest = height_, highest = -1;
   for (std::size_t i = 0; i < edited_.size();) {
@@ -258,7 +259,7 @@ std::vector<RowSpan> DistanceMap::update() {
 
 std::vector<RowSpan> DistanceMap::update(const cv::Mat& obstacles) {
   if (obstacles.type() != CV_8UC1 || obstacles.cols != width_ || obstacles.rows != height_) {
-    throw std::invalid_argument("the obstacles of a distance map must keep its size");
+    throw hyselam::InputError("obstacles", "", "they must keep their size");
   }
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* row = obstacles.ptr<std::uint8_t>(y);

@@ -18,15 +18,6 @@ namespace {
 
 constexpr std::size_t kMaxPlaces = 65535;  // 16 bit labels
 
-void check(const ThesisParams& p) {
-  hyselam::require("door_min", p.door_min, p.door_min > 0.0, "> 0 m");
-  hyselam::require("door_max", p.door_max, p.door_max > p.door_min, "> door_min");
-  hyselam::require("critical_radius", p.critical_radius, p.critical_radius > 0.0, "> 0 m");
-  hyselam::require("wall_share", p.wall_share, p.wall_share >= 0.0 && p.wall_share <= 1.0,
-                   "0 .. 1");
-  hyselam::require("occupied_min", p.occupied_min, p.occupied_min > p.free_max, "> free_max");
-}
-
 void check(const OccupancyGrid& grid) {
   if (grid.geometry.width <= 0 || grid.geometry.height <= 0 ||
       grid.cells.size() != grid.geometry.cellCount()) {
@@ -46,8 +37,30 @@ cv::Point toPoint(Cell c) {
 
 }  // namespace
 
+void ThesisParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("door_min", door_min, Range::above(0.0), "m", "Door_min: width of a door, at least");
+  visit("door_max", door_max, Range::above(0.0), "m", "Door_max: width of a door, at most");
+  visit("critical_radius", critical_radius, Range::above(0.0), "m",
+        "within which a critical point is the narrowest");
+  visit("wall_share", wall_share, Range::between(0.0, 1.0), "",
+        "occupied part of a polygon's edge that makes it a wall");
+  visit("free_max", free_max, Range::between(0, 99), "", "cells of 0 .. this value are free");
+  visit("occupied_min", occupied_min, Range::between(1, 100), "",
+        "cells of this value and more are occupied");
+  visit("unknown_blocks", unknown_blocks, "unknown cells count as obstacles");
+  visit("fill", fill, "free cells outside of all polygons go to the nearest place");
+  visit.group("voronoi_", voronoi);
+}
+
+void ThesisParams::validate() const {
+  hyselam::checkParameters(*this);
+  hyselam::require("door_max", door_max, door_max > door_min, "> door_min");
+  hyselam::require("occupied_min", occupied_min, occupied_min > free_max, "> free_max");
+}
+
 ThesisResult runThesis(const OccupancyGrid& grid, const ThesisParams& params) {
-  check(params);
+  params.validate();
   check(grid);
   const double cells = 1.0 / grid.geometry.resolution;
   const double door_min = 0.5 * params.door_min * cells, door_max = 0.5 * params.door_max * cells;
@@ -96,7 +109,7 @@ ThesisResult runThesis(const OccupancyGrid& grid, const ThesisParams& params) {
   return r;
 }
 
-Segmentation segmentThesis(const OccupancyGrid& grid, const ThesisParams& params) {
+PlaceSegmentation segmentThesis(const OccupancyGrid& grid, const ThesisParams& params) {
   return runThesis(grid, params).segmentation;
 }
 

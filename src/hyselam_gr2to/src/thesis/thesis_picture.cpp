@@ -31,18 +31,18 @@ class Canvas {
             static_cast<int>(std::lround((cell.y + 0.5) * scale_))};
   }
   cv::Point at(hyselam::Cell c) const { return at(cv::Point2d(c.x, c.y)); }
-  void circle(cv::Point2d c, double radius, const cv::Scalar& colour, int thickness = 2) {
-    cv::circle(image_, at(c), std::max(2, static_cast<int>(std::lround(radius * scale_))), colour,
+  void circle(cv::Point2d c, double radius, const cv::Scalar& color, int thickness = 2) {
+    cv::circle(image_, at(c), std::max(2, static_cast<int>(std::lround(radius * scale_))), color,
                thickness, cv::LINE_AA);
   }
-  void line(cv::Point a, cv::Point b, const cv::Scalar& colour, int thickness = 2) {
-    cv::line(image_, a, b, colour, thickness, cv::LINE_AA);
+  void line(cv::Point a, cv::Point b, const cv::Scalar& color, int thickness = 2) {
+    cv::line(image_, a, b, color, thickness, cv::LINE_AA);
   }
-  // Mixes a colour into the cells of a mask.
-  void tint(const cv::Mat& mask, const cv::Scalar& colour, double share) {
+  // Mixes a color into the cells of a mask.
+  void tint(const cv::Mat& mask, const cv::Scalar& color, double share) {
     cv::Mat large, tinted;
     cv::resize(mask, large, image_.size(), 0, 0, cv::INTER_NEAREST);
-    cv::addWeighted(image_, 1.0 - share, cv::Mat(image_.size(), CV_8UC3, colour), share, 0.0,
+    cv::addWeighted(image_, 1.0 - share, cv::Mat(image_.size(), CV_8UC3, color), share, 0.0,
                     tinted);
     tinted.copyTo(image_, large);
   }
@@ -59,7 +59,7 @@ class Canvas {
   cv::Mat image_;
 };
 
-cv::Scalar colourOf(std::size_t place) {
+cv::Scalar colorOf(std::size_t place) {
   const std::uint64_t h = hyselam::splitmix64(place * 7919);
   cv::Mat hsv(1, 1, CV_8UC3,
               cv::Scalar(static_cast<double>(h % 180), 90.0 + static_cast<double>(h >> 8 & 63),
@@ -69,9 +69,9 @@ cv::Scalar colourOf(std::size_t place) {
   return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
 }
 
-void drawDoors(const ThesisResult& r, Canvas* canvas) {
+void drawDoors(const ThesisResult& r, Canvas& canvas) {
   for (const ConfirmedDoor& d : r.doors) {
-    canvas->line(canvas->at(d.critical.basis_a), canvas->at(d.critical.basis_b), kBlue, 3);
+    canvas.line(canvas.at(d.critical.basis_a), canvas.at(d.critical.basis_b), kBlue, 3);
   }
 }
 
@@ -92,7 +92,7 @@ cv::Mat drawThesis(const ThesisResult& r, ThesisStage stage) {
     }
     case ThesisStage::kCandidates: {
       for (const cv::Point2d& c : r.candidates) canvas.circle(c, 4.0, kRed);
-      drawDoors(r, &canvas);
+      drawDoors(r, canvas);
       break;
     }
     case ThesisStage::kVoronoi: {
@@ -117,7 +117,7 @@ cv::Mat drawThesis(const ThesisResult& r, ThesisStage stage) {
     }
     case ThesisStage::kPlaces: {
       for (std::size_t k = 0; k < r.circles.size(); ++k) {
-        canvas.tint(r.segmentation.labels == static_cast<int>(k + 1), colourOf(k), 0.7);
+        canvas.tint(r.segmentation.labels == static_cast<int>(k + 1), colorOf(k), 0.7);
       }
       for (const PlacePolygon& p : r.polygons) {
         for (std::size_t k = 0; k < 8; ++k) {
@@ -125,7 +125,7 @@ cv::Mat drawThesis(const ThesisResult& r, ThesisStage stage) {
                       p.wall[k] ? 2 : 1);
         }
       }
-      drawDoors(r, &canvas);
+      drawDoors(r, canvas);
       break;
     }
   }

@@ -61,6 +61,15 @@ std::array<std::array<bool, 256>, 2> removalTable() {
 
 }  // namespace
 
+void VoronoiParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("noise", noise, hyselam::Range::between(0.5, 10000.0), "cells",
+        "bumps of a wall up to this depth make no branch");
+}
+
+void VoronoiParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 bool separateSites(Cell a, Cell b, std::int32_t squared, double noise) {
   const auto apart = static_cast<double>(squaredDistance(a, b));
   const double bump = apart - noise * noise;
@@ -71,9 +80,7 @@ VoronoiDiagram::VoronoiDiagram(const DistanceMap& distances, const VoronoiParams
     : noise_(params.noise),
       borders_(distances.height(), distances.width(), CV_8UC1, cv::Scalar(0)),
       lines_(distances.height(), distances.width(), CV_8UC1, cv::Scalar(0)) {
-  if (!(noise_ >= 0.5 && noise_ < 1e4)) {
-    throw hyselam::ParameterError("voronoi_noise", noise_, "0.5 .. 10000 cells");
-  }
+  params.validate();
   for (int y = 0; y < borders_.rows; ++y) {
     std::uint8_t* row = borders_.ptr<std::uint8_t>(y);
     std::uint8_t* above = y + 1 < borders_.rows ? borders_.ptr<std::uint8_t>(y + 1) : nullptr;

@@ -99,7 +99,7 @@ class Booster {
         left.gradient += histogram[b].gradient;
         left.hessian += histogram[b].hessian;
         const Sums right{leaf.sums.gradient - left.gradient, leaf.sums.hessian - left.hessian};
-        if (left.hessian < params_.least_hessian || right.hessian < params_.least_hessian) continue;
+        if (left.hessian < params_.min_hessian || right.hessian < params_.min_hessian) continue;
         const double l = answer(left, leaf.lower, leaf.upper);
         const double r = answer(right, leaf.lower, leaf.upper);
         if (monotone(f) * (r - l) < 0.0) continue;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "segmentation/boosted_trees.hpp"
+#include "hyselam_gr2to/segmentation/boosted_trees.hpp"
 
 namespace hyselam_topo {
 
@@ -24,7 +24,7 @@ struct BoostingParams {
   int leaves = 6;
   double rate = 0.1;
   double l2 = 5.0;
-  double least_hessian = 3.0;  ///< in a leaf; weights are scaled to a mean of 1
+  double min_hessian = 3.0;    ///< in a leaf; weights are scaled to a mean of 1
   double feature_share = 0.5;  ///< looked at by a tree
   double sample_share = 0.7;   ///< looked at by a tree
   std::vector<int> monotone;   ///< per feature: 1 odds rise with it, -1 fall, 0 (or absent) either

@@ -1,4 +1,5 @@
-// The steps of the thesis (dos Santos, section 4.2) as they are written, with ERRATA's readings.
+// The steps of the thesis (dos Santos 2014, section 4.2) as they are written, with ERRATA's
+// readings.
 #pragma once
 
 #include <cmath>

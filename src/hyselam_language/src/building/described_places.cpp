@@ -59,7 +59,7 @@ void DescriptionBuilder::alias(const Utterance& u) {
 
 void DescriptionBuilder::kind(const Utterance& u) {
   const Id id = place(u, "place");
-  building_.findPlace(id)->kind = placeKindOf(u.word("kind"));
+  building_.findPlace(id)->kind = placeKindFromString(u.word("kind"));
   corrected_ = true;
   subjects_ = {id};
 }

@@ -91,7 +91,8 @@ DescribedPlace readPlace(hyselam::XmlElement& e) {
   DescribedPlace place;
   place.id = e.id("id");
   place.name = e.text("name");
-  if (e.has("kind")) place.kind = oneOf(e, "kind", placeKindOf, "room, corridor or virtual");
+  if (e.has("kind"))
+    place.kind = oneOf(e, "kind", placeKindFromString, "room, corridor or virtual");
   place.length = size("length");
   place.width = size("width");
   place.area = size("area");

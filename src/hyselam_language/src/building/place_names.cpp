@@ -135,7 +135,7 @@ std::optional<PlaceKind> PlaceNames::kindOf(const std::string& name) const {
         const auto found = type->nouns.find(words[at].substr(0, digit));
         if (found != type->nouns.end()) kind = &found->second;
       }
-      if (kind != nullptr) return placeKindOf(*kind);
+      if (kind != nullptr) return placeKindFromString(*kind);
     }
   }
   return std::nullopt;

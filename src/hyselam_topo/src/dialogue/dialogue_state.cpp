@@ -89,7 +89,7 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
     for (const json& w : j.at("walls")) {
       DescribedWall wall;
       wall.line = {{numberAt(w, "ax"), numberAt(w, "ay")}, {numberAt(w, "bx"), numberAt(w, "by")}};
-      const auto kind = wallKindOf(numberAt(w, "existence"));
+      const auto kind = wallKindFromExistence(numberAt(w, "existence"));
       if (!kind) throw std::runtime_error("the existence of a wall is 0 or 0.5");
       wall.kind = *kind;
       state.places.walls.push_back(wall);

@@ -98,7 +98,7 @@ CarryOverReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
     for (const Place& place : map.places) report.created.push_back(place.id);
     state_.map = std::move(map);
   } else {
-    state_.map = carryOver(state_.map, fresh, {}, &report);
+    state_.map = carryOver(state_.map, fresh, {}, report);
   }
   drawVirtualPlaces();
   putWalls();
@@ -285,7 +285,7 @@ Id PlaceMan::addVirtualPlace(Point2 centre, double radius, const std::vector<std
   const Id id = place.id;
   map.places.push_back(std::move(place));
   map.edges.push_back(std::move(edge));
-  normalise(&map);
+  normalize(map);
   drawVirtualPlaces();
   if (!names.empty()) confirm(id, names);
   return id;
@@ -345,7 +345,7 @@ void PlaceMan::drawVirtualPlaces() {
       map.edges.push_back(edge);
     }
   }
-  normalise(&map);
+  normalize(map);
 }
 
 void PlaceMan::putWalls() {

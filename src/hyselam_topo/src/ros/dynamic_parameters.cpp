@@ -5,16 +5,22 @@
 #include <dynamic_reconfigure/server.h>
 #include <hyselam_topo/Gr2ToConfig.h>
 
+#include "hyselam_common/errors.hpp"
+
 namespace hyselam_topo {
 namespace {
 
 Gr2ToConfig configOf(const Gr2ToServerParams& params) {
   Gr2ToConfig config = Gr2ToConfig::__getDefault__();
-  config.mode = params.gr2to.mode == Gr2ToParams::Mode::kThesis ? "thesis" : "default";
+  config.mode = toString(params.gr2to.mode);
   config.free_max = params.gr2to.segmentation.free_max;
   config.working_resolution = params.gr2to.segmentation.working_resolution;
-  config.clutter = params.gr2to.segmentation.clutter;
-  config.smallest_place = params.gr2to.segmentation.smallest_place;
+  config.max_clutter_size = params.gr2to.segmentation.max_clutter_size;
+  config.min_place_area = params.gr2to.segmentation.min_place_area;
+  config.thesis_door_min = params.gr2to.thesis.door_min;
+  config.thesis_door_max = params.gr2to.thesis.door_max;
+  config.thesis_critical_radius = params.gr2to.thesis.critical_radius;
+  config.thesis_wall_share = params.gr2to.thesis.wall_share;
   config.max_free_height = params.octomap.max_free_height;
   config.min_occupied_height = params.octomap.min_occupied_height;
   config.marker_alpha = params.markers.alpha;
@@ -28,7 +34,7 @@ class DynamicParameters {
       : server_(server), dynamic_(mutex_, private_nh) {
     // setCallback() calls at once with what the parameter server says: nothing new.
     dynamic_.setCallback([this](Gr2ToConfig& config, std::uint32_t) {
-      if (ready_) apply(config);  // what it changes in it is told back
+      if (ready_) apply(config);  // what it changes in it is published
     });
     dynamic_.updateConfig(configOf(server->params()));
     ready_ = true;
@@ -49,11 +55,22 @@ class DynamicParameters {
     }
     params.gr2to.segmentation.free_max = config.free_max;
     params.gr2to.segmentation.working_resolution = config.working_resolution;
-    params.gr2to.segmentation.clutter = config.clutter;
-    params.gr2to.segmentation.smallest_place = config.smallest_place;
+    params.gr2to.segmentation.max_clutter_size = config.max_clutter_size;
+    params.gr2to.segmentation.min_place_area = config.min_place_area;
+    params.gr2to.thesis.door_min = config.thesis_door_min;
+    params.gr2to.thesis.door_max = config.thesis_door_max;
+    params.gr2to.thesis.critical_radius = config.thesis_critical_radius;
+    params.gr2to.thesis.wall_share = config.thesis_wall_share;
     params.octomap.max_free_height = config.max_free_height;
     params.octomap.min_occupied_height = config.min_occupied_height;
     params.markers.alpha = config.marker_alpha;
+    try {
+      params.validate();
+    } catch (const hyselam::ParameterError& e) {
+      ROS_WARN_STREAM("all parameters stay as they are: " << e.what());
+      config = configOf(server_->params());
+      return;
+    }
     server_->setParams(params);
   }
 

@@ -136,7 +136,7 @@ void Gr2ToServer::setParams(const Gr2ToServerParams& params) {
   const BackgroundGr2To::MapPtr map = background_.current();
   if (last_map_ || last_octomap_)
     startLast();
-  else if (map)  // of a file: as it is, in other colours
+  else if (map)  // of a file: as it is, in other colors
     publish(map);
 }
 
@@ -156,7 +156,7 @@ void Gr2ToServer::onOutcome(const BackgroundGr2To::Outcome& outcome) {
     }
     before = published_;
   }
-  tell(outcome, before.get());
+  logOutcome(outcome, before.get());
   if (!outcome.map || outcome.unchanged) return;
   try {
     if (projected_publisher_) {
@@ -171,8 +171,8 @@ void Gr2ToServer::onOutcome(const BackgroundGr2To::Outcome& outcome) {
   }
 }
 
-void Gr2ToServer::tell(const BackgroundGr2To::Outcome& outcome,
-                       const AugmentedTopologicalMap* before) const {
+void Gr2ToServer::logOutcome(const BackgroundGr2To::Outcome& outcome,
+                             const AugmentedTopologicalMap* before) const {
   if (!outcome.error.empty()) {
     ROS_ERROR_STREAM(who_ << " this input is not used: " << outcome.error);
     return;

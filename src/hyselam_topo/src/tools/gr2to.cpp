@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_gr2to/octomap/octomap_compression.hpp"
 #include "hyselam_gr2to/overview.hpp"
+#include "hyselam_gr2to/segmentation/border_model.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
@@ -22,119 +24,162 @@ namespace {
 namespace fs = std::filesystem;
 using namespace hyselam_topo;  // NOLINT: a program, not a header
 
+struct Options {
+  std::string map_file, out, mode = "default", border_model;
+  Gr2ToParams gr2to;
+  OverviewOptions picture;
+  CompressionParams octomap;
+  std::optional<std::size_t> max_cells;
+  bool graphml = false;
+};
+
+void addOptions(CLI::App& app, Options& o) {
+  app.option_defaults()->always_capture_default();
+  app.add_option("MAP", o.map_file, "map_server's MAP.yaml, or an OctoMap, MAP.bt or MAP.ot")
+      ->required();
+  app.add_option("--out", o.out,
+                 "folder to write to: topo.xml, labels.png, doors.csv, overview.png, summary.json")
+      ->required();
+  app.add_option("--mode", o.mode, "default: merged and without clutter; thesis: as in the thesis")
+      ->check(CLI::IsMember({"default", "thesis"}));
+  app.add_option("--free-max", o.gr2to.segmentation.free_max, "cells of 0 .. this value are free");
+  app.add_option("--clutter", o.gr2to.segmentation.max_clutter_size,
+                 "free-standing obstacles up to this size do not separate places [m]");
+  app.add_option("--smallest-place", o.gr2to.segmentation.min_place_area,
+                 "smaller places join a neighbor or are left out [m^2]");
+  app.add_option("--border-model", o.border_model,
+                 "file of border trees, by train_borders; else those of the package");
+  ThesisParams& thesis = o.gr2to.thesis;
+  app.add_option("--door-min", thesis.door_min, "mode thesis: width of a door, at least [m]");
+  app.add_option("--door-max", thesis.door_max, "mode thesis: width of a door, at most [m]");
+  app.add_option("--critical-radius", thesis.critical_radius,
+                 "mode thesis: within which a critical point is the narrowest [m]");
+  app.add_option("--wall-share", thesis.wall_share,
+                 "mode thesis: occupied part of a polygon's edge that makes it a wall");
+  app.add_option("--picture-side", o.picture.side, "longer side of overview.png [pixel]");
+  app.add_option("--storey", o.octomap.storey, "of an OctoMap, 0 is the lowest; -1: the only one");
+  app.add_option("--z-min", o.octomap.z_min, "lowest height of an OctoMap that is used [m]");
+  app.add_option("--z-max", o.octomap.z_max, "highest height of an OctoMap that is used [m]");
+  app.add_option("--max-cells", o.max_cells, "a larger map is refused");
+  app.add_flag("--graphml", o.graphml, "write topo.graphml too");
+}
+
 bool isOctoMap(const std::string& path) {
   const std::string extension = fs::path(path).extension().string();
   return extension == ".bt" || extension == ".ot";
 }
 
+hyselam::OccupancyGrid loadGrid(const Options& o) {
+  if (isOctoMap(o.map_file)) {
+    CompressionParams octomap = o.octomap;
+    if (o.max_cells) octomap.max_cells = *o.max_cells;
+    return compress(loadOctoMap(o.map_file), octomap, o.map_file).grid;
+  }
+  hyselam::MapIoOptions limits;
+  if (o.max_cells) limits.max_cells = *o.max_cells;
+  return hyselam::loadMap(o.map_file, limits);
+}
+
 void saveImage(const std::string& path, const cv::Mat& image) {
   hyselam::replaceFileAtomically(path, [&](const std::string& temporary) {
-    if (!cv::imwrite(temporary, image))
+    if (!cv::imwrite(temporary, image)) {
       throw hyselam::InputError(path, "", "the picture cannot be written");
+    }
   });
 }
 
 void saveDoors(const std::string& path, const AugmentedTopologicalMap& map) {
   hyselam::writeFileAtomically(path, [&](std::ostream& out) {
     out << "x,y,width,real\n";
-    for (const Edge& edge : map.edges)
-      for (const Door& door : edge.doors)
+    for (const Edge& edge : map.edges) {
+      for (const Door& door : edge.doors) {
         out << door.position.x << ',' << door.position.y << ',' << door.width << ','
             << (door.real ? 1 : 0) << '\n';
+      }
+    }
   });
 }
 
 void makeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error || !fs::is_directory(path, error))
+  if (error || !fs::is_directory(path, error)) {
     throw hyselam::InputError(path, "", "is not a folder and cannot be made one");
+  }
+}
+
+void saveMapFiles(const Options& o, const Gr2ToResult& result) {
+  makeFolder(o.out);
+  saveXml(o.out + "/topo.xml", result.map);
+  if (o.graphml) {
+    hyselam::writeFileAtomically(o.out + "/topo.graphml",
+                                 [&](std::ostream& file) { file << toGraphMl(result.map); });
+  }
+  cv::Mat labels;
+  cv::flip(result.labels, labels, 0);  // images begin with the highest row
+  saveImage(o.out + "/labels.png", labels);
+  saveDoors(o.out + "/doors.csv", result.map);
+}
+
+nlohmann::json summaryOf(const Options& o, const hyselam::OccupancyGrid& grid,
+                         const Gr2ToResult& result) {
+  std::size_t doors = 0, open_borders = 0, walls = 0, corridors = 0;
+  for (const Edge& edge : result.map.edges) {
+    for (const Door& door : edge.doors) ++(door.real ? doors : open_borders);
+  }
+  for (const Place& place : result.map.places) {
+    walls += place.walls.size();
+    corridors += place.kind == PlaceKind::kCorridor;
+  }
+  nlohmann::json seconds = nlohmann::json::object();
+  double total = 0.0;
+  for (const auto& [stage, time] : result.seconds) {
+    seconds[stage] = time;
+    total += time;
+  }
+  seconds["total"] = total;
+  return {{"map", o.map_file},
+          {"mode", o.mode},
+          {"width", grid.geometry.width},
+          {"height", grid.geometry.height},
+          {"resolution", grid.geometry.resolution},
+          {"places", result.map.places.size()},
+          {"corridors", corridors},
+          {"doors", doors},
+          {"open_borders", open_borders},
+          {"walls", walls},
+          {"seconds", seconds}};
+}
+
+nlohmann::json run(Options& o) {
+  o.gr2to.mode = o.mode == "thesis" ? Gr2ToParams::Mode::kThesis : Gr2ToParams::Mode::kDefault;
+  if (!o.border_model.empty()) {
+    o.gr2to.segmentation.border_model =
+        std::make_shared<BorderModel>(BorderModel::load(o.border_model));
+  }
+  hyselam::Progress progress("gr2to", 4);
+  const hyselam::OccupancyGrid grid = loadGrid(o);
+  progress.update(1);
+  const Gr2ToResult result = gr2to(grid, o.gr2to);
+  progress.update(2);
+  saveMapFiles(o, result);
+  progress.update(3);
+  saveImage(o.out + "/overview.png", drawOverview(grid, result, o.picture));
+  const nlohmann::json summary = summaryOf(o, grid, result);
+  hyselam::writeFileAtomically(o.out + "/summary.json",
+                               [&](std::ostream& file) { file << summary.dump(2) << '\n'; });
+  progress.update(4);
+  std::cout << summary["places"] << " places (" << summary["corridors"] << " corridors), "
+            << summary["doors"] << " doors, " << summary["open_borders"] << " open borders -> "
+            << o.out << '\n';
+  return summary;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Finds the places, doors and walls of a grid map or an OctoMap.", "gr2to");
-  std::string map_file, out, mode = "default";
-  Gr2ToParams params;
-  OverviewOptions picture;
-  CompressionParams octomap;
-  std::optional<std::size_t> max_cells;
-  bool graphml = false;
-  app.option_defaults()->always_capture_default();
-  app.add_option("MAP", map_file, "map_server's MAP.yaml, or an OctoMap, MAP.bt or MAP.ot")
-      ->required();
-  app.add_option("--out", out,
-                 "folder to write to: topo.xml, labels.png, doors.csv, overview.png, summary.json")
-      ->required();
-  app.add_option("--mode", mode, "default: merged and without clutter; thesis: as in the thesis")
-      ->check(CLI::IsMember({"default", "thesis"}));
-  app.add_option("--clutter", params.segmentation.clutter,
-                 "obstacles up to this across that stand free do not part places [m]");
-  app.add_option("--smallest-place", params.segmentation.smallest_place, "[m^2]");
-  app.add_option("--picture-side", picture.side, "longer side of overview.png [pixel]");
-  app.add_option("--storey", octomap.storey, "of an OctoMap, 0 is the lowest");
-  app.add_option("--z-min", octomap.z_min, "lowest height of an OctoMap that is used [m]");
-  app.add_option("--z-max", octomap.z_max, "highest height of an OctoMap that is used [m]");
-  app.add_option("--max-cells", max_cells, "a larger map is refused");
-  app.add_flag("--graphml", graphml, "write topo.graphml too");
-
-  return hyselam::runTool(argc, argv, app, [&] {
-    params.mode = mode == "thesis" ? Gr2ToParams::Mode::kThesis : Gr2ToParams::Mode::kDefault;
-    hyselam::Progress progress("gr2to", 4);
-    hyselam::MapIoOptions limits;
-    if (max_cells) octomap.max_cells = limits.max_cells = *max_cells;
-    hyselam::OccupancyGrid grid;
-    if (isOctoMap(map_file))
-      grid = compress(loadOctoMap(map_file), octomap, map_file).grid;
-    else
-      grid = hyselam::loadMap(map_file, limits);
-    progress.update(1);
-    const Gr2ToResult result = gr2to(grid, params);
-    progress.update(2);
-
-    makeFolder(out);
-    saveXml(out + "/topo.xml", result.map);
-    if (graphml)
-      hyselam::writeFileAtomically(out + "/topo.graphml",
-                                   [&](std::ostream& file) { file << toGraphMl(result.map); });
-    cv::Mat labels;
-    cv::flip(result.labels, labels, 0);  // images begin with the highest row
-    saveImage(out + "/labels.png", labels);
-    saveDoors(out + "/doors.csv", result.map);
-    progress.update(3);
-    saveImage(out + "/overview.png", drawOverview(grid, result, picture));
-
-    std::size_t doors = 0, open_borders = 0, walls = 0, corridors = 0;
-    for (const Edge& edge : result.map.edges)
-      for (const Door& door : edge.doors) ++(door.real ? doors : open_borders);
-    for (const Place& place : result.map.places) {
-      walls += place.walls.size();
-      corridors += place.kind == PlaceKind::kCorridor;
-    }
-    nlohmann::json seconds = nlohmann::json::object();
-    double total = 0.0;
-    for (const auto& [stage, time] : result.seconds) {
-      seconds[stage] = time;
-      total += time;
-    }
-    seconds["total"] = total;
-    nlohmann::json summary{{"map", map_file},
-                           {"mode", mode},
-                           {"width", grid.geometry.width},
-                           {"height", grid.geometry.height},
-                           {"resolution", grid.geometry.resolution},
-                           {"places", result.map.places.size()},
-                           {"corridors", corridors},
-                           {"doors", doors},
-                           {"open_borders", open_borders},
-                           {"walls", walls},
-                           {"seconds", seconds}};
-    hyselam::writeFileAtomically(out + "/summary.json",
-                                 [&](std::ostream& file) { file << summary.dump(2) << '\n'; });
-    progress.update(4);
-    std::cout << result.map.places.size() << " places (" << corridors << " corridors), " << doors
-              << " doors, " << open_borders << " open borders -> " << out << '\n';
-    return summary;
-  });
+  Options options;
+  addOptions(app, options);
+  return hyselam::runTool(argc, argv, app, [&] { return run(options); });
 }

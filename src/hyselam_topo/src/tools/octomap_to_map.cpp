@@ -17,7 +17,7 @@ namespace {
 
 using hyselam::OccupancyGrid;
 
-cv::Vec3b colourOf(std::int8_t value) {
+cv::Vec3b colorOf(std::int8_t value) {
   if (value == OccupancyGrid::kUnknown) return {200, 200, 200};
   return value == OccupancyGrid::kFree ? cv::Vec3b{255, 255, 255} : cv::Vec3b{25, 20, 20};
 }
@@ -28,7 +28,7 @@ cv::Mat drawn(const OccupancyGrid& grid, const hyselam::GridGeometry& geometry) 
   for (int y = 0; y < geometry.height; ++y) {
     for (int x = 0; x < geometry.width; ++x) {
       const hyselam::Cell there = grid.geometry.cellAt(geometry.center({x, y}));
-      picture.at<cv::Vec3b>(geometry.height - 1 - y, x) = colourOf(grid.valueOr(there));
+      picture.at<cv::Vec3b>(geometry.height - 1 - y, x) = colorOf(grid.valueOr(there));
     }
   }
   return picture;
@@ -43,17 +43,17 @@ cv::Mat titled(const cv::Mat& picture, const std::string& title) {
   return with_title;
 }
 
-/// One above the other: what a planar sensor sees, and the pressed map.
+/// One above the other: what a planar sensor sees, and the projected map.
 void savePicture(const std::string& path, const OccupancyGrid& seen,
-                 const hyselam_topo::Compression& pressed) {
-  const auto& geometry = pressed.grid.geometry;
+                 const hyselam_topo::Compression& projected) {
+  const auto& geometry = projected.grid.geometry;
   char before[100], after[100];
-  std::snprintf(before, sizeof before, "anything between z = %.2f and %.2f m", pressed.z_min,
-                std::min(pressed.z_max, pressed.z_min + 1.0));
-  std::snprintf(after, sizeof after, "walls between z = %.2f and %.2f m", pressed.z_min,
-                pressed.z_max);
+  std::snprintf(before, sizeof before, "anything between z = %.2f and %.2f m", projected.z_min,
+                std::min(projected.z_max, projected.z_min + 1.0));
+  std::snprintf(after, sizeof after, "walls between z = %.2f and %.2f m", projected.z_min,
+                projected.z_max);
   cv::Mat both;
-  cv::vconcat(titled(drawn(seen, geometry), before), titled(drawn(pressed.grid, geometry), after),
+  cv::vconcat(titled(drawn(seen, geometry), before), titled(drawn(projected.grid, geometry), after),
               both);
   hyselam::replaceFileAtomically(path, [&](const std::string& temporary) {
     if (!cv::imwrite(temporary, both)) {
@@ -62,64 +62,77 @@ void savePicture(const std::string& path, const OccupancyGrid& seen,
   });
 }
 
+struct Options {
+  std::string in, out, picture;
+  hyselam_topo::CompressionParams compression;
+};
+
+void addOptions(CLI::App& app, Options& o) {
+  app.option_defaults()->always_capture_default();
+  app.add_option("OCTOMAP", o.in, "file of type .bt or .ot")->required();
+  app.add_option("OUT", o.out, "map to write (NAME.yaml; NAME.pgm goes beside it)")->required();
+  hyselam_topo::CompressionParams& p = o.compression;
+  app.add_option("--z-min", p.z_min,
+                 "lower limit of the heights that are projected [m]; else of the storey");
+  app.add_option("--z-max", p.z_max, "upper limit [m]");
+  app.add_option("--storey", p.storey, "from 0 for the lowest; -1: the only one");
+  app.add_option("--max-free-height", p.max_free_height,
+                 "a column with more free space is free [m]");
+  app.add_option("--min-occupied-height", p.min_occupied_height,
+                 "else it is occupied with more than this [m]");
+  app.add_option("--max-cells", p.max_cells, "a larger grid map is refused");
+  app.add_option("--picture", o.picture, "PNG: what a planar sensor sees above the projected map");
+}
+
+nlohmann::json countCells(const OccupancyGrid& grid) {
+  const auto count = [&](std::int8_t value) {
+    return std::count(grid.cells.begin(), grid.cells.end(), value);
+  };
+  return {{"occupied", count(OccupancyGrid::kOccupied)}, {"free", count(OccupancyGrid::kFree)}};
+}
+
+nlohmann::json run(const Options& o) {
+  const auto begin = std::chrono::steady_clock::now();
+  const hyselam_topo::VoxelMap map = hyselam_topo::loadOctoMap(o.in);
+  const auto loaded = std::chrono::steady_clock::now();
+  const hyselam_topo::Compression projected = hyselam_topo::compress(map, o.compression, o.in);
+  const auto done = std::chrono::steady_clock::now();
+  const OccupancyGrid seen =
+      hyselam_topo::slice(map, projected.z_min, std::min(projected.z_max, projected.z_min + 1.0),
+                          o.in, o.compression.max_cells);
+  hyselam::saveMap(o.out, projected.grid);
+  if (!o.picture.empty()) savePicture(o.picture, seen, projected);
+
+  const auto seconds = [](auto from, auto to) {
+    return std::chrono::duration<double>(to - from).count();
+  };
+  nlohmann::json result;
+  result["leaves"] = map.leaves.size();
+  result["resolution"] = map.resolution;
+  result["z_min"] = projected.z_min;
+  result["z_max"] = projected.z_max;
+  result["width"] = projected.grid.geometry.width;
+  result["height"] = projected.grid.geometry.height;
+  result["storeys"] = nlohmann::json::array();
+  for (const auto& storey : projected.storeys) {
+    result["storeys"].push_back({{"floor", storey.floor}, {"ceiling", storey.ceiling}});
+  }
+  result["seen"] = countCells(seen);
+  result["pressed"] = countCells(projected.grid);  // the former word stays in the output
+  result["read_seconds"] = seconds(begin, loaded);
+  result["press_seconds"] = seconds(loaded, done);
+  std::cout << result.dump(2) << '\n';
+  return result;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Presses a storey of an OctoMap into a grid map (map_server's YAML and PGM) without the "
+      "Projects a storey of an OctoMap to a grid map (map_server's YAML and PGM) without the "
       "furniture, which does not reach from the floor to the ceiling.",
       "octomap_to_map");
-  std::string in, out, picture;
-  hyselam_topo::CompressionParams params;
-  app.option_defaults()->always_capture_default();
-  app.add_option("OCTOMAP", in, "file of type .bt or .ot")->required();
-  app.add_option("OUT", out, "map to write (NAME.yaml; NAME.pgm goes beside it)")->required();
-  app.add_option("--z-min", params.z_min, "lower limit of what is pressed [m]; else of the storey");
-  app.add_option("--z-max", params.z_max, "upper limit [m]");
-  app.add_option("--storey", params.storey, "from 0 for the lowest, if there are several");
-  app.add_option("--max-free-height", params.max_free_height,
-                 "a column with more free space is free [m]");
-  app.add_option("--min-occupied-height", params.min_occupied_height,
-                 "else it is occupied with more than this [m]");
-  app.add_option("--max-cells", params.max_cells, "a larger grid map is refused");
-  app.add_option("--picture", picture, "PNG: what a planar sensor sees above the pressed map");
-
-  return hyselam::runTool(argc, argv, app, [&] {
-    const auto begin = std::chrono::steady_clock::now();
-    const hyselam_topo::VoxelMap map = hyselam_topo::loadOctoMap(in);
-    const auto loaded = std::chrono::steady_clock::now();
-    const hyselam_topo::Compression pressed = hyselam_topo::compress(map, params, in);
-    const auto done = std::chrono::steady_clock::now();
-    const OccupancyGrid seen = hyselam_topo::slice(
-        map, pressed.z_min, std::min(pressed.z_max, pressed.z_min + 1.0), in, params.max_cells);
-    hyselam::saveMap(out, pressed.grid);
-    if (!picture.empty()) savePicture(picture, seen, pressed);
-
-    const auto count = [](const OccupancyGrid& grid, std::int8_t value) {
-      return std::count(grid.cells.begin(), grid.cells.end(), value);
-    };
-    const auto seconds = [](auto from, auto to) {
-      return std::chrono::duration<double>(to - from).count();
-    };
-    nlohmann::json result;
-    result["leaves"] = map.leaves.size();
-    result["resolution"] = map.resolution;
-    result["z_min"] = pressed.z_min;
-    result["z_max"] = pressed.z_max;
-    result["width"] = pressed.grid.geometry.width;
-    result["height"] = pressed.grid.geometry.height;
-    result["storeys"] = nlohmann::json::array();
-    for (const auto& storey : pressed.storeys) {
-      result["storeys"].push_back({{"floor", storey.floor}, {"ceiling", storey.ceiling}});
-    }
-    for (const auto& [name, grid] :
-         {std::make_pair("seen", &seen), std::make_pair("pressed", &pressed.grid)}) {
-      result[name] = {{"occupied", count(*grid, OccupancyGrid::kOccupied)},
-                      {"free", count(*grid, OccupancyGrid::kFree)}};
-    }
-    result["read_seconds"] = seconds(begin, loaded);
-    result["press_seconds"] = seconds(loaded, done);
-    std::cout << result.dump(2) << '\n';
-    return result;
-  });
+  Options options;
+  addOptions(app, options);
+  return hyselam::runTool(argc, argv, app, [&] { return run(options); });
 }

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
@@ -20,6 +21,9 @@ struct CarryOverParams {
   double max_wall_turn = hyselam::radians(20.0);
   /// ... and shares at least this part of the shorter of the two. (0, 1]
   double min_wall_overlap = 0.3;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// What became of the places.
@@ -33,21 +37,24 @@ struct CarryOverReport {
 
 /// The new map with the ids, words, signatures and extras of the old one.
 ///
-/// `fresh` decides where places, walls and doors are; its ids mean nothing. Both maps need a grid
-/// (their geometries may differ) in one frame. Places go on by the share of cells that they have in
-/// common: of a place that falls apart the biggest part keeps the id, of places that grow together
-/// the named one (confirmed before guessed), else the oldest, and the words and signatures of all
-/// are united. Doors keep id, state, height, appearance, walls keep id and height. Kept from the
-/// old map although the new one does not know them: virtual places and their edges, words of edges
-/// (without a door if it is gone), and walls of glass, which no range sensor sees, while their
-/// place lasts. Ids are never used again. Equal input gives equal output; a map carried over to
-/// itself is unchanged.
+/// Where places, walls and doors are comes from `fresh`; its ids mean nothing. Both maps need a
+/// grid (their geometries may differ) in one frame. Places go on by the share of cells that they
+/// have in common: of a place that falls apart the biggest part keeps the id, of places that grow
+/// together the named one (confirmed before guessed), else the oldest, and the words and signatures
+/// of all are united. Doors keep id, state, height, appearance, walls keep id and height. Kept from
+/// the old map although the new one does not know them: virtual places and their edges, words of
+/// edges (without a door if it is gone), and walls of glass, which no range sensor sees, while
+/// their place lasts. Ids are never used again. Equal input gives equal output; a map carried over
+/// to itself is unchanged.
 ///
-/// Throws hyselam::InputError for maps that checkMap() refuses or without a grid,
+/// @throws hyselam::InputError for maps that checkMap() refuses or without a grid,
 /// hyselam::ParameterError for parameters out of range.
 AugmentedTopologicalMap carryOver(const AugmentedTopologicalMap& old,
                                   const AugmentedTopologicalMap& fresh,
-                                  const CarryOverParams& params = {},
-                                  CarryOverReport* report = nullptr);
+                                  const CarryOverParams& params = {});
+/// The same, with what became of the places.
+AugmentedTopologicalMap carryOver(const AugmentedTopologicalMap& old,
+                                  const AugmentedTopologicalMap& fresh,
+                                  const CarryOverParams& params, CarryOverReport& report);
 
 }  // namespace hyselam_topo

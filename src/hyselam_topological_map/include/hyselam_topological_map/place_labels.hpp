@@ -13,7 +13,7 @@ struct PlaceLabelParams {
   double min_height = 0.3;   ///< of a line [m], > 0; written even if it does not fit
   double max_height = 0.5;   ///< of a line [m], >= min_height
   double margin = 0.1;       ///< kept free around the text [m]
-  double node_radius = 0.3;  ///< kept free around the centre of the place, where its node is [m]
+  double node_radius = 0.3;  ///< kept free around the center of the place, where its node is [m]
 };
 
 struct PlaceLabel {

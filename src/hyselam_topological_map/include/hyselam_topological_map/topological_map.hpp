@@ -1,5 +1,6 @@
-// The augmented topological map of HySeLAM (dos Santos, section 3.2.1): places with their walls and
-// visual signatures, connected by doors, and the relation of the places to the cells of a grid map.
+// The augmented topological map of HySeLAM (dos Santos 2014, section 3.2.1): places with their
+// walls and visual signatures, connected by doors, and the relation of the places to the cells of a
+// grid map.
 //
 // Plain values: copy, compare and change them freely. Lengths [m], angles [rad], times [s], all
 // positions in the frame `frame_id` of the map, z up from the floor (REP-103).
@@ -33,7 +34,7 @@ using Extras = hyselam::XmlExtras;
 /// A word or name that people use for a place or a connection.
 struct PlaceTerm {
   std::string text;        ///< UTF-8, not empty
-  bool confirmed = false;  ///< a person has said or confirmed it; otherwise it is a guess
+  bool confirmed = false;  ///< said or confirmed by a person; otherwise it is a guess
 };
 
 /// A matrix of numbers: an image in grey values or a descriptor of it.
@@ -112,7 +113,7 @@ struct VisualSignature {
 enum class PlaceKind {
   kRoom,
   kCorridor,
-  kVirtual  ///< told by a person or cut out by virtual walls; not found by segmentation
+  kVirtual  ///< described by a person or cut out by virtual walls; not found by segmentation
 };
 
 /// A place (Eq. 3.2).
@@ -123,7 +124,7 @@ struct Place {
   std::vector<Wall> walls;
   std::vector<VisualSignature> signatures;
   double area = 0.0;  ///< [m^2], 0: not known
-  /// A point inside the place near its middle. Nothing for a place that is only told about.
+  /// A point inside the place near its middle. Nothing for a place that is only described.
   std::optional<Point3> centre;
   std::vector<hyselam::Point2> outline;  ///< counter-clockwise, not closed; empty: not known
   Extras extras;
@@ -176,29 +177,28 @@ bool operator==(const Place& a, const Place& b);
 bool operator==(const PlaceGrid& a, const PlaceGrid& b);
 bool operator==(const AugmentedTopologicalMap& a, const AugmentedTopologicalMap& b);
 
-/// How people call a place: its first confirmed word, else its first word, else "room 3".
+/// The name of a place: its first confirmed word, else its first word, else "room 3".
 std::string nameOf(const Place& place);
 
 /// "room", "corridor", "virtual" and back; nothing for another word.
 const char* toString(PlaceKind kind);
-std::optional<PlaceKind> placeKindOf(const std::string& text);
+std::optional<PlaceKind> placeKindFromString(const std::string& text);
 /// "unknown", "open", "closed" and back.
 const char* toString(DoorState state);
-std::optional<DoorState> doorStateOf(const std::string& text);
+std::optional<DoorState> doorStateFromString(const std::string& text);
 /// 0, 0.5 or 1 (Eq. 3.3) and back.
 double existence(WallKind kind);
-std::optional<WallKind> wallKindOf(double existence);
+std::optional<WallKind> wallKindFromExistence(double existence);
 
 /// Puts places, edges and what they hold into the order of their ids and raises the next ids above
 /// all ids in use. Call it after filling a map by hand.
-void normalise(AugmentedTopologicalMap* map);
+void normalize(AugmentedTopologicalMap& map);
 
-/// Throws hyselam::InputError, with `source` and the part that is wrong ("place 3, wall 7"),
+/// @throws hyselam::InputError, with `source` and the part that is wrong ("place 3, wall 7"),
 /// unless: ids are there, unique and below the next ids; edges join two different places of the
 /// map, a < b, once each; all numbers are finite, normals of length 1, covariances symmetric with a
-/// diagonal
-/// >= 0, lengths, areas and apertures >= 0; words are not empty; appearances and the grid have as
-/// many values as their sizes say; labels of the grid mean places of the map.
+/// diagonal >= 0, lengths, areas and apertures >= 0; words are not empty; appearances and the grid
+/// have as many values as their sizes say; labels of the grid mean places of the map.
 void checkMap(const AugmentedTopologicalMap& map, const std::string& source);
 
 }  // namespace hyselam_topo

@@ -5,18 +5,18 @@
 #include <limits>
 #include <tuple>
 
-#include "hyselam_common/require.hpp"
+#include "hyselam_common/errors.hpp"
 #include "place_matching.hpp"
 
 namespace hyselam_topo {
 namespace {
 
-void unite(const std::vector<PlaceTerm>& more, std::vector<PlaceTerm>* words) {
+void unite(const std::vector<PlaceTerm>& more, std::vector<PlaceTerm>& words) {
   for (const PlaceTerm& word : more) {
-    const auto same = std::find_if(words->begin(), words->end(),
+    const auto same = std::find_if(words.begin(), words.end(),
                                    [&](const PlaceTerm& w) { return w.text == word.text; });
-    if (same == words->end()) {
-      words->push_back(word);
+    if (same == words.end()) {
+      words.push_back(word);
     } else {
       same->confirmed = same->confirmed || word.confirmed;
     }
@@ -24,25 +24,25 @@ void unite(const std::vector<PlaceTerm>& more, std::vector<PlaceTerm>* words) {
 }
 
 /// What the new map knows goes before what the old one knew.
-void unite(const Extras& more, Extras* extras) {
+void unite(const Extras& more, Extras& extras) {
   for (const auto& attribute : more.attributes) {
     const bool known =
-        std::any_of(extras->attributes.begin(), extras->attributes.end(),
+        std::any_of(extras.attributes.begin(), extras.attributes.end(),
                     [&](const auto& other) { return other.first == attribute.first; });
-    if (!known) extras->attributes.push_back(attribute);
+    if (!known) extras.attributes.push_back(attribute);
   }
   for (const std::string& element : more.elements) {
-    if (std::find(extras->elements.begin(), extras->elements.end(), element) ==
-        extras->elements.end()) {
-      extras->elements.push_back(element);
+    if (std::find(extras.elements.begin(), extras.elements.end(), element) ==
+        extras.elements.end()) {
+      extras.elements.push_back(element);
     }
   }
 }
 
-void unite(const std::vector<VisualSignature>& more, std::vector<VisualSignature>* signatures) {
+void unite(const std::vector<VisualSignature>& more, std::vector<VisualSignature>& signatures) {
   for (const VisualSignature& signature : more) {
-    if (std::find(signatures->begin(), signatures->end(), signature) == signatures->end()) {
-      signatures->push_back(signature);
+    if (std::find(signatures.begin(), signatures.end(), signature) == signatures.end()) {
+      signatures.push_back(signature);
     }
   }
 }
@@ -91,11 +91,11 @@ class CarryOver {
         params_(params),
         matching_(matchPlaces(old, fresh, params.min_overlap)) {}
 
-  AugmentedTopologicalMap run(CarryOverReport* report) {
+  AugmentedTopologicalMap run(CarryOverReport& report) {
     map_.frame_id = fresh_.frame_id;
     map_.stamp = fresh_.stamp;
     map_.extras = fresh_.extras;
-    unite(old_.extras, &map_.extras);
+    unite(old_.extras, map_.extras);
     map_.next_place_id = old_.next_place_id;
     map_.next_wall_id = old_.next_wall_id;
     map_.next_door_id = old_.next_door_id;
@@ -107,17 +107,17 @@ class CarryOver {
     PlaceGrid grid = *fresh_.grid;
     for (Id& id : grid.places) id = newId(id);
     map_.grid = std::move(grid);
-    normalise(&map_);
+    normalize(map_);
     return std::move(map_);
   }
 
  private:
   /// Ids are never used again, and the next one must be a number as well.
-  static Id take(Id* next) {
-    if (*next == std::numeric_limits<Id>::max()) {
+  static Id takeId(Id& next) {
+    if (next == std::numeric_limits<Id>::max()) {
       throw hyselam::InputError("old map", "", "it has no ids left for new places, walls or doors");
     }
-    return (*next)++;
+    return next++;
   }
 
   /// The id in the result of a place of the fresh map; 0 if it has none.
@@ -128,12 +128,12 @@ class CarryOver {
 
   /// The id in the result of a place of the old map; 0 if it is lost.
   Id successor(Id old_id) const {
-    if (matching_.told.count(old_id) != 0) return old_id;
+    if (matching_.described.count(old_id) != 0) return old_id;
     const auto it = matching_.heir.find(old_id);
     return it == matching_.heir.end() ? 0 : newId(it->second);
   }
 
-  void places(CarryOverReport* report) {
+  void places(CarryOverReport& report) {
     for (const Place& fresh : fresh_.places) {
       if (matching_.passed_over.count(fresh.id) != 0) {
         new_id_[fresh.id] = fresh.id;
@@ -142,26 +142,26 @@ class CarryOver {
       Place place = fresh;
       const auto ancestors = matching_.ancestors.find(fresh.id);
       if (ancestors == matching_.ancestors.end()) {
-        place.id = take(&map_.next_place_id);
-        report->created.push_back(place.id);
+        place.id = takeId(map_.next_place_id);
+        report.created.push_back(place.id);
         const auto touching = matching_.touching.find(fresh.id);
         if (touching != matching_.touching.end()) {
-          report->split_off.emplace_back(place.id, touching->second.front());
+          report.split_off.emplace_back(place.id, touching->second.front());
         }
       } else {
         place.id = ancestors->second.front();
-        report->kept.push_back(place.id);
+        report.kept.push_back(place.id);
         std::vector<PlaceTerm> words;
         std::vector<VisualSignature> signatures;
         for (const Id id : ancestors->second) {
           const Place& ancestor = *old_.findPlace(id);
-          unite(ancestor.words, &words);
-          unite(ancestor.signatures, &signatures);
-          unite(ancestor.extras, &place.extras);
-          if (id != place.id) report->merged.emplace_back(id, place.id);
+          unite(ancestor.words, words);
+          unite(ancestor.signatures, signatures);
+          unite(ancestor.extras, place.extras);
+          if (id != place.id) report.merged.emplace_back(id, place.id);
         }
-        unite(place.words, &words);
-        unite(place.signatures, &signatures);
+        unite(place.words, words);
+        unite(place.signatures, signatures);
         place.words = std::move(words);
         place.signatures = std::move(signatures);
       }
@@ -169,15 +169,15 @@ class CarryOver {
       map_.places.push_back(std::move(place));
     }
     for (const Place& place : old_.places) {
-      if (matching_.told.count(place.id) != 0) {
+      if (matching_.described.count(place.id) != 0) {
         map_.places.push_back(place);
-        report->kept.push_back(place.id);
+        report.kept.push_back(place.id);
       } else if (matching_.heir.count(place.id) == 0) {
-        report->lost.push_back(place.id);
+        report.lost.push_back(place.id);
       }
     }
-    std::sort(report->kept.begin(), report->kept.end());
-    std::sort(report->merged.begin(), report->merged.end());
+    std::sort(report.kept.begin(), report.kept.end());
+    std::sort(report.merged.begin(), report.merged.end());
   }
 
   /// The length that two walls share if they may be the same, else nothing.
@@ -197,7 +197,7 @@ class CarryOver {
     std::vector<const Wall*> old_walls;
     std::vector<Id> owner;
     for (const Place& place : old_.places) {
-      if (matching_.told.count(place.id) != 0) continue;
+      if (matching_.described.count(place.id) != 0) continue;
       for (const Wall& wall : place.walls) {
         of_old_place[place.id].push_back(old_walls.size());
         old_walls.push_back(&wall);
@@ -232,10 +232,10 @@ class CarryOver {
                     to.id = from.id;
                     if (from.kind == WallKind::kGlass) to.kind = WallKind::kGlass;
                     if (to.height == 0.0) to.height = from.height;
-                    unite(from.extras, &to.extras);
+                    unite(from.extras, to.extras);
                   });
     for (Wall* wall : new_walls) {
-      if (wall->id == 0) wall->id = take(&map_.next_wall_id);
+      if (wall->id == 0) wall->id = takeId(map_.next_wall_id);
     }
     for (std::size_t i = 0; i < old_walls.size(); ++i) {
       const Id place = successor(owner[i]);
@@ -261,14 +261,14 @@ class CarryOver {
     }
   }
 
-  bool isTold(const Edge& old_edge) const {
-    return matching_.told.count(old_edge.a) + matching_.told.count(old_edge.b) != 0;
+  bool isDescribed(const Edge& old_edge) const {
+    return matching_.described.count(old_edge.a) + matching_.described.count(old_edge.b) != 0;
   }
 
   void doors() {
     std::vector<const Door*> old_doors;
     for (const Edge& edge : old_.edges) {
-      if (isTold(edge)) continue;
+      if (isDescribed(edge)) continue;
       for (const Door& door : edge.doors) old_doors.push_back(&door);
     }
     std::vector<Door*> new_doors;
@@ -296,10 +296,10 @@ class CarryOver {
                     if (to.state == DoorState::kUnknown) to.state = from.state;
                     if (to.height == 0.0) to.height = from.height;
                     if (!to.appearance) to.appearance = from.appearance;
-                    unite(from.extras, &to.extras);
+                    unite(from.extras, to.extras);
                   });
     for (Door* door : new_doors) {
-      if (door->id == 0) door->id = take(&map_.next_door_id);
+      if (door->id == 0) door->id = takeId(map_.next_door_id);
     }
   }
 
@@ -308,18 +308,18 @@ class CarryOver {
     for (const Edge& old : old_.edges) {
       Id a = successor(old.a), b = successor(old.b);
       if (a == 0 || b == 0 || a == b) continue;
-      const bool told = isTold(old);
+      const bool described = isDescribed(old);
       Edge* edge = map_.findEdge(a, b);
       if (edge == nullptr) {
-        if (!told && old.words.empty()) continue;
+        if (!described && old.words.empty()) continue;
         map_.edges.emplace_back();
         edge = &map_.edges.back();
         edge->a = std::min(a, b);
         edge->b = std::max(a, b);
       }
-      unite(old.words, &edge->words);
-      unite(old.extras, &edge->extras);
-      if (!told) continue;
+      unite(old.words, edge->words);
+      unite(old.extras, edge->extras);
+      if (!described) continue;
       for (Door door : old.doors) {
         if (a > b) door.normal = opposite(door.normal);
         edge->doors.push_back(std::move(door));
@@ -335,24 +335,29 @@ class CarryOver {
   AugmentedTopologicalMap map_;
 };
 
-void check(const CarryOverParams& p) {
-  const auto share = [](const char* name, double value) {
-    hyselam::require(name, value, value > 0.0 && value <= 1.0, "in (0, 1]");
-  };
-  share("min_overlap", p.min_overlap);
-  share("min_wall_overlap", p.min_wall_overlap);
-  hyselam::require("max_door_shift", p.max_door_shift, p.max_door_shift >= 0.0, ">= 0");
-  hyselam::require("max_wall_shift", p.max_wall_shift, p.max_wall_shift >= 0.0, ">= 0");
-  hyselam::require("max_wall_turn", p.max_wall_turn,
-                   p.max_wall_turn >= 0.0 && p.max_wall_turn <= 0.5 * hyselam::kPi, "in [0, pi/2]");
+}  // namespace
+
+void CarryOverParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("min_overlap", min_overlap, Range::aboveUpTo(0.0, 1.0), "",
+        "part of the smaller of two places that they share to be the same");
+  visit("max_door_shift", max_door_shift, Range::atLeast(0.0), "m", "of a door that is the same");
+  visit("max_wall_shift", max_wall_shift, Range::atLeast(0.0), "m",
+        "sideways, of a wall that is the same");
+  visit("max_wall_turn", max_wall_turn, Range::between(0.0, 0.5 * hyselam::kPi), "rad",
+        "of a wall that is the same");
+  visit("min_wall_overlap", min_wall_overlap, Range::aboveUpTo(0.0, 1.0), "",
+        "part of the shorter of two walls that they share to be the same");
 }
 
-}  // namespace
+void CarryOverParams::validate() const {
+  hyselam::checkParameters(*this);
+}
 
 AugmentedTopologicalMap carryOver(const AugmentedTopologicalMap& old,
                                   const AugmentedTopologicalMap& fresh,
-                                  const CarryOverParams& params, CarryOverReport* report) {
-  check(params);
+                                  const CarryOverParams& params, CarryOverReport& report) {
+  params.validate();
   checkMap(old, "old map");
   checkMap(fresh, "new map");
   if (!old.grid || !fresh.grid) {
@@ -363,10 +368,15 @@ AugmentedTopologicalMap carryOver(const AugmentedTopologicalMap& old,
         "new map", "frame_id",
         "it is '" + fresh.frame_id + "', that of the old map is '" + old.frame_id + "'");
   }
-  CarryOverReport ignored;
-  if (report == nullptr) report = &ignored;
-  *report = {};
+  report = {};
   return CarryOver(old, fresh, params).run(report);
+}
+
+AugmentedTopologicalMap carryOver(const AugmentedTopologicalMap& old,
+                                  const AugmentedTopologicalMap& fresh,
+                                  const CarryOverParams& params) {
+  CarryOverReport report;
+  return carryOver(old, fresh, params, report);
 }
 
 }  // namespace hyselam_topo

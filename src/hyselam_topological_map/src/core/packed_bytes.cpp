@@ -6,7 +6,8 @@
 #include <array>
 #include <cstring>
 #include <new>
-#include <stdexcept>
+
+#include "hyselam_common/errors.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -52,11 +53,11 @@ Bytes fromBase64(const char* text) {
       group <<= 6;
     } else {
       const unsigned char value = values[static_cast<unsigned char>(c)];
-      if (value == kNoDigit || padding > 0) throw std::invalid_argument("this is no base64");
+      if (value == kNoDigit || padding > 0) throw hyselam::Error("this is no base64");
       group = group << 6 | value;
     }
     if (++digits == 4) {
-      if (padding > 2) throw std::invalid_argument("this is no base64");
+      if (padding > 2) throw hyselam::Error("this is no base64");
       for (int k = 0; k < 3 - padding; ++k) {
         bytes.push_back(static_cast<unsigned char>(group >> (16 - 8 * k) & 255u));
       }
@@ -64,7 +65,7 @@ Bytes fromBase64(const char* text) {
       digits = 0;
     }
   }
-  if (digits != 0) throw std::invalid_argument("the base64 text is cut off");
+  if (digits != 0) throw hyselam::Error("the base64 text is cut off");
   return bytes;
 }
 
@@ -82,18 +83,18 @@ std::string packBytes(const Bytes& bytes) {
 Bytes unpackBytes(const char* text, std::size_t size) {
   const Bytes packed = fromBase64(text);
   // Deflate gains at most a factor of about 1032: less text cannot fill the values.
-  if (packed.size() < size / 1100) throw std::invalid_argument("the packed data are too short");
+  if (packed.size() < size / 1100) throw hyselam::Error("the packed data are too short");
   Bytes bytes(size + 1);  // one more, to see what is too long
   uLongf got = static_cast<uLongf>(bytes.size());
   const int status =
       uncompress(bytes.data(), &got, packed.data(), static_cast<uLong>(packed.size()));
   if (status == Z_BUF_ERROR && got == bytes.size()) {
-    throw std::invalid_argument("there are more packed data than the sizes say");
+    throw hyselam::Error("there are more packed data than the sizes say");
   }
-  if (status != Z_OK) throw std::invalid_argument("the packed data are damaged");
+  if (status != Z_OK) throw hyselam::Error("the packed data are damaged");
   if (got != size) {
-    throw std::invalid_argument(got < size ? "the packed data are too short"
-                                           : "there are more packed data than the sizes say");
+    throw hyselam::Error(got < size ? "the packed data are too short"
+                                    : "there are more packed data than the sizes say");
   }
   bytes.pop_back();
   return bytes;

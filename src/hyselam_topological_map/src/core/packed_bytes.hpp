@@ -11,7 +11,7 @@ namespace hyselam_topo {
 std::string pack(const std::vector<std::uint16_t>& values);
 std::string pack(const std::vector<float>& values);
 
-/// Exactly `count` values. White space in the text is passed over. Throws std::invalid_argument
+/// Exactly `count` values. White space in the text is passed over. Throws hyselam::Error
 /// with the reason if the text is no base64, the data are damaged, too short or too long; never
 /// takes more memory than the values need.
 std::vector<std::uint16_t> unpackShorts(const char* text, std::size_t count);

@@ -78,12 +78,12 @@ PlaceMatching matchPlaces(const AugmentedTopologicalMap& old, const AugmentedTop
   const Cells old_area = areas(*old.grid), fresh_area = areas(*fresh.grid);
   for (const Place& place : old.places) {
     if (place.kind == PlaceKind::kVirtual || old_area.count(place.id) == 0) {
-      matching.told.insert(place.id);
+      matching.described.insert(place.id);
     }
   }
   for (const Place& place : fresh.places) {
-    const bool told = place.kind == PlaceKind::kVirtual || fresh_area.count(place.id) == 0;
-    if (told && matching.told.count(place.id) != 0) matching.passed_over.insert(place.id);
+    const bool described = place.kind == PlaceKind::kVirtual || fresh_area.count(place.id) == 0;
+    if (described && matching.described.count(place.id) != 0) matching.passed_over.insert(place.id);
   }
 
   struct Share {
@@ -95,7 +95,7 @@ PlaceMatching matchPlaces(const AugmentedTopologicalMap& old, const AugmentedTop
   };
   std::map<Id, std::vector<Share>> of_old, of_fresh;
   for (const auto& [pair, area] : overlapsOf(*old.grid, *fresh.grid)) {
-    if (matching.told.count(pair.first) != 0 || matching.passed_over.count(pair.second) != 0) {
+    if (matching.described.count(pair.first) != 0 || matching.passed_over.count(pair.second) != 0) {
       continue;
     }
     of_old[pair.first].push_back({area, pair.second});

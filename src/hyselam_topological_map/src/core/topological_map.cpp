@@ -155,7 +155,7 @@ const char* toString(PlaceKind kind) {
   return nameOf(kPlaceKinds, kind);
 }
 
-std::optional<PlaceKind> placeKindOf(const std::string& text) {
+std::optional<PlaceKind> placeKindFromString(const std::string& text) {
   return valueOf(kPlaceKinds, text);
 }
 
@@ -163,7 +163,7 @@ const char* toString(DoorState state) {
   return nameOf(kDoorStates, state);
 }
 
-std::optional<DoorState> doorStateOf(const std::string& text) {
+std::optional<DoorState> doorStateFromString(const std::string& text) {
   return valueOf(kDoorStates, text);
 }
 
@@ -179,26 +179,26 @@ double existence(WallKind kind) {
   return 1.0;
 }
 
-std::optional<WallKind> wallKindOf(double existence_of_wall) {
+std::optional<WallKind> wallKindFromExistence(double existence_of_wall) {
   for (const WallKind kind : {WallKind::kVirtual, WallKind::kGlass, WallKind::kSolid}) {
     if (existence(kind) == existence_of_wall) return kind;
   }
   return std::nullopt;
 }
 
-void normalise(AugmentedTopologicalMap* map) {
-  map->next_place_id = sortById(&map->places, map->next_place_id);
-  for (Place& place : map->places) map->next_wall_id = sortById(&place.walls, map->next_wall_id);
-  for (Edge& edge : map->edges) {
+void normalize(AugmentedTopologicalMap& map) {
+  map.next_place_id = sortById(&map.places, map.next_place_id);
+  for (Place& place : map.places) map.next_wall_id = sortById(&place.walls, map.next_wall_id);
+  for (Edge& edge : map.edges) {
     if (edge.a > edge.b) {
       std::swap(edge.a, edge.b);
       for (Door& door : edge.doors) {
         door.normal = {-door.normal.x, -door.normal.y, -door.normal.z};
       }
     }
-    map->next_door_id = sortById(&edge.doors, map->next_door_id);
+    map.next_door_id = sortById(&edge.doors, map.next_door_id);
   }
-  std::stable_sort(map->edges.begin(), map->edges.end(), [](const Edge& a, const Edge& b) {
+  std::stable_sort(map.edges.begin(), map.edges.end(), [](const Edge& a, const Edge& b) {
     return std::tie(a.a, a.b) < std::tie(b.a, b.b);
   });
 }

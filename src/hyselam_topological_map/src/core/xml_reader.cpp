@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <stdexcept>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
@@ -102,7 +101,7 @@ class Reader {
     }
     try {
       return unpack(e.content(), count);
-    } catch (const std::invalid_argument& error) {
+    } catch (const hyselam::Error& error) {
       e.fail(error.what());
     }
   }
@@ -129,7 +128,7 @@ class Reader {
   static Wall wall(hyselam::XmlElement& e) {
     Wall wall;
     wall.id = e.id("id");
-    const auto kind = wallKindOf(e.number("existence"));
+    const auto kind = wallKindFromExistence(e.number("existence"));
     if (!kind) e.fail("the attribute 'existence' must be 0, 0.5 or 1");
     wall.kind = *kind;
     wall.length = e.number("length");
@@ -200,7 +199,7 @@ class Reader {
   Place place(hyselam::XmlElement& e) const {
     Place place;
     place.id = e.id("id");
-    const auto kind = placeKindOf(e.text("kind"));
+    const auto kind = placeKindFromString(e.text("kind"));
     if (!kind) e.fail("the attribute 'kind' must be room, corridor or virtual");
     place.kind = *kind;
     place.area = e.number("area");
@@ -236,7 +235,7 @@ class Reader {
     const double exists = e.number("existence");
     if (exists != 0.0 && exists != 1.0) e.fail("the attribute 'existence' must be 0 or 1");
     door.real = exists == 1.0;
-    const auto state = doorStateOf(e.text("state"));
+    const auto state = doorStateFromString(e.text("state"));
     if (!state) e.fail("the attribute 'state' must be unknown, open or closed");
     door.state = *state;
     door.width = e.number("width");

@@ -272,6 +272,19 @@ void addGraph(const AugmentedTopologicalMap& map, const std::map<Id, CellBox>& b
 
 }  // namespace
 
+void MapMarkerParams::describe(hyselam::ParameterVisitor& visit) {
+  visit("places", places, "the cells of each place in a color of its own");
+  visit("names", names, "names of places");
+  visit("walls", walls, "walls by their kind");
+  visit("doors", doors, "doors by their state");
+  visit("graph", graph, "from the center of a place through its doors to the next");
+  visit("alpha", alpha, hyselam::Range::between(0.0, 1.0), "", "opacity of the places");
+}
+
+void MapMarkerParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
 visualization_msgs::MarkerArray mapMarkers(const AugmentedTopologicalMap& map,
                                            const MapMarkerParams& params) {
   Markers markers(map.frame_id);

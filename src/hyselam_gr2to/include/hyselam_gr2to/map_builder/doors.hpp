@@ -7,19 +7,23 @@
 #include <vector>
 
 #include "hyselam_common/occupancy_grid.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_common/parameters.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 
 namespace hyselam_topo {
 
 struct DoorParams {
   double min_width = 0.45;  ///< [m] of a real door, > 0
   double max_width = 2.3;   ///< [m] of a real door, > min_width
-  /// [m] how far the line may move away from the border to where the passage is narrowest, >= 0.
-  double search = 1.0;
-  /// [m] by how much both places must be wider than a real door, within `depth` of it, > 0.
-  double jambs = 0.15;
-  double depth = 1.2;  ///< [m] > 0
-  int free_max = 25;   ///< cells of 0 .. free_max are free [0 .. 100]
+  /// [m] how far the line may move away from the border to where the passage is narrowest, 0 .. 10.
+  double search_radius = 1.0;
+  /// [m] by how much both places must be wider than a real door, within `jamb_depth` of it, > 0.
+  double min_jambs = 0.15;
+  double jamb_depth = 1.2;  ///< [m] 0 .. 10, not 0
+  int free_max = 25;        ///< cells of 0 .. free_max are free, 0 .. 99
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// A door line for each border between two places. The line leads from wall to wall where the
@@ -28,8 +32,8 @@ struct DoorParams {
 /// same line give one door. Of
 /// several between the same places those that end at something that stands free, less than 2.5 m
 /// across, are open borders. Sorted by (place_a, place_b, a).
-/// @throws hyselam::ParameterError for a parameter out of range, std::invalid_argument if the
-/// labels do not fit the grid.
+/// @throws hyselam::ParameterError for a parameter out of range, hyselam::InputError if the labels
+/// do not fit the grid.
 std::vector<DoorLine> refineDoors(const hyselam::OccupancyGrid& grid, const cv::Mat& labels,
                                   const DoorParams& params = {});
 

@@ -4,7 +4,7 @@
 
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_gr2to/map_builder/walls.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
@@ -15,21 +15,27 @@ namespace hyselam_topo {
 /// square, about the length by the width for a strip.
 struct CorridorRule {
   double max_width = 4.0;         ///< [m] > 0
-  int min_neighbours = 4;         ///< other places that it leads to,
+  int min_neighbors = 4;          ///< other places that it leads to,
   double min_elongation = 4.0;    ///< and its elongation then, >= 1
-  double long_elongation = 10.0;  ///< with two or three neighbours, >= min_elongation
+  double long_elongation = 10.0;  ///< with two or three neighbors, >= min_elongation
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 struct MapBuilderParams {
   WallParams walls;
   CorridorRule corridor;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 /// Place k + 1 of the map is label k + 1; ids of walls and doors are given in order. Places have
 /// area, centre, outline and kind, no words. Doors are open: a closed one is a wall in the grid.
 /// @throws as extractWalls(), hyselam::ParameterError for a rule out of range.
 AugmentedTopologicalMap buildTopologicalMap(const hyselam::OccupancyGrid& grid,
-                                            const Segmentation& segmentation,
+                                            const PlaceSegmentation& segmentation,
                                             const MapBuilderParams& params = {});
 
 }  // namespace hyselam_topo

@@ -33,7 +33,7 @@ struct OctoMapLimits {
 };
 
 /// Reads a file of type .bt (free and occupied only: probabilities 0 and 1) or .ot (trees of type
-/// OcTree and ColorOcTree), told by its first line. Throws hyselam::InputError for a file that
+/// OcTree and ColorOcTree), which its first line says. @throws hyselam::InputError for a file that
 /// cannot be read, another format, damaged, missing or surplus data, or more than the limits allow.
 VoxelMap loadOctoMap(const std::string& path, const OctoMapLimits& limits = {});
 

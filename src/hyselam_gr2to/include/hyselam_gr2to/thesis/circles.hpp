@@ -1,4 +1,4 @@
-// Circles along the Voronoi diagram that stand for places, and their connections (dos Santos,
+// Circles along the Voronoi diagram that stand for places, and their connections (dos Santos 2014,
 // section 4.2, fourth stage, Eq. 4.3).
 #pragma once
 

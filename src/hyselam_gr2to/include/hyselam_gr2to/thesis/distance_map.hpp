@@ -1,5 +1,5 @@
 // Exact Euclidean distances to the nearest obstacle cell, kept up to date where a map changes
-// (dos Santos, section 4.2, second stage).
+// (dos Santos 2014, section 4.2, second stage).
 //
 // Distances are between the centres of cells. The nearest obstacle ("site") of a cell is unique: of
 // several equally near ones it is the one with the smallest x, then the smallest y. So a map that
@@ -29,7 +29,7 @@ class DistanceMap {
 
   DistanceMap() = default;
   /// From scratch. `obstacles`: CV_8U, not 0 at obstacles, row 0 = lowest y.
-  /// @throws std::invalid_argument for another type, an empty map or one with too long sides.
+  /// @throws hyselam::InputError for another type, an empty map or one with too long sides.
   explicit DistanceMap(const cv::Mat& obstacles);
 
   int width() const { return width_; }

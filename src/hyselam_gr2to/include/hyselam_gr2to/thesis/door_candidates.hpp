@@ -1,4 +1,4 @@
-// Where a door may be, by the distance map alone (dos Santos, section 4.2, second stage).
+// Where a door may be, by the distance map alone (dos Santos 2014, section 4.2, second stage).
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -1,5 +1,6 @@
-// The pipeline of the thesis (dos Santos, section 4.2), stage by stage: mode `thesis` of Gr2To.
-// Each stage is a function of its own; runThesis() keeps what each one gave, drawThesis() shows it.
+// The pipeline of the thesis (dos Santos 2014, section 4.2), stage by stage: mode `thesis` of
+// Gr2To. Each stage is a function of its own; runThesis() keeps what each one gave, drawThesis()
+// shows it.
 #pragma once
 
 #include <array>
@@ -8,7 +9,8 @@
 #include <vector>
 
 #include "hyselam_common/occupancy_grid.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_common/parameters.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 #include "hyselam_gr2to/thesis/circles.hpp"
 #include "hyselam_gr2to/thesis/critical_points.hpp"
 #include "hyselam_gr2to/thesis/distance_map.hpp"
@@ -21,18 +23,21 @@ struct ThesisParams {
   double door_max = 1.3;         ///< [m] Door_max, > door_min
   double critical_radius = 0.5;  ///< [m] around a critical point nothing is narrower, > 0
   double wall_share = 0.8;       ///< occupied part of a polygon's edge that makes it a wall, 0 .. 1
-  int free_max = 25;             ///< cells of 0 .. free_max are free [0 .. 100]
-  int occupied_min = 65;         ///< cells from here on are occupied [0 .. 100], > free_max
+  int free_max = 25;             ///< cells of 0 .. free_max are free, 0 .. 99
+  int occupied_min = 65;         ///< cells from here on are occupied, free_max < .. <= 100
   /// Unknown cells count as obstacles; false: as the thesis has it, distances see occupied cells
   /// only.
   bool unknown_blocks = true;
   /// Free cells outside of all polygons go to the nearest place; false: to none.
   bool fill = true;
   VoronoiParams voronoi;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
-/// First stage, filter: occupied cells without an occupied neighbour (of eight) become free if all
-/// their known neighbours are, free ones without a free neighbour become unknown.
+/// First stage, filter: occupied cells without an occupied neighbor (of eight) become free if all
+/// their known neighbors are, free ones without a free neighbor become unknown.
 hyselam::OccupancyGrid filterIsolatedCells(const hyselam::OccupancyGrid& grid, int free_max = 25,
                                            int occupied_min = 65);
 
@@ -78,7 +83,7 @@ struct ThesisResult {
   std::vector<Circle> circles;  ///< circle k is place k + 1
   std::vector<std::pair<std::size_t, std::size_t>> links;
   std::vector<PlacePolygon> polygons;
-  Segmentation segmentation;
+  PlaceSegmentation segmentation;
 };
 
 /// @throws hyselam::ParameterError for a parameter out of range, hyselam::InputError for a grid
@@ -87,7 +92,8 @@ ThesisResult runThesis(const hyselam::OccupancyGrid& grid, const ThesisParams& p
 
 /// The places alone. Doors of the segmentation are the confirmed ones, drawn where they were
 /// closed; borders without one are virtual doors.
-Segmentation segmentThesis(const hyselam::OccupancyGrid& grid, const ThesisParams& params = {});
+PlaceSegmentation segmentThesis(const hyselam::OccupancyGrid& grid,
+                                const ThesisParams& params = {});
 
 enum class ThesisStage { kDistance, kCandidates, kVoronoi, kCircles, kPlaces };
 

@@ -1,11 +1,12 @@
-// The Voronoi diagram of a grid map (dos Santos, section 4.2, third stage; Lau, Sprunk, Burgard
-// 2010): the cells that are equally far from two obstacles, as lines one cell wide. It follows a
-// changing distance map where that has changed.
+// The Voronoi diagram of a grid map (dos Santos 2014, section 4.2, third stage; Lau, Sprunk,
+// Burgard 2010): the cells that are equally far from two obstacles, as lines one cell wide. It
+// follows a changing distance map where that has changed.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_gr2to/thesis/distance_map.hpp"
 
 namespace hyselam_topo {
@@ -15,6 +16,9 @@ struct VoronoiParams {
   /// one bumpy wall are at most sqrt(2 d noise + noise^2) apart; only sites farther apart than that
   /// have a border.
   double noise = 1.5;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  void validate() const;  ///< @throws hyselam::ParameterError
 };
 
 class VoronoiDiagram {

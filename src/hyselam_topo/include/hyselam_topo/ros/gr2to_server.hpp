@@ -41,7 +41,8 @@ class Gr2ToServer {
   /// In the thread of the segmentation.
   void onOutcome(const BackgroundGr2To::Outcome& outcome);
   void publish(const BackgroundGr2To::MapPtr& map);
-  void tell(const BackgroundGr2To::Outcome& outcome, const AugmentedTopologicalMap* before) const;
+  void logOutcome(const BackgroundGr2To::Outcome& outcome,
+                  const AugmentedTopologicalMap* before) const;
 
   bool onPlaceAt(hyselam_msgs::PlaceAt::Request& request,
                  hyselam_msgs::PlaceAt::Response& response);

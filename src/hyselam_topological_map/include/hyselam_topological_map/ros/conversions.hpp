@@ -9,11 +9,11 @@
 
 namespace hyselam_topo {
 
-/// fromMsg(toMsg(m)) == m, but for a stamp that is not a whole number of ns. Throws
+/// fromMsg(toMsg(m)) == m, but for a stamp that is not a whole number of ns. @throws
 /// hyselam::InputError for a stamp that messages cannot hold.
 hyselam_msgs::AugmentedTopologicalMap toMsg(const AugmentedTopologicalMap& map);
 
-/// Throws hyselam::InputError, beginning with `source`, for constants that do not exist, arrays
+/// @throws hyselam::InputError, beginning with `source`, for constants that do not exist, arrays
 /// that do not fit together, and maps that checkMap() refuses.
 AugmentedTopologicalMap fromMsg(const hyselam_msgs::AugmentedTopologicalMap& msg,
                                 const std::string& source);

@@ -1,4 +1,4 @@
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "agglomeration.hpp"
+#include "describe_border.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_gr2to/map_builder/doors.hpp"
+#include "hyselam_gr2to/segmentation/border_model.hpp"
 #include "number_places.hpp"
 
 namespace hyselam_topo {
@@ -15,25 +17,16 @@ namespace {
 
 constexpr double kReach = 0.5;  // [m] labels grow so far into free cells that were cut off as leaks
 
-void check(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
+void checkGrid(const hyselam::OccupancyGrid& grid) {
   const hyselam::GridGeometry& g = grid.geometry;
   if (g.width <= 0 || g.height <= 0 || grid.cells.size() != g.cellCount())
     throw hyselam::InputError("map", "", "has no cells, or not as many as its size says");
   if (!(g.resolution > 0.0) || !std::isfinite(g.resolution))
     throw hyselam::InputError("map", "resolution", "is not a positive number");
-  if (params.free_max < 0 || params.free_max > 99)
-    throw hyselam::ParameterError("free_max", params.free_max, "within 0 .. 99");
-  if (!(params.working_resolution >= 0.01 && params.working_resolution <= 0.25))
-    throw hyselam::ParameterError("working_resolution", params.working_resolution,
-                                  "within 0.01 .. 0.25 m");
-  if (!(params.clutter >= 0.0 && params.clutter <= 5.0))
-    throw hyselam::ParameterError("clutter", params.clutter, "within 0 .. 5 m");
-  if (!(params.smallest_place >= 0.0 && params.smallest_place <= 100.0))
-    throw hyselam::ParameterError("smallest_place", params.smallest_place, "within 0 .. 100 m^2");
 }
 
 /// What is too small for a place becomes part of the neighbour with the longest open border.
-void absorbSmall(PlaceGraph& graph, double smallest) {
+void absorbSmall(RegionAdjacencyGraph& graph, double smallest) {
   for (int i = 1; i <= graph.size(); ++i) {
     int current = i;
     while (graph.node(current).alive && graph.node(current).area < smallest) {
@@ -57,7 +50,7 @@ constexpr double kDesk = 3.0;
 constexpr double kBehindDesk = 8.0;
 
 /// The roots around a solid piece; empty if it is at the rim or was seen through.
-std::vector<int> rootsAround(const SolidPiece& piece, const PlaceGraph& graph,
+std::vector<int> rootsAround(const SolidPiece& piece, const RegionAdjacencyGraph& graph,
                              const cv::Mat& basins, const FreeSpace& space) {
   std::vector<int> roots;
   const cv::Rect inner(1, 1, basins.cols - 2, basins.rows - 2);
@@ -80,7 +73,7 @@ std::vector<int> rootsAround(const SolidPiece& piece, const PlaceGraph& graph,
 }
 
 /// What lies behind a desk, with a way past it on either side, is part of the room before it.
-void joinAroundDesks(PlaceGraph& graph, const cv::Mat& basins, const FreeSpace& space) {
+void joinAroundDesks(RegionAdjacencyGraph& graph, const cv::Mat& basins, const FreeSpace& space) {
   for (const SolidPiece& piece : space.pieces) {
     if (std::max(piece.box.width, piece.box.height) * space.resolution > kDesk) continue;
     const std::vector<int> roots = rootsAround(piece, graph, basins, space);
@@ -124,54 +117,83 @@ void fillFurniture(cv::Mat& labels, const FreeSpace& space) {
   }
 }
 
+/// The places as labels of the basins' cells, CV_32S.
+cv::Mat labelsOf(const RegionAdjacencyGraph& graph, const cv::Mat& basins, double min_area) {
+  std::vector<int> label_of(static_cast<std::size_t>(graph.size()) + 1, 0);
+  int used = 0;
+  for (int i = 1; i <= graph.size(); ++i) {
+    if (graph.node(i).alive && graph.node(i).area >= min_area) {
+      label_of[static_cast<std::size_t>(i)] = ++used;
+    }
+  }
+  if (used > std::numeric_limits<std::uint16_t>::max()) {
+    throw hyselam::InputError("map", "", "has more than 65535 places");
+  }
+  for (int i = 1; i <= graph.size(); ++i) {
+    label_of[static_cast<std::size_t>(i)] = label_of[static_cast<std::size_t>(graph.root(i))];
+  }
+  cv::Mat labels = basins;  // in their place
+  for (int y = 0; y < labels.rows; ++y) {
+    for (int *cell = labels.ptr<int>(y), *end = cell + labels.cols; cell != end; ++cell) {
+      *cell = label_of[static_cast<std::size_t>(*cell)];
+    }
+  }
+  return labels;
+}
+
 }  // namespace
 
-Segmentation segmentPlaces(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
-  check(grid, params);
-  Segmentation result;
+void SegmentationParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("free_max", free_max, Range::between(0, 99), "", "cells of 0 .. this value are free");
+  visit("working_resolution", working_resolution, Range::between(0.01, 0.25), "m",
+        "cells are joined or split to about this size");
+  visit.renamed("clutter", "max_clutter_size");
+  visit("max_clutter_size", max_clutter_size, Range::between(0.0, 5.0), "m",
+        "free-standing obstacles up to this size do not separate places");
+  visit.renamed("smallest_place", "min_place_area");
+  visit("min_place_area", min_place_area, Range::between(0.0, 100.0), "m^2",
+        "smaller places join a neighbor or are left out");
+}
+
+void SegmentationParams::validate() const {
+  hyselam::checkParameters(*this);
+}
+
+PlaceSegmentation segmentPlaces(const hyselam::OccupancyGrid& grid,
+                                const SegmentationParams& params) {
+  checkGrid(grid);
+  params.validate();
+  PlaceSegmentation result;
   result.labels = cv::Mat(grid.geometry.height, grid.geometry.width, CV_16U, cv::Scalar(0));
   const PreparedPlaces prepared = preparePlaces(grid, params);
   if (prepared.basins.count == 0) return result;
 
-  const double resolution = prepared.space.resolution;
-  PlaceGraph graph(prepared.clearance, prepared.basins, resolution);
-  const BoostedTrees& model = borderModel();
-  agglomerate(graph, [&model](const PlaceGraph& g, int a, int b) {
-    return oddsOfOnePlace(model, describeBorder(g, a, b));
+  RegionAdjacencyGraph graph(prepared.clearance, prepared.basins, prepared.space.resolution);
+  const BorderModel& model = params.border_model ? *params.border_model : BorderModel::shipped();
+  agglomerate(graph, [&model](const RegionAdjacencyGraph& g, int a, int b) {
+    return model.oddsOfOnePlace(describeBorder(g, a, b));
   });
-  absorbSmall(graph, params.smallest_place);
+  absorbSmall(graph, params.min_place_area);
   joinAroundDesks(graph, prepared.basins.labels, prepared.space);
 
-  std::vector<int> names(static_cast<std::size_t>(graph.size()) + 1, 0);
-  int used = 0;
-  for (int i = 1; i <= graph.size(); ++i)
-    if (graph.node(i).alive && graph.node(i).area >= params.smallest_place)
-      names[static_cast<std::size_t>(i)] = ++used;
-  if (used > std::numeric_limits<std::uint16_t>::max())
-    throw hyselam::InputError("map", "", "has more than 65535 places");
-  for (int i = 1; i <= graph.size(); ++i)
-    names[static_cast<std::size_t>(i)] = names[static_cast<std::size_t>(graph.root(i))];
-  cv::Mat labels = prepared.basins.labels;
-  for (int y = 0; y < labels.rows; ++y)
-    for (int *cell = labels.ptr<int>(y), *end = cell + labels.cols; cell != end; ++cell)
-      *cell = names[static_cast<std::size_t>(*cell)];
+  cv::Mat labels = labelsOf(graph, prepared.basins.labels, params.min_place_area);
   fillFurniture(labels, prepared.space);
-
   const int reach = static_cast<int>(std::ceil(kReach / grid.geometry.resolution));
   result.labels = toGrid(labels, prepared.space, grid, params.free_max, reach);
   result.places = numberPlaces(result.labels);
   return result;
 }
 
-void addDoors(const hyselam::OccupancyGrid& grid, Segmentation& places,
+void addDoors(const hyselam::OccupancyGrid& grid, PlaceSegmentation& places,
               const SegmentationParams& params) {
   DoorParams doors;
   doors.free_max = params.free_max;
   places.doors = refineDoors(grid, places.labels, doors);
 }
 
-Segmentation segment(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
-  Segmentation result = segmentPlaces(grid, params);
+PlaceSegmentation segment(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
+  PlaceSegmentation result = segmentPlaces(grid, params);
   addDoors(grid, result, params);
   return result;
 }

@@ -1,4 +1,4 @@
-#include "place_graph.hpp"
+#include "region_adjacency_graph.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,8 @@
 namespace hyselam_topo {
 namespace {
 
-constexpr double kThinWall = 0.45;  // [m] from either side: thicker things do not part two rooms
+constexpr double kThinWall =
+    0.45;  // [m] from either side: a thicker wall does not separate two rooms
 constexpr double kWallProbe = 0.8;  // [m] behind the ends of a chord
 constexpr int kChords = 36;         // tried directions
 
@@ -103,9 +104,10 @@ class Probe {
   cv::Point from_;
 };
 
-void measurePassage(const cv::Mat& clearance, double resolution, double saddle, Passage& passage) {
+void measurePassage(const cv::Mat& clearance, double resolution, double clearance_at_border,
+                    Passage& passage) {
   const Probe probe(clearance, passage.at);
-  const double limit = 8.0 * saddle / resolution + 4.0;
+  const double limit = 8.0 * clearance_at_border / resolution + 4.0;
   double angle = 0.0, ahead = 0.0, behind = limit, width = 1e9;
   for (int k = 0; k < kChords; ++k) {
     const double tried = k * hyselam::kPi / kChords;
@@ -130,7 +132,8 @@ void measurePassage(const cv::Mat& clearance, double resolution, double saddle, 
 
 }  // namespace
 
-PlaceGraph::PlaceGraph(const cv::Mat& clearance, const Basins& basins, double resolution)
+RegionAdjacencyGraph::RegionAdjacencyGraph(const cv::Mat& clearance, const Basins& basins,
+                                           double resolution)
     : resolution_(resolution),
       nodes_(static_cast<std::size_t>(basins.count) + 1),
       merged_into_(static_cast<std::size_t>(basins.count) + 1) {
@@ -139,11 +142,11 @@ PlaceGraph::PlaceGraph(const cv::Mat& clearance, const Basins& basins, double re
   measureNodes(clearance, basins.labels);
   const int steps = static_cast<int>(std::lround(kThinWall / resolution));
   measureBorders(clearance, basins.labels, reachIntoWalls(basins.labels, steps));
-  for (PlaceBorder& border : borders_)
-    if (border.open > 0.0) measurePassage(clearance, resolution, border.saddle, border.passage);
+  for (RegionBorder& border : borders_)
+    if (border.open > 0.0) measurePassage(clearance, resolution, border.clearance, border.passage);
 }
 
-void PlaceGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
+void RegionAdjacencyGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
   const double cell = resolution_ * resolution_;
   for (int y = 0; y < labels.rows; ++y) {
     const int* row = labels.ptr<int>(y);
@@ -161,7 +164,7 @@ void PlaceGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
         sum += heights[x];
         peak = std::max(peak, heights[x]);
       }
-      PlaceNode& node = at(label);
+      RegionNode& node = at(label);
       node.area += (x - start) * cell;
       node.clearances += sum * resolution_ * cell;
       node.peak = std::max(node.peak, peak * resolution_);
@@ -172,8 +175,8 @@ void PlaceGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
   for (int i = 1; i <= size(); ++i) setHull(at(i));
 }
 
-void PlaceGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
-                                const cv::Mat& reach) {
+void RegionAdjacencyGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
+                                          const cv::Mat& reach) {
   const int stride = labels.cols;
   const int* cells = labels.ptr<int>();
   const int* near = reach.ptr<int>();
@@ -184,11 +187,11 @@ void PlaceGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
       if (a != 0) at(a).perimeter += resolution_;
       if (b != 0) at(b).perimeter += resolution_;
       if (a != 0 && b != 0) {
-        PlaceBorder& border = between(a, b);
+        RegionBorder& border = between(a, b);
         border.open += resolution_;
         const double height = std::min(heights[i], heights[j]) * resolution_;
-        if (height > border.saddle) {
-          border.saddle = height;
+        if (height > border.clearance) {
+          border.clearance = height;
           border.passage.at = {i % stride, i / stride};
         }
         return;
@@ -213,7 +216,7 @@ void PlaceGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
   }
 }
 
-PlaceBorder& PlaceGraph::between(int a, int b) {
+RegionBorder& RegionAdjacencyGraph::between(int a, int b) {
   const auto [found, fresh] = at(a).borders.emplace(b, static_cast<int>(borders_.size()));
   if (fresh) {
     at(b).borders.emplace(a, found->second);
@@ -222,7 +225,7 @@ PlaceBorder& PlaceGraph::between(int a, int b) {
   return borders_[static_cast<std::size_t>(found->second)];
 }
 
-void PlaceGraph::setHull(PlaceNode& node) const {
+void RegionAdjacencyGraph::setHull(RegionNode& node) const {
   std::vector<cv::Point> hull;
   cv::convexHull(node.hull, hull);
   node.hull.swap(hull);
@@ -230,9 +233,9 @@ void PlaceGraph::setHull(PlaceNode& node) const {
       node.hull.size() < 3 ? 0.0 : cv::contourArea(node.hull) * resolution_ * resolution_;
 }
 
-void PlaceGraph::merge(int kept, int gone) {
-  PlaceNode& to = at(kept);
-  PlaceNode& from = at(gone);
+void RegionAdjacencyGraph::merge(int kept, int gone) {
+  RegionNode& to = at(kept);
+  RegionNode& from = at(gone);
   const int own = to.borders.at(gone);
   to.area += from.area;
   to.clearances += from.clearances;
@@ -243,28 +246,28 @@ void PlaceGraph::merge(int kept, int gone) {
   to.borders.erase(gone);
   for (const auto& [neighbour, index] : from.borders) {
     if (neighbour == kept) continue;
-    PlaceNode& other = at(neighbour);
+    RegionNode& other = at(neighbour);
     other.borders.erase(gone);
     const auto [found, fresh] = to.borders.emplace(neighbour, index);
     if (fresh) {
       other.borders[kept] = index;
       continue;
     }
-    PlaceBorder& joined = borders_[static_cast<std::size_t>(found->second)];
-    const PlaceBorder& added = border(index);
+    RegionBorder& joined = borders_[static_cast<std::size_t>(found->second)];
+    const RegionBorder& added = border(index);
     joined.open += added.open;
     joined.wall += added.wall;
-    if (added.saddle > joined.saddle) {
-      joined.saddle = added.saddle;
+    if (added.clearance > joined.clearance) {
+      joined.clearance = added.clearance;
       joined.passage = added.passage;
     }
   }
-  from = PlaceNode();
+  from = RegionNode();
   from.alive = false;
   merged_into_[static_cast<std::size_t>(gone)] = kept;
 }
 
-int PlaceGraph::root(int basin) const {
+int RegionAdjacencyGraph::root(int basin) const {
   while (merged_into_[static_cast<std::size_t>(basin)] != basin)
     basin = merged_into_[static_cast<std::size_t>(basin)];
   return basin;

@@ -1,8 +1,8 @@
-// Third step of the segmentation: basins as the nodes of a graph whose edges are the borders
-// between them, with all that the decision about a border looks at. Merging keeps the figures.
+// Third step of the segmentation: basins as the nodes of a region adjacency graph (RAG), whose
+// edges are the borders between them, with the figures that the features of a border are made from.
+// They are kept up to date when regions merge.
 #pragma once
 
-#include <array>
 #include <map>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -19,14 +19,14 @@ struct Passage {
   double stronger_wall = 0;
 };
 
-struct PlaceBorder {
-  double open = 0.0;    ///< length without a wall [m]
-  double wall = 0.0;    ///< length of thin wall between the two [m]
-  double saddle = 0.0;  ///< largest clearance on the open part [m]
+struct RegionBorder {
+  double open = 0.0;       ///< length without a wall [m]
+  double wall = 0.0;       ///< length of thin wall between the two [m]
+  double clearance = 0.0;  ///< largest on the open part [m]
   Passage passage;
 };
 
-struct PlaceNode {
+struct RegionNode {
   double area = 0.0;       ///< [m^2]
   double clearances = 0;   ///< sum over the area [m^3]
   double peak = 0.0;       ///< largest clearance [m]
@@ -34,18 +34,18 @@ struct PlaceNode {
   std::vector<cv::Point> hull;
   double hull_area = 0.0;      ///< [m^2]
   bool alive = true;           ///< false: has become part of another
-  std::map<int, int> borders;  ///< neighbour to index in PlaceGraph::borders
+  std::map<int, int> borders;  ///< neighbour to index in RegionAdjacencyGraph::borders
 };
 
-class PlaceGraph {
+class RegionAdjacencyGraph {
  public:
   /// `clearance`: CV_32F, the distance map [cells] that the basins are of.
-  PlaceGraph(const cv::Mat& clearance, const Basins& basins, double resolution);
+  RegionAdjacencyGraph(const cv::Mat& clearance, const Basins& basins, double resolution);
 
   int size() const { return static_cast<int>(nodes_.size()) - 1; }
   /// 1 .. size(), as the basins are numbered.
-  const PlaceNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
-  const PlaceBorder& border(int index) const { return borders_[static_cast<std::size_t>(index)]; }
+  const RegionNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  const RegionBorder& border(int index) const { return borders_[static_cast<std::size_t>(index)]; }
   double resolution() const { return resolution_; }
 
   /// Makes `gone` part of `kept`, its neighbour.
@@ -54,27 +54,16 @@ class PlaceGraph {
   int root(int basin) const;
 
  private:
-  PlaceNode& at(int i) { return nodes_[static_cast<std::size_t>(i)]; }
-  PlaceBorder& between(int a, int b);
+  RegionNode& at(int i) { return nodes_[static_cast<std::size_t>(i)]; }
+  RegionBorder& between(int a, int b);
   void measureNodes(const cv::Mat& clearance, const cv::Mat& labels);
   void measureBorders(const cv::Mat& clearance, const cv::Mat& labels, const cv::Mat& reach);
-  void setHull(PlaceNode& node) const;
+  void setHull(RegionNode& node) const;
 
   double resolution_;
-  std::vector<PlaceNode> nodes_;  // [0] is not used
-  std::vector<PlaceBorder> borders_;
+  std::vector<RegionNode> nodes_;  // [0] is not used
+  std::vector<RegionBorder> borders_;
   std::vector<int> merged_into_;
 };
-
-constexpr int kBorderFeatures = 27;
-using BorderFeatures = std::array<double, kBorderFeatures>;
-
-/// What the decision whether two neighbours are one place looks at; docs/algorithms.md has the
-/// list.
-BorderFeatures describeBorder(const PlaceGraph& graph, int a, int b);
-
-/// The same border, were all lengths longer by a factor and, besides, the clearance at its widest
-/// point. Logarithms of both.
-BorderFeatures resized(BorderFeatures border, double lengths, double saddle);
 
 }  // namespace hyselam_topo

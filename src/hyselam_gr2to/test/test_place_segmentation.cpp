@@ -13,7 +13,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_gr2to/gr2to.hpp"
-#include "hyselam_gr2to/segmentation/segmentation.hpp"
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterize.hpp"
 
@@ -55,7 +55,7 @@ int labelAt(const OccupancyGrid& grid, const cv::Mat& labels, double x, double y
 }
 
 /// Labels 1 .. places, each there, in one piece, in the order of their first cells.
-void expectValid(const Segmentation& s, const OccupancyGrid& grid) {
+void expectValid(const PlaceSegmentation& s, const OccupancyGrid& grid) {
   ASSERT_EQ(CV_16UC1, s.labels.type());
   ASSERT_EQ(cv::Size(grid.geometry.width, grid.geometry.height), s.labels.size());
   int highest = 0;
@@ -88,9 +88,9 @@ OccupancyGrid generated(std::uint64_t seed, double resolution, bool furniture = 
 
 }  // namespace
 
-TEST(Segmentation, RoomsAndTheCorridorInFrontOfThem) {
+TEST(PlaceSegmentation, RoomsAndTheCorridorInFrontOfThem) {
   const OccupancyGrid grid = fourRooms();
-  const Segmentation s = segment(grid);
+  const PlaceSegmentation s = segment(grid);
   expectValid(s, grid);
   ASSERT_EQ(5, s.places);
   std::set<int> seen;
@@ -106,15 +106,15 @@ TEST(Segmentation, RoomsAndTheCorridorInFrontOfThem) {
   }
 }
 
-TEST(Segmentation, LongBentCorridorStaysWhole) {
+TEST(PlaceSegmentation, LongBentCorridorStaysWhole) {
   OccupancyGrid grid = gridOf(32, 32, 0.05, OccupancyGrid::kOccupied);
   fill(grid, 1, 1, 31, 3, OccupancyGrid::kFree);
   fill(grid, 29, 1, 31, 31, OccupancyGrid::kFree);
-  const Segmentation s = segment(grid);
+  const PlaceSegmentation s = segment(grid);
   EXPECT_EQ(1, s.places);
 }
 
-TEST(Segmentation, CurvedCorridorStaysWhole) {
+TEST(PlaceSegmentation, CurvedCorridorStaysWhole) {
   OccupancyGrid grid = gridOf(30, 30, 0.05, OccupancyGrid::kOccupied);
   for (int y = 0; y < grid.geometry.height; ++y)
     for (int x = 0; x < grid.geometry.width; ++x) {
@@ -125,7 +125,7 @@ TEST(Segmentation, CurvedCorridorStaysWhole) {
   EXPECT_EQ(1, segment(grid).places);
 }
 
-TEST(Segmentation, HallWithPillarsIsOnePlace) {
+TEST(PlaceSegmentation, HallWithPillarsIsOnePlace) {
   OccupancyGrid grid = gridOf(22, 22, 0.05, OccupancyGrid::kOccupied);
   fill(grid, 1, 1, 21, 21, OccupancyGrid::kFree);
   for (int i = 0; i < 4; ++i)
@@ -134,7 +134,7 @@ TEST(Segmentation, HallWithPillarsIsOnePlace) {
   EXPECT_EQ(1, segment(grid).places);
 }
 
-TEST(Segmentation, ChairLegsDoNotPartARoom) {
+TEST(PlaceSegmentation, ChairLegsDoNotSplitARoom) {
   OccupancyGrid grid = fourRooms();
   hyselam::Rng rng(4);
   for (int leg = 0; leg < 150; ++leg) {
@@ -142,24 +142,24 @@ TEST(Segmentation, ChairLegsDoNotPartARoom) {
     if (grid.at(grid.geometry.cellAt({x, y})) == OccupancyGrid::kFree)
       fill(grid, x, y, x + 0.1, y + 0.1, OccupancyGrid::kOccupied);
   }
-  const Segmentation s = segment(grid);
+  const PlaceSegmentation s = segment(grid);
   expectValid(s, grid);
   EXPECT_EQ(5, s.places);
 }
 
-TEST(Segmentation, DeskAcrossARoomDoesNotPartIt) {
+TEST(PlaceSegmentation, DeskAcrossARoomDoesNotSplitIt) {
   OccupancyGrid grid = gridOf(7, 10, 0.05, OccupancyGrid::kUnknown);
   fill(grid, 0.5, 0.5, 5.7, 9.0, OccupancyGrid::kOccupied);
   fill(grid, 0.7, 0.7, 5.5, 2.7, OccupancyGrid::kFree);  // a corridor
   fill(grid, 2.0, 2.7, 2.9, 2.9, OccupancyGrid::kFree);  // a door
   fill(grid, 0.7, 2.9, 5.5, 8.8, OccupancyGrid::kFree);  // the room
   fill(grid, 1.8, 6.1, 4.4, 7.2, OccupancyGrid::kOccupied);
-  const Segmentation s = segment(grid);
+  const PlaceSegmentation s = segment(grid);
   expectValid(s, grid);
   EXPECT_EQ(2, s.places);
 }
 
-TEST(Segmentation, RaysThroughAWindowAreOutside) {
+TEST(PlaceSegmentation, RaysThroughAWindowAreOutside) {
   OccupancyGrid grid = gridOf(30, 30, 0.05, OccupancyGrid::kUnknown);
   fill(grid, 1, 1, 11, 11, OccupancyGrid::kOccupied);
   fill(grid, 1.2, 1.2, 10.8, 10.8, OccupancyGrid::kFree);
@@ -171,7 +171,7 @@ TEST(Segmentation, RaysThroughAWindowAreOutside) {
       if (grid.geometry.contains(c)) grid.at(c) = OccupancyGrid::kFree;
     }
   }
-  const Segmentation s = segment(grid);
+  const PlaceSegmentation s = segment(grid);
   expectValid(s, grid);
   EXPECT_EQ(1, s.places);
   const int cells = cv::countNonZero(s.labels);
@@ -179,10 +179,10 @@ TEST(Segmentation, RaysThroughAWindowAreOutside) {
   EXPECT_LE(cells, 192 * 192 * 1.05);
 }
 
-TEST(Segmentation, EveryFreeCellOfAFloorHasAPlace) {
+TEST(PlaceSegmentation, EveryFreeCellOfAFloorHasAPlace) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const OccupancyGrid grid = generated(seed, 0.05, seed % 2 == 0);
-    const Segmentation s = segment(grid);
+    const PlaceSegmentation s = segment(grid);
     expectValid(s, grid);
     cv::Mat free(grid.geometry.height, grid.geometry.width, CV_8U, cv::Scalar(0)), parts, stats, c;
     for (std::size_t i = 0; i < grid.cells.size(); ++i)
@@ -195,9 +195,9 @@ TEST(Segmentation, EveryFreeCellOfAFloorHasAPlace) {
   }
 }
 
-TEST(Segmentation, SameGridSameBits) {
+TEST(PlaceSegmentation, SameGridGivesTheSameBits) {
   const OccupancyGrid grid = generated(3, 0.05, true);
-  const Segmentation first = segment(grid), second = segment(grid);
+  const PlaceSegmentation first = segment(grid), second = segment(grid);
   EXPECT_EQ(0, cv::countNonZero(first.labels != second.labels));
   ASSERT_EQ(first.doors.size(), second.doors.size());
   for (std::size_t i = 0; i < first.doors.size(); ++i) {
@@ -206,7 +206,7 @@ TEST(Segmentation, SameGridSameBits) {
   }
 }
 
-TEST(Segmentation, WhereTheMapBeginsDoesNotMatter) {
+TEST(PlaceSegmentation, IsInvariantToMargins) {
   const OccupancyGrid grid = generated(5, 0.05, true);
   hyselam::GridGeometry g = grid.geometry;
   g.width += 31;
@@ -214,23 +214,23 @@ TEST(Segmentation, WhereTheMapBeginsDoesNotMatter) {
   OccupancyGrid moved(g);
   for (int y = 0; y < grid.geometry.height; ++y)
     for (int x = 0; x < grid.geometry.width; ++x) moved.at({x + 13, y + 7}) = grid.at({x, y});
-  const Segmentation a = segment(grid), b = segment(moved);
+  const PlaceSegmentation a = segment(grid), b = segment(moved);
   EXPECT_EQ(a.places, b.places);
   EXPECT_EQ(0, cv::countNonZero(a.labels != b.labels(cv::Rect({13, 7}, a.labels.size()))));
 }
 
-TEST(Segmentation, TheFrameDoesNotMatter) {
+TEST(PlaceSegmentation, IsInvariantToTheOrigin) {
   OccupancyGrid grid = fourRooms();
-  const Segmentation before = segment(grid);
+  const PlaceSegmentation before = segment(grid);
   grid.geometry.origin = {-3.0, 12.0, 2.0};
-  const Segmentation after = segment(grid);
+  const PlaceSegmentation after = segment(grid);
   EXPECT_EQ(0, cv::countNonZero(before.labels != after.labels));
 }
 
-TEST(Segmentation, FromOneToTwentyCentimetres) {
+TEST(PlaceSegmentation, ResolutionsFromOneToTwentyCentimeters) {
   for (const double resolution : {0.01, 0.02, 0.025, 0.04, 0.05, 0.08, 0.1}) {
     const OccupancyGrid grid = fourRooms(resolution);
-    const Segmentation s = segment(grid);
+    const PlaceSegmentation s = segment(grid);
     expectValid(s, grid);
     EXPECT_EQ(5, s.places) << resolution;
   }
@@ -245,7 +245,7 @@ TEST(Segmentation, FromOneToTwentyCentimetres) {
   EXPECT_EQ(5, segment(coarse).places);
 }
 
-TEST(Segmentation, FloorsHaveTheirRoomsHoweverTheyAreTurned) {
+TEST(PlaceSegmentation, FindsRoomsOfFloorsAtAnyRotation) {
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     for (const double rotation : {0.0, hyselam::radians(17.0)}) {
@@ -269,10 +269,10 @@ TEST(Segmentation, FloorsHaveTheirRoomsHoweverTheyAreTurned) {
   EXPECT_GE(sum / 12.0, 0.95);
 }
 
-TEST(Segmentation, MapsWithoutPlaces) {
+TEST(PlaceSegmentation, MapsWithoutPlaces) {
   for (const std::int8_t value : {OccupancyGrid::kUnknown, OccupancyGrid::kOccupied}) {
     const OccupancyGrid grid = gridOf(5, 5, 0.05, value);
-    const Segmentation s = segment(grid);
+    const PlaceSegmentation s = segment(grid);
     expectValid(s, grid);
     EXPECT_EQ(0, s.places);
     EXPECT_TRUE(gr2to(grid).map.places.empty());
@@ -281,15 +281,15 @@ TEST(Segmentation, MapsWithoutPlaces) {
   EXPECT_EQ(0, segment(tiny).places);
 }
 
-TEST(Segmentation, MapWithoutWallsIsOnePlace) {
+TEST(PlaceSegmentation, MapWithoutWallsIsOnePlace) {
   const OccupancyGrid grid = gridOf(12, 9, 0.05, OccupancyGrid::kFree);
-  const Segmentation s = segment(grid);
+  const PlaceSegmentation s = segment(grid);
   expectValid(s, grid);
   EXPECT_EQ(1, s.places);
   EXPECT_EQ(static_cast<int>(grid.cells.size()), cv::countNonZero(s.labels));
 }
 
-TEST(Segmentation, NoiseDoesNoHarm) {
+TEST(PlaceSegmentation, NoiseGivesValidLabels) {
   hyselam::Rng rng(7);
   for (int round = 0; round < 5; ++round) {
     OccupancyGrid grid = gridOf(8, 6, 0.05, OccupancyGrid::kUnknown);
@@ -303,7 +303,7 @@ TEST(Segmentation, NoiseDoesNoHarm) {
   }
 }
 
-TEST(Segmentation, RefusesWhatIsNoMap) {
+TEST(PlaceSegmentation, RefusesInvalidGrids) {
   EXPECT_THROW(segment(OccupancyGrid()), hyselam::InputError);
   OccupancyGrid grid = gridOf(2, 2, 0.05, OccupancyGrid::kFree);
   grid.cells.pop_back();
@@ -315,7 +315,7 @@ TEST(Segmentation, RefusesWhatIsNoMap) {
   }
 }
 
-TEST(Segmentation, NamesTheParameterThatIsWrong) {
+TEST(PlaceSegmentation, NamesTheParameterOutOfRange) {
   const OccupancyGrid grid = fourRooms();
   const auto refused = [&](const SegmentationParams& p, const std::string& name) {
     try {
@@ -332,11 +332,11 @@ TEST(Segmentation, NamesTheParameterThatIsWrong) {
   p.working_resolution = 0.5;
   refused(p, "working_resolution");
   p = {};
-  p.clutter = std::nan("");
-  refused(p, "clutter");
+  p.max_clutter_size = std::nan("");
+  refused(p, "max_clutter_size");
   p = {};
-  p.smallest_place = -1.0;
-  refused(p, "smallest_place");
+  p.min_place_area = -1.0;
+  refused(p, "min_place_area");
 }
 
 TEST(Gr2To, GivesMapLabelsDoorsAndTimes) {

@@ -1,0 +1,52 @@
+// The learnt decision whether two neighboring regions are one place, as a data file: decision
+// trees over the features of their border. The file that comes with the package
+// (models/border_trees.txt) is made by `rosrun hyselam_gr2to train_borders`.
+#pragma once
+
+#include <string>
+
+#include "hyselam_gr2to/segmentation/boosted_trees.hpp"
+#include "hyselam_gr2to/segmentation/border_features.hpp"
+
+namespace hyselam_topo {
+
+/// Where a model comes from, as stands in its file; a line each.
+struct BorderModelOrigin {
+  std::string command;    ///< that trained it
+  std::string data;       ///< what it was trained on, with checksums
+  std::string in_sample;  ///< scores on the maps that it was trained on
+  std::string left_out;   ///< scores on maps whose building was left out of the training
+};
+
+class BorderModel {
+ public:
+  /// The trees' features are BorderFeature.
+  BorderModel(BoostedTrees trees, BorderModelOrigin origin);
+
+  /// Reads a file as toText() gives it.
+  /// @throws hyselam::InputError with the line: another format or version, features that are not
+  /// those of this version in their order, trees that are none, missing or surplus lines, a wrong
+  /// checksum.
+  static BorderModel load(const std::string& path);
+  /// The same from a text; `source` begins what is thrown.
+  static BorderModel fromText(const std::string& text, const std::string& source);
+  /// The one that comes with the package.
+  static const BorderModel& shipped();
+
+  /// Numbers with six digits; the text of what was read is the same again.
+  std::string toText() const;
+
+  /// Log-odds that the two regions are one place: the mean over lengths up to 20 % shorter and
+  /// longer and clearances up to 10 % lower and higher, so that a cell more or less, or a building
+  /// a tenth larger, does not decide.
+  double oddsOfOnePlace(const BorderFeatures& border) const;
+
+  const BoostedTrees& trees() const { return trees_; }
+  const BorderModelOrigin& origin() const { return origin_; }
+
+ private:
+  BoostedTrees trees_;
+  BorderModelOrigin origin_;
+};
+
+}  // namespace hyselam_topo
