@@ -1,4 +1,5 @@
-// Gr2To (dos Santos 2014, section 4.2): from a grid map to the augmented topological map.
+// Gr2To (grid map to topological map, dos Santos 2014, section 4.2): from an occupancy grid to the
+// augmented topological map.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -38,7 +39,7 @@ struct Gr2ToResult {
 };
 
 /// @throws hyselam::ParameterError for a parameter out of range, hyselam::InputError for a grid
-/// without cells or whose cells do not fit its geometry.
+/// without cells or whose cell count differs from width x height.
 Gr2ToResult gr2to(const hyselam::OccupancyGrid& grid, const Gr2ToParams& params = {});
 
 /// How gr2to() builds the map of its places: the defaults with its limits of free and occupied.

@@ -9,7 +9,7 @@
 namespace hyselam_pose_graph {
 
 struct ConsistentLoops {
-  /// For each edge, the number of other loops that are consistent with it; 0 for odometry.
+  /// For each edge, the number of other loops that are consistent with it; 0 for odometry edges.
   std::vector<int> support;
   /// Median squared error of the consistent pairs divided by the median of chi^2: below 1 where the
   /// edges are more accurate than their information says.

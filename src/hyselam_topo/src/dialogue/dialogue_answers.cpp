@@ -62,7 +62,7 @@ void Dialogue::goTo(const Utterance& u, Turn& turn) {
   }
 }
 
-void Dialogue::goBack(const Utterance&, Turn& turn) {
+void Dialogue::goToPreviousPlace(const Utterance&, Turn& turn) {
   const Id previous = robot().previous;
   if (previous == 0) {
     say("no_previous", turn);
@@ -199,7 +199,7 @@ void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
   }
 }
 
-void Dialogue::answerWayTo(const Utterance& u, Turn& turn) {
+void Dialogue::answerRouteTo(const Utterance& u, Turn& turn) {
   Reply& out = turn.reply;
   const Phrases& p = phrases();
   const std::vector<Id> goals = resolve(u, "place", out);

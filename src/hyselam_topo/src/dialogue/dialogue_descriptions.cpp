@@ -52,7 +52,7 @@ void Dialogue::recordStatements(Turn& turn) {
     if (!named_otherwise && turn.beyond_here) {
       places_.confirm(robot().place, here);
     } else if (!named_otherwise) {
-      nameHere(robot().place, here, out);
+      confirmNames(robot().place, here, out);
     }
     subject_ = robot().place;
   } else if (!here.empty() && !turn.beyond_here) {
@@ -97,7 +97,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
     return;
   }
   if (report) reportMatch(out);
-  if (problem_to_ask) askFromAfar(*problem_to_ask, out);
+  if (problem_to_ask) askMostInformativeQuestion(*problem_to_ask, out);
 }
 
 void Dialogue::reportMatch(Reply& out) const {

@@ -26,7 +26,7 @@ bool Dialogue::isNamedOtherwise(Id place, const std::vector<std::string>& names)
   return true;
 }
 
-void Dialogue::nameHere(Id place, const std::vector<std::string>& names, Reply& out) {
+void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Reply& out) {
   const Phrases& p = phrases();
   const std::vector<Id> losers = places_.confirm(place, names);
   const Place& named = *places_.map().findPlace(place);
@@ -48,7 +48,7 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
     throw hyselam::InputError("places", "id " + std::to_string(place), "there is no such place");
   }
   Reply out = reply();
-  nameHere(place, names, out);
+  confirmNames(place, names, out);
   return out;
 }
 
@@ -75,7 +75,7 @@ void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
   if (isNamedOtherwise(place, names)) {
     askAlso(place, names, out);
   } else {
-    nameHere(place, names, out);
+    confirmNames(place, names, out);
   }
 }
 
@@ -114,7 +114,7 @@ void Dialogue::rename(const Utterance& u, Turn& turn) {
   if (found.empty() || names.empty()) return;
   for (const Id id : found) {
     places_.forget(id);
-    nameHere(id, {names.front()}, out);
+    confirmNames(id, {names.front()}, out);
   }
 }
 

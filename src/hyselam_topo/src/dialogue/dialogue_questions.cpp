@@ -35,8 +35,8 @@ void Dialogue::askAlso(Id place, const std::vector<std::string>& names, Reply& o
       "ask_also", {{"known", p.list(known)}, {"names", p.list(names)}, {"name", names.front()}}));
 }
 
-// The question that tells the answers that fit about as well apart best.
-void Dialogue::askFromAfar(const MatchProblem& problem, Reply& out) {
+// Asks the question that best discriminates between near-equal assignments.
+void Dialogue::askMostInformativeQuestion(const MatchProblem& problem, Reply& out) {
   constexpr double kWorthAsking = 0.2;  // [bits] that an answer must be worth to bother people
   if (question_.kind != Question::Kind::kNone) return;
   const auto best = mostInformativeQuestion(problem, *match_);
@@ -99,7 +99,7 @@ void Dialogue::answerName(const std::vector<std::string>& names, Reply& out) {
         return places_.sameName(name, names[0]);
       });
   if (guessed && !as_guessed) places_.reject(asked.place, asked.names);
-  nameHere(asked.place, as_guessed ? asked.names : names, out);
+  confirmNames(asked.place, as_guessed ? asked.names : names, out);
 }
 
 void Dialogue::answerLength(double length, Reply& out) {
@@ -119,7 +119,7 @@ void Dialogue::answerYes(Reply& out) {
   switch (asked.kind) {
     case Question::Kind::kConfirmName:
     case Question::Kind::kAlsoName:
-      nameHere(asked.place, asked.names, out);
+      confirmNames(asked.place, asked.names, out);
       break;
     case Question::Kind::kWall:
       question_ = {};

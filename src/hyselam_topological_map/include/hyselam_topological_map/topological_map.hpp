@@ -1,6 +1,6 @@
-// The augmented topological map of HySeLAM (dos Santos 2014, section 3.2.1): places with their
-// walls and visual signatures, connected by doors, and the relation of the places to the cells of a
-// grid map.
+// The augmented topological map of HySeLAM (Hybrid Semantic Localization and Mapping, dos Santos
+// 2014, section 3.2.1): places with their walls and visual signatures, connected by doors, and the
+// relation of the places to the cells of a grid map.
 //
 // Plain values: copy, compare and change them freely. Lengths [m], angles [rad], times [s], all
 // positions in the frame `frame_id` of the map, z up from the floor (REP-103).
@@ -21,14 +21,14 @@
 
 namespace hyselam_topo {
 
-/// Number of a place, wall or door: unique among its kind in a map, never 0, never used again for
-/// something else while the map lives.
+/// Identifier of a place, wall or door: unique among its kind in a map, never 0, never reused for
+/// another one during the map's lifetime.
 using Id = std::uint32_t;
 
 using hyselam::Covariance2;
 using hyselam::Covariance3;
 using hyselam::Point3;
-/// What does not belong to the format but stood in a file: kept and written again.
+/// Unknown XML content, preserved on round trip.
 using Extras = hyselam::XmlExtras;
 
 /// A word or name that people use for a place or a connection.
@@ -37,29 +37,31 @@ struct PlaceTerm {
   bool confirmed = false;  ///< said or confirmed by a person; otherwise it is a guess
 };
 
-/// A matrix of numbers: an image in grey values or a descriptor of it.
+/// An image in grey values or an image descriptor, as a matrix.
 struct Appearance {
-  std::string type;  ///< what the numbers mean, e.g. "LBPbyHSV-U16N" or "grey"
+  /// What the values are: "grey" or the name of a descriptor of package selovis. "LBPbyHSV-U16N":
+  /// local binary patterns by HSV color; U: uniform patterns, 16 color classes, N: no second stage.
+  std::string type;
   int rows = 0;
   int cols = 0;
   std::vector<float> values;  ///< row-major, rows * cols of them, finite
 };
 
-/// `e` of a wall (Eq. 3.3).
+/// Kind of a wall, by its existence value e (Eq. 3.3).
 enum class WallKind {
   kVirtual,  ///< 0: no wall, only the limit of a place
-  kGlass,    ///< 0.5: a wall that range sensors look through
+  kGlass,    ///< 0.5: a wall that range sensors pass through
   kSolid     ///< 1
 };
 
-/// A limit of a place (Eq. 3.3): upright, straight or an arc of a circle.
+/// A limit of a place (Eq. 3.3): vertical, straight or an arc of a circle.
 struct Wall {
   Id id = 0;
   WallKind kind = WallKind::kSolid;
   /// Mass centre; of a curved wall it lies beside the wall, on the inner side of the arc.
   Point3 position;
   std::optional<Covariance3> position_covariance;  ///< nothing: not known
-  /// Of length 1, at the middle of the wall, pointing into the place that the wall limits.
+  /// Unit vector, at the middle of the wall, pointing into the place that the wall limits.
   Point3 normal{1.0, 0.0, 0.0};
   std::optional<Covariance3> normal_covariance;
   double length = 0.0;                         ///< along the floor, along the arc if curved
@@ -68,7 +70,7 @@ struct Wall {
   /// Curvature along the floor [1/m]: 0 straight, > 0 if the centre of the circle lies on the side
   /// that the normal points to. |curvature| * length <= 2 pi.
   double curvature = 0.0;
-  double vertical_curvature = 0.0;  ///< [1/m], the same for an upright section
+  double vertical_curvature = 0.0;  ///< [1/m], the same in a vertical section
   Extras extras;
 };
 
@@ -81,8 +83,8 @@ struct Door {
   DoorState state = DoorState::kUnknown;
   Point3 position;  ///< middle of the opening
   std::optional<Covariance3> position_covariance;
-  Point3 normal{1.0, 0.0,
-                0.0};   ///< of length 1, through the door, from place `a` to `b` of its edge
+  /// Unit vector through the door, from place `a` to `b` of its edge.
+  Point3 normal{1.0, 0.0, 0.0};
   double width = 0.0;   ///< along the floor
   double height = 0.0;  ///< 0: not known
   std::optional<Appearance> appearance;
@@ -106,7 +108,7 @@ struct VisualSignature {
   std::optional<double> heading;  ///< of the camera; nothing: not known, or all around
   double aperture_x = 0.0;        ///< opening angle, horizontal
   double aperture_y = 0.0;        ///< vertical
-  double stamp = 0.0;             ///< time of the picture
+  double stamp = 0.0;             ///< time of the image
   Extras extras;
 };
 
@@ -159,14 +161,14 @@ struct AugmentedTopologicalMap {
   Id next_door_id = 1;
   Extras extras;
 
-  /// Pointers into the vectors; nullptr if there is none. Linear in the number of places or edges.
+  /// Pointers into the vectors, nullptr if not found. Linear in the number of places or edges.
   const Place* findPlace(Id id) const;
   Place* findPlace(Id id);
   const Edge* findEdge(Id a, Id b) const;  ///< in any order
   Edge* findEdge(Id a, Id b);
 };
 
-/// All fields, exactly.
+/// Field-wise, no tolerance.
 bool operator==(const PlaceTerm& a, const PlaceTerm& b);
 bool operator==(const Appearance& a, const Appearance& b);
 bool operator==(const Wall& a, const Wall& b);
@@ -186,16 +188,16 @@ std::optional<PlaceKind> placeKindFromString(const std::string& text);
 /// "unknown", "open", "closed" and back.
 const char* toString(DoorState state);
 std::optional<DoorState> doorStateFromString(const std::string& text);
-/// 0, 0.5 or 1 (Eq. 3.3) and back.
+/// Existence value e of a wall kind: 0, 0.5 or 1 (Eq. 3.3), and back.
 double existence(WallKind kind);
 std::optional<WallKind> wallKindFromExistence(double existence);
 
 /// Puts places, edges and what they hold into the order of their ids and raises the next ids above
-/// all ids in use. Call it after filling a map by hand.
+/// all ids in use. Call it after filling a map in code.
 void normalize(AugmentedTopologicalMap& map);
 
 /// @throws hyselam::InputError, with `source` and the part that is wrong ("place 3, wall 7"),
-/// unless: ids are there, unique and below the next ids; edges join two different places of the
+/// unless: ids are set, unique and below the next ids; edges join two different places of the
 /// map, a < b, once each; all numbers are finite, normals of length 1, covariances symmetric with a
 /// diagonal >= 0, lengths, areas and apertures >= 0; words are not empty; appearances and the grid
 /// have as many values as their sizes say; labels of the grid mean places of the map.

@@ -10,7 +10,7 @@
 
 namespace hyselam_topo {
 
-/// More than these and a file is refused before it takes the memory.
+/// Files beyond these limits are rejected before memory is allocated.
 struct MapXmlLimits : hyselam::XmlLimits {
   std::size_t max_grid_cells = std::size_t{1} << 26;  ///< of the place grid
   std::size_t max_appearance_values = 1u << 24;       ///< of one appearance

@@ -67,8 +67,8 @@ struct Compression {
 Compression compress(const VoxelMap& map, const CompressionParams& params,
                      const std::string& source);
 
-/// What a planar sensor between two heights [m] sees: occupied where any cell is, else free where
-/// any cell is. For comparison. @throws as compress().
+/// What a planar sensor between two heights [m] measures: occupied where any cell is, else free
+/// where any cell is. For comparison. @throws as compress().
 hyselam::OccupancyGrid slice(const VoxelMap& map, double z_min, double z_max,
                              const std::string& source,
                              std::size_t max_cells = std::size_t{1} << 26);

@@ -1,4 +1,4 @@
-// A sum of small decision trees: what says whether two neighbors are one place.
+// A sum of small decision trees, which classifies whether two neighboring regions are one place.
 #pragma once
 
 #include <cstddef>

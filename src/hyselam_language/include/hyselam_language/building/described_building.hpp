@@ -3,7 +3,7 @@
 // It is G_human of section 5.3; TopoParser makes it from text, TopoMerg matches it with the robot's
 // map.
 //
-// Plain values. Lengths [m]. Nothing here has a position: people say sides, not coordinates.
+// Plain values. Lengths [m]. There are no positions: people describe sides, not coordinates.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct DescribedPlace {
   Id id = 0;                         ///< unique in the description, never 0
   std::string name;                  ///< as first mentioned, without article: "room I-109"
   std::vector<std::string> aliases;  ///< "also known as"
-  /// Told or guessed from the name's words ("corridor", "hall"); nothing: not known.
+  /// Stated, or guessed from the words of the name ("corridor", "hall"); nothing: not known.
   std::optional<PlaceKind> kind;
   std::optional<double> length;  ///< the first and ...
   std::optional<double> width;   ///< ... the second of "6 by 8 metres"

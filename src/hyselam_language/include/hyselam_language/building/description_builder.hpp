@@ -20,13 +20,13 @@ enum class IssueKind {
   kAmbiguous,      ///< a name or "it" may mean several places
   kNoContext,      ///< a side without the robot's place, a correction of nothing, "it" of nothing
   kMeaningless,    ///< a place beside itself, more names than announced, a size out of range
-  kNotice          ///< taken down, but something was assumed: metres
+  kNotice          ///< recorded, but something was assumed: metres
 };
 
 /// "contradiction", "ambiguous", "no context", "meaningless", "notice".
 const char* toString(IssueKind kind);
 
-/// What could not be taken down as it was said.
+/// A statement, or part of one, that could not be recorded as it was said.
 struct DescriptionIssue {
   IssueKind kind = IssueKind::kContradiction;
   std::string reason;  ///< for people
@@ -45,11 +45,11 @@ class DescriptionBuilder {
   /// Whether the intent describes the building: "neighbours", "size", ...; false for commands.
   static bool handles(const std::string& intent);
 
-  /// Takes down one statement; returns what could not be. Others are passed over.
+  /// Records one statement; returns the problems. Utterances of other kinds are ignored.
   std::vector<DescriptionIssue> add(const Utterance& utterance);
   std::vector<DescriptionIssue> add(const ParsedText& text);
 
-  /// Where the robot is, known otherwise than from a description; makes the place if it is new.
+  /// Sets the robot's place from another source than the description; adds the place if new.
   void setRobotPlace(const std::string& name);
 
   const DescribedBuilding& building() const { return building_; }

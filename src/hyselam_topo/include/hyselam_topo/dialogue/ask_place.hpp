@@ -1,14 +1,14 @@
-// TopoAskPlace (dos Santos, Alg. 1): what the robot asks by itself on entering a place.
+// TopoAskPlace (dos Santos, Alg. 1): what the robot asks unprompted on entering a place.
 #pragma once
 
 #include "hyselam_topo/dialogue/place_man.hpp"
 
 namespace hyselam_topo {
 
-/// When the robot asks by itself.
+/// When the robot asks unprompted.
 enum class AskPolicy {
   kNever,
-  kUnconfirmed,  ///< whether a guessed name is right
+  kUnconfirmed,  ///< only whether a guessed name is right
   kAlways        ///< also for the name of a place without one
 };
 

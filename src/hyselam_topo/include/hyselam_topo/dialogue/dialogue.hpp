@@ -27,19 +27,20 @@
 namespace hyselam_topo {
 
 struct DialogueParams {
-  /// Of the robot's first sentences; then it answers in the language of the person.
+  /// Language of the robot's first sentences; then it answers in the language of the person.
   std::string language = "en";
-  /// When the robot asks by itself, on entering a place.
+  /// When the robot asks unprompted, on entering a place.
   AskPolicy ask = AskPolicy::kUnconfirmed;
-  /// After a description it asks for the name whose answer best separates assignments that fit
-  /// about as well, wherever the place is (by its code word).
+  /// After a description the robot asks for the name that best discriminates between near-equal
+  /// assignments, also about other places than its own, by their generated id (e.g. SS03).
   bool ask_from_afar = false;
   SolverParams match = defaultMatch();
   GlassWallParams glass;
   RouteParams route;
-  TopoStateParams state;
+  TopoStateParams state;  ///< of TopoState, which tracks the robot's place; not of DialogueState
 
-  /// Those of SolverParams, with a time limit of 2 s and answers kept that are worse by up to 0.03.
+  /// Defaults of SolverParams, but with a time limit of 2 s, and solutions whose fitness is within
+  /// 0.03 of the best are kept.
   static SolverParams defaultMatch();
 
   void describe(hyselam::ParameterVisitor& visit);
@@ -50,7 +51,7 @@ struct DialogueParams {
 struct DialogueAction {
   enum class Kind {
     kMap,     ///< the names or places of map() have changed
-    kWalls,   ///< the described walls have changed: the grid map with them, too
+    kWalls,   ///< the described walls have changed, and so has gridWithWalls()
     kGo,      ///< drive `legs`, one after another
     kStop,    ///< stop driving
     kFollow,  ///< follow the person
@@ -61,12 +62,13 @@ struct DialogueAction {
   double angle = 0.0;  ///< [rad], left > 0
 };
 
-/// A sentence for another node, which knows more than places.
+/// A sentence for another node, which handles other topics (objects).
 struct ForwardedSentence {
   std::string text;
-  /// Answer if no other node understands it either; empty: the dialogue handles it after all.
+  /// Reply if no other node understands it either; empty: the dialogue handles it as fallback.
   std::string refusal;
-  bool about_object = false;  ///< refused because it names an object: another node knows better why
+  /// Refused because it is about an object: another node can give the reason.
+  bool about_object = false;
 };
 
 struct Reply {
@@ -74,19 +76,20 @@ struct Reply {
   std::vector<std::string> sentences;
   std::vector<DialogueAction> actions;
   std::vector<ForwardedSentence> forwarded;
-  bool unknown_name = false;  ///< a place was named that nobody knows
+  bool unknown_name = false;  ///< unknown place name in the last command
 
-  std::string text() const;  ///< the sentences, a blank between
+  std::string text() const;  ///< the sentences, separated by spaces
   bool has(DialogueAction::Kind kind) const;
 };
 
 struct HearOptions {
-  /// Another node listens: what is not understood, or names an unknown place, is returned in
-  /// Reply::forwarded instead of being refused.
+  /// Another node also handles sentences: those that are not understood, or name an unknown place,
+  /// are returned in Reply::forwarded instead of being refused.
   bool forward_unknown = false;
-  /// Objects were spoken of last: that "it", or what is no place, is in a room is about an object.
+  /// The last topic was an object: "it is in room X" refers to it, and "A is in room X" is about an
+  /// object if A is not a known place.
   bool objects_spoken_of = false;
-  /// Another node asked the last question: answers are for it.
+  /// Another node asked the last question: answers are forwarded to it.
   bool others_asked_last = false;
 };
 
@@ -94,10 +97,10 @@ struct HearOptions {
 struct Question {
   enum class Kind {
     kNone,
-    kConfirmName,  ///< has `place` the names?
-    kAlsoName,     ///< has `place`, which has other names, the names as well?
+    kConfirmName,  ///< are `names` the names of `place`?
+    kAlsoName,     ///< are `names` additional names of `place`, which has others already?
     kName,         ///< what is the name of `place`?
-    kWall,         ///< is `wall` right?
+    kWall,         ///< is `wall` where the person means it?
     kWallLength,   ///< how long is the wall?
     kRadius        ///< how large is the virtual place at `point`?
   };
@@ -112,9 +115,9 @@ struct Question {
 /// State of a dialogue; a plain value, for files (dialogue_state.hpp).
 struct DialogueState {
   std::string language;
-  PlaceMan::State places;
+  PlaceMan::State places;  ///< of the place manager
   DescribedBuilding description;
-  /// Heading of the robot when sides were described, in the frame of the map [rad].
+  /// Heading of the robot when sides (left, front, ...) were last described, map frame [rad].
   std::optional<double> heading;
 };
 
@@ -125,7 +128,7 @@ class Dialogue {
   Dialogue(const DialogueParams& params, TopoParser parser, std::vector<Phrases> phrases);
 
   // ---- Perception ----
-  /// The topological map of a segmentation. Throws as PlaceMan::setMap().
+  /// A new topological map from segmentation. Throws as PlaceMan::setMap().
   Reply setMap(const AugmentedTopologicalMap& fresh);
   /// The grid map, for glass walls.
   void setGrid(hyselam::OccupancyGrid grid);
@@ -133,40 +136,46 @@ class Dialogue {
   Reply losePose(double stamp);
 
   // ---- Input of people ----
-  /// Any text. Never throws for what it says.
+  /// Any text. Never throws, whatever the content.
   Reply hear(const std::string& text, const HearOptions& options = {});
-  /// Drives to the nearest of the places; says so if there is none or no way. `name`: of them.
+  /// Drives to the nearest of `places`; replies with the reason if there is none or no path.
+  /// `name`: what the replies call them.
   Reply goTo(const std::string& name, const std::vector<Id>& places);
-  /// "This place is called ..." of any place, as by a click on the map. Throws as PlaceMan.
+  /// Confirms the names of any place, e.g. after a click on the map.
+  /// @throws hyselam::InputError without names, and as PlaceMan::confirm().
   Reply name(Id place, const std::vector<std::string>& names);
+  /// Removes all names of a place. Throws as PlaceMan::forget().
   Reply forget(Id place);
   Reply addVirtualPlace(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names);
   Reply addWall(const DescribedWall& wall);
 
-  // ---- Knowledge ----
+  // ---- State ----
   const AugmentedTopologicalMap& map() const { return places_.map(); }
+  /// The place manager (PlaceMan, dos Santos 2014, section 3.2.2): names, glass walls and virtual
+  /// places that people add.
   const PlaceMan& places() const { return places_; }
   const RobotPlace& robot() const { return topo_state_.robot(); }
   const DescribedBuilding& description() const { return builder_.building(); }
   const Question& question() const { return question_; }
-  /// Of the last description; nothing before one was matched with a map.
+  /// Assignment of the description's names to places of the map; nothing if there is none.
   const std::optional<PlaceAssignment>& match() const { return match_; }
   /// The grid map with all described walls in it; nothing without a grid map.
   std::optional<hyselam::OccupancyGrid> gridWithWalls() const;
-  /// All known names, confirmed, guessed or only described, sorted.
+  /// All place names, confirmed, guessed or only described, sorted.
   std::vector<std::string> knownNames() const;
-  /// What the robot says when those do not answer that a sentence was passed on to.
+  /// Reply when no node answers a forwarded sentence.
   std::string sayNobodyAnswers() const;
-  /// The pose in the nearest of the places that have a name or code word; nothing for unknown ones.
+  /// The nearest place with this name or generated id (e.g. SS03), and a pose in it; nothing if no
+  /// place has it.
   std::optional<std::pair<Id, PlacePose>> poseOf(const std::string& name) const;
 
   DialogueState state() const;
-  /// Throws hyselam::InputError for a state that makes no sense.
+  /// @throws hyselam::InputError for an inconsistent state.
   void restore(DialogueState state);
 
  private:
-  struct Turn;  // what one text leads to, while it is handled
+  struct Turn;  // one text of a person: reply, goals and statements while it is handled
   using Handler = void (Dialogue::*)(const Utterance&, Turn&);
 
   const Phrases& phrases() const;
@@ -174,14 +183,14 @@ class Dialogue {
   ParsedText parse(const std::string& text);
   void handleUtterance(const Utterance& u, Turn& turn);
   void handleCommand(const Utterance& u, Turn& turn);
-  /// What to do for an intent of the grammar; nullptr for one that is not handled.
+  /// The member function for an intent of the grammar; nullptr for one that is not handled.
   static Handler handlerOf(const Utterance& u);
   void forward(const Utterance& u, const std::string& refusal, Turn& turn);
   /// Calls act(); a hyselam::InputError becomes a sentence of the reply.
   template <typename Act>
   void attempt(Reply& reply, Act&& act);
   void say(const char* key, Turn& turn);
-  /// Whether it says that something is in a room which is no place that was ever heard of.
+  /// Whether the statement is "A is in room X" and A is "it" or not a known place.
   bool isAboutObject(const Utterance& u) const;
 
   // descriptions
@@ -194,17 +203,19 @@ class Dialogue {
   void nameThisPlace(const Utterance& u, Turn& turn);
   void forgetNames(const Utterance& u, Turn& turn);
   void rename(const Utterance& u, Turn& turn);
-  /// Whether a place is confirmed to have names, and none of these.
+  /// Whether a place has confirmed names, and none of these.
   bool isNamedOtherwise(Id place, const std::vector<std::string>& names) const;
-  void nameHere(Id place, const std::vector<std::string>& names, Reply& reply);
+  /// Confirms names, updates the match with the description and replies.
+  void confirmNames(Id place, const std::vector<std::string>& names, Reply& reply);
 
   // questions of the robot, and their answers
   void enterPlace(Reply& reply);
   void askConfirm(Id place, Reply& reply);
   void askName(Id place, Reply& reply);
-  /// Whether a place with other names has these as well.
+  /// Asks whether a place with other names has these as well.
   void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
-  void askFromAfar(const MatchProblem& problem, Reply& reply);
+  /// DialogueParams::ask_from_afar.
+  void askMostInformativeQuestion(const MatchProblem& problem, Reply& reply);
   void rejectGuess(Reply& reply);
   void answer(const Utterance& u, Turn& turn);
   void answerName(const std::vector<std::string>& names, Reply& reply);
@@ -220,9 +231,9 @@ class Dialogue {
   void addVirtualAndAsk(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names, Reply& reply);
 
-  // going
+  // navigation
   void goTo(const Utterance& u, Turn& turn);
-  void goBack(const Utterance& u, Turn& turn);
+  void goToPreviousPlace(const Utterance& u, Turn& turn);
   void followPerson(const Utterance& u, Turn& turn);
   void turnRobot(const Utterance& u, Turn& turn);
   void stop(const Utterance& u, Turn& turn);
@@ -237,19 +248,19 @@ class Dialogue {
   // questions of people
   void answerWhereAreYou(const Utterance& u, Turn& turn);
   void answerWhereIs(const Utterance& u, Turn& turn);
-  void answerWayTo(const Utterance& u, Turn& turn);
+  void answerRouteTo(const Utterance& u, Turn& turn);
   void answerNextTo(const Utterance& u, Turn& turn);
   void answerOpposite(const Utterance& u, Turn& turn);
   void answerOnSide(const Utterance& u, Turn& turn);
   void answerSize(const Utterance& u, Turn& turn);
   void answerWhichPlaces(const Utterance& u, Turn& turn);
 
-  /// The places that a name, "here" or "it" means; says so if there are none.
+  /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
   std::vector<Id> resolve(const SaidName& name, Reply& reply);
   std::vector<Id> resolve(const Utterance& u, const std::string& slot, Reply& reply);
-  /// "CC04, corridor"; "SS02, perhaps kitchen"; "SS03".
+  /// Generated id and name: "CC04, corridor"; "SS02, perhaps kitchen"; "SS03".
   std::string label(Id place) const;
-  /// "corridor"; "kitchen"; "SS03".
+  /// Name, else generated id: "corridor"; "kitchen"; "SS03".
   std::string shortName(Id place) const;
   std::vector<std::string> labels(const std::vector<Id>& places) const;
 
@@ -260,13 +271,13 @@ class Dialogue {
   PlaceMan places_;
   DescriptionBuilder builder_;
   TopoState topo_state_;
-  bool entered_ = false;  ///< another place, or the same on another map; not looked at yet
+  bool entered_ = false;  ///< the robot's place or the map has changed; not processed yet
   std::optional<hyselam::OccupancyGrid> grid_;
   std::optional<PlaceAssignment> match_;
-  std::optional<double> heading_;  // when sides were described
+  std::optional<double> heading_;  // DialogueState::heading
   Question question_;
-  Id asked_ = 0;    // the place that was asked about during this stay
-  Id subject_ = 0;  // what "it" means
+  Id asked_ = 0;    // the place for which a question was considered since entering it
+  Id subject_ = 0;  // antecedent of "it"
 };
 
 }  // namespace hyselam_topo

@@ -1,4 +1,4 @@
-// What a talk leaves behind, as a file: one for all of it, checked as a whole.
+// The state of a dialogue as one file with a checksum.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace hyselam_topo {
 std::string toText(const DialogueState& state);
 
 /// Throws hyselam::InputError for another format or version, a wrong length or checksum, and for
-/// content that makes no sense.
+/// inconsistent content.
 DialogueState dialogueStateFromText(const std::string& text, const std::string& source);
 
 /// Writes a file as a whole or not at all. Throws hyselam::InputError if it cannot be written.

@@ -1,4 +1,4 @@
-// Where a glass wall stands that a person describes and no laser sees (dos Santos, section 7.2).
+// Position of a glass wall that a person describes and no laser detects (dos Santos, section 7.2).
 //
 // "On your left there is a glass wall": the grid map is searched as a laser at the robot would see
 // it, turned to that side. Glass walls are held by something solid, so they stand between two
@@ -43,7 +43,7 @@ struct GlassWall {
 
 bool operator==(const GlassWall& a, const GlassWall& b);
 
-/// What the search at one place has seen.
+/// The search for a glass wall from one robot pose.
 class GlassWallSearch {
  public:
   /// Looks from `robot` (pose in the frame of the map) to a side. Throws hyselam::ParameterError
@@ -58,12 +58,12 @@ class GlassWallSearch {
   /// The one whose length is nearest to the described one [m]; of equal ones the nearest to the
   /// robot. Not one that was rejected, unless it fits better by more than 0.3 m.
   std::optional<GlassWall> ofLength(double length) const;
-  /// A person has said that there is none.
+  /// Excludes a wall that a person has denied.
   void reject(const GlassWall& wall);
 
   /// Convex corners, nearest to the robot first.
   const std::vector<hyselam::Point2>& corners() const { return corners_; }
-  /// Ends of the beams from the right to the left: the outline of what was looked at.
+  /// End points of the simulated laser beams, from right to left: the outline of the searched area.
   const std::vector<hyselam::Point2>& seen() const { return seen_; }
   const hyselam::Pose2& robot() const { return robot_; }
   Side side() const { return side_; }
@@ -82,7 +82,7 @@ class GlassWallSearch {
   std::vector<GlassWall> rejected_;
 };
 
-/// Makes the cells occupied that the walls cross, so that no way of 4 or 8 neighbours leads
+/// Makes the cells occupied that the walls cross, so that no 4- or 8-connected path leads
 /// through; what lies outside of the grid is left out. Never draw into the grid of a SLAM, but into
 /// a copy.
 void drawGlassWalls(const std::vector<GlassWall>& walls, hyselam::OccupancyGrid* grid);

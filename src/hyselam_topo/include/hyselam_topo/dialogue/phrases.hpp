@@ -1,4 +1,4 @@
-// What the robot says, as data: one file per language with texts whose words in braces are filled
+// The robot's sentences, as data: one file per language with texts whose words in braces are filled
 // in. The files are share/hyselam_topo/dialogue/*.yaml; the library carries the shipped ones.
 #pragma once
 
@@ -16,7 +16,7 @@ class Phrases {
   using Values = std::vector<std::pair<std::string, std::string>>;
 
   /// Throws hyselam::InputError, naming source, key and reason, for text that is no YAML, missing
-  /// or unknown keys, and words in braces that the phrase does not know.
+  /// or unknown keys, and unknown words in braces.
   static Phrases fromYaml(const std::string& source, const std::string& yaml);
   static Phrases load(const std::string& path);
   /// "en" or "pt"; throws hyselam::InputError for other languages.

@@ -1,6 +1,6 @@
-// PlaceMan (dos Santos, section 3.2.2): keeps what people have said about the places of the robot's
-// map: names that are confirmed or only guessed, virtual places, walls of glass and virtual walls.
-// All of it stays when the map is segmented again.
+// PlaceMan, the place manager (dos Santos 2014, section 3.2.2): the topological map with what
+// people add to it: names (confirmed or only guessed), virtual places, glass walls and virtual
+// walls. These are preserved when the map is segmented again.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@
 
 namespace hyselam_topo {
 
-/// "SS01" for rooms, "CC04" for corridors (Fig. 7.9), "VV05" for virtual places: the code word of a
-/// place, from its id.
+/// The generated id of a place that people read: "SS01" for rooms, "CC04" for corridors (Fig. 7.9),
+/// "VV05" for virtual places; the number is Place::id.
 std::string codeOf(const Place& place);
 
-/// How sure the name of a place is (the colours of Fig. 7.10).
+/// Whether the name of a place is confirmed, with the colours of Fig. 7.10.
 enum class NameState {
   kNone,         ///< no word: green
   kUnconfirmed,  ///< guessed: red
@@ -39,52 +39,53 @@ bool operator==(const DescribedWall& a, const DescribedWall& b);
 
 class PlaceMan {
  public:
-  /// All that is kept; a plain value, for files.
+  /// Everything to save; a plain value.
   struct State {
-    AugmentedTopologicalMap map;  ///< with the names; no places: there was no map yet
+    AugmentedTopologicalMap map;  ///< with the names; without places before the first setMap()
     std::vector<DescribedWall> walls;
-    /// This place does not have that name: a person has said no.
+    /// (place, name) pairs that a person has denied.
     std::vector<std::pair<Id, std::string>> rejected;
   };
 
   explicit PlaceMan(PlaceNames names);
 
-  /// Goes on with a state kept before. Throws hyselam::InputError for a map that checkMap() refuses
-  /// and for walls that are not finite.
+  /// Replaces the state by a saved one. @throws hyselam::InputError for a map that checkMap()
+  /// rejects and for walls that are not finite.
   void restore(State state);
   const State& state() const { return state_; }
   const AugmentedTopologicalMap& map() const { return state_.map; }
   bool hasMap() const { return !state_.map.places.empty(); }
 
-  /// A new segmentation of the grid map: ids, names, virtual places and walls go on (carryOver()).
-  /// The ids of map() are those of the first map and then its own. Throws as carryOver().
+  /// A new segmentation of the grid map: ids, names, virtual places and walls are preserved, see
+  /// carryOver(). map() has the ids of the first map; new places get new ids, not those of `fresh`.
+  /// @throws as carryOver().
   CarryOverReport setMap(const AugmentedTopologicalMap& fresh);
 
-  // ---- Names. Those of places that are not in the map throw hyselam::InputError. ----
-  /// A person has said so: the names are confirmed here, guesses here are dropped, and the names
-  /// leave all other places that do not lie beside this one. Returns the places that had one of
-  /// them confirmed and lost it.
+  // ---- Names. Places that are not in the map throw hyselam::InputError. ----
+  /// A person has stated the names: they are confirmed for this place, its guesses are removed, and
+  /// the names are removed from all other places, except where confirmed for an adjacent place.
+  /// Returns the places that lost a confirmed name.
   std::vector<Id> confirm(Id place, const std::vector<std::string>& names);
-  /// The guesses of this place are right. False if it has none.
+  /// Confirms the guessed names of a place. False if it has none.
   bool confirmGuesses(Id place);
-  /// A person has said no: never guessed here again.
+  /// A person has denied the names: they are never guessed for this place again.
   void reject(Id place, const std::vector<std::string>& names);
   bool isRejected(Id place, const std::string& name) const;
-  /// Guesses instead of all guesses there were. Confirmed and rejected names stay as they are.
+  /// Replaces all guessed names. Confirmed and rejected names remain as they are.
   void guess(const std::vector<std::pair<Id, std::vector<std::string>>>& guesses);
-  /// All names of a place go. False if it had none.
+  /// Removes all names of a place. False if it had none.
   bool forget(Id place);
-  /// A name goes, everywhere. The places that had it.
+  /// Removes a name from all places. Returns the places that had it.
   std::vector<Id> forgetName(const std::string& name);
-  /// With those that were refused.
+  /// Removes all names of all places, and the rejected ones.
   void forgetAllNames();
-  /// All names of a place go and another one is confirmed.
+  /// Removes all names of a place and confirms another one.
   void rename(Id place, const std::string& name);
 
-  /// The places that a name or code word means: those where it is confirmed, else those where it is
-  /// guessed.
+  /// The places with a name or generated id (codeOf()): those where the name is confirmed, else
+  /// those where it is guessed.
   std::vector<Id> find(const std::string& name) const;
-  /// Whether both mean the same place.
+  /// Whether both may be spellings of the same name (place_names.hpp).
   bool sameName(const std::string& a, const std::string& b) const;
 
   // ---- Virtual places and walls ----
@@ -92,7 +93,8 @@ class PlaceMan {
   /// id. Throws hyselam::InputError if the centre lies on no place, or the radius is not in
   /// (0, 100].
   Id addVirtualPlace(hyselam::Point2 centre, double radius, const std::vector<std::string>& names);
-  /// Its cells go back to the place around it. False if there is no such virtual place.
+  /// Removes it; its cells are given back to the surrounding place. False if there is no such
+  /// place.
   bool removeVirtualPlace(Id place);
   /// Throws hyselam::InputError for a wall that is not finite or has no length.
   void addWall(const DescribedWall& wall);

@@ -1,5 +1,5 @@
-// From a place to a pose of a robot within it: where to go when a place is named, and where to look
-// for a robot of which somebody says that it is there.
+// A robot pose within a place: as navigation goal, or as initial pose estimate for a robot whose
+// place a person states.
 #pragma once
 
 #include <array>

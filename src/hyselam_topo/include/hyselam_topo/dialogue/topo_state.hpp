@@ -8,13 +8,14 @@
 namespace hyselam_topo {
 
 struct TopoStateParams {
-  /// Within this of a door the robot is in the doorway, where its place stays what it was. [m] >= 0
+  /// Nearer than this to a door the robot is in the doorway and its place does not change. [m] >= 0
   double doorway_distance = 0.4;
   /// A pose on no place counts to the nearest place within this. [m] >= 0
   double max_place_distance = 0.3;
-  /// In a place that is too narrow to be well inside it is accepted after this time. [s] >= 0
+  /// After this time in the next place, the place changes in a doorway, too. [s] >= 0
   double settle_time = 3.0;
-  /// A pose that moves by more than this at once is a new one: no doorway holds it. [m] > 0
+  /// A pose that jumps by more than this is a relocalization: the place is updated even in a
+  /// doorway. [m] > 0
   double max_pose_step = 1.0;
 
   void describe(hyselam::ParameterVisitor& visit);
@@ -28,7 +29,7 @@ struct RobotPlace {
   hyselam::Pose2 pose;      ///< in the frame of the map
   Id place = 0;             ///< 0: not known
   Id previous = 0;          ///< the place before this one; 0: none
-  bool in_doorway = false;  ///< `place` is held until the robot is well inside the next
+  bool in_doorway = false;  ///< near a door, where `place` does not change yet
 };
 
 class TopoState {
@@ -37,11 +38,11 @@ class TopoState {
   explicit TopoState(const TopoStateParams& params = {});
 
   /// The pose at a time, in the frame of the map. True if place, previous or in_doorway changed.
-  /// A pose that is not finite is none: lost().
+  /// A pose that is not finite has the effect of lost().
   bool update(const AugmentedTopologicalMap& map, double stamp, const hyselam::Pose2& pose);
-  /// There is no pose: the place is not known. True if it was.
+  /// The pose is lost: the place becomes unknown. True if it was known.
   bool lost(double stamp);
-  /// After another map: a place that is not in it any more is not known.
+  /// The map was replaced: a place that is not in it any more becomes unknown.
   bool mapChanged(const AugmentedTopologicalMap& map);
 
   const RobotPlace& robot() const { return robot_; }

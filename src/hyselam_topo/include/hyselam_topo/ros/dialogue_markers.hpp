@@ -1,4 +1,4 @@
-// What the talk knows, for rviz.
+// The place names and the wall search of a dialogue, for rviz.
 #pragma once
 
 #include <visualization_msgs/MarkerArray.h>
@@ -8,14 +8,14 @@
 
 namespace hyselam_topo {
 
-/// As mapMarkers(), but each name with the code word of its place in the colours of Fig. 7.10:
-/// green without a name, red guessed, blue confirmed; namespaces `names` and `name_states`, a ring
-/// around each middle.
+/// As mapMarkers(), but each name with the generated id of its place (e.g. SS03), in the colours of
+/// Fig. 7.10: green without a name, red guessed, blue confirmed; namespaces `names` and
+/// `name_states`, a ring around each middle.
 visualization_msgs::MarkerArray namedMapMarkers(const AugmentedTopologicalMap& map,
                                                 const MapMarkerParams& params);
 
 /// The search for a wall of glass that the robot asks about (Fig. 7.5), in the namespace
-/// `glass_wall`: what was looked at green, corners red, the wall blue. Without a question it
+/// `glass_wall`: the searched area green, corners red, the wall blue. Without a question it
 /// deletes what was shown.
 visualization_msgs::MarkerArray questionMarkers(const Question& question,
                                                 const std::string& frame_id);

@@ -19,9 +19,9 @@ class GoalDriver {
 
   /// Whether this was built with move_base_msgs and a server is there.
   bool available() const;
-  /// Drives from goal to goal; what was driven before is given up. Nothing without a server.
+  /// Drives from goal to goal; earlier goals are canceled. Does nothing without a server.
   void drive(std::vector<hyselam::Pose2> goals, const std::string& frame_id);
-  /// Gives up what is driven.
+  /// Cancels the current goals.
   void stop();
 
   /// "", "driving", "arrived", "ABORTED at 2 of 5", ...

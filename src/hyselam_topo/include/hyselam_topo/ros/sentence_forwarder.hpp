@@ -1,4 +1,4 @@
-// Forwards sentences to the node that knows the objects, as hyselam_objects/ObjectEngine, and
+// Forwards sentences to the node that handles objects (hyselam_objects/ObjectEngine) and
 // returns the answers. By topics, not by a service: neither waits in a callback for the other, so
 // that one thread is enough for both.
 #pragma once
@@ -21,10 +21,10 @@ class SentenceForwarder {
 
   SentenceForwarder(ros::NodeHandle nh, double timeout, Answered answered);
 
-  /// Whether some node listens.
+  /// Whether a node subscribes to `object_request`.
   bool hasListeners() const { return publisher_.getNumSubscribers() > 0; }
   void forward(const ForwardedSentence& sentence);
-  /// Ends waiting for answers that are overdue; to be called periodically.
+  /// Times out overdue requests; to be called periodically.
   void dropOverdue();
 
  private:
