@@ -1,10 +1,10 @@
-// ObjectDetector (dos Santos, section 3.2.4), second half: updates the object map with the
-// detections of a frame.
+// ObjectMapper: mapping stage of the ObjectDetector (dos Santos 2014, 3.2.4). Updates the object
+// map with the detections of an image.
 //
 // Data association: a detection belongs to the instance that is nearest in position and
-// appearance; a detection without one is a new instance. Instances that should have been seen and
-// were not become less probable. One that is gone and one of the same appearance that is new
-// elsewhere are the same object, moved.
+// appearance; a detection without one is a new instance. The existence probability of an instance
+// whose space is seen to be free decreases. A disappeared instance and a new one with a similar
+// descriptor elsewhere are merged as a moved object.
 #pragma once
 
 #include <functional>
@@ -24,60 +24,68 @@ namespace hyselam_objects {
 
 struct MapperParams {
   double association_gate = 0.25;  ///< largest distance of a detection from its instance [m], > 0
-  double appearance_threshold = 0.5;         ///< ... and largest distance of their descriptors, > 0
-  double reidentification_threshold = 0.35;  ///< of descriptors of an object that has moved, > 0
+  double appearance_threshold = 0.5;         ///< largest descriptor distance of the two, > 0
+  double reidentification_threshold = 0.35;  ///< the same for an object that has moved, > 0
   double p_detection = 0.85;     ///< probability to detect an object that is in view, < 1
   double p_false_alarm = 0.1;    ///< probability to detect one that is not there, 0 .. p_detection
-  double position_sigma = 0.03;  ///< of a detection's position [m], > 0
-  int min_views = 2;             ///< of a new instance before it is kept, >= 1
-  double image_border_margin = 0.06;  ///< share of the frame at each border that is not trusted
-  double depth_margin = 0.02;  ///< points this far behind an object show that its place is free [m]
-  RelationParams relations;
-  MovabilityParams movability;
+  double position_sigma = 0.03;  ///< standard deviation of a detection's position [m], > 0
+  int min_views = 2;             ///< detections of a new instance required to keep it, >= 1
+  /// Share of the image width/height at each border that is ignored as free-space evidence.
+  double image_border_margin = 0.06;
+  /// Points at least this far behind an object count as evidence that its space is free [m].
+  double depth_margin = 0.02;
+  RelationParams relations;     ///< spatial relations between objects: on, beside, near ...
+  MovabilityParams movability;  ///< how likely an object is to be moved, see movability()
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
   void validate() const;
 };
 
-/// The camera of a frame.
+/// Camera pose and intrinsics of an image.
 struct PinholeCamera {
-  Eigen::Isometry3d in_map = Eigen::Isometry3d::Identity();  ///< of its optical frame (REP-103)
-  double focal_length = 500.0;                               ///< [pixel]
-  double cx = 319.5, cy = 239.5;                             ///< principal point [pixel]
+  Eigen::Isometry3d in_map =
+      Eigen::Isometry3d::Identity();  ///< pose of the optical frame (REP-103)
+  double focal_length = 500.0;        ///< [pixel]
+  double cx = 319.5, cy = 239.5;      ///< principal point [pixel]
 };
 
 class ObjectMapper {
  public:
-  /// Name and center of the place at a position of the map; nothing: no place is known there.
+  /// Returns name and center [m] of the place (room) at a position [m, map frame], nullopt if there
+  /// is none.
   using PlaceLookup =
       std::function<std::optional<std::pair<std::string, Point3>>(double x, double y)>;
 
   /// `map` is changed by update() and consolidate(), and must outlive this. Kinds are recognized
-  /// with `dictionary`; unknown ones are "thing".
+  /// with `dictionary`; unrecognized kinds are labelled "thing".
   /// @throws hyselam::ParameterError.
   ObjectMapper(ObjectMap& map, ObjectDictionary dictionary, const MapperParams& params = {});
 
   void setPlaceLookup(PlaceLookup lookup) { place_lookup_ = std::move(lookup); }
   void setDictionary(ObjectDictionary dictionary) { dictionary_ = std::move(dictionary); }
 
-  /// Updates the map with one frame, taken at `stamp` [s].
+  /// Updates the map with the detections of one image, taken at `stamp` [s].
   /// @throws hyselam::InputError as checkCloud().
   void update(const OrganizedCloud& cloud, const PinholeCamera& camera,
               const std::vector<DetectedObject>& detections, double stamp);
 
-  /// Stamp of the last frame [s].
+  /// Stamp of the last image [s].
   double time() const { return time_; }
 
-  /// Consolidates the map, now and then or at the end: merges moved objects and parts of furniture,
-  /// removes objects with too few views that were last seen before `unconfirmed_before` [s], and
-  /// updates the relations.
+  /// Consolidates the map; to be called periodically or at the end: merges moved objects and parts
+  /// of furniture, removes objects with too few views that were last seen before
+  /// `unconfirmed_before` [s], and updates the relations.
   void consolidate(double unconfirmed_before = std::numeric_limits<double>::infinity());
 
  private:
+  /// Where two detections lie within one instance, that instance was several objects seen as one:
+  /// resets its pose. instances[i]: index of the instance of detections[i] in the map, -1: none.
   void resetMergedInstances(const std::vector<DetectedObject>& detections,
                             const std::vector<int>& instances);
   Id addInstance(const DetectedObject& seen, const std::string& kind, double stamp);
+  /// An object that a person has described but that has not been seen yet, of the same kind and in
+  /// the same place as the detection; 0: none.
   Id findDescribed(const DetectedObject& seen, const std::string& kind) const;
   void assignPlace(Id object);
   void removeUnconfirmed(double unconfirmed_before);

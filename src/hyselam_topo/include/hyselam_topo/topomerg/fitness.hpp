@@ -1,6 +1,8 @@
-// How well an assignment of names to places fits (dos Santos, Eq. 5.2 to 5.8): f is the weighted
-// mean of named vertices V (5.3), areas A (5.4), edges C (5.6) and orientations D (5.7, 5.8), and
-// of terms that the thesis does not have, each active only if the description mentions it.
+// Fitness function of TopoMerg, which merges the topological map of the robot with a person's
+// description of the building (dos Santos 2014, 5.3, Eq. 5.2 to 5.8): how well an assignment of
+// described names to places of the map fits. f is the weighted mean of named vertices V (5.3),
+// areas A (5.4), edges C (5.6) and orientations D (5.7, 5.8), and of terms that the thesis does not
+// have, each active only if the description mentions it.
 #pragma once
 
 #include <vector>
@@ -10,34 +12,39 @@
 
 namespace hyselam_topo {
 
-/// What the side of a place is in the map.
+/// How the side (left, right, front, back) on which a place lies is computed from the map.
 enum class SideRule {
-  /// The direction through its door, as people who pass it see it; of several doors the one that
-  /// fits best. The described order counts on its own. A map without any doors goes by centers.
+  /// The direction through the door to the place, as somebody passing the door sees it; of several
+  /// doors the one that fits best. The described order of places on a side is a term of its own
+  /// (FitnessParams::orders). A map without any doors is treated as kCenters.
   kDoors,
-  kCenters  ///< Eq. 5.7: the bearing of its center, spread in the described order
+  /// Eq. 5.7: the bearing from the center of one place to that of the other. It is compared with an
+  /// angle that depends on the described order: n places on one side are assumed pi / (2 n) apart,
+  /// symmetric to the direction of the side (DescribedSide::angle).
+  kCenters
 };
 
-/// Weights of the fitness. Each is shared equally by what the description has of its kind; what it
-/// does not mention at all drops out and the others are scaled to a sum of 1. So the weight of
-/// relations has no effect where no relation is described.
+/// Weights of the fitness terms, >= 0. Each weight is divided equally among the statements of that
+/// type in the description. Types without a statement are left out and the other weights are scaled
+/// to a sum of 1: the weight of relations has no effect where no relation is described.
 struct FitnessParams {
-  double vertices = 0.25;      ///< gamma_v: every name has a place
-  double areas = 0.25;         ///< gamma_a: of the right size
-  double edges = 0.25;         ///< gamma_e: connected as described
-  double orientations = 0.25;  ///< gamma_d: on the described side
+  double vertices = 0.25;      ///< gamma_v: every name is assigned to a place
+  double areas = 0.25;         ///< gamma_a: places have the described area
+  double edges = 0.25;         ///< gamma_e: places are connected as described
+  double orientations = 0.25;  ///< gamma_d: places are on the described side
   SideRule sides = SideRule::kDoors;
-  double orders = 0.25;     ///< "A, then B", only with doors
+  double orders = 0.25;     ///< described order "A, then B" on a side; only with SideRule::kDoors
   double relations = 0.25;  ///< next to, opposite, between, at the end of, inside
-  double parts = 0.25;      ///< "divided into six rooms"
-  double kinds = 0.0;       ///< corridor or room; also guessed from names, so 0 unless wanted
-  double evidence = 0.25;   ///< of objects and pictures
-  /// C of two places that are connected in the map but not in the description, 0 .. 1: 0 counts it
-  /// as an error of the description, 1 as something that people leave out.
+  double parts = 0.25;      ///< described number of parts: "divided into six rooms"
+  double kinds = 0.0;  ///< corridor or room; off by default, since it may be guessed from the name
+  /// Evidence that a place of the map has a name, from objects seen there and from image
+  /// classification (MatchEvidence).
+  double evidence = 0.25;
+  /// Value of C (Eq. 5.6) for two places that are connected in the map but not in the description,
+  /// 0 .. 1. 0: counts as an error, 1: people are expected to leave connections out.
   double undescribed_edge_credit = 0.0;
-  /// Share of C and D, 0 .. 1, that remains where two places are described as connected and are not
-  /// in the map, but share a wall: a door may have been closed when the robot passed. Only with
-  /// doors (SideRule).
+  /// Factor of C and D, 0 .. 1, for two places that are described as connected and in the map only
+  /// share a wall: its door may have been closed when the robot passed. Only with SideRule::kDoors.
   double closed_door_credit = 0.3;
 
   void describe(hyselam::ParameterVisitor& visit);
@@ -45,11 +52,13 @@ struct FitnessParams {
   void validate() const;
 };
 
-/// Name of each vertex, -1: none.
+/// For each vertex (place of the map): number of its name in the description, -1: none.
 using Assignment = std::vector<int>;
 
-/// f of Eq. 5.2, 0 .. 1. `heading`, if given, receives the robot's heading that it holds for [rad].
-/// `assignment` has a value for each vertex; constraints are not checked.
+/// f of Eq. 5.2, 0 .. 1. `heading`, if not null, receives the robot heading used for the
+/// orientation term [rad, map frame]: the known one, else the one with the best score. `assignment`
+/// has a value for each vertex; it is not checked against MatchConstraints and
+/// SolverParams::connected.
 double fitness(const MatchProblem& problem, const FitnessParams& params,
                const Assignment& assignment, double* heading = nullptr);
 

@@ -1,4 +1,5 @@
-// Finds old grams whose words may match the words of a new gram, without visiting the others.
+// Index of all n-grams of n words in a text: a hash table that returns the earlier n-grams whose
+// words may match the latest n words, without visiting the others. Terms: ngram_matcher.hpp.
 #pragma once
 
 #include <cstddef>
@@ -9,44 +10,45 @@
 
 namespace ngram_slam {
 
-/// Words are sorted into buckets of class, logarithm of the size and angle, about twice as wide as
-/// the tolerance; a gram into a list by the buckets of its words. A query reads the lists of all
-/// combinations of buckets that can hold matching words: every gram that matches is among the
-/// answers, others may be.
+/// Words are quantized into buckets of class, logarithm of the size, and angle, about twice as wide
+/// as the tolerance; the buckets of its words determine the list in which an n-gram is stored. A
+/// query reads the lists of all combinations of buckets that can hold matching words: every n-gram
+/// that matches is among the answers; answers that do not match are possible.
 class GramIndex {
  public:
-  /// Grams of `n` words, 2^bits lists. `backwards`: queries are grams of the text read
-  /// backwards, as reversed words.
+  /// Index of n-grams of `n` words with 2^bits lists. `backwards`: queries find n-grams passed in
+  /// the reverse direction (words in reverse order, each as by reversed()).
   GramIndex(const WordLattice& text, const WordTolerance& tolerance, int n, int bits,
             bool backwards = false);
 
-  /// Adds all grams that end with this word, through all its predecessors.
+  /// Adds all n-grams that end with this word, one for each chain of its predecessors.
   void insert(WordIndex last);
-  /// An old gram by the word that matches the newest one, its last word, backwards its first:
-  /// first position << 4 | level.
+  /// Identifies an n-gram by that word of it which matches the newest word (its last one;
+  /// backwards: its first): first position of the word << 4 | level of the word.
   using Entry = std::uint32_t;
   static Position firstOf(Entry e) { return e >> 4; }
   static int levelOf(Entry e) { return static_cast<int>(e & 15u); }
   static Position endOf(Entry e) { return firstOf(e) + ((e & 15u) == 0 ? 0 : (e & 15u) + 1); }
-  /// Starts a query for every gram that may match one of those that end with `last`.
+  /// Starts a query for all stored n-grams that may match one that ends with `last`.
   void startQuery(WordIndex last);
-  /// Writes the next part of the answer, newest grams first: all of a part end later than all of
-  /// the next one (backwards: nearly so); within a part in no particular order, some perhaps
-  /// several times. False: no more.
+  /// Writes the next part of the answer, most recent first: all n-grams of a part end later than
+  /// all of the next part (backwards: nearly so). Within a part they are unordered and may be
+  /// repeated. False if there are no more.
   bool nextPart(std::vector<Entry>& part);
 
   std::size_t bytes() const { return heads_.capacity() * sizeof(std::uint32_t) + pool_.bytes(); }
 
  private:
-  // A list is a chain of chunks, newest first, each twice as large as the one before: chunk before
-  // (0: none), entries, room for entries, then the entries (first position << 4 | level).
+  // A list is a chain of chunks in pool_, newest first, each twice as large as the previous one (up
+  // to kLargest). Layout of a chunk: index of the previous chunk (0: none), number of entries,
+  // capacity, then the entries.
   static constexpr int kBlockBits = 16;
-  static constexpr std::uint32_t kHeader = 3;
-  static constexpr std::uint32_t kSmallest = 8, kLargest = 1024;  // chunks with their header
+  static constexpr std::uint32_t kHeader = 3;  // size of a chunk's header [pool_ elements]
+  static constexpr std::uint32_t kSmallest = 8, kLargest = 1024;  // chunk sizes with the header
 
-  /// Where reading of a list has come to: before this entry of this chunk.
+  /// Reading position in a list, which is read backwards.
   struct Cursor {
-    std::uint32_t chunk, left;
+    std::uint32_t chunk, left;  // index of the chunk in pool_; entries of it yet to be read
   };
 
   std::uint32_t sizeBucket(double size) const;
@@ -56,7 +58,7 @@ class GramIndex {
   }
   void insertPaths(WordIndex word, int depth, std::uint64_t key);
   void collect(WordIndex word, int depth, std::uint64_t key);
-  /// What the word at `place` of a gram adds to the gram's key.
+  /// Contribution of the word number `place` of an n-gram to the n-gram's hash key, a sum.
   static std::uint64_t keyOf(int place, std::uint32_t bucket);
   void sortLists();
   void add(std::uint32_t list, std::uint32_t entry);
@@ -67,20 +69,20 @@ class GramIndex {
   int n_;
   int shift_;
   bool backwards_;
-  double log_width_;             // of a size bucket
-  std::uint32_t angle_buckets_;  // around the circle
-  std::vector<std::uint32_t> heads_;
-  BlockVector<std::uint32_t, kBlockBits> pool_;
-  std::vector<std::uint32_t> lists_;
-  /// Where a gram is to be written.
+  double log_width_;                             // width of a size bucket, in log(size)
+  std::uint32_t angle_buckets_;                  // number of angle buckets in a full turn
+  std::vector<std::uint32_t> heads_;             // newest chunk of each list, 0: empty
+  BlockVector<std::uint32_t, kBlockBits> pool_;  // all chunks
+  std::vector<std::uint32_t> lists_;             // lists read by the query
+  /// Where an n-gram is to be stored.
   struct Target {
     std::uint32_t list;
     Entry entry;
   };
-  std::vector<Target> targets_;
-  std::vector<Cursor> cursors_;
-  Position until_ = 0;  // all that ends here or later was in an earlier part
-  Position reach_ = 0;  // positions of the next part
+  std::vector<Target> targets_;  // buffer of insert()
+  std::vector<Cursor> cursors_;  // of the lists that the query has not exhausted
+  Position until_ = 0;  // n-grams that end here or later have been returned in earlier parts
+  Position reach_ = 0;  // number of positions that the next part spans
 };
 
 }  // namespace ngram_slam

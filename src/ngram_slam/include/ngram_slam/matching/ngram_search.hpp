@@ -1,5 +1,5 @@
-// What the searches for n-grams in both directions have in common: parameters, matches, and the
-// index of grams from which a search begins.
+// Base class of the searches for matching n-grams in both directions of travel: parameters,
+// matches, and the index in which the beginnings of matches are found. Terms: ngram_matcher.hpp.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,13 @@ struct NgramMatcherParams {
   /// epsilon_g: smallest number of words of a match, with 1, 2, ... levels of words in use (5.3.2).
   /// As many entries as the text has levels; each 1 .. 65535.
   std::vector<int> min_n = {7, 10, 13};
-  /// Words of the grams that the index knows, 1 .. 4; min(index_gram, smallest min_n) is used.
+  /// Number of words of the n-grams in the index, 1 .. 4; min(index_gram, smallest min_n) is used.
   /// Fewer: less memory, more candidates that are rejected.
   int index_gram = 3;
   int index_bits = 20;  ///< 2^index_bits lists of the index, 4 bytes each; 4 .. 28
-  /// Old places where grams are followed at a time, >= 1: the bound of what a word can cost. Of
-  /// more, the newest are followed. One that drops out and comes back counts its words anew.
+  /// Maximum number of older n-grams extended per new word, >= 1; bounds the cost of a word. If
+  /// there are more, the most recent are kept. The length of one that is dropped and found again
+  /// restarts.
   int max_followed = 8192;
 
   void describe(hyselam::ParameterVisitor& visit);
@@ -34,14 +35,13 @@ struct NgramMatcherParams {
   void validate() const;
 };
 
-/// n words that end with `newer` match n words that end with `older`, or, travelled in the reverse
-/// direction, n words that begin with `older`.
+/// The n words that end with `newer` match the n words that end with `older`, or, for direction
+/// kReverse, the n words that begin with `older`.
 struct NgramMatch {
   WordIndex newer = 0;  ///< a real word
-  WordIndex older = 0;  ///< of any level below `levels`
-  int levels = 1;       ///< levels of words in use when the match was accepted, as few as possible
-  int n = 0;  ///< words of the longest match of these two with that many levels in use; longer
-              ///< ones than 65535 count as 65535
+  WordIndex older = 0;  ///< a word of any level below `levels`
+  int levels = 1;       ///< smallest number of word levels with which the match is long enough
+  int n = 0;            ///< length of the longest match of these two words [words], at most 65535
   Direction direction = Direction::kSame;
   /// Expected number of old n-grams that match by chance, by the statistics of the text; negative
   /// where it was not computed (NgramRecognizerParams::max_chance, with_probability).
@@ -50,27 +50,27 @@ struct NgramMatch {
   double probability = -1.0;
 };
 
-/// What the search had to do.
+/// Work done since construction, for benchmarks.
 struct NgramMatcherCounters {
   std::uint64_t positions = 0;    ///< words added
   std::uint64_t comparisons = 0;  ///< pairs of words compared
-  std::uint64_t live = 0;         ///< pairs that continued a gram
-  std::uint64_t started = 0;      ///< grams of the index' length that began
+  std::uint64_t live = 0;         ///< pairs of words that extended an n-gram
+  std::uint64_t started = 0;      ///< n-grams found in the index
 };
 
-/// Reads a text word by word as it grows. Derived: NgramMatcher, ReverseNgramMatcher.
+/// Processes the words of a text incrementally. Derived: NgramMatcher, ReverseNgramMatcher.
 class NgramSearch {
  public:
   virtual ~NgramSearch() = default;
   NgramSearch(const NgramSearch&) = delete;
   NgramSearch& operator=(const NgramSearch&) = delete;
 
-  /// Adds the words that the text has gained. Returns their matches, in the order of the newer
-  /// words, for each in no particular order. The list is overwritten by the next call.
+  /// Processes the words added to the text since the last call. Returns their matches in the order
+  /// of the newer words; matches of one word in no particular order. Overwritten by the next call.
   const std::vector<NgramMatch>& update();
-  /// Adds words without looking for matches among them, for the runs of a loaded text. Later
-  /// matches are as they should be if the next word starts a run; else those that reach back across
-  /// this point come out too short.
+  /// Indexes the words added since the last call without searching for their matches, as for the
+  /// runs of a loaded text. Unless the next word starts a run, later matches that extend back
+  /// across this point come out too short.
   void skip();
 
   const NgramMatcherParams& params() const { return params_; }
@@ -78,9 +78,9 @@ class NgramSearch {
 
  protected:
   static constexpr std::size_t kMaxPasses = WordLattice::kMaxLevels;
-  /// Old words lie far apart in memory: each is fetched into the cache this many words ahead.
+  /// Older words are scattered in memory: each is prefetched this many iterations ahead.
   static constexpr std::size_t kPrefetchDistance = 16;
-  /// Lengths of the longest grams of a pair of words, for each pass; 0: none.
+  /// Length of the longest matching n-gram of a pair of words [words], for each pass; 0: none.
   using Lengths = std::array<std::uint16_t, kMaxPasses>;
 
   /// `text` must outlive the search. @throws hyselam::ParameterError
@@ -92,25 +92,26 @@ class NgramSearch {
   static std::uint16_t oneMore(std::uint16_t n) {
     return static_cast<std::uint16_t>(n == 65535 ? n : n + 1);
   }
-  /// Lengths of the longest grams that end with this pair, counted up to `depth` words of the
-  /// levels below `levels`, without regard to what is being followed.
+  /// Recomputes the lengths of the longest matching n-grams that end with this pair of words, up to
+  /// `depth` words, with words of the levels below `levels`.
   Lengths lengthsFromScratch(WordIndex newer, WordIndex older, int depth, int levels);
-  /// How many of the first passes have lengths that may be too short: what is too short for the
-  /// index was not followed. The passes behind them have longer grams.
+  /// Number of leading passes whose length is below index_gram_ and hence may be too small, because
+  /// n-grams that short are not tracked. Later passes use more levels and have longer n-grams.
   int incompletePasses(const std::uint16_t* lengths) const {
     int passes = 0;
-    while (static_cast<std::size_t>(passes) < passes_ && lengths[passes] < gram_) ++passes;
+    while (static_cast<std::size_t>(passes) < passes_ && lengths[passes] < index_gram_) ++passes;
     return passes;
   }
   /// Appends a match if one of the passes accepts the pair.
   void reportMatch(WordIndex newer, WordIndex older, const std::uint16_t* lengths);
 
-  /// Finds the grams that have just become `gram_` words long, the newest first, until as many are
-  /// followed as may be.
+  /// Finds in the index the older n-grams that match the latest index_gram_ words and are not yet
+  /// tracked, most recent first, until max_followed are.
   ///
-  /// `is_followed(entry)`: a gram one word shorter was followed there, so this one is known.
-  /// `count_newer(end)`: how many pairs found before end after `end`, without those that an earlier
-  /// call has counted; `end` falls. `add_gram(older, lengths)` takes a gram that was found.
+  /// `is_followed(entry)`: the n-gram is already tracked, as the extension of one in an earlier
+  /// row. `count_newer(end)`: number of tracked n-grams whose older words end after `end`, without
+  /// those counted by earlier calls; `end` decreases from call to call. `add_gram(older, lengths)`:
+  /// called with each n-gram found.
   template <typename IsFollowed, typename CountNewer, typename AddGram>
   void startGrams(WordIndex newer, IsFollowed&& is_followed, CountNewer&& count_newer,
                   AddGram&& add_gram) {
@@ -125,8 +126,8 @@ class NgramSearch {
       for (const WordIndex older : candidates_) {
         followed += count_newer(text_.last(older));
         if (followed >= max_followed) break;
-        const Lengths lengths = lengthsFromScratch(newer, older, gram_, text_.levels());
-        if (lengths[passes_ - 1] < gram_) continue;
+        const Lengths lengths = lengthsFromScratch(newer, older, index_gram_, text_.levels());
+        if (lengths[passes_ - 1] < index_gram_) continue;
         ++counters_.started;
         ++followed;
         add_gram(older, lengths);
@@ -137,17 +138,17 @@ class NgramSearch {
   const WordLattice& text_;
   NgramMatcherParams params_;
   Direction direction_;
-  std::size_t passes_;  // pass k uses words of the levels below k
-  int gram_;            // words of the grams of the index
+  std::size_t passes_;  // number of passes; pass k = 1 .. passes_ uses words of levels below k
+  int index_gram_;      // number of words of the n-grams in the index
   GramIndex index_;
   std::vector<NgramMatch> matches_;
   NgramMatcherCounters counters_;
 
  private:
-  static constexpr std::size_t kMaxTriedPerFollowed = 4;  // candidates of the index
+  static constexpr std::size_t kMaxTriedPerFollowed = 4;  // index candidates per max_followed
 
-  /// Writes the words of the index' answer that end before `first` into candidates_, each once, the
-  /// newest first.
+  /// Collects in candidates_ the last words of the index entries in part_ that end before position
+  /// `first` and are not tracked: each once, most recent first.
   template <typename IsFollowed>
   void findCandidates(Position first, IsFollowed&& is_followed) {
     candidates_.clear();
@@ -170,9 +171,9 @@ class NgramSearch {
   }
   bool wordsOfPairMatch(WordIndex newer, WordIndex older);
 
-  Position next_ = 0;
-  std::vector<GramIndex::Entry> part_;
-  std::vector<WordIndex> candidates_;
+  Position next_ = 0;                   // first position that has not been added
+  std::vector<GramIndex::Entry> part_;  // part of the answer of the index
+  std::vector<WordIndex> candidates_;   // see findCandidates()
 };
 
 }  // namespace ngram_slam

@@ -1,4 +1,5 @@
-// A region as a word of three syllables <d, s, a> (Eq. 4.3), and when two words match (4.2.3).
+// Word: a region (segment of the path with one density class) described by three syllables <d, s,
+// a> (Maffei 2017, Eq. 4.3), and when two words match (4.2.3).
 #pragma once
 
 #include <cmath>
@@ -11,13 +12,14 @@
 
 namespace ngram_slam {
 
+/// The three values that describe a word.
 struct Syllables {
-  int density_class = 0;   ///< d
-  std::uint32_t size = 0;  ///< s [observations], proportional to length
+  int density_class = 0;   ///< d: class of the free-space density (quantizer.hpp)
+  std::uint32_t size = 0;  ///< s: length of the region [observations, one per 0.1 m by default]
   float angle = 0.0f;      ///< a: change of direction in the region [rad], (-pi, pi], left positive
 };
 
-/// In which direction the robot travelled when it passed a place before.
+/// Direction of travel relative to the earlier visit of the same place.
 enum class Direction : std::uint8_t { kSame, kReverse };
 
 /// The word of the same region travelled in the reverse direction: a turn to the left becomes one
@@ -37,7 +39,7 @@ double angleVariation(const hyselam::Pose2& first, const hyselam::Pose2& median,
 double angleVariation(const ObservationStore& observations, std::uint32_t begin, std::uint32_t end);
 
 struct WordTolerance {
-  double size = 0.25;  ///< epsilon_s: bound of Eq. 4.4, in (0, 1); 0.1 .. 0.3
+  double size = 0.25;  ///< epsilon_s: bound of rho_s (Eq. 4.4), in (0, 1); usually 0.1 .. 0.3
   double angle =
       hyselam::radians(30);  ///< epsilon_a: bound of the angles' difference, (0, pi) [rad]
 
@@ -46,8 +48,9 @@ struct WordTolerance {
   void validate() const;
 };
 
-/// 4.2.3: same class, rho_s (Eq. 4.4) below epsilon_s, angles closer than epsilon_a. Reflexive and
-/// symmetric, not transitive.
+/// Whether two words match (4.2.3): same class, relative difference of the sizes rho_s (Eq. 4.4)
+/// below epsilon_s, difference of the angles below epsilon_a. Reflexive and symmetric, not
+/// transitive.
 inline bool wordsMatch(const Syllables& a, const Syllables& b, const WordTolerance& t) {
   if (a.density_class != b.density_class) return false;
   const double large = a.size > b.size ? a.size : b.size, small = a.size > b.size ? b.size : a.size;

@@ -1,6 +1,8 @@
-// The text of a robot's path as a lattice of words on several levels: real words and, on higher
-// levels, the alternative words that would have been there had an interruption been absent
-// (Eq. 5.1, Alg. 5.1, Alg. 5.2 with its erratum), for any number of levels.
+// The word sequence ("text") of the robot's path as a lattice of words on several levels (Maffei
+// 2017, Eq. 5.1, Alg. 5.1, Alg. 5.2; differences from the thesis: docs/algorithms/words.md). Level
+// 0: the real words. Level l >= 1: alternative words; each replaces l + 2 successive real words, of
+// which the first and the last have the same class, by one word, as if the interruption between had
+// not been there. Terms: ngram_matcher.hpp.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +15,17 @@
 
 namespace ngram_slam {
 
-/// Words are numbered in the order in which they are written: first the real word of a position,
-/// then, as soon as the next word is known, the alternative words that end there.
+/// Number of a word, in the order of creation: first the real word of a position, then, as soon as
+/// the next real word is known, the alternative words that end there.
 using WordIndex = std::uint32_t;
-/// Real words are counted by position, over all runs.
+/// Number of a real word, counted over all runs.
 using Position = std::uint32_t;
 
-/// A word, unpacked.
+/// A real or alternative word.
 struct DensityWord {
   Syllables syllables;
-  int level = 0;       ///< 0: real; l: stands for l + 2 real words
-  Position first = 0;  ///< the real words that it covers: first .. last
+  int level = 0;       ///< 0: real word; l >= 1: alternative word for l + 2 real words
+  Position first = 0;  ///< first and last of the real words that it covers
   Position last = 0;
 };
 
@@ -35,13 +37,14 @@ struct WordRange {
   WordIndex size() const { return end - begin; }
 };
 
-/// Syllable a of the observations [begin, end).
+/// Returns syllable a (change of direction [rad]) of the observations [begin, end).
 using AngleOf = std::function<double(std::uint32_t begin, std::uint32_t end)>;
 
 /// 12 bytes per word and 8 per position; nothing is moved when it grows.
 ///
-/// All words that end at a position lie side by side, and every word's predecessors are the words
-/// that end just before its first position. So the predecessor lists of Alg. 5.2 need no memory.
+/// All words that end at a position have consecutive indices, and the predecessors of a word are
+/// the words that end just before its first position. So the predecessor lists of Alg. 5.2 need no
+/// memory.
 class WordLattice {
  public:
   static constexpr int kMaxLevels = 16;
@@ -55,8 +58,9 @@ class WordLattice {
   /// @throws hyselam::ParameterError
   explicit WordLattice(int levels = 3, AngleOf angle_of = {});
 
-  /// What comes next starts at an unknown place: it has no predecessors, no word spans the gap.
-  /// `first_observation`: index of the run's first observation; none: observations go on counting.
+  /// Starts a run (an uninterrupted drive): the next word has no predecessors, and no alternative
+  /// word spans the gap. `first_observation`: index of the first observation of the run in the
+  /// ObservationStore; by default, the observation after the last one.
   void startRun();
   void startRun(std::uint32_t first_observation);
 
@@ -75,9 +79,9 @@ class WordLattice {
   DensityWord word(WordIndex i) const;
   Syllables syllables(WordIndex i) const {
     const Packed& w = words_[i];
-    return {static_cast<int>(w.tags >> 24), w.tags & kMaxSize, w.angle};
+    return {static_cast<int>(w.attributes >> 24), w.attributes & kMaxSize, w.angle};
   }
-  int level(WordIndex i) const { return static_cast<int>(words_[i].tags >> 20 & 15u); }
+  int level(WordIndex i) const { return static_cast<int>(words_[i].attributes >> 20 & 15u); }
   Position last(WordIndex i) const { return words_[i].last; }
   Position first(WordIndex i) const {
     const int l = level(i);
@@ -92,13 +96,14 @@ class WordLattice {
     return {blocks_[p].begin, p + 1 < positions() ? static_cast<WordIndex>(blocks_[p + 1].begin)
                                                   : static_cast<WordIndex>(words())};
   }
-  /// The list P of Eq. 5.1: the words just before this one. Empty at the start of a run.
+  /// The list P of Eq. 5.1: the words that end just before this one begins. Empty at the start of a
+  /// run.
   WordRange predecessors(WordIndex i) const {
     const Position p = first(i);
     return startsRun(p) ? WordRange{} : endingAt(p - 1);
   }
-  /// Calls `use(word)` with the words below `levels` that begin at a position: the real one, then
-  /// alternatives by level.
+  /// Calls `use(word)` with the words of levels below `levels` that begin at a position: the real
+  /// one, then alternatives by level.
   template <typename Use>
   void forEachBeginningAt(Position p, int levels, Use&& use) const {
     for (int level = 0; level < levels; ++level) {
@@ -108,7 +113,7 @@ class WordLattice {
       if (findEndingAt(end, level, &w)) use(w);
     }
   }
-  /// The words below `levels` just after a word, in its run.
+  /// Calls `use(word)` with the words of levels below `levels` that follow a word in its run.
   template <typename Use>
   void forEachSuccessor(WordIndex i, int levels, Use&& use) const {
     const Position next = last(i) + 1;
@@ -135,11 +140,11 @@ class WordLattice {
  private:
   struct Packed {
     float angle;
-    std::uint32_t tags;  // class, 8 bits; level, 4; size, 20
-    Position last;
+    std::uint32_t attributes;  // bits 31..24: class; 23..20: level; 19..0: size
+    Position last;             // last position that the word covers
   };
   struct Block {
-    std::uint32_t begin : 31;  // its real word
+    std::uint32_t begin : 31;  // WordIndex of the real word of this position
     std::uint32_t starts_run : 1;
   };
 
@@ -150,10 +155,10 @@ class WordLattice {
   AngleOf angle_of_;
   BlockVector<Packed> words_;
   BlockVector<Block> blocks_;
-  BlockVector<std::uint32_t> observations_;  // first one of each position
-  std::vector<Position> runs_;
-  std::uint32_t next_observation_ = 0;
-  bool starts_run_ = true;
+  BlockVector<std::uint32_t> observations_;  // first observation of each real word
+  std::vector<Position> runs_;               // first position of each run
+  std::uint32_t next_observation_ = 0;       // first observation of the next real word
+  bool starts_run_ = true;                   // the next real word starts a run
 };
 
 }  // namespace ngram_slam

@@ -43,7 +43,7 @@ void NgramMatcher::addAlternatives(Position end, bool searching) {
     alternative.next_alternative = real.next_alternative;
     real.next_alternative = static_cast<std::uint32_t>(alternatives_.size());
     alternatives_.push_back(alternative);
-    real_words_[end].tags |= PackedWord::kAlternativesEnd;
+    real_words_[end].attributes |= PackedWord::kAlternativesEnd;
     if (searching) findGrams(w, rowOf(end), false);
   }
   if (searching) completeLengths(end, rowOf(end));
@@ -80,7 +80,7 @@ void NgramMatcher::continueGrams(WordIndex newer, bool report) {
   for (std::size_t i = 0; i < count; ++i) {
     prefetch(real_words_[before.ends[std::min(i + kPrefetchDistance, count - 1)] + 1]);
     const PackedWord& older = real_words_[before.ends[i] + 1];
-    const bool in_run = (older.tags & PackedWord::kStartsRun) == 0;
+    const bool in_run = (older.attributes & PackedWord::kStartsRun) == 0;
     continued_[continued] = {static_cast<std::uint32_t>(i), older.word};
     continued += in_run & isWithin(bounds, older);
     with_alternatives_[with_alternatives] = {static_cast<std::uint32_t>(i), older.next_alternative};
@@ -125,7 +125,7 @@ void NgramMatcher::continueWithAlternatives(WordIndex newer, const MatchBounds& 
     for (std::uint32_t next = with_alternatives_[i].word; next != 0;) {
       const PackedWord& alternative = alternatives_[next];
       next = alternative.next_alternative;
-      const std::size_t level = alternative.tags & 15u;
+      const std::size_t level = alternative.attributes & 15u;
       const Position end = before.ends[gram] + static_cast<Position>(level) + 2;
       if (end >= first) continue;
       ++counters_.comparisons;
@@ -213,12 +213,12 @@ void NgramMatcher::completeLengths(Position newer_end, GramRow& row) {
     const int passes = incompletePasses(lengths);
     if (passes == 0) continue;
     const PackedWord& end = real_words_[grams.ends[i]];
-    if (newer.size() == 1 && (end.tags & PackedWord::kAlternativesEnd) == 0) continue;
+    if (newer.size() == 1 && (end.attributes & PackedWord::kAlternativesEnd) == 0) continue;
     if (passes == 1 && !isWithin(bounds, end)) continue;
     const WordRange older = text_.endingAt(grams.ends[i]);
     for (WordIndex a = newer.begin; a < newer.end; ++a) {
       for (WordIndex b = older.begin; b < older.end; ++b) {
-        const Lengths l = lengthsFromScratch(a, b, gram_, passes);
+        const Lengths l = lengthsFromScratch(a, b, index_gram_, passes);
         for (std::size_t k = 0; k < static_cast<std::size_t>(passes); ++k) {
           lengths[k] = std::max(lengths[k], l[k]);
         }

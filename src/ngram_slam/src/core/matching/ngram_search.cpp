@@ -30,9 +30,10 @@ NgramSearch::NgramSearch(const WordLattice& text, const NgramMatcherParams& para
       params_((params.validate(), params)),
       direction_(direction),
       passes_(params.min_n.size()),
-      gram_(
+      index_gram_(
           std::min(params.index_gram, *std::min_element(params.min_n.begin(), params.min_n.end()))),
-      index_(text, params.tolerance, gram_, params.index_bits, direction == Direction::kReverse) {
+      index_(text, params.tolerance, index_gram_, params.index_bits,
+             direction == Direction::kReverse) {
   if (passes_ != static_cast<std::size_t>(text.levels())) {
     throw ParameterError("number of entries of min_n", passes_,
                          "the number of levels of the text, " + std::to_string(text.levels()));

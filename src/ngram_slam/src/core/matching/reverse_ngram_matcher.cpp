@@ -98,7 +98,7 @@ void ReverseNgramMatcher::completeLengths(Position newer_end, GramRow& row) {
     if (passes == 0) continue;
     for (WordIndex a = newer.begin; a < newer.end; ++a) {
       text_.forEachBeginningAt(g.begin, passes, [&](WordIndex b) {
-        const Lengths l = lengthsFromScratch(a, b, gram_, passes);
+        const Lengths l = lengthsFromScratch(a, b, index_gram_, passes);
         for (std::size_t k = 0; k < static_cast<std::size_t>(passes); ++k) {
           g.lengths[k] = std::max(g.lengths[k], l[k]);
         }
