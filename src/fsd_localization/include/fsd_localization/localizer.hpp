@@ -1,5 +1,10 @@
-// Localisation on a known map (Maffei 2017, chapter 3): scans and odometry in, pose with covariance
-// out, or that it is not known yet. One object for the nodelet and the offline tool alike.
+// Localisation on a known map (Maffei 2017, chapter 3): estimates the pose with its covariance from
+// scans and odometry, or reports that the robot is not localized yet. Used by the nodelet and by
+// the offline tool.
+//
+// FSD, free-space density: the kernel-weighted share of the cells around the robot that are free
+// and connected with it (Alg. 3.1). An FsdSensor keeps a local map of the scans and gives the
+// densities of a scan, one per kernel.
 #pragma once
 
 #include <functional>
@@ -23,32 +28,37 @@ struct LocalizerParams {
   ObservationModelKind model = ObservationModelKind::kHybrid;
   std::uint64_t seed = 1;
   double update_min_d = 0.1;                     ///< travel between updates [m]
-  double update_min_a = hyselam::radians(10.0);  ///< or turn [rad]
+  double update_min_a = hyselam::radians(10.0);  ///< or turn between updates [rad]
 
-  FsdMapParams map;  ///< kernels of the FSD model
+  FsdMapParams map;  ///< densities of the map: their kernels, what counts as free
   LocalMapParams local_map;
-  FsdObservationModelParams fsd;
+  FsdObservationModelParams fsd;  ///< compares densities of the scan with those of the map
   BeamModelParams beam;
-  CosineModelParams cosine;
+  CosineModelParams cosine;  ///< compares expected and measured scan by the cosine similarity
   LikelihoodFieldParams likelihood;
-  FilterParams filter;  ///< of the search; of everything in the modes with one model
+  FilterParams filter;  ///< particle filter of the search; in single-model modes, the only one
 
   // When an estimate counts as converged.
   double converged_cluster_weight = 0.9;  ///< share of the weight in the heaviest cluster
   double converged_stddev = 0.75;         ///< of the position, along its widest axis [m]
 
-  // Hybrid only.
-  std::size_t tracking_particles = 2000;     ///< once converged
-  std::size_t hypothesis_particles = 20000;  ///< while the likelihood field chooses among places
-  double hypothesis_beams = 3.0;  ///< its independent_beams then: few, so that it chooses slowly
-  std::size_t max_hypothesis_bins =
-      4000;                           ///< it does when FSD leaves this many bins of 0.5 m, 15 deg
-  double inlier_distance = 0.3;       ///< a return this near to a mapped obstacle is an inlier [m]
-  double found_inlier_ratio = 0.75;   ///< a place is accepted only with this share of inliers among
-                                      ///< the returns, averaged over about 1 m of travel; else the
-                                      ///< search goes on
-  double lost_inlier_ratio = 0.45;    ///< lost when that average is lower than this ...
-  double lost_relative_ratio = 0.85;  ///< ... or than this times the average over about 30 m
+  // Hybrid only: FSD searches, then the likelihood field takes over.
+  std::size_t tracking_particles = 2000;  ///< minimum while tracking
+  /// While the likelihood field disambiguates the remaining pose hypotheses.
+  std::size_t hypothesis_particles = 20000;
+  /// Effective number of independent beams of a scan in this state; low, so that weights change
+  /// slowly. While tracking: LikelihoodFieldParams::independent_beams.
+  double hypothesis_beams = 3.0;
+  /// Switch to the likelihood field when the particles occupy at most this many bins
+  /// (0.5 m, 15 deg).
+  std::size_t max_hypothesis_bins = 4000;
+  double inlier_distance = 0.3;  ///< inlier: a return within this distance of a mapped obstacle [m]
+  /// A pose hypothesis is accepted only with this share of inliers among the returns, averaged over
+  /// about 1 m of travel; otherwise the search is repeated.
+  double found_inlier_ratio = 0.75;
+  double lost_inlier_ratio = 0.45;  ///< lost when that average is below this ratio
+  /// Also lost when that average is below this factor times the average over about 30 m.
+  double lost_relative_ratio = 0.85;
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError naming the first value out of range.
@@ -59,12 +69,13 @@ struct LocalizerParams {
 };
 
 struct LocalizationResult {
-  double stamp = 0.0;                                    ///< of the scan [s]
-  hyselam::Pose2 base_in_map;                            ///< mean of the heaviest cluster
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of it, in the map frame [m, m, rad]
-  bool converged = false;  ///< false: the pose is only the best of several hypotheses
-  Phase phase = Phase::kGlobal;
-  double cluster_weight = 0.0;  ///< share of the weight in the heaviest cluster, 0..1
+  double stamp = 0.0;          ///< of the scan [s]
+  hyselam::Pose2 base_in_map;  ///< mean of the heaviest cluster
+  /// Of the pose, in the map frame [m, m, rad].
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  bool converged = false;        ///< false: the pose is only the best of several hypotheses
+  Phase phase = Phase::kGlobal;  ///< kGlobal: not localized yet, by search or among hypotheses
+  double cluster_weight = 0.0;   ///< share of the weight in the heaviest cluster, 0..1
   std::size_t particles = 0;
   double effective_size = 0.0;
   std::optional<double> inlier_ratio;  ///< share of inliers among the returns; hybrid only
@@ -79,25 +90,26 @@ class Localizer {
             const std::string& cache_path = {}, const std::function<void(double)>& progress = {});
   ~Localizer();
 
-  /// Whether the constructor could use this map, in a small part of its time.
+  /// Checks that the constructor accepts this map; much faster than constructing.
   /// @throws hyselam::InputError if it has no free cell, hyselam::ParameterError if its cells are
   ///   too large or too small for a kernel.
   static void checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params);
 
-  /// Integrates a scan with the odometry of its moment. Runs the filter when the robot has moved
-  /// enough, or when `force` is set; returns its result then.
+  /// Integrates a scan with the odometry pose at its stamp. Runs the filter and returns its result
+  /// when the robot has moved enough or `force` is set.
   /// @throws hyselam::InputError for a scan or pose that cannot be used, or a stamp that is not
   ///   later than the last one; the state is unchanged.
   std::optional<LocalizationResult> update(const hyselam::LaserScan& scan,
                                            const hyselam::Pose2& base_in_odom, bool force = false);
 
-  /// Starts over, knowing nothing: particles everywhere, surroundings forgotten.
+  /// Restarts the global search: uniform particles, local map cleared.
   void relocalizeGlobally();
-  /// Starts over around a pose of the map frame. Standard deviations [m, m, rad].
-  /// @throws hyselam::InputError if a value is not finite, a deviation negative, or either more
-  ///   than 1000 km off the map; the state is unchanged.
+  /// Restarts around a pose in the map frame. Standard deviations [m, m, rad].
+  /// @throws hyselam::InputError if a value is not finite, a standard deviation negative,
+  ///   the position more than 1000 km from the map's origin, or the standard deviation of the
+  ///   position larger than 1000 km; the state is unchanged.
   void setInitialPose(const hyselam::Pose2& base_in_map, const hyselam::Pose2& stddev);
-  /// Forgets time, odometry and surroundings (time went back, a bag starts again), keeps the
+  /// Resets stamp, odometry reference and local map (clock jumped back, bag loops); keeps the
   /// particles.
   void restartClock();
 
@@ -105,7 +117,7 @@ class Localizer {
   const FsdMap& map() const { return *map_; }
   const LocalMap& localMap() const { return sensor_.localMap(); }
   const Particles& particles() const { return filter_.particles(); }
-  /// Of the last update; without readings before it or in modes that do not use FSD.
+  /// Densities of the last update; empty before the first update and while FSD is not used.
   const FsdObservation& lastObservation() const { return observation_.fsd; }
   bool mapWasCached() const { return map_was_cached_; }
   /// Why the cache could not be written; empty if it could, or if there is none.
@@ -123,16 +135,18 @@ class Localizer {
   void startHypotheses(Particles particles);
   void startTracking();
   void searchAgain();
-  /// @param motion since the last update [m]: travel and, while tracking, turn as such.
+  /// @param motion since the last update [m]: distance; while tracking, plus 0.5 m/rad * |turn|.
   void updateState(const PoseEstimate& estimate, double motion, LocalizationResult& result);
-  void startTracker(Particles particles, std::size_t min_particles, double independent_beams);
+  /// Replaces the filter by one that weighs `particles` by the likelihood field.
+  void startLikelihoodFilter(Particles particles, std::size_t min_particles,
+                             double independent_beams);
 
   LocalizerParams params_;
   bool map_was_cached_ = false;
   std::string map_cache_problem_;
   std::shared_ptr<const FsdMap> map_;
-  std::unique_ptr<ObservationModel> model_;        // of the search, or the only one
-  std::unique_ptr<LikelihoodFieldModel> tracker_;  // hybrid only
+  std::unique_ptr<ObservationModel> model_;  // of the search; in single-model modes, the only one
+  std::unique_ptr<LikelihoodFieldModel> likelihood_model_;  // hybrid only, after the search
   FsdSensor sensor_;
   ParticleFilter filter_;
   Observation observation_;
@@ -141,7 +155,7 @@ class Localizer {
   std::optional<hyselam::Pose2> last_odom_;     // of the last scan
   std::optional<hyselam::Pose2> updated_odom_;  // of the last update
   double travelled_ = 0.0;
-  InlierMonitor inliers_;  // since the likelihood field took over
+  InlierMonitor inliers_;  // since the likelihood field became active
 };
 
 }  // namespace fsd_localization

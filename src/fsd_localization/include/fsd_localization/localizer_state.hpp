@@ -18,7 +18,7 @@ namespace fsd_localization {
 ///
 /// In a search, free-space density weighs particles everywhere; with hypotheses, the likelihood
 /// field chooses among the places that are left; while tracking it follows one place. Models other
-/// than hybrid know kGlobalSearch and kTracking only, and change between them as their estimate
+/// than hybrid use kGlobalSearch and kTracking only, and change between them as their estimate
 /// converges or not.
 /// Whether the estimate of an update deserves trust is LocalizationResult::converged.
 enum class LocalizerState {
@@ -31,9 +31,9 @@ enum class LocalizerState {
 
 /// The states as they are published.
 enum class Phase {
-  kGlobal,    ///< not found yet
-  kTracking,  ///< found
-  kLost,      ///< was found, is being searched for again
+  kGlobal,    ///< not localized yet
+  kTracking,  ///< localized
+  kLost,      ///< was localized; the pose is searched again
 };
 const char* toString(Phase phase);
 

@@ -165,7 +165,7 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
           std::make_unique<LikelihoodFieldModel>(map, params_.likelihood, params_.map.thresholds);
       break;
     case ObservationModelKind::kHybrid:
-      tracker_ =
+      likelihood_model_ =
           std::make_unique<LikelihoodFieldModel>(map, params_.likelihood, params_.map.thresholds);
       [[fallthrough]];
     case ObservationModelKind::kFsd:
@@ -175,7 +175,7 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
 Localizer::~Localizer() = default;
 
 const ObservationModel& Localizer::activeModel() const {
-  return isHybrid() && !isSearching(state_) ? *tracker_ : *model_;
+  return isHybrid() && !isSearching(state_) ? *likelihood_model_ : *model_;
 }
 
 void Localizer::relocalizeGlobally() {
@@ -220,19 +220,20 @@ void Localizer::startHypotheses(Particles particles) {
   state_ = withHypotheses(state_);
   inliers_.reset();
   // Few particles would let places die out by chance, and a sharp model by the luck of the nearest.
-  startTracker(std::move(particles), params_.hypothesis_particles, params_.hypothesis_beams);
+  startLikelihoodFilter(std::move(particles), params_.hypothesis_particles,
+                        params_.hypothesis_beams);
 }
 
 void Localizer::startTracking() {
   state_ = LocalizerState::kTracking;
-  startTracker(filter_.particles(),
-               std::min(params_.tracking_particles, params_.hypothesis_particles),
-               params_.likelihood.independent_beams);
+  startLikelihoodFilter(filter_.particles(),
+                        std::min(params_.tracking_particles, params_.hypothesis_particles),
+                        params_.likelihood.independent_beams);
 }
 
-void Localizer::startTracker(Particles particles, std::size_t min_particles,
-                             double independent_beams) {
-  tracker_->setIndependentBeams(independent_beams);
+void Localizer::startLikelihoodFilter(Particles particles, std::size_t min_particles,
+                                      double independent_beams) {
+  likelihood_model_->setIndependentBeams(independent_beams);
   FilterParams p = params_.filter;
   p.adaptive_size = true;
   p.min_particles = min_particles;
@@ -327,7 +328,7 @@ void Localizer::updateState(const PoseEstimate& estimate, double motion,
     return;
   }
   result.inlier_ratio =
-      tracker_->inlierRatio(observation_.scan, estimate.mean, params_.inlier_distance);
+      likelihood_model_->inlierRatio(observation_.scan, estimate.mean, params_.inlier_distance);
   inliers_.add(result.inlier_ratio, motion);
   const bool tracking = state_ == LocalizerState::kTracking;
   if (inliers_.isBelow(tracking ? params_.lost_inlier_ratio : params_.found_inlier_ratio,

@@ -1,5 +1,5 @@
-// From laser scans and odometry to observations of free-space density: the robot's side of
-// chapter 3.
+// Computes free-space densities (FSD) around the robot from laser scans and odometry (Maffei 2017,
+// chapter 3).
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace fsd_localization {
 
-/// Density, its direction and the frontiers of one kernel at the robot.
+/// Free-space density at the robot with one kernel, its gradient direction and frontiers.
 struct FsdReading {
   Density density;
   /// Direction in which the density falls, relative to the robot's heading [rad]; empty where the
@@ -45,13 +45,12 @@ class FsdSensor {
  public:
   explicit FsdSensor(const FsdSensorParams& params = {});
 
-  /// Integrates a scan into the local map: for every scan. @throws hyselam::InputError for a scan
-  /// or pose that cannot be used; nothing is changed then.
+  /// Integrates a scan into the local map; call it with every scan. @throws hyselam::InputError for
+  /// a scan or pose that cannot be used; nothing is changed then.
   void integrate(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
-  /// Computes the densities around the robot: for every observation wanted.
-  /// Before the first scan everything is undefined.
+  /// Computes the densities around the robot. All are undefined before the first scan.
   FsdObservation observe();
-  /// Forgets the surroundings (the robot was carried away, time went back).
+  /// Clears the local map (the robot was moved by hand, the clock jumped back).
   void reset();
 
   const FsdSensorParams& params() const { return params_; }
@@ -63,7 +62,7 @@ class FsdSensor {
   FsdSensorParams params_;
   LocalMap map_;
   std::vector<FreeSpaceDensity> kernels_;
-  int reach_ = 0;  // [cells] of the window that the kernels need
+  int reach_ = 0;  // [cells] half size of the window that the kernels need
   FreeSpaceGrid space_;
   double stamp_ = 0.0;
   hyselam::Pose2 base_in_odom_;

@@ -49,7 +49,7 @@ class LocalMap {
   /// limits
   ///   that are not ordered, a laser outside the window, not finite numbers); the map is unchanged.
   void update(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
-  /// Forgets everything.
+  /// Clears the map.
   void clear();
 
   const LocalMapParams& params() const { return params_; }

@@ -10,7 +10,7 @@ namespace fsd_localization {
 /// that are not on the map).
 class InlierMonitor {
  public:
-  /// Forgets everything: another place is judged from now on.
+  /// Clears the averages: another pose hypothesis is judged from now on.
   void reset();
   /// @param inlier_ratio 0..1; empty: the scan had no return. @param motion since the last one [m].
   void add(const std::optional<double>& inlier_ratio, double motion);

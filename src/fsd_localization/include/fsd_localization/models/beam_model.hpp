@@ -14,9 +14,9 @@ struct BeamModelParams {
   int max_beams = 19;         ///< the thesis: one each 10 degrees
   double max_range = 20.0;    ///< [m]
   double z_hit = 0.8;         ///< share of returns from the mapped obstacle
-  double z_short = 0.1;       ///< from something nearer
-  double z_max = 0.05;        ///< without return
-  double z_rand = 0.05;       ///< from anywhere
+  double z_short = 0.1;       ///< share of returns from unmapped obstacles before it
+  double z_max = 0.05;        ///< share of beams without return
+  double z_rand = 0.05;       ///< share of returns from anywhere
   double sigma_hit = 0.2;     ///< [m]
   double lambda_short = 0.1;  ///< [1/m]
 

@@ -17,7 +17,7 @@ struct LikelihoodFieldParams {
   double z_hit = 0.9;               ///< share of returns from mapped obstacles
   double z_rand = 0.1;              ///< share of returns from anywhere
   double sigma_hit = 0.1;           ///< [m]
-  double max_distance = 1.0;        ///< beyond it an obstacle is not there [m]
+  double max_distance = 1.0;        ///< beyond it the hit term is 0 [m]
   double independent_beams = 60.0;  ///< the beams of a scan count as this many independent ones
   double occupied_penalty = 0.05;   ///< factor for a pose on a cell that is not free
   double surface_offset = 0.5;  ///< from the centre of a wall's outermost cell out to its surface

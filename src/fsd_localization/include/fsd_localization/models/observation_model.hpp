@@ -10,11 +10,11 @@
 
 namespace fsd_localization {
 
-/// What a localizer can weigh its particles by.
+/// The model by which a localizer weighs its particles.
 enum class ObservationModelKind {
   kFsd,         ///< free-space density (chapter 3)
-  kBeam,        ///< ray casting, "bb"
-  kCosine,      ///< "fcs"
+  kBeam,        ///< beam model by ray casting, "bb" in the thesis
+  kCosine,      ///< cosine similarity of expected and measured scan, "fcs" in the thesis
   kLikelihood,  ///< likelihood field
   kHybrid,      ///< FSD until few places are left, then the likelihood field (3.5)
 };

@@ -21,7 +21,7 @@ class LocalizationPublisher {
   /// `fsd_markers` only while someone listens, and not more often than gui_publish_rate.
   void publishUpdate(const Localizer& localizer, const LocalizationResult& result, double update_ms,
                      const ros::Time& stamp);
-  /// `localization_status` without an update: the robot knows nothing, and why.
+  /// `localization_status` without an update: not localized, with the reason.
   void publishUnknown(const std::string& text, std::size_t particles);
   /// tf global frame -> odom, valid from `stamp` + transform_tolerance.
   void broadcast(const hyselam::Pose2& odom_in_map, const ros::Time& stamp);

@@ -33,14 +33,14 @@ class MapPreparation {
 
   /// @param cache_dir keeps density fields, one file per map and parameters; empty: nowhere.
   MapPreparation(const LocalizerParams& params, const std::string& cache_dir);
-  /// Waits for what is being prepared.
+  /// Waits until the preparation has ended.
   ~MapPreparation();
 
   void start(Source source);
   /// The newest finished map, once.
   std::optional<Outcome> take();
   bool busy() const;
-  /// Share done of what is being prepared, 0..1.
+  /// Progress of the preparation, 0..1.
   double progress() const { return progress_; }
 
  private:

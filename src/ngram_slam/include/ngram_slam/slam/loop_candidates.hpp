@@ -1,5 +1,5 @@
-// Where to look for loop closures: by the poses and what the graph knows about them; and which
-// loops are consistent with each other.
+// Candidates for loop closures by the poses and their uncertainty in the graph; consistency between
+// loops.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ namespace ngram_slam {
 /// longer the path, the more uncertain the relative pose. Infinite for keyframes of another part.
 class GraphPathLengths {
  public:
-  /// Edges may come one by one; both directions are open.
+  /// Adds an undirected edge.
   void addEdge(int a, int b, double length);
   std::vector<double> from(int keyframe) const;
   int keyframes() const { return static_cast<int>(edges_.size()); }
@@ -31,7 +31,7 @@ class GraphPathLengths {
 /// An older keyframe that may show the same place.
 struct LoopCandidate {
   int older = 0;
-  double position_uncertainty = 0.0;  ///< seen from the newer keyframe [m]
+  double position_uncertainty = 0.0;  ///< relative to the newer keyframe [m]
   double heading_uncertainty = 0.0;   ///< [rad]
 };
 

@@ -1,4 +1,4 @@
-// Whether two segments of the path are the same place: by the scans alone.
+// Verifies by the scans alone whether two path segments show the same place.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace ngram_slam {
 
-/// A loop to verify: all that is needed without the engine, on any thread.
+/// A loop to verify, with all data needed: does not access the engine.
 struct LoopTask {
   struct PosedScan {
     hyselam::Pose2 pose;                                                 ///< of the base
@@ -25,8 +25,8 @@ struct LoopTask {
   bool far = false;              ///< see LoopParams
   std::int64_t match = -1;       ///< of SlamState::matches, for LoopSource::kNgram
   hyselam::Pose2 initial_guess;  ///< newer in older
-  double window = 1.0;           ///< searched around it, each axis [m]
-  double angle = 0.3;            ///< [rad]
+  double window = 1.0;           ///< search window around it, +- along each axis [m]
+  double angle = 0.3;            ///< search window of headings, +- [rad]
   Segment old_segment;           ///< in the frame of `older`
   Segment new_segment;           ///< in the frame of `newer`; one scan when near
 };
@@ -36,7 +36,7 @@ struct LoopVerification {
   SlamLoop loop;
   double score = 0.0;  ///< of the search, 0..1
   Overlap new_in_old, old_in_new;
-  /// Of the best pose elsewhere, where that makes the loop ambiguous; else 0.
+  /// Score of the best pose elsewhere if that makes the loop ambiguous; else 0.
   double ambiguous_score = 0.0;
 };
 

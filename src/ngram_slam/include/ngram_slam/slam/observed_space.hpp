@@ -1,4 +1,4 @@
-// What some scans observed: surfaces, and the free space before them.
+// The space that some scans observed: surfaces, and the free space before them.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,14 @@ namespace ngram_slam {
 
 /// How points of other scans lie in an ObservedSpace.
 struct Overlap {
-  double observed_ratio = 0.0;  ///< part of the points on surfaces or in free space, 0..1
-  double surface_ratio = 0.0;   ///< part of these on surfaces, 0..1: the rest contradicts
+  double observed_ratio = 0.0;  ///< fraction of the points on surfaces or in free space, 0..1
+  double surface_ratio = 0.0;   ///< fraction of these on surfaces, 0..1; the rest contradicts
 };
 
 class ObservedSpace {
  public:
-  /// The square of `side` [m] around the origin; outside nothing is known. `cell` [m].
+  /// The square of `side` [m] around the origin; outside, all is unknown. `cell`: size of a cell
+  /// [m].
   /// @throws hyselam::ParameterError unless both are positive and the square has at most 2^26
   /// cells.
   ObservedSpace(double side, double cell);
@@ -32,7 +33,7 @@ class ObservedSpace {
   struct Cell {
     int x, y;
   };
-  // In the order of what overrides what.
+  // A larger value overrides a smaller one.
   enum : std::uint8_t { kUnknown = 0, kFree = 1, kBesideSurface = 2, kSurface = 3 };
   void raiseCell(int x, int y, std::uint8_t state);
   std::optional<Cell> cellAt(double x, double y) const;

@@ -1,4 +1,5 @@
-// SLAM: scans and odometry in; poses, graph and loops out. Sees no clock, no thread and no file.
+// SLAM: computes poses, graph and loop closures from scans and odometry. No clock, threads or file
+// I/O. Observations, words and n-gram matches: see slam_params.hpp.
 #pragma once
 
 #include <memory>
@@ -18,27 +19,27 @@
 
 namespace ngram_slam {
 
-/// Work that needs nothing of the engine: loops to verify, a graph to optimize, or both.
+/// Work that does not access the engine: loops to verify or a graph to optimize.
 struct SlamJob {
   SlamParams params;
   std::vector<LoopTask> tasks;
   std::optional<hyselam_pose_graph::PoseGraph> graph;
 };
 struct SlamJobResult {
-  std::vector<LoopTask> tasks;  ///< without segments
+  std::vector<LoopTask> tasks;  ///< segments removed
   std::vector<LoopVerification> verifications;
   std::optional<hyselam_pose_graph::OptimizeResult> optimized;
 };
-/// The same job gives the same result, on whatever thread.
+/// Deterministic and thread-safe.
 SlamJobResult runJob(const SlamJob& job);
 
 /// What adding a scan did.
 struct SlamUpdate {
   hyselam::Pose2 base_in_map;
-  bool keyframe = false;       ///< the scan became one
-  bool weak_match = false;     ///< hardly any of it lies on known surfaces: odometry decided
-  bool odometry_jump = false;  ///< odometry jumped before it: the robot is taken to have stood
-  int word_matches = 0;        ///< new matches of words
+  bool keyframe = false;       ///< the scan became a keyframe
+  bool weak_match = false;     ///< few points on known surfaces: pose mostly from odometry
+  bool odometry_jump = false;  ///< odometry jumped: the robot is assumed stationary
+  int word_matches = 0;        ///< new n-gram matches of words, not yet verified
 };
 
 /// Usage, on one thread (deterministic: the same calls give the same bytes):
@@ -47,36 +48,38 @@ struct SlamUpdate {
 ///   while (auto job = engine.takeJob()) engine.apply(runJob(*job));
 ///
 /// or with a second thread, which takes a job, runs it without holding any lock, and applies the
-/// result: both calls cost little. At most one job is out at a time.
+/// result: both calls are cheap. At most one job is pending at a time.
 class SlamEngine {
  public:
-  static constexpr double kMaxStartWindow = 50.0;     ///< of startRun() [m]
+  static constexpr double kMaxStartWindow = 50.0;     ///< limit of startRun() [m]
   static constexpr double kDefaultStartWindow = 1.0;  ///< [m]
   static constexpr double kDefaultStartAngle = 0.5;   ///< [rad]
 
   /// @throws hyselam::ParameterError
   explicit SlamEngine(const SlamParams& params = {});
-  /// Goes on in a building that is known: what comes next is another run, see startRun().
-  /// @throws hyselam::ParameterError; hyselam::InputError for a state whose parts do not fit.
+  /// Continues a saved map: the next scan begins another run, see startRun().
+  /// @throws hyselam::ParameterError; hyselam::InputError for a state that is inconsistent.
   SlamEngine(const SlamParams& params, SlamState state);
 
-  /// Adds a scan; `odometry`: base in odom at its time.
-  /// @throws hyselam::InputError for a stamp that is not after the last one of the run or not
-  /// finite, a pose or geometry that is not finite or absurdly far away; nothing is changed then.
+  /// Adds a scan; `odometry`: base in odom at its stamp.
+  /// @throws hyselam::InputError for a stamp that is not finite or not after the last one of the
+  /// run, a pose that is not finite or has |x| or |y| above 9900 km, a scan geometry that is not
+  /// finite, a zero angle increment, a laser more than 5 m from the base; the state is unchanged.
   SlamUpdate add(const hyselam::LaserScan& scan, const hyselam::Pose2& odometry);
-  /// Ends the run: its last words are matched. The next scan starts another run.
+  /// Ends the run: its pending words are matched. The next scan starts another run.
   void endRun();
-  /// Ends the run and sets where the next one starts; without it, it is taken to start where the
-  /// last one ended. The first scan is matched within `window` [m] and `angle` [rad] of the pose.
+  /// Ends the run and sets where the next one starts; otherwise it is assumed to start where
+  /// the last one ended. The first scan is matched within `window` [m] and `angle` [rad] of the
+  /// pose.
   /// @throws hyselam::ParameterError, before anything is changed, for a pose that is not finite, a
   /// window outside of 0 (excluded) to kMaxStartWindow, an angle outside of 0 to pi.
   void startRun(const hyselam::Pose2& base_in_map, double window = kDefaultStartWindow,
                 double angle = kDefaultStartAngle);
 
-  /// Loops to verify and, if it is time, a graph to optimize; nothing if there is nothing to do or
-  /// a job is still out.
+  /// Loops to verify; if there are none, a graph to optimize when that is due. Empty if there is
+  /// nothing to do or a job is pending.
   std::optional<SlamJob> takeJob();
-  /// The same, but optimizes if there is any loop that has not been optimized with.
+  /// As takeJob(), but optimization is due as soon as there is a loop not optimized yet.
   std::optional<SlamJob> takeFinalJob();
   void apply(const SlamJobResult& result);
 
@@ -84,24 +87,25 @@ class SlamEngine {
   const std::vector<SlamKeyframe>& keyframes() const { return state_.keyframes; }
   const SlamCounters& counters() const { return state_.counters; }
   const std::vector<SlamLoop>& loops() const { return state_.loops; }
+  /// N-gram matches between words of the path, verified or not.
   const std::vector<SlamMatch>& matches() const { return state_.matches; }
-  /// Counts up when poses of old keyframes have moved.
+  /// Incremented by every optimization, which moves poses of keyframes.
   int revision() const { return revision_; }
-  /// Base in map; identity before the first scan, which defines the map frame: it is where odometry
-  /// has it.
+  /// Base in map; identity before the first scan of a new map. The map frame equals odom at the
+  /// first scan, unless startRun() set its pose.
   const hyselam::Pose2& pose() const { return pose_; }
   /// odom in map, after the last scan.
   hyselam::Pose2 odomInMap() const;
-  /// Keyframes and edges, odometry first, then loops.
+  /// Keyframes as nodes; odometry edges, followed by loop edges.
   hyselam_pose_graph::PoseGraph graph() const;
-  /// Every scan at its place.
+  /// Pose of every scan.
   std::vector<hyselam::StampedPose2> trajectory() const;
   const NgramRecognizer& recognizer() const { return words_.recognizer(); }
-  /// Where the observations of the recognizer were made: keyframes.
+  /// Index of the keyframe at which each observation (a density every 0.1 m of path) was made.
   const std::vector<std::int32_t>& keyframeOfObservation() const {
     return state_.keyframe_of_observation;
   }
-  /// What to save.
+  /// State for serialization.
   SlamState state() const;
 
  private:
@@ -109,7 +113,7 @@ class SlamEngine {
   /// How the base moved since the last scan that was matched.
   struct Motion {
     hyselam::Pose2 pose;          // by odometry
-    Eigen::Matrix3d information;  // of it
+    Eigen::Matrix3d information;  // of the motion
     bool jump;
   };
   struct RunStart {
@@ -126,7 +130,7 @@ class SlamEngine {
     std::int64_t match;  // of SlamState::matches, or kNoMatch
   };
   static constexpr std::int64_t kNoMatch = -1;
-  /// The loops requested for one new word.
+  /// The loop verifications requested for one new word.
   struct WordSearch {
     int newer = -1;                    // keyframe
     std::vector<double> path_lengths;  // from it
@@ -148,12 +152,12 @@ class SlamEngine {
   Eigen::Matrix3d matchScan(const hyselam_scan_matching::SurfacePoints& points,
                             const Motion& motion, SlamUpdate* update);
   hyselam_scan_matching::IcpResult matchLocalMap(const hyselam_scan_matching::SurfacePoints& points,
-                                               const Eigen::Matrix3d& odometry_information,
-                                               SlamUpdate* update);
+                                                 const Eigen::Matrix3d& odometry_information,
+                                                 SlamUpdate* update);
   bool needsKeyframe(const Motion& motion) const;
   hyselam_pose_graph::PoseEdge odometryEdge(const Motion& motion,
                                             const Eigen::Matrix3d& scan_information) const;
-  void placeScan(double stamp);
+  void recordScanPose(double stamp);
   void addKeyframe(const hyselam::LaserScan& scan, Points points,
                    const hyselam_pose_graph::PoseEdge* edge);
   int addWords(const hyselam::LaserScan& scan);
@@ -169,7 +173,7 @@ class SlamEngine {
   void searchNearLoops();
   void searchFarLoops();
   void addWordMatches(WordPlaces::Update update);
-  void addThesisLoop(SlamMatch* match);
+  void addUnverifiedLoop(SlamMatch* match);  // of LoopClosureMode::kThesis
   void searchWordLoop(std::int64_t match, WordSearch* search);
   void requestVerification(const LoopGuess& guess);
   LoopTask::Segment segmentAround(int keyframe, double half_length, double max_path_length) const;
@@ -184,11 +188,11 @@ class SlamEngine {
 
   SlamParams params_;
   SlamState state_;
-  WordPlaces words_;
+  WordPlaces words_;  // the words of the path and their n-gram matches
   GraphPathLengths path_lengths_;
   hyselam_scan_matching::SurfaceMap local_map_;
   std::vector<LoopTask> tasks_;
-  bool run_open_ = false, job_out_ = false;
+  bool run_open_ = false, job_pending_ = false;
   int first_of_run_ = 0;                            // keyframe
   double last_stamp_ = 0.0;                         // of the run
   hyselam::Pose2 pose_, odometry_;                  // of the last scan
@@ -199,7 +203,7 @@ class SlamEngine {
   std::optional<RunStart> start_;
   bool loops_changed_ = false, optimize_now_ = false;
   int optimized_keyframes_ = 0;
-  std::size_t job_odometry_edges_ = 0;  // in the graph that is out
+  std::size_t job_odometry_edges_ = 0;  // in the graph of the pending job
   int revision_ = 0;
 };
 

@@ -21,7 +21,7 @@ struct TrajectoryError {
 TrajectoryError trajectoryError(const std::vector<hyselam::StampedPose2>& trajectory,
                                 const std::vector<hyselam::StampedPose2>& reference);
 
-/// How far a measurement between keyframes is from what the reference says.
+/// Error of a measurement between keyframes with respect to the reference.
 struct LoopError {
   double distance = 0.0;  ///< [m]
   double angle = 0.0;     ///< [rad], >= 0

@@ -1,4 +1,4 @@
-// The state of SLAM in a file, from which it goes on in a known building.
+// Saves the state of SLAM to a file and loads it, to continue a saved map.
 #pragma once
 
 #include <string>

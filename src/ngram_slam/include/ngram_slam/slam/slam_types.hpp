@@ -1,4 +1,4 @@
-// What SLAM knows, as plain values: keyframes, the edges between them, and where it stands.
+// State of SLAM as plain values: keyframes, the edges between them, loop closures, n-gram matches.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace ngram_slam {
 
-/// A scan that the map is made of.
+/// A scan that is a node of the pose graph.
 struct SlamKeyframe {
   double stamp = 0.0;        ///< [s]
   hyselam::Pose2 odometry;   ///< base in odom when the scan was taken
@@ -43,16 +43,16 @@ struct SlamLoop {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< see PoseEdge
   LoopSource source = LoopSource::kProximity;
   bool far = false;           ///< found by a wide search, accepted with consistent loops
-  double inlier_ratio = 0.0;  ///< part of the points on known surfaces, 0..1
+  double inlier_ratio = 0.0;  ///< fraction of the points on known surfaces, 0..1
   double weight = 1.0;        ///< by the last optimization, 0..1; below 1: contradicts others
 };
 
-/// A match of words, and what its verification gave.
+/// An n-gram match between words of the path, and the result of its verification by scans.
 struct SlamMatch {
   std::uint32_t newer = 0, older = 0;           ///< observations
   double stamp_newer = 0.0, stamp_older = 0.0;  ///< [s]
   int level = 0;                                ///< highest level of words in use, from 0
-  int n = 0;
+  int n = 0;                                    ///< words of the match
   Direction direction = Direction::kSame;
   double probability = 0.0;
   int keyframe_newer = 0, keyframe_older = 0;
@@ -60,15 +60,15 @@ struct SlamMatch {
   hyselam::Pose2 measured;
   bool tried = false;     ///< the scans were compared
   bool verified = false;  ///< the scans fit
-  bool accepted = false;  ///< and it is in the graph: other loops are consistent with it
+  bool accepted = false;  ///< the loop is in the graph
 };
 
-/// How often each thing happened.
+/// Counts of events.
 struct SlamCounters {
   std::uint64_t scans = 0;           ///< added
   std::uint64_t matched = 0;         ///< with the local map
-  std::uint64_t relocalized = 0;     ///< of them: lost, and found again by a search
-  std::uint64_t weak_matches = 0;    ///< of them: hardly anything matched, odometry decides
+  std::uint64_t relocalized = 0;     ///< of the matched: pose found by a search
+  std::uint64_t weak_matches = 0;    ///< of the matched: few points on known surfaces
   std::uint64_t odometry_jumps = 0;  ///< see SlamParams::max_odometry_step
   std::uint64_t optimizations = 0;
   struct Loops {
@@ -76,9 +76,8 @@ struct SlamCounters {
   } near, far, words;
 };
 
-/// All that outlives the process. Together with SlamParams it makes the engine what it was; only
-/// the observations of the last few meters that still wait for their full density are lost, and the
-/// loops that wait for verification.
+/// The serialized state. With SlamParams it restores the engine, except for the observations of the
+/// last few meters whose full density is pending and the loops whose verification is pending.
 struct SlamState {
   std::vector<SlamKeyframe> keyframes;
   std::vector<PlacedScan> scans;  ///< all scans of all runs, keyframes' own too
@@ -87,11 +86,11 @@ struct SlamState {
   std::vector<SlamLoop> pending_loops;  ///< verified far loops without consistent ones yet
   std::vector<SlamMatch> matches;
   Corpus corpus;
-  std::vector<std::int32_t> keyframe_of_observation;
+  std::vector<std::int32_t> keyframe_of_observation;  ///< index of a keyframe per observation
   SlamCounters counters;
 
-  /// What is wrong with it, nullptr if nothing: parts that refer to what is not there, a keyframe
-  /// without scan or finite pose.
+  /// Describes an inconsistency (an index out of range, a keyframe without scan or finite pose);
+  /// nullptr if there is none.
   const char* error() const;
   /// @throws hyselam::InputError with error().
   void validate() const;

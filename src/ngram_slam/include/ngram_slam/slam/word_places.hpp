@@ -1,5 +1,5 @@
-// Places seen before, by words: observations along the path, the recognizer, and its matches as
-// pairs of observations.
+// Recognizes places visited before by the words of the path: makes observations, segments them into
+// words, and returns n-gram matches as pairs of observations. Terms: see slam_params.hpp.
 #pragma once
 
 #include <memory>
@@ -20,9 +20,9 @@ class WordPlaces {
   struct Update {
     std::vector<double> stamps;      ///< of the observations that were completed, in order
     std::vector<SlamMatch> matches;  ///< without keyframes
-    bool requantized = false;        ///< all matches before are void
+    bool requantized = false;        ///< words were recomputed: earlier matches are invalid
   };
-  /// `base`: by odometry or something better, without odometry_jumps.
+  /// `base`: pose in an odometry frame (raw or refined) without jumps.
   /// @throws hyselam::InputError for a scan that cannot be used; nothing is changed then.
   Update add(const hyselam::LaserScan& scan, const hyselam::Pose2& base);
   /// Ends the run.

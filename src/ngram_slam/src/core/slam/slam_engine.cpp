@@ -112,7 +112,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   const Motion motion = advanceOdometry(odometry);
   update.odometry_jump = motion.jump;
   if (isNearLastMatch(motion)) {
-    placeScan(scan.stamp);
+    recordScanPose(scan.stamp);
     update.base_in_map = pose_;
     return update;
   }
@@ -124,7 +124,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
     searchLoopClosures();
     update.keyframe = true;
   } else {
-    placeScan(scan.stamp);
+    recordScanPose(scan.stamp);
   }
   if (usesWords()) update.word_matches = addWords(scan);
   update.base_in_map = pose_;
@@ -221,7 +221,7 @@ PoseEdge SlamEngine::odometryEdge(const Motion& motion,
 }
 
 /// Notes a scan that is no keyframe, relative to the last one.
-void SlamEngine::placeScan(double stamp) {
+void SlamEngine::recordScanPose(double stamp) {
   state_.scans.push_back({stamp, lastKeyframe(), between(state_.keyframes.back().pose, pose_)});
 }
 

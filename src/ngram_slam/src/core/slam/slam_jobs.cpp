@@ -50,7 +50,7 @@ std::optional<SlamJob> SlamEngine::takeFinalJob() {
 }
 
 std::optional<SlamJob> SlamEngine::makeJob(bool final) {
-  if (job_out_) return std::nullopt;
+  if (job_pending_) return std::nullopt;
   SlamJob job;
   const auto n = static_cast<int>(state_.keyframes.size());
   const bool due = final || optimize_now_ || n - optimized_keyframes_ >= params_.optimize_interval;
@@ -65,7 +65,7 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
     return std::nullopt;
   }
   job.params = params_;
-  job_out_ = true;
+  job_pending_ = true;
   return job;
 }
 
@@ -83,7 +83,7 @@ SlamJobResult runJob(const SlamJob& job) {
 }
 
 void SlamEngine::apply(const SlamJobResult& result) {
-  job_out_ = false;
+  job_pending_ = false;
   for (std::size_t i = 0; i < result.tasks.size() && i < result.verifications.size(); ++i) {
     applyVerification(result.tasks[i], result.verifications[i]);
   }

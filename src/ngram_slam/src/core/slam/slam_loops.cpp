@@ -107,14 +107,14 @@ void SlamEngine::addWordMatches(WordPlaces::Update update) {
     state_.matches.push_back(m);
     if (m.keyframe_newer <= m.keyframe_older) continue;
     if (params_.loops == LoopClosureMode::kThesis) {
-      addThesisLoop(&state_.matches.back());
+      addUnverifiedLoop(&state_.matches.back());
     } else {
       searchWordLoop(static_cast<std::int64_t>(state_.matches.size()) - 1, &search);
     }
   }
 }
 
-void SlamEngine::addThesisLoop(SlamMatch* match) {
+void SlamEngine::addUnverifiedLoop(SlamMatch* match) {
   SlamLoop loop;
   loop.older = match->keyframe_older;
   loop.newer = match->keyframe_newer;
