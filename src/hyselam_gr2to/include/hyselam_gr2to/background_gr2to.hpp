@@ -1,5 +1,5 @@
 // Gr2To in a thread of its own: the newest grid map is segmented, and its topological map gets the
-// ids and names of the one before (carry_over.hpp).
+// ids and names of the previous one (carry_over.hpp).
 #pragma once
 
 #include <condition_variable>
@@ -29,18 +29,18 @@ class BackgroundGr2To {
     std::string frame_id = "map";
     double stamp = 0.0;  ///< [s]
     Gr2ToParams params;
-    int params_version = 0;  ///< another number when the parameters are others
+    int params_version = 0;  ///< changes with the parameters
   };
 
   struct Outcome {
-    MapPtr map;         ///< null if the input could not be used; then the map before stays
-    std::string error;  ///< why not; empty: it could
-    /// Why the ids and names of the map before could not be carried over; empty: they were.
+    MapPtr map;         ///< null if the input could not be used: the previous map stays valid
+    std::string error;  ///< why the input could not be used; empty: it was used
+    /// Why the ids and names of the previous map could not be carried over; empty: they were.
     std::string warning;
-    bool unchanged = false;  ///< the grid and the parameters are those of the map before
+    bool unchanged = false;  ///< same grid and parameters as for the previous map
     std::shared_ptr<const hyselam::OccupancyGrid> grid;
     CarryOverReport report;
-    std::vector<std::pair<std::string, double>> seconds;  ///< of the stages
+    std::vector<std::pair<std::string, double>> seconds;  ///< (stage, wall time [s])
     double total_seconds = 0.0;
   };
 

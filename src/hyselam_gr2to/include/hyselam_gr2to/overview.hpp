@@ -1,4 +1,4 @@
-// The picture of a topological map over its grid map, as figures in papers have it.
+// Image of a topological map drawn over its grid map, as for figures in papers.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -20,8 +20,8 @@ struct OverviewOptions {
 
 /// BGR, 8 bit, y up: places colored and numbered with their words if they have any, walls thick
 /// (solid) or dashed (limits without a wall), doors green or, open borders, dashed orange, the
-/// graph of places through its doors, a scale bar and a legend. Cut out to what is known of the
-/// map.
+/// graph of places through its doors, a scale bar and a legend. Cropped to the known part
+/// of the map.
 /// @throws hyselam::ParameterError for an option out of range
 cv::Mat drawOverview(const hyselam::OccupancyGrid& grid, const Gr2ToResult& result,
                      const OverviewOptions& options = {});

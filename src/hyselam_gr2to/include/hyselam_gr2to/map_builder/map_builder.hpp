@@ -10,9 +10,9 @@
 namespace hyselam_topo {
 
 /// When a place is a corridor. Its width is four times the mean distance of its cells to its limits
-/// (what stands free in it is seen through): 2/3 of the side for a square, and the width for a long
-/// strip, straight, bent or branched. Its elongation is its area by its width squared: 2.25 for a
-/// square, about the length by the width for a strip.
+/// (free-standing obstacles in it are ignored): 2/3 of the side for a square, and the width for a
+/// long strip, straight, bent or branched. Its elongation is its area by its width squared: 2.25
+/// for a square, about the length by the width for a strip.
 struct CorridorRule {
   double max_width = 4.0;         ///< [m] > 0
   int min_neighbors = 4;          ///< other places that it leads to,

@@ -1,7 +1,7 @@
 // OctoMaps as plain lists of cubes, from files (.bt, .ot) and from the data of octomap_msgs.
 //
-// The format is walked here and not by liboctomap, whose readers follow whatever the bytes say: a
-// damaged or hostile file ends them in an endless descent. What comes out is the same (tested).
+// Parsed here and not by liboctomap, whose readers do not check the data: a damaged or malicious
+// file makes them recurse without end. The result is the same (tested).
 #pragma once
 
 #include <cstddef>

@@ -38,8 +38,8 @@ class DistanceMap {
   /// Puts an obstacle or takes it away; cells outside are ignored. update() makes it effective.
   void setObstacle(hyselam::Cell c, bool obstacle);
 
-  /// Brings distances and sites up to date and tells the cells whose site may have changed (every
-  /// one that did, and few others), in the order of rows. Costs about what has changed.
+  /// Brings distances and sites up to date and returns the cells whose site may have changed
+  /// (every one that did, and few others), in the order of rows. Costs about what has changed.
   std::vector<RowSpan> update();
 
   /// Makes the obstacles those of another map of the same size, then updates.

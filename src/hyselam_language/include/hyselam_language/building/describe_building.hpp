@@ -19,7 +19,7 @@ namespace hyselam_topo {
 ///   product, and no place is virtual by kind,
 /// - no two places have names that may mean the same (place_names.hpp).
 /// Throws hyselam::InputError for a description that checkDescription() refuses, a name that cannot
-/// be put between any quotation marks, and a grammar that does not say something needed.
+/// be put between any quotation marks, and a grammar without a needed phrase.
 std::string describeBuilding(const DescribedBuilding& building, const Grammar& grammar);
 
 }  // namespace hyselam_topo

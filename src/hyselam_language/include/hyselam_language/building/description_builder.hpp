@@ -1,5 +1,5 @@
-// Statements, one after another, into the description of a building (the graph of Fig. 5.5), with
-// the context that they need: where the robot is, what "it" means. Corrections replace what was
+// Builds the description of a building (the graph of Fig. 5.5) from successive statements and their
+// context: where the robot is, what "it" refers to. Corrections replace what was
 // said; what contradicts it is reported and left out.
 #pragma once
 
@@ -16,7 +16,7 @@
 namespace hyselam_topo {
 
 enum class IssueKind {
-  kContradiction,  ///< something else was said before, and is kept
+  kContradiction,  ///< contradicts an earlier statement, which is kept
   kAmbiguous,      ///< a name or "it" may mean several places
   kNoContext,      ///< a side without the robot's place, a correction of nothing, "it" of nothing
   kMeaningless,    ///< a place beside itself, more names than announced, a size out of range

@@ -1,4 +1,4 @@
-// TopoParser (dos Santos, section 5.1): what people say, into statements, commands and questions.
+// TopoParser (dos Santos, section 5.1): parses sentences into statements, commands and questions.
 // The thesis gives the work to the program Nooj; here a grammar of its own is read from a file and
 // matched by a small engine.
 #pragma once
@@ -13,8 +13,8 @@
 namespace hyselam_topo {
 
 struct ParseOptions {
-  /// A language of the parser, or "auto": the one that understands most of the text, of several the
-  /// one that knows more of its words, of several the first.
+  /// A language of the parser, or "auto": the one that parses most of the text; on a tie the one
+  /// whose vocabulary has more of its words, then the first.
   std::string language = "auto";
   /// Of "auto": the language of what fits several equally well; "" for the first of the parser.
   std::string preferred;
@@ -38,9 +38,9 @@ class TopoParser {
   /// Throws hyselam::ParameterError without a grammar.
   explicit TopoParser(std::vector<Grammar> grammars);
 
-  /// Never throws for what a text holds: what is no text, too long or not understood comes back as
-  /// an utterance with the reason. A sentence is understood as a whole or not at all. Throws
-  /// hyselam::ParameterError for an unknown language.
+  /// Never throws for the content of a text: if it is not UTF-8, too long or not understood, the
+  /// result is an utterance with the reason. A sentence is understood as a whole or not at all.
+  /// Throws hyselam::ParameterError for an unknown language.
   ParsedText parse(const std::string& text, const ParseOptions& options = {}) const;
 
   const std::vector<Grammar>& grammars() const { return grammars_; }

@@ -1,4 +1,5 @@
-// A live map in, places, doors and walls out.
+// ROS interface of Gr2To: a live grid map or OctoMap in, a topological map (places, doors, walls)
+// out.
 #pragma once
 
 #include <hyselam_msgs/PlaceAt.h>

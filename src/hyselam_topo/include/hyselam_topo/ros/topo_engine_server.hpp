@@ -1,4 +1,5 @@
-// Maps, poses and human text in; names, places, answers and paths out.
+// ROS interface of the dialogue: maps, poses and human text in; names, places, answers and paths
+// out.
 #pragma once
 
 #include <hyselam_msgs/AddGlassWall.h>
@@ -50,7 +51,7 @@ class TopoEngineServer {
   /// Publishes the sentences of a reply and carries its actions out.
   void act(const Reply& reply);
   void say(const std::string& sentence);
-  /// What a person has said into `conversation`, in the order with what the robot says.
+  /// Publishes a person's text on `conversation`, in order with the robot's sentences.
   void publishHumanText(const std::string& text);
   void go(const std::vector<RouteLeg>& legs);
   void turn(double angle);

@@ -1,4 +1,4 @@
-// After TopoMerg: how sure each name is, what to ask next, and the map with its names.
+// After TopoMerg: the certainty of each name, what to ask next, and the map with its names.
 #pragma once
 
 #include <optional>
@@ -30,7 +30,7 @@ struct MatchQuestion {
   Id place = 0;              ///< of the map: "what is the name of this place?"
   Id name = 0;               ///< its likeliest name: "is this ...?"; 0: none of the description
   double probability = 0.0;  ///< of that name, among the assignments that are kept
-  double bits = 0.0;         ///< that the true name of the place takes from what is unsure
+  double bits = 0.0;         ///< entropy of its name over these assignments
 };
 
 struct QuestionParams {
@@ -38,8 +38,8 @@ struct QuestionParams {
   double tolerance = 0.01;
 };
 
-/// The place whose name separates the assignments best: that with the largest entropy of its name
-/// over the assignments of `match`, which should have been kept within a few tolerances
+/// The place whose name discriminates best between the assignments: that with the largest entropy
+/// of its name over the assignments of `match`, which should have been kept within a few tolerances
 /// (keep_within). Of equally good places that with the smallest id. Nothing if all assignments
 /// agree.
 std::optional<MatchQuestion> mostInformativeQuestion(const MatchProblem& problem,

@@ -20,11 +20,11 @@ namespace hyselam_topo {
 /// What is certain before the search: the "constraint" of section 5.3 and more of its kind.
 struct MatchConstraints {
   std::vector<std::pair<Id, Id>> confirmed;  ///< (place of the map, place of the description)
-  std::vector<std::pair<Id, Id>> excluded;   ///< the same: this place does not have that name
+  std::vector<std::pair<Id, Id>> excluded;   ///< likewise: this place does not have that name
   std::vector<Id> unnamed;                   ///< places of the map that nobody has described
 };
 
-/// Where the robot was when the person spoke. If it knows its place and the description says the
+/// Where the robot was when the person spoke. If its place is known and the description has the
 /// robot's place, the two are confirmed to be the same.
 struct MatchObserver {
   std::optional<Id> place;  ///< of the map
