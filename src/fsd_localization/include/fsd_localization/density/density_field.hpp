@@ -11,7 +11,7 @@
 
 namespace fsd_localization {
 
-/// Which map values mean what; between the two a cell is unknown, as are negative values.
+/// Thresholds on map values; a value between the two, or negative, is unknown.
 struct OccupancyThresholds {
   int free_below = 25;     ///< free: 0 <= value < free_below
   int occupied_from = 65;  ///< occupied: value >= occupied_from
@@ -37,7 +37,8 @@ struct DensityField {
 
 /// Soft density of every free cell: on a fully known map the hard one (3.3.1).
 /// @param threads 0: as many as the machine has cores. The result does not depend on it.
-/// @param progress called now and then with the share done, from the calling thread; may be empty.
+/// @param progress called repeatedly with the share done, 0..1, from the calling thread; may be
+/// empty.
 DensityField densityField(const FreeSpaceGrid& space, const Kernel& kernel, int threads = 0,
                           const std::function<void(double)>& progress = {});
 

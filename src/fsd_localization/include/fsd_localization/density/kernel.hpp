@@ -32,7 +32,7 @@ void checkKernels(const std::vector<KernelSpec>& kernels);
 /// exactly 1.
 class Kernel {
  public:
-  static constexpr int kMaxRadius = 127;  ///< [cells]; what the flood's bit rows can hold
+  static constexpr int kMaxRadius = 127;  ///< [cells]; limit of the flood fill's bit rows
 
   /// @param radius bandwidth h in cells, 1..kMaxRadius. @throws hyselam::ParameterError outside.
   Kernel(KernelProfile profile, int radius);

@@ -1,4 +1,4 @@
-// The robot's surroundings as a HIMM grid (Maffei 2017, 2.1.2 and 3.2.1, Alg. 2.2): a window of
+// Local map: a HIMM grid around the robot (Maffei 2017, 2.1.2 and 3.2.1, Alg. 2.2): a window of
 // cells that moves with the robot; every cell in the field of view is updated, so that no holes are
 // left.
 #pragma once
@@ -15,7 +15,7 @@
 namespace fsd_localization {
 
 struct LocalMapParams {
-  double radius = 9.0;          ///< r_max: cells farther from the robot are forgotten [m]
+  double radius = 9.0;          ///< r_max: cells farther from the robot are dropped [m]
   double resolution = 0.1;      ///< side of a cell [m]
   double usable_range = 0.0;    ///< beams are not used beyond it [m]; 0: min(range_max, radius)
   double obstacle_depth = 1.0;  ///< epsilon_d: an obstacle covers the cells nearer than this to a
@@ -23,14 +23,14 @@ struct LocalMapParams {
   int free_below = 3;           ///< epsilon_f: a cell is free where its value is smaller
   int occupied_above = 12;      ///< epsilon_o: a cell is occupied where its value is larger
   double footprint_radius =
-      0.2;  ///< where the robot stands is free [m]; 0: only what the laser sees
+      0.2;  ///< cells within this radius of the robot are free [m]; 0: only by laser
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError naming the first value out of range.
   void validate() const;
 };
 
-/// Cells hold 0 (surely free) .. 15 (surely occupied); 8 is not known yet.
+/// Cells hold 0 (free) .. 15 (occupied); 8 initially (unknown).
 ///
 /// The grid is aligned with the odometry frame and its centre cell holds the robot. Cost of an
 /// update: one pass over the cells of the field of view.
@@ -38,12 +38,12 @@ class LocalMap {
  public:
   static constexpr std::uint8_t kUnknown = 8;
   static constexpr std::uint8_t kMaxValue = 15;
-  static constexpr int kHit = 3;   ///< what an occupied observation adds
-  static constexpr int kMiss = 1;  ///< what a free observation takes away
+  static constexpr int kHit = 3;   ///< increment of a cell observed occupied
+  static constexpr int kMiss = 1;  ///< decrement of a cell observed free
 
   explicit LocalMap(const LocalMapParams& params = {});
 
-  /// Moves the window to the robot and updates the cells that the scan sees.
+  /// Moves the window to the robot and updates the cells in the scan's field of view.
   /// @param base_in_odom where the robot is while the scan is taken, finite.
   /// @throws hyselam::InputError for a scan that cannot be used (no beams, an increment of 0,
   /// limits
@@ -76,7 +76,7 @@ class LocalMap {
     std::int32_t squared_distance;  // [cells^2]
   };
   /// The cells of a range of distances, sorted by bearing: (-pi, pi], then once more a turn later,
-  /// so that a scan that passes pi goes on reading.
+  /// so that a scan may cross the bearing pi.
   struct Ring {
     std::int32_t begin = 0;  // squared distances begin .. end
     std::int32_t end = 0;

@@ -1,4 +1,5 @@
-// Whether the tracked place still fits: averages of the share of returns that the map predicts.
+// Decides whether a pose hypothesis still fits, by moving averages of the inlier ratio: the share
+// of returns that end at mapped obstacles.
 #pragma once
 
 #include <optional>

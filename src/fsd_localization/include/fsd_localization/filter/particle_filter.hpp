@@ -34,7 +34,7 @@ struct FilterStep {
   std::optional<double> likelihood;  ///< per factor; empty if the observation held nothing
   double effective_size = 0.0;       ///< after weighing, before resampling
   bool resampled = false;
-  std::size_t injected = 0;  ///< random particles put in
+  std::size_t injected = 0;  ///< number of random particles injected
 };
 
 class ParticleFilter {
@@ -42,11 +42,11 @@ class ParticleFilter {
   /// The map gives the free cells that particles start on. Equal seeds give equal filters.
   ParticleFilter(std::shared_ptr<const FsdMap> map, const FilterParams& params, std::uint64_t seed);
 
-  /// Anywhere on the free space.
+  /// Spreads the particles uniformly over the free space.
   void spreadOverMap();
-  /// Around a pose of the grid's frame; standard deviations [m, m, rad].
+  /// Draws the particles around a pose in the grid's frame; standard deviations [m, m, rad].
   void concentrateAround(const hyselam::Pose2& mean, const hyselam::Pose2& stddev);
-  /// Given ones (any weights); their number becomes the size.
+  /// Sets the particles (any weights); their number becomes the size.
   void setParticles(Particles particles);
 
   /// One round of Alg. 2.1. @param delta motion since the last step, in the old base frame.

@@ -14,7 +14,7 @@ struct Particles {
   std::vector<float> x;
   std::vector<float> y;
   std::vector<BinaryAngle> heading;
-  std::vector<float> weight;  ///< >= 0; their scale means nothing
+  std::vector<float> weight;  ///< >= 0, not normalized
 
   std::size_t size() const { return x.size(); }
   void resize(std::size_t n) {
@@ -46,7 +46,7 @@ double effectiveSampleSize(const Particles& particles);
 
 /// Low-variance (systematic) resampling: each particle is copied floor or ceil of n times its share
 /// of the weight; one random offset in [0, 1). Keeps the order; weights become 1. With all weights
-/// 0 (or not finite) nothing is known, and every particle counts the same.
+/// 0 (or not finite), all particles have equal weight.
 /// @param out receives n particles; may not be `in`.
 void resampleSystematic(const Particles& in, std::size_t n, double offset, Particles& out);
 

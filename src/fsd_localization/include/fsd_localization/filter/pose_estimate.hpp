@@ -1,4 +1,4 @@
-// From particles to a pose: the mean and covariance of the heaviest cluster.
+// Pose estimate of a particle set: mean and covariance of the heaviest cluster.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,8 +17,8 @@ struct PoseEstimate {
   hyselam::Pose2 mean;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double cluster_weight = 0.0;  ///< share of the weight that the cluster holds, 0..1
-  int clusters = 0;             ///< that hold at least 1 % of the weight each
-  std::size_t bins = 0;         ///< occupied in all: a measure of the ambiguity that is left
+  int clusters = 0;             ///< number of clusters with at least 1 % of the weight each
+  std::size_t bins = 0;         ///< number of occupied bins: a measure of the remaining ambiguity
 
   /// Larger of the standard deviations along the principal axes of the position [m].
   double positionStddev() const;

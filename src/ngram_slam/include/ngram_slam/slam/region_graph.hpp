@@ -31,7 +31,7 @@ struct RegionGraph {
   std::vector<RegionEdge> edges;  ///< each pair and kind once, ordered
 };
 
-/// Where the observations of the engine's recognizer were made, in the map as it is now.
+/// Poses of the observations of the engine's recognizer, in the current map.
 std::vector<hyselam::Pose2> observationPoses(const SlamEngine& engine);
 
 /// A node for each semantic region; edges between consecutive ones, and between regions that a loop

@@ -1,4 +1,4 @@
-// SLAM against poses that are known from elsewhere.
+// Error of SLAM with respect to reference poses.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct TrajectoryError {
   std::size_t poses = 0;                    ///< compared
   double mean = 0.0, rms = 0.0, max = 0.0;  ///< of the positions, after the best rigid motion [m]
   double mean_angle = 0.0;                  ///< of the headings [rad]
-  /// Of motions over one meter of path.
+  /// Mean errors of the relative motion over one meter of path.
   double mean_step = 0.0, mean_step_angle = 0.0;  ///< [m], [rad]
 };
 

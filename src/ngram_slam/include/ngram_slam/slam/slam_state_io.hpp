@@ -18,9 +18,9 @@ class SlamStateFile {
   /// Atomic: a reader sees the old file or the new one.
   /// @throws hyselam::InputError when the place cannot be written.
   static void save(const std::string& path, const SlamState& state);
-  /// `surface`: as the engine has it that is to go on.
+  /// `surface`: SlamParams::surface of the engine that continues the map.
   /// @throws hyselam::InputError naming file, place and reason for a file that is missing, no such
-  /// file, of another version, cut short, damaged, or whose parts do not fit together.
+  /// file, of another version, cut short, damaged, or inconsistent.
   static SlamState load(const std::string& path,
                         const hyselam_scan_matching::SurfacePointParams& surface);
 };
