@@ -50,7 +50,7 @@ struct LandmarkCheck {
 LandmarkCheck checkLandmarks(const ObjectMap& map, const std::vector<DetectedObject>& detections,
                              const LandmarkParams& params = {});
 
-/// The same over the last frames: a single one shows too few objects.
+/// The same check over the last images: a single one shows too few objects.
 class LandmarkMonitor {
  public:
   explicit LandmarkMonitor(const LandmarkParams& params = {}, std::size_t frames = 6)
@@ -65,18 +65,18 @@ class LandmarkMonitor {
   std::deque<std::vector<DetectedObject>> last_;
 };
 
-/// Keeps frames out of the map while the landmarks contradict the pose; but if they do so for long,
-/// it is the map that was wrong.
+/// Rejects map updates while the landmarks contradict the pose. If the contradiction persists, the
+/// map is assumed to be outdated and updates are allowed again.
 class MapUpdateGuard {
  public:
-  /// Whether the frame with these detections may update the map.
+  /// Whether the image with these detections may update the map.
   bool allowsUpdate(const ObjectMap& map, const std::vector<DetectedObject>& detections);
-  /// Forgets the last frames.
+  /// Clears the images that are kept.
   void clear() { monitor_.clear(); }
 
   /// Of the last frames.
   const LandmarkCheck& lastCheck() const { return last_check_; }
-  /// Frames in a row that were not allowed.
+  /// Number of consecutive images that were rejected.
   int framesHeldBack() const { return held_back_; }
 
  private:

@@ -1,5 +1,5 @@
-// How far a match can be trusted: how many such matches are expected by chance, and how probable it
-// is that it is right. The thesis leaves both open (4.4, 7) and has only a minimum number of words.
+// Confidence of a match: the expected number of such matches by chance, and the probability that it
+// is correct. The thesis leaves both open (4.4, 7) and has only a minimum number of words.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +26,13 @@ struct MatchConfidenceParams {
   void validate() const;
 };
 
-/// Reads a text as it grows and estimates chance and probability of its matches.
+/// Estimates chance and probability of the matches of a text, which is processed incrementally.
 ///
 /// Chance: the expected number of old n-grams that match the newer words although they are others:
 /// the words of the text times the product of the probabilities of each further match, by the
-/// bigram model of the text so far. A corridor of a common length says little, a rare sequence
-/// of rooms much. Misfit: root of the mean squared difference of the densities of the
-/// matched words, aligned (Eq. 5.3).
+/// bigram model of the text so far. A corridor of a common length is weak evidence, a rare
+/// sequence of rooms strong evidence. Misfit: root of the mean squared difference of the densities
+/// of the matched words, aligned (Eq. 5.3).
 class MatchConfidence {
  public:
   /// `text` and `observations` must outlive it; `density`: the one that words are made of.
@@ -40,7 +40,7 @@ class MatchConfidence {
                   const WordTolerance& tolerance, WordDensity density,
                   const MatchConfidenceParams& params = {});
 
-  /// Learns from the word at this position, the next one.
+  /// Updates the statistics with the word at this position; positions are added in order.
   void learn(Position p);
   /// Sets the chance of a match and, if asked for, its probability.
   void estimate(NgramMatch& match, bool with_probability);
@@ -62,7 +62,7 @@ class MatchConfidence {
   MatchConfidenceParams params_;
   AlignmentParams alignment_;
   LanguageModel model_;
-  // Matches that follow each other share most of their words.
+  // Caches: successive matches share most of their words.
   std::unordered_map<std::uint64_t, double> chances_;  // of a newer word after another one
   std::unordered_map<std::uint64_t, Misfit> misfits_;  // of a pair of words
 };

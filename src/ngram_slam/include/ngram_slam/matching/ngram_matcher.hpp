@@ -4,20 +4,18 @@
 //
 // Terms:
 // - Word: a segment of the path with one density class, <d, s, a> (Syllables): class d, size s in
-//   observations (one per 0.1 m of path), angle a by which the path turns within it.
+//   observations (by default one per 0.1 m of path), angle a by which the path turns within it.
 // - Run: one uninterrupted drive; words of different runs are not neighbors.
-// - Text (WordLattice): the words of all runs, in the order of the path. Real words have level 0.
-// An
-//   alternative word of level l >= 1 replaces l + 2 successive real words by one, as if a short
+// - Text (WordLattice): the words of all runs, in the order of the path. Real words have level 0;
+//   an alternative word of level l >= 1 replaces l + 2 successive real words by one, as if the
 //   interruption of a region had not been there (Alg. 5.2).
-// - Position: number of a real word; an alternative word covers several positions. WordIndex:
-// number
-//   of any word, real or alternative.
+// - Position: number of a real word; an alternative word covers several positions.
+//   WordIndex: number of any word, real or alternative.
 // - n-gram ("gram" for short): n successive words of a run. The newer n-gram of a match ends at the
 //   latest words, the older one is an earlier n-gram that it matches word by word.
-// - Index (GramIndex, ngram_search.hpp): finds older n-grams of index_gram_ words; from there on
-// they
-//   are extended word by word.
+// - Index (GramIndex): finds older n-grams of index_gram_ words; from there on they are extended
+//   word by word.
+// - Pass: a search with the words of levels below k; k = 1: real words only.
 #pragma once
 
 #include <algorithm>

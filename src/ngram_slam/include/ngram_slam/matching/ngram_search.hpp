@@ -41,7 +41,7 @@ struct NgramMatch {
   WordIndex newer = 0;  ///< a real word
   WordIndex older = 0;  ///< a word of any level below `levels`
   int levels = 1;       ///< smallest number of word levels with which the match is long enough
-  int n = 0;            ///< length of the longest match of these two words [words], at most 65535
+  int n = 0;  ///< words of the longest match of these two with `levels` levels, at most 65535
   Direction direction = Direction::kSame;
   /// Expected number of old n-grams that match by chance, by the statistics of the text; negative
   /// where it was not computed (NgramRecognizerParams::max_chance, with_probability).

@@ -1,5 +1,4 @@
-// Precision and recall of recognized places against
-// reference poses of the observations.
+// Precision and recall of recognized places, evaluated with reference poses of the observations.
 #pragma once
 
 #include <cstdint>
@@ -25,16 +24,16 @@ struct ScoreParams {
   void validate() const;
 };
 
-/// What can be recognized.
+/// Ground truth of place recognition, from reference poses.
 ///
 /// A pair of observations is true if the reference poses lie within `distance` and their headings
 /// differ by at most `heading` (kSame), or by at least pi - `heading` (kReverse). Observations
 /// without reference count nowhere.
 class RecognitionTruth {
  public:
-  /// Earlier observations that follow each other (with gaps below `pass_gap`) and make true pairs
-  /// with one later observation: the robot came by once. What lies on one line of a similarity
-  /// matrix (Fig. 4.11) there.
+  /// One earlier passage of the robot: consecutive earlier observations (with gaps below
+  /// `pass_gap`) that form true pairs with one later observation. On one line in a similarity
+  /// matrix (Fig. 4.11).
   struct Pass {
     std::uint32_t first = 0, last = 0;
     Direction direction = Direction::kSame;
@@ -74,7 +73,7 @@ class RecognitionTruth {
   std::vector<char> any_;
 };
 
-/// Precision and recall, and what they are made of.
+/// Precision and recall, and the counts from which they are computed.
 struct RecognitionFigures {
   std::size_t pairs = 0, true_pairs = 0;
   std::size_t revisits = 0, recognized = 0;          ///< same direction
@@ -87,7 +86,7 @@ struct RecognitionFigures {
   }
   /// Share of the pairs that are true; 1 without pairs.
   double precision() const { return share(true_pairs, pairs, 1.0); }
-  /// Share of the revisits that were recognized: the robot knew that it had been there.
+  /// Share of the revisits that were recognized.
   double recall() const { return share(recognized, revisits, 0.0); }
   double recallAnyDirection() const { return share(recognized_any, revisits_any, 0.0); }
   /// Share of all passes of all revisits that were recognized, the stricter measure: after ten laps
@@ -105,7 +104,7 @@ class RecognitionScore {
   /// it does not count.
   std::optional<bool> add(std::uint32_t newer, std::uint32_t older,
                           Direction direction = Direction::kSame);
-  /// Of the observations below `until` (and pairs whose newer one is below it).
+  /// Figures of the observations with indices below `until` (and of the pairs of these).
   RecognitionFigures figures(std::uint32_t until = 0xffffffff) const;
   const RecognitionTruth& truth() const { return *truth_; }
   /// Calls `use(newer, older, direction)` with every pair that counts, in no particular order.
@@ -119,7 +118,7 @@ class RecognitionScore {
 
  private:
   std::shared_ptr<const RecognitionTruth> truth_;
-  std::vector<std::uint32_t> pairs_, true_pairs_;         // by newer observation
+  std::vector<std::uint32_t> pairs_, true_pairs_;         // counts by newer observation
   std::vector<char> recognized_, recognized_any_, pass_;  // by observation, by pass
   std::unordered_set<std::uint64_t> seen_;
 };

@@ -1,5 +1,5 @@
-// What outlives a run: all observations of all runs and the density classes. Words, levels and the
-// index follow from them and are built again after loading.
+// The data that are saved: all observations of all runs and the density classes. Words, levels and
+// the index are computed from them again after loading.
 #pragma once
 
 #include <ostream>
@@ -25,7 +25,7 @@ struct Corpus {
 /// had no full density.
 class CorpusFile {
  public:
-  /// Replaces the file at once: whoever is killed while saving leaves the file as it was.
+  /// Replaces the file atomically: if the process is killed while saving, the old file remains.
   /// @throws hyselam::InputError if it cannot be written.
   static void save(const std::string& path, const Corpus& corpus);
   static void save(const std::string& path, const ObservationStore& observations,

@@ -24,7 +24,7 @@ struct DensityObservation {
   std::optional<double> full;
 };
 
-/// Which density words are made of.
+/// Which of the densities of an observation is used to build words.
 enum class WordDensity {
   kSoft,  ///< DensityObservation::soft, from the map at that moment (4.2.1)
   kFull   ///< DensityObservation::full, from the map some metres later; soft where it is missing
@@ -40,7 +40,7 @@ class DistanceSampler {
   /// observations is a length (Eq. 4.4). The first pose of all is due itself. More than `kMaxGap`
   /// metres at once are an odometry jump, not a path: one pose, the new one.
   std::vector<hyselam::Pose2> due(const hyselam::Pose2& pose);
-  /// The next pose is a first one again.
+  /// Restarts sampling: the next pose is treated as the first one.
   void reset() { last_.reset(); }
 
   static constexpr double kMaxGap = 5.0;  ///< [m]
@@ -55,7 +55,7 @@ class DistanceSampler {
 /// built from the store is the same before it is saved and after it is loaded.
 class ObservationStore {
  public:
-  /// What comes next belongs to another run, in another odometry frame.
+  /// Starts a run: the next observations have another odometry frame.
   void startRun();
   /// Adds an observation; starts a run if there is none. Returns its index.
   /// @throws hyselam::InputError for values that are not finite or not in range, and for a position

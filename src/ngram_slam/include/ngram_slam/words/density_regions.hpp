@@ -1,4 +1,5 @@
-// Contiguous regions of one density class (Eq. 4.2, Alg. 4.2 with its erratum).
+// Contiguous regions of one density class (Eq. 4.2, Alg. 4.2; differences from the
+// thesis: docs/algorithms/words.md).
 #pragma once
 
 #include <cstdint>
@@ -18,12 +19,12 @@ inline bool operator==(const DensityRegion& a, const DensityRegion& b) {
   return a.density_class == b.density_class && a.begin == b.begin && a.end == b.end;
 }
 
-/// Cuts the observations of one run into regions while they come in.
+/// Segments the observations of one run into regions, incrementally.
 ///
-/// A class takes over where it is seen `t_o` times in a row. Whatever is shorter belongs to the
-/// region before it (at the start of a run: to the first region), so that an interruption shorter
-/// than `t_o` neither makes a region nor splits one. Regions that follow each other differ in
-/// class, and together they hold every observation of the run.
+/// A region starts where a class is observed `t_o` times in a row. A shorter sequence belongs to
+/// the region before it (at the start of a run: to the first region), so that an interruption
+/// shorter than `t_o` neither makes a region nor splits one. Successive regions differ in class,
+/// and together they cover every observation of the run.
 class DensityRegionBuilder {
  public:
   /// `t_o`: smallest number of observations that make a region. @throws hyselam::ParameterError
@@ -41,7 +42,7 @@ class DensityRegionBuilder {
  private:
   std::uint32_t t_o_;
   std::uint32_t next_;                   // index of the observation that comes next
-  std::optional<DensityRegion> region_;  // growing; `end` is not kept up
+  std::optional<DensityRegion> region_;  // the current region; `end` is not up to date
   std::uint32_t begin_;                  // of the run, or of the growing region
   int last_ = 0;                         // class seen last, since
   std::uint32_t last_begin_ = 0;

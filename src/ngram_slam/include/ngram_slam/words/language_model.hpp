@@ -1,5 +1,4 @@
-// Which words follow which in a text, and hence how often words match by chance: a bigram model
-// with back-off.
+// Bigram model with back-off of the words of a text: estimates how often words match by chance.
 #pragma once
 
 #include <array>

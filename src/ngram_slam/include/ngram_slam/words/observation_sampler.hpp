@@ -1,4 +1,4 @@
-// From readings of density, one for each scan, to observations in equal steps of the path.
+// Converts density measurements, one per scan, to observations at equal steps of the path.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace ngram_slam {
 
-/// Whether the odometry jumped between two observations: there is no path from the one to the
-/// other, and what follows belongs to another run.
+/// Whether the odometry jumped between two observations: they are not connected by a path, and the
+/// second one belongs to a new run.
 inline bool odometryJumped(const DensityObservation& before, const DensityObservation& now) {
   return hyselam::distance(before.base_in_odom, now.base_in_odom) > DistanceSampler::kMaxGap;
 }
@@ -30,7 +30,7 @@ class ObservationSampler {
   bool isJump(const hyselam::Pose2& pose) const {
     return last_ && hyselam::distance(last_->base_in_odom, pose) > DistanceSampler::kMaxGap;
   }
-  /// The next reading is a first one again.
+  /// Restarts sampling: the next measurement is treated as the first one.
   void reset() {
     sampler_.reset();
     last_.reset();

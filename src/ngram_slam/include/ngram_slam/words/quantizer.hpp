@@ -1,5 +1,5 @@
-// Density classes (4.2.1): uniform, or by mean shift over the histogram of all past observations,
-// renewed while the robot learns, with ids that stay.
+// Density classes (Maffei 2017, 4.2.1): uniform, or by mean shift over the histogram of all past
+// observations, re-estimated as observations are added; ids of classes that remain are kept.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ namespace ngram_slam {
 struct DensityClass {
   int id = 0;          ///< 0..255, as in words
   double mode = 0.0;   ///< its typical density
-  double upper = 0.0;  ///< densities below it belong here, if not to a class before
+  double upper = 0.0;  ///< upper bound of the interval; its lower bound is that of the class before
 };
 
 /// A partition of [0, 1] into classes, in the order of their densities.
 class DensityClasses {
  public:
-  /// One class for everything.
+  /// A single class for all densities.
   DensityClasses() : DensityClasses({{0, 0.5, 1.0}}) {}
   /// @throws hyselam::ParameterError unless ids are unique and in 0..255 and upper bounds grow; the
   /// last class takes all that is left, whatever its bound.
@@ -66,11 +66,11 @@ struct MeanShiftParams {
   double bandwidth = 0.0;  ///< sigma of the window, in densities; 0: from the data
   double min_share =
       0.02;  ///< of the observations; weaker modes are no class of their own, [0, 0.5]
-  double tolerance = 0.02;  ///< modes and bounds may move this far before the classes change, > 0
-  int max_classes = 12;     ///< for a bandwidth from the data, 1..64
-  int uniform_classes = 8;  ///< classes before the first estimate, 1..256
-  int first_update = 500;   ///< observations before the first estimate, >= 1
-  double update_growth = 1.25;  ///< next estimate after so many times the observations, > 1
+  double tolerance = 0.02;      ///< classes change when a mode or bound has moved farther, > 0
+  int max_classes = 12;         ///< for a bandwidth from the data, 1..64
+  int uniform_classes = 8;      ///< classes before the first estimate, 1..256
+  int first_update = 500;       ///< observations before the first estimate, >= 1
+  double update_growth = 1.25;  ///< factor of observations until the next estimate, > 1
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError

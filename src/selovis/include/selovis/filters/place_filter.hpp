@@ -71,7 +71,7 @@ class PlaceFilter {
   /// @throws hyselam::InputError for values that are negative or not finite, or of another number.
   void update(const double* probabilities);
   void update(const std::vector<double>& probabilities);
-  /// Back to the uniform distribution.
+  /// Resets to the uniform distribution.
   void reset();
 
   const std::vector<double>& probabilities() const { return state_; }

@@ -1,4 +1,4 @@
-// Which places the robot can walk between: what SeLoViS needs of the augmented topological map.
+// Connections between places: the part of the augmented topological map that SeLoViS uses.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@ namespace selovis {
 /// The vertices and edges of the topological map (dos Santos 2014, Eq. 3.1) that the Markov chain
 /// inherits.
 struct PlaceTransitions {
-  std::vector<std::string> places;         ///< unique names, in the order of the classes
-  std::vector<std::pair<int, int>> pairs;  ///< places that one can walk between, both ways
+  std::vector<std::string> places;  ///< unique names, in the order of the classes
+  std::vector<std::pair<int, int>>
+      pairs;  ///< places that are directly connected, in both directions
 
   /// -1 if there is no place of that name.
   int indexOf(const std::string& name) const;

@@ -1,5 +1,5 @@
-// Detection of a kidnapped or diverged localization: the place that the camera sees against the
-// place of the pose (dos Santos 2014, chapter 6).
+// Detection of a kidnapped robot or a diverged localization: compares the place recognized in the
+// camera images with the place at the estimated pose (dos Santos 2014, chapter 6).
 #pragma once
 
 #include <vector>
@@ -32,7 +32,7 @@ struct KidnappingDetectorParams {
 struct KidnappingState {
   bool tested = false;       ///< false: no place is expected at the pose, nothing was compared
   bool kidnapped = false;    ///< the pose is rejected
-  bool alarm = false;        ///< since this frame
+  bool alarm = false;        ///< the alarm was raised by this image
   double evidence = 0.0;     ///< [nats] that the robot is elsewhere, 0 to threshold
   int place = -1;            ///< where the robot is instead, if kidnapped and known
   double probability = 0.0;  ///< of the most likely place, if kidnapped
@@ -62,7 +62,7 @@ class KidnappingDetector {
   /// Removes all evidence: the pose has been set.
   void reset();
 
-  /// As after an alarm: the localization itself reports that it is lost.
+  /// Enters the state after an alarm, when the localization itself reports that it is lost.
   void declareLost();
 
  private:
