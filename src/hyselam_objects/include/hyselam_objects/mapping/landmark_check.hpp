@@ -33,12 +33,12 @@ const char* toString(LandmarkVerdict verdict);
 
 struct LandmarkCheck {
   LandmarkVerdict verdict = LandmarkVerdict::kUnknown;
-  int compared = 0;  ///< objects seen that look like a landmark
-  int inliers = 0;   ///< of them, within 3 sigma of one, with the offset applied
+  int compared = 0;  ///< number of detections with the appearance of a landmark
+  int inliers = 0;   ///< number of these within 3 sigma of it, with the offset applied
   /// Mean over those compared of the squared distance by variance, truncated at 9: for the
   /// estimated pose, and with the offset applied.
   double chi2 = 0.0, chi2_with_offset = 0.0;
-  /// To be added to the estimated position of the robot, map frame [m]; 0 unless displaced.
+  /// Offset to be added to the estimated position of the robot, map frame [m]; 0 unless displaced.
   double x = 0.0, y = 0.0;
 };
 
@@ -74,7 +74,7 @@ class MapUpdateGuard {
   /// Clears the images that are kept.
   void clear() { monitor_.clear(); }
 
-  /// Of the last frames.
+  /// Result of the check of the last images.
   const LandmarkCheck& lastCheck() const { return last_check_; }
   /// Number of consecutive images that were rejected.
   int framesHeldBack() const { return held_back_; }

@@ -38,7 +38,7 @@ constexpr int kRelationWords = 10;
 const char* toString(RelationWord word);
 std::optional<RelationWord> relationWordFromString(const std::string& text);
 
-/// Whether it says what an object rests on or in: only one such relation holds at a time.
+/// Whether the relation is one of support or containment: an object has only one such at a time.
 bool isSupport(RelationWord word);
 
 /// A place that objects are related to; a place of the topological map, once that is known.

@@ -1,4 +1,4 @@
-// The object dictionary (dos Santos, section 3.2.3): what a robot knows of kinds of objects,
+// The object dictionary (dos Santos, section 3.2.3): learned models of kinds of objects,
 // GO = {shape, texture, features, classifier, name} (Eq. 3.9). Robots exchange it as a file.
 //
 // Plain values. Lengths [m].
@@ -46,8 +46,8 @@ struct ObjectDictionary {
 bool operator==(const GenericObject& a, const GenericObject& b);
 bool operator==(const ObjectDictionary& a, const ObjectDictionary& b);
 
-/// Union of what two robots know: views of both, at most `max_views` of one object, those of the
-/// other one only if the type of descriptor is the same. Shapes are those with more views.
+/// Union of the dictionaries of two robots: views of both, at most `max_views` of one object, those
+/// of the other one only if the type of descriptor is the same. Shapes are those with more views.
 ObjectDictionary merged(const ObjectDictionary& a, const ObjectDictionary& b,
                         std::size_t max_views = 64);
 

@@ -38,7 +38,7 @@ class MapFile {
 
   std::string log_name_, path_;
   ObjectMap saved_;        ///< in the file, or being written to it
-  bool outdated_ = false;  ///< the file is not known to hold `saved_`
+  bool outdated_ = false;  ///< the file may differ from `saved_`
   std::string error_;
   std::future<std::string> writing_;  ///< its error; its destructor waits
 };

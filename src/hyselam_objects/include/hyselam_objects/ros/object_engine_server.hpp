@@ -1,4 +1,4 @@
-// ObjectEngine: builds the object map from camera frames and from what people say.
+// ObjectEngine: builds the object map from camera images and people's statements.
 #pragma once
 
 #include <hyselam_msgs/AugmentedTopologicalMap.h>
@@ -27,7 +27,7 @@ namespace hyselam_objects {
 struct ObjectEngineParams {
   FrameInputParams input;
   std::string map_file;            ///< loaded at the start, kept up to date; empty: none
-  double autosave_period = 10.0;   ///< of detections; what people say is saved at once [s]
+  double autosave_period = 10.0;   ///< of detections; statements are saved at once [s]
   std::string dictionary_file;     ///< loaded at the start, saved when an object was learned
   double publish_period = 2.0;     ///< [s]
   int views_to_learn = 8;          ///< of an object that a person shows

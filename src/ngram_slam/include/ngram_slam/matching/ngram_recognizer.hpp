@@ -74,8 +74,8 @@ class NgramRecognizer {
   /// Adds an observation. @throws hyselam::InputError for one that cannot be used; nothing is
   /// changed then.
   NgramRecognizerUpdate add(const DensityObservation& observation);
-  /// Ends the run: its last region becomes a word (4.3.2: an incomplete one). What comes next
-  /// starts at an unknown place.
+  /// Ends the run: its last region becomes a word (4.3.2: an incomplete one). The next
+  /// observation starts a new run.
   NgramRecognizerUpdate endRun();
 
   const NgramRecognizerParams& params() const { return params_; }
@@ -83,16 +83,16 @@ class NgramRecognizer {
   const DensityClasses& classes() const {
     return params_.learn_classes ? quantizer_.classes() : fixed_classes_;
   }
-  /// Of the densities, from which the classes are learnt; empty for fixed classes.
+  /// Histogram of the densities from which the classes are learned; empty for fixed classes.
   DensityHistogram histogram() const {
     return params_.learn_classes ? quantizer_.histogram() : DensityHistogram{};
   }
   const WordLattice& text() const { return *text_; }
   const NgramMatcherCounters& counters() const { return matcher_->counters(); }
-  /// How often the classes changed.
+  /// Number of changes of the classes; each rebuilds all words.
   int requantisations() const { return requantisations_; }
   std::size_t bytes() const;
-  /// What to save.
+  /// The data to be saved.
   Corpus corpus() const;
 
  private:
@@ -114,7 +114,7 @@ class NgramRecognizer {
   std::unique_ptr<NgramMatcher> matcher_;
   std::unique_ptr<ReverseNgramMatcher> reverse_matcher_;
   std::unique_ptr<MatchConfidence> confidence_;
-  Position learnt_ = 0;            // words before it are known to confidence_
+  Position learnt_ = 0;            // first position not yet added to confidence_
   std::optional<int> last_class_;  // of the observation before, in this run
   bool run_open_ = false;
   int requantisations_ = 0;

@@ -30,8 +30,9 @@ struct DecisionTreeParams {
   double huge_turn = hyselam::radians(120.0);  ///< more is very high [rad]
   double small_turn = hyselam::radians(20.0);  ///< less is low [rad]
   double very_long = 100.0;                    ///< [observations]
-  /// The density hardly varies in a corner between two bifurcations. A region is a corridor for its
-  /// low variation only if the robot turns by less than this in it [rad]; the thesis asks not.
+  /// The density hardly varies in a corner between two bifurcations. Low variation
+  /// makes a region a corridor only if the robot turns by less than this in it [rad]; the thesis
+  /// does not have this condition.
   double straight = hyselam::radians(45.0);
 
   void describe(hyselam::ParameterVisitor& visit);

@@ -55,11 +55,11 @@ class SemanticCutter {
  public:
   /// @throws hyselam::ParameterError
   explicit SemanticCutter(const SemanticCutParams& params = {});
-  /// The density of the next observation, 0..1. Returns the cuts that are complete, in order.
+  /// Adds the density of the next observation, 0..1. Returns the cuts completed by it, in order.
   std::vector<SemanticCut> add(double density);
-  /// Ends the run: the cuts that remain. What comes next is observation 0 of another run.
+  /// Ends the run and returns the remaining cuts. The next observation has index 0 in a new run.
   std::vector<SemanticCut> finish();
-  /// How many observations the cut that is growing holds at least, whatever comes.
+  /// Minimum final length of the current cut [observations], whatever is observed next.
   std::uint32_t minLength() const { return (steady_ ? next_ : since_) - growing_.first; }
 
  private:

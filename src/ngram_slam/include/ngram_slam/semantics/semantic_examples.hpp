@@ -1,4 +1,4 @@
-// What a classifier of regions learns from: features of regions and their true classes.
+// Training data of a classifier of regions: features of regions and their true classes.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a region looks like: the numbers from which it is classified (Maffei 2017, 6.2, 6.4).
+// Features of a region from which its semantic class is determined (Maffei 2017, 6.2, 6.4).
 #pragma once
 
 #include <array>

@@ -53,10 +53,10 @@ class SemanticSegmenter {
   /// Without a classifier: the decision tree with its defaults. @throws hyselam::ParameterError
   explicit SemanticSegmenter(const SemanticParams& params = {},
                              std::shared_ptr<const SemanticClassifier> classifier = nullptr);
-  /// Takes an observation in; returns the regions that are complete, in order (mostly none).
+  /// Adds an observation; returns the regions completed by it, in order (usually none).
   /// @throws hyselam::InputError for one that cannot be used; nothing is changed then.
   std::vector<SemanticRegion> add(const DensityObservation& observation);
-  /// Ends the run: the regions that remain. What comes next starts at an unknown place.
+  /// Ends the run and returns the remaining regions. The next observation starts a new run.
   std::vector<SemanticRegion> finish();
 
  private:

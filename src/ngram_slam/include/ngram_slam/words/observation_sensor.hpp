@@ -44,8 +44,8 @@ class ObservationSensor {
   /// @throws hyselam::InputError for a scan or pose that cannot be used; nothing is changed then.
   std::vector<DensityObservation> add(const hyselam::LaserScan& scan,
                                       const hyselam::Pose2& base_in_odom);
-  /// Ends the run: the observations whose full density was still to come get it from the map of
-  /// now. What comes next is another run.
+  /// Ends the run: observations whose full density is pending get it from the current map and are
+  /// returned. The next scan starts a new run.
   std::vector<DensityObservation> finish();
 
   const ObservationSensorParams& params() const { return params_; }

@@ -53,7 +53,8 @@ class Classifier {
 
 struct TrainedClassifier {
   std::unique_ptr<Classifier> classifier;
-  /// What restoreClassifier() reads; empty for an exemplar classifier, which is its samples.
+  /// Serialized state, input of restoreClassifier(); empty for an exemplar classifier, whose only
+  /// state are its samples.
   std::string state;
 };
 

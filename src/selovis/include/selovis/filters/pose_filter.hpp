@@ -21,9 +21,11 @@ struct PoseFilterParams {
   /// Exponent of the likelihood of one second of frames, below 1 because consecutive frames are not
   /// independent; 0.001 to 10.
   double likelihood_exponent = 0.5;
-  /// Training frames nearer to a particle than this say what it sees [m], 0.05 to 20.
+  /// Position radius of the kernel regression: training images nearer to a particle than this
+  /// predict its view [m], 0.05 to 20.
   double kernel_radius = 2.0;
-  /// Training views turned against a particle by less than this say what it sees [rad], 0.02 to pi.
+  /// Heading radius of the kernel regression: training views that differ in heading from a particle
+  /// by less than this predict its view [rad], 0.02 to pi.
   double kernel_angle = hyselam::radians(18.0);
   /// Weight of the mean similarity of all views, in training frames at the particle's own pose;
   /// 1e-6 to 1e6. A direction that was never learned is not ruled out.
@@ -39,7 +41,7 @@ struct PoseFilterParams {
   void validate() const;
 };
 
-/// Where a filter over places forgets the path, this one keeps it: particles of the camera's pose
+/// Particle filter over the camera pose; unlike a filter over places, it uses the path. Particles
 /// move with the odometry (without it, with random motions within the robot's speed limits), and
 /// are weighted by the similarity of the frame to the training views around them (kernel
 /// regression). Odometry bridges poses from which nothing was learned. The probability of a place

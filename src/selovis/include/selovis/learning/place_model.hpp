@@ -1,4 +1,4 @@
-// What was learned of a set of places, as a value and as a directory.
+// Learned model of a set of places: as a value, and saved as a directory.
 #pragma once
 
 #include <functional>

@@ -24,8 +24,7 @@ PlaceTransitions readTopology(const std::string& path);
 std::vector<std::string> placesNear(const hyselam_topo::AugmentedTopologicalMap& map,
                                     hyselam::Point2 point, double radius);
 
-/// What the camera of a robot at a point of the map is expected to see; learned places by their
-/// indices.
+/// Places that the camera is expected to see at a point of the map; learned places by index.
 struct ExpectedPlaces {
   std::string
       own;  ///< name of the place at the point, or of the nearest; empty: none in the radius

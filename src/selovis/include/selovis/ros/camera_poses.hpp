@@ -12,8 +12,8 @@
 
 namespace selovis {
 
-/// All functions give nothing where tf does not know the transform at the time, or within half a
-/// second of it.
+/// Camera poses from tf. All functions return nullopt if tf has no transform at the time or within
+/// half a second of it.
 class CameraPoses {
  public:
   /// The heading of a camera is that of its optical axis.

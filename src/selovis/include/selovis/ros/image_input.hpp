@@ -75,7 +75,7 @@ class ImageInput {
   void subscribeImages();
   void onImage(const Image& image);
   void onCameraInfo(const sensor_msgs::CameraInfo& info);
-  /// What an image still waits for; empty: nothing.
+  /// Name of the sensor data that an image still waits for; empty if it is complete.
   std::string missingReading(const Image& image) const;
   /// Whether depth images come, and one belongs to that time.
   bool hasDepth(const ros::Time& stamp) const;

@@ -95,8 +95,8 @@ class PlaceLearning {
   /// The model with new names, saved if that is wanted.
   void renameModel(const std::vector<PlaceRenaming>& renamings);
   void learnFromMap();
-  /// Trains with the frames that the model does not have yet; says in `message` what was begun, or
-  /// why nothing was.
+  /// Trains with the frames that the model does not have yet; `message` receives a
+  /// description of what was started, or the reason why nothing was.
   bool startTraining(std::string& message);
   /// In the other thread, which saves the model as well. False if it is busy.
   bool train(std::vector<LearnedFrame> frames);
