@@ -40,7 +40,8 @@ struct WordRange {
 /// Returns syllable a (change of direction [rad]) of the observations [begin, end).
 using AngleOf = std::function<double(std::uint32_t begin, std::uint32_t end)>;
 
-/// 12 bytes per word and 8 per position; nothing is moved when it grows.
+/// Lattice of the words of all runs. 12 bytes per word and 8 per position; grows without
+/// reallocation.
 ///
 /// All words that end at a position have consecutive indices, and the predecessors of a word are
 /// the words that end just before its first position. So the predecessor lists of Alg. 5.2 need no
@@ -53,8 +54,8 @@ class WordLattice {
   static constexpr std::uint32_t kMaxSize = (1u << 20) - 1;  ///< longer words count as this long
 
   /// `levels`: how many levels of words there are, 1 (real words only) .. kMaxLevels.
-  /// `angle_of` gives alternative words their angle; without it, it is the wrapped sum of the
-  /// angles of the words they cover, for texts that have no observations behind them.
+  /// `angle_of` computes the angle of alternative words; without it (for texts without
+  /// observations), their angle is the wrapped sum of the angles of the words they cover.
   /// @throws hyselam::ParameterError
   explicit WordLattice(int levels = 3, AngleOf angle_of = {});
 
