@@ -61,40 +61,43 @@ cv::Mat waysUp(const cv::Mat& clearance) {
 
 struct Saddle {
   float height;
-  int a, b;
+  int a, b;  // peaks
 };
 
-}  // namespace
+/// The peaks of the clearance, joined where they are one basin or connected at all.
+struct Peaks {
+  Sets basins, parts;
+  std::vector<float> heights;
+  std::vector<double> sizes;  // of the basin of each peak, later of its part [cells]
+};
 
-Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& params) {
-  CV_Assert(clearance.type() == CV_32F && clearance.isContinuous());
-  cv::Mat labels = waysUp(clearance);  // cell to climb to, later -2 - peak
-  int* cells = labels.ptr<int>();
-  float* heights = clearance.ptr<float>();
-  const int total = static_cast<int>(labels.total()), stride = labels.cols;
-
-  Sets sets, parts;  // basins, and what is connected at all
-  std::vector<float> peaks;
-  std::vector<double> sizes;  // [cells]
-  std::vector<int> way;
+/// Climbs from each cell to its peak; the cell becomes -2 - peak.
+Peaks findPeaks(int* cells, const float* heights, int total) {
+  Peaks peaks;
+  std::vector<int> path;
   for (int i = 0; i < total; ++i) {
     if (cells[i] < 0) continue;
     int top = i;
     while (cells[top] >= 0 && cells[top] != top) {
-      way.push_back(top);
+      path.push_back(top);
       top = cells[top];
     }
     if (cells[top] >= 0) {
-      cells[top] = -2 - sets.add();
-      parts.add();
-      peaks.push_back(heights[top]);
-      sizes.push_back(0.0);
+      cells[top] = -2 - peaks.basins.add();
+      peaks.parts.add();
+      peaks.heights.push_back(heights[top]);
+      peaks.sizes.push_back(0.0);
     }
-    sizes[static_cast<std::size_t>(-2 - cells[top])] += 1.0 + static_cast<double>(way.size());
-    for (const int cell : way) cells[cell] = cells[top];
-    way.clear();
+    peaks.sizes[static_cast<std::size_t>(-2 - cells[top])] +=
+        1.0 + static_cast<double>(path.size());
+    for (const int cell : path) cells[cell] = cells[top];
+    path.clear();
   }
+  return peaks;
+}
 
+/// Where cells of two peaks touch, the highest first.
+std::vector<Saddle> findSaddles(const int* cells, const float* heights, int total, int stride) {
   std::vector<Saddle> saddles;
   for (int i = 0; i + stride < total; ++i) {
     if (cells[i] > -2) continue;
@@ -111,23 +114,42 @@ Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& para
   }
   std::stable_sort(saddles.begin(), saddles.end(),
                    [](const Saddle& s, const Saddle& t) { return s.height > t.height; });
-  const auto peak = [&](int set) { return peaks[static_cast<std::size_t>(set)]; };
+  return saddles;
+}
+
+/// Joins basins over saddles that are shallow or nearly as high as the lower peak.
+void joinBasins(const std::vector<Saddle>& saddles, double resolution, const BasinParams& params,
+                Peaks& peaks) {
+  const auto peak = [&](int set) { return peaks.heights[static_cast<std::size_t>(set)]; };
   for (const Saddle& saddle : saddles) {
-    const int p = parts.find(saddle.a), q = parts.find(saddle.b);
+    const int p = peaks.parts.find(saddle.a), q = peaks.parts.find(saddle.b);
     if (p != q) {
-      parts.join(p, q);
-      sizes[static_cast<std::size_t>(p)] += sizes[static_cast<std::size_t>(q)];
+      peaks.parts.join(p, q);
+      peaks.sizes[static_cast<std::size_t>(p)] += peaks.sizes[static_cast<std::size_t>(q)];
     }
-    int a = sets.find(saddle.a), b = sets.find(saddle.b);
+    int a = peaks.basins.find(saddle.a), b = peaks.basins.find(saddle.b);
     if (a == b) continue;
     if (peak(a) < peak(b)) std::swap(a, b);
     if ((peak(b) - saddle.height) * resolution < params.shallow ||
-        saddle.height > params.level * peak(b))
-      sets.join(a, b);
+        saddle.height > params.level * peak(b)) {
+      peaks.basins.join(a, b);
+    }
   }
+}
+
+}  // namespace
+
+Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& params) {
+  CV_Assert(clearance.type() == CV_32F && clearance.isContinuous());
+  cv::Mat labels = waysUp(clearance);  // cell to climb to, later -2 - peak
+  int* cells = labels.ptr<int>();
+  float* heights = clearance.ptr<float>();
+  const int total = static_cast<int>(labels.total());
+  Peaks peaks = findPeaks(cells, heights, total);
+  joinBasins(findSaddles(cells, heights, total, labels.cols), resolution, params, peaks);
 
   Basins basins;
-  std::vector<int> names(peaks.size(), -1), of_peak(peaks.size(), -1);
+  std::vector<int> names(peaks.heights.size(), -1), of_peak(peaks.heights.size(), -1);
   const double smallest = params.smallest / (resolution * resolution);
   for (int i = 0; i < total; ++i) {
     if (cells[i] > -2) {
@@ -137,10 +159,11 @@ Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& para
     const int peak_index = -2 - cells[i];
     int& known = of_peak[static_cast<std::size_t>(peak_index)];
     if (known < 0) {
-      int& name = names[static_cast<std::size_t>(sets.find(peak_index))];
-      if (name < 0)
-        name =
-            sizes[static_cast<std::size_t>(parts.find(peak_index))] < smallest ? 0 : ++basins.count;
+      int& name = names[static_cast<std::size_t>(peaks.basins.find(peak_index))];
+      if (name < 0) {
+        const double size = peaks.sizes[static_cast<std::size_t>(peaks.parts.find(peak_index))];
+        name = size < smallest ? 0 : ++basins.count;
+      }
       known = name;
     }
     cells[i] = known;

@@ -75,6 +75,40 @@ std::array<float, 3> Sky::through(Point2 inwards) const {
   return out;
 }
 
+namespace {
+
+/// Lamps: a lattice over the floor, one at least in each room.
+std::vector<Point2> placeLamps(const FloorRegions& regions, const PlanRayCaster& walls,
+                               const hyselam::GridGeometry& geometry) {
+  std::vector<Point2> lamps;
+  std::vector<bool> lit(static_cast<std::size_t>(regions.rooms()), false);
+  const double width = geometry.width * geometry.resolution;
+  const double height = geometry.height * geometry.resolution;
+  const auto hang = [&](Point2 p) {
+    lamps.push_back(p);
+    lit[static_cast<std::size_t>(regions.roomAt(p))] = true;
+  };
+  for (int row = 0; (row + 0.5) * kLampSpacing < height; ++row) {
+    for (int col = 0; (col + 0.5) * kLampSpacing < width; ++col) {
+      const Point2 p = regions.geometry().origin *
+                       Point2{(col + 0.5) * kLampSpacing, (row + 0.5) * kLampSpacing};
+      if (regions.onFloor(p) && sees(walls, p, p + Point2{0.4, 0.0}) &&
+          sees(walls, p, p - Point2{0.4, 0.0})) {
+        hang(p);
+      }
+    }
+  }
+  for (int y = 0; y < geometry.height; ++y) {
+    for (int x = 0; x < geometry.width; ++x) {
+      const Point2 p = geometry.center({x, y});
+      if (regions.onFloor(p) && !lit[static_cast<std::size_t>(regions.roomAt(p))]) hang(p);
+    }
+  }
+  return lamps;
+}
+
+}  // namespace
+
 LightMap::LightMap(const FloorRegions& regions, const PlanRayCaster& walls,
                    const std::vector<Window>& windows, double ceiling, double resolution) {
   const hyselam::GridGeometry& fine = regions.geometry();
@@ -83,29 +117,7 @@ LightMap::LightMap(const FloorRegions& regions, const PlanRayCaster& walls,
   geometry_.width = static_cast<int>(std::ceil(fine.width * fine.resolution / resolution));
   geometry_.height = static_cast<int>(std::ceil(fine.height * fine.resolution / resolution));
   cells_.assign(geometry_.cellCount(), {});
-
-  // Lamps: a lattice over the floor, one at least in each room.
-  std::vector<bool> lit(static_cast<std::size_t>(regions.rooms()), false);
-  const double width = geometry_.width * resolution, height = geometry_.height * resolution;
-  const auto hang = [&](Point2 p) {
-    lamps_.push_back(p);
-    lit[static_cast<std::size_t>(regions.roomAt(p))] = true;
-  };
-  for (int row = 0; (row + 0.5) * kLampSpacing < height; ++row) {
-    for (int col = 0; (col + 0.5) * kLampSpacing < width; ++col) {
-      const Point2 p = fine.origin * Point2{(col + 0.5) * kLampSpacing, (row + 0.5) * kLampSpacing};
-      if (regions.onFloor(p) && sees(walls, p, p + Point2{0.4, 0.0}) &&
-          sees(walls, p, p - Point2{0.4, 0.0})) {
-        hang(p);
-      }
-    }
-  }
-  for (int y = 0; y < geometry_.height; ++y) {
-    for (int x = 0; x < geometry_.width; ++x) {
-      const Point2 p = geometry_.center({x, y});
-      if (regions.onFloor(p) && !lit[static_cast<std::size_t>(regions.roomAt(p))]) hang(p);
-    }
-  }
+  lamps_ = placeLamps(regions, walls, geometry_);
 
   struct Mean {
     std::array<double, kSides + 1> sum{};

@@ -271,6 +271,53 @@ void RouteParams::validate() const {
   hyselam::checkParameters(*this);
 }
 
+namespace {
+
+/// The goal that is nearest along the graph, and the passage through which it is entered.
+struct NearestGoal {
+  Id place = 0;           // 0: none can be reached
+  int last_passage = -1;  // -1: the robot is in it
+  PlacePose target;
+};
+
+NearestGoal nearestGoal(const AugmentedTopologicalMap& map, Id here, const std::vector<Id>& goals,
+                        const std::vector<Passage>& passages, const GraphSearch& search) {
+  NearestGoal nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Id id : goals) {
+    const auto pose = placePose(map, id);
+    if (!pose) continue;
+    const Point2 end{pose->pose.x, pose->pose.y};
+    if (id == here && 0.0 < least) {
+      least = 0.0;
+      nearest = {id, -1, *pose};
+    }
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+      if (passages[i].to != id) continue;
+      const double cost = search.cost[i] + distanceBetween(middle(passages[i].opening), end);
+      if (!(cost < least)) continue;
+      least = cost;
+      nearest = {id, static_cast<int>(i), *pose};
+    }
+  }
+  return nearest;
+}
+
+/// A waypoint in a door heads through it, along the path.
+void headAlongPath(RouteLeg& leg) {
+  for (std::size_t i = 0; i + 1 < leg.waypoints.size(); ++i) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Pose2& p : leg.path) {
+      const double d = std::hypot(p.x - leg.waypoints[i].x, p.y - leg.waypoints[i].y);
+      if (d >= nearest) continue;
+      nearest = d;
+      leg.waypoints[i].theta = p.theta;
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const Pose2& from,
                                   const std::vector<Id>& goals, const RouteParams& params) {
   params.validate();
@@ -280,34 +327,11 @@ std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const Pose
   if (!here) return std::nullopt;
   const std::vector<Passage> passages = passagesOf(map);
   const GraphSearch search(passages, here->place, start, params);
-  Id goal = 0;
-  int last = -1;
-  std::optional<PlacePose> target;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Id id : goals) {
-    const auto pose = placePose(map, id);
-    if (!pose) continue;
-    const Point2 end{pose->pose.x, pose->pose.y};
-    if (id == here->place && 0.0 < least) {
-      least = 0.0;
-      goal = id;
-      last = -1;
-      target = pose;
-    }
-    for (std::size_t i = 0; i < passages.size(); ++i) {
-      if (passages[i].to != id) continue;
-      const double cost = search.cost[i] + distanceBetween(middle(passages[i].opening), end);
-      if (!(cost < least)) continue;
-      least = cost;
-      goal = id;
-      last = static_cast<int>(i);
-      target = pose;
-    }
-  }
-  if (goal == 0) return std::nullopt;
+  const NearestGoal goal = nearestGoal(map, here->place, goals, passages, search);
+  if (goal.place == 0) return std::nullopt;
 
   std::vector<const Passage*> taken;
-  for (int i = last; i >= 0; i = search.before[static_cast<std::size_t>(i)]) {
+  for (int i = goal.last_passage; i >= 0; i = search.before[static_cast<std::size_t>(i)]) {
     taken.push_back(&passages[static_cast<std::size_t>(i)]);
   }
   std::reverse(taken.begin(), taken.end());
@@ -333,22 +357,14 @@ std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const Pose
     leg.places.push_back(p->to);
     leg.waypoints.push_back({door.x, door.y, 0.0});
   }
-  if (!go(goal, {target->pose.x, target->pose.y}, std::max(reach, kReach))) return std::nullopt;
-  leg.waypoints.push_back(target->pose);
+  const Pose2& end = goal.target.pose;
+  if (!go(goal.place, {end.x, end.y}, std::max(reach, kReach))) return std::nullopt;
+  leg.waypoints.push_back(end);
   leg.path = smooth(std::move(path), params.spacing);
   for (std::size_t i = 0; i + 1 < leg.path.size(); ++i) {
     leg.length += hyselam::distance(leg.path[i], leg.path[i + 1]);
   }
-  // A waypoint in a door looks through it.
-  for (std::size_t i = 0; i + 1 < leg.waypoints.size(); ++i) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Pose2& p : leg.path) {
-      const double d = std::hypot(p.x - leg.waypoints[i].x, p.y - leg.waypoints[i].y);
-      if (d >= nearest) continue;
-      nearest = d;
-      leg.waypoints[i].theta = p.theta;
-    }
-  }
+  headAlongPath(leg);
   return leg;
 }
 

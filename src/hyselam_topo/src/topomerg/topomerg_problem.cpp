@@ -198,6 +198,30 @@ void addConstraints(const MatchConstraints& constraints, const Numbers& name, co
   }
 }
 
+/// The names of the description and the vertices of the map, with their areas and positions.
+void addNamesAndVertices(const DescribedBuilding& building, const AugmentedTopologicalMap& map,
+                         MatchProblem* out) {
+  for (const DescribedPlace& place : building.places) {
+    out->names.push_back(place.id);
+    double area = place.area.value_or(0.0);
+    if (area <= 0.0 && place.length && place.width) area = *place.length * *place.width;
+    out->attributes.push_back({area, place.parts.value_or(0), place.kind});
+  }
+  for (const Place& place : map.places) {
+    out->vertices.push_back(place.id);
+    out->area.push_back(areaOf(place));
+    out->kind.push_back(place.kind);
+    out->x.push_back(place.centre ? place.centre->x : 0.0);
+    out->y.push_back(place.centre ? place.centre->y : 0.0);
+  }
+  // Large places say where the middle of several is; without all sizes each counts the same.
+  const bool weighed =
+      std::all_of(out->area.begin(), out->area.end(), [](double a) { return a > 0.0; });
+  for (std::size_t v = 0; v < out->vertexCount(); ++v) {
+    out->weight.push_back(!map.places[v].centre ? 0.0 : weighed ? out->area[v] : 1.0);
+  }
+}
+
 }  // namespace
 
 MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopologicalMap& map,
@@ -212,26 +236,8 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     throw InputError("observer", "heading", "is no number");
 
   MatchProblem out;
-  for (const DescribedPlace& place : building.places) {
-    out.names.push_back(place.id);
-    double area = place.area.value_or(0.0);
-    if (area <= 0.0 && place.length && place.width) area = *place.length * *place.width;
-    out.attributes.push_back({area, place.parts.value_or(0), place.kind});
-  }
-  for (const Place& place : map.places) {
-    out.vertices.push_back(place.id);
-    out.area.push_back(areaOf(place));
-    out.kind.push_back(place.kind);
-    out.x.push_back(place.centre ? place.centre->x : 0.0);
-    out.y.push_back(place.centre ? place.centre->y : 0.0);
-  }
+  addNamesAndVertices(building, map, &out);
   const std::size_t n = out.nameCount(), m = out.vertexCount();
-  // Large places say where the middle of several is; without all sizes each counts the same.
-  const bool weighed =
-      std::all_of(out.area.begin(), out.area.end(), [](double a) { return a > 0.0; });
-  for (std::size_t v = 0; v < m; ++v)
-    out.weight.push_back(!map.places[v].centre ? 0.0 : weighed ? out.area[v] : 1.0);
-
   const Numbers name(out.names, "place", "description"), vertex(out.vertices, "place", "map");
   out.neighbors.resize(m);
   for (const Edge& edge : map.edges) {
