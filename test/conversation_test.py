@@ -56,7 +56,7 @@ class Robot:
     def __init__(self, name, grid=None, **params):
         self.name, self.node = name, f"/{name}/topo_engine"
         params.setdefault("diagnostic_period", 0.05)
-        params.setdefault("rate", 50.0)
+        params.setdefault("pose_rate", 50.0)
         params.setdefault("base_frame", name + "_base")
         for key, value in params.items():
             rospy.set_param(f"{self.node}/{key}", value)
@@ -376,7 +376,7 @@ class ConversationTest(unittest.TestCase):
         self.assertIn("I do not know where I am", robot.say("Where are you?"))
 
     def test_parameters_out_of_range_stop_it_from_loading(self):
-        for params in ({"rate": 0.0}, {"ask": "often"}, {"language": "tlh"}, {"glass_max_length": 0.2}):
+        for params in ({"pose_rate": 0.0}, {"ask": "often"}, {"language": "tlh"}, {"glass_max_length": 0.2}):
             self.assertFalse(self.robot(**params).loaded, params)
         self.assertNotIn("topo_engine", str(rospy.ServiceProxy("/manager/list", NodeletList)().nodelets))
 

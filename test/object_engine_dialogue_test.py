@@ -119,7 +119,7 @@ class ObjectDialogueTest(unittest.TestCase):
         # Too late, or never asked: nothing is said.
         before = len(robot.answers.messages)
         answers.publish(ObjectAnswer(id=requests.messages[-1].id, understood=True, reply="late"))
-        answers.publish(ObjectAnswer(id=12345, understood=True, reply="nonsense", go=True, places=["x"]))
+        answers.publish(ObjectAnswer(id=12345, understood=True, reply="nonsense", go_to_place=True, places=["x"]))
         self.assertIn("Hello", robot.say("Hello."))
         self.assertEqual(len(robot.answers.messages), before + 1)
 

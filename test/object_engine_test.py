@@ -91,7 +91,7 @@ class ObjectEngineTest(unittest.TestCase):
         self.folder.cleanup()
 
     def start(self, **params):
-        params = dict({"publish_period": 0.2, "period": 0.0}, **params)
+        params = dict({"publish_period": 0.2, "frame_period": 0.0}, **params)
         for key, value in params.items():
             rospy.set_param(self.name + "/engine/" + key, value)
         topics = ["camera/depth/image_raw", "camera/depth/camera_info", "camera/color/image_raw", "object_map",
