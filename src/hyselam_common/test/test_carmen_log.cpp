@@ -1,11 +1,10 @@
 // CARMEN logs: every message form, every kind of damage, and times that run wild.
-#include "hyselam_common/carmen_log.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/carmen_log.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"

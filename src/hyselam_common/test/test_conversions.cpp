@@ -1,6 +1,4 @@
 // Messages to values and back, and what is refused.
-#include "hyselam_common/ros/conversions.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
+#include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/testing/files.hpp"
 
 namespace hyselam {

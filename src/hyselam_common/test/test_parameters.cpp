@@ -1,11 +1,10 @@
 // Parameters described once: checks, tables and files made from the description.
-#include "hyselam_common/parameters.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "hyselam_common/parameter_documents.hpp"
+#include "hyselam_common/parameters.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
 

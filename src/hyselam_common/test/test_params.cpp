@@ -1,10 +1,9 @@
 // The parameter loader, with a map in place of the parameter server.
-#include "hyselam_common/ros/params.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "hyselam_common/ros/params.hpp"
 #include "hyselam_common/testing/files.hpp"
 
 namespace hyselam {

@@ -25,8 +25,7 @@ inline Thing thing(const std::string& kind, int number) {
   Thing t;
   t.kind = kind;
   t.name = kind + " " + std::to_string(number);
-  const auto make = [&t](Thing::Shape shape, std::array<double, 3> size,
-                         hyselam_sim::Color color) {
+  const auto make = [&t](Thing::Shape shape, std::array<double, 3> size, hyselam_sim::Color color) {
     t.shape = shape;
     t.size = size;
     t.color = color;

@@ -37,7 +37,8 @@ nlohmann::json run(const Options& o) {
               std::pair{"gnc", GraphRobust::kGnc}}) {
           OptimizeParams params;
           params.robust = robust;
-          // With full weights of many false loops the system is dense: minutes without a new result.
+          // With full weights of many false loops the system is dense: minutes without a new
+          // result.
           if (robust == GraphRobust::kNone && share > 0.1) continue;
           // False loops leave large rotation errors at any minimum.
           if (robust == GraphRobust::kNone && share > 0.0) params.start = GraphStart::kChordal;

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 
-#include "hyselam_scan_matching/icp.hpp"
 #include "hyselam_scan_matching/correlative_matcher.hpp"
+#include "hyselam_scan_matching/icp.hpp"
 
 namespace ngram_slam {
 
 namespace {
 
 using hyselam_scan_matching::CorrelativeMatch;
-using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::CorrelativeMatcher;
 using hyselam_scan_matching::CorrelativeMatcherParams;
+using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
@@ -60,8 +60,9 @@ CorrelativeMatcherParams searchParams(const LoopTask& task, const LoopParams& p)
 
 /// The best pose of the window, nothing if there is none or, for a far loop, an ambiguous one.
 std::optional<CorrelativeMatch> searchUnambiguousPose(const LoopTask& task, const LoopParams& p,
-                                           const SurfaceMap& old_map, const SurfacePoints& points,
-                                           LoopVerification* answer) {
+                                                      const SurfaceMap& old_map,
+                                                      const SurfacePoints& points,
+                                                      LoopVerification* answer) {
   const CorrelativeMatcher grid(old_map, searchParams(task, p));
   const SurfacePoints few = thinned(points, task.far ? p.far_max_points : p.near_max_points);
   const auto found = grid.match(few, task.initial_guess);
@@ -69,7 +70,7 @@ std::optional<CorrelativeMatch> searchUnambiguousPose(const LoopTask& task, cons
   answer->score = found->score;
   if (task.far && p.max_ambiguity_ratio < 1.0) {
     const auto other = grid.secondBest(few, task.initial_guess, found->pose, p.ambiguity_distance,
-                                  p.max_ambiguity_ratio * found->score);
+                                       p.max_ambiguity_ratio * found->score);
     if (other) {
       answer->ambiguous_score = other->score;
       return std::nullopt;

@@ -15,8 +15,8 @@ namespace ngram_slam {
 using hyselam::between;
 using hyselam::Pose2;
 using hyselam_pose_graph::PoseEdge;
-using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::CorrelativeMatcher;
+using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
@@ -171,7 +171,8 @@ Eigen::Matrix3d SlamEngine::matchScan(const SurfacePoints& points, const Motion&
 
 /// Matches with the local map; a scan that does not fit is searched around the pose.
 IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points,
-                                  const Eigen::Matrix3d& odometry_information, SlamUpdate* update) {
+                                    const Eigen::Matrix3d& odometry_information,
+                                    SlamUpdate* update) {
   ++state_.counters.matched;
   const RelocalizationParams& p = params_.relocalization;
   IcpResult best = alignIcp(points, local_map_, pose_, odometry_information, params_.refine);
@@ -184,7 +185,7 @@ IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points,
     if (const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_)) {
       const IcpResult again =
           alignIcp(points, local_map_, found->pose,
-                 p.odometry_information_scale * odometry_information, params_.refine);
+                   p.odometry_information_scale * odometry_information, params_.refine);
       if (again.matched > best.matched + p.min_gain) {
         best = again;
         ++state_.counters.relocalized;

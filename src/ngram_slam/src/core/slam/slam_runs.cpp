@@ -11,8 +11,8 @@ namespace ngram_slam {
 
 using hyselam::between;
 using hyselam::Pose2;
-using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::CorrelativeMatcher;
+using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
@@ -73,7 +73,8 @@ void SlamEngine::beginRunInKnownMap(const hyselam::LaserScan& scan, Points point
   search.angular_window = start.angle;
   search.min_score = p.min_score;
   if (const auto found = CorrelativeMatcher(map, search).match(*points, start.pose)) {
-    const IcpResult r = alignIcp(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
+    const IcpResult r =
+        alignIcp(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
     if (r.matched >= params_.min_inlier_ratio) {
       pose_ = r.pose;
       tie.inlier_ratio = r.matched;

@@ -6,8 +6,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
