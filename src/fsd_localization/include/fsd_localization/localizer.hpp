@@ -85,6 +85,8 @@ struct LocalizationResult {
 class Localizer {
  public:
   /// Prepares the map (see FsdMap::cached for `cache_path`; empty: no cache) and spreads particles.
+  /// `progress` is called with the fraction done, 0..1, while the densities of the map are
+  /// computed.
   /// @throws hyselam::InputError, hyselam::ParameterError.
   Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& params,
             const std::string& cache_path = {}, const std::function<void(double)>& progress = {});

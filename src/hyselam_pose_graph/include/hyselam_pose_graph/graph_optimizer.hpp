@@ -16,7 +16,7 @@ class PoseSystem;
 /// Initial poses of the descent.
 enum class GraphStart {
   kGiven,     ///< at the poses of the graph
-  kComposed,  ///< at composedPoses()
+  kComposed,  ///< edges chained from the first pose, odometry first (composedPoses())
   kChordal,   ///< rotations first, by one linear system, then positions by another
   kBest       ///< kChordal, then the global relaxation if max_rotation_error is exceeded
 };
@@ -27,7 +27,8 @@ enum class GraphMethod {
   kLevenbergMarquardt  ///< damped only where a full step does not descend
 };
 
-/// How false loops are rejected. Odometry (isOdometry) always has full weight.
+/// How false loops are rejected. Odometry edges, those between successive poses
+/// of the list (isOdometry), always have full weight.
 enum class GraphRobust {
   kNone,
   kDcs,  ///< dynamic covariance scaling (Agarwal et al. 2013): loops lose weight with their error

@@ -34,9 +34,10 @@ struct DialogueParams {
   /// After a description the robot asks for the name that best discriminates between near-equal
   /// assignments, also about other places than its own, by their generated id (e.g. SS03).
   bool ask_from_afar = false;
+  /// Search (TopoMerg) for the places of the map that described names belong to.
   SolverParams match = defaultMatch();
-  GlassWallParams glass;
-  RouteParams route;
+  GlassWallParams glass;  ///< search in the grid map for a glass wall that a person describes
+  RouteParams route;      ///< of the paths to places
   TopoStateParams state;  ///< of TopoState, which tracks the robot's place; not of DialogueState
 
   /// Defaults of SolverParams, but with a time limit of 2 s, and solutions whose fitness is within
@@ -109,6 +110,7 @@ struct Question {
   std::vector<std::string> names;
   hyselam::Point2 point;
   DescribedWall wall;
+  /// kWall, kWallLength: the search for the described glass wall, continued with the answer.
   std::shared_ptr<GlassWallSearch> search;
 };
 

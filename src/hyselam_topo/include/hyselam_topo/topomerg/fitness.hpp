@@ -57,8 +57,8 @@ using Assignment = std::vector<int>;
 
 /// f of Eq. 5.2, 0 .. 1. `heading`, if not null, receives the robot heading used for the
 /// orientation term [rad, map frame]: the known one, else the one with the best score. `assignment`
-/// has a value for each vertex; it is not checked against MatchConstraints and
-/// SolverParams::connected.
+/// has a value for each vertex; it is not checked against MatchConstraints, nor
+/// whether the places of one name are connected in the map (SolverParams::connected).
 double fitness(const MatchProblem& problem, const FitnessParams& params,
                const Assignment& assignment, double* heading = nullptr);
 

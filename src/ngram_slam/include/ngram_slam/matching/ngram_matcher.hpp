@@ -3,7 +3,8 @@
 // processed incrementally, one new word at a time.
 //
 // Terms:
-// - Word: a segment of the path with one density class, <d, s, a> (Syllables): class d, size s in
+// - Word: a segment of the path with one class of free-space density (share of the cells around the
+//   robot that are free and connected with it), <d, s, a> (Syllables): class d, size s in
 //   observations (by default one per 0.1 m of path), angle a by which the path turns within it.
 // - Run: one uninterrupted drive; words of different runs are not neighbors.
 // - Text (WordLattice): the words of all runs, in the order of the path. Real words have level 0;
@@ -30,7 +31,8 @@
 
 namespace ngram_slam {
 
-/// For every new real word, returns the earlier n-grams whose ending matches the latest words.
+/// For every new real word, returns the earlier n-grams whose ending matches the latest words; the
+/// interface is that of NgramSearch: update() after each word that `text` got.
 ///
 /// A pair of words belongs to a match if they match by the tolerances, the older one ends before
 /// the newer one begins, and some pair of their predecessors belongs to it too, or it is the first
@@ -48,6 +50,7 @@ class NgramMatcher : public NgramSearch {
   /// `text` must outlive the matcher. @throws hyselam::ParameterError
   explicit NgramMatcher(const WordLattice& text, const NgramMatcherParams& params = {});
 
+  /// Memory in use, without the text [bytes].
   std::size_t bytes() const;
 
  private:

@@ -1,5 +1,10 @@
 // SLAM: computes poses, graph and loop closures from scans and odometry. No clock, threads or file
-// I/O. Observations, words and n-gram matches: see slam_params.hpp.
+// I/O.
+//
+// An observation is the free-space density (share of the cells around the robot that are free and
+// connected with it) at a pose, by default one per 0.1 m of path; a word is a segment of the path
+// with one class of density; an n-gram match is a sequence of words that occurs earlier in the
+// path.
 #pragma once
 
 #include <memory>
@@ -26,7 +31,7 @@ struct SlamJob {
   std::optional<hyselam_pose_graph::PoseGraph> graph;
 };
 struct SlamJobResult {
-  std::vector<LoopTask> tasks;  ///< segments removed
+  std::vector<LoopTask> tasks;  ///< of the job, without the scans of their path segments
   std::vector<LoopVerification> verifications;
   std::optional<hyselam_pose_graph::OptimizeResult> optimized;
 };
@@ -85,7 +90,9 @@ class SlamEngine {
 
   const SlamParams& params() const { return params_; }
   const std::vector<SlamKeyframe>& keyframes() const { return state_.keyframes; }
+  /// Statistics since the start of the map: scans, matches, loops tried, verified and accepted.
   const SlamCounters& counters() const { return state_.counters; }
+  /// Accepted loop closures: the loop edges of graph().
   const std::vector<SlamLoop>& loops() const { return state_.loops; }
   /// N-gram matches between words of the path, verified or not.
   const std::vector<SlamMatch>& matches() const { return state_.matches; }
@@ -100,6 +107,7 @@ class SlamEngine {
   hyselam_pose_graph::PoseGraph graph() const;
   /// Pose of every scan.
   std::vector<hyselam::StampedPose2> trajectory() const;
+  /// Segments the path into words and finds their n-gram matches.
   const NgramRecognizer& recognizer() const { return words_.recognizer(); }
   /// Index of the keyframe at which each observation (a density every 0.1 m of path) was made.
   const std::vector<std::int32_t>& keyframeOfObservation() const {

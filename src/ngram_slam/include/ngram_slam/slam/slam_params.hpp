@@ -164,6 +164,7 @@ struct SlamParams {
   /// number of levels of words.
   static SlamParams thesis(int levels = 3);
 
+  /// Extraction of surface points: points of a scan with the normal of the surface they lie on.
   hyselam_scan_matching::SurfacePointParams surface;
   hyselam_scan_matching::IcpParams refine;
   OdometryNoise odometry;
