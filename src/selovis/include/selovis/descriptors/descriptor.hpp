@@ -92,21 +92,26 @@ class Descriptor {
   }
 };
 
+// clang-format off
 /// Makes a descriptor by its name in the thesis. Terms joined by '+' are concatenated.
 ///
 /// | name | signature |
 /// |---|---|
-/// | LBPbyHSV-XnY | X: U or S; n colors, 3 to 16; Y: N, U or S; then nothing, -D, -IRIS or -IRIS-VP
-/// | | hLBP | LBPbyHSV-U8N-IRIS | | sLBP-(N)LRFn | also (A), (S); n columns with a mean range each
-/// | | LBP8,R, LBP8,R-u | LBP of the gray image, 256 or 59 values | | CENTRIST | LBP8,1 with the
-/// bare center | | HSV-LBP, HSV-LBP-u, SLBP | LBP of the HSV channels; of a spatial pyramid | |
-/// HSV-GIST, HSV-GISTs | GIST of an image of 32 x 32, or s x s pixels | | BOF-SIFTn, BOF-ORBn | bag
-/// of n features; with -D for whole, top and bottom | | LGOP | log-gradient orientation pyramid (of
-/// this package) | | GLANCE | LGOP and GIST without hue (of this package) | | psi, [psi], An |
-/// heading; magnetic field and its magnitude; n ranges. Also written with a Greek psi | | scan |
-/// the whole laser scan in 61 groups of beams (of this package) |
+/// | LBPbyHSV-XnY | X: U or S; n colors, 3 to 16; Y: N, U or S; then nothing, -D, -IRIS or -IRIS-VP |
+/// | hLBP | LBPbyHSV-U8N-IRIS |
+/// | sLBP-(N)LRFn | also (A), (S); n columns with a mean range each |
+/// | LBP8,R, LBP8,R-u | LBP of the gray image, 256 or 59 values |
+/// | CENTRIST | LBP8,1 with the bare center |
+/// | HSV-LBP, HSV-LBP-u, SLBP | LBP of the HSV channels; of a spatial pyramid |
+/// | HSV-GIST, HSV-GISTs | GIST of an image of 32 x 32, or s x s pixels |
+/// | BOF-SIFTn, BOF-ORBn | bag of n features; with -D for whole, top and bottom |
+/// | LGOP | log-gradient orientation pyramid (of this package) |
+/// | GLANCE | LGOP and GIST without hue (of this package) |
+/// | psi, [psi], An | heading; magnetic field and its magnitude; n ranges. Also written with a Greek psi |
+/// | scan | the whole laser scan in 61 groups of beams (of this package) |
 ///
 /// @throws hyselam::InputError with the name and what is wrong with it; hyselam::ParameterError.
+// clang-format on
 std::unique_ptr<Descriptor> makeDescriptor(const std::string& name,
                                            const DescriptorParams& params = {});
 
