@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What people and other nodes ask of the localisation: maps, initial poses, services, parameters. Every
-request that cannot be met is refused aloud and changes nothing."""
+request that cannot be met is refused with a reason and changes nothing."""
 import math
 import sys
 import unittest
