@@ -49,10 +49,10 @@ std::vector<cv::Point2d> centralLocations(const std::vector<Cell>& cells, double
     width = std::max(width, c.x);
     height = std::max(height, c.y);
   }
-  const auto squareOf = [&](double x, double y) {
+  const auto square_of = [&](double x, double y) {
     return Cell{static_cast<int>(x / radius) + 1, static_cast<int>(y / radius) + 1};
   };
-  const Cell last = squareOf(width, height);
+  const Cell last = square_of(width, height);
   const int columns = last.x + 2;
   std::vector<std::vector<std::size_t>> squares(static_cast<std::size_t>(columns) *
                                                 static_cast<std::size_t>(last.y + 2));
@@ -61,7 +61,7 @@ std::vector<cv::Point2d> centralLocations(const std::vector<Cell>& cells, double
                    static_cast<std::size_t>(s.x)];
   };
   for (const Cell& c : cells) {
-    const Cell own = squareOf(c.x, c.y);
+    const Cell own = square_of(c.x, c.y);
     std::size_t first = groups.size();
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
@@ -81,7 +81,7 @@ std::vector<cv::Point2d> centralLocations(const std::vector<Cell>& cells, double
     g.x += c.x;
     g.y += c.y;
     g.count += 1.0;
-    const Cell now = squareOf(g.x / g.count, g.y / g.count);
+    const Cell now = square_of(g.x / g.count, g.y / g.count);
     if (now == g.square) continue;
     std::vector<std::size_t>& before = at(g.square);
     before.erase(std::find(before.begin(), before.end(), first));

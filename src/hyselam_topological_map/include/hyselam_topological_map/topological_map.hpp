@@ -40,7 +40,8 @@ struct PlaceTerm {
 /// An image in grey values or an image descriptor, as a matrix.
 struct Appearance {
   /// What the values are: "grey" or the name of a descriptor of package selovis. "LBPbyHSV-U16N":
-  /// local binary patterns by HSV color; U: uniform patterns, 16 color classes, N: no second stage.
+  /// local binary patterns by HSV color; U: uniform patterns, 16 color classes, N: without
+  /// the second stage, which is local binary patterns of the image of patterns (U or S).
   std::string type;
   int rows = 0;
   int cols = 0;

@@ -66,7 +66,8 @@ struct DialogueAction {
 /// A sentence for another node, which handles other topics (objects).
 struct ForwardedSentence {
   std::string text;
-  /// Reply if no other node understands it either; empty: the dialogue handles it as fallback.
+  /// Reply if no other node understands it either; empty: the dialogue understands the sentence and
+  /// processes it then, by hear() without forwarding.
   std::string refusal;
   /// Refused because it is about an object: another node can give the reason.
   bool about_object = false;
@@ -148,6 +149,8 @@ class Dialogue {
   Reply name(Id place, const std::vector<std::string>& names);
   /// Removes all names of a place. Throws as PlaceMan::forget().
   Reply forget(Id place);
+  /// Adds a place that has no walls, so that segmentation cannot find it: a disc of `radius` [m]
+  /// around `centre` [m, map frame]. Throws as PlaceMan::addVirtualPlace().
   Reply addVirtualPlace(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names);
   Reply addWall(const DescribedWall& wall);

@@ -47,6 +47,9 @@ const char* toString(LoopClosureMode mode);
 LoopClosureMode loopClosureModeFromString(const std::string& text);
 
 /// A scan with too few inliers on the local map is relocalized by a search around its pose.
+///
+/// Score of a search, here and below: mean over the points of the scan of a value that falls from 1
+/// on a known surface to 0 at CorrelativeMatcherParams::max_distance from it.
 struct RelocalizationParams {
   int min_points = 30;     ///< only scans with more surface points are relocalized, >= 0
   double window = 0.6;     ///< of positions: +- this along each axis [m], > 0
@@ -61,8 +64,9 @@ struct RelocalizationParams {
 
 /// The first scan of a run in a known map is relocalized by a search around the start pose.
 struct RunStartParams {
-  double map_radius = 10.0;  ///< keyframes up to this far outside the window are used [m], >= 0
-  double min_score = 0.4;    ///< minimum score of the search, 0..1
+  double map_radius =
+      10.0;  ///< beyond the window of SlamEngine::startRun(), of keyframes used [m], >= 0
+  double min_score = 0.4;  ///< minimum score of the search, 0..1
   /// Information of the edge that connects the run to the nearest old keyframe; the information of
   /// the scan match is added.
   double position_information = 1.0;  ///< [1/m^2], > 0
@@ -80,6 +84,9 @@ struct RunStartParams {
 /// matched with a segment of the old path. Far loop: the uncertainty is larger; a segment of
 /// the new path is matched with a longer one of the old path. Candidates of both kinds come from
 /// proximity or n-gram matches.
+///
+/// One struct for all its parameters, because candidates, search, verification and consistency of
+/// both kinds share them; they stand in these groups.
 struct LoopParams {
   double near_max_uncertainty = 1.5;      ///< of the position, for a near loop [m], > 0
   double near_search_angle = 0.3;         ///< search window of headings, +- [rad], 0..pi
