@@ -14,8 +14,14 @@ namespace hyselam_topo {
 namespace {
 
 constexpr std::array<const char*, 5> kSides{"unknown", "front", "left", "back", "right"};
-constexpr std::array<const char*, 5> kRelations{"next_to", "opposite", "between", "at_end_of",
-                                                "inside"};
+constexpr std::array<const char*, 10> kRelations{"next_to", "opposite", "between", "at_end_of",
+                                                 "inside",  "after",    "behind",  "larger",
+                                                 "joined",  "at_side"};
+constexpr std::array<const char*, 2> kSizeWords{"small", "large"};
+
+/// People count doors, and storeys, no further.
+constexpr int kMaxRank = 1000;
+constexpr double kMaxDistance = 10000.0;  // [m]
 
 /// More than anybody tells of one side; a file can carry it as a whole number.
 constexpr std::size_t kMaxOrder = 1000000;
@@ -48,6 +54,13 @@ std::optional<RelationKind> relationKindOf(const std::string& text) {
   return numberOf<RelationKind>(kRelations, text);
 }
 
+const char* toString(SizeWord word) {
+  return kSizeWords.at(static_cast<std::size_t>(word));
+}
+std::optional<SizeWord> sizeWordOf(const std::string& text) {
+  return numberOf<SizeWord>(kSizeWords, text);
+}
+
 DescribedPlace* DescribedBuilding::findPlace(Id id) {
   const auto found = std::find_if(places.begin(), places.end(),
                                   [id](const DescribedPlace& place) { return place.id == id; });
@@ -59,16 +72,25 @@ const DescribedPlace* DescribedBuilding::findPlace(Id id) const {
 }
 
 bool operator==(const DescribedPlace& a, const DescribedPlace& b) {
-  return std::tie(a.id, a.name, a.aliases, a.kind, a.length, a.width, a.area, a.parts) ==
-         std::tie(b.id, b.name, b.aliases, b.kind, b.length, b.width, b.area, b.parts);
+  const auto all = [](const DescribedPlace& p) {
+    return std::tie(p.id, p.name, p.aliases, p.kind, p.length, p.width, p.area, p.parts,
+                    p.size_word, p.doors, p.floor);
+  };
+  return all(a) == all(b);
 }
 
 bool operator==(const DescribedConnection& a, const DescribedConnection& b) {
-  return std::tie(a.from, a.to, a.side, a.order) == std::tie(b.from, b.to, b.side, b.order);
+  const auto all = [](const DescribedConnection& c) {
+    return std::tie(c.from, c.to, c.side, c.order, c.rank, c.distance);
+  };
+  return all(a) == all(b);
 }
 
 bool operator==(const DescribedRelation& a, const DescribedRelation& b) {
-  return std::tie(a.kind, a.a, a.b, a.c) == std::tie(b.kind, b.a, b.b, b.c);
+  const auto all = [](const DescribedRelation& r) {
+    return std::tie(r.kind, r.a, r.b, r.c, r.side, r.denied);
+  };
+  return all(a) == all(b);
 }
 
 bool operator==(const DescribedBuilding& a, const DescribedBuilding& b) {
@@ -97,6 +119,8 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
       require(!size || (std::isfinite(*size) && *size > 0.0), who + " has a size that is not > 0");
     }
     require(!place.parts || *place.parts >= 1, who + " has fewer than one part");
+    require(!place.doors || *place.doors >= 1, who + " has fewer than one door");
+    require(!place.floor || std::abs(*place.floor) <= kMaxRank, who + " is on no floor");
   }
   const auto known = [&](Id id, const std::string& where) {
     require(ids.count(id) != 0,
@@ -109,6 +133,11 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     require(connection.from != connection.to, "a connection joins a place with itself");
     require(connection.order < kMaxOrder,
             "a connection is beyond the " + std::to_string(kMaxOrder) + "th of its side");
+    const auto& rank = connection.rank;
+    require(!rank || (*rank != 0 && std::abs(*rank) <= kMaxRank), "a connection has no such rank");
+    const auto& distance = connection.distance;
+    require(!distance || (*distance >= 0.0 && *distance <= kMaxDistance),
+            "a connection is at no such distance");
     require(joined.insert(std::minmax(connection.from, connection.to)).second,
             "places " + std::to_string(connection.from) + " and " + std::to_string(connection.to) +
                 " are connected twice");
@@ -117,8 +146,13 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     known(relation.a, "a relation");
     known(relation.b, "a relation");
     const bool between = relation.kind == RelationKind::kBetween;
-    if (between) known(relation.c, "a relation");
-    require(between || relation.c == 0, "a relation of two places names a third");
+    const bool after = relation.kind == RelationKind::kAfter;
+    if (between || (after && relation.c != 0)) known(relation.c, "a relation");
+    require(between || after || relation.c == 0, "a relation of two places names a third");
+    const bool at_side = relation.kind == RelationKind::kAtSide;
+    require(at_side == (relation.side != Side::kUnknown), "a relation has a side, or lacks it");
+    const bool only_denied = at_side || relation.kind == RelationKind::kJoined;
+    require(!only_denied || relation.denied, "such a relation is only denied");
     require(relation.a != relation.b && relation.a != relation.c && relation.b != relation.c,
             "a relation names a place twice");
   }

@@ -38,6 +38,10 @@ class Writer {
     if (value) attribute(name, hyselam::formatNumber(*value));
   }
 
+  void attribute(const char* name, const std::optional<int>& value) {
+    if (value) attribute(name, std::to_string(*value));
+  }
+
   void write(const DescribedPlace& place) {
     out_.OpenElement("place");
     attribute("id", place.id);
@@ -46,7 +50,10 @@ class Writer {
     attribute("length", place.length);
     attribute("width", place.width);
     attribute("area", place.area);
-    if (place.parts) attribute("parts", std::to_string(*place.parts));
+    attribute("parts", place.parts);
+    if (place.size_word) attribute("size_word", toString(*place.size_word));
+    attribute("doors", place.doors);
+    attribute("floor", place.floor);
     for (const std::string& alias : place.aliases) {
       out_.OpenElement("alias");
       attribute("name", alias);
@@ -61,6 +68,8 @@ class Writer {
     attribute("to", connection.to);
     attribute("side", toString(connection.side));
     attribute("order", std::to_string(connection.order));
+    attribute("rank", connection.rank);
+    attribute("distance", connection.distance);
     out_.CloseElement();
   }
 
@@ -70,6 +79,8 @@ class Writer {
     attribute("a", relation.a);
     attribute("b", relation.b);
     if (relation.c != 0) attribute("c", relation.c);
+    if (relation.side != Side::kUnknown) attribute("side", toString(relation.side));
+    if (relation.denied) attribute("denied", "true");
     out_.CloseElement();
   }
 
@@ -84,6 +95,10 @@ Enum oneOf(hyselam::XmlElement& e, const char* attribute,
   return *value;
 }
 
+std::optional<int> count(hyselam::XmlElement& e, const char* attribute) {
+  return e.has(attribute) ? std::optional<int>(e.integer(attribute)) : std::nullopt;
+}
+
 DescribedPlace readPlace(hyselam::XmlElement& e) {
   const auto size = [&e](const char* name) {
     return e.has(name) ? std::optional<double>(e.number(name)) : std::nullopt;
@@ -96,7 +111,11 @@ DescribedPlace readPlace(hyselam::XmlElement& e) {
   place.length = size("length");
   place.width = size("width");
   place.area = size("area");
-  if (e.has("parts")) place.parts = e.integer("parts");
+  place.parts = count(e, "parts");
+  if (e.has("size_word"))
+    place.size_word = oneOf(e, "size_word", sizeWordOf, "small or large");
+  place.doors = count(e, "doors");
+  place.floor = count(e, "floor");
   e.children([&](hyselam::XmlElement& child) {
     if (child.name() != "alias") return false;
     place.aliases.push_back(child.text("name"));
@@ -114,16 +133,24 @@ DescribedConnection readConnection(hyselam::XmlElement& e) {
   const int order = e.integer("order");
   if (order < 0) e.fail("the attribute 'order' is negative");
   connection.order = static_cast<std::size_t>(order);
+  connection.rank = count(e, "rank");
+  if (e.has("distance")) connection.distance = e.number("distance");
   e.finish();
   return connection;
 }
 
 DescribedRelation readRelation(hyselam::XmlElement& e) {
   DescribedRelation relation;
-  relation.kind = oneOf(e, "kind", relationKindOf, "next_to, opposite, between, at_end_of, inside");
+  relation.kind = oneOf(e, "kind", relationKindOf, 
+                        "next_to, opposite, between, at_end_of, inside, after, behind, larger, "
+                        "joined, at_side");
   relation.a = e.id("a");
   relation.b = e.id("b");
   if (e.has("c")) relation.c = e.id("c");
+  if (e.has("side")) {
+    relation.side = oneOf(e, "side", sideOf, "unknown, front, left, back or right");
+  }
+  if (e.has("denied")) relation.denied = e.text("denied") == "true";
   e.finish();
   return relation;
 }

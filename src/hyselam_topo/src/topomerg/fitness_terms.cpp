@@ -181,6 +181,8 @@ double FitnessTerms::relationValue(RelationKind what, const VertexSet& a, const 
       return a.touches(b) ? static_cast<double>((a.neighbors & b.members).size()) /
                                 static_cast<double>(a.neighbors.size())
                           : 0.0;
+    default:
+      break;
   }
   return 0.0;
 }

@@ -255,9 +255,11 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     out.described_edges[a * n + b] = out.described_edges[b * n + a] = 1;
   }
   addSides(building, name, &out);
-  for (const DescribedRelation& r : building.relations)
+  for (const DescribedRelation& r : building.relations) {
+    if (r.denied || r.kind > RelationKind::kInside) continue;
     out.relations.push_back({r.kind, name(r.a, "description"), name(r.b, "description"),
                              r.kind == RelationKind::kBetween ? name(r.c, "description") : -1});
+  }
 
   MatchConstraints all = constraints;
   if (observer.place) {

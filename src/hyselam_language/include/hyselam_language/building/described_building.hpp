@@ -22,6 +22,13 @@ enum class Side { kUnknown, kFront, kLeft, kBack, kRight };
 const char* toString(Side side);
 std::optional<Side> sideOf(const std::string& text);
 
+/// A size told by a word: "a tiny office", "the library is huge".
+enum class SizeWord { kSmall, kLarge };
+
+/// "small", "large" and back; nothing for another word.
+const char* toString(SizeWord word);
+std::optional<SizeWord> sizeWordOf(const std::string& text);
+
 /// A place as people described it.
 struct DescribedPlace {
   Id id = 0;                         ///< unique in the description, never 0
@@ -34,6 +41,11 @@ struct DescribedPlace {
   std::optional<double> area;    ///< described as such, or length times width
   /// "divided into six rooms": how many places of a map this one may be made of.
   std::optional<int> parts;
+  std::optional<SizeWord> size_word;  ///< compared with the rooms of the building
+  std::optional<int> doors;           ///< "the archive has two doors", >= 1
+  /// Storeys above (> 0) or below (< 0) the one where the robot is; nothing: on its own. A place of
+  /// another floor is on no map of this one.
+  std::optional<int> floor;
 };
 
 /// The name and the aliases, in the order in which they were mentioned.
@@ -48,6 +60,12 @@ struct DescribedConnection {
   /// Place in the row of those described of the same `from` and side, from 0: "A, then B" gives 0
   /// and 1.
   std::size_t order = 0;
+  /// "The second door on the left" is 2: its number among all places at that side of `from`, the
+  /// nearest to where the robot stood first; "the last" is -1, counted from the far end. Nothing:
+  /// not told; `order` then tells only what comes before what.
+  std::optional<int> rank;
+  /// "Ten metres ahead on your left": from where the robot stood, along its way [m].
+  std::optional<double> distance;
 };
 
 /// What people say of places besides connections.
@@ -56,7 +74,12 @@ enum class RelationKind {
   kOpposite,  ///< a and b face each other
   kBetween,   ///< a lies between b and c
   kAtEndOf,   ///< a lies at an end of b
-  kInside     ///< a is a part of b
+  kInside,    ///< a is a part of b
+  kAfter,     ///< a comes right after b on the way from c, where the robot stood (0: not told)
+  kBehind,    ///< a lies behind b, seen from where the robot stood
+  kLarger,    ///< a is larger than b
+  kJoined,    ///< a door or way joins a and b; only denied, others are connections
+  kAtSide     ///< a lies at `side` of b as the robot saw it; only denied, as above
 };
 
 const char* toString(RelationKind kind);
@@ -66,7 +89,9 @@ struct DescribedRelation {
   RelationKind kind = RelationKind::kNextTo;
   Id a = 0;
   Id b = 0;
-  Id c = 0;  ///< only for kBetween, otherwise 0
+  Id c = 0;  ///< only for kBetween and kAfter, otherwise 0
+  Side side = Side::kUnknown;  ///< only for kAtSide
+  bool denied = false;         ///< "the lab is not next to the office"
 };
 
 /// The whole description.
