@@ -51,6 +51,7 @@ struct NameType {
   std::set<std::string> indefinite;
   std::set<std::string> joiners;                 ///< behind them an article may stand: "of the"
   std::set<std::string> stop;                    ///< never within a name
+  std::set<std::string> speaker;                 ///< before what is the speaker's: "my"
   std::set<std::string> generic;                 ///< no name on their own: "room"
   std::set<std::string> quantities;              ///< no name begins so: "several"
   std::map<std::string, std::string> forbidden;  ///< word -> code of the reason

@@ -199,6 +199,7 @@ class Reader {
       }
     }
     for (const auto& [word, code] : g.refusing_words) known.insert(word);
+    for (const std::string& word : g.abbreviations) known.insert(hyselam::utf8Fold(word));
   }
 
   std::shared_ptr<CompiledGrammar> grammar_ = std::make_shared<CompiledGrammar>();

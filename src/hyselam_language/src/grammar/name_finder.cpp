@@ -134,13 +134,16 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
   if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
     const Token& next = tokens_[at + 1];
     const bool goes_on =
-        next.kind == TokenKind::kQuoted || (isWordLike(next) && !isStop(next, type));
+        next.kind == TokenKind::kQuoted || (isWordLike(next) && !isStop(next, type)) ||
+        isSpeakers(at + 1, type);
     if (goes_on) {
       indefinite = type.indefinite.count(tokens_[at].folded) != 0 &&
                    type.definite.count(tokens_[at].folded) == 0;
       ++begin;
     }
   }
+  const bool speaker = isSpeakers(begin, type);
+  if (speaker) ++begin;
   std::size_t words = 0;
   for (std::size_t k = begin; k < tokens_.size() && words < type.max_words; ++k) {
     const Token& token = tokens_[k];
@@ -170,6 +173,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       if (wrong.empty()) {
         found.push_back(
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1)});
+        found.back().name.speaker = speaker;
       } else {
         failures_.push_back({begin, wrong, k + 1});
       }
@@ -177,6 +181,13 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     if (is_last) break;
   }
   return found;
+}
+
+/// "my office", "o meu gabinete": not "my" alone.
+bool NameFinder::isSpeakers(std::size_t at, const NameType& type) const {
+  return at + 1 < tokens_.size() && tokens_[at].kind == TokenKind::kWord &&
+         type.speaker.count(tokens_[at].folded) != 0 && tokens_[at + 1].kind == TokenKind::kWord &&
+         !isStop(tokens_[at + 1], type);
 }
 
 /// More than a letter, which may be a name of its own.

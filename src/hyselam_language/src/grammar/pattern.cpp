@@ -190,7 +190,11 @@ class Compiler {
   int slot(const std::string& text, int state, int depth) {
     const std::size_t equals = text.find('=');
     if (equals != std::string::npos) {
-      const int number = slotNumber({text.substr(0, equals), "constant", false});
+      const std::string before = text.substr(0, equals);
+      const std::size_t type_at = std::min(before.find(':'), before.size());
+      const std::string type =
+          type_at < before.size() ? before.substr(type_at + 1) : std::string("constant");
+      const int number = slotNumber({before.substr(0, type_at), type, false});
       return step(step(state, EdgeKind::kBegin, number), EdgeKind::kValue, number,
                   valueNumber(text.substr(equals + 1)));
     }

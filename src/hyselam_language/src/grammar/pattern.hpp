@@ -6,6 +6,7 @@
 //   {slot:type}        a name, "count", "number", a quantity, or a word class, captured
 //   {slot:type+}       a list of names
 //   {slot=value}       the slot gets a value, nothing is said
+//   {slot:type=it}     the same of a slot of names: a reference
 #pragma once
 
 #include <functional>

@@ -38,7 +38,10 @@ bool operator==(const TextRange& a, const TextRange& b) {
 }
 
 bool operator==(const SaidName& a, const SaidName& b) {
-  return std::tie(a.text, a.reference, a.quoted) == std::tie(b.text, b.reference, b.quoted);
+  const auto all = [](const SaidName& n) {
+    return std::tie(n.text, n.reference, n.quoted, n.speaker, n.elliptic);
+  };
+  return all(a) == all(b);
 }
 
 bool operator==(const Slot& a, const Slot& b) {

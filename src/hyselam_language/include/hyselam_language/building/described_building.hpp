@@ -63,9 +63,9 @@ struct DescribedConnection {
   /// "The second door on the left" is 2: its number among all places at that side of `from`, the
   /// nearest to where the robot stood first; "the last" is -1, counted from the far end. Nothing:
   /// not told; `order` then tells only what comes before what.
-  std::optional<int> rank;
+  std::optional<int> rank = std::nullopt;
   /// "Ten metres ahead on your left": from where the robot stood, along its way [m].
-  std::optional<double> distance;
+  std::optional<double> distance = std::nullopt;
 };
 
 /// What people say of places besides connections.

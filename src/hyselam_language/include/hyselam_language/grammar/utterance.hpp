@@ -29,6 +29,10 @@ struct SaidName {
   /// name.
   std::string reference;
   bool quoted = false;
+  /// "my office": the person's who speaks; `text` is without "my".
+  bool speaker = false;
+  /// "Mary's", "o da Teresa": what kind of place it is was said before; `text` lacks that word.
+  bool elliptic = false;
   TextRange range;
 };
 
@@ -63,6 +67,13 @@ struct Utterance {
   std::string reason;
   std::string reason_code;
   TextRange culprit;  ///< the words that could not be understood
+  /// Not understood: a sentence in the same language that is understood; "" if none was found.
+  std::string suggestion;
+  /// Whether the suggestion is what was said without some of its words, which the person should
+  /// confirm; otherwise it is an example of how such things are said.
+  bool suggests_meaning = false;
+  /// Understood: words left out, as an aside between commas ("which is far too small").
+  std::vector<std::string> left_out;
 
   bool understood() const { return kind != UtteranceKind::kNotUnderstood; }
   /// nullptr if the slot was not filled.
