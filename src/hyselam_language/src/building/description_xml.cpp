@@ -112,8 +112,7 @@ DescribedPlace readPlace(hyselam::XmlElement& e) {
   place.width = size("width");
   place.area = size("area");
   place.parts = count(e, "parts");
-  if (e.has("size_word"))
-    place.size_word = oneOf(e, "size_word", sizeWordOf, "small or large");
+  if (e.has("size_word")) place.size_word = oneOf(e, "size_word", sizeWordOf, "small or large");
   place.doors = count(e, "doors");
   place.floor = count(e, "floor");
   e.children([&](hyselam::XmlElement& child) {
@@ -141,7 +140,7 @@ DescribedConnection readConnection(hyselam::XmlElement& e) {
 
 DescribedRelation readRelation(hyselam::XmlElement& e) {
   DescribedRelation relation;
-  relation.kind = oneOf(e, "kind", relationKindOf, 
+  relation.kind = oneOf(e, "kind", relationKindOf,
                         "next_to, opposite, between, at_end_of, inside, after, behind, larger, "
                         "joined, at_side");
   relation.a = e.id("a");
