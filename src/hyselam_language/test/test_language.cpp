@@ -57,6 +57,39 @@ TEST(Grammar, AnyLanguageMayBeGiven) {
   EXPECT_EQ(testing::outline(said[1]), "tell weight=0.3 what=cup");
 }
 
+TEST(TopoParser, AsidesAreLeftOutAndSaid) {
+  const auto said =
+      parser().parse("The kitchen, which by the way has terrible coffee, is next to the lab.");
+  ASSERT_EQ(said.utterances.size(), 1u);
+  EXPECT_EQ(testing::outline(said.utterances[0]), "next_to a=kitchen b=lab");
+  EXPECT_EQ(said.utterances[0].left_out,
+            std::vector<std::string>{"which by the way has terrible coffee"});
+  // What tells something is no aside.
+  EXPECT_EQ(parser().parse("The kitchen, which is never left, is next to the lab.").misunderstood(),
+            1u);
+}
+
+TEST(TopoParser, ClausesMayRunOnAsRecognisersWriteThem) {
+  const auto said =
+      parser().parse("you are in the corridor on your left is the kitchen").utterances;
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(testing::outline(said[0]), "robot_in place=corridor");
+  EXPECT_EQ(testing::outline(said[1]), "neighbours places=kitchen side=left");
+}
+
+TEST(TopoParser, ProposesWhatWasSaidWithoutTheWordsInTheWay) {
+  const auto proposed = [](const std::string& text) {
+    const Utterance said = parser().parse(text).utterances.at(0);
+    EXPECT_FALSE(said.understood()) << text;
+    return said.suggests_meaning ? said.suggestion : "";
+  };
+  EXPECT_EQ(proposed("The kitchen is cosily tucked next to the lab."),
+            "The kitchen is next to the lab.");
+  // Denial, doubt, sides and numbers are never left out, nor half a name.
+  EXPECT_EQ(proposed("The kitchen is hardly never next to the lab."), "");
+  EXPECT_EQ(proposed("The kitchen may hum next to the lab."), "");
+}
+
 TEST(Grammar, FurtherFilesAddToTheFirst) {
   const std::string more =
       "format: hyselam_grammar\nversion: 1\nlanguage: xx\nclasses: {colour: {green: [green]}}\n"

@@ -158,5 +158,31 @@ TEST(LanguageCorpus, HoldOut) {
   expectGood("holdout", 0.97);
 }
 
+/// Every refusal says what would work, in the language of the speaker, and that does work.
+TEST(LanguageCorpus, RefusalsTeach) {
+  std::size_t refusals = 0, meant = 0;
+  for (const char* name : {"thesis", "corpus_en", "corpus_pt", "refused", "holdout", "holdout_2"}) {
+    for (const Item& item : corpus(name)) {
+      ParseOptions options;
+      options.language = item.language;
+      const ParsedText said = parser().parse(item.text, options);
+      for (const Utterance& utterance : said.utterances) {
+        const bool is_text =
+            utterance.reason_code != "not_text" && utterance.reason_code != "too_long";
+        if (utterance.understood() || !is_text) continue;
+        ++refusals;
+        meant += utterance.suggests_meaning ? 1 : 0;
+        EXPECT_FALSE(utterance.suggestion.empty()) << item.text;
+        ParseOptions same;
+        same.language = said.language;
+        const ParsedText again = parser().parse(utterance.suggestion, same);
+        EXPECT_EQ(again.misunderstood(), 0u) << item.text << "\n  -> " << utterance.suggestion;
+      }
+    }
+  }
+  EXPECT_GT(refusals, 50u);
+  std::cout << refusals << " refusals, of " << meant << " the meaning is proposed\n";
+}
+
 }  // namespace
 }  // namespace hyselam_topo

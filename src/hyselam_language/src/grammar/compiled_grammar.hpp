@@ -112,6 +112,7 @@ struct CompiledGrammar {
   std::vector<IntentInfo> intents;
   std::vector<std::string> values;  ///< entries of word classes
   std::map<std::string, std::string> refusing_words;
+  std::set<std::string> telling_words;  ///< folded: a part of a sentence with one is no aside
   std::map<std::string, std::string> reasons;
   std::map<std::string, std::string> say;
 

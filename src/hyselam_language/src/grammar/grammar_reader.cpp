@@ -34,6 +34,7 @@ class Reader {
     checkSeparators(roots.front());
     for (const auto& [name, node] : intents_) readIntent(name, node, context_, grammar_.get());
     if (grammar_->intents.empty()) roots.front().fail("there are no intents");
+    grammar_->telling_words.insert(grammar_->unit_words.begin(), grammar_->unit_words.end());
     finishKnownWords();
     return grammar_;
   }
@@ -74,6 +75,7 @@ class Reader {
         {"macros", [&](const GrammarNode& node) { readMacros(node); }},
         {"classes", [&](const GrammarNode& node) { readClasses(node); }},
         {"refusing_words", [&](const GrammarNode& node) { addMeanings(node, &g.refusing_words); }},
+        {"telling_words", [&](const GrammarNode& node) { addFolded(node, &g.telling_words); }},
         {"reasons", texts(&g.reasons)},
         {"say", texts(&g.say)},
         {"intents", [&](const GrammarNode& node) { noteIntents(node); }}};

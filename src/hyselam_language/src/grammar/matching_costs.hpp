@@ -17,9 +17,18 @@ constexpr int kNameWordCost = 2;   ///< ... and each of its words: keywords rath
 constexpr int kClauseCost = 6;     ///< a clause: few clauses rather than many
 constexpr int kExpectedBonus = 8;  ///< less for an answer that was asked for
 constexpr int kSeparatorCost = 1;  ///< a word between clauses
+constexpr int kRunOnCost = 4;      ///< nothing between them
+
+// Of a proposal, which leaves out words that no pattern has a place for.
+constexpr int kLeaveOutFiller = 1;
+constexpr int kLeaveOutWord = 3;
+constexpr int kLeaveOutTelling = 12;  ///< a side, a kind of place, a capitalised word
+constexpr int kDoubtfulNameCost = 8;  ///< a name without a noun of places, number or capital
 
 constexpr std::size_t kShortestMisspelt = 4;  ///< letters of a keyword that may be misspelt
-constexpr std::size_t kMaxTokens = 400;       ///< of a sentence
+constexpr std::size_t kShortestRunOn = 6;     ///< tokens of clauses that nothing separates
+constexpr std::size_t kLongestRunOn = 60;
+constexpr std::size_t kMaxTokens = 400;  ///< of a sentence
 constexpr std::size_t kMaxNameBytes = 200;
 
 }  // namespace language

@@ -133,9 +133,8 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
   bool indefinite = false;
   if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
     const Token& next = tokens_[at + 1];
-    const bool goes_on =
-        next.kind == TokenKind::kQuoted || (isWordLike(next) && !isStop(next, type)) ||
-        isSpeakers(at + 1, type);
+    const bool goes_on = next.kind == TokenKind::kQuoted ||
+                         (isWordLike(next) && !isStop(next, type)) || isSpeakers(at + 1, type);
     if (goes_on) {
       indefinite = type.indefinite.count(tokens_[at].folded) != 0 &&
                    type.definite.count(tokens_[at].folded) == 0;

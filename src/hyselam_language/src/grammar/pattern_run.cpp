@@ -117,6 +117,9 @@ void PatternRun::leave(std::size_t at, int state, bool is_first) {
     const int skip = words_.isComma(at) ? kCommaCost : kInnerCost;
     reach(at + 1, state, {generation_, cost + skip, state, -1, at, tied});
   }
+  if (!is_first && at < leave_out_.size() && leave_out_[at] < kNever) {
+    reach(at + 1, state, {generation_, cost + leave_out_[at], state, -1, at, tied});
+  }
   const auto& edges = pattern_->states[static_cast<std::size_t>(state)];
   for (std::size_t e = 0; e < edges.size(); ++e) {
     follow(edges[e], at, {generation_, cost, state, static_cast<int>(e), at, tied});
@@ -129,6 +132,19 @@ bool PatternRun::mayBeSkipped(std::size_t at) const {
   return std::any_of(matches.begin(), matches.end(), [&](const auto& match) {
     return match.cost < kSlipCost && words_.grammar.fillers_inner.count(match.word) != 0;
   });
+}
+
+int PatternRun::doubt(std::size_t begin, std::size_t end, int type) const {
+  if (leave_out_.empty()) return 0;
+  const NameType& names = words_.grammar.name_types[static_cast<std::size_t>(type)];
+  for (std::size_t at = begin; at < end; ++at) {
+    const Token& token = words_.tokens[at];
+    const bool sure = token.kind != TokenKind::kWord || names.nouns.count(token.folded) != 0 ||
+                      names.titles.count(token.folded) != 0 || (token.starts_upper && at > 0) ||
+                      token.folded.find_first_of("0123456789") != std::string::npos;
+    if (sure) return 0;
+  }
+  return kDoubtfulNameCost;
 }
 
 void PatternRun::follow(const Edge& edge, std::size_t at, Cell next) {
@@ -153,7 +169,9 @@ void PatternRun::follow(const Edge& edge, std::size_t at, Cell next) {
       if (words_.isComma(at)) go(at + 1, 0);
       break;
     case EdgeKind::kName:
-      for (const FoundName& name : words_.namesAt(at, edge.b)) go(name.end, name.cost);
+      for (const FoundName& name : words_.namesAt(at, edge.b)) {
+        go(name.end, name.cost + doubt(at, name.end, edge.b));
+      }
       break;
     case EdgeKind::kCount:
       for (const FoundNumber& number : words_.numbersAt(at)) {

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "automaton.hpp"
@@ -17,8 +18,10 @@ constexpr int kNever = std::numeric_limits<int>::max() / 2;
 
 class PatternRun {
  public:
-  /// `words` must outlive this.
-  explicit PatternRun(SentenceWords* words) : words_(*words) {}
+  /// `words` must outlive this. `leave_out`: what it costs to leave out each token, kNever for
+  /// those that must stay; empty: only fillers and commas may be left out.
+  explicit PatternRun(SentenceWords* words, std::vector<int> leave_out = {})
+      : words_(*words), leave_out_(std::move(leave_out)) {}
 
   /// Whether the pattern has a chance there: a word that it needs is said.
   bool mayBegin(const Automaton& pattern, std::size_t at) const;
@@ -65,8 +68,11 @@ class PatternRun {
   void leave(std::size_t at, int state, bool is_first);
   void follow(const Edge& edge, std::size_t at, Cell next);
   bool mayBeSkipped(std::size_t at) const;
+  /// More for a name that only its place in the sentence makes one, if others may be left out.
+  int doubt(std::size_t begin, std::size_t end, int type) const;
 
   SentenceWords& words_;
+  const std::vector<int> leave_out_;
   const Automaton* pattern_ = nullptr;
   std::vector<Cell> cells_;
   std::vector<std::vector<int>> active_;  ///< states to go on from, at each token

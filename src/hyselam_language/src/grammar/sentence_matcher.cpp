@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "asides.hpp"
 #include "capture.hpp"
 #include "clause.hpp"
 #include "clause_borders.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "matching_costs.hpp"
 #include "pattern_run.hpp"
 #include "refusal.hpp"
 #include "sentence_words.hpp"
+#include "shorter_sentence.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -18,9 +21,14 @@ namespace {
 /// Finds the cheapest row of clauses that covers the sentence.
 class SentenceReader {
  public:
+  /// `run_on`: clauses may follow one another without a word or comma between them, as speech
+  /// recognisers write them.
   SentenceReader(const CompiledGrammar& grammar, const std::string& text, const Sentence& sentence,
-                 const std::set<std::string>& expected)
-      : expected_(expected), words_(grammar, text, sentence), pattern_run_(&words_) {}
+                 std::vector<Token> tokens, const std::set<std::string>& expected, bool run_on)
+      : expected_(expected),
+        run_on_(run_on),
+        words_(grammar, text, sentence, std::move(tokens)),
+        pattern_run_(&words_) {}
 
   std::vector<Utterance> read() {
     if (words_.isTooLong()) return {refusal(words_, "too_long", words_.sentence.range, "")};
@@ -50,6 +58,9 @@ class SentenceReader {
         for (const auto& [to, cost] : separatorsAt(words_, at)) {
           const int total = ends_[at].cost + cost;
           if (total < begins[to].first) begins[to] = {total, at};
+        }
+        if (run_on_ && at > 0 && ends_[at].cost + kRunOnCost < begins[at].first) {
+          begins[at] = {ends_[at].cost + kRunOnCost, at};
         }
       }
       if (begins[at].first >= kNever || at == n) continue;
@@ -154,18 +165,96 @@ class SentenceReader {
   }
 
   const std::set<std::string>& expected_;
+  const bool run_on_;
   SentenceWords words_;
   PatternRun pattern_run_;
   std::vector<Reading> ends_;  ///< at each token
   std::vector<Clause> clauses_;
 };
 
+bool isUnderstood(const std::vector<Utterance>& said) {
+  return std::all_of(said.begin(), said.end(), [](const Utterance& u) { return u.understood(); });
+}
+
+/// Whether clauses may follow one another with nothing between: not where a word like "no" would
+/// be taken for a clause of its own.
+bool mayRunOn(const std::vector<Token>& tokens, const CompiledGrammar& grammar) {
+  return tokens.size() >= kShortestRunOn && tokens.size() <= kLongestRunOn &&
+         std::none_of(tokens.begin(), tokens.end(), [&](const Token& token) {
+           return grammar.refusing_words.count(token.folded) != 0;
+         });
+}
+
+std::vector<std::string> namesIn(const std::vector<Utterance>& said) {
+  std::vector<std::string> names;
+  for (const Utterance& utterance : said) {
+    for (const Slot& slot : utterance.slots) {
+      for (const SaidName& name : slot.names) {
+        if (name.reference.empty()) names.push_back(name.text);
+      }
+    }
+  }
+  return names;
+}
+
+/// Whatever the case of their first letters, which the beginning of a sentence changes.
+bool sameNames(std::vector<std::string> a, std::vector<std::string> b) {
+  for (auto* names : {&a, &b}) {
+    for (std::string& name : *names) name = hyselam::utf8Lower(name);
+    std::sort(names->begin(), names->end());
+  }
+  return a == b;
+}
+
+/// What the person might have meant, or how such things are said.
+void propose(const SentenceWords& words, Utterance* refused) {
+  if (words.isTooLong()) return;
+  // Doubt and denial are no matter of words to leave out.
+  static const std::set<std::string> kNothing;
+  if (const auto shorter = shorterSentence(words)) {
+    const std::string& text = shorter->text;
+    const Sentence sentence{{0, text.size()}, words.sentence.is_question};
+    const auto tokens = tokenize(text, sentence.range, words.grammar.tokenRules());
+    const auto again =
+        SentenceReader(words.grammar, text, sentence, tokens, kNothing, false).read();
+    if (isUnderstood(again) && sameNames(namesIn(again), shorter->names)) {
+      refused->suggestion = text;
+      refused->suggests_meaning = true;
+      return;
+    }
+  }
+  refused->suggestion = nearestExample(words);
+}
+
 }  // namespace
 
 std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
                                     const Sentence& sentence,
                                     const std::set<std::string>& expected) {
-  return SentenceReader(grammar, text, sentence, expected).read();
+  const std::vector<Token> tokens = tokenize(text, sentence.range, grammar.tokenRules());
+  const auto read = [&](std::vector<Token> of, bool run_on) {
+    return SentenceReader(grammar, text, sentence, std::move(of), expected, run_on).read();
+  };
+  std::vector<Utterance> said = read(tokens, false);
+  if (isUnderstood(said)) return said;
+  const std::vector<Aside> asides = asidesOf(tokens, grammar);
+  if (!asides.empty()) {
+    std::vector<Utterance> rest = read(without(tokens, asides), false);
+    if (isUnderstood(rest)) {
+      for (const Aside& aside : asides) {
+        const std::size_t begin = tokens[aside.begin].range.begin;
+        const std::size_t end = tokens[aside.end - 1].range.end;
+        rest.front().left_out.push_back(text.substr(begin, end - begin));
+      }
+      return rest;
+    }
+  }
+  if (mayRunOn(tokens, grammar)) {
+    std::vector<Utterance> clauses = read(tokens, true);
+    if (isUnderstood(clauses)) return clauses;
+  }
+  propose(SentenceWords(grammar, text, sentence, tokens), &said.front());
+  return said;
 }
 
 bool isPlainName(const CompiledGrammar& grammar, const std::string& name, const std::string& type) {

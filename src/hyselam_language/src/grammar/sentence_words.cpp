@@ -1,6 +1,7 @@
 #include "sentence_words.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "matching_costs.hpp"
 
@@ -9,10 +10,15 @@ namespace language {
 
 SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::string& text_of,
                              const Sentence& sentence_of)
+    : SentenceWords(grammar_of, text_of, sentence_of,
+                    tokenize(text_of, sentence_of.range, grammar_of.tokenRules())) {}
+
+SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::string& text_of,
+                             const Sentence& sentence_of, std::vector<Token> tokens_of)
     : grammar(grammar_of),
       text(text_of),
       sentence(sentence_of),
-      tokens(tokenize(text, sentence.range, grammar.tokenRules())),
+      tokens(std::move(tokens_of)),
       names(grammar, text, tokens) {
   if (isTooLong()) return;
   for (const Token& token : tokens) {

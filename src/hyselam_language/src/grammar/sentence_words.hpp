@@ -15,6 +15,9 @@ namespace language {
 class SentenceWords {
  public:
   SentenceWords(const CompiledGrammar& grammar, const std::string& text, const Sentence& sentence);
+  /// Of some of the sentence's tokens.
+  SentenceWords(const CompiledGrammar& grammar, const std::string& text, const Sentence& sentence,
+                std::vector<Token> tokens);
   SentenceWords(const SentenceWords&) = delete;  // `names` refers to the tokens
   SentenceWords& operator=(const SentenceWords&) = delete;
 

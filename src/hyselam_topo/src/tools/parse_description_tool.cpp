@@ -103,7 +103,9 @@ json notUnderstood(const Utterance& utterance) {
           {"range", rangeOf(utterance.range)},
           {"reason", utterance.reason},
           {"code", utterance.reason_code},
-          {"culprit", rangeOf(utterance.culprit)}};
+          {"culprit", rangeOf(utterance.culprit)},
+          {"suggestion", utterance.suggestion},
+          {"suggests_meaning", utterance.suggests_meaning}};
 }
 
 json issueOf(const DescriptionIssue& issue) {

@@ -1,0 +1,65 @@
+#include "asides.hpp"
+
+#include <algorithm>
+
+namespace hyselam_topo {
+namespace language {
+namespace {
+
+bool isComma(const Token& token) {
+  return token.kind == TokenKind::kComma;
+}
+
+/// Whether the token may carry what people mean to tell.
+bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) {
+  if (token.kind != TokenKind::kWord) return true;
+  if (token.starts_upper && !is_first && token.text.size() > 1) return true;
+  if (grammar.telling_words.count(token.folded) != 0) return true;
+  if (grammar.refusing_words.count(token.folded) != 0) return true;
+  if (grammar.number_words.count(token.folded) != 0) return true;
+  return std::any_of(grammar.name_types.begin(), grammar.name_types.end(), [&](const auto& type) {
+    return type.nouns.count(token.folded) != 0 || type.titles.count(token.folded) != 0 ||
+           type.plurals.count(token.folded) != 0;
+  });
+}
+
+}  // namespace
+
+std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar) {
+  std::vector<Aside> asides;
+  std::size_t parts = 0;
+  for (std::size_t begin = 0; begin < tokens.size();) {
+    if (isComma(tokens[begin])) {
+      ++begin;
+      continue;
+    }
+    std::size_t end = begin;
+    bool tells = false;
+    for (; end < tokens.size() && !isComma(tokens[end]); ++end) {
+      tells = tells || mayTell(tokens[end], end == 0, grammar);
+    }
+    ++parts;
+    if (!tells) asides.push_back({begin, end});
+    begin = end;
+  }
+  if (asides.size() == parts) asides.clear();
+  return asides;
+}
+
+std::vector<Token> without(const std::vector<Token>& tokens, const std::vector<Aside>& asides) {
+  std::vector<Token> left;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const bool dropped = std::any_of(asides.begin(), asides.end(), [i](const Aside& aside) {
+      return aside.begin <= i && i < aside.end;
+    });
+    if (dropped) continue;
+    // No comma at the borders, and one is enough.
+    if (isComma(tokens[i]) && (left.empty() || isComma(left.back()))) continue;
+    left.push_back(tokens[i]);
+  }
+  while (!left.empty() && isComma(left.back())) left.pop_back();
+  return left;
+}
+
+}  // namespace language
+}  // namespace hyselam_topo

@@ -1,0 +1,27 @@
+// Asides: parts between commas that say nothing of the building ("which by the way is far too
+// small", "silly").
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiled_grammar.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// Tokens [begin, end) between commas or the borders of the sentence, without the commas.
+struct Aside {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// The parts that may be left out: they hold no word that tells of places, sides, numbers, denial
+/// or doubt, and no name. None if nothing else would be left.
+std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar);
+
+/// The tokens without an aside: a comma stands for it.
+std::vector<Token> without(const std::vector<Token>& tokens, const std::vector<Aside>& asides);
+
+}  // namespace language
+}  // namespace hyselam_topo

@@ -1,0 +1,28 @@
+// The nearest sentence that is understood: what was said less words that no pattern has a place
+// for. It is only ever proposed, never taken down: the words left out may have mattered.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiled_grammar.hpp"
+#include "sentence_words.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+struct ShorterSentence {
+  std::string text;
+  std::vector<std::string> names;  ///< in it, in their order
+};
+
+/// Nothing if too much would have to be left out.
+std::optional<ShorterSentence> shorterSentence(const SentenceWords& words);
+
+/// An example sentence of the kind that shares the most telling words with this one; "" without
+/// examples.
+std::string nearestExample(const SentenceWords& words);
+
+}  // namespace language
+}  // namespace hyselam_topo
