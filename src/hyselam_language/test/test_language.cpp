@@ -90,6 +90,25 @@ TEST(TopoParser, ProposesWhatWasSaidWithoutTheWordsInTheWay) {
   EXPECT_EQ(proposed("The kitchen may hum next to the lab."), "");
 }
 
+TEST(TopoParser, PossessivesTakeTheNounSaidBefore) {
+  const auto outlineOf = [](const std::string& text) {
+    return testing::outline(parser().parse(text).utterances.at(0));
+  };
+  EXPECT_EQ(outlineOf("On your left you have three offices: Tom's, Ann's and Wei's."),
+            "neighbours count=3 places=Tom's office,Ann's office,Wei's office side=left");
+  EXPECT_EQ(outlineOf("O gabinete do Rui fica em frente ao da Teresa."),
+            "opposite a=gabinete do Rui b=gabinete da Teresa");
+  const Utterance alone = parser().parse("The kitchen is next to Mary's.").utterances.at(0);
+  ASSERT_EQ(alone.names("b").size(), 1u);
+  EXPECT_TRUE(alone.names("b")[0].elliptic);
+}
+
+TEST(TopoParser, RangesNameAllBetween) {
+  const Utterance said = parser().parse("On your left you have rooms 101 to 104.").utterances.at(0);
+  EXPECT_EQ(testing::outline(said),
+            "neighbours places=room 101,room 102,room 103,room 104 side=left");
+}
+
 TEST(Grammar, FurtherFilesAddToTheFirst) {
   const std::string more =
       "format: hyselam_grammar\nversion: 1\nlanguage: xx\nclasses: {colour: {green: [green]}}\n"

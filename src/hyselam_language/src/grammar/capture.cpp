@@ -26,7 +26,10 @@ class Capture {
         break;
       case EdgeKind::kName:
         for (const FoundName& name : words_.namesAt(step.from, edge.b)) {
-          if (name.end == step.to) slotOf(edge, step.from, step.to).names.push_back(name.name);
+          if (name.end != step.to) continue;
+          auto& names = slotOf(edge, step.from, step.to).names;
+          names.push_back(name.name);
+          names.insert(names.end(), name.more.begin(), name.more.end());
         }
         break;
       case EdgeKind::kCount:

@@ -52,6 +52,9 @@ struct NameType {
   std::set<std::string> joiners;                 ///< behind them an article may stand: "of the"
   std::set<std::string> stop;                    ///< never within a name
   std::set<std::string> speaker;                 ///< before what is the speaker's: "my"
+  std::set<std::string> elliptic_suffix;         ///< "Mary's": the noun was said before
+  std::set<std::string> elliptic_prefix;         ///< "o da Teresa": the same
+  std::set<std::string> range_words;             ///< "rooms 101 to 106"
   std::set<std::string> generic;                 ///< no name on their own: "room"
   std::set<std::string> quantities;              ///< no name begins so: "several"
   std::map<std::string, std::string> forbidden;  ///< word -> code of the reason

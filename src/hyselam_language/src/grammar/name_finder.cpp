@@ -28,6 +28,22 @@ bool isStop(const Token& token, const NameType& type) {
           type.stop.count(token.folded) != 0);
 }
 
+std::optional<int> wholeNumber(const std::string& text) {
+  constexpr std::size_t kMaxDigits = 6;
+  const bool digits = !text.empty() && text.size() <= kMaxDigits &&
+                      text.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? std::optional<int>(std::stoi(text)) : std::nullopt;
+}
+
+/// "mary's"
+bool endsWithAny(const std::string& word, const NameType& type) {
+  return std::any_of(type.elliptic_suffix.begin(), type.elliptic_suffix.end(),
+                     [&](const std::string& suffix) {
+                       return word.size() > suffix.size() &&
+                              word.compare(word.size() - suffix.size(), suffix.size(), suffix) == 0;
+                     });
+}
+
 /// Nothing but letters a .. z.
 bool isAscii(const std::string& word) {
   return std::all_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; });
@@ -111,7 +127,72 @@ std::optional<FoundName> NameFinder::inRow(std::size_t at, const NameType& type)
   if (title.empty()) return std::nullopt;
   SaidName name = nameOf(begin, end);
   name.text = title + " " + name.text;
-  return FoundName{end, kNameCost + kNameWordCost, name};
+  FoundName found{end, kNameCost + kNameWordCost, name, {}};
+  addRange(type, title, &found);
+  return found;
+}
+
+void NameFinder::addRange(const NameType& type, const std::string& title, FoundName* first) const {
+  constexpr int kLongestRange = 50;
+  const Token& from = tokens_[first->end - 1];
+  std::optional<int> begin = wholeNumber(from.text), last;
+  std::size_t end = first->end;
+  const std::size_t dash = from.text.find('-');
+  if (dash != std::string::npos) {
+    begin = wholeNumber(from.text.substr(0, dash));
+    last = wholeNumber(from.text.substr(dash + 1));
+  } else if (end + 1 < tokens_.size() && type.range_words.count(tokens_[end].lower) != 0) {
+    last = wholeNumber(tokens_[end + 1].text);
+    end += 2;
+  }
+  if (!begin || !last || *last <= *begin || *last - *begin > kLongestRange) return;
+  SaidName each = first->name;
+  first->name.text = title + " " + std::to_string(*begin);
+  each.range = tokens_[end - 1].range;
+  for (int number = *begin + 1; number <= *last; ++number) {
+    each.text = title + " " + std::to_string(number);
+    first->more.push_back(each);
+  }
+  first->end = end;
+}
+
+std::string NameFinder::nounBefore(std::size_t at, const NameType& type) const {
+  const auto isNoun = [&](std::size_t k) {
+    return type.nouns.count(tokens_[k].folded) != 0 || type.titles.count(tokens_[k].folded) != 0;
+  };
+  for (std::size_t k = at; k-- > 0;) {
+    const auto plural = type.plurals.find(tokens_[k].folded);
+    if (plural != type.plurals.end()) return plural->second;
+    if (!isNoun(k)) continue;
+    // "gabinete do Rui", "Paul's office": an owner's, too.
+    const bool owned_behind = !type.elliptic_prefix.empty() && k + 1 < at &&
+                              type.elliptic_prefix.count(tokens_[k + 1].folded) != 0;
+    std::size_t begin = k;
+    while (begin > 0 && tokens_[begin - 1].kind == TokenKind::kWord &&
+           !isStop(tokens_[begin - 1], type) && !endsWithAny(tokens_[begin - 1].lower, type)) {
+      --begin;
+    }
+    const bool owned_before = begin > 0 && endsWithAny(tokens_[begin - 1].lower, type);
+    if (owned_behind) return tokens_[k].text;
+    if (owned_before) return nameOf(begin, k + 1).text;
+  }
+  return "";
+}
+
+bool NameFinder::isElliptic(std::size_t begin, std::size_t end, const NameType& type) const {
+  if (type.elliptic_prefix.count(tokens_[begin].folded) != 0) return end > begin + 1;
+  return endsWithAny(tokens_[end - 1].lower, type);
+}
+
+void NameFinder::complete(std::size_t begin, std::size_t end, const NameType& type,
+                          SaidName* name) const {
+  if (name->quoted || !isElliptic(begin, end, type)) return;
+  const std::string noun = nounBefore(begin, type);
+  if (noun.empty()) {
+    name->elliptic = true;
+  } else {
+    name->text = type.head_first ? noun + " " + name->text : name->text + " " + noun;
+  }
 }
 
 bool NameFinder::isPart(std::size_t begin, std::size_t end, const NameType& type) const {
@@ -171,8 +252,9 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       const std::string wrong = whatIsWrong(begin, k + 1, indefinite, type);
       if (wrong.empty()) {
         found.push_back(
-            {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1)});
+            {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1), {}});
         found.back().name.speaker = speaker;
+        complete(begin, k + 1, type, &found.back().name);
       } else {
         failures_.push_back({begin, wrong, k + 1});
       }

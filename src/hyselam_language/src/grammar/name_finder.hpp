@@ -16,6 +16,7 @@ struct FoundName {
   std::size_t end = 0;  ///< the token behind it
   int cost = 0;
   SaidName name;
+  std::vector<SaidName> more;  ///< behind it: those of "rooms 101 to 106"
 };
 
 /// Why words are no name.
@@ -46,6 +47,13 @@ class NameFinder {
   /// "room", if the code at a token belongs to such a row; "" otherwise.
   std::string titleOfRow(std::size_t at, const NameType& type) const;
   std::optional<FoundName> inRow(std::size_t at, const NameType& type) const;
+  /// "101 to 106": the rest of it behind the first code; does nothing for what is no such range.
+  void addRange(const NameType& type, const std::string& title, FoundName* first) const;
+  /// "Mary's", "da Teresa": the noun that was said before it in the sentence: "office"; "" for
+  /// none.
+  std::string nounBefore(std::size_t at, const NameType& type) const;
+  bool isElliptic(std::size_t begin, std::size_t end, const NameType& type) const;
+  void complete(std::size_t begin, std::size_t end, const NameType& type, SaidName* name) const;
   /// "the door of the kitchen", "the kitchen door".
   bool isPart(std::size_t begin, std::size_t end, const NameType& type) const;
   /// "room i 110": a letter that is a word elsewhere.

@@ -14,11 +14,19 @@ namespace {
 /// Keys of plain lists of words.
 const std::map<std::string, std::set<std::string> NameType::*>& wordKeys() {
   static const std::map<std::string, std::set<std::string> NameType::*> kKeys{
-      {"definite", &NameType::definite}, {"indefinite", &NameType::indefinite},
-      {"joiners", &NameType::joiners},   {"speaker", &NameType::speaker},
-      {"generic", &NameType::generic},   {"quantities", &NameType::quantities},
-      {"feminine", &NameType::feminine}, {"between", &NameType::between},
-      {"parts", &NameType::parts},       {"part_joiners", &NameType::part_joiners}};
+      {"definite", &NameType::definite},
+      {"indefinite", &NameType::indefinite},
+      {"joiners", &NameType::joiners},
+      {"speaker", &NameType::speaker},
+      {"elliptic_suffix", &NameType::elliptic_suffix},
+      {"elliptic_prefix", &NameType::elliptic_prefix},
+      {"range_words", &NameType::range_words},
+      {"generic", &NameType::generic},
+      {"quantities", &NameType::quantities},
+      {"feminine", &NameType::feminine},
+      {"between", &NameType::between},
+      {"parts", &NameType::parts},
+      {"part_joiners", &NameType::part_joiners}};
   return kKeys;
 }
 
