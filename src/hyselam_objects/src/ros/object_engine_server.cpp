@@ -1,12 +1,12 @@
 #include "hyselam_objects/ros/object_engine_server.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
+#include "hyselam_objects/language/answer_text.hpp"
 #include "hyselam_objects/language/link_places.hpp"
 #include "hyselam_topological_map/ros/conversions.hpp"
 
@@ -166,32 +166,20 @@ void ObjectEngineServer::refuseFrame(const std::string& reason) {
 }
 
 hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
-  hyselam_msgs::ObjectAnswer out;
-  const std::vector<std::string> unknown_before = fill_map_.unknownKinds(dictionary_);
   const ObjectMap map_before = map_;
-  std::size_t understood = 0;
-  const std::vector<ObjectReply> replies = fill_map_.process(text);
-  for (const ObjectReply& reply : replies) {
-    out.reply += (out.reply.empty() ? "" : " ") + reply.text;
-    out.objects.insert(out.objects.end(), reply.objects.begin(), reply.objects.end());
-    for (const Id id : reply.places) {
-      out.places.push_back(map_.findPlace(id)->name);
-      out.place_ids.push_back(map_.findPlace(id)->topological);
-    }
-    understood += reply.kind != ReplyKind::kNotUnderstood;
-    out.is_question = reply.kind == ReplyKind::kQuestion;
-    if (reply.code == "going") out.go_to_place = 1;
-    if (reply.code == "shown") demonstrated_.start(reply.kind_of_object);
+  const TextAnswer answer = answerText(text, map_, dictionary_, fill_map_);
+  hyselam_msgs::ObjectAnswer out;
+  out.reply = answer.text;
+  out.understood = answer.understood;
+  out.is_question = answer.is_question;
+  out.go_to_place = answer.go_to_place;
+  out.objects = answer.objects;
+  for (const ObjectPlace& place : answer.places) {
+    out.places.push_back(place.name);
+    out.place_ids.push_back(place.topological);
   }
-  // If only a part is not understood, the reply says so.
-  out.understood = understood > 0;
-  // NewObject: the robot asks to be shown kinds that are new and that it cannot recognize.
-  for (const std::string& kind : fill_map_.unknownKinds(dictionary_)) {
-    if (std::find(unknown_before.begin(), unknown_before.end(), kind) == unknown_before.end()) {
-      out.reply += " " + fill_map_.showRequest(kind);
-    }
-  }
-  all_understood_ = understood == replies.size();
+  for (const std::string& kind : answer.shown) demonstrated_.start(kind);
+  all_understood_ = answer.all_understood;
   // Saved before anybody gets the confirmation.
   if (!(map_ == map_before)) map_file_.save(map_);
   publishMap();

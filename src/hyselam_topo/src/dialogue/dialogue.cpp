@@ -148,12 +148,24 @@ void Dialogue::enterPlace(Reply& out) {
   if (here == 0 || robot().in_doorway || here == asked_) return;
   if (question_.kind != Question::Kind::kNone) return;
   asked_ = here;
-  switch (askPlace(nameStateOf(*places_.map().findPlace(here)), params_.ask)) {
+  askAboutPlace(here, params_.ask, out);
+}
+
+Reply Dialogue::askHere() {
+  Reply out = reply();
+  const Id here = robot().place;
+  if (here == 0 || question_.kind != Question::Kind::kNone) return out;
+  askAboutPlace(here, AskPolicy::kAlways, out);
+  return out;
+}
+
+void Dialogue::askAboutPlace(Id place, AskPolicy policy, Reply& out) {
+  switch (askPlace(nameStateOf(*places_.map().findPlace(place)), policy)) {
     case PlaceQuestion::kConfirmName:
-      askConfirm(here, out);
+      askConfirm(place, out);
       break;
     case PlaceQuestion::kName:
-      askName(here, out);
+      askName(place, out);
       break;
     case PlaceQuestion::kNothing:
       break;

@@ -35,6 +35,9 @@ void Dialogue::recordStatements(Turn& turn) {
   for (const DescriptionIssue& issue : turn.issues) {
     out.sentences.push_back(p.say(issue.kind == IssueKind::kNotice ? "notice" : "issue",
                                   {{"text", issue.text}, {"reason", issue.reason}}));
+    if (issue.kind != IssueKind::kNotice) {
+      out.refusals.push_back({issue.text, issue.reason, false});
+    }
   }
   turn.issues.clear();
   if (turn.sides && robot().has_pose) heading_ = robot().pose.theta;

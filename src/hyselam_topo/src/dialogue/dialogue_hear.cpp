@@ -17,9 +17,10 @@ void joinForwarded(const std::string& text, std::size_t utterances,
       std::none_of(forwarded.begin(), forwarded.end(),
                    [](const ForwardedSentence& each) { return each.refusal.empty(); });
   if (!all_refused) return;
-  ForwardedSentence whole{text, "", true};
+  ForwardedSentence whole{text, "", true, ""};
   for (const ForwardedSentence& each : forwarded) {
     whole.refusal += (whole.refusal.empty() ? "" : " ") + each.refusal;
+    whole.reason += (whole.reason.empty() ? "" : "; ") + each.reason;
     whole.about_object = whole.about_object && each.about_object;
   }
   forwarded = {whole};
@@ -99,6 +100,7 @@ Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   const ParsedText parsed = parse(text);
   Turn turn;
   turn.reply = reply();
+  turn.reply.utterances = parsed.utterances;
   turn.text = text;
   turn.options = options;
   for (const Utterance& u : parsed.utterances) {
@@ -123,8 +125,10 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
         phrases().say("not_understood", {{"text", u.text}, {"reason", u.reason}});
     if (options.forward_unknown) {
       forward(u, refusal, turn);
+      turn.reply.forwarded.back().reason = u.reason;
     } else {
       turn.not_understood.push_back(refusal);
+      turn.reply.refusals.push_back({u.text, u.reason, false});
     }
     return;
   }
@@ -158,6 +162,7 @@ void Dialogue::handleCommand(const Utterance& u, Turn& turn) {
   if (turn.options.forward_unknown && out.unknown_name && nothing_done &&
       out.sentences.size() == said + 1) {
     forward(u, out.sentences.back(), turn);
+    turn.reply.forwarded.back().reason = out.sentences.back();
     out.sentences.pop_back();
   }
 }
@@ -167,7 +172,7 @@ void Dialogue::forward(const Utterance& u, const std::string& refusal, Turn& tur
   const std::size_t begin = std::min(turn.end, u.range.begin);
   const std::string whole = turn.text.substr(begin, std::max(u.range.end, begin) - begin);
   turn.reply.forwarded.push_back(
-      {u.correction ? whole : u.text, refusal, u.reason_code == "object"});
+      {u.correction ? whole : u.text, refusal, u.reason_code == "object", ""});
 }
 
 // ---- Small talk ----

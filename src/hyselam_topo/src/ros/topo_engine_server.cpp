@@ -146,15 +146,7 @@ void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
 Reply TopoEngineServer::hear(const std::string& text) {
   updatePose();
   publishHumanText(text);
-  HearOptions options;
-  options.forward_unknown = forwarder_->hasListeners();
-  options.objects_spoken_of = objects_spoken_of_;
-  options.others_asked_last = object_asked_last_;
-  Reply reply = dialogue_.hear(text, options);
-  if (dialogue_.question().kind != Question::Kind::kNone && !reply.sentences.empty()) {
-    object_asked_last_ = false;
-  }
-  if (reply.forwarded.empty()) objects_spoken_of_ = false;
+  Reply reply = shared_.hear(text, forwarder_->hasListeners());
   act(reply);
   for (const ForwardedSentence& sentence : reply.forwarded) forwarder_->forward(sentence);
   return reply;
@@ -162,32 +154,20 @@ Reply TopoEngineServer::hear(const std::string& text) {
 
 void TopoEngineServer::onObjectAnswer(const ForwardedSentence& sentence,
                                       const hyselam_msgs::ObjectAnswer* answer) {
-  if (answer != nullptr && answer->understood) {
-    objects_spoken_of_ = true;
-    object_asked_last_ = answer->is_question != 0;
-    say(answer->reply);
-    if (answer->go_to_place == 0) return;
-    std::vector<Id> goals;
-    for (std::size_t i = 0; i < answer->places.size(); ++i) {
-      const Id id = i < answer->place_ids.size() ? answer->place_ids[i] : 0;
-      if (id != 0 && dialogue_.map().findPlace(id) != nullptr) {
-        goals.push_back(id);
-      } else {
-        const std::vector<Id> named = dialogue_.places().find(answer->places[i]);
-        goals.insert(goals.end(), named.begin(), named.end());
-      }
-    }
-    const std::string name = answer->places.empty() ? "" : answer->places.front();
-    if (goals.empty() && name.empty()) return;  // the reply has told why
-    act(dialogue_.goTo(name, goals));
+  if (answer == nullptr) {
+    act(shared_.answered(sentence, nullptr));
     return;
   }
-  if (sentence.refusal.empty()) {
-    act(dialogue_.hear(sentence.text));
-  } else {
-    say(answer != nullptr && sentence.about_object ? answer->reply : sentence.refusal);
+  OtherAnswer other;
+  other.understood = answer->understood != 0;
+  other.reply = answer->reply;
+  other.is_question = answer->is_question != 0;
+  other.go_to_place = answer->go_to_place != 0;
+  for (std::size_t i = 0; i < answer->places.size(); ++i) {
+    other.places.push_back(
+        {answer->places[i], i < answer->place_ids.size() ? answer->place_ids[i] : 0});
   }
-  if (answer == nullptr) say(dialogue_.sayNobodyAnswers());
+  act(shared_.answered(sentence, &other));
 }
 
 void TopoEngineServer::updatePose() {

@@ -71,6 +71,14 @@ struct ForwardedSentence {
   std::string refusal;
   /// Refused because it is about an object: another node can give the reason.
   bool about_object = false;
+  std::string reason;  ///< of the refusal, without the sentence around it
+};
+
+/// A statement, or part of one, that is not understood or contradicts what is known.
+struct Refusal {
+  std::string text;       ///< what was said
+  std::string reason;     ///< for people
+  bool by_other = false;  ///< the reason is that of the node that handles objects
 };
 
 struct Reply {
@@ -78,7 +86,9 @@ struct Reply {
   std::vector<std::string> sentences;
   std::vector<DialogueAction> actions;
   std::vector<ForwardedSentence> forwarded;
-  bool unknown_name = false;  ///< unknown place name in the last command
+  std::vector<Refusal> refusals;      ///< what was not taken down; `sentences` tells it
+  std::vector<Utterance> utterances;  ///< what was heard
+  bool unknown_name = false;          ///< unknown place name in the last command
 
   std::string text() const;  ///< the sentences, separated by spaces
   bool has(DialogueAction::Kind kind) const;
@@ -154,6 +164,11 @@ class Dialogue {
   Reply addVirtualPlace(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names);
   Reply addWall(const DescribedWall& wall);
+  /// Asks about the robot's place now, as on entering it with AskPolicy::kAlways. Nothing where its
+  /// name is confirmed, the place is not known, or another question is open.
+  Reply askHere();
+  /// A reply without content, in the language of the conversation.
+  Reply reply() const;
 
   // ---- State ----
   const AugmentedTopologicalMap& map() const { return places_.map(); }
@@ -184,7 +199,6 @@ class Dialogue {
   using Handler = void (Dialogue::*)(const Utterance&, Turn&);
 
   const Phrases& phrases() const;
-  Reply reply() const;
   ParsedText parse(const std::string& text);
   void handleUtterance(const Utterance& u, Turn& turn);
   void handleCommand(const Utterance& u, Turn& turn);
@@ -215,6 +229,7 @@ class Dialogue {
 
   // questions of the robot, and their answers
   void enterPlace(Reply& reply);
+  void askAboutPlace(Id place, AskPolicy policy, Reply& reply);
   void askConfirm(Id place, Reply& reply);
   void askName(Id place, Reply& reply);
   /// Asks whether a place with other names has these as well.

@@ -23,6 +23,7 @@
 
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topo/dialogue/shared_dialogue.hpp"
 #include "hyselam_topo/ros/goal_driver.hpp"
 #include "hyselam_topo/ros/sentence_forwarder.hpp"
 #include "hyselam_topo/ros/topo_engine_parameters.hpp"
@@ -98,6 +99,7 @@ class TopoEngineServer {
   std::string who_;
   TopoEngineParams params_;
   Dialogue dialogue_;
+  SharedDialogue shared_{dialogue_};  // with the node that handles objects
   std::string grid_frame_ = "map";
   ros::Time grid_stamp_;
   bool changed_ = false;  // since the state was saved
@@ -117,8 +119,6 @@ class TopoEngineServer {
   tf2_ros::TransformListener tf_listener_;
   GoalDriver driver_;
   std::optional<SentenceForwarder> forwarder_;
-  bool objects_spoken_of_ = false;  // in the last sentence
-  bool object_asked_last_ = false;  // the last question was about an object
   struct Publishers {
     ros::Publisher text, conversation, place, map, markers, question, grid, path, poses,
         initial_pose, follow, names;

@@ -1,0 +1,39 @@
+// A talk as a text file: one line is one thing that is said or that happens.
+//
+//   # a comment; empty lines are left out, too
+//   @ kitchen              the robot stands in the middle of the kitchen (or of "SS03")
+//   @pose 1.5 2 0.3        ... at x, y [m] and theta [rad] in the map
+//   @ask                   the robot asks now what there is to ask about its place
+//   @name SS03 kitchen     known beforehand: the name of a place, confirmed
+//   @guess SS03 kitchen    ... only guessed
+//   @drive library         the robot is on its way there, and not there yet
+//   @arrive                ... now it is
+//   @id NAME               of the next thing that is said, for the records
+//   @reset                 a new talk from the beginning
+//   Where are you?         anything else is said by a person
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hyselam_common/pose2.hpp"
+
+namespace hyselam_conversation {
+
+struct Step {
+  enum class Kind { kSay, kPlace, kPose, kAsk, kName, kGuess, kDrive, kArrive, kId, kReset };
+  Kind kind = Kind::kSay;
+  std::string text;   ///< kSay: what is said; kId: the id
+  std::string place;  ///< name or code
+  std::string name;   ///< kName, kGuess
+  hyselam::Pose2 pose;
+};
+
+/// The steps of a text. @throws hyselam::InputError with `source` and the line for a line that
+/// begins with @ and is none of the above.
+std::vector<Step> stepsOf(const std::string& text, const std::string& source);
+
+/// "1.5,2,0.3" or "1.5 2 0.3": x, y [m], theta [rad]. False for another text.
+bool parsePose(const std::string& text, hyselam::Pose2* pose);
+
+}  // namespace hyselam_conversation

@@ -1,0 +1,74 @@
+#include "hyselam_topo/dialogue/shared_dialogue.hpp"
+
+#include <iterator>
+
+namespace hyselam_topo {
+namespace {
+
+/// What `next` says and does comes after what `reply` does.
+void append(Reply next, Reply& reply) {
+  const auto move = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  reply.language = next.language;
+  move(next.sentences, reply.sentences);
+  move(next.actions, reply.actions);
+  move(next.refusals, reply.refusals);
+}
+
+}  // namespace
+
+Reply SharedDialogue::hear(const std::string& text, bool others_listen) {
+  HearOptions options;
+  options.forward_unknown = others_listen;
+  options.objects_spoken_of = objects_spoken_of_;
+  options.others_asked_last = object_asked_last_;
+  Reply reply = dialogue_.hear(text, options);
+  if (dialogue_.question().kind != Question::Kind::kNone && !reply.sentences.empty()) {
+    object_asked_last_ = false;
+  }
+  if (reply.forwarded.empty()) objects_spoken_of_ = false;
+  return reply;
+}
+
+Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAnswer* answer) {
+  if (answer != nullptr && answer->understood) return carryOut(*answer);
+  Reply reply = dialogue_.reply();
+  if (sentence.refusal.empty()) {
+    append(dialogue_.hear(sentence.text), reply);
+  } else {
+    const bool by_other = answer != nullptr && sentence.about_object;
+    reply.sentences.push_back(by_other ? answer->reply : sentence.refusal);
+    reply.refusals.push_back({sentence.text, sentence.reason, by_other});
+  }
+  if (answer == nullptr) reply.sentences.push_back(dialogue_.sayNobodyAnswers());
+  return reply;
+}
+
+Reply SharedDialogue::carryOut(const OtherAnswer& answer) {
+  objects_spoken_of_ = true;
+  object_asked_last_ = answer.is_question;
+  Reply reply = dialogue_.reply();
+  reply.sentences.push_back(answer.reply);
+  if (!answer.go_to_place) return reply;
+  const std::vector<Id> goals = goalsOf(answer);
+  const std::string name = answer.places.empty() ? "" : answer.places.front().name;
+  if (goals.empty() && name.empty()) return reply;  // the answer has told why
+  append(dialogue_.goTo(name, goals), reply);
+  return reply;
+}
+
+std::vector<Id> SharedDialogue::goalsOf(const OtherAnswer& answer) const {
+  std::vector<Id> goals;
+  for (const OtherAnswer::Goal& each : answer.places) {
+    if (each.place != 0 && dialogue_.map().findPlace(each.place) != nullptr) {
+      goals.push_back(each.place);
+    } else {
+      const std::vector<Id> named = dialogue_.places().find(each.name);
+      goals.insert(goals.end(), named.begin(), named.end());
+    }
+  }
+  return goals;
+}
+
+}  // namespace hyselam_topo
