@@ -70,7 +70,9 @@ struct Exchange {
   std::vector<hyselam_topo::Utterance> utterances;  ///< what the dialogue about places heard
   std::vector<std::string> forwarded;               ///< what was passed on to the layer of objects
   std::vector<hyselam_topo::Refusal> refusals;      ///< what was not taken down, and why
-  std::string question;                             ///< open after it; "" for none
+  /// Read-back: what is new or changed in the description, and answers of the layer of objects.
+  std::vector<std::string> understood;
+  std::string question;  ///< open after it; "" for none
   std::vector<NameChange> names;
   bool stopped = false;               ///< the robot was told to stop
   std::optional<Id> goal;             ///< where it was sent

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_objects/language/answer_text.hpp"
 #include "hyselam_objects/language/link_places.hpp"
 
@@ -239,6 +240,7 @@ void Conversation::askObjects(const hyselam_topo::ForwardedSentence& sentence, E
   const bool by_objects =
       answer.understood || std::any_of(reply.refusals.begin(), reply.refusals.end(),
                                        [](const auto& refusal) { return refusal.by_other; });
+  if (answer.understood) out.understood.push_back(answer.text);
   take(reply, by_objects ? Layer::kObjects : Layer::kPlaces, out);
 }
 
@@ -250,11 +252,19 @@ Exchange Conversation::say(const std::string& text) {
   const std::vector<std::string> names =
       here == nullptr ? std::vector<std::string>() : namesOf(*here);
   fill_map_.setRobotPlace(names.empty() ? "" : names.front());
+  const hyselam_topo::DescribedBuilding described = dialogue_.description();
   const Reply reply = shared_.hear(text, true);
   out.utterances = reply.utterances;
   take(reply, Layer::kPlaces, out);
   for (const hyselam_topo::ForwardedSentence& sentence : reply.forwarded) {
     askObjects(sentence, out);
+  }
+  try {
+    const std::vector<std::string> change = hyselam_topo::describeChange(
+        described, dialogue_.description(), languages_->places.grammar(out.language));
+    out.understood.insert(out.understood.begin(), change.begin(), change.end());
+  } catch (const hyselam::InputError&) {
+    // A name that cannot be put into words is in the description all the same.
   }
   if (out.goal && params_.arrive_at_once && motion_ == Motion::kDriving) {
     Exchange there = arrive();
