@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hyselam_common/utf8.hpp"
+#include "minimal_automaton.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -27,7 +28,7 @@ class Compiler {
     if (reachableByNothing(0, end)) throw PatternError("it matches nothing at all");
     findFirstWords();
     findNeededWords();
-    return std::move(automaton_);
+    return minimal(automaton_, kMaxStates);
   }
 
  private:

@@ -121,9 +121,22 @@ void PatternRun::leave(std::size_t at, int state, bool is_first) {
     reach(at + 1, state, {generation_, cost + leave_out_[at], state, -1, at, tied});
   }
   const auto& edges = pattern_->states[static_cast<std::size_t>(state)];
-  for (std::size_t e = 0; e < edges.size(); ++e) {
+  const auto go = [&](std::size_t e) {
     follow(edges[e], at, {generation_, cost, state, static_cast<int>(e), at, tied});
+  };
+  // Edges for words come first, sorted: only those of the word that stands here are looked at.
+  const auto words_end = std::partition_point(
+      edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kWord; });
+  if (at < words_.tokens.size() && words_end != edges.begin()) {
+    for (const auto& match : words_.matches[at]) {
+      const auto from = std::lower_bound(edges.begin(), words_end, match.word,
+                                         [](const Edge& edge, int word) { return edge.a < word; });
+      for (auto each = from; each != words_end && each->a == match.word; ++each) {
+        go(static_cast<std::size_t>(each - edges.begin()));
+      }
+    }
   }
+  for (auto e = static_cast<std::size_t>(words_end - edges.begin()); e < edges.size(); ++e) go(e);
 }
 
 bool PatternRun::mayBeSkipped(std::size_t at) const {
