@@ -12,6 +12,7 @@
 #include "automaton.hpp"
 #include "hyselam_language/grammar/utterance.hpp"
 #include "tokens.hpp"
+#include "urgent_phrases.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -114,6 +115,7 @@ struct CompiledGrammar {
   std::vector<NameType> name_types;
   std::vector<IntentInfo> intents;
   std::vector<std::string> values;  ///< entries of word classes
+  UrgentPhrases urgent;
   std::map<std::string, std::string> refusing_words;
   std::set<std::string> telling_words;  ///< folded: a part of a sentence with one is no aside
   std::map<std::string, std::string> reasons;

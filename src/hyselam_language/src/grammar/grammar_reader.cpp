@@ -35,6 +35,7 @@ class Reader {
     for (const auto& [name, node] : intents_) readIntent(name, node, context_, grammar_.get());
     if (grammar_->intents.empty()) roots.front().fail("there are no intents");
     grammar_->telling_words.insert(grammar_->unit_words.begin(), grammar_->unit_words.end());
+    addLightWords();
     finishKnownWords();
     return grammar_;
   }
@@ -76,6 +77,7 @@ class Reader {
         {"classes", [&](const GrammarNode& node) { readClasses(node); }},
         {"refusing_words", [&](const GrammarNode& node) { addMeanings(node, &g.refusing_words); }},
         {"telling_words", [&](const GrammarNode& node) { addFolded(node, &g.telling_words); }},
+        {"urgent", [&](const GrammarNode& node) { readUrgent(node, &g.urgent); }},
         {"reasons", texts(&g.reasons)},
         {"say", texts(&g.say)},
         {"intents", [&](const GrammarNode& node) { noteIntents(node); }}};
@@ -172,6 +174,20 @@ class Reader {
     node.each([&](const std::string& name, const GrammarNode& intent) {
       intents_.emplace_back(name, intent);
     });
+  }
+
+  /// What may stand around clauses may stand around urgent words, too.
+  void addLightWords() {
+    CompiledGrammar& g = *grammar_;
+    for (const auto* phrases : {&g.fillers_before, &g.fillers_after, &g.corrections}) {
+      for (const Phrase& phrase : *phrases) {
+        std::string text;
+        for (const int word : phrase) text += g.vocabulary.text(word) + " ";
+        g.urgent.add(UrgentKind::kAround, text);
+      }
+    }
+    for (const int word : g.fillers_inner)
+      g.urgent.add(UrgentKind::kAround, g.vocabulary.text(word));
   }
 
   void checkSeparators(const GrammarNode& root) const {
