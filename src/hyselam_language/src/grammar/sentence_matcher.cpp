@@ -206,6 +206,11 @@ bool sameNames(std::vector<std::string> a, std::vector<std::string> b) {
   return a == b;
 }
 
+/// Reasons that only tell where reading came to an end.
+bool isGuess(const std::string& code) {
+  return code == "no_pattern" || code == "no_name" || code == "misspelt" || code == "question";
+}
+
 /// What the person might have meant, or how such things are said.
 void propose(const SentenceWords& words, Utterance* refused) {
   if (words.isTooLong()) return;
@@ -220,6 +225,12 @@ void propose(const SentenceWords& words, Utterance* refused) {
     if (isUnderstood(again) && sameNames(namesIn(again), shorter->names)) {
       refused->suggestion = text;
       refused->suggests_meaning = true;
+      const bool is_reason_of_its_own =
+          words.grammar.reasons.count("in_the_way") == 0 || !isGuess(refused->reason_code);
+      if (is_reason_of_its_own || shorter->left_out.end == 0) return;
+      refused->reason_code = "in_the_way";
+      refused->culprit = shorter->left_out;
+      refused->reason = words.grammar.reason("in_the_way", words.textOf(shorter->left_out));
       return;
     }
   }

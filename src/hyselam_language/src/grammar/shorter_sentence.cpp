@@ -78,7 +78,7 @@ class Shortening {
         best_ - patterns_ > 2 * kLeaveOutTelling + kLeaveOutWord) {
       return std::nullopt;
     }
-    return ShorterSentence{keptText(), names_};
+    return ShorterSentence{keptText(), names_, longestRunLeftOut()};
   }
 
  private:
@@ -105,18 +105,20 @@ class Shortening {
     }
   }
 
-  /// Whether a word was left out right behind a name that may well belong to it: "the loading
-  /// [bay]".
+  /// Whether an article before a name was left out, or a word behind it that may well belong to
+  /// it: "the loading [bay]".
   bool cutsName(const std::vector<PatternRun::Step>& path) const {
     std::vector<bool> kept(words_.tokens.size(), false);
     for (const PatternRun::Step& step : path) {
       for (std::size_t at = step.from; step.edge != nullptr && at < step.to; ++at) kept[at] = true;
     }
     return std::any_of(path.begin(), path.end(), [&](const PatternRun::Step& step) {
-      return step.edge != nullptr && step.edge->kind == EdgeKind::kName && step.to < kept.size() &&
-             !kept[step.to] &&
-             mayGoOn(words_.tokens[step.to],
-                     words_.grammar.name_types[static_cast<std::size_t>(step.edge->b)]);
+      if (step.edge == nullptr || step.edge->kind != EdgeKind::kName) return false;
+      const NameType& type = words_.grammar.name_types[static_cast<std::size_t>(step.edge->b)];
+      const bool without_article = step.from > 0 && !kept[step.from - 1] &&
+                                   type.isArticle(words_.tokens[step.from - 1].folded);
+      const bool behind = step.to < kept.size() && !kept[step.to];
+      return without_article || (behind && mayGoOn(words_.tokens[step.to], type));
     });
   }
 
@@ -138,6 +140,21 @@ class Shortening {
     }
     patterns_ = cost;
     for (std::size_t at = 0; at < kept_.size(); ++at) patterns_ -= kept_[at] ? 0 : costs_[at];
+  }
+
+  TextRange longestRunLeftOut() const {
+    TextRange longest;
+    std::size_t most = 0;
+    for (std::size_t at = 0; at < kept_.size();) {
+      std::size_t end = at;
+      while (end < kept_.size() && !kept_[end] && !words_.isComma(end)) ++end;
+      if (end - at > most) {
+        most = end - at;
+        longest = {words_.tokens[at].range.begin, words_.tokens[end - 1].range.end};
+      }
+      at = end + 1;
+    }
+    return longest;
   }
 
   std::string keptText() const {

@@ -15,6 +15,7 @@ namespace language {
 struct ShorterSentence {
   std::string text;
   std::vector<std::string> names;  ///< in it, in their order
+  TextRange left_out;              ///< the longest run of words left out
 };
 
 /// Nothing if too much would have to be left out.
