@@ -319,6 +319,8 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
       if (!noun && type.generic.count(word) == 0) return "no_name";
     }
   }
+  // "of the corridor": what stands before it is missing.
+  if (end - begin > 1 && type.joiners.count(first.folded) != 0) return "no_name";
   const std::string& name = nameOf(begin, end).text;
   if (!hyselam::wordError(name).empty() || name.size() > kMaxNameBytes) return "no_name";
   if (quoted) return "";
