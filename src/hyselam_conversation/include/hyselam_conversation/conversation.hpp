@@ -111,10 +111,10 @@ class Conversation {
   Exchange askHere();
 
   // ---- What is known beforehand, as from an earlier talk ----
-  /// Confirms a name. @throws hyselam::InputError as standAt(), and as Dialogue::name().
-  void confirmName(const std::string& place, const std::string& name);
-  /// A name that is only guessed, so that the robot asks whether it is right.
-  void guessName(const std::string& place, const std::string& name);
+  /// Confirms names. @throws hyselam::InputError as standAt(), and as Dialogue::name().
+  void confirmNames(const std::string& place, const std::vector<std::string>& names);
+  /// Names that are only guessed, so that the robot asks whether they are right. Throws likewise.
+  void guessNames(const std::string& place, const std::vector<std::string>& names);
 
   /// Any text of a person. Never throws, whatever the content.
   Exchange say(const std::string& text);

@@ -4,13 +4,13 @@
 //   @ kitchen              the robot stands in the middle of the kitchen (or of "SS03")
 //   @pose 1.5 2 0.3        ... at x, y [m] and theta [rad] in the map
 //   @ask                   the robot asks now what there is to ask about its place
-//   @name SS03 kitchen     known beforehand: the name of a place, confirmed
+//   @name SS03 toilet; WC  known beforehand: the names of a place, confirmed
 //   @guess SS03 kitchen    ... only guessed
 //   @drive library         the robot is on its way there, and not there yet
 //   @arrive                ... now it is
 //   @id NAME               of the next thing that is said, for the records
-//   @reset                 a new talk from the beginning
-//   Where are you?         anything else is said by a person
+//   @reset, @reset pt      a new talk from the beginning, in which the robot first speaks
+//   Portuguese Where are you?         anything else is said by a person
 #pragma once
 
 #include <string>
@@ -23,15 +23,18 @@ namespace hyselam_conversation {
 struct Step {
   enum class Kind { kSay, kPlace, kPose, kAsk, kName, kGuess, kDrive, kArrive, kId, kReset };
   Kind kind = Kind::kSay;
-  std::string text;   ///< kSay: what is said; kId: the id
-  std::string place;  ///< name or code
-  std::string name;   ///< kName, kGuess
+  std::string text;                ///< kSay: what is said; kId: the id; kReset: the language, or ""
+  std::string place;               ///< name or code
+  std::vector<std::string> names;  ///< kName, kGuess
   hyselam::Pose2 pose;
 };
 
 /// The steps of a text. @throws hyselam::InputError with `source` and the line for a line that
 /// begins with @ and is none of the above.
 std::vector<Step> stepsOf(const std::string& text, const std::string& source);
+
+/// Parts of a text between a sign, without spaces around them; empty ones are left out.
+std::vector<std::string> partsOf(const std::string& text, char separator);
 
 /// "1.5,2,0.3" or "1.5 2 0.3": x, y [m], theta [rad]. False for another text.
 bool parsePose(const std::string& text, hyselam::Pose2* pose);

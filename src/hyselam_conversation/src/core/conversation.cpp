@@ -95,14 +95,16 @@ Id Conversation::find(const std::string& place) const {
   return found->first;
 }
 
-void Conversation::confirmName(const std::string& place, const std::string& name) {
-  dialogue_.name(find(place), {name});
+void Conversation::confirmNames(const std::string& place, const std::vector<std::string>& names) {
+  dialogue_.name(find(place), names);
 }
 
-void Conversation::guessName(const std::string& place, const std::string& name) {
+void Conversation::guessNames(const std::string& place, const std::vector<std::string>& names) {
   const Id id = find(place);
   hyselam_topo::DialogueState state = dialogue_.state();
-  state.places.map.findPlace(id)->words = {{name, false}};
+  auto& words = state.places.map.findPlace(id)->words;
+  words.clear();
+  for (const std::string& name : names) words.push_back({name, false});
   dialogue_.restore(std::move(state));
 }
 
@@ -227,10 +229,12 @@ void Conversation::take(const Reply& reply, Layer layer, Exchange& out) {
 void Conversation::askObjects(const hyselam_topo::ForwardedSentence& sentence, Exchange& out) {
   out.forwarded.push_back(sentence.text);
   const hyselam_objects::TextAnswer answer =
-      answerText(sentence.text, objects_, dictionary_, fill_map_);
+      answerText(sentence.text, languages_->objects, objects_, dictionary_, fill_map_);
   hyselam_topo::OtherAnswer other;
   other.understood = answer.understood;
+  other.about_things = answer.about_things;
   other.reply = answer.text;
+  other.reason = answer.reason;
   other.is_question = answer.is_question;
   other.go_to_place = answer.go_to_place;
   for (const hyselam_objects::ObjectPlace& place : answer.places) {

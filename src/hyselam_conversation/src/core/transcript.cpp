@@ -39,8 +39,10 @@ bool readDirective(const std::string& line, Step* step) {
   switch (step->kind) {
     case Kind::kAsk:
     case Kind::kArrive:
-    case Kind::kReset:
       return rest.empty();
+    case Kind::kReset:
+      step->text = rest;
+      return true;
     case Kind::kPose:
       return parsePose(rest, &step->pose);
     case Kind::kId:
@@ -48,8 +50,9 @@ bool readDirective(const std::string& line, Step* step) {
       return !rest.empty();
     case Kind::kName:
     case Kind::kGuess:
-      std::tie(step->place, step->name) = cutWord(rest);
-      return !step->name.empty();
+      step->place = cutWord(rest).first;
+      step->names = partsOf(cutWord(rest).second, ';');
+      return !step->names.empty();
     default:
       step->place = rest;
       return !rest.empty();
@@ -57,6 +60,15 @@ bool readDirective(const std::string& line, Step* step) {
 }
 
 }  // namespace
+
+std::vector<std::string> partsOf(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, separator);) {
+    if (!trimmed(part).empty()) parts.push_back(trimmed(part));
+  }
+  return parts;
+}
 
 bool parsePose(const std::string& text, hyselam::Pose2* pose) {
   std::string spaced = text;

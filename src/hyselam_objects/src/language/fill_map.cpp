@@ -33,9 +33,12 @@ std::vector<ObjectReply> FillMap::process(const std::string& text) {
 ObjectReply FillMap::processStatement(const ObjectStatement& statement) {
   language_ = statement.language;
   switch (statement.kind) {
-    case UtteranceKind::kNotUnderstood:
-      return reply(ReplyKind::kNotUnderstood, "not_understood",
-                   {{"text", statement.text}, {"reason", statement.reason}});
+    case UtteranceKind::kNotUnderstood: {
+      ObjectReply out = reply(ReplyKind::kNotUnderstood, "not_understood",
+                              {{"text", statement.text}, {"reason", statement.reason}});
+      out.reason = statement.reason;
+      return out;
+    }
     case UtteranceKind::kAnswer:
       return processAnswer(statement);
     case UtteranceKind::kQuestion:

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <iterator>
 #include <sstream>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_language/building/place_names.hpp"
 #include "object_words.hpp"
 #include "shipped_object_texts.hpp"
 
@@ -130,6 +132,28 @@ struct ObjectParser::Words : ObjectWords {
     return out;
   }
 
+  bool isAboutThings(const std::vector<std::string>& said,
+                     const hyselam_topo::PlaceNames& places) const {
+    const auto is_place = [&](std::size_t i) {
+      return i < said.size() && things.count(said[i]) == 0 && places.kindOf(said[i]).has_value();
+    };
+    bool where_it_is = false;  // what comes next is the place of a thing
+    for (std::size_t i = 0; i < said.size(); ++i) {
+      if (where.count(said[i]) != 0) where_it_is = true;
+      const bool two = i + 1 < said.size() && things.count(said[i] + " " + said[i + 1]) != 0;
+      const bool thing = two || things.count(said[i]) != 0;
+      // "the printer room", "a sala da impressora"
+      const bool part_of_place =
+          thing && (is_place(i + (two ? 2 : 1)) ||
+                    (i >= 2 && of.count(said[i - 1]) != 0 && is_place(i - 2)));
+      if (thing && !part_of_place) return true;
+      if (!thing && !is_place(i) && !part_of_place) continue;
+      if (!where_it_is) return false;
+      where_it_is = false;
+    }
+    return false;
+  }
+
   ObjectStatement statement(const Utterance& u, const std::string& text) const {
     ObjectStatement out;
     out.kind = u.kind;
@@ -222,6 +246,19 @@ std::string ObjectParser::propertyWord(const std::string& language,
   const auto& words = words_[indexOf(language)]->property_words;
   const auto found = words.find(value);
   return found == words.end() ? value : found->second;
+}
+
+bool ObjectParser::isAboutThings(const std::string& text) const {
+  std::string spaced = lowerCase(text);
+  std::replace_if(
+      spaced.begin(), spaced.end(), [](char c) { return std::strchr(",.;:!?\"()", c) != nullptr; },
+      ' ');
+  const std::vector<std::string> said = split(spaced);
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    const hyselam_topo::PlaceNames places({parser_->grammars()[i]});
+    if (words_[i]->isAboutThings(said, places)) return true;
+  }
+  return false;
 }
 
 const hyselam_topo::Grammar& ObjectParser::grammar(const std::string& language) const {

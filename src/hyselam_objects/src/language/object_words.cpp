@@ -64,6 +64,8 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
       words.synonyms[lowerCase(each.first.Scalar())] = each.first.Scalar();
     }
     for (const auto& each : root["nouns"]) words.nouns.push_back(each.Scalar());
+    for (const auto& each : root["where"]) words.where.insert(lowerCase(each.Scalar()));
+    words.things = words.spelled();
   } catch (const YAML::Exception& e) {
     throw hyselam::InputError(source.name, "line " + std::to_string(e.mark.line + 1), e.msg);
   }
@@ -85,24 +87,29 @@ NounKind ObjectWords::singular(const std::string& word) const {
   return {word, false};
 }
 
-hyselam_topo::GrammarSource ObjectWords::grammar() const {
-  YAML::Node root;
-  root["format"] = "hyselam_grammar";
-  root["version"] = "1";
-  root["language"] = language;
-  std::set<std::string> generic, names;
+std::set<std::string> ObjectWords::spelled() const {
+  std::set<std::string> names;
   for (const std::string& noun : nouns) {
     names.insert(lowerCase(noun));
     names.insert(lowerCase(noun) + "s");
   }
   for (const auto& [word, kept] : synonyms) names.insert(word);
   for (const auto& [word, kept] : plurals) names.insert(word);
+  return names;
+}
+
+hyselam_topo::GrammarSource ObjectWords::grammar() const {
+  YAML::Node root;
+  root["format"] = "hyselam_grammar";
+  root["version"] = "1";
+  root["language"] = language;
+  std::set<std::string> generic;
   for (const auto& [word, number] : numbers) generic.insert(word);
   for (const auto& [word, property] : properties) generic.insert(word);
   generic.insert(another.begin(), another.end());
   YAML::Node object = root["names"]["object"], known = root["names"]["known_object"],
              property = root["names"]["property"], place = root["names"]["place"];
-  for (const std::string& noun : names) {
+  for (const std::string& noun : things) {
     object["nouns"]["object"].push_back(noun);
     known["nouns"]["object"].push_back(noun);
     place["forbidden"]["object"].push_back(noun);

@@ -28,12 +28,17 @@ struct ObjectWords {
   std::vector<std::pair<std::string, std::string>> plural_endings;  ///< the first that matches
   std::map<std::string, std::string> synonyms;  ///< word to the one that is kept
   std::vector<std::string> nouns;
+  std::set<std::string> things;  ///< words of nouns, plurals and synonyms, in lower case
+  std::set<std::string> where;   ///< words before the place of a thing: "in"
 
   /// @throws hyselam::InputError for a text that is no list of words.
   static ObjectWords fromYaml(const hyselam_topo::GrammarSource& source);
 
   /// The part of a grammar that follows from these words.
   hyselam_topo::GrammarSource grammar() const;
+
+  /// The nouns as they are written: singular, plural, synonyms.
+  std::set<std::string> spelled() const;
 
   /// "cups" is {"cup", true}.
   NounKind singular(const std::string& word) const;

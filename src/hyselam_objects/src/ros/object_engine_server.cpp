@@ -167,10 +167,12 @@ void ObjectEngineServer::refuseFrame(const std::string& reason) {
 
 hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
   const ObjectMap map_before = map_;
-  const TextAnswer answer = answerText(text, map_, dictionary_, fill_map_);
+  const TextAnswer answer = answerText(text, parser_, map_, dictionary_, fill_map_);
   hyselam_msgs::ObjectAnswer out;
   out.reply = answer.text;
   out.understood = answer.understood;
+  out.about_things = answer.about_things;
+  out.reason = answer.reason;
   out.is_question = answer.is_question;
   out.go_to_place = answer.go_to_place;
   out.objects = answer.objects;

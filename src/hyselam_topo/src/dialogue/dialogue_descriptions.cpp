@@ -36,7 +36,7 @@ void Dialogue::recordStatements(Turn& turn) {
     out.sentences.push_back(p.say(issue.kind == IssueKind::kNotice ? "notice" : "issue",
                                   {{"text", issue.text}, {"reason", issue.reason}}));
     if (issue.kind != IssueKind::kNotice) {
-      out.refusals.push_back({issue.text, issue.reason, false});
+      out.refusals.push_back({issue.text, issue.reason, false, ""});
     }
   }
   turn.issues.clear();

@@ -17,11 +17,14 @@ void joinForwarded(const std::string& text, std::size_t utterances,
       std::none_of(forwarded.begin(), forwarded.end(),
                    [](const ForwardedSentence& each) { return each.refusal.empty(); });
   if (!all_refused) return;
-  ForwardedSentence whole{text, "", true, ""};
+  ForwardedSentence whole;
+  whole.text = text;
+  whole.about_object = true;
   for (const ForwardedSentence& each : forwarded) {
     whole.refusal += (whole.refusal.empty() ? "" : " ") + each.refusal;
     whole.reason += (whole.reason.empty() ? "" : "; ") + each.reason;
     whole.about_object = whole.about_object && each.about_object;
+    if (whole.suggestion.empty()) whole.suggestion = each.suggestion;
   }
   forwarded = {whole};
 }
@@ -126,9 +129,10 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (options.forward_unknown) {
       forward(u, refusal, turn);
       turn.reply.forwarded.back().reason = u.reason;
+      turn.reply.forwarded.back().suggestion = u.suggestion;
     } else {
       turn.not_understood.push_back(refusal);
-      turn.reply.refusals.push_back({u.text, u.reason, false});
+      turn.reply.refusals.push_back({u.text, u.reason, false, u.suggestion});
     }
     return;
   }
@@ -171,8 +175,11 @@ void Dialogue::forward(const Utterance& u, const std::string& refusal, Turn& tur
   // A correction with what stands before it: "No, the pen ...".
   const std::size_t begin = std::min(turn.end, u.range.begin);
   const std::string whole = turn.text.substr(begin, std::max(u.range.end, begin) - begin);
-  turn.reply.forwarded.push_back(
-      {u.correction ? whole : u.text, refusal, u.reason_code == "object", ""});
+  ForwardedSentence sentence;
+  sentence.text = u.correction ? whole : u.text;
+  sentence.refusal = refusal;
+  sentence.about_object = u.reason_code == "object";
+  turn.reply.forwarded.push_back(std::move(sentence));
 }
 
 // ---- Small talk ----

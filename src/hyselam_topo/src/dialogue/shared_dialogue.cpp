@@ -37,9 +37,10 @@ Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAns
   if (sentence.refusal.empty()) {
     append(dialogue_.hear(sentence.text), reply);
   } else {
-    const bool by_other = answer != nullptr && sentence.about_object;
+    const bool by_other = answer != nullptr && (sentence.about_object || answer->about_things);
     reply.sentences.push_back(by_other ? answer->reply : sentence.refusal);
-    reply.refusals.push_back({sentence.text, sentence.reason, by_other});
+    reply.refusals.push_back({sentence.text, by_other ? answer->reason : sentence.reason, by_other,
+                              by_other ? "" : sentence.suggestion});
   }
   if (answer == nullptr) reply.sentences.push_back(dialogue_.sayNobodyAnswers());
   return reply;

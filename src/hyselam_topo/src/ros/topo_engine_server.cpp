@@ -160,7 +160,9 @@ void TopoEngineServer::onObjectAnswer(const ForwardedSentence& sentence,
   }
   OtherAnswer other;
   other.understood = answer->understood != 0;
+  other.about_things = answer->about_things != 0;
   other.reply = answer->reply;
+  other.reason = answer->reason;
   other.is_question = answer->is_question != 0;
   other.go_to_place = answer->go_to_place != 0;
   for (std::size_t i = 0; i < answer->places.size(); ++i) {

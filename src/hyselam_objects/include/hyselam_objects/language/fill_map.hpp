@@ -39,6 +39,7 @@ struct ObjectReply {
   std::string code;            ///< of the phrase: "contradiction", "which_one", ...
   std::vector<Id> objects;     ///< objects that the reply is about
   std::vector<Id> places;      ///< places that the reply is about
+  std::string reason;          ///< why it is not understood; "" otherwise
   std::string kind_of_object;  ///< of "this is a cup": kind of the demonstrated object
 };
 

@@ -75,6 +75,10 @@ class ObjectParser {
   const hyselam_topo::Grammar& grammar(const std::string& language = "") const;
   /// The word for a color or size of the map: "red", "vermelho".
   std::string propertyWord(const std::string& language, const std::string& value) const;
+  /// Whether a text that no parser may understand is rather about things than about places: it has
+  /// a known noun of a thing, and no kind of place comes before it save as where something is ("in
+  /// the kitchen"). "The printer room" is a place.
+  bool isAboutThings(const std::string& text) const;
   /// Kind and number of a noun of the first language; synonyms give the same kind.
   NounKind kindOf(const std::string& noun) const;
 

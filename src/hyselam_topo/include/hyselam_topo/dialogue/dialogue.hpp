@@ -71,14 +71,16 @@ struct ForwardedSentence {
   std::string refusal;
   /// Refused because it is about an object: another node can give the reason.
   bool about_object = false;
-  std::string reason;  ///< of the refusal, without the sentence around it
+  std::string reason;      ///< of the refusal, without the sentence around it
+  std::string suggestion;  ///< as Refusal::suggestion
 };
 
 /// A statement, or part of one, that is not understood or contradicts what is known.
 struct Refusal {
-  std::string text;       ///< what was said
-  std::string reason;     ///< for people
-  bool by_other = false;  ///< the reason is that of the node that handles objects
+  std::string text;        ///< what was said
+  std::string reason;      ///< for people
+  bool by_other = false;   ///< the reason is that of the node that handles objects
+  std::string suggestion;  ///< a sentence that would be understood; "": none
 };
 
 struct Reply {

@@ -17,8 +17,11 @@ struct OtherAnswer {
     std::string name;
     Id place = 0;  ///< in the topological map; 0: not known
   };
-  bool understood = false;  ///< false: the sentence is not about objects, or `reply` is a refusal
-  std::string reply;        ///< for people
+  bool understood = false;
+  /// Not understood, but rather about things than about places: `reply` is the refusal to give.
+  bool about_things = false;
+  std::string reply;   ///< for people
+  std::string reason;  ///< of a refusal, without the sentence around it
   bool is_question = false;
   bool go_to_place = false;  ///< "fetch the pen": drive to the nearest of `places`
   std::vector<Goal> places;  ///< that the reply is about

@@ -1,4 +1,4 @@
-#include "exchange_json.hpp"
+#include "hyselam_conversation/exchange_json.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -47,6 +47,7 @@ json recordOf(const Exchange& exchange, const Conversation& conversation,
   for (const hyselam_topo::Refusal& each : exchange.refusals) {
     refusals.push_back({{"text", each.text},
                         {"reason", each.reason},
+                        {"suggestion", each.suggestion},
                         {"layer", each.by_other ? "objects" : "places"}});
     reason += (reason.empty() ? "" : " ") + each.reason;
   }
