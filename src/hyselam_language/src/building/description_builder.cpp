@@ -2,63 +2,81 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "edit_description.hpp"
 #include "hyselam_common/errors.hpp"
+#include "issue_texts.hpp"
+#include "said_places.hpp"
+#include "statement.hpp"
 
 namespace hyselam_topo {
 namespace {
 
-const std::map<std::string, RelationKind>& relations() {
-  static const std::map<std::string, RelationKind> kRelations{{"next_to", RelationKind::kNextTo},
-                                                              {"opposite", RelationKind::kOpposite},
-                                                              {"between", RelationKind::kBetween},
-                                                              {"at_end_of", RelationKind::kAtEndOf},
-                                                              {"part_of", RelationKind::kInside}};
-  return kRelations;
+/// So many statements can be taken back.
+constexpr std::size_t kLongestHistory = 32;
+
+DescriptionIssue issueOf(const Utterance& u, IssueKind kind, const std::string& reason) {
+  DescriptionIssue issue;
+  issue.kind = kind;
+  issue.reason = reason;
+  issue.text = u.text;
+  issue.range = u.range;
+  return issue;
 }
 
-/// Points to what is said for as long as this lives.
-class Saying {
- public:
-  Saying(const Utterance** current, const Utterance& said) : current_(*current) {
-    current_ = &said;
+/// The places that a statement names, not by pronouns.
+std::vector<SaidName*> namesIn(Utterance* u) {
+  std::vector<SaidName*> names;
+  for (Slot& slot : u->slots) {
+    for (SaidName& name : slot.names) {
+      if (name.reference.empty()) names.push_back(&name);
+    }
   }
-  ~Saying() { current_ = nullptr; }
-  Saying(const Saying&) = delete;
-  Saying& operator=(const Saying&) = delete;
-
- private:
-  const Utterance*& current_;
-};
+  return names;
+}
 
 }  // namespace
 
 const char* toString(IssueKind kind) {
-  constexpr std::array<const char*, 5> kNames{"contradiction", "ambiguous", "no context",
-                                              "meaningless", "notice"};
+  constexpr std::array<const char*, 7> kNames{
+      "contradiction", "ambiguous", "no context", "meaningless", "notice", "ask", "strange name"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 
-DescriptionBuilder::DescriptionBuilder(const TopoParser& parser) : names_(parser.grammars()) {}
+void DescriptionContext::forgetReferences() {
+  subjects.clear();
+  group.clear();
+  told_of_group.clear();
+  side.reset();
+  kind_word.clear();
+}
+
+DescriptionBuilder::DescriptionBuilder(const TopoParser& parser, const DescriptionParams& params)
+    : params_(params), grammars_(parser.grammars()), names_(parser.grammars()) {}
 
 void DescriptionBuilder::continueFrom(DescribedBuilding building) {
   checkDescription(building, "description");
-  building_ = std::move(building);
-  variants_.clear();
-  subjects_.clear();
+  state_ = {std::move(building), {}};
+  history_.clear();
+}
+
+void DescriptionBuilder::setLanguage(const std::string& language) {
+  const auto found = std::find_if(grammars_.begin(), grammars_.end(),
+                                  [&](const Grammar& each) { return each.language() == language; });
+  if (found == grammars_.end()) {
+    throw hyselam::ParameterError("language", language, "a language of the parser");
+  }
+  language_ = static_cast<std::size_t>(found - grammars_.begin());
 }
 
 bool DescriptionBuilder::handles(const std::string& intent) {
-  static const std::array<const char*, 15> kIntents{
-      "robot_in", "this_is", "neighbours", "nth_neighbour", "contains",
-      "joined",   "alias",   "kind",       "size",          "length_of",
-      "width_of", "area",    "parts",      "building",      "exists"};
-  return relations().count(intent) != 0 || intent == "forget_place" ||
-         std::find(kIntents.begin(), kIntents.end(), intent) != kIntents.end();
+  static const std::set<std::string> kOthers{"speaker", "undo", "replace", "forget_everything"};
+  return statementKind(intent) != nullptr || kOthers.count(intent) != 0;
 }
 
 std::vector<DescriptionIssue> DescriptionBuilder::add(const ParsedText& text) {
+  if (!text.utterances.empty()) setLanguage(text.language);
   std::vector<DescriptionIssue> all;
   for (const Utterance& utterance : text.utterances) {
     std::vector<DescriptionIssue> issues = add(utterance);
@@ -67,135 +85,131 @@ std::vector<DescriptionIssue> DescriptionBuilder::add(const ParsedText& text) {
   return all;
 }
 
-std::vector<DescriptionIssue> DescriptionBuilder::add(const Utterance& utterance) {
-  issues_.clear();
-  if (!utterance.understood() || !handles(utterance.intent)) return {};
-  const Saying saying(&current_, utterance);
-  correction_ = utterance.correction;
-  corrected_ = false;
-  // A statement that fails half-way leaves nothing behind.
-  const DescribedBuilding building = building_;
-  const auto variants = variants_;
-  const auto subjects = subjects_;
-  const auto restore = [&] {
-    building_ = building;
-    variants_ = variants;
-    subjects_ = subjects;
-  };
-  try {
-    dispatch(utterance);
-    const bool may_correct = utterance.intent != "robot_in" && utterance.intent != "this_is";
-    if (correction_ && !corrected_ && may_correct && !(building_ == building)) {
-      restore();
-      report(IssueKind::kNoContext, "nothing was told that this corrects");
-    }
-  } catch (const Failed&) {
-    restore();
+void DescriptionBuilder::sentenceRefused() {
+  state_.context.forgetReferences();
+  state_.context.after_refusal = true;
+}
+
+std::vector<DescriptionIssue> DescriptionBuilder::add(const Utterance& u) {
+  if (!u.understood()) sentenceRefused();
+  if (!u.understood() || !handles(u.intent)) return {};
+  if (u.intent == "speaker") {
+    for (const SaidName& name : u.names("person")) setSpeaker(name.text);
+    return {};
   }
-  return std::move(issues_);
+  if (u.intent == "replace") return replaceLast(u);
+  if (u.intent == "undo") {
+    if (undo()) return {};
+    return {issueOf(u, IssueKind::kNoContext, issueText(grammars_[language_], "nothing_to_undo"))};
+  }
+  if (u.intent == "forget_everything") {
+    const DescriptionState before = std::exchange(state_, {});
+    if (!before.building.places.empty()) remember(before, u);
+    return {};
+  }
+  return record(u);
 }
 
-void DescriptionBuilder::dispatch(const Utterance& u) {
-  const auto is = [&u](const char* intent) { return u.intent == intent; };
-  const auto found = relations().find(u.intent);
-  if (found != relations().end()) return relation(u, found->second);
-  if (is("robot_in") || is("this_is")) return robotIn(u);
-  if (is("neighbours")) return neighbours(u);
-  if (is("nth_neighbour")) return nthNeighbour(u);
-  if (is("contains")) return contains(u);
-  if (is("joined")) return joined(u);
-  if (is("alias")) return alias(u);
-  if (is("kind")) return kind(u);
-  if (is("parts")) return parts(u);
-  if (is("building")) return buildingCount(u);
-  if (is("exists")) return exists(u);
-  if (is("forget_place")) return forget(u);
-  size(u);
+std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
+  const DescriptionState before = state_;
+  const Listener listener{names_,    grammars_[language_],
+                          params_,   speaker_,
+                          accepted_, history_.empty() ? nullptr : &history_.back().before.building};
+  state_.context.after_refusal = false;
+  Statement statement(u, listener, &state_);
+  try {
+    statementKind(u.intent)(statement);
+    const bool changed = !(state_.building == before.building);
+    if (u.correction && !statement.hasCorrected() && changed) {
+      // Before anything else was told, or after what was not understood, nothing can be corrected.
+      if (!history_.empty() && !before.context.after_refusal) {
+        statement.fail(IssueKind::kNoContext, "nothing_corrected");
+      }
+      statement.report(IssueKind::kNotice, "taken_as_new");
+    }
+    if (changed) remember(before, u);
+  } catch (const Statement::Failed&) {
+    // A statement that fails half-way leaves nothing behind, and nothing for "it" to mean.
+    state_ = before;
+    state_.context.forgetReferences();
+  }
+  return std::move(statement.issues());
 }
 
-// ---- Names ----
+void DescriptionBuilder::remember(const DescriptionState& before, const Utterance& said) {
+  if (history_.size() == kLongestHistory) history_.erase(history_.begin());
+  history_.push_back({before, said});
+}
+
+std::vector<DescriptionIssue> DescriptionBuilder::replaceLast(const Utterance& u) {
+  const Grammar& grammar = grammars_[language_];
+  const auto refuse = [&](IssueKind kind, const std::string& reason) {
+    state_.context.forgetReferences();
+    return std::vector<DescriptionIssue>{issueOf(u, kind, reason)};
+  };
+  const auto name = u.names("name"), instead = u.names("instead");
+  if (history_.empty()) {
+    return refuse(IssueKind::kNoContext, issueText(grammar, "nothing_to_undo"));
+  }
+  Utterance again = history_.back().said;
+  const std::vector<SaidName*> said = namesIn(&again);
+  std::vector<SaidName*> meant;
+  for (SaidName* each : said) {
+    const bool is = instead.empty() ||
+                    compare(names_.key(each->text), names_.key(instead[0].text)) != SameName::kNo;
+    if (is) meant.push_back(each);
+  }
+  if (name.size() != 1 || meant.empty()) {
+    const std::string what = instead.empty() ? "" : instead[0].text;
+    return refuse(IssueKind::kNoContext, issueText(grammar, "unknown_place", {{"place", what}}));
+  }
+  if (meant.size() > 1) {
+    std::string all;
+    for (const SaidName* each : meant) all += (all.empty() ? "'" : ", '") + each->text + "'";
+    return refuse(IssueKind::kAsk,
+                  issueText(grammar, "replace_what", {{"name", name[0].text}, {"names", all}}));
+  }
+  *meant.front() = name[0];
+  const Recorded last = history_.back();
+  const DescriptionState now = state_;
+  undo();
+  const std::vector<DescriptionIssue> issues = record(again);
+  const bool failed = state_.building == last.before.building;
+  if (failed) {
+    state_ = now;
+    history_.push_back(last);
+    state_.context.forgetReferences();
+  }
+  return issues;
+}
+
+void DescriptionBuilder::acceptName(const std::string& name) {
+  accepted_.insert(names_.key(name).full);
+}
+
+bool DescriptionBuilder::undo() {
+  if (history_.empty()) return false;
+  state_ = std::move(history_.back().before);
+  history_.pop_back();
+  return true;
+}
+
+const Utterance* DescriptionBuilder::lastStatement() const {
+  return history_.empty() ? nullptr : &history_.back().said;
+}
 
 std::vector<Id> DescriptionBuilder::find(const std::string& name) const {
-  std::vector<std::vector<std::string>> all;
-  for (const DescribedPlace& place : building_.places) {
-    all.push_back(allNamesOf(place));
-    const auto variants = variants_.find(place.id);
-    if (variants == variants_.end()) continue;
-    all.back().insert(all.back().end(), variants->second.begin(), variants->second.end());
-  }
-  std::vector<Id> ids;
-  for (const std::size_t i : names_.find(name, all)) ids.push_back(building_.places[i].id);
-  return ids;
-}
-
-Id DescriptionBuilder::place(const SaidName& name) {
-  if (name.reference == "here") {
-    if (!building_.robot_place) fail(IssueKind::kNoContext, "where the robot is was not told");
-    return *building_.robot_place;
-  }
-  if (!name.reference.empty()) {
-    if (subjects_.size() != 1) {
-      fail(subjects_.empty() ? IssueKind::kNoContext : IssueKind::kAmbiguous,
-           "'" + name.text + "' may mean " + (subjects_.empty() ? "nothing" : "several places"));
-    }
-    return subjects_.front();
-  }
-  const std::vector<Id> ids = find(name.text);
-  if (ids.size() > 1) {
-    std::string which;
-    for (const Id id : ids) which += (which.empty() ? "'" : ", '") + nameOf(id) + "'";
-    fail(IssueKind::kAmbiguous, "'" + name.text + "' may mean " + which);
-  }
-  if (ids.size() == 1) {
-    const DescribedPlace* known = building_.findPlace(ids.front());
-    if (known->name != name.text) {
-      auto& variants = variants_[known->id];
-      if (std::find(variants.begin(), variants.end(), name.text) == variants.end()) {
-        variants.push_back(name.text);
-      }
-    }
-    return ids.front();
-  }
-  return addPlace(name.text, names_.kindOf(name.text), &building_);
-}
-
-Id DescriptionBuilder::place(const Utterance& u, const std::string& slot) {
-  const std::vector<Id> ids = places(u, slot);
-  if (ids.size() != 1) fail(IssueKind::kMeaningless, "here must be one place");
-  return ids.front();
-}
-
-std::vector<Id> DescriptionBuilder::places(const Utterance& u, const std::string& slot) {
-  std::vector<Id> ids;
-  for (const SaidName& name : u.names(slot)) ids.push_back(place(name));
-  return ids;
-}
-
-std::string DescriptionBuilder::nameOf(Id id) const {
-  const DescribedPlace* found = building_.findPlace(id);
-  return found == nullptr ? "" : found->name;
+  return placesOf(name, state_, names_);
 }
 
 void DescriptionBuilder::setRobotPlace(const std::string& name) {
-  SaidName said;
-  said.text = name;
-  const Utterance nothing;
-  const Saying saying(&current_, nothing);
-  try {
-    building_.robot_place = place(said);
-    subjects_ = {*building_.robot_place};
-  } catch (const Failed&) {
-    throw hyselam::InputError("robot's place", "", issues_.back().reason);
+  const std::vector<Id> ids = find(name);
+  if (ids.size() > 1) {
+    throw hyselam::InputError("robot's place", "", "'" + name + "' may mean several places");
   }
-}
-
-void DescriptionBuilder::report(IssueKind issue, const std::string& reason) {
-  issues_.push_back({issue, reason, current_->text, current_->range});
-}
-
-void DescriptionBuilder::fail(IssueKind issue, const std::string& reason) {
-  report(issue, reason);
-  throw Failed();
+  const Id id = ids.empty() ? addPlace(name, names_.kindOf(name), &state_.building) : ids.front();
+  state_.building.robot_place = id;
+  state_.context.subjects = {id};
 }
 
 }  // namespace hyselam_topo

@@ -4,14 +4,26 @@
 
 #include "grammar/compiled_grammar.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "name_words.hpp"
 
 namespace hyselam_topo {
 namespace {
 
 using language::NameType;
 
-/// Words of letters and digits, folded, without the s of possessives.
-std::vector<std::string> wordsOf(const std::string& name) {
+bool hasDigit(const std::string& word) {
+  return std::any_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::string joined(const std::vector<std::string>& words, std::size_t from = 0) {
+  std::string all;
+  for (std::size_t i = from; i < words.size(); ++i) all += words[i];
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> wordsOfName(const std::string& name) {
   const std::string text = hyselam::utf8Fold(name);
   std::vector<std::string> words;
   bool in_word = false;
@@ -36,18 +48,6 @@ std::vector<std::string> wordsOf(const std::string& name) {
   return words;
 }
 
-bool hasDigit(const std::string& word) {
-  return std::any_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-std::string joined(const std::vector<std::string>& words, std::size_t from = 0) {
-  std::string all;
-  for (std::size_t i = from; i < words.size(); ++i) all += words[i];
-  return all;
-}
-
-}  // namespace
-
 SameName compare(const NameKey& a, const NameKey& b) {
   if (a.full == b.full) return SameName::kYes;
   if (a.core.empty() || a.core != b.core) return SameName::kNo;
@@ -59,7 +59,7 @@ PlaceNames::PlaceNames(std::vector<Grammar> grammars, std::string type)
     : grammars_(std::move(grammars)), type_(std::move(type)) {}
 
 NameKey PlaceNames::key(const std::string& name) const {
-  std::vector<std::string> words = wordsOf(name);
+  std::vector<std::string> words = wordsOfName(name);
   NameKey key;
   std::vector<const NameType*> types;
   for (const Grammar& grammar : grammars_) {
@@ -69,6 +69,16 @@ NameKey PlaceNames::key(const std::string& name) const {
   const bool article = words.size() > 1 && words[0].size() > 1 &&
                        anyType([&](const NameType* type) { return type->isArticle(words[0]); });
   if (article) words.erase(words.begin());
+  // "gabinete do Rui", "gabinete de Rui"
+  for (std::size_t k = 1; k + 1 < words.size();) {
+    const bool joins =
+        anyType([&](const NameType* type) { return type->joiners.count(words[k]) != 0; });
+    if (joins) {
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(k));
+    } else {
+      ++k;
+    }
+  }
   key.full = key.core = joined(words);
   std::size_t from = 0;
   while (from < words.size()) {
@@ -112,7 +122,7 @@ NameKey PlaceNames::key(const std::string& name) const {
 }
 
 std::optional<PlaceKind> PlaceNames::kindOf(const std::string& name) const {
-  const std::vector<std::string> words = wordsOf(name);
+  const std::vector<std::string> words = wordsOfName(name);
   for (const Grammar& grammar : grammars_) {
     const NameType* type = grammar.compiled().nameType(type_);
     if (type == nullptr) continue;

@@ -57,6 +57,7 @@ struct NameType {
   std::set<std::string> elliptic_prefix;         ///< "o da Teresa": the same
   std::set<std::string> range_words;             ///< "rooms 101 to 106"
   std::set<std::string> generic;                 ///< no name on their own: "room"
+  std::set<std::string> heads;                   ///< kinds of places, no name alone: "area"
   std::set<std::string> quantities;              ///< no name begins so: "several"
   std::map<std::string, std::string> forbidden;  ///< word -> code of the reason
   std::map<std::string, std::string> nouns;      ///< phrase -> kind: "dining hall" -> "room"

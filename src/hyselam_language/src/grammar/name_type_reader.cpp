@@ -22,6 +22,7 @@ const std::map<std::string, std::set<std::string> NameType::*>& wordKeys() {
       {"elliptic_prefix", &NameType::elliptic_prefix},
       {"range_words", &NameType::range_words},
       {"generic", &NameType::generic},
+      {"heads", &NameType::heads},
       {"quantities", &NameType::quantities},
       {"feminine", &NameType::feminine},
       {"between", &NameType::between},

@@ -14,7 +14,8 @@ namespace hyselam_topo {
 /// that have the same id.
 /// - What is new or has another value is told as it is now: "The boardroom is across from the
 ///   lifts.", "This is the corridor." (the robot's place).
-/// - What is told no more, of places that are still there: "No longer: the kitchen is on the left of
+/// - What is told no more, of places that are still there: "No longer: the kitchen is on the left
+/// of
 ///   the corridor." What was only made more exact (joined, then on the left) is not mentioned.
 /// - Places that are gone: "The kitchen is gone."
 /// The second place of one name is "another toilet". Told from nothing, TopoParser and

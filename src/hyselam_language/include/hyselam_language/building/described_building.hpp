@@ -89,7 +89,7 @@ struct DescribedRelation {
   RelationKind kind = RelationKind::kNextTo;
   Id a = 0;
   Id b = 0;
-  Id c = 0;  ///< only for kBetween and kAfter, otherwise 0
+  Id c = 0;                    ///< only for kBetween and kAfter, otherwise 0
   Side side = Side::kUnknown;  ///< only for kAtSide
   bool denied = false;         ///< "the lab is not next to the office"
 };

@@ -1,15 +1,15 @@
 // Builds the description of a building (the graph of Fig. 5.5) from successive statements and their
-// context: where the robot is, what "it" refers to. Corrections replace what was
-// said; what contradicts it is reported and left out.
+// context: where the robot is, what "it" refers to, who speaks. Corrections replace what was
+// said; what contradicts it is reported and left out; what only the person can tell is asked.
 #pragma once
 
-#include <map>
-#include <optional>
+#include <cstddef>
+#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "hyselam_language/building/described_building.hpp"
+#include "hyselam_language/building/description_state.hpp"
 #include "hyselam_language/building/place_names.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
 
@@ -18,88 +18,98 @@ namespace hyselam_topo {
 enum class IssueKind {
   kContradiction,  ///< contradicts an earlier statement, which is kept
   kAmbiguous,      ///< a name or "it" may mean several places
-  kNoContext,      ///< a side without the robot's place, a correction of nothing, "it" of nothing
+  kNoContext,      ///< a side without the robot's place, "it" of nothing, nothing to take back
   kMeaningless,    ///< a place beside itself, more names than announced, a size out of range
-  kNotice          ///< recorded, but something was assumed: metres
+  kNotice,         ///< recorded, but something was assumed or left out: metres
+  kAsk,            ///< the person can answer: whose office? which of two toilets?
+  kStrangeName     ///< a new name of no kind of place: "Shall I call a place 'uh-huh'?"
 };
 
-/// "contradiction", "ambiguous", "no context", "meaningless", "notice".
+/// "contradiction", "ambiguous", "no context", "meaningless", "notice", "ask", "strange name".
 const char* toString(IssueKind kind);
 
-/// A statement, or part of one, that could not be recorded as it was said.
+/// A statement, or part of one, that could not be recorded as it was said. Unless it is a notice,
+/// nothing of the statement has been recorded, or that part of it has not.
 struct DescriptionIssue {
   IssueKind kind = IssueKind::kContradiction;
-  std::string reason;  ///< for people
+  std::string reason;  ///< for people, in the language of setLanguage()
   std::string text;    ///< what was said
   TextRange range;
+  std::string name;  ///< of kStrangeName: the name, for acceptName()
+};
+
+struct DescriptionParams {
+  /// A new name is recorded at once only if it looks like one of a place (PlaceNames::isOfPlace()),
+  /// was put between quotation marks or was told as a name ("There is a place called Atlantis");
+  /// others are kStrangeName.
+  bool ask_strange_names = true;
 };
 
 class DescriptionBuilder {
  public:
   /// The word lists of all the parser's languages decide which names mean the same place.
-  explicit DescriptionBuilder(const TopoParser& parser);
+  explicit DescriptionBuilder(const TopoParser& parser, const DescriptionParams& params = {});
 
-  /// Continues an earlier description.
+  /// Continues an earlier description; nothing of before can be taken back.
   void continueFrom(DescribedBuilding building);
+
+  /// The language of reasons and of names that the builder makes ("Lisa's office"), at first the
+  /// parser's first one. Throws hyselam::ParameterError for one that the parser does not know.
+  void setLanguage(const std::string& language);
 
   /// Whether the intent describes the building: "neighbours", "size", ...; false for commands.
   static bool handles(const std::string& intent);
 
-  /// Records one statement; returns the problems. Utterances of other kinds are ignored.
+  /// Records one statement; returns the problems. Utterances of other kinds are ignored, but for
+  /// those not understood, which are as sentenceRefused(). "undo", "replace" and
+  /// "forget_everything" are statements, too.
   std::vector<DescriptionIssue> add(const Utterance& utterance);
+  /// The same of all; sets the language.
   std::vector<DescriptionIssue> add(const ParsedText& text);
+
+  /// A sentence was said that is not part of the description as it was not understood: "it" means
+  /// nothing of before it.
+  void sentenceRefused();
+
+  /// From now on "my office" is the office of this person; "" of nobody known.
+  void setSpeaker(const std::string& name) { speaker_ = name; }
+  const std::string& speaker() const { return speaker_; }
+
+  /// The person has confirmed that a name (DescriptionIssue::name) is one of a place: statements
+  /// that have it are recorded from now on.
+  void acceptName(const std::string& name);
+
+  /// Takes back the last statement that changed the description; false if there is none (at most
+  /// the last 32 can be taken back).
+  bool undo();
+  /// The statement that undo() would take back; nullptr if there is none.
+  const Utterance* lastStatement() const;
 
   /// Sets the robot's place from another source than the description; adds the place if new.
   void setRobotPlace(const std::string& name);
 
-  const DescribedBuilding& building() const { return building_; }
+  const DescribedBuilding& building() const { return state_.building; }
   /// The places that a name means; none, one, or several if it is ambiguous.
   std::vector<Id> find(const std::string& name) const;
 
  private:
-  struct Failed {};
+  struct Recorded {
+    DescriptionState before;
+    Utterance said;
+  };
 
-  void dispatch(const Utterance& u);
-  void robotIn(const Utterance& u);
-  void neighbours(const Utterance& u);
-  void nthNeighbour(const Utterance& u);
-  void contains(const Utterance& u);
-  void joined(const Utterance& u);
-  void relation(const Utterance& u, RelationKind kind);
-  void alias(const Utterance& u);
-  void kind(const Utterance& u);
-  void size(const Utterance& u);
-  void sizeOf(Id id, const Utterance& u);
-  void parts(const Utterance& u);
-  void buildingCount(const Utterance& u);
-  /// A number that was said; one known before is replaced by a correction only. `told`: ends the
-  /// sentence that says so.
-  void takeCount(const Utterance& u, const std::string& told, std::optional<int>* known);
-  void exists(const Utterance& u);
-  void forget(const Utterance& u);
+  std::vector<DescriptionIssue> record(const Utterance& utterance);
+  void remember(const DescriptionState& before, const Utterance& said);
+  std::vector<DescriptionIssue> replaceLast(const Utterance& utterance);
 
-  /// The place of a name, made if it is new. Throws Failed after reporting.
-  Id place(const SaidName& name);
-  Id place(const Utterance& u, const std::string& slot);
-  std::vector<Id> places(const Utterance& u, const std::string& slot);
-  void checkCount(const Utterance& u, std::size_t named);
-  void addAliases(const Utterance& u, Id id);
-  void connect(Id from, Id to, Side side, std::optional<std::size_t> order);
-  void setSize(std::optional<double>* member, const std::optional<double>& value,
-               const std::string& what);
-  std::string nameOf(Id id) const;
-  void report(IssueKind kind, const std::string& reason);
-  [[noreturn]] void fail(IssueKind kind, const std::string& reason);
-
+  DescriptionParams params_;
+  std::vector<Grammar> grammars_;
+  std::size_t language_ = 0;  ///< of `grammars_`
   PlaceNames names_;
-  DescribedBuilding building_;
-  std::map<Id, std::vector<std::string>> variants_;  ///< what places were called besides
-  std::vector<Id> subjects_;                         ///< what "it" may mean
-  std::optional<Side> side_;                         ///< what "the same side" may mean
-  bool correction_ = false;
-  bool corrected_ = false;  ///< the correction has found something to replace
-  const Utterance* current_ = nullptr;
-  std::vector<DescriptionIssue> issues_;
+  DescriptionState state_;
+  std::string speaker_;
+  std::set<std::string> accepted_;  ///< NameKey::full
+  std::vector<Recorded> history_;
 };
 
 }  // namespace hyselam_topo

@@ -2,9 +2,10 @@
 // not.
 //
 // Names are compared without case, accents, articles, spaces and signs, possessive s and the
-// repetition of a title ("room room3"). If they are still different, titles ("room", "lab": word
-// list of the grammar) in front of a code (a digit, one or two letters, a number word) may be
-// missing on one side; purely generic titles ("room") in front of any name.
+// words that join ("gabinete do Rui" is "gabinete de Rui") and the repetition of a title ("room
+// room3"). If they are still different, titles ("room", "lab": word list of the grammar) in front
+// of a code (a digit, one or two letters, a number word) may be missing on one side; purely generic
+// titles ("room") in front of any name.
 #pragma once
 
 #include <optional>
@@ -36,6 +37,19 @@ class PlaceNames {
   NameKey key(const std::string& name) const;
   /// Guessed from words such as "corridor" and "kitchen"; nothing without one.
   std::optional<PlaceKind> kindOf(const std::string& name) const;
+
+  /// Whether a name is clearly one of a place, in any of the languages: its head word is a noun of
+  /// places ("printer room", "sala de reuniões", "room Mozart"), it is a code (it holds digits or
+  /// ends in a single letter: "I-109", "block B"), or the place of an owner ("Tom's", "gabinete do
+  /// Rui").
+  bool isOfPlace(const std::string& name) const;
+  /// The noun at the head: "meeting room" of "the blue meeting room"; "" without one.
+  std::string headOf(const std::string& name) const;
+  /// Whether the head tells no more than that it is a room: "room 5", "I-109".
+  bool isPlainRoom(const std::string& name) const;
+  /// One of several: "meeting room" of "meeting rooms", "casa de banho" of "casas de banho"; the
+  /// name itself if it is none of several.
+  std::string singular(const std::string& name) const;
 
   /// For each list of names (of one place each): the index of those that `name` means. One that is
   /// equal in full goes before those that are equal but for a title; several: it is ambiguous.

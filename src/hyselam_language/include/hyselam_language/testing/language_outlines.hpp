@@ -21,41 +21,56 @@ inline std::string shown(double value) {
 
 /// Sorted lines, the same for descriptions that differ in ids and in the order of statements only:
 ///   at corridor | corridor left A > B | kitchen joins laundry | A size 6x8 | A area 48 | A length
-///   6 A aka B > C | A parts 3 | A kind corridor (with `kinds`) | count 6 | A next_to B | A between
-///   B | C | place A (nothing else described)
+///   6 | A aka B > C | A parts 3 | A kind corridor (with `kinds`) | count 6 | A next_to B | A
+///   between B | C | A after B | C | place A (nothing else described) | A doors 2 | A floor -1 | A
+///   small
+/// A rank stands behind "#", a distance behind "@": corridor left A > B#2 > C#-1@10. Denials begin
+/// with "not": not A next_to B | not A at_side left B. The second place of a name is "toilet~2".
 inline std::vector<std::string> outline(const DescribedBuilding& building, bool kinds = false) {
   std::vector<std::string> lines;
   std::map<Id, bool> told;
+  const auto nameOf = [&](Id id) {
+    const std::string& name = building.findPlace(id)->name;
+    const auto number = std::count_if(
+        building.places.begin(), building.places.end(),
+        [&](const DescribedPlace& other) { return other.name == name && other.id <= id; });
+    return number > 1 ? name + "~" + std::to_string(number) : name;
+  };
   const auto name = [&](Id id) {
     told[id] = true;
-    return building.findPlace(id)->name;
+    return nameOf(id);
   };
   if (building.robot_place) lines.push_back("at " + name(*building.robot_place));
   if (building.place_count) lines.push_back("count " + std::to_string(*building.place_count));
-  std::map<std::pair<Id, Side>, std::vector<std::pair<std::size_t, Id>>> rows;
+  std::map<std::pair<Id, Side>, std::vector<std::pair<std::size_t, std::string>>> rows;
   for (const DescribedConnection& each : building.connections) {
+    const std::string to = name(each.to) +
+                           (each.rank ? "#" + std::to_string(*each.rank) : std::string()) +
+                           (each.distance ? "@" + shown(*each.distance) : std::string());
     if (each.side == Side::kUnknown) {
-      lines.push_back(name(each.from) + " joins " + name(each.to));
+      lines.push_back(name(each.from) + " joins " + to);
     } else {
-      rows[{each.from, each.side}].emplace_back(each.order, each.to);
+      rows[{each.from, each.side}].emplace_back(each.order, to);
     }
   }
   for (auto& [from, row] : rows) {
     std::sort(row.begin(), row.end());
     std::string line = name(from.first) + " " + toString(from.second);
     for (std::size_t i = 0; i < row.size(); ++i) {
-      line += (i == 0 ? " " : " > ") + name(row[i].second);
+      line += (i == 0 ? " " : " > ") + row[i].second;
       if (row[i].first != i) line += "(" + std::to_string(row[i].first) + ")";
     }
     lines.push_back(line);
   }
   for (const DescribedRelation& each : building.relations) {
-    lines.push_back(name(each.a) + " " + toString(each.kind) + " " + name(each.b) +
-                    (each.c != 0 ? " | " + name(each.c) : ""));
+    const std::string side =
+        each.side == Side::kUnknown ? "" : std::string(" ") + toString(each.side);
+    lines.push_back((each.denied ? "not " : "") + name(each.a) + " " + toString(each.kind) + side +
+                    " " + name(each.b) + (each.c != 0 ? " | " + name(each.c) : ""));
   }
   for (const DescribedPlace& place : building.places) {
     const auto add = [&](const std::string& what) {
-      lines.push_back(place.name + " " + what);
+      lines.push_back(nameOf(place.id) + " " + what);
       told[place.id] = true;
     };
     if (place.length && place.width) {
@@ -65,6 +80,9 @@ inline std::vector<std::string> outline(const DescribedBuilding& building, bool 
       if (place.width) add("width " + shown(*place.width));
       if (place.area) add("area " + shown(*place.area));
     }
+    if (place.size_word) add(toString(*place.size_word));
+    if (place.doors) add("doors " + std::to_string(*place.doors));
+    if (place.floor) add("floor " + std::to_string(*place.floor));
     if (place.parts) add("parts " + std::to_string(*place.parts));
     if (kinds && place.kind) add(std::string("kind ") + toString(*place.kind));
     for (std::size_t i = 0; i < place.aliases.size(); ++i) {
@@ -76,7 +94,7 @@ inline std::vector<std::string> outline(const DescribedBuilding& building, bool 
     }
   }
   for (const DescribedPlace& place : building.places) {
-    if (!told[place.id]) lines.push_back("place " + place.name);
+    if (!told[place.id]) lines.push_back("place " + nameOf(place.id));
   }
   std::sort(lines.begin(), lines.end());
   return lines;

@@ -1,0 +1,277 @@
+#include "record_facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+#include "edit_description.hpp"
+#include "fact_sentences.hpp"
+#include "issue_texts.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+/// Distances are told by rule of thumb.
+constexpr double kDistanceTolerance = 0.2;
+constexpr std::size_t kBehindAll = static_cast<std::size_t>(-1);
+
+bool isSymmetric(RelationKind kind) {
+  return kind == RelationKind::kNextTo || kind == RelationKind::kOpposite ||
+         kind == RelationKind::kJoined;
+}
+
+/// The same for relations that say the same.
+std::tuple<RelationKind, Id, Id, Id, Side> meaning(const DescribedRelation& r) {
+  Id a = r.a, b = r.b, c = r.c;
+  if (isSymmetric(r.kind) && b < a) std::swap(a, b);
+  if (r.kind == RelationKind::kBetween && c < b) std::swap(b, c);
+  // From where the way comes does not change what comes after what.
+  if (r.kind == RelationKind::kAfter) c = 0;
+  return {r.kind, a, b, c, r.side};
+}
+
+std::string sideWords(Statement& s, Side side) {
+  return issueText(s.listener().grammar, std::string("side_") + toString(side));
+}
+
+std::string sentenceOf(Statement& s, const DescribedRelation& relation) {
+  const FactSentences facts(s.building(), s.listener().grammar, false);
+  return facts.ofRelation(relation, s.building().robot_place.value_or(0));
+}
+
+/// The position of a rank among others of its side: those counted from the end come last.
+int position(int rank) {
+  constexpr int kFromEnd = 1 << 20;
+  return rank > 0 ? rank : kFromEnd + rank;
+}
+
+/// The order for a place in its row: `wanted`, unless ranks tell otherwise.
+std::size_t orderFor(const DescribedBuilding& building, const Placement& p, std::size_t wanted) {
+  std::size_t low = 0, end = 0, high = kBehindAll;
+  for (const DescribedConnection& other : building.connections) {
+    if (other.from != p.from || other.side != p.side) continue;
+    end = std::max(end, other.order + 1);
+    if (!other.rank) continue;
+    const bool before = p.rank ? position(*other.rank) < position(*p.rank) : *other.rank > 0;
+    if (p.rank && before) low = std::max(low, other.order + 1);
+    if (!before && (p.rank || *other.rank < 0)) high = std::min(high, other.order);
+  }
+  return std::max(low, std::min({wanted, end, high}));
+}
+
+void insertConnection(Statement& s, const Placement& p, std::size_t wanted) {
+  auto& all = s.building().connections;
+  DescribedConnection made;
+  made.from = p.from;
+  made.to = p.to;
+  made.side = p.side;
+  made.rank = p.rank;
+  made.distance = p.distance;
+  for (const DescribedConnection& other : all) {
+    const bool same_row = other.from == p.from && other.side == p.side;
+    if (same_row && other.to == p.behind) wanted = other.order + 1;
+  }
+  made.order = orderFor(s.building(), p, wanted);
+  for (DescribedConnection& other : all) {
+    const bool same_row = other.from == p.from && other.side == p.side;
+    if (same_row && other.order >= made.order) ++other.order;
+  }
+  all.push_back(made);
+}
+
+/// A side or a connection that was denied.
+void checkDenied(Statement& s, const DescribedRelation& fact) {
+  auto& all = s.building().relations;
+  const auto denied = std::find_if(all.begin(), all.end(), [&](const DescribedRelation& other) {
+    return other.denied && meaning(other) == meaning(fact);
+  });
+  if (denied == all.end()) return;
+  s.replaces("denied", {{"fact", sentenceOf(s, *denied)}});
+  all.erase(denied);
+}
+
+void checkRank(Statement& s, const Placement& p) {
+  if (!p.rank) return;
+  for (DescribedConnection& other : s.building().connections) {
+    const bool taken =
+        other.from == p.from && other.side == p.side && other.to != p.to && other.rank == p.rank;
+    if (!taken) continue;
+    s.replaces("rank_taken", {{"rank", std::to_string(*p.rank)},
+                              {"side", sideWords(s, p.side)},
+                              {"place", s.nameOf(other.to)}});
+    other.rank.reset();
+  }
+}
+
+/// What is told of a connection besides what was told before.
+void mergeInto(Statement& s, const DescribedConnection& known, Placement* p) {
+  if (p->side == Side::kUnknown && known.from == p->from) p->side = known.side;
+  const bool other_rank = known.rank && p->rank && *known.rank != *p->rank;
+  if (other_rank) {
+    s.replaces("other_rank", {{"place", s.nameOf(p->to)},
+                              {"known", std::to_string(*known.rank)},
+                              {"rank", std::to_string(*p->rank)}});
+  }
+  const bool other_distance =
+      known.distance && p->distance &&
+      std::abs(*known.distance - *p->distance) > kDistanceTolerance * *known.distance;
+  if (other_distance) {
+    s.replaces("other_distance", {{"place", s.nameOf(p->to)},
+                                  {"known", shown(*known.distance)},
+                                  {"distance", shown(*p->distance)}});
+  }
+  const bool same_side = known.side == p->side || known.side == Side::kUnknown;
+  if (!p->rank && same_side) p->rank = known.rank;
+  if (!p->distance) p->distance = known.distance;
+}
+
+/// Whether nothing is left to do: seen from the other place, or contradicted.
+bool isSettled(Statement& s, const DescribedConnection& known, const Placement& p) {
+  if (p.side == Side::kUnknown) {
+    if (known.from != p.to || known.side == Side::kUnknown) return false;
+    if (p.rank || p.distance) {
+      s.report(IssueKind::kNotice, "seen_from", {{"place", s.nameOf(known.from)}});
+    }
+    return true;
+  }
+  if (known.side == Side::kUnknown) return false;
+  if (known.from == p.to) {
+    if (s.isCorrection()) {
+      s.setCorrected();
+      return false;
+    }
+    s.report(IssueKind::kNotice, "seen_from", {{"place", s.nameOf(known.from)}});
+    return true;
+  }
+  if (known.side == p.side) return false;
+  if (s.isCorrection()) {
+    s.setCorrected();
+    return false;
+  }
+  s.report(IssueKind::kContradiction, "other_side",
+           {{"place", s.nameOf(p.to)},
+            {"known", sideWords(s, known.side)},
+            {"side", sideWords(s, p.side)}});
+  return true;
+}
+
+}  // namespace
+
+DescribedRelation relationOf(RelationKind kind, Id a, Id b, Id c) {
+  DescribedRelation relation;
+  relation.kind = kind;
+  relation.a = a;
+  relation.b = b;
+  relation.c = c;
+  return relation;
+}
+
+void recordConnection(Statement& s, const Placement& placement) {
+  Placement p = placement;
+  if (p.from == p.to) s.fail(IssueKind::kMeaningless, "itself", {{"place", s.nameOf(p.to)}});
+  checkDenied(s, relationOf(RelationKind::kJoined, p.from, p.to));
+  if (p.side != Side::kUnknown) {
+    DescribedRelation at_side = relationOf(RelationKind::kAtSide, p.to, p.from);
+    at_side.side = p.side;
+    checkDenied(s, at_side);
+  }
+  const DescribedConnection* found = findConnection(s.building(), p.from, p.to);
+  std::size_t wanted = kBehindAll;
+  if (found != nullptr) {
+    const DescribedConnection known = *found;
+    if (isSettled(s, known, p)) return;
+    mergeInto(s, known, &p);
+    const bool stays = known.from == p.from && known.side == p.side;
+    if (stays && known.rank == p.rank && known.distance == p.distance && p.behind == 0) return;
+    checkRank(s, p);
+    if (stays) wanted = known.order;
+    removeConnection(known, &s.building());
+  } else {
+    checkRank(s, p);
+  }
+  insertConnection(s, p, wanted);
+}
+
+void recordRelation(Statement& s, const DescribedRelation& relation) {
+  const auto& [kind, a, b, c, side, denied] = relation;
+  if (a == b || a == c || b == c) s.fail(IssueKind::kMeaningless, "twice");
+  checkDenied(s, relation);
+  auto& all = s.building().relations;
+  const bool ordered = kind == RelationKind::kAfter || kind == RelationKind::kInside ||
+                       kind == RelationKind::kLarger;
+  if (ordered) {
+    const auto reversed = meaning(relationOf(kind, b, a));
+    const auto found = std::find_if(all.begin(), all.end(), [&](const DescribedRelation& other) {
+      return !other.denied && meaning(other) == reversed;
+    });
+    if (found != all.end()) {
+      s.replaces("reversed", {{"fact", sentenceOf(s, *found)}});
+      all.erase(found);
+    }
+  }
+  const bool known = std::any_of(all.begin(), all.end(), [&](const DescribedRelation& other) {
+    return !other.denied && meaning(other) == meaning(relation);
+  });
+  if (known) return;
+  // "No, it is next to the lab": instead of what it was said to be next to.
+  if (s.isCorrection() && !s.hasCorrected()) {
+    std::vector<DescribedRelation> same;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(same), [&](const auto& other) {
+      return other.kind == relation.kind && other.a == relation.a && !other.denied;
+    });
+    const DescribedBuilding* before = s.listener().before_last;
+    const auto wasTold = [&](const DescribedRelation& other) {
+      const auto& told = before->relations;
+      return std::find(told.begin(), told.end(), other) != told.end();
+    };
+    if (before != nullptr && same.size() > 1) {
+      same.erase(std::remove_if(same.begin(), same.end(), wasTold), same.end());
+    }
+    if (same.size() == 1) {
+      all.erase(std::find(all.begin(), all.end(), same.front()));
+      s.setCorrected();
+    }
+  }
+  all.push_back(relation);
+}
+
+void recordDenial(Statement& s, DescribedRelation denial) {
+  denial.denied = true;
+  if (denial.a == denial.b || denial.a == denial.c || denial.b == denial.c) {
+    s.fail(IssueKind::kMeaningless, "twice");
+  }
+  auto& all = s.building().relations;
+  bool is_known = false;
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const DescribedRelation& other) {
+                             if (meaning(other) != meaning(denial)) return false;
+                             is_known = is_known || other.denied;
+                             return !other.denied;
+                           }),
+            all.end());
+  s.setCorrected();
+  if (const DescribedConnection* found = findConnection(s.building(), denial.a, denial.b)) {
+    const bool side = denial.kind == RelationKind::kAtSide && found->from == denial.b &&
+                      found->to == denial.a && found->side == denial.side;
+    const bool end = denial.kind == RelationKind::kAtEndOf && found->side == Side::kUnknown &&
+                     found->from == denial.b;
+    if (side || end || denial.kind == RelationKind::kJoined) {
+      removeConnection(*found, &s.building());
+    }
+  }
+  if (!is_known) all.push_back(denial);
+}
+
+void recordNext(Statement& s, Id place, Id last, Id robot) {
+  recordRelation(s, relationOf(RelationKind::kAfter, place, last, robot));
+  const DescribedConnection* found = findConnection(s.building(), robot, last);
+  if (found == nullptr || found->from != robot || found->side == Side::kUnknown) return;
+  Placement placement(robot, place);
+  placement.side = found->side;
+  placement.behind = last;
+  recordConnection(s, placement);
+}
+
+}  // namespace hyselam_topo

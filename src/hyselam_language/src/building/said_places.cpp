@@ -1,0 +1,226 @@
+#include "said_places.hpp"
+
+#include <algorithm>
+
+#include "edit_description.hpp"
+#include "fact_sentences.hpp"
+#include "issue_texts.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+/// More places of one name than anybody counts.
+constexpr double kMostOfOneName = 100.0;
+
+/// "'room 110', 'lab 110'", or how they lie if they are of one name.
+std::string listed(Statement& s, const std::vector<Id>& ids) {
+  std::string all;
+  for (const Id id : ids) all += (all.empty() ? "'" : ", '") + s.nameOf(id) + "'";
+  return all;
+}
+
+bool haveOneName(Statement& s, const std::vector<Id>& ids) {
+  const PlaceNames& names = s.listener().names;
+  return std::all_of(ids.begin(), ids.end(), [&](Id id) {
+    return compare(names.key(s.nameOf(id)), names.key(s.nameOf(ids.front()))) == SameName::kYes;
+  });
+}
+
+[[noreturn]] void failSeveral(Statement& s, const SaidName& name, const std::vector<Id>& ids) {
+  if (haveOneName(s, ids)) {
+    s.fail(IssueKind::kAsk, "which", {{"name", name.text}, {"names", choices(s, ids)}});
+  }
+  s.fail(IssueKind::kAmbiguous, "may_mean", {{"name", name.text}, {"names", listed(s, ids)}});
+}
+
+/// What a word that stands for places means; fails if that was not told.
+std::vector<Id> referred(Statement& s, const SaidName& name) {
+  const DescriptionContext& context = s.context();
+  const auto nothing = [&] { s.fail(IssueKind::kNoContext, "it_nothing", {{"name", name.text}}); };
+  if (name.reference == "here") {
+    if (!s.building().robot_place) s.fail(IssueKind::kNoContext, "no_robot");
+    return {*s.building().robot_place};
+  }
+  if (name.reference == "self") s.fail(IssueKind::kMeaningless, "itself", {{"place", name.text}});
+  if (name.reference == "they") {
+    const auto& all = context.subjects.size() > 1 ? context.subjects : context.group;
+    const auto& they = all.empty() ? context.subjects : all;
+    if (they.empty()) nothing();
+    return they;
+  }
+  if (name.reference == "it") {
+    if (context.subjects.empty()) nothing();
+    if (context.subjects.size() > 1) {
+      s.fail(IssueKind::kAmbiguous, "it_several",
+             {{"name", name.text}, {"names", listed(s, context.subjects)}});
+    }
+    return context.subjects;
+  }
+  if (context.group.empty()) nothing();
+  if (name.reference == "first") return {context.group.front()};
+  if (name.reference == "last") return {context.group.back()};
+  std::vector<Id> left;
+  for (const Id id : context.group) {
+    if (context.told_of_group.count(id) == 0) left.push_back(id);
+  }
+  // "One is ...": of those not spoken of any is as good.
+  if (name.reference == "one" && !left.empty()) return {left.front()};
+  if (name.reference == "other" && left.size() == 1) return left;
+  s.fail(IssueKind::kNoContext, "it_what", {{"name", name.text}});
+}
+
+}  // namespace
+
+std::vector<Id> placesOf(const std::string& name, const DescriptionState& state,
+                         const PlaceNames& names) {
+  std::vector<std::vector<std::string>> all;
+  for (const DescribedPlace& place : state.building.places) {
+    all.push_back(allNamesOf(place));
+    const auto variants = state.context.variants.find(place.id);
+    if (variants == state.context.variants.end()) continue;
+    all.back().insert(all.back().end(), variants->second.begin(), variants->second.end());
+  }
+  std::vector<Id> ids;
+  for (const std::size_t i : names.find(name, all)) ids.push_back(state.building.places[i].id);
+  return ids;
+}
+
+std::string choices(Statement& s, const std::vector<Id>& ids) {
+  const Grammar& grammar = s.listener().grammar;
+  const SentenceWriter writer(grammar, false);
+  std::string all;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (i > 0) all += i + 1 == ids.size() ? issueText(grammar, "or") : ", ";
+    const auto& connections = s.building().connections;
+    const auto lies = std::find_if(connections.begin(), connections.end(), [&](const auto& each) {
+      return each.to == ids[i] && each.side != Side::kUnknown;
+    });
+    const std::string key =
+        lies == connections.end() ? "" : std::string("where_") + toString(lies->side);
+    if (!key.empty() && grammar.has(key)) {
+      all += writer.phrase(key, {writer.place("place", s.building(), lies->from)});
+    } else {
+      all += issueText(grammar, "number_of", {{"count", std::to_string(i + 1)}});
+    }
+  }
+  return all;
+}
+
+std::string fullName(Statement& s, const SaidName& name) {
+  const Grammar& grammar = s.listener().grammar;
+  const SentenceWriter writer(grammar, false);
+  if (name.speaker) {
+    const std::string& speaker = s.listener().speaker;
+    if (speaker.empty()) s.fail(IssueKind::kAsk, "whose", {{"name", name.text}});
+    return writer.phrase("owned",
+                         {{"owner", speaker, false, true}, {"kind", name.text, false, true}});
+  }
+  if (!name.elliptic) return name.text;
+  const std::string& kind = s.context().kind_word;
+  const auto full = [&](const std::string& word) {
+    return writer.phrase("elliptic",
+                         {{"owner", name.text, false, true}, {"kind", word, false, true}});
+  };
+  if (kind.empty()) {
+    s.fail(IssueKind::kAsk, "what_of",
+           {{"name", name.text}, {"example", full(grammar.say("office"))}});
+  }
+  return full(kind);
+}
+
+void checkName(Statement& s, const SaidName& name, const std::string& full) {
+  const Listener& listener = s.listener();
+  if (!listener.params.ask_strange_names || name.quoted || name.speaker || name.elliptic) return;
+  if (!s.said().word("named").empty()) return;
+  if (listener.names.isOfPlace(full)) return;
+  if (listener.accepted.count(listener.names.key(full).full) != 0) return;
+  s.report(IssueKind::kStrangeName, "strange", {{"name", full}});
+  s.issues().back().name = full;
+  throw Statement::Failed();
+}
+
+Id placeOf(Statement& s, const SaidName& name) {
+  if (!name.reference.empty()) {
+    const std::vector<Id> ids = referred(s, name);
+    if (ids.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
+    return ids.front();
+  }
+  const std::string full = fullName(s, name);
+  const std::vector<Id> ids = placesOf(full, s.state(), s.listener().names);
+  if (ids.size() > 1) failSeveral(s, name, ids);
+  const std::string head = s.listener().names.headOf(full);
+  if (!head.empty()) s.context().kind_word = head;
+  if (ids.empty()) {
+    checkName(s, name, full);
+    return addPlace(full, s.listener().names.kindOf(full), &s.building());
+  }
+  if (s.nameOf(ids.front()) != full) {
+    auto& variants = s.context().variants[ids.front()];
+    if (std::find(variants.begin(), variants.end(), full) == variants.end()) {
+      variants.push_back(full);
+    }
+  }
+  return ids.front();
+}
+
+Id placeOf(Statement& s, const std::string& slot) {
+  const std::vector<Id> ids = placesOf(s, slot);
+  if (ids.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
+  return ids.front();
+}
+
+std::vector<Id> placesOf(Statement& s, const std::string& slot) {
+  std::vector<Id> all;
+  for (const SaidName& name : s.said().names(slot)) {
+    const std::vector<Id> ids =
+        name.reference.empty() ? std::vector<Id>{placeOf(s, name)} : referred(s, name);
+    for (const Id id : ids) {
+      if (std::find(all.begin(), all.end(), id) == all.end()) all.push_back(id);
+    }
+  }
+  return all;
+}
+
+std::vector<Id> knownPlacesOf(Statement& s, const std::string& slot) {
+  for (const SaidName& name : s.said().names(slot)) {
+    if (!name.reference.empty()) continue;
+    if (placesOf(fullName(s, name), s.state(), s.listener().names).empty()) {
+      s.fail(IssueKind::kNoContext, "unknown_place", {{"place", name.text}});
+    }
+  }
+  return placesOf(s, slot);
+}
+
+std::vector<Id> placesOfOneName(Statement& s, const SaidName& name, double count) {
+  const PlaceNames& names = s.listener().names;
+  const std::string full = names.singular(fullName(s, name));
+  std::vector<Id> ids = placesOf(full, s.state(), names);
+  if (!(count >= 1.0) || count > kMostOfOneName) {
+    s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", shown(count)}});
+  }
+  if (static_cast<double>(ids.size()) > count) {
+    s.fail(IssueKind::kContradiction, "other_count",
+           {{"known", std::to_string(ids.size())}, {"count", shown(count)}});
+  }
+  if (ids.empty()) checkName(s, name, full);
+  while (static_cast<double>(ids.size()) < count) {
+    ids.push_back(addPlace(full, names.kindOf(full), &s.building()));
+  }
+  return ids;
+}
+
+std::vector<Id> placesBetween(Statement& s) {
+  const auto said = s.said().names("between");
+  if (said.size() == 1 && said[0].reference.empty()) {
+    const PlaceNames& names = s.listener().names;
+    const std::string full = names.singular(fullName(s, said[0]));
+    std::vector<Id> ids = placesOf(full, s.state(), names);
+    if (full != said[0].text && ids.empty()) return placesOfOneName(s, said[0], 2.0);
+    if (ids.size() == 2) return ids;
+  }
+  const std::vector<Id> ids = placesOf(s, "between");
+  if (ids.size() != 2) s.fail(IssueKind::kAsk, "between_what");
+  return ids;
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,193 @@
+// What statements of several places tell: which are joined, on which side, how else they lie.
+#include <algorithm>
+#include <map>
+
+#include "edit_description.hpp"
+#include "hyselam_common/numbers.hpp"
+#include "record_facts.hpp"
+#include "said_places.hpp"
+#include "statement_kinds.hpp"
+
+namespace hyselam_topo {
+namespace statements {
+namespace {
+
+/// More than anybody counts; checkDescription() allows no more.
+constexpr double kMaxRank = 1000.0;
+
+const std::map<std::string, RelationKind>& relationIntents() {
+  static const std::map<std::string, RelationKind> kRelations{{"next_to", RelationKind::kNextTo},
+                                                              {"opposite", RelationKind::kOpposite},
+                                                              {"between", RelationKind::kBetween},
+                                                              {"at_end_of", RelationKind::kAtEndOf},
+                                                              {"part_of", RelationKind::kInside}};
+  return kRelations;
+}
+
+void denySide(Statement& s, Id from, Side side, const std::vector<Id>& ids) {
+  for (const Id id : ids) {
+    DescribedRelation denial = relationOf(RelationKind::kAtSide, id, from);
+    denial.side = side;
+    if (side == Side::kUnknown) denial.kind = RelationKind::kJoined;
+    recordDenial(s, denial);
+  }
+}
+
+}  // namespace
+
+void checkCount(Statement& s, std::size_t named) {
+  const auto count = s.said().number("count");
+  if (count && static_cast<std::size_t>(*count) != named) {
+    s.fail(IssueKind::kMeaningless, "count",
+           {{"count", shown(*count)}, {"named", std::to_string(named)}});
+  }
+}
+
+Id observer(Statement& s) {
+  const auto robot = s.building().robot_place;
+  if (s.said().find("from") == nullptr) {
+    if (!robot) s.fail(IssueKind::kNoContext, "no_robot");
+    return *robot;
+  }
+  const Id from = placeOf(s, "from");
+  if (robot && from != *robot) {
+    s.fail(IssueKind::kNoContext, "elsewhere",
+           {{"robot", s.nameOf(*robot)}, {"from", s.nameOf(from)}});
+  }
+  return from;
+}
+
+Side sideOf(Statement& s) {
+  std::optional<Side>& last = s.context().side;
+  const std::string word = s.said().word("side");
+  if (word == "same" && !last) s.fail(IssueKind::kNoContext, "no_side");
+  const Side side = word == "same" ? *last : hyselam_topo::sideOf(word).value_or(Side::kUnknown);
+  if (side == Side::kUnknown) {
+    last.reset();
+  } else {
+    last = side;
+  }
+  return side;
+}
+
+std::optional<int> rankOf(Statement& s) {
+  const Utterance& u = s.said();
+  if (u.find("nth") == nullptr) return std::nullopt;
+  double nth = u.number("nth").value_or(0.0);
+  if (!u.word("nth").empty()) nth = hyselam::parseNumber(u.word("nth")).value_or(0.0);
+  if (!u.word("from_end").empty()) nth = -nth;
+  if (nth == 0.0 || nth < -kMaxRank || nth > kMaxRank) {
+    s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", shown(nth)}});
+  }
+  return static_cast<int>(nth);
+}
+
+void neighbours(Statement& s) {
+  const Side side = sideOf(s);
+  const Id from = observer(s);
+  const std::vector<Id> ids = placesOf(s, s.said().find("places") != nullptr ? "places" : "place");
+  checkCount(s, ids.size());
+  if (s.isDenial()) {
+    denySide(s, from, side, ids);
+    return s.setSubjects(ids);
+  }
+  const auto rank = rankOf(s);
+  if (rank && ids.size() != 1) s.fail(IssueKind::kMeaningless, "one_rank");
+  for (const Id id : ids) {
+    Placement placement;
+    placement.from = from;
+    placement.to = id;
+    placement.side = side;
+    placement.rank = rank;
+    recordConnection(s, placement);
+  }
+  if (ids.size() == 1 && s.said().number("length")) takeSizes(s, ids.front());
+  s.setSubjects(ids);
+}
+
+void contains(Statement& s) {
+  const Id inside = placeOf(s, "inside");
+  const std::vector<Id> ids = placesOf(s, "places");
+  if (s.isDenial()) {
+    denySide(s, inside, Side::kUnknown, ids);
+  } else {
+    for (const Id id : ids) recordConnection(s, Placement(inside, id));
+  }
+  s.setSubjects(ids);
+}
+
+void joined(Statement& s) {
+  const Id a = placeOf(s, "a");
+  const std::vector<Id> to = placesOf(s, "b");
+  std::vector<Id> subjects{a};
+  for (const Id b : to) {
+    if (s.isDenial()) {
+      recordDenial(s, relationOf(RelationKind::kJoined, a, b));
+    } else {
+      recordConnection(s, Placement(a, b));
+    }
+    subjects.push_back(b);
+  }
+  s.setSubjects(subjects);
+}
+
+void row(Statement& s) {
+  const std::vector<Id> ids = placesOf(s, "places");
+  if (ids.size() < 2) s.fail(IssueKind::kMeaningless, "row_of_one");
+  if (s.isDenial()) refuseDenial(s);
+  for (std::size_t i = 1; i < ids.size(); ++i) {
+    recordRelation(s, relationOf(RelationKind::kNextTo, ids[i - 1], ids[i]));
+  }
+  s.setSubjects(ids);
+}
+
+void eachSide(Statement& s) {
+  if (s.isDenial()) refuseDenial(s);
+  const Id from = observer(s);
+  const auto names = s.said().names("places");
+  if (names.size() != 1) s.fail(IssueKind::kAsk, "which_side");
+  const double count = s.said().number("count").value_or(2.0);
+  const std::vector<Id> ids =
+      names[0].reference.empty() ? placesOfOneName(s, names[0], count) : placesOf(s, "places");
+  if (ids.size() % 2 != 0) {
+    s.fail(IssueKind::kMeaningless, "odd_count", {{"count", std::to_string(ids.size())}});
+  }
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    Placement placement;
+    placement.from = from;
+    placement.to = ids[i];
+    placement.side = 2 * i < ids.size() ? Side::kLeft : Side::kRight;
+    recordConnection(s, placement);
+  }
+  s.setSubjects(ids);
+}
+
+void larger(Statement& s) {
+  const DescribedRelation told =
+      relationOf(RelationKind::kLarger, placeOf(s, "a"), placeOf(s, "b"));
+  if (s.isDenial()) {
+    recordDenial(s, told);
+  } else {
+    recordRelation(s, told);
+  }
+  s.setSubjects({told.a});
+}
+
+void relation(Statement& s) {
+  DescribedRelation told;
+  told.kind = relationIntents().at(s.said().intent);
+  told.a = placeOf(s, "a");
+  told.b = placeOf(s, "b");
+  if (told.kind == RelationKind::kBetween) told.c = placeOf(s, "c");
+  if (s.isDenial()) {
+    recordDenial(s, told);
+  } else {
+    recordRelation(s, told);
+    // Whoever goes to the end of a corridor gets there.
+    if (told.kind == RelationKind::kAtEndOf) recordConnection(s, Placement(told.b, told.a));
+  }
+  s.setSubjects({told.a});
+}
+
+}  // namespace statements
+}  // namespace hyselam_topo

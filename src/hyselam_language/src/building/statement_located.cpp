@@ -1,0 +1,202 @@
+// "The lab is the second door on the left, next to the stairs": where a place lies in several ways
+// at once.
+#include <algorithm>
+#include <cmath>
+
+#include "edit_description.hpp"
+#include "hyselam_common/numbers.hpp"
+#include "record_facts.hpp"
+#include "said_places.hpp"
+#include "statement_kinds.hpp"
+
+namespace hyselam_topo {
+namespace statements {
+namespace {
+
+constexpr double kStep = 0.75;            // [m], of a person
+constexpr double kMaxDistance = 10000.0;  // [m]
+
+/// What is said of where all the places of the statement lie.
+struct Location {
+  bool in_row = false;  ///< side, number or "in the corridor": a place of a row
+  Placement row;        ///< without `to`
+  std::vector<DescribedRelation> relations;  ///< without `a`, or without `b` if `swapped`
+  std::vector<Id> joined;
+  std::optional<int> floor;
+  std::size_t count() const {
+    return (in_row ? 1u : 0u) + relations.size() + joined.size() + (floor ? 1u : 0u);
+  }
+};
+
+constexpr Id kItself = 0;  ///< in relations: the place that is located
+
+std::optional<double> distanceOf(Statement& s) {
+  auto distance = s.said().number("distance");
+  if (!distance && s.said().number("steps")) distance = kStep * *s.said().number("steps");
+  if (distance && !(*distance >= 0.0 && *distance <= kMaxDistance)) {
+    s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", shown(*distance)}});
+  }
+  return distance;
+}
+
+/// Side, number and distance.
+void readRow(Statement& s, Location* location) {
+  const Utterance& u = s.said();
+  Placement& row = location->row;
+  const bool within = u.find("within") != nullptr;
+  row.rank = rankOf(s);
+  const bool sided = u.find("side") != nullptr;
+  location->in_row = within || sided || row.rank;
+  row.distance = distanceOf(s);
+  if (!location->in_row) return;
+  if (sided) row.side = sideOf(s);
+  // "The second door in the corridor" needs no robot there.
+  if (within) row.from = placeOf(s, "within");
+  const auto robot = s.building().robot_place;
+  if (!within || (sided && robot && *robot != row.from)) row.from = observer(s);
+}
+
+void readRelations(Statement& s, Location* location) {
+  const auto add = [&](const char* slot, RelationKind kind) {
+    for (const Id other : placesOf(s, slot)) {
+      location->relations.push_back(relationOf(kind, kItself, other));
+    }
+  };
+  add("next_to", RelationKind::kNextTo);
+  add("opposite", RelationKind::kOpposite);
+  add("end_of", RelationKind::kAtEndOf);
+  add("behind", RelationKind::kBehind);
+  add("after", RelationKind::kAfter);
+  for (const Id other : placesOf(s, "before")) {
+    location->relations.push_back(relationOf(RelationKind::kAfter, other, kItself));
+  }
+  if (s.said().find("between") != nullptr) {
+    const std::vector<Id> both = placesBetween(s);
+    location->relations.push_back(relationOf(RelationKind::kBetween, kItself, both[0], both[1]));
+  }
+  for (const char* slot : {"to", "via"}) {
+    for (const Id other : placesOf(s, slot)) location->joined.push_back(other);
+  }
+}
+
+Location locationOf(Statement& s) {
+  Location location;
+  readRow(s, &location);
+  readRelations(s, &location);
+  if (s.said().find("floor") != nullptr) {
+    const auto floor = hyselam::parseNumber(s.said().word("floor"));
+    if (!floor)
+      s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", s.said().word("floor")}});
+    location.floor = static_cast<int>(*floor);
+  }
+  return location;
+}
+
+/// The relation of a place; what comes after what is seen from where the robot is.
+DescribedRelation placed(Statement& s, DescribedRelation relation, Id id, bool with_from) {
+  (relation.a == kItself ? relation.a : relation.b) = id;
+  if (relation.kind == RelationKind::kAfter) {
+    const Id from = with_from ? placeOf(s, "from") : s.building().robot_place.value_or(0);
+    if (from != relation.a && from != relation.b) relation.c = from;
+  }
+  return relation;
+}
+
+void takeFloor(Statement& s, Id id, int floor) {
+  std::optional<int>& known = s.at(id).floor;
+  if (s.isDenial()) {
+    if (known != floor) refuseDenial(s);
+    known.reset();
+    return s.setCorrected();
+  }
+  if (known && *known != floor) s.replaces("other_floor", {{"place", s.nameOf(id)}});
+  known = floor;
+}
+
+void deny(Statement& s, const Location& location, Id id) {
+  const bool sized = !s.said().word("size_word").empty();
+  if (location.count() + (sized ? 1u : 0u) != 1) s.fail(IssueKind::kMeaningless, "one_denial");
+  if (sized) return takeSizeWord(s, id);
+  if (location.floor) return takeFloor(s, id, *location.floor);
+  if (!location.joined.empty()) {
+    return recordDenial(s, relationOf(RelationKind::kJoined, id, location.joined.front()));
+  }
+  if (!location.in_row) return recordDenial(s, placed(s, location.relations.front(), id, false));
+  const Placement& row = location.row;
+  if (!row.rank) {
+    DescribedRelation denial = relationOf(RelationKind::kAtSide, id, row.from);
+    denial.side = row.side;
+    if (row.side == Side::kUnknown) denial.kind = RelationKind::kJoined;
+    return recordDenial(s, denial);
+  }
+  for (DescribedConnection& each : s.building().connections) {
+    const bool meant =
+        each.from == row.from && each.to == id && each.rank == row.rank && each.side == row.side;
+    if (!meant) continue;
+    each.rank.reset();
+    return s.setCorrected();
+  }
+  refuseDenial(s);
+}
+
+/// A place of another floor is joined with nothing here.
+bool isElsewhere(Statement& s, Id id, const Location& location) {
+  const std::optional<int> floor = location.floor ? location.floor : s.at(id).floor;
+  return floor && *floor != 0;
+}
+
+void record(Statement& s, const Location& location, Id id) {
+  if (location.floor) takeFloor(s, id, *location.floor);
+  bool placed_in_row = false;
+  if (location.in_row && isElsewhere(s, id, location)) {
+    s.report(IssueKind::kNotice, "side_left_out");
+  } else if (location.in_row) {
+    Placement row = location.row;
+    row.to = id;
+    for (const DescribedRelation& each : location.relations) {
+      if (each.kind == RelationKind::kAfter && each.a == kItself) row.behind = each.b;
+    }
+    recordConnection(s, row);
+    placed_in_row = true;
+  }
+  const bool with_from = !location.in_row && s.said().find("from") != nullptr;
+  for (const DescribedRelation& each : location.relations) {
+    recordRelation(s, placed(s, each, id, with_from));
+    if (each.kind == RelationKind::kAtEndOf && !isElsewhere(s, id, location)) {
+      recordConnection(s, Placement(each.b, id));
+    }
+  }
+  for (const Id other : location.joined) recordConnection(s, Placement(other, id));
+  if (location.row.distance && !placed_in_row) {
+    if (location.count() == 0) s.fail(IssueKind::kMeaningless, "distance_alone");
+    s.report(IssueKind::kNotice, "distance_left_out");
+  }
+}
+
+}  // namespace
+
+void located(Statement& s) {
+  const Utterance& u = s.said();
+  const std::vector<Id> ids = placesOf(s, u.find("places") != nullptr ? "places" : "place");
+  checkCount(s, ids.size());
+  const Location location = locationOf(s);
+  const bool sized =
+      u.number("length") || u.number("width") || u.number("area") || !u.word("size_word").empty();
+  if (location.count() == 0 && !location.row.distance && !sized) {
+    s.fail(IssueKind::kMeaningless, "nothing_said");
+  }
+  if (location.row.rank && ids.size() != 1) s.fail(IssueKind::kMeaningless, "one_rank");
+  for (const Id id : ids) {
+    if (s.isDenial()) {
+      deny(s, location, id);
+      continue;
+    }
+    record(s, location, id);
+    takeSizeWord(s, id);
+    if (sized) takeSizes(s, id);
+  }
+  s.setSubjects(ids);
+}
+
+}  // namespace statements
+}  // namespace hyselam_topo
