@@ -1,10 +1,9 @@
 #include "minimal_automaton.hpp"
 
 #include <algorithm>
-#include <map>
+#include <cstdint>
 #include <optional>
-#include <set>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -12,71 +11,127 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
-using Label = std::tuple<EdgeKind, int, int>;
+/// Kind and values of an edge, sorted as the edges shall be: words first.
+using Label = std::uint64_t;
 using States = std::vector<int>;  ///< sorted
 
-/// Each state's edges by label, and whether it accepts.
+constexpr int kValueBits = 28;
+
+Label labelOf(const Edge& edge) {
+  const Label kind = edge.kind == EdgeKind::kWord ? 0 : static_cast<Label>(edge.kind) + 1;
+  return kind << (2 * kValueBits) | static_cast<Label>(edge.a + 1) << kValueBits |
+         static_cast<Label>(edge.b + 1);
+}
+
+struct HashOfNumbers {
+  template <typename Number>
+  std::size_t operator()(const std::vector<Number>& numbers) const {
+    std::uint64_t hash = numbers.size();
+    for (const Number number : numbers) {
+      hash ^=
+          static_cast<std::uint64_t>(number) + 0x9e3779b97f4a7c15ULL + (hash << 6) + (hash >> 2);
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+/// Each state's edges, sorted by label, and whether it accepts.
 struct Deterministic {
-  std::vector<std::map<Label, int>> edges;
+  std::vector<std::vector<std::pair<Label, Edge>>> edges;
   std::vector<bool> accepts;
 };
 
-States closureOf(const Automaton& automaton, States states) {
-  std::set<int> all(states.begin(), states.end());
-  while (!states.empty()) {
-    const int state = states.back();
-    states.pop_back();
-    for (const Edge& e : automaton.states[static_cast<std::size_t>(state)]) {
-      if (e.kind == EdgeKind::kSkip && all.insert(e.to).second) states.push_back(e.to);
-    }
-  }
-  return {all.begin(), all.end()};
-}
+/// Subset construction. Sets hold only the states that accept or consume something.
+class Determinization {
+ public:
+  Determinization(const Automaton& automaton, std::size_t max_states)
+      : automaton_(automaton), max_states_(max_states), seen_(automaton.states.size(), 0) {}
 
-/// Subset construction.
-std::optional<Deterministic> determinize(const Automaton& automaton, std::size_t max_states) {
-  Deterministic result;
-  std::map<States, int> numbers;
-  std::vector<States> sets;
-  const auto numberOf = [&](const States& set) {
-    const auto [at, is_new] = numbers.emplace(set, static_cast<int>(sets.size()));
-    if (is_new) sets.push_back(set);
-    return at->second;
-  };
-  numberOf(closureOf(automaton, {0}));
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    if (sets.size() > max_states) return std::nullopt;
-    std::map<Label, States> targets;
-    const States set = sets[i];
+  std::optional<Deterministic> run() {
+    Deterministic result;
+    numberOf(closureOf({0}));
+    for (std::size_t i = 0; i < sets_.size(); ++i) {
+      if (sets_.size() > max_states_) return std::nullopt;
+      addState(States(sets_[i]), &result);
+    }
+    return result;
+  }
+
+ private:
+  void addState(const States& set, Deterministic* result) {
+    std::vector<std::pair<Label, Edge>> all;
     for (const int state : set) {
-      for (const Edge& e : automaton.states[static_cast<std::size_t>(state)]) {
-        if (e.kind != EdgeKind::kSkip) targets[{e.kind, e.a, e.b}].push_back(e.to);
+      for (const Edge& e : automaton_.states[static_cast<std::size_t>(state)]) {
+        if (e.kind != EdgeKind::kSkip) all.emplace_back(labelOf(e), e);
       }
     }
-    result.edges.emplace_back();
-    result.accepts.push_back(std::binary_search(set.begin(), set.end(), automaton.accept));
-    for (const auto& [label, to] : targets) {
-      result.edges.back()[label] = numberOf(closureOf(automaton, to));
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    result->accepts.push_back(std::binary_search(set.begin(), set.end(), automaton_.accept));
+    result->edges.emplace_back();
+    for (auto from = all.begin(); from != all.end();) {
+      States targets;
+      auto to = from;
+      for (; to != all.end() && to->first == from->first; ++to) targets.push_back(to->second.to);
+      Edge edge = from->second;
+      edge.to = numberOf(closureOf(std::move(targets)));
+      result->edges.back().emplace_back(from->first, edge);
+      from = to;
     }
   }
-  return result;
-}
+
+  int numberOf(States set) {
+    const auto [at, is_new] = numbers_.emplace(set, static_cast<int>(sets_.size()));
+    if (is_new) sets_.push_back(std::move(set));
+    return at->second;
+  }
+
+  States closureOf(States open) {
+    ++round_;
+    States all;
+    for (const int state : open) seen_[static_cast<std::size_t>(state)] = round_;
+    while (!open.empty()) {
+      const int state = open.back();
+      open.pop_back();
+      bool consumes = state == automaton_.accept;
+      for (const Edge& e : automaton_.states[static_cast<std::size_t>(state)]) {
+        if (e.kind != EdgeKind::kSkip) {
+          consumes = true;
+        } else if (seen_[static_cast<std::size_t>(e.to)] != round_) {
+          seen_[static_cast<std::size_t>(e.to)] = round_;
+          open.push_back(e.to);
+        }
+      }
+      if (consumes) all.push_back(state);
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+
+  const Automaton& automaton_;
+  const std::size_t max_states_;
+  std::vector<int> seen_;  ///< the round in which a state was met last
+  int round_ = 0;
+  std::unordered_map<States, int, HashOfNumbers> numbers_;
+  std::vector<States> sets_;
+};
 
 /// The class of each state: those of one class read the same.
 std::vector<int> classesOf(const Deterministic& d) {
   std::vector<int> classes(d.accepts.begin(), d.accepts.end());
-  std::size_t count = 0;
-  while (true) {
-    std::map<std::pair<int, std::map<Label, int>>, int> numbers;
+  std::vector<Label> reading;
+  for (std::size_t count = 0;;) {
+    std::unordered_map<std::vector<Label>, int, HashOfNumbers> numbers;
     std::vector<int> refined;
     refined.reserve(classes.size());
     for (std::size_t i = 0; i < classes.size(); ++i) {
-      std::map<Label, int> edges;
-      for (const auto& [label, to] : d.edges[i])
-        edges[label] = classes[static_cast<std::size_t>(to)];
-      refined.push_back(
-          numbers.emplace(std::make_pair(classes[i], edges), static_cast<int>(numbers.size()))
-              .first->second);
+      reading.assign(1, static_cast<Label>(classes[i]));
+      for (const auto& [label, edge] : d.edges[i]) {
+        reading.push_back(label);
+        reading.push_back(static_cast<Label>(classes[static_cast<std::size_t>(edge.to)]));
+      }
+      refined.push_back(numbers.emplace(reading, static_cast<int>(numbers.size())).first->second);
     }
     classes = std::move(refined);
     if (numbers.size() == count) return classes;
@@ -96,7 +151,7 @@ void sortEdges(Automaton* automaton) {
 }  // namespace
 
 Automaton minimal(const Automaton& automaton, std::size_t max_states) {
-  const auto d = determinize(automaton, max_states);
+  const auto d = Determinization(automaton, max_states).run();
   Automaton result = automaton;
   if (d) {
     const std::vector<int> classes = classesOf(*d);
@@ -109,9 +164,9 @@ Automaton minimal(const Automaton& automaton, std::size_t max_states) {
       const auto state = static_cast<std::size_t>(classes[i]);
       if (done[state]) continue;
       done[state] = true;
-      for (const auto& [label, to] : d->edges[i]) {
-        const auto& [kind, a, b] = label;
-        result.states[state].push_back({kind, classes[static_cast<std::size_t>(to)], a, b});
+      for (const auto& [label, edge] : d->edges[i]) {
+        result.states[state].push_back(edge);
+        result.states[state].back().to = classes[static_cast<std::size_t>(edge.to)];
       }
       if (d->accepts[i]) result.states[state].push_back({EdgeKind::kSkip, count, -1, -1});
     }
