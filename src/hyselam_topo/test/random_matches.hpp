@@ -267,6 +267,47 @@ inline void addWalls(std::uint64_t seed, AugmentedTopologicalMap* map) {
   }
 }
 
+/// What people say besides: numbers of doors, distances, words for sizes, other floors, relations
+/// of every kind, some of them denied; it has little to do with the building.
+inline void addWords(std::uint64_t seed, Instance* instance) {
+  Dice dice(seed ^ 0x3C3C3C3Cu);
+  DescribedBuilding& building = instance->building;
+  for (DescribedPlace& place : building.places) {
+    if (dice.chance(0.2)) place.size_word = dice.chance(0.5) ? SizeWord::kSmall : SizeWord::kLarge;
+    if (dice.chance(0.2)) place.doors = dice.whole(1, 3);
+    if (dice.chance(0.1) && place.id != building.robot_place) place.floor = dice.whole(-1, 1);
+  }
+  for (DescribedConnection& c : building.connections) {
+    if (dice.chance(0.3)) c.rank = dice.chance(0.3) ? -dice.whole(1, 2) : dice.whole(1, 3);
+    if (dice.chance(0.2)) c.distance = dice.real(0.5, 10.0);
+  }
+  const int names = static_cast<int>(building.places.size());
+  for (int k = names >= 3 ? dice.whole(0, 3) : 0; k > 0; --k) {
+    DescribedRelation r;
+    r.denied = dice.chance(0.3);
+    r.kind = static_cast<RelationKind>(dice.whole(0, r.denied ? 9 : 7));
+    const int a = dice.whole(1, names), b = 1 + a % names, c = 1 + b % names;
+    r.a = static_cast<Id>(a);
+    r.b = static_cast<Id>(b);
+    const bool third =
+        r.kind == RelationKind::kBetween || (r.kind == RelationKind::kAfter && dice.chance(0.5));
+    if (third) r.c = static_cast<Id>(c);
+    if (r.kind == RelationKind::kAtSide) r.side = static_cast<Side>(dice.whole(1, 4));
+    building.relations.push_back(r);
+  }
+  if (dice.chance(0.5))
+    instance->observer.position = hyselam::Point2{dice.real(0, 12), dice.real(0, 12)};
+}
+
+/// Parameters of any kind but the sizes of the search.
+inline void anyWeights(Dice* dice, FitnessParams* fitness) {
+  if (dice->chance(0.3)) *fitness = FitnessParams::equation52();
+  fitness->undescribed_edge_credit = dice->chance(0.3) ? 0.5 : 0.0;
+  if (dice->chance(0.3)) fitness->closed_door_credit = 0.8;
+  if (dice->chance(0.3)) fitness->absent_share = dice->real(0.0, 1.0);
+  if (dice->chance(0.3)) fitness->vertices = dice->real(0.0, 2.0);
+}
+
 inline MatchProblem compile(const Instance& instance) {
   return compileMatch(instance.building, instance.map, instance.observer, instance.constraints);
 }

@@ -36,11 +36,19 @@ SolverParams tableRun(double e, double v, double d, double a) {
   SolverParams params;
   params.dummy = false;
   params.connected = false;
+  params.fitness = FitnessParams::equation52();
   params.fitness.edges = e;
   params.fitness.vertices = v;
   params.fitness.orientations = d;
   params.fitness.areas = a;
   params.fitness.sides = SideRule::kCenters;
+  return params;
+}
+
+/// Weights of Eq. 5.2.
+SolverParams shares() {
+  SolverParams params;
+  params.fitness = FitnessParams::equation52();
   return params;
 }
 
@@ -80,7 +88,7 @@ struct Small {
 TEST(TopoMergFitness, TermsOfEquation52ByHand) {
   Small s;
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
-  FitnessParams params;
+  FitnessParams params = FitnessParams::equation52();
   // A: 1 - 2/10 over one size; D: 1; C: 1; E: 1.
   EXPECT_NEAR((1.0 + 0.8 + 1.0 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
   // The rooms exchanged: A 1 - 2/12, both sides wrong by pi.
@@ -101,8 +109,9 @@ TEST(TopoMergFitness, WeightsOfWhatIsNotDescribedDropOut) {
   s.building.places[1].area.reset();
   for (auto& c : s.building.connections) c.side = Side::kUnknown;
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
-  EXPECT_NEAR(1.0, fitness(p, {}, {0, 1, 2}), 1e-12);
-  EXPECT_NEAR(0.5 * 2 / 3 + 0.5 * 2 / 3, fitness(p, {}, {0, 1, -1}), 1e-12);
+  EXPECT_NEAR(1.0, fitness(p, FitnessParams::equation52(), {0, 1, 2}), 1e-12);
+  EXPECT_NEAR(0.5 * 2 / 3 + 0.5 * 2 / 3, fitness(p, FitnessParams::equation52(), {0, 1, -1}),
+              1e-12);
 }
 
 TEST(TopoMergFitness, SidesAreSpreadInTheDescribedOrder) {
@@ -139,10 +148,10 @@ TEST(TopoMergFitness, SidesByDoorsAndTheirOrder) {
   map.edges[1].doors = {mapDoor(19, 1, kPi / 2)};
   finish(&map);
   const MatchProblem p = compileMatch(b, map, {1, 0.0});
-  EXPECT_NEAR(1.0, fitness(p, {}, {0, 1, 2}), 1e-12);
+  EXPECT_NEAR(1.0, fitness(p, FitnessParams::equation52(), {0, 1, 2}), 1e-12);
   // Exchanged: the sides are right, of the four weights the one of the order is lost.
-  EXPECT_NEAR(0.75, fitness(p, {}, {0, 2, 1}), 1e-12);
-  FitnessParams thesis;
+  EXPECT_NEAR(0.75, fitness(p, FitnessParams::equation52(), {0, 2, 1}), 1e-12);
+  FitnessParams thesis = FitnessParams::equation52();
   thesis.sides = SideRule::kCenters;
   EXPECT_LT(fitness(p, thesis, {0, 1, 2}), 0.99);
 }
@@ -155,7 +164,7 @@ TEST(TopoMergFitness, OneNameForSeveralPlaces) {
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
   // 8 + 2 m^2 are the 10 told; the common centre lies at (0.4, 4).
   const double off = std::abs(std::atan2(4.0, 0.4) - kPi / 2) / kPi / 2;
-  EXPECT_NEAR((4.0 - off) / 4, fitness(p, {}, {0, 1, 2, 1}), 1e-12);
+  EXPECT_NEAR((4.0 - off) / 4, fitness(p, FitnessParams::equation52(), {0, 1, 2, 1}), 1e-12);
 }
 
 TEST(TopoMergFitness, UndescribedDoorsMayCostLess) {
@@ -163,7 +172,7 @@ TEST(TopoMergFitness, UndescribedDoorsMayCostLess) {
   s.map.edges.push_back(mapEdge(2, 3));
   normalize(s.map);
   const MatchProblem p = compileMatch(s.building, s.map, {1, 0.0});
-  FitnessParams params;
+  FitnessParams params = FitnessParams::equation52();
   EXPECT_NEAR((1.0 + 0.8 + 2.0 / 3 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
   params.undescribed_edge_credit = 0.5;
   EXPECT_NEAR((1.0 + 0.8 + 2.5 / 3 + 1.0) / 4, fitness(p, params, {0, 1, 2}), 1e-12);
@@ -195,6 +204,7 @@ TEST(TopoMergFitness, WallsMayHideClosedDoors) {
   building.connections = {{1, 2, Side::kRight}};
   building.robot_place = 1;
   SolverParams params;
+  params.fitness = FitnessParams::equation52();
   const MatchProblem problem = compileMatch(building, map, {1, 0.0});
   ASSERT_EQ(problem.walls.size(), 5u);
   ASSERT_EQ(problem.walls[0].size(), 1u);
@@ -235,7 +245,7 @@ TEST(TopoMergFitness, RelationsPreferWhereTheyHold) {
   b.robot_place = 1;
   const auto value = [&](RelationKind kind, Id a, Id c, const Assignment& assignment) {
     b.relations = {{kind, a, kind == RelationKind::kAtEndOf ? 1u : 3u, c}};
-    return fitness(compileMatch(b, map, {1, 0.0}), {}, assignment);
+    return fitness(compileMatch(b, map, {1, 0.0}), FitnessParams::equation52(), assignment);
   };
   // VertexSet: 1 corridor, 2..6 the row from the west, 7 across the first.
   const Assignment beside{0, 1, 2, -1, -1, 3, -1}, apart{0, 1, -1, -1, 2, 3, -1};
@@ -253,11 +263,13 @@ TEST(TopoMergFitness, RelationsPreferWhereTheyHold) {
 TEST(TopoMergFitness, PartsKindsEvidence) {
   Small s;
   s.building.places[1].parts = 2;
-  EXPECT_NEAR((3.8 + 0.5) / 5, fitness(compileMatch(s.building, s.map, {1, 0.0}), {}, {0, 1, 2}),
-              1e-12);
+  EXPECT_NEAR(
+      (3.8 + 0.5) / 5,
+      fitness(compileMatch(s.building, s.map, {1, 0.0}), FitnessParams::equation52(), {0, 1, 2}),
+      1e-12);
   s.building.places[1].parts.reset();
   s.building.places[1].kind = PlaceKind::kCorridor;
-  FitnessParams params;
+  FitnessParams params = FitnessParams::equation52();
   EXPECT_NEAR(3.8 / 4, fitness(compileMatch(s.building, s.map, {1, 0.0}), params, {0, 1, 2}), 1e-12)
       << "kinds must be off by default";
   params.kinds = 0.25;
@@ -265,7 +277,7 @@ TEST(TopoMergFitness, PartsKindsEvidence) {
               1e-12);
   s.building.places[1].kind.reset();
   const auto p = compileMatch(s.building, s.map, {1, 0.0}, {}, {{3, 2, 0.9}, {2, 2, 0.1}});
-  EXPECT_NEAR((3.8 + 0.1) / 5, fitness(p, {}, {0, 1, 2}), 1e-12);
+  EXPECT_NEAR((3.8 + 0.1) / 5, fitness(p, FitnessParams::equation52(), {0, 1, 2}), 1e-12);
 }
 
 TEST(TopoMergScenario, ExplorerVisitsAllOfEquation55) {
@@ -335,12 +347,12 @@ TEST(TopoMergExact, EqualsTheExplorer) {
     params.dummy = dice.chance(0.5);
     params.connected = dice.chance(0.5);
     params.max_solutions = 5000000;
-    params.fitness.undescribed_edge_credit = dice.chance(0.3) ? 0.5 : 0.0;
+    if (dice.chance(0.6)) addWords(seed, &in);
+    anyWeights(&dice, &params.fitness);
     params.fitness.kinds = dice.chance(0.3) ? 0.25 : 0.0;
     params.keep_within = dice.chance(0.2) ? 0.01 : 0.0;
     if (seed % 5 == 0) params.fitness.sides = SideRule::kCenters;
     if (seed % 4 < 2) addWalls(seed, &in.map);
-    if (seed % 8 == 1) params.fitness.closed_door_credit = 0.8;
     MatchProblem problem;
     try {
       problem = compile(in);
@@ -422,7 +434,7 @@ TEST(TopoMergExact, FewerPlacesAmongEquallyGood) {
   s.map.places.push_back(mapPlace(4, 0, -6, 4));
   s.map.edges.push_back(mapEdge(3, 4));
   normalize(s.map);
-  const PlaceAssignment match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), {});
+  const PlaceAssignment match = solveExact(compileMatch(s.building, s.map, {1, 0.0}), shares());
   // Without it, with it, or as the right room behind a longer corridor.
   EXPECT_EQ(3u, match.equal);
   EXPECT_EQ((Assignment{0, 1, 2, -1}), match.best().assignment);
@@ -430,7 +442,7 @@ TEST(TopoMergExact, FewerPlacesAmongEquallyGood) {
   // The size decides.
   s.building.places[2].area = 16.0;
   EXPECT_EQ((Assignment{0, 1, 2, 2}),
-            solveExact(compileMatch(s.building, s.map, {1, 0.0}), {}).best().assignment);
+            solveExact(compileMatch(s.building, s.map, {1, 0.0}), shares()).best().assignment);
 }
 
 TEST(TopoMergExact, FewestEvenIfNotAllAreKept) {
@@ -452,14 +464,14 @@ TEST(TopoMergConstraints, ConfirmedExcludedUnnamed) {
   MatchConstraints c;
   c.confirmed = {{3, 2}};
   const MatchProblem confirmed = compileMatch(s.building, s.map, {1, 0.0}, c);
-  EXPECT_EQ((Assignment{0, 2, 1}), solveExact(confirmed, {}).best().assignment);
+  EXPECT_EQ((Assignment{0, 2, 1}), solveExact(confirmed, shares()).best().assignment);
   c = {};
   c.excluded = {{2, 2}};
-  const PlaceAssignment other = solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), {});
+  const PlaceAssignment other = solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), shares());
   EXPECT_NE(1, other.best().assignment[1]);
   c = {};
   c.unnamed = {2};
-  EXPECT_EQ(-1, solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), {}).best().assignment[1]);
+  EXPECT_EQ(-1, solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), shares()).best().assignment[1]);
 }
 
 TEST(TopoMergBadInput, IsRefused) {

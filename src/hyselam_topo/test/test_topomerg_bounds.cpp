@@ -28,14 +28,14 @@ void compare(std::uint64_t seed, int count, double most,
   int compared = 0, without_heading = 0;
   for (; compared < count; ++seed) {
     Dice dice(seed * 104729 + 7);
-    const Instance in = make(seed, &dice);
+    Instance in = make(seed, &dice);
+    if (dice.chance(0.6)) addWords(seed, &in);
     SolverParams params;
     params.dummy = dice.chance(0.7);
     params.connected = dice.chance(0.8);
     params.max_solutions = 5000000;
-    params.fitness.undescribed_edge_credit = dice.chance(0.3) ? 0.5 : 0.0;
+    anyWeights(&dice, &params.fitness);
     params.keep_within = dice.chance(0.3) ? 0.01 : 0.0;
-    if (dice.chance(0.3)) params.fitness.closed_door_credit = 0.8;
     MatchProblem problem;
     try {
       problem = compile(in);

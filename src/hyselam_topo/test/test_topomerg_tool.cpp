@@ -41,7 +41,7 @@ class TopoMergTool : public testing::Test {
 }  // namespace
 
 TEST_F(TopoMergTool, NamesTheVirtualScenario) {
-  ASSERT_EQ(0, run(input_ + "--robot-place 4 --robot-heading 0 --no-dummy" + output_))
+  ASSERT_EQ(0, run(input_ + "--robot-place 4 --robot-heading 0 --no-dummy --equation-52" + output_))
       << fileBytes(folder_ / "stderr");
   EXPECT_EQ("", fileBytes(folder_ / "stderr"));
   const nlohmann::json result = json();

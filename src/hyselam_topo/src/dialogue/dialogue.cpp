@@ -210,7 +210,7 @@ std::optional<std::pair<Id, PlacePose>> Dialogue::poseOf(const std::string& name
 }
 
 DialogueState Dialogue::state() const {
-  return {language_, places_.state(), builder_.building(), heading_};
+  return {language_, places_.state(), builder_.building(), heading_, position_};
 }
 
 void Dialogue::restore(DialogueState state) {
@@ -224,6 +224,7 @@ void Dialogue::restore(DialogueState state) {
   builder_.continueFrom(std::move(state.description));
   language_ = state.language;
   heading_ = state.heading;
+  position_ = state.position;
   question_ = {};
   asked_ = 0;
   subject_ = 0;

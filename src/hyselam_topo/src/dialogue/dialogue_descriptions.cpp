@@ -40,7 +40,10 @@ void Dialogue::recordStatements(Turn& turn) {
     }
   }
   turn.issues.clear();
-  if (turn.sides && robot().has_pose) heading_ = robot().pose.theta;
+  if (turn.sides && robot().has_pose) {
+    heading_ = robot().pose.theta;
+    position_ = hyselam::Point2{robot().pose.x, robot().pose.y};
+  }
   const std::vector<std::string> here = std::move(turn.here);
   turn.here.clear();
   if (!places_.hasMap()) {
@@ -76,6 +79,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
   if (!places_.hasMap() || building.places.empty()) return;
   MatchObserver observer;
   observer.heading = heading_;
+  observer.position = position_;
   // Where the robot stood is confirmed as a name, not as an observer: it may have gone elsewhere.
   std::optional<MatchProblem> problem_to_ask;
   try {

@@ -37,6 +37,7 @@ std::string toText(const DialogueState& state) {
   j["description"] =
       state.description.places.empty() ? "" : toXml(state.description, "description");
   if (state.heading) j["heading"] = *state.heading;
+  if (state.position) j["position"] = {{"x", state.position->x}, {"y", state.position->y}};
   j["walls"] = json::array();
   for (const DescribedWall& wall : state.places.walls) {
     j["walls"].push_back({{"ax", wall.line.a.x},
@@ -86,6 +87,9 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
       state.description = descriptionFromXml(description, source + ": description");
     }
     if (j.contains("heading")) state.heading = numberAt(j, "heading");
+    if (j.contains("position"))
+      state.position =
+          hyselam::Point2{numberAt(j.at("position"), "x"), numberAt(j.at("position"), "y")};
     for (const json& w : j.at("walls")) {
       DescribedWall wall;
       wall.line = {{numberAt(w, "ax"), numberAt(w, "ay")}, {numberAt(w, "bx"), numberAt(w, "by")}};

@@ -62,17 +62,17 @@ nlohmann::json assignmentOf(const MatchProblem& problem, const DescribedBuilding
 void print(const nlohmann::json& result) {
   for (const nlohmann::json& name : result.at("assignment")) {
     std::cout << name.at("name").get<std::string>() << ": ";
-    if (name.at("places").empty()) std::cout << "no place";
+    if (name.at("places").empty()) std::cout << "no place on the map (yet)";
     const char* before = "place ";
     for (const nlohmann::json& place : name.at("places")) {
       std::cout << before << place;
       before = ", ";
     }
     for (const nlohmann::json& each : result.value("uncertainties", nlohmann::json::array())) {
-      if (each.at("id") != name.at("id") || each.at("drop") > 0.0) continue;
-      std::cout << (each.at("proven").get<bool>()
-                        ? " (unsure: another answer is as good)"
-                        : " (unsure: too little time to rule others out)");
+      if (each.at("id") != name.at("id") || !each.at("unsure").get<bool>()) continue;
+      std::cout << " (unsure: right with a probability of "
+                << std::lround(100.0 * each.at("probability").get<double>()) << " %"
+                << (each.at("proven").get<bool>() ? ")" : ", too little time to rule others out)");
     }
     std::cout << '\n';
   }
@@ -86,8 +86,10 @@ struct Options {
   SolverParams params;
   std::optional<Id> robot_place;
   std::optional<double> robot_heading;
+  std::vector<double> robot_position;
   std::vector<std::string> confirmed, excluded;
   bool no_dummy = false, scattered = false, uncertainties = true, thesis_sides = false;
+  bool equation52 = false;  ///< default weights of the thesis
 };
 
 void addInputs(CLI::App& app, Options& o) {
@@ -104,6 +106,10 @@ void addInputs(CLI::App& app, Options& o) {
   app.add_option("--robot-heading", o.robot_heading,
                  "of the robot while the person spoke [rad]; without it the best one is taken")
       ->default_str("0");
+  app.add_option(
+         "--robot-position", o.robot_position,
+         "where the robot stood: \"the second door on the left\" is counted from there [m m]")
+      ->expected(2);
   app.add_option("--confirmed", o.confirmed, "PLACE=NAME: this place of the map has that name");
   app.add_option("--excluded", o.excluded, "PLACE=NAME: this place of the map has another name");
 }
@@ -125,7 +131,11 @@ void addSearch(CLI::App& app, Options& o) {
 
 void addWeights(CLI::App& app, Options& o) {
   FitnessParams& fitness = o.params.fitness;
-  app.add_option("--weight-vertices", fitness.vertices, "gamma_v");
+  app.add_flag(
+      "--equation-52", o.equation52,
+      "weights of the thesis instead of odds: each is shared by the statements of its type; "
+      "the other options of weights have no effect");
+  app.add_option("--weight-vertices", fitness.vertices, "gamma_v: a name has no place");
   app.add_option("--weight-areas", fitness.areas, "gamma_a");
   app.add_option("--weight-edges", fitness.edges, "gamma_e");
   app.add_option("--weight-orientations", fitness.orientations, "gamma_d");
@@ -134,9 +144,15 @@ void addWeights(CLI::App& app, Options& o) {
       "--thesis-sides", o.thesis_sides,
       "sides by the centers of places, spread in the described order (Eq. 5.7); without it "
       "by doors");
+  app.add_option("--weight-numbers", fitness.numbers, "the second on the left; in ten metres");
   app.add_option("--weight-relations", fitness.relations, "next to, opposite, ...");
   app.add_option("--weight-parts", fitness.parts, "numbers of rooms");
+  app.add_option("--weight-doors", fitness.doors, "numbers of doors");
+  app.add_option("--weight-size-words", fitness.size_words, "small, large");
   app.add_option("--weight-kinds", fitness.kinds, "corridor or room");
+  app.add_option("--weight-pieces", fitness.pieces, "each further place of a name");
+  app.add_option("--absent-share", fitness.absent_share,
+                 "share of a statement's weight that is lost if one of its names has no place");
   app.add_option("--forgotten-edge", fitness.undescribed_edge_credit,
                  "0: doors that are not described count as errors; 1: not at all");
   app.add_option("--shut-door", fitness.closed_door_credit,
@@ -151,7 +167,10 @@ MatchProblem problemOf(const Options& o, const DescribedBuilding& building,
     constraints.confirmed.push_back(namedPlace("--confirmed", text, building));
   for (const std::string& text : o.excluded)
     constraints.excluded.push_back(namedPlace("--excluded", text, building));
-  return compileMatch(building, map, {o.robot_place, o.robot_heading}, constraints);
+  MatchObserver observer{o.robot_place, o.robot_heading};
+  if (o.robot_position.size() == 2)
+    observer.position = hyselam::Point2{o.robot_position[0], o.robot_position[1]};
+  return compileMatch(building, map, observer, constraints);
 }
 
 nlohmann::json uncertaintiesOf(const MatchProblem& problem, SolverParams params,
@@ -163,6 +182,8 @@ nlohmann::json uncertaintiesOf(const MatchProblem& problem, SolverParams params,
                     {"name", building.findPlace(u.name)->name},
                     {"place", u.place},
                     {"drop", u.drop},
+                    {"probability", u.probability},
+                    {"unsure", u.unsure()},
                     {"proven", u.proven}});
   return list;
 }
@@ -172,6 +193,7 @@ nlohmann::json run(Options o) {
   const AugmentedTopologicalMap map = loadXml(o.map_file);
   hyselam::Progress progress("topomerg", 3);
   o.params.dummy = !o.no_dummy;
+  if (o.equation52) o.params.fitness = FitnessParams::equation52();
   if (o.thesis_sides) o.params.fitness.sides = SideRule::kCenters;
   o.params.connected = !o.scattered;
   const MatchProblem problem = problemOf(o, building, map);

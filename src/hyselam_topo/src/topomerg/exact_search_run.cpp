@@ -130,6 +130,7 @@ PlaceAssignment ExactSearch::run() {
     match.gap = std::max(
         0.0, 1.0 - std::min(1.0, unexplored_) - (match.found() ? match.best().fitness : 0.0));
   if (stopped_ && match.found() && match.gap <= kEqualFitness) match.optimal = true;
+  match.scale = terms_.scale();
   match.nodes = visited_;
   match.microseconds = watch_.seconds() * 1e6;
   return match;

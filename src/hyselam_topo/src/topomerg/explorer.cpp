@@ -62,7 +62,7 @@ class Ledger {
   }
   const VertexSet& of(int i) const { return names_[static_cast<std::size_t>(i)]; }
   double pairLoss(int i, int j) const {
-    double loss = terms_.edgeLoss(i, j, terms_.contact(of(i), of(j)));
+    double loss = terms_.edgeLoss(i, j, of(i), of(j));
     for (const int s : {pairs_[at(i, j)].side, pairs_[at(j, i)].side}) {
       if (s < 0) continue;
       const auto& side = terms_.problem.sides[static_cast<std::size_t>(s)];
@@ -147,6 +147,7 @@ PlaceAssignment exploreAll(const MatchProblem& problem, const SolverParams& para
   }
   PlaceAssignment match = solutions.finish();
   match.optimal = true;
+  match.scale = terms.scale();
   match.nodes = visited;
   match.microseconds = watch.seconds() * 1e6;
   return match;

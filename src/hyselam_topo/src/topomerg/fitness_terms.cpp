@@ -5,40 +5,12 @@
 namespace hyselam_topo::merging {
 namespace {
 
-/// Rooms count as fully next to each other up to so many times the distance of the centers of two
-/// rooms of their sizes that touch, and as fully opposite up to so many: a corridor lies between.
-constexpr double kNextToReach = 1.25;
-constexpr double kOppositeReach = 2.0;
-/// What "opposite" is worth without a common neighbor, as a share of its value.
-constexpr double kNotAcross = 0.5;
-/// Doors whose directions add up to less than this (of 2) are not on the same side.
-constexpr double kSameSide = 1.6;
 /// Of the vectors through doors on the same side, their product is more than this.
 constexpr double kParallel = 0.8;
 /// More than any deviation.
 constexpr double kNoDoor = 4.0;
 /// Doors that are less apart are counted as neither before nor behind each other [m].
 constexpr double kBeside = 0.3;
-/// A door that lies as far behind another is certainly behind it [m].
-constexpr double kClearlyAhead = 0.5;
-
-double distance(const VertexSet& a, const VertexSet& b) {
-  return std::hypot(a.x() - b.x(), a.y() - b.y());
-}
-
-/// About how far the middles of two rooms of these sizes are apart if they touch.
-double reach(const VertexSet& a, const VertexSet& b) {
-  return 0.5 * (std::sqrt(a.area) + std::sqrt(b.area));
-}
-
-double atMostOne(double value) {
-  return std::min(1.0, value);
-}
-
-double angleBetween(double ax, double ay, double bx, double by) {
-  return std::abs(std::atan2(ax * by - ay * bx, ax * bx + ay * by));
-}
-
 }  // namespace
 
 void VertexSet::add(const MatchProblem& problem, std::size_t vertex) {
@@ -59,6 +31,7 @@ void VertexSet::add(const MatchProblem& problem, std::size_t vertex) {
 FitnessTerms::FitnessTerms(const MatchProblem& problem_in, const FitnessParams& params)
     : problem(problem_in),
       by_doors(params.sides == SideRule::kDoors && problem_in.has_doors),
+      absent_share(params.absent_share),
       sides_of(problem_in.nameCount()),
       clauses_of(problem_in.nameCount()),
       has_evidence(problem_in.nameCount(), 0) {
@@ -76,59 +49,102 @@ FitnessTerms::FitnessTerms(const MatchProblem& problem_in, const FitnessParams& 
 }
 
 void FitnessTerms::listClauses(const FitnessParams& params) {
+  using What = Clause::What;
   for (const MatchProblem::Relation& r : problem.relations)
-    clauses.push_back({r.kind, r.a, r.b, r.c, false, 0.0});
+    clauses.push_back({What::kRelation, r.kind, r.a, r.b, r.c, r.denied, {}, r.side_angle});
   if (by_doors && params.orders > 0.0)
     for (const MatchProblem::DescribedOrder& o : problem.orders)
-      clauses.push_back({RelationKind::kNextTo, o.first, o.then, o.from, true, o.turn});
+      clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0});
+  if (by_doors && params.numbers > 0.0) {
+    for (const MatchProblem::DescribedNumber& n : problem.numbers) {
+      const bool rank = n.rank != 0;
+      clauses.push_back({rank ? What::kNumber : What::kDistance,
+                         {},
+                         n.to,
+                         n.from,
+                         -1,
+                         false,
+                         n.turn,
+                         rank ? n.rank : n.distance});
+    }
+  }
   for (std::size_t k = 0; k < clauses.size(); ++k)
     for (const int i : {clauses[k].a, clauses[k].b, clauses[k].c})
       if (i >= 0) clauses_of[static_cast<std::size_t>(i)].push_back(static_cast<int>(k));
 }
 
-void FitnessTerms::shareWeights(const FitnessParams& params) {
+std::vector<FitnessTerms::Statements> FitnessTerms::countStatements(
+    const FitnessParams& params) const {
   const std::size_t n = problem.nameCount();
-  std::size_t areas = 0, parts = 0, kinds = 0, ranks = 0;
+  std::size_t here = 0, areas = 0, parts = 0, kinds = 0, ranks = 0, doors = 0, words = 0, edges = 0;
   for (const MatchProblem::NameAttributes& described : problem.attributes) {
+    here += !described.elsewhere;
     areas += described.area > 0.0;
     parts += described.parts > 0;
     kinds += described.kind.has_value();
+    doors += described.doors > 0;
+    words += described.size_word.has_value();
   }
   const bool ordered = by_doors && params.orders > 0.0;
   for (const MatchProblem::DescribedSide& s : problem.sides)
     ranks += ordered && s.before + s.after > 0;
-  const std::size_t pairs = n * (n - (n > 0 ? 1 : 0)) / 2;  // N_e
-  const auto evidence =
-      static_cast<std::size_t>(std::count(has_evidence.begin(), has_evidence.end(), 1));
-  struct Kind {
-    Term term;
-    double weight;
-    std::size_t count;  ///< of what the description has
-  };
+  const std::size_t pairs = here * (here - (here > 0 ? 1 : 0)) / 2;  // N_e
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) edges += problem.areConnected(i, j);
+  const bool shares = params.weighting == Weighting::kShares;
   // The weight of orders is for pairs and for ranks, half of it each.
-  const Kind all[] = {{Term::kVertex, params.vertices, n},
-                      {Term::kArea, params.areas, areas},
-                      {Term::kEdge, params.edges, pairs},
-                      {Term::kSide, params.orientations, problem.sides.size()},
-                      {Term::kRelation, params.relations, problem.relations.size()},
-                      {Term::kParts, params.parts, parts},
-                      {Term::kKind, params.kinds, kinds},
-                      {Term::kEvidence, params.evidence, evidence},
-                      {Term::kOrder, 0.5 * params.orders, ordered ? problem.orders.size() : 0},
-                      {Term::kRank, 0.5 * params.orders, ranks}};
+  return {{Term::kVertex, params.vertices, here},
+          {Term::kArea, params.areas, areas},
+          {Term::kEdge, params.edges, shares ? pairs : edges},
+          {Term::kSide, params.orientations, problem.sides.size()},
+          {Term::kRelation, params.relations, problem.relations.size()},
+          {Term::kParts, params.parts, parts},
+          {Term::kKind, params.kinds, kinds},
+          {Term::kEvidence, params.evidence,
+           static_cast<std::size_t>(std::count(has_evidence.begin(), has_evidence.end(), 1))},
+          {Term::kOrder, 0.5 * params.orders, ordered ? problem.orders.size() : 0},
+          {Term::kRank, 0.5 * params.orders, ranks},
+          {Term::kNumber, params.numbers, by_doors ? problem.numbers.size() : 0},
+          {Term::kDoors, params.doors, doors},
+          {Term::kSizeWord, params.size_words, words},
+          {Term::kPiece, params.pieces, shares ? 0 : problem.vertexCount()}};
+}
+
+void FitnessTerms::shareWeights(const FitnessParams& params) {
+  const std::vector<Statements> all = countStatements(params);
+  const bool shares = params.weighting == Weighting::kShares;
   double sum = 0.0;
-  for (const Kind& kind : all)
-    if (kind.count > 0) sum += kind.weight;
-  for (const Kind& kind : all)
-    weights_[static_cast<std::size_t>(kind.term)] =
-        kind.count == 0 || sum <= 0.0 ? 0.0 : kind.weight / sum / static_cast<double>(kind.count);
-  undescribed_edge = weight(Term::kEdge) * (1.0 - params.undescribed_edge_credit);
+  for (const Statements& s : all) {
+    if (s.count > 0) sum += shares ? s.weight : s.weight * static_cast<double>(s.count);
+  }
+  std::size_t edges = 0;  // of the map: as many connections that nobody told of at most
+  for (const PlaceSet& neighbors : problem.neighbors) edges += neighbors.size();
+  const double undescribed = params.edges * (1.0 - params.undescribed_edge_credit);
+  if (!shares) sum += undescribed * 0.5 * static_cast<double>(edges);
+  for (const Statements& s : all) {
+    const double share = shares ? s.weight / static_cast<double>(s.count) : s.weight;
+    weights_[static_cast<std::size_t>(s.term)] = s.count == 0 || sum <= 0.0 ? 0.0 : share / sum;
+  }
+  undescribed_edge = shares      ? weight(Term::kEdge) * (1.0 - params.undescribed_edge_credit)
+                     : sum > 0.0 ? undescribed / sum
+                                 : 0.0;
+  scale_ = shares ? 0.0 : sum;
 }
 
 double FitnessTerms::unaryLoss(int name, const VertexSet& v) const {
   const auto i = static_cast<std::size_t>(name);
   const MatchProblem::NameAttributes& described = problem.attributes[i];
-  double loss = v.empty() ? weight(Term::kVertex) : 0.0;
+  if (v.empty()) {
+    if (described.elsewhere) return 0.0;
+    double loss = weight(Term::kVertex) + (described.needs_place ? 1.0 : 0.0);
+    if (described.area > 0.0) loss += absentLoss(Term::kArea);
+    if (described.parts > 0) loss += absentLoss(Term::kParts);
+    if (described.kind) loss += absentLoss(Term::kKind);
+    if (described.doors > 0) loss += absentLoss(Term::kDoors);
+    if (described.size_word) loss += absentLoss(Term::kSizeWord);
+    return has_evidence[i] ? loss + absentLoss(Term::kEvidence) : loss;
+  }
+  double loss = described.parts > 0 ? 0.0 : weight(Term::kPiece) * (v.count - 1);
   if (described.area > 0.0)
     loss +=
         weight(Term::kArea) * std::abs(described.area - v.area) / std::max(described.area, v.area);
@@ -143,6 +159,13 @@ double FitnessTerms::unaryLoss(int name, const VertexSet& v) const {
     });
     loss += weight(Term::kKind) * (all > 0.0 ? 1.0 - right / all : 1.0);
   }
+  if (described.doors > 0 && weight(Term::kDoors) > 0.0) {
+    const int doors = doorCount(v);
+    loss += weight(Term::kDoors) * std::abs(described.doors - doors) /
+            static_cast<double>(std::max(described.doors, doors));
+  }
+  if (described.size_word)
+    loss += weight(Term::kSizeWord) * (1.0 - sizeWordValue(*described.size_word, v));
   if (has_evidence[i]) {
     double best = 0.0;
     v.members.forEach([&](std::size_t m) {
@@ -153,38 +176,19 @@ double FitnessTerms::unaryLoss(int name, const VertexSet& v) const {
   return loss;
 }
 
-double FitnessTerms::relationValue(RelationKind what, const VertexSet& a, const VertexSet& b,
-                                   const VertexSet* c) const {
-  if (!a.hasCenter() || !b.hasCenter() || (c != nullptr && !c->hasCenter())) return 0.0;
-  switch (what) {
-    case RelationKind::kNextTo:
-      return a.touches(b) ? 1.0
-                          : atMostOne(kNextToReach * reach(a, b) / std::max(1e-9, distance(a, b)));
-    case RelationKind::kOpposite: {
-      const double near = atMostOne(kOppositeReach * reach(a, b) / std::max(1e-9, distance(a, b)));
-      const bool across = !a.touches(b) && a.neighbors.intersects(b.neighbors);
-      return across ? near : kNotAcross * near;
-    }
-    case RelationKind::kBetween:
-      if (c == nullptr) return 0.0;
-      return angleBetween(b.x() - a.x(), b.y() - a.y(), c->x() - a.x(), c->y() - a.y()) / kPi;
-    case RelationKind::kAtEndOf: {
-      if (!a.touches(b)) return 0.0;
-      double farthest = distance(a, b);
-      b.neighbors.forEach([&](std::size_t v) {
-        if (problem.weight[v] > 0.0)
-          farthest = std::max(farthest, std::hypot(problem.x[v] - b.x(), problem.y[v] - b.y()));
-      });
-      return farthest > 0.0 ? distance(a, b) / farthest : 1.0;
-    }
-    case RelationKind::kInside:
-      return a.touches(b) ? static_cast<double>((a.neighbors & b.members).size()) /
-                                static_cast<double>(a.neighbors.size())
-                          : 0.0;
-    default:
-      break;
-  }
-  return 0.0;
+int FitnessTerms::doorCount(const VertexSet& v) const {
+  int doors = 0;
+  v.members.forEach([&](std::size_t m) {
+    for (const MatchProblem::Passage& p : problem.passages[m]) doors += !v.members.contains(p.to);
+  });
+  return doors;
+}
+
+/// Twice or half the usual size is certainly large or small.
+double FitnessTerms::sizeWordValue(SizeWord word, const VertexSet& v) const {
+  if (!(problem.typical_area > 0.0 && v.area > 0.0)) return 0.5;
+  const double steps = std::log2(v.area / problem.typical_area);
+  return std::clamp(0.5 + (word == SizeWord::kLarge ? steps : -steps), 0.0, 1.0);
 }
 
 double FitnessTerms::doorLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
@@ -222,45 +226,24 @@ double FitnessTerms::rankLoss(const MatchProblem::DescribedSide& side, const Pla
   forEachDoor(from, to, [&](const MatchProblem::Passage& own) {
     const double ax = c * own.dx - s * own.dy, ay = s * own.dx + c * own.dy;
     int before = 0, after = 0;
+    const auto count = [&](const MatchProblem::Passage& other) {
+      if (other.dx * own.dx + other.dy * own.dy < kParallel) return;
+      const double ahead = ax * (other.x - own.x) + ay * (other.y - own.y);
+      before += ahead < -kBeside;
+      after += ahead > kBeside;
+    };
     from.forEach([&](std::size_t v) {
-      for (const MatchProblem::Passage& other : problem.passages[v]) {
-        if (from.contains(other.to) || other.dx * own.dx + other.dy * own.dy < kParallel) continue;
-        const double ahead = ax * (other.x - own.x) + ay * (other.y - own.y);
-        before += ahead < -kBeside;
-        after += ahead > kBeside;
-      }
+      for (const MatchProblem::Passage& other : problem.passages[v])
+        if (!from.contains(other.to)) count(other);
+      if (closed_door_credit > 0.0)
+        for (const MatchProblem::Passage& other : problem.walls[v])
+          if (!from.contains(other.to)) count(other);
+      if (!problem.gaps.empty())
+        for (const MatchProblem::Passage& gap : problem.gaps[v]) count(gap);
     });
     least = std::min(least, std::max(0, side.before - before) + std::max(0, side.after - after));
   });
   return weight(Term::kRank) * least / (side.before + side.after);
-}
-
-double FitnessTerms::orderValue(const Clause& clause, const VertexSet& first, const VertexSet& then,
-                                const VertexSet& from) const {
-  struct Doors {
-    double x = 0.0, y = 0.0, dx = 0.0, dy = 0.0;
-    int count = 0;
-  };
-  const auto doorsInto = [&](const VertexSet& to) {
-    Doors d;
-    forEachDoor(from.members, to.members, [&d](const MatchProblem::Passage& p) {
-      d.x += p.x;
-      d.y += p.y;
-      d.dx += p.dx;
-      d.dy += p.dy;
-      ++d.count;
-    });
-    return d;
-  };
-  const Doors a = doorsInto(first), b = doorsInto(then);
-  if (a.count == 0 || b.count == 0) return 0.0;
-  const double dx = a.dx / a.count + b.dx / b.count, dy = a.dy / a.count + b.dy / b.count;
-  const double length = std::hypot(dx, dy);
-  if (length < kSameSide) return 0.5;
-  const double c = std::cos(clause.turn) / length, s = std::sin(clause.turn) / length;
-  const double on = (c * dx - s * dy) * (b.x / b.count - a.x / a.count) +
-                    (s * dx + c * dy) * (b.y / b.count - a.y / a.count);
-  return std::clamp(0.5 + 0.5 * on / kClearlyAhead, 0.0, 1.0);
 }
 
 std::vector<VertexSet> verticesOf(const MatchProblem& problem, const Assignment& assignment) {

@@ -2,8 +2,10 @@
 // that a part of an assignment has a loss of its own and more of the assignment only adds to it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "angles.hpp"
@@ -56,19 +58,27 @@ enum class Term {
   kParts,
   kKind,
   kEvidence,
-  kOrder,  ///< of two neighbors in a described row
-  kRank,   ///< of one place in a described row
+  kOrder,   ///< of two neighbors in a described row
+  kRank,    ///< of one place in a described row
+  kNumber,  ///< the second on the left, in ten metres
+  kDoors,   ///< number of doors
+  kSizeWord,
+  kPiece,  ///< a further place of a name
   kCount
 };
 
 class FitnessTerms {
  public:
-  /// A relation, or a described order: about two or three names.
+  /// A statement about two or three names: a relation, a described order, number or distance.
   struct Clause {
+    enum class What { kRelation, kOrder, kNumber, kDistance };
+    What what = What::kRelation;
     RelationKind kind = RelationKind::kNextTo;
-    int a = 0, b = 0, c = -1;  ///< of an order: first, then, seen from
-    bool order = false;
-    double turn = 0.0;  ///< of an order
+    /// Names; of an order: first, then, seen from; of a number or distance: of which, seen from.
+    int a = 0, b = 0, c = -1;
+    bool denied = false;
+    std::optional<double> turn;  ///< of an order, a number and a distance
+    double value = 0.0;          ///< number, distance [m], or angle of a denied side
   };
 
   FitnessTerms(const MatchProblem& problem, const FitnessParams& params);
@@ -76,13 +86,19 @@ class FitnessTerms {
   /// The weights of another problem, of which this one is a part.
   void copyWeights(const FitnessTerms& whole) {
     weights_ = whole.weights_;
+    scale_ = whole.scale_;
     undescribed_edge = whole.undescribed_edge;
   }
   double weight(Term term) const { return weights_[static_cast<std::size_t>(term)]; }
+  /// A loss of 1 / scale makes an assignment e times less likely; 0: nobody knows.
+  double scale() const { return scale_; }
+  /// Of a statement about a name without vertices.
+  double absentLoss(Term term) const { return absent_share * weight(term); }
 
   const MatchProblem& problem;
   double undescribed_edge = 0.0;  ///< loss of an edge in the map that is not described
   bool by_doors = false;
+  double absent_share = 1.0;  ///< of a statement's weight, see FitnessParams
   /// Share of the value of an edge and its side that remains where a wall is shared; 0 without
   /// doors and walls.
   double closed_door_credit = 0.0;
@@ -98,12 +114,13 @@ class FitnessTerms {
     return closed_door_credit > 0.0 && a.sharesWall(b) ? Contact::kWall : Contact::kNone;
   }
   /// Of two names: connected as described or not.
-  double edgeLoss(int i, int j, Contact contact) const {
+  double edgeLoss(int i, int j, const VertexSet& a, const VertexSet& b) const {
+    const bool none = a.empty() || b.empty();
     if (problem.areConnected(static_cast<std::size_t>(i), static_cast<std::size_t>(j)))
-      return describedEdgeLoss(contact);
-    return contact == Contact::kJoined ? undescribed_edge : 0.0;
+      return none ? absentLoss(Term::kEdge) : describedEdgeLoss(contact(a, b));
+    return !none && a.touches(b) ? undescribed_edge : 0.0;
   }
-  /// Of two names that are described as connected.
+  /// Of two names that are described as connected and have vertices.
   double describedEdgeLoss(Contact contact) const {
     const double missing_edge = weight(Term::kEdge);
     return contact == Contact::kJoined ? 0.0
@@ -126,6 +143,7 @@ class FitnessTerms {
   }
   double sideLoss(const MatchProblem::DescribedSide& side, const VertexSet& from,
                   const VertexSet& to, Heading heading) const {
+    if (from.empty() || to.empty()) return absent_share * missingSideLoss(side);
     if (by_doors)
       return doorLoss(side, from.members, to.members, heading) +
              rankLoss(side, from.members, to.members);
@@ -139,7 +157,7 @@ class FitnessTerms {
   double minDoorLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
                      const PlaceSet& to, Heading heading) const;
   /// Of the described order: as many doors as described must lie before and behind on that side of
-  /// `from`.
+  /// `from`, or walls where doors may be that the robot has not seen.
   double rankLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
                   const PlaceSet& to) const;
   /// Loss of a side that cannot be compared.
@@ -154,10 +172,16 @@ class FitnessTerms {
         if (to.contains(p.to)) visit(p);
     });
   }
+  /// Share of a side's value that is lost if a direction is off by so much [rad]. People tell sides
+  /// roughly: a door is on the left if it lies more to the left than ahead.
+  double lostShare(double off) const {
+    if (!by_doors) return off / kPi;
+    return std::min(1.0, std::max(0.0, (off - kRightWithin) / (kWrongFrom - kRightWithin)));
+  }
   /// Of the sides' loss through a door, or through a wall that may hide one.
-  double throughDoor(double off) const { return weight(Term::kSide) * off / kPi; }
+  double throughDoor(double off) const { return weight(Term::kSide) * lostShare(off); }
   double throughWall(double off) const {
-    return weight(Term::kSide) * (1.0 - closed_door_credit * (1.0 - off / kPi));
+    return weight(Term::kSide) * (1.0 - closed_door_credit * (1.0 - lostShare(off)));
   }
   /// The same of walls that closed doors may be in.
   template <typename Visit>
@@ -184,24 +208,55 @@ class FitnessTerms {
   /// `of` gives the vertices of a name.
   template <typename Of>
   double clauseLoss(const Clause& clause, Of&& of) const {
-    if (clause.order) {
-      return weight(Term::kOrder) *
-             (1.0 - orderValue(clause, of(clause.a), of(clause.b), of(clause.c)));
-    }
+    const VertexSet &a = of(clause.a), &b = of(clause.b);
     const VertexSet* c = clause.c >= 0 ? &of(clause.c) : nullptr;
-    return weight(Term::kRelation) *
-           (1.0 - relationValue(clause.kind, of(clause.a), of(clause.b), c));
+    if (a.empty() || b.empty() || (c != nullptr && c->empty()))
+      return absentLoss(termOf(clause.what));
+    const double value = clauseValue(clause, a, b, c);
+    return weight(termOf(clause.what)) * (clause.denied ? value : 1.0 - value);
   }
 
+  /// Directions that are off by up to this are on the described side, from that on another [rad].
+  static constexpr double kRightWithin = kPi / 6.0;
+  static constexpr double kWrongFrom = kPi / 2.5;
+
  private:
+  static Term termOf(Clause::What what) {
+    return what == Clause::What::kRelation ? Term::kRelation
+           : what == Clause::What::kOrder  ? Term::kOrder
+                                           : Term::kNumber;
+  }
+  /// Something the description may have: how often, and the weight of one or of all of them.
+  struct Statements {
+    Term term;
+    double weight;
+    std::size_t count;
+  };
   void listClauses(const FitnessParams& params);
+  std::vector<Statements> countStatements(const FitnessParams& params) const;
   void shareWeights(const FitnessParams& params);
+  /// 0 .. 1, of names that all have vertices.
+  double clauseValue(const Clause& clause, const VertexSet& a, const VertexSet& b,
+                     const VertexSet* c) const;
+  double sizeWordValue(SizeWord word, const VertexSet& v) const;
+  int doorCount(const VertexSet& v) const;
+  // clause_values.cpp
   double orderValue(const Clause& clause, const VertexSet& first, const VertexSet& then,
                     const VertexSet& from) const;
-  double relationValue(RelationKind kind, const VertexSet& a, const VertexSet& b,
+  double numberValue(const Clause& clause, const VertexSet& to, const VertexSet& from) const;
+  double distanceValue(const Clause& clause, const VertexSet& to, const VertexSet& from) const;
+  double relationValue(const Clause& clause, const VertexSet& a, const VertexSet& b,
                        const VertexSet* c) const;
+  double nearValue(const VertexSet& a, const VertexSet& b) const;
+  double oppositeValue(const VertexSet& a, const VertexSet& b) const;
+  double betweenValue(const VertexSet& a, const VertexSet& b, const VertexSet& c) const;
+  double endValue(const VertexSet& a, const VertexSet& b) const;
+  double afterValue(const VertexSet& a, const VertexSet& b, const VertexSet* c) const;
+  double behindValue(const VertexSet& a, const VertexSet& b) const;
+  double atSideValue(double side_angle, const VertexSet& a, const VertexSet& b) const;
 
   std::array<double, static_cast<std::size_t>(Term::kCount)> weights_{};
+  double scale_ = 0.0;
 };
 
 /// The vertices of each name.

@@ -17,29 +17,40 @@ struct RightHeadings {
   double share = 1.0;  ///< of the side's value, that it has there
 };
 
-/// The best heading and the sum of deviations there.
+/// The best heading, and what the sides lose there.
 struct BestHeading {
   double heading = 0.0;
-  double deviation = 0.0;
+  double lost = 0.0;  ///< sum of the shares of the sides' values
+  double off = 0.0;   ///< sum of the deviations
 };
 
-/// The sum of deviations is piecewise linear in the heading and bends upwards only where one of
-/// them is 0: the best heading is there.
-BestHeading bestHeading(const std::vector<RightHeadings>& sides) {
+/// What is lost is piecewise linear in the heading and bends upwards only where one of the
+/// deviations is 0 or begins to count: the best heading is there. Of equally good ones that with
+/// the smallest deviations is taken.
+BestHeading bestHeading(const FitnessTerms& terms, const std::vector<RightHeadings>& sides) {
   BestHeading best;
   bool first = true;
-  for (const RightHeadings& tried : sides) {
-    for (const double value : tried.headings) {
-      double sum = 0.0;
-      for (const RightHeadings& others : sides) {
-        double off = kPi;
-        for (const double other : others.headings)
-          off = std::min(off, std::abs(wrapAngleOnce(other - value)));
-        sum += others.share * off;
-      }
-      if (!first && !(sum < best.deviation - kEqualDeviation)) continue;
-      first = false;
-      best = {value, sum};
+  const auto tryHeading = [&](double value) {
+    BestHeading now{value, 0.0, 0.0};
+    for (const RightHeadings& side : sides) {
+      double off = kPi;
+      for (const double right : side.headings)
+        off = std::min(off, std::abs(wrapAngleOnce(right - value)));
+      now.lost += side.share * terms.lostShare(off);
+      now.off += side.share * off;
+    }
+    const bool better =
+        now.lost < best.lost - kEqualDeviation ||
+        (now.lost < best.lost + kEqualDeviation && now.off < best.off - kEqualDeviation);
+    if (first || better) best = now;
+    first = false;
+  };
+  for (const RightHeadings& side : sides) {
+    for (const double right : side.headings) {
+      tryHeading(right);
+      if (!terms.by_doors) continue;
+      tryHeading(wrapAngleOnce(right + FitnessTerms::kRightWithin));
+      tryHeading(wrapAngleOnce(right - FitnessTerms::kRightWithin));
     }
   }
   return best;
@@ -68,7 +79,7 @@ double evaluate(const FitnessTerms& terms, const std::vector<VertexSet>& names, 
   double loss = 0.0;
   for (int i = 0; i < n; ++i) loss += terms.unaryLoss(i, of(i));
   for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) loss += terms.edgeLoss(i, j, terms.contact(of(i), of(j)));
+    for (int j = i + 1; j < n; ++j) loss += terms.edgeLoss(i, j, of(i), of(j));
   for (const FitnessTerms::Clause& clause : terms.clauses) loss += terms.clauseLoss(clause, of);
 
   if (problem.heading) {
@@ -79,6 +90,10 @@ double evaluate(const FitnessTerms& terms, const std::vector<VertexSet>& names, 
   }
   std::vector<RightHeadings> comparable;
   for (const MatchProblem::DescribedSide& s : problem.sides) {
+    if (of(s.from).empty() || of(s.to).empty()) {
+      loss += terms.absent_share * terms.missingSideLoss(s);
+      continue;
+    }
     RightHeadings right = rightHeadings(terms, s, of(s.from), of(s.to));
     if (right.headings.empty()) {
       loss += terms.missingSideLoss(s);
@@ -88,8 +103,8 @@ double evaluate(const FitnessTerms& terms, const std::vector<VertexSet>& names, 
     loss += terms.weight(Term::kSide) * (1.0 - right.share);
     comparable.push_back(std::move(right));
   }
-  const BestHeading best = bestHeading(comparable);
-  loss += terms.weight(Term::kSide) * best.deviation / kPi;
+  const BestHeading best = bestHeading(terms, comparable);
+  loss += terms.weight(Term::kSide) * best.lost;
   if (heading != nullptr) *heading = best.heading;
   return 1.0 - loss;
 }

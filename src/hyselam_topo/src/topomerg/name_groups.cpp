@@ -22,6 +22,7 @@ MatchProblem restricted(const MatchProblem& problem, const std::vector<int>& nam
   part.relations.clear();
   part.sides.clear();
   part.orders.clear();
+  part.numbers.clear();
   part.evidence.clear();
   part.described_edges.assign(k * k, 0);
   std::vector<int> number(n, -1);

@@ -17,6 +17,7 @@ NameTables::NameTables(const MatchProblem& problem, const FitnessTerms& terms)
       side_between_(problem.nameCount() * problem.nameCount(), -1),
       missing_edge_loss_(side_between_.size(), 0.0),
       shared_wall_loss_(side_between_.size(), 0.0),
+      absent_loss_(side_between_.size(), 0.0),
       borne_edges_(problem.nameCount()) {
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j < n_; ++j) degree_[at(i)] += problem.areConnected(at(i), at(j));
@@ -41,6 +42,7 @@ NameTables::NameTables(const MatchProblem& problem, const FitnessTerms& terms)
       const int s = sideBetween(i, j);
       missing_edge_loss_[at(i * n_ + j)] =
           terms.weight(Term::kEdge) + (s >= 0 ? terms.missingSideLoss(problem.sides[at(s)]) : 0.0);
+      absent_loss_[at(i * n_ + j)] = terms.absent_share * missing_edge_loss_[at(i * n_ + j)];
       shared_wall_loss_[at(i * n_ + j)] =
           terms.describedEdgeLoss(Contact::kWall) + (s >= 0 ? terms.throughWall(0.0) : 0.0);
       if (problem.areConnected(at(i), at(j)) && precedes(j, i)) borne_edges_[at(i)].push_back(j);

@@ -32,6 +32,8 @@ class NameTables {
   double missingEdgeLoss(int i, int j) const { return missing_edge_loss_[at(i * n_ + j)]; }
   /// The least of it if they share a wall.
   double sharedWallLoss(int i, int j) const { return shared_wall_loss_[at(i * n_ + j)]; }
+  /// Loss of two names that are described as connected, if one has no vertices.
+  double absentLoss(int i, int j) const { return absent_loss_[at(i * n_ + j)]; }
   /// Of two names without vertices yet one bears the loss of their missing edge, so that it is not
   /// counted twice: the names whose edges to this one are borne by this one.
   const std::vector<int>& borneEdgesOf(int name) const { return borne_edges_[at(name)]; }
@@ -49,7 +51,7 @@ class NameTables {
   PlaceSet confirmed_vertices_;
   PlaceSet hub_vertices_;
   std::vector<int> side_between_;
-  std::vector<double> missing_edge_loss_, shared_wall_loss_;
+  std::vector<double> missing_edge_loss_, shared_wall_loss_, absent_loss_;
   std::vector<std::vector<int>> borne_edges_;
   std::vector<int> direction_of_;
   std::size_t direction_count_ = 0;

@@ -160,7 +160,7 @@ double NodeBound::fillRow(SearchNode& node, std::size_t r, const PartialSet* par
   }
   for (const LooseAnchor& loose : node.loose)
     table.cost(row, node.column_of[at(loose.anchor)]) = losses_.looseLoss(name, loose, partial);
-  table.without(row) = losses_.emptyLoss(name, partial) + isolated.missing;
+  table.without(row) = losses_.emptyLoss(name, partial) + isolated.absent;
   return table.addRow(row);
 }
 
@@ -168,8 +168,11 @@ NodeBound::Isolated NodeBound::isolatedLoss(const SearchNode& node, int name) co
   Isolated loss;
   for (const int other : tables_.borneEdgesOf(name)) {
     if (node.row_of[at(other)] < 0) continue;
-    loss.missing += tables_.missingEdgeLoss(name, other);
-    loss.wall += tables_.sharedWallLoss(name, other);
+    // The other name may stay without vertices, if that is cheaper.
+    const double absent = tables_.absentLoss(name, other);
+    loss.missing += std::min(absent, tables_.missingEdgeLoss(name, other));
+    loss.wall += std::min(absent, tables_.sharedWallLoss(name, other));
+    loss.absent += absent;
   }
   return loss;
 }
@@ -177,7 +180,11 @@ NodeBound::Isolated NodeBound::isolatedLoss(const SearchNode& node, int name) co
 void NodeBound::addLast(const SearchNode& node, int name, int last, const double* before,
                         double* now) {
   const std::size_t alive = node.alive.size();
-  if (problem_.areConnected(at(name), at(last))) {
+  if (state_.vertices(last).empty()) {
+    const bool joined = problem_.areConnected(at(name), at(last));
+    const double absent = joined ? tables_.absentLoss(name, last) : 0.0;
+    for (std::size_t s = 0; s < alive; ++s) now[node.alive[s]] = before[node.alive[s]] + absent;
+  } else if (problem_.areConnected(at(name), at(last))) {
     const double missing = tables_.missingEdgeLoss(name, last);
     const int number = tables_.sideBetween(name, last);
     for (std::size_t s = 0; s < alive; ++s) {

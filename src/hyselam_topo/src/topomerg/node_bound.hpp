@@ -32,10 +32,11 @@ class NodeBound {
     double loss = 0.0;
     std::size_t names = 0;
   };
-  /// Loss of a name whose edges cannot be met because a set has no available neighbors.
+  /// Least loss of a name whose edges to names without vertices yet cannot be met, ...
   struct Isolated {
-    double missing = 0.0;  ///< nor walls that it shares
-    double wall = 0.0;     ///< but walls that it shares
+    double missing = 0.0;  ///< ... because its set has no available neighbors, nor walls,
+    double wall = 0.0;     ///< or no neighbors, but walls that it shares,
+    double absent = 0.0;   ///< or because it stays without a set
   };
   enum Surroundings : char { kFreeNeighbors, kFreeAcrossWalls, kNothingFree };
 

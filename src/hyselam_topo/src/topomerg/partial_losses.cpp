@@ -32,7 +32,7 @@ bool PartialLosses::mayShareWall(const PlaceSet& a, const PlaceSet& b) const {
 double PartialLosses::exactLoss(int name, const VertexSet& vertices) const {
   double loss = terms_.unaryLoss(name, vertices);
   for (const int k : state_.closed())
-    loss += terms_.edgeLoss(name, k, terms_.contact(vertices, state_.vertices(k)));
+    loss += terms_.edgeLoss(name, k, vertices, state_.vertices(k));
   for (const int number : terms_.sides_of[at(name)]) {
     const auto& side = problem_.sides[at(number)];
     const int other = side.from == name ? side.to : side.from;
@@ -47,15 +47,15 @@ double PartialLosses::exactLoss(int name, const VertexSet& vertices) const {
 double PartialLosses::emptyLoss(int name, const PartialSet* partial) const {
   const VertexSet none;
   double loss =
-      terms_.unaryLoss(name, none) + terms_.weight(Term::kEdge) * state_.closedNeighbors(name);
+      terms_.unaryLoss(name, none) + terms_.absentLoss(Term::kEdge) * state_.closedNeighbors(name);
   for (const int number : terms_.sides_of[at(name)]) {
     const auto& side = problem_.sides[at(number)];
     const int other = side.from == name ? side.to : side.from;
     if (state_.isClosed(other) || (partial != nullptr && partial->name == other))
-      loss += terms_.missingSideLoss(side);
+      loss += terms_.absent_share * terms_.missingSideLoss(side);
   }
   if (partial != nullptr && problem_.areConnected(at(name), at(partial->name)))
-    loss += terms_.weight(Term::kEdge);
+    loss += terms_.absentLoss(Term::kEdge);
   return loss + relationsLoss(name, none);
 }
 
@@ -75,7 +75,9 @@ double PartialLosses::looseLoss(int name, const LooseAnchor& loose,
   for (const int k : state_.closed()) {
     const PlaceSet& neighbors = state_.vertices(k).neighbors;
     if (problem_.areConnected(at(name), at(k))) {
-      if (!neighbors.intersects(piece))
+      if (state_.vertices(k).empty())
+        loss += tables_.absentLoss(name, k);
+      else if (!neighbors.intersects(piece))
         loss += terms_.closed_door_credit > 0.0 && state_.vertices(k).across_walls.intersects(piece)
                     ? tables_.sharedWallLoss(name, k)
                     : tables_.missingEdgeLoss(name, k);
@@ -119,6 +121,10 @@ double PartialLosses::addPartialEdges(double loss, const PartialSet& partial) co
     const VertexSet& other = state_.vertices(k);
     const bool is_described = problem_.areConnected(at(partial.name), at(k));
     const bool touches = partial.has.touches(other);
+    if (other.empty()) {
+      if (is_described) loss += terms_.absentLoss(Term::kEdge);
+      continue;
+    }
     if (!is_described && touches) loss += terms_.undescribed_edge;
     if (is_described && !touches && !other.neighbors.intersects(partial.open)) {
       const bool wall =
@@ -133,6 +139,7 @@ double PartialLosses::addPartialEdges(double loss, const PartialSet& partial) co
 double PartialLosses::partialSideLoss(const MatchProblem::DescribedSide& side,
                                       const PartialSet& partial, int other) const {
   const VertexSet& v = state_.vertices(other);
+  if (v.empty()) return terms_.absent_share * terms_.missingSideLoss(side);
   if (terms_.by_doors) {
     const PlaceSet reach = partial.has.members | partial.open;
     return side.from == other ? terms_.minDoorLoss(side, v.members, reach, heading_)
@@ -151,6 +158,7 @@ double PartialLosses::partialLoss(const PartialSet& partial) const {
   if (partial.open.empty()) return exactLoss(partial.name, partial.has);
   double loss = partialAreaLoss(partial);
   const int parts = problem_.attributes[at(partial.name)].parts;
+  if (parts == 0) loss += terms_.weight(Term::kPiece) * (partial.has.count - 1);
   if (parts > 0 && partial.has.count > parts)
     loss += terms_.weight(Term::kParts) * (partial.has.count - parts) / partial.has.count;
   loss = addPartialEdges(loss, partial);

@@ -21,7 +21,52 @@ std::optional<std::size_t> mainVertex(const MatchProblem& problem, const Assignm
   return best;
 }
 
+/// The probability that a name is right, from the odds of the best answer against the best one
+/// where it is not (fitted on generated floors).
+constexpr double kOddsOffset = 0.0;
+constexpr double kOddsFactor = 1.0;
+/// Where the weights say nothing of odds, this drop is taken for one of e times.
+constexpr double kDropOfShares = 0.01;
+
+double probabilityOf(double drop, double scale) {
+  const double nats = scale > 0.0 ? drop * scale : drop / kDropOfShares;
+  return 1.0 / (1.0 + std::exp(-(kOddsOffset + kOddsFactor * nats)));
+}
+
+/// The best fitness among kept assignments that have the name elsewhere; -1: none.
+double keptElsewhere(const PlaceAssignment& match, std::size_t name,
+                     const std::optional<std::size_t>& main) {
+  const int i = static_cast<int>(name);
+  double other = -1.0;
+  for (const MatchSolution& s : match.solutions) {
+    const bool elsewhere =
+        main ? s.assignment[*main] != i
+             : std::find(s.assignment.begin(), s.assignment.end(), i) != s.assignment.end();
+    if (elsewhere) other = std::max(other, s.fitness);
+  }
+  return other;
+}
+
+/// The problem in which the name is not at `main`, or has a place if that is nothing.
+MatchProblem otherwise(const MatchProblem& problem, std::size_t name,
+                       const std::optional<std::size_t>& main) {
+  MatchProblem without = problem;
+  if (main)
+    without.allowed[name].erase(*main);
+  else
+    without.attributes[name].needs_place = true;
+  return without;
+}
+
 }  // namespace
+
+std::size_t nearEqual(const PlaceAssignment& match, double odds) {
+  if (!match.found() || !(match.scale > 0.0)) return match.equal;
+  const double least = match.best().fitness - std::log(std::max(1.0, odds)) / match.scale;
+  return static_cast<std::size_t>(std::count_if(
+      match.solutions.begin(), match.solutions.end(),
+      [least](const MatchSolution& s) { return s.fitness >= least - kEqualFitness; }));
+}
 
 std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
                                                const SolverParams& params,
@@ -38,25 +83,17 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
     u.name = problem.names[i];
     const auto main = mainVertex(problem, best.assignment, i);
     if (main) u.place = problem.vertices[*main];
-    if (main && problem.confirmed_name[*main] == static_cast<int>(i)) {
-      u.drop = 1.0;
+    const bool confirmed = main && problem.confirmed_name[*main] == static_cast<int>(i);
+    if (confirmed || problem.attributes[i].elsewhere) {
+      u.drop = u.probability = 1.0;
       out.push_back(u);
       continue;
     }
-    // Some assignment that is kept may have the name elsewhere.
-    double other = -1.0;
-    for (const MatchSolution& s : match.solutions) {
-      const bool elsewhere = main ? s.assignment[*main] != static_cast<int>(i)
-                                  : std::find(s.assignment.begin(), s.assignment.end(),
-                                              static_cast<int>(i)) != s.assignment.end();
-      if (elsewhere) other = std::max(other, s.fitness);
-    }
-    if (other < best.fitness - kEqualFitness && main) {
-      MatchProblem without = problem;
-      without.allowed[i].erase(*main);
+    double other = keptElsewhere(match, i, main);
+    if (other < best.fitness - kEqualFitness) {
       again.time_limit = std::max(0.0, params.time_limit - watch.seconds()) /
                          static_cast<double>(problem.nameCount() - i);
-      const PlaceAssignment second = solveExact(without, again);
+      const PlaceAssignment second = solveExact(otherwise(problem, i, main), again);
       if (second.found()) other = std::max(other, second.best().fitness);
       // What was not looked at in time may be as good as the gap says.
       u.proven = second.optimal;
@@ -64,6 +101,7 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
         other = std::max(other, second.gap + (second.found() ? second.best().fitness : 0.0));
     }
     u.drop = other < 0.0 ? best.fitness : std::max(0.0, best.fitness - other);
+    u.probability = probabilityOf(u.drop, match.scale);
     out.push_back(u);
   }
   return out;
@@ -75,10 +113,11 @@ std::optional<MatchQuestion> mostInformativeQuestion(const MatchProblem& problem
   if (!(params.tolerance > 0.0))
     throw hyselam::ParameterError("tolerance", params.tolerance, "> 0");
   if (!match.found()) return std::nullopt;
+  const double scale = match.scale > 0.0 ? match.scale : 1.0 / params.tolerance;
   std::vector<double> likely;
   double sum = 0.0;
   for (const MatchSolution& s : match.solutions) {
-    likely.push_back(std::exp((s.fitness - match.best().fitness) / params.tolerance));
+    likely.push_back(std::exp((s.fitness - match.best().fitness) * scale));
     sum += likely.back();
   }
   std::optional<MatchQuestion> best;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "angles.hpp"
 #include "hyselam_common/errors.hpp"
+#include "map_gaps.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -60,37 +62,79 @@ class Numbers {
   const char* whose_;
 };
 
-void addSides(const DescribedBuilding& building, const Numbers& name, MatchProblem* out) {
-  // The places on one side of a place, in the described order.
+/// From the direction through the doors on a side to that in which they are told: forwards along
+/// the left and the right, from left to right on the front and back.
+double turnOf(Side side) {
+  const double sign = side == Side::kRight || side == Side::kBack ? -1.0 : 1.0;
+  return sign * -0.5 * hyselam::kPi;
+}
+
+/// The places on one side of a place, in the described order.
+void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& name,
+            MatchProblem* out) {
+  const Side side = row.front()->side;
+  const double count = static_cast<double>(row.size());
+  const double side_angle = angleOf(side), turn = turnOf(side);
+  // The first is nearest to the back: on the right hand that is the smallest angle. Front and
+  // back are described from left to right.
+  const double sign = side == Side::kRight || side == Side::kBack ? -1.0 : 1.0;
+  const auto before = [](const auto* a, const auto* b) {
+    // Where a number was told, the order is that of telling.
+    return !a->rank && !b->rank && a->order < b->order;
+  };
+  const DescribedConnection* previous = nullptr;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const double offset =
+        (0.5 * (count - 1.0) - static_cast<double>(k)) * hyselam::kPi / (2 * count);
+    int earlier = 0, later = 0;
+    for (const DescribedConnection* other : row) {
+      earlier += before(other, row[k]);
+      later += before(row[k], other);
+    }
+    out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
+                          merging::wrapAngleOnce(side_angle + sign * offset), side_angle, turn,
+                          earlier, later});
+    if (row[k]->rank) continue;
+    if (previous != nullptr && before(previous, row[k]))
+      out->orders.push_back(
+          {out->sides.back().from, name(previous->to, "description"), out->sides.back().to, turn});
+    previous = row[k];
+  }
+}
+
+void addSides(const std::vector<DescribedConnection>& connections, const Numbers& name,
+              MatchProblem* out) {
   std::map<std::pair<Id, Side>, std::vector<const DescribedConnection*>> rows;
-  for (const DescribedConnection& c : building.connections)
+  for (const DescribedConnection& c : connections)
     if (c.side != Side::kUnknown) rows[{c.from, c.side}].push_back(&c);
   for (auto& [key, row] : rows) {
     std::stable_sort(row.begin(), row.end(),
                      [](const auto* a, const auto* b) { return a->order < b->order; });
-    const double count = static_cast<double>(row.size());
-    const double side_angle = angleOf(key.second);
-    // The first is nearest to the back: on the right hand that is the smallest angle. Front and
-    // back are described from left to right.
-    const double sign = key.second == Side::kRight || key.second == Side::kBack ? -1.0 : 1.0;
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const double offset =
-          (0.5 * (count - 1.0) - static_cast<double>(k)) * hyselam::kPi / (2 * count);
-      const auto before = [&](const auto* a, const auto* b) { return a->order < b->order; };
-      int earlier = 0, later = 0;
-      for (const DescribedConnection* other : row) {
-        earlier += before(other, row[k]);
-        later += before(row[k], other);
-      }
-      // Forwards along the left and the right, from left to right on the front and back.
-      const double turn = sign * -0.5 * hyselam::kPi;
-      out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
-                            merging::wrapAngleOnce(side_angle + sign * offset), side_angle, turn,
-                            earlier, later});
-      if (k > 0 && before(row[k - 1], row[k]))
-        out->orders.push_back({out->sides.back().from, name(row[k - 1]->to, "description"),
-                               out->sides.back().to, turn});
-    }
+    addRow(row, name, out);
+  }
+  for (const DescribedConnection& c : connections) {
+    const int from = name(c.from, "description"), to = name(c.to, "description");
+    const bool sided = c.side != Side::kUnknown;
+    const std::optional<double> turn = sided ? std::optional<double>(turnOf(c.side)) : std::nullopt;
+    if (c.rank && *c.rank != 0 && sided) out->numbers.push_back({from, to, *c.rank, 0.0, turn});
+    const bool along = c.side == Side::kLeft || c.side == Side::kRight;
+    if (c.distance && *c.distance > 0.0 && out->position)
+      out->numbers.push_back({from, to, 0, *c.distance, along ? turn : std::nullopt});
+  }
+}
+
+void addRelations(const DescribedBuilding& building, const std::set<Id>& elsewhere,
+                  const Numbers& name, MatchProblem* out) {
+  for (const DescribedRelation& r : building.relations) {
+    if (elsewhere.count(r.a) + elsewhere.count(r.b) > 0 || (r.c != 0 && elsewhere.count(r.c) > 0))
+      continue;
+    const bool at_side = r.kind == RelationKind::kAtSide;
+    if (at_side && (!out->heading || r.side == Side::kUnknown)) continue;
+    const bool third =
+        r.kind == RelationKind::kBetween || (r.kind == RelationKind::kAfter && r.c != 0);
+    out->relations.push_back({r.kind, name(r.a, "description"), name(r.b, "description"),
+                              third ? name(r.c, "description") : -1, r.denied,
+                              at_side ? angleOf(r.side) : 0.0});
   }
 }
 
@@ -205,7 +249,8 @@ void addNamesAndVertices(const DescribedBuilding& building, const AugmentedTopol
     out->names.push_back(place.id);
     double area = place.area.value_or(0.0);
     if (area <= 0.0 && place.length && place.width) area = *place.length * *place.width;
-    out->attributes.push_back({area, place.parts.value_or(0), place.kind});
+    out->attributes.push_back({area, place.parts.value_or(0), place.kind, place.size_word,
+                               place.doors.value_or(0), false, false});
   }
   for (const Place& place : map.places) {
     out->vertices.push_back(place.id);
@@ -214,12 +259,50 @@ void addNamesAndVertices(const DescribedBuilding& building, const AugmentedTopol
     out->x.push_back(place.centre ? place.centre->x : 0.0);
     out->y.push_back(place.centre ? place.centre->y : 0.0);
   }
+  std::vector<double> rooms;
+  for (std::size_t v = 0; v < out->vertexCount(); ++v)
+    if (out->kind[v] != PlaceKind::kCorridor && out->area[v] > 0.0) rooms.push_back(out->area[v]);
+  std::sort(rooms.begin(), rooms.end());
+  if (!rooms.empty()) out->typical_area = rooms[rooms.size() / 2];
   // Large places say where the middle of several is; without all sizes each counts the same.
   const bool weighed =
       std::all_of(out->area.begin(), out->area.end(), [](double a) { return a > 0.0; });
   for (std::size_t v = 0; v < out->vertexCount(); ++v) {
     out->weight.push_back(!map.places[v].centre ? 0.0 : weighed ? out->area[v] : 1.0);
   }
+}
+
+/// Names of another floor, unless a place of this map is confirmed to have them. What was told of
+/// them does not count.
+std::set<Id> takeOutOtherFloors(const DescribedBuilding& building,
+                                const MatchConstraints& constraints, MatchProblem* out) {
+  std::set<Id> elsewhere;
+  for (const DescribedPlace& place : building.places)
+    if (place.floor.value_or(0) != 0) elsewhere.insert(place.id);
+  for (const auto& [place, name] : constraints.confirmed) elsewhere.erase(name);
+  for (std::size_t i = 0; i < out->nameCount(); ++i) {
+    if (elsewhere.count(out->names[i]) == 0) continue;
+    out->attributes[i] = {};
+    out->attributes[i].elsewhere = true;
+  }
+  return elsewhere;
+}
+
+/// Which names are joined, on which side and in which order they lie, and their relations.
+void addStatements(const DescribedBuilding& building, const std::set<Id>& elsewhere,
+                   const Numbers& name, MatchProblem* out) {
+  const std::size_t n = out->nameCount();
+  std::vector<DescribedConnection> connections;
+  for (const DescribedConnection& c : building.connections)
+    if (elsewhere.count(c.from) + elsewhere.count(c.to) == 0) connections.push_back(c);
+  out->described_edges.assign(n * n, 0);
+  for (const DescribedConnection& c : connections) {
+    const auto a = static_cast<std::size_t>(name(c.from, "description"));
+    const auto b = static_cast<std::size_t>(name(c.to, "description"));
+    out->described_edges[a * n + b] = out->described_edges[b * n + a] = 1;
+  }
+  addSides(connections, name, out);
+  addRelations(building, elsewhere, name, out);
 }
 
 }  // namespace
@@ -234,6 +317,9 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
                      "has more than " + std::to_string(PlaceSet::kCapacity) + " places");
   if (observer.heading && !std::isfinite(*observer.heading))
     throw InputError("observer", "heading", "is no number");
+  if (observer.position &&
+      !(std::isfinite(observer.position->x) && std::isfinite(observer.position->y)))
+    throw InputError("observer", "position", "is no number");
 
   MatchProblem out;
   addNamesAndVertices(building, map, &out);
@@ -248,26 +334,20 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
   }
   addPassages(map, vertex, &out);
   addWalls(map, &out);
-  out.described_edges.assign(n * n, 0);
-  for (const DescribedConnection& c : building.connections) {
-    const auto a = static_cast<std::size_t>(name(c.from, "description"));
-    const auto b = static_cast<std::size_t>(name(c.to, "description"));
-    out.described_edges[a * n + b] = out.described_edges[b * n + a] = 1;
-  }
-  addSides(building, name, &out);
-  for (const DescribedRelation& r : building.relations) {
-    if (r.denied || r.kind > RelationKind::kInside) continue;
-    out.relations.push_back({r.kind, name(r.a, "description"), name(r.b, "description"),
-                             r.kind == RelationKind::kBetween ? name(r.c, "description") : -1});
-  }
+  merging::addGaps(map, &out);
+  if (observer.heading) out.heading = std::remainder(*observer.heading, 2.0 * hyselam::kPi);
+  out.position = observer.position;
 
   MatchConstraints all = constraints;
   if (observer.place) {
     vertex(*observer.place, "observer");
     if (building.robot_place) all.confirmed.emplace_back(*observer.place, *building.robot_place);
   }
+  const std::set<Id> elsewhere = takeOutOtherFloors(building, all, &out);
+  addStatements(building, elsewhere, name, &out);
   addConstraints(all, name, vertex, &out);
-  if (observer.heading) out.heading = std::remainder(*observer.heading, 2.0 * hyselam::kPi);
+  for (std::size_t i = 0; i < n; ++i)
+    if (out.attributes[i].elsewhere) out.allowed[i] = {};
 
   for (const MatchEvidence& e : evidence) {
     const auto i = static_cast<std::size_t>(name(e.name, "evidence"));

@@ -42,6 +42,7 @@ class TreeSearch {
       best.offer(std::move(s));
     }
     PlaceAssignment match = best.finish();
+    match.scale = terms_.scale();
     match.nodes = nodes_;
     match.gap = match.found() ? 1.0 - match.best().fitness : 1.0;
     match.microseconds = watch.seconds() * 1e6;

@@ -134,6 +134,8 @@ struct DialogueState {
   DescribedBuilding description;
   /// Heading of the robot when sides (left, front, ...) were last described, map frame [rad].
   std::optional<double> heading;
+  /// Where the robot stood then, map frame [m].
+  std::optional<hyselam::Point2> position;
 };
 
 class Dialogue {
@@ -296,7 +298,8 @@ class Dialogue {
   bool entered_ = false;  ///< the robot's place or the map has changed; not processed yet
   std::optional<hyselam::OccupancyGrid> grid_;
   std::optional<PlaceAssignment> match_;
-  std::optional<double> heading_;  // DialogueState::heading
+  std::optional<double> heading_;            // DialogueState::heading
+  std::optional<hyselam::Point2> position_;  ///< then
   Question question_;
   Id asked_ = 0;    // the place for which a question was considered since entering it
   Id subject_ = 0;  // antecedent of "it"

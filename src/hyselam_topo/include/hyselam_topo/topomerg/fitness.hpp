@@ -2,7 +2,8 @@
 // description of the building (dos Santos 2014, 5.3, Eq. 5.2 to 5.8): how well an assignment of
 // described names to places of the map fits. f is the weighted mean of named vertices V (5.3),
 // areas A (5.4), edges C (5.6) and orientations D (5.7, 5.8), and of terms that the thesis does not
-// have, each active only if the description mentions it.
+// have, each active only if the description mentions it. A name may stay without a place (a room
+// that the robot has not seen yet) at a cost.
 #pragma once
 
 #include <vector>
@@ -24,28 +25,53 @@ enum class SideRule {
   kCenters
 };
 
-/// Weights of the fitness terms, >= 0. Each weight is divided equally among the statements of that
-/// type in the description. Types without a statement are left out and the other weights are scaled
-/// to a sum of 1: the weight of relations has no effect where no relation is described.
+/// What the weights of the terms mean.
+enum class Weighting {
+  /// Odds: the natural logarithm of how many times less likely an answer is for one statement that
+  /// does not hold in it. f = 1 - sum of losses / sum of all that could be lost, so that a loss of
+  /// 1 / PlaceAssignment::scale makes an answer e times less likely.
+  kOdds,
+  /// Eq. 5.2: each weight is divided equally among the statements of that type in the description.
+  /// Types without a statement are left out and the other weights are scaled to a sum of 1: the
+  /// only statement of its type weighs as much as all statements of another.
+  kShares
+};
+
+/// Weights of the fitness terms, >= 0, with Weighting::kOdds of one statement [nat].
 struct FitnessParams {
-  double vertices = 0.25;      ///< gamma_v: every name is assigned to a place
-  double areas = 0.25;         ///< gamma_a: places have the described area
-  double edges = 0.25;         ///< gamma_e: places are connected as described
-  double orientations = 0.25;  ///< gamma_d: places are on the described side
+  Weighting weighting = Weighting::kOdds;
+  /// gamma_v: a name stays without a place. With kOdds the logarithm of the odds that a described
+  /// place is on the map at one place that fits as well as an unknown place would.
+  double vertices = 1.0;
+  double areas = 4.0;         ///< gamma_a: places have the described area
+  double edges = 1.5;         ///< gamma_e: places are connected as described
+  double orientations = 3.0;  ///< gamma_d: places are on the described side
   SideRule sides = SideRule::kDoors;
-  double orders = 0.25;     ///< described order "A, then B" on a side; only with SideRule::kDoors
-  double relations = 0.25;  ///< next to, opposite, between, at the end of, inside
-  double parts = 0.25;      ///< described number of parts: "divided into six rooms"
+  double orders = 4.0;      ///< described order "A, then B" on a side; only with SideRule::kDoors
+  double numbers = 3.0;     ///< "the second door on the left", "in ten metres"
+  double relations = 2.0;   ///< next to, opposite, between, behind, larger, ..., and denied ones
+  double parts = 1.5;       ///< described number of parts: "divided into six rooms"
+  double doors = 1.5;       ///< described number of doors
+  double size_words = 1.5;  ///< "a small room"
   double kinds = 0.0;  ///< corridor or room; off by default, since it may be guessed from the name
   /// Evidence that a place of the map has a name, from objects seen there and from image
   /// classification (MatchEvidence).
-  double evidence = 0.25;
+  double evidence = 3.0;
+  /// Each further place of a name whose number of parts is not described; only with kOdds.
+  double pieces = 0.3;
+  /// Share of a statement's weight that is lost if one of its names stays without a place: nobody
+  /// can tell whether it holds. 1: as if it did not hold (Eq. 5.2), 0: as if it did.
+  double absent_share = 0.4;
   /// Value of C (Eq. 5.6) for two places that are connected in the map but not in the description,
   /// 0 .. 1. 0: counts as an error, 1: people are expected to leave connections out.
-  double undescribed_edge_credit = 0.0;
+  double undescribed_edge_credit = 0.8;
   /// Factor of C and D, 0 .. 1, for two places that are described as connected and in the map only
   /// share a wall: its door may have been closed when the robot passed. Only with SideRule::kDoors.
   double closed_door_credit = 0.3;
+
+  /// Eq. 5.2: all weights 0.25, Weighting::kShares, a name without a place loses all that was told
+  /// of it, connections that nobody told of count as errors.
+  static FitnessParams equation52();
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError for a value out of range, and if the first four are all 0.

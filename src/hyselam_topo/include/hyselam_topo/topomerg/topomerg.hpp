@@ -53,10 +53,13 @@ struct PlaceAssignment {
   /// The best ones first; of equally good ones those that name fewer places, then in the order of
   /// the assignments. Empty if the constraints allow no assignment, or if none was found in time.
   std::vector<MatchSolution> solutions;
-  std::size_t equal = 0;    ///< as good as the first
-  bool more = false;        ///< more than `max_solutions` fit; the first is nevertheless a best
-  bool optimal = false;     ///< nothing is better than the first
-  double gap = 0.0;         ///< nothing is better than its fitness plus this
+  std::size_t equal = 0;  ///< as good as the first
+  bool more = false;      ///< more than `max_solutions` fit; the first is nevertheless a best
+  bool optimal = false;   ///< nothing is better than the first
+  double gap = 0.0;       ///< nothing is better than its fitness plus this
+  /// Weighting::kOdds: an assignment whose fitness is lower by 1 / scale is e times less likely; 0:
+  /// the weights say nothing of odds.
+  double scale = 0.0;
   std::uint64_t nodes = 0;  ///< partial assignments visited; explorer: assignments
   double microseconds = 0.0;
 

@@ -9,17 +9,31 @@
 
 namespace hyselam_topo {
 
+/// A name whose place is right with less probability than this is told as unsure.
+constexpr double kSureProbability = 0.9;
+
 struct NameUncertainty {
   Id name = 0;
-  Id place = 0;  ///< of the map: the largest that the name was given to; 0: none
-  /// By how much at least the best fitness drops if the name is not there: 0 if another assignment
-  /// is as good, large if the name cannot be elsewhere. For a confirmed name 1.
+  Id place = 0;  ///< of the map: the largest that the name was given to; 0: none (not seen yet)
+  /// By how much at least the best fitness drops if the name is not there (or has a place, if it
+  /// has none): 0 if another assignment is as good, large if the name cannot be elsewhere. For a
+  /// confirmed name 1.
   double drop = 0.0;
   bool proven = true;  ///< false: time was too short, the drop may be larger
+  /// That the name is right there, from the drop; calibrated on generated floors
+  /// (docs/algorithms/topomerg.md). For a confirmed name, and one of another floor, 1.
+  double probability = 0.0;
+
+  bool unsure() const { return probability < kSureProbability; }
 };
 
-/// One search for each name that is the same in all best assignments; `time_limit` holds for all of
-/// them together, each gets an equal share of what the others have left.
+/// How many of the kept assignments, the best included, are at most `odds` times less likely than
+/// the best. Those that PlaceAssignment::more says were not kept are not counted. With
+/// Weighting::kShares those equally good.
+std::size_t nearEqual(const PlaceAssignment& match, double odds);
+
+/// One search for each name whose alternative is not among the kept assignments; `time_limit` holds
+/// for all of them together, each gets an equal share of what the others have left.
 /// In the order of the names. Empty if the match has none.
 std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
                                                const SolverParams& params,
@@ -34,7 +48,7 @@ struct MatchQuestion {
 };
 
 struct QuestionParams {
-  /// Answers that are worse by this much are 1/e as likely, > 0.
+  /// Weighting::kShares: answers that are worse by this much are 1/e as likely, > 0.
   double tolerance = 0.01;
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "hyselam_common/pose2.hpp"
 #include "hyselam_language/building/described_building.hpp"
 #include "hyselam_topo/topomerg/topomerg_place_set.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
@@ -28,8 +29,11 @@ struct MatchConstraints {
 /// robot's place, the two are confirmed to be the same.
 struct MatchObserver {
   std::optional<Id> place;  ///< of the map
-  std::optional<double>
-      heading;  ///< nothing: the heading that fits best is taken for each assignment
+  /// Nothing: the heading that fits best is taken for each assignment.
+  std::optional<double> heading;
+  /// Where the robot stood. "The second door on the left" is counted from there on; nothing: from
+  /// the end of the place that lies behind the robot.
+  std::optional<hyselam::Point2> position = std::nullopt;
 };
 
 /// Both graphs by number: name i is places[i] of the description, vertex v is places[v] of the map.
@@ -41,7 +45,17 @@ struct MatchProblem {
     double side_angle = 0.0;  ///< of the side, not spread
     double turn = 0.0;  ///< from the direction through the doors to that of the described order
     int before = 0;     ///< as many others were described before it on that side, ...
-    int after = 0;      ///< and as many after it
+    int after = 0;      ///< and as many after it; both without those whose number was told
+  };
+  /// "The second door on the left", "ten metres ahead": where along `from` the door to `to` is.
+  struct DescribedNumber {
+    int from = 0;  ///< numbers of the names
+    int to = 0;
+    int rank = 0;           ///< from 1, or from -1 at the far end; 0: not told
+    double distance = 0.0;  ///< from where the robot stood, if rank is 0 [m]
+    /// From the direction through the door to that in which it is counted; nothing for a distance
+    /// without a side.
+    std::optional<double> turn;
   };
   /// "A, then B" on one side of a place.
   struct DescribedOrder {
@@ -62,11 +76,19 @@ struct MatchProblem {
     int a = 0;
     int b = 0;
     int c = -1;
+    bool denied = false;
+    double side_angle = 0.0;  ///< only for kAtSide, as in DescribedSide
   };
   struct NameAttributes {
     double area = 0.0;  ///< [m^2], 0: not described
     int parts = 0;      ///< 0: not described
     std::optional<PlaceKind> kind;
+    std::optional<SizeWord> size_word;
+    int doors = 0;           ///< 0: not described
+    bool elsewhere = false;  ///< on another floor: it has no place of this map
+    /// It certainly has a place: answers without one lose everything. For questions of the kind
+    /// "what if"; compileMatch() sets it for none.
+    bool needs_place = false;
   };
 
   std::vector<Id> names;                   ///< ids in the description
@@ -75,6 +97,7 @@ struct MatchProblem {
   std::vector<char> described_edges;       ///< names x names: described as connected
   std::vector<DescribedSide> sides;
   std::vector<DescribedOrder> orders;
+  std::vector<DescribedNumber> numbers;
   std::vector<Relation> relations;
 
   std::vector<double> area;         ///< of each vertex; 0: not known
@@ -88,11 +111,16 @@ struct MatchProblem {
   /// Of each vertex: walls between it and others that it has no edge to; empty: none are known.
   std::vector<std::vector<Passage>> walls;
   std::vector<PlaceSet> across_walls;  ///< of each vertex: the others behind these walls
-  std::vector<double> evidence;        ///< names x vertices, empty: none
+  /// Of each vertex: stretches of its walls with nothing of the map behind them, where doors to
+  /// rooms may be that the robot has not seen (`to` has no meaning); empty: none are known.
+  std::vector<std::vector<Passage>> gaps;
+  double typical_area = 0.0;     ///< median of the rooms of the map [m^2]; 0: not known
+  std::vector<double> evidence;  ///< names x vertices, empty: none
 
-  std::vector<int> confirmed_name;  ///< of each vertex, -1: not known
-  std::vector<PlaceSet> allowed;    ///< vertices that may have name i
-  std::optional<double> heading;    ///< of the robot
+  std::vector<int> confirmed_name;          ///< of each vertex, -1: not known
+  std::vector<PlaceSet> allowed;            ///< vertices that may have name i
+  std::optional<double> heading;            ///< of the robot
+  std::optional<hyselam::Point2> position;  ///< of the robot
 
   std::size_t nameCount() const { return names.size(); }
   std::size_t vertexCount() const { return vertices.size(); }
@@ -105,6 +133,9 @@ struct MatchProblem {
 /// ERRATA): front 0, left pi/2, back pi, right -pi/2; n places on one side of a place are pi/(2n)
 /// apart around it, the first one nearest to the back (on the front and back: the left one first).
 /// With doors (SideRule) they are not spread, but come one after the other.
+/// Names of another floor (DescribedPlace::floor) get no place of the map, unless one is confirmed,
+/// and nothing counts that was told of them and others. Denied sides count only if the heading is
+/// known, distances only if the position is.
 /// A place without area counts with that of its outline. Where walls of two places without an edge
 /// lie back to back for at least the width of a door, a closed door may be in them.
 ///
