@@ -245,7 +245,7 @@ TEST(LinkPlaces, LinksNamesToPlacesOfTheTopologicalMap) {
   map.addPlace("attic");
   const Id seen = map.addObject("cup");
   map.find(seen)->pose = ObjectPose{{2.0, 3.0, 1.0}, {0.1, 0.1, 0.1}, 0.0, {}};
-  EXPECT_EQ(linkPlaces(map, topology), 1u);
+  EXPECT_EQ(linkPlaces(map, topology, shippedPlaceNames()), 1u);
   EXPECT_EQ(map.places[0].topological, 1u);
   EXPECT_EQ(map.places[1].topological, 2u);
   EXPECT_EQ(map.places[2].topological, 0u);

@@ -145,6 +145,7 @@ class Conversation {
   hyselam_topo::SharedDialogue shared_{dialogue_};
   hyselam_objects::ObjectMap objects_;
   hyselam_objects::ObjectDictionary dictionary_;  // nothing is recognized without a camera
+  hyselam_topo::PlaceNames place_names_;
   hyselam_objects::FillMap fill_map_;
   double time_ = 0.0;  // of the robot's pose [s]
   Motion motion_ = Motion::kStanding;

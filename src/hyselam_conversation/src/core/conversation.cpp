@@ -70,6 +70,7 @@ Conversation::Conversation(const ConversationParams& params, hyselam_objects::Ob
       languages_(std::move(languages)),
       dialogue_(params.dialogue, languages_->places, languages_->phrases),
       objects_(std::move(objects)),
+      place_names_(languages_->places.grammars()),
       fill_map_(languages_->objects, objects_) {}
 
 // ---- Knowledge from before ----
@@ -183,7 +184,7 @@ void Conversation::perform(const DialogueAction& action, Exchange& out) {
     case DialogueAction::Kind::kMap:
       // As ObjectEngine, which gets the map with the names.
       if (!objects_.places.empty() || !objects_.objects.empty()) {
-        linkPlaces(objects_, dialogue_.map());
+        linkPlaces(objects_, dialogue_.map(), place_names_);
       }
       break;
     case DialogueAction::Kind::kWalls:

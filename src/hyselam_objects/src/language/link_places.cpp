@@ -1,16 +1,19 @@
 #include "hyselam_objects/language/link_places.hpp"
 
-#include "hyselam_language/building/place_names.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
 
 namespace hyselam_objects {
 
-std::size_t linkPlaces(ObjectMap& map, const hyselam_topo::AugmentedTopologicalMap& topology) {
+hyselam_topo::PlaceNames shippedPlaceNames() {
   std::vector<hyselam_topo::Grammar> grammars;
   for (const std::string& language : hyselam_topo::Grammar::shippedLanguages()) {
     grammars.push_back(hyselam_topo::Grammar::shipped(language));
   }
-  const hyselam_topo::PlaceNames names(std::move(grammars));
+  return hyselam_topo::PlaceNames(std::move(grammars));
+}
+
+std::size_t linkPlaces(ObjectMap& map, const hyselam_topo::AugmentedTopologicalMap& topology,
+                       const hyselam_topo::PlaceNames& names) {
   std::vector<std::vector<std::string>> words;
   for (const hyselam_topo::Place& place : topology.places) {
     words.emplace_back();

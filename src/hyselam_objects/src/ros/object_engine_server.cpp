@@ -228,7 +228,7 @@ void ObjectEngineServer::onTopology(const hyselam_msgs::AugmentedTopologicalMap:
                                 "is '" + map.frame_id + "', not '" + map_.frame_id + "'");
     }
     topology_ = std::move(map);
-    linkPlaces(map_, *topology_);
+    linkPlaces(map_, *topology_, place_names_);
   } catch (const std::exception& e) {
     ROS_WARN_STREAM(log_name_ << " not used: " << e.what());
   }
@@ -259,7 +259,7 @@ bool ObjectEngineServer::onLoad(hyselam_msgs::ObjectMapPath::Request& request,
     map_ = loadMapInFrame(params_.input.map_frame, path);
     fill_map_.resetContext();
     guard_.clear();
-    if (topology_) linkPlaces(map_, *topology_);
+    if (topology_) linkPlaces(map_, *topology_, place_names_);
     map_file_.save(map_);
     publishMap();
     response.success = true;

@@ -49,7 +49,8 @@ int main(int argc, char** argv) {
     }
     nlohmann::json unlinked = nullptr;
     if (!topology_path.empty()) {
-      unlinked = hyselam_objects::linkPlaces(map, hyselam_topo::loadXml(topology_path));
+      unlinked = hyselam_objects::linkPlaces(map, hyselam_topo::loadXml(topology_path),
+                                             hyselam_objects::shippedPlaceNames());
     }
     const std::vector<std::string> unknown = fill.unknownKinds(dictionary);
     if (!dictionary_path.empty()) {

@@ -16,6 +16,7 @@
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/params.hpp"
 #include "hyselam_objects/language/fill_map.hpp"
+#include "hyselam_objects/language/link_places.hpp"
 #include "hyselam_objects/mapping/landmark_check.hpp"
 #include "hyselam_objects/recognition/demonstrated_object.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
@@ -99,6 +100,7 @@ class ObjectEngineServer {
   ObjectMap map_;
   ObjectDictionary dictionary_;
   ObjectParser parser_;
+  hyselam_topo::PlaceNames place_names_ = shippedPlaceNames();
   FillMap fill_map_;
   ObjectMapper mapper_;
   MapUpdateGuard guard_;
