@@ -264,27 +264,6 @@ TEST(PlaceNames, VariantsOfANameMeanOnePlace) {
   EXPECT_EQ(names.kindOf("I-110"), std::nullopt);
 }
 
-TEST(DescriptionBuilder, ContinuesAnEarlierDescription) {
-  DescriptionBuilder first(parser());
-  first.add(parser().parse("You are in the corridor. On your left you have room A."));
-  DescriptionBuilder second(parser());
-  second.continueFrom(first.building());
-  EXPECT_TRUE(second.add(parser().parse("On your left you have room B.")).empty());
-  EXPECT_EQ(testing::outline(second.building()),
-            (std::vector<std::string>{"at corridor", "corridor left room A > room B"}));
-  second.setRobotPlace("I-5");
-  EXPECT_TRUE(second.add(parser().parse("On your right you have room C.")).empty());
-  EXPECT_EQ(second.building().places.size(), 5u);
-}
-
-TEST(DescriptionBuilder, FailedStatementsChangeNothing) {
-  DescriptionBuilder builder(parser());
-  const auto issues = builder.add(parser().parse("Room A is 6 by 0 meters."));
-  ASSERT_EQ(issues.size(), 1u);
-  EXPECT_EQ(issues[0].kind, IssueKind::kMeaningless);
-  EXPECT_TRUE(builder.building().places.empty());
-}
-
 TEST(DescribeBuilding, TextIsParsedBackToTheSameBuilding) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     for (const Grammar& grammar : parser().grammars()) {

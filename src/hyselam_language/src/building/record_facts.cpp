@@ -92,7 +92,8 @@ void checkDenied(Statement& s, const DescribedRelation& fact) {
   all.erase(denied);
 }
 
-void checkRank(Statement& s, const Placement& p) {
+/// A correction takes the number of another place, and its order, which is put into `wanted`.
+void checkRank(Statement& s, const Placement& p, std::size_t* wanted) {
   if (!p.rank) return;
   for (DescribedConnection& other : s.building().connections) {
     const bool taken =
@@ -102,6 +103,7 @@ void checkRank(Statement& s, const Placement& p) {
                               {"side", sideWords(s, p.side)},
                               {"place", s.nameOf(other.to)}});
     other.rank.reset();
+    *wanted = other.order;
   }
 }
 
@@ -114,10 +116,10 @@ void mergeInto(Statement& s, const DescribedConnection& known, Placement* p) {
                               {"known", std::to_string(*known.rank)},
                               {"rank", std::to_string(*p->rank)}});
   }
-  const bool other_distance =
-      known.distance && p->distance &&
-      std::abs(*known.distance - *p->distance) > kDistanceTolerance * *known.distance;
-  if (other_distance) {
+  const bool both = known.distance && p->distance;
+  const double apart = both ? std::abs(*known.distance - *p->distance) : 0.0;
+  if (both && apart <= kDistanceTolerance * *known.distance) p->distance = known.distance;
+  if (both && *p->distance != *known.distance) {
     s.replaces("other_distance", {{"place", s.nameOf(p->to)},
                                   {"known", shown(*known.distance)},
                                   {"distance", shown(*p->distance)}});
@@ -185,11 +187,11 @@ void recordConnection(Statement& s, const Placement& placement) {
     mergeInto(s, known, &p);
     const bool stays = known.from == p.from && known.side == p.side;
     if (stays && known.rank == p.rank && known.distance == p.distance && p.behind == 0) return;
-    checkRank(s, p);
     if (stays) wanted = known.order;
+    checkRank(s, p, &wanted);
     removeConnection(known, &s.building());
   } else {
-    checkRank(s, p);
+    checkRank(s, p, &wanted);
   }
   insertConnection(s, p, wanted);
 }
