@@ -369,9 +369,13 @@ SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
   }
   // "Room A" at the beginning of a sentence is "room A".
   const Token& first = tokens_[begin];
-  const bool common = begin == 0 && first.starts_upper && first.kind == TokenKind::kWord &&
-                      isCommonNoun(first.folded) && first.text.substr(1) == first.lower.substr(1) &&
-                      first.text[0] >= 'A' && first.text[0] <= 'Z';
+  // "Conference Room A" is written so on purpose.
+  const bool title_case =
+      begin + 1 < end && tokens_[begin + 1].starts_upper && tokens_[begin + 1].text.size() > 1;
+  const bool common = begin == 0 && !title_case && first.starts_upper &&
+                      first.kind == TokenKind::kWord && isCommonNoun(first.folded) &&
+                      first.text.substr(1) == first.lower.substr(1) && first.text[0] >= 'A' &&
+                      first.text[0] <= 'Z';
   if (common) name.text[0] = static_cast<char>(name.text[0] - 'A' + 'a');
   return name;
 }

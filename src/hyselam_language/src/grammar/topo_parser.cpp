@@ -108,6 +108,8 @@ ParsedText TopoParser::parse(const std::string& text, const ParseOptions& option
   std::optional<ParsedText> best;
   for (const auto& [known, index] : order) {
     const Grammar& each = grammars_[index];
+    // Words of another language are names in this one: "One is next to the lift".
+    if (best && 2 * known < order.front().first) continue;
     // In a language that knows less of it, any words would do as the name that was asked for.
     static const std::set<std::string> kNothing;
     ParsedText parsed =
