@@ -234,6 +234,8 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       may_end = false;
     } else if (!isWordLike(token) || beginsWithArticle(begin, k, type)) {
       break;
+    } else if (refuses(token)) {
+      break;
     } else if (isStop(token, type)) {
       if (!isLetterOfTitle(begin, k, type)) break;
     } else if (k > begin && mayBeArticle(k, type)) {
@@ -269,6 +271,11 @@ bool NameFinder::isSpeakers(std::size_t at, const NameType& type) const {
   return at + 1 < tokens_.size() && tokens_[at].kind == TokenKind::kWord &&
          type.speaker.count(tokens_[at].folded) != 0 && tokens_[at + 1].kind == TokenKind::kWord &&
          !isStop(tokens_[at + 1], type);
+}
+
+/// "hardly never": but "May's office".
+bool NameFinder::refuses(const Token& token) const {
+  return token.only_lower_letters && grammar_.refusing_words.count(token.folded) != 0;
 }
 
 /// More than a letter, which may be a name of its own.
@@ -320,7 +327,8 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
     }
   }
   // "of the corridor": what stands before it is missing.
-  if (end - begin > 1 && type.joiners.count(first.folded) != 0) return "no_name";
+  const bool elliptic = type.elliptic_prefix.count(first.folded) != 0;
+  if (end - begin > 1 && !elliptic && type.joiners.count(first.folded) != 0) return "no_name";
   const std::string& name = nameOf(begin, end).text;
   if (!hyselam::wordError(name).empty() || name.size() > kMaxNameBytes) return "no_name";
   if (quoted) return "";
@@ -370,8 +378,9 @@ SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {
   // "Room A" at the beginning of a sentence is "room A".
   const Token& first = tokens_[begin];
   // "Conference Room A" is written so on purpose.
-  const bool title_case =
-      begin + 1 < end && tokens_[begin + 1].starts_upper && tokens_[begin + 1].text.size() > 1;
+  const bool title_case = begin + 1 < end && tokens_[begin + 1].starts_upper &&
+                          tokens_[begin + 1].text.size() > 1 &&
+                          isAscii(tokens_[begin + 1].text.substr(1));
   const bool common = begin == 0 && !title_case && first.starts_upper &&
                       first.kind == TokenKind::kWord && isCommonNoun(first.folded) &&
                       first.text.substr(1) == first.lower.substr(1) && first.text[0] >= 'A' &&

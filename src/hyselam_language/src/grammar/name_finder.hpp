@@ -59,6 +59,7 @@ class NameFinder {
   /// "room i 110": a letter that is a word elsewhere.
   bool isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const;
   bool mayBeArticle(std::size_t at, const NameType& type) const;
+  bool refuses(const Token& token) const;
   bool isSpeakers(std::size_t at, const NameType& type) const;
   bool beginsWithArticle(std::size_t begin, std::size_t at, const NameType& type) const;
   /// "" if tokens [begin, end) are a name.
