@@ -316,7 +316,9 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
                                     const NameType& type) {
   const Token& first = tokens_[begin];
   const Token& last = tokens_[end - 1];
-  const bool has_noun = hasNoun(begin, end, type);
+  // "o da Teresa" is a place of hers, though Teresa is none.
+  const bool has_noun =
+      hasNoun(begin, end, type) || (end > begin + 1 && isElliptic(begin, end, type));
   const bool quoted = last.kind == TokenKind::kQuoted;
   if (end - begin > 1) {
     // A quotation may follow "room", nothing else.
