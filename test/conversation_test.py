@@ -207,7 +207,7 @@ class ConversationTest(unittest.TestCase):
 
         robot.stand(1.0, 1.2)
         self.assertRegex(robot.say("Robot, where are you?"), r"^I am at [SC][SC]\d\d\.$")
-        self.assertIn("Ok, it is done.", robot.say(DESCRIPTION))
+        self.assertIn("Noted: ", robot.say(DESCRIPTION))
         for name in MIDDLE:
             words = [w.text.lower() for w in robot.place_at(name).words]
             self.assertTrue(any(name in w for w in words), (name, words))

@@ -69,7 +69,7 @@ class ObjectDialogueTest(unittest.TestCase):
         # The robot asks about the contradiction; the answer is for the part that asked.
         self.assertIn("Is it now so", robot.say("The chair is in the corridor."))
         self.assertIn("chair at corridor", robot.say("Yes."))
-        self.assertEqual(robot.say("Yes."), "I have not asked anything.")
+        self.assertEqual(robot.say("Yes."), "All right.")
 
         # A way to what is fetched: it ends in the room where the pen is.
         before = len(robot.poses.messages)

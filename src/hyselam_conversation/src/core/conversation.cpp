@@ -261,6 +261,7 @@ Exchange Conversation::say(const std::string& text) {
   const Reply reply = shared_.hear(text, true);
   out.utterances = reply.utterances;
   take(reply, Layer::kPlaces, out);
+  if (reply.ends_other_question) fill_map_.dropQuestion();
   for (const hyselam_topo::ForwardedSentence& sentence : reply.forwarded) {
     askObjects(sentence, out);
   }

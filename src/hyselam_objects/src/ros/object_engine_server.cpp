@@ -189,6 +189,10 @@ hyselam_msgs::ObjectAnswer ObjectEngineServer::answer(const std::string& text) {
 }
 
 void ObjectEngineServer::onRequest(const hyselam_msgs::ObjectRequest::ConstPtr& msg) {
+  if (msg->end_question != 0) {
+    fill_map_.dropQuestion();
+    return;
+  }
   hyselam_msgs::ObjectAnswer out = answer(msg->text);
   out.id = msg->id;
   publishers_.answers.publish(out);

@@ -79,7 +79,8 @@ Dialogue::Dialogue(const DialogueParams& params, TopoParser parser, std::vector<
       parser_(std::move(parser)),
       phrases_(byLanguage(std::move(phrases))),
       language_(params.language),
-      places_(PlaceNames(parser_.grammars())),
+      names_(parser_.grammars()),
+      places_(names_),
       builder_(parser_),
       topo_state_(params.state) {
   params.validate();
@@ -106,8 +107,8 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   places_.setMap(fresh);
   topo_state_.mapChanged(places_.map());
   const bool about_lost_place =
-      question_.place != 0 && places_.map().findPlace(question_.place) == nullptr;
-  if (about_lost_place) question_ = {};
+      question().place != 0 && places_.map().findPlace(question().place) == nullptr;
+  if (about_lost_place) questions_.drop();
   // What there is to ask of the place is asked with the next pose: the names may change now.
   if (robot().has_pose && topo_state_.update(places_.map(), robot().stamp, robot().pose)) {
     entered_ = true;
@@ -139,14 +140,11 @@ void Dialogue::enterPlace(Reply& out) {
   const Id here = robot().place;
   if (here != asked_) {
     asked_ = 0;
-    const bool about_name = question_.kind == Question::Kind::kConfirmName ||
-                            question_.kind == Question::Kind::kAlsoName ||
-                            question_.kind == Question::Kind::kName;
     // The robot has left the place that it asked about.
-    if (about_name && question_.place != here) question_ = {};
+    if (question().isAboutName() && question().place != here) questions_.drop();
   }
   if (here == 0 || robot().in_doorway || here == asked_) return;
-  if (question_.kind != Question::Kind::kNone) return;
+  if (questions_.isOpen()) return;
   asked_ = here;
   askAboutPlace(here, params_.ask, out);
 }
@@ -154,7 +152,7 @@ void Dialogue::enterPlace(Reply& out) {
 Reply Dialogue::askHere() {
   Reply out = reply();
   const Id here = robot().place;
-  if (here == 0 || question_.kind != Question::Kind::kNone) return out;
+  if (here == 0 || questions_.isOpen()) return out;
   askAboutPlace(here, AskPolicy::kAlways, out);
   return out;
 }
@@ -225,7 +223,7 @@ void Dialogue::restore(DialogueState state) {
   language_ = state.language;
   heading_ = state.heading;
   position_ = state.position;
-  question_ = {};
+  questions_.drop();
   asked_ = 0;
   subject_ = 0;
   match_.reset();

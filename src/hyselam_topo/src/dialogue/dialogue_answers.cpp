@@ -73,6 +73,7 @@ void Dialogue::goToPreviousPlace(const Utterance&, Turn& turn) {
 
 void Dialogue::followPerson(const Utterance&, Turn& turn) {
   turn.reply.actions.push_back({DialogueAction::Kind::kFollow, {}, 0.0});
+  under_way_ = Id{0};
   say("following", turn);
 }
 
@@ -90,15 +91,16 @@ void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
 }
 
 void Dialogue::stop(const Utterance&, Turn& turn) {
-  question_ = {};
-  turn.reply.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
+  questions_.drop();
+  turn.goals.clear();
+  halt(turn.reply);
   say("stopped", turn);
 }
 
 void Dialogue::cancel(const Utterance&, Turn& turn) {
-  question_ = {};
+  questions_.drop();
   turn.goals.clear();
-  turn.reply.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
+  halt(turn.reply);
   say("cancelled", turn);
 }
 
@@ -114,12 +116,44 @@ Reply Dialogue::goTo(const std::string& name, const std::vector<Id>& places) {
   return turn.reply;
 }
 
+bool Dialogue::isUnsure(const NamedGoal& goal) const {
+  const bool guessed = std::all_of(goal.second.begin(), goal.second.end(), [&](Id id) {
+    return nameStateOf(*places_.map().findPlace(id)) == NameState::kUnconfirmed;
+  });
+  return guessed && std::any_of(unsure_.names.begin(), unsure_.names.end(), [&](const auto& name) {
+           if (places_.sameName(name, goal.first)) return true;
+           const std::vector<Id> found = places_.find(name);
+           return std::find_first_of(found.begin(), found.end(), goal.second.begin(),
+                                     goal.second.end()) != found.end();
+         });
+}
+
 void Dialogue::startGoal(Turn& turn) {
   if (turn.goals.empty()) return;
-  Reply& out = turn.reply;
-  const Phrases& p = phrases();
-  const auto goals = std::move(turn.goals);
+  const std::vector<NamedGoal> goals = std::move(turn.goals);
   turn.goals.clear();
+  std::vector<std::string> unsure;
+  std::vector<Id> perhaps;
+  for (const NamedGoal& goal : goals) {
+    if (!isUnsure(goal)) continue;
+    unsure.push_back(goal.first);
+    perhaps.push_back(goal.second.front());
+  }
+  if (unsure.empty()) {
+    drive(goals, turn.reply);
+    return;
+  }
+  const Phrases& p = phrases();
+  Question question;
+  question.kind = Question::Kind::kGo;
+  question.goals = goals;
+  ask(std::move(question),
+      p.say("ask_go", {{"names", p.list(unsure)}, {"places", p.list(labels(perhaps))}}),
+      turn.reply);
+}
+
+void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
+  const Phrases& p = phrases();
   if (!robot().has_pose) {
     out.sentences.push_back(p.say("at_unknown"));
     return;
@@ -143,6 +177,7 @@ void Dialogue::startGoal(Turn& turn) {
   out.sentences.push_back(p.say("going", {{"places", p.list(labels(stops))}}));
   if (closed) out.sentences.push_back(p.say("door_closed"));
   out.actions.push_back(std::move(action));
+  under_way_ = stops.back();
 }
 
 // ---- Questions ----

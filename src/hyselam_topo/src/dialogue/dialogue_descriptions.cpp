@@ -1,29 +1,87 @@
 // Descriptions of the building: recorded, matched with the map, the result reported.
+#include <algorithm>
+
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "match_constraints.hpp"
+#include "match_report.hpp"
 
 namespace hyselam_topo {
+namespace {
+
+/// "my office"
+bool saysMy(const Utterance& u) {
+  return std::any_of(u.slots.begin(), u.slots.end(), [](const Slot& slot) {
+    return std::any_of(slot.names.begin(), slot.names.end(),
+                       [](const SaidName& name) { return name.speaker; });
+  });
+}
+
+/// As a sentence begins.
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
+  return text;
+}
+
+}  // namespace
 
 void Dialogue::addStatement(const Utterance& u, Turn& turn) {
+  if (!turn.before) turn.before = builder_.building();
+  const std::vector<SaidName> place = u.names("place");
+  if (u.intent == "robot_in" && !std::all_of(place.begin(), place.end(), [&](const auto& name) {
+        return !name.reference.empty() || isPlaceName(name);
+      })) {
+    // All that follows is told from there.
+    attempt(turn.reply, [&] { recordStatements(turn); });
+    askNewName(robot().place, textsOf(place), turn.text.substr(u.range.begin), turn.reply);
+    turn.broken_off = true;
+    return;
+  }
   const auto issues = builder_.add(u);
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
   turn.described = true;
   if (u.intent == "robot_in") {
     // Described from several places in thought, the first one is where the robot is.
     if (turn.here.empty()) {
-      turn.here = textsOf(u.names("place"));
+      turn.here = textsOf(place);
       const auto aliases = textsOf(u.names("aliases"));
       turn.here.insert(turn.here.end(), aliases.begin(), aliases.end());
     }
     return;
   }
   turn.beyond_here = true;
+  turn.told = true;
+  turn.asks_speaker = turn.asks_speaker || (builder_.speaker().empty() && saysMy(u));
   if (!u.word("side").empty()) turn.sides = true;
   if (u.intent == "forget_place") {
-    for (const std::string& name : textsOf(u.names("place"))) places_.forgetName(name);
+    for (const std::string& name : textsOf(place)) places_.forgetName(name);
   }
+}
+
+void Dialogue::readBack(const DescribedBuilding& before, bool here_told, Reply& out) {
+  const Phrases& p = phrases();
+  const DescribedBuilding& after = builder_.building();
+  DescribedBuilding known = before;
+  // Where the robot is is told by itself.
+  if (here_told && after.robot_place) {
+    known.robot_place = after.robot_place;
+    const DescribedPlace* here = after.findPlace(*after.robot_place);
+    if (known.findPlace(here->id) == nullptr) known.places.push_back(*here);
+    std::sort(known.places.begin(), known.places.end(),
+              [](const DescribedPlace& a, const DescribedPlace& b) { return a.id < b.id; });
+  }
+  if (known == after) return;
+  std::string told;
+  try {
+    for (const std::string& each : describeChange(known, after, parser_.grammar(language_))) {
+      told += (told.empty() ? "" : " ") + each;
+    }
+  } catch (const hyselam::InputError&) {
+    told.clear();  // a name that cannot be put into words
+  }
+  out.sentences.push_back(told.empty() ? p.say("taken_down") : p.say("noted", {{"text", told}}));
 }
 
 void Dialogue::recordStatements(Turn& turn) {
@@ -31,52 +89,91 @@ void Dialogue::recordStatements(Turn& turn) {
   turn.described = false;
   Reply& out = turn.reply;
   const Phrases& p = phrases();
-  if (turn.beyond_here && places_.hasMap()) out.sentences.push_back(p.say("wait"));
-  for (const DescriptionIssue& issue : turn.issues) {
-    out.sentences.push_back(p.say(issue.kind == IssueKind::kNotice ? "notice" : "issue",
-                                  {{"text", issue.text}, {"reason", issue.reason}}));
-    if (issue.kind != IssueKind::kNotice) {
-      out.refusals.push_back({issue.text, issue.reason, false, ""});
-    }
-  }
-  turn.issues.clear();
+  const DescribedBuilding before = *turn.before;
+  turn.before.reset();
+  const std::vector<std::string> here = std::move(turn.here);
+  turn.here.clear();
+  const bool beyond_here = turn.beyond_here;
+  const bool named_otherwise =
+      !here.empty() && robot().place != 0 && isNamedOtherwise(robot().place, here);
+  const bool changed = !(before == builder_.building());
+  readBack(before, !here.empty() && !beyond_here && places_.hasMap(), out);
+  reportIssues(turn);
+  const std::optional<DescriptionIssue> to_ask = std::move(turn.to_ask);
+  turn.to_ask.reset();
+  const bool asks_speaker = turn.asks_speaker;
+  turn.asks_speaker = false;
+  if (!changed && beyond_here && out.sentences.empty()) out.sentences.push_back(p.say("known"));
   if (turn.sides && robot().has_pose) {
     heading_ = robot().pose.theta;
     position_ = hyselam::Point2{robot().pose.x, robot().pose.y};
   }
-  const std::vector<std::string> here = std::move(turn.here);
-  turn.here.clear();
+  turn.beyond_here = false;
+  turn.sides = false;
   if (!places_.hasMap()) {
-    out.sentences.push_back(p.say("taken_down"));
     out.sentences.push_back(p.say("no_map"));
+    if (to_ask) askAboutIssue(*to_ask, asks_speaker, out);
     return;
   }
-  const bool named_otherwise =
-      !here.empty() && robot().place != 0 && isNamedOtherwise(robot().place, here);
   if (!here.empty() && robot().place != 0) {
-    if (question_.place == robot().place) question_ = {};
-    if (!named_otherwise && turn.beyond_here) {
+    if (question().place == robot().place) questions_.drop();
+    if (!named_otherwise && beyond_here) {
       places_.confirm(robot().place, here);
     } else if (!named_otherwise) {
       confirmNames(robot().place, here, out);
     }
     subject_ = robot().place;
-  } else if (!here.empty() && !turn.beyond_here) {
+  } else if (!here.empty() && !beyond_here) {
     out.sentences.push_back(p.say("no_place_here"));
   }
-  if (turn.beyond_here) {
+  if (beyond_here && changed) {
     matchDescription(out, true);
     out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   }
-  turn.beyond_here = false;
-  turn.sides = false;
   if (named_otherwise) askAlso(robot().place, here, out);
+  if (to_ask) askAboutIssue(*to_ask, asks_speaker, out);
+}
+
+void Dialogue::reportIssues(Turn& turn) {
+  Reply& out = turn.reply;
+  const Phrases& p = phrases();
+  const DescriptionIssue* to_ask = nullptr;
+  for (const DescriptionIssue& issue : turn.issues) {
+    const bool asks = issue.kind == IssueKind::kAsk || issue.kind == IssueKind::kStrangeName;
+    if (issue.kind == IssueKind::kNotice) {
+      out.sentences.push_back(p.say("notice", {{"text", issue.text}, {"reason", issue.reason}}));
+      continue;
+    }
+    out.refusals.push_back({issue.text, issue.reason, false, ""});
+    if (asks && to_ask == nullptr) {
+      to_ask = &issue;
+    } else {
+      out.sentences.push_back(p.say("issue", {{"text", issue.text}, {"reason", issue.reason}}));
+    }
+  }
+  if (to_ask != nullptr) turn.to_ask = *to_ask;
+  turn.issues.clear();
+}
+
+void Dialogue::askAboutIssue(const DescriptionIssue& issue, bool asks_speaker, Reply& out) {
+  if (issue.kind == IssueKind::kStrangeName) {
+    askNewName(0, {issue.name}, issue.text, out);
+  } else if (asks_speaker) {
+    Question question;
+    question.kind = Question::Kind::kSpeaker;
+    question.sentence = issue.text;
+    ask(std::move(question), capital(issue.reason), out);
+  } else {
+    out.sentences.push_back(capital(issue.reason));
+  }
 }
 
 void Dialogue::matchDescription(Reply& out, bool report) {
   match_.reset();
+  unsure_ = {};
   const DescribedBuilding& building = builder_.building();
   if (!places_.hasMap() || building.places.empty()) return;
+  const GuessedPlaces guessed_before = guessedPlaces(places_, building);
   MatchObserver observer;
   observer.heading = heading_;
   observer.position = position_;
@@ -97,6 +194,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
         guesses.emplace_back(problem.vertices[v], allNamesOf(*place));
       }
       places_.guess(guesses);
+      unsure_ = uncertaintyOf(*match_, problem.names, building);
     }
   } catch (const hyselam::InputError& e) {
     match_.reset();
@@ -104,13 +202,13 @@ void Dialogue::matchDescription(Reply& out, bool report) {
     return;
   }
   if (report) reportMatch(out);
+  tellMoved(movedNames(guessed_before, places_, building), report, out);
   if (problem_to_ask) askMostInformativeQuestion(*problem_to_ask, out);
 }
 
 void Dialogue::reportMatch(Reply& out) const {
   const Phrases& p = phrases();
   const DescribedBuilding& building = builder_.building();
-  out.sentences.push_back(p.say("done"));
   std::vector<std::string> missing;
   std::size_t confirmed = 0;
   for (const DescribedPlace& place : building.places) {
@@ -126,14 +224,9 @@ void Dialogue::reportMatch(Reply& out) const {
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
   if (!missing.empty()) out.sentences.push_back(p.say("not_found", {{"names", p.list(missing)}}));
-  if (!match_ || match_->equal < 2) return;
-  const EqualAnswers equal = equalAnswers(*match_);
-  if (equal.count < 2) return;
-  std::vector<std::string> names;
-  for (const int name : equal.unsure) {
-    names.push_back(building.places[static_cast<std::size_t>(name)].name);
-  }
-  const std::string number = std::to_string(equal.count) + (match_->more ? "+" : "");
+  if (unsure_.names.empty()) return;
+  const std::vector<std::string> names(unsure_.names.begin(), unsure_.names.end());
+  const std::string number = std::to_string(unsure_.answers) + (unsure_.more ? "+" : "");
   out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
 }
 

@@ -1,13 +1,28 @@
 // From a text to what it leads to: its utterances one by one, each by the handler of its intent.
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
+#include "said_answer.hpp"
 
 namespace hyselam_topo {
 namespace {
+
+/// What `next` says and does comes after what `reply` does.
+void append(Reply next, Reply& reply) {
+  const auto move = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  reply.language = next.language;
+  move(next.sentences, reply.sentences);
+  move(next.actions, reply.actions);
+  move(next.refusals, reply.refusals);
+  move(next.utterances, reply.utterances);
+}
 
 /// If no utterance of a text was understood, the text is forwarded as a whole, as it was said.
 void joinForwarded(const std::string& text, std::size_t utterances,
@@ -35,6 +50,8 @@ Dialogue::Handler Dialogue::handlerOf(const Utterance& u) {
   static const std::map<std::string, Handler> handlers{
       {"this_is", &Dialogue::nameThisPlace},
       {"forget_name", &Dialogue::forgetNames},
+      {"forget_everything", &Dialogue::askForgetEverything},
+      {"speaker", &Dialogue::introduce},
       {"rename", &Dialogue::rename},
       {"glass_wall", &Dialogue::addWall},
       {"virtual_wall", &Dialogue::addWall},
@@ -58,18 +75,8 @@ Dialogue::Handler Dialogue::handlerOf(const Utterance& u) {
       {"help", &Dialogue::help},
       {"greeting", &Dialogue::greet},
       {"thanks", &Dialogue::acceptThanks}};
-  if (u.kind == UtteranceKind::kAnswer && u.intent != "this_is") return &Dialogue::answer;
   const auto found = handlers.find(u.intent);
   return found == handlers.end() ? nullptr : found->second;
-}
-
-template <typename Act>
-void Dialogue::attempt(Reply& out, Act&& act) {
-  try {
-    act();
-  } catch (const hyselam::InputError& e) {
-    out.sentences.push_back(phrases().say("not_possible", {{"reason", e.what()}}));
-  }
 }
 
 void Dialogue::say(const char* key, Turn& turn) {
@@ -88,25 +95,58 @@ bool Dialogue::isAboutObject(const Utterance& u) const {
   });
 }
 
+bool Dialogue::knowsLanguage(const std::string& language) const {
+  const auto& grammars = parser_.grammars();
+  return std::any_of(grammars.begin(), grammars.end(),
+                     [&](const Grammar& each) { return each.language() == language; });
+}
+
+bool Dialogue::isOfThisPlace(const Utterance& u, const Turn& turn) const {
+  if (u.intent != "alias" || turn.described || described_last_) return false;
+  const std::vector<SaidName> place = u.names("place");
+  return place.size() == 1 && !place.front().reference.empty() && u.find("aliases") != nullptr;
+}
+
 ParsedText Dialogue::parse(const std::string& text) {
   ParseOptions options;
-  if (question_.kind == Question::Kind::kName || question_.kind == Question::Kind::kConfirmName)
-    options.expected = {"name_answer"};
+  const bool asks_for_name =
+      question().isAboutName() || question().kind == Question::Kind::kSpeaker;
+  if (asks_for_name) options.expected = {"name_answer"};
   options.preferred = language_;
   ParsedText parsed = parser_.parse(text, options);
+  // A word or two that nobody understands is of no other language than the talk.
+  const bool nothing = parsed.misunderstood() == parsed.utterances.size();
+  const bool short_text = std::count(text.begin(), text.end(), ' ') < 2;
+  if (nothing && short_text && parsed.language != language_ && knowsLanguage(language_)) {
+    options.language = language_;
+    parsed = parser_.parse(text, options);
+  }
   // Answered in the language of the sentence, understood or not: its reason is in that, too.
   if (phrases_.count(parsed.language) != 0) language_ = parsed.language;
+  builder_.setLanguage(parsed.language);
   return parsed;
 }
 
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
+  questions_.beginUtterance();
+  const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
+  Reply out = urgent.urgency == Urgency::kNone ? understand(text, options) : obey(urgent);
+  if (!out.sentences.empty()) last_said_ = out.sentences;
+  return out;
+}
+
+Reply Dialogue::understand(const std::string& text, const HearOptions& options) {
   const ParsedText parsed = parse(text);
   Turn turn;
   turn.reply = reply();
   turn.reply.utterances = parsed.utterances;
   turn.text = text;
   turn.options = options;
-  for (const Utterance& u : parsed.utterances) {
+  turn.says_more = std::any_of(parsed.utterances.begin(), parsed.utterances.end(),
+                               [](const Utterance& u) { return u.understood() && !isAnswer(u); });
+  if (!options.others_asked_last) takeAnswer(parsed, turn);
+  for (std::size_t i = turn.used; i < parsed.utterances.size() && !turn.broken_off; ++i) {
+    const Utterance& u = parsed.utterances[i];
     handleUtterance(u, turn);
     turn.end = std::min(text.size(), u.range.end);
   }
@@ -115,38 +155,105 @@ Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   startGoal(turn);
   auto& sentences = turn.reply.sentences;
   // Questions come last, where they are answered.
-  const bool asks = question_.kind != Question::Kind::kNone && !sentences.empty();
+  const bool asks = questions_.isOpen() && questions_.isNew() && !sentences.empty();
   sentences.insert(asks ? sentences.end() - 1 : sentences.end(), turn.not_understood.begin(),
                    turn.not_understood.end());
+  propose(turn);
+  settleQuestion(turn);
+  described_last_ = turn.told;
+  turn.reply.ends_other_question =
+      options.others_asked_last && turn.about_else && turn.reply.forwarded.empty();
+  if (!turn.again.empty()) append(understand(turn.again, {}), turn.reply);
   return turn.reply;
 }
 
 void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   const HearOptions& options = turn.options;
   if (!u.understood()) {
-    const std::string refusal =
-        phrases().say("not_understood", {{"text", u.text}, {"reason", u.reason}});
-    if (options.forward_unknown) {
-      forward(u, refusal, turn);
-      turn.reply.forwarded.back().reason = u.reason;
-      turn.reply.forwarded.back().suggestion = u.suggestion;
-    } else {
-      turn.not_understood.push_back(refusal);
-      turn.reply.refusals.push_back({u.text, u.reason, false, u.suggestion});
-    }
+    builder_.sentenceRefused();
+    refuse(u, turn);
     return;
   }
   const bool for_others = (options.others_asked_last && u.kind == UtteranceKind::kAnswer) ||
                           (options.objects_spoken_of && isAboutObject(u));
   if (options.forward_unknown && for_others) {
+    // One answer answers one question.
+    if (isAnswer(u) && turn.answered) return;
+    turn.answered = turn.answered || isAnswer(u);
     forward(u, "", turn);
-  } else if (u.intent != "this_is" && DescriptionBuilder::handles(u.intent)) {
+    return;
+  }
+  if (isAnswer(u)) {
+    if (!turn.says_more) meetAnswer(u, turn);
+    return;
+  }
+  static const std::set<std::string> kNeutral{"greeting", "thanks", "help"};
+  if (kNeutral.count(u.intent) == 0) turn.about_else = true;
+  for (const std::string& words : u.left_out) {
+    turn.not_understood.push_back(phrases().say("left_out", {{"text", words}}));
+  }
+  static const std::set<std::string> kOwn{"this_is", "forget_everything", "speaker"};
+  if (isOfThisPlace(u, turn)) {
+    attempt(turn.reply, [&] { recordStatements(turn); });
+    Utterance named = u;
+    named.intent = "this_is";
+    named.slots = {*u.find("aliases")};
+    named.slots.front().name = "place";
+    handleCommand(named, turn);
+  } else if (kOwn.count(u.intent) == 0 && DescriptionBuilder::handles(u.intent)) {
     addStatement(u, turn);
   } else {
     attempt(turn.reply, [&] { recordStatements(turn); });
     if (u.intent != "go_to") startGoal(turn);
     handleCommand(u, turn);
   }
+}
+
+void Dialogue::refuse(const Utterance& u, Turn& turn) {
+  const Phrases& p = phrases();
+  const bool helps = !u.suggestion.empty();
+  const std::string refusal =
+      helps ? p.say("not_understood_say",
+                    {{"text", u.text}, {"reason", u.reason}, {"suggestion", u.suggestion}})
+            : p.say("not_understood", {{"text", u.text}, {"reason", u.reason}});
+  const bool proposes = helps && u.suggests_meaning;
+  if (turn.options.forward_unknown) {
+    forward(u, refusal, turn);
+    ForwardedSentence& forwarded = turn.reply.forwarded.back();
+    forwarded.reason = u.reason;
+    forwarded.suggestion = u.suggestion;
+    forwarded.suggests_meaning = proposes;
+    return;
+  }
+  turn.reply.refusals.push_back({u.text, u.reason, false, u.suggestion});
+  if (proposes && turn.proposal.empty()) {
+    turn.proposal = u.suggestion;
+    turn.refusal_of_proposal = refusal;
+  } else {
+    turn.not_understood.push_back(refusal);
+  }
+}
+
+void Dialogue::propose(Turn& turn) {
+  if (turn.proposal.empty()) return;
+  auto& sentences = turn.reply.sentences;
+  if (questions_.isOpen() && questions_.isNew()) {  // one question at a time
+    sentences.insert(sentences.end() - 1, turn.refusal_of_proposal);
+    return;
+  }
+  askProposal(turn.proposal, turn.reply);
+}
+
+Reply Dialogue::refuse(const ForwardedSentence& sentence) {
+  Reply out = reply();
+  if (sentence.suggests_meaning && !(questions_.isOpen() && questions_.isNew())) {
+    askProposal(sentence.suggestion, out);
+  } else {
+    out.sentences.push_back(sentence.refusal);
+  }
+  out.refusals.push_back({sentence.text, sentence.reason, false, sentence.suggestion});
+  last_said_ = out.sentences;
+  return out;
 }
 
 void Dialogue::handleCommand(const Utterance& u, Turn& turn) {

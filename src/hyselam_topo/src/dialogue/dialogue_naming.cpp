@@ -36,10 +36,29 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
     out.sentences.push_back(
         p.say("moved_name", {{"code", codeOf(*places_.map().findPlace(loser))}}));
   }
-  if (question_.place == place) question_ = {};
+  if (question().place == place) questions_.drop();
   subject_ = place;
+  // Sides are told from here.
+  if (place == robot().place) builder_.setRobotPlace(namesOf(named).front());
   matchDescription(out, false);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+}
+
+void Dialogue::acceptNames(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    accepted_.insert(names_.key(name).full);
+    builder_.acceptName(name);
+  }
+}
+
+void Dialogue::setSpeaker(const std::string& name, Reply& out) {
+  builder_.setSpeaker(name);
+  out.sentences.push_back(phrases().say("hello_name", {{"name", name}}));
+}
+
+void Dialogue::introduce(const Utterance& u, Turn& turn) {
+  const std::vector<SaidName> names = u.names("person");
+  if (!names.empty()) setSpeaker(names.front().text, turn.reply);
 }
 
 Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
@@ -69,26 +88,43 @@ void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
   std::vector<std::string> names = textsOf(u.names("place"));
   const auto aliases = textsOf(u.names("aliases"));
   names.insert(names.end(), aliases.begin(), aliases.end());
-  // "The name of this place is ..." right after a question about another place answers that.
-  const Id place = question_.kind == Question::Kind::kName ? question_.place : robot().place;
+  const Id place = robot().place;
   if (names.empty()) return;
-  if (isNamedOtherwise(place, names)) {
+  const std::vector<SaidName> said = u.names("place");
+  if (!std::all_of(said.begin(), said.end(),
+                   [&](const SaidName& name) { return isPlaceName(name); })) {
+    askNewName(place, names, "", out);
+  } else if (isNamedOtherwise(place, names)) {
     askAlso(place, names, out);
   } else {
     confirmNames(place, names, out);
   }
 }
 
+void Dialogue::askForgetEverything(const Utterance&, Turn& turn) {
+  Question question;
+  question.kind = Question::Kind::kForgetAll;
+  ask(std::move(question), phrases().say("ask_forget_all"), turn.reply);
+}
+
+void Dialogue::forgetEverything(Reply& out) {
+  places_.forgetAllNames();
+  // Or the next sentence would bring them back.
+  const std::string speaker = builder_.speaker();
+  builder_ = DescriptionBuilder(parser_);
+  builder_.setLanguage(language_);
+  builder_.setSpeaker(speaker);
+  match_.reset();
+  unsure_ = {};
+  out.sentences.push_back(phrases().say("forgot_all"));
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+}
+
 void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
   Reply& out = turn.reply;
   const Phrases& p = phrases();
   if (!u.word("all").empty() || u.find("all") != nullptr) {
-    places_.forgetAllNames();
-    builder_ = DescriptionBuilder(parser_);  // or the next sentence would bring them back
-    match_.reset();
-    question_ = {};
-    out.sentences.push_back(p.say("forgot_all"));
-    out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+    askForgetEverything(u, turn);
     return;
   }
   const std::vector<SaidName> said = u.names("place");
@@ -102,7 +138,7 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
     if (!by_name) had = places_.forget(id) || had;
   }
   if (by_name) had = !places_.forgetName(said.front().text).empty();
-  if (question_.kind == Question::Kind::kConfirmName) question_ = {};
+  if (question().kind == Question::Kind::kConfirmName) questions_.drop();
   out.sentences.push_back(p.say(had ? "forgot_names" : "no_names", {{"places", p.list(codes)}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }

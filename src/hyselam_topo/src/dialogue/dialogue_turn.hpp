@@ -1,10 +1,12 @@
 // What one text that was heard leads to, while it is worked on.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 
 namespace hyselam_topo {
@@ -20,8 +22,30 @@ struct Dialogue::Turn {
   bool sides = false;                       ///< ... with sides
   std::vector<std::string> here;            ///< ... where the robot is; empty: not described
   std::vector<DescriptionIssue> issues;
-  std::vector<std::pair<std::string, std::vector<Id>>> goals;  ///< where to go, in order
+  std::vector<NamedGoal> goals;     ///< where to go, in order
+  bool told = false;                ///< of other places than the one where the robot is
+  std::size_t used = 0;             ///< utterances that the open question has taken as its answer
+  bool answered = false;            ///< an answer was given, or met
+  bool about_else = false;          ///< something was said that is no answer
+  bool says_more = false;           ///< something was said that is understood and no answer
+  bool broken_off = false;          ///< what follows waits for the answer to a question
+  std::string proposal;             ///< what may have been meant, ...
+  std::string refusal_of_proposal;  ///< ... and what is said where it cannot be asked
+  std::string again;                ///< a sentence of before that is heard now
+  std::optional<DescriptionIssue> to_ask;  ///< what the person can answer
+  bool asks_speaker = false;               ///< ... by telling who speaks
+  /// The description before the statements of this turn.
+  std::optional<DescribedBuilding> before;
 };
+
+template <typename Act>
+void Dialogue::attempt(Reply& out, Act&& act) {
+  try {
+    act();
+  } catch (const hyselam::InputError& e) {
+    out.sentences.push_back(phrases().say("not_possible", {{"reason", e.what()}}));
+  }
+}
 
 /// The texts of names that are no references.
 inline std::vector<std::string> textsOf(const std::vector<SaidName>& names) {

@@ -21,37 +21,40 @@ void Dialogue::addWall(const Utterance& u, Turn& turn) {
     out.sentences.push_back(p.say(grid_ ? "at_unknown" : "no_grid"));
     return;
   }
-  question_ = {};
+  questions_.drop();
+  Question question;
   try {
     // Walls described before are seen: their posts are no corners any more.
-    question_.search = std::make_shared<GlassWallSearch>(places_.withWalls(*grid_), robot().pose,
-                                                         *side, params_.glass);
+    question.search = std::make_shared<GlassWallSearch>(places_.withWalls(*grid_), robot().pose,
+                                                        *side, params_.glass);
   } catch (const hyselam::InputError& e) {
     out.sentences.push_back(p.say("not_possible", {{"reason", e.what()}}));
     return;
   }
-  question_.wall.kind = u.intent == "virtual_wall" ? WallKind::kVirtual : WallKind::kGlass;
+  question.wall.kind = u.intent == "virtual_wall" ? WallKind::kVirtual : WallKind::kGlass;
   const auto length = u.number("length");
-  askWall(length ? question_.search->ofLength(*length) : question_.search->likeliest(), out);
+  const auto found = length ? question.search->ofLength(*length) : question.search->likeliest();
+  askWall(found, std::move(question), out);
 }
 
-void Dialogue::askWall(const std::optional<GlassWall>& found, Reply& out) {
+void Dialogue::askWall(const std::optional<GlassWall>& found, Question question, Reply& out) {
   const Phrases& p = phrases();
-  const GlassWallSearch& search = *question_.search;
-  const std::string& kind = p.wall(question_.wall.kind);
+  const GlassWallSearch& search = *question.search;
+  const std::string& kind = p.wall(question.wall.kind);
   const std::string& side = p.side(search.side());
   if (!found) {
     out.sentences.push_back(p.say("no_corners", {{"side", side}, {"wall", kind}}));
-    question_ = {};
     return;
   }
-  question_.kind = Question::Kind::kWall;
-  question_.wall.line = *found;
   const double distance = found->distanceTo({search.robot().x, search.robot().y});
-  out.sentences.push_back(p.say("ask_wall", {{"wall", kind},
-                                             {"side", side},
-                                             {"distance", p.number(distance, 2)},
-                                             {"length", p.number(found->length(), 2)}}));
+  question.kind = Question::Kind::kWall;
+  question.wall.line = *found;
+  ask(std::move(question),
+      p.say("ask_wall", {{"wall", kind},
+                         {"side", side},
+                         {"distance", p.number(distance, 2)},
+                         {"length", p.number(found->length(), 2)}}),
+      out);
 }
 
 void Dialogue::forgetWall(const Utterance& u, Turn& turn) {
@@ -105,11 +108,11 @@ void Dialogue::addVirtualPlace(const Utterance& u, Turn& turn) {
     addVirtualAndAsk(centre, *radius, names, out);
     return;
   }
-  question_ = {};
-  question_.kind = Question::Kind::kRadius;
-  question_.point = centre;
-  question_.names = names;
-  out.sentences.push_back(phrases().say("ask_radius"));
+  Question question;
+  question.kind = Question::Kind::kRadius;
+  question.point = centre;
+  question.names = names;
+  ask(std::move(question), phrases().say("ask_radius"), out);
 }
 
 void Dialogue::addVirtualAndAsk(hyselam::Point2 centre, double radius,

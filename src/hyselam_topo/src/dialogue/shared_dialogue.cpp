@@ -24,7 +24,9 @@ Reply SharedDialogue::hear(const std::string& text, bool others_listen) {
   options.objects_spoken_of = objects_spoken_of_;
   options.others_asked_last = object_asked_last_;
   Reply reply = dialogue_.hear(text, options);
-  if (dialogue_.question().kind != Question::Kind::kNone && !reply.sentences.empty()) {
+  const bool asks = dialogue_.question().kind != Question::Kind::kNone && !reply.sentences.empty();
+  if (asks || reply.ends_other_question) {
+    reply.ends_other_question = reply.ends_other_question || object_asked_last_;
     object_asked_last_ = false;
   }
   if (reply.forwarded.empty()) objects_spoken_of_ = false;
@@ -38,9 +40,12 @@ Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAns
     append(dialogue_.hear(sentence.text), reply);
   } else {
     const bool by_other = answer != nullptr && (sentence.about_object || answer->about_things);
-    reply.sentences.push_back(by_other ? answer->reply : sentence.refusal);
-    reply.refusals.push_back({sentence.text, by_other ? answer->reason : sentence.reason, by_other,
-                              by_other ? "" : sentence.suggestion});
+    if (by_other) {
+      reply.sentences.push_back(answer->reply);
+      reply.refusals.push_back({sentence.text, answer->reason, true, ""});
+    } else {
+      append(dialogue_.refuse(sentence), reply);
+    }
   }
   if (answer == nullptr) reply.sentences.push_back(dialogue_.sayNobodyAnswers());
   return reply;

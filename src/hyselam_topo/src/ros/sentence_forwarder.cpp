@@ -23,6 +23,13 @@ void SentenceForwarder::forward(const ForwardedSentence& sentence) {
   publisher_.publish(msg);
 }
 
+void SentenceForwarder::endQuestion() {
+  hyselam_msgs::ObjectRequest msg;
+  msg.id = next_id_++;
+  msg.end_question = 1;
+  publisher_.publish(msg);
+}
+
 void SentenceForwarder::onAnswer(const hyselam_msgs::ObjectAnswer::ConstPtr& msg) {
   const auto found = pending_.find(msg->id);
   if (found == pending_.end()) return;  // too late, or not for us

@@ -137,6 +137,7 @@ void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
                         " bytes, more than max_text_bytes, " +
                         std::to_string(params_.max_text_bytes);
     ROS_ERROR_STREAM(who_ << " this text is not used: " << input_.text_error);
+    if (const auto obeyed = dialogue_.obeyUrgent(msg->data)) finishHearing(*obeyed);
     return;
   }
   input_.text_error.clear();
@@ -146,10 +147,17 @@ void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
 Reply TopoEngineServer::hear(const std::string& text) {
   updatePose();
   publishHumanText(text);
-  Reply reply = shared_.hear(text, forwarder_->hasListeners());
+  const Reply reply = shared_.hear(text, forwarder_->hasListeners());
+  finishHearing(reply);
+  return reply;
+}
+
+void TopoEngineServer::finishHearing(const Reply& reply) {
+  // What was asked for before must not begin after a stop.
+  if (reply.stopped) forwarder_->dropAll();
+  if (reply.ends_other_question) forwarder_->endQuestion();
   act(reply);
   for (const ForwardedSentence& sentence : reply.forwarded) forwarder_->forward(sentence);
-  return reply;
 }
 
 void TopoEngineServer::onObjectAnswer(const ForwardedSentence& sentence,

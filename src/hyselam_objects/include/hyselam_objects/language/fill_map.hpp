@@ -65,6 +65,8 @@ class FillMap {
   /// "Now I know what a pen looks like."
   std::string learnedReply(const std::string& kind) const;
 
+  /// The open question is over without an answer: stop, cancel, or something else was said.
+  void dropQuestion() { pending_.reset(); }
   /// The map is another one: nothing was mentioned yet.
   void resetContext();
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,16 +16,21 @@
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
+#include "hyselam_language/grammar/urgent_words.hpp"
 #include "hyselam_topo/dialogue/ask_place.hpp"
 #include "hyselam_topo/dialogue/glass_wall.hpp"
 #include "hyselam_topo/dialogue/phrases.hpp"
 #include "hyselam_topo/dialogue/place_man.hpp"
 #include "hyselam_topo/dialogue/place_pose.hpp"
+#include "hyselam_topo/dialogue/question_keeper.hpp"
 #include "hyselam_topo/dialogue/route.hpp"
 #include "hyselam_topo/dialogue/topo_state.hpp"
+#include "hyselam_topo/dialogue/uncertainty.hpp"
 #include "hyselam_topo/topomerg/topomerg.hpp"
 
 namespace hyselam_topo {
+
+struct SaidAnswer;
 
 struct DialogueParams {
   /// Language of the robot's first sentences; then it answers in the language of the person.
@@ -73,6 +79,8 @@ struct ForwardedSentence {
   bool about_object = false;
   std::string reason;      ///< of the refusal, without the sentence around it
   std::string suggestion;  ///< as Refusal::suggestion
+  /// The suggestion is what may have been meant: Dialogue::refuse() asks for it.
+  bool suggests_meaning = false;
 };
 
 /// A statement, or part of one, that is not understood or contradicts what is known.
@@ -91,6 +99,10 @@ struct Reply {
   std::vector<Refusal> refusals;      ///< what was not taken down; `sentences` tells it
   std::vector<Utterance> utterances;  ///< what was heard
   bool unknown_name = false;          ///< unknown place name in the last command
+  /// Stop or cancel was said: what other nodes have begun or asked is over, too.
+  bool stopped = false;
+  /// A question that another node has asked is over: something else was said.
+  bool ends_other_question = false;
 
   std::string text() const;  ///< the sentences, separated by spaces
   bool has(DialogueAction::Kind kind) const;
@@ -105,26 +117,6 @@ struct HearOptions {
   bool objects_spoken_of = false;
   /// Another node asked the last question: answers are forwarded to it.
   bool others_asked_last = false;
-};
-
-/// The robot's open question.
-struct Question {
-  enum class Kind {
-    kNone,
-    kConfirmName,  ///< are `names` the names of `place`?
-    kAlsoName,     ///< are `names` additional names of `place`, which has others already?
-    kName,         ///< what is the name of `place`?
-    kWall,         ///< is `wall` where the person means it?
-    kWallLength,   ///< how long is the wall?
-    kRadius        ///< how large is the virtual place at `point`?
-  };
-  Kind kind = Kind::kNone;
-  Id place = 0;
-  std::vector<std::string> names;
-  hyselam::Point2 point;
-  DescribedWall wall;
-  /// kWall, kWallLength: the search for the described glass wall, continued with the answer.
-  std::shared_ptr<GlassWallSearch> search;
 };
 
 /// State of a dialogue; a plain value, for files (dialogue_state.hpp).
@@ -153,8 +145,14 @@ class Dialogue {
   Reply losePose(double stamp);
 
   // ---- Input of people ----
-  /// Any text. Never throws, whatever the content.
+  /// Any text. Never throws, whatever the content. Stop and cancel are obeyed first, wherever they
+  /// stand in it (urgent_words.hpp).
   Reply hear(const std::string& text, const HearOptions& options = {});
+  /// Obeys stop and cancel in a text of any length, and nothing else of it; nothing without them.
+  std::optional<Reply> obeyUrgent(const std::string& text);
+  /// No other node has understood a forwarded sentence: the refusal, or what may have been meant
+  /// as a question.
+  Reply refuse(const ForwardedSentence& sentence);
   /// Drives to the nearest of `places`; replies with the reason if there is none or no path.
   /// `name`: what the replies call them.
   Reply goTo(const std::string& name, const std::vector<Id>& places);
@@ -181,7 +179,9 @@ class Dialogue {
   const PlaceMan& places() const { return places_; }
   const RobotPlace& robot() const { return topo_state_.robot(); }
   const DescribedBuilding& description() const { return builder_.building(); }
-  const Question& question() const { return question_; }
+  const Question& question() const { return questions_.question(); }
+  /// The open question as it was put; "" for none.
+  const std::string& openQuestion() const { return questions_.sentence(); }
   /// Assignment of the description's names to places of the map; nothing if there is none.
   const std::optional<PlaceAssignment>& match() const { return match_; }
   /// The grid map with all described walls in it; nothing without a grid map.
@@ -204,6 +204,19 @@ class Dialogue {
 
   const Phrases& phrases() const;
   ParsedText parse(const std::string& text);
+  /// Whether the parser has a grammar of it.
+  bool knowsLanguage(const std::string& language) const;
+  /// What remains after stop and cancel.
+  Reply understand(const std::string& text, const HearOptions& options);
+  void refuse(const Utterance& u, Turn& turn);
+  /// Asks whether something was meant that was not understood.
+  void propose(Turn& turn);
+  void askProposal(const std::string& sentence, Reply& reply);
+  /// Stop or cancel was said.
+  Reply obey(const UrgentWords& urgent);
+  void heedRest(const UrgentRest& rest, Turn& turn);
+  /// Puts the open question again, or drops it if the text was about something else.
+  void settleQuestion(Turn& turn);
   void handleUtterance(const Utterance& u, Turn& turn);
   void handleCommand(const Utterance& u, Turn& turn);
   /// The member function for an intent of the grammar; nullptr for one that is not handled.
@@ -215,17 +228,30 @@ class Dialogue {
   void say(const char* key, Turn& turn);
   /// Whether the statement is "A is in room X" and A is "it" or not a known place.
   bool isAboutObject(const Utterance& u) const;
+  /// Whether "it is X" names the place where the robot is: nothing else was spoken of.
+  bool isOfThisPlace(const Utterance& u, const Turn& turn) const;
 
   // descriptions
   void addStatement(const Utterance& u, Turn& turn);
   void recordStatements(Turn& turn);
+  void reportIssues(Turn& turn);
+  /// Asks what the person can answer.
+  void askAboutIssue(const DescriptionIssue& issue, bool asks_speaker, Reply& reply);
+  /// Reads the statements back that `before` did not have.
+  void readBack(const DescribedBuilding& before, bool here_told, Reply& reply);
   void matchDescription(Reply& reply, bool report);
   void reportMatch(Reply& reply) const;
 
   // names
   void nameThisPlace(const Utterance& u, Turn& turn);
   void forgetNames(const Utterance& u, Turn& turn);
+  void askForgetEverything(const Utterance& u, Turn& turn);
+  void forgetEverything(Reply& reply);
   void rename(const Utterance& u, Turn& turn);
+  /// A person has agreed that places may be called so.
+  void acceptNames(const std::vector<std::string>& names);
+  void setSpeaker(const std::string& name, Reply& reply);
+  void introduce(const Utterance& u, Turn& turn);
   /// Whether a place has confirmed names, and none of these.
   bool isNamedOtherwise(Id place, const std::vector<std::string>& names) const;
   /// Confirms names, updates the match with the description and replies.
@@ -240,16 +266,29 @@ class Dialogue {
   void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
   /// DialogueParams::ask_from_afar.
   void askMostInformativeQuestion(const MatchProblem& problem, Reply& reply);
-  void rejectGuess(Reply& reply);
-  void answer(const Utterance& u, Turn& turn);
-  void answerName(const std::vector<std::string>& names, Reply& reply);
-  void answerLength(double length, Reply& reply);
-  void answerYes(Reply& reply);
-  void answerNo(Reply& reply);
+  /// Asks whether a place may be called so; `sentence`: Question::sentence.
+  void askNewName(Id place, const std::vector<std::string>& names, const std::string& sentence,
+                  Reply& reply);
+  /// Tells which names are elsewhere now; `asks`: whether that is right.
+  void tellMoved(std::vector<MovedName> moved, bool asks, Reply& reply);
+  void ask(Question question, const std::string& sentence, Reply& reply);
+  void rejectGuess(const Question& asked, Reply& reply);
+  /// Takes the answer to the open question from the begin of a text.
+  void takeAnswer(const ParsedText& text, Turn& turn);
+  void heedFirstWord(const std::string& text, SaidAnswer* said) const;
+  void answer(const SaidAnswer& said, Turn& turn);
+  void answerName(const SaidAnswer& said, const Question& asked, Reply& reply);
+  void answerLength(double length, const Question& asked, Reply& reply);
+  void answerYes(const Question& asked, Turn& turn);
+  void answerNo(const Question& asked, Reply& reply);
+  /// Yes, no or a number where nothing is asked.
+  void meetAnswer(const Utterance& u, Turn& turn);
+  /// Whether a name sounds like one of a place, or is known as one.
+  bool isPlaceName(const SaidName& name) const;
 
   // walls and virtual places
   void addWall(const Utterance& u, Turn& turn);
-  void askWall(const std::optional<GlassWall>& found, Reply& reply);
+  void askWall(const std::optional<GlassWall>& found, Question question, Reply& reply);
   void forgetWall(const Utterance& u, Turn& turn);
   void addVirtualPlace(const Utterance& u, Turn& turn);
   void addVirtualAndAsk(hyselam::Point2 centre, double radius,
@@ -263,6 +302,11 @@ class Dialogue {
   void stop(const Utterance& u, Turn& turn);
   void cancel(const Utterance& u, Turn& turn);
   void startGoal(Turn& turn);
+  /// Whether it is not sure that the place is called so.
+  bool isUnsure(const NamedGoal& goal) const;
+  void drive(const std::vector<NamedGoal>& goals, Reply& reply);
+  /// No more motion.
+  void halt(Reply& reply);
 
   // small talk
   void help(const Utterance& u, Turn& turn);
@@ -292,6 +336,7 @@ class Dialogue {
   TopoParser parser_;
   std::map<std::string, Phrases> phrases_;
   std::string language_;
+  PlaceNames names_;
   PlaceMan places_;
   DescriptionBuilder builder_;
   TopoState topo_state_;
@@ -300,7 +345,12 @@ class Dialogue {
   std::optional<PlaceAssignment> match_;
   std::optional<double> heading_;            // DialogueState::heading
   std::optional<hyselam::Point2> position_;  ///< then
-  Question question_;
+  Uncertainty unsure_;                       // of match_
+  QuestionKeeper questions_;
+  std::optional<Id> under_way_;         // the place that it drives to; 0: it follows a person
+  std::set<std::string> accepted_;      // names that a person has agreed to (NameKey::full)
+  std::vector<std::string> last_said_;  // for "what?"
+  bool described_last_ = false;         // the last utterance told of places: "it" is one of them
   Id asked_ = 0;    // the place for which a question was considered since entering it
   Id subject_ = 0;  // antecedent of "it"
 };

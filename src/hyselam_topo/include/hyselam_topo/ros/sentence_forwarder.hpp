@@ -24,6 +24,10 @@ class SentenceForwarder {
   /// Whether a node subscribes to `object_request`.
   bool hasListeners() const { return publisher_.getNumSubscribers() > 0; }
   void forward(const ForwardedSentence& sentence);
+  /// The other node's question is over: stop, cancel, or something else was said.
+  void endQuestion();
+  /// Answers that are still to come are not taken any more: stop was said.
+  void dropAll() { pending_.clear(); }
   /// Times out overdue requests; to be called periodically.
   void dropOverdue();
 

@@ -48,6 +48,8 @@ class TopoEngineServer {
 
   /// Any text of a person: answers it, or forwards sentences that are for other nodes.
   Reply hear(const std::string& text);
+  /// Carries a reply out, and passes on what is for other nodes.
+  void finishHearing(const Reply& reply);
   void onObjectAnswer(const ForwardedSentence& sentence, const hyselam_msgs::ObjectAnswer* answer);
   /// Publishes the sentences of a reply and carries its actions out.
   void act(const Reply& reply);

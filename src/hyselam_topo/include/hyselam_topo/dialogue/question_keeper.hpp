@@ -1,0 +1,89 @@
+// The robot's open question, and when it is over.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hyselam_topo/dialogue/glass_wall.hpp"
+#include "hyselam_topo/dialogue/place_man.hpp"
+
+namespace hyselam_topo {
+
+/// Where to go: what people call it, and the places that it may be.
+using NamedGoal = std::pair<std::string, std::vector<Id>>;
+
+/// A guessed name that a new match puts elsewhere.
+struct MovedName {
+  std::string name;
+  std::vector<Id> from;
+  std::vector<Id> to;  ///< empty: the name has no place any more
+};
+
+/// The robot's open question.
+struct Question {
+  enum class Kind {
+    kNone,
+    kConfirmName,  ///< are `names` the names of `place`?
+    kAlsoName,     ///< are `names` additional names of `place`, which has others already?
+    kName,         ///< what is the name of `place`?
+    kNewName,      ///< may a place be called `names`, which does not sound like one?
+    kWall,         ///< is `wall` where the person means it?
+    kWallLength,   ///< how long is the wall?
+    kRadius,       ///< how large is the virtual place at `point`?
+    kProposal,     ///< was `sentence` meant?
+    kMoved,        ///< is it right that names move (`moved`)?
+    kGo,           ///< drive to `goals`, though it is not sure that they are called so?
+    kForgetAll,    ///< forget all names and all that was told?
+    kSpeaker       ///< what is the name of the person who speaks? Then `sentence` is heard again
+  };
+  Kind kind = Kind::kNone;
+  Id place = 0;
+  std::vector<std::string> names;
+  hyselam::Point2 point;
+  DescribedWall wall;
+  /// kWall, kWallLength: the search for the described glass wall, continued with the answer.
+  std::shared_ptr<GlassWallSearch> search;
+  /// kNewName: the statement that has the name; empty: it is that of `place`.
+  std::string sentence;
+  std::vector<MovedName> moved;
+  std::vector<NamedGoal> goals;
+
+  /// Whether it is about the name of `place`.
+  bool isAboutName() const;
+};
+
+/// Keeps one question at most. It is over when it is answered, when another one is asked, and
+/// after the next utterance about something else.
+class QuestionKeeper {
+ public:
+  const Question& question() const { return question_; }
+  bool isOpen() const { return question_.kind != Question::Kind::kNone; }
+  /// As it was put to the person.
+  const std::string& sentence() const { return sentence_; }
+
+  void ask(Question question, std::string sentence);
+  void drop();
+
+  /// What an utterance had to do with the question.
+  enum class Topic {
+    kAnswer,         ///< was about it
+    kNeutral,        ///< a greeting, thanks
+    kOther,          ///< was about something else
+    kNotUnderstood,  ///< perhaps an answer
+  };
+  void beginUtterance() { is_new_ = false; }
+  /// Whether it was asked after beginUtterance(): no part of that utterance answers it.
+  bool isNew() const { return is_new_; }
+  /// Returns whether the question should be put again: once, after what was not understood.
+  bool endUtterance(Topic topic);
+
+ private:
+  Question question_;
+  std::string sentence_;
+  bool is_new_ = false;
+  bool repeated_ = false;
+};
+
+}  // namespace hyselam_topo

@@ -1,0 +1,73 @@
+// Stop and cancel: obeyed before anything is understood.
+#include <algorithm>
+#include <set>
+
+#include "dialogue_turn.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "said_answer.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+bool isMotion(const Utterance& u) {
+  static const std::set<std::string> kMotion{"go_to", "go_back", "follow_me", "turn"};
+  return kMotion.count(u.intent) != 0;
+}
+
+}  // namespace
+
+void Dialogue::halt(Reply& out) {
+  under_way_.reset();
+  out.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
+}
+
+Reply Dialogue::obey(const UrgentWords& urgent) {
+  const auto& languages = urgent.languages;
+  const bool spoken = std::find(languages.begin(), languages.end(), language_) != languages.end();
+  if (!spoken && !languages.empty() && phrases_.count(languages.front()) != 0) {
+    language_ = languages.front();
+  }
+  questions_.drop();
+  Turn turn;
+  turn.reply = reply();
+  halt(turn.reply);
+  turn.reply.stopped = true;
+  turn.reply.ends_other_question = true;
+  const bool stop = urgent.urgency == Urgency::kStop;
+  turn.reply.sentences.push_back(phrases().say(stop ? "stopped" : "cancelled"));
+  for (const UrgentRest& rest : urgent.rest) heedRest(rest, turn);
+  attempt(turn.reply, [&] { recordStatements(turn); });
+  startGoal(turn);
+  return turn.reply;
+}
+
+std::optional<Reply> Dialogue::obeyUrgent(const std::string& text) {
+  UrgentWords urgent = findUrgentWords(text, parser_.grammars());
+  if (urgent.urgency == Urgency::kNone) return std::nullopt;
+  urgent.rest.clear();
+  return obey(urgent);
+}
+
+void Dialogue::heedRest(const UrgentRest& rest, Turn& turn) {
+  const ParsedText parsed = parse(rest.text);
+  const auto& said = parsed.utterances;
+  turn.reply.utterances.insert(turn.reply.utterances.end(), said.begin(), said.end());
+  const bool all = std::all_of(said.begin(), said.end(), [&](const Utterance& u) {
+    return u.understood() && (rest.after || !isMotion(u));
+  });
+  if (!all) {
+    const std::string reason = phrases().say("not_taken", {{"text", rest.text}});
+    turn.reply.sentences.push_back(reason);
+    turn.reply.refusals.push_back({rest.text, reason, false, ""});
+    return;
+  }
+  turn.text = rest.text;
+  turn.end = 0;
+  for (const Utterance& u : said) {
+    // What was asked before is over, and so are its answers.
+    if (!isAnswer(u)) handleUtterance(u, turn);
+    turn.end = std::min(turn.text.size(), u.range.end);
+  }
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,66 @@
+#include "match_report.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "match_constraints.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+std::vector<Id> only(const std::set<Id>& a, const std::set<Id>& b) {
+  std::vector<Id> difference;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(difference));
+  return difference;
+}
+
+}  // namespace
+
+GuessedPlaces guessedPlaces(const PlaceMan& places, const DescribedBuilding& building) {
+  GuessedPlaces guessed;
+  for (const DescribedPlace& described : building.places) {
+    for (const Id id : places.find(described.name)) {
+      if (nameStateOf(*places.map().findPlace(id)) == NameState::kUnconfirmed) {
+        guessed[described.name].insert(id);
+      }
+    }
+  }
+  return guessed;
+}
+
+std::vector<MovedName> movedNames(const GuessedPlaces& before, const PlaceMan& places,
+                                  const DescribedBuilding& building) {
+  std::vector<MovedName> moved;
+  const GuessedPlaces after = guessedPlaces(places, building);
+  for (const auto& [name, from] : before) {
+    const bool told = std::any_of(building.places.begin(), building.places.end(),
+                                  [&, &known = name](const auto& p) { return p.name == known; });
+    if (!told) continue;
+    const auto now = after.find(name);
+    if (now == after.end()) {
+      const std::vector<Id> found = places.find(name);
+      if (found.empty()) moved.push_back({name, {from.begin(), from.end()}, {}});
+      continue;
+    }
+    MovedName each{name, only(from, now->second), only(now->second, from)};
+    if (!each.from.empty() && !each.to.empty()) moved.push_back(std::move(each));
+  }
+  return moved;
+}
+
+Uncertainty uncertaintyOf(const PlaceAssignment& match, const std::vector<Id>& names,
+                          const DescribedBuilding& building) {
+  Uncertainty unsure;
+  if (!match.found() || match.equal < 2) return unsure;
+  const EqualAnswers equal = equalAnswers(match);
+  if (equal.count < 2) return unsure;
+  unsure.answers = equal.count;
+  unsure.more = match.more;
+  for (const int name : equal.unsure) {
+    const DescribedPlace* place = building.findPlace(names.at(static_cast<std::size_t>(name)));
+    if (place != nullptr) unsure.names.insert(place->name);
+  }
+  return unsure;
+}
+
+}  // namespace hyselam_topo

@@ -1,0 +1,30 @@
+// What a new match of the description with the map changes, and what of it is not sure.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hyselam_language/building/described_building.hpp"
+#include "hyselam_topo/dialogue/place_man.hpp"
+#include "hyselam_topo/dialogue/question_keeper.hpp"
+#include "hyselam_topo/dialogue/uncertainty.hpp"
+#include "hyselam_topo/topomerg/topomerg.hpp"
+
+namespace hyselam_topo {
+
+/// The places where each name of a description is guessed; names that are confirmed are left out.
+using GuessedPlaces = std::map<std::string, std::set<Id>>;
+GuessedPlaces guessedPlaces(const PlaceMan& places, const DescribedBuilding& building);
+
+/// The names that were guessed before and are elsewhere now, or nowhere. Not those that a person
+/// has confirmed or taken back since.
+std::vector<MovedName> movedNames(const GuessedPlaces& before, const PlaceMan& places,
+                                  const DescribedBuilding& building);
+
+/// `names`: the ids that the match was made for (MatchProblem::names).
+Uncertainty uncertaintyOf(const PlaceAssignment& match, const std::vector<Id>& names,
+                          const DescribedBuilding& building);
+
+}  // namespace hyselam_topo

@@ -1,0 +1,258 @@
+// Stop, answers and the robot's questions, one rule a test.
+#include <gtest/gtest.h>
+
+#include "talk.hpp"
+
+using hyselam_topo::AskPolicy;
+using hyselam_topo::DialogueAction;
+using hyselam_topo::HearOptions;
+using hyselam_topo::Question;
+using hyselam_topo::Reply;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+// ---- Stop ----
+
+TEST(DialogueStop, EndsMotionAndTheOpenQuestionAndNamesNothing) {
+  for (const char* said : {"Stop stop stop", "stop stop", "STOOOP", "hey robot wait no stop please",
+                           "Stop asking.", "para para", "stpo"}) {
+    Talk talk;
+    ASSERT_TRUE(has(talk.askAboutKitchen(), "kitchen")) << said;
+    const Reply reply = talk.dialogue.hear(said);
+    EXPECT_TRUE(reply.has(DialogueAction::Kind::kStop)) << said;
+    EXPECT_TRUE(reply.stopped && reply.ends_other_question) << said;
+    EXPECT_EQ(talk.asked(), Question::Kind::kNone) << said;
+    EXPECT_FALSE(talk.isConfirmed(1)) << said;
+    EXPECT_EQ(reply.sentences.size(), 1u) << said << reply.text();
+  }
+}
+
+TEST(DialogueStop, IsObeyedBeforeOtherNodesHearOfIt) {
+  Talk talk;
+  HearOptions options;
+  options.forward_unknown = options.objects_spoken_of = options.others_asked_last = true;
+  for (const char* said : {"stop", "no stop the pen", "cancel", "never mind", "wait"}) {
+    const Reply reply = talk.dialogue.hear(said, options);
+    EXPECT_TRUE(reply.has(DialogueAction::Kind::kStop)) << said;
+    EXPECT_TRUE(reply.forwarded.empty()) << said;
+  }
+}
+
+TEST(DialogueStop, WhatElseWasSaidIsDoneOrTold) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  Reply reply = talk.dialogue.hear("Stop and turn left.");
+  EXPECT_TRUE(reply.has(DialogueAction::Kind::kTurn)) << reply.text();
+  EXPECT_EQ(reply.actions.front().kind, DialogueAction::Kind::kStop);
+  reply = talk.dialogue.hear("turn left no stop");
+  EXPECT_FALSE(reply.has(DialogueAction::Kind::kTurn)) << reply.text();
+  EXPECT_TRUE(has(reply.text(), "I have not taken 'turn left")) << reply.text();
+  EXPECT_TRUE(has(talk.say("Stop. Where are you?"), "kitchen"));
+  EXPECT_TRUE(has(talk.say("stop the flurb is sqwox"), "I have not taken 'the flurb is sqwox'"));
+}
+
+TEST(DialogueStop, TextsThatAreTooLongStopAllTheSame) {
+  Talk talk;
+  EXPECT_TRUE(
+      talk.dialogue.hear(std::string(100000, 'x') + " stop").has(DialogueAction::Kind::kStop));
+  EXPECT_FALSE(talk.dialogue.obeyUrgent("the bus stop").has_value());
+  EXPECT_TRUE(talk.dialogue.obeyUrgent("Stop. Turn left.")->has(DialogueAction::Kind::kStop));
+}
+
+TEST(DialogueStop, NoStopsARobotThatIsUnderWay) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  EXPECT_FALSE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
+  talk.say("Follow me.");
+  EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
+  EXPECT_FALSE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
+}
+
+// ---- One utterance, one answer ----
+
+TEST(DialogueAnswer, TwoNoesAreOne) {
+  for (const char* said : {"No, no.", "Nope, that's wrong.", "No. No, it is not."}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    EXPECT_TRUE(has(talk.say(said), "What is the name of this place?")) << said;
+    EXPECT_EQ(talk.asked(), Question::Kind::kName) << said;
+  }
+}
+
+TEST(DialogueAnswer, NotThisButThatIsOneAnswer) {
+  Talk talk;
+  talk.askAboutKitchen();
+  const std::string reply = talk.say("No, it's Bruno's office.");
+  EXPECT_TRUE(has(reply, "Bruno's office")) << reply;
+  EXPECT_FALSE(has(reply, "?")) << reply;
+  EXPECT_EQ(talk.names(1), Names{"Bruno's office"});
+}
+
+TEST(DialogueAnswer, YesWithAnotherNameIsAskedAbout) {
+  Talk talk;
+  talk.askAboutKitchen();
+  const std::string reply = talk.say("Right, that's Peter's office.");
+  EXPECT_TRUE(has(reply, "Shall I call this place 'Peter's office'?")) << reply;
+  EXPECT_FALSE(talk.isConfirmed(1));
+  talk.say("Yes.");
+  EXPECT_EQ(talk.names(1), Names{"Peter's office"});
+}
+
+TEST(DialogueAnswer, YesWithTheSameNameConfirmsOnce) {
+  Talk talk;
+  talk.askAboutKitchen();
+  EXPECT_EQ(talk.say("Yes, it's the kitchen."), "Thank you. SS01 is kitchen.");
+}
+
+TEST(DialogueAnswer, WhatIsNoNameOfAPlaceIsAskedAbout) {
+  for (const char* said : {"zorb", "flurble"}) {
+    Talk talk(AskPolicy::kAlways);
+    talk.dialogue.askHere();
+    ASSERT_EQ(talk.asked(), Question::Kind::kName) << said;
+    const std::string reply = talk.say(said);
+    EXPECT_TRUE(has(reply, "Shall I call this place '")) << said << ": " << reply;
+    EXPECT_TRUE(talk.names(1).empty()) << said;
+    EXPECT_TRUE(has(talk.say("No."), "other words")) << said;
+    EXPECT_TRUE(talk.names(1).empty()) << said;
+  }
+  Talk peter;
+  peter.dialogue.askHere();
+  peter.say("Peter.");
+  EXPECT_TRUE(peter.names(1).empty());
+  EXPECT_EQ(peter.dialogue.reply().language, "en");
+  Talk talk;
+  EXPECT_TRUE(has(talk.say("This is Atlantis."), "Shall I call this place 'Atlantis'?"));
+  talk.say("Yes.");
+  EXPECT_EQ(talk.names(1), Names{"Atlantis"});
+  talk.at(6.0);
+  talk.say("This is \"Utopia\".");
+  EXPECT_EQ(talk.names(2), Names{"Utopia"}) << "put between quotation marks";
+}
+
+TEST(DialogueAnswer, AllWaysOfYesAndNoAreKnown) {
+  for (const char* said : {"uh-huh", "mm-hm", "Sure thing", "You bet.", "that's it", "yup", "isso",
+                           "pois", "é isso", "claro", "com certeza", "isso mesmo", "roger"}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    talk.say(said);
+    EXPECT_TRUE(talk.isConfirmed(1)) << said;
+    EXPECT_EQ(talk.names(1), Names{"kitchen"}) << said;
+  }
+  for (const char* said : {"nah", "not really", "negative", "nope", "pois não", "nem por isso",
+                           "não é", "de modo nenhum", "uh-uh", "I don't think so"}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    talk.say(said);
+    EXPECT_TRUE(talk.names(1).empty()) << said;
+    EXPECT_EQ(talk.asked(), Question::Kind::kName) << said;
+  }
+  for (const char* said : {"I don't know", "no idea", "não sei", "sei lá", "dunno"}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    talk.say(said);
+    EXPECT_FALSE(talk.isConfirmed(1)) << said;
+    EXPECT_EQ(talk.asked(), Question::Kind::kNone) << said;
+  }
+}
+
+TEST(DialogueAnswer, YesAndNoAtOnceAreAskedAgain) {
+  Talk talk;
+  const std::string question = talk.askAboutKitchen();
+  EXPECT_EQ(talk.say("Yes. No."), question);
+  EXPECT_EQ(talk.asked(), Question::Kind::kConfirmName);
+}
+
+TEST(DialogueAnswer, WhereNothingIsAskedItIsMetShortly) {
+  Talk talk;
+  for (const char* said : {"Yes.", "ok", "uh-huh", "I don't know."}) {
+    EXPECT_EQ(talk.say(said), "All right.") << said;
+  }
+  EXPECT_EQ(talk.say("Yes, that's John's office."), "Thank you. SS01 is John's office.");
+}
+
+// ---- The life of a question ----
+
+TEST(DialogueQuestion, IsOverAfterTheNextUtteranceAboutSomethingElse) {
+  Talk talk;
+  talk.askAboutKitchen();
+  talk.say("Which places do you know?");
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone);
+  EXPECT_EQ(talk.say("Yes."), "All right.");
+  EXPECT_FALSE(talk.isConfirmed(1));
+}
+
+TEST(DialogueQuestion, StaysOverThanksAndHelp) {
+  Talk talk;
+  talk.askAboutKitchen();
+  talk.say("Thank you.");
+  talk.say("Yes.");
+  EXPECT_TRUE(talk.isConfirmed(1));
+}
+
+TEST(DialogueQuestion, IsShownAgainWhenItWasNotHeard) {
+  for (const char* said : {"What?", "Pardon?", "Como?", "O quê?", "what did you say", "huh?"}) {
+    Talk talk;
+    const std::string question = talk.askAboutKitchen();
+    EXPECT_EQ(talk.say(said), question) << said;
+    EXPECT_EQ(talk.asked(), Question::Kind::kConfirmName) << said;
+  }
+}
+
+TEST(DialogueQuestion, WhatWasSaidLastIsSaidAgain) {
+  Talk talk;
+  const std::string said = talk.say("Where are you?");
+  EXPECT_EQ(talk.say("Pardon?"), said);
+}
+
+TEST(DialogueQuestion, IsPutAgainOnceAfterWhatIsNotUnderstood) {
+  Talk talk;
+  const std::string question = talk.askAboutKitchen();
+  EXPECT_TRUE(has(talk.say("Flurb the gnarl of sqwox."), question));
+  EXPECT_FALSE(has(talk.say("Flurb the gnarl of sqwox."), question));
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone);
+}
+
+TEST(DialogueQuestion, ForgettingEverythingIsAskedFirst) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  EXPECT_TRUE(has(talk.say("Forget all names."), "Shall I forget"));
+  EXPECT_EQ(talk.names(1), Names{"kitchen"});
+  talk.say("No.");
+  EXPECT_EQ(talk.names(1), Names{"kitchen"});
+  talk.say("Forget all names.");
+  talk.say("Yes.");
+  EXPECT_TRUE(talk.names(1).empty());
+}
+
+// ---- Statements ----
+
+TEST(DialogueStatement, IsReadBack) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  const std::string reply = talk.say("The pantry is next to the kitchen.");
+  EXPECT_TRUE(has(reply, "Noted: The pantry is next to the kitchen.")) << reply;
+  EXPECT_TRUE(has(talk.say("The pantry is next to the kitchen."), "I knew that already."));
+}
+
+TEST(DialogueStatement, SidesAreToldFromThePlaceThatWasNamed) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  const std::string reply = talk.say("In front of you is the pantry.");
+  EXPECT_TRUE(has(reply, "Noted: ")) << reply;
+  EXPECT_TRUE(talk.dialogue.description().robot_place.has_value());
+}
+
+TEST(DialogueStatement, PlacesThatSoundLikeNoneAreAskedAbout) {
+  Talk talk;
+  EXPECT_TRUE(has(talk.say("You are in Narnia."), "Shall I call this place 'Narnia'?"));
+  EXPECT_TRUE(talk.names(1).empty());
+  EXPECT_TRUE(talk.dialogue.description().places.empty());
+}
