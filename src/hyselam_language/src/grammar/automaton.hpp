@@ -14,7 +14,7 @@ enum class EdgeKind : std::uint8_t {
   kWord,      ///< the word `a`
   kComma,     ///< a comma
   kName,      ///< a name of type `b` into slot `a`
-  kCount,     ///< a whole number >= 1 into slot `a`
+  kCount,     ///< a whole number >= 1, and >= `b`, into slot `a`
   kNumber,    ///< a number into slot `a`
   kQuantity,  ///< a number with a unit of quantity `b` into slot `a`
   kBegin,     ///< slot `a` of a word class begins

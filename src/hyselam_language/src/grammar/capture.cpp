@@ -13,6 +13,8 @@ namespace {
 
 using Step = PatternRun::Step;
 
+constexpr char kAgain[] = "again";  ///< "it", where something is corrected
+
 class Capture {
  public:
   Capture(const Automaton& pattern, SentenceWords* words, Clause* clause)
@@ -130,7 +132,8 @@ class Capture {
       return;
     }
     SaidName reference;
-    reference.reference = value;
+    reference.reference = value == kAgain ? "it" : value;
+    clause_.only_corrects = clause_.only_corrects || value == kAgain;
     reference.range = slot.range;
     reference.text = words_.textOf(slot.range);
     slot.names.push_back(std::move(reference));

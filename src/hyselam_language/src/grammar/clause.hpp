@@ -15,6 +15,7 @@ struct Clause {
   std::size_t end = 0;
   int cost = 0;
   bool correction = false;
+  bool only_corrects = false;  ///< has no meaning if it does not correct anything
   bool tied = false;  ///< where one name ends and the next begins cannot be told
   std::vector<Slot> slots;
   std::vector<Spelling> spelling;

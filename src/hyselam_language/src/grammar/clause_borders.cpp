@@ -66,15 +66,23 @@ std::vector<Entry> entriesAt(const SentenceWords& words, std::size_t at) {
     if (!is_new) entry->second = std::min(entry->second, cost);
   };
   const PhraseWalk fillers(words, words.grammar.fillers_before, kFillerCost);
-  fillers.follow(at, 0, [&](std::size_t to, int cost) {
-    note(to, cost, false);
+  // "no, wait, sorry, ..."
+  constexpr int kMaxCorrections = 3;
+  const auto correct = [&](auto&& self, std::size_t to, int cost, int depth) -> void {
+    if (depth == kMaxCorrections) return;
     for (const Phrase& phrase : words.grammar.corrections) {
       const int more = fillerCost(phrase, to, words);
       const std::size_t behind = to + phrase.size();
       if (more < 0 || deniesWhatFollows(words, to, behind)) continue;
-      fillers.follow(behind, cost + kFillerCost + more,
-                     [&](std::size_t last, int total) { note(last, total, true); });
+      fillers.follow(behind, cost + kFillerCost + more, [&](std::size_t last, int total) {
+        note(last, total, true);
+        self(self, last, total, depth + 1);
+      });
     }
+  };
+  fillers.follow(at, 0, [&](std::size_t to, int cost) {
+    note(to, cost, false);
+    correct(correct, to, cost, 0);
   });
   std::vector<Entry> entries;
   entries.reserve(cheapest.size());

@@ -55,6 +55,7 @@ struct NameType {
   std::set<std::string> speaker;                 ///< before what is the speaker's: "my"
   std::set<std::string> elliptic_suffix;         ///< "Mary's": the noun was said before
   std::set<std::string> elliptic_prefix;         ///< "o da Teresa": the same
+  std::set<std::string> elliptic_after;          ///< what may stand before it: "ao", or an article
   std::set<std::string> range_words;             ///< "rooms 101 to 106"
   std::set<std::string> generic;                 ///< no name on their own: "room"
   std::set<std::string> heads;                   ///< kinds of places, no name alone: "area"
@@ -69,6 +70,7 @@ struct NameType {
   std::set<std::string> feminine;                ///< nouns with the second article when generating
   bool head_first = false;                       ///< the first noun tells the kind, not the last
   bool needs_noun = false;
+  bool silent = false;  ///< that words are no such name is no reason for a refusal
   bool indefinite_needs_noun = false;
   std::size_t max_words = 8;
 

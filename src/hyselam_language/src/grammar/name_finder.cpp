@@ -70,6 +70,8 @@ const std::vector<FoundName>& NameFinder::namesAt(std::size_t at, std::size_t ty
 bool NameFinder::mayBeArticle(std::size_t at, const NameType& type) const {
   const Token& token = tokens_[at];
   if (token.kind != TokenKind::kWord || !type.isArticle(token.folded)) return false;
+  // "à sala" is not "a sala".
+  if (token.lower != token.folded && type.stop.count(token.lower) != 0) return false;
   // "room A", but "A kitchen is on your left".
   return !(token.starts_upper && token.text.size() == 1 && at > 0);
 }
@@ -184,6 +186,15 @@ bool NameFinder::isElliptic(std::size_t begin, std::size_t end, const NameType& 
   return endsWithAny(tokens_[end - 1].lower, type);
 }
 
+/// "o da Teresa", "ao do Rui", but not "of the corridor", "depois da sala": there what stands
+/// before it is missing.
+bool NameFinder::isOwnersAlone(std::size_t begin, const NameType& type) const {
+  if (begin == 0 || type.elliptic_prefix.count(tokens_[begin].folded) == 0) return false;
+  const std::string& before = tokens_[begin - 1].folded;
+  if (!type.isArticle(before) && type.elliptic_after.count(before) == 0) return false;
+  return begin + 1 < tokens_.size() && !beginsWithNoun(begin + 1, tokens_.size(), type);
+}
+
 void NameFinder::complete(std::size_t begin, std::size_t end, const NameType& type,
                           SaidName* name) const {
   if (name->quoted || !isElliptic(begin, end, type)) return;
@@ -257,7 +268,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1), {}});
         found.back().name.speaker = speaker;
         complete(begin, k + 1, type, &found.back().name);
-      } else {
+      } else if (!type.silent) {
         failures_.push_back({begin, wrong, k + 1});
       }
     }
@@ -290,13 +301,18 @@ bool NameFinder::isLetterOfTitle(std::size_t begin, std::size_t at, const NameTy
   return at + 1 == tokens_.size() || tokens_[at + 1].kind != TokenKind::kWord;
 }
 
+bool NameFinder::beginsWithNoun(std::size_t begin, std::size_t end, const NameType& type) const {
+  std::string phrase;
+  for (std::size_t k = begin; k < std::min(end, begin + kLongestNoun); ++k) {
+    phrase += (k > begin ? " " : "") + tokens_[k].folded;
+    if (type.nouns.count(phrase) != 0) return true;
+  }
+  return false;
+}
+
 bool NameFinder::hasNoun(std::size_t begin, std::size_t end, const NameType& type) const {
   for (std::size_t i = begin; i < end; ++i) {
-    std::string phrase;
-    for (std::size_t k = i; k < std::min(end, i + kLongestNoun); ++k) {
-      phrase += (k > i ? " " : "") + tokens_[k].folded;
-      if (type.nouns.count(phrase) != 0) return true;
-    }
+    if (beginsWithNoun(i, end, type)) return true;
   }
   return false;
 }
@@ -328,9 +344,8 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
       if (!noun && type.generic.count(word) == 0) return "no_name";
     }
   }
-  // "of the corridor": what stands before it is missing.
-  const bool elliptic = type.elliptic_prefix.count(first.folded) != 0;
-  if (end - begin > 1 && !elliptic && type.joiners.count(first.folded) != 0) return "no_name";
+  const bool joined = end - begin > 1 && type.joiners.count(first.folded) != 0;
+  if (joined && !isOwnersAlone(begin, type)) return "no_name";
   const std::string& name = nameOf(begin, end).text;
   if (!hyselam::wordError(name).empty() || name.size() > kMaxNameBytes) return "no_name";
   if (quoted) return "";
@@ -340,6 +355,11 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   const bool small_number =
       end - begin == 1 && first.kind == TokenKind::kNumber && first.text.size() < 3;
   if (number_word || small_number || type.quantities.count(first.folded) != 0) return "quantity";
+  // "a mesa da cozinha"
+  const auto head = type.forbidden.find(first.folded);
+  if (type.head_first && head != type.forbidden.end() && !beginsWithNoun(begin, end, type)) {
+    return head->second;
+  }
   bool only_generic = true;
   for (std::size_t k = begin; k < end; ++k) {
     const auto forbidden = type.forbidden.find(tokens_[k].folded);

@@ -52,6 +52,7 @@ class NameFinder {
   /// "Mary's", "da Teresa": the noun that was said before it in the sentence: "office"; "" for
   /// none.
   std::string nounBefore(std::size_t at, const NameType& type) const;
+  bool isOwnersAlone(std::size_t begin, const NameType& type) const;
   bool isElliptic(std::size_t begin, std::size_t end, const NameType& type) const;
   void complete(std::size_t begin, std::size_t end, const NameType& type, SaidName* name) const;
   /// "the door of the kitchen", "the kitchen door".
@@ -65,6 +66,7 @@ class NameFinder {
   /// "" if tokens [begin, end) are a name.
   std::string whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
                           const NameType& type);
+  bool beginsWithNoun(std::size_t begin, std::size_t end, const NameType& type) const;
   bool hasNoun(std::size_t begin, std::size_t end, const NameType& type) const;
   bool mayBeMisspelt(std::size_t at, const NameType& type) const;
   /// Whether it is a noun of places, or begins one: "living".

@@ -20,6 +20,7 @@ const std::map<std::string, std::set<std::string> NameType::*>& wordKeys() {
       {"speaker", &NameType::speaker},
       {"elliptic_suffix", &NameType::elliptic_suffix},
       {"elliptic_prefix", &NameType::elliptic_prefix},
+      {"elliptic_after", &NameType::elliptic_after},
       {"range_words", &NameType::range_words},
       {"generic", &NameType::generic},
       {"heads", &NameType::heads},
@@ -104,6 +105,8 @@ void readNameType(const std::string& name, const GrammarNode& node, CompiledGram
       });
     } else if (key == "head") {
       type.head_first = isHeadFirst(value);
+    } else if (key == "silent") {
+      type.silent = value.truth();
     } else if (key == "needs_noun") {
       type.needs_noun = value.truth();
     } else if (key == "indefinite_needs_noun") {

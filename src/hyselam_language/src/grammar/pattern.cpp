@@ -12,8 +12,9 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
+constexpr int kSeveral = 2;  // at least
 constexpr int kMaxDepth = 16;
-constexpr std::size_t kMaxStates = 20000;
+constexpr std::size_t kMaxStates = 100000;
 
 class Compiler {
  public:
@@ -233,6 +234,7 @@ class Compiler {
     }
     if (type.is_list) throw PatternError("only names make lists, not '" + type.type + "'");
     if (type.type == "count") return step(state, EdgeKind::kCount, slotNumber(type));
+    if (type.type == "several") return step(state, EdgeKind::kCount, slotNumber(type), kSeveral);
     if (type.type == "number") return step(state, EdgeKind::kNumber, slotNumber(type));
     const auto& quantities = grammar_->quantities;
     for (std::size_t i = 0; i < quantities.size(); ++i) {

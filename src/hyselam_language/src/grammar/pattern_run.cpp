@@ -188,7 +188,7 @@ void PatternRun::follow(const Edge& edge, std::size_t at, Cell next) {
       break;
     case EdgeKind::kCount:
       for (const FoundNumber& number : words_.numbersAt(at)) {
-        if (isCount(number.value)) go(number.end, 0);
+        if (isCount(number.value) && number.value >= edge.b) go(number.end, 0);
       }
       break;
     case EdgeKind::kNumber:

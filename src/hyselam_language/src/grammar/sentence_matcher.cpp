@@ -109,7 +109,8 @@ class SentenceReader {
           clause.cost = end.cost + intent.cost - bonus;
           clause.correction = entry.correction;
           clause.tied = end.tied;
-          if (capture(pattern, *path, &words_, &clause)) f(clause);
+          if (!capture(pattern, *path, &words_, &clause)) continue;
+          if (clause.correction || !clause.only_corrects) f(clause);
         }
       }
     }
