@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <random>
 #include <string>
@@ -37,23 +38,93 @@ class RandomBuildings {
         if (pick(3) != 0) continue;
         const auto side = static_cast<Side>(pick(5));
         const Id from = b.places[i].id;
-        b.connections.push_back({from, b.places[j].id, side, rows[{from, side}]++});
+        DescribedConnection made;
+        made.from = from;
+        made.to = b.places[j].id;
+        made.side = side;
+        made.order = rows[{from, side}]++;
+        b.connections.push_back(made);
       }
     }
-    if (count >= 3 && pick(2) == 0) b.relations.push_back({RelationKind::kBetween, 1, 2, 3});
-    if (count >= 2 && pick(2) == 0) b.relations.push_back({RelationKind::kNextTo, 2, 1, 0});
-    if (count >= 2 && pick(2) == 0) b.relations.push_back({RelationKind::kOpposite, 1, 2, 0});
-    if (count >= 2 && pick(2) == 0) b.relations.push_back({RelationKind::kInside, 2, 1, 0});
+    if (count >= 3 && pick(2) == 0)
+      b.relations.push_back(relation(RelationKind::kBetween, 1, 2, 3));
+    if (count >= 2 && pick(2) == 0) b.relations.push_back(relation(RelationKind::kNextTo, 2, 1, 0));
+    if (count >= 2 && pick(2) == 0)
+      b.relations.push_back(relation(RelationKind::kOpposite, 1, 2, 0));
+    if (count >= 2 && pick(2) == 0) b.relations.push_back(relation(RelationKind::kInside, 2, 1, 0));
     if (!b.connections.empty() && pick(2) == 0) {
       const DescribedConnection& c = b.connections[pick(b.connections.size())];
-      b.relations.push_back({RelationKind::kAtEndOf, c.to, c.from, 0});
+      b.relations.push_back(relation(RelationKind::kAtEndOf, c.to, c.from, 0));
     }
+    for (DescribedConnection& c : b.connections) rankAndDistance(&c, b);
+    addFurther(&b);
     b.robot_place = b.places[pick(count)].id;
     if (pick(3) == 0) b.place_count = static_cast<int>(1 + pick(12));
     return b;
   }
 
  private:
+  static DescribedRelation relation(RelationKind kind, Id a, Id other, Id c = 0) {
+    DescribedRelation made;
+    made.kind = kind;
+    made.a = a;
+    made.b = other;
+    made.c = c;
+    return made;
+  }
+
+  /// Ranks rise along a row; only its last place is counted from the end.
+  void rankAndDistance(DescribedConnection* c, const DescribedBuilding& b) {
+    if (pick(4) == 0) c->distance = static_cast<double>(1 + pick(100)) / 4.0;
+    const bool last =
+        std::none_of(b.connections.begin(), b.connections.end(), [&](const auto& other) {
+          return other.from == c->from && other.side == c->side && other.order > c->order;
+        });
+    if (pick(3) != 0) return;
+    if (last && pick(2) == 0) {
+      c->rank = -static_cast<int>(1 + pick(4));
+    } else {
+      c->rank = static_cast<int>(1 + 4 * c->order + pick(4));
+    }
+  }
+
+  /// One more statement of two places that nothing else was told of.
+  void addFurther(DescribedBuilding* b) {
+    constexpr std::array<RelationKind, 10> kKinds{RelationKind::kNextTo,  RelationKind::kOpposite,
+                                                  RelationKind::kBetween, RelationKind::kAtEndOf,
+                                                  RelationKind::kInside,  RelationKind::kAfter,
+                                                  RelationKind::kBehind,  RelationKind::kLarger,
+                                                  RelationKind::kJoined,  RelationKind::kAtSide};
+    const std::size_t count = b->places.size();
+    for (std::size_t i = 3; i < count; ++i) {
+      for (std::size_t j = 2; j < i; ++j) {
+        const Id a = b->places[i].id, other = b->places[j].id;
+        const bool joined =
+            std::any_of(b->connections.begin(), b->connections.end(), [&](const auto& each) {
+              return std::minmax(each.from, each.to) == std::minmax(a, other);
+            });
+        if (joined || pick(2) == 0) continue;
+        DescribedRelation made = relation(kKinds[pick(kKinds.size())], a, other);
+        const bool further = made.kind == RelationKind::kAfter ||
+                             made.kind == RelationKind::kBehind ||
+                             made.kind == RelationKind::kLarger;
+        made.denied = !further || pick(2) == 0;
+        if (made.kind == RelationKind::kBetween) made.c = b->places[0].id;
+        if (made.kind == RelationKind::kAfter && pick(2) == 0) made.c = b->places[1].id;
+        if (made.kind == RelationKind::kAtSide) made.side = static_cast<Side>(1 + pick(4));
+        b->relations.push_back(made);
+      }
+    }
+    for (DescribedPlace& place : b->places) {
+      const bool joined = std::any_of(
+          b->connections.begin(), b->connections.end(),
+          [&](const auto& each) { return each.from == place.id || each.to == place.id; });
+      if (!joined && pick(2) == 0) place.floor = static_cast<int>(pick(9)) - 4;
+      if (pick(5) == 0) place.doors = static_cast<int>(1 + pick(4));
+      if (pick(5) == 0) place.size_word = pick(2) == 0 ? SizeWord::kSmall : SizeWord::kLarge;
+    }
+  }
+
   std::size_t pick(std::size_t n) { return rng_() % n; }
 
   DescribedPlace place(std::size_t i) {

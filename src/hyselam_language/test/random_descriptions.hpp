@@ -24,18 +24,17 @@ class RandomDescriptions {
         const Id a = building.places[static_cast<std::size_t>(i)].id;
         const Id b = building.places[static_cast<std::size_t>(j)].id;
         if (pick(3) == 0) {
-          building.connections.push_back(
-              {a, b, static_cast<Side>(pick(5)), static_cast<std::size_t>(pick(4))});
+          building.connections.push_back(connection(a, b));
         }
-        const auto kind = static_cast<RelationKind>(pick(5));
-        if (pick(4) == 0 && kind != RelationKind::kBetween) {
-          building.relations.push_back({kind, a, b, 0});
-        }
+        if (pick(4) == 0) building.relations.push_back(relation(a, b));
       }
     }
     if (count >= 3) {
-      building.relations.push_back({RelationKind::kBetween, building.places[0].id,
-                                    building.places[1].id, building.places[2].id});
+      DescribedRelation of_three = relation(building.places[0].id, building.places[1].id);
+      of_three.kind = pick(2) == 0 ? RelationKind::kBetween : RelationKind::kAfter;
+      of_three.c = building.places[2].id;
+      of_three.side = Side::kUnknown;
+      building.relations.push_back(of_three);
     }
     if (count > 0 && pick(2) == 0) {
       building.robot_place = building.places[static_cast<std::size_t>(pick(count))].id;
@@ -58,6 +57,31 @@ class RandomDescriptions {
     return std::uniform_real_distribution<double>(1e-3, 1e3)(rng_);
   }
 
+  DescribedConnection connection(Id a, Id b) {
+    DescribedConnection made;
+    made.from = a;
+    made.to = b;
+    made.side = static_cast<Side>(pick(5));
+    made.order = static_cast<std::size_t>(pick(4));
+    if (pick(3) == 0) made.rank = pick(2) == 0 ? -1 - pick(3) : 1 + pick(30);
+    if (pick(3) == 0) made.distance = std::uniform_real_distribution<double>(0.0, 1e3)(rng_);
+    return made;
+  }
+
+  /// Of two places; what is only denied is denied.
+  DescribedRelation relation(Id a, Id b) {
+    DescribedRelation made;
+    made.kind = static_cast<RelationKind>(pick(10));
+    if (made.kind == RelationKind::kBetween) made.kind = RelationKind::kNextTo;
+    made.a = a;
+    made.b = b;
+    if (made.kind == RelationKind::kAtSide) made.side = static_cast<Side>(1 + pick(4));
+    const bool only_denied =
+        made.kind == RelationKind::kAtSide || made.kind == RelationKind::kJoined;
+    made.denied = only_denied || pick(2) == 0;
+    return made;
+  }
+
   DescribedPlace place(Id id) {
     DescribedPlace place;
     place.id = id;
@@ -68,6 +92,9 @@ class RandomDescriptions {
     place.width = size();
     place.area = size();
     if (pick(4) == 0) place.parts = 1 + pick(9);
+    if (pick(4) == 0) place.doors = 1 + pick(9);
+    if (pick(4) == 0) place.floor = pick(9) - 4;
+    if (pick(4) == 0) place.size_word = static_cast<SizeWord>(pick(2));
     return place;
   }
 

@@ -1,11 +1,21 @@
 // What statements of each kind make of a description, whatever the grammars know.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
 #include "building/issue_texts.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/testing/language_outlines.hpp"
+#include "random_statements.hpp"
 #include "said_statements.hpp"
+#ifdef HYSELAM_HAVE_RAPIDCHECK
+#include "hyselam_common/testing/properties.hpp"
+#endif
 
 namespace hyselam_topo {
 namespace {
@@ -108,7 +118,7 @@ TEST(DescriptionBuilder, SeveralRelationsInOneStatement) {
   EXPECT_EQ(graphOf({"robot_in place=hall",
                      "located places=lab side=left nth=2 distance=10 next_to=kitchen,office "
                      "opposite=room_B size_word=large doors=2 area=30"}),
-            (Lines{"at hall", "hall left lab#2@10", "lab area 30", "lab large",
+            (Lines{"at hall", "hall left lab#2@10", "lab area 30", "lab doors 2", "lab large",
                    "lab next_to kitchen", "lab next_to office", "lab opposite room B"}));
   EXPECT_EQ(
       graphOf({"robot_in place=hall", "located places=lab side=right end_of=hall between=A,B"}),
@@ -398,6 +408,47 @@ TEST(DescriptionBuilder, StatementsAreTakenBack) {
   talk.say({"undo"});
   EXPECT_EQ(talk.issues, Lines{"no context"});
 }
+
+/// The orders of each row are 0, 1, 2, ...
+bool areOrdersCounted(const DescribedBuilding& building) {
+  std::map<std::pair<Id, Side>, std::set<std::size_t>> rows;
+  for (const DescribedConnection& each : building.connections) {
+    if (!rows[{each.from, each.side}].insert(each.order).second) return false;
+  }
+  return std::all_of(rows.begin(), rows.end(),
+                     [](const auto& row) { return *row.second.rbegin() + 1 == row.second.size(); });
+}
+
+/// Says random statements: each that changes the description is taken back and said again.
+void expectUndone(unsigned seed) {
+  testing::RandomStatements random(seed);
+  DescriptionBuilder builder(parser());
+  for (int i = 0; i < 60; ++i) {
+    const std::string statement = random.statement();
+    const DescribedBuilding before = builder.building();
+    builder.add(testing::said(statement));
+    const DescribedBuilding after = builder.building();
+    // Whatever is said, it is a description.
+    ASSERT_NO_THROW(checkDescription(after, statement));
+    ASSERT_TRUE(areOrdersCounted(after)) << "seed " << seed << ": " << statement;
+    ASSERT_NO_THROW(describeChange(before, after, parser().grammars()[seed % 2])) << statement;
+    if (after == before) continue;
+    ASSERT_TRUE(builder.undo());
+    ASSERT_TRUE(builder.building() == before) << "seed " << seed << ": " << statement;
+    builder.add(testing::said(statement));
+    ASSERT_TRUE(builder.building() == after) << "seed " << seed << ": " << statement;
+  }
+}
+
+TEST(DescriptionBuilder, UndoRestoresTheFormerDescription) {
+  for (unsigned seed = 0; seed < 100; ++seed) expectUndone(seed);
+}
+
+#ifdef HYSELAM_HAVE_RAPIDCHECK
+RC_GTEST_PROP(DescriptionBuilder, UndoRestoresWhateverWasSaid, (unsigned seed)) {
+  expectUndone(seed);
+}
+#endif
 
 TEST(DescriptionBuilder, EverythingIsForgotten) {
   Talk talk;

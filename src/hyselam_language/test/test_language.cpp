@@ -7,6 +7,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_language/building/describe_building.hpp"
+#include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/building/description_xml.hpp"
 #include "hyselam_language/testing/language_outlines.hpp"
@@ -286,7 +287,40 @@ TEST(DescribeBuilding, TextIsParsedBackToTheSameBuilding) {
   }
 }
 
+TEST(DescribeChange, ToldFromNothingIsParsedBackToTheSameBuilding) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    for (const Grammar& grammar : parser().grammars()) {
+      const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();
+      ParseOptions options;
+      options.language = grammar.language();
+      DescriptionBuilder builder(parser());
+      for (const std::string& sentence : describeChange({}, building, grammar)) {
+        const ParsedText parsed = parser().parse(sentence, options);
+        ASSERT_EQ(parsed.misunderstood(), 0u) << sentence << "\n" << parsed.utterances[0].reason;
+        const auto issues = builder.add(parsed);
+        ASSERT_TRUE(issues.empty()) << issues[0].reason << "\n" << sentence;
+      }
+      ASSERT_EQ(testing::outline(builder.building(), true), testing::outline(building, true))
+          << "seed " << seed << "\n"
+          << describeBuilding(building, grammar);
+    }
+  }
+}
+
 #ifdef HYSELAM_HAVE_RAPIDCHECK
+RC_GTEST_PROP(DescribeChange, EveryBuildingIsParsedBack, (unsigned seed)) {
+  for (const Grammar& grammar : parser().grammars()) {
+    const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();
+    ParseOptions options;
+    options.language = grammar.language();
+    DescriptionBuilder builder(parser());
+    for (const std::string& sentence : describeChange({}, building, grammar)) {
+      builder.add(parser().parse(sentence, options));
+    }
+    RC_ASSERT(testing::outline(builder.building(), true) == testing::outline(building, true));
+  }
+}
+
 RC_GTEST_PROP(DescribeBuilding, EveryBuildingIsParsedBack, (unsigned seed)) {
   for (const Grammar& grammar : parser().grammars()) {
     const DescribedBuilding building = testing::RandomBuildings(seed, grammar).building();

@@ -33,21 +33,22 @@ class Teller {
     for (const DescribedPlace& place : building_.places) {
       if (told_.count(place.id) == 0) say(facts_.exists(place.id));
     }
-    if (building_.robot_place && robot_ != *building_.robot_place) {
-      say(facts_.ofPlace("robot_in", *building_.robot_place));
-    }
+    if (building_.robot_place) tellRobotIn(*building_.robot_place);
     return std::move(text_);
   }
 
  private:
   void say(const std::string& sentence) { text_ += (text_.empty() ? "" : " ") + sentence; }
 
+  void tellRobotIn(Id place) {
+    if (robot_ == place) return;
+    say(facts_.ofPlace("robot_in", place));
+    robot_ = place;
+  }
+
   void tell(const ConnectionRow& row) {
     told_.insert(row.from);
-    if (row.side != Side::kUnknown && robot_ != row.from) {
-      say(facts_.ofPlace("robot_in", row.from));
-      robot_ = row.from;
-    }
+    if (row.side != Side::kUnknown) tellRobotIn(row.from);
     for (const std::vector<DescribedConnection>& each : row.sentences()) {
       std::vector<Id> ids;
       ids.reserve(each.size());
@@ -65,6 +66,7 @@ class Teller {
 
   void tell(const DescribedRelation& relation) {
     for (const Id id : {relation.a, relation.b, relation.c}) told_.insert(id);
+    if (relation.side != Side::kUnknown) tellRobotIn(relation.b);
     say(facts_.ofRelation(relation, robot_));
   }
 

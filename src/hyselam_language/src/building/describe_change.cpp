@@ -145,6 +145,7 @@ class ChangeTeller {
     for (const DescribedRelation& each : after_.relations) {
       const bool is_unplaced = each.kind == RelationKind::kAfter && each.c == 0;
       if (is_unplaced != unplaced || isIn(before_.relations, each)) continue;
+      if (each.side != Side::kUnknown && (after_.robot_place || robot_ != 0)) tellRobot(each.b);
       say(new_.ofRelation(each, robot_));
       for (const Id id : {each.a, each.b, each.c}) told_.insert(id);
     }

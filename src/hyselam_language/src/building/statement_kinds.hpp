@@ -38,6 +38,8 @@ void located(Statement& s);
 /// Length, width, area and word of size that the statement tells of a place.
 void takeSizes(Statement& s, Id id);
 void takeSizeWord(Statement& s, Id id);
+/// How many doors it has; the statement must tell.
+void takeDoors(Statement& s, Id id);
 void addAlias(Statement& s, Id id, const SaidName& name);
 /// Fails unless as many were named as announced.
 void checkCount(Statement& s, std::size_t named);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kStep = 0.75;            // [m], of a person
 constexpr double kMaxDistance = 10000.0;  // [m]
+constexpr double kMaxFloor = 1000.0;
 
 /// What is said of where all the places of the statement lie.
 struct Location {
@@ -67,6 +68,8 @@ void readRelations(Statement& s, Location* location) {
   add("end_of", RelationKind::kAtEndOf);
   add("behind", RelationKind::kBehind);
   add("after", RelationKind::kAfter);
+  add("part_of", RelationKind::kInside);
+  add("larger_than", RelationKind::kLarger);
   for (const Id other : placesOf(s, "before")) {
     location->relations.push_back(relationOf(RelationKind::kAfter, other, kItself));
   }
@@ -79,16 +82,24 @@ void readRelations(Statement& s, Location* location) {
   }
 }
 
+/// Storeys above or below, by word or by number.
+std::optional<int> floorOf(Statement& s) {
+  const Utterance& u = s.said();
+  std::optional<double> floor = u.number("floors_up");
+  if (u.number("floors_down")) floor = -*u.number("floors_down");
+  if (u.find("floor") != nullptr) floor = hyselam::parseNumber(u.word("floor"));
+  if (!floor) return std::nullopt;
+  if (!(std::abs(*floor) <= kMaxFloor)) {
+    s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", shown(*floor)}});
+  }
+  return static_cast<int>(*floor);
+}
+
 Location locationOf(Statement& s) {
   Location location;
   readRow(s, &location);
   readRelations(s, &location);
-  if (s.said().find("floor") != nullptr) {
-    const auto floor = hyselam::parseNumber(s.said().word("floor"));
-    if (!floor)
-      s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", s.said().word("floor")}});
-    location.floor = static_cast<int>(*floor);
-  }
+  location.floor = floorOf(s);
   return location;
 }
 
@@ -121,7 +132,10 @@ void deny(Statement& s, const Location& location, Id id) {
   if (!location.joined.empty()) {
     return recordDenial(s, relationOf(RelationKind::kJoined, id, location.joined.front()));
   }
-  if (!location.in_row) return recordDenial(s, placed(s, location.relations.front(), id, false));
+  if (!location.in_row) {
+    const bool with_from = s.said().find("from") != nullptr;
+    return recordDenial(s, placed(s, location.relations.front(), id, with_from));
+  }
   const Placement& row = location.row;
   if (!row.rank) {
     DescribedRelation denial = relationOf(RelationKind::kAtSide, id, row.from);
@@ -180,8 +194,8 @@ void located(Statement& s) {
   const std::vector<Id> ids = placesOf(s, u.find("places") != nullptr ? "places" : "place");
   checkCount(s, ids.size());
   const Location location = locationOf(s);
-  const bool sized =
-      u.number("length") || u.number("width") || u.number("area") || !u.word("size_word").empty();
+  const bool sized = u.number("length") || u.number("width") || u.number("area") ||
+                     u.number("doors") || !u.word("size_word").empty();
   if (location.count() == 0 && !location.row.distance && !sized) {
     s.fail(IssueKind::kMeaningless, "nothing_said");
   }
@@ -193,6 +207,7 @@ void located(Statement& s) {
     }
     record(s, location, id);
     takeSizeWord(s, id);
+    if (u.number("doors")) takeDoors(s, id);
     if (sized) takeSizes(s, id);
   }
   s.setSubjects(ids);

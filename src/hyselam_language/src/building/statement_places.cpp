@@ -222,10 +222,14 @@ void buildingCount(Statement& s) {
   takeCount(s, "count", "other_count", &s.building().place_count);
 }
 
+void takeDoors(Statement& s, Id id) {
+  takeCount(s, "doors", "other_doors", &s.at(id).doors);
+}
+
 void doors(Statement& s) {
   if (s.isDenial()) refuseDenial(s);
   const Id id = placeOf(s, "place");
-  takeCount(s, "doors", "other_doors", &s.at(id).doors);
+  takeDoors(s, id);
   const std::vector<Id> to = placesOf(s, "to");
   if (static_cast<int>(to.size()) > *s.at(id).doors) {
     s.fail(IssueKind::kMeaningless, "more_doors",

@@ -22,7 +22,7 @@ UtteranceKind kindOf(const GrammarNode& value) {
 
 int costOf(const GrammarNode& value) {
   const double cost = value.number();
-  if (!(cost >= 0.0 && cost <= 100.0)) value.fail("must be 0 .. 100");
+  if (!(cost >= -10.0 && cost <= 100.0)) value.fail("must be -10 .. 100");
   return static_cast<int>(cost);
 }
 
