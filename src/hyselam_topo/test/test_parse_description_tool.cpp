@@ -45,6 +45,28 @@ TEST(ParseDescriptionTool, WritesTheGraph) {
   expectParts(hyselam::testing::fileBytes(dir / "h.json"), {"\"code\": \"too_long\""});
 }
 
+TEST(ParseDescriptionTool, TellsRanksDenialsAndWhatMustBeAsked) {
+  const hyselam::testing::TemporaryDirectory dir;
+  const std::string out = " --out " + (dir / "h.xml"), json = " --json " + (dir / "h.json");
+  const std::string text =
+      "'You are in the hall. The second place on the left of the hall is room A, 10 meters away. "
+      "Room A is not next to room B. Room A has 2 doors. Room B is one floor up. Room B is large. "
+      "Room A is next to Atlantis.'";
+  ASSERT_EQ(status(text + out + json), 0);
+  const std::vector<std::string> graph{
+      "at hall",        "hall left room A#2@10", "not room A next_to room B",
+      "room A doors 2", "room B floor 1",        "room B large"};
+  EXPECT_EQ(testing::outline(loadDescription(dir / "h.xml")), graph);
+  expectParts(
+      hyselam::testing::fileBytes(dir / "h.json"),
+      {"\"rank\": 2", "\"distance\": 10.0", "\"denied\": true", "\"doors\": 2", "\"floor\": 1",
+       "\"size_word\": \"large\"", "\"asks\"", "\"strange name\"", "\"name\": \"Atlantis\""});
+  ASSERT_EQ(status(text + out + " --accept-name Atlantis"), 0);
+  EXPECT_EQ(loadDescription(dir / "h.xml").places.size(), 4u);
+  ASSERT_EQ(status(text + out + " --ask-strange-names false"), 0);
+  EXPECT_EQ(loadDescription(dir / "h.xml").places.size(), 4u);
+}
+
 TEST(ParseDescriptionTool, UnusableInputEndsWithStatusTwo) {
   const hyselam::testing::TemporaryDirectory dir;
   const std::string out = " --out " + (dir / "h.xml");

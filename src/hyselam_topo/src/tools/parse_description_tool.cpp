@@ -52,14 +52,18 @@ json maybe(const std::optional<T>& value) {
 json placesOf(const DescribedBuilding& building) {
   json all = json::array();
   for (const auto& place : building.places) {
-    all.push_back({{"id", place.id},
-                   {"name", place.name},
-                   {"aliases", place.aliases},
-                   {"kind", place.kind ? json(toString(*place.kind)) : json(nullptr)},
-                   {"length", maybe(place.length)},
-                   {"width", maybe(place.width)},
-                   {"area", maybe(place.area)},
-                   {"parts", maybe(place.parts)}});
+    all.push_back(
+        {{"id", place.id},
+         {"name", place.name},
+         {"aliases", place.aliases},
+         {"kind", place.kind ? json(toString(*place.kind)) : json(nullptr)},
+         {"length", maybe(place.length)},
+         {"width", maybe(place.width)},
+         {"area", maybe(place.area)},
+         {"parts", maybe(place.parts)},
+         {"size_word", place.size_word ? json(toString(*place.size_word)) : json(nullptr)},
+         {"doors", maybe(place.doors)},
+         {"floor", maybe(place.floor)}});
   }
   return all;
 }
@@ -69,10 +73,12 @@ json slotOf(const Slot& slot) {
   if (!slot.names.empty()) {
     value["names"] = json::array();
     for (const auto& name : slot.names) {
-      if (name.reference.empty()) {
-        value["names"].push_back(name.text);
-      } else {
+      if (!name.reference.empty()) {
         value["names"].push_back({{"reference", name.reference}});
+      } else if (name.speaker) {
+        value["names"].push_back({{"speaker", name.text}});
+      } else {
+        value["names"].push_back(name.text);
       }
     }
   }
@@ -109,15 +115,25 @@ json notUnderstood(const Utterance& utterance) {
 }
 
 json issueOf(const DescriptionIssue& issue) {
-  return {{"text", issue.text},
-          {"range", rangeOf(issue.range)},
-          {"kind", toString(issue.kind)},
-          {"reason", issue.reason}};
+  json told = {{"text", issue.text},
+               {"range", rangeOf(issue.range)},
+               {"kind", toString(issue.kind)},
+               {"reason", issue.reason}};
+  if (!issue.name.empty()) told["name"] = issue.name;
+  return told;
+}
+
+/// Questions to the person rather than faults.
+bool isAsked(const DescriptionIssue& issue) {
+  return issue.kind == hyselam_topo::IssueKind::kAsk ||
+         issue.kind == hyselam_topo::IssueKind::kStrangeName;
 }
 
 struct Options {
   std::string text, out, language = "auto";
-  std::vector<std::string> grammars;
+  std::vector<std::string> grammars, accepted;
+  std::string speaker;
+  hyselam_topo::DescriptionParams params;
 };
 
 json resultOf(const ParsedText& parsed, const DescribedBuilding& building,
@@ -130,12 +146,16 @@ json resultOf(const ParsedText& parsed, const DescribedBuilding& building,
     result["connections"].push_back({{"from", each.from},
                                      {"to", each.to},
                                      {"side", toString(each.side)},
-                                     {"order", each.order}});
+                                     {"order", each.order},
+                                     {"rank", maybe(each.rank)},
+                                     {"distance", maybe(each.distance)}});
   }
   result["relations"] = json::array();
   for (const auto& each : building.relations) {
     json relation = {{"kind", toString(each.kind)}, {"a", each.a}, {"b", each.b}};
     if (each.c != 0) relation["c"] = each.c;
+    if (each.side != hyselam_topo::Side::kUnknown) relation["side"] = toString(each.side);
+    if (each.denied) relation["denied"] = true;
     result["relations"].push_back(relation);
   }
   result["robot_place"] = maybe(building.robot_place);
@@ -150,7 +170,11 @@ json resultOf(const ParsedText& parsed, const DescribedBuilding& building,
     }
   }
   result["issues"] = json::array();
-  for (const DescriptionIssue& issue : issues) result["issues"].push_back(issueOf(issue));
+  result["asks"] = json::array();
+  for (const DescriptionIssue& issue : issues) {
+    result["issues"].push_back(issueOf(issue));
+    if (isAsked(issue)) result["asks"].push_back(issueOf(issue));
+  }
   result["microseconds"] = microseconds;
   return result;
 }
@@ -166,7 +190,9 @@ json run(const Options& o) {
   options.max_bytes = kMaxBytes;
   const auto begin = Clock::now();
   const ParsedText parsed = parser.parse(input.text, options);
-  hyselam_topo::DescriptionBuilder builder(parser);
+  hyselam_topo::DescriptionBuilder builder(parser, o.params);
+  builder.setSpeaker(o.speaker);
+  for (const std::string& name : o.accepted) builder.acceptName(name);
   const std::vector<DescriptionIssue> issues = builder.add(parsed);
   const double microseconds =
       std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
@@ -182,8 +208,11 @@ json run(const Options& o) {
   for (const Utterance& utterance : parsed.utterances)
     if (!utterance.understood())
       std::cout << "not understood: " << utterance.text << " (" << utterance.reason << ")\n";
-  for (const DescriptionIssue& issue : issues)
-    std::cout << "not taken down: " << issue.text << " (" << issue.reason << ")\n";
+  for (const DescriptionIssue& issue : issues) {
+    const bool notice = issue.kind == hyselam_topo::IssueKind::kNotice;
+    std::cout << (notice ? "noted: " : "not taken down: ") << issue.text << " (" << issue.reason
+              << ")\n";
+  }
   return resultOf(parsed, building, issues, microseconds);
 }
 
@@ -205,5 +234,10 @@ int main(int argc, char** argv) {
   app.add_option("--grammar", options.grammars,
                  "grammar files (YAML) of one language instead of the shipped ones; later ones add "
                  "to the first");
+  app.add_option("--ask-strange-names", options.params.ask_strange_names,
+                 "do not take down what names no kind of place until it is accepted")
+      ->capture_default_str();
+  app.add_option("--accept-name", options.accepted, "names of places, whatever they look like");
+  app.add_option("--speaker", options.speaker, "who speaks: 'my office' is theirs");
   return hyselam::runTool(argc, argv, app, [&] { return run(options); });
 }
