@@ -37,7 +37,7 @@ class Capture {
       case EdgeKind::kCount:
       case EdgeKind::kNumber:
         for (const FoundNumber& number : words_.numbersAt(step.from)) {
-          if (number.end == step.to) slotOf(edge, step.from, step.to).number = number.value;
+          if (number.end == step.to) setNumber(edge, step, number.value);
         }
         break;
       case EdgeKind::kQuantity:
@@ -53,6 +53,9 @@ class Capture {
         break;
     }
   }
+
+  /// "On the left, on the right": a slot that gets two values.
+  bool contradicts() const { return contradicts_; }
 
   /// "6 by 8 metres": both are metres. False if a unit is needed and missing.
   bool resolveUnits() {
@@ -101,6 +104,12 @@ class Capture {
     return slot;
   }
 
+  void setNumber(const Edge& edge, const Step& step, double value) {
+    Slot& slot = slotOf(edge, step.from, step.to);
+    contradicts_ = contradicts_ || (slot.number && *slot.number != value);
+    slot.number = value;
+  }
+
   void takeSpelling(const Step& step) {
     for (const auto& match : words_.matches[step.from]) {
       if (match.word == step.edge->a && match.cost >= kSlipCost) {
@@ -128,6 +137,7 @@ class Capture {
     const std::string& value = words_.grammar.values[static_cast<std::size_t>(edge.b)];
     Slot& slot = slotOf(edge, begins_[edge.a], step.to);
     if (words_.grammar.nameType(slot.type) == nullptr) {
+      contradicts_ = contradicts_ || (!slot.word.empty() && slot.word != value);
       slot.word = value;
       return;
     }
@@ -144,6 +154,7 @@ class Capture {
   Clause& clause_;
   std::map<int, std::size_t> begins_;  ///< of slots of word classes: their first token
   std::vector<OpenMeasure> open_;
+  bool contradicts_ = false;
 };
 
 }  // namespace
@@ -154,7 +165,7 @@ bool capture(const Automaton& pattern, const std::vector<Step>& path, SentenceWo
   for (const Step& step : path) {
     if (step.edge != nullptr) captured.take(step);
   }
-  return captured.resolveUnits();
+  return !captured.contradicts() && captured.resolveUnits();
 }
 
 }  // namespace language

@@ -66,6 +66,10 @@ void readIntent(const std::string& name, const GrammarNode& node, const PatternC
       intent.cost = costOf(value);
     } else if (key == "only_expected") {
       intent.only_expected = value.truth();
+    } else if (key == "only_correction") {
+      intent.only_correction = value.truth();
+    } else if (key == "as") {
+      intent.as = value.text();
     } else if (key == "corrects_next") {
       intent.corrects_next = value.truth();
     } else if (key == "examples") {

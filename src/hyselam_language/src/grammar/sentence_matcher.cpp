@@ -117,6 +117,7 @@ class SentenceReader {
   }
 
   bool isPossible(const IntentInfo& intent, const Entry& entry) const {
+    if (intent.only_correction && !entry.correction) return false;
     if (intent.only_expected && expected_.count(intent.name) == 0) return false;
     const bool asks =
         intent.kind == UtteranceKind::kQuestion || intent.kind == UtteranceKind::kCommand;
@@ -150,7 +151,7 @@ class SentenceReader {
   Utterance utteranceOf(const Clause& clause, TextRange range) const {
     Utterance utterance;
     utterance.kind = clause.intent->kind;
-    utterance.intent = clause.intent->name;
+    utterance.intent = clause.intent->as.empty() ? clause.intent->name : clause.intent->as;
     utterance.slots = clause.slots;
     utterance.correction = clause.correction;
     utterance.spelling = clause.spelling;

@@ -86,7 +86,7 @@ class Shortening {
     for (const IntentInfo& intent : words_.grammar.intents) {
       const bool asks =
           intent.kind == UtteranceKind::kQuestion || intent.kind == UtteranceKind::kCommand;
-      if (!intent.refuse.empty() || intent.only_expected || intent.kind == UtteranceKind::kAnswer ||
+      if (!intent.refuse.empty() || intent.only_expected || intent.only_correction || intent.kind == UtteranceKind::kAnswer ||
           (words_.sentence.is_question && !asks)) {
         continue;
       }
