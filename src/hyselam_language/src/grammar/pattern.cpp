@@ -1,6 +1,7 @@
 #include "pattern.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -29,6 +30,14 @@ class Compiler {
     if (reachableByNothing(0, end)) throw PatternError("it matches nothing at all");
     findFirstWords();
     findNeededWords();
+    return minimal(automaton_, kMaxStates);
+  }
+
+  /// A part of patterns, small and without first and needed words; nothing if it has a list, whose
+  /// separators must be known in the whole.
+  std::optional<Automaton> compilePart(const std::string& part, int depth) {
+    automaton_.accept = whole(part, 0, depth);
+    if (!separators_.empty()) return std::nullopt;
     return minimal(automaton_, kMaxStates);
   }
 
@@ -132,7 +141,42 @@ class Compiler {
     return state;
   }
 
+  /// What many patterns have in common is compiled once: the end of a copy of it, -1 if it cannot be
+  /// copied.
+  int copyOfPart(const std::string& part, int state, int depth) {
+    if (part == part_) return -1;
+    auto known = context_.parts.find(part);
+    if (known == context_.parts.end()) {
+      if (depth > kMaxDepth) throw PatternError("macros contain one another");
+      Compiler compiler(context_, grammar_);
+      compiler.part_ = part;
+      known = context_.parts.emplace(part, compiler.compilePart(part, depth + 1)).first;
+    }
+    return known->second ? copyOf(*known->second, state) : -1;
+  }
+
+  int copyOf(const Automaton& part, int state) {
+    const int first = static_cast<int>(automaton_.states.size());
+    for (std::size_t i = 0; i < part.states.size(); ++i) newState();
+    std::vector<int> slots;
+    slots.reserve(part.slots.size());
+    for (const SlotType& slot : part.slots) slots.push_back(slotNumber(slot));
+    for (std::size_t i = 0; i < part.states.size(); ++i) {
+      for (Edge e : part.states[i]) {
+        e.to += first;
+        const bool of_slot = e.kind != EdgeKind::kSkip && e.kind != EdgeKind::kWord &&
+                             e.kind != EdgeKind::kComma;
+        if (of_slot) e.a = slots[static_cast<std::size_t>(e.a)];
+        edge(first + static_cast<int>(i), e);
+      }
+    }
+    edge(state, {EdgeKind::kSkip, first, -1, -1});
+    return first + part.accept;
+  }
+
   int reference(const std::string& name, int state, int depth) {
+    const int copy = copyOfPart("<" + name + ">", state, depth);
+    if (copy >= 0) return copy;
     const auto macro = context_.macros.find(name);
     if (macro != context_.macros.end()) return anyOf(macro->second, state, depth + 1);
     const auto word_class = context_.classes.find(name);
@@ -245,6 +289,8 @@ class Compiler {
     if (word_class == context_.classes.end()) {
       throw PatternError("there is no type '" + type.type + "' of slots");
     }
+    const int copy = copyOfPart("{" + text + "}", state, depth);
+    if (copy >= 0) return copy;
     return entries(word_class->second, slotNumber(type), state, depth);
   }
 
@@ -343,6 +389,7 @@ class Compiler {
   const PatternContext& context_;
   CompiledGrammar* grammar_;
   Automaton automaton_;
+  std::string part_;  ///< what this compiles; "": a whole pattern
   std::vector<std::pair<std::size_t, std::size_t>> separators_;  ///< states [first, second)
 };
 

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct PatternContext {
   std::vector<std::string> list_separators;
   /// Patterns for references of a name type: type -> word ("here") -> alternatives.
   std::map<std::string, std::map<std::string, std::vector<std::string>>> references;
+  /// Macros and word classes that were compiled already; nothing for what must be compiled in place.
+  /// Holds for as long as nothing above changes.
+  mutable std::map<std::string, std::optional<Automaton>> parts;
 };
 
 /// Why a pattern cannot be compiled; grammar files add their name, line and key.
