@@ -9,7 +9,8 @@
 namespace hyselam_topo {
 namespace language {
 
-/// Puts slots and misspelt keywords into the clause. False if a unit is needed and missing.
+/// Puts slots and misspelt keywords into the clause. False if a unit is needed and missing, or if a
+/// slot gets two values ("on the left, on the right").
 bool capture(const Automaton& pattern, const std::vector<PatternRun::Step>& path,
              SentenceWords* words, Clause* clause);
 

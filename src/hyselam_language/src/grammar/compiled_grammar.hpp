@@ -111,6 +111,10 @@ struct CompiledGrammar {
   std::vector<Phrase> fillers_before, fillers_after, corrections, clause_separators;
   std::set<int> fillers_inner;
   std::set<std::string> abbreviations;
+  /// Words that mean something else in small letters, as they are written: "IT".
+  std::set<std::string> acronyms;
+  /// Ends of nouns of places that may be a verb: "'s" in "the library's on the left" is "is".
+  std::map<std::string, std::string> contracted_verbs;
   std::map<std::string, Words> contractions;
   std::map<std::string, std::pair<double, bool>> number_words;  ///< value, is a multiple of ten
   std::set<std::string> number_joiners;

@@ -68,6 +68,11 @@ class Reader {
         {"clause_separators", phrases(&g.clause_separators)},
         {"list_separators", [&](const GrammarNode& node) { readListSeparators(node); }},
         {"abbreviations", [&](const GrammarNode& node) { readAbbreviations(node); }},
+        {"acronyms",
+         [&](const GrammarNode& node) {
+           for (const std::string& word : node.texts()) g.acronyms.insert(word);
+         }},
+        {"contracted_verbs", texts(&g.contracted_verbs)},
         {"contractions", [&](const GrammarNode& node) { readContractions(node); }},
         {"known_words", [&](const GrammarNode& node) { addFolded(node, &g.known_words); }},
         {"numbers", [&](const GrammarNode& node) { readNumbers(node, &g); }},

@@ -263,7 +263,8 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     if (type.joiners.count(token.folded) != 0) may_end = false;
     if (may_end) {
       const std::string wrong = whatIsWrong(begin, k + 1, indefinite, type);
-      if (wrong.empty()) {
+      // "my room": whose it is tells which.
+      if (wrong.empty() || (speaker && wrong == "no_name")) {
         found.push_back(
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1), {}});
         found.back().name.speaker = speaker;
@@ -333,8 +334,8 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   const Token& first = tokens_[begin];
   const Token& last = tokens_[end - 1];
   // "o da Teresa" is a place of hers, though Teresa is none.
-  const bool has_noun =
-      hasNoun(begin, end, type) || (end > begin + 1 && isElliptic(begin, end, type));
+  const bool has_noun = hasNoun(begin, end, type) || endsWithAny(tokens_[end - 1].lower, type) ||
+                        (end > begin + 1 && isElliptic(begin, end, type));
   const bool quoted = last.kind == TokenKind::kQuoted;
   if (end - begin > 1) {
     // A quotation may follow "room", nothing else.
@@ -366,7 +367,10 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
     if (forbidden != type.forbidden.end() && !has_noun) return forbidden->second;
     only_generic = only_generic && type.generic.count(tokens_[k].folded) != 0;
   }
-  if (only_generic) return "no_name";
+  // "clean room", though "clean" and "room" tell nothing alone.
+  std::string phrase;
+  for (std::size_t k = begin; k < end; ++k) phrase += (k > begin ? " " : "") + tokens_[k].folded;
+  if (only_generic && (end - begin < 2 || type.nouns.count(phrase) == 0)) return "no_name";
   if (mayBeMisspelt(begin, type) || mayBeMisspelt(end - 1, type)) return "misspelt";
   if (!has_noun && (type.needs_noun || (indefinite && type.indefinite_needs_noun))) {
     return "not_a_known_kind";

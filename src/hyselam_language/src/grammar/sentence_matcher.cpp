@@ -13,6 +13,7 @@
 #include "refusal.hpp"
 #include "sentence_words.hpp"
 #include "shorter_sentence.hpp"
+#include "token_meanings.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -244,7 +245,8 @@ void propose(const SentenceWords& words, Utterance* refused) {
 std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
                                     const Sentence& sentence,
                                     const std::set<std::string>& expected) {
-  const std::vector<Token> tokens = tokenize(text, sentence.range, grammar.tokenRules());
+  const std::vector<Token> tokens =
+      withMeanings(tokenize(text, sentence.range, grammar.tokenRules()), grammar);
   const auto read = [&](std::vector<Token> of, bool run_on) {
     return SentenceReader(grammar, text, sentence, std::move(of), expected, run_on).read();
   };

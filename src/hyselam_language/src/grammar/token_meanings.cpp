@@ -1,0 +1,73 @@
+#include "token_meanings.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hyselam_topo {
+namespace language {
+namespace {
+
+bool hasSmallLetter(const Token& token) {
+  return token.kind == TokenKind::kWord &&
+         std::any_of(token.text.begin(), token.text.end(),
+                     [](char c) { return c >= 'a' && c <= 'z'; });
+}
+
+void markAcronyms(const CompiledGrammar& grammar, std::vector<Token>* tokens) {
+  // In a sentence of capitals, they tell nothing.
+  if (std::none_of(tokens->begin(), tokens->end(), hasSmallLetter)) return;
+  for (Token& token : *tokens) {
+    if (token.kind != TokenKind::kWord || grammar.acronyms.count(token.text) == 0) continue;
+    token.lower += ".";
+    token.folded += ".";
+  }
+}
+
+bool isNoun(const std::string& word, const CompiledGrammar& grammar) {
+  return std::any_of(grammar.name_types.begin(), grammar.name_types.end(),
+                     [&](const NameType& type) { return type.nouns.count(word) != 0; });
+}
+
+/// Whether a name of a place may go on with this token.
+bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar) {
+  if (at >= tokens.size() || tokens[at].kind == TokenKind::kComma) return true;
+  const Token& token = tokens[at];
+  if (token.kind != TokenKind::kWord) return token.kind == TokenKind::kQuoted;
+  const NameType* type = grammar.nameType("place");
+  if (type == nullptr) return true;
+  const auto stops = [&](const Token& each) {
+    return type->stop.count(each.lower) != 0 || type->isArticle(each.folded);
+  };
+  if (stops(token)) return false;
+  // "The library's huge", but "the library's main entrance".
+  const bool last = at + 1 == tokens.size() || tokens[at + 1].kind == TokenKind::kComma ||
+                    stops(tokens[at + 1]);
+  return type->generic.count(token.folded) == 0 || isNoun(token.folded, grammar) || !last;
+}
+
+}  // namespace
+
+std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar& grammar) {
+  markAcronyms(grammar, &tokens);
+  std::vector<Token> all;
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    const Token& token = tokens[at];
+    all.push_back(token);
+    if (token.kind != TokenKind::kWord || at + 1 == tokens.size()) continue;
+    for (const auto& [end, verb] : grammar.contracted_verbs) {
+      if (token.lower.size() <= end.size() || token.lower.size() != token.text.size()) continue;
+      const std::size_t length = token.lower.size() - end.size();
+      if (token.lower.compare(length, end.size(), end) != 0) continue;
+      Token noun = wordToken(token.text.substr(0, length),
+                             {token.range.begin, token.range.begin + length});
+      if (!isNoun(noun.folded, grammar) || mayGoOn(tokens, at + 1, grammar)) continue;
+      all.back() = std::move(noun);
+      all.push_back(wordToken(verb, {token.range.begin + length, token.range.end}));
+      break;
+    }
+  }
+  return all;
+}
+
+}  // namespace language
+}  // namespace hyselam_topo
