@@ -110,6 +110,16 @@ TEST(TopoParser, RangesNameAllBetween) {
             "neighbours places=room 101,room 102,room 103,room 104 side=left");
 }
 
+TEST(PlaceNames, AdjectivesTellPlacesApart) {
+  const PlaceNames names(parser().grammars());
+  const auto same = [&](const std::string& a, const std::string& b) {
+    return compare(names.key(a), names.key(b)) == SameName::kYes;
+  };
+  EXPECT_FALSE(same("dirty utility", "clean utility"));
+  EXPECT_FALSE(same("small meeting room", "large meeting room"));
+  EXPECT_TRUE(same("the meeting room", "meeting room"));
+}
+
 TEST(Grammar, FurtherFilesAddToTheFirst) {
   const std::string more =
       "format: hyselam_grammar\nversion: 1\nlanguage: xx\nclasses: {colour: {green: [green]}}\n"

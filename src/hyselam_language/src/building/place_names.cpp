@@ -88,11 +88,12 @@ NameKey PlaceNames::key(const std::string& name) const {
     const bool glued = digit != std::string::npos && digit > 0;
     const std::string head = glued ? word.substr(0, digit) : word;
     std::string title;
-    bool generic = false;
+    bool generic = false, noun = false;
     for (const NameType* type : types) {
       const auto found = type->titles.find(head);
       if (found != type->titles.end() && title.empty()) title = found->second;
       generic = generic || type->generic.count(head) != 0;
+      noun = noun || type->nouns.count(head) != 0;
     }
     if (title.empty() && (!generic || glued)) break;
     if (!glued && from + 1 == words.size()) break;
@@ -103,7 +104,8 @@ NameKey PlaceNames::key(const std::string& name) const {
       const auto& numbers = grammar.compiled().number_words;
       is_code = is_code || numbers.count(rest) != 0;
     }
-    if (!generic && !is_code) break;
+    // "The room of Ana" is hers; but the small meeting room is not the large one.
+    if (!(generic && noun) && !is_code) break;
     if (!title.empty()) key.title = title;
     key.core = rest;
     if (glued) {
