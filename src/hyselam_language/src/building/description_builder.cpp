@@ -159,6 +159,15 @@ std::vector<DescriptionIssue> DescriptionBuilder::replaceLast(const Utterance& u
                     compare(names_.key(each->text), names_.key(instead[0].text)) != SameName::kNo;
     if (is) meant.push_back(each);
   }
+  // "Sorry, Jack's office" is instead of an office.
+  const auto isOther = [&](const SaidName* each) {
+    return names_.headOf(each->text) != names_.headOf(name[0].text);
+  };
+  if (meant.size() > 1 && name.size() == 1) {
+    const auto same = std::stable_partition(meant.begin(), meant.end(),
+                                            [&](const SaidName* each) { return !isOther(each); });
+    if (same - meant.begin() == 1) meant.resize(1);
+  }
   if (name.size() != 1 || meant.empty()) {
     const std::string what = instead.empty() ? "" : instead[0].text;
     return refuse(IssueKind::kNoContext, issueText(grammar, "unknown_place", {{"place", what}}));

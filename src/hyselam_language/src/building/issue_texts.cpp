@@ -11,7 +11,8 @@ const std::map<std::string, std::string>& english() {
       {"no_side", "no side was told before"},
       {"no_robot", "where the robot is was not told: say 'you are in ...'"},
       {"elsewhere",
-       "sides are told as the robot sees them, and it is in '{robot}', not in '{from}'"},
+       "sides are told as the robot sees them, and it is in '{robot}', not in '{from}'; say for "
+       "example: it is next to '{from}'"},
       {"itself", "'{place}' lies beside itself"},
       {"twice", "a place is named twice"},
       {"other_side", "'{place}' was told to be {known}, not {side}"},
@@ -50,7 +51,9 @@ const std::map<std::string, std::string>& english() {
       {"other_size_word", "'{place}' was told to be of another size"},
       {"more_doors", "{count} doors do not lead to {named} places"},
       {"unknown_place", "'{place}' was not told of"},
-      {"nothing_corrected", "nothing was told that this corrects: say it without 'no' to add it"},
+      {"nothing_corrected",
+       "nothing was told that this corrects: say it without 'no' to "
+       "add it, or 'I mean B, not A'"},
       {"taken_as_new", "nothing was told that this corrects: taken as new"},
       {"nothing_to_undo", "nothing was told that can be taken back"},
       {"replace_what", "which one shall '{name}' replace: {names}?"},

@@ -69,6 +69,15 @@ std::vector<Id> referred(Statement& s, const SaidName& name) {
   s.fail(IssueKind::kNoContext, "it_what", {{"name", name.text}});
 }
 
+/// "The meeting rooms", where two are known and none is called so; otherwise nothing.
+std::vector<Id> severalOf(Statement& s, const SaidName& name) {
+  const PlaceNames& names = s.listener().names;
+  const std::string full = fullName(s, name), one = names.singular(full);
+  if (one == full || !placesOf(full, s.state(), names).empty()) return {};
+  const std::vector<Id> ids = placesOf(one, s.state(), names);
+  return ids.size() > 1 ? ids : std::vector<Id>{};
+}
+
 }  // namespace
 
 std::vector<Id> placesOf(const std::string& name, const DescriptionState& state,
@@ -172,8 +181,8 @@ Id placeOf(Statement& s, const std::string& slot) {
 std::vector<Id> placesOf(Statement& s, const std::string& slot) {
   std::vector<Id> all;
   for (const SaidName& name : s.said().names(slot)) {
-    const std::vector<Id> ids =
-        name.reference.empty() ? std::vector<Id>{placeOf(s, name)} : referred(s, name);
+    std::vector<Id> ids = name.reference.empty() ? severalOf(s, name) : referred(s, name);
+    if (ids.empty()) ids = {placeOf(s, name)};
     for (const Id id : ids) {
       if (std::find(all.begin(), all.end(), id) == all.end()) all.push_back(id);
     }

@@ -33,6 +33,24 @@ void denySide(Statement& s, Id from, Side side, const std::vector<Id>& ids) {
   }
 }
 
+/// "No, the kitchen leads to the pantry": instead of what the last statement joined with it.
+void forgetLastJoined(Statement& s, Id place) {
+  const DescribedBuilding* before = s.listener().before_last;
+  if (before == nullptr) return;
+  std::vector<DescribedConnection> last;
+  for (const DescribedConnection& each : s.building().connections) {
+    const bool of_place = each.from == place || each.to == place;
+    const bool plain = each.side == Side::kUnknown && !each.rank && !each.distance;
+    if (of_place && plain && findConnection(*before, each.from, each.to) == nullptr) {
+      last.push_back(each);
+    }
+  }
+  for (const DescribedConnection& each : last) {
+    removeConnection(each, &s.building());
+    s.setCorrected();
+  }
+}
+
 }  // namespace
 
 void checkCount(Statement& s, std::size_t named) {
@@ -52,7 +70,7 @@ Id observer(Statement& s) {
   const Id from = placeOf(s, "from");
   if (robot && from != *robot) {
     s.fail(IssueKind::kNoContext, "elsewhere",
-           {{"robot", s.nameOf(*robot)}, {"from", s.nameOf(from)}});
+           {{"robot", s.nameOf(*robot)}, {"from", s.nameOf(from)}, {"from", s.nameOf(from)}});
   }
   return from;
 }
@@ -108,6 +126,7 @@ void neighbours(Statement& s) {
 void contains(Statement& s) {
   const Id inside = placeOf(s, "inside");
   const std::vector<Id> ids = placesOf(s, "places");
+  if (s.isCorrection()) forgetLastJoined(s, inside);
   if (s.isDenial()) {
     denySide(s, inside, Side::kUnknown, ids);
   } else {
@@ -119,6 +138,7 @@ void contains(Statement& s) {
 void joined(Statement& s) {
   const Id a = placeOf(s, "a");
   const std::vector<Id> to = placesOf(s, "b");
+  if (s.isCorrection()) forgetLastJoined(s, a);
   std::vector<Id> subjects{a};
   for (const Id b : to) {
     if (s.isDenial()) {
@@ -126,7 +146,8 @@ void joined(Statement& s) {
     } else {
       recordConnection(s, Placement(a, b));
     }
-    subjects.push_back(b);
+    // "It has a door to the terrace": "it" stays what it was.
+    if (s.said().names("a").front().reference.empty()) subjects.push_back(b);
   }
   s.setSubjects(subjects);
 }

@@ -8,10 +8,12 @@
 namespace hyselam_topo {
 namespace statements {
 
-// Of one place (statement_places.cpp).
-void robotIn(Statement& s);
+// What places are called (statement_names.cpp).
 void alias(Statement& s);
 void owner(Statement& s);
+
+// Of one place (statement_places.cpp).
+void robotIn(Statement& s);
 void kind(Statement& s);
 void size(Statement& s);
 void sizeWord(Statement& s);
@@ -40,6 +42,7 @@ void takeSizes(Statement& s, Id id);
 void takeSizeWord(Statement& s, Id id);
 /// How many doors it has; the statement must tell.
 void takeDoors(Statement& s, Id id);
+/// A further name of a place, unless it is one of another place.
 void addAlias(Statement& s, Id id, const SaidName& name);
 /// Fails unless as many were named as announced.
 void checkCount(Statement& s, std::size_t named);

@@ -7,7 +7,6 @@
 #include "edit_description.hpp"
 #include "record_facts.hpp"
 #include "said_places.hpp"
-#include "sentence_writer.hpp"
 #include "statement_kinds.hpp"
 
 namespace hyselam_topo {
@@ -55,36 +54,6 @@ void robotNotIn(Statement& s) {
   s.setSubjects({id});
 }
 
-/// "Room 3 is not John's office."
-void notAlias(Statement& s) {
-  const Id id = knownPlacesOf(s, "place").front();
-  auto& aliases = s.at(id).aliases;
-  const PlaceNames& names = s.listener().names;
-  const std::size_t before = aliases.size();
-  for (const SaidName& name : s.said().names("aliases")) {
-    const NameKey key = names.key(fullName(s, name));
-    const auto isMeant = [&](const std::string& each) {
-      return compare(names.key(each), key) == SameName::kYes;
-    };
-    aliases.erase(std::remove_if(aliases.begin(), aliases.end(), isMeant), aliases.end());
-  }
-  if (aliases.size() == before) s.fail(IssueKind::kNoContext, "not_told");
-  s.setCorrected();
-  s.setSubjects({id});
-}
-
-/// "The next one is the lab": behind the place that the last statement was about, in its row.
-void nextIs(Statement& s) {
-  if (s.context().subjects.empty()) {
-    s.fail(IssueKind::kNoContext, "it_nothing", {{"name", s.said().names("place")[0].text}});
-  }
-  const Id last = s.context().subjects.back();
-  const Id id = placeOf(s, "aliases");
-  const Id robot = s.building().robot_place.value_or(0);
-  recordNext(s, id, last, robot == id || robot == last ? 0 : robot);
-  s.setSubjects({id});
-}
-
 }  // namespace
 
 void refuseDenial(Statement& s) {
@@ -99,56 +68,6 @@ void robotIn(Statement& s) {
   s.setCorrected();
   s.setSubjects({id});
   for (const SaidName& name : s.said().names("aliases")) addAlias(s, id, name);
-}
-
-void addAlias(Statement& s, Id id, const SaidName& name) {
-  if (!name.reference.empty()) s.fail(IssueKind::kMeaningless, "no_name", {{"name", name.text}});
-  const std::string full = fullName(s, name);
-  const std::vector<Id> ids = placesOf(full, s.state(), s.listener().names);
-  if (std::find(ids.begin(), ids.end(), id) != ids.end()) return;
-  if (!ids.empty()) {
-    s.fail(IssueKind::kContradiction, "other_place", {{"name", full}, {"place", s.nameOf(id)}});
-  }
-  s.at(id).aliases.push_back(full);
-  if (!s.at(id).kind) s.at(id).kind = s.listener().names.kindOf(full);
-}
-
-void alias(Statement& s) {
-  const auto said = s.said().names("place");
-  const auto aliases = s.said().names("aliases");
-  if (said.size() == 1 && said[0].reference == "next") return nextIs(s);
-  if (s.isDenial()) return notAlias(s);
-  const auto known = [&](const SaidName& name) {
-    return placesOf(fullName(s, name), s.state(), s.listener().names);
-  };
-  // "The fish tank is also called C12", where only C12 is known.
-  const bool plain = said.size() == 1 && aliases.size() == 1 && said[0].reference.empty() &&
-                     aliases[0].reference.empty();
-  if (plain && known(said[0]).empty() && known(aliases[0]).size() == 1) {
-    const Id id = known(aliases[0]).front();
-    s.at(id).aliases.push_back(fullName(s, said[0]));
-    return s.setSubjects({id});
-  }
-  const Id id = placeOf(s, "place");
-  for (const SaidName& name : aliases) addAlias(s, id, name);
-  s.setSubjects({id});
-}
-
-void owner(Statement& s) {
-  const Id id = placeOf(s, "place");
-  const Grammar& grammar = s.listener().grammar;
-  const PlaceNames& names = s.listener().names;
-  // "Tom's lab" of a lab, "Tom's office" of a room.
-  const std::string name = s.nameOf(id);
-  const std::string kind = names.isPlainRoom(name) ? grammar.say("office") : names.headOf(name);
-  for (SaidName each : s.said().names("owners")) {
-    each.text =
-        SentenceWriter(grammar, false)
-            .phrase("owned", {{"owner", each.text, false, true}, {"kind", kind, false, true}});
-    each.reference.clear();
-    addAlias(s, id, each);
-  }
-  s.setSubjects({id});
 }
 
 void kind(Statement& s) {

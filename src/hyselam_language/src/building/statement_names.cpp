@@ -1,0 +1,122 @@
+// What places are called: names and aliases, owners, "the next one is".
+#include <algorithm>
+#include <iterator>
+
+#include "record_facts.hpp"
+#include "said_places.hpp"
+#include "sentence_writer.hpp"
+#include "statement_kinds.hpp"
+
+namespace hyselam_topo {
+namespace statements {
+namespace {
+
+std::vector<Id> knownAs(Statement& s, const SaidName& name) {
+  if (!name.reference.empty()) return {};
+  return placesOf(fullName(s, name), s.state(), s.listener().names);
+}
+
+/// "No, it is Jack's office": instead of the one alias, or the one told last.
+void replaceAlias(Statement& s, Id id) {
+  std::vector<std::string>& aliases = s.at(id).aliases;
+  const DescribedBuilding* before = s.listener().before_last;
+  const DescribedPlace* then = before == nullptr ? nullptr : before->findPlace(id);
+  std::vector<std::string> last;
+  std::copy_if(aliases.begin(), aliases.end(), std::back_inserter(last), [&](const auto& each) {
+    return then == nullptr ||
+           std::find(then->aliases.begin(), then->aliases.end(), each) == then->aliases.end();
+  });
+  if (last.empty() && aliases.size() == 1) last = aliases;
+  if (last.size() != 1) return;
+  aliases.erase(std::find(aliases.begin(), aliases.end(), last.front()));
+  s.setCorrected();
+}
+
+/// Two names of one place, of which the first may be told as one of the second: "The fish tank is
+/// also called C12", where only C12 is known.
+void takeBothNames(Statement& s, const SaidName& said, const std::vector<SaidName>& aliases) {
+  const std::vector<Id> known = aliases.size() == 1 ? knownAs(s, aliases[0]) : std::vector<Id>{};
+  if (known.size() == 1 && said.reference.empty() && knownAs(s, said).empty()) {
+    s.at(known.front()).aliases.push_back(fullName(s, said));
+    return s.setSubjects(known);
+  }
+  const Id id = placeOf(s, said);
+  if (s.isCorrection()) replaceAlias(s, id);
+  for (const SaidName& name : aliases) addAlias(s, id, name);
+  s.setSubjects({id});
+}
+
+/// "Room 3 is not John's office."
+void notAlias(Statement& s) {
+  const Id id = knownPlacesOf(s, "place").front();
+  auto& aliases = s.at(id).aliases;
+  const PlaceNames& names = s.listener().names;
+  const std::size_t before = aliases.size();
+  for (const SaidName& name : s.said().names("aliases")) {
+    const NameKey key = names.key(fullName(s, name));
+    const auto isMeant = [&](const std::string& each) {
+      return compare(names.key(each), key) == SameName::kYes;
+    };
+    aliases.erase(std::remove_if(aliases.begin(), aliases.end(), isMeant), aliases.end());
+  }
+  if (aliases.size() == before) s.fail(IssueKind::kNoContext, "not_told");
+  s.setCorrected();
+  s.setSubjects({id});
+}
+
+/// "The next one is the lab": behind the place that the last statement was about, in its row.
+void nextIs(Statement& s) {
+  if (s.context().subjects.empty()) {
+    s.fail(IssueKind::kNoContext, "it_nothing", {{"name", s.said().names("place")[0].text}});
+  }
+  const Id last = s.context().subjects.back();
+  const Id id = placeOf(s, "aliases");
+  const Id robot = s.building().robot_place.value_or(0);
+  recordNext(s, id, last, robot == id || robot == last ? 0 : robot);
+  s.setSubjects({id});
+}
+
+}  // namespace
+
+void addAlias(Statement& s, Id id, const SaidName& name) {
+  if (!name.reference.empty()) s.fail(IssueKind::kMeaningless, "no_name", {{"name", name.text}});
+  const std::string full = fullName(s, name);
+  const std::vector<Id> ids = placesOf(full, s.state(), s.listener().names);
+  if (std::find(ids.begin(), ids.end(), id) != ids.end()) return;
+  if (!ids.empty()) {
+    s.fail(IssueKind::kContradiction, "other_place", {{"name", full}, {"place", s.nameOf(id)}});
+  }
+  s.at(id).aliases.push_back(full);
+  if (!s.at(id).kind) s.at(id).kind = s.listener().names.kindOf(full);
+}
+
+void alias(Statement& s) {
+  const auto said = s.said().names("place");
+  if (said.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
+  if (said[0].reference == "next") return nextIs(s);
+  if (s.isDenial()) return notAlias(s);
+  takeBothNames(s, said[0], s.said().names("aliases"));
+}
+
+void owner(Statement& s) {
+  if (s.isDenial()) refuseDenial(s);
+  const auto said = s.said().names("place");
+  if (said.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
+  const Grammar& grammar = s.listener().grammar;
+  const PlaceNames& names = s.listener().names;
+  // "Tom's lab" of a lab, "Tom's office" of a room.
+  const std::string name =
+      said[0].reference.empty() ? fullName(s, said[0]) : s.nameOf(placeOf(s, said[0]));
+  const std::string kind = names.isPlainRoom(name) ? grammar.say("office") : names.headOf(name);
+  std::vector<SaidName> owned = s.said().names("owners");
+  for (SaidName& each : owned) {
+    each.text =
+        SentenceWriter(grammar, false)
+            .phrase("owned", {{"owner", each.text, false, true}, {"kind", kind, false, true}});
+    each.reference.clear();
+  }
+  takeBothNames(s, said[0], owned);
+}
+
+}  // namespace statements
+}  // namespace hyselam_topo
