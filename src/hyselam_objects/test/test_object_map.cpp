@@ -121,7 +121,7 @@ TEST(ObjectMap, RefusesInvalidMaps) {
   refused([](ObjectMap& m) { m.relations.back().other = 2; }, "is itself");
   refused([](ObjectMap& m) { m.relations.back().movability = 2.0; }, "movability");
   refused([](ObjectMap& m) { m.relations[0].place = 9; }, "no such place");
-  refused([](ObjectMap& m) { m.relations[0].word = RelationWord::kOn; }, "only 'at' a place");
+  refused([](ObjectMap& m) { m.relations[0].word = RelationWord::kOn; }, "only at, near");
 }
 
 TEST(ObjectMap, RefusesHostileFiles) {

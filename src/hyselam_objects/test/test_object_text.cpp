@@ -123,9 +123,9 @@ TEST(ObjectText, DetectsTheLanguage) {
   ObjectMap map;
   FillMap fill(parser, map);
   EXPECT_EQ(fill.process("Há um copo vermelho na cozinha.").front().text,
-            "Anotado: copo vermelho em cozinha.");
+            "Anotado: um copo vermelho está na cozinha.");
   EXPECT_EQ(fill.process("There is a red pen in the office.").front().text,
-            "Noted: red pen at office.");
+            "Noted: a red pen is in the office.");
   EXPECT_EQ(fill.process("Onde está a caneta?").front().text, "Não sei de nenhum 'caneta'.");
 }
 

@@ -65,6 +65,10 @@ bool Grammar::has(const std::string& key) const {
   return compiled_->say.count(key) != 0;
 }
 
+std::string Grammar::reason(const std::string& code, const std::string& word) const {
+  return compiled_->reasons.count(code) != 0 ? compiled_->reason(code, word) : "";
+}
+
 const std::string& Grammar::say(const std::string& key) const {
   const auto found = compiled_->say.find(key);
   if (found == compiled_->say.end()) {

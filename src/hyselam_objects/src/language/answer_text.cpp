@@ -7,7 +7,6 @@ namespace hyselam_objects {
 TextAnswer answerText(const std::string& text, const ObjectParser& parser, const ObjectMap& map,
                       const ObjectDictionary& dictionary, FillMap& fill_map) {
   TextAnswer out;
-  const std::vector<std::string> unknown_before = fill_map.unknownKinds(dictionary);
   std::size_t understood = 0;
   const std::vector<ObjectReply> replies = fill_map.process(text);
   for (const ObjectReply& reply : replies) {
@@ -23,12 +22,9 @@ TextAnswer answerText(const std::string& text, const ObjectParser& parser, const
   out.understood = understood > 0;
   out.about_things = !out.understood && parser.isAboutThings(text);
   out.all_understood = understood == replies.size();
-  // NewObject: the robot asks to be shown kinds that are new and that it cannot recognize.
-  for (const std::string& kind : fill_map.unknownKinds(dictionary)) {
-    if (std::find(unknown_before.begin(), unknown_before.end(), kind) == unknown_before.end()) {
-      out.text += " " + fill_map.showRequest(kind);
-    }
-  }
+  // NewObject: the robot asks to be shown what it cannot recognize.
+  const std::string kind = fill_map.kindToShow(dictionary, replies);
+  if (!kind.empty()) out.text += " " + fill_map.showRequest(kind);
   return out;
 }
 

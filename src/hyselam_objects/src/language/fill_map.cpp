@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <iterator>
 
 namespace hyselam_objects {
 
@@ -20,132 +20,235 @@ std::vector<ObjectReply> FillMap::process(const std::string& text) {
   last_objects_.erase(std::remove_if(last_objects_.begin(), last_objects_.end(),
                                      [this](Id id) { return map_.find(id) == nullptr; }),
                       last_objects_.end());
+  question_is_new_ = false;
   std::set<std::string> expected;
-  if (pending_ && pending_->for_place) expected.insert("place_answer");
-  if (pending_ && pending_->for_count) expected.insert("count_answer");
+  if (pending_ && pending_->asked == Asked::kPlace) expected.insert("place_answer");
+  if (pending_ && pending_->asked == Asked::kCount) expected.insert("count_answer");
+  if (pending_ && pending_->asked == Asked::kChoice) expected.insert("choice_answer");
+  return processAll(parser_.parse(text, expected, language_));
+}
+
+/// What a sentence goes on with waits if its beginning leads to a question.
+std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>& statements) {
   std::vector<ObjectReply> replies;
-  for (const ObjectStatement& statement : parser_.parse(text, expected, language_)) {
-    replies.push_back(processStatement(statement));
+  for (std::size_t i = 0; i < statements.size(); ++i) {
+    for (ObjectReply& each : processOne(statements[i])) {
+      const bool same =
+          !statements[i].objects.empty() && statements[i].objects.front().reference == "same";
+      addReply(std::move(each), statements[i].continues, same, &replies);
+    }
+    const bool done = replies.empty() || replies.back().kind == ReplyKind::kDone;
+    for (; !done && i + 1 < statements.size() && statements[i + 1].continues; ++i) {
+      if (pending_) pending_->rest.push_back(statements[i + 1]);
+    }
+  }
+  for (ObjectReply& each : replies) {
+    if (each.facts.empty()) continue;
+    std::string all;
+    for (const std::string& fact : each.facts) all += (all.empty() ? "" : "; ") + fact;
+    each.text = phraseText("done", {{"what", all}});
   }
   return replies;
 }
 
-ObjectReply FillMap::processStatement(const ObjectStatement& statement) {
-  language_ = statement.language;
-  switch (statement.kind) {
-    case UtteranceKind::kNotUnderstood: {
-      ObjectReply out = reply(ReplyKind::kNotUnderstood, "not_understood",
-                              {{"text", statement.text}, {"reason", statement.reason}});
-      out.reason = statement.reason;
-      return out;
-    }
-    case UtteranceKind::kAnswer:
-      return processAnswer(statement);
-    case UtteranceKind::kQuestion:
-      return answerQuestion(statement);
-    default:
-      break;
+/// Parts of one sentence are told together.
+void FillMap::addReply(ObjectReply reply, bool continues, bool replaces,
+                       std::vector<ObjectReply>* replies) {
+  const bool together = continues && !replies->empty() && reply.kind == ReplyKind::kDone &&
+                        replies->back().kind == ReplyKind::kDone;
+  if (!together) {
+    replies->push_back(std::move(reply));
+    return;
   }
-  pending_.reset();
-  if (statement.intent == "go_to") return answerQuestion(statement);
+  ObjectReply& whole = replies->back();
+  if (whole.facts.empty() && reply.facts.empty()) return;
+  if (whole.facts.empty()) whole.code = reply.code;
+  if (replaces && !reply.facts.empty() && !whole.facts.empty()) whole.facts.pop_back();
+  whole.facts.insert(whole.facts.end(), reply.facts.begin(), reply.facts.end());
+  whole.objects = reply.objects;
+  whole.places = reply.places;
+}
+
+std::vector<ObjectReply> FillMap::processOne(const ObjectStatement& statement) {
+  language_ = statement.language;
+  if (statement.kind == UtteranceKind::kAnswer) return processAnswer(statement);
+  if (statement.kind == UtteranceKind::kNotUnderstood) return {refuse(statement)};
+  if (!question_is_new_) pending_.reset();
+  return {processStatement(statement)};
+}
+
+/// A question stays for one text that was not understood: it may have been the answer.
+ObjectReply FillMap::refuse(const ObjectStatement& statement) {
+  if (pending_ && !question_is_new_ && ++pending_->failures > 1) pending_.reset();
+  last_objects_.clear();
+  last_kind_.clear();
+  last_statement_.reset();
+  const Values values{
+      {"text", statement.text}, {"reason", statement.reason}, {"suggestion", statement.suggestion}};
+  const hyselam_topo::Grammar& grammar = parser_.grammar(language_);
+  // Words that make a sentence uncertain are not to be left out.
+  const std::string own = "instead_" + statement.reason_code;
+  const bool proposes =
+      statement.suggests_meaning && !statement.suggestion.empty() && !grammar.has(own);
+  if (proposes && !question_is_new_) {
+    return askBack(statement, "proposal", values, Asked::kProposal);
+  }
+  ObjectReply out = reply(ReplyKind::kNotUnderstood, "not_understood", values);
+  out.reason = statement.reason;
+  if (grammar.has(own)) {
+    out.text += " " + phraseText("instead", {{"suggestion", phraseText(own)}});
+  } else if (!statement.suggestion.empty()) {
+    out.text += " " + phraseText("instead", values);
+  }
+  return out;
+}
+
+ObjectReply FillMap::processStatement(const ObjectStatement& said) {
+  ObjectStatement statement = said;
+  if (!resolveOnes(&statement)) {
+    return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", statement.text}});
+  }
+  if (statement.kind == UtteranceKind::kQuestion || statement.intent == "go_to") {
+    return answerQuestion(statement);
+  }
+  const std::string what = statement.objects.empty() ? "" : statement.objects.front().text;
+  if (statement.intent == "cannot") return reply(ReplyKind::kAnswer, "cannot", {{"what", what}});
+  if (statement.intent == "pointing") {
+    return reply(ReplyKind::kQuestion, "pointing", {{"what", what}});
+  }
   if (statement.intent == "forget_object") return removeObjects(statement);
+  if (statement.intent == "not_there") return removeFromPlace(statement);
   if (statement.intent == "this_is") {
     const std::string& kind = statement.objects.front().kind;
-    ObjectReply out = reply(ReplyKind::kDone, "shown", {{"what", kind}});
+    ObjectReply out =
+        reply(ReplyKind::kDone, "shown", {{"what", formed("a", kind, {{"what", kind}})}});
     out.kind_of_object = kind;
     return out;
   }
+  if (statement.intent == "same_where" || statement.intent == "same_what" ||
+      statement.intent == "same_like") {
+    return correctLast(statement);
+  }
+  return record(statement);
+}
+
+/// "No, under the table.", "Sorry, two cups.", "No, blue."
+ObjectReply FillMap::correctLast(const ObjectStatement& said) {
+  ObjectStatement statement = said;
+  if (last_objects_.empty() || !last_statement_) {
+    return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", said.text}});
+  }
+  if (said.intent == "same_like") return recordProperties(statement);
+  if (said.intent == "same_where") {
+    statement.intent = "is_at";
+    return recordObjects(statement);
+  }
+  const ObjectPhrase& phrase = said.objects.front();
+  ObjectStatement again = *last_statement_;
+  again.correction = again.moved = true;
+  if (again.objects.empty() || again.objects.front().reference == "same") {
+    return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", said.text}});
+  }
+  if (phrase.kind == last_kind_ && phrase.has_count) {
+    again.objects = said.objects;
+    return recordObjects(again);
+  }
+  for (const Id id : last_added_) {
+    if (std::find(last_objects_.begin(), last_objects_.end(), id) != last_objects_.end()) {
+      map_.remove(id);
+    }
+  }
+  last_objects_.clear();
+  again.objects = said.objects;
+  ObjectReply out = recordObjects(again);
+  return out;
+}
+
+ObjectReply FillMap::record(const ObjectStatement& statement) {
   if (statement.intent == "is_like") return recordProperties(statement);
+  if (statement.intent == "is_owned") return recordOwner(statement);
   return recordObjects(statement);
 }
 
+/// "the green one": of the kind of the object that lies there, or mentioned last.
+bool FillMap::resolveOnes(ObjectStatement* statement) const {
+  const auto resolve = [this](ObjectPhrase& phrase, const std::string& kind) {
+    if (!phrase.one) return true;
+    if (kind.empty()) return false;
+    phrase.kind = kind;
+    return true;
+  };
+  for (ObjectPhrase& phrase : statement->objects) {
+    if (!resolve(phrase, last_kind_)) return false;
+  }
+  if (!statement->landmark) return true;
+  const bool named = !statement->objects.empty() && !statement->objects.front().kind.empty();
+  return resolve(*statement->landmark, named ? statement->objects.front().kind : last_kind_);
+}
+
+// ---- Properties ----
+
+ObjectReply FillMap::recordOwner(const ObjectStatement& statement) {
+  return recordProperties(statement);
+}
+
 ObjectReply FillMap::recordProperties(const ObjectStatement& statement) {
+  std::map<std::string, std::string> properties = statement.properties;
+  if (!statement.owner.empty()) properties["owner"] = statement.owner;
   std::vector<Id> all;
-  for (const ObjectPhrase& phrase : statement.objects) {
-    const std::vector<Id> ids = resolveReference(phrase, last_place_);
+  for (std::size_t i = 0; i < statement.objects.size(); ++i) {
+    const ObjectPhrase& phrase = statement.objects[i];
+    std::vector<Id> ids = resolveReference(phrase, last_place_);
+    if (phrase.reference == "one_of_them" && !ids.empty()) {
+      // One that is not known to be otherwise.
+      const auto fits = [&](Id id) {
+        return std::none_of(properties.begin(), properties.end(), [&](const auto& wanted) {
+          const auto& known = map_.find(id)->properties;
+          return known.count(wanted.first) != 0;
+        });
+      };
+      const auto one = std::find_if(ids.begin(), ids.end(), fits);
+      ids = {one == ids.end() ? ids.front() : *one};
+    }
     if (ids.empty()) {
       return reply(ReplyKind::kQuestion, phrase.reference.empty() ? "unknown" : "no_antecedent",
                    {{"what", phrase.text}});
     }
-    const bool many = phrase.plural || phrase.reference == "them";
-    if (!many && ids.size() > 1) {
-      return askBack(statement, "which_one",
-                     {{"count", std::to_string(ids.size())}, {"what", phrase.text}});
-    }
+    const bool many = phrase.plural || phrase.reference == "them" || phrase.reference == "same";
+    if (!many && ids.size() > 1) return askWhich(statement, phrase, ids, false, i);
     all.insert(all.end(), ids.begin(), ids.end());
   }
-  for (const Id id : all) {
-    for (const auto& [key, value] : statement.properties) {
+  return setProperties(statement, all, properties);
+}
+
+ObjectReply FillMap::setProperties(const ObjectStatement& statement, const std::vector<Id>& objects,
+                                   const std::map<std::string, std::string>& properties) {
+  for (const Id id : objects) {
+    for (const auto& [key, value] : properties) {
       const auto& known = map_.find(id)->properties;
       const auto found = known.find(key);
       if (found != known.end() && found->second != value && !statement.correction) {
-        return askBack(
-            statement, "contradiction",
-            {{"known", objectName(id) + " " + objectLocation(id)}, {"said", statement.text}});
+        const auto facts = factsOf({id}, true);
+        return askBack(statement, "contradiction",
+                       {{"known", facts.front()}, {"said", statement.text}});
       }
     }
   }
-  std::vector<std::string> names;
-  for (const Id id : all) {
-    for (const auto& [key, value] : statement.properties) map_.find(id)->properties[key] = value;
-    names.push_back(objectName(id));
+  for (const Id id : objects) {
+    for (const auto& [key, value] : properties) map_.find(id)->properties[key] = value;
   }
-  last_objects_ = all;
+  last_objects_ = objects;
+  last_kind_ = map_.find(objects.front())->kind;
   map_.stamp = std::max(map_.stamp, stamp_);
-  ObjectReply out = reply(ReplyKind::kDone, "done", {{"what", enumeration(names)}});
-  out.objects = all;
+  ObjectReply out = reply(ReplyKind::kDone, "done");
+  out.facts = factsOf(objects, true);
+  out.objects = objects;
   return out;
-}
-
-ObjectReply FillMap::removeObjects(const ObjectStatement& statement) {
-  std::vector<Id> all;
-  std::vector<std::string> names;
-  for (const ObjectPhrase& phrase : statement.objects) {
-    const std::vector<Id> ids = resolveReference(phrase, last_place_);
-    if (ids.empty()) return reply(ReplyKind::kQuestion, "unknown", {{"what", phrase.text}});
-    if (ids.size() > 1 && !phrase.plural && phrase.reference != "them") {
-      return askBack(statement, "which_one",
-                     {{"count", std::to_string(ids.size())}, {"what", phrase.text}});
-    }
-    all.insert(all.end(), ids.begin(), ids.end());
-  }
-  for (const Id id : all) {
-    names.push_back(objectName(id));
-    map_.remove(id);
-  }
-  last_objects_.clear();
-  map_.stamp = std::max(map_.stamp, stamp_);
-  return reply(ReplyKind::kDone, "forgotten", {{"what", enumeration(names)}});
-}
-
-ObjectReply FillMap::processAnswer(const ObjectStatement& statement) {
-  if (!pending_) return reply(ReplyKind::kDone, "nothing_asked");
-  const Pending pending = std::move(*pending_);
-  pending_.reset();
-  ObjectStatement again = pending.statement;
-  if (statement.intent == "place_answer") {
-    again.place = statement.place;
-    return recordObjects(again);
-  }
-  if (pending.for_count && (statement.intent == "yes" || statement.count)) {
-    constexpr int kSome = 2;  // "some": at least two, and no more are known of
-    for (ObjectPhrase& phrase : again.objects) {
-      if (!phrase.plural || phrase.has_count || !phrase.reference.empty()) continue;
-      phrase.count = statement.count.value_or(kSome);
-      phrase.has_count = true;
-      break;
-    }
-    return recordObjects(again);
-  }
-  if (statement.intent == "yes" && !pending.for_place) {
-    again.correction = true;
-    return again.intent == "is_like" ? recordProperties(again) : recordObjects(again);
-  }
-  return reply(ReplyKind::kDone, "kept");
 }
 
 void FillMap::resetContext() {
   last_objects_.clear();
+  last_kind_.clear();
   last_place_ = 0;
   pending_.reset();
 }

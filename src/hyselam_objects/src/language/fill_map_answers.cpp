@@ -1,28 +1,28 @@
-// FillMap: answers to questions about the map, and the words of all replies.
+// FillMap: answers to questions about the map.
 #include <algorithm>
 #include <set>
 
 #include "hyselam_objects/language/fill_map.hpp"
 
 namespace hyselam_objects {
+// ---- Questions ----
+
 namespace {
 
-std::string joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& each : sentences) text += (text.empty() ? "" : " ") + each;
-  return text;
+/// What is said where nothing is known.
+std::string nothingKey(const ObjectStatement& question) {
+  if (question.intent == "is_there") return "not_there";
+  return question.intent == "how_many" ? "none" : "nothing";
 }
 
 }  // namespace
-
-// ---- Questions ----
 
 ObjectReply FillMap::answerQuestion(const ObjectStatement& question) {
   Id place = 0;
   if (question.place) {
     const std::string name = resolvePlaceName(*question.place);
     place = name.empty() ? 0 : findPlace(name);
-    if (place == 0) return reply(ReplyKind::kAnswer, "nothing");
+    if (place == 0) return reply(ReplyKind::kAnswer, nothingKey(question));
   }
   std::vector<Id> landmarks;
   if (question.landmark) {
@@ -40,6 +40,10 @@ ObjectReply FillMap::answerQuestion(const ObjectStatement& question) {
     objects.push_back(object.id);
     if (map_.placeOf(object.id) != 0) places.insert(map_.placeOf(object.id));
   }
+  if (!objects.empty()) {
+    last_objects_ = objects;
+    last_kind_ = map_.find(objects.front())->kind;
+  }
   const std::vector<Id> all_places(places.begin(), places.end());
   ObjectReply out = answerText(question, objects, all_places);
   out.objects = objects;
@@ -54,17 +58,42 @@ bool FillMap::matchesQuestion(const ObjectInstance& object, const ObjectStatemen
   };
   if (!question.objects.empty()) {
     const ObjectPhrase& phrase = question.objects.front();
-    const bool meant =
-        phrase.reference.empty() ? matchesPhrase(object, phrase) : isIn(object.id, last_objects_);
+    const bool meant = !phrase.chosen.empty()      ? isIn(object.id, phrase.chosen)
+                       : !phrase.reference.empty() ? isIn(object.id, last_objects_)
+                       : phrase.other && phrase.definite
+                           ? matchesPhrase(object, phrase) && !isIn(object.id, last_objects_)
+                           : isIn(object.id, candidates(phrase));
     if (!meant) return false;
   }
+  const bool parts = question.objects.empty() && !question.landmark;
+  if (parts && object.properties.count("structure") != 0) return false;
   if (place != 0 && map_.placeOf(object.id) != place) return false;
+  if (question.room) {
+    const Id room = findPlace(resolvePlaceName(*question.room));
+    const auto all = map_.relationsOf(object.id);
+    return std::any_of(all.begin(), all.end(), [&](const ObjectRelation* r) {
+      return room != 0 && r->place == room && r->word == *question.relation;
+    });
+  }
   if (!question.landmark) return true;
   const auto carried = [](RelationWord word) {
     return isSupport(word) && word != RelationWord::kUnder;
   };
+  const auto isBeside = [](RelationWord word) {
+    return word == RelationWord::kNear || word == RelationWord::kAgainst ||
+           word == RelationWord::kBetween || word == RelationWord::kLeft ||
+           word == RelationWord::kRight;
+  };
+  if (*question.relation == RelationWord::kNear) {  // holds both ways
+    for (const Id landmark : landmarks) {
+      for (const ObjectRelation* r : map_.relationsOf(landmark)) {
+        if (r->other == object.id && isBeside(r->word)) return true;
+      }
+    }
+  }
   for (const ObjectRelation* r : map_.relationsOf(object.id)) {
     if (!isIn(r->other, landmarks)) continue;
+    if (*question.relation == RelationWord::kNear && isBeside(r->word)) return true;
     // "on the table" asks for what is over it or in it, too.
     if (r->word == *question.relation || (carried(*question.relation) && carried(r->word))) {
       return true;
@@ -75,6 +104,7 @@ bool FillMap::matchesQuestion(const ObjectInstance& object, const ObjectStatemen
 
 ObjectReply FillMap::answerText(const ObjectStatement& question, const std::vector<Id>& objects,
                                 const std::vector<Id>& places) const {
+  if (question.intent == "how_many" && objects.empty()) return reply(ReplyKind::kAnswer, "none");
   if (question.intent == "how_many") {
     return reply(ReplyKind::kAnswer, "how_many_answer",
                  {{"count", std::to_string(objects.size())}});
@@ -86,44 +116,98 @@ ObjectReply FillMap::answerText(const ObjectStatement& question, const std::vect
                : reply(ReplyKind::kAnswer, "unknown", {{"what", question.objects.front().text}});
   }
   if (question.intent == "which_rooms") {
-    return reply(ReplyKind::kAnswer, "rooms", {{"places", placeNames(places)}});
+    if (places.empty()) return reply(ReplyKind::kAnswer, "nothing");
+    ObjectReply rooms = reply(ReplyKind::kAnswer, "rooms");
+    rooms.text = sentencesOf({placeNames(places)});
+    return rooms;
   }
-  if (question.intent == "go_to") return goToAnswer(objects, places);
-  std::vector<std::string> items;
-  if (question.intent == "where_is") {
-    for (const Id id : objects) {
-      items.push_back(
-          phraseText("where", {{"what", objectName(id)}, {"where", objectLocation(id)}}));
-    }
+  if (question.intent == "go_to") return goToAnswer(question, objects, places);
+  if (question.intent == "is_like_asked" || question.intent == "what_like") {
+    return propertyAnswer(question, objects);
+  }
+  if (question.intent == "where_is" || question.intent == "who_has") {
     ObjectReply out = reply(ReplyKind::kAnswer, "where");
-    out.text = joined(items);
+    out.text = sentencesOf(factsOf(objects, true));
+    if (question.intent == "who_has") out.text = phraseText("who_has") + " " + out.text;
     return out;
   }
-  for (const Id id : objects) items.push_back(objectName(id));
-  return reply(ReplyKind::kAnswer, "what", {{"what", enumeration(items)}});
+  const bool many = map_.find(objects.front()) != nullptr && startsWithMany(objects);
+  return reply(ReplyKind::kAnswer, many ? "what_many" : "what",
+               {{"what", countedNames(objects, false)}});
+}
+
+/// Whether the first kind in a list is told in the plural.
+bool FillMap::startsWithMany(const std::vector<Id>& objects) const {
+  const ObjectInstance& first = *map_.find(objects.front());
+  return std::count_if(objects.begin(), objects.end(), [&](Id id) {
+           const ObjectInstance& each = *map_.find(id);
+           return each.kind == first.kind && each.properties == first.properties;
+         }) > 1;
+}
+
+/// "What colour is the cup?", "is the cup red?"
+ObjectReply FillMap::propertyAnswer(const ObjectStatement& question,
+                                    const std::vector<Id>& objects) const {
+  if (question.intent == "what_like") {
+    std::vector<std::string> items;
+    for (const Id id : objects) {
+      const ObjectInstance& object = *map_.find(id);
+      const auto colour = object.properties.find("colour");
+      if (colour == object.properties.end()) continue;
+      const std::string word = parser_.propertyWord(language_, colour->second, object.kind);
+      if (std::find(items.begin(), items.end(), word) == items.end()) items.push_back(word);
+    }
+    if (items.empty()) return reply(ReplyKind::kAnswer, "unknown_colour");
+    return reply(ReplyKind::kAnswer, "colour", {{"what", enumeration(items)}});
+  }
+  std::vector<Id> so, otherwise;
+  for (const Id id : objects) {
+    const auto& known = map_.find(id)->properties;
+    bool all = true, against = false;
+    for (const auto& [key, value] : question.properties) {
+      const auto found = known.find(key);
+      all = all && found != known.end() && found->second == value;
+      against = against || (found != known.end() && found->second != value);
+    }
+    if (all) so.push_back(id);
+    if (against) otherwise.push_back(id);
+  }
+  if (!so.empty()) return isThereAnswer(so);
+  if (otherwise.empty()) return reply(ReplyKind::kAnswer, "not_there");
+  return reply(ReplyKind::kAnswer, "no_but", {{"what", enumeration(factsOf(otherwise, true))}});
 }
 
 ObjectReply FillMap::isThereAnswer(const std::vector<Id>& objects) const {
   if (objects.empty()) return reply(ReplyKind::kAnswer, "not_there");
-  std::vector<std::string> sentences;
-  for (const Id id : objects) {
-    sentences.push_back(
-        phraseText("where", {{"what", objectName(id)}, {"where", objectLocation(id)}}));
-  }
-  std::string all = joined(sentences);
-  if (!all.empty()) all.pop_back();  // the full stop: it is part of a sentence
+  std::string all;
+  for (const std::string& fact : factsOf(objects, true)) all += (all.empty() ? "" : "; ") + fact;
   return reply(ReplyKind::kAnswer, "there", {{"what", all}});
 }
 
 /// The navigation chooses the nearest of several places.
-ObjectReply FillMap::goToAnswer(const std::vector<Id>& objects,
+ObjectReply FillMap::goToAnswer(const ObjectStatement& question, const std::vector<Id>& objects,
                                 const std::vector<Id>& places) const {
-  const std::string name = objectName(objects.front());
-  if (places.empty()) return reply(ReplyKind::kAnswer, "nowhere", {{"what", name}});
-  ObjectReply out = reply(ReplyKind::kAnswer, "going",
-                          {{"what", name}, {"where", objectLocation(objects.front())}});
-  if (places.size() > 1) out.text = phraseText("rooms", {{"places", placeNames(places)}});
+  if (places.empty()) {
+    return reply(ReplyKind::kAnswer, "nowhere", {{"what", objectName(objects.front())}});
+  }
+  ObjectReply out = reply(ReplyKind::kAnswer, "going");
+  out.text = sentencesOf(factsOf({objects.front()}, true));
+  if (places.size() > 1) out.text = sentencesOf({placeNames(places)});
+  const auto fetch = question.words.find("fetch");
+  if (fetch != question.words.end()) out.text += " " + phraseText("cannot_carry");
   return out;
+}
+
+/// "The pen is in the lab. The cup is in the kitchen."
+std::string FillMap::sentencesOf(const std::vector<std::string>& facts) {
+  std::string text;
+  for (std::string fact : facts) {
+    if (!fact.empty() && fact[0] >= 'a' && fact[0] <= 'z') {
+      fact[0] = static_cast<char>(fact[0] - 'a' + 'A');
+    }
+    text += (text.empty() ? "" : " ") + fact + ".";
+  }
+  return text;
 }
 
 std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionary) const {
@@ -135,78 +219,32 @@ std::vector<std::string> FillMap::unknownKinds(const ObjectDictionary& dictionar
   return {kinds.begin(), kinds.end()};
 }
 
+std::string FillMap::kindToShow(const ObjectDictionary& dictionary,
+                                const std::vector<ObjectReply>& replies) {
+  for (const ObjectReply& reply : replies) {
+    if (reply.kind == ReplyKind::kQuestion) return "";
+  }
+  for (const ObjectReply& reply : replies) {
+    if (reply.kind != ReplyKind::kDone || reply.facts.empty()) continue;
+    for (const Id id : reply.objects) {
+      const ObjectInstance* object = map_.find(id);
+      if (object == nullptr || parser_.isStructure(object->kind) || parser_.isTop(object->kind)) {
+        continue;
+      }
+      const GenericObject* known = dictionary.find(object->kind);
+      if (known != nullptr && !known->classifier.views.empty()) continue;
+      if (shown_kinds_.insert(object->kind).second) return object->kind;
+    }
+  }
+  return "";
+}
+
 std::string FillMap::showRequest(const std::string& kind) const {
-  return phraseText("show_me", {{"what", kind}});
+  return contracted(phraseText("show_me", {{"what", formed("a", kind, {{"what", kind}})}}));
 }
 
 std::string FillMap::learnedReply(const std::string& kind) const {
-  return phraseText("learnt", {{"what", kind}});
-}
-
-// ---- Words ----
-
-std::string FillMap::phraseText(const std::string& key, const Values& values) const {
-  std::string text = parser_.grammar(language_).say(key);
-  for (const auto& [name, value] : values) {
-    const std::size_t at = text.find("{" + name + "}");
-    if (at != std::string::npos) text.replace(at, name.size() + 2, value);
-  }
-  return text;
-}
-
-ObjectReply FillMap::reply(ReplyKind kind, const std::string& key, const Values& values) const {
-  ObjectReply out;
-  out.kind = kind;
-  out.code = key;
-  out.text = phraseText(key, values);
-  return out;
-}
-
-ObjectReply FillMap::askBack(const ObjectStatement& statement, const std::string& key,
-                             const Values& values, bool for_place) {
-  const bool yes_or_no = key == "contradiction" || key == "count_contradiction";
-  if (yes_or_no || for_place) pending_ = Pending{statement, for_place, false};
-  return reply(ReplyKind::kQuestion, key, values);
-}
-
-std::string FillMap::enumeration(const std::vector<std::string>& items) const {
-  std::string text;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i > 0) text += phraseText(i + 1 == items.size() ? "and" : "comma");
-    text += items[i];
-  }
-  return text;
-}
-
-std::string FillMap::placeNames(const std::vector<Id>& places) const {
-  std::vector<std::string> names;
-  for (const Id id : places) names.push_back(map_.findPlace(id)->name);
-  return enumeration(names);
-}
-
-std::string FillMap::objectName(Id object) const {
-  const ObjectInstance* found = map_.find(object);
-  if (found == nullptr) return "";
-  std::string text = found->kind;
-  for (auto each = found->properties.rbegin(); each != found->properties.rend(); ++each) {
-    const auto& [key, value] = *each;
-    if (key == "furniture") continue;
-    text = phraseText(key == "owner" ? "owned" : "described",
-                      {{"property", parser_.propertyWord(language_, value)}, {"what", text}});
-  }
-  return text;
-}
-
-std::string FillMap::objectLocation(Id object) const {
-  std::vector<std::string> items;
-  for (const ObjectRelation* r : map_.relationsOf(object)) {
-    if (r->other != 0) {
-      items.push_back(phraseText(toString(r->word), {{"what", objectName(r->other)}}));
-    }
-  }
-  const ObjectPlace* place = map_.findPlace(map_.placeOf(object));
-  if (place != nullptr) items.push_back(phraseText("at", {{"place", place->name}}));
-  return enumeration(items);
+  return contracted(phraseText("learnt", {{"what", formed("a", kind, {{"what", kind}})}}));
 }
 
 }  // namespace hyselam_objects

@@ -4,34 +4,16 @@
 #include <array>
 #include <cstring>
 #include <iterator>
-#include <sstream>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/numbers.hpp"
 #include "hyselam_language/building/place_names.hpp"
-#include "object_words.hpp"
+#include "object_statements.hpp"
 #include "shipped_object_texts.hpp"
 
 namespace hyselam_objects {
 namespace {
 
-using hyselam_topo::SaidName;
 using hyselam_topo::Utterance;
-
-std::vector<std::string> split(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
-/// The word of the text that ends before a byte, in lower case.
-std::string wordBefore(const std::string& text, std::size_t at) {
-  while (at > 0 && text[at - 1] == ' ') --at;
-  std::size_t begin = at;
-  while (begin > 0 && text[begin - 1] != ' ' && text[begin - 1] != ',') --begin;
-  return lowerCase(text.substr(begin, at - begin));
-}
 
 constexpr std::array<const char*, 2> kShippedLanguages{"en", "pt"};
 
@@ -43,94 +25,10 @@ hyselam_topo::GrammarSource shippedText(const std::string& prefix, const std::st
   return {key, found->text};
 }
 
-bool isCapitals(const std::string& word) {
-  return std::count_if(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) > 1;
-}
-
 }  // namespace
 
 struct ObjectParser::Words : ObjectWords {
   explicit Words(ObjectWords words) : ObjectWords(std::move(words)) {}
-
-  ObjectPhrase phrase(const SaidName& name, const std::string& text) const {
-    ObjectPhrase out;
-    out.text = name.text;
-    out.reference = name.reference;
-    if (!name.reference.empty()) {
-      out.definite = true;
-      return out;
-    }
-    out.definite = definite.count(wordBefore(text, name.range.begin)) != 0;
-    std::vector<std::string> rest = split(name.text);
-    if (properties_after) {  // "copo vermelho pequeno"
-      for (; rest.size() > 1; rest.pop_back()) {
-        const auto property = properties.find(lowerCase(rest.back()));
-        if (property == properties.end()) break;
-        out.properties[property->second.first] = property->second.second;
-      }
-    }
-    bool leading = true;
-    std::vector<std::string> noun;
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      const std::string word = lowerCase(rest[i]);
-      const bool last = i + 1 == rest.size();
-      const auto number = numbers.find(word);
-      const auto property = properties.find(word);
-      const std::size_t owner = word.find("'s");
-      const auto digits = hyselam::parseNumber(word);
-      if (leading && !last && number != numbers.end()) {
-        out.count = number->second;
-        out.has_count = true;
-      } else if (leading && !last && digits && *digits >= 1.0 && *digits <= 1000.0) {
-        out.count = static_cast<int>(*digits);
-        out.has_count = true;
-      } else if (leading && !last && another.count(word) != 0) {
-        out.another = true;
-      } else if (leading && !last && property != properties.end()) {
-        out.properties[property->second.first] = property->second.second;
-      } else if (leading && !last && owner != std::string::npos && owner > 0 &&
-                 owner + 2 == word.size()) {
-        out.properties["owner"] = rest[i].substr(0, owner);
-        out.definite = true;
-      } else {
-        leading = false;
-        noun.push_back(rest[i]);
-      }
-    }
-    std::string kind;
-    for (const std::string& word : noun) kind += (kind.empty() ? "" : " ") + word;
-    const NounKind found = kindOf(kind);
-    out.kind = found.kind;
-    out.plural = found.plural;
-    return out;
-  }
-
-  NounKind kindOf(const std::string& noun) const {
-    const auto kept = synonyms.find(lowerCase(noun));
-    if (kept != synonyms.end()) return {kept->second, false};
-    NounKind out;
-    const std::vector<std::string> words = split(noun);
-    // The word that takes the plural: the last one, or that before "of".
-    std::size_t head = head_first || words.empty() ? 0 : words.size() - 1;
-    for (std::size_t i = 1; i < words.size() && !head_first; ++i) {
-      if (of.count(lowerCase(words[i])) != 0) {
-        head = i - 1;
-        break;
-      }
-    }
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      std::string word = isCapitals(words[i]) ? words[i] : lowerCase(words[i]);
-      if (i == head) {
-        const NounKind one = singular(word);
-        word = one.kind;
-        out.plural = one.plural;
-      }
-      out.kind += (out.kind.empty() ? "" : " ") + word;
-    }
-    const auto again = synonyms.find(lowerCase(out.kind));
-    if (again != synonyms.end()) out.kind = again->second;
-    return out;
-  }
 
   bool isAboutThings(const std::vector<std::string>& said,
                      const hyselam_topo::PlaceNames& places) const {
@@ -152,34 +50,6 @@ struct ObjectParser::Words : ObjectWords {
       where_it_is = false;
     }
     return false;
-  }
-
-  ObjectStatement statement(const Utterance& u, const std::string& text) const {
-    ObjectStatement out;
-    out.kind = u.kind;
-    out.intent = u.intent;
-    out.correction = u.correction || u.word("moved") == "yes";
-    if (const auto count = u.number("count")) out.count = static_cast<int>(std::min(*count, 1e3));
-    if (const auto word = hyselam::parseNumber(u.word("some"))) out.count = static_cast<int>(*word);
-    out.text = u.text;
-    out.reason = u.reason;
-    for (const SaidName& name : u.names("objects")) out.objects.push_back(phrase(name, text));
-    for (const SaidName& name : u.names("landmark")) out.landmark = phrase(name, text);
-    for (const SaidName& name : u.names("place")) out.place = name;
-    if (u.word("where") == "here") {
-      SaidName here;
-      here.text = here.reference = "here";
-      out.place = here;
-    }
-    if (!u.word("relation").empty()) out.relation = relationWordFromString(u.word("relation"));
-    // Where one word means both: what is "na mesa" lies on the table.
-    const bool on_top = out.landmark && tops.count(out.landmark->kind) != 0;
-    if (on_top && out.relation == RelationWord::kIn) out.relation = RelationWord::kOn;
-    for (const SaidName& name : u.names("properties")) {
-      const auto found = properties.find(lowerCase(name.text));
-      if (found != properties.end()) out.properties.insert(found->second);
-    }
-    return out;
   }
 };
 
@@ -221,11 +91,13 @@ std::vector<ObjectStatement> ObjectParser::parse(const std::string& text,
   options.preferred = preferred;
   options.expected = expected;
   const hyselam_topo::ParsedText parsed = parser_->parse(text, options);
-  const Words& words = *words_[indexOf(parsed.language)];
+  const std::size_t index = indexOf(parsed.language);
   std::vector<ObjectStatement> out;
   for (const Utterance& utterance : parsed.utterances) {
-    out.push_back(words.statement(utterance, text));
-    out.back().language = words.language;
+    for (ObjectStatement& each :
+         statementsOf(*words_[index], parser_->grammars()[index], utterance, text)) {
+      out.push_back(std::move(each));
+    }
   }
   return out;
 }
@@ -241,11 +113,59 @@ NounKind ObjectParser::kindOf(const std::string& noun) const {
   return words_.front()->kindOf(noun);
 }
 
-std::string ObjectParser::propertyWord(const std::string& language,
-                                       const std::string& value) const {
-  const auto& words = words_[indexOf(language)]->property_words;
-  const auto found = words.find(value);
-  return found == words.end() ? value : found->second;
+std::string ObjectParser::propertyWord(const std::string& language, const std::string& value,
+                                       const std::string& kind, bool plural) const {
+  const ObjectWords& words = *words_[indexOf(language)];
+  const auto found = words.property_words.find(value);
+  if (found == words.property_words.end()) return value;
+  const std::vector<std::string>& forms = found->second;
+  if (!words.properties_after) return forms.front();
+  // Masculine, feminine, and both in the plural; or one form and its plural.
+  const bool feminine = words.formOf(kind) == "f";
+  if (forms.size() == 4) return forms[(plural ? 2u : 0u) + (feminine ? 1u : 0u)];
+  return forms[plural && forms.size() == 2 ? 1u : 0u];
+}
+
+std::string ObjectParser::formOf(const std::string& language, const std::string& kind) const {
+  return words_[indexOf(language)]->formOf(kind);
+}
+
+std::string ObjectParser::pluralOf(const std::string& language, const std::string& kind) const {
+  return words_[indexOf(language)]->pluralOf(kind);
+}
+
+std::string ObjectParser::numberWord(const std::string& language, int number,
+                                     const std::string& form) const {
+  const ObjectWords& words = *words_[indexOf(language)];
+  for (const std::string& key : {std::to_string(number) + " " + form, std::to_string(number)}) {
+    const auto found = words.number_forms.find(key);
+    if (found != words.number_forms.end()) return found->second;
+  }
+  return std::to_string(number);
+}
+
+bool ObjectParser::isUncounted(const std::string& language, const std::string& kind) const {
+  return words_[indexOf(language)]->mass.count(lowerCase(kind)) != 0 ||
+         isAlwaysPlural(language, kind);
+}
+
+bool ObjectParser::isAlwaysPlural(const std::string& language, const std::string& kind) const {
+  return words_[indexOf(language)]->always_plural.count(lowerCase(kind)) != 0;
+}
+
+bool ObjectParser::propertiesAfter(const std::string& language) const {
+  return words_[indexOf(language)]->properties_after;
+}
+
+bool ObjectParser::isStructure(const std::string& kind) const {
+  return std::any_of(words_.begin(), words_.end(), [&](const auto& words) {
+    return words->structure.count(lowerCase(words->headOf(kind))) != 0;
+  });
+}
+
+bool ObjectParser::isTop(const std::string& kind) const {
+  return std::any_of(words_.begin(), words_.end(),
+                     [&](const auto& words) { return words->tops.count(kind) != 0; });
 }
 
 bool ObjectParser::isAboutThings(const std::string& text) const {
@@ -253,7 +173,7 @@ bool ObjectParser::isAboutThings(const std::string& text) const {
   std::replace_if(
       spaced.begin(), spaced.end(), [](char c) { return std::strchr(",.;:!?\"()", c) != nullptr; },
       ' ');
-  const std::vector<std::string> said = split(spaced);
+  const std::vector<std::string> said = splitWords(spaced);
   for (std::size_t i = 0; i < words_.size(); ++i) {
     const hyselam_topo::PlaceNames places({parser_->grammars()[i]});
     if (words_[i]->isAboutThings(said, places)) return true;

@@ -1,74 +1,31 @@
 #include "object_words.hpp"
 
 #include <algorithm>
+#include <sstream>
 
-#include "hyselam_common/errors.hpp"
-#include "hyselam_common/yaml_text.hpp"
+#include "hyselam_common/utf8.hpp"
 
 namespace hyselam_objects {
 namespace {
-
-constexpr char kFormat[] = "hyselam_object_words";
 
 bool endsWith(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-}  // namespace
-
-std::string lowerCase(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
+bool isCapitals(const std::string& word) {
+  return std::count_if(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) > 1;
 }
 
-ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
-  ObjectWords words;
-  try {
-    const YAML::Node root = hyselam::parseYaml(source.yaml, source.name);
-    if (!root.IsMap() || root["format"].as<std::string>("") != kFormat ||
-        root["version"].as<std::string>("") != "1") {
-      throw hyselam::InputError(source.name, "key 'format'",
-                                "must be " + std::string(kFormat) + ", version 1");
-    }
-    words.language = root["language"].as<std::string>("");
-    for (const auto& each : root["numbers"]) {
-      words.numbers[lowerCase(each.first.Scalar())] = each.second.as<int>();
-    }
-    for (const auto& each : root["another"]) words.another.insert(lowerCase(each.Scalar()));
-    for (const auto& [key, property] :
-         {std::pair<const char*, const char*>{"colours", "colour"}, {"sizes", "size"}}) {
-      for (const auto& value : root[key]) {
-        for (const auto& word : value.second) {
-          words.properties[lowerCase(word.Scalar())] = {property, value.first.Scalar()};
-          words.property_words.emplace(value.first.Scalar(), word.Scalar());
-        }
-      }
-    }
-    for (const auto& each : root["definite"]) words.definite.insert(lowerCase(each.Scalar()));
-    for (const auto& each : root["of"]) words.of.insert(lowerCase(each.Scalar()));
-    for (const auto& each : root["tops"]) words.tops.insert(each.Scalar());
-    words.head_first = root["head"].as<std::string>("last") == "first";
-    words.properties_after = root["properties"].as<std::string>("before") == "after";
-    for (const auto& each : root["plural_endings"]) {
-      words.plural_endings.emplace_back(each[0].as<std::string>(), each[1].as<std::string>());
-    }
-    for (const auto& each : root["plurals"]) {
-      words.plurals[lowerCase(each.first.Scalar())] = each.second.Scalar();
-    }
-    for (const auto& each : root["same"]) {
-      for (const auto& word : each.second) {
-        words.synonyms[lowerCase(word.Scalar())] = each.first.Scalar();
-      }
-      words.synonyms[lowerCase(each.first.Scalar())] = each.first.Scalar();
-    }
-    for (const auto& each : root["nouns"]) words.nouns.push_back(each.Scalar());
-    for (const auto& each : root["where"]) words.where.insert(lowerCase(each.Scalar()));
-    words.things = words.spelled();
-  } catch (const YAML::Exception& e) {
-    throw hyselam::InputError(source.name, "line " + std::to_string(e.mark.line + 1), e.msg);
-  }
+}  // namespace
+
+std::string lowerCase(const std::string& text) {
+  return hyselam::utf8Lower(text);
+}
+
+std::vector<std::string> splitWords(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
   return words;
 }
 
@@ -87,44 +44,118 @@ NounKind ObjectWords::singular(const std::string& word) const {
   return {word, false};
 }
 
-std::set<std::string> ObjectWords::spelled() const {
-  std::set<std::string> names;
-  for (const std::string& noun : nouns) {
-    names.insert(lowerCase(noun));
-    names.insert(lowerCase(noun) + "s");
+/// The word that takes the plural: the last one, or that before "of".
+std::size_t ObjectWords::headAt(const std::vector<std::string>& words) const {
+  if (head_first || words.empty()) return 0;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (of.count(lowerCase(words[i])) != 0) return i - 1;
   }
-  for (const auto& [word, kept] : synonyms) names.insert(word);
-  for (const auto& [word, kept] : plurals) names.insert(word);
-  return names;
+  return words.size() - 1;
 }
 
-hyselam_topo::GrammarSource ObjectWords::grammar() const {
-  YAML::Node root;
-  root["format"] = "hyselam_grammar";
-  root["version"] = "1";
-  root["language"] = language;
-  std::set<std::string> generic;
-  for (const auto& [word, number] : numbers) generic.insert(word);
-  for (const auto& [word, property] : properties) generic.insert(word);
-  generic.insert(another.begin(), another.end());
-  YAML::Node object = root["names"]["object"], known = root["names"]["known_object"],
-             property = root["names"]["property"], place = root["names"]["place"];
-  for (const std::string& noun : things) {
-    object["nouns"]["object"].push_back(noun);
-    known["nouns"]["object"].push_back(noun);
-    place["forbidden"]["object"].push_back(noun);
-    generic.erase(noun);
+std::string ObjectWords::headOf(const std::string& kind) const {
+  const std::vector<std::string> words = splitWords(kind);
+  return words.empty() ? "" : words[headAt(words)];
+}
+
+NounKind ObjectWords::kindOf(const std::string& noun) const {
+  const auto kept = synonyms.find(lowerCase(noun));
+  if (kept != synonyms.end()) return {kept->second, false};
+  NounKind out;
+  const std::vector<std::string> words = splitWords(noun);
+  const std::size_t head = headAt(words);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string word = isCapitals(words[i]) ? words[i] : lowerCase(words[i]);
+    if (i == head) {
+      const NounKind one = singular(word);
+      word = one.kind;
+      out.plural = one.plural;
+    }
+    out.kind += (out.kind.empty() ? "" : " ") + word;
   }
-  for (const std::string& word : generic) {
-    object["generic"].push_back(word);
-    known["generic"].push_back(word);
+  const auto again = synonyms.find(lowerCase(out.kind));
+  if (again != synonyms.end()) out.kind = again->second;
+  return out;
+}
+
+std::string ObjectWords::pluralOf(const std::string& kind) const {
+  std::vector<std::string> words = splitWords(kind);
+  if (words.empty()) return kind;
+  std::string& head = words[headAt(words)];
+  const auto isPluralOfHead = [&](const std::string& word) {
+    const NounKind one = singular(word);
+    return one.plural && one.kind == head;
+  };
+  const auto given = std::find_if(plurals.begin(), plurals.end(), [&](const auto& each) {
+    return each.second == head && each.first != head;
+  });
+  if (given != plurals.end()) {
+    head = given->first;
+  } else if (isCapitals(head)) {
+    head += "s";
+  } else if (singular(head).kind == head || plurals.count(head) == 0) {
+    for (const auto& [end, one] : plural_endings) {
+      if (!one.empty() && !endsWith(head, one)) continue;
+      const std::string many = head.substr(0, head.size() - one.size()) + end;
+      if (!isPluralOfHead(many)) continue;
+      head = many;
+      break;
+    }
   }
-  property["max_words"] = 1;
-  property["needs_noun"] = true;
-  for (const auto& [word, value] : properties) property["nouns"]["property"].push_back(word);
-  YAML::Emitter out;
-  out << root;
-  return {"words of objects", out.c_str()};
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+std::string ObjectWords::formOf(const std::string& kind) const {
+  const std::string word = lowerCase(head_first ? headOf(kind) : kind);
+  const auto given = forms.find(word);
+  if (given != forms.end()) return given->second;
+  std::string form;
+  std::size_t longest = 0;
+  for (const auto& [end, value] : form_endings) {
+    const bool fits =
+        head_first ? word == end || endsWith(word, end) : word.compare(0, end.size(), end) == 0;
+    if (fits && end.size() > longest) {
+      longest = end.size();
+      form = value;
+    }
+  }
+  const auto any = form_endings.find("");
+  return longest == 0 && any != form_endings.end() ? any->second : form;
+}
+
+bool ObjectWords::isNoun(const std::string& kind) const {
+  if (things.count(lowerCase(kind)) != 0) return true;
+  return things.count(lowerCase(headOf(kind))) != 0;
+}
+
+int ObjectWords::numberOf(const std::string& said) const {
+  const std::string word = lowerCase(said);
+  const auto found = numbers.find(word);
+  if (found != numbers.end()) return found->second;
+  const std::size_t dash = word.find('-');
+  if (dash == std::string::npos) return 0;
+  const auto tens = numbers.find(word.substr(0, dash));
+  const auto ones = numbers.find(word.substr(dash + 1));
+  const bool both = tens != numbers.end() && ones != numbers.end() && tens->second >= 20 &&
+                    tens->second % 10 == 0 && ones->second < 10;
+  return both ? tens->second + ones->second : 0;
+}
+
+void ObjectWords::index() {
+  for (const std::string& noun : nouns) {
+    things.insert(lowerCase(noun));
+    things.insert(lowerCase(noun) + "s");
+    things.insert(lowerCase(pluralOf(noun)));
+  }
+  for (const auto& [word, kept] : synonyms) things.insert(word);
+  for (const auto& [word, kept] : plurals) {
+    things.insert(word);
+    things.insert(lowerCase(kept));
+  }
+  for (const std::string& word : mass) things.insert(lowerCase(word));
+  for (const auto& [word, reason] : no_things) things.erase(word);
 }
 
 }  // namespace hyselam_objects

@@ -24,7 +24,8 @@ KindCounts kindsAt(const ObjectMap& map, Id place, Source source) {
     const bool counts = source == Source::kDescribed
                             ? object.described
                             : object.pose.has_value() && object.existence > 0.5;
-    if (!counts || map.placeOf(object.id) != place) continue;
+    const bool is_part = object.properties.count("structure") != 0;  // every place has walls
+    if (!counts || is_part || map.placeOf(object.id) != place) continue;
     ++kinds.count[object.kind];
     const double fixed = std::min(1.0, 1.0 - movability(map, object.id) + kWeightOfMovable);
     double& weight = kinds.weight[object.kind];

@@ -1,6 +1,7 @@
 // FillMap: statements on where objects are. First the whole statement is interpreted, which may
 // lead to a question; only then the map is changed.
 #include <algorithm>
+#include <map>
 
 #include "statement_meaning.hpp"
 
@@ -22,9 +23,16 @@ FillMap::Question FillMap::interpretPlace(const ObjectStatement& statement,
                                           StatementMeaning& meaning) {
   meaning.target.word = statement.relation;
   meaning.place_stated = statement.place.has_value();
+  if (statement.room) {
+    meaning.room_name = resolvePlaceName(*statement.room);
+    if (meaning.room_name.empty()) {
+      return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", statement.room->text}});
+    }
+    meaning.target.room = findPlace(meaning.room_name);
+  }
   if (!statement.place) return std::nullopt;
   const std::string name = resolvePlaceName(*statement.place);
-  if (name.empty()) return askBack(statement, "which_place", {}, true);
+  if (name.empty()) return askBack(statement, "which_place", {}, Asked::kPlace);
   meaning.target.place = findPlace(name);
   return std::nullopt;
 }
@@ -36,35 +44,54 @@ FillMap::Question FillMap::interpretLandmark(const ObjectStatement& statement,
   if (statement.landmark) {
     const ObjectPhrase& landmark = *statement.landmark;
     if (landmark.has_count && landmark.count > 1) {
-      return askBack(statement, "which_one",
-                     {{"count", std::to_string(landmark.count)}, {"what", landmark.kind}});
+      return reply(ReplyKind::kQuestion, "which_of_many",
+                   {{"count", std::to_string(landmark.count)}, {"what", landmark.text}});
+    }
+    if (const auto either = subjectOrLandmark(statement)) {
+      return askWhich(statement, landmark, *either, true);
     }
     std::vector<Id>& found = meaning.landmarks;
     found = resolveReference(landmark, stated ? place : last_place_, stated);
-    if (stated && found.size() == 1 && landmark.reference.empty() &&
+    if (stated && found.size() == 1 && landmark.reference.empty() && landmark.chosen.empty() &&
         map_.placeOf(found.front()) != 0 && map_.placeOf(found.front()) != place) {
       found.clear();  // "on the table in the kitchen": not that in the office
     }
-    if (found.size() > 1) {
-      return askBack(statement, "which_one",
-                     {{"count", std::to_string(found.size())}, {"what", landmark.text}});
-    }
+    if (found.size() > 1) return askWhich(statement, landmark, found, true);
     if (found.empty() && !landmark.reference.empty()) {
       return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", landmark.text}});
     }
     if (!stated && !found.empty()) place = map_.placeOf(found.front());
   }
-  if (!stated && place == 0) {
+  const bool elsewhere =
+      statement.room || (!meaning.landmarks.empty() && isRelatedToRoom(meaning.landmarks.front()));
+  if (!stated && place == 0 && !elsewhere) {
     place = last_place_ != 0 ? last_place_ : robot_place_.empty() ? 0 : findPlace(robot_place_);
   }
   meaning.place_is_new = stated && place == 0;
-  meaning.robot_place_is_new = !stated && place == 0 && !robot_place_.empty();
+  meaning.robot_place_is_new = !stated && place == 0 && !elsewhere && !robot_place_.empty();
   return std::nullopt;
+}
+
+/// "The cat is on the sofa. The dog is under it.": both may be meant.
+std::optional<std::vector<Id>> FillMap::subjectOrLandmark(const ObjectStatement& statement) const {
+  const bool carries = isSupport(*statement.relation) && *statement.relation != RelationWord::kIn &&
+                       *statement.relation != RelationWord::kInside;
+  if (statement.landmark->reference != "it" || !statement.landmark->chosen.empty() || !carries ||
+      last_objects_.size() != 1) {
+    return std::nullopt;
+  }
+  const ObjectInstance* landmark = map_.find(last_landmark_);
+  const bool either = landmark != nullptr && landmark->id != last_objects_.front() &&
+                      parser_.isTop(landmark->kind) &&
+                      !parser_.isTop(map_.find(last_objects_.front())->kind);
+  if (!either) return std::nullopt;
+  return std::vector<Id>{last_objects_.front(), landmark->id};
 }
 
 FillMap::Question FillMap::interpretPhrases(const ObjectStatement& statement,
                                             StatementMeaning& meaning) {
-  for (const ObjectPhrase& phrase : statement.objects) {
+  for (std::size_t i = 0; i < statement.objects.size(); ++i) {
+    const ObjectPhrase& phrase = statement.objects[i];
     const bool is_landmark = statement.landmark && phrase.reference.empty() &&
                              statement.landmark->reference.empty() &&
                              phrase.kind == statement.landmark->kind && phrase.count == 1 &&
@@ -79,15 +106,16 @@ FillMap::Question FillMap::interpretPhrases(const ObjectStatement& statement,
     }
     if (phrase.plural && !phrase.has_count && phrase.reference.empty() &&
         !(phrase.definite && !candidates(phrase).empty())) {
-      ObjectReply how_many = askBack(statement, "how_many", {{"what", phrase.text}});
-      pending_ = Pending{statement, false, true};
+      const std::string kinds = parser_.pluralOf(language_, phrase.kind);
+      ObjectReply how_many = askBack(statement, "how_many", {}, Asked::kCount);
+      how_many.text = formed("how_many", phrase.kind, {{"what", kinds}});
       return how_many;
     }
     PhraseMeaning found;
     found.phrase = &phrase;
     Question question;
-    if (phrase.definite) {
-      question = interpretDefinite(statement, meaning, found);
+    if (phrase.definite || !phrase.reference.empty()) {
+      question = interpretDefinite(statement, meaning, i, found);
     } else if (phrase.another) {
       found.missing = phrase.count;
     } else {
@@ -101,7 +129,7 @@ FillMap::Question FillMap::interpretPhrases(const ObjectStatement& statement,
 
 /// "the pen", "it", "the two cups".
 FillMap::Question FillMap::interpretDefinite(const ObjectStatement& statement,
-                                             const StatementMeaning& meaning,
+                                             const StatementMeaning& meaning, std::size_t index,
                                              PhraseMeaning& found) {
   const ObjectPhrase& phrase = *found.phrase;
   const Target& target = meaning.target;
@@ -112,11 +140,12 @@ FillMap::Question FillMap::interpretDefinite(const ObjectStatement& statement,
   if (found.known.empty() && !phrase.reference.empty()) {
     return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", phrase.text}});
   }
-  const auto whichOne = [&] {
-    return askBack(statement, "which_one",
-                   {{"count", std::to_string(found.known.size())}, {"what", phrase.text}});
-  };
-  const bool many = phrase.plural || phrase.reference == "them";
+  const auto whichOne = [&] { return askWhich(statement, phrase, found.known, false, index); };
+  const bool many = phrase.plural || phrase.reference == "them" || phrase.reference == "same";
+  if (statement.background && meaning.place_stated && found.known.size() == 1 &&
+      map_.placeOf(found.known.front()) != 0 && map_.placeOf(found.known.front()) != target.place) {
+    found.known.clear();  // "on the tray on the table in the kitchen": not that in the office
+  }
   if (many && phrase.has_count && static_cast<int>(found.known.size()) != phrase.count &&
       !found.known.empty()) {
     return whichOne();
@@ -184,7 +213,9 @@ FillMap::Question FillMap::checkPlaceKnown(const ObjectStatement& statement,
   });
   const bool place_known =
       meaning.target.place != 0 || meaning.place_is_new || meaning.robot_place_is_new;
-  if (!place_known && !all_placed) return askBack(statement, "which_place", {}, true);
+  if (!place_known && !all_placed && !statement.room && !statement.continues) {
+    return askBack(statement, "which_place", {}, Asked::kPlace);
+  }
   if (!meaning.place_stated && !phrases.empty() && !phrases.front().known.empty() &&
       statement.objects.front().definite && meaning.landmarks.empty()) {
     // "the pen is on a book": where the pen is
@@ -233,28 +264,77 @@ ObjectReply FillMap::applyMeaning(const ObjectStatement& statement, StatementMea
   } else if (meaning.landmark_is_listed) {
     target.word.reset();
   }
+  if (!meaning.room_name.empty() && target.room == 0) {
+    target.room = map_.addPlace(meaning.room_name);
+  }
   last_objects_.clear();
-  std::vector<std::string> items;
+  std::vector<Id> told[2];  // indefinite, definite
+  std::map<Id, std::string> places_before;
+  for (const PhraseMeaning& phrase : meaning.phrases) {
+    for (const Id id : phrase.known) places_before[id] = objectLocation(id);
+  }
   for (const PhraseMeaning& phrase : meaning.phrases) {
     const std::vector<Id> ids = applyPhrase(phrase, target);
     last_objects_.insert(last_objects_.end(), ids.begin(), ids.end());
-    for (const Id id : ids) items.push_back(objectName(id) + " " + objectLocation(id));
+    for (const Id id : ids) told[phrase.phrase->definite ? 1 : 0].push_back(id);
   }
   if (last_objects_.empty() && target.landmark != 0) last_objects_ = {target.landmark};
+  if (!last_objects_.empty()) last_kind_ = map_.find(last_objects_.front())->kind;
   last_place_ = target.place;
   if (!last_objects_.empty() && map_.placeOf(last_objects_.front()) != 0) {
     last_place_ = map_.placeOf(last_objects_.front());
   }
-  ObjectReply out;
-  if (map_ == before) {
-    out = reply(ReplyKind::kDone, "known");
-  } else {
+  last_landmark_ = target.landmark;
+  last_added_.clear();
+  for (const ObjectInstance& object : map_.objects) {
+    if (before.find(object.id) == nullptr) last_added_.push_back(object.id);
+  }
+  if (!statement.background) last_statement_ = statement;
+  ObjectReply out = reply(ReplyKind::kDone, map_ == before ? "known" : "done");
+  if (!(map_ == before)) {
     map_.stamp = std::max(map_.stamp, stamp_);
-    out = reply(ReplyKind::kDone, "done", {{"what", enumeration(items)}});
+    for (const bool definite : {false, true}) {
+      for (std::string& fact :
+           changedFacts(told[definite ? 1 : 0], definite, before, places_before)) {
+        out.facts.push_back(std::move(fact));
+      }
+    }
   }
   out.objects = last_objects_;
   if (last_place_ != 0) out.places = {last_place_};
   return out;
+}
+
+/// What was taken down, with where the objects were before that have moved.
+std::vector<std::string> FillMap::changedFacts(const std::vector<Id>& objects, bool definite,
+                                               const ObjectMap& before,
+                                               const std::map<Id, std::string>& places_before) {
+  std::vector<Id> as_before;
+  std::map<std::string, std::vector<Id>> moved;
+  for (const Id id : objects) {
+    const auto was = places_before.find(id);
+    const auto old = before.relationsOf(id);
+    const bool has_moved =
+        was != places_before.end() && !was->second.empty() &&
+        std::any_of(old.begin(), old.end(), [&](const ObjectRelation* r) {
+          const auto now = map_.relationsOf(id);
+          return std::none_of(now.begin(), now.end(), [&](const ObjectRelation* each) {
+            return each->word == r->word && each->other == r->other && each->place == r->place;
+          });
+        });
+    if (has_moved) {
+      moved[was->second].push_back(id);
+    } else {
+      as_before.push_back(id);
+    }
+  }
+  std::vector<std::string> facts = factsOf(as_before, definite);
+  for (const auto& [where, ids] : moved) {
+    for (const std::string& fact : factsOf(ids, true)) {
+      facts.push_back(fact + " " + phraseText("before", {{"where", where}}));
+    }
+  }
+  return facts;
 }
 
 void FillMap::removeSurplus(const StatementMeaning& meaning) {

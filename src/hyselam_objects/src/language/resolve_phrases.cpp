@@ -11,8 +11,11 @@ namespace hyselam_objects {
 namespace {
 
 bool areOpposite(RelationWord a, RelationWord b) {
-  return (a == RelationWord::kLeft && b == RelationWord::kRight) ||
-         (a == RelationWord::kRight && b == RelationWord::kLeft);
+  const auto are = [&](RelationWord one, RelationWord other) {
+    return (a == one && b == other) || (a == other && b == one);
+  };
+  return are(RelationWord::kLeft, RelationWord::kRight) ||
+         are(RelationWord::kFront, RelationWord::kBehind);
 }
 
 }  // namespace
@@ -41,20 +44,38 @@ bool FillMap::matchesPhrase(const ObjectInstance& object, const ObjectPhrase& ph
 }
 
 std::vector<Id> FillMap::candidates(const ObjectPhrase& phrase) const {
+  if (!phrase.chosen.empty()) return phrase.chosen;
   std::vector<Id> ids;
   for (const ObjectInstance& object : map_.objects) {
     if (matchesPhrase(object, phrase)) ids.push_back(object.id);
+  }
+  if (!ids.empty() || phrase.properties.count("owner") == 0) return ids;
+  // "my pen": one of which nobody has said whose it is
+  ObjectPhrase anyones = phrase;
+  anyones.properties.erase("owner");
+  for (const ObjectInstance& object : map_.objects) {
+    const bool owned = object.properties.count("owner") != 0;
+    if (!owned && matchesPhrase(object, anyones)) ids.push_back(object.id);
   }
   return ids;
 }
 
 std::vector<Id> FillMap::resolveReference(const ObjectPhrase& phrase, Id place,
                                           bool only_there) const {
+  if (!phrase.chosen.empty()) return phrase.chosen;
   if (!phrase.reference.empty()) {
     if (phrase.reference == "it" && last_objects_.size() != 1) return {};
     return last_objects_;
   }
   std::vector<Id> all = candidates(phrase);
+  if (phrase.other) {
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [this](Id id) {
+                               return std::find(last_objects_.begin(), last_objects_.end(), id) !=
+                                      last_objects_.end();
+                             }),
+              all.end());
+  }
   if (all.size() <= 1) return all;
   std::vector<Id> mentioned, there;
   for (const Id id : all) {
@@ -67,6 +88,28 @@ std::vector<Id> FillMap::resolveReference(const ObjectPhrase& phrase, Id place,
   if (phrase.plural) return !mentioned.empty() ? mentioned : !there.empty() ? there : all;
   if (mentioned.size() == 1) return mentioned;
   return there.empty() ? all : there;
+}
+
+/// "in front of room 3": what is at no place that is known.
+bool FillMap::isRelatedToRoom(Id object) const {
+  const auto all = map_.relationsOf(object);
+  return std::any_of(all.begin(), all.end(), [](const ObjectRelation* r) {
+    return r->place != 0 && r->word != RelationWord::kAt;
+  });
+}
+
+/// Whether an object may be related so to two others: "on the floor under the table", "in the
+/// corner on the chair".
+bool FillMap::areCompatible(RelationWord a, Id other_a, RelationWord b, Id other_b) const {
+  const auto isPart = [this](Id id) {
+    const ObjectInstance* object = map_.find(id);
+    return object != nullptr && object->properties.count("structure") != 0;
+  };
+  const auto isIn = [](RelationWord word) {
+    return word == RelationWord::kIn || word == RelationWord::kInside;
+  };
+  if (isPart(other_a) && (isIn(a) || b == RelationWord::kUnder)) return true;
+  return isPart(other_b) && (isIn(b) || a == RelationWord::kUnder);
 }
 
 /// Directly, or by others in between. Relations that people described may form a circle.
@@ -96,7 +139,8 @@ std::string FillMap::contradiction(Id object, const Target& target) const {
     }
     for (const ObjectRelation* r : map_.relationsOf(object)) {
       if (r->other == 0) continue;
-      if (isSupport(r->word) && isSupport(*target.word)) {
+      if (isSupport(r->word) && isSupport(*target.word) &&
+          !areCompatible(r->word, r->other, *target.word, target.landmark)) {
         const bool same = r->other == target.landmark;
         const bool below = *target.word == RelationWord::kUnder;
         against = against || (same ? (r->word == RelationWord::kUnder) != below
@@ -105,7 +149,7 @@ std::string FillMap::contradiction(Id object, const Target& target) const {
       against = against || (r->other == target.landmark && areOpposite(r->word, *target.word));
     }
   }
-  return against ? objectName(object) + " " + objectLocation(object) : "";
+  return against ? factsOf({object}, true).front() : "";
 }
 
 // ---- Changes of the map ----
@@ -114,6 +158,14 @@ void FillMap::applyTarget(Id object, const Target& target) {
   if (target.place != 0 && map_.placeOf(object) != target.place) moveToPlace(object, target.place);
   if (target.word && target.landmark != 0 && target.landmark != object) {
     relateToLandmark(object, target);
+  }
+  if (target.word && target.room != 0) {
+    ObjectRelation relation;
+    relation.object = object;
+    relation.word = *target.word;
+    relation.place = target.room;
+    relation.described = true;
+    map_.relate(relation);
   }
 }
 
@@ -144,7 +196,7 @@ void FillMap::moveToPlace(Id object, Id place) {
   }
   for (ObjectRelation& r : all) {
     const bool moves = std::find(carried.begin() + 1, carried.end(), r.object) != carried.end();
-    if (moves && r.place != 0) r.place = place;
+    if (moves && r.word == RelationWord::kAt) r.place = place;
   }
 }
 
@@ -155,7 +207,8 @@ void FillMap::relateToLandmark(Id object, const Target& target) {
   const auto isReplaced = [&](const ObjectRelation& r) {
     if (r.object != object || r.other == 0) return false;
     if (r.other == target.landmark) return areOpposite(r.word, word);
-    return isSupport(r.word) && isSupport(word) && !isSupportedBy(r.other, target.landmark);
+    return isSupport(r.word) && isSupport(word) && !isSupportedBy(r.other, target.landmark) &&
+           !areCompatible(r.word, r.other, word, target.landmark);
   };
   std::vector<ObjectRelation> kept;  // isReplaced() looks at all of them
   std::remove_copy_if(all.begin(), all.end(), std::back_inserter(kept), isReplaced);
@@ -184,6 +237,7 @@ Id FillMap::addObject(const ObjectPhrase& phrase, const Target& target) {
   const Id id = map_.addObject(phrase.kind);
   ObjectInstance& object = *map_.find(id);
   object.properties = phrase.properties;
+  if (parser_.isStructure(phrase.kind)) object.properties["structure"] = "yes";
   object.described = true;
   applyTarget(id, target);
   return id;

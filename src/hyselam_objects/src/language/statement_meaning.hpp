@@ -10,6 +10,7 @@ struct FillMap::Target {
   Id place = 0;
   std::optional<RelationWord> word;
   Id landmark = 0;  ///< the object that it is related to
+  Id room = 0;      ///< or the place: "in front of room 3"
 };
 
 /// The objects that one phrase of a statement means.
@@ -23,6 +24,7 @@ struct FillMap::PhraseMeaning {
 struct FillMap::StatementMeaning {
   Target target;  ///< its landmark is set when the map is changed
   bool place_stated = false;
+  std::string room_name;            ///< of "in front of room 3"
   bool place_is_new = false;        ///< the place stated is not in the map yet
   bool robot_place_is_new = false;  ///< no place is stated, and that of the robot is not in the map
   std::vector<Id> landmarks;        ///< at most one

@@ -10,7 +10,7 @@ void keepDescribedRelations(ObjectMap& map, Id from, Id to) {
   for (ObjectRelation& r : described) {
     if (r.object == from) r.object = to;
     if (r.other == from) r.other = to;
-    const bool place_known = r.place != 0 && map.placeOf(to) != 0;
+    const bool place_known = r.word == RelationWord::kAt && map.placeOf(to) != 0;
     if (r.object != r.other && !place_known) map.relate(r);
   }
 }

@@ -11,8 +11,9 @@
 namespace hyselam_objects {
 namespace {
 
-constexpr std::array<const char*, kRelationWords> kWords{"at",    "inside", "in",    "on",  "over",
-                                                         "under", "left",   "right", "top", "near"};
+constexpr std::array<const char*, kRelationWords> kWords{
+    "at",    "inside", "in",   "on",     "over",  "under",   "left",
+    "right", "top",    "near", "behind", "front", "against", "between"};
 
 auto fields(const Point3& p) {
   return std::tie(p.x, p.y, p.z);
@@ -45,7 +46,9 @@ auto findId(Items& items, Id id) -> decltype(items.data()) {
 
 std::string what(const ObjectInstance& object) {
   std::string text;
-  for (const auto& property : object.properties) text += property.second + " ";
+  for (const auto& [key, value] : object.properties) {
+    if (key != "structure") text += value + " ";
+  }
   return text + object.kind;
 }
 
@@ -121,7 +124,8 @@ class Checker {
             "it must have either an object or a place as its other end");
     if (relation.place != 0) {
       require(map_.findPlace(relation.place) != nullptr, where, "there is no such place");
-      require(relation.word == RelationWord::kAt, where, "objects are only 'at' a place");
+      require(mayRelateToPlace(relation.word), where,
+              "objects are only at, near, behind, between or beside a place");
     } else {
       require(map_.find(relation.other) != nullptr && relation.other != relation.object, where,
               "its other object does not exist or is itself");
@@ -152,6 +156,13 @@ bool isSupport(RelationWord word) {
          word == RelationWord::kOver || word == RelationWord::kTop || word == RelationWord::kUnder;
 }
 
+bool mayRelateToPlace(RelationWord word) {
+  return word == RelationWord::kAt || word == RelationWord::kNear ||
+         word == RelationWord::kBehind || word == RelationWord::kFront ||
+         word == RelationWord::kLeft || word == RelationWord::kRight ||
+         word == RelationWord::kBetween;
+}
+
 const ObjectPlace* ObjectMap::findPlace(Id id) const {
   return findId(places, id);
 }
@@ -164,7 +175,7 @@ ObjectInstance* ObjectMap::find(Id id) {
 
 Id ObjectMap::placeOf(Id object) const {
   for (const ObjectRelation& relation : relations) {
-    if (relation.object == object && relation.place != 0) return relation.place;
+    if (relation.object == object && relation.word == RelationWord::kAt) return relation.place;
   }
   return 0;
 }
@@ -248,8 +259,10 @@ std::vector<std::string> summaryLines(const ObjectMap& map) {
     const ObjectPlace* place = map.findPlace(map.placeOf(object.id));
     if (place != nullptr) line += " at " + place->name;
     for (const ObjectRelation* relation : map.relationsOf(object.id)) {
-      if (relation->other == 0) continue;
-      line += std::string(", ") + toString(relation->word) + " " + what(*map.find(relation->other));
+      if (relation->word == RelationWord::kAt) continue;
+      line += std::string(", ") + toString(relation->word) + " ";
+      line += relation->other != 0 ? what(*map.find(relation->other))
+                                   : map.findPlace(relation->place)->name;
     }
     lines.push_back(std::move(line));
   }

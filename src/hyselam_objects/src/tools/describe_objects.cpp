@@ -16,6 +16,24 @@ bool exists(const std::string& path) {
   return std::ifstream(path).good();
 }
 
+hyselam_topo::GrammarSource readText(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw hyselam::InputError(path, "", "cannot be read");
+  return {path, std::string(std::istreambuf_iterator<char>(file), {})};
+}
+
+hyselam_objects::ObjectParser parserOf(const std::vector<std::string>& grammars) {
+  if (grammars.empty()) return hyselam_objects::ObjectParser::shipped();
+  if (grammars.size() % 2 != 0) {
+    throw hyselam::InputError("--grammar", "", "needs a grammar and a list of words for each");
+  }
+  std::vector<hyselam_objects::ObjectLanguage> languages;
+  for (std::size_t i = 0; i < grammars.size(); i += 2) {
+    languages.push_back({readText(grammars[i]), readText(grammars[i + 1])});
+  }
+  return hyselam_objects::ObjectParser(languages);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -23,11 +41,14 @@ int main(int argc, char** argv) {
       "Records what people say about objects in an object map, and answers questions about them.",
       "describe_objects");
   std::string text, map_path, topology_path, dictionary_path, place;
+  std::vector<std::string> grammars;
   app.add_option("TEXT", text, "sentences; - reads them from the standard input")->required();
   app.add_option("--map", map_path, "object map, loaded if it exists, and written")->required();
   app.add_option("--topology", topology_path, "topological map whose places are linked");
   app.add_option("--dictionary", dictionary_path, "object dictionary: the kinds that are known");
   app.add_option("--here", place, "the place where the robot is");
+  app.add_option("--grammar", grammars,
+                 "instead of the shipped ones: pairs of a grammar and its list of words");
 
   return hyselam::runTool(argc, argv, app, [&] {
     if (text == "-") text.assign(std::istreambuf_iterator<char>(std::cin), {});
@@ -35,11 +56,12 @@ int main(int argc, char** argv) {
     if (exists(map_path)) map = hyselam_objects::loadObjectMap(map_path);
     hyselam_objects::ObjectDictionary dictionary;
     if (!dictionary_path.empty()) dictionary = hyselam_objects::loadDictionary(dictionary_path);
-    const hyselam_objects::ObjectParser parser = hyselam_objects::ObjectParser::shipped();
+    const hyselam_objects::ObjectParser parser = parserOf(grammars);
     hyselam_objects::FillMap fill(parser, map);
     fill.setRobotPlace(place);
     nlohmann::json replies = nlohmann::json::array();
-    for (const hyselam_objects::ObjectReply& reply : fill.process(text)) {
+    const auto said = fill.process(text);
+    for (const hyselam_objects::ObjectReply& reply : said) {
       std::cout << reply.text << "\n";
       replies.push_back({{"kind", toString(reply.kind)},
                          {"code", reply.code},
@@ -53,8 +75,9 @@ int main(int argc, char** argv) {
                                              hyselam_objects::shippedPlaceNames());
     }
     const std::vector<std::string> unknown = fill.unknownKinds(dictionary);
-    if (!dictionary_path.empty()) {
-      for (const std::string& kind : unknown) std::cout << fill.showRequest(kind) << "\n";
+    const std::string to_show = fill.kindToShow(dictionary, said);
+    if (!dictionary_path.empty() && !to_show.empty()) {
+      std::cout << fill.showRequest(to_show) << "\n";
     }
     hyselam_objects::saveXml(map_path, map);
     return nlohmann::json{{"replies", replies},

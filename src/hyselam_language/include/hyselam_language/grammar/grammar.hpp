@@ -54,6 +54,8 @@ class Grammar {
   /// throws hyselam::InputError if it is missing.
   const std::string& say(const std::string& key) const;
   bool has(const std::string& key) const;
+  /// The reason of a refusal by its code, with the words at fault put in; "" for unknown codes.
+  std::string reason(const std::string& code, const std::string& word) const;
 
   /// Whether a name can be said without quotation marks and is then understood as it is.
   bool isPlainName(const std::string& name, const std::string& type = "place") const;

@@ -24,8 +24,8 @@ struct TextAnswer {
 };
 
 /// Records what a text says and answers its questions. `parser` and `map` are those of `fill_map`.
-/// Kinds of objects that are new to the map and that the dictionary cannot recognize are asked to
-/// be shown.
+/// One kind of objects that the dictionary cannot recognize is asked to be shown, see
+/// FillMap::kindToShow().
 TextAnswer answerText(const std::string& text, const ObjectParser& parser, const ObjectMap& map,
                       const ObjectDictionary& dictionary, FillMap& fill_map);
 

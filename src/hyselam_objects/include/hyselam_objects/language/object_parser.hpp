@@ -20,11 +20,18 @@ struct ObjectPhrase {
   std::string kind;  ///< singular: "cup"; "" for a reference
   std::map<std::string, std::string> properties;
   int count = 1;
-  bool has_count = false;  ///< with a number, not an article
-  bool plural = false;     ///< of the noun
-  bool definite = false;   ///< "the pen"; otherwise "a pen", "two pens", "pens"
-  bool another = false;    ///< "another pen": none that is known
-  std::string reference;   ///< "it", "them"; "" for a name
+  bool has_count = false;   ///< with a number, not an article
+  bool plural = false;      ///< of the noun
+  bool definite = false;    ///< "the pen"; otherwise "a pen", "two pens", "pens"
+  bool another = false;     ///< "another pen": none that is known
+  bool other = false;       ///< "the other pen": not the one mentioned last
+  bool some = false;        ///< "a few pens": no number
+  bool one = false;         ///< "the green one": of the kind mentioned last; `kind` is ""
+  bool known_noun = false;  ///< a word of the list of nouns
+  bool bare = false;        ///< without article, number or owner
+  /// "it", "them", "one_of_them", "same" (the objects of the statement before); "" for a name.
+  std::string reference;
+  std::vector<Id> chosen;  ///< objects that are meant: what "which one?" was answered with
   std::string text;        ///< as it was said
 };
 
@@ -33,14 +40,27 @@ struct ObjectStatement {
   std::string intent;  ///< of the grammar: "exist", "is_at", "is_like", "where_is", ...
   std::vector<ObjectPhrase> objects;  ///< in the order said
   std::optional<RelationWord> relation;
-  std::optional<ObjectPhrase> landmark;  ///< what the relation is to
+  std::optional<ObjectPhrase> landmark;        ///< what the relation is to
+  std::optional<hyselam_topo::SaidName> room;  ///< instead of a landmark: "in front of room 3"
   std::optional<hyselam_topo::SaidName> place;
+  /// A statement with several relations is several statements: "the cup is on the tray on the
+  /// table" tells where the tray is, and then the cup. All but the first continue the one before.
+  bool continues = false;
+  bool background =
+      false;  ///< of a landmark of the statement that follows: "the tray on the table"
   std::map<std::string, std::string> properties;  ///< of "is_like"
+  std::map<std::string, std::string> words;       ///< constants of the pattern: {"fetch", "yes"}
+  std::string owner;                              ///< of "is_owned"; "speaker": who speaks
   std::optional<int> count;                       ///< of an answer to "how many?"
   bool correction = false;
+  bool moved = false;  ///< it tells of a change, so what was known is replaced
   std::string language;
   std::string text;
-  std::string reason;  ///< why it was not understood
+  std::string reason;       ///< why it was not understood
+  std::string reason_code;  ///< of Utterance, or "bare", "two_places"
+  std::string suggestion;   ///< not understood: see Utterance
+  bool suggests_meaning = false;
+  std::vector<std::string> left_out;  ///< words of asides
 };
 
 /// "cups" is {"cup", true}.
@@ -73,12 +93,29 @@ class ObjectParser {
                                      const std::string& preferred = "") const;
   /// The first one for a language that is not known, as "".
   const hyselam_topo::Grammar& grammar(const std::string& language = "") const;
-  /// The word for a color or size of the map: "red", "vermelho".
-  std::string propertyWord(const std::string& language, const std::string& value) const;
+  /// The word for a color or size of the map, as it stands beside a noun: "red", "vermelhas".
+  std::string propertyWord(const std::string& language, const std::string& value,
+                           const std::string& kind = "", bool plural = false) const;
   /// Whether a text that no parser may understand is rather about things than about places: it has
   /// a known noun of a thing, and no kind of place comes before it save as where something is ("in
   /// the kitchen"). "The printer room" is a place.
   bool isAboutThings(const std::string& text) const;
+  /// Which forms of words go with a kind: "m", "f" in Portuguese, "vowel" for "an" in English, or
+  /// "".
+  std::string formOf(const std::string& language, const std::string& kind) const;
+  /// "cups".
+  std::string pluralOf(const std::string& language, const std::string& kind) const;
+  /// The word for a small number: "two", "duas"; digits for others.
+  std::string numberWord(const std::string& language, int number, const std::string& form) const;
+  /// "milk", "scissors": no article and number stand before it.
+  bool isUncounted(const std::string& language, const std::string& kind) const;
+  bool isAlwaysPlural(const std::string& language, const std::string& kind) const;
+  /// Whether colors and sizes stand behind the noun.
+  bool propertiesAfter(const std::string& language) const;
+  /// A part of the building that things stand at, as a wall.
+  bool isStructure(const std::string& kind) const;
+  /// A thing that others lie on: what it "has" is on it.
+  bool isTop(const std::string& kind) const;
   /// Kind and number of a noun of the first language; synonyms give the same kind.
   NounKind kindOf(const std::string& noun) const;
 

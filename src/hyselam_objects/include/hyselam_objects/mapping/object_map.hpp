@@ -19,7 +19,8 @@ using hyselam::Covariance3;
 using hyselam::Point3;
 using hyselam_topo::Id;
 
-/// W_R of Eq. 3.8: "a is ... b". An object is `at` a place.
+/// W_R of Eq. 3.8: "a is ... b". An object is `at` a place; that it is near, before, behind or
+/// beside a place says nothing of the place that it is at.
 enum class RelationWord {
   kAt,
   kInside,
@@ -30,16 +31,24 @@ enum class RelationWord {
   kLeft,   ///< beside b, on its left for somebody who looks at b
   kRight,
   kTop,  ///< on the top of b
-  kNear
+  kNear,
+  kBehind,
+  kFront,    ///< in front of b
+  kAgainst,  ///< beside b and touching it: "leans against"
+  kBetween   ///< between b and what another relation of a tells
 };
-constexpr int kRelationWords = 10;
+constexpr int kRelationWords = 14;
 
-/// "at", "inside", "in", "on", "over", "under", "left", "right", "top", "near" and back.
+/// "at", "inside", "in", "on", "over", "under", "left", "right", "top", "near", "behind", "front",
+/// "against", "between" and back.
 const char* toString(RelationWord word);
 std::optional<RelationWord> relationWordFromString(const std::string& text);
 
 /// Whether the relation is one of support or containment: an object has only one such at a time.
 bool isSupport(RelationWord word);
+
+/// Whether an object may be related so to a place.
+bool mayRelateToPlace(RelationWord word);
 
 /// A place that objects are related to; a place of the topological map, once that is known.
 struct ObjectPlace {
@@ -67,7 +76,8 @@ struct ObjectStay {
 struct ObjectInstance {
   Id id = 0;         ///< unique, never 0, never used again
   std::string kind;  ///< name of its generic object: "cup"
-  /// "colour": "red", "size": "small", "owner"; "furniture": "yes" of all furniture.
+  /// "colour": "red", "size": "small", "owner"; "furniture": "yes" of all furniture;
+  /// "structure": "yes" of parts of the building that things stand at, as a wall.
   std::map<std::string, std::string> properties;
   bool described = false;          ///< people have described it
   std::optional<ObjectPose> pose;  ///< nothing: never seen
@@ -123,7 +133,7 @@ bool operator==(const ObjectMap& a, const ObjectMap& b);
 /// @throws hyselam::InputError with `source` and the part that is wrong unless ids are there,
 /// unique
 ///         and below the next ones; relations join an object with another object or with a place,
-///         which only `at` does; numbers are finite, sizes, counts and covariances >= 0,
+///         (see mayRelateToPlace()); numbers are finite, sizes, counts and covariances >= 0,
 ///         probabilities and movabilities in 0 .. 1; names are words.
 void checkMap(const ObjectMap& map, const std::string& source);
 
