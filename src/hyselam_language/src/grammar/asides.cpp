@@ -16,7 +16,10 @@ bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) 
   if (token.starts_upper && !is_first && token.text.size() > 1) return true;
   if (grammar.telling_words.count(token.folded) != 0) return true;
   if (grammar.refusing_words.count(token.folded) != 0) return true;
-  if (grammar.number_words.count(token.folded) != 0) return true;
+  // "um" is a number and an article.
+  const bool article = std::any_of(grammar.name_types.begin(), grammar.name_types.end(),
+                                   [&](const auto& type) { return type.isArticle(token.folded); });
+  if (!article && grammar.number_words.count(token.folded) != 0) return true;
   return std::any_of(grammar.name_types.begin(), grammar.name_types.end(), [&](const auto& type) {
     return type.nouns.count(token.folded) != 0 || type.titles.count(token.folded) != 0 ||
            type.plurals.count(token.folded) != 0;

@@ -24,7 +24,10 @@ std::vector<Vocabulary::Match> Vocabulary::matches(const Token& token, bool may_
   if (token.kind != TokenKind::kWord) return found;
   const auto [begin, end] = by_folded_.equal_range(token.folded);
   for (auto each = begin; each != end; ++each) {
-    const bool exact = entries_[static_cast<std::size_t>(each->second)].lower == token.lower;
+    const Entry& entry = entries_[static_cast<std::size_t>(each->second)];
+    const bool exact = entry.lower == token.lower;
+    // Accents are left out, not put in: "é" is not "e".
+    if (!exact && token.lower != token.folded && entry.lower == entry.folded) continue;
     found.push_back({each->second, exact ? 0 : kAccentCost});
   }
   if (!found.empty() || !may_be_misspelt || token.folded.size() < kShortestMisspelt - 1) {

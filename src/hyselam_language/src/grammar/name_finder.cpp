@@ -195,6 +195,26 @@ bool NameFinder::isOwnersAlone(std::size_t begin, const NameType& type) const {
   return begin + 1 < tokens_.size() && !beginsWithNoun(begin + 1, tokens_.size(), type);
 }
 
+/// "sala", of "14" in "A sala 12 fica em frente à 14"; "" where a number is no name.
+std::string NameFinder::titleOfNumber(std::size_t begin, std::size_t end,
+                                      const NameType& type) const {
+  const bool alone = end == begin + 1 && tokens_[begin].kind == TokenKind::kNumber;
+  if (!alone || begin == 0 || type.elliptic_after.empty()) return "";
+  const std::string& before = tokens_[begin - 1].folded;
+  if (!type.isArticle(before) && type.elliptic_after.count(before) == 0) return "";
+  // "a 14 metros", "a 3 passos"
+  const bool counts = end < tokens_.size() && tokens_[end].kind == TokenKind::kWord &&
+                      (grammar_.unit_words.count(tokens_[end].folded) != 0 ||
+                       grammar_.telling_words.count(tokens_[end].folded) != 0);
+  if (counts) return "";
+  for (std::size_t k = begin; k-- > 0;) {
+    const auto plural = type.plurals.find(tokens_[k].folded);
+    if (plural != type.plurals.end()) return plural->second;
+    if (type.titles.count(tokens_[k].folded) != 0) return tokens_[k].lower;
+  }
+  return "";
+}
+
 void NameFinder::complete(std::size_t begin, std::size_t end, const NameType& type,
                           SaidName* name) const {
   if (name->quoted || !isElliptic(begin, end, type)) return;
@@ -263,8 +283,12 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     if (type.joiners.count(token.folded) != 0) may_end = false;
     if (may_end) {
       const std::string wrong = whatIsWrong(begin, k + 1, indefinite, type);
-      // "my room": whose it is tells which.
-      if (wrong.empty() || (speaker && wrong == "no_name")) {
+      const std::string title = wrong.empty() ? "" : titleOfNumber(begin, k + 1, type);
+      if (!title.empty()) {
+        found.push_back({k + 1, kNameCost + kNameWordCost, nameOf(begin, k + 1), {}});
+        found.back().name.text = title + " " + found.back().name.text;
+      } else if (wrong.empty() || (speaker && wrong == "no_name")) {
+        // "my room": whose it is tells which.
         found.push_back(
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1), {}});
         found.back().name.speaker = speaker;

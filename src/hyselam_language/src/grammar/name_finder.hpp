@@ -52,6 +52,7 @@ class NameFinder {
   /// "Mary's", "da Teresa": the noun that was said before it in the sentence: "office"; "" for
   /// none.
   std::string nounBefore(std::size_t at, const NameType& type) const;
+  std::string titleOfNumber(std::size_t begin, std::size_t end, const NameType& type) const;
   bool isOwnersAlone(std::size_t begin, const NameType& type) const;
   bool isElliptic(std::size_t begin, std::size_t end, const NameType& type) const;
   void complete(std::size_t begin, std::size_t end, const NameType& type, SaidName* name) const;

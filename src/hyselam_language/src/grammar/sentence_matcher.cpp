@@ -97,6 +97,8 @@ class SentenceReader {
   void clausesAt(const Entry& entry, F&& f) {
     for (const IntentInfo& intent : words_.grammar.intents) {
       if (!isPossible(intent, entry)) continue;
+      // "Isto é ótimo" is not "isto" and "é" and "ótimo".
+      if (run_on_ && intent.kind == UtteranceKind::kAnswer) continue;
       const int bonus = expected_.count(intent.name) != 0 ? kExpectedBonus : 0;
       for (const Automaton& pattern : intent.patterns) {
         if (!pattern_run_.mayBegin(pattern, entry.at)) continue;
