@@ -27,7 +27,7 @@ std::vector<Vocabulary::Match> Vocabulary::matches(const Token& token, bool may_
     const Entry& entry = entries_[static_cast<std::size_t>(each->second)];
     const bool exact = entry.lower == token.lower;
     // Accents are left out, not put in: "é" is not "e".
-    if (!exact && token.lower != token.folded && entry.lower == entry.folded) continue;
+    if (!exact && token.has_accents && entry.lower == entry.folded) continue;
     found.push_back({each->second, exact ? 0 : kAccentCost});
   }
   if (!found.empty() || !may_be_misspelt || token.folded.size() < kShortestMisspelt - 1) {

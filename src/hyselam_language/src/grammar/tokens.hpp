@@ -28,6 +28,7 @@ struct Token {
   std::string folded;  ///< and without accents
   double number = 0.0;
   bool starts_upper = false;
+  bool has_accents = false;         ///< letters are not all a .. z
   bool only_lower_letters = false;  ///< plain small letters: may be a misspelt keyword
 };
 
