@@ -9,8 +9,9 @@
 //   @drive library         the robot is on its way there, and not there yet
 //   @arrive                ... now it is
 //   @id NAME               of the next thing that is said, for the records
-//   @reset, @reset pt      a new talk from the beginning, in which the robot first speaks
-//   Portuguese Where are you?         anything else is said by a person
+//   @reset, @reset pt      a new talk from the beginning; the language of its first sentences
+//   Where are you?         anything else is said by a person
+//   > I am at              expected in what the robot has replied to the line above
 #pragma once
 
 #include <string>
@@ -21,12 +22,26 @@
 namespace hyselam_conversation {
 
 struct Step {
-  enum class Kind { kSay, kPlace, kPose, kAsk, kName, kGuess, kDrive, kArrive, kId, kReset };
+  enum class Kind {
+    kSay,
+    kPlace,
+    kPose,
+    kAsk,
+    kName,
+    kGuess,
+    kDrive,
+    kArrive,
+    kId,
+    kReset,
+    kExpect
+  };
   Kind kind = Kind::kSay;
-  std::string text;                ///< kSay: what is said; kId: the id; kReset: the language, or ""
+  /// kSay: what is said; kId: the id; kReset: the language, or ""; kExpect: part of the reply.
+  std::string text;
   std::string place;               ///< name or code
   std::vector<std::string> names;  ///< kName, kGuess
   hyselam::Pose2 pose;
+  std::size_t line = 0;  ///< of the text, from 1
 };
 
 /// The steps of a text. @throws hyselam::InputError with `source` and the line for a line that

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hyselam_conversation/conversation.hpp"
 #include "hyselam_conversation/transcript.hpp"
@@ -32,6 +33,8 @@ class TranscriptPlayer {
   std::optional<nlohmann::json> play(const Step& step);
 
   const Conversation& conversation() const { return *conversation_; }
+  /// Expectations that were not met, as sentences.
+  const std::vector<std::string>& failures() const { return failures_; }
 
  private:
   void begin(const std::string& language);
@@ -40,6 +43,8 @@ class TranscriptPlayer {
   Beginning beginning_;
   std::shared_ptr<const Languages> languages_ = Languages::shipped();
   std::optional<Conversation> conversation_;
+  std::string reply_;  // to the last step that led to something
+  std::vector<std::string> failures_;
   int session_ = 0;
   std::string id_;
 };

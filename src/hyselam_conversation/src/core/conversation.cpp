@@ -221,14 +221,20 @@ void Conversation::take(const Reply& reply, Layer layer, Exchange& out) {
     out.layer = both(out.layer, layer);
     const bool asks = layer == Layer::kObjects ? shared_.objectAskedLast()
                                                : dialogue_.question().kind != Question::Kind::kNone;
-    // Questions come last, where they are answered.
-    if (asks) question_ = reply.sentences.back();
+    // Questions come last, where they are answered; other sentences may leave one open.
+    const std::string& last = reply.sentences.back();
+    if (asks && last.find('?') != std::string::npos) question_ = last;
   }
   for (const DialogueAction& action : reply.actions) perform(action, out);
 }
 
 void Conversation::askObjects(const hyselam_topo::ForwardedSentence& sentence, Exchange& out) {
   out.forwarded.push_back(sentence.text);
+  // Its name may have been told in this very text.
+  const hyselam_topo::Place* here = dialogue_.map().findPlace(dialogue_.robot().place);
+  const std::vector<std::string> names =
+      here == nullptr ? std::vector<std::string>() : namesOf(*here);
+  fill_map_.setRobotPlace(names.empty() ? "" : names.front());
   const hyselam_objects::TextAnswer answer =
       answerText(sentence.text, languages_->objects, objects_, dictionary_, fill_map_);
   hyselam_topo::OtherAnswer other;
@@ -253,10 +259,6 @@ Exchange Conversation::say(const std::string& text) {
   Exchange out;
   out.text = text;
   const Names before = namesNow();
-  const hyselam_topo::Place* here = dialogue_.map().findPlace(dialogue_.robot().place);
-  const std::vector<std::string> names =
-      here == nullptr ? std::vector<std::string>() : namesOf(*here);
-  fill_map_.setRobotPlace(names.empty() ? "" : names.front());
   const hyselam_topo::DescribedBuilding described = dialogue_.description();
   const Reply reply = shared_.hear(text, true);
   out.utterances = reply.utterances;

@@ -94,7 +94,11 @@ std::vector<Step> stepsOf(const std::string& text, const std::string& source) {
     const std::string line = trimmed(raw);
     if (line.empty() || line[0] == '#') continue;
     Step step;
-    if (line[0] != '@') {
+    step.line = number;
+    if (line[0] == '>') {
+      step.kind = Step::Kind::kExpect;
+      step.text = trimmed(line.substr(1));
+    } else if (line[0] != '@') {
       step.text = line;
     } else if (!readDirective(line, &step)) {
       throw hyselam::InputError(source, "line " + std::to_string(number),

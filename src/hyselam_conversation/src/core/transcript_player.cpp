@@ -44,6 +44,7 @@ std::optional<nlohmann::json> TranscriptPlayer::play(const Step& step) {
   const auto objects = summaryLines(conversation_->objects());
   const std::optional<Exchange> exchange = perform(step);
   if (!exchange) return std::nullopt;
+  reply_ = exchange->replyText();
   nlohmann::json record = recordOf(*exchange, *conversation_, description, objects);
   record["session"] = session_;
   if (step.kind == Step::Kind::kSay) record["id"] = std::exchange(id_, "");
@@ -72,6 +73,12 @@ std::optional<Exchange> TranscriptPlayer::perform(const Step& step) {
       return std::nullopt;
     case Step::Kind::kId:
       id_ = step.text;
+      return std::nullopt;
+    case Step::Kind::kExpect:
+      if (reply_.find(step.text) == std::string::npos) {
+        failures_.push_back("line " + std::to_string(step.line) + ": expected '" + step.text +
+                            "', the robot said '" + reply_ + "'");
+      }
       return std::nullopt;
     case Step::Kind::kReset:
       ++session_;

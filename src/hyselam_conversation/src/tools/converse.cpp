@@ -95,6 +95,11 @@ json run(const Options& o) {
       records.push_back(*record);
     }
   }
+  for (const std::string& failure : player.failures()) std::cerr << failure << '\n';
+  if (!player.failures().empty()) {
+    throw std::runtime_error(std::to_string(player.failures().size()) +
+                             " replies are not as expected");
+  }
   return records;
 }
 

@@ -157,6 +157,8 @@ void TopoEngineServer::finishHearing(const Reply& reply) {
   if (reply.stopped) forwarder_->dropAll();
   if (reply.ends_other_question) forwarder_->endQuestion();
   act(reply);
+  // "This is the kitchen. There is a cup": where the robot is may have been told in this very text.
+  if (!reply.forwarded.empty()) publishPlace();
   for (const ForwardedSentence& sentence : reply.forwarded) forwarder_->forward(sentence);
 }
 
