@@ -261,19 +261,22 @@ void Dialogue::handleCommand(const Utterance& u, Turn& turn) {
   const std::size_t said = out.sentences.size(), done = out.actions.size(),
                     goals = turn.goals.size();
   out.unknown_name = false;
+  const Handler handler = handlerOf(u);
   attempt(out, [&] {
-    if (const Handler handler = handlerOf(u)) {
+    if (handler != nullptr) {
       (this->*handler)(u, turn);
     } else {
       say("cannot_do", turn);
     }
   });
   const bool nothing_done = out.actions.size() == done && turn.goals.size() == goals;
-  // All that was said is that nobody knows the name: another node may.
-  if (turn.options.forward_unknown && out.unknown_name && nothing_done &&
+  // All that was said is that nobody knows the name, or can do it: another node may ("fetch the
+  // pen").
+  if (turn.options.forward_unknown && (out.unknown_name || handler == nullptr) && nothing_done &&
       out.sentences.size() == said + 1) {
     forward(u, out.sentences.back(), turn);
     turn.reply.forwarded.back().reason = out.sentences.back();
+    turn.reply.forwarded.back().understood = true;
     out.sentences.pop_back();
   }
 }

@@ -39,7 +39,8 @@ Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAns
   if (sentence.refusal.empty()) {
     append(dialogue_.hear(sentence.text), reply);
   } else {
-    const bool by_other = answer != nullptr && (sentence.about_object || answer->about_things);
+    const bool by_other = answer != nullptr &&
+                          (sentence.about_object || (answer->about_things && !sentence.understood));
     if (by_other) {
       reply.sentences.push_back(answer->reply);
       reply.refusals.push_back({sentence.text, answer->reason, true, ""});

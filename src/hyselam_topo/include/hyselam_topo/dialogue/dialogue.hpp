@@ -77,6 +77,9 @@ struct ForwardedSentence {
   std::string refusal;
   /// Refused because it is about an object: another node can give the reason.
   bool about_object = false;
+  /// The dialogue understands the sentence, but cannot do it or does not know the place: its
+  /// refusal is the one to give.
+  bool understood = false;
   std::string reason;      ///< of the refusal, without the sentence around it
   std::string suggestion;  ///< as Refusal::suggestion
   /// The suggestion is what may have been meant: Dialogue::refuse() asks for it.
