@@ -287,7 +287,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       if (!title.empty()) {
         found.push_back({k + 1, kNameCost + kNameWordCost, nameOf(begin, k + 1), {}});
         found.back().name.text = title + " " + found.back().name.text;
-      } else if (wrong.empty() || (speaker && wrong == "no_name")) {
+      } else if (wrong.empty() || (speaker && wrong == "no_name" && k == begin)) {
         // "my room": whose it is tells which.
         found.push_back(
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1), {}});
@@ -358,7 +358,12 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   const Token& first = tokens_[begin];
   const Token& last = tokens_[end - 1];
   // "o da Teresa" is a place of hers, though Teresa is none.
-  const bool has_noun = hasNoun(begin, end, type) || endsWithAny(tokens_[end - 1].lower, type) ||
+  // "a mirror image of the lab" is no lab.
+  std::size_t head = end;
+  for (std::size_t k = end; !type.head_first && k-- > begin + 1;) {
+    if (type.joiners.count(tokens_[k].folded) != 0) head = k;
+  }
+  const bool has_noun = hasNoun(begin, head, type) || endsWithAny(tokens_[end - 1].lower, type) ||
                         (end > begin + 1 && isElliptic(begin, end, type));
   const bool quoted = last.kind == TokenKind::kQuoted;
   if (end - begin > 1) {
