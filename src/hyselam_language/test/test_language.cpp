@@ -104,6 +104,48 @@ TEST(TopoParser, PossessivesTakeTheNounSaidBefore) {
   EXPECT_TRUE(alone.names("b")[0].elliptic);
 }
 
+TEST(TopoParser, ContractedVerbsStandBehindKindsOfPlaces) {
+  const auto first = [](const std::string& text) {
+    return testing::outline(parser().parse(text).utterances.front());
+  };
+  EXPECT_EQ(first("The library's next to the lab."), "next_to a=library b=lab");
+  EXPECT_EQ(first("The library's huge."), "size_word place=library size_word=large");
+  EXPECT_EQ(first("The museum's main hall is next to the lab."),
+            "next_to a=museum's main hall b=lab");
+}
+
+TEST(TopoParser, AcronymsAreNoWordsInSmallLetters) {
+  const auto first = [](const std::string& text) {
+    return testing::outline(parser().parse(text).utterances.front());
+  };
+  EXPECT_EQ(first("IT is next to the lab."), "next_to a=IT b=lab");
+  EXPECT_EQ(first("It is next to the lab."), "next_to a=<it> b=lab");
+  EXPECT_EQ(first("IT IS NEXT TO THE LAB."), "next_to a=<it> b=LAB");
+}
+
+TEST(Grammar, IntentsMayStandForOthersOrOnlyCorrect) {
+  const std::string more =
+      "format: hyselam_grammar\nversion: 1\nlanguage: xx\ncorrections: [sorry]\n"
+      "intents: {again: {kind: statement, as: tell, only_correction: true, "
+      "patterns: ['<be> {colour:colour}']}}\n";
+  const TopoParser both({Grammar::fromYaml({{"g.yaml", kSmall}, {"more.yaml", more}})});
+  const auto said = both.parse("Sorry, is blue. Is blue.").utterances;
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(testing::outline(said[0]), "tell colour=blue");
+  EXPECT_TRUE(said[0].correction);
+  EXPECT_FALSE(said[1].understood());
+}
+
+TEST(Grammar, SlotsWithTwoValuesAreNoReading) {
+  const std::string more =
+      "format: hyselam_grammar\nversion: 1\nlanguage: xx\n"
+      "intents: {both: {kind: statement, patterns: ['{what:thing} {colour:colour} "
+      "{colour:colour}']}}\n";
+  const TopoParser parser({Grammar::fromYaml({{"g.yaml", kSmall}, {"more.yaml", more}})});
+  EXPECT_TRUE(parser.parse("The ball red crimson.").utterances.front().understood());
+  EXPECT_FALSE(parser.parse("The ball red blue.").utterances.front().understood());
+}
+
 TEST(TopoParser, RangesNameAllBetween) {
   const Utterance said = parser().parse("On your left you have rooms 101 to 104.").utterances.at(0);
   EXPECT_EQ(testing::outline(said),

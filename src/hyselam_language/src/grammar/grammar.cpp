@@ -56,7 +56,8 @@ std::vector<Grammar::Intent> Grammar::intents() const {
   std::vector<Intent> intents;
   for (const language::IntentInfo& each : compiled_->intents) {
     intents.push_back(
-        {each.name, each.kind, each.examples, each.only_expected, !each.refuse.empty()});
+        {each.as.empty() ? each.name : each.as, each.kind, each.examples, each.only_expected,
+         !each.refuse.empty()});
   }
   return intents;
 }

@@ -357,13 +357,14 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
                                     const NameType& type) {
   const Token& first = tokens_[begin];
   const Token& last = tokens_[end - 1];
-  // "o da Teresa" is a place of hers, though Teresa is none.
   // "a mirror image of the lab" is no lab.
-  std::size_t head = end;
+  std::size_t head_end = end;
   for (std::size_t k = end; !type.head_first && k-- > begin + 1;) {
-    if (type.joiners.count(tokens_[k].folded) != 0) head = k;
+    if (type.joiners.count(tokens_[k].folded) != 0) head_end = k;
   }
-  const bool has_noun = hasNoun(begin, head, type) || endsWithAny(tokens_[end - 1].lower, type) ||
+  // "o da Teresa" is a place of hers, though Teresa is none.
+  const bool has_noun = hasNoun(begin, head_end, type) ||
+                        endsWithAny(tokens_[end - 1].lower, type) ||
                         (end > begin + 1 && isElliptic(begin, end, type));
   const bool quoted = last.kind == TokenKind::kQuoted;
   if (end - begin > 1) {

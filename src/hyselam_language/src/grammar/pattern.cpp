@@ -141,8 +141,8 @@ class Compiler {
     return state;
   }
 
-  /// What many patterns have in common is compiled once: the end of a copy of it, -1 if it cannot be
-  /// copied.
+  /// What many patterns have in common is compiled once: the end of a copy of it, -1 if it cannot
+  /// be copied.
   int copyOfPart(const std::string& part, int state, int depth) {
     if (part == part_) return -1;
     auto known = context_.parts.find(part);
@@ -164,8 +164,8 @@ class Compiler {
     for (std::size_t i = 0; i < part.states.size(); ++i) {
       for (Edge e : part.states[i]) {
         e.to += first;
-        const bool of_slot = e.kind != EdgeKind::kSkip && e.kind != EdgeKind::kWord &&
-                             e.kind != EdgeKind::kComma;
+        const bool of_slot =
+            e.kind != EdgeKind::kSkip && e.kind != EdgeKind::kWord && e.kind != EdgeKind::kComma;
         if (of_slot) e.a = slots[static_cast<std::size_t>(e.a)];
         edge(first + static_cast<int>(i), e);
       }

@@ -86,8 +86,8 @@ class Shortening {
     for (const IntentInfo& intent : words_.grammar.intents) {
       const bool asks =
           intent.kind == UtteranceKind::kQuestion || intent.kind == UtteranceKind::kCommand;
-      if (!intent.refuse.empty() || intent.only_expected || intent.only_correction || intent.kind == UtteranceKind::kAnswer ||
-          (words_.sentence.is_question && !asks)) {
+      if (!intent.refuse.empty() || intent.only_expected || intent.only_correction ||
+          intent.kind == UtteranceKind::kAnswer || (words_.sentence.is_question && !asks)) {
         continue;
       }
       // "You can go to the kitchen" tells nobody to go there.

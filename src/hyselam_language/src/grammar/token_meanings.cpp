@@ -8,9 +8,8 @@ namespace language {
 namespace {
 
 bool hasSmallLetter(const Token& token) {
-  return token.kind == TokenKind::kWord &&
-         std::any_of(token.text.begin(), token.text.end(),
-                     [](char c) { return c >= 'a' && c <= 'z'; });
+  return token.kind == TokenKind::kWord && std::any_of(token.text.begin(), token.text.end(),
+                                                       [](char c) { return c >= 'a' && c <= 'z'; });
 }
 
 void markAcronyms(const CompiledGrammar& grammar, std::vector<Token>* tokens) {
@@ -40,8 +39,8 @@ bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGra
   };
   if (stops(token)) return false;
   // "The library's huge", but "the library's main entrance".
-  const bool last = at + 1 == tokens.size() || tokens[at + 1].kind == TokenKind::kComma ||
-                    stops(tokens[at + 1]);
+  const bool last =
+      at + 1 == tokens.size() || tokens[at + 1].kind == TokenKind::kComma || stops(tokens[at + 1]);
   return type->generic.count(token.folded) == 0 || isNoun(token.folded, grammar) || !last;
 }
 
@@ -58,8 +57,8 @@ std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar
       if (token.lower.size() <= end.size() || token.lower.size() != token.text.size()) continue;
       const std::size_t length = token.lower.size() - end.size();
       if (token.lower.compare(length, end.size(), end) != 0) continue;
-      Token noun = wordToken(token.text.substr(0, length),
-                             {token.range.begin, token.range.begin + length});
+      Token noun =
+          wordToken(token.text.substr(0, length), {token.range.begin, token.range.begin + length});
       if (!isNoun(noun.folded, grammar) || mayGoOn(tokens, at + 1, grammar)) continue;
       all.back() = std::move(noun);
       all.push_back(wordToken(verb, {token.range.begin + length, token.range.end}));
