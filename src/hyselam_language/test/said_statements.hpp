@@ -15,8 +15,9 @@ namespace testing {
 /// "no located places=meeting_room,<it> side=left nth=2 distance=10": "no" first is a correction;
 /// names with _ for spaces, "quoted" or my:office, references in < >.
 inline Utterance said(const std::string& outline) {
-  static const std::set<std::string> kWords{"side",   "nth",  "size_word", "floor",
-                                            "denied", "kind", "named",     "from_end"};
+  static const std::set<std::string> kWords{"side",    "nth",      "size_word", "floor",
+                                            "denied",  "kind",     "named",     "from_end",
+                                            "instead", "was_side", "was_nth"};
   static const std::set<std::string> kNumbers{"count", "doors",  "distance", "steps",
                                               "area",  "length", "width"};
   Utterance u;
@@ -38,7 +39,8 @@ inline Utterance said(const std::string& outline) {
     Slot slot;
     slot.name = part.substr(0, equals);
     std::string value = part.substr(equals + 1);
-    if (kWords.count(slot.name) != 0) {
+    // "instead" is a name in "replace name=B instead=A".
+    if (kWords.count(slot.name) != 0 && u.intent != "replace") {
       slot.word = value;
     } else if (kNumbers.count(slot.name) != 0) {
       slot.number = hyselam::parseNumber(value);

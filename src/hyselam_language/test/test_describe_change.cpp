@@ -65,7 +65,7 @@ TEST(DescribeChange, NewPlacesAndWhereTheyLie) {
   EXPECT_EQ(describeChange(before, after, english()),
             (Sentences{"This is the corridor.", "The kitchen is on the left of the corridor.",
                        "room B is on the right of the corridor.",
-                       "The corridor is connected to the stairs."}));
+                       "There is a passage between the corridor and the stairs."}));
 }
 
 TEST(DescribeChange, RanksDistancesAndRows) {

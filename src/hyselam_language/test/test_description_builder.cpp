@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "building/issue_texts.hpp"
+#include "grammar/compiled_grammar.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_language/building/description_builder.hpp"
@@ -245,6 +246,49 @@ TEST(DescriptionBuilder, DenialsRemoveAndAreKept) {
             Lines{"no context"});
 }
 
+TEST(DescriptionBuilder, NotThereButElsewhere) {
+  EXPECT_EQ(graphOf({"robot_in place=hall", "neighbours side=left places=lab",
+                     "located places=lab was_side=left side=right instead=yes"}),
+            (Lines{"at hall", "hall right lab", "not lab at_side left hall"}));
+  EXPECT_EQ(graphOf({"next_to a=lab b=office",
+                     "located places=lab was=office opposite=kitchen instead=yes"}),
+            (Lines{"lab opposite kitchen", "place office"}));
+  EXPECT_EQ(graphOf({"robot_in place=hall", "located places=lab side=left nth=2",
+                     "located places=lab was_nth=2 side=left nth=3 instead=yes"}),
+            (Lines{"at hall", "hall left lab#3"}));
+  EXPECT_EQ(graphOf({"robot_in place=library", "neighbours side=left places=kitchen",
+                     "this_is was=library place=lab"}),
+            (Lines{"at lab", "lab left kitchen"}));
+  EXPECT_EQ(graphOf({"exists places=kitchen", "this_is was=library place=lab"}),
+            (Lines{"at lab", "place kitchen"}));
+  EXPECT_EQ(graphOf({"alias place=room_3 aliases=John's_office",
+                     "alias place=room_3 was=John's_office aliases=Jack's_office"}),
+            Lines{"room 3 aka Jack's office"});
+}
+
+/// A slot that the builder does not read would be dropped without a word.
+TEST(DescriptionBuilder, ReadsAllSlotsOfTheGrammars) {
+  const std::set<std::string> read{
+      "a",       "after",       "aliases",   "area",   "b",        "before",   "behind",
+      "between", "c",           "count",     "denied", "distance", "doors",    "end_of",
+      "floor",   "floors_down", "floors_up", "from",   "from_end", "inside",   "instead",
+      "kind",    "length",      "name",      "named",  "next_to",  "nth",      "opposite",
+      "owners",  "part_of",     "person",    "place",  "places",   "side",     "size_word",
+      "steps",   "to",          "via",       "was",    "was_nth",  "was_side", "width",
+      "within"};
+  for (const Grammar& grammar : parser().grammars()) {
+    for (const language::IntentInfo& intent : grammar.compiled().intents) {
+      if (!DescriptionBuilder::handles(intent.as.empty() ? intent.name : intent.as)) continue;
+      for (const language::Automaton& pattern : intent.patterns) {
+        for (const language::SlotType& slot : pattern.slots) {
+          EXPECT_EQ(read.count(slot.name), 1u)
+              << grammar.language() << " " << intent.name << ": " << slot.name;
+        }
+      }
+    }
+  }
+}
+
 TEST(DescriptionBuilder, RankMayBeDenied) {
   EXPECT_EQ(graphOf({"robot_in place=hall", "located places=lab side=left nth=2",
                      "located places=lab side=left nth=2 denied=yes"}),
@@ -316,6 +360,10 @@ TEST(DescriptionBuilder, PlacesOfOneNameAreTwo) {
   EXPECT_EQ(
       graphOf({"robot_in place=corredor", "each_side places=casas_de_banho"}),
       (Lines{"at corredor", "corredor left casa de banho", "corredor right casa de banho~2"}));
+  EXPECT_EQ(graphOf({"robot_in place=hall", "neighbours side=left places=toilets count=2"}),
+            (Lines{"at hall", "hall left toilet > toilet~2"}));
+  EXPECT_EQ(issuesOf({"robot_in place=hall"}, "neighbours side=left places=lab count=2"),
+            Lines{"meaningless"});
   EXPECT_EQ(issuesOf({"robot_in place=hall"}, "each_side places=toilets count=3"),
             Lines{"meaningless"});
   EXPECT_EQ(issuesOf({"robot_in place=hall"}, "each_side places=toilet,lab"), Lines{"ask"});

@@ -218,6 +218,23 @@ std::vector<Id> placesOfOneName(Statement& s, const SaidName& name, double count
   return ids;
 }
 
+std::vector<Id> countedPlaces(Statement& s) {
+  const std::string slot = s.said().find("places") != nullptr ? "places" : "place";
+  const auto count = s.said().number("count");
+  const auto names = s.said().names(slot);
+  const bool several = count && *count > 1.0 && names.size() == 1 && names[0].reference.empty();
+  if (several) {
+    const std::string full = fullName(s, names[0]);
+    if (s.listener().names.singular(full) != full) return placesOfOneName(s, names[0], *count);
+  }
+  std::vector<Id> ids = placesOf(s, slot);
+  if (count && static_cast<std::size_t>(*count) != ids.size()) {
+    s.fail(IssueKind::kMeaningless, "count",
+           {{"count", shown(*count)}, {"named", std::to_string(ids.size())}});
+  }
+  return ids;
+}
+
 std::vector<Id> placesBetween(Statement& s) {
   const auto said = s.said().names("between");
   if (said.size() == 1 && said[0].reference.empty()) {

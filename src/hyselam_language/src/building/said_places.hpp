@@ -22,6 +22,9 @@ std::vector<Id> placesOf(Statement& statement, const std::string& slot);
 std::vector<Id> knownPlacesOf(Statement& statement, const std::string& slot);
 /// "Two toilets": so many places of one name, those missing made.
 std::vector<Id> placesOfOneName(Statement& statement, const SaidName& name, double count);
+/// All places of slot `places`; "two toilets" are two of one name. Fails if another number of them
+/// was announced than is named.
+std::vector<Id> countedPlaces(Statement& statement);
 /// The two places of slot `between`: two names, or two places of one name ("the toilets").
 std::vector<Id> placesBetween(Statement& statement);
 /// The name that was said, in full: "Lisa's office" for "my office", "Mary's office" for "Mary's".

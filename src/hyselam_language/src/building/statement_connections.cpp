@@ -53,14 +53,6 @@ void forgetLastJoined(Statement& s, Id place) {
 
 }  // namespace
 
-void checkCount(Statement& s, std::size_t named) {
-  const auto count = s.said().number("count");
-  if (count && static_cast<std::size_t>(*count) != named) {
-    s.fail(IssueKind::kMeaningless, "count",
-           {{"count", shown(*count)}, {"named", std::to_string(named)}});
-  }
-}
-
 Id observer(Statement& s) {
   const auto robot = s.building().robot_place;
   if (s.said().find("from") == nullptr) {
@@ -103,8 +95,7 @@ std::optional<int> rankOf(Statement& s) {
 void neighbours(Statement& s) {
   const Side side = sideOf(s);
   const Id from = observer(s);
-  const std::vector<Id> ids = placesOf(s, s.said().find("places") != nullptr ? "places" : "place");
-  checkCount(s, ids.size());
+  const std::vector<Id> ids = countedPlaces(s);
   if (s.isDenial()) {
     denySide(s, from, side, ids);
     return s.setSubjects(ids);

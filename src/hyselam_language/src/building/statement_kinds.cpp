@@ -29,7 +29,6 @@ RecordStatement statementKind(const std::string& intent) {
                                                              {"forget_place", gone},
                                                              {"gone", gone},
                                                              {"located", located},
-                                                             {"read_back", located},
                                                              {"doors", doors},
                                                              {"row", row},
                                                              {"each_side", eachSide},

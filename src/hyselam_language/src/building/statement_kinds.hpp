@@ -44,8 +44,6 @@ void takeSizeWord(Statement& s, Id id);
 void takeDoors(Statement& s, Id id);
 /// A further name of a place, unless it is one of another place.
 void addAlias(Statement& s, Id id, const SaidName& name);
-/// Fails unless as many were named as announced.
-void checkCount(Statement& s, std::size_t named);
 /// The place from which sides are seen: slot `from`, or where the robot is.
 Id observer(Statement& s);
 /// The side told, also "the same side"; remembers it.

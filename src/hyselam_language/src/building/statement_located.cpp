@@ -69,7 +69,6 @@ void readRelations(Statement& s, Location* location) {
   add("behind", RelationKind::kBehind);
   add("after", RelationKind::kAfter);
   add("part_of", RelationKind::kInside);
-  add("larger_than", RelationKind::kLarger);
   for (const Id other : placesOf(s, "before")) {
     location->relations.push_back(relationOf(RelationKind::kAfter, other, kItself));
   }
@@ -187,12 +186,40 @@ void record(Statement& s, const Location& location, Id id) {
   }
 }
 
+/// "Not on the left but on the right", "not next to the lab but ...": what it was said to be.
+void forgetLocation(Statement& s, Id id) {
+  s.setCorrected();
+  const Utterance& u = s.said();
+  const auto side = hyselam_topo::sideOf(u.word("was_side"));
+  if (side && *side != Side::kUnknown) {
+    DescribedRelation denial = relationOf(RelationKind::kAtSide, id, observer(s));
+    denial.side = *side;
+    recordDenial(s, denial);
+  }
+  const auto rank = hyselam::parseNumber(u.word("was_nth"));
+  for (DescribedConnection& each : s.building().connections) {
+    if (rank && each.to == id && each.rank == static_cast<int>(*rank)) each.rank.reset();
+  }
+  const std::vector<Id> others = placesOf(s, "was");
+  auto& all = s.building().relations;
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const DescribedRelation& each) {
+                             const Id other = each.a == id ? each.b : each.b == id ? each.a : 0;
+                             return !each.denied && other != 0 &&
+                                    std::find(others.begin(), others.end(), other) != others.end();
+                           }),
+            all.end());
+  for (const Id other : others) {
+    const DescribedConnection* found = findConnection(s.building(), id, other);
+    if (found != nullptr && found->side == Side::kUnknown) removeConnection(*found, &s.building());
+  }
+}
+
 }  // namespace
 
 void located(Statement& s) {
   const Utterance& u = s.said();
-  const std::vector<Id> ids = placesOf(s, u.find("places") != nullptr ? "places" : "place");
-  checkCount(s, ids.size());
+  const std::vector<Id> ids = countedPlaces(s);
   const Location location = locationOf(s);
   const bool sized = u.number("length") || u.number("width") || u.number("area") ||
                      u.number("doors") || !u.word("size_word").empty();
@@ -205,6 +232,7 @@ void located(Statement& s) {
       deny(s, location, id);
       continue;
     }
+    if (!u.word("instead").empty()) forgetLocation(s, id);
     record(s, location, id);
     takeSizeWord(s, id);
     if (u.number("doors")) takeDoors(s, id);

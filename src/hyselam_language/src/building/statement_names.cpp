@@ -32,6 +32,22 @@ void replaceAlias(Statement& s, Id id) {
   s.setCorrected();
 }
 
+/// "It used to be John's office": no place has that further name any more.
+void forgetNames(Statement& s, const std::vector<SaidName>& was) {
+  const PlaceNames& names = s.listener().names;
+  for (const SaidName& name : was) {
+    const NameKey key = names.key(fullName(s, name));
+    for (DescribedPlace& place : s.building().places) {
+      const auto isMeant = [&](const std::string& each) {
+        return compare(names.key(each), key) == SameName::kYes;
+      };
+      const auto gone = std::remove_if(place.aliases.begin(), place.aliases.end(), isMeant);
+      if (gone != place.aliases.end()) s.setCorrected();
+      place.aliases.erase(gone, place.aliases.end());
+    }
+  }
+}
+
 /// Two names of one place, of which the first may be told as one of the second: "The fish tank is
 /// also called C12", where only C12 is known.
 void takeBothNames(Statement& s, const SaidName& said, const std::vector<SaidName>& aliases) {
@@ -95,6 +111,7 @@ void alias(Statement& s) {
   if (said.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
   if (said[0].reference == "next") return nextIs(s);
   if (s.isDenial()) return notAlias(s);
+  forgetNames(s, s.said().names("was"));
   takeBothNames(s, said[0], s.said().names("aliases"));
 }
 

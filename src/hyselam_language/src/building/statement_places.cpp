@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "edit_description.hpp"
+#include "hyselam_common/numbers.hpp"
 #include "record_facts.hpp"
 #include "said_places.hpp"
 #include "statement_kinds.hpp"
@@ -35,7 +36,8 @@ void setSize(Statement& s, std::optional<double>* member, const std::optional<do
 /// A number that was said; one known before is replaced by a correction only.
 void takeCount(Statement& s, const std::string& slot, const std::string& other,
                std::optional<int>* known) {
-  const double said = s.said().number(slot).value_or(1.0);
+  const auto word = hyselam::parseNumber(s.said().word(slot));
+  const double said = s.said().number(slot).value_or(word.value_or(1.0));
   if (!(said >= 1.0) || said > static_cast<double>(std::numeric_limits<int>::max())) {
     s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", shown(said)}});
   }
@@ -54,6 +56,23 @@ void robotNotIn(Statement& s) {
   s.setSubjects({id});
 }
 
+/// "This used to be the library, now it is the lab": where the robot is has a new name.
+void renameRobotPlace(Statement& s) {
+  const auto was = s.said().names("was"), now = s.said().names("place");
+  const auto robot = s.building().robot_place;
+  if (was.size() != 1 || now.size() != 1 || !robot || !now[0].reference.empty()) return;
+  const PlaceNames& names = s.listener().names;
+  const std::vector<Id> known = placesOf(fullName(s, was[0]), s.state(), names);
+  const std::string full = fullName(s, now[0]);
+  if (known != std::vector<Id>{*robot} || !placesOf(full, s.state(), names).empty()) return;
+  checkName(s, now[0], full);
+  DescribedPlace& place = s.at(*robot);
+  if (place.kind == names.kindOf(place.name)) place.kind = names.kindOf(full);
+  place.name = full;
+  s.context().variants.erase(*robot);
+  s.setCorrected();
+}
+
 }  // namespace
 
 void refuseDenial(Statement& s) {
@@ -62,6 +81,7 @@ void refuseDenial(Statement& s) {
 
 void robotIn(Statement& s) {
   if (s.isDenial()) return robotNotIn(s);
+  renameRobotPlace(s);
   const Id id = placeOf(s, "place");
   if (s.building().robot_place != id) s.context().side.reset();
   s.building().robot_place = id;
@@ -160,13 +180,7 @@ void doors(Statement& s) {
 
 void exists(Statement& s) {
   if (s.isDenial()) return gone(s);
-  const auto count = s.said().number("count");
-  const auto names = s.said().names("places");
-  if (!count || names.size() != 1 || !names[0].reference.empty()) {
-    if (count) checkCount(s, names.size());
-    return s.setSubjects(placesOf(s, "places"));
-  }
-  s.setSubjects(placesOfOneName(s, names[0], *count));
+  s.setSubjects(countedPlaces(s));
 }
 
 void gone(Statement& s) {
