@@ -21,11 +21,24 @@ SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::strin
       tokens(std::move(tokens_of)),
       names(grammar, text, tokens) {
   if (isTooLong()) return;
+  const bool accents = std::any_of(tokens.begin(), tokens.end(),
+                                   [](const Token& token) { return token.has_accents; });
   for (const Token& token : tokens) {
     const bool known = grammar.known_words.count(token.folded) != 0;
     const bool letters = std::all_of(token.folded.begin(), token.folded.end(),
                                      [](char c) { return (c >= 'a' && c <= 'z') || c == '\''; });
     matches.push_back(grammar.vocabulary.matches(token, !known && letters));
+    if (!accents || token.has_accents) continue;
+    // Who writes accents means "e", not "é".
+    auto& found = matches.back();
+    const bool separates = std::any_of(found.begin(), found.end(), [&](const auto& match) {
+      const auto& all = grammar.clause_separators;
+      return match.cost == 0 && std::find(all.begin(), all.end(), Phrase{match.word}) != all.end();
+    });
+    if (!separates) continue;
+    found.erase(std::remove_if(found.begin(), found.end(),
+                               [](const auto& match) { return match.cost > 0; }),
+                found.end());
   }
 }
 
