@@ -71,6 +71,30 @@ TEST(TopoParser, AsidesAreLeftOutAndSaid) {
             1u);
 }
 
+TEST(TopoParser, WhatIsClearIsUnderstoodAndTheRestTold) {
+  const auto said = parser()
+                        .parse(
+                            "The kitchen is next to the lab, and the archive hums in the door, "
+                            "and the lift is opposite the stairs.")
+                        .utterances;
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_EQ(testing::outline(said[0]), "next_to a=kitchen b=lab");
+  EXPECT_FALSE(said[1].understood());
+  EXPECT_EQ(said[1].text, "and the archive hums in the door");
+  EXPECT_FALSE(said[1].suggestion.empty());
+  EXPECT_EQ(testing::outline(said[2]), "opposite a=lift b=stairs");
+  // What may change the rest is not taken apart from it.
+  for (const char* text :
+       {"The kitchen is next to the lab, or the archive hums.",
+        "The kitchen is next to the lab, if the archive hums in the door.",
+        "The kitchen is next to the lab, no wait, the archive hums in the door."}) {
+    const auto all = parser().parse(text).utterances;
+    EXPECT_TRUE(std::none_of(all.begin(), all.end(), [](const Utterance& u) {
+      return u.understood();
+    })) << text;
+  }
+}
+
 TEST(TopoParser, ClausesMayRunOnAsRecognisersWriteThem) {
   const auto said =
       parser().parse("you are in the corridor on your left is the kitchen").utterances;

@@ -28,7 +28,8 @@ bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) 
 
 }  // namespace
 
-std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar) {
+std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
+                            bool all) {
   std::vector<Aside> asides;
   std::size_t parts = 0;
   for (std::size_t begin = 0; begin < tokens.size();) {
@@ -45,7 +46,7 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
     if (!tells) asides.push_back({begin, end});
     begin = end;
   }
-  if (asides.size() == parts) asides.clear();
+  if (asides.size() == parts && !all) asides.clear();
   return asides;
 }
 

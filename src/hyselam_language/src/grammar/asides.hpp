@@ -18,7 +18,9 @@ struct Aside {
 
 /// The parts that may be left out: they hold no word that tells of places, sides, numbers, denial
 /// or doubt, and no name. None if nothing else would be left.
-std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar);
+/// `all`: even if nothing would be left.
+std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
+                            bool all = false);
 
 /// The tokens without an aside: a comma stands for it.
 std::vector<Token> without(const std::vector<Token>& tokens, const std::vector<Aside>& asides);

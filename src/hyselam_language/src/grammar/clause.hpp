@@ -16,7 +16,7 @@ struct Clause {
   int cost = 0;
   bool correction = false;
   bool only_corrects = false;  ///< has no meaning if it does not correct anything
-  bool tied = false;  ///< where one name ends and the next begins cannot be told
+  bool tied = false;           ///< where one name ends and the next begins cannot be told
   std::vector<Slot> slots;
   std::vector<Spelling> spelling;
 

@@ -1,6 +1,7 @@
 #include "sentence_matcher.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "asides.hpp"
@@ -11,6 +12,7 @@
 #include "matching_costs.hpp"
 #include "pattern_run.hpp"
 #include "refusal.hpp"
+#include "sentence_parts.hpp"
 #include "sentence_words.hpp"
 #include "shorter_sentence.hpp"
 #include "token_meanings.hpp"
@@ -190,6 +192,14 @@ bool mayRunOn(const std::vector<Token>& tokens, const CompiledGrammar& grammar) 
          });
 }
 
+std::vector<Token> tokensWithin(const std::vector<Token>& tokens, TextRange range) {
+  std::vector<Token> within;
+  std::copy_if(tokens.begin(), tokens.end(), std::back_inserter(within), [&](const Token& token) {
+    return range.begin <= token.range.begin && token.range.end <= range.end;
+  });
+  return within;
+}
+
 std::vector<std::string> namesIn(const std::vector<Utterance>& said) {
   std::vector<std::string> names;
   for (const Utterance& utterance : said) {
@@ -269,6 +279,18 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
   if (mayRunOn(tokens, grammar)) {
     std::vector<Utterance> clauses = read(tokens, true);
     if (isUnderstood(clauses)) return clauses;
+  }
+  if (tokens.size() <= kLongestRunOn && !sentence.is_question) {
+    std::vector<Utterance> parts = readParts(tokens, text, grammar, [&](std::vector<Token> of) {
+      const Sentence part{{of.front().range.begin, of.back().range.end}, false};
+      return SentenceReader(grammar, text, part, std::move(of), expected, false).read();
+    });
+    for (Utterance& part : parts) {
+      if (part.understood()) continue;
+      const Sentence alone{part.range, false};
+      propose(SentenceWords(grammar, text, alone, tokensWithin(tokens, part.range)), &part);
+    }
+    if (!parts.empty()) return parts;
   }
   propose(SentenceWords(grammar, text, sentence, tokens), &said.front());
   return said;
