@@ -321,7 +321,10 @@ TEST(PlaceNames, VariantsOfANameMeanOnePlace) {
         std::make_pair("room room3", "room3"), std::make_pair("room Room B", "Room B"),
         std::make_pair("room two", "room 2"), std::make_pair("John’s office", "John's office"),
         std::make_pair("the kitchen", "Kitchen"), std::make_pair("Café", "cafe"),
-        std::make_pair("laboratory 3", "lab 3")}) {
+        std::make_pair("laboratory 3", "lab 3"),
+        std::make_pair("the lab of Dr. Kim", "Dr. Kim's lab"),
+        std::make_pair("office of the dean", "dean's office"),
+        std::make_pair("gabinete do Rui", "gabinete de Rui")}) {
     EXPECT_EQ(same(a, b), SameName::kYes) << a << " | " << b;
   }
   for (const auto& [a, b] : {std::make_pair("room I-110", "I-110"), std::make_pair("A", "room A"),
@@ -334,6 +337,7 @@ TEST(PlaceNames, VariantsOfANameMeanOnePlace) {
         std::make_pair("room 1", "room 11")}) {
     EXPECT_EQ(same(a, b), SameName::kNo) << a << " | " << b;
   }
+  EXPECT_EQ(same("room of Ann", "room of Tom"), SameName::kNo);
   EXPECT_EQ(names.find("110", {{"room 110"}, {"hall"}}), (std::vector<std::size_t>{0}));
   EXPECT_EQ(names.find("110", {{"room 110"}, {"lab 110"}}), (std::vector<std::size_t>{0, 1}));
   EXPECT_EQ(names.find("110", {{"room 110"}, {"110"}}), (std::vector<std::size_t>{1}));

@@ -21,6 +21,38 @@ std::string joined(const std::vector<std::string>& words, std::size_t from = 0) 
   return all;
 }
 
+using Types = std::vector<const NameType*>;
+
+/// "office of Tom" is "Tom's office", in languages whose head comes last; not of codes: "room of
+/// A".
+void ownerFirst(const Types& types, std::vector<std::string>* words) {
+  for (std::size_t k = 1; k + 1 < words->size(); ++k) {
+    const std::string& word = (*words)[k];
+    const auto type = std::find_if(types.begin(), types.end(), [&](const NameType* each) {
+      return !each->head_first && each->joiners.count(word) != 0 &&
+             each->part_joiners.count(word) != 0;
+    });
+    if (type == types.end()) continue;
+    std::vector<std::string> owner(words->begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                                   words->end());
+    if (owner.size() > 1 && (*type)->isArticle(owner.front())) owner.erase(owner.begin());
+    if (owner.back().size() < 3 || hasDigit(owner.back())) return;
+    words->resize(k);
+    words->insert(words->begin(), owner.begin(), owner.end());
+    return;
+  }
+}
+
+/// "gabinete do Rui" is "gabinete de Rui".
+void dropJoiners(const Types& types, std::vector<std::string>* words) {
+  if (words->size() < 3) return;
+  const auto joins = [&](const std::string& word) {
+    return std::any_of(types.begin(), types.end(),
+                       [&](const NameType* type) { return type->joiners.count(word) != 0; });
+  };
+  words->erase(std::remove_if(words->begin() + 1, words->end() - 1, joins), words->end() - 1);
+}
+
 }  // namespace
 
 std::vector<std::string> wordsOfName(const std::string& name) {
@@ -69,16 +101,8 @@ NameKey PlaceNames::key(const std::string& name) const {
   const bool article = words.size() > 1 && words[0].size() > 1 &&
                        anyType([&](const NameType* type) { return type->isArticle(words[0]); });
   if (article) words.erase(words.begin());
-  // "gabinete do Rui", "gabinete de Rui"
-  for (std::size_t k = 1; k + 1 < words.size();) {
-    const bool joins =
-        anyType([&](const NameType* type) { return type->joiners.count(words[k]) != 0; });
-    if (joins) {
-      words.erase(words.begin() + static_cast<std::ptrdiff_t>(k));
-    } else {
-      ++k;
-    }
-  }
+  ownerFirst(types, &words);
+  dropJoiners(types, &words);
   key.full = key.core = joined(words);
   std::size_t from = 0;
   while (from < words.size()) {
