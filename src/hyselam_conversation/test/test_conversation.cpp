@@ -87,6 +87,17 @@ TEST(Conversation, AnswersGoToWhoAskedLast) {
   EXPECT_TRUE(contains(yes.replyText(), "library")) << yes.replyText();
 }
 
+TEST(Conversation, StopEndsTheQuestionOfTheLayerOfObjects) {
+  ExampleTalk example;
+  example.talk.confirmNames("SS01", {"kitchen"});
+  example.talk.confirmNames("SS05", {"library"});
+  example.talk.say("The pen is in the kitchen.");
+  ASSERT_NE(example.talk.say("The pen is in the library.").question, "");
+  EXPECT_EQ(example.talk.say("Stop!").question, "");
+  example.talk.say("Yes.");
+  EXPECT_TRUE(contains(example.talk.say("Where is the pen?").replyText(), "kitchen"));
+}
+
 TEST(Conversation, EnteringAPlaceWithAGuessedNameAsks) {
   ExampleTalk example;
   example.talk.guessNames("SS05", {"library"});

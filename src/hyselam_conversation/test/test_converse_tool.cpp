@@ -89,9 +89,9 @@ TEST(ChatOffline, NeedsNoMaster) {
 }
 
 TEST(ChatOffline, ShowsAnOpenQuestionAgain) {
-  const Done done = run("ROS_HOME=" + ::testing::TempDir() +
-                        " python3 " HYSELAM_PACKAGE_DIR "/test/chat_in_terminal.py " + kChat +
-                        " '@ask' '@ask'");
+  const Done done =
+      run("ROS_HOME=" + ::testing::TempDir() +
+          " python3 " HYSELAM_PACKAGE_DIR "/test/chat_in_terminal.py " + kChat + " '@ask' '@ask'");
   EXPECT_EQ(done.status, 0) << done.output;
   EXPECT_NE(done.output.find("(asked before: What is the name of this place?)"), std::string::npos)
       << done.output;

@@ -56,7 +56,7 @@ TEST(Transcript, OtherDirectivesAreRefusedWithTheirLine) {
 }
 
 TEST(TranscriptPlayer, RecordsTellWhatATextHasChanged) {
-  TranscriptPlayer player(example());
+  TranscriptPlayer player(example(), exampleLanguages());
   EXPECT_FALSE(player.play(stepsOf("@id first", "")[0]).has_value());
   const auto record =
       player.play(stepsOf("You are in the corridor. On your left you have the kitchen.", "")[0]);
@@ -72,7 +72,7 @@ TEST(TranscriptPlayer, RecordsTellWhatATextHasChanged) {
 }
 
 TEST(TranscriptPlayer, EachResetBeginsAnew) {
-  TranscriptPlayer player(example());
+  TranscriptPlayer player(example(), exampleLanguages());
   for (const Step& step : stepsOf("This is the kitchen.\n@ SS05\n@reset pt\n", ""))
     player.play(step);
   const auto record = player.play(stepsOf("@ SS04", "")[0]);
@@ -82,7 +82,7 @@ TEST(TranscriptPlayer, EachResetBeginsAnew) {
 }
 
 TEST(TranscriptPlayer, ExpectationsThatAreNotMetAreTold) {
-  TranscriptPlayer player(example());
+  TranscriptPlayer player(example(), exampleLanguages());
   for (const Step& step : stepsOf("Hello.\n> Hello\n> Goodbye\n", "")) player.play(step);
   ASSERT_EQ(player.failures().size(), 1u);
   EXPECT_NE(player.failures()[0].find("line 3"), std::string::npos) << player.failures()[0];
@@ -91,16 +91,17 @@ TEST(TranscriptPlayer, ExpectationsThatAreNotMetAreTold) {
 TEST(TranscriptPlayer, WithoutAStartItIsInTheCorridor) {
   Beginning beginning = example();
   beginning.start = "";
-  EXPECT_EQ(TranscriptPlayer(beginning).conversation().dialogue().robot().place, 11u);
+  EXPECT_EQ(TranscriptPlayer(beginning, exampleLanguages()).conversation().dialogue().robot().place,
+            11u);
   beginning.start = "the moon";
-  EXPECT_THROW(TranscriptPlayer{beginning}, hyselam::InputError);
+  EXPECT_THROW(TranscriptPlayer(beginning, exampleLanguages()), hyselam::InputError);
 }
 
 TEST(TranscriptPlayer, ShippedTalksGoAsWritten) {
   std::size_t talks = 0;
   for (const auto& file : std::filesystem::directory_iterator(HYSELAM_PACKAGE_DIR "/talks")) {
     ++talks;
-    TranscriptPlayer player(example());
+    TranscriptPlayer player(example(), exampleLanguages());
     for (const Step& step :
          stepsOf(hyselam::readTextFile(file.path(), 1u << 20), file.path().filename())) {
       player.play(step);

@@ -26,7 +26,8 @@ struct Beginning {
 class TranscriptPlayer {
  public:
   /// @throws as Conversation, and hyselam::InputError for a start that is no place.
-  explicit TranscriptPlayer(Beginning beginning);
+  explicit TranscriptPlayer(Beginning beginning,
+                            std::shared_ptr<const Languages> languages = Languages::shipped());
 
   /// The record of what a step leads to (exchange_json.hpp) with `id` and `session`, the number of
   /// talks before; nothing for a step that only prepares. Throws as Conversation.
@@ -41,7 +42,7 @@ class TranscriptPlayer {
   std::optional<Exchange> perform(const Step& step);
 
   Beginning beginning_;
-  std::shared_ptr<const Languages> languages_ = Languages::shipped();
+  std::shared_ptr<const Languages> languages_;
   std::optional<Conversation> conversation_;
   std::string reply_;  // to the last step that led to something
   std::vector<std::string> failures_;

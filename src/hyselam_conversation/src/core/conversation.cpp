@@ -262,6 +262,7 @@ Exchange Conversation::say(const std::string& text) {
   const hyselam_topo::DescribedBuilding described = dialogue_.description();
   const Reply reply = shared_.hear(text, true);
   out.utterances = reply.utterances;
+  if (reply.ends_other_question) fill_map_.dropQuestion();
   take(reply, Layer::kPlaces, out);
   if (reply.ends_other_question) fill_map_.dropQuestion();
   for (const hyselam_topo::ForwardedSentence& sentence : reply.forwarded) {

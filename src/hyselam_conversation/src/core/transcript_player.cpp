@@ -19,7 +19,8 @@ std::string defaultStart(const hyselam_topo::AugmentedTopologicalMap& map) {
 
 }  // namespace
 
-TranscriptPlayer::TranscriptPlayer(Beginning beginning) : beginning_(std::move(beginning)) {
+TranscriptPlayer::TranscriptPlayer(Beginning beginning, std::shared_ptr<const Languages> languages)
+    : beginning_(std::move(beginning)), languages_(std::move(languages)) {
   begin("");
 }
 
