@@ -232,6 +232,76 @@ TEST(DialogueQuestion, ForgettingEverythingIsAskedFirst) {
   EXPECT_TRUE(talk.names(1).empty());
 }
 
+// ---- Languages ----
+
+TEST(DialogueLanguage, OthersAreToldWhatItSpeaks) {
+  for (const char* said :
+       {"La cuisine est à gauche.", "Die Küche ist links.", "La cocina está a la izquierda.",
+        "Dónde está el baño?", "La cucina è a sinistra.", "Où est le bureau de Marie ?",
+        "El despacho está junto al pasillo."}) {
+    Talk talk;
+    EXPECT_EQ(talk.say(said), "I speak English and Portuguese.") << said;
+  }
+  for (const char* said : {"Flurb the gnarl of sqwox.", "A cozinha floba à esquerda.", "xyzzy",
+                           "a sala está fechada", "O zorbo da casa"}) {
+    Talk talk;
+    EXPECT_FALSE(has(talk.say(said), "Portuguese")) << said;
+  }
+}
+
+// ---- Knowledge ----
+
+TEST(DialogueKnowledge, RelationsAreAnsweredFromWhatWasTold) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.say("The pantry is next to the kitchen.");
+  talk.say("The lab is between the pantry and the archive.");
+  EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "Yes.");
+  EXPECT_EQ(talk.say("Is the archive next to the kitchen?"), "I do not know.");
+  EXPECT_TRUE(has(talk.say("Which room is between the pantry and the archive?"), "lab"));
+  const std::string told = talk.say("What have I told you?");
+  EXPECT_TRUE(has(told, "The pantry is next to the kitchen.")) << told;
+  EXPECT_TRUE(has(talk.say("What do you know about the pantry?"), "next to the kitchen"));
+}
+
+TEST(DialogueKnowledge, TheSpeakerIsKnown) {
+  Talk talk;
+  EXPECT_TRUE(has(talk.say("What is my name?"), "I do not know your name"));
+  talk.say("This is the kitchen.");
+  const std::string asked = talk.say("My office is next to the kitchen.");
+  EXPECT_TRUE(has(asked, "?")) << asked;
+  EXPECT_EQ(talk.asked(), Question::Kind::kSpeaker) << asked;
+  const std::string reply = talk.say("I'm Lisa.");
+  EXPECT_TRUE(has(reply, "Lisa's office is next to the kitchen")) << reply;
+  EXPECT_EQ(talk.say("Who am I?"), "You are Lisa.");
+}
+
+TEST(DialogueKnowledge, TheLastStatementIsTakenBack) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.say("The pantry is next to the kitchen.");
+  const std::string reply = talk.say("Undo that.");
+  EXPECT_TRUE(has(reply, "pantry")) << reply;
+  EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "I do not know.");
+}
+
+TEST(DialogueKnowledge, WhatItCannotDoIsRefusedInWords) {
+  Talk talk;
+  EXPECT_TRUE(has(talk.say("Take this to the kitchen."), "I cannot carry anything"));
+  EXPECT_TRUE(has(talk.say("Follow the corridor."), "I cannot follow"));
+  EXPECT_TRUE(has(talk.say("Come here."), "Follow me"));
+}
+
+TEST(DialogueName, ItIsNamesThePlaceWhereTheRobotIs) {
+  for (const char* said : {"It's the toilet.", "It is the toilet.", "That's the toilet.",
+                           "We're now in the toilet.", "You are in the toilet."}) {
+    Talk talk;
+    EXPECT_EQ(talk.say(said), "Thank you. SS01 is toilet.") << said;
+    EXPECT_EQ(talk.names(1), Names{"toilet"}) << said;
+    ASSERT_TRUE(talk.dialogue.description().robot_place) << said;
+  }
+}
+
 // ---- Statements ----
 
 TEST(DialogueStatement, IsReadBack) {

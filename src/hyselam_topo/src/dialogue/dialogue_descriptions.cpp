@@ -75,7 +75,7 @@ void Dialogue::readBack(const DescribedBuilding& before, bool here_told, Reply& 
   if (known == after) return;
   std::string told;
   try {
-    for (const std::string& each : describeChange(known, after, parser_.grammar(language_))) {
+    for (const std::string& each : describeChange(known, after, grammar())) {
       told += (told.empty() ? "" : " ") + each;
     }
   } catch (const hyselam::InputError&) {

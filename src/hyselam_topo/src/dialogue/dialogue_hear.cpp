@@ -7,6 +7,7 @@
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
+#include "other_languages.hpp"
 #include "said_answer.hpp"
 
 namespace hyselam_topo {
@@ -72,6 +73,25 @@ Dialogue::Handler Dialogue::handlerOf(const Utterance& u) {
       {"what_is_on_side", &Dialogue::answerOnSide},
       {"what_is_size", &Dialogue::answerSize},
       {"which_places", &Dialogue::answerWhichPlaces},
+      {"ask_told", &Dialogue::answerTold},
+      {"what_is_known", &Dialogue::answerWhatIsKnown},
+      {"owner_of", &Dialogue::answerOwner},
+      {"ask_owner", &Dialogue::answerOwner},
+      {"person_place", &Dialogue::answerPersonPlace},
+      {"is_located", &Dialogue::answerIsLocated},
+      {"ask_relation", &Dialogue::answerIsLocated},
+      {"is_joined", &Dialogue::answerIsJoined},
+      {"is_larger", &Dialogue::answerIsLarger},
+      {"what_is_located", &Dialogue::answerWhatIsLocated},
+      {"is_known", &Dialogue::answerIsKnown},
+      {"nearest", &Dialogue::answerNearest},
+      {"how_many", &Dialogue::answerHowMany},
+      {"ask_how_many", &Dialogue::answerHowMany},
+      {"largest", &Dialogue::answerLargest},
+      {"who_am_i", &Dialogue::answerWhoAmI},
+      {"follow_corridor", &Dialogue::refuseCorridor},
+      {"come_here", &Dialogue::refuseComing},
+      {"carry", &Dialogue::refuseCarrying},
       {"help", &Dialogue::help},
       {"greeting", &Dialogue::greet},
       {"thanks", &Dialogue::acceptThanks}};
@@ -144,6 +164,7 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
   turn.options = options;
   turn.says_more = std::any_of(parsed.utterances.begin(), parsed.utterances.end(),
                                [](const Utterance& u) { return u.understood() && !isAnswer(u); });
+  if (refuseOtherLanguage(parsed, turn)) return turn.reply;
   if (!options.others_asked_last) takeAnswer(parsed, turn);
   for (std::size_t i = turn.used; i < parsed.utterances.size() && !turn.broken_off; ++i) {
     const Utterance& u = parsed.utterances[i];
@@ -207,6 +228,20 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (u.intent != "go_to") startGoal(turn);
     handleCommand(u, turn);
   }
+}
+
+bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, Turn& turn) {
+  if (parsed.utterances.empty() || parsed.misunderstood() < parsed.utterances.size()) return false;
+  std::set<std::string> spoken;
+  for (const Grammar& each : parser_.grammars()) spoken.insert(each.language());
+  if (OtherLanguages::shipped().find(turn.text, spoken).empty()) return false;
+  builder_.sentenceRefused();
+  const std::string refusal = phrases().say("only_languages");
+  turn.reply.refusals.push_back({turn.text, refusal, false, ""});
+  turn.not_understood.push_back(refusal);
+  turn.reply.sentences.push_back(refusal);
+  settleQuestion(turn);
+  return true;
 }
 
 void Dialogue::refuse(const Utterance& u, Turn& turn) {

@@ -83,8 +83,11 @@ void Dialogue::tellMoved(std::vector<MovedName> moved, bool asks, Reply& out) {
   }
   if (!lost.empty()) out.sentences.push_back(p.say("lost_names", {{"names", p.list(lost)}}));
   if (elsewhere.empty()) return;
-  // One question at a time.
-  if (!asks || (questions_.isOpen() && questions_.isNew())) {
+  // One question at a time; what was told to be unsure moves without one.
+  const bool any_sure = std::any_of(elsewhere.begin(), elsewhere.end(), [&](const MovedName& each) {
+    return unsure_.names.count(each.name) == 0;
+  });
+  if (!asks || !any_sure || (questions_.isOpen() && questions_.isNew())) {
     out.sentences.push_back(p.say("told_moved", {{"moves", p.list(told)}}));
     return;
   }

@@ -212,6 +212,8 @@ class Dialogue {
   /// What remains after stop and cancel.
   Reply understand(const std::string& text, const HearOptions& options);
   void refuse(const Utterance& u, Turn& turn);
+  /// Nothing of it was understood, and it is in another language.
+  bool refuseOtherLanguage(const ParsedText& parsed, Turn& turn);
   /// Asks whether something was meant that was not understood.
   void propose(Turn& turn);
   void askProposal(const std::string& sentence, Reply& reply);
@@ -325,6 +327,32 @@ class Dialogue {
   void answerOnSide(const Utterance& u, Turn& turn);
   void answerSize(const Utterance& u, Turn& turn);
   void answerWhichPlaces(const Utterance& u, Turn& turn);
+  void answerTold(const Utterance& u, Turn& turn);
+  void answerWhatIsKnown(const Utterance& u, Turn& turn);
+  void answerOwner(const Utterance& u, Turn& turn);
+  void answerPersonPlace(const Utterance& u, Turn& turn);
+  void answerIsLocated(const Utterance& u, Turn& turn);
+  void answerIsJoined(const Utterance& u, Turn& turn);
+  void answerIsLarger(const Utterance& u, Turn& turn);
+  void answerWhatIsLocated(const Utterance& u, Turn& turn);
+  void answerIsKnown(const Utterance& u, Turn& turn);
+  void answerNearest(const Utterance& u, Turn& turn);
+  void answerHowMany(const Utterance& u, Turn& turn);
+  void answerLargest(const Utterance& u, Turn& turn);
+  void answerWhoAmI(const Utterance& u, Turn& turn);
+  void sayTruth(const std::optional<bool>& truth, const std::string& reason, Reply& reply);
+  void refuseCorridor(const Utterance& u, Turn& turn);
+  void refuseComing(const Utterance& u, Turn& turn);
+  void refuseCarrying(const Utterance& u, Turn& turn);
+
+  /// Of the language of the talk.
+  const Grammar& grammar() const;
+  /// The places of the description that a name, "here" or "it" means.
+  std::vector<Id> described(const SaidName& name) const;
+  /// The places of the map where a name is confirmed.
+  std::vector<Id> confirmedPlaces(const std::string& name) const;
+  /// The places of the map with a name of the same kind: all toilets.
+  std::vector<Id> placesOfKind(const std::string& name) const;
 
   /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
   std::vector<Id> resolve(const SaidName& name, Reply& reply);
