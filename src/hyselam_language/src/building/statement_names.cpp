@@ -132,6 +132,11 @@ void owner(Statement& s) {
             .phrase("owned", {{"owner", each.text, false, true}, {"kind", kind, false, true}});
     each.reference.clear();
   }
+  if (owned.empty()) {  // "I work in room 5"
+    owned.emplace_back();
+    owned.back().text = kind;
+    owned.back().speaker = true;
+  }
   takeBothNames(s, said[0], owned);
 }
 

@@ -52,6 +52,7 @@ struct NameType {
   std::set<std::string> indefinite;
   std::set<std::string> joiners;                 ///< behind them an article may stand: "of the"
   std::set<std::string> stop;                    ///< never within a name
+  bool of_speaker = false;                       ///< all are the speaker's, without a word for it
   std::set<std::string> speaker;                 ///< before what is the speaker's: "my"
   std::set<std::string> elliptic_suffix;         ///< "Mary's": the noun was said before
   std::set<std::string> elliptic_prefix;         ///< "o da Teresa": the same

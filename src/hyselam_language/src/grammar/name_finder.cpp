@@ -291,7 +291,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
         // "my room": whose it is tells which.
         found.push_back(
             {k + 1, kNameCost + kNameWordCost * static_cast<int>(words), nameOf(begin, k + 1), {}});
-        found.back().name.speaker = speaker;
+        found.back().name.speaker = speaker || type.of_speaker;
         complete(begin, k + 1, type, &found.back().name);
       } else if (!type.silent) {
         failures_.push_back({begin, wrong, k + 1});

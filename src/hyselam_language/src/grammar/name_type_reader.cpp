@@ -107,6 +107,8 @@ void readNameType(const std::string& name, const GrammarNode& node, CompiledGram
       type.head_first = isHeadFirst(value);
     } else if (key == "silent") {
       type.silent = value.truth();
+    } else if (key == "of_speaker") {
+      type.of_speaker = value.truth();
     } else if (key == "needs_noun") {
       type.needs_noun = value.truth();
     } else if (key == "indefinite_needs_noun") {
