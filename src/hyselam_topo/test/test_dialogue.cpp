@@ -13,6 +13,7 @@
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
+#include "talk.hpp"
 
 using hyselam::InputError;
 using hyselam::Point2;
@@ -48,7 +49,10 @@ struct Visit {
   double time = 0.0;
   bool aloud = std::getenv("HYSELAM_ALOUD") != nullptr;
 
-  explicit Visit(const DialogueParams& params = {}) : dialogue(params) { dialogue.setGrid(grid()); }
+  explicit Visit(const DialogueParams& params = {})
+      : dialogue(params, sharedParser(), sharedPhrases()) {
+    dialogue.setGrid(grid());
+  }
   Reply at(double x, double y, double theta) {
     return tell(dialogue.setPose(time += 1.0, {x, y, theta}));
   }

@@ -156,6 +156,7 @@ Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
 }
 
 Reply Dialogue::understand(const std::string& text, const HearOptions& options) {
+  const std::string language_before = language_;
   const ParsedText parsed = parse(text);
   Turn turn;
   turn.reply = reply();
@@ -164,7 +165,7 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
   turn.options = options;
   turn.says_more = std::any_of(parsed.utterances.begin(), parsed.utterances.end(),
                                [](const Utterance& u) { return u.understood() && !isAnswer(u); });
-  if (refuseOtherLanguage(parsed, turn)) return turn.reply;
+  if (refuseOtherLanguage(parsed, language_before, turn)) return turn.reply;
   if (!options.others_asked_last) takeAnswer(parsed, turn);
   for (std::size_t i = turn.used; i < parsed.utterances.size() && !turn.broken_off; ++i) {
     const Utterance& u = parsed.utterances[i];
@@ -230,12 +231,15 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   }
 }
 
-bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, Turn& turn) {
+bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
+                                   Turn& turn) {
   if (parsed.utterances.empty() || parsed.misunderstood() < parsed.utterances.size()) return false;
   std::set<std::string> spoken;
   for (const Grammar& each : parser_.grammars()) spoken.insert(each.language());
   if (OtherLanguages::shipped().find(turn.text, spoken).empty()) return false;
   builder_.sentenceRefused();
+  // The parser's guess among its own is none.
+  language_ = turn.reply.language = language_before;
   const std::string refusal = phrases().say("only_languages");
   turn.reply.refusals.push_back({turn.text, refusal, false, ""});
   turn.not_understood.push_back(refusal);

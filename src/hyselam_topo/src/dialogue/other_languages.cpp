@@ -58,7 +58,7 @@ OtherLanguages OtherLanguages::fromYaml(const std::string& source, const std::st
 
 const OtherLanguages& OtherLanguages::shipped() {
   static const OtherLanguages kLanguages =
-      fromYaml("other_languages.yaml", kShippedLanguages.front().text);
+      fromYaml("other_languages.yaml", kShippedLanguages[0].text);
   return kLanguages;
 }
 

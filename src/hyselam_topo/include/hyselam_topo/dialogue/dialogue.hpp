@@ -213,7 +213,8 @@ class Dialogue {
   Reply understand(const std::string& text, const HearOptions& options);
   void refuse(const Utterance& u, Turn& turn);
   /// Nothing of it was understood, and it is in another language.
-  bool refuseOtherLanguage(const ParsedText& parsed, Turn& turn);
+  bool refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
+                           Turn& turn);
   /// Asks whether something was meant that was not understood.
   void propose(Turn& turn);
   void askProposal(const std::string& sentence, Reply& reply);
