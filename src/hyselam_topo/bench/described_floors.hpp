@@ -213,7 +213,7 @@ class Telling {
           c.from = from;
           c.to = door.to;
           c.side = side;
-          c.order = numbers ? 0 : order++;
+          c.order = numbers && door.rank > 0 ? 0 : order++;
           if (numbers && door.rank > 0)
             c.rank = door.rank == door.ahead && dice_->chance(0.5) ? -1 : door.rank;
           out_.connections.push_back(c);

@@ -78,7 +78,8 @@ void show(std::ostream& out, const DescribedBuilding& building, const MatchProbl
     for (const DescribedConnection& c : building.connections)
       if (c.to == id)
         out << ", " << toString(c.side) << ' ' << c.order << " of "
-            << building.findPlace(c.from)->name;
+            << building.findPlace(c.from)->name
+            << (c.rank ? ", number " + std::to_string(*c.rank) : std::string());
     out << ": is" << places(is, i) << ", found" << places(match.best().assignment, i) << '\n';
   }
 }
@@ -88,7 +89,7 @@ struct Options {
   std::uint64_t first_seed = 1;
   FloorOptions floor;
   SolverParams params;
-  bool thesis = false, thesis_sides = false, show_names = false;
+  bool thesis = false, thesis_sides = false, show_names = false, certainty = true;
 };
 
 /// The place that tells most; if all assignments agree, that of the least certain name; 0: none.
@@ -116,7 +117,9 @@ struct Outcome {
 nlohmann::json recordNames(const Options& o, const Floor& floor, const MatchProblem& problem,
                            const PlaceAssignment& match) {
   nlohmann::json out = nlohmann::json::array();
-  for (const NameUncertainty& u : nameUncertainties(problem, o.params, match)) {
+  SolverParams params = o.params;
+  if (!o.certainty) params.time_limit = 0.0;
+  for (const NameUncertainty& u : nameUncertainties(problem, params, match)) {
     if (floor.observer.place && u.name == floor.building.robot_place) continue;  // told
     out.push_back({{"name", u.name},
                    {"seen", floor.unseen.count(u.name) == 0},
@@ -158,7 +161,7 @@ Outcome askUntilRight(const Options& o, std::uint64_t seed, const Floor& floor) 
         show(std::cerr, floor.building, problem, o.params.fitness, match, floor.truth);
       }
     }
-    if (count == all || outcome.questions == floor.map.places.size()) break;
+    if (count == all || !o.certainty || outcome.questions == floor.map.places.size()) break;
     const Id place = placeToAsk(problem, o.params, match);
     if (place == 0) break;
     ++outcome.questions;
@@ -292,6 +295,7 @@ int main(int argc, char** argv) {
   app.add_option("--time-limit", o.params.time_limit, "of each search [s]");
   app.add_option("--know-heading", o.floor.know_heading, "the robot's heading is known");
   app.add_option("--know-position", o.floor.know_position, "where the robot stands is known");
+  app.add_option("--certainty", o.certainty, "how sure each name is, by one more search for each");
   app.add_flag("--show", o.show_names, "names described, true and found, to standard error");
   addWeights(app, o.params.fitness);
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });

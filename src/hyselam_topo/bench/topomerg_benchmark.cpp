@@ -23,6 +23,7 @@ MatchProblem scenario() {
 
 SolverParams thesis(bool connected) {
   SolverParams params;
+  params.fitness = FitnessParams::equation52();
   params.dummy = false;
   params.connected = connected;
   return params;

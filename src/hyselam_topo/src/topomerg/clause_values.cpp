@@ -32,11 +32,11 @@ constexpr double kClearlyFarther = 1.5;
 /// Of "A, then B": each door between them costs this, and so many at most.
 constexpr double kSkippedDoor = 0.1;
 constexpr int kMostSkipped = 3;
-/// What "the second door" is worth if it is the second only together with walls where a door may
-/// be, and if it is the first or the third, or still farther off.
-constexpr double kUncertainNumber = 0.75;
-constexpr double kNextNumber = 0.4;
-constexpr double kSecondNextNumber = 0.15;
+/// What "the second door" is worth if it may be the second, but walls where a door may be come
+/// before it, and if it is the first or the third, or still farther off.
+constexpr double kUncertainNumber = 0.9;
+constexpr double kNextNumber = 0.2;
+constexpr double kSecondNextNumber = 0.05;
 /// Told distances are right within this share and as many metres.
 constexpr double kDistanceShare = 0.25;
 constexpr double kDistanceError = 1.0;
@@ -120,38 +120,53 @@ double FitnessTerms::orderValue(const Clause& clause, const VertexSet& first, co
   return within(0.5 + 0.5 * on / kClearlyAhead) - kSkippedDoor * std::min(between, kMostSkipped);
 }
 
-double FitnessTerms::numberValue(const Clause& clause, const VertexSet& to,
-                                 const VertexSet& from) const {
+double FitnessTerms::numberAt(const Clause& clause, const Passage& own, const VertexSet& from,
+                              const PlaceSet& to) const {
   const bool far_end = clause.value < 0.0;
   const int told = static_cast<int>(std::abs(clause.value));
+  const hyselam::Point2 on = turned(own, *clause.turn);
+  const auto ahead = [&](double x, double y) { return on.x * (x - own.x) + on.y * (y - own.y); };
+  const double robot = problem.position ? ahead(problem.position->x, problem.position->y) : 0.0;
+  if (problem.position && robot > kClearlyAhead) return 0.0;  // it lies behind the robot
+  int doors = 0, perhaps = 0;
+  const auto count = [&](const Passage& p, bool seen) {
+    if (p.dx * own.dx + p.dy * own.dy < kParallel) return;
+    const double at = ahead(p.x, p.y);
+    if (far_end ? at <= kBeside : at >= -kBeside) return;
+    if (problem.position && at < robot - kClearlyAhead) return;
+    // Beside the robot a door counts for some people and not for others.
+    const bool beside = problem.position && at < robot + kClearlyAhead;
+    ++(seen && !beside ? doors : perhaps);
+  };
+  from.members.forEach([&](std::size_t v) {
+    for (const Passage& p : problem.passages[v])
+      if (!from.members.contains(p.to) && !to.contains(p.to)) count(p, true);
+    if (closed_door_credit > 0.0)
+      for (const Passage& p : problem.walls[v])
+        if (!from.members.contains(p.to) && !to.contains(p.to)) count(p, false);
+    if (!problem.gaps.empty())
+      for (const Passage& p : problem.gaps[v]) count(p, false);
+  });
+  const int off = std::max({told - (doors + perhaps + 1), doors + 1 - told, 0});
+  return off == 0   ? (perhaps == 0 ? 1.0 : kUncertainNumber)
+         : off == 1 ? kNextNumber
+         : off == 2 ? kSecondNextNumber
+                    : 0.0;
+}
+
+double FitnessTerms::numberValue(const Clause& clause, const VertexSet& to,
+                                 const VertexSet& from) const {
   double best = 0.0;
   forEachDoor(from.members, to.members, [&](const Passage& own) {
-    const hyselam::Point2 on = turned(own, *clause.turn);
-    const auto ahead = [&](double x, double y) { return on.x * (x - own.x) + on.y * (y - own.y); };
-    const double robot = problem.position ? ahead(problem.position->x, problem.position->y) : 0.0;
-    if (problem.position && robot > kClearlyAhead) return;  // it lies behind the robot
-    const auto counts = [&](const Passage& p) {
-      if (p.dx * own.dx + p.dy * own.dy < kParallel) return 0;
-      const double at = ahead(p.x, p.y);
-      if (problem.position && at < robot - kClearlyAhead) return 0;
-      return far_end ? static_cast<int>(at > kBeside) : static_cast<int>(at < -kBeside);
-    };
-    int doors = 0, perhaps = 0;
-    from.members.forEach([&](std::size_t v) {
-      for (const Passage& p : problem.passages[v])
-        if (!from.members.contains(p.to) && !to.members.contains(p.to)) doors += counts(p);
-      if (closed_door_credit > 0.0)
-        for (const Passage& p : problem.walls[v])
-          if (!from.members.contains(p.to) && !to.members.contains(p.to)) perhaps += counts(p);
-      if (!problem.gaps.empty())
-        for (const Passage& p : problem.gaps[v]) perhaps += counts(p);
-    });
-    const int few = told - (doors + perhaps + 1), many = doors + 1 - told;
-    const int off = std::max({few, many, 0});
-    best = std::max(best, off == 0   ? (many == 0 ? 1.0 : kUncertainNumber)
-                          : off == 1 ? kNextNumber
-                          : off == 2 ? kSecondNextNumber
-                                     : 0.0);
+    best = std::max(best, numberAt(clause, own, from, to.members));
+  });
+  return best;
+}
+
+double FitnessTerms::unseenNumberValue(const Clause& clause, const VertexSet& from) const {
+  double best = 0.0;
+  forEachHiddenDoor(from.members, clause.side_angle, [&](const Passage& own) {
+    best = std::max(best, numberAt(clause, own, from, PlaceSet()));
   });
   return best;
 }
@@ -178,7 +193,7 @@ double FitnessTerms::relationValue(const Clause& clause, const VertexSet& a, con
   if (clause.kind == RelationKind::kJoined) return a.touches(b) ? 1.0 : 0.0;
   if (clause.kind == RelationKind::kLarger)
     return b.area > 0.0 ? within((a.area / b.area - 0.7) / 0.4) : 0.5;
-  if (clause.kind == RelationKind::kAtSide) return atSideValue(clause.value, a, b);
+  if (clause.kind == RelationKind::kAtSide) return atSideValue(clause.side_angle, a, b);
   if (!a.hasCenter() || !b.hasCenter() || (c != nullptr && !c->hasCenter())) return 0.0;
   switch (clause.kind) {
     case RelationKind::kNextTo:

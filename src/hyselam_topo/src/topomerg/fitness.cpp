@@ -13,6 +13,7 @@ FitnessParams FitnessParams::equation52() {
   p.pieces = 0.0;
   p.absent_share = 1.0;
   p.undescribed_edge_credit = 0.0;
+  p.closed_door_credit = 0.3;
   return p;
 }
 

@@ -9,6 +9,8 @@ namespace {
 constexpr double kParallel = 0.8;
 /// More than any deviation.
 constexpr double kNoDoor = 4.0;
+/// What is left of a place in a row if one door is missing before or behind it, for each one.
+constexpr double kOneMissing = 0.4;
 /// Doors that are less apart are counted as neither before nor behind each other [m].
 constexpr double kBeside = 0.3;
 }  // namespace
@@ -34,7 +36,8 @@ FitnessTerms::FitnessTerms(const MatchProblem& problem_in, const FitnessParams& 
       absent_share(params.absent_share),
       sides_of(problem_in.nameCount()),
       clauses_of(problem_in.nameCount()),
-      has_evidence(problem_in.nameCount(), 0) {
+      has_evidence(problem_in.nameCount(), 0),
+      heading_is_exact_(problem_in.heading.has_value()) {
   if (by_doors && !problem.across_walls.empty()) closed_door_credit = params.closed_door_credit;
   for (std::size_t s = 0; s < problem.sides.size(); ++s) {
     sides_of[static_cast<std::size_t>(problem.sides[s].from)].push_back(static_cast<int>(s));
@@ -51,10 +54,10 @@ FitnessTerms::FitnessTerms(const MatchProblem& problem_in, const FitnessParams& 
 void FitnessTerms::listClauses(const FitnessParams& params) {
   using What = Clause::What;
   for (const MatchProblem::Relation& r : problem.relations)
-    clauses.push_back({What::kRelation, r.kind, r.a, r.b, r.c, r.denied, {}, r.side_angle});
+    clauses.push_back({What::kRelation, r.kind, r.a, r.b, r.c, r.denied, {}, 0.0, r.side_angle});
   if (by_doors && params.orders > 0.0)
     for (const MatchProblem::DescribedOrder& o : problem.orders)
-      clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0});
+      clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0, 0.0});
   if (by_doors && params.numbers > 0.0) {
     for (const MatchProblem::DescribedNumber& n : problem.numbers) {
       const bool rank = n.rank != 0;
@@ -218,32 +221,54 @@ double FitnessTerms::minDoorLoss(const MatchProblem::DescribedSide& side, const 
   return least < kNoDoor ? std::min(doors, throughWall(least)) : doors;
 }
 
+int FitnessTerms::missingInRow(const MatchProblem::DescribedSide& side,
+                               const MatchProblem::Passage& own, const PlaceSet& from) const {
+  const double c = std::cos(side.turn), s = std::sin(side.turn);
+  const double ax = c * own.dx - s * own.dy, ay = s * own.dx + c * own.dy;
+  int before = 0, after = 0;
+  const auto count = [&](const MatchProblem::Passage& other) {
+    if (other.dx * own.dx + other.dy * own.dy < kParallel) return;
+    const double ahead = ax * (other.x - own.x) + ay * (other.y - own.y);
+    before += ahead < -kBeside;
+    after += ahead > kBeside;
+  };
+  from.forEach([&](std::size_t v) {
+    for (const MatchProblem::Passage& other : problem.passages[v])
+      if (!from.contains(other.to)) count(other);
+    if (closed_door_credit > 0.0)
+      for (const MatchProblem::Passage& other : problem.walls[v])
+        if (!from.contains(other.to)) count(other);
+    if (!problem.gaps.empty())
+      for (const MatchProblem::Passage& gap : problem.gaps[v]) count(gap);
+  });
+  return std::max(0, side.before - before) + std::max(0, side.after - after);
+}
+
+double FitnessTerms::rankShare(const MatchProblem::DescribedSide& side, int missing) const {
+  return missing >= side.before + side.after ? 1.0 : 1.0 - std::pow(kOneMissing, missing);
+}
+
 double FitnessTerms::rankLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
                               const PlaceSet& to) const {
   if (side.before + side.after == 0 || weight(Term::kRank) <= 0.0) return 0.0;
-  const double c = std::cos(side.turn), s = std::sin(side.turn);
   int least = side.before + side.after;
   forEachDoor(from, to, [&](const MatchProblem::Passage& own) {
-    const double ax = c * own.dx - s * own.dy, ay = s * own.dx + c * own.dy;
-    int before = 0, after = 0;
-    const auto count = [&](const MatchProblem::Passage& other) {
-      if (other.dx * own.dx + other.dy * own.dy < kParallel) return;
-      const double ahead = ax * (other.x - own.x) + ay * (other.y - own.y);
-      before += ahead < -kBeside;
-      after += ahead > kBeside;
-    };
-    from.forEach([&](std::size_t v) {
-      for (const MatchProblem::Passage& other : problem.passages[v])
-        if (!from.contains(other.to)) count(other);
-      if (closed_door_credit > 0.0)
-        for (const MatchProblem::Passage& other : problem.walls[v])
-          if (!from.contains(other.to)) count(other);
-      if (!problem.gaps.empty())
-        for (const MatchProblem::Passage& gap : problem.gaps[v]) count(gap);
-    });
-    least = std::min(least, std::max(0, side.before - before) + std::max(0, side.after - after));
+    least = std::min(least, missingInRow(side, own, from));
   });
-  return weight(Term::kRank) * least / (side.before + side.after);
+  return weight(Term::kRank) * rankShare(side, least);
+}
+
+double FitnessTerms::absentSideLoss(const MatchProblem::DescribedSide& side, const VertexSet& from,
+                                    const VertexSet& to) const {
+  const double least = absent_share * missingSideLoss(side);
+  const bool in_row = side.before + side.after > 0 && weight(Term::kRank) > 0.0;
+  if (!by_doors || !in_row || from.empty() || !to.empty()) return least;
+  int missing = side.before + side.after;
+  forEachHiddenDoor(from.members, side.side_angle, [&](const MatchProblem::Passage& own) {
+    missing = std::min(missing, missingInRow(side, own, from.members));
+  });
+  return absentLoss(Term::kSide) +
+         weight(Term::kRank) * std::max(absent_share, rankShare(side, missing));
 }
 
 std::vector<VertexSet> verticesOf(const MatchProblem& problem, const Assignment& assignment) {

@@ -78,7 +78,8 @@ class FitnessTerms {
     int a = 0, b = 0, c = -1;
     bool denied = false;
     std::optional<double> turn;  ///< of an order, a number and a distance
-    double value = 0.0;          ///< number, distance [m], or angle of a denied side
+    double value = 0.0;          ///< number or distance [m]
+    double side_angle = 0.0;     ///< of a number and of a denied side
   };
 
   FitnessTerms(const MatchProblem& problem, const FitnessParams& params);
@@ -88,6 +89,7 @@ class FitnessTerms {
     weights_ = whole.weights_;
     scale_ = whole.scale_;
     undescribed_edge = whole.undescribed_edge;
+    heading_is_exact_ = false;
   }
   double weight(Term term) const { return weights_[static_cast<std::size_t>(term)]; }
   /// A loss of 1 / scale makes an assignment e times less likely; 0: nobody knows.
@@ -143,7 +145,7 @@ class FitnessTerms {
   }
   double sideLoss(const MatchProblem::DescribedSide& side, const VertexSet& from,
                   const VertexSet& to, Heading heading) const {
-    if (from.empty() || to.empty()) return absent_share * missingSideLoss(side);
+    if (from.empty() || to.empty()) return absentSideLoss(side, from, to);
     if (by_doors)
       return doorLoss(side, from.members, to.members, heading) +
              rankLoss(side, from.members, to.members);
@@ -160,6 +162,10 @@ class FitnessTerms {
   /// `from`, or walls where doors may be that the robot has not seen.
   double rankLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
                   const PlaceSet& to) const;
+  /// Of a side of which one name has no vertices: at least absent_share * missingSideLoss(). If
+  /// only the name that lies there has none, its row needs a wall where its door may be.
+  double absentSideLoss(const MatchProblem::DescribedSide& side, const VertexSet& from,
+                        const VertexSet& to) const;
   /// Loss of a side that cannot be compared.
   double missingSideLoss(const MatchProblem::DescribedSide& side) const {
     return weight(Term::kSide) + (side.before + side.after > 0 ? weight(Term::kRank) : 0.0);
@@ -210,6 +216,8 @@ class FitnessTerms {
   double clauseLoss(const Clause& clause, Of&& of) const {
     const VertexSet &a = of(clause.a), &b = of(clause.b);
     const VertexSet* c = clause.c >= 0 ? &of(clause.c) : nullptr;
+    if (clause.what == Clause::What::kNumber && a.empty() && !b.empty())
+      return weight(Term::kNumber) * std::max(absent_share, 1.0 - unseenNumberValue(clause, b));
     if (a.empty() || b.empty() || (c != nullptr && c->empty()))
       return absentLoss(termOf(clause.what));
     const double value = clauseValue(clause, a, b, c);
@@ -240,10 +248,36 @@ class FitnessTerms {
                      const VertexSet* c) const;
   double sizeWordValue(SizeWord word, const VertexSet& v) const;
   int doorCount(const VertexSet& v) const;
+  /// How many doors are missing before and behind this one in a described row.
+  int missingInRow(const MatchProblem::DescribedSide& side, const MatchProblem::Passage& own,
+                   const PlaceSet& from) const;
+  double rankShare(const MatchProblem::DescribedSide& side, int missing) const;
+  /// Walls of `from` where a door may be that the robot has not seen, on the side with this angle
+  /// if the heading is known, else on any: visit(passage).
+  template <typename Visit>
+  void forEachHiddenDoor(const PlaceSet& from, double side_angle, Visit&& visit) const {
+    const auto consider = [&](const MatchProblem::Passage& p) {
+      const bool there =
+          !heading_is_exact_ ||
+          std::abs(wrapAngleOnce(wrapAngleOnce(p.bearing - side_angle) - *problem.heading)) <
+              kWrongFrom;
+      if (there && !from.contains(p.to)) visit(p);
+    };
+    from.forEach([&](std::size_t v) {
+      if (!problem.gaps.empty())
+        for (const MatchProblem::Passage& gap : problem.gaps[v]) consider(gap);
+      if (closed_door_credit > 0.0)
+        for (const MatchProblem::Passage& wall : problem.walls[v]) consider(wall);
+    });
+  }
   // clause_values.cpp
   double orderValue(const Clause& clause, const VertexSet& first, const VertexSet& then,
                     const VertexSet& from) const;
   double numberValue(const Clause& clause, const VertexSet& to, const VertexSet& from) const;
+  /// The same of a name without vertices, behind any wall of `from` where its door may be.
+  double unseenNumberValue(const Clause& clause, const VertexSet& from) const;
+  double numberAt(const Clause& clause, const MatchProblem::Passage& own, const VertexSet& from,
+                  const PlaceSet& to) const;
   double distanceValue(const Clause& clause, const VertexSet& to, const VertexSet& from) const;
   double relationValue(const Clause& clause, const VertexSet& a, const VertexSet& b,
                        const VertexSet* c) const;
@@ -257,6 +291,7 @@ class FitnessTerms {
 
   std::array<double, static_cast<std::size_t>(Term::kCount)> weights_{};
   double scale_ = 0.0;
+  bool heading_is_exact_ = false;  ///< known, and not only up to a sector of the circle
 };
 
 /// The vertices of each name.

@@ -91,7 +91,7 @@ double evaluate(const FitnessTerms& terms, const std::vector<VertexSet>& names, 
   std::vector<RightHeadings> comparable;
   for (const MatchProblem::DescribedSide& s : problem.sides) {
     if (of(s.from).empty() || of(s.to).empty()) {
-      loss += terms.absent_share * terms.missingSideLoss(s);
+      loss += terms.absentSideLoss(s, of(s.from), of(s.to));
       continue;
     }
     RightHeadings right = rightHeadings(terms, s, of(s.from), of(s.to));

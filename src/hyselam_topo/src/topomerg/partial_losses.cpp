@@ -51,7 +51,10 @@ double PartialLosses::emptyLoss(int name, const PartialSet* partial) const {
   for (const int number : terms_.sides_of[at(name)]) {
     const auto& side = problem_.sides[at(number)];
     const int other = side.from == name ? side.to : side.from;
-    if (state_.isClosed(other) || (partial != nullptr && partial->name == other))
+    if (state_.isClosed(other))
+      loss += side.from == name ? terms_.absentSideLoss(side, none, state_.vertices(other))
+                                : terms_.absentSideLoss(side, state_.vertices(other), none);
+    else if (partial != nullptr && partial->name == other)
       loss += terms_.absent_share * terms_.missingSideLoss(side);
   }
   if (partial != nullptr && problem_.areConnected(at(name), at(partial->name)))

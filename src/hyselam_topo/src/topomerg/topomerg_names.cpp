@@ -21,16 +21,22 @@ std::optional<std::size_t> mainVertex(const MatchProblem& problem, const Assignm
   return best;
 }
 
-/// The probability that a name is right, from the odds of the best answer against the best one
-/// where it is not (fitted on generated floors).
-constexpr double kOddsOffset = 0.0;
-constexpr double kOddsFactor = 1.0;
+/// The probability that a name is right, from the logarithm x of the odds of the best answer
+/// against the best one where it is not: 1 / (1 + exp(-(offset + factor x))), fitted on generated
+/// floors.
+struct Calibration {
+  double offset, factor;
+};
+constexpr Calibration kPlaced{0.23, 1.61};
+/// Of names without a place: where places of the map are in pieces or joined, none may fit.
+constexpr Calibration kAbsent{0.14, 0.60};
 /// Where the weights say nothing of odds, this drop is taken for one of e times.
 constexpr double kDropOfShares = 0.01;
 
-double probabilityOf(double drop, double scale) {
+double probabilityOf(double drop, double scale, bool placed) {
   const double nats = scale > 0.0 ? drop * scale : drop / kDropOfShares;
-  return 1.0 / (1.0 + std::exp(-(kOddsOffset + kOddsFactor * nats)));
+  const Calibration& fitted = placed ? kPlaced : kAbsent;
+  return 1.0 / (1.0 + std::exp(-(fitted.offset + fitted.factor * nats)));
 }
 
 /// The best fitness among kept assignments that have the name elsewhere; -1: none.
@@ -45,6 +51,18 @@ double keptElsewhere(const PlaceAssignment& match, std::size_t name,
     if (elsewhere) other = std::max(other, s.fitness);
   }
   return other;
+}
+
+/// Share of the equally good assignments that have the name at `main`, or nowhere if it is nothing.
+double shareOfEqual(const PlaceAssignment& match, std::size_t name,
+                    const std::optional<std::size_t>& main) {
+  const int i = static_cast<int>(name);
+  std::size_t same = 0;
+  for (std::size_t k = 0; k < match.equal; ++k) {
+    const Assignment& a = match.solutions[k].assignment;
+    same += main ? a[*main] == i : std::find(a.begin(), a.end(), i) == a.end();
+  }
+  return static_cast<double>(same) / static_cast<double>(std::max<std::size_t>(1, match.equal));
 }
 
 /// The problem in which the name is not at `main`, or has a place if that is nothing.
@@ -101,7 +119,8 @@ std::vector<NameUncertainty> nameUncertainties(const MatchProblem& problem,
         other = std::max(other, second.gap + (second.found() ? second.best().fitness : 0.0));
     }
     u.drop = other < 0.0 ? best.fitness : std::max(0.0, best.fitness - other);
-    u.probability = probabilityOf(u.drop, match.scale);
+    u.probability = std::min(probabilityOf(u.drop, match.scale, main.has_value()),
+                             shareOfEqual(match, i, main));
     out.push_back(u);
   }
   return out;

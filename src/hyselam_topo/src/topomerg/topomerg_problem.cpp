@@ -116,10 +116,12 @@ void addSides(const std::vector<DescribedConnection>& connections, const Numbers
     const int from = name(c.from, "description"), to = name(c.to, "description");
     const bool sided = c.side != Side::kUnknown;
     const std::optional<double> turn = sided ? std::optional<double>(turnOf(c.side)) : std::nullopt;
-    if (c.rank && *c.rank != 0 && sided) out->numbers.push_back({from, to, *c.rank, 0.0, turn});
+    if (c.rank && *c.rank != 0 && sided)
+      out->numbers.push_back({from, to, *c.rank, 0.0, turn, angleOf(c.side)});
     const bool along = c.side == Side::kLeft || c.side == Side::kRight;
     if (c.distance && *c.distance > 0.0 && out->position)
-      out->numbers.push_back({from, to, 0, *c.distance, along ? turn : std::nullopt});
+      out->numbers.push_back(
+          {from, to, 0, *c.distance, along ? turn : std::nullopt, angleOf(c.side)});
   }
 }
 

@@ -42,13 +42,13 @@ struct FitnessParams {
   Weighting weighting = Weighting::kOdds;
   /// gamma_v: a name stays without a place. With kOdds the logarithm of the odds that a described
   /// place is on the map at one place that fits as well as an unknown place would.
-  double vertices = 1.0;
-  double areas = 4.0;         ///< gamma_a: places have the described area
-  double edges = 1.5;         ///< gamma_e: places are connected as described
-  double orientations = 3.0;  ///< gamma_d: places are on the described side
+  double vertices = 0.3;
+  double areas = 4.5;         ///< gamma_a: places have the described area
+  double edges = 2.4;         ///< gamma_e: places are connected as described
+  double orientations = 4.8;  ///< gamma_d: places are on the described side
   SideRule sides = SideRule::kDoors;
-  double orders = 4.0;      ///< described order "A, then B" on a side; only with SideRule::kDoors
-  double numbers = 3.0;     ///< "the second door on the left", "in ten metres"
+  double orders = 2.4;      ///< described order "A, then B" on a side; only with SideRule::kDoors
+  double numbers = 2.0;     ///< "the second door on the left", "in ten metres"
   double relations = 2.0;   ///< next to, opposite, between, behind, larger, ..., and denied ones
   double parts = 1.5;       ///< described number of parts: "divided into six rooms"
   double doors = 1.5;       ///< described number of doors
@@ -58,7 +58,7 @@ struct FitnessParams {
   /// classification (MatchEvidence).
   double evidence = 3.0;
   /// Each further place of a name whose number of parts is not described; only with kOdds.
-  double pieces = 0.3;
+  double pieces = 1.0;
   /// Share of a statement's weight that is lost if one of its names stays without a place: nobody
   /// can tell whether it holds. 1: as if it did not hold (Eq. 5.2), 0: as if it did.
   double absent_share = 0.4;
@@ -67,7 +67,7 @@ struct FitnessParams {
   double undescribed_edge_credit = 0.8;
   /// Factor of C and D, 0 .. 1, for two places that are described as connected and in the map only
   /// share a wall: its door may have been closed when the robot passed. Only with SideRule::kDoors.
-  double closed_door_credit = 0.3;
+  double closed_door_credit = 0.6;
 
   /// Eq. 5.2: all weights 0.25, Weighting::kShares, a name without a place loses all that was told
   /// of it, connections that nobody told of count as errors.

@@ -10,7 +10,7 @@
 namespace hyselam_topo {
 
 /// A name whose place is right with less probability than this is told as unsure.
-constexpr double kSureProbability = 0.9;
+constexpr double kSureProbability = 0.97;
 
 struct NameUncertainty {
   Id name = 0;

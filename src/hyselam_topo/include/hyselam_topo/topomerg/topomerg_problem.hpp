@@ -56,6 +56,7 @@ struct MatchProblem {
     /// From the direction through the door to that in which it is counted; nothing for a distance
     /// without a side.
     std::optional<double> turn;
+    double side_angle = 0.0;  ///< as in DescribedSide
   };
   /// "A, then B" on one side of a place.
   struct DescribedOrder {
