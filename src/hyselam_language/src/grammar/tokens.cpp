@@ -252,9 +252,9 @@ Token wordToken(const std::string& text, TextRange range) {
   token.text = text;
   token.lower = hyselam::utf8Lower(text);
   token.folded = hyselam::utf8Fold(text);
-  token.has_accents = token.lower != token.folded &&
-                      std::all_of(token.folded.begin(), token.folded.end(),
-                                  [](char c) { return c >= 'a' && c <= 'z'; });
+  token.has_accents =
+      token.lower != token.folded && std::all_of(token.folded.begin(), token.folded.end(),
+                                                 [](char c) { return c >= 'a' && c <= 'z'; });
   token.starts_upper = hyselam::isUnicodeUpper(hyselam::utf8CodeAt(text, 0, text.size()));
   token.only_lower_letters =
       token.lower == text && std::all_of(token.folded.begin(), token.folded.end(), [](char c) {
