@@ -55,9 +55,8 @@ const std::string& Grammar::title() const {
 std::vector<Grammar::Intent> Grammar::intents() const {
   std::vector<Intent> intents;
   for (const language::IntentInfo& each : compiled_->intents) {
-    intents.push_back(
-        {each.as.empty() ? each.name : each.as, each.kind, each.examples, each.only_expected,
-         !each.refuse.empty()});
+    intents.push_back({each.as.empty() ? each.name : each.as, each.kind, each.examples,
+                       each.only_expected, !each.refuse.empty()});
   }
   return intents;
 }
