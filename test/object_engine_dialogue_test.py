@@ -99,7 +99,7 @@ class ObjectDialogueTest(unittest.TestCase):
         before = len(robot.answers.messages)
         reply = robot.service("tell_robot", TellRobot)("There is a cup in the kitchen.")
         self.assertEqual(reply.answers, [])
-        wait_until(lambda: any("cup at kitchen" in m.data for m in robot.answers.messages[before:]), "no answer")
+        wait_until(lambda: any("a cup is in the kitchen" in m.data for m in robot.answers.messages[before:]), "no answer")
 
     def test_without_what_knows_objects(self):
         robot = self.robot(with_objects=False)

@@ -2,13 +2,9 @@
 #pragma once
 
 #include "hyselam_conversation/conversation.hpp"
-#include "hyselam_topological_map/topological_map_xml.hpp"
+#include "hyselam_conversation/example_map.hpp"
 
 namespace hyselam_conversation {
-
-inline hyselam_topo::AugmentedTopologicalMap exampleMap() {
-  return hyselam_topo::loadXml(HYSELAM_PACKAGE_DIR "/maps/office.xml");
-}
 
 /// Made once: reading the grammars takes longer than most tests.
 inline std::shared_ptr<const Languages> exampleLanguages() {

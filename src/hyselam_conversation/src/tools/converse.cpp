@@ -5,10 +5,10 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/tool.hpp"
+#include "hyselam_conversation/example_map.hpp"
 #include "hyselam_conversation/transcript_player.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
-#include "shipped_maps.hpp"
 
 namespace {
 
@@ -42,8 +42,7 @@ Beginning beginningOf(const Options& o) {
   if (!o.map.empty()) {
     out.map = hyselam_topo::loadXml(o.map);
   } else if (o.state.empty()) {
-    out.map =
-        hyselam_topo::fromXml(hyselam_conversation::kShippedMaps[0].text, "the example's map");
+    out.map = hyselam_conversation::exampleMap();
     if (out.start.empty()) out.start = kStartInExample;
   }
   return out;
