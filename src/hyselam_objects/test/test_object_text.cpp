@@ -126,7 +126,7 @@ TEST(ObjectText, DetectsTheLanguage) {
             "Anotado: um copo vermelho está na cozinha.");
   EXPECT_EQ(fill.process("There is a red pen in the office.").front().text,
             "Noted: a red pen is in the office.");
-  EXPECT_EQ(fill.process("Onde está a caneta?").front().text, "Não sei de nenhum 'caneta'.");
+  EXPECT_EQ(fill.process("Onde está a caneta?").front().text, "Não sei nada de 'caneta'.");
 }
 
 TEST(ObjectText, UnderstandsHeldOutSentences) {
@@ -134,6 +134,73 @@ TEST(ObjectText, UnderstandsHeldOutSentences) {
   EXPECT_GE(of.texts, 50);
   EXPECT_GE(of.right, 0.97 * of.texts);
   EXPECT_EQ(of.silent, 0);
+}
+
+TEST(ObjectText, UnderstandsKindsOfSentences) {
+  const Score en = score("objects_said_en.yaml", "en");
+  EXPECT_EQ(en.right, en.texts);
+  EXPECT_EQ(en.silent, 0);
+  const Score pt = score("objects_said_pt.yaml", "pt");
+  EXPECT_EQ(pt.right, pt.texts);
+  EXPECT_EQ(pt.silent, 0);
+}
+
+TEST(ObjectText, TellsWhatMovedAndWhatIsGone) {
+  const ObjectParser parser = ObjectParser::shipped();
+  ObjectMap map;
+  FillMap fill(parser, map);
+  fill.process("There is a pen on the table in the library.");
+  EXPECT_EQ(fill.process("I moved the pen to the hall.").front().text,
+            "Noted: the pen is in the hall (before: on the table in the library).");
+  EXPECT_EQ(fill.process("The pen is gone.").front().text,
+            "Noted: the pen is no longer in the hall.");
+  EXPECT_EQ(fill.process("There are two apples and an egg in the hall.").front().text,
+            "Noted: two apples and an egg are in the hall.");
+}
+
+TEST(ObjectText, AnswersOneQuestionPerText) {
+  const ObjectParser parser = ObjectParser::shipped("en");
+  ObjectMap map;
+  FillMap fill(parser, map);
+  fill.process("The pen is in the hall.");
+  fill.process("The pen is in the lab.");
+  ASSERT_TRUE(fill.hasQuestion());
+  const auto replies = fill.process("No, no.");
+  EXPECT_EQ(replies.front().code, "kept");
+  EXPECT_FALSE(fill.hasQuestion());
+  // Another topic ends a question.
+  fill.process("The pen is in the lab.");
+  fill.process("There is a cup in the hall.");
+  EXPECT_EQ(fill.process("Yes.").front().code, "nothing_asked");
+  fill.process("The pen is in the lab.");
+  fill.dropQuestion();
+  EXPECT_EQ(fill.process("Yes.").front().code, "nothing_asked");
+}
+
+TEST(ObjectText, TellsTheChoices) {
+  const ObjectParser parser = ObjectParser::shipped("en");
+  ObjectMap map;
+  FillMap fill(parser, map);
+  fill.process("There is a red cup in the lab. There is a blue cup in the hall.");
+  fill.process("There is a bed in the attic.");
+  EXPECT_EQ(
+      fill.process("The cup is broken.").front().text,
+      "There are 2 of 'cup': which one do you mean: the red cup in the lab or the blue cup in "
+      "the hall?");
+}
+
+TEST(ObjectText, ExamplesOfRefusalsAreUnderstood) {
+  for (const char* const language : {"en", "pt"}) {
+    const ObjectParser parser = ObjectParser::shipped(language);
+    for (const char* const code :
+         {"uncertain", "belongs", "past", "choice", "condition", "denial", "person", "place",
+          "abstract", "vague", "bare", "two_places", "whose", "question"}) {
+      const std::string example = parser.grammar(language).say(std::string("instead_") + code);
+      for (const auto& statement : parser.parse(example)) {
+        EXPECT_NE(statement.kind, hyselam_topo::UtteranceKind::kNotUnderstood) << example;
+      }
+    }
+  }
 }
 
 TEST(ObjectText, UnderstandsTheSentencesOfTheThesis) {
@@ -165,6 +232,9 @@ TEST(ObjectText, AsksToBeShownUnknownKinds) {
   cup.classifier.views = {{1.0f}};
   dictionary.put(cup);
   EXPECT_EQ(fill.unknownKinds(dictionary), std::vector<std::string>{"pen"});
+  const auto told = fill.process("There is a pen on the table in the lab.");
+  EXPECT_EQ(fill.kindToShow(dictionary, told), "pen");
+  EXPECT_EQ(fill.kindToShow(dictionary, told), "") << "once at most, and no furniture";
   EXPECT_EQ(fill.showRequest("pen"), "I do not know what a pen looks like: show me one.");
 }
 

@@ -77,6 +77,19 @@ std::vector<ObjectReply> FillMap::processOne(const ObjectStatement& statement) {
   return {processStatement(statement)};
 }
 
+/// Whether a proposed sentence is understood, as a whole, and tells of no name without a noun.
+bool FillMap::isWhole(const std::string& sentence) const {
+  const auto statements = parser_.parse(sentence, {}, language_);
+  return std::all_of(statements.begin(), statements.end(), [](const ObjectStatement& each) {
+    const auto isNamed = [](const ObjectPhrase& phrase) {
+      return phrase.known_noun || !phrase.reference.empty() || !phrase.bare;
+    };
+    return each.kind != UtteranceKind::kNotUnderstood && !each.objects.empty() &&
+           std::all_of(each.objects.begin(), each.objects.end(), isNamed) &&
+           (!each.landmark || isNamed(*each.landmark));
+  });
+}
+
 /// A question stays for one text that was not understood: it may have been the answer.
 ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   if (pending_ && !question_is_new_ && ++pending_->failures > 1) pending_.reset();
@@ -90,7 +103,7 @@ ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   const std::string own = "instead_" + statement.reason_code;
   const bool proposes =
       statement.suggests_meaning && !statement.suggestion.empty() && !grammar.has(own);
-  if (proposes && !question_is_new_) {
+  if (proposes && !question_is_new_ && isWhole(statement.suggestion)) {
     return askBack(statement, "proposal", values, Asked::kProposal);
   }
   ObjectReply out = reply(ReplyKind::kNotUnderstood, "not_understood", values);
@@ -135,7 +148,7 @@ ObjectReply FillMap::processStatement(const ObjectStatement& said) {
 /// "No, under the table.", "Sorry, two cups.", "No, blue."
 ObjectReply FillMap::correctLast(const ObjectStatement& said) {
   ObjectStatement statement = said;
-  if (last_objects_.empty() || !last_statement_) {
+  if (last_objects_.empty() || (said.intent == "same_what" && !last_statement_)) {
     return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", said.text}});
   }
   if (said.intent == "same_like") return recordProperties(statement);

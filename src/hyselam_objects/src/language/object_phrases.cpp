@@ -166,6 +166,8 @@ class PhraseReader {
 
   void takeNoun() {
     std::string noun = joined(0, rest_.size());
+    out_.capital =
+        !out_.bare && startsUpper(rest_.front()) && !startsUpper(rest_.front().substr(1));
     if (rest_.size() == 1 && words_.another.count(lower(0)) != 0) {  // "the other", "outra"
       out_.one = true;
       (out_.definite ? out_.other : out_.another) = true;
@@ -209,6 +211,8 @@ std::string whyNoThing(const ObjectWords& words, const ObjectPhrase& phrase, boo
   if (is_landmark && words.structure.count(head) != 0) return "";
   const auto found = words.no_things.find(head);
   if (found != words.no_things.end() && !words.isNoun(phrase.kind)) return found->second;
+  // In English a capital may as well be that of a brand: "the Xerox".
+  if (words.head_first && phrase.capital && !phrase.known_noun) return "person";
   const bool clear = phrase.known_noun || phrase.plural || !phrase.bare;
   return clear ? "" : "bare";
 }

@@ -97,8 +97,10 @@ std::string FillMap::bareName(Id object, bool plural) const {
   for (const char* const key : kOrder) {
     const auto property = found->properties.find(key);
     if (property == found->properties.end()) continue;
+    // "segunda gaveta da secretária"
+    const bool before = std::string(key) == "position" && parser_.grammar(language_).has("ordinal");
     text = phraseText(
-        "described",
+        before ? "ordinal" : "described",
         {{"property", parser_.propertyWord(language_, property->second, found->kind, plural)},
          {"what", text}});
   }
@@ -166,7 +168,12 @@ std::string FillMap::objectLocation(Id object) const {
     if (r->word == RelationWord::kBetween) {
       between.push_back(other);
     } else {
-      items.push_back(phraseText(toString(r->word), {{"what", other}}));
+      // "em cima da mesa", but "na parede"
+      const ObjectInstance* at = map_.find(r->other);
+      const bool on_part = r->word == RelationWord::kOn && at != nullptr &&
+                           parser_.isStructure(at->kind) &&
+                           parser_.grammar(language_).has("on_structure");
+      items.push_back(phraseText(on_part ? "on_structure" : toString(r->word), {{"what", other}}));
     }
   }
   if (!between.empty()) {
@@ -200,7 +207,7 @@ std::vector<std::string> FillMap::factsOf(const std::vector<Id>& objects, bool d
         ids.size() > 1 || parser_.isAlwaysPlural(language_, map_.find(ids.front())->kind);
     std::string with = key + (many ? "_many" : "");
     if (where.empty()) with += "_nowhere";
-    facts.push_back(phraseText(with, {{"what", names}, {"where", where}}));
+    facts.push_back(contracted(phraseText(with, {{"what", names}, {"where", where}})));
   }
   return facts;
 }

@@ -33,7 +33,8 @@ class StatementReader {
     ObjectStatement base = plain();
     const std::string wrong = u_.understood() ? whatIsWrong(base) : "";
     if (!wrong.empty()) return {refused(wrong)};
-    const bool asks = u_.kind != UtteranceKind::kStatement;
+    // Of a denial only the first relation counts.
+    const bool asks = base.kind != UtteranceKind::kStatement || base.intent == "not_there";
     const bool is_whole = asks || (base.properties.empty() && base.owner.empty()) || !base.place;
     if (relations_.empty() && is_whole) return {base};
     return asks ? std::vector<ObjectStatement>{withRelation(base, relations_.front(), 0)}
@@ -68,6 +69,11 @@ class StatementReader {
       counted.count += static_cast<int>(*tens);
       counted.has_count = true;
     }
+    if (const auto amount = hyselam::parseNumber(u_.word("amount"));
+        amount && !out.objects.empty()) {
+      out.objects.front().count = static_cast<int>(*amount);  // "half a dozen cups"
+      out.objects.front().has_count = true;
+    }
     for (const SaidName& name : u_.names("place")) out.place = name;
     if (u_.word("where") == "here") {
       SaidName here;
@@ -89,7 +95,54 @@ class StatementReader {
       if (found != words_.properties.end()) out.properties.insert(found->second);
     }
     readRelations(&out);
+    takeFrom(&out);
     return out;
+  }
+
+  /// "a mesa da sala": a table, in the room. "Of the", not "de": "mesa de sala" is a kind of table.
+  bool takePlaceBehind(SaidName* name, std::optional<SaidName>* place) const {
+    if (!words_.head_first) return false;
+    const std::vector<std::string> all = splitWords(name->text);
+    for (std::size_t i = 1; i + 1 < all.size(); ++i) {
+      const auto known = words_.no_things.find(lowerCase(all[i + 1]));
+      const bool of_the = all[i] == "da" || all[i] == "do";
+      if (!of_the || known == words_.no_things.end() || known->second != "place") continue;
+      std::string thing, where;
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        if (k == i) continue;
+        std::string& part = k < i ? thing : where;
+        part += (part.empty() ? "" : " ") + all[k];
+      }
+      name->text = thing;
+      if (!*place) {
+        place->emplace();
+        (*place)->text = where;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  /// "Tirei o copo da mesa": from the table, not a cup of tables.
+  void takeFrom(ObjectStatement* out) {
+    if (!words_.head_first || out->intent != "forget_object" || out->objects.size() != 1) return;
+    ObjectPhrase& phrase = out->objects.front();
+    for (const char* const of : {" da ", " do "}) {
+      const std::size_t at = phrase.kind.find(of);
+      if (at == std::string::npos || !words_.isNoun(phrase.kind.substr(at + 4))) continue;
+      SaidRelation relation;
+      relation.word = RelationWord::kOn;
+      ObjectPhrase landmark;
+      landmark.text = phrase.kind.substr(at + 4);
+      landmark.kind = words_.kindOf(landmark.text).kind;
+      landmark.definite = landmark.known_noun = true;
+      relation.landmarks = {landmark};
+      relations_ = {relation};
+      phrase.kind = phrase.text = phrase.kind.substr(0, at);
+      out->kind = UtteranceKind::kStatement;
+      out->intent = "not_there";
+      return;
+    }
   }
 
   /// "the kitchen door", "a porta da cozinha": a door, in the kitchen. False for what is no part of
@@ -129,7 +182,8 @@ class StatementReader {
         if (slot == nullptr) continue;
         for (const SaidName& name : slot->names) {
           SaidName thing = name;
-          const bool is_part = takePlaceOfPart(&thing, &out->place);
+          const bool is_part =
+              takePlaceOfPart(&thing, &out->place) || takePlaceBehind(&thing, &out->place);
           const bool is_thing = slot == landmark || is_part;
           if (is_thing) relation.landmarks.push_back(phraseOf(words_, thing, text_));
           if (!is_thing) relation.rooms.push_back(name);
@@ -259,7 +313,7 @@ class StatementReader {
       ObjectStatement landmark = base;
       landmark.intent = "exist";
       landmark.objects = relations_[i - 1].landmarks;
-      landmark.background = true;
+      landmark.background = landmark.is_landmark = true;
       landmark.correction = landmark.moved = false;
       if (!out.empty()) landmark.place.reset();
       landmark.continues = !out.empty();

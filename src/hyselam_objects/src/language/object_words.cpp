@@ -86,6 +86,8 @@ std::string ObjectWords::pluralOf(const std::string& kind) const {
     const NounKind one = singular(word);
     return one.plural && one.kind == head;
   };
+  const auto same = plurals.find(lowerCase(head));
+  if (same != plurals.end() && same->second == head) return kind;  // "lápis"
   const auto given = std::find_if(plurals.begin(), plurals.end(), [&](const auto& each) {
     return each.second == head && each.first != head;
   });

@@ -250,8 +250,8 @@ FillMap::Question FillMap::checkContradictions(const ObjectStatement& statement,
 // ---- Changes ----
 
 ObjectReply FillMap::applyMeaning(const ObjectStatement& statement, StatementMeaning& meaning) {
-  removeSurplus(meaning);
   const ObjectMap before = map_;
+  removeSurplus(meaning);
   Target& target = meaning.target;
   if (meaning.place_is_new) target.place = map_.addPlace(resolvePlaceName(*statement.place));
   if (meaning.robot_place_is_new) target.place = map_.addPlace(robot_place_);
@@ -267,6 +267,7 @@ ObjectReply FillMap::applyMeaning(const ObjectStatement& statement, StatementMea
   if (!meaning.room_name.empty() && target.room == 0) {
     target.room = map_.addPlace(meaning.room_name);
   }
+  const std::vector<Id> objects_before = last_objects_;
   last_objects_.clear();
   std::vector<Id> told[2];  // indefinite, definite
   std::map<Id, std::string> places_before;
@@ -290,6 +291,12 @@ ObjectReply FillMap::applyMeaning(const ObjectStatement& statement, StatementMea
     if (before.find(object.id) == nullptr) last_added_.push_back(object.id);
   }
   if (!statement.background) last_statement_ = statement;
+  landmarks_told_.clear();
+  const std::vector<Id> recorded = last_objects_;
+  if (statement.is_landmark) {
+    landmarks_told_ = recorded;
+    last_objects_ = objects_before;
+  }
   ObjectReply out = reply(ReplyKind::kDone, map_ == before ? "known" : "done");
   if (!(map_ == before)) {
     map_.stamp = std::max(map_.stamp, stamp_);
@@ -300,7 +307,7 @@ ObjectReply FillMap::applyMeaning(const ObjectStatement& statement, StatementMea
       }
     }
   }
-  out.objects = last_objects_;
+  out.objects = recorded;
   if (last_place_ != 0) out.places = {last_place_};
   return out;
 }

@@ -79,9 +79,10 @@ std::vector<Id> FillMap::resolveReference(const ObjectPhrase& phrase, Id place,
   if (all.size() <= 1) return all;
   std::vector<Id> mentioned, there;
   for (const Id id : all) {
-    if (std::find(last_objects_.begin(), last_objects_.end(), id) != last_objects_.end()) {
-      mentioned.push_back(id);
-    }
+    const auto isIn = [id](const std::vector<Id>& ids) {
+      return std::find(ids.begin(), ids.end(), id) != ids.end();
+    };
+    if (isIn(last_objects_) || isIn(landmarks_told_)) mentioned.push_back(id);
     if (place != 0 && map_.placeOf(id) == place) there.push_back(id);
   }
   if (only_there) return there;

@@ -111,6 +111,7 @@ class FillMap {
   std::vector<ObjectReply> processAll(const std::vector<ObjectStatement>& statements);
   std::vector<ObjectReply> processOne(const ObjectStatement& statement);
   ObjectReply processStatement(const ObjectStatement& statement);
+  bool isWhole(const std::string& sentence) const;
   ObjectReply refuse(const ObjectStatement& statement);
   ObjectReply record(const ObjectStatement& statement);
   /// `replaces`: the reply tells again of the objects of the one before, and more.
@@ -214,9 +215,10 @@ class FillMap {
   std::string language_;  ///< of the last sentence
   std::string robot_place_;
   double stamp_ = 0.0;
-  std::vector<Id> last_objects_;                   ///< mentioned last
-  Id last_landmark_ = 0;                           ///< that they were related to
-  std::string last_kind_;                          ///< of the objects mentioned last
+  std::vector<Id> last_objects_;    ///< mentioned last
+  std::vector<Id> landmarks_told_;  ///< of the same sentence: "it" does not mean them
+  Id last_landmark_ = 0;            ///< that they were related to
+  std::string last_kind_;           ///< of the objects mentioned last
   std::optional<ObjectStatement> last_statement_;  ///< taken down last
   std::vector<Id> last_added_;                     ///< objects that it has added
   std::set<std::string> shown_kinds_;              ///< that the robot has asked to be shown

@@ -29,6 +29,7 @@ struct ObjectPhrase {
   bool one = false;         ///< "the green one": of the kind mentioned last; `kind` is ""
   bool known_noun = false;  ///< a word of the list of nouns
   bool bare = false;        ///< without article, number or owner
+  bool capital = false;     ///< its first word is written like a person's name: "a Ana"
   /// "it", "them", "one_of_them", "same" (the objects of the statement before); "" for a name.
   std::string reference;
   std::vector<Id> chosen;  ///< objects that are meant: what "which one?" was answered with
@@ -46,6 +47,7 @@ struct ObjectStatement {
   /// A statement with several relations is several statements: "the cup is on the tray on the
   /// table" tells where the tray is, and then the cup. All but the first continue the one before.
   bool continues = false;
+  bool is_landmark = false;  ///< it tells where the landmark of the next statement is
   bool background =
       false;  ///< of a landmark of the statement that follows: "the tray on the table"
   std::map<std::string, std::string> properties;  ///< of "is_like"
