@@ -471,7 +471,8 @@ TEST(TopoMergConstraints, ConfirmedExcludedUnnamed) {
   EXPECT_NE(1, other.best().assignment[1]);
   c = {};
   c.unnamed = {2};
-  EXPECT_EQ(-1, solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), shares()).best().assignment[1]);
+  EXPECT_EQ(
+      -1, solveExact(compileMatch(s.building, s.map, {1, 0.0}, c), shares()).best().assignment[1]);
 }
 
 TEST(TopoMergBadInput, IsRefused) {
