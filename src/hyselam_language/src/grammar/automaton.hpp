@@ -41,9 +41,29 @@ struct Automaton {
   std::vector<SlotType> slots;
   /// Words one of which must come first; empty if a name or number may.
   std::vector<int> first_words;
-  /// Words one of which must come somewhere; empty if names and numbers alone may fit. Sorted, as
-  /// are the first words.
-  std::vector<int> needed_words;
+  /// Words one of which must come somewhere; empty if names and numbers alone may fit, or if the
+  /// first words tell enough. Sorted, as are the first words.
+  std::vector<int> telling_words;
+  /// Groups of rarer words: of each group one must come.
+  std::vector<std::vector<int>> needed_words;
+  std::size_t number = 0;  ///< among all patterns of the grammar
+};
+
+/// All edges of an automaton in one row: those of state s are edges[begin[s]] to edges[begin[s+1]].
+struct EdgeTable {
+  explicit EdgeTable(const Automaton& automaton) {
+    begin.reserve(automaton.states.size() + 1);
+    begin.push_back(0);
+    for (const auto& of_state : automaton.states) {
+      edges.insert(edges.end(), of_state.begin(), of_state.end());
+      begin.push_back(edges.size());
+    }
+  }
+
+  std::vector<std::size_t> begin;
+  std::vector<Edge> edges;
+
+  std::size_t states() const { return begin.size() - 1; }
 };
 
 }  // namespace language

@@ -11,6 +11,7 @@
 
 #include "automaton.hpp"
 #include "hyselam_language/grammar/utterance.hpp"
+#include "pattern_index.hpp"
 #include "tokens.hpp"
 #include "urgent_phrases.hpp"
 
@@ -124,6 +125,7 @@ struct CompiledGrammar {
   std::vector<Quantity> quantities;
   std::vector<NameType> name_types;
   std::vector<IntentInfo> intents;
+  PatternIndex index;               ///< of the patterns of all intents
   std::vector<std::string> values;  ///< entries of word classes
   UrgentPhrases urgent;
   std::map<std::string, std::string> refusing_words;

@@ -33,6 +33,9 @@ class Reader {
     for (const GrammarNode& root : roots) readAllButIntents(root);
     checkSeparators(roots.front());
     for (const auto& [name, node] : intents_) readIntent(name, node, context_, grammar_.get());
+    for (IntentInfo& intent : grammar_->intents) {
+      for (Automaton& pattern : intent.patterns) grammar_->index.add(&pattern);
+    }
     if (grammar_->intents.empty()) roots.front().fail("there are no intents");
     grammar_->telling_words.insert(grammar_->unit_words.begin(), grammar_->unit_words.end());
     addLightWords();

@@ -8,6 +8,7 @@
 
 #include "hyselam_common/utf8.hpp"
 #include "minimal_automaton.hpp"
+#include "word_cuts.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -157,17 +158,19 @@ class Compiler {
 
   int copyOf(const Automaton& part, int state) {
     const int first = static_cast<int>(automaton_.states.size());
-    for (std::size_t i = 0; i < part.states.size(); ++i) newState();
+    if (automaton_.states.size() + part.states.size() > kMaxStates) {
+      throw PatternError("it is too large");
+    }
     std::vector<int> slots;
     slots.reserve(part.slots.size());
     for (const SlotType& slot : part.slots) slots.push_back(slotNumber(slot));
-    for (std::size_t i = 0; i < part.states.size(); ++i) {
-      for (Edge e : part.states[i]) {
+    for (const auto& edges : part.states) {
+      automaton_.states.push_back(edges);
+      for (Edge& e : automaton_.states.back()) {
         e.to += first;
         const bool of_slot =
             e.kind != EdgeKind::kSkip && e.kind != EdgeKind::kWord && e.kind != EdgeKind::kComma;
         if (of_slot) e.a = slots[static_cast<std::size_t>(e.a)];
-        edge(first + static_cast<int>(i), e);
       }
     }
     edge(state, {EdgeKind::kSkip, first, -1, -1});
@@ -296,12 +299,13 @@ class Compiler {
 
   bool reachableByNothing(int from, int to) const {
     std::vector<int> open{from};
-    std::set<int> seen;
+    std::vector<bool> seen(automaton_.states.size(), false);
     while (!open.empty()) {
       const int state = open.back();
       open.pop_back();
       if (state == to) return true;
-      if (!seen.insert(state).second) continue;
+      if (seen[static_cast<std::size_t>(state)]) continue;
+      seen[static_cast<std::size_t>(state)] = true;
       for (const Edge& e : automaton_.states[static_cast<std::size_t>(state)]) {
         const bool free =
             e.kind == EdgeKind::kSkip || e.kind == EdgeKind::kBegin || e.kind == EdgeKind::kValue;
@@ -339,51 +343,46 @@ class Compiler {
     });
   }
 
-  /// Whether the pattern can be gone through without these words; those of lists do not count.
-  bool canDoWithout(const std::set<int>& words) const {
-    std::vector<int> open{0};
-    std::vector<bool> seen(automaton_.states.size(), false);
-    while (!open.empty()) {
-      const int state = open.back();
-      open.pop_back();
-      if (state == automaton_.accept) return true;
-      if (seen[static_cast<std::size_t>(state)]) continue;
-      seen[static_cast<std::size_t>(state)] = true;
-      const bool in_list = isSeparator(state);
-      for (const Edge& e : automaton_.states[static_cast<std::size_t>(state)]) {
-        if (e.kind != EdgeKind::kWord || in_list || words.count(e.a) == 0) open.push_back(e.to);
-      }
-    }
-    return false;
-  }
-
   /// "room", "door": words that names hold, too.
   bool isCommon(int word) const {
+    auto& known = context_.common_words;
+    known.resize(std::max(known.size(), grammar_->vocabulary.size()), -1);
+    signed char& common = known[static_cast<std::size_t>(word)];
+    if (common >= 0) return common != 0;
     const std::string text = hyselam::utf8Fold(grammar_->vocabulary.text(word));
     const auto& types = grammar_->name_types;
-    return std::any_of(types.begin(), types.end(), [&](const NameType& type) {
+    const bool found = std::any_of(types.begin(), types.end(), [&](const NameType& type) {
       return type.nouns.count(text) != 0 || type.generic.count(text) != 0 ||
              type.titles.count(text) != 0;
     });
+    common = found ? 1 : 0;
+    return found;
   }
 
   /// The words outside of lists, if there is no way around all of them; of those that names may
-  /// hold no more than needed.
+  /// hold no more than needed. Then the rarer ones, which are taken for the longer ones.
   void findNeededWords() {
-    if (!automaton_.first_words.empty()) return;
-    std::set<int> words;
-    for (std::size_t state = 0; state < automaton_.states.size(); ++state) {
-      for (const Edge& e : automaton_.states[state]) {
-        if (e.kind == EdgeKind::kWord && !isSeparator(static_cast<int>(state))) words.insert(e.a);
-      }
+    std::vector<bool> in_list(automaton_.states.size());
+    for (std::size_t state = 0; state < in_list.size(); ++state) {
+      in_list[state] = isSeparator(static_cast<int>(state));
     }
-    if (canDoWithout(words)) return;
-    for (const int word : std::set<int>(words)) {
-      if (!isCommon(word)) continue;
-      words.erase(word);
-      if (canDoWithout(words)) words.insert(word);
+    WordCuts cuts(automaton_, in_list, grammar_->vocabulary.size());
+    std::vector<int> common, others;
+    for (const int word : cuts.words()) (isCommon(word) ? common : others).push_back(word);
+    const bool cut = cuts.block();
+    if (cut) cuts.drop(common);
+    if (cut && automaton_.first_words.empty()) automaton_.telling_words = cuts.blocked();
+    std::stable_sort(others.begin(), others.end(), [this](int a, int b) {
+      return grammar_->vocabulary.text(a).size() < grammar_->vocabulary.text(b).size();
+    });
+    constexpr std::size_t kMaxGroups = 2;
+    auto& groups = automaton_.needed_words;
+    for (bool more = cut; more; more = groups.size() < kMaxGroups && cuts.block()) {
+      if (!groups.empty()) cuts.drop(common);
+      cuts.drop(others);
+      groups.push_back(cuts.blocked());
+      cuts.forget(groups.back());
     }
-    automaton_.needed_words.assign(words.begin(), words.end());
   }
 
   const PatternContext& context_;

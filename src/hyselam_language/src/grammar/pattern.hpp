@@ -34,6 +34,9 @@ struct PatternContext {
   /// Macros and word classes that were compiled already; nothing for what must be compiled in
   /// place. Holds for as long as nothing above changes.
   mutable std::map<std::string, std::optional<Automaton>> parts;
+  /// Whether names hold a word, too, for as long as the types of names do not change: 1, 0, and -1
+  /// for what was not asked yet.
+  mutable std::vector<signed char> common_words;
 };
 
 /// Why a pattern cannot be compiled; grammar files add their name, line and key.

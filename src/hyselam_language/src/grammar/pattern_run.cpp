@@ -13,40 +13,39 @@ bool isCount(double value) {
   return value >= 1.0 && value <= 1e6 && value == std::floor(value);
 }
 
+std::vector<std::vector<int>> wordsOfTokens(const TokenMatches& matches) {
+  std::vector<std::vector<int>> words(matches.size());
+  for (std::size_t at = 0; at < matches.size(); ++at) {
+    for (const Vocabulary::Match& match : matches[at]) words[at].push_back(match.word);
+  }
+  return words;
+}
+
 }  // namespace
 
-bool PatternRun::mayBegin(const Automaton& pattern, std::size_t at) const {
-  const auto isOneOf = [&](std::size_t token, const std::vector<int>& words) {
-    const auto& matches = words_.matches[token];
-    return std::any_of(matches.begin(), matches.end(), [&](const auto& match) {
-      return std::binary_search(words.begin(), words.end(), match.word);
-    });
-  };
-  if (!pattern.first_words.empty()) return isOneOf(at, pattern.first_words);
-  if (pattern.needed_words.empty()) return true;
-  for (std::size_t token = at; token < words_.tokens.size(); ++token) {
-    if (isOneOf(token, pattern.needed_words)) return true;
-  }
-  return false;
+PatternRun::PatternRun(SentenceWords* words, std::vector<int> leave_out, bool easily)
+    : words_(*words),
+      leave_out_(std::move(leave_out)),
+      chances_(words->grammar.index, wordsOfTokens(words->matches), easily) {
+  for (std::size_t at = 0; at < words_.matches.size(); ++at) skip_costs_.push_back(skipCost(at));
 }
 
 std::vector<PatternRun::End> PatternRun::run(const Automaton& pattern, std::size_t begin) {
-  pattern_ = &pattern;
   const std::size_t n = words_.tokens.size();
-  ++generation_;
-  if (cells_.size() < (n + 1) * pattern.states.size()) {
-    cells_.resize((n + 1) * pattern.states.size());
-  }
   active_.resize(n + 1);
-  for (auto& states : active_) states.clear();
+  for (std::size_t at = 0; at <= last_; ++at) active_[at].clear();
+  pattern_ = &pattern;
+  ++generation_;
+  used_ = 0;
+  last_ = begin;
   std::vector<End> ends;
-  reach(begin, 0, {generation_, 0, -1, -1, begin, false});
-  for (std::size_t at = begin; at <= n; ++at) {
+  reach(begin, 0, {0, generation_, 0, -1, -1, begin, false});
+  for (std::size_t at = begin; at <= last_; ++at) {
     // States are put behind the list again when a cheaper way to them is found.
     for (std::size_t i = 0; i < active_[at].size(); ++i) leave(at, active_[at][i], at == begin);
     if (at == begin) continue;
-    const Cell& last = cell(at, pattern.accept);
-    if (last.cost < kNever) ends.push_back({at, last.cost, last.tied});
+    const Cell* last = reached(at, pattern.accept);
+    if (last != nullptr) ends.push_back({at, last->cost, last->tied});
     if (!active_[at].empty()) furthest_ = std::max(furthest_, at);
   }
   return ends;
@@ -56,8 +55,9 @@ std::optional<std::vector<PatternRun::Step>> PatternRun::path(std::size_t end) {
   std::vector<Step> steps;
   std::size_t at = end;
   for (int state = pattern_->accept; state >= 0;) {
-    const Cell& c = cell(at, state);
-    if (c.from_state < 0) break;
+    const Cell* found = reached(at, state);
+    if (found == nullptr || found->from_state < 0) break;
+    const Cell& c = *found;
     steps.push_back({c.edge < 0 ? nullptr : &edgeOf(c), c.from_at, at});
     state = c.from_state;
     at = c.from_at;
@@ -69,13 +69,38 @@ std::optional<std::vector<PatternRun::Step>> PatternRun::path(std::size_t end) {
   return steps;
 }
 
+std::size_t PatternRun::placeOf(std::uint64_t key) const {
+  const std::size_t mask = cells_.size() - 1;
+  std::size_t at = (key * 0x9e3779b97f4a7c15ULL >> 32) & mask;
+  while (cells_[at].generation == generation_ && cells_[at].key != key) at = (at + 1) & mask;
+  return at;
+}
+
 PatternRun::Cell& PatternRun::cell(std::size_t at, int state) {
-  Cell& c = cells_[at * pattern_->states.size() + static_cast<std::size_t>(state)];
+  if (2 * (used_ + 1) > cells_.size()) growTable();
+  const std::uint64_t key = keyOf(at, state);
+  Cell& c = cells_[placeOf(key)];
   if (c.generation != generation_) {
     c = {};
+    c.key = key;
     c.generation = generation_;
+    ++used_;
   }
   return c;
+}
+
+const PatternRun::Cell* PatternRun::reached(std::size_t at, int state) const {
+  const Cell& c = cells_[placeOf(keyOf(at, state))];
+  return c.generation == generation_ && c.cost < kNever ? &c : nullptr;
+}
+
+void PatternRun::growTable() {
+  constexpr std::size_t kFirst = 256;
+  std::vector<Cell> before(std::max(kFirst, 2 * cells_.size()));
+  before.swap(cells_);
+  for (const Cell& c : before) {
+    if (c.generation == generation_) cells_[placeOf(c.key)] = c;
+  }
 }
 
 const Edge& PatternRun::edgeOf(const Cell& way) const {
@@ -104,34 +129,36 @@ void PatternRun::reach(std::size_t at, int state, const Cell& from) {
     active_[at].push_back(state);
   }
   if (from.cost >= c.cost) return;
+  const std::uint64_t key = c.key;
   c = from;
-  c.generation = generation_;
+  c.key = key;
   active_[at].push_back(state);
+  last_ = std::max(last_, at);
 }
 
 /// Follows all edges from a state. Nothing is skipped before the first token.
 void PatternRun::leave(std::size_t at, int state, bool is_first) {
-  const int cost = cell(at, state).cost;
-  const bool tied = cell(at, state).tied;
-  if (!is_first && at < words_.tokens.size() && mayBeSkipped(at)) {
-    const int skip = words_.isComma(at) ? kCommaCost : kInnerCost;
-    reach(at + 1, state, {generation_, cost + skip, state, -1, at, tied});
+  const Cell& from = cell(at, state);
+  const int cost = from.cost;
+  const bool tied = from.tied;
+  if (!is_first && at < skip_costs_.size() && skip_costs_[at] < kNever) {
+    reach(at + 1, state, {0, generation_, cost + skip_costs_[at], state, -1, at, tied});
   }
   if (!is_first && at < leave_out_.size() && leave_out_[at] < kNever) {
-    reach(at + 1, state, {generation_, cost + leave_out_[at], state, -1, at, tied});
+    reach(at + 1, state, {0, generation_, cost + leave_out_[at], state, -1, at, tied});
   }
   const auto& edges = pattern_->states[static_cast<std::size_t>(state)];
   const auto go = [&](std::size_t e) {
-    follow(edges[e], at, {generation_, cost, state, static_cast<int>(e), at, tied});
+    follow(edges[e], at, {0, generation_, cost, state, static_cast<int>(e), at, tied});
   };
   // Edges for words come first, sorted: only those of the word that stands here are looked at.
   const auto words_end = std::partition_point(
       edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kWord; });
   if (at < words_.tokens.size() && words_end != edges.begin()) {
     for (const auto& match : words_.matches[at]) {
-      const auto from = std::lower_bound(edges.begin(), words_end, match.word,
-                                         [](const Edge& edge, int word) { return edge.a < word; });
-      for (auto each = from; each != words_end && each->a == match.word; ++each) {
+      const auto first = std::lower_bound(edges.begin(), words_end, match.word,
+                                          [](const Edge& edge, int word) { return edge.a < word; });
+      for (auto each = first; each != words_end && each->a == match.word; ++each) {
         go(static_cast<std::size_t>(each - edges.begin()));
       }
     }
@@ -139,12 +166,13 @@ void PatternRun::leave(std::size_t at, int state, bool is_first) {
   for (auto e = static_cast<std::size_t>(words_end - edges.begin()); e < edges.size(); ++e) go(e);
 }
 
-bool PatternRun::mayBeSkipped(std::size_t at) const {
-  if (words_.isComma(at)) return true;
+int PatternRun::skipCost(std::size_t at) const {
+  if (words_.isComma(at)) return kCommaCost;
   const auto& matches = words_.matches[at];
-  return std::any_of(matches.begin(), matches.end(), [&](const auto& match) {
+  const bool filler = std::any_of(matches.begin(), matches.end(), [&](const auto& match) {
     return match.cost < kSlipCost && words_.grammar.fillers_inner.count(match.word) != 0;
   });
+  return filler ? kInnerCost : kNever;
 }
 
 int PatternRun::doubt(std::size_t begin, std::size_t end, int type) const {

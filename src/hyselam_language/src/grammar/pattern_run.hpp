@@ -2,12 +2,14 @@
 // (dynamic programming over tokens and states).
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "automaton.hpp"
+#include "pattern_index.hpp"
 #include "sentence_words.hpp"
 
 namespace hyselam_topo {
@@ -19,12 +21,12 @@ constexpr int kNever = std::numeric_limits<int>::max() / 2;
 class PatternRun {
  public:
   /// `words` must outlive this. `leave_out`: what it costs to leave out each token, kNever for
-  /// those that must stay; empty: only fillers and commas may be left out.
-  explicit PatternRun(SentenceWords* words, std::vector<int> leave_out = {})
-      : words_(*words), leave_out_(std::move(leave_out)) {}
+  /// those that must stay; empty: only fillers and commas may be left out. `easily`: see
+  /// PatternChances.
+  explicit PatternRun(SentenceWords* words, std::vector<int> leave_out = {}, bool easily = false);
 
-  /// Whether the pattern has a chance there: a word that it needs is said.
-  bool mayBegin(const Automaton& pattern, std::size_t at) const;
+  /// Whether the pattern has a chance there: the words that it needs are said.
+  bool mayBegin(const Automaton& pattern, std::size_t at) { return chances_.mayBegin(pattern, at); }
 
   /// A clause that the pattern fits to.
   struct End {
@@ -52,7 +54,8 @@ class PatternRun {
  private:
   /// How a state is reached at a token.
   struct Cell {
-    int generation = 0;  ///< of an earlier run: not reached
+    std::uint64_t key = 0;  ///< of token and state
+    int generation = 0;     ///< of an earlier run: not reached
     int cost = kNever;
     int from_state = -1;
     int edge = -1;  ///< -1: something skipped
@@ -60,24 +63,37 @@ class PatternRun {
     bool tied = false;
   };
 
+  std::uint64_t keyOf(std::size_t at, int state) const {
+    return at * pattern_->states.size() + static_cast<std::size_t>(state);
+  }
+  /// Where the cell of a key is, or the free one where it shall be.
+  std::size_t placeOf(std::uint64_t key) const;
+  /// Holds until the next call.
   Cell& cell(std::size_t at, int state);
+  /// Nothing for a state that is not reached.
+  const Cell* reached(std::size_t at, int state) const;
+  void growTable();
   const Edge& edgeOf(const Cell& way) const;
   bool isName(const Cell& way) const;
   std::size_t nameBegin(const Cell& way, std::size_t end);
   void reach(std::size_t at, int state, const Cell& from);
   void leave(std::size_t at, int state, bool is_first);
   void follow(const Edge& edge, std::size_t at, Cell next);
-  bool mayBeSkipped(std::size_t at) const;
+  int skipCost(std::size_t at) const;
   /// More for a name that only its place in the sentence makes one, if others may be left out.
   int doubt(std::size_t begin, std::size_t end, int type) const;
 
   SentenceWords& words_;
   const std::vector<int> leave_out_;
+  PatternChances chances_;
   const Automaton* pattern_ = nullptr;
-  std::vector<Cell> cells_;
+  std::vector<Cell> cells_;               ///< a table with open addressing, kept for all runs
+  std::size_t used_ = 0;                  ///< cells of this run
   std::vector<std::vector<int>> active_;  ///< states to go on from, at each token
   int generation_ = 0;
   std::size_t furthest_ = 0;
+  std::size_t last_ = 0;         ///< the last token of this run
+  std::vector<int> skip_costs_;  ///< of each token, kNever for those that must stay
 };
 
 }  // namespace language

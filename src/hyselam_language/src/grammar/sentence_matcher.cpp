@@ -25,13 +25,16 @@ namespace {
 class SentenceReader {
  public:
   /// `run_on`: clauses may follow one another without a word or comma between them, as speech
-  /// recognisers write them.
+  /// recognisers write them. `explain`: follows more patterns, whose way tells why the sentence is
+  /// not understood; without it nothing is said about that.
   SentenceReader(const CompiledGrammar& grammar, const std::string& text, const Sentence& sentence,
-                 std::vector<Token> tokens, const std::set<std::string>& expected, bool run_on)
+                 std::vector<Token> tokens, const std::set<std::string>& expected, bool run_on,
+                 bool explain = false)
       : expected_(expected),
         run_on_(run_on),
+        explain_(explain),
         words_(grammar, text, sentence, std::move(tokens)),
-        pattern_run_(&words_) {}
+        pattern_run_(&words_, {}, explain) {}
 
   std::vector<Utterance> read() {
     if (words_.isTooLong()) return {refusal(words_, "too_long", words_.sentence.range, "")};
@@ -133,7 +136,9 @@ class SentenceReader {
   std::vector<Utterance> assemble() const {
     const Reading& whole = ends_.back();
     const auto& tokens = words_.tokens;
-    if (tokens.empty() || whole.cost >= kNever) return {whyNot(words_, pattern_run_.furthest())};
+    if (tokens.empty() || whole.cost >= kNever) {
+      return {explain_ ? whyNot(words_, pattern_run_.furthest()) : unexplained()};
+    }
     std::vector<Utterance> utterances;
     for (const Reading* reading = &whole;;) {
       const Clause& clause = clauses_[static_cast<std::size_t>(reading->clause)];
@@ -151,6 +156,12 @@ class SentenceReader {
     }
     std::reverse(utterances.begin(), utterances.end());
     return utterances;
+  }
+
+  Utterance unexplained() const {
+    Utterance utterance;
+    utterance.range = words_.sentence.range;
+    return utterance;
   }
 
   Utterance utteranceOf(const Clause& clause, TextRange range) const {
@@ -173,6 +184,7 @@ class SentenceReader {
 
   const std::set<std::string>& expected_;
   const bool run_on_;
+  const bool explain_;
   SentenceWords words_;
   PatternRun pattern_run_;
   std::vector<Reading> ends_;  ///< at each token
@@ -262,6 +274,10 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
   const auto read = [&](std::vector<Token> of, bool run_on) {
     return SentenceReader(grammar, text, sentence, std::move(of), expected, run_on).read();
   };
+  const auto explained = [&](const Sentence& of) {
+    return SentenceReader(grammar, text, of, tokensWithin(tokens, of.range), expected, false, true)
+        .read();
+  };
   std::vector<Utterance> said = read(tokens, false);
   if (isUnderstood(said)) return said;
   const std::vector<Aside> asides = asidesOf(tokens, grammar);
@@ -288,10 +304,12 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
     for (Utterance& part : parts) {
       if (part.understood()) continue;
       const Sentence alone{part.range, false};
+      if (part.reason_code.empty()) part = explained(alone).front();
       propose(SentenceWords(grammar, text, alone, tokensWithin(tokens, part.range)), &part);
     }
     if (!parts.empty()) return parts;
   }
+  if (said.front().reason_code.empty()) said = explained(sentence);
   propose(SentenceWords(grammar, text, sentence, tokens), &said.front());
   return said;
 }
