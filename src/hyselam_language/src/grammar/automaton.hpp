@@ -44,8 +44,8 @@ struct Automaton {
   /// Words one of which must come somewhere; empty if names and numbers alone may fit, or if the
   /// first words tell enough. Sorted, as are the first words.
   std::vector<int> telling_words;
-  /// Groups of rarer words: of each group one must come.
-  std::vector<std::vector<int>> needed_words;
+  /// Fewer and rarer words, one of which must come somewhere. Sorted, too.
+  std::vector<int> needed_words;
   std::size_t number = 0;  ///< among all patterns of the grammar
 };
 

@@ -369,20 +369,14 @@ class Compiler {
     WordCuts cuts(automaton_, in_list, grammar_->vocabulary.size());
     std::vector<int> common, others;
     for (const int word : cuts.words()) (isCommon(word) ? common : others).push_back(word);
-    const bool cut = cuts.block();
-    if (cut) cuts.drop(common);
-    if (cut && automaton_.first_words.empty()) automaton_.telling_words = cuts.blocked();
+    if (!cuts.block()) return;
+    cuts.drop(common);
+    if (automaton_.first_words.empty()) automaton_.telling_words = cuts.blocked();
     std::stable_sort(others.begin(), others.end(), [this](int a, int b) {
       return grammar_->vocabulary.text(a).size() < grammar_->vocabulary.text(b).size();
     });
-    constexpr std::size_t kMaxGroups = 2;
-    auto& groups = automaton_.needed_words;
-    for (bool more = cut; more; more = groups.size() < kMaxGroups && cuts.block()) {
-      if (!groups.empty()) cuts.drop(common);
-      cuts.drop(others);
-      groups.push_back(cuts.blocked());
-      cuts.forget(groups.back());
-    }
+    cuts.drop(others);
+    automaton_.needed_words = cuts.blocked();
   }
 
   const PatternContext& context_;

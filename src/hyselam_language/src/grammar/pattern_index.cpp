@@ -21,7 +21,7 @@ void PatternIndex::add(Automaton* pattern) {
   begins_anyhow_.push_back(pattern->first_words.empty());
   first_.add(pattern->first_words, pattern->number);
   telling_.add(pattern->telling_words, pattern->number);
-  for (const auto& group : pattern->needed_words) needed_.add(group, pattern->number);
+  needed_.add(pattern->needed_words, pattern->number);
 }
 
 PatternChances::PatternChances(const PatternIndex& index, WordsOfTokens words, bool easily)

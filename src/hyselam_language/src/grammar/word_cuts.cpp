@@ -7,10 +7,7 @@ namespace language {
 
 WordCuts::WordCuts(const Automaton& automaton, const std::vector<bool>& in_list,
                    std::size_t word_count)
-    : accept_(automaton.accept),
-      first_(word_count + 1, 0),
-      blocked_(word_count, 0),
-      forgotten_(word_count, 0) {
+    : accept_(automaton.accept), first_(word_count + 1, 0), blocked_(word_count, 0) {
   const std::size_t count = automaton.states.size();
   std::size_t edges = 0;
   for (const auto& of_state : automaton.states) edges += of_state.size();
@@ -51,31 +48,34 @@ std::vector<int> WordCuts::words() const {
 
 bool WordCuts::block() {
   for (std::size_t word = 0; word < blocked_.size(); ++word) {
-    blocked_[word] = first_[word] < first_[word + 1] && forgotten_[word] == 0 ? 1 : 0;
+    blocked_[word] = first_[word] < first_[word + 1] ? 1 : 0;
   }
   ahead_.assign(out_.size() - 1, 0);
   behind_.assign(out_.size() - 1, 0);
-  spread({0}, true, nullptr, &ahead_);
-  spread({accept_}, false, nullptr, &behind_);
+  open_.assign(1, 0);
+  spread(true, nullptr, &ahead_);
+  open_.assign(1, accept_);
+  spread(false, nullptr, &behind_);
   return ahead_[static_cast<std::size_t>(accept_)] == 0;
 }
 
-bool WordCuts::spread(std::vector<int> open, bool forwards, const Marks* stop, Marks* marks) const {
-  std::vector<int> marked;
+bool WordCuts::spread(bool forwards, const Marks* stop, Marks* marks) {
+  marked_.clear();
   const auto& rows = forwards ? out_ : in_;
-  while (!open.empty()) {
-    const auto state = static_cast<std::size_t>(open.back());
-    open.pop_back();
+  while (!open_.empty()) {
+    const auto state = static_cast<std::size_t>(open_.back());
+    open_.pop_back();
     if ((*marks)[state] != 0) continue;
     if (stop != nullptr && (*stop)[state] != 0) {
-      for (const int each : marked) (*marks)[static_cast<std::size_t>(each)] = 0;
+      open_.clear();
+      for (const int each : marked_) (*marks)[static_cast<std::size_t>(each)] = 0;
       return false;
     }
     (*marks)[state] = 1;
-    marked.push_back(static_cast<int>(state));
+    marked_.push_back(static_cast<int>(state));
     for (std::size_t i = rows[state]; i < rows[state + 1]; ++i) {
       const Way& way = ways_[forwards ? i : into_[i]];
-      if (passes(way)) open.push_back(forwards ? way.to : way.from);
+      if (passes(way)) open_.push_back(forwards ? way.to : way.from);
     }
   }
   return true;
@@ -90,18 +90,21 @@ void WordCuts::drop(const std::vector<int>& words) {
 void WordCuts::drop(int word) {
   char& blocked = blocked_[static_cast<std::size_t>(word)];
   blocked = 0;
-  std::vector<int> ahead, behind;
   const auto w = static_cast<std::size_t>(word);
+  open_.clear();
   for (std::size_t i = first_[w]; i < first_[w + 1]; ++i) {
     const Way& way = ways_[said_[i]];
-    if (ahead_[static_cast<std::size_t>(way.from)] != 0) ahead.push_back(way.to);
-    if (behind_[static_cast<std::size_t>(way.to)] != 0) behind.push_back(way.from);
+    if (ahead_[static_cast<std::size_t>(way.from)] != 0) open_.push_back(way.to);
   }
-  if (!spread(std::move(ahead), true, &behind_, &ahead_)) {
+  if (!spread(true, &behind_, &ahead_)) {
     blocked = 1;
     return;
   }
-  spread(std::move(behind), false, nullptr, &behind_);
+  for (std::size_t i = first_[w]; i < first_[w + 1]; ++i) {
+    const Way& way = ways_[said_[i]];
+    if (behind_[static_cast<std::size_t>(way.to)] != 0) open_.push_back(way.from);
+  }
+  spread(false, nullptr, &behind_);
 }
 
 std::vector<int> WordCuts::blocked() const {
@@ -110,10 +113,6 @@ std::vector<int> WordCuts::blocked() const {
     if (blocked_[word] != 0) words.push_back(static_cast<int>(word));
   }
   return words;
-}
-
-void WordCuts::forget(const std::vector<int>& words) {
-  for (const int word : words) forgotten_[static_cast<std::size_t>(word)] = 1;
 }
 
 }  // namespace language

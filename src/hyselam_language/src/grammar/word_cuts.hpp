@@ -1,5 +1,4 @@
-// Words that a pattern cannot do without: groups of words of which each way through the pattern
-// has one.
+// Words that a pattern cannot do without: each way through it has one of them.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +17,12 @@ class WordCuts {
 
   /// All words that count, sorted.
   std::vector<int> words() const;
-  /// Blocks all words but the forgotten ones. Whether no way through the pattern is left.
+  /// Blocks all words. Whether no way through the pattern is left.
   bool block();
   /// Lets these words pass again, one after the other, where no way opens by that.
   void drop(const std::vector<int>& words);
   /// Those that are blocked, sorted.
   std::vector<int> blocked() const;
-  /// They do not count any more.
-  void forget(const std::vector<int>& words);
 
  private:
   struct Way {
@@ -39,8 +36,8 @@ class WordCuts {
     return way.word < 0 || blocked_[static_cast<std::size_t>(way.word)] == 0;
   }
   /// Follows ways from the open states as far as they pass; `stop`: states that must not be met.
-  /// The states newly marked; nothing is marked if it had to stop.
-  bool spread(std::vector<int> open, bool forwards, const Marks* stop, Marks* marks) const;
+  /// Marks what it comes to; nothing is marked, and it is false, if it had to stop.
+  bool spread(bool forwards, const Marks* stop, Marks* marks);
   void drop(int word);
 
   const int accept_;
@@ -48,9 +45,9 @@ class WordCuts {
   std::vector<std::size_t> out_, in_, into_;  ///< rows of ways, `into_` in the order of `in_`
   std::vector<std::size_t> first_, said_;     ///< ways of word w: said_[first_[w]] to first_[w + 1]
   Marks blocked_;                             ///< of each word
-  Marks forgotten_;
-  Marks ahead_;   ///< states that the beginning leads to without blocked words
-  Marks behind_;  ///< states that lead to the end without them
+  Marks ahead_;                     ///< states that the beginning leads to without blocked words
+  Marks behind_;                    ///< states that lead to the end without them
+  std::vector<int> open_, marked_;  ///< of spread(), kept from call to call
 };
 
 }  // namespace language
