@@ -194,7 +194,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
         guesses.emplace_back(problem.vertices[v], allNamesOf(*place));
       }
       places_.guess(guesses);
-      unsure_ = uncertaintyOf(*match_, problem.names, building);
+      unsure_ = uncertaintyOf(*match_, problem, params_.match, building);
     }
   } catch (const hyselam::InputError& e) {
     match_.reset();
@@ -226,6 +226,10 @@ void Dialogue::reportMatch(Reply& out) const {
   if (!missing.empty()) out.sentences.push_back(p.say("not_found", {{"names", p.list(missing)}}));
   if (unsure_.names.empty()) return;
   const std::vector<std::string> names(unsure_.names.begin(), unsure_.names.end());
+  if (unsure_.answers < 2) {
+    out.sentences.push_back(p.say("unsure", {{"names", p.list(names)}}));
+    return;
+  }
   const std::string number = std::to_string(unsure_.answers) + (unsure_.more ? "+" : "");
   out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hyselam_topo/topomerg/topomerg_names.hpp"
 #include "match_constraints.hpp"
 
 namespace hyselam_topo {
@@ -48,17 +49,22 @@ std::vector<MovedName> movedNames(const GuessedPlaces& before, const PlaceMan& p
   return moved;
 }
 
-Uncertainty uncertaintyOf(const PlaceAssignment& match, const std::vector<Id>& names,
-                          const DescribedBuilding& building) {
+Uncertainty uncertaintyOf(const PlaceAssignment& match, const MatchProblem& problem,
+                          const SolverParams& params, const DescribedBuilding& building) {
   Uncertainty unsure;
-  if (!match.found() || match.equal < 2) return unsure;
-  const EqualAnswers equal = equalAnswers(match);
-  if (equal.count < 2) return unsure;
-  unsure.answers = equal.count;
-  unsure.more = match.more;
-  for (const int name : equal.unsure) {
-    const DescribedPlace* place = building.findPlace(names.at(static_cast<std::size_t>(name)));
+  if (!match.found()) return unsure;
+  const auto add = [&](Id name) {
+    const DescribedPlace* place = building.findPlace(name);
     if (place != nullptr) unsure.names.insert(place->name);
+  };
+  const EqualAnswers equal = equalAnswers(match);
+  if (match.equal >= 2 && equal.count >= 2) {
+    unsure.answers = equal.count;
+    unsure.more = match.more;
+    for (const int name : equal.unsure) add(problem.names.at(static_cast<std::size_t>(name)));
+  }
+  for (const NameUncertainty& each : nameUncertainties(problem, params, match)) {
+    if (each.place != 0 && each.unsure()) add(each.name);
   }
   return unsure;
 }

@@ -23,8 +23,9 @@ GuessedPlaces guessedPlaces(const PlaceMan& places, const DescribedBuilding& bui
 std::vector<MovedName> movedNames(const GuessedPlaces& before, const PlaceMan& places,
                                   const DescribedBuilding& building);
 
-/// `names`: the ids that the match was made for (MatchProblem::names).
-Uncertainty uncertaintyOf(const PlaceAssignment& match, const std::vector<Id>& names,
-                          const DescribedBuilding& building);
+/// Names that equally good answers put elsewhere, and those whose calibrated probability is too
+/// small (nameUncertainties()).
+Uncertainty uncertaintyOf(const PlaceAssignment& match, const MatchProblem& problem,
+                          const SolverParams& params, const DescribedBuilding& building);
 
 }  // namespace hyselam_topo

@@ -55,6 +55,7 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"found", "found told confirmed"},
     {"not_found", "names"},
     {"several", "number names"},
+    {"unsure", "names"},
     {"no_map", ""},
     {"cannot_match", "reason"},
     {"issue", "text reason"},
