@@ -103,7 +103,8 @@ void Dialogue::recordStatements(Turn& turn) {
   turn.to_ask.reset();
   const bool asks_speaker = turn.asks_speaker;
   turn.asks_speaker = false;
-  if (!changed && beyond_here && out.sentences.empty()) out.sentences.push_back(p.say("known"));
+  const bool known_already = !changed && beyond_here && !to_ask && !asks_speaker;
+  if (known_already && out.sentences.empty()) out.sentences.push_back(p.say("known"));
   if (turn.sides && robot().has_pose) {
     heading_ = robot().pose.theta;
     position_ = hyselam::Point2{robot().pose.x, robot().pose.y};
