@@ -196,12 +196,15 @@ std::string nearestExample(const SentenceWords& words) {
   for (const Token& token : words.tokens) {
     if (token.kind == TokenKind::kWord) said.insert(token.folded);
   }
-  // A word counts the more the fewer examples have it.
+  // A word counts the more the fewer examples have it, and little if it tells nothing of places.
+  constexpr double kTellsNothing = 0.05;
   std::vector<std::pair<std::set<std::string>, std::string>> examples;
   std::map<std::string, int> frequency;
   for (const IntentInfo& intent : grammar.intents) {
     const bool asks = intent.kind == UtteranceKind::kQuestion;
-    if (!intent.refuse.empty() || intent.kind == UtteranceKind::kAnswer ||
+    // Those that cost less than nothing are for what the robot itself says.
+    const bool for_people = intent.refuse.empty() && intent.cost >= 0;
+    if (!for_people || intent.kind == UtteranceKind::kAnswer ||
         asks != words.sentence.is_question) {
       continue;
     }
@@ -219,7 +222,8 @@ std::string nearestExample(const SentenceWords& words) {
   for (const auto& [has, example] : examples) {
     double shared = 0.0;
     for (const std::string& word : has) {
-      if (said.count(word) != 0) shared += 1.0 / frequency[word];
+      const double weight = grammar.telling_words.count(word) != 0 ? 1.0 : kTellsNothing;
+      if (said.count(word) != 0) shared += weight / frequency[word];
     }
     if (shared > best) {
       best = shared;

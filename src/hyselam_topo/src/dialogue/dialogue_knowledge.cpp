@@ -280,6 +280,7 @@ void Dialogue::refuseComing(const Utterance&, Turn& turn) {
 void Dialogue::refuseCarrying(const Utterance& u, Turn& turn) {
   const std::vector<SaidName> to = u.names("to");
   if (to.empty()) {
+    turn.reply.unknown_name = true;  // of a thing: another node may know it
     say("cannot_carry", turn);
     return;
   }
