@@ -95,6 +95,23 @@ TEST(TopoParser, WhatIsClearIsUnderstoodAndTheRestTold) {
   }
 }
 
+TEST(TopoParser, TagsThatDoNotAskLeaveAStatement) {
+  const auto outlineOf = [](const std::string& text) {
+    return testing::outline(parser().parse(text).utterances.at(0));
+  };
+  EXPECT_EQ(outlineOf("The kitchen is next to the lab, ok?"), "next_to a=kitchen b=lab");
+  EXPECT_EQ(outlineOf("Can you note that the kitchen is next to the lab?"),
+            "next_to a=kitchen b=lab");
+  EXPECT_EQ(outlineOf("A copa fica ao lado da cozinha, viu?"), "next_to a=copa b=cozinha");
+  // These ask.
+  for (const char* text :
+       {"The kitchen is next to the lab?", "The kitchen is next to the lab, isn't it?",
+        "A copa fica ao lado da cozinha, não é?"}) {
+    const Utterance said = parser().parse(text).utterances.at(0);
+    EXPECT_NE(said.kind, UtteranceKind::kStatement) << text;
+  }
+}
+
 TEST(TopoParser, ClausesMayRunOnAsRecognisersWriteThem) {
   const auto said =
       parser().parse("you are in the corridor on your left is the kitchen").utterances;

@@ -112,6 +112,9 @@ struct CompiledGrammar {
   std::set<std::string> known_words;  ///< folded words that are never misspelt keywords
   std::vector<Phrase> fillers_before, fillers_after, corrections, clause_separators;
   std::set<int> fillers_inner;
+  /// Around a statement that ends with a question mark: "can you note that", "ok"; the longest
+  /// first.
+  std::vector<Words> told_before, told_after;
   std::set<std::string> abbreviations;
   /// Words that mean something else in small letters, as they are written: "IT".
   std::set<std::string> acronyms;

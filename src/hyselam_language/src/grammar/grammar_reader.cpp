@@ -67,6 +67,7 @@ class Reader {
          }},
         {"vocatives", [&](const GrammarNode& node) { readVocatives(node); }},
         {"fillers", [&](const GrammarNode& node) { readFillers(node); }},
+        {"told_anyway", [&](const GrammarNode& node) { readToldAnyway(node); }},
         {"corrections", phrases(&g.corrections)},
         {"clause_separators", phrases(&g.clause_separators)},
         {"list_separators", [&](const GrammarNode& node) { readListSeparators(node); }},
@@ -131,6 +132,17 @@ class Reader {
       } else {
         words.fail("this key is not known: before, within, after");
       }
+    });
+  }
+
+  void readToldAnyway(const GrammarNode& node) {
+    node.each([&](const std::string& where, const GrammarNode& phrases) {
+      if (where != "before" && where != "after")
+        phrases.fail("this key is not known: before, after");
+      auto& all = where == "before" ? grammar_->told_before : grammar_->told_after;
+      for (const std::string& phrase : phrases.texts()) all.push_back(splitWords(phrase));
+      std::stable_sort(all.begin(), all.end(),
+                       [](const Words& a, const Words& b) { return a.size() > b.size(); });
     });
   }
 

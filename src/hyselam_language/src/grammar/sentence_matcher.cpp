@@ -16,6 +16,7 @@
 #include "sentence_words.hpp"
 #include "shorter_sentence.hpp"
 #include "token_meanings.hpp"
+#include "told_anyway.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -266,11 +267,11 @@ void propose(const SentenceWords& words, Utterance* refused) {
 
 }  // namespace
 
-std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
-                                    const Sentence& sentence,
-                                    const std::set<std::string>& expected) {
-  const std::vector<Token> tokens =
-      withMeanings(tokenize(text, sentence.range, grammar.tokenRules()), grammar);
+namespace {
+
+std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::string& text,
+                                  const Sentence& sentence, const std::vector<Token>& tokens,
+                                  const std::set<std::string>& expected) {
   const auto read = [&](std::vector<Token> of, bool run_on) {
     return SentenceReader(grammar, text, sentence, std::move(of), expected, run_on).read();
   };
@@ -312,6 +313,26 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
   if (said.front().reason_code.empty()) said = explained(sentence);
   propose(SentenceWords(grammar, text, sentence, tokens), &said.front());
   return said;
+}
+
+}  // namespace
+
+std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
+                                    const Sentence& sentence,
+                                    const std::set<std::string>& expected) {
+  const std::vector<Token> tokens =
+      withMeanings(tokenize(text, sentence.range, grammar.tokenRules()), grammar);
+  std::vector<Token> rest = tokens;
+  std::vector<Utterance> stated;
+  if (sentence.is_question && dropToldAnyway(grammar, &rest)) {
+    const TextRange range{rest.front().range.begin, rest.back().range.end};
+    stated = readTokens(grammar, text, {range, false}, rest, expected);
+    if (isUnderstood(stated)) return stated;
+  }
+  std::vector<Utterance> said = readTokens(grammar, text, sentence, tokens, expected);
+  const bool partly =
+      std::any_of(stated.begin(), stated.end(), [](const Utterance& u) { return u.understood(); });
+  return partly && !isUnderstood(said) ? stated : said;
 }
 
 bool isPlainName(const CompiledGrammar& grammar, const std::string& name, const std::string& type) {
