@@ -6,10 +6,6 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
-bool isComma(const Token& token) {
-  return token.kind == TokenKind::kComma;
-}
-
 /// Whether the token may carry what people mean to tell.
 bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) {
   if (token.kind != TokenKind::kWord) return true;
@@ -20,10 +16,9 @@ bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) 
   const bool article = std::any_of(grammar.name_types.begin(), grammar.name_types.end(),
                                    [&](const auto& type) { return type.isArticle(token.folded); });
   if (!article && grammar.number_words.count(token.folded) != 0) return true;
-  return std::any_of(grammar.name_types.begin(), grammar.name_types.end(), [&](const auto& type) {
-    return type.nouns.count(token.folded) != 0 || type.titles.count(token.folded) != 0 ||
-           type.plurals.count(token.folded) != 0;
-  });
+  return grammar.isNounOrTitle(token.folded) ||
+         std::any_of(grammar.name_types.begin(), grammar.name_types.end(),
+                     [&](const auto& type) { return type.plurals.count(token.folded) != 0; });
 }
 
 }  // namespace

@@ -48,6 +48,17 @@ const NameType* CompiledGrammar::nameType(const std::string& name) const {
   return found == name_types.end() ? nullptr : &*found;
 }
 
+bool CompiledGrammar::isNoun(const std::string& word) const {
+  return std::any_of(name_types.begin(), name_types.end(),
+                     [&](const NameType& type) { return type.nouns.count(word) != 0; });
+}
+
+bool CompiledGrammar::isNounOrTitle(const std::string& word) const {
+  return isNoun(word) ||
+         std::any_of(name_types.begin(), name_types.end(),
+                     [&](const NameType& type) { return type.titles.count(word) != 0; });
+}
+
 TokenRules CompiledGrammar::tokenRules() const {
   TokenRules rules;
   rules.is_unit = [this](const std::string& word) { return unit_words.count(word) != 0; };

@@ -137,6 +137,10 @@ struct CompiledGrammar {
   std::map<std::string, std::string> say;
 
   const NameType* nameType(const std::string& name) const;
+  /// Whether the folded word is a noun of any kind of names ...
+  bool isNoun(const std::string& word) const;
+  /// ... or a title before their codes: "room".
+  bool isNounOrTitle(const std::string& word) const;
   TokenRules tokenRules() const;
   /// The reason of a code, with {word} put in.
   std::string reason(const std::string& code, const std::string& word = "") const;

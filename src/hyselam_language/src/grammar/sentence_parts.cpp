@@ -15,10 +15,6 @@ constexpr int kReadCost = 1;
 constexpr int kAsideCost = 4;
 constexpr int kLostCost = 20;  ///< a part that tells something and is not understood
 
-bool isComma(const Token& token) {
-  return token.kind == TokenKind::kComma;
-}
-
 /// Whether one of the phrases stands at a token, word by word.
 bool standsAt(const std::vector<Phrase>& phrases, const std::vector<Token>& tokens, std::size_t at,
               const Vocabulary& vocabulary) {

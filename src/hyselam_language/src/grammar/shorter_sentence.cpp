@@ -16,20 +16,14 @@ namespace {
 
 constexpr std::size_t kLongest = 40;  // tokens: nobody says "yes" to more
 
-bool isNoun(const Token& token, const CompiledGrammar& grammar) {
-  return std::any_of(grammar.name_types.begin(), grammar.name_types.end(), [&](const auto& type) {
-    return type.nouns.count(token.folded) != 0 || type.titles.count(token.folded) != 0;
-  });
-}
-
 /// What it costs to leave out each token; kNever: it must stay.
 std::vector<int> leaveOutCosts(const SentenceWords& words) {
   const CompiledGrammar& grammar = words.grammar;
   std::vector<int> costs;
   for (std::size_t at = 0; at < words.tokens.size(); ++at) {
     const Token& token = words.tokens[at];
-    const bool tells =
-        isNoun(token, grammar) || (token.starts_upper && at > 0 && token.text.size() > 1);
+    const bool tells = grammar.isNounOrTitle(token.folded) ||
+                       (token.starts_upper && at > 0 && token.text.size() > 1);
     if (token.kind == TokenKind::kComma) {
       costs.push_back(0);
     } else if (token.kind != TokenKind::kWord || grammar.refusing_words.count(token.folded) != 0 ||

@@ -22,11 +22,6 @@ void markAcronyms(const CompiledGrammar& grammar, std::vector<Token>* tokens) {
   }
 }
 
-bool isNoun(const std::string& word, const CompiledGrammar& grammar) {
-  return std::any_of(grammar.name_types.begin(), grammar.name_types.end(),
-                     [&](const NameType& type) { return type.nouns.count(word) != 0; });
-}
-
 /// Whether a name of a place may go on with this token.
 bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar) {
   if (at >= tokens.size() || tokens[at].kind == TokenKind::kComma) return true;
@@ -41,7 +36,7 @@ bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGra
   // "The library's huge", but "the library's main entrance".
   const bool last =
       at + 1 == tokens.size() || tokens[at + 1].kind == TokenKind::kComma || stops(tokens[at + 1]);
-  return type->generic.count(token.folded) == 0 || isNoun(token.folded, grammar) || !last;
+  return type->generic.count(token.folded) == 0 || grammar.isNoun(token.folded) || !last;
 }
 
 }  // namespace
@@ -59,7 +54,7 @@ std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar
       if (token.lower.compare(length, end.size(), end) != 0) continue;
       Token noun =
           wordToken(token.text.substr(0, length), {token.range.begin, token.range.begin + length});
-      if (!isNoun(noun.folded, grammar) || mayGoOn(tokens, at + 1, grammar)) continue;
+      if (!grammar.isNoun(noun.folded) || mayGoOn(tokens, at + 1, grammar)) continue;
       all.back() = std::move(noun);
       all.push_back(wordToken(verb, {token.range.begin + length, token.range.end}));
       break;

@@ -32,6 +32,10 @@ struct Token {
   bool only_lower_letters = false;  ///< plain small letters: may be a misspelt keyword
 };
 
+inline bool isComma(const Token& token) {
+  return token.kind == TokenKind::kComma;
+}
+
 /// What the splitting must know of a language.
 struct TokenRules {
   /// Whether a word may stand right behind a number: "6m".

@@ -14,7 +14,6 @@ bool standsAt(const Words& phrase, const std::vector<Token>& tokens, std::size_t
 }
 
 void dropCommas(std::vector<Token>* tokens) {
-  const auto isComma = [](const Token& token) { return token.kind == TokenKind::kComma; };
   while (!tokens->empty() && isComma(tokens->back())) tokens->pop_back();
   while (!tokens->empty() && isComma(tokens->front())) tokens->erase(tokens->begin());
 }
