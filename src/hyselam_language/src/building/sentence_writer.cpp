@@ -101,9 +101,8 @@ std::string SentenceWriter::quoted(const std::string& name) const {
                             "its name holds all kinds of quotation marks");
 }
 
-SaidValue SentenceWriter::place(const std::string& key, const DescribedBuilding& building,
-                                Id id) const {
-  const std::string& name = building.findPlace(id)->name;
+SaidValue SentenceWriter::named(const std::string& key, const std::string& name,
+                                bool another) const {
   SaidValue value{key, quoted(name), false, true};
   if (value.text != name) return value;
   const auto* type = grammar_.compiled().nameType("place");
@@ -118,10 +117,6 @@ SaidValue SentenceWriter::place(const std::string& key, const DescribedBuilding&
   const std::string& head = type->head_first ? first : last;
   if (type->nouns.count(folded) == 0 && type->nouns.count(head) == 0) return value;
   value.plural = head.size() > 2 && head.back() == 's' && head[head.size() - 2] != 's';
-  const auto& all = building.places;
-  const bool another = std::any_of(all.begin(), all.end(), [&](const DescribedPlace& other) {
-    return other.id < id && other.name == name;
-  });
   const std::string singular = value.plural ? head.substr(0, head.size() - 1) : head;
   const bool feminine = type->feminine.count(head) != 0 || type->feminine.count(singular) != 0;
   std::string article = feminine ? "feminine_" : "";
@@ -130,6 +125,15 @@ SaidValue SentenceWriter::place(const std::string& key, const DescribedBuilding&
   value.text.insert(0, grammar_.say(article));
   value.is_name = false;
   return value;
+}
+
+SaidValue SentenceWriter::place(const std::string& key, const DescribedBuilding& building,
+                                Id id) const {
+  const std::string& name = building.findPlace(id)->name;
+  const auto& all = building.places;
+  return named(key, name, std::any_of(all.begin(), all.end(), [&](const DescribedPlace& other) {
+                 return other.id < id && other.name == name;
+               }));
 }
 
 SaidValue SentenceWriter::list(const std::string& key, const DescribedBuilding& building,

@@ -33,6 +33,8 @@ class SentenceWriter {
   /// The name, between quotation marks if it needs them; throws hyselam::InputError if it holds all
   /// kinds of them.
   std::string quoted(const std::string& name) const;
+  /// A name with an article if it is a common noun; `another`: a second one of that name.
+  SaidValue named(const std::string& key, const std::string& name, bool another = false) const;
   /// A place by its name, with an article if it is a common noun: "the living room", "another
   /// toilet", but "room A", "I-109".
   SaidValue place(const std::string& key, const DescribedBuilding& building, Id id) const;

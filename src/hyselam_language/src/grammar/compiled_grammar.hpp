@@ -132,6 +132,7 @@ struct CompiledGrammar {
   std::vector<std::string> values;  ///< entries of word classes
   UrgentPhrases urgent;
   std::map<std::string, std::string> refusing_words;
+  std::set<std::string> placing_words;  ///< folded: tell where something is, or how large
   std::set<std::string> telling_words;  ///< folded: a part of a sentence with one is no aside
   std::map<std::string, std::string> reasons;
   std::map<std::string, std::string> say;

@@ -85,6 +85,7 @@ class Reader {
         {"macros", [&](const GrammarNode& node) { readMacros(node); }},
         {"classes", [&](const GrammarNode& node) { readClasses(node); }},
         {"refusing_words", [&](const GrammarNode& node) { addMeanings(node, &g.refusing_words); }},
+        {"placing_words", [&](const GrammarNode& node) { addFolded(node, &g.placing_words); }},
         {"telling_words", [&](const GrammarNode& node) { addFolded(node, &g.telling_words); }},
         {"urgent", [&](const GrammarNode& node) { readUrgent(node, &g.urgent); }},
         {"reasons", texts(&g.reasons)},

@@ -6,6 +6,7 @@
 #include "compiled_grammar.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "reader/second_reading.hpp"
 #include "sentence_matcher.hpp"
 
 namespace hyselam_topo {
@@ -70,6 +71,10 @@ TopoParser::TopoParser() : TopoParser(allShipped()) {}
 
 TopoParser::TopoParser(std::vector<Grammar> grammars) : grammars_(std::move(grammars)) {
   if (grammars_.empty()) throw hyselam::ParameterError("grammars", 0, "at least one");
+  for (const Grammar& each : grammars_) {
+    const bool known = FactReader::isShipped(each.language());
+    readers_.push_back(known ? std::optional<FactReader>(FactReader::shipped(each)) : std::nullopt);
+  }
 }
 
 const Grammar& TopoParser::grammar(const std::string& language) const {
@@ -93,7 +98,11 @@ ParsedText TopoParser::parse(const std::string& text, const ParseOptions& option
   if (text.find('\0') != std::string::npos || !hyselam::isUtf8(text)) {
     return refused(first, text, "not_text");
   }
-  if (!any) return parseWith(first, text, options.expected);
+  if (!any) {
+    ParsedText parsed = parseWith(first, text, options.expected);
+    readAgain(text, &parsed);
+    return parsed;
+  }
   // The language of most of its words first.
   std::vector<std::pair<std::size_t, std::size_t>> order;
   for (std::size_t i = 0; i < grammars_.size(); ++i) {
@@ -117,7 +126,15 @@ ParsedText TopoParser::parse(const std::string& text, const ParseOptions& option
     if (!best || parsed.misunderstood() < best->misunderstood()) best = std::move(parsed);
     if (best->misunderstood() == 0) break;
   }
+  readAgain(text, &*best);
   return *best;
+}
+
+void TopoParser::readAgain(const std::string& text, ParsedText* parsed) const {
+  for (std::size_t i = 0; i < grammars_.size(); ++i) {
+    if (grammars_[i].language() != parsed->language || !readers_[i]) continue;
+    hyselam_topo::readAgain(*readers_[i], grammars_[i], text, &parsed->utterances);
+  }
 }
 
 }  // namespace hyselam_topo

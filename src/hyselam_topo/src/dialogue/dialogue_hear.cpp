@@ -175,6 +175,7 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
   joinForwarded(text, parsed.utterances.size(), turn.reply.forwarded);
   attempt(turn.reply, [&] { recordStatements(turn); });
   startGoal(turn);
+  tellLeftOut(turn);
   auto& sentences = turn.reply.sentences;
   // Questions come last, where they are answered.
   const bool asks = questions_.isOpen() && questions_.isNew() && !sentences.empty();
@@ -211,9 +212,7 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   }
   static const std::set<std::string> kNeutral{"greeting", "thanks", "help"};
   if (kNeutral.count(u.intent) == 0) turn.about_else = true;
-  for (const std::string& words : u.left_out) {
-    turn.not_understood.push_back(phrases().say("left_out", {{"text", words}}));
-  }
+  turn.left_out.insert(turn.left_out.end(), u.left_out.begin(), u.left_out.end());
   static const std::set<std::string> kOwn{"this_is", "forget_everything", "speaker"};
   if (isOfThisPlace(u, turn)) {
     attempt(turn.reply, [&] { recordStatements(turn); });
@@ -246,6 +245,12 @@ bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& 
   turn.reply.sentences.push_back(refusal);
   settleQuestion(turn);
   return true;
+}
+
+void Dialogue::tellLeftOut(Turn& turn) {
+  std::string all;
+  for (const std::string& words : turn.left_out) all += (all.empty() ? "" : "', '") + words;
+  if (!all.empty()) turn.not_understood.push_back(phrases().say("left_out", {{"text", all}}));
 }
 
 void Dialogue::refuse(const Utterance& u, Turn& turn) {

@@ -17,6 +17,7 @@ struct Dialogue::Turn {
   std::size_t end = 0;  ///< of the utterance before, in the text
   Reply reply;
   std::vector<std::string> not_understood;  ///< answers to what was not understood
+  std::vector<std::string> left_out;        ///< words without matter beside statements
   bool described = false;                   ///< statements about the building were recorded
   bool beyond_here = false;                 ///< ... about more than where the robot is
   bool sides = false;                       ///< ... with sides

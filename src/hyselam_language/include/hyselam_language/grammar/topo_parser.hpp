@@ -3,12 +3,14 @@
 // matched by a small engine.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "hyselam_language/grammar/grammar.hpp"
 #include "hyselam_language/grammar/utterance.hpp"
+#include "hyselam_language/reader/fact_reader.hpp"
 
 namespace hyselam_topo {
 
@@ -36,6 +38,8 @@ class TopoParser {
   /// All shipped languages, English first.
   TopoParser();
   /// Throws hyselam::ParameterError without a grammar.
+  /// Languages for which a second reader is shipped have it: it suggests what may be meant where
+  /// the grammar gives up.
   explicit TopoParser(std::vector<Grammar> grammars);
 
   /// Never throws for the content of a text: if it is not UTF-8, too long or not understood, the
@@ -48,7 +52,10 @@ class TopoParser {
   const Grammar& grammar(const std::string& language) const;
 
  private:
+  void readAgain(const std::string& text, ParsedText* parsed) const;
+
   std::vector<Grammar> grammars_;
+  std::vector<std::optional<FactReader>> readers_;  // of each grammar
 };
 
 }  // namespace hyselam_topo

@@ -211,6 +211,7 @@ class Dialogue {
   bool knowsLanguage(const std::string& language) const;
   /// What remains after stop and cancel.
   Reply understand(const std::string& text, const HearOptions& options);
+  void tellLeftOut(Turn& turn);
   void refuse(const Utterance& u, Turn& turn);
   /// Nothing of it was understood, and it is in another language.
   bool refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,

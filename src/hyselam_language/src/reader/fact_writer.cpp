@@ -1,0 +1,69 @@
+#include "fact_writer.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "grammar/compiled_grammar.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+/// The relation asked for belongs to the key: "fact_ask_what_next_1".
+std::string keyOf(const ReadFact& fact) {
+  std::size_t names = 0;
+  std::string asked;
+  for (const FactArgument& each : fact.arguments) {
+    names += each.isReference() ? 0 : 1;
+    if (each.isReference()) asked += "_" + each.text;
+  }
+  return std::string(fact.asked ? "ask_" : "") + (fact.denied ? "not_" : "") + "fact_" +
+         fact.relation + asked + "_" + std::to_string(names);
+}
+
+}  // namespace
+
+FactWriter::FactWriter(const Grammar& grammar) : grammar_(grammar), writer_(grammar) {}
+
+SaidValue FactWriter::valueOf(const std::string& key, const FactArgument& argument) const {
+  const auto& types = grammar_.compiled().name_types;
+  const auto anyType = [&](const auto& has) {
+    return std::any_of(types.begin(), types.end(), has);
+  };
+  const std::string& name = argument.text;
+  const bool plain =
+      anyType([&](const auto& type) { return grammar_.isPlainName(name, type.name); });
+  if (!plain) return {key, "", false, false};
+  SaidValue value{key, name, false, true};
+  if (grammar_.isPlainName(name)) value = writer_.named(key, name);
+  if (value.text != name) return value;
+  // A noun that the grammar does not know keeps the article that it had; "uma copa" is "a copa".
+  const std::string& article = argument.article;
+  const bool definite =
+      anyType([&](const auto& type) { return type.definite.count(article) != 0; });
+  if (article.empty() || !grammar_.has("article")) return value;
+  value.is_name = false;
+  if (definite) {
+    value.text.insert(0, article + " ");
+    return value;
+  }
+  const bool plural = article.back() == 's';
+  const char gender = article[article.size() - (plural ? 2 : 1)];
+  value.text.insert(0, grammar_.say(std::string(gender == 'a' ? "feminine_" : "") +
+                                    (plural ? "plural_" : "") + "article"));
+  return value;
+}
+
+std::string FactWriter::sentence(const ReadFact& fact) const {
+  const std::string key = keyOf(fact);
+  if (!grammar_.has(key)) return "";
+  std::vector<SaidValue> values;
+  for (const FactArgument& each : fact.arguments) {
+    if (each.isReference()) continue;
+    values.push_back(valueOf(std::to_string(values.size() + 1), each));
+    if (values.back().text.empty()) return "";
+  }
+  return writer_.sentence(key, values);
+}
+
+}  // namespace hyselam_topo

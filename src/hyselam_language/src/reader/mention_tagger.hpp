@@ -1,0 +1,26 @@
+// Where a text names things, persons and values: each word begins a mention, goes on with it, or
+// is none (BIO tags), by its own looks and its neighbours; the likeliest row of tags counts.
+#pragma once
+
+#include <vector>
+
+#include "heard_text.hpp"
+#include "linear_classifier.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// "O", or B or I with the kind of the mention: "B-thing".
+std::vector<std::string> tagsOf(const HeardText& text, const std::vector<Mention>& mentions);
+
+/// What the word at that place looks like to the tagger.
+Features tokenFeatures(const HeardText& text, std::size_t at);
+
+/// That the word belongs to a mention.
+double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at);
+
+/// Their probability is that of the least likely tag within and at the end.
+std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardText& text);
+
+}  // namespace language
+}  // namespace hyselam_topo

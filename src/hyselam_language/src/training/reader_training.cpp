@@ -1,0 +1,172 @@
+#include "reader_training.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hyselam_common/utf8.hpp"
+#include "hyselam_language/reader/fact_reader.hpp"
+#include "linear_training.hpp"
+#include "reader/fact_candidates.hpp"
+#include "reader/mention_tagger.hpp"
+
+namespace hyselam_topo {
+namespace language {
+namespace {
+
+constexpr std::size_t kLeastExamples = 3;  // of a class of facts
+
+std::string inWords(const ReadFact& fact) {
+  std::string words =
+      (fact.asked ? "? " : "") + std::string(fact.denied ? "not " : "") + fact.relation;
+  std::vector<std::string> arguments;
+  for (const FactArgument& each : fact.arguments)
+    arguments.push_back(hyselam::utf8Lower(each.text));
+  // Its grounds are in no order.
+  if (fact.relation == "between" && arguments.size() == 3) {
+    std::sort(arguments.begin() + 1, arguments.end());
+  }
+  static const std::set<std::string> kSymmetric{"next", "opposite", "joined", "same"};
+  if (kSymmetric.count(fact.relation) != 0) std::sort(arguments.begin(), arguments.end());
+  for (const std::string& each : arguments) words += " | " + each;
+  return words;
+}
+
+std::multiset<std::string> inWords(const std::vector<ReadFact>& facts) {
+  std::multiset<std::string> words;
+  for (const ReadFact& each : facts) words.insert(inWords(each));
+  return words;
+}
+
+/// What a text says of each candidate; candidates with several facts give several examples.
+void addExamples(const CompiledGrammar& grammar, const ReaderLexicon& lexicon,
+                 const AnnotatedText& annotated, std::array<TrainingSet, 5>* sets) {
+  auto& [tagger, of_one, of_two, of_text, modifiers] = *sets;
+  const HeardText text(grammar, lexicon, annotated.text);
+  const GoldText gold = alignedWith(text, annotated);
+  const auto tags = tagsOf(text, gold.mentions);
+  for (std::size_t at = 0; at < tags.size(); ++at) {
+    if (!text.endsSentence(at)) tagger.add(tokenFeatures(text, at), tags[at]);
+  }
+  const MentionContext context(lexicon, text, gold.mentions);
+  std::string whole = kNoFact;
+  for (const GoldFact& fact : gold.facts) {
+    if (!fact.candidate) {
+      if (whole == kNoFact) whole = fact.label;
+      continue;
+    }
+    modifiers.add(context.features(*fact.candidate), fact.modifier);
+  }
+  of_text.add(context.textFeatures(), whole);
+  for (const FactCandidate& candidate : context.candidates()) {
+    std::vector<std::string> labels;
+    for (const GoldFact& fact : gold.facts) {
+      if (fact.candidate && fact.candidate->what == candidate.what &&
+          fact.candidate->by == candidate.by) {
+        labels.push_back(fact.label);
+      }
+    }
+    if (labels.empty()) labels.push_back(kNoFact);
+    const Features features = context.features(candidate);
+    (candidate.by ? of_two : of_one).add(features, labels.front());
+  }
+}
+
+}  // namespace
+
+ReaderModel trainReader(const Grammar& grammar, const ReaderLexicon& lexicon,
+                        const std::vector<const AnnotatedText*>& texts,
+                        const ReaderTrainingParams& params) {
+  std::array<TrainingSet, 5> sets;
+  for (const AnnotatedText* each : texts) addExamples(grammar.compiled(), lexicon, *each, &sets);
+  ReaderModel model;
+  model.lexicon = lexicon;
+  model.tagger = sets[0].train(params.cost, params.least_seen);
+  model.of_one = sets[1].train(params.cost, params.least_seen);
+  model.of_two = sets[2].train(params.cost, params.least_seen);
+  model.of_text = sets[3].train(params.cost, params.least_seen);
+  model.modifiers = sets[4].train(params.cost, params.least_seen);
+  return model;
+}
+
+ReaderEvaluation evaluateReader(const Grammar& grammar, const ReaderLexicon& lexicon,
+                                const std::vector<const AnnotatedText*>& texts,
+                                const ReaderTrainingParams& params) {
+  std::set<std::string> names;
+  for (const AnnotatedText* each : texts) names.insert(each->writer);
+  const std::vector<std::string> writers(names.begin(), names.end());
+  const auto foldOf = [&](const AnnotatedText& text) {
+    const auto at = std::lower_bound(writers.begin(), writers.end(), text.writer);
+    return static_cast<std::size_t>(at - writers.begin()) % params.folds;
+  };
+  ReaderEvaluation result;
+  for (std::size_t fold = 0; fold < params.folds; ++fold) {
+    std::vector<const AnnotatedText*> others;
+    for (const AnnotatedText* each : texts) {
+      if (foldOf(*each) != fold) others.push_back(each);
+    }
+    const ReaderModel model = trainReader(grammar, lexicon, others, params);
+    const FactReader reader(grammar, "fold " + std::to_string(fold), model.toText());
+    for (const AnnotatedText* each : texts) {
+      if (foldOf(*each) != fold) continue;
+      const Reading reading = reader.read(each->text);
+      const auto wanted = inWords(each->facts), read = inWords(reading.facts);
+      std::vector<std::string> both;
+      std::set_intersection(wanted.begin(), wanted.end(), read.begin(), read.end(),
+                            std::back_inserter(both));
+      ReaderScore& score = result.by_layer[each->layer];
+      const HeardText text(grammar.compiled(), lexicon, each->text);
+      const auto named = alignedWith(text, *each).mentions;
+      const auto found = findMentions(model.tagger, text);
+      score.mentions += named.size();
+      score.mentions_found += found.size();
+      score.mentions_right += static_cast<std::size_t>(
+          std::count_if(found.begin(), found.end(), [&](const Mention& mention) {
+            return std::any_of(named.begin(), named.end(), [&](const Mention& other) {
+              return other.begin == mention.begin && other.end == mention.end;
+            });
+          }));
+      ++score.texts;
+      score.exact += wanted == read ? 1 : 0;
+      score.facts += wanted.size();
+      score.read += read.size();
+      score.right += both.size();
+      std::string words;
+      for (const std::string& fact : read)
+        words += "\n    read    " + fact + (wanted.count(fact) != 0 ? "" : "   <-- wrong");
+      for (const std::string& fact : wanted) {
+        if (read.count(fact) == 0) words += "\n    missed  " + fact;
+      }
+      // The uncalibrated model has slope 1 and offset 0.
+      const double p = std::min(std::max(reading.probability, 1e-12), 1.0 - 1e-12);
+      result.readings.push_back(
+          {std::log(p / (1.0 - p)), wanted == read, !read.empty(), each, words});
+    }
+  }
+  return result;
+}
+
+void calibrate(const std::vector<ReaderEvaluation::Reading>& readings, ReaderModel* model) {
+  // Newton's method for the logistic regression of one variable.
+  double slope = 1.0, offset = 0.0;
+  for (int round = 0; round < 50; ++round) {
+    double g0 = 0, g1 = 0, h00 = 1e-9, h01 = 0, h11 = 1e-9;
+    for (const auto& each : readings) {
+      if (!each.any) continue;
+      const double x = each.log_odds;
+      const double p = 1.0 / (1.0 + std::exp(-(slope * x + offset)));
+      const double error = (each.exact ? 1.0 : 0.0) - p, w = p * (1.0 - p);
+      g0 += error, g1 += error * x;
+      h00 += w, h01 += w * x, h11 += w * x * x;
+    }
+    const double det = h00 * h11 - h01 * h01;
+    if (det <= 0) break;
+    offset += (h11 * g0 - h01 * g1) / det;
+    slope += (h00 * g1 - h01 * g0) / det;
+  }
+  model->slope = slope;
+  model->offset = offset;
+}
+
+}  // namespace language
+}  // namespace hyselam_topo
