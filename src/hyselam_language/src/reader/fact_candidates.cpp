@@ -6,7 +6,7 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
-constexpr std::size_t kFarthest = 6;     // mentions between those of a pair
+constexpr std::size_t kFarthest = 3;     // mentions between those of a pair
 constexpr std::size_t kWordsAround = 8;  // that may tell the relation
 
 std::string kindOf(const Mention& mention) {

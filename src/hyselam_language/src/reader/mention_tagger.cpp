@@ -88,6 +88,23 @@ Features tokenFeatures(const HeardText& text, std::size_t token) {
   return features;
 }
 
+Features tokenFeatures(const HeardText& text, std::size_t at, const std::string& tag_before) {
+  Features features = tokenFeatures(text, at);
+  const auto i = static_cast<std::ptrdiff_t>(at);
+  features.push_back("t-1=" + tag_before);
+  features.push_back("t-1w=" + tag_before + "_" + text.word(i));
+  features.push_back("t-1w-1=" + tag_before + "_" + text.word(i - 1));
+  features.push_back("t-1k=" + tag_before + "_" +
+                     (text.isNoun(i)      ? "n"
+                      : text.isKeyword(i) ? "k"
+                                          : "u") +
+                     shapeOf(text, i) +
+                     (text.isNoun(i + 1)      ? "n"
+                      : text.isKeyword(i + 1) ? "k"
+                                              : "u"));
+  return features;
+}
+
 double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at) {
   if (text.endsSentence(at)) return 0.0;
   const auto& tags = tagger.classes();
@@ -99,40 +116,44 @@ double nameProbability(const LinearClassifier& tagger, const HeardText& text, st
 
 std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardText& text) {
   const auto& tags = tagger.classes();
-  const std::size_t count = text.tokens().size();
+  const std::size_t count = text.tokens().size(), kinds = tags.size();
   constexpr double kNever = -std::numeric_limits<double>::infinity();
-  std::vector<std::vector<double>> probability(count);
-  std::vector<std::vector<double>> best(count, std::vector<double>(tags.size(), kNever));
-  std::vector<std::vector<std::size_t>> from(count, std::vector<std::size_t>(tags.size(), 0));
+  const std::size_t outside =
+      static_cast<std::size_t>(std::find(tags.begin(), tags.end(), "O") - tags.begin());
+  struct Cell {
+    double best = kNever;
+    double own = 0.0;  // its probability behind the best tag before it
+    std::size_t before = 0;
+  };
+  std::vector<std::vector<Cell>> cells(count, std::vector<Cell>(kinds));
   for (std::size_t at = 0; at < count; ++at) {
-    probability[at] = tagger.probabilities(tokenFeatures(text, at));
-    for (std::size_t tag = 0; tag < tags.size(); ++tag) {
-      if (text.endsSentence(at) && tags[tag] != "O") continue;
-      const double own = std::log(std::max(probability[at][tag], 1e-12));
-      if (at == 0) {
-        best[at][tag] = isInside(tags[tag]) ? kNever : own;
-        continue;
-      }
-      for (std::size_t before = 0; before < tags.size(); ++before) {
-        const double sum = best[at - 1][before] + own;
-        if (mayFollow(tags[before], tags[tag]) && sum > best[at][tag]) {
-          best[at][tag] = sum;
-          from[at][tag] = before;
-        }
+    for (std::size_t before = 0; before < kinds; ++before) {
+      const double so_far =
+          at == 0 ? (before == outside ? 0.0 : kNever) : cells[at - 1][before].best;
+      if (so_far == kNever) continue;
+      const auto p = tagger.probabilities(tokenFeatures(text, at, tags[before]));
+      for (std::size_t tag = 0; tag < kinds; ++tag) {
+        if ((text.endsSentence(at) && tag != outside) || !mayFollow(tags[before], tags[tag]))
+          continue;
+        const double sum =
+            so_far + (text.endsSentence(at) ? 0.0 : std::log(std::max(p[tag], 1e-12)));
+        if (sum > cells[at][tag].best) cells[at][tag] = {sum, p[tag], before};
       }
     }
   }
   std::vector<std::size_t> path(count, 0);
   for (std::size_t at = count; at-- > 0;) {
-    path[at] = at + 1 == count
-                   ? static_cast<std::size_t>(std::max_element(best[at].begin(), best[at].end()) -
-                                              best[at].begin())
-                   : from[at + 1][path[at + 1]];
+    const auto better = [](const Cell& a, const Cell& b) { return a.best < b.best; };
+    path[at] =
+        at + 1 == count
+            ? static_cast<std::size_t>(
+                  std::max_element(cells[at].begin(), cells[at].end(), better) - cells[at].begin())
+            : cells[at + 1][path[at + 1]].before;
   }
   std::vector<Mention> mentions;
   for (std::size_t at = 0; at < count; ++at) {
     const std::string& tag = tags[path[at]];
-    const double likely = probability[at][path[at]];
+    const double likely = cells[at][path[at]].own;
     if (tag[0] == 'B') {
       Mention mention{at, at + 1, Mention::Kind::kThing, likely};
       for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
