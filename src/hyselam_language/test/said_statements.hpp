@@ -17,7 +17,7 @@ namespace testing {
 inline Utterance said(const std::string& outline) {
   static const std::set<std::string> kWords{"side",    "nth",      "size_word", "floor",
                                             "denied",  "kind",     "named",     "from_end",
-                                            "instead", "was_side", "was_nth"};
+                                            "instead", "was_side", "was_nth",   "room_kind"};
   static const std::set<std::string> kNumbers{"count", "doors",  "distance", "steps",
                                               "area",  "length", "width"};
   Utterance u;
@@ -40,9 +40,10 @@ inline Utterance said(const std::string& outline) {
     slot.name = part.substr(0, equals);
     std::string value = part.substr(equals + 1);
     // "instead" is a name in "replace name=B instead=A".
-    if (kWords.count(slot.name) != 0 && u.intent != "replace") {
+    const bool replaces = u.intent == "replace" || u.intent == "replace_number";
+    if (kWords.count(slot.name) != 0 && !replaces) {
       slot.word = value;
-    } else if (kNumbers.count(slot.name) != 0) {
+    } else if (kNumbers.count(slot.name) != 0 || u.intent == "replace_number") {
       slot.number = hyselam::parseNumber(value);
     } else {
       slot.type = "place";

@@ -266,16 +266,39 @@ TEST(DescriptionBuilder, NotThereButElsewhere) {
             Lines{"room 3 aka Jack's office"});
 }
 
+TEST(DescriptionBuilder, BothAreJoined) {
+  EXPECT_EQ(graphOf({"located places=lab,store next_to=lift", "joined both=<they>"}),
+            (Lines{"lab joins store", "lab next_to lift", "store next_to lift"}));
+  EXPECT_EQ(issuesOf({"located places=lab,store,bar next_to=lift"}, "joined both=<they>"),
+            Lines{"ask"});
+}
+
+TEST(DescriptionBuilder, OneNumberIsReplaced) {
+  EXPECT_EQ(graphOf({"length_of place=lab length=6", "no replace_number instead=7"}),
+            Lines{"lab length 7"});
+  // Which of two, and in which unit: not guessed.
+  EXPECT_EQ(issuesOf({"size place=lab length=6 width=4"}, "no replace_number instead=7"),
+            Lines{"no context"});
+  EXPECT_EQ(issuesOf({"length_of place=lab length=1.8288"}, "no replace_number instead=7"),
+            Lines{"no context"});
+  EXPECT_EQ(issuesOf({}, "no replace_number instead=7"), Lines{"no context"});
+}
+
+TEST(DescriptionBuilder, OwnersOfPlacesWithoutAName) {
+  EXPECT_EQ(graphOf({"owner_located owners=Joe,Ann room_kind=lab next_to=lift"}),
+            (Lines{"Joe's lab aka Ann's lab", "Joe's lab next_to lift"}));
+}
+
 /// A slot that the builder does not read would be dropped without a word.
 TEST(DescriptionBuilder, ReadsAllSlotsOfTheGrammars) {
   const std::set<std::string> read{
-      "a",       "after",       "aliases",   "area",   "b",        "before",   "behind",
-      "between", "c",           "count",     "denied", "distance", "doors",    "end_of",
-      "floor",   "floors_down", "floors_up", "from",   "from_end", "inside",   "instead",
-      "kind",    "length",      "name",      "named",  "next_to",  "nth",      "opposite",
-      "owners",  "part_of",     "person",    "place",  "places",   "side",     "size_word",
-      "steps",   "to",          "via",       "was",    "was_nth",  "was_side", "width",
-      "within"};
+      "both",      "owned",  "room_kind", "speaker_too", "unit",      "a",       "after",
+      "aliases",   "area",   "b",         "before",      "behind",    "between", "c",
+      "count",     "denied", "distance",  "doors",       "end_of",    "floor",   "floors_down",
+      "floors_up", "from",   "from_end",  "inside",      "instead",   "kind",    "length",
+      "name",      "named",  "next_to",   "nth",         "opposite",  "owners",  "part_of",
+      "person",    "place",  "places",    "side",        "size_word", "steps",   "to",
+      "via",       "was",    "was_nth",   "was_side",    "width",     "within"};
   for (const Grammar& grammar : parser().grammars()) {
     for (const language::IntentInfo& intent : grammar.compiled().intents) {
       if (!DescriptionBuilder::handles(intent.as.empty() ? intent.name : intent.as)) continue;

@@ -158,10 +158,19 @@ TEST(LanguageCorpus, HoldOut) {
   expectGood("holdout", 0.97);
 }
 
+TEST(LanguageCorpus, WaysOfSayingEnglish) {
+  expectGood("ways_en", 1.0);
+}
+
+TEST(LanguageCorpus, WaysOfSayingPortuguese) {
+  expectGood("ways_pt", 1.0);
+}
+
 /// Every refusal says what would work, in the language of the speaker, and that does work.
 TEST(LanguageCorpus, RefusalsTeach) {
   std::size_t refusals = 0, meant = 0;
-  for (const char* name : {"thesis", "corpus_en", "corpus_pt", "refused", "holdout", "holdout_2"}) {
+  for (const char* name : {"thesis", "corpus_en", "corpus_pt", "refused", "holdout", "holdout_2",
+                           "ways_en", "ways_pt"}) {
     for (const Item& item : corpus(name)) {
       ParseOptions options;
       options.language = item.language;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "edit_description.hpp"
@@ -50,6 +51,8 @@ void DescriptionContext::forgetReferences() {
   told_of_group.clear();
   side.reset();
   kind_word.clear();
+  described_kind.clear();
+  owned_kind.clear();
 }
 
 DescriptionBuilder::DescriptionBuilder(const TopoParser& parser, const DescriptionParams& params)
@@ -71,7 +74,8 @@ void DescriptionBuilder::setLanguage(const std::string& language) {
 }
 
 bool DescriptionBuilder::handles(const std::string& intent) {
-  static const std::set<std::string> kOthers{"speaker", "undo", "replace", "forget_everything"};
+  static const std::set<std::string> kOthers{"speaker", "undo", "replace", "replace_number",
+                                             "forget_everything"};
   return statementKind(intent) != nullptr || kOthers.count(intent) != 0;
 }
 
@@ -98,6 +102,7 @@ std::vector<DescriptionIssue> DescriptionBuilder::add(const Utterance& u) {
     return {};
   }
   if (u.intent == "replace") return replaceLast(u);
+  if (u.intent == "replace_number") return replaceNumber(u);
   if (u.intent == "undo") {
     if (undo()) return {};
     return {issueOf(u, IssueKind::kNoContext, issueText(grammars_[language_], "nothing_to_undo"))};
@@ -179,6 +184,34 @@ std::vector<DescriptionIssue> DescriptionBuilder::replaceLast(const Utterance& u
                   issueText(grammar, "replace_what", {{"name", name[0].text}, {"names", all}}));
   }
   *meant.front() = name[0];
+  return recordInstead(again);
+}
+
+std::vector<DescriptionIssue> DescriptionBuilder::replaceNumber(const Utterance& u) {
+  const Grammar& grammar = grammars_[language_];
+  const auto refuse = [&](const std::string& key) {
+    state_.context.forgetReferences();
+    return std::vector<DescriptionIssue>{
+        issueOf(u, IssueKind::kNoContext, issueText(grammar, key))};
+  };
+  if (history_.empty() || state_.context.after_refusal) return refuse("nothing_to_undo");
+  Utterance again = history_.back().said;
+  std::vector<Slot*> numbers;
+  for (Slot& slot : again.slots) {
+    if (slot.number) numbers.push_back(&slot);
+  }
+  const Slot* said = u.find("instead");
+  if (numbers.size() != 1 || said == nullptr || !said->number) return refuse("which_number");
+  // "Six feet, no, seven": not seven metres.
+  const double hundredths = *numbers.front()->number * 100.0;
+  const bool metric = std::abs(hundredths - std::round(hundredths)) < 1e-6;
+  const bool with_unit = u.find("unit") != nullptr;
+  if (!metric && !with_unit) return refuse("which_number");
+  numbers.front()->number = said->number;
+  return recordInstead(again);
+}
+
+std::vector<DescriptionIssue> DescriptionBuilder::recordInstead(const Utterance& again) {
   const Recorded last = history_.back();
   const DescriptionState now = state_;
   undo();

@@ -57,6 +57,9 @@ const std::map<std::string, std::string>& english() {
       {"taken_as_new", "nothing was told that this corrects: taken as new"},
       {"nothing_to_undo", "nothing was told that can be taken back"},
       {"replace_what", "which one shall '{name}' replace: {names}?"},
+      {"which_number",
+       "which number that replaces is not clear: say the whole sentence, as 'The lab is 7 metres "
+       "long'"},
       {"it_nothing", "what '{name}' means was not told: say the name"},
       {"it_several", "'{name}' may mean {names}"},
       {"it_what", "'{name}' means no place told of: say the name"},

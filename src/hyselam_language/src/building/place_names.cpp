@@ -11,10 +11,6 @@ namespace {
 
 using language::NameType;
 
-bool hasDigit(const std::string& word) {
-  return std::any_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
 std::string joined(const std::vector<std::string>& words, std::size_t from = 0) {
   std::string all;
   for (std::size_t i = from; i < words.size(); ++i) all += words[i];

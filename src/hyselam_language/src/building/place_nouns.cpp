@@ -15,10 +15,6 @@ using Words = std::vector<std::string>;
 
 constexpr std::size_t kLongestNoun = 3;  // words
 
-bool hasDigit(const std::string& word) {
-  return std::any_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
 std::string phrase(const Words& words, std::size_t begin, std::size_t end) {
   std::string all;
   for (std::size_t i = begin; i < end; ++i) all += (i > begin ? " " : "") + words[i];

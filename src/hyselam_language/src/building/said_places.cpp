@@ -4,7 +4,10 @@
 
 #include "edit_description.hpp"
 #include "fact_sentences.hpp"
+#include "grammar/compiled_grammar.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "issue_texts.hpp"
+#include "name_words.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -69,6 +72,44 @@ std::vector<Id> referred(Statement& s, const SaidName& name) {
   s.fail(IssueKind::kNoContext, "it_what", {{"name", name.text}});
 }
 
+/// "Anna's office", "gabinete da Ana": not "sala de estar".
+bool tellsOwner(const std::string& name) {
+  for (const char* sign :
+       {"' ", "'s ", "\xe2\x80\x99 ", "\xe2\x80\x99s ", " do ", " da ", " dos ", " das "}) {
+    if (name.find(sign) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// Keeps of what kind of place the name was.
+void rememberKind(Statement& s, const std::string& full) {
+  const PlaceNames& names = s.listener().names;
+  const std::string head = names.headOf(full);
+  if (head.empty()) return;
+  DescriptionContext& context = s.context();
+  context.kind_word = head;
+  const bool coded = hasDigit(full);
+  if (!coded && full.find(' ') != std::string::npos) context.described_kind = head;
+  if (tellsOwner(full)) context.owned_kind = head;
+}
+
+/// What "the chemistry one", "Mary's" and "the big one" leave out.
+std::string kindLeftOut(Statement& s, const SaidName& name) {
+  const DescriptionContext& context = s.context();
+  const auto* type = s.listener().grammar.compiled().nameType("place");
+  const bool owned = name.speaker || name.text.find('\'') != std::string::npos ||
+                     name.text.find("\xe2\x80\x99") != std::string::npos;
+  if (owned && !context.owned_kind.empty()) return context.owned_kind;
+  const std::string& kind =
+      owned || context.described_kind.empty() ? context.kind_word : context.described_kind;
+  const bool adjective =
+      type != nullptr && type->elliptic_adjectives.count(hyselam::utf8Fold(name.text)) != 0;
+  if (owned || adjective || type == nullptr || type->head_first) return kind;
+  // "The chemistry one" after "the physics lab", which is a kind of its own.
+  const std::string last = kind.substr(kind.rfind(' ') + 1);
+  return s.listener().names.headOf(last).empty() ? kind : last;
+}
+
 /// "The meeting rooms", where two are known and none is called so; otherwise nothing.
 std::vector<Id> severalOf(Statement& s, const SaidName& name) {
   const PlaceNames& names = s.listener().names;
@@ -121,11 +162,13 @@ std::string fullName(Statement& s, const SaidName& name) {
   if (name.speaker) {
     const std::string& speaker = s.listener().speaker;
     if (speaker.empty()) s.fail(IssueKind::kAsk, "whose", {{"name", name.text}});
-    return writer.phrase("owned",
-                         {{"owner", speaker, false, true}, {"kind", name.text, false, true}});
+    std::string kind = name.text;
+    if (name.elliptic) kind = kindLeftOut(s, name);
+    if (kind.empty()) kind = grammar.say("office");
+    return writer.phrase("owned", {{"owner", speaker, false, true}, {"kind", kind, false, true}});
   }
   if (!name.elliptic) return name.text;
-  const std::string& kind = s.context().kind_word;
+  const std::string kind = kindLeftOut(s, name);
   const auto full = [&](const std::string& word) {
     return writer.phrase("elliptic",
                          {{"owner", name.text, false, true}, {"kind", word, false, true}});
@@ -157,8 +200,7 @@ Id placeOf(Statement& s, const SaidName& name) {
   const std::string full = fullName(s, name);
   const std::vector<Id> ids = placesOf(full, s.state(), s.listener().names);
   if (ids.size() > 1) failSeveral(s, name, ids);
-  const std::string head = s.listener().names.headOf(full);
-  if (!head.empty()) s.context().kind_word = head;
+  rememberKind(s, full);
   if (ids.empty()) {
     checkName(s, name, full);
     return addPlace(full, s.listener().names.kindOf(full), &s.building());

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "grammar/compiled_grammar.hpp"
+#include "grammar/word_lists.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "name_words.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -43,6 +45,65 @@ std::string withForms(std::string text, const std::vector<SaidValue>& values) {
     chooseForm(&text, begin, bar, end, pluralOf(begin));
   }
   return text;
+}
+
+using Words = std::vector<std::string>;
+
+bool isUpper(char c) {
+  return c >= 'A' && c <= 'Z';
+}
+
+/// The words of a name up to where it says of what: "room" of "room for the copies".
+Words ownWords(const std::string& name, const language::NameType& type) {
+  Words words = language::splitWords(name);
+  if (type.head_first) return words;
+  const auto joiner = std::find_if(words.begin(), words.end(), [&](const std::string& word) {
+    return type.joiners.count(word) != 0;
+  });
+  words.erase(joiner, words.end());
+  return words;
+}
+
+/// The word of a common noun at the head: the last one in "printer room", the first one in "sala de
+/// estar"; "" without one.
+std::string headWord(const std::string& name, const language::NameType& type) {
+  constexpr std::size_t kLongestNoun = 3;
+  const Words words = language::splitWords(hyselam::utf8Fold(name));
+  const std::size_t own = ownWords(name, type).size();
+  for (std::size_t length = std::min(own, kLongestNoun); length > 0; --length) {
+    const std::size_t begin = type.head_first ? 0 : own - length;
+    std::string noun = words[begin];
+    for (std::size_t k = begin + 1; k < begin + length; ++k) noun += " " + words[k];
+    if (type.nouns.count(noun) != 0) return type.head_first ? words[begin] : words[own - 1];
+  }
+  return "";
+}
+
+/// "Paul's": no "girls'", "secretary's".
+bool isOwnersName(const std::string& word, const language::NameType& type) {
+  const std::size_t apostrophe = word.find('\'');
+  if (apostrophe == std::string::npos || apostrophe + 1 == word.size()) return false;
+  return type.forbidden.count(hyselam::utf8Fold(word.substr(0, apostrophe))) == 0;
+}
+
+/// "The printer room", "the ICT suite", "a sala 5", but "room 5", "Paul's office", "Main Hall".
+bool takesArticle(const std::string& name, const language::CompiledGrammar& grammar,
+                  const language::NameType& type) {
+  if (name.empty() || isUpper(name[0])) {
+    const bool acronym = name.size() > 1 && isUpper(name[1]);
+    if (!acronym) return false;
+  }
+  if (type.head_first) return true;
+  const Words words = ownWords(name, type);
+  if (words.empty()) return false;
+  const std::string& last = words.back();
+  const bool code = hasDigit(last) || last.size() == 1 || isUpper(last[0]) ||
+                    grammar.number_words.count(hyselam::utf8Fold(last)) != 0;
+  if (code) return false;
+  return std::none_of(words.begin(), words.end(), [&](const std::string& word) {
+    const bool proper = isUpper(word[0]) && !(word.size() > 1 && isUpper(word[1]));
+    return proper || isOwnersName(word, type);
+  });
 }
 
 }  // namespace
@@ -106,16 +167,8 @@ SaidValue SentenceWriter::named(const std::string& key, const std::string& name,
   SaidValue value{key, quoted(name), false, true};
   if (value.text != name) return value;
   const auto* type = grammar_.compiled().nameType("place");
-  const bool small = type != nullptr && std::all_of(name.begin(), name.end(), [](char c) {
-                       return !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '\'';
-                     });
-  if (!small) return value;
-  // The noun at the head: the last words in "printer room", the first ones in "sala de estar".
-  const std::string folded = hyselam::utf8Fold(name);
-  const std::string first = folded.substr(0, folded.find(' '));
-  const std::string last = folded.substr(folded.rfind(' ') + 1);
-  const std::string& head = type->head_first ? first : last;
-  if (type->nouns.count(folded) == 0 && type->nouns.count(head) == 0) return value;
+  const std::string head = type == nullptr ? "" : headWord(name, *type);
+  if (head.empty() || !takesArticle(name, grammar_.compiled(), *type)) return value;
   value.plural = head.size() > 2 && head.back() == 's' && head[head.size() - 2] != 's';
   const std::string singular = value.plural ? head.substr(0, head.size() - 1) : head;
   const bool feminine = type->feminine.count(head) != 0 || type->feminine.count(singular) != 0;

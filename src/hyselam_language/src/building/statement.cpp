@@ -33,6 +33,21 @@ std::string Statement::nameOf(Id id) const {
   return found == nullptr ? "" : found->name;
 }
 
+void Statement::recordAs(void (*record)(Statement&), const Utterance& said) {
+  Statement part(said, listener_, &state_);
+  const auto take = [&] {
+    issues_.insert(issues_.end(), part.issues_.begin(), part.issues_.end());
+    corrected_ = corrected_ || part.corrected_;
+  };
+  try {
+    record(part);
+  } catch (const Failed&) {
+    take();
+    throw;
+  }
+  take();
+}
+
 void Statement::setSubjects(std::vector<Id> ids) {
   DescriptionContext& context = state_.context;
   const auto inGroup = [&](Id id) {

@@ -51,6 +51,8 @@ class Statement {
 
   std::string nameOf(Id id) const;
   DescribedPlace& at(Id id) { return *state_.building.findPlace(id); }
+  /// Records what another utterance tells, as a part of this statement.
+  void recordAs(void (*record)(Statement&), const Utterance& said);
   /// The statement was about these: "it" and "they" from now on.
   void setSubjects(std::vector<Id> ids);
 

@@ -51,6 +51,18 @@ void forgetLastJoined(Statement& s, Id place) {
   }
 }
 
+/// "There is a door between the two."
+void bothJoined(Statement& s) {
+  const std::vector<Id> both = placesOf(s, "both");
+  if (both.size() != 2) s.fail(IssueKind::kAsk, "between_what");
+  if (s.isDenial()) {
+    recordDenial(s, relationOf(RelationKind::kJoined, both[0], both[1]));
+  } else {
+    recordConnection(s, Placement(both[0], both[1]));
+  }
+  s.setSubjects(both);
+}
+
 }  // namespace
 
 Id observer(Statement& s) {
@@ -127,6 +139,7 @@ void contains(Statement& s) {
 }
 
 void joined(Statement& s) {
+  if (s.said().find("both") != nullptr) return bothJoined(s);
   const Id a = placeOf(s, "a");
   const std::vector<Id> to = placesOf(s, "b");
   if (s.isCorrection()) forgetLastJoined(s, a);

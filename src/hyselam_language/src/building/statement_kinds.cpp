@@ -34,7 +34,8 @@ RecordStatement statementKind(const std::string& intent) {
                                                              {"each_side", eachSide},
                                                              {"larger", larger},
                                                              {"size_word", sizeWord},
-                                                             {"owner", owner}};
+                                                             {"owner", owner},
+                                                             {"owner_located", ownerLocated}};
   const auto found = kKinds.find(intent);
   return found == kKinds.end() ? nullptr : found->second;
 }

@@ -11,6 +11,7 @@ namespace statements {
 // What places are called (statement_names.cpp).
 void alias(Statement& s);
 void owner(Statement& s);
+void ownerLocated(Statement& s);
 
 // Of one place (statement_places.cpp).
 void robotIn(Statement& s);

@@ -187,7 +187,7 @@ void record(Statement& s, const Location& location, Id id) {
 }
 
 /// "Not on the left but on the right", "not next to the lab but ...": what it was said to be.
-void forgetLocation(Statement& s, Id id) {
+void forgetLocation(Statement& s, const Location& location, Id id) {
   s.setCorrected();
   const Utterance& u = s.said();
   const auto side = hyselam_topo::sideOf(u.word("was_side"));
@@ -200,7 +200,15 @@ void forgetLocation(Statement& s, Id id) {
   for (DescribedConnection& each : s.building().connections) {
     if (rank && each.to == id && each.rank == static_cast<int>(*rank)) each.rank.reset();
   }
-  const std::vector<Id> others = placesOf(s, "was");
+  // "Opposite the pool, not next to it": to what it lies opposite.
+  const auto was = s.said().names("was");
+  const bool same = !was.empty() && was.front().reference == "it";
+  std::vector<Id> others = same ? std::vector<Id>{} : placesOf(s, "was");
+  if (same) {
+    for (const DescribedRelation& each : location.relations) {
+      others.push_back(each.a == kItself ? each.b : each.a);
+    }
+  }
   auto& all = s.building().relations;
   all.erase(std::remove_if(all.begin(), all.end(),
                            [&](const DescribedRelation& each) {
@@ -232,7 +240,7 @@ void located(Statement& s) {
       deny(s, location, id);
       continue;
     }
-    if (!u.word("instead").empty()) forgetLocation(s, id);
+    if (!u.word("instead").empty()) forgetLocation(s, location, id);
     record(s, location, id);
     takeSizeWord(s, id);
     if (u.number("doors")) takeDoors(s, id);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hyselam_common/utf8.hpp"
 #include "record_facts.hpp"
 #include "said_places.hpp"
 #include "sentence_writer.hpp"
@@ -62,6 +63,45 @@ void takeBothNames(Statement& s, const SaidName& said, const std::vector<SaidNam
   s.setSubjects({id});
 }
 
+/// The word before a name in what was said: its article.
+std::string wordBefore(const Statement& s, const SaidName& name) {
+  const Utterance& u = s.said();
+  if (name.range.begin <= u.range.begin) return "";
+  const std::string before = u.text.substr(0, name.range.begin - u.range.begin);
+  const std::size_t last = before.find_last_not_of(' ');
+  if (last == std::string::npos) return "";
+  const std::size_t space = before.rfind(' ', last);
+  const std::size_t begin = space == std::string::npos ? 0 : space + 1;
+  return hyselam::utf8Lower(before.substr(begin, last + 1 - begin));
+}
+
+/// "Ana's office", "gabinete da Ana": as the owner was spoken of.
+std::string ownedBy(const Statement& s, const SaidName& owner, const std::string& kind) {
+  const Grammar& grammar = s.listener().grammar;
+  const std::string with_article = "owned_" + wordBefore(s, owner);
+  return SentenceWriter(grammar, false)
+      .phrase(grammar.has(with_article) ? with_article : "owned",
+              {{"owner", owner.text, false, true}, {"kind", kind, false, true}});
+}
+
+/// The places of those who were named with a room that has no other name.
+std::vector<SaidName> ownedPlaces(Statement& s, const std::string& kind) {
+  const Grammar& grammar = s.listener().grammar;
+  std::vector<SaidName> all = s.said().names("owners");
+  for (SaidName& each : all) each.text = ownedBy(s, each, kind);
+  for (const SaidName& each : s.said().names("owned")) {
+    all.push_back(each);
+    all.back().text =
+        SentenceWriter(grammar, false)
+            .phrase("elliptic", {{"owner", each.text, false, true}, {"kind", kind, false, true}});
+  }
+  for (SaidName& each : all) {
+    each.elliptic = false;
+    each.reference.clear();
+  }
+  return all;
+}
+
 /// "Room 3 is not John's office."
 void notAlias(Statement& s) {
   const Id id = knownPlacesOf(s, "place").front();
@@ -107,6 +147,9 @@ void addAlias(Statement& s, Id id, const SaidName& name) {
 }
 
 void alias(Statement& s) {
+  // "Canteen, dining hall, it's the same."
+  const auto both = s.said().names("both");
+  if (both.size() == 2) return takeBothNames(s, both[0], {both[1]});
   const auto said = s.said().names("place");
   if (said.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
   if (said[0].reference == "next") return nextIs(s);
@@ -125,19 +168,32 @@ void owner(Statement& s) {
   const std::string name =
       said[0].reference.empty() ? fullName(s, said[0]) : s.nameOf(placeOf(s, said[0]));
   const std::string kind = names.isPlainRoom(name) ? grammar.say("office") : names.headOf(name);
-  std::vector<SaidName> owned = s.said().names("owners");
-  for (SaidName& each : owned) {
-    each.text =
-        SentenceWriter(grammar, false)
-            .phrase("owned", {{"owner", each.text, false, true}, {"kind", kind, false, true}});
-    each.reference.clear();
-  }
-  if (owned.empty()) {  // "I work in room 5"
-    owned.emplace_back();
-    owned.back().text = kind;
-    owned.back().speaker = true;
+  std::vector<SaidName> owned = ownedPlaces(s, kind);
+  if (owned.empty() || !s.said().word("speaker_too").empty()) {  // "I work in room 5"
+    SaidName mine;
+    mine.text = kind;
+    mine.speaker = true;
+    owned.insert(owned.begin(), mine);
   }
   takeBothNames(s, said[0], owned);
+}
+
+/// "Joe has the room next to the lab", "The office next to the lab is Joe's."
+void ownerLocated(Statement& s) {
+  const std::string kind = s.said().word("room_kind");
+  const std::vector<SaidName> names =
+      ownedPlaces(s, kind.empty() ? s.listener().grammar.say("office") : kind);
+  if (names.empty()) s.fail(IssueKind::kMeaningless, "one_place");
+  Utterance where = s.said();
+  Slot places;
+  places.name = "places";
+  places.type = "place";
+  places.range = names.front().range;
+  places.names = {names.front()};
+  where.slots.push_back(places);
+  s.recordAs(located, where);
+  const Id id = placeOf(s, names.front());
+  for (std::size_t i = 1; i < names.size(); ++i) addAlias(s, id, names[i]);
 }
 
 }  // namespace statements

@@ -21,6 +21,21 @@ bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) 
                      [&](const auto& type) { return type.plurals.count(token.folded) != 0; });
 }
 
+/// "Which used to be a bedroom", without doubt or denial.
+bool isOfThePast(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+                 const CompiledGrammar& grammar) {
+  const bool past =
+      std::any_of(grammar.past_asides.begin(), grammar.past_asides.end(), [&](const Words& phrase) {
+        return begin + phrase.size() <= end && standsAt(phrase, tokens, begin);
+      });
+  return past &&
+         std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
+                      tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
+                        const auto code = grammar.refusing_words.find(token.folded);
+                        return code != grammar.refusing_words.end() && code->second != "not_now";
+                      });
+}
+
 }  // namespace
 
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
@@ -38,6 +53,7 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
       tells = tells || mayTell(tokens[end], end == 0, grammar);
     }
     ++parts;
+    if (tells) tells = !isOfThePast(tokens, begin, end, grammar);
     if (!tells) asides.push_back({begin, end});
     begin = end;
   }

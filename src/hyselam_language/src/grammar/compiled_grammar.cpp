@@ -86,5 +86,12 @@ std::string CompiledGrammar::reason(const std::string& code, const std::string& 
   return text;
 }
 
+bool standsAt(const Words& phrase, const std::vector<Token>& tokens, std::size_t at) {
+  return at + phrase.size() <= tokens.size() &&
+         std::equal(
+             phrase.begin(), phrase.end(), tokens.begin() + static_cast<std::ptrdiff_t>(at),
+             [](const std::string& word, const Token& token) { return token.lower == word; });
+}
+
 }  // namespace language
 }  // namespace hyselam_topo

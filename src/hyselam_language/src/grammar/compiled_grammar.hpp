@@ -58,6 +58,9 @@ struct NameType {
   std::set<std::string> elliptic_suffix;         ///< "Mary's": the noun was said before
   std::set<std::string> elliptic_prefix;         ///< "o da Teresa": the same
   std::set<std::string> elliptic_after;          ///< what may stand before it: "ao", or an article
+  std::set<std::string> elliptic_nouns;          ///< "the big one": the noun was said before
+  std::set<std::string> elliptic_adjectives;     ///< may stand for a name with the noun of before
+  std::set<std::string> speaker_alone;           ///< "mine": the speaker's of what was said before
   std::set<std::string> range_words;             ///< "rooms 101 to 106"
   std::set<std::string> generic;                 ///< no name on their own: "room"
   std::set<std::string> heads;                   ///< kinds of places, no name alone: "area"
@@ -72,7 +75,8 @@ struct NameType {
   std::set<std::string> feminine;                ///< nouns with the second article when generating
   bool head_first = false;                       ///< the first noun tells the kind, not the last
   bool needs_noun = false;
-  bool silent = false;  ///< that words are no such name is no reason for a refusal
+  bool only_elliptic = false;  ///< "Joe's", "da Ana": an owner's, without the noun
+  bool silent = false;         ///< that words are no such name is no reason for a refusal
   bool indefinite_needs_noun = false;
   std::size_t max_words = 8;
 
@@ -115,6 +119,8 @@ struct CompiledGrammar {
   /// Around a statement that ends with a question mark: "can you note that", "ok"; the longest
   /// first.
   std::vector<Words> told_before, told_after;
+  /// Parts between commas that begin so say nothing of now: "which used to be".
+  std::vector<Words> past_asides;
   std::set<std::string> abbreviations;
   /// Words that mean something else in small letters, as they are written: "IT".
   std::set<std::string> acronyms;
@@ -146,6 +152,9 @@ struct CompiledGrammar {
   /// The reason of a code, with {word} put in.
   std::string reason(const std::string& code, const std::string& word = "") const;
 };
+
+/// Whether a phrase in small letters stands at a token.
+bool standsAt(const Words& phrase, const std::vector<Token>& tokens, std::size_t at);
 
 }  // namespace language
 }  // namespace hyselam_topo

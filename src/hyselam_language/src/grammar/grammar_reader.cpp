@@ -68,6 +68,14 @@ class Reader {
         {"vocatives", [&](const GrammarNode& node) { readVocatives(node); }},
         {"fillers", [&](const GrammarNode& node) { readFillers(node); }},
         {"told_anyway", [&](const GrammarNode& node) { readToldAnyway(node); }},
+        {"past_asides",
+         [&](const GrammarNode& node) {
+           for (const std::string& text : node.texts()) {
+             for (const std::string& phrase : expanded(text)) {
+               g.past_asides.push_back(splitWords(phrase));
+             }
+           }
+         }},
         {"corrections", phrases(&g.corrections)},
         {"clause_separators", phrases(&g.clause_separators)},
         {"list_separators", [&](const GrammarNode& node) { readListSeparators(node); }},
@@ -141,7 +149,9 @@ class Reader {
       if (where != "before" && where != "after")
         phrases.fail("this key is not known: before, after");
       auto& all = where == "before" ? grammar_->told_before : grammar_->told_after;
-      for (const std::string& phrase : phrases.texts()) all.push_back(splitWords(phrase));
+      for (const std::string& text : phrases.texts()) {
+        for (const std::string& phrase : expanded(text)) all.push_back(splitWords(phrase));
+      }
       std::stable_sort(all.begin(), all.end(),
                        [](const Words& a, const Words& b) { return a.size() > b.size(); });
     });

@@ -1,6 +1,7 @@
 #include "name_finder.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "hyselam_common/edit_distance.hpp"
 #include "hyselam_common/utf8.hpp"
@@ -164,7 +165,9 @@ std::string NameFinder::nounBefore(std::size_t at, const NameType& type) const {
   };
   for (std::size_t k = at; k-- > 0;) {
     const auto plural = type.plurals.find(tokens_[k].folded);
-    if (plural != type.plurals.end()) return plural->second;
+    // "Three offices: Tom's, ..." but "the girls' toilets and the boys'".
+    const bool owned_row = k > 0 && isPossessive(k - 1, type);
+    if (plural != type.plurals.end()) return owned_row ? tokens_[k].text : plural->second;
     if (!isNoun(k)) continue;
     // "gabinete do Rui", "Paul's office": an owner's, too.
     const bool owned_behind = !type.elliptic_prefix.empty() && k + 1 < at &&
@@ -181,9 +184,77 @@ std::string NameFinder::nounBefore(std::size_t at, const NameType& type) const {
   return "";
 }
 
+std::size_t NameFinder::apostropheBehind(std::size_t at, const NameType& type) const {
+  const Token& token = tokens_[at];
+  if (type.elliptic_suffix.empty() || token.kind != TokenKind::kWord || token.folded.size() < 3 ||
+      token.folded.back() != 's') {
+    return 0;
+  }
+  for (const char* apostrophe : {"'", "\xe2\x80\x99"}) {
+    const std::size_t length = std::strlen(apostrophe);
+    if (text_.compare(token.range.end, length, apostrophe) == 0) return length;
+  }
+  return 0;
+}
+
+bool NameFinder::isPossessive(std::size_t at, const NameType& type) const {
+  return endsWithAny(tokens_[at].lower, type) || apostropheBehind(at, type) > 0;
+}
+
 bool NameFinder::isElliptic(std::size_t begin, std::size_t end, const NameType& type) const {
   if (type.elliptic_prefix.count(tokens_[begin].folded) != 0) return end > begin + 1;
-  return endsWithAny(tokens_[end - 1].lower, type);
+  return isPossessive(end - 1, type);
+}
+
+bool NameFinder::endsHere(std::size_t at, const NameType& type) const {
+  return at >= tokens_.size() || !isWordLike(tokens_[at]) || isStop(tokens_[at], type) ||
+         refuses(tokens_[at]);
+}
+
+/// Words that tell which of several, if the noun is put in: "big", "chemistry", "the boys'".
+bool NameFinder::tellsWhich(std::size_t begin, std::size_t end, const NameType& type) const {
+  if (begin == end || hasNoun(begin, end, type)) return false;
+  for (std::size_t k = begin; k < end; ++k) {
+    const std::string& word = tokens_[k].folded;
+    if (type.elliptic_adjectives.count(word) != 0) continue;
+    const bool no_quality = tokens_[k].kind != TokenKind::kWord || type.generic.count(word) != 0 ||
+                            type.quantities.count(word) != 0 ||
+                            grammar_.number_words.count(word) != 0 || isStop(tokens_[k], type);
+    if (no_quality) return false;
+  }
+  return true;
+}
+
+std::optional<FoundName> NameFinder::withoutNoun(std::size_t at, std::size_t begin,
+                                                 const NameType& type) const {
+  const bool article = begin > at;
+  const auto found = [&](std::size_t end, std::size_t words, bool speaker) {
+    SaidName name = nameOf(begin, begin + words);
+    name.text.append(text_, name.range.end, apostropheBehind(begin + words - 1, type));
+    name.elliptic = true;
+    name.speaker = speaker;
+    const int cost = kNameCost + kNameWordCost * static_cast<int>(end - begin);
+    return FoundName{end, cost, std::move(name), {}};
+  };
+  const Token& first = tokens_[begin];
+  if (first.kind != TokenKind::kWord) return std::nullopt;
+  // "mine", "o meu": an article where the noun comes first.
+  if (article == type.head_first && type.speaker_alone.count(first.folded) != 0 &&
+      endsHere(begin + 1, type)) {
+    return found(begin + 1, 1, true);
+  }
+  if (type.head_first) {  // "a grande"
+    const bool adjective = article && type.elliptic_adjectives.count(first.folded) != 0;
+    if (!adjective || !endsHere(begin + 1, type)) return std::nullopt;
+    return found(begin + 1, 1, false);
+  }
+  for (std::size_t k = begin + 1; k < tokens_.size() && k < begin + type.max_words; ++k) {
+    if (!isWordLike(tokens_[k])) break;
+    if (type.elliptic_nouns.count(tokens_[k].folded) == 0) continue;
+    if (!endsHere(k + 1, type) || !tellsWhich(begin, k, type)) break;
+    return found(k + 1, k - begin, false);
+  }
+  return std::nullopt;
 }
 
 /// "o da Teresa", "ao do Rui", but not "of the corridor", "depois da sala": there what stands
@@ -218,6 +289,7 @@ std::string NameFinder::titleOfNumber(std::size_t begin, std::size_t end,
 void NameFinder::complete(std::size_t begin, std::size_t end, const NameType& type,
                           SaidName* name) const {
   if (name->quoted || !isElliptic(begin, end, type)) return;
+  name->text.append(text_, name->range.end, apostropheBehind(end - 1, type));
   const std::string noun = nounBefore(begin, type);
   if (noun.empty()) {
     name->elliptic = true;
@@ -246,7 +318,8 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
   if (mayBeArticle(at, type) && at + 1 < tokens_.size()) {
     const Token& next = tokens_[at + 1];
     const bool goes_on = next.kind == TokenKind::kQuoted ||
-                         (isWordLike(next) && !isStop(next, type)) || isSpeakers(at + 1, type);
+                         (isWordLike(next) && !isStop(next, type)) || isSpeakers(at + 1, type) ||
+                         type.speaker_alone.count(next.folded) != 0;
     if (goes_on) {
       indefinite = type.indefinite.count(tokens_[at].folded) != 0 &&
                    type.definite.count(tokens_[at].folded) == 0;
@@ -254,6 +327,9 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     }
   }
   const bool speaker = isSpeakers(begin, type);
+  if (const auto short_name = speaker ? std::nullopt : withoutNoun(at, begin, type)) {
+    return {*short_name};
+  }
   if (speaker) ++begin;
   std::size_t words = 0;
   for (std::size_t k = begin; k < tokens_.size() && words < type.max_words; ++k) {
@@ -363,8 +439,7 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
     if (type.joiners.count(tokens_[k].folded) != 0) head_end = k;
   }
   // "o da Teresa" is a place of hers, though Teresa is none.
-  const bool has_noun = hasNoun(begin, head_end, type) ||
-                        endsWithAny(tokens_[end - 1].lower, type) ||
+  const bool has_noun = hasNoun(begin, head_end, type) || isPossessive(end - 1, type) ||
                         (end > begin + 1 && isElliptic(begin, end, type));
   const bool quoted = last.kind == TokenKind::kQuoted;
   if (end - begin > 1) {
@@ -375,6 +450,7 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
       if (!noun && type.generic.count(word) == 0) return "no_name";
     }
   }
+  if (type.only_elliptic) return isElliptic(begin, end, type) ? "" : "no_name";
   const bool joined = end - begin > 1 && type.joiners.count(first.folded) != 0;
   if (joined && !isOwnersAlone(begin, type)) return "no_name";
   const std::string& name = nameOf(begin, end).text;

@@ -55,6 +55,16 @@ class NameFinder {
   std::string titleOfNumber(std::size_t begin, std::size_t end, const NameType& type) const;
   bool isOwnersAlone(std::size_t begin, const NameType& type) const;
   bool isElliptic(std::size_t begin, std::size_t end, const NameType& type) const;
+  /// The bytes of an apostrophe behind a plural, "the boys'": 0 without one.
+  std::size_t apostropheBehind(std::size_t at, const NameType& type) const;
+  bool isPossessive(std::size_t at, const NameType& type) const;
+  /// Whether no name goes on with this token.
+  bool endsHere(std::size_t at, const NameType& type) const;
+  bool tellsWhich(std::size_t begin, std::size_t end, const NameType& type) const;
+  /// "mine", "the big one", "a grande": names whose noun was said before; `begin` is behind an
+  /// article.
+  std::optional<FoundName> withoutNoun(std::size_t at, std::size_t begin,
+                                       const NameType& type) const;
   void complete(std::size_t begin, std::size_t end, const NameType& type, SaidName* name) const;
   /// "the door of the kitchen", "the kitchen door".
   bool isPart(std::size_t begin, std::size_t end, const NameType& type) const;

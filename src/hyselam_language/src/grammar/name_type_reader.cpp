@@ -21,6 +21,9 @@ const std::map<std::string, std::set<std::string> NameType::*>& wordKeys() {
       {"elliptic_suffix", &NameType::elliptic_suffix},
       {"elliptic_prefix", &NameType::elliptic_prefix},
       {"elliptic_after", &NameType::elliptic_after},
+      {"elliptic_nouns", &NameType::elliptic_nouns},
+      {"elliptic_adjectives", &NameType::elliptic_adjectives},
+      {"speaker_alone", &NameType::speaker_alone},
       {"range_words", &NameType::range_words},
       {"generic", &NameType::generic},
       {"heads", &NameType::heads},
@@ -105,6 +108,8 @@ void readNameType(const std::string& name, const GrammarNode& node, CompiledGram
       });
     } else if (key == "head") {
       type.head_first = isHeadFirst(value);
+    } else if (key == "only_elliptic") {
+      type.only_elliptic = value.truth();
     } else if (key == "silent") {
       type.silent = value.truth();
     } else if (key == "of_speaker") {

@@ -22,6 +22,15 @@ void markAcronyms(const CompiledGrammar& grammar, std::vector<Token>* tokens) {
   }
 }
 
+/// Whether what stands before "'s" may be what something is said of: "the library's", "the last
+/// one's", "on the left's".
+bool mayBeSubject(const Token& noun, const CompiledGrammar& grammar) {
+  if (grammar.isNoun(noun.folded)) return true;
+  const NameType* type = grammar.nameType("place");
+  return type != nullptr &&
+         (type->generic.count(noun.folded) != 0 || type->stop.count(noun.lower) != 0);
+}
+
 /// Whether a name of a place may go on with this token.
 bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar) {
   if (at >= tokens.size() || tokens[at].kind == TokenKind::kComma) return true;
@@ -32,7 +41,7 @@ bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGra
   const auto stops = [&](const Token& each) {
     return type->stop.count(each.lower) != 0 || type->isArticle(each.folded);
   };
-  if (stops(token)) return false;
+  if (stops(token) || grammar.number_words.count(token.folded) != 0) return false;
   // "The library's huge", but "the library's main entrance".
   const bool last =
       at + 1 == tokens.size() || tokens[at + 1].kind == TokenKind::kComma || stops(tokens[at + 1]);
@@ -54,7 +63,7 @@ std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar
       if (token.lower.compare(length, end.size(), end) != 0) continue;
       Token noun =
           wordToken(token.text.substr(0, length), {token.range.begin, token.range.begin + length});
-      if (!grammar.isNoun(noun.folded) || mayGoOn(tokens, at + 1, grammar)) continue;
+      if (!mayBeSubject(noun, grammar) || mayGoOn(tokens, at + 1, grammar)) continue;
       all.back() = std::move(noun);
       all.push_back(wordToken(verb, {token.range.begin + length, token.range.end}));
       break;

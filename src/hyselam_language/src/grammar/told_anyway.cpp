@@ -6,13 +6,6 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
-bool standsAt(const Words& phrase, const std::vector<Token>& tokens, std::size_t at) {
-  return at + phrase.size() <= tokens.size() &&
-         std::equal(
-             phrase.begin(), phrase.end(), tokens.begin() + static_cast<std::ptrdiff_t>(at),
-             [](const std::string& word, const Token& token) { return token.lower == word; });
-}
-
 void dropCommas(std::vector<Token>* tokens) {
   while (!tokens->empty() && isComma(tokens->back())) tokens->pop_back();
   while (!tokens->empty() && isComma(tokens->front())) tokens->erase(tokens->begin());

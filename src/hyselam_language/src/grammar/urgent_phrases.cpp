@@ -5,6 +5,7 @@
 
 #include "hyselam_common/utf8.hpp"
 #include "urgent_tokens.hpp"
+#include "word_lists.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -25,23 +26,6 @@ std::string squeeze(const std::string& text, bool* stretched) {
     last = letter;
   }
   return out;
-}
-
-/// "go (on|off)" is "go on" and "go off". Nothing for brackets that are not closed.
-std::vector<std::string> expand(const std::string& text) {
-  const std::size_t open = text.find('(');
-  if (open == std::string::npos) return {text};
-  const std::size_t close = text.find(')', open);
-  if (close == std::string::npos) return {};
-  std::vector<std::string> all;
-  for (std::size_t begin = open + 1; begin <= close;) {
-    const std::size_t end = std::min(close, text.find('|', begin));
-    for (const std::string& rest : expand(text.substr(close + 1))) {
-      all.push_back(text.substr(0, open) + text.substr(begin, end - begin) + rest);
-    }
-    begin = end + 1;
-  }
-  return all;
 }
 
 }  // namespace
@@ -76,7 +60,7 @@ void readUrgent(const GrammarNode& node, UrgentPhrases* phrases) {
     const auto kind = kinds.find(key);
     if (kind == kinds.end()) list.fail("this key is not known");
     for (const std::string& text : list.texts()) {
-      const std::vector<std::string> each_way = expand(text);
+      const std::vector<std::string> each_way = expanded(text);
       if (each_way.empty()) list.fail("'" + text + "': a bracket is not closed");
       for (const std::string& phrase : each_way) {
         if (urgentTokens(phrase).empty()) list.fail("there is an empty entry");

@@ -14,6 +14,31 @@ Words splitWords(const std::string& text) {
   return {fields.begin(), fields.end()};
 }
 
+std::vector<std::string> expanded(const std::string& text) {
+  const std::size_t open = text.find_first_of("([");
+  if (open == std::string::npos) return {text};
+  std::vector<std::string> inside;
+  if (text[open] == '[') inside.emplace_back();
+  std::size_t begin = open + 1, at = begin;
+  for (int depth = 1; depth > 0; ++at) {
+    if (at == text.size()) return {};
+    const char c = text[at];
+    if (c == '(' || c == '[') ++depth;
+    if (c == ')' || c == ']') --depth;
+    if (depth == 0 || (depth == 1 && c == '|')) {
+      for (std::string& each : expanded(text.substr(begin, at - begin))) {
+        inside.push_back(std::move(each));
+      }
+      begin = at + 1;
+    }
+  }
+  std::vector<std::string> all;
+  for (const std::string& rest : expanded(text.substr(at))) {
+    for (const std::string& each : inside) all.push_back(text.substr(0, open) + each + rest);
+  }
+  return all;
+}
+
 Phrase phraseOf(const std::string& text, Vocabulary* vocabulary) {
   Phrase numbers;
   for (const std::string& word : splitWords(text)) numbers.push_back(vocabulary->add(word));
@@ -22,8 +47,12 @@ Phrase phraseOf(const std::string& text, Vocabulary* vocabulary) {
 
 void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phrase>* phrases) {
   for (const std::string& text : node.texts()) {
-    phrases->push_back(phraseOf(text, vocabulary));
-    if (phrases->back().empty()) node.fail("there is an empty entry");
+    const std::vector<std::string> all = expanded(text);
+    if (all.empty()) node.fail("'" + text + "' has a bracket that is not closed");
+    for (const std::string& each : all) {
+      phrases->push_back(phraseOf(each, vocabulary));
+      if (phrases->back().empty()) node.fail("there is an empty entry");
+    }
   }
 }
 

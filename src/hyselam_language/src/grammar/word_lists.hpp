@@ -14,9 +14,13 @@ namespace language {
 
 Words splitWords(const std::string& text);
 
+/// "go (on|off) [now]" is "go on", "go off", "go on now" and "go off now". Nothing for brackets
+/// that are not closed.
+std::vector<std::string> expanded(const std::string& text);
+
 Phrase phraseOf(const std::string& text, Vocabulary* vocabulary);
 
-/// Adds the phrases of a list, of which none may be empty.
+/// Adds the phrases of a list, expanded, of which none may be empty.
 void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phrase>* phrases);
 
 /// Adds the words of a list without their accents.

@@ -101,6 +101,10 @@ class DescriptionBuilder {
   std::vector<DescriptionIssue> record(const Utterance& utterance);
   void remember(const DescriptionState& before, const Utterance& said);
   std::vector<DescriptionIssue> replaceLast(const Utterance& utterance);
+  /// "No, seven": the one number of the last statement was another one.
+  std::vector<DescriptionIssue> replaceNumber(const Utterance& utterance);
+  /// Takes the last statement back and records it as it should have been.
+  std::vector<DescriptionIssue> recordInstead(const Utterance& again);
 
   DescriptionParams params_;
   std::vector<Grammar> grammars_;

@@ -22,6 +22,9 @@ struct DescriptionContext {
   std::optional<Side> side;    ///< what "the same side" may mean
   /// The kind of the place named last, for "Mary's" after "John's office": "office".
   std::string kind_word;
+  /// The same of the last name that told more than the kind ("the small kitchen"), for "the big
+  /// one", and of the last that told whose it is ("the girls' toilets"), for "the boys'".
+  std::string described_kind, owned_kind;
   /// The last sentence was not understood: a correction may mean it.
   bool after_refusal = false;
 
