@@ -15,9 +15,9 @@ namespace testing {
 /// "no located places=meeting_room,<it> side=left nth=2 distance=10": "no" first is a correction;
 /// names with _ for spaces, "quoted" or my:office, references in < >.
 inline Utterance said(const std::string& outline) {
-  static const std::set<std::string> kWords{"side",    "nth",      "size_word", "floor",
-                                            "denied",  "kind",     "named",     "from_end",
-                                            "instead", "was_side", "was_nth",   "room_kind"};
+  static const std::set<std::string> kWords{
+      "side",     "nth",     "size_word", "floor",   "denied",    "kind", "named",
+      "from_end", "instead", "was_side",  "was_nth", "room_kind", "moved"};
   static const std::set<std::string> kNumbers{"count", "doors",  "distance", "steps",
                                               "area",  "length", "width"};
   Utterance u;

@@ -47,6 +47,7 @@ const char* toString(IssueKind kind) {
 
 void DescriptionContext::forgetReferences() {
   subjects.clear();
+  pair.clear();
   group.clear();
   told_of_group.clear();
   side.reset();
@@ -127,7 +128,8 @@ std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
     const bool changed = !(state_.building == before.building);
     if (u.correction && !statement.hasCorrected() && changed) {
       // Before anything else was told, or after what was not understood, nothing can be corrected.
-      if (!history_.empty() && !before.context.after_refusal) {
+      const bool told = !before.building.connections.empty() || !before.building.relations.empty();
+      if (told && !history_.empty() && !before.context.after_refusal) {
         statement.fail(IssueKind::kNoContext, "nothing_corrected");
       }
       statement.report(IssueKind::kNotice, "taken_as_new");
@@ -252,6 +254,7 @@ void DescriptionBuilder::setRobotPlace(const std::string& name) {
   const Id id = ids.empty() ? addPlace(name, names_.kindOf(name), &state_.building) : ids.front();
   state_.building.robot_place = id;
   state_.context.subjects = {id};
+  rememberKind(name, names_, grammars_[language_], &state_.context);
 }
 
 }  // namespace hyselam_topo

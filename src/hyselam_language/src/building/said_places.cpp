@@ -5,6 +5,7 @@
 #include "edit_description.hpp"
 #include "fact_sentences.hpp"
 #include "grammar/compiled_grammar.hpp"
+#include "grammar/word_lists.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "issue_texts.hpp"
 #include "name_words.hpp"
@@ -45,6 +46,12 @@ std::vector<Id> referred(Statement& s, const SaidName& name) {
     return {*s.building().robot_place};
   }
   if (name.reference == "self") s.fail(IssueKind::kMeaningless, "itself", {{"place", name.text}});
+  if (name.reference == "two") {
+    const auto& all = context.subjects.size() > 1 ? context.subjects : context.group;
+    const auto& two = all.size() == 2 ? all : context.pair;
+    if (two.size() != 2) nothing();
+    return two;
+  }
   if (name.reference == "they") {
     const auto& all = context.subjects.size() > 1 ? context.subjects : context.group;
     const auto& they = all.empty() ? context.subjects : all;
@@ -81,16 +88,27 @@ bool tellsOwner(const std::string& name) {
   return false;
 }
 
-/// Keeps of what kind of place the name was.
-void rememberKind(Statement& s, const std::string& full) {
-  const PlaceNames& names = s.listener().names;
-  const std::string head = names.headOf(full);
-  if (head.empty()) return;
-  DescriptionContext& context = s.context();
-  context.kind_word = head;
-  const bool coded = hasDigit(full);
-  if (!coded && full.find(' ') != std::string::npos) context.described_kind = head;
-  if (tellsOwner(full)) context.owned_kind = head;
+/// The words of a name that are the folded ones: "vestiário" for "vestiario".
+std::string asSaid(const std::string& name, const std::string& folded) {
+  const std::vector<std::string> words = language::splitWords(name);
+  const std::vector<std::string> wanted = language::splitWords(folded);
+  for (std::size_t begin = 0; begin + wanted.size() <= words.size(); ++begin) {
+    std::string run;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      run += (k > 0 ? " " : "") + words[begin + k];
+    }
+    if (hyselam::utf8Fold(run) == folded) return run;
+  }
+  return folded;
+}
+
+/// A name as it was said, with "one".
+std::string saidText(const Statement& s, const SaidName& name) {
+  const Utterance& u = s.said();
+  const bool within = name.range.begin >= u.range.begin && name.range.end > name.range.begin &&
+                      name.range.end - u.range.begin <= u.text.size();
+  return within ? u.text.substr(name.range.begin - u.range.begin, name.range.end - name.range.begin)
+                : name.text;
 }
 
 /// What "the chemistry one", "Mary's" and "the big one" leave out.
@@ -120,6 +138,24 @@ std::vector<Id> severalOf(Statement& s, const SaidName& name) {
 }
 
 }  // namespace
+
+void rememberKind(const std::string& full, const PlaceNames& names, const Grammar& grammar,
+                  DescriptionContext* context) {
+  const std::string folded = names.headOf(full);
+  if (folded.empty()) return;
+  const std::string head = asSaid(full, folded);
+  context->kind_word = head;
+  if (tellsOwner(full)) context->owned_kind = head;
+  const std::size_t space = full.rfind(' ');
+  if (hasDigit(full) || space == std::string::npos) return;
+  context->described_kind = head;
+  // "Sala de reuniões grande": the adjective comes last.
+  const auto* type = grammar.compiled().nameType("place");
+  const bool adjective =
+      type != nullptr && type->head_first &&
+      type->elliptic_adjectives.count(hyselam::utf8Fold(full.substr(space + 1))) != 0;
+  if (adjective) context->described_kind = full.substr(0, space);
+}
 
 std::vector<Id> placesOf(const std::string& name, const DescriptionState& state,
                          const PlaceNames& names) {
@@ -161,6 +197,14 @@ std::string fullName(Statement& s, const SaidName& name) {
   const SentenceWriter writer(grammar, false);
   if (name.speaker) {
     const std::string& speaker = s.listener().speaker;
+    // "My kitchen" of a cook: there is one, whoever speaks; "my office" is one of many.
+    const PlaceNames& names = s.listener().names;
+    const std::string head = name.elliptic ? "" : names.headOf(name.text);
+    const auto* type = grammar.compiled().nameType("place");
+    const bool only_one = type != nullptr && !head.empty() && type->nouns.count(head) != 0 &&
+                          type->titles.count(head) == 0 && !names.isPlainRoom(name.text) &&
+                          head == hyselam::utf8Fold(name.text);
+    if (speaker.empty() && only_one) return name.text;
     if (speaker.empty()) s.fail(IssueKind::kAsk, "whose", {{"name", name.text}});
     std::string kind = name.text;
     if (name.elliptic) kind = kindLeftOut(s, name);
@@ -175,7 +219,7 @@ std::string fullName(Statement& s, const SaidName& name) {
   };
   if (kind.empty()) {
     s.fail(IssueKind::kAsk, "what_of",
-           {{"name", name.text}, {"example", full(grammar.say("office"))}});
+           {{"name", saidText(s, name)}, {"example", full(grammar.say("office"))}});
   }
   return full(kind);
 }
@@ -200,7 +244,7 @@ Id placeOf(Statement& s, const SaidName& name) {
   const std::string full = fullName(s, name);
   const std::vector<Id> ids = placesOf(full, s.state(), s.listener().names);
   if (ids.size() > 1) failSeveral(s, name, ids);
-  rememberKind(s, full);
+  rememberKind(full, s.listener().names, s.listener().grammar, &s.context());
   if (ids.empty()) {
     checkName(s, name, full);
     return addPlace(full, s.listener().names.kindOf(full), &s.building());
@@ -223,6 +267,8 @@ Id placeOf(Statement& s, const std::string& slot) {
 std::vector<Id> placesOf(Statement& s, const std::string& slot) {
   std::vector<Id> all;
   for (const SaidName& name : s.said().names(slot)) {
+    // "The fire exit, that's at the end": the one just named.
+    if (name.reference == "it" && all.size() == 1) continue;
     std::vector<Id> ids = name.reference.empty() ? severalOf(s, name) : referred(s, name);
     if (ids.empty()) ids = {placeOf(s, name)};
     for (const Id id : ids) {

@@ -16,6 +16,9 @@ std::vector<Id> placesOf(const std::string& name, const DescriptionState& state,
 Id placeOf(Statement& statement, const SaidName& name);
 /// The one place of a slot.
 Id placeOf(Statement& statement, const std::string& slot);
+/// Keeps of what kind of place the name was, for those that leave it out: "the big one".
+void rememberKind(const std::string& full, const PlaceNames& names, const Grammar& grammar,
+                  DescriptionContext* context);
 /// All places of a slot: "they" are several.
 std::vector<Id> placesOf(Statement& statement, const std::string& slot);
 /// The same of places that are known; fails for others.

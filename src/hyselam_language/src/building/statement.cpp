@@ -62,6 +62,7 @@ void Statement::setSubjects(std::vector<Id> ids) {
     context.group.clear();
     context.told_of_group.clear();
   }
+  context.pair.clear();
   context.subjects = std::move(ids);
 }
 

@@ -4,6 +4,7 @@
 
 #include "edit_description.hpp"
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "record_facts.hpp"
 #include "said_places.hpp"
 #include "statement_kinds.hpp"
@@ -53,7 +54,10 @@ void forgetLastJoined(Statement& s, Id place) {
 
 /// "There is a door between the two."
 void bothJoined(Statement& s) {
-  const std::vector<Id> both = placesOf(s, "both");
+  std::vector<Id> both = placesOf(s, "both");
+  // "The lab is next to the bar. There is a door between them."
+  const bool them = s.said().names("both").front().reference == "they";
+  if (them && both.size() == 1 && s.context().pair.size() == 2) both = s.context().pair;
   if (both.size() != 2) s.fail(IssueKind::kAsk, "between_what");
   if (s.isDenial()) {
     recordDenial(s, relationOf(RelationKind::kJoined, both[0], both[1]));
@@ -61,6 +65,19 @@ void bothJoined(Statement& s) {
     recordConnection(s, Placement(both[0], both[1]));
   }
   s.setSubjects(both);
+}
+
+/// "The main corridor", where the robot is in the corridor and no other one is known by that name.
+bool meansRobotPlace(Statement& s, const SaidName& name) {
+  const auto robot = s.building().robot_place;
+  if (!robot || !name.reference.empty() || name.elliptic || name.speaker) return false;
+  const PlaceNames& names = s.listener().names;
+  const std::string known = hyselam::utf8Fold(s.nameOf(*robot));
+  return placesOf(name.text, s.state(), names).empty() && names.headOf(name.text) == known &&
+         std::none_of(s.building().places.begin(), s.building().places.end(),
+                      [&](const DescribedPlace& each) {
+                        return each.id != *robot && names.headOf(each.name) == known;
+                      });
 }
 
 }  // namespace
@@ -71,6 +88,8 @@ Id observer(Statement& s) {
     if (!robot) s.fail(IssueKind::kNoContext, "no_robot");
     return *robot;
   }
+  const std::vector<SaidName> said = s.said().names("from");
+  if (said.size() == 1 && meansRobotPlace(s, said[0])) return *robot;
   const Id from = placeOf(s, "from");
   if (robot && from != *robot) {
     s.fail(IssueKind::kNoContext, "elsewhere",
@@ -212,6 +231,8 @@ void relation(Statement& s) {
     if (told.kind == RelationKind::kAtEndOf) recordConnection(s, Placement(told.b, told.a));
   }
   s.setSubjects({told.a});
+  s.context().pair =
+      told.c == 0 ? std::vector<Id>{told.a, told.b} : std::vector<Id>{told.b, told.c};
 }
 
 }  // namespace statements

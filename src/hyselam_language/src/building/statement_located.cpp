@@ -223,6 +223,21 @@ void forgetLocation(Statement& s, const Location& location, Id id) {
   }
 }
 
+/// "The library has moved, it is now next to the bar": nothing of where it was holds.
+void forgetWhereItWas(Statement& s, Id id) {
+  auto& relations = s.building().relations;
+  relations.erase(std::remove_if(relations.begin(), relations.end(),
+                                 [id](const DescribedRelation& each) {
+                                   return each.a == id || each.b == id || each.c == id;
+                                 }),
+                  relations.end());
+  const std::vector<DescribedConnection> all = s.building().connections;
+  for (const DescribedConnection& each : all) {
+    if (each.from == id || each.to == id) removeConnection(each, &s.building());
+  }
+  s.setCorrected();
+}
+
 }  // namespace
 
 void located(Statement& s) {
@@ -240,6 +255,7 @@ void located(Statement& s) {
       deny(s, location, id);
       continue;
     }
+    if (!u.word("moved").empty()) forgetWhereItWas(s, id);
     if (!u.word("instead").empty()) forgetLocation(s, location, id);
     record(s, location, id);
     takeSizeWord(s, id);
@@ -247,6 +263,9 @@ void located(Statement& s) {
     if (sized) takeSizes(s, id);
   }
   s.setSubjects(ids);
+  if (ids.size() != 1 || location.relations.size() != 1 || location.in_row) return;
+  const DescribedRelation& only = location.relations.front();
+  if (only.c == 0) s.context().pair = {ids.front(), only.a == kItself ? only.b : only.a};
 }
 
 }  // namespace statements

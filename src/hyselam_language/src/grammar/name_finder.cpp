@@ -231,6 +231,7 @@ std::optional<FoundName> NameFinder::withoutNoun(std::size_t at, std::size_t beg
   const auto found = [&](std::size_t end, std::size_t words, bool speaker) {
     SaidName name = nameOf(begin, begin + words);
     name.text.append(text_, name.range.end, apostropheBehind(begin + words - 1, type));
+    name.range.end = tokens_[end - 1].range.end;
     name.elliptic = true;
     name.speaker = speaker;
     const int cost = kNameCost + kNameWordCost * static_cast<int>(end - begin);

@@ -18,6 +18,7 @@ struct DescriptionContext {
   std::vector<Id> subjects;  ///< what "it" and "they" may mean
   /// The places last listed or counted, for "the first one", "the other one".
   std::vector<Id> group;
+  std::vector<Id> pair;        ///< two places told to lie side by side or opposite: "the two"
   std::set<Id> told_of_group;  ///< those that a statement of its own was about since
   std::optional<Side> side;    ///< what "the same side" may mean
   /// The kind of the place named last, for "Mary's" after "John's office": "office".
