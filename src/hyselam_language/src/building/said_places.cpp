@@ -1,6 +1,7 @@
 #include "said_places.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "edit_description.hpp"
 #include "fact_sentences.hpp"
@@ -196,17 +197,22 @@ std::string fullName(Statement& s, const SaidName& name) {
   const Grammar& grammar = s.listener().grammar;
   const SentenceWriter writer(grammar, false);
   if (name.speaker) {
+    // "My own office" is my office.
+    std::string said = name.text;
+    for (const char* own : {"own ", "pr\xc3\xb3prio ", "pr\xc3\xb3pria "}) {
+      if (said.compare(0, std::strlen(own), own) == 0) said.erase(0, std::strlen(own));
+    }
     const std::string& speaker = s.listener().speaker;
     // "My kitchen" of a cook: there is one, whoever speaks; "my office" is one of many.
     const PlaceNames& names = s.listener().names;
-    const std::string head = name.elliptic ? "" : names.headOf(name.text);
+    const std::string head = name.elliptic ? "" : names.headOf(said);
     const auto* type = grammar.compiled().nameType("place");
     const bool only_one = type != nullptr && !head.empty() && type->nouns.count(head) != 0 &&
-                          type->titles.count(head) == 0 && !names.isPlainRoom(name.text) &&
-                          head == hyselam::utf8Fold(name.text);
-    if (speaker.empty() && only_one) return name.text;
+                          type->titles.count(head) == 0 && !names.isPlainRoom(said) &&
+                          head == hyselam::utf8Fold(said);
+    if (speaker.empty() && only_one) return said;
     if (speaker.empty()) s.fail(IssueKind::kAsk, "whose", {{"name", name.text}});
-    std::string kind = name.text;
+    std::string kind = said;
     if (name.elliptic) kind = kindLeftOut(s, name);
     if (kind.empty()) kind = grammar.say("office");
     return writer.phrase("owned", {{"owner", speaker, false, true}, {"kind", kind, false, true}});

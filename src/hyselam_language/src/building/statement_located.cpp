@@ -223,6 +223,15 @@ void forgetLocation(Statement& s, const Location& location, Id id) {
   }
 }
 
+/// Where the next place of a row lies: "after the bar come the lab and the store".
+Location behindTheLast(Location location, Id last) {
+  location.row.rank.reset();
+  for (DescribedRelation& each : location.relations) {
+    if (each.kind == RelationKind::kAfter && each.a == kItself) each.b = last;
+  }
+  return location;
+}
+
 /// "The library has moved, it is now next to the bar": nothing of where it was holds.
 void forgetWhereItWas(Statement& s, Id id) {
   auto& relations = s.building().relations;
@@ -249,15 +258,20 @@ void located(Statement& s) {
   if (location.count() == 0 && !location.row.distance && !sized) {
     s.fail(IssueKind::kMeaningless, "nothing_said");
   }
-  if (location.row.rank && ids.size() != 1) s.fail(IssueKind::kMeaningless, "one_rank");
-  for (const Id id : ids) {
+  // "The first on the left is the bar, then the lab": the others stand behind it.
+  const bool first_of_row = location.row.rank == 1 && !s.isDenial();
+  if (location.row.rank && ids.size() != 1 && !first_of_row) {
+    s.fail(IssueKind::kMeaningless, "one_rank");
+  }
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const Id id = ids[i];
     if (s.isDenial()) {
       deny(s, location, id);
       continue;
     }
     if (!u.word("moved").empty()) forgetWhereItWas(s, id);
     if (!u.word("instead").empty()) forgetLocation(s, location, id);
-    record(s, location, id);
+    record(s, i == 0 ? location : behindTheLast(location, ids[i - 1]), id);
     takeSizeWord(s, id);
     if (u.number("doors")) takeDoors(s, id);
     if (sized) takeSizes(s, id);

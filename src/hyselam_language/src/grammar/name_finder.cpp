@@ -342,7 +342,7 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       may_end = false;
     } else if (!isWordLike(token) || beginsWithArticle(begin, k, type)) {
       break;
-    } else if (refuses(token)) {
+    } else if (refuses(token) && !isCompassOfName(begin, k, type)) {
       break;
     } else if (isStop(token, type)) {
       if (!isLetterOfTitle(begin, k, type)) break;
@@ -389,6 +389,13 @@ bool NameFinder::isSpeakers(std::size_t at, const NameType& type) const {
 /// "hardly never": but "May's office".
 bool NameFinder::refuses(const Token& token) const {
   return token.only_lower_letters && grammar_.refusing_words.count(token.folded) != 0;
+}
+
+/// "Corredor norte", not "norte do corredor".
+bool NameFinder::isCompassOfName(std::size_t begin, std::size_t at, const NameType& type) const {
+  const auto code = grammar_.refusing_words.find(tokens_[at].folded);
+  return at > begin && code != grammar_.refusing_words.end() && code->second == "compass" &&
+         grammar_.isNounOrTitle(tokens_[at - 1].folded) && type.head_first;
 }
 
 /// More than a letter, which may be a name of its own.

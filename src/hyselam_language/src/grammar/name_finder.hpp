@@ -72,6 +72,7 @@ class NameFinder {
   bool isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const;
   bool mayBeArticle(std::size_t at, const NameType& type) const;
   bool refuses(const Token& token) const;
+  bool isCompassOfName(std::size_t begin, std::size_t at, const NameType& type) const;
   bool isSpeakers(std::size_t at, const NameType& type) const;
   bool beginsWithArticle(std::size_t begin, std::size_t at, const NameType& type) const;
   /// "" if tokens [begin, end) are a name.
