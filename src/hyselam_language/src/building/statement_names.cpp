@@ -78,7 +78,10 @@ std::string wordBefore(const Statement& s, const SaidName& name) {
 /// "Ana's office", "gabinete da Ana": as the owner was spoken of.
 std::string ownedBy(const Statement& s, const SaidName& owner, const std::string& kind) {
   const Grammar& grammar = s.listener().grammar;
-  const std::string with_article = "owned_" + wordBefore(s, owner);
+  // "The nurses sit here": the nurses' office.
+  const bool plural = owner.text.size() > 1 && owner.text.back() == 's' && owner.text[0] >= 'a' &&
+                      owner.text[0] <= 'z' && grammar.has("owned_plural");
+  const std::string with_article = plural ? "owned_plural" : "owned_" + wordBefore(s, owner);
   return SentenceWriter(grammar, false)
       .phrase(grammar.has(with_article) ? with_article : "owned",
               {{"owner", owner.text, false, true}, {"kind", kind, false, true}});
