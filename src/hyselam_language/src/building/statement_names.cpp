@@ -173,6 +173,7 @@ void owner(Statement& s) {
   const std::string kind = names.isPlainRoom(name) ? grammar.say("office") : names.headOf(name);
   std::vector<SaidName> owned = ownedPlaces(s, kind);
   if (owned.empty() || !s.said().word("speaker_too").empty()) {  // "I work in room 5"
+    if (s.listener().speaker.empty()) s.fail(IssueKind::kAsk, "whose", {{"name", kind}});
     SaidName mine;
     mine.text = kind;
     mine.speaker = true;
