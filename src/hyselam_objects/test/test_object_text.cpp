@@ -145,6 +145,31 @@ TEST(ObjectText, UnderstandsKindsOfSentences) {
   EXPECT_EQ(pt.silent, 0);
 }
 
+// What the layer of objects knows as things shall be no names of places to the layer of places.
+TEST(ObjectText, KnowsTheSameThingsAsTheLayerOfPlaces) {
+  const hyselam_topo::TopoParser places;
+  for (const char* const language : {"en", "pt"}) {
+    const YAML::Node words = YAML::LoadFile(std::string(HYSELAM_OBJECTS_SOURCE_DIR) +
+                                            "/grammar/words_" + language + ".yaml");
+    hyselam_topo::ParseOptions options;
+    options.language = language;
+    const bool english = std::string(language) == "en";
+    int taken = 0, all = 0;
+    for (const YAML::Node& noun : words["nouns"]) {
+      const std::string text = english ? "There is a " + noun.Scalar() + " in the kitchen."
+                                       : "Há um " + noun.Scalar() + " na cozinha.";
+      const auto parsed = places.parse(text, options);
+      ++all;
+      if (parsed.misunderstood() != 0) continue;
+      std::cout << " " << noun.Scalar();
+      ++taken;
+    }
+    EXPECT_GE(all, 800);
+    EXPECT_LE(taken, all / 20) << language;
+    std::cout << " are words for places as well\n";
+  }
+}
+
 TEST(ObjectText, TellsWhatMovedAndWhatIsGone) {
   const ObjectParser parser = ObjectParser::shipped();
   ObjectMap map;

@@ -426,6 +426,15 @@ bool NameFinder::hasNoun(std::size_t begin, std::size_t end, const NameType& typ
   return false;
 }
 
+bool NameFinder::endsWithNoun(std::size_t begin, std::size_t end, const NameType& type) const {
+  std::string phrase;
+  for (std::size_t k = end; k > begin && k + kLongestNoun > end; --k) {
+    phrase = tokens_[k - 1].folded + (phrase.empty() ? "" : " ") + phrase;
+    if (type.nouns.count(phrase) != 0) return true;
+  }
+  return false;
+}
+
 bool NameFinder::mayBeMisspelt(std::size_t at, const NameType& type) const {
   const Token& token = tokens_[at];
   const bool plain = token.only_lower_letters || (at == 0 && isAscii(token.folded));
@@ -475,6 +484,11 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   if (type.head_first && head != type.forbidden.end() && !beginsWithNoun(begin, end, type)) {
     return head->second;
   }
+  // "the kitchen table", but "the front desk"
+  const auto last_word = type.forbidden.find(tokens_[head_end - 1].folded);
+  const bool thing = !type.head_first && head_end > begin + 1 &&
+                     last_word != type.forbidden.end() && last_word->second == "object";
+  if (thing && !endsWithNoun(begin, head_end, type)) return last_word->second;
   bool only_generic = true;
   for (std::size_t k = begin; k < end; ++k) {
     const auto forbidden = type.forbidden.find(tokens_[k].folded);

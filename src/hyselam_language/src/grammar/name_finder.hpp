@@ -79,6 +79,7 @@ class NameFinder {
   std::string whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
                           const NameType& type);
   bool beginsWithNoun(std::size_t begin, std::size_t end, const NameType& type) const;
+  bool endsWithNoun(std::size_t begin, std::size_t end, const NameType& type) const;
   bool hasNoun(std::size_t begin, std::size_t end, const NameType& type) const;
   bool mayBeMisspelt(std::size_t at, const NameType& type) const;
   /// Whether it is a noun of places, or begins one: "living".

@@ -48,6 +48,21 @@ bool mayGoOn(const std::vector<Token>& tokens, std::size_t at, const CompiledGra
   return type->generic.count(token.folded) == 0 || grammar.isNoun(token.folded) || !last;
 }
 
+/// "The gizmo's on the shelf": any word is a noun there, where no owner's name stands for a place
+/// ("the dentist's").
+bool isBehindArticle(const std::vector<Token>& tokens, std::size_t at,
+                     const CompiledGrammar& grammar) {
+  const NameType* type = grammar.nameType("place");
+  if (type == nullptr || !type->elliptic_suffix.empty()) return false;
+  for (std::size_t k = at; k-- > 0 && tokens[k].kind == TokenKind::kWord;) {
+    if (type->isArticle(tokens[k].folded) || type->speaker.count(tokens[k].folded) != 0) {
+      return true;
+    }
+    if (type->stop.count(tokens[k].lower) != 0) return false;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar& grammar) {
@@ -63,7 +78,8 @@ std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar
       if (token.lower.compare(length, end.size(), end) != 0) continue;
       Token noun =
           wordToken(token.text.substr(0, length), {token.range.begin, token.range.begin + length});
-      if (!mayBeSubject(noun, grammar) || mayGoOn(tokens, at + 1, grammar)) continue;
+      const bool is_subject = mayBeSubject(noun, grammar) || isBehindArticle(tokens, at, grammar);
+      if (!is_subject || mayGoOn(tokens, at + 1, grammar)) continue;
       all.back() = std::move(noun);
       all.push_back(wordToken(verb, {token.range.begin + length, token.range.end}));
       break;

@@ -96,6 +96,8 @@ ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   last_objects_.clear();
   last_kind_.clear();
   last_statement_.reset();
+  last_question_.reset();
+  missed_.reset();
   const Values values{
       {"text", statement.text}, {"reason", statement.reason}, {"suggestion", statement.suggestion}};
   const hyselam_topo::Grammar& grammar = parser_.grammar(language_);
@@ -121,6 +123,9 @@ ObjectReply FillMap::processStatement(const ObjectStatement& said) {
   if (!resolveOnes(&statement)) {
     return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", statement.text}});
   }
+  if (statement.intent == "that_one") return describeLast(statement);
+  last_question_.reset();
+  takeMissed(&statement);
   if (statement.kind == UtteranceKind::kQuestion || statement.intent == "go_to") {
     return answerQuestion(statement);
   }
@@ -143,6 +148,33 @@ ObjectReply FillMap::processStatement(const ObjectStatement& said) {
     return correctLast(statement);
   }
   return record(statement);
+}
+
+/// "Somebody has taken the ladder. It is in the hall."
+void FillMap::takeMissed(ObjectStatement* statement) {
+  const std::optional<ObjectPhrase> missed = std::move(missed_);
+  missed_.reset();
+  if (!missed || !last_objects_.empty() || statement->objects.size() != 1) return;
+  ObjectPhrase& phrase = statement->objects.front();
+  if (phrase.reference == "it" || phrase.reference == "them") phrase = *missed;
+}
+
+/// "The yellow one.", of what was told or asked for last.
+ObjectReply FillMap::describeLast(const ObjectStatement& said) {
+  if (last_question_ && !last_question_->objects.empty()) {
+    ObjectStatement question = *last_question_;
+    for (const auto& [key, value] : said.properties) {
+      question.objects.front().properties[key] = value;
+    }
+    question.objects.front().definite = true;
+    return answerQuestion(question);
+  }
+  if (last_objects_.empty()) {
+    return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", said.text}});
+  }
+  ObjectStatement statement = said;
+  statement.intent = "is_like";
+  return recordProperties(statement);
 }
 
 /// "No, under the table.", "Sorry, two cups.", "No, blue."
@@ -261,6 +293,8 @@ ObjectReply FillMap::setProperties(const ObjectStatement& statement, const std::
 
 void FillMap::resetContext() {
   last_objects_.clear();
+  last_question_.reset();
+  missed_.reset();
   last_kind_.clear();
   last_place_ = 0;
   pending_.reset();

@@ -24,6 +24,7 @@ ObjectReply FillMap::answerQuestion(const ObjectStatement& question) {
     place = name.empty() ? 0 : findPlace(name);
     if (place == 0) return reply(ReplyKind::kAnswer, nothingKey(question));
   }
+  last_question_ = question;
   std::vector<Id> landmarks;
   if (question.landmark) {
     landmarks = question.landmark->reference.empty()
@@ -33,10 +34,20 @@ ObjectReply FillMap::answerQuestion(const ObjectStatement& question) {
       return reply(ReplyKind::kAnswer, "unknown", {{"what", question.landmark->text}});
     }
   }
+  std::vector<std::vector<Id>> further;
+  if (!narrow(question, &landmarks, &further)) {
+    return reply(ReplyKind::kAnswer, nothingKey(question));
+  }
   std::vector<Id> objects;
   std::set<Id> places;
   for (const ObjectInstance& object : map_.objects) {
     if (!matchesQuestion(object, question, place, landmarks)) continue;
+    bool fits = true;
+    for (std::size_t i = 0; i < further.size(); ++i) {
+      const FurtherRelation& each = question.further[i];
+      fits = fits && (each.of_landmark || isRelatedSo(object, each.word, further[i]));
+    }
+    if (!fits) continue;
     objects.push_back(object.id);
     if (map_.placeOf(object.id) != 0) places.insert(map_.placeOf(object.id));
   }
@@ -49,6 +60,29 @@ ObjectReply FillMap::answerQuestion(const ObjectStatement& question) {
   out.objects = objects;
   out.places = all_places;
   return out;
+}
+
+/// The last relation first: it tells which landmark the one before it means.
+bool FillMap::narrow(const ObjectStatement& question, std::vector<Id>* landmarks,
+                     std::vector<std::vector<Id>>* further) const {
+  further->resize(question.further.size());
+  const auto keepRelated = [&](std::size_t i, std::vector<Id>* before) {
+    const FurtherRelation& each = question.further[i];
+    before->erase(std::remove_if(before->begin(), before->end(),
+                                 [&](Id id) {
+                                   return !isRelatedSo(*map_.find(id), each.word, (*further)[i]);
+                                 }),
+                  before->end());
+    return !before->empty();
+  };
+  for (std::size_t i = question.further.size(); i-- > 0;) {
+    (*further)[i] = candidates(question.further[i].landmark);
+    if ((*further)[i].empty()) return false;
+    const bool narrows = i + 1 < further->size() && question.further[i + 1].of_landmark;
+    if (narrows && !keepRelated(i + 1, &(*further)[i])) return false;
+  }
+  const bool narrows = !further->empty() && question.further.front().of_landmark;
+  return !narrows || keepRelated(0, landmarks);
 }
 
 bool FillMap::matchesQuestion(const ObjectInstance& object, const ObjectStatement& question,
@@ -75,29 +109,34 @@ bool FillMap::matchesQuestion(const ObjectInstance& object, const ObjectStatemen
       return room != 0 && r->place == room && r->word == *question.relation;
     });
   }
-  if (!question.landmark) return true;
-  const auto carried = [](RelationWord word) {
-    return isSupport(word) && word != RelationWord::kUnder;
+  return !question.landmark || isRelatedSo(object, *question.relation, landmarks);
+}
+
+bool FillMap::isRelatedSo(const ObjectInstance& object, RelationWord word,
+                          const std::vector<Id>& others) const {
+  const auto isOther = [&](Id id) {
+    return std::find(others.begin(), others.end(), id) != others.end();
   };
-  const auto isBeside = [](RelationWord word) {
-    return word == RelationWord::kNear || word == RelationWord::kAgainst ||
-           word == RelationWord::kBetween || word == RelationWord::kLeft ||
-           word == RelationWord::kRight;
+  const auto carried = [](RelationWord each) {
+    return isSupport(each) && each != RelationWord::kUnder;
   };
-  if (*question.relation == RelationWord::kNear) {  // holds both ways
-    for (const Id landmark : landmarks) {
-      for (const ObjectRelation* r : map_.relationsOf(landmark)) {
+  const auto isBeside = [](RelationWord each) {
+    return each == RelationWord::kNear || each == RelationWord::kAgainst ||
+           each == RelationWord::kBetween || each == RelationWord::kLeft ||
+           each == RelationWord::kRight;
+  };
+  if (word == RelationWord::kNear) {  // holds both ways
+    for (const Id other : others) {
+      for (const ObjectRelation* r : map_.relationsOf(other)) {
         if (r->other == object.id && isBeside(r->word)) return true;
       }
     }
   }
   for (const ObjectRelation* r : map_.relationsOf(object.id)) {
-    if (!isIn(r->other, landmarks)) continue;
-    if (*question.relation == RelationWord::kNear && isBeside(r->word)) return true;
+    if (!isOther(r->other)) continue;
+    if (word == RelationWord::kNear && isBeside(r->word)) return true;
     // "on the table" asks for what is over it or in it, too.
-    if (r->word == *question.relation || (carried(*question.relation) && carried(r->word))) {
-      return true;
-    }
+    if (r->word == word || (carried(word) && carried(r->word))) return true;
   }
   return false;
 }

@@ -140,6 +140,7 @@ ObjectReply FillMap::removeObjects(const ObjectStatement& statement) {
     const ObjectPhrase& phrase = statement.objects[i];
     const std::vector<Id> ids = resolveReference(phrase, last_place_);
     if (ids.empty()) {
+      if (phrase.reference.empty()) missed_ = phrase;
       return reply(ReplyKind::kQuestion, phrase.reference.empty() ? "unknown" : "no_antecedent",
                    {{"what", phrase.text}});
     }
@@ -150,6 +151,13 @@ ObjectReply FillMap::removeObjects(const ObjectStatement& statement) {
   }
   ObjectReply out = reply(ReplyKind::kDone, "forgotten");
   out.facts = factsOf(all, true, "gone");
+  if (all.size() == 1) {
+    const ObjectInstance& object = *map_.find(all.front());
+    missed_ = ObjectPhrase{};
+    missed_->kind = missed_->text = object.kind;
+    missed_->properties = object.properties;
+    missed_->definite = missed_->known_noun = true;
+  }
   for (const Id id : all) map_.remove(id);
   last_objects_.clear();
   last_kind_.clear();
@@ -179,7 +187,16 @@ ObjectReply FillMap::removeFromPlace(const ObjectStatement& statement) {
     }
   }
   const ObjectPhrase& phrase = statement.objects.front();
-  if (there.empty()) return reply(ReplyKind::kDone, "not_known_there", {{"what", phrase.text}});
+  if (there.empty()) {
+    // "The bin is in the hall. It is no longer under the stairs."
+    const bool elsewhere = !phrase.reference.empty() && !last_objects_.empty();
+    if (elsewhere) return reply(ReplyKind::kDone, "known");
+    if (phrase.reference.empty() && candidates(phrase).empty()) {
+      missed_ = phrase;
+      last_objects_.clear();
+    }
+    return reply(ReplyKind::kDone, "not_known_there", {{"what", phrase.text}});
+  }
   if (there.size() > 1 && !phrase.plural && phrase.definite && phrase.reference != "them") {
     return askWhich(statement, phrase, there, false);
   }

@@ -146,6 +146,11 @@ class PhraseReader {
     std::size_t at = 0;
     for (; at + 1 < rest_.size(); ++at) {
       const std::string word = lower(at);
+      // "first aid kit", "high chair", but "two glass jars"
+      const bool is_noun = words_.numberOf(word) == 0 &&
+                           words_.things.count(lowerCase(joined(at, rest_.size()))) != 0;
+      const bool is_property = words_.properties.count(word) != 0;
+      if (is_noun && is_property) break;
       const auto property = words_.properties.find(word);
       const auto digits = hyselam::parseNumber(word);
       if (const int number = words_.numberOf(word); number > 0) {
@@ -200,6 +205,11 @@ ObjectPhrase phraseOf(const ObjectWords& words, const hyselam_topo::SaidName& na
     out.text = name.text;
     out.reference = name.reference;
     out.definite = true;
+    if (name.reference == "mine") {  // another one, of the kind mentioned last
+      out.reference.clear();
+      out.one = out.other = true;
+      out.properties["owner"] = kSpeaker;
+    }
     return out;
   }
   return PhraseReader(words, name).read(wordBefore(text, name.range.begin));

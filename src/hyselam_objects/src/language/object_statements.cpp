@@ -37,11 +37,23 @@ class StatementReader {
     const bool asks = base.kind != UtteranceKind::kStatement || base.intent == "not_there";
     const bool is_whole = asks || (base.properties.empty() && base.owner.empty()) || !base.place;
     if (relations_.empty() && is_whole) return {base};
-    return asks ? std::vector<ObjectStatement>{withRelation(base, relations_.front(), 0)}
-                : split(base);
+    return asks ? std::vector<ObjectStatement>{asked(base)} : split(base);
   }
 
  private:
+  /// All relations of a question narrow what is asked for.
+  ObjectStatement asked(const ObjectStatement& base) const {
+    ObjectStatement out = withRelation(base, relations_.front(), 0);
+    if (base.kind != UtteranceKind::kQuestion) return out;
+    for (std::size_t i = 0; i < relations_.size(); ++i) {
+      const SaidRelation& each = relations_[i];
+      for (std::size_t k = i == 0 ? 1 : 0; k < each.landmarks.size(); ++k) {
+        out.further.push_back({each.word, each.landmarks[k], each.of_landmark});
+      }
+    }
+    return out;
+  }
+
   ObjectStatement plain() {
     ObjectStatement out;
     out.kind = u_.kind;
@@ -223,6 +235,7 @@ class StatementReader {
       const std::vector<SaidName> moved = u_.names("objects");
       const bool small = moved.empty() || !isTop(phraseOf(words_, moved.front(), text_));
       if (isTop(relation->landmarks.front()) && small) relation->word = RelationWord::kOn;
+      if (isHollow(relation->landmarks.front()) && small) relation->word = RelationWord::kIn;
       return;
     }
     if (relation->word != RelationWord::kIn) return;
@@ -233,6 +246,10 @@ class StatementReader {
   bool isTop(const ObjectPhrase& phrase) const {
     return words_.tops.count(phrase.kind) != 0 ||
            words_.tops.count(lowerCase(words_.headOf(phrase.kind))) != 0;
+  }
+
+  bool isHollow(const ObjectPhrase& phrase) const {
+    return words_.hollows.count(lowerCase(words_.headOf(phrase.kind))) != 0;
   }
 
   std::string whatIsWrong(const ObjectStatement& base) {

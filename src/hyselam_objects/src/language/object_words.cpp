@@ -128,8 +128,12 @@ std::string ObjectWords::formOf(const std::string& kind) const {
 }
 
 bool ObjectWords::isNoun(const std::string& kind) const {
-  if (things.count(lowerCase(kind)) != 0) return true;
-  return things.count(lowerCase(headOf(kind))) != 0;
+  if (things.count(lowerCase(kind)) != 0 || things.count(lowerCase(headOf(kind))) != 0) return true;
+  const std::size_t last = kind.rfind(' ');  // "bed 3"
+  const bool numbered = last != std::string::npos && last + 1 < kind.size() &&
+                        std::any_of(kind.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                                    kind.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return numbered && isNoun(kind.substr(0, last));
 }
 
 int ObjectWords::numberOf(const std::string& said) const {

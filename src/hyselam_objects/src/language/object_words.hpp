@@ -29,6 +29,7 @@ struct ObjectWords {
   std::set<std::string> of;        ///< "bottles of water": the word before it is in the plural
   bool head_first = false;         ///< the first word of a name takes the plural
   std::set<std::string> tops;      ///< kinds that objects lie on where people say "in"
+  std::set<std::string> hollows;   ///< kinds that objects lie in where people say "to"
   std::map<std::string, std::string> plurals;
   std::vector<std::pair<std::string, std::string>> plural_endings;  ///< the first that matches
   std::map<std::string, std::string> synonyms;  ///< word to the one that is kept

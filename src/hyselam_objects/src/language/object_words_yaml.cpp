@@ -112,6 +112,7 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
     addAll(root["always_plural"], &words.always_plural);
     addAll(root["structure"], &words.structure);
     for (const auto& each : root["tops"]) words.tops.insert(each.Scalar());
+    for (const auto& each : root["hollows"]) words.hollows.insert(each.Scalar());
     words.head_first = root["head"].as<std::string>("last") == "first";
     words.properties_after = root["properties"].as<std::string>("before") == "after";
     words.index();
@@ -150,6 +151,12 @@ hyselam_topo::GrammarSource ObjectWords::grammar() const {
       if (!stands) names[type]["forbidden"][reason].push_back(word);
     }
   }
+  // "In a mess", "in the way" is nowhere.
+  for (const auto& [word, reason] : no_things) {
+    if (reason != "abstract" && reason != "vague") continue;
+    names["place"]["forbidden"][reason].push_back(word);
+    names["room"]["forbidden"][reason].push_back(word);
+  }
   for (const std::string& word : structure) {
     names["landmark"]["nouns"]["object"].push_back(word);
     names["container"]["nouns"]["object"].push_back(word);
@@ -160,6 +167,10 @@ hyselam_topo::GrammarSource ObjectWords::grammar() const {
     addTo(names[type]["forbidden"]["object"], own);
   }
   for (const auto& [word, value] : properties) root["telling_words"].push_back(word);
+  // "The ties are in the box": no misspelt "lies".
+  for (const std::string& noun : things) {
+    for (const std::string& word : splitWords(noun)) root["known_words"].push_back(word);
+  }
   names["property"]["max_words"] = 1;
   names["property"]["needs_noun"] = true;
   for (const auto& [word, value] : properties) {

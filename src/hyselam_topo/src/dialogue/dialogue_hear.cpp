@@ -25,6 +25,13 @@ void append(Reply next, Reply& reply) {
   move(next.utterances, reply.utterances);
 }
 
+/// "it's in the hall": no place is named that lies within another.
+bool isOfReferences(const Utterance& u) {
+  const std::vector<SaidName> names = u.names("places");
+  return std::all_of(names.begin(), names.end(),
+                     [](const SaidName& name) { return !name.reference.empty(); });
+}
+
 /// If no utterance of a text was understood, the text is forwarded as a whole, as it was said.
 void joinForwarded(const std::string& text, std::size_t utterances,
                    std::vector<ForwardedSentence>& forwarded) {
@@ -197,8 +204,11 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     refuse(u, turn);
     return;
   }
+  // "Somebody moved the trolley, it's in the hall now": of what others were told right before.
+  const bool goes_on = turn.forwarded_last && u.intent == "contains" && isOfReferences(u);
+  turn.forwarded_last = false;
   const bool for_others = (options.others_asked_last && u.kind == UtteranceKind::kAnswer) ||
-                          (options.objects_spoken_of && isAboutObject(u));
+                          (options.objects_spoken_of && isAboutObject(u)) || goes_on;
   if (options.forward_unknown && for_others) {
     // One answer answers one question.
     if (isAnswer(u) && turn.answered) return;
@@ -334,6 +344,7 @@ void Dialogue::forward(const Utterance& u, const std::string& refusal, Turn& tur
   sentence.refusal = refusal;
   sentence.about_object = u.reason_code == "object";
   turn.reply.forwarded.push_back(std::move(sentence));
+  turn.forwarded_last = true;
 }
 
 // ---- Small talk ----

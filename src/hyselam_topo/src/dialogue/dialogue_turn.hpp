@@ -29,6 +29,7 @@ struct Dialogue::Turn {
   bool answered = false;            ///< an answer was given, or met
   bool about_else = false;          ///< something was said that is no answer
   bool says_more = false;           ///< something was said that is understood and no answer
+  bool forwarded_last = false;      ///< others hear the utterance before
   bool broken_off = false;          ///< what follows waits for the answer to a question
   std::string proposal;             ///< what may have been meant, ...
   std::string refusal_of_proposal;  ///< ... and what is said where it cannot be asked

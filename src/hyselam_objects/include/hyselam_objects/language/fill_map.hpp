@@ -118,6 +118,8 @@ class FillMap {
   static void addReply(ObjectReply reply, bool continues, bool replaces,
                        std::vector<ObjectReply>* replies);
   ObjectReply correctLast(const ObjectStatement& statement);
+  ObjectReply describeLast(const ObjectStatement& statement);
+  void takeMissed(ObjectStatement* statement);
   ObjectReply recordObjects(const ObjectStatement& statement);
   ObjectReply recordProperties(const ObjectStatement& statement);
   ObjectReply recordOwner(const ObjectStatement& statement);
@@ -163,6 +165,12 @@ class FillMap {
   bool isSupportedBy(Id object, Id other) const;
   bool isRelatedToRoom(Id object) const;
   bool areCompatible(RelationWord a, Id other_a, RelationWord b, Id other_b) const;
+  /// Whether an object is known to be related so to one of the others.
+  bool isRelatedSo(const ObjectInstance& object, RelationWord word,
+                   const std::vector<Id>& others) const;
+  /// What the landmarks and further relations of a question mean; false if there is no such thing.
+  bool narrow(const ObjectStatement& question, std::vector<Id>* landmarks,
+              std::vector<std::vector<Id>>* further) const;
   bool matchesQuestion(const ObjectInstance& object, const ObjectStatement& question, Id place,
                        const std::vector<Id>& landmarks) const;
 
@@ -221,6 +229,8 @@ class FillMap {
   std::string last_kind_;           ///< of the objects mentioned last
   std::optional<ObjectStatement> last_statement_;  ///< taken down last
   std::vector<Id> last_added_;                     ///< objects that it has added
+  std::optional<ObjectPhrase> missed_;             ///< said to be gone: "it" of the next sentence
+  std::optional<ObjectStatement> last_question_;   ///< asked right before
   std::set<std::string> shown_kinds_;              ///< that the robot has asked to be shown
   bool question_is_new_ = false;                   ///< the text that is processed has led to it
   Id last_place_ = 0;                              ///< mentioned last

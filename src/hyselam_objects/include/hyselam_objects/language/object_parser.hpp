@@ -36,6 +36,14 @@ struct ObjectPhrase {
   std::string text;        ///< as it was said
 };
 
+/// A further relation of a question: "in the box next to the lamp", "between the desk and the
+/// door".
+struct FurtherRelation {
+  RelationWord word = RelationWord::kNear;
+  ObjectPhrase landmark;
+  bool of_landmark = false;  ///< it tells which landmark is meant, not which object
+};
+
 struct ObjectStatement {
   hyselam_topo::UtteranceKind kind = hyselam_topo::UtteranceKind::kNotUnderstood;
   std::string intent;  ///< of the grammar: "exist", "is_at", "is_like", "where_is", ...
@@ -44,6 +52,7 @@ struct ObjectStatement {
   std::optional<ObjectPhrase> landmark;        ///< what the relation is to
   std::optional<hyselam_topo::SaidName> room;  ///< instead of a landmark: "in front of room 3"
   std::optional<hyselam_topo::SaidName> place;
+  std::vector<FurtherRelation> further;  ///< of a question, in the order said
   /// A statement with several relations is several statements: "the cup is on the tray on the
   /// table" tells where the tray is, and then the cup. All but the first continue the one before.
   bool continues = false;
