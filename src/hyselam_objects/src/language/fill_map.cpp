@@ -84,7 +84,8 @@ bool FillMap::isWhole(const std::string& sentence) const {
     const auto isNamed = [](const ObjectPhrase& phrase) {
       return phrase.known_noun || !phrase.reference.empty() || !phrase.bare;
     };
-    return each.kind != UtteranceKind::kNotUnderstood && !each.objects.empty() &&
+    return each.kind != UtteranceKind::kNotUnderstood && each.intent != "that_one" &&
+           !each.objects.empty() &&
            std::all_of(each.objects.begin(), each.objects.end(), isNamed) &&
            (!each.landmark || isNamed(*each.landmark));
   });
@@ -220,6 +221,8 @@ bool FillMap::resolveOnes(ObjectStatement* statement) const {
   const auto resolve = [this](ObjectPhrase& phrase, const std::string& kind) {
     if (!phrase.one) return true;
     if (kind.empty()) return false;
+    // "a vermelha" is no cup
+    if (!phrase.form.empty() && parser_.formOf(language_, kind) != phrase.form) return false;
     phrase.kind = kind;
     return true;
   };

@@ -67,14 +67,19 @@ ObjectParser ObjectParser::shipped(const std::string& language) {
         "language", language,
         "there is no grammar of objects for this language, only for " + known);
   }
-  return ObjectParser(all);
+  return ObjectParser(all, true);
 }
 
-ObjectParser::ObjectParser(const std::vector<ObjectLanguage>& languages) {
+ObjectParser::ObjectParser(const std::vector<ObjectLanguage>& languages)
+    : ObjectParser(languages, false) {}
+
+ObjectParser::ObjectParser(const std::vector<ObjectLanguage>& languages, bool shipped) {
   if (languages.empty()) throw hyselam::InputError("languages", "", "there is none");
   std::vector<hyselam_topo::Grammar> grammars;
   for (const ObjectLanguage& each : languages) {
-    auto words = std::make_unique<const Words>(ObjectWords::fromYaml(each.words));
+    ObjectWords list = ObjectWords::fromYaml(each.words);
+    if (shipped) list.addPlaces(hyselam_topo::Grammar::shippedSource(list.language));
+    auto words = std::make_unique<const Words>(std::move(list));
     grammars.push_back(hyselam_topo::Grammar::fromYaml({each.grammar, words->grammar()}));
     words_.push_back(std::move(words));
   }

@@ -11,7 +11,12 @@ namespace {
 constexpr int kAll = -1;  // of ObjectWords::quantities
 constexpr char kSpeaker[] = "speaker";
 
-/// The word of the text that ends before a byte, in lower case.
+bool startsUpper(const std::string& word) {
+  return !word.empty() && ((word[0] >= 'A' && word[0] <= 'Z') || lowerCase(word) != word);
+}
+
+}  // namespace
+
 std::string wordBefore(const std::string& text, std::size_t at) {
   while (at > 0 && text[at - 1] == ' ') --at;
   std::size_t begin = at;
@@ -19,9 +24,7 @@ std::string wordBefore(const std::string& text, std::size_t at) {
   return lowerCase(text.substr(begin, at - begin));
 }
 
-bool startsUpper(const std::string& word) {
-  return !word.empty() && ((word[0] >= 'A' && word[0] <= 'Z') || lowerCase(word) != word);
-}
+namespace {
 
 class PhraseReader {
  public:
@@ -88,19 +91,19 @@ class PhraseReader {
   /// "copo vermelho pequeno"
   void takePropertiesBehind() {
     for (; rest_.size() > 1; rest_.pop_back()) {
-      auto property = words_.properties.find(lowerCase(rest_.back()));
-      if (property != words_.properties.end()) {
-        out_.properties[property->second.first] = property->second.second;
-        continue;
-      }
-      // "de madeira"
+      // "de madeira", "de baixo"
       const bool made = rest_.size() > 2 && words_.of.count(lower(rest_.size() - 2)) != 0;
-      property =
+      auto property =
           made ? words_.properties.find(lower(rest_.size() - 2) + " " + lowerCase(rest_.back()))
                : words_.properties.end();
+      if (property != words_.properties.end()) {
+        out_.properties[property->second.first] = property->second.second;
+        rest_.pop_back();
+        continue;
+      }
+      property = words_.properties.find(lowerCase(rest_.back()));
       if (property == words_.properties.end()) return;
       out_.properties[property->second.first] = property->second.second;
-      rest_.pop_back();
     }
   }
 
@@ -175,6 +178,7 @@ class PhraseReader {
         !out_.bare && startsUpper(rest_.front()) && !startsUpper(rest_.front().substr(1));
     if (rest_.size() == 1 && words_.another.count(lower(0)) != 0) {  // "the other", "outra"
       out_.one = true;
+      out_.form = words_.articleForm(lower(0));
       (out_.definite ? out_.other : out_.another) = true;
       return;
     }
@@ -208,6 +212,7 @@ ObjectPhrase phraseOf(const ObjectWords& words, const hyselam_topo::SaidName& na
     if (name.reference == "mine") {  // another one, of the kind mentioned last
       out.reference.clear();
       out.one = out.other = true;
+      out.form = words.articleForm(name.text.substr(0, name.text.find(' ')));
       out.properties["owner"] = kSpeaker;
     }
     return out;

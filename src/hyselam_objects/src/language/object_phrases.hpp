@@ -7,6 +7,9 @@
 
 namespace hyselam_objects {
 
+/// The word of the text that ends before a byte, in lower case.
+std::string wordBefore(const std::string& text, std::size_t at);
+
 /// `text`: the whole text, in which the name's range lies.
 ObjectPhrase phraseOf(const ObjectWords& words, const hyselam_topo::SaidName& name,
                       const std::string& text);

@@ -97,12 +97,12 @@ std::string FillMap::bareName(Id object, bool plural) const {
   for (const char* const key : kOrder) {
     const auto property = found->properties.find(key);
     if (property == found->properties.end()) continue;
-    // "segunda gaveta da secretária"
-    const bool before = std::string(key) == "position" && parser_.grammar(language_).has("ordinal");
-    text = phraseText(
-        before ? "ordinal" : "described",
-        {{"property", parser_.propertyWord(language_, property->second, found->kind, plural)},
-         {"what", text}});
+    const std::string word = parser_.propertyWord(language_, property->second, found->kind, plural);
+    // "segunda gaveta da secretária", but "gaveta de baixo"
+    const bool before = std::string(key) == "position" &&
+                        parser_.grammar(language_).has("ordinal") &&
+                        word.find(' ') == std::string::npos;
+    text = phraseText(before ? "ordinal" : "described", {{"property", word}, {"what", text}});
   }
   return text;
 }

@@ -76,6 +76,7 @@ class StatementReader {
     for (const SaidName& name : u_.names("objects")) {
       out.objects.push_back(phraseOf(words_, name, text_));
     }
+    for (const SaidName& name : u_.names("such")) describeTheOne(name, &out);
     if (const auto tens = hyselam::parseNumber(u_.word("tens")); tens && !out.objects.empty()) {
       ObjectPhrase& counted = out.objects.front();  // "vinte e uma cadeiras"
       counted.count += static_cast<int>(*tens);
@@ -108,12 +109,27 @@ class StatementReader {
     }
     readRelations(&out);
     takeFrom(&out);
+    if (out.moved) dropOrigin(&out);
     return out;
+  }
+
+  /// "a vermelha está na gaveta": of the kind that was mentioned last.
+  void describeTheOne(const SaidName& said, ObjectStatement* out) const {
+    const auto property = words_.properties.find(lowerCase(said.text));
+    if (property == words_.properties.end()) return;
+    for (ObjectPhrase& phrase : out->objects) {
+      if (phrase.reference != "the_one") continue;
+      phrase.reference.clear();
+      phrase.one = phrase.definite = true;
+      phrase.properties.insert(property->second);
+      phrase.text = said.text;
+      phrase.form = words_.articleForm(wordBefore(text_, said.range.begin));
+    }
   }
 
   /// "a mesa da sala": a table, in the room. "Of the", not "de": "mesa de sala" is a kind of table.
   bool takePlaceBehind(SaidName* name, std::optional<SaidName>* place) const {
-    if (!words_.head_first) return false;
+    if (!words_.head_first) return takePlaceOf(name, place);
     const std::vector<std::string> all = splitWords(name->text);
     for (std::size_t i = 1; i + 1 < all.size(); ++i) {
       const auto known = words_.no_things.find(lowerCase(all[i + 1]));
@@ -135,6 +151,26 @@ class StatementReader {
     return false;
   }
 
+  /// "the cabinet of the workshop"
+  bool takePlaceOf(SaidName* name, std::optional<SaidName>* place) const {
+    const std::size_t at = lowerCase(name->text).find(" of ");
+    if (at == std::string::npos) return false;
+    std::string where = name->text.substr(at + 4);
+    const std::size_t space = where.find(' ');
+    if (space != std::string::npos &&
+        words_.articles.count(lowerCase(where.substr(0, space))) != 0) {
+      where.erase(0, space + 1);
+    }
+    const auto known = words_.no_things.find(lowerCase(words_.headOf(where)));
+    if (known == words_.no_things.end() || known->second != "place") return false;
+    name->text.erase(at);
+    if (!*place) {
+      place->emplace();
+      (*place)->text = where;
+    }
+    return true;
+  }
+
   /// "Tirei o copo da mesa": from the table, not a cup of tables.
   void takeFrom(ObjectStatement* out) {
     if (!words_.head_first || out->intent != "forget_object" || out->objects.size() != 1) return;
@@ -153,6 +189,23 @@ class StatementReader {
       phrase.kind = phrase.text = phrase.kind.substr(0, at);
       out->kind = UtteranceKind::kStatement;
       out->intent = "not_there";
+      return;
+    }
+  }
+
+  /// "Mudei o copo da mesa para a estante": the table tells where it was.
+  void dropOrigin(ObjectStatement* out) const {
+    if (!words_.head_first || out->objects.size() != 1) return;
+    ObjectPhrase& phrase = out->objects.front();
+    for (const char* const of : {" da ", " do ", " das ", " dos "}) {
+      const std::size_t at = phrase.kind.find(of);
+      if (at == std::string::npos || words_.things.count(lowerCase(phrase.kind)) != 0) continue;
+      const std::string from = phrase.kind.substr(at + std::string(of).size());
+      const auto no_thing = words_.no_things.find(lowerCase(words_.headOf(from)));
+      const bool is_place = no_thing != words_.no_things.end() && no_thing->second == "place";
+      const std::string kind = words_.kindOf(from).kind;
+      if (!is_place && words_.tops.count(kind) == 0 && words_.hollows.count(kind) == 0) continue;
+      phrase.kind = phrase.text = phrase.kind.substr(0, at);
       return;
     }
   }

@@ -127,6 +127,13 @@ std::string ObjectWords::formOf(const std::string& kind) const {
   return longest == 0 && any != form_endings.end() ? any->second : form;
 }
 
+std::string ObjectWords::articleForm(const std::string& said) const {
+  if (!head_first || said.empty()) return "";
+  std::string word = lowerCase(said);
+  if (word.back() == 's') word.pop_back();
+  return !word.empty() && word.back() == 'a' ? "f" : "m";
+}
+
 bool ObjectWords::isNoun(const std::string& kind) const {
   if (things.count(lowerCase(kind)) != 0 || things.count(lowerCase(headOf(kind))) != 0) return true;
   const std::size_t last = kind.rfind(' ');  // "bed 3"

@@ -38,7 +38,9 @@ struct ObjectWords {
   std::set<std::string> where;   ///< words before the place of a thing: "in"
   std::set<std::string> mass;    ///< nouns without article and number: "milk"
   std::set<std::string> always_plural;
-  std::set<std::string> structure;  ///< parts of a building that things stand at: "wall"
+  std::set<std::string> place_kinds;  ///< kinds of places: "changing room"
+  std::set<std::string> places_too;   ///< kinds of places that may as well be things: "shower"
+  std::set<std::string> structure;    ///< parts of a building that things stand at: "wall"
   /// Words that name no thing, with the code of the reason: {"boy", "person"}.
   std::map<std::string, std::string> no_things;
   /// What a noun ends with to the forms of words that go with it: {"a", "f"}; the longest counts.
@@ -49,6 +51,10 @@ struct ObjectWords {
   /// @throws hyselam::InputError for a text that is no list of words.
   static ObjectWords fromYaml(const hyselam_topo::GrammarSource& source);
 
+  /// Kinds of places, of the grammar of places of the same language: none of them names a thing.
+  /// @throws hyselam::InputError for a text that is no grammar.
+  void addPlaces(const hyselam_topo::GrammarSource& grammar);
+
   /// The part of a grammar that follows from these words.
   hyselam_topo::GrammarSource grammar() const;
 
@@ -58,6 +64,8 @@ struct ObjectWords {
   NounKind kindOf(const std::string& noun) const;
   std::string pluralOf(const std::string& kind) const;
   std::string formOf(const std::string& kind) const;
+  /// Which nouns an article, "meu" or "outra" goes with: "m" or "f"; "" where they have no forms.
+  std::string articleForm(const std::string& word) const;
   bool isNoun(const std::string& kind) const;
   /// The word of a name that tells what it is.
   std::string headOf(const std::string& kind) const;

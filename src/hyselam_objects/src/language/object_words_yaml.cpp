@@ -111,6 +111,7 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
     addAll(root["where"], &words.where);
     addAll(root["always_plural"], &words.always_plural);
     addAll(root["structure"], &words.structure);
+    addAll(root["places_too"], &words.places_too);
     for (const auto& each : root["tops"]) words.tops.insert(each.Scalar());
     for (const auto& each : root["hollows"]) words.hollows.insert(each.Scalar());
     words.head_first = root["head"].as<std::string>("last") == "first";
@@ -120,6 +121,25 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
     throw hyselam::InputError(source.name, "line " + std::to_string(e.mark.line + 1), e.msg);
   }
   return words;
+}
+
+void ObjectWords::addPlaces(const hyselam_topo::GrammarSource& grammar) {
+  try {
+    const YAML::Node kinds =
+        hyselam::parseYaml(grammar.yaml, grammar.name)["names"]["place"]["nouns"];
+    for (const auto& kind : kinds) {
+      for (const auto& each : kind.second) {
+        const std::string word = lowerCase(each.Scalar());
+        const bool is_thing = things.count(word) != 0 || structure.count(word) != 0 ||
+                              properties.count(word) != 0 || no_things.count(word) != 0;
+        if (is_thing || places_too.count(word) != 0) continue;
+        place_kinds.insert(word);
+        if (word.find(' ') == std::string::npos) no_things[word] = "place";
+      }
+    }
+  } catch (const YAML::Exception& e) {
+    throw hyselam::InputError(grammar.name, "line " + std::to_string(e.mark.line + 1), e.msg);
+  }
 }
 
 hyselam_topo::GrammarSource ObjectWords::grammar() const {
@@ -150,6 +170,10 @@ hyselam_topo::GrammarSource ObjectWords::grammar() const {
     for (const char* const type : {"landmark", "container"}) {
       if (!stands) names[type]["forbidden"][reason].push_back(word);
     }
+  }
+  for (const std::string& word : place_kinds) {
+    names["place"]["nouns"]["room"].push_back(word);
+    names["room"]["nouns"]["room"].push_back(word);
   }
   // "In a mess", "in the way" is nowhere.
   for (const auto& [word, reason] : no_things) {

@@ -27,6 +27,7 @@ struct ObjectPhrase {
   bool other = false;       ///< "the other pen": not the one mentioned last
   bool some = false;        ///< "a few pens": no number
   bool one = false;         ///< "the green one": of the kind mentioned last; `kind` is ""
+  std::string form;         ///< of "one", where words have forms: "f" of "a vermelha"
   bool known_noun = false;  ///< a word of the list of nouns
   bool bare = false;        ///< without article, number or owner
   bool capital = false;     ///< its first word is written like a person's name: "a Ana"
@@ -132,6 +133,8 @@ class ObjectParser {
 
  private:
   struct Words;
+  /// `shipped`: kinds of places are those of the shipped grammars of places as well.
+  ObjectParser(const std::vector<ObjectLanguage>& languages, bool shipped);
   std::size_t indexOf(const std::string& language) const;
 
   std::vector<std::unique_ptr<const Words>> words_;  ///< in the order of the grammars
