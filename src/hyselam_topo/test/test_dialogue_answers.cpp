@@ -326,3 +326,38 @@ TEST(DialogueStatement, PlacesThatSoundLikeNoneAreAskedAbout) {
   EXPECT_TRUE(talk.names(1).empty());
   EXPECT_TRUE(talk.dialogue.description().places.empty());
 }
+
+// ---- A name taken back ----
+
+TEST(DialogueNames, UndoRightAfterTakesTheNameBack) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  ASSERT_TRUE(talk.isConfirmed(1));
+  EXPECT_TRUE(has(talk.say("Undo that."), "forgotten"));
+  EXPECT_TRUE(talk.names(1).empty());
+  EXPECT_TRUE(has(talk.say("Undo that."), "nothing was told"));
+  talk.say("This is the kitchen.");
+  EXPECT_TRUE(has(talk.say("This is the library."), "also known"));
+  talk.say("Take that back.");
+  EXPECT_EQ(talk.names(1), Names{"kitchen"}) << "only the open question is over";
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone);
+  talk.say("Where are you?");
+  EXPECT_TRUE(has(talk.say("Undo that."), "nothing was told")) << "something else came in between";
+}
+
+TEST(DialogueAnswers, AreGivenInManyWords) {
+  for (const char* said :
+       {"yeah that's the one", "It most certainly is.", "Course it is.", "that's correct"}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    talk.say(said);
+    EXPECT_TRUE(talk.isConfirmed(1)) << said;
+  }
+  for (const char* said : {"Nope, try again.", "not quite", "Not any more.", "Haven't a clue.",
+                           "Couldn't tell you.", "If you say so.", "Maybe."}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    talk.say(said);
+    EXPECT_FALSE(talk.isConfirmed(1)) << said;
+  }
+}

@@ -156,6 +156,8 @@ ParsedText Dialogue::parse(const std::string& text) {
 
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   questions_.beginUtterance();
+  named_last_ = std::move(named_now_);
+  named_now_.reset();
   const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
   Reply out = urgent.urgency == Urgency::kNone ? understand(text, options) : obey(urgent);
   if (!out.sentences.empty()) last_said_ = out.sentences;
@@ -218,6 +220,10 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   }
   if (isAnswer(u)) {
     if (!turn.says_more) meetAnswer(u, turn);
+    return;
+  }
+  if (u.intent == "undo" && !turn.described && takeNameBack(turn)) {
+    turn.about_else = true;
     return;
   }
   static const std::set<std::string> kNeutral{"greeting", "thanks", "help"};

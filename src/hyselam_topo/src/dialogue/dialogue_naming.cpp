@@ -28,6 +28,9 @@ bool Dialogue::isNamedOtherwise(Id place, const std::vector<std::string>& names)
 
 void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Reply& out) {
   const Phrases& p = phrases();
+  std::map<Id, std::vector<PlaceTerm>> words;
+  for (const Place& each : places_.map().places) words[each.id] = each.words;
+  named_now_.emplace(BeforeNaming{place, std::move(words), builder_});
   const std::vector<Id> losers = places_.confirm(place, names);
   const Place& named = *places_.map().findPlace(place);
   out.sentences.push_back(
@@ -99,6 +102,25 @@ void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
   } else {
     confirmNames(place, names, out);
   }
+}
+
+bool Dialogue::takeNameBack(Turn& turn) {
+  if (questions_.isOpen() && question().isAboutName()) {
+    questions_.drop();
+    say("cancelled", turn);
+    return true;
+  }
+  std::optional<BeforeNaming>& before = named_now_ ? named_now_ : named_last_;
+  if (!before || described_last_) return false;
+  for (const auto& [id, words] : before->words) {
+    if (places_.map().findPlace(id) != nullptr) places_.setWords(id, words);
+  }
+  builder_ = std::move(before->builder);
+  const std::string code = codeOf(*places_.map().findPlace(before->place));
+  before.reset();
+  turn.reply.sentences.push_back(phrases().say("forgot_names", {{"places", code}}));
+  turn.reply.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+  return true;
 }
 
 void Dialogue::askForgetEverything(const Utterance&, Turn& turn) {

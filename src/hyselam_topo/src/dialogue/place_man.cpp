@@ -195,6 +195,10 @@ void PlaceMan::guess(const std::vector<std::pair<Id, std::vector<std::string>>>&
   }
 }
 
+void PlaceMan::setWords(Id id, std::vector<PlaceTerm> words) {
+  at(id).words = std::move(words);
+}
+
 bool PlaceMan::forget(Id id) {
   Place& place = at(id);
   const bool had = !place.words.empty();

@@ -251,6 +251,8 @@ class Dialogue {
 
   // names
   void nameThisPlace(const Utterance& u, Turn& turn);
+  /// "Undo that", said right after a name was told or asked about; false if none was.
+  bool takeNameBack(Turn& turn);
   void forgetNames(const Utterance& u, Turn& turn);
   void askForgetEverything(const Utterance& u, Turn& turn);
   void forgetEverything(Reply& reply);
@@ -384,6 +386,13 @@ class Dialogue {
   std::set<std::string> accepted_;      // names that a person has agreed to (NameKey::full)
   std::vector<std::string> last_said_;  // for "what?"
   bool described_last_ = false;         // the last utterance told of places: "it" is one of them
+  /// What "undo that" goes back to after a name was told.
+  struct BeforeNaming {
+    Id place = 0;
+    std::map<Id, std::vector<PlaceTerm>> words;
+    DescriptionBuilder builder;
+  };
+  std::optional<BeforeNaming> named_now_, named_last_;  // in this text, in the one before
   Id asked_ = 0;    // the place for which a question was considered since entering it
   Id subject_ = 0;  // antecedent of "it"
 };

@@ -73,6 +73,8 @@ class PlaceMan {
   bool isRejected(Id place, const std::string& name) const;
   /// Replaces all guessed names. Confirmed and rejected names remain as they are.
   void guess(const std::vector<std::pair<Id, std::vector<std::string>>>& guesses);
+  /// Gives a place the names that it had before.
+  void setWords(Id id, std::vector<PlaceTerm> words);
   /// Removes all names of a place. False if it had none.
   bool forget(Id place);
   /// Removes a name from all places. Returns the places that had it.
