@@ -186,6 +186,12 @@ class PhraseReader {
       out_.one = true;
       return;
     }
+    const auto digits = hyselam::parseNumber(noun);  // "the other 2"
+    if (digits && *digits >= 1.0 && *digits <= 1000.0) {
+      out_.one = true;
+      setCount(static_cast<int>(*digits));
+      return;
+    }
     const std::size_t mark = noun.size() > 2 ? noun.size() - 2 : 0;
     if (mark > 0 && noun.compare(mark, 2, "'s") == 0) noun.erase(mark);  // "the desk's got"
     const NounKind found = words_.kindOf(noun);

@@ -39,6 +39,7 @@ struct ObjectWords {
   std::set<std::string> mass;    ///< nouns without article and number: "milk"
   std::set<std::string> always_plural;
   std::set<std::string> place_kinds;  ///< kinds of places: "changing room"
+  std::set<std::string> nowhere;      ///< what things are said to be in that is no place: "mess"
   std::set<std::string> places_too;   ///< kinds of places that may as well be things: "shower"
   std::set<std::string> structure;    ///< parts of a building that things stand at: "wall"
   /// Words that name no thing, with the code of the reason: {"boy", "person"}.

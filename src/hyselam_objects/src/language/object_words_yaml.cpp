@@ -111,6 +111,7 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
     addAll(root["where"], &words.where);
     addAll(root["always_plural"], &words.always_plural);
     addAll(root["structure"], &words.structure);
+    addAll(root["nowhere"], &words.nowhere);
     addAll(root["places_too"], &words.places_too);
     for (const auto& each : root["tops"]) words.tops.insert(each.Scalar());
     for (const auto& each : root["hollows"]) words.hollows.insert(each.Scalar());
@@ -175,11 +176,10 @@ hyselam_topo::GrammarSource ObjectWords::grammar() const {
     names["place"]["nouns"]["room"].push_back(word);
     names["room"]["nouns"]["room"].push_back(word);
   }
-  // "In a mess", "in the way" is nowhere.
-  for (const auto& [word, reason] : no_things) {
-    if (reason != "abstract" && reason != "vague") continue;
-    names["place"]["forbidden"][reason].push_back(word);
-    names["room"]["forbidden"][reason].push_back(word);
+  // "In a mess", "in the way" is no place.
+  for (const std::string& word : nowhere) {
+    names["place"]["forbidden"]["abstract"].push_back(word);
+    names["room"]["forbidden"]["abstract"].push_back(word);
   }
   for (const std::string& word : structure) {
     names["landmark"]["nouns"]["object"].push_back(word);
