@@ -48,6 +48,19 @@ TEST(Conversation, ObjectsAreForTheOtherLayer) {
   EXPECT_TRUE(contains(asked.replyText(), "corridor")) << asked.replyText();
 }
 
+TEST(Conversation, TalkOfAThingGoesOnInTheLayerOfObjects) {
+  ExampleTalk example;
+  example.talk.confirmNames("CC11", {"corridor"});
+  const auto say = [&](const std::string& text) { return example.talk.say(text).replyText(); };
+  say("The coat is on the chair.");
+  EXPECT_TRUE(contains(say("No, on the hook."), "on the hook"));
+  EXPECT_TRUE(contains(say("Where's the coat now?"), "on the hook"));
+  EXPECT_TRUE(contains(say("It's gone."), "no longer on the hook"));
+  EXPECT_TRUE(
+      contains(say("Somebody moved the trolley, it's in the lab now."), "trolley is in the lab"));
+  EXPECT_TRUE(contains(say("Where does Anna sit?"), "Anna"));
+}
+
 TEST(Conversation, BothLayersAnswerOneText) {
   ExampleTalk example;
   const Exchange exchange =

@@ -111,6 +111,7 @@ void Dialogue::say(const char* key, Turn& turn) {
 }
 
 bool Dialogue::isAboutObject(const Utterance& u) const {
+  if (u.intent == "gone") return isOfReferences(u);  // "It's gone."
   if (u.intent != "contains") return false;
   const std::vector<std::string> known = knownNames();
   const std::vector<SaidName> names = u.names("places");
@@ -219,7 +220,17 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     return;
   }
   if (isAnswer(u)) {
-    if (!turn.says_more) meetAnswer(u, turn);
+    if (turn.says_more) return;
+    // "No, on the hook.", of the coat that was spoken of.
+    const bool corrects = !u.left_out.empty() && !turn.answered && options.objects_spoken_of;
+    if (corrects && options.forward_unknown) {
+      ForwardedSentence whole;
+      whole.text = turn.text;
+      turn.reply.forwarded.push_back(std::move(whole));
+      turn.answered = true;
+      return;
+    }
+    meetAnswer(u, turn);
     return;
   }
   if (u.intent == "undo" && !turn.described && takeNameBack(turn)) {

@@ -124,6 +124,7 @@ void Dialogue::answerPersonPlace(const Utterance& u, Turn& turn) {
     answerWhereIs(where, turn);
     return;
   }
+  turn.reply.unknown_name = true;  // of a thing: another node may know it
   turn.reply.sentences.push_back(phrases().say("person_unknown", {{"name", said.front().text}}));
 }
 
