@@ -222,7 +222,7 @@ bool FillMap::resolveOnes(ObjectStatement* statement) const {
     if (!phrase.one) return true;
     if (kind.empty()) return false;
     // "a vermelha" is no cup
-    if (!phrase.form.empty() && parser_.formOf(language_, kind) != phrase.form) return false;
+    if (!phrase.form.empty() && !parser_.mayHaveForm(language_, kind, phrase.form)) return false;
     phrase.kind = kind;
     return true;
   };

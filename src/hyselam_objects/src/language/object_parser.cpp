@@ -135,6 +135,15 @@ std::string ObjectParser::formOf(const std::string& language, const std::string&
   return words_[indexOf(language)]->formOf(kind);
 }
 
+bool ObjectParser::mayHaveForm(const std::string& language, const std::string& kind,
+                               const std::string& form) const {
+  const ObjectWords& words = *words_[indexOf(language)];
+  return words.formOf(kind) == form ||
+         std::any_of(words.synonyms.begin(), words.synonyms.end(), [&](const auto& each) {
+           return each.second == kind && words.formOf(each.first) == form;
+         });
+}
+
 std::string ObjectParser::pluralOf(const std::string& language, const std::string& kind) const {
   return words_[indexOf(language)]->pluralOf(kind);
 }

@@ -115,6 +115,9 @@ class ObjectParser {
   /// Which forms of words go with a kind: "m", "f" in Portuguese, "vowel" for "an" in English, or
   /// "".
   std::string formOf(const std::string& language, const std::string& kind) const;
+  /// Whether a word for a kind has these forms: "a caneca" is kept as "copo".
+  bool mayHaveForm(const std::string& language, const std::string& kind,
+                   const std::string& form) const;
   /// "cups".
   std::string pluralOf(const std::string& language, const std::string& kind) const;
   /// The word for a small number: "two", "duas"; digits for others.
