@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "grammar/compiled_grammar.hpp"
+#include "hyselam_common/utf8.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -21,6 +22,17 @@ std::string keyOf(const ReadFact& fact) {
          fact.relation + asked + "_" + std::to_string(names);
 }
 
+/// "the little one", "the second": which place that is was said elsewhere.
+bool endsWithKeyword(const Grammar& grammar, const std::string& name) {
+  const language::CompiledGrammar& compiled = grammar.compiled();
+  const std::string last = hyselam::utf8Fold(name.substr(name.rfind(' ') + 1));
+  const language::NameType* type = compiled.nameType("place");
+  const bool generic = type != nullptr && type->generic.count(last) != 0;
+  const bool keyword = compiled.known_words.count(last) != 0 && !compiled.isNounOrTitle(last) &&
+                       compiled.number_words.count(last) == 0;
+  return name.find(' ') != std::string::npos && (keyword || (generic && !compiled.isNounOrTitle(last)));
+}
+
 }  // namespace
 
 FactWriter::FactWriter(const Grammar& grammar) : grammar_(grammar), writer_(grammar) {}
@@ -33,7 +45,7 @@ SaidValue FactWriter::valueOf(const std::string& key, const FactArgument& argume
   const std::string& name = argument.text;
   const bool plain =
       anyType([&](const auto& type) { return grammar_.isPlainName(name, type.name); });
-  if (!plain) return {key, "", false, false};
+  if (!plain || endsWithKeyword(grammar_, name)) return {key, "", false, false};
   SaidValue value{key, name, false, true};
   if (grammar_.isPlainName(name)) value = writer_.named(key, name);
   if (value.text != name) return value;
