@@ -226,9 +226,9 @@ TEST(SecondReading, NeverProposesWhatIsDoubted) {
 
 TEST(SecondReading, LeavesOutTalkBesideTheMatter) {
   const ParsedText parsed =
-      parser().parse("What a mess we had there earlier. The exam hall isn't opposite the library.");
+      parser().parse("The exam hall is opposite the library, what a laugh that is.");
   ASSERT_EQ(parsed.utterances.size(), 1u);
-  EXPECT_EQ(parsed.utterances[0].left_out, Facts{"What a mess we had there earlier."});
+  EXPECT_EQ(parsed.utterances[0].left_out, Facts{"what a laugh that is"});
   // What may be a fact stays refused.
   const ParsedText fact =
       parser().parse("The lab is next to the library. The zibbs grollt the vault.");
