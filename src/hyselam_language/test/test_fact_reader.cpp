@@ -108,18 +108,23 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
 /// Sentences of the tests' own; what a training yields may miss some of them.
 TEST(FactReader, ReadsMostOfWhatItWasNotTrainedWith) {
   const std::vector<std::array<std::string, 3>> said{
-      {"en", "well you see the spice store is right beside the tailor's workshop you know", "next | spice store | tailor's workshop"},
+      {"en", "well you see the spice store is right beside the tailor's workshop you know",
+       "next | spice store | tailor's workshop"},
       {"en", "And on your left there'd be the harp room.", "left | harp room"},
       {"en", "The map room isn't opposite the vault anymore", "not opposite | map room | vault"},
-      {"en", "You'll find the saddlery between the forge and the barn, I should say.", "between | saddlery | forge | barn"},
+      {"en", "You'll find the saddlery between the forge and the barn, I should say.",
+       "between | saddlery | forge | barn"},
       {"en", "so right now you're standing in the tasting room", "at | tasting room"},
       {"en", "they say the ladder's behind the kiln", "behind | ladder | kiln"},
-      {"en", "the silver spoons are lying on the sideboard as far as I can see", "on | silver spoons | sideboard"},
+      {"en", "the silver spoons are lying on the sideboard as far as I can see",
+       "on | silver spoons | sideboard"},
       {"en", "can you tell me where the brass lamp is?", "ask_where | brass lamp"},
-      {"pt", "pois olhe, a sala das harpas fica mesmo ao lado do cofre, sabe", "next | sala das harpas | cofre"},
+      {"pt", "pois olhe, a sala das harpas fica mesmo ao lado do cofre, sabe",
+       "next | sala das harpas | cofre"},
       {"pt", "agora estás na oficina do ferreiro", "at | oficina do ferreiro"},
       {"pt", "a estufa é lá no fim do corredor comprido", "end | estufa | corredor comprido"},
-      {"pt", "as colheres de prata estão em cima do aparador", "on | colheres de prata | aparador"}};
+      {"pt", "as colheres de prata estão em cima do aparador",
+       "on | colheres de prata | aparador"}};
   std::size_t right = 0;
   for (const auto& [language, text, fact] : said) {
     const bool is_right = factsOf(language, text) == Facts{fact};

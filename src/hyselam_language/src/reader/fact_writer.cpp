@@ -30,7 +30,8 @@ bool endsWithKeyword(const Grammar& grammar, const std::string& name) {
   const bool generic = type != nullptr && type->generic.count(last) != 0;
   const bool keyword = compiled.known_words.count(last) != 0 && !compiled.isNounOrTitle(last) &&
                        compiled.number_words.count(last) == 0;
-  return name.find(' ') != std::string::npos && (keyword || (generic && !compiled.isNounOrTitle(last)));
+  return name.find(' ') != std::string::npos &&
+         (keyword || (generic && !compiled.isNounOrTitle(last)));
 }
 
 }  // namespace
