@@ -86,10 +86,21 @@ void grammar(const std::uint8_t* data, std::size_t size) {
   for (const Utterance& said : parser.parse(text).utterances) checkUtterance(said, text.size());
 }
 
+/// A model of the second reader: refused, or good to read with.
+void readerModel(const std::uint8_t* data, std::size_t size) {
+  static const Grammar kGrammar = Grammar::shipped("en");
+  try {
+    const FactReader reader(kGrammar, "fuzz", textOf(data, size));
+    const Reading reading = reader.read("The cup is next to the lab, isn't it? Mary's is on the left.");
+    require(reading.probability >= 0.0 && reading.probability <= 1.0);
+  } catch (const hyselam::InputError&) {
+  }
+}
+
 }  // namespace
 }  // namespace hyselam_topo
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace hyselam_topo;  // NOLINT: its own targets
-  return {{"parser", parser}, {"descriptionXml", descriptionXml}, {"grammar", grammar}};
+  return {{"parser", parser}, {"descriptionXml", descriptionXml}, {"grammar", grammar}, {"readerModel", readerModel}};
 }
