@@ -15,6 +15,7 @@ namespace {
 /// A question that is answered with "no" more often costs more than it brings.
 constexpr double kLeastProbability = 0.5;  // of a fact
 constexpr double kComplete = 0.6;          // of a reading, that it misses nothing
+constexpr std::size_t kShortestTalk = 3;   // words: a single one may be a name
 constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more
 
 bool hasName(const std::vector<Utterance>& said, const std::string& name) {
@@ -115,7 +116,7 @@ bool isBesideTheMatter(const Utterance& utterance, const Reading& reading,
     return false;
   }
   const std::vector<std::string> words = wordsOf(utterance.text, grammar);
-  return !hasAny(words, grammar.placing_words) &&
+  return words.size() >= kShortestTalk && !hasAny(words, grammar.placing_words) &&
          (reading.probability >= kComplete || !hasAny(words, grammar.telling_words));
 }
 

@@ -101,7 +101,8 @@ json understood(const Utterance& utterance) {
           {"intent", utterance.intent},
           {"correction", utterance.correction},
           {"slots", slots},
-          {"spelling", spelling}};
+          {"spelling", spelling},
+          {"left_out", utterance.left_out}};
 }
 
 json notUnderstood(const Utterance& utterance) {
@@ -205,9 +206,11 @@ json run(const Options& o) {
   std::cout << parsed.language << ": " << building.places.size() << " places, "
             << building.connections.size() << " connections, " << building.relations.size()
             << " relations -> " << o.out << '\n';
-  for (const Utterance& utterance : parsed.utterances)
-    if (!utterance.understood())
-      std::cout << "not understood: " << utterance.text << " (" << utterance.reason << ")\n";
+  for (const Utterance& utterance : parsed.utterances) {
+    for (const std::string& words : utterance.left_out) std::cout << "left out: " << words << '\n';
+    if (utterance.understood()) continue;
+    std::cout << "not understood: " << utterance.text << " (" << utterance.reason << ")\n";
+  }
   for (const DescriptionIssue& issue : issues) {
     const bool notice = issue.kind == hyselam_topo::IssueKind::kNotice;
     std::cout << (notice ? "noted: " : "not taken down: ") << issue.text << " (" << issue.reason
