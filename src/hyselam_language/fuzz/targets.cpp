@@ -91,7 +91,8 @@ void readerModel(const std::uint8_t* data, std::size_t size) {
   static const Grammar kGrammar = Grammar::shipped("en");
   try {
     const FactReader reader(kGrammar, "fuzz", textOf(data, size));
-    const Reading reading = reader.read("The cup is next to the lab, isn't it? Mary's is on the left.");
+    const Reading reading =
+        reader.read("The cup is next to the lab, isn't it? Mary's is on the left.");
     require(reading.probability >= 0.0 && reading.probability <= 1.0);
   } catch (const hyselam::InputError&) {
   }
@@ -102,5 +103,8 @@ void readerModel(const std::uint8_t* data, std::size_t size) {
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace hyselam_topo;  // NOLINT: its own targets
-  return {{"parser", parser}, {"descriptionXml", descriptionXml}, {"grammar", grammar}, {"readerModel", readerModel}};
+  return {{"parser", parser},
+          {"descriptionXml", descriptionXml},
+          {"grammar", grammar},
+          {"readerModel", readerModel}};
 }
