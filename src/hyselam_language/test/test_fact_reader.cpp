@@ -229,6 +229,17 @@ TEST(SecondReading, NeverProposesWhatIsDoubted) {
   }
 }
 
+/// What lies there is a thing that the parser of places knows nothing of; not the robot.
+TEST(SecondReading, NeverTakesAThingsPlaceForTheRobots) {
+  for (const char* text : {"A pasta azul é da dona Rute e está na tesouraria.",
+                           "Betoneira já não está no armazém, foi para arranjar.",
+                           "O carrinho é meu, e tá na lavandaria, encostado ao muro."}) {
+    for (const Utterance& each : parser().parse(text).utterances) {
+      EXPECT_NE(each.intent, "robot_in") << text;
+    }
+  }
+}
+
 TEST(SecondReading, LeavesOutTalkBesideTheMatter) {
   const ParsedText parsed =
       parser().parse("The exam hall is opposite the library, what a laugh that is.");

@@ -269,6 +269,22 @@ void propose(const SentenceWords& words, Utterance* refused) {
 
 namespace {
 
+/// "A pasta é da Rute e está na tesouraria": behind words that were not understood, nobody knows
+/// what is there; it need not be the robot.
+void refuseStrayPlaces(const CompiledGrammar& grammar, std::vector<Utterance>* parts) {
+  for (std::size_t i = 0; i < parts->size(); ++i) {
+    Utterance& part = (*parts)[i];
+    const bool stray = (i > 0 && !(*parts)[i - 1].understood()) || !part.left_out.empty();
+    if (!stray || part.intent != "robot_in") continue;
+    Utterance refused;
+    refused.text = part.text;
+    refused.range = refused.culprit = part.range;
+    refused.reason_code = "whose_place";
+    refused.reason = grammar.reason(refused.reason_code);
+    part = std::move(refused);
+  }
+}
+
 std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::string& text,
                                   const Sentence& sentence, const std::vector<Token>& tokens,
                                   const std::set<std::string>& expected) {
@@ -302,6 +318,7 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
       const Sentence part{{of.front().range.begin, of.back().range.end}, false};
       return SentenceReader(grammar, text, part, std::move(of), expected, false).read();
     });
+    refuseStrayPlaces(grammar, &parts);
     for (Utterance& part : parts) {
       if (part.understood()) continue;
       const Sentence alone{part.range, false};
