@@ -28,10 +28,10 @@ bool endsWithKeyword(const Grammar& grammar, const std::string& name) {
   const std::string last = hyselam::utf8Fold(name.substr(name.rfind(' ') + 1));
   const language::NameType* type = compiled.nameType("place");
   const bool generic = type != nullptr && type->generic.count(last) != 0;
-  const bool keyword = compiled.known_words.count(last) != 0 && !compiled.isNounOrTitle(last) &&
-                       compiled.number_words.count(last) == 0;
-  return name.find(' ') != std::string::npos &&
-         (keyword || (generic && !compiled.isNounOrTitle(last)));
+  const bool keyword =
+      compiled.known_words.count(last) != 0 && compiled.number_words.count(last) == 0;
+  return name.find(' ') != std::string::npos && (keyword || generic) &&
+         !compiled.isNounOrTitle(last);
 }
 
 }  // namespace

@@ -39,6 +39,11 @@ std::string shapeOf(const HeardText& text, std::ptrdiff_t at) {
   return token.kind == TokenKind::kWord ? shape : token.kind == TokenKind::kNumber ? "0" : "-";
 }
 
+/// A noun, a keyword, or unknown.
+std::string kindOf(const HeardText& text, std::ptrdiff_t at) {
+  return text.isNoun(at) ? "n" : text.isKeyword(at) ? "k" : "u";
+}
+
 }  // namespace
 
 std::vector<std::string> tagsOf(const HeardText& text, const std::vector<Mention>& mentions) {
@@ -66,10 +71,7 @@ Features tokenFeatures(const HeardText& text, std::size_t token) {
   std::array<std::string, 5> kinds;
   for (std::ptrdiff_t i = -2; i <= 2; ++i) {
     auto& kind = kinds[static_cast<std::size_t>(i + 2)];
-    kind = std::string(text.isNoun(at + i)      ? "n"
-                       : text.isKeyword(at + i) ? "k"
-                                                : "u") +
-           shapeOf(text, at + i);
+    kind = kindOf(text, at + i) + shapeOf(text, at + i);
     add(kKindsOf[static_cast<std::size_t>(i + 2)], kind);
   }
   add("w-1w", text.word(at - 1) + "_" + text.word(at));
@@ -88,21 +90,14 @@ Features tokenFeatures(const HeardText& text, std::size_t token) {
   return features;
 }
 
-Features tokenFeatures(const HeardText& text, std::size_t at, const std::string& tag_before) {
-  Features features = tokenFeatures(text, at);
-  const auto i = static_cast<std::ptrdiff_t>(at);
-  features.push_back("t-1=" + tag_before);
-  features.push_back("t-1w=" + tag_before + "_" + text.word(i));
-  features.push_back("t-1w-1=" + tag_before + "_" + text.word(i - 1));
-  features.push_back("t-1k=" + tag_before + "_" +
-                     (text.isNoun(i)      ? "n"
-                      : text.isKeyword(i) ? "k"
-                                          : "u") +
-                     shapeOf(text, i) +
-                     (text.isNoun(i + 1)      ? "n"
-                      : text.isKeyword(i + 1) ? "k"
-                                              : "u"));
-  return features;
+void addTagBefore(const HeardText& text, std::size_t token, const std::string& tag,
+                  Features* features) {
+  const auto at = static_cast<std::ptrdiff_t>(token);
+  features->push_back("t-1=" + tag);
+  features->push_back("t-1w=" + tag + "_" + text.word(at));
+  features->push_back("t-1w-1=" + tag + "_" + text.word(at - 1));
+  features->push_back("t-1k=" + tag + "_" + kindOf(text, at) + shapeOf(text, at) +
+                      kindOf(text, at + 1));
 }
 
 double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at) {
@@ -127,11 +122,14 @@ std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardTex
   };
   std::vector<std::vector<Cell>> cells(count, std::vector<Cell>(kinds));
   for (std::size_t at = 0; at < count; ++at) {
+    const Features own = tokenFeatures(text, at);
     for (std::size_t before = 0; before < kinds; ++before) {
       const double so_far =
           at == 0 ? (before == outside ? 0.0 : kNever) : cells[at - 1][before].best;
       if (so_far == kNever) continue;
-      const auto p = tagger.probabilities(tokenFeatures(text, at, tags[before]));
+      Features features = own;
+      addTagBefore(text, at, tags[before], &features);
+      const auto p = tagger.probabilities(features);
       for (std::size_t tag = 0; tag < kinds; ++tag) {
         if ((text.endsSentence(at) && tag != outside) || !mayFollow(tags[before], tags[tag]))
           continue;

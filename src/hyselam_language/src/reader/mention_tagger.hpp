@@ -15,8 +15,9 @@ std::vector<std::string> tagsOf(const HeardText& text, const std::vector<Mention
 
 /// What the word at that place looks like to the tagger.
 Features tokenFeatures(const HeardText& text, std::size_t at);
-/// The same behind a word of that tag.
-Features tokenFeatures(const HeardText& text, std::size_t at, const std::string& tag_before);
+/// What it looks like besides, behind a word of that tag.
+void addTagBefore(const HeardText& text, std::size_t at, const std::string& tag,
+                  Features* features);
 
 /// That the word belongs to a mention.
 double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at);

@@ -46,8 +46,10 @@ void addExamples(const CompiledGrammar& grammar, const ReaderLexicon& lexicon,
   const GoldText gold = alignedWith(text, annotated);
   const auto tags = tagsOf(text, gold.mentions);
   for (std::size_t at = 0; at < tags.size(); ++at) {
-    if (!text.endsSentence(at))
-      tagger.add(tokenFeatures(text, at, at == 0 ? "O" : tags[at - 1]), tags[at]);
+    if (text.endsSentence(at)) continue;
+    Features features = tokenFeatures(text, at);
+    addTagBefore(text, at, at == 0 ? "O" : tags[at - 1], &features);
+    tagger.add(features, tags[at]);
   }
   const MentionContext context(lexicon, text, gold.mentions);
   std::string whole = kNoFact;

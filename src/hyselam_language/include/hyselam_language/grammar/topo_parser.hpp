@@ -43,7 +43,8 @@ class TopoParser {
   explicit TopoParser(std::vector<Grammar> grammars);
 
   /// Never throws for the content of a text: if it is not UTF-8, too long or not understood, the
-  /// result is an utterance with the reason. A sentence is understood as a whole or not at all.
+  /// result is an utterance with the reason. Clear parts of a sentence are utterances of their own
+  /// beside those that were not understood, never across doubt, choice or condition.
   /// Throws hyselam::ParameterError for an unknown language.
   ParsedText parse(const std::string& text, const ParseOptions& options = {}) const;
 
