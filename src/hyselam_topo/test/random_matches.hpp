@@ -295,6 +295,16 @@ inline void addWords(std::uint64_t seed, Instance* instance) {
     if (r.kind == RelationKind::kAtSide) r.side = static_cast<Side>(dice.whole(1, 4));
     building.relations.push_back(r);
   }
+  // Told from here and there, looking this way and that.
+  const auto view = [&dice] {
+    return hyselam::Pose2{dice.real(0, 12), dice.real(0, 12), dice.real(-3.1, 3.1)};
+  };
+  if (dice.chance(0.4)) {
+    for (DescribedConnection& c : building.connections)
+      if (dice.chance(0.6)) c.seen_from = view();
+    for (DescribedRelation& r : building.relations)
+      if (dice.chance(0.6)) r.seen_from = view();
+  }
   if (dice.chance(0.5))
     instance->observer.position = hyselam::Point2{dice.real(0, 12), dice.real(0, 12)};
 }

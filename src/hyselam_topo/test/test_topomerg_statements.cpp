@@ -192,6 +192,21 @@ TEST(TopoMergNumbers, DoorsAreCountedFromTheRobotOn) {
   EXPECT_EQ(5u, c.placeOf(2));
 }
 
+TEST(TopoMergNumbers, EachIsCountedFromWhereItWasTold) {
+  Corridor c;
+  c.observer.heading = kPi;  // of the last one; the first has a view of its own
+  c.add(2, Side::kLeft).rank = 2;
+  c.building.connections.back().seen_from = hyselam::Pose2{0.0, 0.0, 0.0};
+  c.add(3, Side::kRight).rank = 1;
+  c.building.connections.back().seen_from = hyselam::Pose2{11.5, 0.0, kPi};
+  EXPECT_EQ(3u, c.placeOf(2));
+  EXPECT_EQ(4u, c.placeOf(3)) << "looking back the left wall is on the right";
+  EXPECT_TRUE(lookAlike(hyselam::Pose2{0, 0, 3.0}, hyselam::Pose2{9, 0, -3.0}));
+  EXPECT_FALSE(lookAlike(hyselam::Pose2{0, 0, 0.0}, hyselam::Pose2{0, 0, 0.9}));
+  EXPECT_FALSE(areSameView(hyselam::Pose2{0, 0, 0}, hyselam::Pose2{2, 0, 0}));
+  EXPECT_TRUE(areSameView(std::nullopt, hyselam::Pose2{2, 0, 0}));
+}
+
 TEST(TopoMergNumbers, TheirOrderOfTellingMeansNothing) {
   Corridor c;
   c.add(2, Side::kLeft, 0).rank = 4;

@@ -22,9 +22,19 @@ constexpr std::array<const char*, 2> kSizeWords{"small", "large"};
 /// People count doors, and storeys, no further.
 constexpr int kMaxRank = 1000;
 constexpr double kMaxDistance = 10000.0;  // [m]
+/// What is on the left there is not on the left here.
+constexpr double kOtherView = 0.25 * hyselam::kPi;
+constexpr double kOtherStand = 1.5;  // [m]
 
 /// More than anybody tells of one side; a file can carry it as a whole number.
 constexpr std::size_t kMaxOrder = 1000000;
+
+using hyselam::Pose2;
+
+bool areEqual(const std::optional<Pose2>& a, const std::optional<Pose2>& b) {
+  if (!a || !b) return !a && !b;
+  return a->x == b->x && a->y == b->y && a->theta == b->theta;
+}
 
 template <typename Enum, std::size_t N>
 std::optional<Enum> numberOf(const std::array<const char*, N>& names, const std::string& text) {
@@ -71,6 +81,14 @@ const DescribedPlace* DescribedBuilding::findPlace(Id id) const {
   return const_cast<DescribedBuilding*>(this)->findPlace(id);
 }
 
+bool lookAlike(const std::optional<Pose2>& a, const std::optional<Pose2>& b) {
+  return !a || !b || std::abs(hyselam::normalizeAngle(a->theta - b->theta)) < kOtherView;
+}
+
+bool areSameView(const std::optional<Pose2>& a, const std::optional<Pose2>& b) {
+  return lookAlike(a, b) && (!a || !b || hyselam::distance(*a, *b) < kOtherStand);
+}
+
 bool operator==(const DescribedPlace& a, const DescribedPlace& b) {
   const auto all = [](const DescribedPlace& p) {
     return std::tie(p.id, p.name, p.aliases, p.kind, p.length, p.width, p.area, p.parts,
@@ -83,14 +101,14 @@ bool operator==(const DescribedConnection& a, const DescribedConnection& b) {
   const auto all = [](const DescribedConnection& c) {
     return std::tie(c.from, c.to, c.side, c.order, c.rank, c.distance);
   };
-  return all(a) == all(b);
+  return all(a) == all(b) && areEqual(a.seen_from, b.seen_from);
 }
 
 bool operator==(const DescribedRelation& a, const DescribedRelation& b) {
   const auto all = [](const DescribedRelation& r) {
     return std::tie(r.kind, r.a, r.b, r.c, r.side, r.denied);
   };
-  return all(a) == all(b);
+  return all(a) == all(b) && areEqual(a.seen_from, b.seen_from);
 }
 
 bool operator==(const DescribedBuilding& a, const DescribedBuilding& b) {
@@ -138,6 +156,8 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     const auto& distance = connection.distance;
     require(!distance || (*distance >= 0.0 && *distance <= kMaxDistance),
             "a connection is at no such distance");
+    require(!connection.seen_from || connection.seen_from->isFinite(),
+            "a connection was seen from nowhere");
     require(joined.insert(std::minmax(connection.from, connection.to)).second,
             "places " + std::to_string(connection.from) + " and " + std::to_string(connection.to) +
                 " are connected twice");
@@ -153,6 +173,8 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     require(at_side == (relation.side != Side::kUnknown), "a relation has a side, or lacks it");
     const bool only_denied = at_side || relation.kind == RelationKind::kJoined;
     require(!only_denied || relation.denied, "such a relation is only denied");
+    require(!relation.seen_from || relation.seen_from->isFinite(),
+            "a relation was seen from nowhere");
     require(relation.a != relation.b && relation.a != relation.c && relation.b != relation.c,
             "a relation names a place twice");
   }

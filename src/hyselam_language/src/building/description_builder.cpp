@@ -118,9 +118,10 @@ std::vector<DescriptionIssue> DescriptionBuilder::add(const Utterance& u) {
 
 std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
   const DescriptionState before = state_;
-  const Listener listener{names_,    grammars_[language_],
-                          params_,   speaker_,
-                          accepted_, history_.empty() ? nullptr : &history_.back().before.building};
+  const DescribedBuilding* before_last =
+      history_.empty() ? nullptr : &history_.back().before.building;
+  const Listener listener{names_,    grammars_[language_], params_,    speaker_,
+                          accepted_, viewpoint_,           before_last};
   state_.context.after_refusal = false;
   Statement statement(u, listener, &state_);
   try {
@@ -255,6 +256,23 @@ void DescriptionBuilder::setRobotPlace(const std::string& name) {
   state_.building.robot_place = id;
   state_.context.subjects = {id};
   rememberKind(name, names_, grammars_[language_], &state_.context);
+}
+
+void DescriptionBuilder::giveName(const std::string& made_up, const std::string& name) {
+  const std::vector<Id> from = find(made_up), to = find(name);
+  if (from.size() != 1 || to.size() > 1 || from == to) return;
+  DescribedBuilding& building = state_.building;
+  if (to.empty()) {
+    DescribedPlace& place = *building.findPlace(from.front());
+    place.name = name;
+    if (!place.kind) place.kind = names_.kindOf(name);
+  } else {
+    joinPlaces(from.front(), to.front(), &building);
+    for (Id& subject : state_.context.subjects) {
+      if (subject == from.front()) subject = to.front();
+    }
+  }
+  state_.context.variants.erase(from.front());
 }
 
 }  // namespace hyselam_topo

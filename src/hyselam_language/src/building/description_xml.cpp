@@ -42,6 +42,13 @@ class Writer {
     if (value) attribute(name, std::to_string(*value));
   }
 
+  void attribute(const std::optional<hyselam::Pose2>& seen_from) {
+    if (!seen_from) return;
+    attribute("seen_x", hyselam::formatNumber(seen_from->x));
+    attribute("seen_y", hyselam::formatNumber(seen_from->y));
+    attribute("seen_heading", hyselam::formatNumber(seen_from->theta));
+  }
+
   void write(const DescribedPlace& place) {
     out_.OpenElement("place");
     attribute("id", place.id);
@@ -70,6 +77,7 @@ class Writer {
     attribute("order", std::to_string(connection.order));
     attribute("rank", connection.rank);
     attribute("distance", connection.distance);
+    attribute(connection.seen_from);
     out_.CloseElement();
   }
 
@@ -81,6 +89,7 @@ class Writer {
     if (relation.c != 0) attribute("c", relation.c);
     if (relation.side != Side::kUnknown) attribute("side", toString(relation.side));
     if (relation.denied) attribute("denied", "true");
+    attribute(relation.seen_from);
     out_.CloseElement();
   }
 
@@ -124,6 +133,11 @@ DescribedPlace readPlace(hyselam::XmlElement& e) {
   return place;
 }
 
+std::optional<hyselam::Pose2> readView(hyselam::XmlElement& e) {
+  if (!e.has("seen_x") && !e.has("seen_y") && !e.has("seen_heading")) return std::nullopt;
+  return hyselam::Pose2{e.number("seen_x"), e.number("seen_y"), e.number("seen_heading")};
+}
+
 DescribedConnection readConnection(hyselam::XmlElement& e) {
   DescribedConnection connection;
   connection.from = e.id("from");
@@ -134,6 +148,7 @@ DescribedConnection readConnection(hyselam::XmlElement& e) {
   connection.order = static_cast<std::size_t>(order);
   connection.rank = count(e, "rank");
   if (e.has("distance")) connection.distance = e.number("distance");
+  connection.seen_from = readView(e);
   e.finish();
   return connection;
 }
@@ -150,6 +165,7 @@ DescribedRelation readRelation(hyselam::XmlElement& e) {
     relation.side = oneOf(e, "side", sideOf, "unknown, front, left, back or right");
   }
   if (e.has("denied")) relation.denied = e.text("denied") == "true";
+  relation.seen_from = readView(e);
   e.finish();
   return relation;
 }

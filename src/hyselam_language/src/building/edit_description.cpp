@@ -56,6 +56,32 @@ void removePlace(Id place, DescribedBuilding* building) {
   if (building->robot_place == place) building->robot_place.reset();
 }
 
+void joinPlaces(Id gone, Id stays, DescribedBuilding* building) {
+  for (DescribedConnection each : std::vector<DescribedConnection>(building->connections)) {
+    if (each.from != gone && each.to != gone) continue;
+    removeConnection(each, building);
+    (each.from == gone ? each.from : each.to) = stays;
+    if (each.from == each.to || findConnection(*building, each.from, each.to) != nullptr) continue;
+    each.order = 0;
+    for (const DescribedConnection& other : building->connections) {
+      const bool same_row = other.from == each.from && other.side == each.side;
+      if (same_row) each.order = std::max(each.order, other.order + 1);
+    }
+    building->connections.push_back(each);
+  }
+  auto& relations = building->relations;
+  for (DescribedRelation& each : relations) {
+    for (Id* id : {&each.a, &each.b, &each.c}) {
+      if (*id == gone) *id = stays;
+    }
+  }
+  eraseIf(&relations, [](const DescribedRelation& each) {
+    return each.a == each.b || each.a == each.c || each.b == each.c;
+  });
+  if (building->robot_place == gone) building->robot_place = stays;
+  removePlace(gone, building);
+}
+
 std::string shown(double value) {
   return hyselam::formatNumber(std::round(value * 1000.0) / 1000.0);
 }

@@ -21,6 +21,10 @@ void removeConnection(const DescribedConnection& connection, DescribedBuilding* 
 /// With its connections and relations; the robot is nowhere if it was there.
 void removePlace(Id place, DescribedBuilding* building);
 
+/// All that was told of one place is of another, and the one is gone. What the other is told
+/// already stays.
+void joinPlaces(Id gone, Id stays, DescribedBuilding* building);
+
 /// A number as people are told it back.
 std::string shown(double value);
 

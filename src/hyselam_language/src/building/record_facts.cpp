@@ -69,6 +69,8 @@ void insertConnection(Statement& s, const Placement& p, std::size_t wanted) {
   made.side = p.side;
   made.rank = p.rank;
   made.distance = p.distance;
+  const bool seen = p.side != Side::kUnknown || p.distance;
+  if (seen) made.seen_from = s.listener().viewpoint;
   for (const DescribedConnection& other : all) {
     const bool same_row = other.from == p.from && other.side == p.side;
     if (same_row && other.to == p.behind) wanted = other.order + 1;
@@ -96,8 +98,8 @@ void checkDenied(Statement& s, const DescribedRelation& fact) {
 void checkRank(Statement& s, const Placement& p, std::size_t* wanted) {
   if (!p.rank) return;
   for (DescribedConnection& other : s.building().connections) {
-    const bool taken =
-        other.from == p.from && other.side == p.side && other.to != p.to && other.rank == p.rank;
+    const bool taken = other.from == p.from && other.side == p.side && other.to != p.to &&
+                       other.rank == p.rank && areSameView(other.seen_from, s.listener().viewpoint);
     if (!taken) continue;
     s.replaces("rank_taken", {{"rank", std::to_string(*p.rank)},
                               {"side", sideWords(s, p.side)},
@@ -183,9 +185,15 @@ void recordConnection(Statement& s, const Placement& placement) {
   std::size_t wanted = kBehindAll;
   if (found != nullptr) {
     const DescribedConnection known = *found;
-    if (isSettled(s, known, p)) return;
-    mergeInto(s, known, &p);
-    const bool stays = known.from == p.from && known.side == p.side;
+    // Seen from elsewhere it may well be on another side, and another number.
+    const bool seen_anew = p.side != Side::kUnknown && known.side != Side::kUnknown &&
+                           known.from == p.from &&
+                           !areSameView(known.seen_from, s.listener().viewpoint);
+    if (!seen_anew) {
+      if (isSettled(s, known, p)) return;
+      mergeInto(s, known, &p);
+    }
+    const bool stays = known.from == p.from && known.side == p.side && !seen_anew;
     if (stays && known.rank == p.rank && known.distance == p.distance && p.behind == 0) return;
     if (stays) wanted = known.order;
     checkRank(s, p, &wanted);
@@ -197,7 +205,7 @@ void recordConnection(Statement& s, const Placement& placement) {
 }
 
 void recordRelation(Statement& s, const DescribedRelation& relation) {
-  const auto& [kind, a, b, c, side, denied] = relation;
+  const auto& [kind, a, b, c, side, denied, seen_from] = relation;
   if (a == b || a == c || b == c) s.fail(IssueKind::kMeaningless, "twice");
   checkDenied(s, relation);
   auto& all = s.building().relations;
@@ -237,6 +245,8 @@ void recordRelation(Statement& s, const DescribedRelation& relation) {
     }
   }
   all.push_back(relation);
+  const bool seen = kind == RelationKind::kAfter || kind == RelationKind::kBehind;
+  if (seen) all.back().seen_from = s.listener().viewpoint;
 }
 
 void recordDenial(Statement& s, DescribedRelation denial) {
@@ -263,7 +273,9 @@ void recordDenial(Statement& s, DescribedRelation denial) {
       removeConnection(*found, &s.building());
     }
   }
-  if (!is_known) all.push_back(denial);
+  if (is_known) return;
+  all.push_back(denial);
+  if (denial.kind == RelationKind::kAtSide) all.back().seen_from = s.listener().viewpoint;
 }
 
 void recordNext(Statement& s, Id place, Id last, Id robot) {

@@ -18,6 +18,7 @@ struct Listener {
   const DescriptionParams& params;
   const std::string& speaker;
   const std::set<std::string>& accepted;
+  const std::optional<hyselam::Pose2>& viewpoint;  ///< as DescriptionBuilder::setViewpoint()
   /// The description before the last statement; nullptr without one.
   const DescribedBuilding* before_last = nullptr;
 };

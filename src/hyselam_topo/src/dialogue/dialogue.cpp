@@ -187,7 +187,7 @@ std::vector<std::string> Dialogue::knownNames() const {
     for (const PlaceTerm& word : place.words) all.insert(word.text);
   }
   for (const DescribedPlace& place : builder_.building().places) {
-    all.insert(place.name);
+    if (!isCode(place.name)) all.insert(place.name);
     all.insert(place.aliases.begin(), place.aliases.end());
   }
   return {all.begin(), all.end()};
@@ -208,7 +208,7 @@ std::optional<std::pair<Id, PlacePose>> Dialogue::poseOf(const std::string& name
 }
 
 DialogueState Dialogue::state() const {
-  return {language_, places_.state(), builder_.building(), heading_, position_};
+  return {language_, places_.state(), builder_.building(), heading_, position_, told_at_};
 }
 
 void Dialogue::restore(DialogueState state) {
@@ -223,6 +223,7 @@ void Dialogue::restore(DialogueState state) {
   language_ = state.language;
   heading_ = state.heading;
   position_ = state.position;
+  told_at_ = places_.map().findPlace(state.told_at) == nullptr ? 0 : state.told_at;
   questions_.drop();
   asked_ = 0;
   subject_ = 0;

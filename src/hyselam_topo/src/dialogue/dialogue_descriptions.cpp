@@ -1,5 +1,6 @@
 // Descriptions of the building: recorded, matched with the map, the result reported.
 #include <algorithm>
+#include <set>
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
@@ -16,6 +17,16 @@ bool saysMy(const Utterance& u) {
   return std::any_of(u.slots.begin(), u.slots.end(), [](const Slot& slot) {
     return std::any_of(slot.names.begin(), slot.names.end(),
                        [](const SaidName& name) { return name.speaker; });
+  });
+}
+
+/// "On your left", "the second door", "here": means something only where the robot is.
+bool isSeenFromRobot(const Utterance& u) {
+  return std::any_of(u.slots.begin(), u.slots.end(), [](const Slot& slot) {
+    static const std::set<std::string> kSeen{"side", "nth", "distance", "steps"};
+    return kSeen.count(slot.name) != 0 ||
+           std::any_of(slot.names.begin(), slot.names.end(),
+                       [](const SaidName& name) { return name.reference == "here"; });
   });
 }
 
@@ -39,10 +50,12 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
     turn.broken_off = true;
     return;
   }
+  if (u.intent != "robot_in") followRobot(isSeenFromRobot(u));
   const auto issues = builder_.add(u);
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
   turn.described = true;
   if (u.intent == "robot_in") {
+    told_at_ = robot().place;
     // Described from several places in thought, the first one is where the robot is.
     if (turn.here.empty()) {
       turn.here = textsOf(place);
@@ -58,6 +71,39 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   if (u.intent == "forget_place") {
     for (const std::string& name : textsOf(place)) places_.forgetName(name);
   }
+}
+
+bool Dialogue::isCode(const std::string& name) const {
+  const auto& all = places_.map().places;
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Place& place) { return places_.sameName(codeOf(place), name); });
+}
+
+void Dialogue::followRobot(bool also_unnamed) {
+  const bool can_look = robot().has_pose && !robot().in_doorway;
+  builder_.setViewpoint(robot().has_pose ? std::optional(robot().pose) : std::nullopt);
+  const Place* here = places_.map().findPlace(robot().place);
+  if (here == nullptr || !can_look) return;
+  // Told where it is and not moved since, it may be led about in thought.
+  const bool told = builder_.building().robot_place.has_value();
+  if (told && (told_at_ == 0 || told_at_ == here->id)) return;
+  std::vector<std::string> names;
+  if (nameStateOf(*here) == NameState::kConfirmed) names = namesOf(*here);
+  if (names.empty() && also_unnamed) names.push_back(codeOf(*here));
+  // One that was told of, best; else the first.
+  std::stable_partition(names.begin(), names.end(),
+                        [&](const std::string& name) { return builder_.find(name).size() == 1; });
+  const auto fits = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return builder_.find(name).size() < 2;
+  });
+  if (fits == names.end()) return;
+  builder_.setRobotPlace(*fits);
+  told_at_ = here->id;
+}
+
+void Dialogue::giveNames(Id place) {
+  const Place& named = *places_.map().findPlace(place);
+  builder_.giveName(codeOf(named), namesOf(named).front());
 }
 
 void Dialogue::readBack(const DescribedBuilding& before, bool here_told, Reply& out) {
@@ -120,6 +166,7 @@ void Dialogue::recordStatements(Turn& turn) {
     if (question().place == robot().place) questions_.drop();
     if (!named_otherwise && beyond_here) {
       places_.confirm(robot().place, here);
+      giveNames(robot().place);
     } else if (!named_otherwise) {
       confirmNames(robot().place, here, out);
     }
@@ -192,7 +239,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
         if (name < 0) continue;
         const DescribedPlace* place =
             building.findPlace(problem.names[static_cast<std::size_t>(name)]);
-        guesses.emplace_back(problem.vertices[v], allNamesOf(*place));
+        if (!isCode(place->name)) guesses.emplace_back(problem.vertices[v], allNamesOf(*place));
       }
       places_.guess(guesses);
       unsure_ = uncertaintyOf(*match_, problem, params_.match, building);
@@ -212,7 +259,10 @@ void Dialogue::reportMatch(Reply& out) const {
   const DescribedBuilding& building = builder_.building();
   std::vector<std::string> missing;
   std::size_t confirmed = 0;
+  std::size_t all = 0;
   for (const DescribedPlace& place : building.places) {
+    if (isCode(place.name)) continue;
+    ++all;
     const std::vector<Id> found = places_.find(place.name);
     if (found.empty()) {
       missing.push_back(place.name);
@@ -220,7 +270,6 @@ void Dialogue::reportMatch(Reply& out) const {
       ++confirmed;
     }
   }
-  const std::size_t all = building.places.size();
   out.sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));

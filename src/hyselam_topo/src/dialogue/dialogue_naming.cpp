@@ -42,7 +42,11 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
   if (question().place == place) questions_.drop();
   subject_ = place;
   // Sides are told from here.
-  if (place == robot().place) builder_.setRobotPlace(namesOf(named).front());
+  giveNames(place);
+  if (place == robot().place) {
+    builder_.setRobotPlace(namesOf(named).front());
+    told_at_ = place;
+  }
   matchDescription(out, false);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }

@@ -38,6 +38,7 @@ std::string toText(const DialogueState& state) {
       state.description.places.empty() ? "" : toXml(state.description, "description");
   if (state.heading) j["heading"] = *state.heading;
   if (state.position) j["position"] = {{"x", state.position->x}, {"y", state.position->y}};
+  if (state.told_at != 0) j["told_at"] = state.told_at;
   j["walls"] = json::array();
   for (const DescribedWall& wall : state.places.walls) {
     j["walls"].push_back({{"ax", wall.line.a.x},
@@ -90,6 +91,7 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
     if (j.contains("position"))
       state.position =
           hyselam::Point2{numberAt(j.at("position"), "x"), numberAt(j.at("position"), "y")};
+    if (j.contains("told_at")) state.told_at = hyselam::integerOf<Id>(j.at("told_at"));
     for (const json& w : j.at("walls")) {
       DescribedWall wall;
       wall.line = {{numberAt(w, "ax"), numberAt(w, "ay")}, {numberAt(w, "bx"), numberAt(w, "by")}};

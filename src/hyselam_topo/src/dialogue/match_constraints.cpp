@@ -14,8 +14,10 @@ MatchConstraints constraintsOf(const PlaceMan& places, const DescriptionBuilder&
     return found.size() == 1 ? found.front() : 0;
   };
   for (const Place& place : places.map().places) {
-    if (nameStateOf(place) != NameState::kConfirmed) continue;
-    Id id = 0;
+    // Told of under the map's own name for it.
+    Id id = described(codeOf(place));
+    if (id != 0) constraints.confirmed.emplace_back(place.id, id);
+    if (id != 0 || nameStateOf(place) != NameState::kConfirmed) continue;
     for (const std::string& name : namesOf(place)) {
       if (id == 0) id = described(name);
     }

@@ -126,16 +126,16 @@ double FitnessTerms::numberAt(const Clause& clause, const Passage& own, const Ve
   const int told = static_cast<int>(std::abs(clause.value));
   const hyselam::Point2 on = turned(own, *clause.turn);
   const auto ahead = [&](double x, double y) { return on.x * (x - own.x) + on.y * (y - own.y); };
-  const double robot = problem.position ? ahead(problem.position->x, problem.position->y) : 0.0;
-  if (problem.position && robot > kClearlyAhead) return 0.0;  // it lies behind the robot
+  const double robot = clause.position ? ahead(clause.position->x, clause.position->y) : 0.0;
+  if (clause.position && robot > kClearlyAhead) return 0.0;  // it lies behind the robot
   int doors = 0, perhaps = 0;
   const auto count = [&](const Passage& p, bool seen) {
     if (p.dx * own.dx + p.dy * own.dy < kParallel) return;
     const double at = ahead(p.x, p.y);
     if (far_end ? at <= kBeside : at >= -kBeside) return;
-    if (problem.position && at < robot - kClearlyAhead) return;
+    if (clause.position && at < robot - kClearlyAhead) return;
     // Beside the robot a door counts for some people and not for others.
-    const bool beside = problem.position && at < robot + kClearlyAhead;
+    const bool beside = clause.position && at < robot + kClearlyAhead;
     ++(seen && !beside ? doors : perhaps);
   };
   from.members.forEach([&](std::size_t v) {
@@ -173,11 +173,11 @@ double FitnessTerms::unseenNumberValue(const Clause& clause, const VertexSet& fr
 
 double FitnessTerms::distanceValue(const Clause& clause, const VertexSet& to,
                                    const VertexSet& from) const {
-  if (!problem.position) return 0.0;
+  if (!clause.position) return 0.0;
   const double error = kDistanceShare * clause.value + kDistanceError;
   double best = 0.0;
   forEachDoor(from.members, to.members, [&](const Passage& p) {
-    const double dx = p.x - problem.position->x, dy = p.y - problem.position->y;
+    const double dx = p.x - clause.position->x, dy = p.y - clause.position->y;
     double way = std::hypot(dx, dy);
     if (clause.turn) {
       const hyselam::Point2 on = turned(p, *clause.turn);
@@ -209,9 +209,9 @@ double FitnessTerms::relationValue(const Clause& clause, const VertexSet& a, con
                                 static_cast<double>(a.neighbors.size())
                           : 0.0;
     case RelationKind::kAfter:
-      return afterValue(a, b, c);
+      return afterValue(clause, a, b, c);
     case RelationKind::kBehind:
-      return behindValue(a, b);
+      return behindValue(clause, a, b);
     case RelationKind::kLarger:
     case RelationKind::kJoined:
     case RelationKind::kAtSide:
@@ -265,21 +265,23 @@ double FitnessTerms::endValue(const VertexSet& a, const VertexSet& b) const {
   return farthest > 0.0 ? distance(a, b) / farthest : 1.0;
 }
 
-double FitnessTerms::afterValue(const VertexSet& a, const VertexSet& b, const VertexSet* c) const {
+double FitnessTerms::afterValue(const Clause& clause, const VertexSet& a, const VertexSet& b,
+                                const VertexSet* c) const {
   const double near = nearValue(a, b);
-  if (c == nullptr && !problem.position) return near;
-  const double dx = b.x() - (c != nullptr ? c->x() : problem.position->x);
-  const double dy = b.y() - (c != nullptr ? c->y() : problem.position->y);
+  if (c == nullptr && !clause.position) return near;
+  const double dx = b.x() - (c != nullptr ? c->x() : clause.position->x);
+  const double dy = b.y() - (c != nullptr ? c->y() : clause.position->y);
   const double way = std::hypot(dx, dy);
   if (way < kBeside) return near;
   const double on = (dx * (a.x() - b.x()) + dy * (a.y() - b.y())) / way;
   return within(0.5 + 0.5 * on / kClearlyFarther) * (0.5 + 0.5 * near);
 }
 
-double FitnessTerms::behindValue(const VertexSet& a, const VertexSet& b) const {
+double FitnessTerms::behindValue(const Clause& clause, const VertexSet& a,
+                                 const VertexSet& b) const {
   const double near = nearValue(a, b);
-  if (!problem.position) return near;
-  const double angle = angleBetween(b.x() - problem.position->x, b.y() - problem.position->y,
+  if (!clause.position) return near;
+  const double angle = angleBetween(b.x() - clause.position->x, b.y() - clause.position->y,
                                     a.x() - b.x(), a.y() - b.y());
   return std::max(0.0, std::cos(angle)) * (0.5 + 0.5 * near);
 }

@@ -54,10 +54,11 @@ FitnessTerms::FitnessTerms(const MatchProblem& problem_in, const FitnessParams& 
 void FitnessTerms::listClauses(const FitnessParams& params) {
   using What = Clause::What;
   for (const MatchProblem::Relation& r : problem.relations)
-    clauses.push_back({What::kRelation, r.kind, r.a, r.b, r.c, r.denied, {}, 0.0, r.side_angle});
+    clauses.push_back(
+        {What::kRelation, r.kind, r.a, r.b, r.c, r.denied, {}, 0.0, r.side_angle, r.position});
   if (by_doors && params.orders > 0.0)
     for (const MatchProblem::DescribedOrder& o : problem.orders)
-      clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0, 0.0});
+      clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0, 0.0, {}});
   if (by_doors && params.numbers > 0.0) {
     for (const MatchProblem::DescribedNumber& n : problem.numbers) {
       const bool rank = n.rank != 0;
@@ -68,7 +69,9 @@ void FitnessTerms::listClauses(const FitnessParams& params) {
                          -1,
                          false,
                          n.turn,
-                         rank ? n.rank : n.distance});
+                         rank ? n.rank : n.distance,
+                         n.side_angle,
+                         n.position});
     }
   }
   for (std::size_t k = 0; k < clauses.size(); ++k)

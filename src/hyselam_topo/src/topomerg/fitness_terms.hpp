@@ -80,6 +80,8 @@ class FitnessTerms {
     std::optional<double> turn;  ///< of an order, a number and a distance
     double value = 0.0;          ///< number or distance [m]
     double side_angle = 0.0;     ///< of a number and of a denied side
+    /// Where the robot stood when a number, distance or relation was told; nothing: not known.
+    std::optional<hyselam::Point2> position;
   };
 
   FitnessTerms(const MatchProblem& problem, const FitnessParams& params);
@@ -285,8 +287,9 @@ class FitnessTerms {
   double oppositeValue(const VertexSet& a, const VertexSet& b) const;
   double betweenValue(const VertexSet& a, const VertexSet& b, const VertexSet& c) const;
   double endValue(const VertexSet& a, const VertexSet& b) const;
-  double afterValue(const VertexSet& a, const VertexSet& b, const VertexSet* c) const;
-  double behindValue(const VertexSet& a, const VertexSet& b) const;
+  double afterValue(const Clause& clause, const VertexSet& a, const VertexSet& b,
+                    const VertexSet* c) const;
+  double behindValue(const Clause& clause, const VertexSet& a, const VertexSet& b) const;
   double atSideValue(double side_angle, const VertexSet& a, const VertexSet& b) const;
 
   std::array<double, static_cast<std::size_t>(Term::kCount)> weights_{};

@@ -69,12 +69,37 @@ double turnOf(Side side) {
   return sign * -0.5 * hyselam::kPi;
 }
 
+/// How far the robot looked to the left of where it looks in the problem.
+double viewAngle(const std::optional<hyselam::Pose2>& seen_from, const MatchProblem& problem) {
+  return seen_from && problem.heading ? seen_from->theta - *problem.heading : 0.0;
+}
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * hyselam::kPi);
+}
+
+std::optional<hyselam::Point2> standOf(const std::optional<hyselam::Pose2>& seen_from,
+                                       const std::optional<hyselam::Point2>& otherwise) {
+  if (!seen_from) return otherwise;
+  return hyselam::Point2{seen_from->x, seen_from->y};
+}
+
+/// The last view that was told from.
+std::optional<hyselam::Pose2> lastView(const DescribedBuilding& building) {
+  std::optional<hyselam::Pose2> last;
+  for (const DescribedRelation& each : building.relations)
+    if (each.seen_from) last = each.seen_from;
+  for (const DescribedConnection& each : building.connections)
+    if (each.seen_from) last = each.seen_from;
+  return last;
+}
+
 /// The places on one side of a place, in the described order.
 void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& name,
             MatchProblem* out) {
   const Side side = row.front()->side;
   const double count = static_cast<double>(row.size());
-  const double side_angle = angleOf(side), turn = turnOf(side);
+  const double turn = turnOf(side);
   // The first is nearest to the back: on the right hand that is the smallest angle. Front and
   // back are described from left to right.
   const double sign = side == Side::kRight || side == Side::kBack ? -1.0 : 1.0;
@@ -91,9 +116,10 @@ void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& n
       earlier += before(other, row[k]);
       later += before(row[k], other);
     }
+    const double side_angle = angleOf(side) + viewAngle(row[k]->seen_from, *out);
     out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
-                          merging::wrapAngleOnce(side_angle + sign * offset), side_angle, turn,
-                          earlier, later});
+                          wrapped(side_angle + sign * offset), wrapped(side_angle), turn, earlier,
+                          later});
     if (row[k]->rank) continue;
     if (previous != nullptr && before(previous, row[k]))
       out->orders.push_back(
@@ -103,30 +129,41 @@ void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& n
 }
 
 void addSides(const std::vector<DescribedConnection>& connections, const Numbers& name,
-              MatchProblem* out) {
+              const std::optional<hyselam::Point2>& position, MatchProblem* out) {
   std::map<std::pair<Id, Side>, std::vector<const DescribedConnection*>> rows;
   for (const DescribedConnection& c : connections)
     if (c.side != Side::kUnknown) rows[{c.from, c.side}].push_back(&c);
   for (auto& [key, row] : rows) {
     std::stable_sort(row.begin(), row.end(),
                      [](const auto* a, const auto* b) { return a->order < b->order; });
-    addRow(row, name, out);
+    // One row for each way that the robot looked.
+    while (!row.empty()) {
+      const std::optional<hyselam::Pose2> view = row.front()->seen_from;
+      const auto others = std::stable_partition(row.begin(), row.end(), [&](const auto* each) {
+        return lookAlike(each->seen_from, view);
+      });
+      addRow({row.begin(), others}, name, out);
+      row.erase(row.begin(), others);
+    }
   }
   for (const DescribedConnection& c : connections) {
     const int from = name(c.from, "description"), to = name(c.to, "description");
     const bool sided = c.side != Side::kUnknown;
     const std::optional<double> turn = sided ? std::optional<double>(turnOf(c.side)) : std::nullopt;
+    const double side_angle = wrapped(angleOf(c.side) + viewAngle(c.seen_from, *out));
+    const std::optional<hyselam::Point2> stand = standOf(c.seen_from, position);
     if (c.rank && *c.rank != 0 && sided)
-      out->numbers.push_back({from, to, *c.rank, 0.0, turn, angleOf(c.side)});
+      out->numbers.push_back({from, to, *c.rank, 0.0, turn, side_angle, stand});
     const bool along = c.side == Side::kLeft || c.side == Side::kRight;
-    if (c.distance && *c.distance > 0.0 && out->position)
+    if (c.distance && *c.distance > 0.0 && stand)
       out->numbers.push_back(
-          {from, to, 0, *c.distance, along ? turn : std::nullopt, angleOf(c.side)});
+          {from, to, 0, *c.distance, along ? turn : std::nullopt, side_angle, stand});
   }
 }
 
 void addRelations(const DescribedBuilding& building, const std::set<Id>& elsewhere,
-                  const Numbers& name, MatchProblem* out) {
+                  const Numbers& name, const std::optional<hyselam::Point2>& position,
+                  MatchProblem* out) {
   for (const DescribedRelation& r : building.relations) {
     if (elsewhere.count(r.a) + elsewhere.count(r.b) > 0 || (r.c != 0 && elsewhere.count(r.c) > 0))
       continue;
@@ -134,9 +171,11 @@ void addRelations(const DescribedBuilding& building, const std::set<Id>& elsewhe
     if (at_side && (!out->heading || r.side == Side::kUnknown)) continue;
     const bool third =
         r.kind == RelationKind::kBetween || (r.kind == RelationKind::kAfter && r.c != 0);
-    out->relations.push_back({r.kind, name(r.a, "description"), name(r.b, "description"),
-                              third ? name(r.c, "description") : -1, r.denied,
-                              at_side ? angleOf(r.side) : 0.0});
+    out->relations.push_back(
+        {r.kind, name(r.a, "description"), name(r.b, "description"),
+         third ? name(r.c, "description") : -1, r.denied,
+         at_side ? wrapped(angleOf(r.side) + viewAngle(r.seen_from, *out)) : 0.0,
+         standOf(r.seen_from, position)});
   }
 }
 
@@ -292,7 +331,8 @@ std::set<Id> takeOutOtherFloors(const DescribedBuilding& building,
 
 /// Which names are joined, on which side and in which order they lie, and their relations.
 void addStatements(const DescribedBuilding& building, const std::set<Id>& elsewhere,
-                   const Numbers& name, MatchProblem* out) {
+                   const Numbers& name, const std::optional<hyselam::Point2>& position,
+                   MatchProblem* out) {
   const std::size_t n = out->nameCount();
   std::vector<DescribedConnection> connections;
   for (const DescribedConnection& c : building.connections)
@@ -303,8 +343,8 @@ void addStatements(const DescribedBuilding& building, const std::set<Id>& elsewh
     const auto b = static_cast<std::size_t>(name(c.to, "description"));
     out->described_edges[a * n + b] = out->described_edges[b * n + a] = 1;
   }
-  addSides(connections, name, out);
-  addRelations(building, elsewhere, name, out);
+  addSides(connections, name, position, out);
+  addRelations(building, elsewhere, name, position, out);
 }
 
 }  // namespace
@@ -337,8 +377,9 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
   addPassages(map, vertex, &out);
   addWalls(map, &out);
   merging::addGaps(map, &out);
-  if (observer.heading) out.heading = std::remainder(*observer.heading, 2.0 * hyselam::kPi);
-  out.position = observer.position;
+  const std::optional<hyselam::Pose2> last_view = lastView(building);
+  if (observer.heading) out.heading = wrapped(*observer.heading);
+  if (!out.heading && last_view) out.heading = wrapped(last_view->theta);
 
   MatchConstraints all = constraints;
   if (observer.place) {
@@ -346,7 +387,7 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     if (building.robot_place) all.confirmed.emplace_back(*observer.place, *building.robot_place);
   }
   const std::set<Id> elsewhere = takeOutOtherFloors(building, all, &out);
-  addStatements(building, elsewhere, name, &out);
+  addStatements(building, elsewhere, name, observer.position, &out);
   addConstraints(all, name, vertex, &out);
   for (std::size_t i = 0; i < n; ++i)
     if (out.attributes[i].elsewhere) out.allowed[i] = {};

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_common/pose2.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
@@ -51,6 +52,12 @@ struct DescribedPlace {
 /// The name and the aliases, in the order in which they were mentioned.
 std::vector<std::string> allNamesOf(const DescribedPlace& place);
 
+/// Whether two things were told as seen alike, so that their sides mean the same directions: the
+/// robot looked less than 45 degrees otherwise. True if one of the views is not known.
+bool lookAlike(const std::optional<hyselam::Pose2>& a, const std::optional<hyselam::Pose2>& b);
+/// The same, and the robot stood at most 1.5 m away: numbers are counted from the same door, too.
+bool areSameView(const std::optional<hyselam::Pose2>& a, const std::optional<hyselam::Pose2>& b);
+
 /// Two joined places: "On your left you have A", said while the robot is in `from`; "in the kitchen
 /// you have the laundry" joins kitchen and laundry without a side.
 struct DescribedConnection {
@@ -66,6 +73,9 @@ struct DescribedConnection {
   std::optional<int> rank = std::nullopt;
   /// "Ten metres ahead on your left": from where the robot stood, along its way [m].
   std::optional<double> distance = std::nullopt;
+  /// Where the robot stood and looked when side, number or distance were told, in the frame of the
+  /// map; nothing: not known.
+  std::optional<hyselam::Pose2> seen_from = std::nullopt;
 };
 
 /// What people say of places besides connections.
@@ -92,6 +102,8 @@ struct DescribedRelation {
   Id c = 0;                    ///< only for kBetween and kAfter, otherwise 0
   Side side = Side::kUnknown;  ///< only for kAtSide
   bool denied = false;         ///< "the lab is not next to the office"
+  /// As DescribedConnection::seen_from; only for kAfter, kBehind and kAtSide.
+  std::optional<hyselam::Pose2> seen_from = std::nullopt;
 };
 
 /// The whole description.

@@ -75,6 +75,10 @@ class DescriptionBuilder {
   void setSpeaker(const std::string& name) { speaker_ = name; }
   const std::string& speaker() const { return speaker_; }
 
+  /// Where the robot stands and looks in the frame of the map while people tell what lies on which
+  /// side; nothing: not known. Kept with what they tell.
+  void setViewpoint(const std::optional<hyselam::Pose2>& viewpoint) { viewpoint_ = viewpoint; }
+
   /// The person has confirmed that a name (DescriptionIssue::name) is one of a place: statements
   /// that have it are recorded from now on.
   void acceptName(const std::string& name);
@@ -89,6 +93,10 @@ class DescriptionBuilder {
   void setRobotPlace(const std::string& name);
 
   const DescribedBuilding& building() const { return state_.building; }
+  /// A place that was told of under a name that nobody gave it, as the map's own for it, has this
+  /// one from now on. Where another place has it already, all that was told is of that one.
+  void giveName(const std::string& made_up, const std::string& name);
+
   /// The places that a name means; none, one, or several if it is ambiguous.
   std::vector<Id> find(const std::string& name) const;
 
@@ -112,6 +120,7 @@ class DescriptionBuilder {
   PlaceNames names_;
   DescriptionState state_;
   std::string speaker_;
+  std::optional<hyselam::Pose2> viewpoint_;
   std::set<std::string> accepted_;  ///< NameKey::full
   std::vector<Recorded> history_;
 };

@@ -131,6 +131,9 @@ struct DialogueState {
   std::optional<double> heading;
   /// Where the robot stood then, map frame [m].
   std::optional<hyselam::Point2> position;
+  /// The place of the map where the robot was when it was last told, or found, where it is; 0: not
+  /// known.
+  Id told_at = 0;
 };
 
 class Dialogue {
@@ -239,6 +242,13 @@ class Dialogue {
   bool isOfThisPlace(const Utterance& u, const Turn& turn) const;
 
   // descriptions
+  /// Sides are told from where the robot is, also where it has been driven since that was told.
+  /// `also_unnamed`: also where nobody has named the place, then under the map's own name.
+  void followRobot(bool also_unnamed);
+  /// Names of a place that was told of under the map's own name for it.
+  void giveNames(Id place);
+  /// Whether a name is the map's own for a place of it (SS03).
+  bool isCode(const std::string& name) const;
   void addStatement(const Utterance& u, Turn& turn);
   void recordStatements(Turn& turn);
   void reportIssues(Turn& turn);
@@ -380,6 +390,7 @@ class Dialogue {
   std::optional<PlaceAssignment> match_;
   std::optional<double> heading_;            // DialogueState::heading
   std::optional<hyselam::Point2> position_;  ///< then
+  Id told_at_ = 0;                           ///< DialogueState::told_at
   Uncertainty unsure_;                       // of match_
   QuestionKeeper questions_;
   std::optional<Id> under_way_;         // the place that it drives to; 0: it follows a person

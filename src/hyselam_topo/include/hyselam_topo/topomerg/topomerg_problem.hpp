@@ -29,19 +29,22 @@ struct MatchConstraints {
 /// robot's place, the two are confirmed to be the same.
 struct MatchObserver {
   std::optional<Id> place;  ///< of the map
-  /// Nothing: the heading that fits best is taken for each assignment.
+  /// Of all that has no view of its own (DescribedConnection::seen_from). Nothing: that of the last
+  /// view, and without any the heading that fits best is taken for each assignment.
   std::optional<double> heading;
-  /// Where the robot stood. "The second door on the left" is counted from there on; nothing: from
-  /// the end of the place that lies behind the robot.
+  /// Where the robot stood, likewise. "The second door on the left" is counted from there on;
+  /// nothing: from the end of the place that lies behind the robot.
   std::optional<hyselam::Point2> position = std::nullopt;
 };
 
 /// Both graphs by number: name i is places[i] of the description, vertex v is places[v] of the map.
 struct MatchProblem {
   struct DescribedSide {
-    int from = 0;             ///< number of the name that the side is seen from
-    int to = 0;               ///< and of the one that lies there
-    double angle = 0.0;       ///< seen by the robot, left > 0, spread in the order described
+    int from = 0;  ///< number of the name that the side is seen from
+    int to = 0;    ///< and of the one that lies there
+    /// Left > 0, seen by the robot with MatchProblem::heading: where it looked otherwise when the
+    /// side was told, by that more; spread in the order described.
+    double angle = 0.0;
     double side_angle = 0.0;  ///< of the side, not spread
     double turn = 0.0;  ///< from the direction through the doors to that of the described order
     int before = 0;     ///< as many others were described before it on that side, ...
@@ -56,7 +59,8 @@ struct MatchProblem {
     /// From the direction through the door to that in which it is counted; nothing for a distance
     /// without a side.
     std::optional<double> turn;
-    double side_angle = 0.0;  ///< as in DescribedSide
+    double side_angle = 0.0;                  ///< as in DescribedSide
+    std::optional<hyselam::Point2> position;  ///< where the robot stood then
   };
   /// "A, then B" on one side of a place.
   struct DescribedOrder {
@@ -78,7 +82,8 @@ struct MatchProblem {
     int b = 0;
     int c = -1;
     bool denied = false;
-    double side_angle = 0.0;  ///< only for kAtSide, as in DescribedSide
+    double side_angle = 0.0;                  ///< only for kAtSide, as in DescribedSide
+    std::optional<hyselam::Point2> position;  ///< only for kAfter and kBehind: where it stood then
   };
   struct NameAttributes {
     double area = 0.0;  ///< [m^2], 0: not described
@@ -118,10 +123,9 @@ struct MatchProblem {
   double typical_area = 0.0;     ///< median of the rooms of the map [m^2]; 0: not known
   std::vector<double> evidence;  ///< names x vertices, empty: none
 
-  std::vector<int> confirmed_name;          ///< of each vertex, -1: not known
-  std::vector<PlaceSet> allowed;            ///< vertices that may have name i
-  std::optional<double> heading;            ///< of the robot
-  std::optional<hyselam::Point2> position;  ///< of the robot
+  std::vector<int> confirmed_name;  ///< of each vertex, -1: not known
+  std::vector<PlaceSet> allowed;    ///< vertices that may have name i
+  std::optional<double> heading;    ///< of the robot
 
   std::size_t nameCount() const { return names.size(); }
   std::size_t vertexCount() const { return vertices.size(); }
