@@ -14,6 +14,7 @@ namespace {
 
 /// A question that is answered with "no" more often costs more than it brings.
 constexpr double kLeastProbability = 0.5;  // of a fact
+constexpr double kWorthShowing = 0.15;    // of a fact, as an example of what would be understood
 constexpr double kComplete = 0.6;          // of a reading, that it misses nothing
 constexpr std::size_t kShortestTalk = 3;   // words: a single one may be a name
 constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more
@@ -74,6 +75,23 @@ std::string proposalFor(const Utterance& utterance, const Reading& reading, bool
     ++count;
   }
   return count > kMostFacts ? "" : proposal;
+}
+
+/// The likeliest of the facts that are too unlikely to ask for, as a sentence of the grammar: it
+/// shows how such a thing is said; "" for none.
+std::string exampleFor(const Utterance& utterance, const Reading& reading, bool is_whole,
+                       const Grammar& grammar) {
+  const FactWriter writer(grammar);
+  std::string example;
+  double best = kWorthShowing;
+  for (const ReadFact& fact : reading.facts) {
+    if (fact.probability < best || !belongsTo(utterance.range, is_whole, fact)) continue;
+    const std::string sentence = writer.sentence(fact);
+    if (sentence.empty() || !isUnderstood(grammar, sentence, fact)) continue;
+    example = sentence;
+    best = fact.probability;
+  }
+  return example;
 }
 
 std::vector<std::string> wordsOf(const std::string& text,
@@ -155,9 +173,13 @@ void readAgain(const FactReader& reader, const Grammar& grammar, const std::stri
   for (Utterance& utterance : *utterances) {
     if (utterance.understood()) continue;
     const std::string proposal = proposalFor(utterance, reading, is_whole, grammar);
-    if (proposal.empty()) continue;
-    utterance.suggestion = proposal;
-    utterance.suggests_meaning = true;
+    if (!proposal.empty()) {
+      utterance.suggestion = proposal;
+      utterance.suggests_meaning = true;
+    } else if (!utterance.suggests_meaning) {
+      const std::string example = exampleFor(utterance, reading, is_whole, grammar);
+      if (!example.empty()) utterance.suggestion = example;
+    }
   }
   dropTalk(reading, grammar.compiled(), utterances);
 }
