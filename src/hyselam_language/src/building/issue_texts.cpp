@@ -28,6 +28,7 @@ const std::map<std::string, std::string>& english() {
       {"nothing_said", "it does not tell where anything is"},
       {"one_denial", "deny one thing at a time"},
       {"denied", "the opposite was told: {fact}"},
+      {"both_ways", "the sentence says it and denies it"},
       {"reversed", "the opposite was told: {fact}"},
       {"not_told", "that was not told before, and what it is not cannot be kept"},
       {"side_left", "on the left"},

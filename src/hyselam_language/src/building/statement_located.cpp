@@ -40,6 +40,15 @@ std::optional<double> distanceOf(Statement& s) {
   return distance;
 }
 
+/// "The first door on the right is the bar, the second is the lab": the side of the place that the
+/// last statement gave another number.
+Side sideOfRow(Statement& s, Id from, int rank) {
+  if (s.context().subjects.size() != 1) return Side::kUnknown;
+  const DescribedConnection* last = findConnection(s.building(), from, s.context().subjects[0]);
+  const bool in_row = last != nullptr && last->from == from && last->rank && *last->rank != rank;
+  return in_row ? last->side : Side::kUnknown;
+}
+
 /// Side, number and distance.
 void readRow(Statement& s, Location* location) {
   const Utterance& u = s.said();
@@ -55,6 +64,9 @@ void readRow(Statement& s, Location* location) {
   if (within) row.from = placeOf(s, "within");
   const auto robot = s.building().robot_place;
   if (!within || (sided && robot && *robot != row.from)) row.from = observer(s);
+  if (row.rank && !sided && !within && !s.isCorrection()) {
+    row.side = sideOfRow(s, row.from, *row.rank);
+  }
 }
 
 void readRelations(Statement& s, Location* location) {
@@ -191,6 +203,10 @@ void forgetLocation(Statement& s, const Location& location, Id id) {
   s.setCorrected();
   const Utterance& u = s.said();
   const auto side = hyselam_topo::sideOf(u.word("was_side"));
+  // "It is on the left and not on the left."
+  if (side && location.in_row && *side == location.row.side) {
+    s.fail(IssueKind::kContradiction, "both_ways");
+  }
   if (side && *side != Side::kUnknown) {
     DescribedRelation denial = relationOf(RelationKind::kAtSide, id, observer(s));
     denial.side = *side;
@@ -204,6 +220,12 @@ void forgetLocation(Statement& s, const Location& location, Id id) {
   const auto was = s.said().names("was");
   const bool same = !was.empty() && was.front().reference == "it";
   std::vector<Id> others = same ? std::vector<Id>{} : placesOf(s, "was");
+  for (const DescribedRelation& each : location.relations) {
+    const Id other = each.a == kItself ? each.b : each.a;
+    if (std::find(others.begin(), others.end(), other) != others.end()) {
+      s.fail(IssueKind::kContradiction, "both_ways");
+    }
+  }
   if (same) {
     for (const DescribedRelation& each : location.relations) {
       others.push_back(each.a == kItself ? each.b : each.a);

@@ -88,11 +88,12 @@ std::string ownedBy(const Statement& s, const SaidName& owner, const std::string
 }
 
 /// The places of those who were named with a room that has no other name.
-std::vector<SaidName> ownedPlaces(Statement& s, const std::string& kind) {
+std::vector<SaidName> ownedPlaces(Statement& s, const std::string& kind,
+                                  const std::string& owners = "owners") {
   const Grammar& grammar = s.listener().grammar;
-  std::vector<SaidName> all = s.said().names("owners");
+  std::vector<SaidName> all = s.said().names(owners);
   for (SaidName& each : all) each.text = ownedBy(s, each, kind);
-  for (const SaidName& each : s.said().names("owned")) {
+  for (const SaidName& each : s.said().names(owners == "owners" ? "owned" : "")) {
     all.push_back(each);
     all.back().text =
         SentenceWriter(grammar, false)
@@ -161,8 +162,33 @@ void alias(Statement& s) {
   takeBothNames(s, said[0], s.said().names("aliases"));
 }
 
+/// "The room that was Tom's is Ann's now": one place, with another name.
+void newOwner(Statement& s, const std::string& kind) {
+  const SaidName old = ownedPlaces(s, kind, "former").front();
+  const SaidName now = ownedPlaces(s, kind).front();
+  const auto ids = placesOf(old.text, s.state(), s.listener().names);
+  if (ids.size() != 1 || !placesOf(now.text, s.state(), s.listener().names).empty()) {
+    return s.setSubjects({placeOf(s, now)});
+  }
+  DescribedPlace& place = s.at(ids.front());
+  const PlaceNames& names = s.listener().names;
+  const auto isOld = [&](const std::string& each) {
+    return compare(names.key(each), names.key(old.text)) == SameName::kYes;
+  };
+  if (isOld(place.name)) {
+    place.name = now.text;
+  } else {
+    std::replace_if(place.aliases.begin(), place.aliases.end(), isOld, now.text);
+  }
+  s.context().variants.erase(place.id);
+  s.setCorrected();
+  s.setSubjects(ids);
+}
+
 void owner(Statement& s) {
   if (s.isDenial()) refuseDenial(s);
+  const std::string room = s.said().word("room_kind");
+  if (!room.empty() && s.said().find("former") != nullptr) return newOwner(s, room);
   const auto said = s.said().names("place");
   if (said.size() != 1) s.fail(IssueKind::kMeaningless, "one_place");
   const Grammar& grammar = s.listener().grammar;
@@ -171,6 +197,8 @@ void owner(Statement& s) {
   const std::string name =
       said[0].reference.empty() ? fullName(s, said[0]) : s.nameOf(placeOf(s, said[0]));
   const std::string kind = names.isPlainRoom(name) ? grammar.say("office") : names.headOf(name);
+  // "Room 5 was Tom's, now it is Ann's."
+  forgetNames(s, ownedPlaces(s, kind, "former"));
   std::vector<SaidName> owned = ownedPlaces(s, kind);
   if (owned.empty() || !s.said().word("speaker_too").empty()) {  // "I work in room 5"
     if (s.listener().speaker.empty()) s.fail(IssueKind::kAsk, "whose", {{"name", kind}});

@@ -36,6 +36,22 @@ bool isOfThePast(const std::vector<Token>& tokens, std::size_t begin, std::size_
                       });
 }
 
+/// "If you do not mind": nothing but a phrase that the grammar leaves out beside a statement.
+bool isFiller(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+              const CompiledGrammar& grammar) {
+  const auto is = [&](const Phrase& phrase) {
+    if (phrase.size() != end - begin) return false;
+    for (std::size_t i = 0; i < phrase.size(); ++i) {
+      if (tokens[begin + i].lower != grammar.vocabulary.text(phrase[i])) return false;
+    }
+    return true;
+  };
+  // A single word may stand for a name.
+  return end > begin + 1 &&
+         (std::any_of(grammar.fillers_before.begin(), grammar.fillers_before.end(), is) ||
+          std::any_of(grammar.fillers_after.begin(), grammar.fillers_after.end(), is));
+}
+
 }  // namespace
 
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
@@ -53,7 +69,9 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
       tells = tells || mayTell(tokens[end], end == 0, grammar);
     }
     ++parts;
-    if (tells) tells = !isOfThePast(tokens, begin, end, grammar);
+    if (tells) {
+      tells = !isOfThePast(tokens, begin, end, grammar) && !isFiller(tokens, begin, end, grammar);
+    }
     if (!tells) asides.push_back({begin, end});
     begin = end;
   }

@@ -350,8 +350,9 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
       const std::string& before = tokens_[k - 1].folded;
       if (type.joiners.count(before) != 0) {
         may_end = false;
-      } else if (token.folded.size() == 1 && type.titles.count(before) != 0) {
-        is_last = true;  // "room a"
+      } else if (type.titles.count(before) != 0 &&
+                 (token.folded.size() == 1 || isNumberOfTitle(k, type))) {
+        is_last = true;  // "room a", "sala um"
       } else {
         break;
       }
@@ -402,6 +403,12 @@ bool NameFinder::isCompassOfName(std::size_t begin, std::size_t at, const NameTy
 bool NameFinder::beginsWithArticle(std::size_t begin, std::size_t at, const NameType& type) const {
   const Token& token = tokens_[at];
   return at == begin && token.folded.size() > 1 && mayBeArticle(at, type) && !isStop(token, type);
+}
+
+/// "Ao lado da sala um", not "na sala um sofá".
+bool NameFinder::isNumberOfTitle(std::size_t at, const NameType& type) const {
+  if (grammar_.number_words.count(tokens_[at].folded) == 0) return false;
+  return at + 1 == tokens_.size() || !isWordLike(tokens_[at + 1]) || isStop(tokens_[at + 1], type);
 }
 
 bool NameFinder::isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const {

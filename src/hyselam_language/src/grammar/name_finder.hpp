@@ -69,6 +69,7 @@ class NameFinder {
   /// "the door of the kitchen", "the kitchen door".
   bool isPart(std::size_t begin, std::size_t end, const NameType& type) const;
   /// "room i 110": a letter that is a word elsewhere.
+  bool isNumberOfTitle(std::size_t at, const NameType& type) const;
   bool isLetterOfTitle(std::size_t begin, std::size_t at, const NameType& type) const;
   bool mayBeArticle(std::size_t at, const NameType& type) const;
   bool refuses(const Token& token) const;
