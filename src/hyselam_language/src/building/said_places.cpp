@@ -119,6 +119,11 @@ std::string kindLeftOut(Statement& s, const SaidName& name) {
   const bool owned = name.speaker || name.text.find('\'') != std::string::npos ||
                      name.text.find("\xe2\x80\x99") != std::string::npos;
   if (owned && !context.owned_kind.empty()) return context.owned_kind;
+  // "You are in the corridor. The last door is Joe's": nobody's corridor.
+  if (owned && s.listener().names.kindOf(context.kind_word) == PlaceKind::kCorridor) {
+    const bool has_name = type != nullptr && type->nouns.count(hyselam::utf8Fold(name.text)) != 0;
+    return has_name ? "" : s.listener().grammar.say("office");
+  }
   const std::string& kind =
       owned || context.described_kind.empty() ? context.kind_word : context.described_kind;
   const bool adjective =
@@ -223,6 +228,9 @@ std::string fullName(Statement& s, const SaidName& name) {
     return writer.phrase("elliptic",
                          {{"owner", name.text, false, true}, {"kind", word, false, true}});
   };
+  const auto* type = grammar.compiled().nameType("place");
+  const bool has_name = type != nullptr && type->nouns.count(hyselam::utf8Fold(name.text)) != 0;
+  if (kind.empty() && has_name) return name.text;  // "the men's"
   if (kind.empty()) {
     s.fail(IssueKind::kAsk, "what_of",
            {{"name", saidText(s, name)}, {"example", full(grammar.say("office"))}});
@@ -306,6 +314,7 @@ std::vector<Id> placesOfOneName(Statement& s, const SaidName& name, double count
            {{"known", std::to_string(ids.size())}, {"count", shown(count)}});
   }
   if (ids.empty()) checkName(s, name, full);
+  rememberKind(full, names, s.listener().grammar, &s.context());
   while (static_cast<double>(ids.size()) < count) {
     ids.push_back(addPlace(full, names.kindOf(full), &s.building()));
   }

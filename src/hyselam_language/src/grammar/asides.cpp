@@ -21,18 +21,48 @@ bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) 
                      [&](const auto& type) { return type.plurals.count(token.folded) != 0; });
 }
 
-/// "Which used to be a bedroom", without doubt or denial.
-bool isOfThePast(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
-                 const CompiledGrammar& grammar) {
-  const bool past =
-      std::any_of(grammar.past_asides.begin(), grammar.past_asides.end(), [&](const Words& phrase) {
-        return begin + phrase.size() <= end && standsAt(phrase, tokens, begin);
-      });
-  return past &&
-         std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
+bool beginsWithAny(const std::vector<Words>& phrases, const std::vector<Token>& tokens,
+                   std::size_t begin, std::size_t end) {
+  return std::any_of(phrases.begin(), phrases.end(), [&](const Words& phrase) {
+    return begin + phrase.size() <= end && standsAt(phrase, tokens, begin);
+  });
+}
+
+/// Whether a phrase of several stands at a token, word by word.
+bool standsAt(const Phrase& phrase, const std::vector<Token>& tokens, std::size_t at,
+              const CompiledGrammar& grammar) {
+  if (at + phrase.size() > tokens.size()) return false;
+  for (std::size_t i = 0; i < phrase.size(); ++i) {
+    if (tokens[at + i].lower != grammar.vocabulary.text(phrase[i])) return false;
+  }
+  return true;
+}
+
+/// Behind "and", "but".
+std::size_t behindSeparator(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+                            const CompiledGrammar& grammar) {
+  const bool separated =
+      std::any_of(grammar.clause_separators.begin(), grammar.clause_separators.end(),
+                  [&](const Phrase& phrase) {
+                    return phrase.size() == 1 && standsAt(phrase, tokens, begin, grammar);
+                  });
+  return separated && begin + 1 < end ? begin + 1 : begin;
+}
+
+/// "Which used to be a bedroom", "nobody ever goes there": of another time, or a denial that
+/// nothing told is changed by; never with doubt.
+bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::size_t end,
+                      const CompiledGrammar& grammar) {
+  const std::size_t begin = behindSeparator(tokens, part, end, grammar);
+  const bool past = beginsWithAny(grammar.past_asides, tokens, begin, end);
+  const bool idle = !past && beginsWithAny(grammar.idle_asides, tokens, begin, end);
+  if (!past && !idle) return false;
+  return std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
                       tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
+                        if (idle && grammar.isNounOrTitle(token.folded)) return true;
                         const auto code = grammar.refusing_words.find(token.folded);
-                        return code != grammar.refusing_words.end() && code->second != "not_now";
+                        if (code == grammar.refusing_words.end()) return false;
+                        return code->second != "not_now" && !(idle && code->second == "denial");
                       });
 }
 
@@ -40,16 +70,46 @@ bool isOfThePast(const std::vector<Token>& tokens, std::size_t begin, std::size_
 bool isFiller(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
               const CompiledGrammar& grammar) {
   const auto is = [&](const Phrase& phrase) {
-    if (phrase.size() != end - begin) return false;
-    for (std::size_t i = 0; i < phrase.size(); ++i) {
-      if (tokens[begin + i].lower != grammar.vocabulary.text(phrase[i])) return false;
-    }
-    return true;
+    return phrase.size() == end - begin && standsAt(phrase, tokens, begin, grammar);
   };
   // A single word may stand for a name.
   return end > begin + 1 &&
          (std::any_of(grammar.fillers_before.begin(), grammar.fillers_before.end(), is) ||
           std::any_of(grammar.fillers_after.begin(), grammar.fillers_after.end(), is));
+}
+
+/// Whether tokens [begin, end) are words of correction and nothing else.
+bool corrects(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+              const CompiledGrammar& grammar) {
+  return std::any_of(grammar.corrections.begin(), grammar.corrections.end(),
+                     [&](const Phrase& phrase) {
+                       const std::size_t next = begin + phrase.size();
+                       return next <= end && standsAt(phrase, tokens, begin, grammar) &&
+                              (next == end || corrects(tokens, next, end, grammar));
+                     });
+}
+
+/// Whether a part behind "no" may be the reason of the correction.
+bool mayBeReason(const Aside& part, const std::vector<Token>& tokens,
+                 const CompiledGrammar& grammar) {
+  const NameType* places = grammar.nameType("place");
+  for (std::size_t at = part.begin; at < part.end; ++at) {
+    const Token& token = tokens[at];
+    if (token.kind != TokenKind::kWord || grammar.isNounOrTitle(token.folded)) return false;
+    const auto code = grammar.refusing_words.find(token.folded);
+    const bool told = code == grammar.refusing_words.end() || code->second == "denial" ||
+                      code->second == "not_now" || code->second == "past";
+    if (!told) return false;
+    const bool elliptic = places != nullptr && places->elliptic_nouns.count(token.folded) != 0;
+    const bool article = places != nullptr && places->isArticle(token.folded);
+    if (grammar.number_words.count(token.folded) != 0 && !elliptic && !article) return false;
+    if (!token.starts_upper || token.text.size() == 1 || at == part.begin) continue;
+    if (places == nullptr) return false;
+    const auto known = places->forbidden.find(token.folded);
+    const bool day = known != places->forbidden.end() && known->second == "not_a_place";
+    if (!day) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -70,13 +130,37 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
     }
     ++parts;
     if (tells) {
-      tells = !isOfThePast(tokens, begin, end, grammar) && !isFiller(tokens, begin, end, grammar);
+      tells =
+          !saysNothingOfNow(tokens, begin, end, grammar) && !isFiller(tokens, begin, end, grammar);
     }
     if (!tells) asides.push_back({begin, end});
     begin = end;
   }
   if (asides.size() == parts && !all) asides.clear();
   return asides;
+}
+
+std::vector<std::vector<Aside>> asidesOfCorrections(const std::vector<Token>& tokens,
+                                                    const CompiledGrammar& grammar) {
+  std::vector<Aside> parts;
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    if (isComma(tokens[at])) continue;
+    if (at == 0 || isComma(tokens[at - 1])) parts.push_back({at, at});
+    parts.back().end = at + 1;
+  }
+  std::vector<std::vector<Aside>> all;
+  for (std::size_t i = 0; i + 2 < parts.size(); ++i) {
+    if (!corrects(tokens, parts[i].begin, parts[i].end, grammar)) continue;
+    std::vector<Aside> dropped;
+    for (std::size_t k = i + 1; k + 1 < parts.size(); ++k) {
+      const bool again = corrects(tokens, parts[k].begin, parts[k].end, grammar);
+      if (!again && !mayBeReason(parts[k], tokens, grammar)) break;
+      dropped.push_back(parts[k]);
+      if (!again) all.push_back(dropped);
+    }
+    break;
+  }
+  return all;
 }
 
 std::vector<Token> without(const std::vector<Token>& tokens, const std::vector<Aside>& asides) {

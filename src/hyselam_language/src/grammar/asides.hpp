@@ -22,6 +22,12 @@ struct Aside {
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
                             bool all = false);
 
+/// What may be left out of a correction, each time less likely: "No, I measured it again, four by
+/// seven", "six, no, hang on, I counted them, seven". Never what has a name, a kind of place, a
+/// number or doubt.
+std::vector<std::vector<Aside>> asidesOfCorrections(const std::vector<Token>& tokens,
+                                                    const CompiledGrammar& grammar);
+
 /// The tokens without an aside: a comma stands for it.
 std::vector<Token> without(const std::vector<Token>& tokens, const std::vector<Aside>& asides);
 

@@ -121,6 +121,8 @@ struct CompiledGrammar {
   std::vector<Words> told_before, told_after;
   /// Parts between commas that begin so say nothing of now: "which used to be".
   std::vector<Words> past_asides;
+  /// ... and those that begin so change nothing told, though they deny: "you can't miss it".
+  std::vector<Words> idle_asides;
   std::set<std::string> abbreviations;
   /// Words that mean something else in small letters, as they are written: "IT".
   std::set<std::string> acronyms;

@@ -68,14 +68,8 @@ class Reader {
         {"vocatives", [&](const GrammarNode& node) { readVocatives(node); }},
         {"fillers", [&](const GrammarNode& node) { readFillers(node); }},
         {"told_anyway", [&](const GrammarNode& node) { readToldAnyway(node); }},
-        {"past_asides",
-         [&](const GrammarNode& node) {
-           for (const std::string& text : node.texts()) {
-             for (const std::string& phrase : expanded(text)) {
-               g.past_asides.push_back(splitWords(phrase));
-             }
-           }
-         }},
+        {"past_asides", [&](const GrammarNode& node) { addWords(node, &g.past_asides); }},
+        {"idle_asides", [&](const GrammarNode& node) { addWords(node, &g.idle_asides); }},
         {"corrections", phrases(&g.corrections)},
         {"clause_separators", phrases(&g.clause_separators)},
         {"list_separators", [&](const GrammarNode& node) { readListSeparators(node); }},
@@ -149,12 +143,16 @@ class Reader {
       if (where != "before" && where != "after")
         phrases.fail("this key is not known: before, after");
       auto& all = where == "before" ? grammar_->told_before : grammar_->told_after;
-      for (const std::string& text : phrases.texts()) {
-        for (const std::string& phrase : expanded(text)) all.push_back(splitWords(phrase));
-      }
+      addWords(phrases, &all);
       std::stable_sort(all.begin(), all.end(),
                        [](const Words& a, const Words& b) { return a.size() > b.size(); });
     });
+  }
+
+  static void addWords(const GrammarNode& node, std::vector<Words>* all) {
+    for (const std::string& text : node.texts()) {
+      for (const std::string& phrase : expanded(text)) all->push_back(splitWords(phrase));
+    }
   }
 
   void readListSeparators(const GrammarNode& node) {

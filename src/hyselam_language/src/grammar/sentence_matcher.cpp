@@ -297,17 +297,25 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
   };
   std::vector<Utterance> said = read(tokens, false);
   if (isUnderstood(said)) return said;
+  const auto readWithout = [&](const std::vector<Aside>& asides) {
+    std::vector<Utterance> rest = read(without(tokens, asides), false);
+    for (const Aside& aside : asides) {
+      const std::size_t begin = tokens[aside.begin].range.begin;
+      const std::size_t end = tokens[aside.end - 1].range.end;
+      rest.front().left_out.push_back(text.substr(begin, end - begin));
+    }
+    return rest;
+  };
   const std::vector<Aside> asides = asidesOf(tokens, grammar);
   if (!asides.empty()) {
-    std::vector<Utterance> rest = read(without(tokens, asides), false);
-    if (isUnderstood(rest)) {
-      for (const Aside& aside : asides) {
-        const std::size_t begin = tokens[aside.begin].range.begin;
-        const std::size_t end = tokens[aside.end - 1].range.end;
-        rest.front().left_out.push_back(text.substr(begin, end - begin));
-      }
-      return rest;
-    }
+    std::vector<Utterance> rest = readWithout(asides);
+    if (isUnderstood(rest)) return rest;
+  }
+  for (const std::vector<Aside>& reasons : asidesOfCorrections(tokens, grammar)) {
+    std::vector<Utterance> rest = readWithout(reasons);
+    const bool corrected = std::any_of(rest.begin(), rest.end(),
+                                       [](const Utterance& each) { return each.correction; });
+    if (isUnderstood(rest) && corrected) return rest;
   }
   if (mayRunOn(tokens, grammar)) {
     std::vector<Utterance> clauses = read(tokens, true);
@@ -332,6 +340,61 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
   return said;
 }
 
+/// What an utterance tells, by the values of its slots.
+std::set<std::string> valuesOf(const Utterance& utterance, bool with_subject) {
+  std::set<std::string> values;
+  for (const Slot& slot : utterance.slots) {
+    const bool subject = slot.name == "places" || slot.name == "place" || slot.name == "a";
+    if (slot.name == "denied" || (subject && !with_subject)) continue;
+    if (!slot.word.empty()) values.insert(slot.word);
+    for (const SaidName& name : slot.names) values.insert(hyselam::utf8Lower(name.text));
+  }
+  return values;
+}
+
+/// "The lab is on the left and it is not on the left."
+bool isContrary(const Utterance& denial, const Utterance& told) {
+  if (told.kind != UtteranceKind::kStatement || !told.word("denied").empty()) return false;
+  if (denial.word("denied").empty() || denial.correction) return false;
+  const std::set<std::string> all = valuesOf(told, true), denied = valuesOf(denial, false);
+  const std::vector<std::string> subjects = namesIn({denial});
+  const bool same = subjects.empty() ||
+                    std::any_of(subjects.begin(), subjects.end(), [&](const std::string& name) {
+                      return all.count(hyselam::utf8Lower(name));
+                    });
+  return same && !denied.empty() &&
+         std::includes(all.begin(), all.end(), denied.begin(), denied.end());
+}
+
+/// Refuses a sentence that takes back what it tells: "the lab is on the left, that's not true".
+std::vector<Utterance> consistent(const CompiledGrammar& grammar, const std::string& text,
+                                  const Sentence& sentence, std::vector<Utterance> said) {
+  const auto denies = [&](const Utterance& u) {
+    return std::any_of(grammar.intents.begin(), grammar.intents.end(), [&](const IntentInfo& each) {
+      return each.corrects_next && each.name == u.intent;
+    });
+  };
+  const auto states = [](const Utterance& u) { return u.kind == UtteranceKind::kStatement; };
+  for (std::size_t i = 1; i < said.size(); ++i) {
+    const auto at = said.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool contrary =
+        std::any_of(said.begin(), at, [&](const Utterance& u) { return isContrary(*at, u); });
+    const bool taken_back = denies(*at) && std::any_of(said.begin(), at, states) &&
+                            std::none_of(at, said.end(), states);
+    if (!contrary && !taken_back) continue;
+    Utterance refused;
+    refused.range = sentence.range;
+    refused.text = text.substr(sentence.range.begin, sentence.range.end - sentence.range.begin);
+    refused.culprit = at->range;
+    refused.reason_code = grammar.reasons.count("contrary") != 0 ? "contrary" : "denial";
+    refused.reason = grammar.reason(refused.reason_code, at->text);
+    refused.suggestion = nearestExample(SentenceWords(
+        grammar, text, sentence, tokenize(text, sentence.range, grammar.tokenRules())));
+    return {refused};
+  }
+  return said;
+}
+
 }  // namespace
 
 std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
@@ -343,10 +406,12 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
   std::vector<Utterance> stated;
   if (sentence.is_question && dropToldAnyway(grammar, &rest)) {
     const TextRange range{rest.front().range.begin, rest.back().range.end};
-    stated = readTokens(grammar, text, {range, false}, rest, expected);
+    stated = consistent(grammar, text, sentence,
+                        readTokens(grammar, text, {range, false}, rest, expected));
     if (isUnderstood(stated)) return stated;
   }
-  std::vector<Utterance> said = readTokens(grammar, text, sentence, tokens, expected);
+  std::vector<Utterance> said =
+      consistent(grammar, text, sentence, readTokens(grammar, text, sentence, tokens, expected));
   const bool partly =
       std::any_of(stated.begin(), stated.end(), [](const Utterance& u) { return u.understood(); });
   return partly && !isUnderstood(said) ? stated : said;

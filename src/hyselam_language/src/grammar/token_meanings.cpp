@@ -1,6 +1,7 @@
 #include "token_meanings.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace hyselam_topo {
@@ -63,6 +64,30 @@ bool isBehindArticle(const std::vector<Token>& tokens, std::size_t at,
   return false;
 }
 
+/// "The dungeon's next to the lift": where no verb follows, it is in "'s". Not in "the women's on
+/// the right", of several, nor behind a proper name ("Maureen's next to the lift").
+bool isOnlyVerb(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar) {
+  static const std::set<std::string> kSeveral{"men", "women", "children", "people"};
+  static const std::set<std::string> kVerbs{"is", "are", "has", "have", "was", "were", "belongs"};
+  const NameType* type = grammar.nameType("place");
+  const std::string& word = tokens[at].text;
+  if (type == nullptr || type->elliptic_suffix.empty() || at + 1 == tokens.size()) return false;
+  const bool small = std::all_of(word.begin(), word.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || c == '\'' || static_cast<unsigned char>(c) >= 0x80;
+  });
+  if (!small || kSeveral.count(word.substr(0, word.find_first_of("'\xe2"))) != 0) return false;
+  const auto endsClause = [&](const Token& token) {
+    return token.kind == TokenKind::kComma || token.lower == "and" || token.lower == "but";
+  };
+  for (std::size_t k = at + 1; k < tokens.size() && !endsClause(tokens[k]); ++k) {
+    if (kVerbs.count(tokens[k].lower) != 0) return false;
+  }
+  for (std::size_t k = at; k-- > 0 && !endsClause(tokens[k]);) {
+    if (kVerbs.count(tokens[k].lower) != 0 || type->stop.count(tokens[k].lower) != 0) return false;
+  }
+  return tokens[at + 1].kind == TokenKind::kWord;
+}
+
 }  // namespace
 
 std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar& grammar) {
@@ -78,8 +103,11 @@ std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar
       if (token.lower.compare(length, end.size(), end) != 0) continue;
       Token noun =
           wordToken(token.text.substr(0, length), {token.range.begin, token.range.begin + length});
-      const bool is_subject = mayBeSubject(noun, grammar) || isBehindArticle(tokens, at, grammar);
-      if (!is_subject || mayGoOn(tokens, at + 1, grammar)) continue;
+      const bool is_subject = mayBeSubject(noun, grammar) || isBehindArticle(tokens, at, grammar) ||
+                              isOnlyVerb(tokens, at, grammar);
+      // "The kitchen's got two doors."
+      const bool has_got = tokens[at + 1].lower == "got" && grammar.isNoun(noun.folded);
+      if (!has_got && (!is_subject || mayGoOn(tokens, at + 1, grammar))) continue;
       all.back() = std::move(noun);
       all.push_back(wordToken(verb, {token.range.begin + length, token.range.end}));
       break;

@@ -232,6 +232,9 @@ std::string whyNoThing(const ObjectWords& words, const ObjectPhrase& phrase, boo
   if (is_landmark && words.structure.count(head) != 0) return "";
   const auto found = words.no_things.find(head);
   if (found != words.no_things.end() && !words.isNoun(phrase.kind)) return found->second;
+  // "Two buckets, one red, one blue": of what was said before, no things of their own.
+  const bool only_property = words.properties.count(lowerCase(phrase.kind)) != 0;
+  if (only_property && !phrase.definite && !words.isNoun(phrase.kind)) return "vague";
   // In English a capital may as well be that of a brand: "the Xerox".
   if (words.head_first && phrase.capital && !phrase.known_noun) return "person";
   const bool clear = phrase.known_noun || phrase.plural || !phrase.bare;
