@@ -119,10 +119,25 @@ class SentenceReader {
           clause.correction = entry.correction;
           clause.tied = end.tied;
           if (!capture(pattern, *path, &words_, &clause)) continue;
+          if (deniesBeforeComma(clause)) continue;
           if (clause.correction || !clause.only_corrects) f(clause);
         }
       }
     }
+  }
+
+  /// "À esquerda, não, é à direita" corrects, "à esquerda, não é à direita" denies.
+  bool deniesBeforeComma(const Clause& clause) const {
+    const bool denies = std::any_of(clause.slots.begin(), clause.slots.end(), [](const Slot& slot) {
+      return slot.name == "denied" || slot.name == "was_side" ||
+             (slot.name == "instead" && slot.names.empty());
+    });
+    for (std::size_t at = clause.begin; denies && at + 1 < clause.end; ++at) {
+      const auto code = words_.grammar.refusing_words.find(words_.tokens[at].folded);
+      const bool no = code != words_.grammar.refusing_words.end() && code->second == "denial";
+      if (no && isComma(words_.tokens[at + 1])) return true;
+    }
+    return false;
   }
 
   bool isPossible(const IntentInfo& intent, const Entry& entry) const {
