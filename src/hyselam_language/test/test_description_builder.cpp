@@ -565,6 +565,20 @@ TEST(DescriptionBuilder, LastStatementIsSaidAgainWithAnotherName) {
             Lines{"meaningless"});
 }
 
+TEST(DescriptionBuilder, CorrectionsOfTheSamePlaceMayAdd) {
+  const auto tell = [](const std::string& then) {
+    Talk talk;
+    talk.builder.add(
+        parser().parse("You are in the corridor. The kitchen is next to the library."));
+    for (const auto& issue : talk.builder.add(parser().parse(then))) {
+      talk.issues.push_back(toString(issue.kind));
+    }
+    return talk.issues;
+  };
+  EXPECT_EQ(Lines{"notice"}, tell("No, the kitchen is the second door on the left."));
+  EXPECT_EQ(Lines{"no context"}, tell("No, the archive is the second door on the left."));
+}
+
 TEST(DescriptionBuilder, ReasonsAreInTheLanguageSpoken) {
   Talk talk;
   talk.builder.setLanguage("pt");

@@ -130,7 +130,12 @@ std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
     if (u.correction && !statement.hasCorrected() && changed) {
       // Before anything else was told, or after what was not understood, nothing can be corrected.
       const bool told = !before.building.connections.empty() || !before.building.relations.empty();
-      if (told && !history_.empty() && !before.context.after_refusal) {
+      // "No, the kitchen is the second door", of the kitchen: more of what was told right before.
+      const auto& subjects = before.context.subjects;
+      const bool same_subject = std::any_of(
+          state_.context.subjects.begin(), state_.context.subjects.end(),
+          [&](Id id) { return std::find(subjects.begin(), subjects.end(), id) != subjects.end(); });
+      if (told && !history_.empty() && !before.context.after_refusal && !same_subject) {
         statement.fail(IssueKind::kNoContext, "nothing_corrected");
       }
       statement.report(IssueKind::kNotice, "taken_as_new");
