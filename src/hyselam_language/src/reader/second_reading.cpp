@@ -14,7 +14,7 @@ namespace {
 
 /// A question that is answered with "no" more often costs more than it brings.
 constexpr double kLeastProbability = 0.5;  // of a fact
-constexpr double kWorthShowing = 0.15;    // of a fact, as an example of what would be understood
+constexpr double kWorthShowing = 0.15;     // of a fact, as an example of what would be understood
 constexpr double kComplete = 0.6;          // of a reading, that it misses nothing
 constexpr std::size_t kShortestTalk = 3;   // words: a single one may be a name
 constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more

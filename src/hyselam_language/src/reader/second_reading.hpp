@@ -12,8 +12,9 @@
 namespace hyselam_topo {
 
 /// Fills `suggestion` of refused utterances in which facts are found, unless what was said is
-/// doubted or a choice: to ask for where they are likely, else as an example of how it is said. Refused parts that state nothing and name nothing, beside statements that
-/// were understood, become words left out of these.
+/// doubted or a choice: to ask for where they are likely, else as an example of how it is said.
+/// Refused parts that state nothing and name nothing, beside statements that were understood,
+/// become words left out of these.
 void readAgain(const FactReader& reader, const Grammar& grammar, const std::string& text,
                std::vector<Utterance>* utterances);
 
