@@ -234,6 +234,26 @@ TEST(DialogueQuestion, ForgettingEverythingIsAskedFirst) {
 
 // ---- Languages ----
 
+TEST(DialogueGo, ThereAndBackAreTwoWays) {
+  for (const char* said :
+       {"Go to the library and then come back here.", "Vai à library e depois volta para cá."}) {
+    Talk talk;
+    talk.say("This is the kitchen.");
+    talk.dialogue.name(2, {"library"});
+    const Reply reply = talk.dialogue.hear(said);
+    ASSERT_TRUE(reply.has(DialogueAction::Kind::kGo)) << said << reply.text();
+    ASSERT_EQ(reply.actions.front().legs.size(), 2u) << said;
+    EXPECT_EQ(reply.actions.front().legs.back().places.back(), 1u) << said;
+    EXPECT_TRUE(has(reply.text(), "kitchen")) << reply.text();
+  }
+}
+
+TEST(DialogueKnowledge, WhatIsOppositeIsNotWhatIsBeside) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  EXPECT_TRUE(has(talk.say("What is opposite the kitchen?"), "what is opposite kitchen"));
+}
+
 TEST(DialogueLanguage, OthersAreToldWhatItSpeaks) {
   for (const char* said :
        {"La cuisine est à gauche.", "Die Küche ist links.", "La cocina está a la izquierda.",

@@ -6,6 +6,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topo/topomerg/shared_walls.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 
 namespace hyselam_topo {
@@ -21,6 +22,21 @@ std::vector<Id> neighborsOf(const AugmentedTopologicalMap& map, const std::vecto
   }
   for (const Id place : places) all.erase(place);
   return {all.begin(), all.end()};
+}
+
+/// What has a door to them, and what lies behind their walls.
+std::vector<Id> placesBeside(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
+  std::vector<Id> all = neighborsOf(map, places);
+  const auto isIn = [](const std::vector<Id>& list, Id id) {
+    return std::find(list.begin(), list.end(), id) != list.end();
+  };
+  for (const SharedWall& wall : sharedWalls(map)) {
+    const Id a = map.places[wall.a].id, b = map.places[wall.b].id;
+    for (const auto& [here, there] : {std::pair(a, b), std::pair(b, a)}) {
+      if (isIn(places, here) && !isIn(places, there) && !isIn(all, there)) all.push_back(there);
+    }
+  }
+  return all;
 }
 
 bool hasClosedDoor(const AugmentedTopologicalMap& map, const RouteLeg& leg) {
@@ -59,6 +75,10 @@ void Dialogue::goTo(const Utterance& u, Turn& turn) {
       if (!both.empty()) found = both;
     }
     turn.goals.emplace_back(name.text, std::move(found));
+  }
+  const bool comes_back = !u.word("back").empty() && !turn.goals.empty();
+  if (comes_back && robot().place != 0) {
+    turn.goals.emplace_back(shortName(robot().place), std::vector<Id>{robot().place});
   }
 }
 
@@ -265,7 +285,7 @@ void Dialogue::answerNextTo(const Utterance& u, Turn& turn) {
   const Phrases& p = phrases();
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
-  const std::vector<Id> neighbors = neighborsOf(places_.map(), found);
+  const std::vector<Id> neighbors = placesBeside(places_.map(), found);
   const std::string place = shortName(found.front());
   if (neighbors.empty()) {
     out.sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
@@ -293,7 +313,7 @@ void Dialogue::answerOpposite(const Utterance& u, Turn& turn) {
   }
   const std::string place = names.empty() ? "" : names.front();
   if (described.empty()) {
-    out.sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
+    out.sentences.push_back(p.say("opposite_unknown", {{"place", place}}));
   } else {
     out.sentences.push_back(p.say("opposite", {{"place", place}, {"places", p.list(described)}}));
   }

@@ -110,11 +110,11 @@ void Dialogue::readBack(const DescribedBuilding& before, bool here_told, Reply& 
   const Phrases& p = phrases();
   const DescribedBuilding& after = builder_.building();
   DescribedBuilding known = before;
-  // Where the robot is is told by itself.
-  if (here_told && after.robot_place) {
+  // Where the robot is is told by itself, and the map's own name for it is nothing that was told.
+  const DescribedPlace* at = after.robot_place ? after.findPlace(*after.robot_place) : nullptr;
+  if (at != nullptr && (here_told || isCode(at->name))) {
     known.robot_place = after.robot_place;
-    const DescribedPlace* here = after.findPlace(*after.robot_place);
-    if (known.findPlace(here->id) == nullptr) known.places.push_back(*here);
+    if (known.findPlace(at->id) == nullptr) known.places.push_back(*at);
     std::sort(known.places.begin(), known.places.end(),
               [](const DescribedPlace& a, const DescribedPlace& b) { return a.id < b.id; });
   }

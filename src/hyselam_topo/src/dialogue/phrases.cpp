@@ -88,6 +88,7 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"way", "place length places"},
     {"next_to", "place places"},
     {"next_to_nothing", "place"},
+    {"opposite_unknown", "place"},
     {"opposite", "place places"},
     {"on_side", "side places"},
     {"nothing_on_side", "side"},

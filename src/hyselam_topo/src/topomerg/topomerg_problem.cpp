@@ -9,6 +9,7 @@
 
 #include "angles.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_topo/topomerg/shared_walls.hpp"
 #include "map_gaps.hpp"
 
 namespace hyselam_topo {
@@ -199,54 +200,19 @@ void addPassages(const AugmentedTopologicalMap& map, const Numbers& vertex, Matc
   }
 }
 
-/// Walls of two places that may be the two faces of one lie back to back, ...
-constexpr double kBackToBack = -0.9;  ///< product of their normals, at most
-constexpr double kThickest = 0.6;     ///< as far apart at most [m]
-/// ... and a door has room where they do.
-constexpr double kDoorWidth = 0.7;  ///< [m]
-
-/// Where wall `a` could have a door to what lies behind wall `b`: the middle of their common
-/// stretch.
-std::optional<hyselam::Point2> commonStretch(const Wall& a, const Wall& b) {
-  if (a.kind == WallKind::kVirtual || b.kind == WallKind::kVirtual) return std::nullopt;
-  if (a.normal.x * b.normal.x + a.normal.y * b.normal.y > kBackToBack) return std::nullopt;
-  const double dx = b.position.x - a.position.x, dy = b.position.y - a.position.y;
-  const double behind = -(a.normal.x * dx + a.normal.y * dy);
-  if (behind < -0.5 * kThickest || behind > kThickest) return std::nullopt;
-  const double offset = a.normal.x * dy - a.normal.y * dx;
-  const double low = std::max(-0.5 * a.length, offset - 0.5 * b.length);
-  const double high = std::min(0.5 * a.length, offset + 0.5 * b.length);
-  if (high - low < kDoorWidth) return std::nullopt;
-  const double along = 0.5 * (low + high);
-  return hyselam::Point2{a.position.x - along * a.normal.y - 0.5 * behind * a.normal.x,
-                         a.position.y + along * a.normal.x - 0.5 * behind * a.normal.y};
-}
-
 void addWalls(const AugmentedTopologicalMap& map, MatchProblem* out) {
-  std::vector<std::vector<MatchProblem::Passage>> walls(out->vertexCount());
-  std::vector<PlaceSet> behind(out->vertexCount());
-  bool any = false;
-  for (std::size_t a = 0; a < map.places.size(); ++a) {
-    for (std::size_t b = a + 1; b < map.places.size(); ++b) {
-      if (out->neighbors[a].contains(b)) continue;
-      for (const Wall& wall : map.places[a].walls) {
-        for (const Wall& other : map.places[b].walls) {
-          const auto at = commonStretch(wall, other);
-          if (!at) continue;
-          const double bearing = std::atan2(-wall.normal.y, -wall.normal.x);
-          const double c = std::cos(bearing), s = std::sin(bearing);
-          walls[a].push_back({b, bearing, c, s, at->x, at->y});
-          walls[b].push_back({a, std::atan2(-s, -c), -c, -s, at->x, at->y});
-          behind[a].insert(b);
-          behind[b].insert(a);
-          any = true;
-        }
-      }
-    }
+  const std::vector<SharedWall> all = sharedWalls(map);
+  if (all.empty()) return;
+  out->walls.resize(out->vertexCount());
+  out->across_walls.resize(out->vertexCount());
+  for (const SharedWall& wall : all) {
+    const double c = wall.normal.x, s = wall.normal.y;
+    out->walls[wall.a].push_back({wall.b, std::atan2(s, c), c, s, wall.middle.x, wall.middle.y});
+    out->walls[wall.b].push_back(
+        {wall.a, std::atan2(-s, -c), -c, -s, wall.middle.x, wall.middle.y});
+    out->across_walls[wall.a].insert(wall.b);
+    out->across_walls[wall.b].insert(wall.a);
   }
-  if (!any) return;
-  out->walls = std::move(walls);
-  out->across_walls = std::move(behind);
 }
 
 void addConstraints(const MatchConstraints& constraints, const Numbers& name, const Numbers& vertex,
