@@ -1,3 +1,4 @@
+#include <cmath>
 #include <sstream>
 
 #include "hyselam_common/binary_io.hpp"
@@ -5,6 +6,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "ngram_slam/semantics/semantic_forest.hpp"
+#include "ngram_slam/signatures/place_signature.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "ngram_slam/words/corpus.hpp"
 
@@ -106,10 +108,31 @@ void semanticForest(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+/// The rows of a model of place signatures, whose head and checksum are put right: refused, or
+/// written to what is read as the same.
+void signatureModel(const std::uint8_t* data, std::size_t size) {
+  std::string text =
+      "ngram_slam place signatures 1\ncommand: \ndata: \nin sample: \nout of sample: \nfeatures: " +
+      std::to_string(SignatureFeatures::kSize) +
+      " values: " + std::to_string(PlaceSignature::kSize) + "\n" +
+      hyselam::testing::textOf(data, size);
+  text += "crc32 " + hyselam::crc32Text(text) + "\n";
+  try {
+    const SignatureModel model = SignatureModel::parse(text, "fuzz");
+    const std::string again = model.text();
+    require(SignatureModel::parse(again, "fuzz").text() == again);
+    require(std::isfinite(model.logRatio({}, {})));
+  } catch (const hyselam::InputError&) {
+  }
+}
+
 }  // namespace
 }  // namespace ngram_slam
 
 std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   using namespace ngram_slam;  // NOLINT: its own targets
-  return {{"corpus", corpus}, {"slamState", slamState}, {"semanticForest", semanticForest}};
+  return {{"corpus", corpus},
+          {"slamState", slamState},
+          {"semanticForest", semanticForest},
+          {"signatureModel", signatureModel}};
 }

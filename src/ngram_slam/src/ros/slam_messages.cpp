@@ -129,9 +129,10 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   for (const SlamLoop& l : loops)
     addLine(&lines, keyframes[static_cast<std::size_t>(l.older)].pose,
             keyframes[static_cast<std::size_t>(l.newer)].pose, 0.1,
-            l.weight < 0.5                   ? color(0.9, 0.1, 0.1)
-            : l.source == LoopSource::kNgram ? color(0.85, 0.1, 0.75)
-                                             : color(0.1, 0.65, 0.25));
+            l.weight < 0.5                       ? color(0.9, 0.1, 0.1)
+            : l.source == LoopSource::kNgram     ? color(0.85, 0.1, 0.75)
+            : l.source == LoopSource::kSignature ? color(0.95, 0.55, 0.1)
+                                                 : color(0.1, 0.65, 0.25));
   add(std::move(lines));
 
   Marker links = marker(header, "region_links", Marker::LINE_LIST, 0.08);

@@ -154,6 +154,7 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "keyframes", engine.keyframes().size());
     addValue(status, "loops", engine.loops().size());
     addValue(status, "loops by words", c.words.accepted);
+    addValue(status, "loops by signatures", c.signatures.accepted);
     addValue(status, "matches of words", engine.matches().size());
     addValue(status, "regions", mapping_->regions.size());
     addValue(status, "optimizations", c.optimizations);

@@ -163,7 +163,7 @@ nlohmann::json toJson(const SlamCounters::Loops& l) {
 }
 
 struct FalseLoops {
-  std::size_t near = 0, far = 0, words = 0, matches = 0;
+  std::size_t near = 0, far = 0, words = 0, signatures = 0, matches = 0;
 };
 
 FalseLoops falseLoops(const SlamEngine& engine,
@@ -176,7 +176,10 @@ FalseLoops falseLoops(const SlamEngine& engine,
   FalseLoops count;
   for (const SlamLoop& l : engine.loops()) {
     if (!isFalse(l.older, l.newer, l.measured)) continue;
-    ++(l.source == LoopSource::kNgram ? count.words : l.far ? count.far : count.near);
+    ++(l.source == LoopSource::kNgram       ? count.words
+       : l.source == LoopSource::kSignature ? count.signatures
+       : l.far                              ? count.far
+                                            : count.near);
   }
   for (const SlamMatch& m : engine.matches()) {
     if (m.accepted && isFalse(m.keyframe_older, m.keyframe_newer, m.measured)) ++count.matches;
@@ -201,6 +204,7 @@ nlohmann::json errorOf(const SlamEngine& engine,
           {"false_loops_near", false_loops.near},
           {"false_loops_far", false_loops.far},
           {"false_loops_by_words", false_loops.words},
+          {"false_loops_by_signatures", false_loops.signatures},
           {"false_verified_matches", false_loops.matches},
           {"loops_without_weight", without_weight}};
 }
@@ -221,6 +225,7 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
                       {"loops_near", toJson(c.near)},
                       {"loops_far", toJson(c.far)},
                       {"loops_by_words", toJson(c.words)},
+                      {"loops_by_signatures", toJson(c.signatures)},
                       {"optimizations", c.optimizations},
                       {"scans_searched", c.relocalized},
                       {"scans_weak", c.weak_matches},
@@ -360,9 +365,10 @@ int main(int argc, char** argv) {
   hyselam::addBagOptions(app, &o.bag_options);
   app.add_option("--levels", o.levels, "levels of words");
   app.add_option("--seed", o.seed, "of the errors of --odometry-noise");
-  app.add_option("--loops", o.loops,
-                 "none, proximity, ngrams (far places by words only), all, or thesis (words "
-                 "accepted without verification)");
+  app.add_option(
+      "--loops", o.loops,
+      "none, proximity, ngrams (far places by words only), signatures (far places by their "
+      "signatures only), all, or thesis (words accepted without verification)");
   app.add_option("--reference", o.reference,
                  "poses to compare with: TUM, or a table with one pose for each scan");
   app.add_option("--resolution", o.resolution, "of the map [m]");

@@ -56,4 +56,16 @@ std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector
                                          const std::vector<SlamKeyframe>& keyframes,
                                          const LoopParams& params);
 
+/// What the loops close to one along the newer path say of it: in a building that repeats itself
+/// they find several places, of which at most one is right.
+struct LoopCompany {
+  double support = 0.0;        ///< sum of the inlier ratios of those that agree, its own included
+  double contradiction = 0.0;  ///< and of those that cannot be right if it is
+  bool isTrusted(const LoopParams& params) const {
+    return contradiction < params.max_contradiction * support;
+  }
+};
+LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
+                      const std::vector<SlamKeyframe>& keyframes, const LoopParams& params);
+
 }  // namespace ngram_slam

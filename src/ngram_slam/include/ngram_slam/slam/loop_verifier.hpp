@@ -27,8 +27,11 @@ struct LoopTask {
   hyselam::Pose2 initial_guess;  ///< newer in older
   double window = 1.0;           ///< search window around it, +- along each axis [m]
   double angle = 0.3;            ///< search window of headings, +- [rad]
-  Segment old_segment;           ///< in the frame of `older`
-  Segment new_segment;           ///< in the frame of `newer`; one scan when near
+  /// The heading of the guess is not known: those are searched at which what is around both
+  /// segments fits best, the second where the first fails.
+  bool any_heading = false;
+  Segment old_segment;  ///< in the frame of `older`
+  Segment new_segment;  ///< in the frame of `newer`; one scan when near
 };
 
 struct LoopVerification {

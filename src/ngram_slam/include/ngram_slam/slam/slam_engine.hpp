@@ -18,22 +18,28 @@
 #include "hyselam_scan_matching/surface_map.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
+#include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 #include "ngram_slam/slam/word_places.hpp"
 
 namespace ngram_slam {
 
-/// Work that does not access the engine: loops to verify or a graph to optimize.
+/// Work that does not access the engine: loops to verify, a graph to optimize, keyframes to be
+/// recognized by their signatures. To be run once.
 struct SlamJob {
   SlamParams params;
   std::vector<LoopTask> tasks;
   std::optional<hyselam_pose_graph::PoseGraph> graph;
+  std::vector<SignatureKeyframe> keyframes;     ///< the next ones
+  bool ends_run = false;                        ///< with the last of them
+  std::shared_ptr<SignaturePlaces> signatures;  ///< what keyframes are added to; null: none are
 };
 struct SlamJobResult {
   std::vector<LoopTask> tasks;  ///< of the job, without the scans of their path segments
   std::vector<LoopVerification> verifications;
   std::optional<hyselam_pose_graph::OptimizeResult> optimized;
+  std::vector<SignatureCandidate> candidates;
 };
 /// Deterministic and thread-safe.
 SlamJobResult runJob(const SlamJob& job);
@@ -145,6 +151,9 @@ class SlamEngine {
     std::vector<double> requested;     // path lengths of the older keyframes of far loops
   };
 
+  bool usesSignatures() const {
+    return params_.loops == LoopClosureMode::kSignatures || params_.loops == LoopClosureMode::kAll;
+  }
   bool usesWords() const {
     return params_.loops == LoopClosureMode::kNgrams || params_.loops == LoopClosureMode::kAll ||
            params_.loops == LoopClosureMode::kThesis;
@@ -183,8 +192,11 @@ class SlamEngine {
   void addWordMatches(WordPlaces::Update update);
   void addUnverifiedLoop(SlamMatch* match);  // of LoopClosureMode::kThesis
   void searchWordLoop(std::int64_t match, WordSearch* search);
+  void queueSavedKeyframes();
+  void queueKeyframe(int keyframe, const hyselam::Pose2* motion);
+  void searchSignatureLoops(const std::vector<SignatureCandidate>& candidates);
   void requestVerification(const LoopGuess& guess);
-  LoopTask::Segment segmentAround(int keyframe, double half_length, double max_path_length) const;
+  SlamCounters::Loops& counterOf(LoopSource source, bool far);
   void applyVerification(const LoopTask& task, const LoopVerification& answer);
   void addFarLoop(const SlamLoop& loop);
   void acceptFarLoop(const SlamLoop& loop);
@@ -196,7 +208,11 @@ class SlamEngine {
 
   SlamParams params_;
   SlamState state_;
-  WordPlaces words_;  // the words of the path and their n-gram matches
+  WordPlaces words_;                             // the words of the path and their n-gram matches
+  std::shared_ptr<SignaturePlaces> signatures_;  // used by jobs only
+  std::vector<SignatureKeyframe> keyframes_to_sign_;  // for the next job
+  bool run_to_end_ = false;                           // behind them
+  int first_to_recognize_ = 0;                        // keyframe: older ones were, before
   GraphPathLengths path_lengths_;
   hyselam_scan_matching::SurfaceMap local_map_;
   std::vector<LoopTask> tasks_;

@@ -13,6 +13,7 @@
 #include "hyselam_scan_matching/icp.hpp"
 #include "hyselam_scan_matching/surface_points.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/words/observation_sensor.hpp"
 
 namespace ngram_slam {
@@ -34,14 +35,15 @@ struct OdometryNoise {
 /// Which loop closure candidates are used.
 enum class LoopClosureMode {
   kNone,
-  kProximity,  ///< candidates from the pose estimate, verified by the scans
-  kNgrams,     ///< near candidates as kProximity, far ones from n-gram matches; verified
-  kAll,        ///< far candidates from proximity and n-grams; verified
+  kProximity,   ///< candidates from the pose estimate, verified by the scans
+  kNgrams,      ///< near candidates as kProximity, far ones from n-gram matches; verified
+  kSignatures,  ///< near candidates as kProximity, far ones from signatures of places; verified
+  kAll,         ///< far candidates from proximity, n-grams and signatures; verified
   /// Candidates from n-gram matches, not verified: relative pose set to identity (turned by pi for
   /// reverse matches), with fixed information (5.2.4).
   kThesis
 };
-/// "none", "proximity", "ngrams", "all", "thesis".
+/// "none", "proximity", "ngrams", "signatures", "all", "thesis".
 const char* toString(LoopClosureMode mode);
 /// @throws hyselam::ParameterError `loops` for any other text.
 LoopClosureMode loopClosureModeFromString(const std::string& text);
@@ -109,7 +111,7 @@ struct LoopParams {
   double far_min_inlier_ratio = 0.35;  ///< fraction of the points on known surfaces, 0..1
   /// Of the points in space observed by the other segment, the fraction on its surfaces instead of
   /// in its free space; required in both directions, 0..1.
-  double far_min_surface_ratio = 0.8;
+  double far_min_surface_ratio = 0.85;
   int far_max_points = 250;           ///< points used in the search, >= 1
   int far_max_refined_points = 1000;  ///< points used to refine the pose found, >= 1
 
@@ -128,6 +130,10 @@ struct LoopParams {
   /// Matches of a new word that are closer than this along the old path are tried once [m], >= 0.
   double word_candidate_spacing = 5.0;
   int word_max_candidates = 4;  ///< far loops tried for one new word, >= 1
+
+  // Candidates from signatures of places, at any heading.
+  double signature_search_window = 3.0;  ///< search window around the older place [m], > 0
+  double signature_search_angle = 0.4;   ///< of headings around the likeliest ones, +- [rad], 0..pi
 
   // Candidate selection: uncertainty of an older keyframe relative to the current one, by the
   // length of the shortest path through the graph.
@@ -153,6 +159,11 @@ struct LoopParams {
   double consistency_distance_per_meter = 0.02;  ///< added per meter of path between them, >= 0
   double consistency_angle = 0.06;  ///< maximum heading error between two loops [rad], > 0
 
+  /// Far loops from this much path, before and after, that contradict a far loop must weigh less
+  /// than this part of those that do not, [m] and > 0; 0 m: they are not asked.
+  double company_half_length = 10.0;
+  double max_contradiction = 0.5;
+
   double thesis_position_stddev = 0.5;  ///< position, for edges of kThesis [m], > 0
   double thesis_heading_stddev = 0.2;   ///< heading, for edges of kThesis [rad], > 0
 
@@ -162,6 +173,11 @@ struct LoopParams {
     return position_uncertainty +
            (position_uncertainty_per_meter + position_uncertainty_per_square_meter * path_length) *
                path_length;
+  }
+  /// How far two keyframes may lie apart [m] by odometry after `path_length` [m] if they show the
+  /// same place.
+  double signatureReach(double path_length) const {
+    return positionUncertainty(path_length) + visibility_margin + 1.0;
   }
 };
 
@@ -202,6 +218,7 @@ struct SlamParams {
   LoopClosureMode loops = LoopClosureMode::kAll;
   LoopParams loop;
   ObservationSensorParams observations;  ///< densities along the path
+  SignaturePlacesParams signatures;      ///< signatures of places and their candidates
   NgramRecognizerParams words;           ///< segmentation into words and their n-gram matches
 
   int optimize_interval = 20;  ///< keyframes between optimizations when there are new loops, >= 1

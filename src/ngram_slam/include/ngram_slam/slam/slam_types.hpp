@@ -31,7 +31,7 @@ struct PlacedScan {
   hyselam::Pose2 base_in_keyframe;
 };
 
-enum class LoopSource : std::uint8_t { kProximity, kNgram };
+enum class LoopSource : std::uint8_t { kProximity, kNgram, kSignature };
 
 /// A loop of less weight contradicts the others so much that it is not used.
 constexpr double kMinLoopWeight = 0.3;
@@ -74,6 +74,7 @@ struct SlamCounters {
   struct Loops {
     std::uint64_t tried = 0, verified = 0, accepted = 0;
   } near, far, words;
+  Loops signatures;  ///< since the process began: not saved
 };
 
 /// The serialized state. With SlamParams it restores the engine, except for the observations of the

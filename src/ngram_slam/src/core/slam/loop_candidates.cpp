@@ -115,4 +115,28 @@ std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector
   return out;
 }
 
+LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
+                      const std::vector<SlamKeyframe>& keyframes, const LoopParams& params) {
+  LoopCompany company{loop.inlier_ratio, 0.0};
+  const SlamKeyframe& here = keyframes[static_cast<std::size_t>(loop.newer)];
+  for (const SlamLoop& other : others) {
+    const SlamKeyframe& there = keyframes[static_cast<std::size_t>(other.newer)];
+    if (other.newer == loop.newer && other.older == loop.older) continue;
+    if (here.run != there.run ||
+        std::abs(here.path_length - there.path_length) > params.company_half_length) {
+      continue;
+    }
+    const LoopInconsistency c = loopInconsistency(loop, other, keyframes);
+    if (!std::isfinite(c.path_length)) continue;
+    // As much as odometry may be off between the two places.
+    const double max_distance = params.positionUncertainty(c.path_length) + 1.0;
+    const double max_angle = std::min(
+        3.0,
+        3.0 * (params.heading_uncertainty + params.heading_uncertainty_per_meter * c.path_length));
+    (c.distance > max_distance || c.angle > max_angle ? company.contradiction : company.support) +=
+        other.inlier_ratio;
+  }
+  return company;
+}
+
 }  // namespace ngram_slam

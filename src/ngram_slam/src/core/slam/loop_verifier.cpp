@@ -1,9 +1,11 @@
 #include "ngram_slam/slam/loop_verifier.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hyselam_scan_matching/correlative_matcher.hpp"
 #include "hyselam_scan_matching/icp.hpp"
+#include "ngram_slam/slam/segment_context.hpp"
 
 namespace ngram_slam {
 
@@ -18,6 +20,10 @@ using hyselam_scan_matching::SurfacePoints;
 
 // A far search scores points up to this many cells from a surface.
 constexpr double kFarInlierCells = 3.0;
+// Of the surroundings that tell how two segments are turned to each other.
+constexpr double kContextHalfLength = 5.0;  // [m]
+constexpr double kContextCell = 0.2;        // [m]
+constexpr std::size_t kTurns = 2;           // that are tried
 
 /// Every n-th point, so that about `max_points` remain.
 SurfacePoints thinned(const SurfacePoints& points, int max_points) {
@@ -48,6 +54,26 @@ SurfacePoints newPoints(const LoopTask& task, const LoopParams& p) {
   return transformed(task.new_segment[0].pose, *task.new_segment[0].points);
 }
 
+/// Cells as coarse as those of a place's context, around the keyframe that the segment belongs to.
+SurfacePoints pointsAround(const LoopTask::Segment& segment) {
+  LoopTask::Segment near;
+  for (const LoopTask::PosedScan& s : segment) {
+    if (std::hypot(s.pose.x, s.pose.y) <= kContextHalfLength) near.push_back(s);
+  }
+  return mapOf(near, kContextCell).points();
+}
+
+/// Where the new segment is searched, until it is found.
+std::vector<hyselam::Pose2> guessesOf(const LoopTask& task) {
+  if (!task.any_heading) return {task.initial_guess};
+  std::vector<hyselam::Pose2> guesses;
+  for (const double turn :
+       likelyTurns(pointsAround(task.old_segment), pointsAround(task.new_segment), kTurns)) {
+    guesses.push_back({task.initial_guess.x, task.initial_guess.y, turn});
+  }
+  return guesses;
+}
+
 CorrelativeMatcherParams searchParams(const LoopTask& task, const LoopParams& p) {
   CorrelativeMatcherParams s;
   s.linear_window = task.window;
@@ -65,11 +91,17 @@ std::optional<CorrelativeMatch> searchUnambiguousPose(const LoopTask& task, cons
                                                       LoopVerification* answer) {
   const CorrelativeMatcher grid(old_map, searchParams(task, p));
   const SurfacePoints few = thinned(points, task.far ? p.far_max_points : p.near_max_points);
-  const auto found = grid.match(few, task.initial_guess);
+  std::optional<CorrelativeMatch> found;
+  hyselam::Pose2 guess;
+  for (const hyselam::Pose2& g : guessesOf(task)) {
+    guess = g;
+    found = grid.match(few, guess);
+    if (found) break;
+  }
   if (!found) return std::nullopt;
   answer->score = found->score;
   if (task.far && p.max_ambiguity_ratio < 1.0) {
-    const auto other = grid.secondBest(few, task.initial_guess, found->pose, p.ambiguity_distance,
+    const auto other = grid.secondBest(few, guess, found->pose, p.ambiguity_distance,
                                        p.max_ambiguity_ratio * found->score);
     if (other) {
       answer->ambiguous_score = other->score;

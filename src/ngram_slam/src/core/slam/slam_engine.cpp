@@ -69,8 +69,14 @@ SlamEngine::SlamEngine(const SlamParams& params, SlamState state)
       words_(params.observations, params.words, std::move(state_.corpus)),
       local_map_(params.local_map_resolution) {
   state_.corpus = {};
+  if (usesSignatures()) {
+    signatures_ = std::make_shared<SignaturePlaces>(
+        params.signatures,
+        [p = params.loop](double path_length) { return p.signatureReach(path_length); });
+  }
   rebuildPathLengths();
   if (state_.keyframes.empty()) return;
+  queueSavedKeyframes();
   const SlamKeyframe& last = state_.keyframes.back();
   path_length_ = last.path_length;
   far_search_path_length_ = path_length_;
@@ -243,6 +249,7 @@ void SlamEngine::addKeyframe(const hyselam::LaserScan& scan, Points points, cons
     state_.odometry.push_back(*edge);
     path_lengths_.addEdge(edge->from, edge->to, std::hypot(edge->measured.x, edge->measured.y));
   }
+  queueKeyframe(lastKeyframe(), edge == nullptr ? nullptr : &edge->measured);
   rebuildLocalMap();
 }
 

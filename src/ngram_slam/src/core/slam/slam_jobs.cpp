@@ -16,6 +16,9 @@ using hyselam_pose_graph::GraphStart;
 using hyselam_pose_graph::OptimizeParams;
 using hyselam_pose_graph::OptimizeResult;
 
+// A job is made of no fewer, about 2 m of path.
+constexpr std::size_t kKeyframesToSign = 8;
+
 /// The number of edges that the result agrees with.
 std::size_t inlierEdges(const OptimizeResult& r) {
   return static_cast<std::size_t>(std::count_if(r.weights.begin(), r.weights.end(),
@@ -56,6 +59,12 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
   const bool due = final || optimize_now_ || n - optimized_keyframes_ >= params_.optimize_interval;
   if (!tasks_.empty()) {
     job.tasks.swap(tasks_);
+  } else if (keyframes_to_sign_.size() >= kKeyframesToSign || run_to_end_ ||
+             (final && !keyframes_to_sign_.empty())) {
+    job.keyframes.swap(keyframes_to_sign_);
+    job.ends_run = run_to_end_;
+    job.signatures = signatures_;
+    run_to_end_ = false;
   } else if (loops_changed_ && due) {
     job.graph = graph();
     job_odometry_edges_ = state_.odometry.size();
@@ -79,6 +88,12 @@ SlamJobResult runJob(const SlamJob& job) {
     result.tasks.push_back(std::move(done));
   }
   if (job.graph) result.optimized = optimize(*job.graph, job.params);
+  if (job.signatures == nullptr) return result;
+  const auto take = [&](const std::vector<SignatureCandidate>& candidates) {
+    result.candidates.insert(result.candidates.end(), candidates.begin(), candidates.end());
+  };
+  for (const SignatureKeyframe& k : job.keyframes) take(job.signatures->add(k));
+  if (job.ends_run) take(job.signatures->endRun());
   return result;
 }
 
@@ -87,6 +102,7 @@ void SlamEngine::apply(const SlamJobResult& result) {
   for (std::size_t i = 0; i < result.tasks.size() && i < result.verifications.size(); ++i) {
     applyVerification(result.tasks[i], result.verifications[i]);
   }
+  searchSignatureLoops(result.candidates);
   if (!result.optimized || result.optimized->poses.empty()) return;
   const auto& optimized = *result.optimized;
   const std::size_t n = optimized.poses.size();

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "ngram_slam/slam/path_segment.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
@@ -46,7 +47,10 @@ void SlamEngine::searchLoopClosures() {
   if (params_.loops == LoopClosureMode::kNone || params_.loops == LoopClosureMode::kThesis) return;
   const LoopParams& p = params_.loop;
   if (lastKeyframe() % p.near_search_interval == 0) searchNearLoops();
-  if (params_.loops == LoopClosureMode::kNgrams) return;  // far ones by words only
+  // Far ones by words only, or by signatures only.
+  if (params_.loops == LoopClosureMode::kNgrams || params_.loops == LoopClosureMode::kSignatures) {
+    return;
+  }
   if (path_length_ - far_search_path_length_ >= p.far_search_interval) searchFarLoops();
 }
 
@@ -168,24 +172,73 @@ int SlamEngine::keyframeAt(double stamp) const {
   return static_cast<int>((after == begin ? begin : after - 1) - state_.keyframes.begin());
 }
 
+// ---- by signatures
+
+/// Those of a saved map, whose signatures are not saved.
+void SlamEngine::queueSavedKeyframes() {
+  first_to_recognize_ = static_cast<int>(state_.keyframes.size());
+  if (!usesSignatures()) return;
+  std::vector<const Pose2*> motions(state_.keyframes.size(), nullptr);
+  for (const auto& e : state_.odometry) {
+    if (e.from + 1 == e.to) motions[static_cast<std::size_t>(e.to)] = &e.measured;
+  }
+  for (int k = 0; k < first_to_recognize_; ++k) {
+    queueKeyframe(k, motions[static_cast<std::size_t>(k)]);
+  }
+  run_to_end_ = true;
+}
+
+/// `motion`: from the keyframe before; null at the beginning of a run.
+void SlamEngine::queueKeyframe(int k, const Pose2* motion) {
+  if (!usesSignatures()) return;
+  if (motion == nullptr) run_to_end_ = false;  // this one tells it
+  keyframes_to_sign_.push_back(
+      {k, motion == nullptr, motion == nullptr ? Pose2{} : *motion, keyframe(k).scan});
+}
+
+/// Requests the verification of candidates of which the graph knows nothing better.
+void SlamEngine::searchSignatureLoops(const std::vector<SignatureCandidate>& candidates) {
+  const LoopParams& p = params_.loop;
+  int searched = -1;
+  std::vector<double> path_lengths;
+  for (const SignatureCandidate& c : candidates) {
+    if (c.keyframe_newer < first_to_recognize_ || c.keyframe_newer <= c.keyframe_older) continue;
+    const SlamKeyframe& newer = keyframe(c.keyframe_newer);
+    const SlamKeyframe& older = keyframe(c.keyframe_older);
+    if (newer.run == older.run && newer.path_length - older.path_length < p.min_path_length) {
+      continue;
+    }
+    if (c.keyframe_newer != searched) {
+      searched = c.keyframe_newer;
+      path_lengths = path_lengths_.from(searched);
+    }
+    const double length = path_lengths[static_cast<std::size_t>(c.keyframe_older)];
+    const double uncertainty = p.positionUncertainty(length);
+    if (uncertainty <= p.near_max_uncertainty) continue;  // searchNearLoops() looks there
+    // addFarLoop() would not believe what is found.
+    if (std::isfinite(length) && distance(newer.pose, older.pose) > uncertainty +
+                                                                        p.visibility_margin +
+                                                                        p.signature_search_window) {
+      continue;
+    }
+    requestVerification({c.keyframe_older,
+                         c.keyframe_newer,
+                         true,
+                         LoopSource::kSignature,
+                         {0.0, 0.0, c.direction == Direction::kReverse ? hyselam::kPi : 0.0},
+                         p.signature_search_window,
+                         p.signature_search_angle,
+                         kNoMatch});
+  }
+}
+
 // ---- verification
 
-LoopTask::Segment SlamEngine::segmentAround(int k, double half_length,
-                                            double max_path_length) const {
-  const SlamKeyframe& middle = keyframe(k);
-  LoopTask::Segment segment;
-  const auto belongs = [&](int other) {
-    return keyframe(other).run == middle.run &&
-           std::abs(keyframe(other).path_length - middle.path_length) <= half_length;
-  };
-  int first = k;
-  while (first > 0 && belongs(first - 1)) --first;
-  for (int i = first; i <= lastKeyframe() && belongs(i); ++i) {
-    const SlamKeyframe& other = keyframe(i);
-    if (other.path_length > max_path_length) break;
-    segment.push_back({between(middle.pose, other.pose), other.points, laserOf(other)});
-  }
-  return segment;
+SlamCounters::Loops& SlamEngine::counterOf(LoopSource source, bool far) {
+  SlamCounters& c = state_.counters;
+  if (source == LoopSource::kNgram) return c.words;
+  if (source == LoopSource::kSignature) return c.signatures;
+  return far ? c.far : c.near;
 }
 
 void SlamEngine::requestVerification(const LoopGuess& guess) {
@@ -201,29 +254,25 @@ void SlamEngine::requestVerification(const LoopGuess& guess) {
   task.window = guess.window;
   task.angle = std::min(guess.angle, hyselam::kPi);
   task.match = guess.match;
+  task.any_heading = guess.source == LoopSource::kSignature;
   // The new segment must not be compared with itself.
   const double max_path_length =
       older.run == newer.run ? newer.path_length - p.segment_separation : kInfinity;
   const double half_length = guess.far ? p.far_old_segment_half_length : p.near_segment_half_length;
-  task.old_segment = segmentAround(guess.older, half_length, max_path_length);
+  task.old_segment = segmentAround(state_.keyframes, guess.older, half_length, max_path_length);
   if (guess.far) {
-    task.new_segment = segmentAround(guess.newer, p.far_new_segment_half_length, kInfinity);
+    task.new_segment =
+        segmentAround(state_.keyframes, guess.newer, p.far_new_segment_half_length, kInfinity);
   } else {
     task.new_segment.push_back({Pose2{}, newer.points, laserOf(newer)});
   }
-  if (guess.match != kNoMatch) {
-    state_.matches[static_cast<std::size_t>(guess.match)].tried = true;
-    ++state_.counters.words.tried;
-  } else {
-    ++(guess.far ? state_.counters.far : state_.counters.near).tried;
-  }
+  if (guess.match != kNoMatch) state_.matches[static_cast<std::size_t>(guess.match)].tried = true;
+  ++counterOf(guess.source, guess.far).tried;
   tasks_.push_back(std::move(task));
 }
 
 void SlamEngine::applyVerification(const LoopTask& task, const LoopVerification& answer) {
-  SlamCounters::Loops& count = task.source == LoopSource::kNgram ? state_.counters.words
-                               : task.far                        ? state_.counters.far
-                                                                 : state_.counters.near;
+  SlamCounters::Loops& count = counterOf(task.source, task.far);
   if (!answer.verified) return;
   ++count.verified;
   SlamMatch* match =
@@ -274,6 +323,12 @@ void SlamEngine::addFarLoop(const SlamLoop& loop) {
     return;
   }
   std::vector<SlamLoop>& pending = state_.pending_loops;
+  std::vector<SlamLoop> others = accepted;
+  others.insert(others.end(), pending.begin(), pending.end());
+  if (!companyOf(loop, others, state_.keyframes, p).isTrusted(p)) {
+    pending.push_back(loop);
+    return;
+  }
   const std::vector<std::size_t> group = consistentLoops(loop, pending, state_.keyframes, p);
   double first = keyframe(loop.newer).path_length, last = first;
   for (const std::size_t i : group) {
@@ -295,9 +350,7 @@ void SlamEngine::addFarLoop(const SlamLoop& loop) {
 }
 
 void SlamEngine::acceptFarLoop(const SlamLoop& loop) {
-  SlamCounters::Loops& count =
-      loop.source == LoopSource::kNgram ? state_.counters.words : state_.counters.far;
-  ++count.accepted;
+  ++counterOf(loop.source, true).accepted;
   for (SlamMatch& m : state_.matches) {
     if (m.keyframe_newer == loop.newer && m.keyframe_older == loop.older && m.verified) {
       m.accepted = true;

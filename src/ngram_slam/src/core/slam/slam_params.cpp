@@ -15,11 +15,9 @@ namespace {
 
 const std::vector<std::pair<std::string, LoopClosureMode>>& loopClosureModes() {
   static const std::vector<std::pair<std::string, LoopClosureMode>> modes = {
-      {"none", LoopClosureMode::kNone},
-      {"proximity", LoopClosureMode::kProximity},
-      {"ngrams", LoopClosureMode::kNgrams},
-      {"all", LoopClosureMode::kAll},
-      {"thesis", LoopClosureMode::kThesis}};
+      {"none", LoopClosureMode::kNone},     {"proximity", LoopClosureMode::kProximity},
+      {"ngrams", LoopClosureMode::kNgrams}, {"signatures", LoopClosureMode::kSignatures},
+      {"all", LoopClosureMode::kAll},       {"thesis", LoopClosureMode::kThesis}};
   return modes;
 }
 
@@ -50,7 +48,8 @@ LoopClosureMode loopClosureModeFromString(const std::string& text) {
   for (const auto& [name, value] : loopClosureModes()) {
     if (name == text) return value;
   }
-  throw hyselam::ParameterError("loops", text, "none, proximity, ngrams, all or thesis");
+  throw hyselam::ParameterError("loops", text,
+                                "none, proximity, ngrams, signatures, all or thesis");
 }
 
 void OdometryNoise::describe(ParameterVisitor& visit) {
@@ -151,6 +150,10 @@ void describeVerification(LoopParams& p, ParameterVisitor& visit) {
         "of old path; matches of a new word closer than this are tried once");
   visit("word_max_candidates", p.word_max_candidates, kCount, "",
         "far loops tried for one new word");
+  visit("signature_search_window", p.signature_search_window, kPositive, "m",
+        "positions searched around a place with a like signature");
+  visit("signature_search_angle", p.signature_search_angle, kAngle, "rad",
+        "headings searched around the likeliest ones there");
 }
 
 void describeCandidates(LoopParams& p, ParameterVisitor& visit) {
@@ -190,6 +193,10 @@ void describeConsistency(LoopParams& p, ParameterVisitor& visit) {
         "... and this part of the path between them");
   visit("consistency_angle", p.consistency_angle, kPositive, "rad",
         "and in heading by no more than this");
+  visit("company_half_length", p.company_half_length, kNotNegative, "m",
+        "of path before and after a far loop, whose far loops are asked; 0: none");
+  visit("max_contradiction", p.max_contradiction, kPositive, "",
+        "those that contradict it weigh less than this part of those that do not");
   visit("thesis_position_stddev", p.thesis_position_stddev, kPositive, "m",
         "of the edges of loops = thesis");
   visit("thesis_heading_stddev", p.thesis_heading_stddev, kPositive, "rad",
@@ -238,6 +245,7 @@ void SlamParams::describe(ParameterVisitor& visit) {
   visit.group("relocalization/", relocalization);
   visit.group("run_start/", run_start);
   visit.group("loop/", loop);
+  visit.group("signatures/", signatures);
   visit.renamed("optimise_every", "optimize_interval");
   visit("optimize_interval", optimize_interval, kCount, "keyframes",
         "between optimizations when there are new loops");
@@ -249,6 +257,8 @@ SlamParams::SlamParams() : words(NgramRecognizerParams::improved()) {
   observations.look_back = observations.bandwidth + 0.5;
   // The scans are asked afterwards: words need not be sure.
   words.min_probability = 0.2;
+  // Nor need signatures; each candidate costs the time to verify it.
+  signatures.recognizer.max_candidates = 5;
 }
 
 SlamParams SlamParams::thesis(int levels) {
@@ -268,6 +278,7 @@ void SlamParams::validate() const {
   refine.validate();
   observations.validate();
   words.validate();
+  signatures.validate();
 }
 
 }  // namespace ngram_slam

@@ -31,6 +31,7 @@ void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle)
 void SlamEngine::endRun() {
   if (!run_open_) return;
   if (usesWords()) addWordMatches(words_.finish());
+  run_to_end_ = usesSignatures();
   run_open_ = false;
 }
 

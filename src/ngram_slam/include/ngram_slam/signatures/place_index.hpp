@@ -1,0 +1,64 @@
+// Finds the places whose signatures are likeliest to be of the same place as a given one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ngram_slam/signatures/place_signature.hpp"
+
+namespace ngram_slam {
+
+/// Beside the signatures stands a grid over the values that tell places apart best: a search looks
+/// into its cells from the nearest on, until it has seen enough places. Cost: with the places of
+/// the cells that are looked into, bounded by kMaxSeen.
+class PlaceIndex {
+ public:
+  struct Found {
+    std::uint32_t place = 0;
+    float score = 0.0F;  ///< SignatureModel::logRatio()
+    bool operator<(const Found& o) const {
+      return score != o.score ? score > o.score : place < o.place;
+    }
+  };
+  /// Fewer places than this are all compared.
+  static constexpr std::uint32_t kFew = 8192;
+  /// Places that a search compares at most.
+  static constexpr std::size_t kMaxSeen = 8192;
+
+  /// `model` must outlive the index.
+  explicit PlaceIndex(const SignatureModel& model);
+
+  /// Returns its number, counted from 0.
+  std::uint32_t add(const PlaceSignature& signature);
+  std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
+  const PlaceSignature& operator[](std::uint32_t i) const { return places_[i]; }
+
+  /// The `count` best of the places below `end`, best first.
+  std::vector<Found> search(const PlaceSignature& wanted, std::size_t count,
+                            std::uint32_t end) const;
+  /// The same, compared with all of them.
+  std::vector<Found> searchAll(const PlaceSignature& wanted, std::size_t count,
+                               std::uint32_t end) const;
+  /// A signature made ready to be compared with many.
+  struct Question {
+    std::array<std::int16_t, PlaceSignature::kSize> weights;
+    float constant, scale;
+  };
+  Question questionOf(const PlaceSignature& wanted) const;
+  /// As SignatureModel::logRatio(), but for rounding.
+  float score(const Question& question, std::uint32_t place) const;
+  std::size_t bytes() const;
+
+ private:
+  static constexpr std::size_t kGridValues = 6, kLevels = 4, kCells = 4096;
+  static std::size_t cellOf(const PlaceSignature& signature);
+  std::vector<std::uint16_t> nearestCells(const PlaceSignature& wanted) const;
+
+  const SignatureModel* model_;
+  std::vector<PlaceSignature> places_;
+  std::vector<float> own_;                         // SignatureModel::own() of each
+  std::vector<std::vector<std::uint32_t>> cells_;  // places, rising
+};
+
+}  // namespace ngram_slam

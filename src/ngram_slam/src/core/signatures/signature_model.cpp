@@ -1,0 +1,196 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/checksum.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/numbers.hpp"
+#include "ngram_slam/signatures/place_signature.hpp"
+
+namespace ngram_slam {
+
+namespace {
+
+constexpr const char* kMagic = "ngram_slam place signatures 1";
+constexpr const char* kSumName = "crc32 ";
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+constexpr double kLargest = 1e6;  // of any number of a model
+// A value is told up to so many standard deviations among all places.
+constexpr double kTold = 4.0;
+
+struct OriginLine {
+  const char* name;
+  std::string SignatureOrigin::*member;
+};
+constexpr std::array<OriginLine, 4> kOriginLines{
+    {{"command: ", &SignatureOrigin::command},
+     {"data: ", &SignatureOrigin::data},
+     {"in sample: ", &SignatureOrigin::in_sample},
+     {"out of sample: ", &SignatureOrigin::out_of_sample}}};
+
+std::string sizesLine() {
+  return "features: " + std::to_string(SignatureFeatures::kSize) +
+         " values: " + std::to_string(PlaceSignature::kSize);
+}
+
+/// Six digits: the model in memory is the one that is read back.
+std::string shortText(float value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", static_cast<double>(value));
+  return text;
+}
+float rounded(float value) {
+  return static_cast<float>(hyselam::parseNumber(shortText(value)).value_or(0.0));
+}
+
+void check(const char* name, float value, double least) {
+  if (!(value > least && value < kLargest)) {
+    throw hyselam::ParameterError(name, static_cast<double>(value),
+                                  least < 0.0 ? "finite, below 1e6" : "above 1, below 1e6");
+  }
+}
+
+}  // namespace
+
+SignatureModel::SignatureModel(std::vector<Row> rows, std::vector<float> offsets,
+                               std::vector<float> variances, SignatureOrigin origin)
+    : rows_(std::move(rows)),
+      offsets_(std::move(offsets)),
+      variances_(std::move(variances)),
+      origin_(std::move(origin)) {
+  if (rows_.size() != kSize || offsets_.size() != kSize || variances_.size() != kSize) {
+    throw hyselam::ParameterError("rows", rows_.size(), std::to_string(kSize));
+  }
+  for (Row& row : rows_) {
+    for (float& value : row) {
+      check("weight", value, -kLargest);
+      value = rounded(value);
+    }
+  }
+  double constant = 0.0;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    check("offset", offsets_[i], -kLargest);
+    check("variance", variances_[i], 1.0);
+    offsets_[i] = rounded(offsets_[i]);
+    variances_[i] = rounded(variances_[i]);
+    const double all = std::max(1.0 + 1e-6, static_cast<double>(variances_[i])), shared = all - 1.0;
+    const double determinant = all * all - shared * shared;
+    const double step = kTold * std::sqrt(all) / 127.0;
+    steps_.push_back(static_cast<float>(step));
+    constant -= 0.5 * (std::log(determinant) - 2.0 * std::log(all));
+    square_[i] = static_cast<float>(-0.5 * (all / determinant - 1.0 / all) * step * step);
+    cross_[i] = static_cast<float>(shared / determinant * step * step);
+  }
+  constant_ = static_cast<float>(constant);
+}
+
+PlaceSignature SignatureModel::signatureOf(const PlaceFeatures& features) const {
+  const SignatureFeatures::Vector x = SignatureFeatures::of(features);
+  PlaceSignature signature;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    float sum = offsets_[i];
+    for (std::size_t k = 0; k < x.size(); ++k) sum += rows_[i][k] * x[k];
+    signature.values[i] =
+        static_cast<std::int8_t>(std::lround(std::clamp(sum / steps_[i], -127.0F, 127.0F)));
+  }
+  return signature;
+}
+
+float SignatureModel::own(const PlaceSignature& s) const {
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    const auto v = static_cast<float>(s.values[i]);
+    sum += square_[i] * v * v;
+  }
+  return sum;
+}
+
+double SignatureModel::logRatio(const PlaceSignature& a, const PlaceSignature& b) const {
+  double sum = constant_ + own(a) + own(b);
+  for (std::size_t i = 0; i < kSize; ++i) {
+    sum += static_cast<double>(cross_[i] * static_cast<float>(a.values[i]) *
+                               static_cast<float>(b.values[i]));
+  }
+  return sum;
+}
+
+std::string SignatureModel::text() const {
+  std::ostringstream out;
+  out << kMagic << "\n";
+  for (const OriginLine& line : kOriginLines) out << line.name << origin_.*line.member << "\n";
+  out << sizesLine() << "\n";
+  for (std::size_t i = 0; i < kSize; ++i) {
+    out << shortText(variances_[i]) << " " << shortText(offsets_[i]);
+    for (const float weight : rows_[i]) out << " " << shortText(weight);
+    out << "\n";
+  }
+  const std::string body = out.str();
+  return body + kSumName + hyselam::crc32Text(body) + "\n";
+}
+
+void SignatureModel::save(const std::string& path) const {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << text(); });
+}
+
+SignatureModel SignatureModel::load(const std::string& path) {
+  return parse(hyselam::readTextFile(path, kMaxBytes), path);
+}
+
+SignatureModel SignatureModel::parse(std::string_view text, const std::string& source) {
+  const auto refuse = [&](std::size_t line, const std::string& reason) {
+    throw hyselam::InputError(source, "line " + std::to_string(line), reason);
+  };
+  const std::size_t sum = text.rfind(kSumName);
+  if (text.substr(0, text.find('\n')) != kMagic) refuse(1, "is no model of place signatures");
+  if (sum == std::string_view::npos ||
+      text.substr(sum) != kSumName + hyselam::crc32Text(text.substr(0, sum)) + "\n") {
+    throw hyselam::InputError(source, "end", "is damaged or cut off (wrong checksum)");
+  }
+  std::vector<Row> rows;
+  std::vector<float> offsets, variances;
+  SignatureOrigin origin;
+  constexpr std::size_t kHead = 2 + kOriginLines.size();
+  std::vector<std::string_view> fields;
+  hyselam::forEachLine(text.substr(0, sum), [&](std::size_t number, std::string_view line) {
+    if (number == 1) return;
+    if (number < kHead) {
+      const OriginLine& expected = kOriginLines[number - 2];
+      const std::string_view name = expected.name;
+      if (line.substr(0, name.size()) != name)
+        refuse(number, "has no \"" + std::string(name) + "\"");
+      origin.*expected.member = std::string(line.substr(name.size()));
+      return;
+    }
+    if (number == kHead) {
+      if (line != sizesLine()) refuse(number, "is not \"" + sizesLine() + "\"");
+      return;
+    }
+    hyselam::splitFields(line, &fields);
+    if (rows.size() == kSize || fields.size() != SignatureFeatures::kSize + 2) {
+      refuse(number, "has " + std::to_string(fields.size()) + " numbers instead of " +
+                         std::to_string(SignatureFeatures::kSize + 2) + ", or is one too many");
+    }
+    Row row{};
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const auto value = hyselam::parseNumber(fields[i]);
+      if (!value || std::abs(static_cast<double>(static_cast<float>(*value))) >= kLargest) {
+        refuse(number, "holds '" + hyselam::printable(fields[i]) + "' instead of a number");
+      }
+      const auto given = static_cast<float>(*value);
+      if (i == 0 && !(given > 1.0F)) refuse(number, "has a variance that is not above 1");
+      if (i == 0) variances.push_back(given);
+      if (i == 1) offsets.push_back(given);
+      if (i >= 2) row[i - 2] = given;
+    }
+    rows.push_back(row);
+  });
+  if (rows.size() != kSize) {
+    throw hyselam::InputError(
+        source, "end",
+        "has " + std::to_string(rows.size()) + " values instead of " + std::to_string(kSize));
+  }
+  return {std::move(rows), std::move(offsets), std::move(variances), std::move(origin)};
+}
+
+}  // namespace ngram_slam

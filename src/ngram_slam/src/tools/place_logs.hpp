@@ -1,0 +1,122 @@
+// What the tools of place signatures have in common: recorded runs as keyframes and as places along
+// them, with the truth.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hyselam_common/carmen_log.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/ros/bag_tool.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+#include "ngram_slam/signatures/signature_sensor.hpp"
+#include "ngram_slam/signatures/signature_training.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+
+namespace ngram_slam {
+
+struct LogPlace {
+  PlaceOnWay on_way;
+  PlaceFeatures features;
+  std::optional<hyselam::Pose2> truth;
+};
+
+/// A log after SLAM without loops.
+struct PlaceLog {
+  std::string name;
+  std::vector<SlamKeyframe> keyframes;
+  std::vector<hyselam::StampedPose2> reference;
+  std::vector<LogPlace> places;
+};
+
+/// The reference poses of a log: a table or TUM file, a corrected log, or the log's own truth.
+inline std::vector<hyselam::StampedPose2> referenceOf(const std::string& path,
+                                                      const hyselam::RobotLog& log) {
+  if (path.empty()) return log.ground_truth;
+  if (path.find(".log") != std::string::npos) return hyselam::readRobotLog(path).odometry;
+  hyselam::PoseFile file = hyselam::readPoses(path);
+  for (std::size_t i = 0; file.one_per_scan && i < file.poses.size() && i < log.scans.size(); ++i) {
+    file.poses[i].stamp = log.scans[i].stamp;  // its times may be another clock's
+  }
+  return file.poses;
+}
+
+inline PlaceLog placesOf(const std::string& name, const hyselam::RobotLog& log,
+                         std::vector<hyselam::StampedPose2> reference,
+                         const SignatureSensorParams& sensor_params) {
+  PlaceLog out;
+  out.name = name;
+  out.reference = std::move(reference);
+  SlamParams params;
+  params.loops = LoopClosureMode::kNone;
+  SlamEngine engine(params);
+  hyselam::Progress progress("odometry of " + name, log.scans.size());
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    progress.update(i + 1);
+    const auto odometry = hyselam::poseAt(log.odometry, log.scans[i].stamp, 0.2);
+    if (!odometry) continue;
+    try {
+      engine.add(log.scans[i], *odometry);
+    } catch (const hyselam::InputError&) {
+    }
+  }
+  engine.endRun();
+  out.keyframes = engine.keyframes();
+  if (out.keyframes.empty()) throw hyselam::InputError(name, "", "gives no keyframes");
+  SignatureSensor sensor(sensor_params, [&](const PlaceOnWay& at, const PlaceFeatures& features) {
+    const SlamKeyframe& k = out.keyframes[static_cast<std::size_t>(at.keyframe)];
+    auto truth = hyselam::poseAt(out.reference, k.stamp, 0.5);
+    if (truth) truth = *truth * between(k.pose, at.pose);
+    out.places.push_back({at, features, truth});
+  });
+  for (std::size_t k = 0; k < out.keyframes.size(); ++k) {
+    sensor.add(static_cast<std::int64_t>(k), out.keyframes[k].pose, out.keyframes[k].scan);
+  }
+  sensor.finish();
+  return out;
+}
+
+/// "path/intel.log.gz" is intel.
+inline std::string nameOfLog(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
+  return file.substr(0, file.find('.'));
+}
+
+struct PlaceLogOptions {
+  std::vector<std::string> logs, references;
+
+  void addTo(CLI::App& app) {
+    app.option_defaults()->always_capture_default();
+    app.add_option("logs", logs, "CARMEN logs or bags, plain or gzip")->required();
+    app.add_option("--reference", references,
+                   "true poses of each log (TUM, a reference table, or a corrected log); default: "
+                   "the logs' ground truth");
+  }
+  std::vector<PlaceLog> read() const {
+    if (!references.empty() && references.size() != logs.size()) {
+      throw hyselam::ParameterError("--reference", references.size(), "one file for each log");
+    }
+    std::vector<PlaceLog> all;
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      const hyselam::RobotLog log = hyselam::readRobotLog(logs[i]);
+      all.push_back(placesOf(nameOfLog(logs[i]), log,
+                             referenceOf(references.empty() ? "" : references[i], log), {}));
+    }
+    return all;
+  }
+};
+
+/// The places as examples to learn from.
+inline std::vector<SignatureExample> examplesOf(const PlaceLog& log) {
+  std::vector<SignatureExample> examples;
+  for (const LogPlace& p : log.places) {
+    examples.push_back({SignatureFeatures::of(p.features), p.truth});
+  }
+  return examples;
+}
+
+}  // namespace ngram_slam
