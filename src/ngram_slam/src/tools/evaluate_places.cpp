@@ -6,6 +6,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/tool.hpp"
+#include "ngram_slam/slam/loop_confidence.hpp"
 #include "ngram_slam/slam/path_segment.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
 #include "place_logs.hpp"
@@ -22,6 +23,7 @@ constexpr std::uint32_t kSeparation = 20;  // places, 10 m
 constexpr std::uint32_t kOld = 80;         // places, 40 m
 constexpr std::uint32_t kInterval = 4;     // places from question to question
 constexpr double kPairDistance = 1.0;      // of places laid over each other [m]
+constexpr double kSure = 0.95;             // least probability of a match that is told as sure
 constexpr int kPairs = 4;                  // places before and after a match
 
 struct Options {
@@ -139,7 +141,7 @@ struct Figures {
   std::size_t questions = 0, revisits = 0, revisits_same = 0, revisits_old = 0;
   std::array<std::size_t, 3> first{};  // a true place among the first 1, 5, 10
   std::size_t matches = 0, wrong = 0, pairs = 0, true_pairs = 0;
-  std::size_t verified_matches = 0, verified_wrong = 0;
+  std::size_t verified_matches = 0, verified_wrong = 0, sure = 0, sure_wrong = 0;
   std::size_t found = 0, found_same = 0, found_old = 0, verified = 0;
   double verification_s = 0.0, retrieval_s = 0.0, recall_unverified = 0.0;
 
@@ -259,8 +261,8 @@ void writeRows(const PlaceLog& log, const std::vector<Match>& matches, std::ostr
         << m.candidate.score << ',' << v.score << ',' << v.loop.inlier_ratio << ','
         << v.new_in_old.observed_ratio << ',' << v.new_in_old.surface_ratio << ','
         << v.old_in_new.surface_ratio << ',' << v.ambiguous_score << ',' << m.company.support << ','
-        << m.company.contradiction << ',' << (v.verified ? 1 : 0) << ',' << (m.is_right ? 1 : 0)
-        << '\n';
+        << m.company.contradiction << ',' << loopProbability(v, m.company) << ','
+        << (v.verified ? 1 : 0) << ',' << (m.is_right ? 1 : 0) << '\n';
   }
 }
 
@@ -276,6 +278,10 @@ Figures figuresOf(const Options& o, const PlaceLog& log, const Candidates& all,
     if (!m.verification.verified) continue;
     ++f.verified_matches;
     f.verified_wrong += m.is_right ? 0 : 1;
+    if (loopProbability(m.verification, m.company) >= kSure) {
+      ++f.sure;
+      f.sure_wrong += m.is_right ? 0 : 1;
+    }
     if (!m.company.isTrusted(params)) continue;
     ++f.matches;
     f.wrong += m.is_right ? 0 : 1;
@@ -314,7 +320,7 @@ nlohmann::json run(const Options& o) {
   }
   std::ostringstream rows;
   rows << "log,newer,older,rank,likelihood,score,inliers,overlap,new_fit,old_fit,rival,"
-          "support,contradiction,verified,right\n";
+          "support,contradiction,probability,verified,right\n";
   nlohmann::json j = nlohmann::json::array();
   for (std::size_t i = 0; i < logs.size(); ++i) {
     std::optional<SignatureModel> own;

@@ -28,7 +28,7 @@ struct LoopTask {
   double window = 1.0;           ///< search window around it, +- along each axis [m]
   double angle = 0.3;            ///< search window of headings, +- [rad]
   /// The heading of the guess is not known: those are searched at which what is around both
-  /// segments fits best, the second where the first fails.
+  /// segments fits best, the second where the first is refused.
   bool any_heading = false;
   Segment old_segment;  ///< in the frame of `older`
   Segment new_segment;  ///< in the frame of `newer`; one scan when near

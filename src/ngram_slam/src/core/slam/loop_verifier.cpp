@@ -84,24 +84,17 @@ CorrelativeMatcherParams searchParams(const LoopTask& task, const LoopParams& p)
   return s;
 }
 
-/// The best pose of the window, nothing if there is none or, for a far loop, an ambiguous one.
+/// The best pose around a guess, nothing if there is none or, for a far loop, an ambiguous one.
 std::optional<CorrelativeMatch> searchUnambiguousPose(const LoopTask& task, const LoopParams& p,
-                                                      const SurfaceMap& old_map,
+                                                      const CorrelativeMatcher& grid,
                                                       const SurfacePoints& points,
+                                                      const hyselam::Pose2& guess,
                                                       LoopVerification* answer) {
-  const CorrelativeMatcher grid(old_map, searchParams(task, p));
-  const SurfacePoints few = thinned(points, task.far ? p.far_max_points : p.near_max_points);
-  std::optional<CorrelativeMatch> found;
-  hyselam::Pose2 guess;
-  for (const hyselam::Pose2& g : guessesOf(task)) {
-    guess = g;
-    found = grid.match(few, guess);
-    if (found) break;
-  }
+  const auto found = grid.match(points, guess);
   if (!found) return std::nullopt;
   answer->score = found->score;
   if (task.far && p.max_ambiguity_ratio < 1.0) {
-    const auto other = grid.secondBest(few, guess, found->pose, p.ambiguity_distance,
+    const auto other = grid.secondBest(points, guess, found->pose, p.ambiguity_distance,
                                        p.max_ambiguity_ratio * found->score);
     if (other) {
       answer->ambiguous_score = other->score;
@@ -131,35 +124,60 @@ void refineLoop(const LoopTask& task, const SlamParams& params, const SurfaceMap
   loop->information = (0.5 * (loop->information + loop->information.transpose())).eval();
 }
 
+/// What both segments observed, made when it is needed.
+struct BothSpaces {
+  std::optional<ObservedSpace> of_old, of_new;
+
+  void make(const LoopTask& task, const LoopParams& p) {
+    if (of_old) return;
+    of_old = observedSpaceOf(task.old_segment, p);
+    of_new = observedSpaceOf(task.new_segment, p);
+  }
+};
+
+/// Refines the pose found, and judges it.
+void judgePose(const LoopTask& task, const SlamParams& params, const SurfaceMap& old_map,
+               const SurfacePoints& points, const hyselam::Pose2& pose, BothSpaces* spaces,
+               LoopVerification* answer) {
+  const LoopParams& p = params.loop;
+  SlamLoop& loop = answer->loop;
+  refineLoop(task, params, old_map, points, pose, &loop);
+  if (loop.inlier_ratio < (task.far ? p.far_min_inlier_ratio : p.near_min_inlier_ratio)) return;
+  // Neither segment may have surfaces where the other observed free space.
+  spaces->make(task, p);
+  answer->new_in_old = spaces->of_old->overlap(loop.measured, points);
+  answer->old_in_new = spaces->of_new->overlap(loop.measured.inverse(), old_map.points());
+  const double min_ratio = task.far ? p.far_min_surface_ratio : p.near_min_surface_ratio;
+  answer->verified = answer->new_in_old.observed_ratio >= p.min_overlap &&
+                     answer->new_in_old.surface_ratio >= min_ratio &&
+                     answer->old_in_new.surface_ratio >= min_ratio;
+}
+
 }  // namespace
 
 LoopVerification verifyLoop(const LoopTask& task, const SlamParams& params) {
-  LoopVerification answer;
-  SlamLoop& loop = answer.loop;
-  loop.older = task.older;
-  loop.newer = task.newer;
-  loop.source = task.source;
-  loop.far = task.far;
+  LoopVerification empty;
+  empty.loop.older = task.older;
+  empty.loop.newer = task.newer;
+  empty.loop.source = task.source;
+  empty.loop.far = task.far;
   const LoopParams& p = params.loop;
   const SurfaceMap old_map = mapOf(task.old_segment, params.local_map_resolution);
   const SurfacePoints points = newPoints(task, p);
-  if (points.empty() || old_map.empty()) return answer;
+  if (points.empty() || old_map.empty()) return empty;
 
-  const auto found = searchUnambiguousPose(task, p, old_map, points, &answer);
-  if (!found) return answer;
-  refineLoop(task, params, old_map, points, found->pose, &loop);
-  if (loop.inlier_ratio < (task.far ? p.far_min_inlier_ratio : p.near_min_inlier_ratio)) {
-    return answer;
+  const CorrelativeMatcher grid(old_map, searchParams(task, p));
+  const SurfacePoints few = thinned(points, task.far ? p.far_max_points : p.near_max_points);
+  BothSpaces spaces;
+  LoopVerification best = empty;
+  for (const hyselam::Pose2& guess : guessesOf(task)) {
+    LoopVerification answer = empty;
+    const auto found = searchUnambiguousPose(task, p, grid, few, guess, &answer);
+    if (found) judgePose(task, params, old_map, points, found->pose, &spaces, &answer);
+    if (answer.verified) return answer;
+    if (answer.score > best.score) best = answer;
   }
-  // Neither segment may have surfaces where the other observed free space.
-  answer.new_in_old = observedSpaceOf(task.old_segment, p).overlap(loop.measured, points);
-  answer.old_in_new =
-      observedSpaceOf(task.new_segment, p).overlap(loop.measured.inverse(), old_map.points());
-  const double min_ratio = task.far ? p.far_min_surface_ratio : p.near_min_surface_ratio;
-  answer.verified = answer.new_in_old.observed_ratio >= p.min_overlap &&
-                    answer.new_in_old.surface_ratio >= min_ratio &&
-                    answer.old_in_new.surface_ratio >= min_ratio;
-  return answer;
+  return best;
 }
 
 }  // namespace ngram_slam
