@@ -135,6 +135,13 @@ TEST(DialogueViews, OfAPlaceThatNobodyHasNamed) {
   EXPECT_EQ("library", t.room(10, true));
 }
 
+TEST(DialogueViews, WhatIsNotTakenDownTellsOfNoPlace) {
+  Tour t;
+  t.at(1.0, 1.2, 0.0);
+  const std::string asked = t.say("The first door on the left is my office.");
+  EXPECT_EQ(std::string::npos, asked.find("0 of 0")) << asked;
+}
+
 TEST(DialogueViews, ANameThatWasToldOfTakesItIn) {
   Tour t;
   t.at(1.0, 1.2, 0.0);
@@ -169,4 +176,21 @@ TEST(DialogueViews, SeenFromElsewhereAnotherSideIsNoContradiction) {
   const std::string noted = t.say("The last door on the right is the kitchen.");
   EXPECT_NE(std::string::npos, noted.find("Noted")) << noted;
   EXPECT_EQ("kitchen", t.room(3, true));
+}
+
+TEST(DialogueGo, HalfAnAgreementSendsItOnItsWay) {
+  for (const char* yes : {"Yes, off you trot then", "Sim, vai lá então", "Deve sim, vai indo"}) {
+    Tour t;
+    t.at(1.0, 1.2, 0.0);
+    t.say("You are in the corridor. The kitchen is on the left.");
+    ASSERT_NE(std::string::npos, t.say("Go to the kitchen.").find("?"));
+    const Reply reply = t.dialogue.hear(yes);
+    EXPECT_TRUE(reply.has(hyselam_topo::DialogueAction::Kind::kGo)) << yes << ": " << reply.text();
+  }
+  Tour t;
+  t.at(1.0, 1.2, 0.0);
+  t.say("You are in the corridor. The kitchen is on the left.");
+  t.say("Go to the kitchen.");
+  EXPECT_FALSE(t.dialogue.hear("the flurb sqwox yes trim").has(hyselam_topo::DialogueAction::Kind::kGo));
+  EXPECT_FALSE(t.dialogue.hear("no yes, sqwox").has(hyselam_topo::DialogueAction::Kind::kGo));
 }

@@ -39,6 +39,8 @@ std::string capital(std::string text) {
 }  // namespace
 
 void Dialogue::addStatement(const Utterance& u, Turn& turn) {
+  // Where the robot has gone is nothing that is told.
+  if (u.intent != "robot_in") followRobot(isSeenFromRobot(u));
   if (!turn.before) turn.before = builder_.building();
   const std::vector<SaidName> place = u.names("place");
   if (u.intent == "robot_in" && !std::all_of(place.begin(), place.end(), [&](const auto& name) {
@@ -50,7 +52,6 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
     turn.broken_off = true;
     return;
   }
-  if (u.intent != "robot_in") followRobot(isSeenFromRobot(u));
   const auto issues = builder_.add(u);
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
   turn.described = true;
