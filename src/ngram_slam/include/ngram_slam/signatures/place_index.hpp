@@ -22,17 +22,19 @@ class PlaceIndex {
     }
   };
   /// Fewer places than this are all compared.
-  static constexpr std::uint32_t kFew = 8192;
+  static constexpr std::uint32_t kFew = 16384;
   /// Places that a search compares at most.
-  static constexpr std::size_t kMaxSeen = 8192;
+  static constexpr std::size_t kMaxSeen = 16384;
 
   /// `model` must outlive the index.
   explicit PlaceIndex(const SignatureModel& model);
 
   /// Returns its number, counted from 0.
   std::uint32_t add(const PlaceSignature& signature);
-  std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
-  const PlaceSignature& operator[](std::uint32_t i) const { return places_[i]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(at_.size()); }
+  const PlaceSignature& operator[](std::uint32_t i) const {
+    return cells_[at_[i].cell].signatures[at_[i].position];
+  }
 
   /// The `count` best of the places below `end`, best first.
   std::vector<Found> search(const PlaceSignature& wanted, std::size_t count,
@@ -52,13 +54,23 @@ class PlaceIndex {
 
  private:
   static constexpr std::size_t kGridValues = 6, kLevels = 4, kCells = 4096;
+  /// The places of a cell, rising; side by side, as they are compared one after the other.
+  struct GridCell {
+    std::vector<std::uint32_t> places;
+    std::vector<PlaceSignature> signatures;
+    std::vector<float> own;  // SignatureModel::own()
+  };
+  struct At {
+    std::uint32_t position;
+    std::uint16_t cell;
+  };
+  float score(const Question& question, const GridCell& cell, std::size_t position) const;
   static std::size_t cellOf(const PlaceSignature& signature);
   std::vector<std::uint16_t> nearestCells(const PlaceSignature& wanted) const;
 
   const SignatureModel* model_;
-  std::vector<PlaceSignature> places_;
-  std::vector<float> own_;                         // SignatureModel::own() of each
-  std::vector<std::vector<std::uint32_t>> cells_;  // places, rising
+  std::vector<At> at_;  // of each place
+  std::vector<GridCell> cells_;
 };
 
 }  // namespace ngram_slam

@@ -14,6 +14,8 @@ constexpr std::array<int, 3> kBounds{-21, 0, 21};
 // in standard deviations between visits.
 constexpr float kMaxCellCost = 12.0F;
 constexpr float kWeightRange = 16000.0F;
+// Found places that wait to be sorted out.
+constexpr std::size_t kSlack = 1024;
 
 std::size_t levelOf(int value) {
   std::size_t level = 0;
@@ -41,10 +43,14 @@ void keepBest(std::vector<PlaceIndex::Found>* found, std::size_t count) {
 PlaceIndex::PlaceIndex(const SignatureModel& model) : model_(&model), cells_(kCells) {}
 
 std::uint32_t PlaceIndex::add(const PlaceSignature& signature) {
-  const std::uint32_t place = size();
-  places_.push_back(signature);
-  own_.push_back(model_->own(signature));
-  cells_[cellOf(signature)].push_back(place);
+  const std::size_t number = cellOf(signature);
+  GridCell& cell = cells_[number];
+  at_.push_back(
+      {static_cast<std::uint32_t>(cell.places.size()), static_cast<std::uint16_t>(number)});
+  const auto place = static_cast<std::uint32_t>(at_.size() - 1);
+  cell.places.push_back(place);
+  cell.signatures.push_back(signature);
+  cell.own.push_back(model_->own(signature));
   return place;
 }
 
@@ -74,22 +80,27 @@ PlaceIndex::Question PlaceIndex::questionOf(const PlaceSignature& wanted) const 
 }
 
 float PlaceIndex::score(const Question& q, std::uint32_t place) const {
-  const PlaceSignature& s = places_[place];
+  return score(q, cells_[at_[place].cell], at_[place].position);
+}
+
+float PlaceIndex::score(const Question& q, const GridCell& cell, std::size_t position) const {
+  const PlaceSignature& s = cell.signatures[position];
   std::int32_t sum = 0;
   for (std::size_t i = 0; i < PlaceSignature::kSize; ++i) {
     sum += q.weights[i] * static_cast<std::int16_t>(s.values[i]);
   }
-  return q.constant + own_[place] + q.scale * static_cast<float>(sum);
+  return q.constant + cell.own[position] + q.scale * static_cast<float>(sum);
 }
 
 std::vector<PlaceIndex::Found> PlaceIndex::searchAll(const PlaceSignature& wanted,
                                                      std::size_t count, std::uint32_t end) const {
   const Question q = questionOf(wanted);
   std::vector<Found> found;
-  end = std::min(end, size());
-  for (std::uint32_t place = 0; place < end; ++place) {
-    found.push_back({place, score(q, place)});
-    if (found.size() >= 4 * count + 1024) keepBest(&found, count);
+  for (const GridCell& cell : cells_) {
+    for (std::size_t i = 0; i < cell.places.size() && cell.places[i] < end; ++i) {
+      found.push_back({cell.places[i], score(q, cell, i)});
+      if (found.size() >= 4 * count + kSlack) keepBest(&found, count);
+    }
   }
   keepBest(&found, count);
   std::sort(found.begin(), found.end());
@@ -130,14 +141,14 @@ std::vector<PlaceIndex::Found> PlaceIndex::search(const PlaceSignature& wanted, 
   const Question q = questionOf(wanted);
   std::vector<Found> found;
   std::size_t seen = 0;
-  for (const std::uint16_t cell : nearestCells(wanted)) {
-    const std::vector<std::uint32_t>& places = cells_[cell];
-    for (std::size_t i = 0; i < places.size() && places[i] < end && seen < kMaxSeen; ++i, ++seen) {
-      if (i + 8 < places.size()) __builtin_prefetch(places_.data() + places[i + 8]);
-      found.push_back({places[i], score(q, places[i])});
+  for (const std::uint16_t number : nearestCells(wanted)) {
+    const GridCell& cell = cells_[number];
+    for (std::size_t i = 0; i < cell.places.size() && cell.places[i] < end && seen < kMaxSeen;
+         ++i, ++seen) {
+      found.push_back({cell.places[i], score(q, cell, i)});
     }
     if (seen >= kMaxSeen) break;
-    keepBest(&found, count);
+    if (found.size() >= 4 * count + kSlack) keepBest(&found, count);
   }
   keepBest(&found, count);
   std::sort(found.begin(), found.end());
@@ -145,8 +156,12 @@ std::vector<PlaceIndex::Found> PlaceIndex::search(const PlaceSignature& wanted, 
 }
 
 std::size_t PlaceIndex::bytes() const {
-  std::size_t bytes = places_.capacity() * sizeof(PlaceSignature) + own_.capacity() * sizeof(float);
-  for (const auto& cell : cells_) bytes += sizeof(cell) + cell.capacity() * sizeof(std::uint32_t);
+  std::size_t bytes = at_.capacity() * sizeof(At);
+  for (const GridCell& cell : cells_) {
+    bytes += sizeof(cell) + cell.places.capacity() * sizeof(std::uint32_t) +
+             cell.signatures.capacity() * sizeof(PlaceSignature) +
+             cell.own.capacity() * sizeof(float);
+  }
   return bytes;
 }
 
