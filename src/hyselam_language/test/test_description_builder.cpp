@@ -579,6 +579,16 @@ TEST(DescriptionBuilder, CorrectionsOfTheSamePlaceMayAdd) {
   EXPECT_EQ(Lines{"no context"}, tell("No, the archive is the second door on the left."));
 }
 
+TEST(DescriptionBuilder, TheCorridorIsTheOneWhereTheRobotIs) {
+  DescriptionBuilder builder(parser());
+  builder.add(
+      parser().parse("You are in the main corridor. The lab is at the end of the corridor."));
+  EXPECT_EQ(2u, builder.building().places.size());
+  builder.add(parser().parse("The lab is next to the service corridor. You are in the lab."));
+  EXPECT_EQ(3u, builder.building().places.size());
+  EXPECT_TRUE(builder.find("corridor").size() != 1u || builder.find("hall").empty());
+}
+
 TEST(DescriptionBuilder, ReasonsAreInTheLanguageSpoken) {
   Talk talk;
   talk.builder.setLanguage("pt");

@@ -178,7 +178,7 @@ TEST(DialogueViews, SeenFromElsewhereAnotherSideIsNoContradiction) {
   EXPECT_EQ("kitchen", t.room(3, true));
 }
 
-TEST(DialogueGo, HalfAnAgreementSendsItOnItsWay) {
+TEST(DialogueGo, AgreementInManyWordsSendsItOnItsWayConditionsDoNot) {
   for (const char* yes : {"Yes, off you trot then", "Sim, vai lá então", "Deve sim, vai indo"}) {
     Tour t;
     t.at(1.0, 1.2, 0.0);
@@ -187,10 +187,43 @@ TEST(DialogueGo, HalfAnAgreementSendsItOnItsWay) {
     const Reply reply = t.dialogue.hear(yes);
     EXPECT_TRUE(reply.has(hyselam_topo::DialogueAction::Kind::kGo)) << yes << ": " << reply.text();
   }
+  for (const char* half : {"Sure, if the door is open", "Yes, when I say go", "Yes, in ten minutes",
+                           "Sim, mas só amanhã", "Sim, mas agora não pode ser", "no yes, sqwox"}) {
+    Tour t;
+    t.at(1.0, 1.2, 0.0);
+    t.say("You are in the corridor. The kitchen is on the left.");
+    t.say("Go to the kitchen.");
+    const Reply reply = t.dialogue.hear(half);
+    EXPECT_FALSE(reply.has(hyselam_topo::DialogueAction::Kind::kGo)) << half << reply.text();
+  }
+}
+
+TEST(DialogueViews, ASideToldBeforeIsNoneOfAnotherView) {
   Tour t;
   t.at(1.0, 1.2, 0.0);
-  t.say("You are in the corridor. The kitchen is on the left.");
-  t.say("Go to the kitchen.");
-  EXPECT_FALSE(t.dialogue.hear("the flurb sqwox yes trim").has(hyselam_topo::DialogueAction::Kind::kGo));
-  EXPECT_FALSE(t.dialogue.hear("no yes, sqwox").has(hyselam_topo::DialogueAction::Kind::kGo));
+  t.say("You are in the corridor. The first door on the left is the kitchen.");
+  t.at(19.0, 1.2, hyselam::kPi);
+  t.say("The kitchen is the last door.");
+  EXPECT_EQ("kitchen", t.room(3, true)) << "which side the last door is on was not told";
+}
+
+TEST(DialogueViews, WhatWasToldOfTheUnnamedPlaceGoesToItsName) {
+  Tour t;
+  t.at(1.0, 1.2, 0.0);
+  t.say("The kitchen leads into the corridor.");
+  t.say("The first door on the left is the kitchen.");
+  t.say("This is the corridor.");
+  ASSERT_EQ(1u, t.dialogue.description().connections.size());
+  EXPECT_EQ(hyselam_topo::Side::kLeft, t.dialogue.description().connections.front().side);
+  EXPECT_EQ("kitchen", t.room(3, true));
+}
+
+TEST(DialogueViews, DenialsAreOfTheirView) {
+  Tour t;
+  t.at(1.0, 1.2, 0.0);
+  t.say("You are in the corridor. The kitchen is on your left.");
+  t.at(19.0, 1.2, hyselam::kPi);
+  t.say("The kitchen is not on your left.");
+  ASSERT_EQ(1u, t.dialogue.description().connections.size());
+  EXPECT_EQ(hyselam_topo::Side::kLeft, t.dialogue.description().connections.front().side);
 }

@@ -21,7 +21,8 @@ std::vector<ConnectionRow> rowsOf(const std::vector<DescribedConnection>& connec
   std::vector<ConnectionRow> rows;
   for (const DescribedConnection& connection : connections) {
     auto row = std::find_if(rows.begin(), rows.end(), [&](const ConnectionRow& each) {
-      return each.from == connection.from && each.side == connection.side;
+      return each.from == connection.from && each.side == connection.side &&
+             lookAlike(each.connections.front().seen_from, connection.seen_from);
     });
     if (row == rows.end()) {
       rows.push_back({connection.from, connection.side, {}});

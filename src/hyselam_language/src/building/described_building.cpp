@@ -89,6 +89,18 @@ bool areSameView(const std::optional<Pose2>& a, const std::optional<Pose2>& b) {
   return lookAlike(a, b) && (!a || !b || hyselam::distance(*a, *b) < kOtherStand);
 }
 
+Side sideSeenFrom(Side side, const std::optional<Pose2>& then, const std::optional<Pose2>& now) {
+  if (side == Side::kUnknown || !then || !now) return side;
+  constexpr double kQuarter = 0.5 * hyselam::kPi;
+  constexpr double kClear = 0.3;  // of a quarter, off the next one
+  const double quarters = hyselam::normalizeAngle(then->theta - now->theta) / kQuarter;
+  const int turned = static_cast<int>(std::lround(quarters));
+  if (std::abs(quarters - turned) > kClear) return Side::kUnknown;
+  constexpr std::array<Side, 4> kRound{Side::kFront, Side::kLeft, Side::kBack, Side::kRight};
+  const auto at = std::find(kRound.begin(), kRound.end(), side) - kRound.begin();
+  return kRound.at(static_cast<std::size_t>((at + turned + 4) % 4));
+}
+
 bool operator==(const DescribedPlace& a, const DescribedPlace& b) {
   const auto all = [](const DescribedPlace& p) {
     return std::tie(p.id, p.name, p.aliases, p.kind, p.length, p.width, p.area, p.parts,

@@ -263,6 +263,12 @@ void DescriptionBuilder::setRobotPlace(const std::string& name) {
   rememberKind(name, names_, grammars_[language_], &state_.context);
 }
 
+void DescriptionBuilder::setViewpoint(const std::optional<hyselam::Pose2>& viewpoint) {
+  std::optional<Side>& same = state_.context.side;
+  if (same && !lookAlike(viewpoint_, viewpoint)) same.reset();
+  viewpoint_ = viewpoint;
+}
+
 void DescriptionBuilder::giveName(const std::string& made_up, const std::string& name) {
   const std::vector<Id> from = find(made_up), to = find(name);
   if (from.size() != 1 || to.size() > 1 || from == to) return;

@@ -57,11 +57,19 @@ void removePlace(Id place, DescribedBuilding* building) {
 }
 
 void joinPlaces(Id gone, Id stays, DescribedBuilding* building) {
-  for (DescribedConnection each : std::vector<DescribedConnection>(building->connections)) {
+  std::vector<DescribedConnection> told = building->connections;
+  std::stable_sort(told.begin(), told.end(),
+                   [](const auto& a, const auto& b) { return a.order < b.order; });
+  for (DescribedConnection each : told) {
     if (each.from != gone && each.to != gone) continue;
     removeConnection(each, building);
     (each.from == gone ? each.from : each.to) = stays;
-    if (each.from == each.to || findConnection(*building, each.from, each.to) != nullptr) continue;
+    if (each.from == each.to) continue;
+    if (const DescribedConnection* known = findConnection(*building, each.from, each.to)) {
+      // A side tells more than that they are joined.
+      if (known->side != Side::kUnknown || each.side == Side::kUnknown) continue;
+      removeConnection(*known, building);
+    }
     each.order = 0;
     for (const DescribedConnection& other : building->connections) {
       const bool same_row = other.from == each.from && other.side == each.side;

@@ -70,7 +70,7 @@ void insertConnection(Statement& s, const Placement& p, std::size_t wanted) {
   made.rank = p.rank;
   made.distance = p.distance;
   const bool seen = p.side != Side::kUnknown || p.distance;
-  if (seen) made.seen_from = s.listener().viewpoint;
+  if (seen) made.seen_from = p.seen_from;
   for (const DescribedConnection& other : all) {
     const bool same_row = other.from == p.from && other.side == p.side;
     if (same_row && other.to == p.behind) wanted = other.order + 1;
@@ -83,11 +83,19 @@ void insertConnection(Statement& s, const Placement& p, std::size_t wanted) {
   all.push_back(made);
 }
 
+/// Whether they say the same when the one is said now: sides and orders are those of a view.
+bool saysTheSame(Statement& s, const DescribedRelation& told, const DescribedRelation& now) {
+  if (meaning(told) != meaning(now)) return false;
+  const bool of_view = told.kind == RelationKind::kAtSide || told.kind == RelationKind::kAfter ||
+                       told.kind == RelationKind::kBehind;
+  return !of_view || lookAlike(told.seen_from, s.listener().viewpoint);
+}
+
 /// A side or a connection that was denied.
 void checkDenied(Statement& s, const DescribedRelation& fact) {
   auto& all = s.building().relations;
   const auto denied = std::find_if(all.begin(), all.end(), [&](const DescribedRelation& other) {
-    return other.denied && meaning(other) == meaning(fact);
+    return other.denied && saysTheSame(s, other, fact);
   });
   if (denied == all.end()) return;
   s.replaces("denied", {{"fact", sentenceOf(s, *denied)}});
@@ -99,7 +107,7 @@ void checkRank(Statement& s, const Placement& p, std::size_t* wanted) {
   if (!p.rank) return;
   for (DescribedConnection& other : s.building().connections) {
     const bool taken = other.from == p.from && other.side == p.side && other.to != p.to &&
-                       other.rank == p.rank && areSameView(other.seen_from, s.listener().viewpoint);
+                       other.rank == p.rank && areSameView(other.seen_from, p.seen_from);
     if (!taken) continue;
     s.replaces("rank_taken", {{"rank", std::to_string(*p.rank)},
                               {"side", sideWords(s, p.side)},
@@ -111,14 +119,21 @@ void checkRank(Statement& s, const Placement& p, std::size_t* wanted) {
 
 /// What is told of a connection besides what was told before.
 void mergeInto(Statement& s, const DescribedConnection& known, Placement* p) {
-  if (p->side == Side::kUnknown && known.from == p->from) p->side = known.side;
-  const bool other_rank = known.rank && p->rank && *known.rank != *p->rank;
+  if (p->side == Side::kUnknown && known.from == p->from) {
+    p->side = sideSeenFrom(known.side, known.seen_from, p->seen_from);
+    if (!p->rank && !p->distance) {
+      p->side = known.side;
+      p->seen_from = known.seen_from;
+    }
+  }
+  const bool same_view = areSameView(known.seen_from, p->seen_from);
+  const bool other_rank = same_view && known.rank && p->rank && *known.rank != *p->rank;
   if (other_rank) {
     s.replaces("other_rank", {{"place", s.nameOf(p->to)},
                               {"known", std::to_string(*known.rank)},
                               {"rank", std::to_string(*p->rank)}});
   }
-  const bool both = known.distance && p->distance;
+  const bool both = same_view && known.distance && p->distance;
   const double apart = both ? std::abs(*known.distance - *p->distance) : 0.0;
   if (both && apart <= kDistanceTolerance * *known.distance) p->distance = known.distance;
   if (both && *p->distance != *known.distance) {
@@ -174,6 +189,7 @@ DescribedRelation relationOf(RelationKind kind, Id a, Id b, Id c) {
 
 void recordConnection(Statement& s, const Placement& placement) {
   Placement p = placement;
+  p.seen_from = s.listener().viewpoint;
   if (p.from == p.to) s.fail(IssueKind::kMeaningless, "itself", {{"place", s.nameOf(p.to)}});
   checkDenied(s, relationOf(RelationKind::kJoined, p.from, p.to));
   if (p.side != Side::kUnknown) {
@@ -187,9 +203,10 @@ void recordConnection(Statement& s, const Placement& placement) {
     const DescribedConnection known = *found;
     // Seen from elsewhere it may well be on another side, and another number.
     const bool seen_anew = p.side != Side::kUnknown && known.side != Side::kUnknown &&
-                           known.from == p.from &&
-                           !areSameView(known.seen_from, s.listener().viewpoint);
-    if (!seen_anew) {
+                           known.from == p.from && !areSameView(known.seen_from, p.seen_from);
+    if (seen_anew) {
+      s.setCorrected();
+    } else {
       if (isSettled(s, known, p)) return;
       mergeInto(s, known, &p);
     }
@@ -212,9 +229,9 @@ void recordRelation(Statement& s, const DescribedRelation& relation) {
   const bool ordered = kind == RelationKind::kAfter || kind == RelationKind::kInside ||
                        kind == RelationKind::kLarger;
   if (ordered) {
-    const auto reversed = meaning(relationOf(kind, b, a));
+    const DescribedRelation reversed = relationOf(kind, b, a);
     const auto found = std::find_if(all.begin(), all.end(), [&](const DescribedRelation& other) {
-      return !other.denied && meaning(other) == reversed;
+      return !other.denied && saysTheSame(s, other, reversed);
     });
     if (found != all.end()) {
       s.replaces("reversed", {{"fact", sentenceOf(s, *found)}});
@@ -222,7 +239,7 @@ void recordRelation(Statement& s, const DescribedRelation& relation) {
     }
   }
   const bool known = std::any_of(all.begin(), all.end(), [&](const DescribedRelation& other) {
-    return !other.denied && meaning(other) == meaning(relation);
+    return !other.denied && saysTheSame(s, other, relation);
   });
   if (known) return;
   // "No, it is next to the lab": instead of what it was said to be next to.
@@ -258,7 +275,7 @@ void recordDenial(Statement& s, DescribedRelation denial) {
   bool is_known = false;
   all.erase(std::remove_if(all.begin(), all.end(),
                            [&](const DescribedRelation& other) {
-                             if (meaning(other) != meaning(denial)) return false;
+                             if (!saysTheSame(s, other, denial)) return false;
                              is_known = is_known || other.denied;
                              return !other.denied;
                            }),
@@ -266,7 +283,8 @@ void recordDenial(Statement& s, DescribedRelation denial) {
   s.setCorrected();
   if (const DescribedConnection* found = findConnection(s.building(), denial.a, denial.b)) {
     const bool side = denial.kind == RelationKind::kAtSide && found->from == denial.b &&
-                      found->to == denial.a && found->side == denial.side;
+                      found->to == denial.a && found->side == denial.side &&
+                      lookAlike(found->seen_from, s.listener().viewpoint);
     const bool end = denial.kind == RelationKind::kAtEndOf && found->side == Side::kUnknown &&
                      found->from == denial.b;
     if (side || end || denial.kind == RelationKind::kJoined) {

@@ -20,6 +20,8 @@ struct Placement {
   std::optional<int> rank;
   std::optional<double> distance;
   Id behind = 0;  ///< right after this one, if it is in the same row
+  /// From where side, rank and distance are meant; recordConnection() sets it.
+  std::optional<hyselam::Pose2> seen_from;
 };
 
 /// Joins two places, or tells more of two joined ones. Contradictions are reported and left out

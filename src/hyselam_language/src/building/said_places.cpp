@@ -174,6 +174,14 @@ std::vector<Id> placesOf(const std::string& name, const DescriptionState& state,
   }
   std::vector<Id> ids;
   for (const std::size_t i : names.find(name, all)) ids.push_back(state.building.places[i].id);
+  if (!ids.empty() || !state.building.robot_place) return ids;
+  // "You are in the main corridor. ... the corridor": the one where the robot is.
+  const DescribedPlace* here = state.building.findPlace(*state.building.robot_place);
+  const bool bare = hyselam::utf8Fold(name) == names.headOf(name);
+  if (bare && here != nullptr && names.kindOf(name) == PlaceKind::kCorridor &&
+      names.headOf(here->name) == names.headOf(name)) {
+    ids.push_back(here->id);
+  }
   return ids;
 }
 

@@ -45,7 +45,8 @@ std::optional<double> distanceOf(Statement& s) {
 Side sideOfRow(Statement& s, Id from, int rank) {
   if (s.context().subjects.size() != 1) return Side::kUnknown;
   const DescribedConnection* last = findConnection(s.building(), from, s.context().subjects[0]);
-  const bool in_row = last != nullptr && last->from == from && last->rank && *last->rank != rank;
+  const bool in_row = last != nullptr && last->from == from && last->rank && *last->rank != rank &&
+                      areSameView(last->seen_from, s.listener().viewpoint);
   return in_row ? last->side : Side::kUnknown;
 }
 

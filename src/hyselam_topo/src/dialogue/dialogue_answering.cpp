@@ -1,6 +1,5 @@
 // What is answered to the robot's questions. One utterance answers one question at most.
 #include <algorithm>
-#include <sstream>
 
 #include "dialogue_turn.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
@@ -30,7 +29,6 @@ bool Dialogue::isPlaceName(const SaidName& name) const {
 void Dialogue::takeAnswer(const ParsedText& text, Turn& turn) {
   if (!questions_.isOpen()) return;
   SaidAnswer said = answerIn(text, question(), robot().place);
-  if (!said.any()) heedAgreement(text, turn, &said);
   if (!said.any()) return;
   if (!said.names.empty() && !said.yes && !said.no) heedFirstWord(turn.text, &said);
   turn.used = said.used;
@@ -41,32 +39,6 @@ void Dialogue::takeAnswer(const ParsedText& text, Turn& turn) {
     return;
   }
   answer(said, turn);
-}
-
-/// "Yes, off you go then": where only the first words are understood, they may send it on its way,
-/// which "stop" ends. Nothing else is begun by half an answer.
-void Dialogue::heedAgreement(const ParsedText& text, Turn& turn, SaidAnswer* said) const {
-  constexpr std::ptrdiff_t kMostSpaces = 2;
-  const bool nothing = text.misunderstood() == text.utterances.size();
-  if (question().kind != Question::Kind::kGo || !nothing || text.utterances.empty()) return;
-  std::string begin = turn.text.substr(0, turn.text.find(','));
-  if (std::count(begin.begin(), begin.end(), ' ') > kMostSpaces) {
-    begin.resize(begin.find(' '));
-  }
-  ParseOptions options;
-  options.preferred = language_;
-  const auto answers = [&](const std::string& words, const char* intent) {
-    const ParsedText parsed = parser_.parse(words, options);
-    return parsed.utterances.size() == 1 && parsed.utterances.front().intent == intent;
-  };
-  std::istringstream words(begin);
-  for (std::string word; words >> word;) {
-    if (answers(word, "no")) return;
-    said->yes = said->yes || answers(word, "yes");
-  }
-  if (!said->yes) return;
-  said->used = text.utterances.size();
-  turn.left_out.push_back(turn.text);
 }
 
 /// "Right, that is ...": a word before the first comma that only seems to say nothing.

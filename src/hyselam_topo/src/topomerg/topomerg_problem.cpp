@@ -75,17 +75,13 @@ double viewAngle(const std::optional<hyselam::Pose2>& seen_from, const MatchProb
   return seen_from && problem.heading ? seen_from->theta - *problem.heading : 0.0;
 }
 
-double wrapped(double angle) {
-  return std::remainder(angle, 2.0 * hyselam::kPi);
-}
-
 std::optional<hyselam::Point2> standOf(const std::optional<hyselam::Pose2>& seen_from,
                                        const std::optional<hyselam::Point2>& otherwise) {
   if (!seen_from) return otherwise;
   return hyselam::Point2{seen_from->x, seen_from->y};
 }
 
-/// The last view that was told from.
+/// The view of the last connection that has one, else of the last relation.
 std::optional<hyselam::Pose2> lastView(const DescribedBuilding& building) {
   std::optional<hyselam::Pose2> last;
   for (const DescribedRelation& each : building.relations)
@@ -119,8 +115,8 @@ void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& n
     }
     const double side_angle = angleOf(side) + viewAngle(row[k]->seen_from, *out);
     out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
-                          wrapped(side_angle + sign * offset), wrapped(side_angle), turn, earlier,
-                          later});
+                          hyselam::normalizeAngle(side_angle + sign * offset),
+                          hyselam::normalizeAngle(side_angle), turn, earlier, later});
     if (row[k]->rank) continue;
     if (previous != nullptr && before(previous, row[k]))
       out->orders.push_back(
@@ -141,7 +137,7 @@ void addSides(const std::vector<DescribedConnection>& connections, const Numbers
     while (!row.empty()) {
       const std::optional<hyselam::Pose2> view = row.front()->seen_from;
       const auto others = std::stable_partition(row.begin(), row.end(), [&](const auto* each) {
-        return lookAlike(each->seen_from, view);
+        return each->seen_from.has_value() == view.has_value() && lookAlike(each->seen_from, view);
       });
       addRow({row.begin(), others}, name, out);
       row.erase(row.begin(), others);
@@ -151,7 +147,8 @@ void addSides(const std::vector<DescribedConnection>& connections, const Numbers
     const int from = name(c.from, "description"), to = name(c.to, "description");
     const bool sided = c.side != Side::kUnknown;
     const std::optional<double> turn = sided ? std::optional<double>(turnOf(c.side)) : std::nullopt;
-    const double side_angle = wrapped(angleOf(c.side) + viewAngle(c.seen_from, *out));
+    const double side_angle =
+        hyselam::normalizeAngle(angleOf(c.side) + viewAngle(c.seen_from, *out));
     const std::optional<hyselam::Point2> stand = standOf(c.seen_from, position);
     if (c.rank && *c.rank != 0 && sided)
       out->numbers.push_back({from, to, *c.rank, 0.0, turn, side_angle, stand});
@@ -175,7 +172,7 @@ void addRelations(const DescribedBuilding& building, const std::set<Id>& elsewhe
     out->relations.push_back(
         {r.kind, name(r.a, "description"), name(r.b, "description"),
          third ? name(r.c, "description") : -1, r.denied,
-         at_side ? wrapped(angleOf(r.side) + viewAngle(r.seen_from, *out)) : 0.0,
+         at_side ? hyselam::normalizeAngle(angleOf(r.side) + viewAngle(r.seen_from, *out)) : 0.0,
          standOf(r.seen_from, position)});
   }
 }
@@ -344,8 +341,8 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
   addWalls(map, &out);
   merging::addGaps(map, &out);
   const std::optional<hyselam::Pose2> last_view = lastView(building);
-  if (observer.heading) out.heading = wrapped(*observer.heading);
-  if (!out.heading && last_view) out.heading = wrapped(last_view->theta);
+  if (observer.heading) out.heading = hyselam::normalizeAngle(*observer.heading);
+  if (!out.heading && last_view) out.heading = hyselam::normalizeAngle(last_view->theta);
 
   MatchConstraints all = constraints;
   if (observer.place) {

@@ -163,6 +163,8 @@ struct Figures {
         {"verified_wrong", verified_wrong},
         {"matches", matches},
         {"matches_wrong", wrong},
+        {"sure", sure},
+        {"sure_wrong", sure_wrong},
         {"pair_precision", pairs == 0 ? 1.0 : share(true_pairs, pairs)},
         {"recall", share(found, revisits)},
         {"recall_same", share(found_same, revisits_same)},

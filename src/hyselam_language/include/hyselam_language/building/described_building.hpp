@@ -58,6 +58,11 @@ bool lookAlike(const std::optional<hyselam::Pose2>& a, const std::optional<hysel
 /// The same, and the robot stood at most 1.5 m away: numbers are counted from the same door, too.
 bool areSameView(const std::optional<hyselam::Pose2>& a, const std::optional<hyselam::Pose2>& b);
 
+/// The side of what lay on `side` as seen from `then`, seen from `now`: turned by quarters, as it
+/// is where one of the views is not known; kUnknown where they differ by an eighth of a turn.
+Side sideSeenFrom(Side side, const std::optional<hyselam::Pose2>& then,
+                  const std::optional<hyselam::Pose2>& now);
+
 /// Two joined places: "On your left you have A", said while the robot is in `from`; "in the kitchen
 /// you have the laundry" joins kitchen and laundry without a side.
 struct DescribedConnection {

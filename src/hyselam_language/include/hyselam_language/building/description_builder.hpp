@@ -77,7 +77,7 @@ class DescriptionBuilder {
 
   /// Where the robot stands and looks in the frame of the map while people tell what lies on which
   /// side; nothing: not known. Kept with what they tell.
-  void setViewpoint(const std::optional<hyselam::Pose2>& viewpoint) { viewpoint_ = viewpoint; }
+  void setViewpoint(const std::optional<hyselam::Pose2>& viewpoint);
 
   /// The person has confirmed that a name (DescriptionIssue::name) is one of a place: statements
   /// that have it are recorded from now on.

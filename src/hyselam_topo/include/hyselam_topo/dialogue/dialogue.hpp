@@ -294,7 +294,6 @@ class Dialogue {
   void rejectGuess(const Question& asked, Reply& reply);
   /// Takes the answer to the open question from the begin of a text.
   void takeAnswer(const ParsedText& text, Turn& turn);
-  void heedAgreement(const ParsedText& text, Turn& turn, SaidAnswer* said) const;
   void heedFirstWord(const std::string& text, SaidAnswer* said) const;
   void answer(const SaidAnswer& said, Turn& turn);
   void answerName(const SaidAnswer& said, const Question& asked, Reply& reply);

@@ -9,8 +9,8 @@
 
 namespace hyselam_topo {
 
-/// Walls of two places without an edge that lie back to back, at most 0.6 m apart, for 0.7 m or
-/// more: a closed door may be there.
+/// Walls of two places without an edge that lie back to back, at most 0.6 m apart (or overlapping
+/// by 0.3 m), for 0.7 m or more: a closed door may be there.
 struct SharedWall {
   std::size_t a = 0;  ///< places[a] and places[b] of the map, a < b
   std::size_t b = 0;

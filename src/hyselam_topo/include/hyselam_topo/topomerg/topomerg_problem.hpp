@@ -30,7 +30,8 @@ struct MatchConstraints {
 struct MatchObserver {
   std::optional<Id> place;  ///< of the map
   /// Of all that has no view of its own (DescribedConnection::seen_from). Nothing: that of the last
-  /// view, and without any the heading that fits best is taken for each assignment.
+  /// connection told with a view, and without any the heading that fits best is taken for each
+  /// assignment.
   std::optional<double> heading;
   /// Where the robot stood, likewise. "The second door on the left" is counted from there on;
   /// nothing: from the end of the place that lies behind the robot.

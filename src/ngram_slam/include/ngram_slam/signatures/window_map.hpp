@@ -34,7 +34,7 @@ class WindowMap {
 
  private:
   struct Count {
-    std::int16_t free = 0, hits = 0;
+    std::int32_t free = 0, hits = 0;
   };
   void trace(const hyselam::Pose2& base, const hyselam::LaserScan& scan, int sign);
 

@@ -152,7 +152,10 @@ struct LoopParams {
   double loop_path_length = 0.5;  ///< length assigned to a loop edge in path lengths [m], >= 0
 
   // Far loops are accepted in groups of pairwise consistent ones (as by PCM, Mangelson 2018).
-  int min_consistent_loops = 2;               ///< minimum size of a group, >= 1
+  int min_consistent_loops = 2;  ///< minimum size of a group, >= 1
+  /// The same of a group in which all come from signatures: buildings repeat themselves, and nobody
+  /// has driven there from where odometry expects it.
+  int min_consistent_signature_loops = 3;
   double consistency_max_path_length = 40.0;  ///< maximum path between two of its loops [m], > 0
   double consistency_min_span = 1.5;   ///< minimum path covered by its newer keyframes [m], >= 0
   double consistency_distance = 0.25;  ///< maximum position error between two loops [m], > 0

@@ -46,7 +46,7 @@ void WindowMap::trace(const Pose2& base, const hyselam::LaserScan& scan, int sig
       std::max(1.0, std::floor(kMinBeamAngle / std::max(1e-9, std::abs(scan.angle_increment)))));
   const unsigned mask = static_cast<unsigned>(size_) - 1U;
   const auto stride = static_cast<unsigned>(size_);
-  const auto one = static_cast<std::int16_t>(sign);
+  const auto one = static_cast<std::int32_t>(sign);
   for (std::size_t b = 0; b < scan.ranges.size(); b += step) {
     const double range = scan.ranges[b];
     if (!(range >= scan.range_min)) continue;
@@ -67,12 +67,12 @@ void WindowMap::trace(const Pose2& base, const hyselam::LaserScan& scan, int sig
       if (is_return && cx == hit_x && cy == hit_y) break;
       Count& c =
           counts_[(static_cast<unsigned>(cy) & mask) * stride + (static_cast<unsigned>(cx) & mask)];
-      c.free = static_cast<std::int16_t>(c.free + one);
+      c.free = static_cast<std::int32_t>(c.free + one);
     }
     if (!is_return) continue;
     Count& c = counts_[(static_cast<unsigned>(hit_y) & mask) * stride +
                        (static_cast<unsigned>(hit_x) & mask)];
-    c.hits = static_cast<std::int16_t>(c.hits + one);
+    c.hits = static_cast<std::int32_t>(c.hits + one);
   }
 }
 

@@ -118,6 +118,7 @@ std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector
 LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
                       const std::vector<SlamKeyframe>& keyframes, const LoopParams& params) {
   LoopCompany company{loop.inlier_ratio, 0.0};
+  if (params.company_half_length <= 0.0) return company;
   const SlamKeyframe& here = keyframes[static_cast<std::size_t>(loop.newer)];
   for (const SlamLoop& other : others) {
     const SlamKeyframe& there = keyframes[static_cast<std::size_t>(other.newer)];

@@ -331,14 +331,16 @@ void SlamEngine::addFarLoop(const SlamLoop& loop) {
   }
   const std::vector<std::size_t> group = consistentLoops(loop, pending, state_.keyframes, p);
   double first = keyframe(loop.newer).path_length, last = first;
+  bool only_signatures = loop.source == LoopSource::kSignature;
   for (const std::size_t i : group) {
+    only_signatures = only_signatures && pending[i].source == LoopSource::kSignature;
     const double at = keyframe(pending[i].newer).path_length;
     first = std::min(first, at);
     last = std::max(last, at);
   }
   // Loops from one spot are one opinion.
-  if (static_cast<int>(group.size()) + 1 < p.min_consistent_loops ||
-      last - first < p.consistency_min_span) {
+  const int enough = only_signatures ? p.min_consistent_signature_loops : p.min_consistent_loops;
+  if (static_cast<int>(group.size()) + 1 < enough || last - first < p.consistency_min_span) {
     pending.push_back(loop);
     return;
   }

@@ -183,6 +183,8 @@ void describeCandidates(LoopParams& p, ParameterVisitor& visit) {
 void describeConsistency(LoopParams& p, ParameterVisitor& visit) {
   visit("min_consistent_loops", p.min_consistent_loops, kCount, "",
         "far loops that are pairwise consistent, to be accepted");
+  visit("min_consistent_signature_loops", p.min_consistent_signature_loops, kCount, "",
+        "the same where all of them come from signatures");
   visit("consistency_max_path_length", p.consistency_max_path_length, kPositive, "m",
         "between consistent loops");
   visit("consistency_min_span", p.consistency_min_span, kNotNegative, "m",
