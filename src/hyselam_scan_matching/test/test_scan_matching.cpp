@@ -8,6 +8,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_scan_matching/correlative_matcher.hpp"
 #include "hyselam_scan_matching/icp.hpp"
+#include "hyselam_scan_matching/scan_odometry.hpp"
 
 namespace {
 
@@ -227,6 +228,63 @@ TEST(CorrelativeMatcher, RejectsParametersOutOfRange) {
   CorrelativeMatcherParams params;
   params.angular_window = 4.0;
   EXPECT_THROW(CorrelativeMatcher(roomMap(), params), hyselam::ParameterError);
+}
+
+/// Drives a bow through the room; the wheels slip by `slip` [rad] at step 20.
+struct Drive {
+  ScanOdometry odometry;
+  Pose2 truth{1.5, 1.5, 0.1}, wheels;
+  ScanOdometry::Step last = odometry.add(roomScan(truth), wheels);
+  double stamp = 0.0;
+
+  void step(const Pose2& motion, const Pose2& slip) {
+    truth = truth * motion;
+    wheels = wheels * motion * slip;
+    last = odometry.add(roomScan(truth), wheels);
+  }
+};
+
+TEST(ScanOdometry, undoesSlipOfTheWheels) {
+  Drive d;
+  for (int i = 0; i < 40; ++i) {
+    d.step({0.08, 0.0, 0.03}, i % 10 == 5 ? Pose2{0.02, 0.0, 0.25} : Pose2{0.002, 0.0, 0.0});
+    EXPECT_FALSE(d.last.broken) << i;
+  }
+  const Pose2 moved = between(Pose2{1.5, 1.5, 0.1}, d.truth);
+  EXPECT_GT(std::abs(hyselam::normalizeAngle(d.wheels.theta - moved.theta)), 0.9);
+  EXPECT_LT(distance(d.last.pose, moved), 0.05);
+  EXPECT_LT(std::abs(hyselam::normalizeAngle(d.last.pose.theta - moved.theta)), 0.02);
+}
+
+TEST(ScanOdometry, saysThatTheMotionIsUnknown) {
+  Drive d;
+  for (int i = 0; i < 10; ++i) d.step({0.08, 0.0, 0.0}, {});
+  d.wheels = d.wheels * Pose2{30.0, 0.0, 0.0};  // the odometry begins again elsewhere
+  const Pose2 before = d.last.pose;
+  d.step({0.08, 0.0, 0.0}, {});
+  EXPECT_TRUE(d.last.broken);
+  EXPECT_LT(distance(d.last.pose, before), 1e-9) << "the robot is taken to have stood";
+  d.step({0.08, 0.0, 0.0}, {});
+  EXPECT_FALSE(d.last.broken);
+}
+
+TEST(ScanOdometry, goesByTheWheelsWhereNothingIsSeen) {
+  ScanOdometry odometry;
+  hyselam::LaserScan blind = roomScan({2, 2, 0});
+  for (float& r : blind.ranges) r = 100.0F;
+  Pose2 wheels;
+  for (int i = 0; i < 10; ++i) {
+    const ScanOdometry::Step step = odometry.add(blind, wheels);
+    EXPECT_LT(distance(step.pose, wheels), 1e-9);
+    EXPECT_FALSE(step.broken);
+    wheels = wheels * Pose2{0.1, 0.0, 0.1};
+  }
+}
+
+TEST(ScanOdometry, refusesParametersOutOfRange) {
+  ScanOdometryParams params;
+  params.keyframe_step = 0.0;
+  EXPECT_THROW(ScanOdometry{params}, hyselam::ParameterError);
 }
 
 }  // namespace

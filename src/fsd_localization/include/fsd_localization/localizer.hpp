@@ -20,7 +20,9 @@
 #include "fsd_localization/models/cosine_model.hpp"
 #include "fsd_localization/models/fsd_observation_model.hpp"
 #include "fsd_localization/models/likelihood_field_model.hpp"
+#include "fsd_localization/search/place_judge.hpp"
 #include "hyselam_common/parameters.hpp"
+#include "hyselam_scan_matching/scan_odometry.hpp"
 
 namespace fsd_localization {
 
@@ -29,6 +31,14 @@ struct LocalizerParams {
   std::uint64_t seed = 1;
   double update_min_d = 0.1;                     ///< travel between updates [m]
   double update_min_a = hyselam::radians(10.0);  ///< or turn between updates [rad]
+  /// Hybrid: the motion is refined by matching scans with what was seen last.
+  bool refine_odometry = true;
+  /// Hybrid: the scans of the last metres are searched on the whole map, and what is found decides
+  /// what is believed.
+  bool submap_search = true;
+  double search_latency = 0.5;      ///< an answer counts so long after its question [s]
+  double found_probability = 0.95;  ///< a place is believed from this probability on
+  double lost_probability = 0.9;    ///< another one says from this on that the robot is lost
 
   FsdMapParams map;  ///< densities of the map: their kernels, what counts as free
   LocalMapParams local_map;
@@ -80,6 +90,10 @@ struct LocalizationResult {
   double effective_size = 0.0;
   std::optional<double> inlier_ratio;  ///< share of inliers among the returns; hybrid only
   double travelled = 0.0;              ///< since the start or the last reset [m]
+  /// Of the last search: how sure its best place is, 0..1, and how many places are not much worse.
+  /// 0 places: the map does not explain what is seen.
+  std::optional<double> place_probability;
+  int places = 0;
 };
 
 class Localizer {
@@ -115,6 +129,10 @@ class Localizer {
   /// particles.
   void restartClock();
 
+  /// Whether update() waits for an answer that is due (the default: equal runs give equal poses),
+  /// or takes it up later.
+  void waitForSearch(bool wait) { wait_for_search_ = wait; }
+
   const LocalizerParams& params() const { return params_; }
   const FsdMap& map() const { return *map_; }
   const LocalMap& localMap() const { return sensor_.localMap(); }
@@ -130,8 +148,19 @@ class Localizer {
   bool usesFsd() const {
     return params_.model == ObservationModelKind::kFsd || (isHybrid() && isSearching(state_));
   }
+  bool refinesOdometry() const { return params_.refine_odometry && isHybrid(); }
+  hyselam::Pose2 addScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
   const ObservationModel& activeModel() const;
   LocalizationResult resultOf(const PoseEstimate& estimate, double effective_size) const;
+
+  /// The decisions of the search by submaps; see localizer_search.cpp.
+  void updateBySearch(const PoseEstimate& estimate, double motion, LocalizationResult& result);
+  void askSearch(const PoseEstimate& estimate);
+  void takeAnswer(LocalizationResult& result);
+  void decide(const SearchAnswer& answer, const Verdict& verdict, LocalizationResult& result);
+  void trackAt(const hyselam::Pose2& base_in_grid, LocalizationResult& result);
+  void followPlaces(const std::vector<Place>& places, const hyselam::Pose2& motion);
+  void forgetSearch();
 
   // Transitions between the states of the hybrid model.
   void startHypotheses(Particles particles);
@@ -154,10 +183,25 @@ class Localizer {
   Observation observation_;
   LocalizerState state_ = LocalizerState::kGlobalSearch;
   std::optional<double> last_stamp_;
-  std::optional<hyselam::Pose2> last_odom_;     // of the last scan
-  std::optional<hyselam::Pose2> updated_odom_;  // of the last update
+  std::optional<hyselam::Pose2> last_odom_;     // of the last scan, as it came
+  std::optional<hyselam::Pose2> updated_odom_;  // of the last update, refined
+  hyselam_scan_matching::ScanOdometry scan_odometry_;
   double travelled_ = 0.0;
   InlierMonitor inliers_;  // since the likelihood field became active
+
+  /// The search by submaps; hybrid only.
+  struct Search {
+    SubmapBuilder submap;
+    std::unique_ptr<BackgroundSearch> background;
+    double way = 0.0;                // [m] of motion, turns counted
+    std::optional<double> asked_at;  // on that way
+    double suspicious_until = -1.0;  // something happened: ask often until then
+    double tracked_from = 0.0, next_check = 0.0;
+    bool guided = false;             // a pose was told, and nothing found since
+    std::optional<Verdict> verdict;  // the last one
+  };
+  Search search_;
+  bool wait_for_search_ = true;
 };
 
 }  // namespace fsd_localization

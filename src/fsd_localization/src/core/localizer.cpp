@@ -18,6 +18,7 @@ constexpr Pose2 kHypothesisBlur{0.1, 0.1, hyselam::radians(4.0)};  // between pa
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
 constexpr double kTurnAsTravel = 0.5;         // [m/rad] a turn shows as much as so much travel
 constexpr double kFarthest = 1e6;             // [m] beyond it cell numbers would not fit an int
+constexpr double kSuspiciousWay = 3.0;        // [m] that a break of the motion is looked into
 constexpr std::size_t kStayEvery = 10;  // each tenth particle stays at the old place when lost
 
 // Streams of random numbers that differ from each other: one per cause, and per millimetre
@@ -50,6 +51,17 @@ void LocalizerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("seed", seed, Range::atLeast(0), "", "equal seeds and input give equal results");
   visit("update_min_d", update_min_d, Range::atLeast(0.0), "m", "travel between updates");
   visit("update_min_a", update_min_a, Range::atLeast(0.0), "rad", "or turn");
+  visit("refine_odometry", refine_odometry,
+        "hybrid: odometry is refined by matching scans with what was seen last");
+  visit("submap_search", submap_search,
+        "hybrid: the scans of the last metres are searched on the whole map");
+  visit("search_latency", search_latency, Range::between(0.0, 60.0), "s",
+        "an answer of the search counts so long after its question, so that equal runs are equal");
+  const Range probability = Range::inside(0.0, 1.0);
+  visit("found_probability", found_probability, probability, "",
+        "a place that the search found is believed from this probability on");
+  visit("lost_probability", lost_probability, probability, "",
+        "lost, if another place is right with this probability");
   visit.group("", filter);
   visit.renamed("converged_share", "converged_cluster_weight");
   visit("converged_cluster_weight", converged_cluster_weight, Range::aboveUpTo(0.0, 1.0), "",
@@ -171,6 +183,10 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
     case ObservationModelKind::kFsd:
       model_ = std::make_unique<FsdObservationModel>(map_, params_.fsd);
   }
+  if (isHybrid() && params_.submap_search) {
+    search_.background = std::make_unique<BackgroundSearch>(
+        std::make_shared<const PlaceSearch>(map, params_.map.thresholds), params_.search_latency);
+  }
 }
 Localizer::~Localizer() = default;
 
@@ -200,6 +216,7 @@ void Localizer::setInitialPose(const Pose2& base_in_map, const Pose2& stddev) {
   travelled_ = 0.0;
   restartClock();
   state_ = LocalizerState::kGlobalSearch;
+  search_.guided = true;
   if (isHybrid()) {
     startHypotheses(gaussianParticles(base_in_grid, stddev, params_.hypothesis_particles,
                                       hyselam::mix(params_.seed, kInitialPoseStream)));
@@ -214,6 +231,8 @@ void Localizer::restartClock() {
   last_stamp_.reset();
   last_odom_.reset();
   updated_odom_.reset();
+  scan_odometry_.reset();
+  forgetSearch();
 }
 
 void Localizer::startHypotheses(Particles particles) {
@@ -250,7 +269,7 @@ void Localizer::searchAgain() {
   filter_ =
       ParticleFilter(map_, params_.filter,
                      hyselam::mix(params_.seed, kSearchAgainStream + millimeters(travelled_)));
-  if (state_ == LocalizerState::kTracking && old.size() > 0) {  // the alarm may be false
+  if (phaseOf(state_) != Phase::kGlobal && old.size() > 0) {  // the alarm may be false
     Particles mixed = filter_.particles();
     for (std::size_t i = 0, k = 0; i < mixed.size(); i += kStayEvery, k = (k + 1) % old.size()) {
       mixed.set(i, old.pose(k), 1.0F);
@@ -261,24 +280,43 @@ void Localizer::searchAgain() {
   sensor_.reset();
 }
 
+/// The pose in the smooth frame of the motion.
+Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_odom) {
+  Pose2 smooth = base_in_odom;
+  if (refinesOdometry()) {
+    const auto step = scan_odometry_.add(scan, base_in_odom);
+    smooth = step.pose;
+    if (step.broken && search_.background) {  // what was seen before lies nobody knows where
+      search_.submap.reset();
+      search_.background->drop();
+      search_.suspicious_until = search_.way + kSuspiciousWay;
+    }
+  }
+  sensor_.integrate(scan, smooth);
+  if (search_.background) search_.submap.add(scan, smooth);
+  return smooth;
+}
+
 std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& scan,
                                                     const Pose2& base_in_odom, bool force) {
   if (!std::isfinite(scan.stamp)) throw hyselam::InputError("laser scan", "stamp", "not finite");
   if (last_stamp_ && scan.stamp <= *last_stamp_) {
     throw hyselam::InputError("laser scan", "stamp", "not later than the scan before");
   }
-  sensor_.integrate(scan, base_in_odom);  // refuses what cannot be used, before anything changes
+  sensor_.check(scan, base_in_odom);  // refuses what cannot be used, before anything changes
+  const Pose2 smooth = addScan(scan, base_in_odom);
   last_stamp_ = scan.stamp;
   if (last_odom_) travelled_ += hyselam::distance(*last_odom_, base_in_odom);
   last_odom_ = base_in_odom;
 
-  const Pose2 delta = updated_odom_ ? hyselam::between(*updated_odom_, base_in_odom) : Pose2{};
+  const Pose2 delta = updated_odom_ ? hyselam::between(*updated_odom_, smooth) : Pose2{};
   const double moved = std::hypot(delta.x, delta.y);
-  if (updated_odom_ && !force && moved < params_.update_min_d &&
+  const bool answered = search_.background && search_.background->isDue(scan.stamp);
+  if (updated_odom_ && !force && !answered && moved < params_.update_min_d &&
       std::abs(delta.theta) < params_.update_min_a) {
     return std::nullopt;
   }
-  updated_odom_ = base_in_odom;
+  updated_odom_ = smooth;
 
   observation_.scan = scan;
   observation_.fsd = usesFsd() ? sensor_.observe() : FsdObservation{};
@@ -290,7 +328,13 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
     // Turning shows the same surroundings again: enough to see that they do not fit, too little to
     // distinguish places that look alike.
     const double turned = state_ == LocalizerState::kTracking ? std::abs(delta.theta) : 0.0;
-    updateState(estimate, moved + kTurnAsTravel * turned, result);
+    const double motion = moved + kTurnAsTravel * turned;
+    if (search_.background) {
+      search_.way += moved + kTurnAsTravel * std::abs(delta.theta);
+      updateBySearch(estimate, motion, result);
+    } else {
+      updateState(estimate, motion, result);
+    }
   } else {
     state_ = result.converged ? LocalizerState::kTracking : LocalizerState::kGlobalSearch;
   }

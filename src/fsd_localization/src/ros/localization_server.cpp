@@ -211,6 +211,7 @@ void LocalizationServer::takeOverMap() {
   }
   pending_initial_.reset();
   localizer_ = std::move(outcome->localizer);
+  localizer_->waitForSearch(false);  // a callback waits for nothing
   map_error_.clear();
   const FsdMap& map = localizer_->map();
   ROS_INFO_STREAM(log_name_ << " map ready: " << map.freeCells().size() << " free cells, "

@@ -2,6 +2,7 @@
 // master.
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <iostream>
 #include <memory>
 
@@ -12,10 +13,11 @@
 #include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
+#include "localization_score.hpp"
 
 namespace {
 
-using fsd_localization::KernelProfile;
+using fsd_localization::LocalizationScore;
 using hyselam::Pose2;
 
 struct Options {
@@ -24,99 +26,17 @@ struct Options {
   std::size_t particles = 20000;
   std::uint64_t seed = 1;
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
-  bool cache = false;
+  std::size_t kidnaps = 0;
+  bool cache = false, start_known = false, raw_odometry = false, without_search = false;
   hyselam::BagOptions bag_options;
-};
-
-/// The estimates against the reference, if there is one.
-class Score {
- public:
-  explicit Score(const Options& o) : success_m_(o.success_m), success_deg_(o.success_deg) {}
-  bool empty() const { return entries_.empty(); }
-
-  void add(const Pose2& estimate, const Pose2& truth, double travelled, bool converged) {
-    Entry e;
-    e.travelled = travelled;
-    e.error_m = hyselam::distance(estimate, truth);
-    e.error_deg = hyselam::degrees(std::abs(hyselam::normalizeAngle(estimate.theta - truth.theta)));
-    e.good = e.error_m < success_m_ && e.error_deg < success_deg_;
-    e.converged = converged;
-    if (!entries_.empty() &&
-        hyselam::distance(truth_, truth) > travelled - entries_.back().travelled + kJump) {
-      jumps_.push_back(entries_.size());
-    }
-    truth_ = truth;
-    entries_.push_back(e);
-  }
-
-  nlohmann::json report() const {
-    const std::size_t held = heldFrom(0, entries_.size());
-    const bool success = held < entries_.size();
-    nlohmann::json j = {{"success", success},
-                        {"held_from_m", nullptr},
-                        {"median_error_m", nullptr},
-                        {"median_error_deg", nullptr},
-                        {"wrongly_converged_m", wronglyConverged()},
-                        {"kidnaps", kidnaps()}};
-    if (!success) return j;
-    j["held_from_m"] = entries_[held].travelled;
-    j["median_error_m"] = median(held, &Entry::error_m);
-    j["median_error_deg"] = median(held, &Entry::error_deg);
-    return j;
-  }
-
- private:
-  static constexpr double kJump = 1.0;  // [m] more than was travelled: the robot was carried
-  struct Entry {
-    double travelled, error_m, error_deg;
-    bool good, converged;
-  };
-
-  /// The first good estimate of [begin, end) after the last bad one; `end` if the last is bad.
-  std::size_t heldFrom(std::size_t begin, std::size_t end) const {
-    if (end == begin || !entries_[end - 1].good) return entries_.size();
-    while (end > begin && entries_[end - 1].good) --end;
-    return end;
-  }
-  /// Travel with false convergence [m].
-  double wronglyConverged() const {
-    double sum = 0.0;
-    for (std::size_t i = 1; i < entries_.size(); ++i) {
-      if (entries_[i].converged && !entries_[i].good) {
-        sum += entries_[i].travelled - entries_[i - 1].travelled;
-      }
-    }
-    return sum;
-  }
-  nlohmann::json kidnaps() const {
-    nlohmann::json list = nlohmann::json::array();
-    for (std::size_t i = 0; i < jumps_.size(); ++i) {
-      const std::size_t end = i + 1 < jumps_.size() ? jumps_[i + 1] : entries_.size();
-      const std::size_t held = heldFrom(jumps_[i], end);
-      const double at = entries_[jumps_[i]].travelled;
-      nlohmann::json after = nullptr;
-      if (held < end) after = entries_[held].travelled - at;
-      list.push_back({{"at_m", at}, {"recovered_after_m", after}});
-    }
-    return list;
-  }
-  double median(std::size_t from, double Entry::*field) const {
-    std::vector<double> v;
-    for (std::size_t i = from; i < entries_.size(); ++i) v.push_back(entries_[i].*field);
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  }
-
-  double success_m_, success_deg_;
-  Pose2 truth_;
-  std::vector<Entry> entries_;
-  std::vector<std::size_t> jumps_;  // first entry after each
 };
 
 fsd_localization::LocalizerParams localizerParams(const Options& o) {
   fsd_localization::LocalizerParams p;
   p.model = fsd_localization::observationModelKindFromString(o.model);
   p.seed = o.seed;
+  p.refine_odometry = !o.raw_odometry;
+  p.submap_search = !o.without_search;
   p.filter.max_particles = o.particles;
   p.filter.min_particles = std::min(p.filter.min_particles, o.particles);
   p.map.kernels.clear();
@@ -141,16 +61,66 @@ std::unique_ptr<fsd_localization::Localizer> makeLocalizer(
   return localizer;
 }
 
+/// The log with parts cut out, stamps closed up; true poses are those of its scans.
+hyselam::RobotLog withKidnaps(const hyselam::RobotLog& log,
+                              const std::vector<hyselam::StampedPose2>& truth, std::size_t count) {
+  struct Moment {
+    const hyselam::LaserScan* scan;
+    Pose2 odometry, truth;
+    double way;
+  };
+  std::vector<Moment> all;
+  for (const hyselam::LaserScan& scan : log.scans) {
+    const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
+    const auto at = hyselam::poseAt(truth, scan.stamp, 0.05);
+    if (!odom || !at) continue;
+    const double way =
+        all.empty() ? 0.0 : all.back().way + hyselam::distance(all.back().truth, *at);
+    all.push_back({&scan, *odom, *at, way});
+  }
+  hyselam::RobotLog out;
+  Pose2 frame;  // of the odometry as recorded, in that of the output
+  double shift = 0.0;
+  std::size_t cuts = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Moment& m = all[i];
+    hyselam::LaserScan scan = *m.scan;
+    scan.stamp -= shift;
+    out.odometry.push_back({scan.stamp, frame * m.odometry});
+    out.ground_truth.push_back({scan.stamp, m.truth});
+    out.scans.push_back(std::move(scan));
+    const double wanted =
+        all.back().way * static_cast<double>(cuts + 1) / static_cast<double>(count + 1);
+    if (cuts == count || m.way < wanted) continue;
+    std::size_t k = i + 1;
+    const auto fits = [&] {
+      const double away = hyselam::distance(all[k].truth, m.truth);
+      return all[k].scan->stamp > m.scan->stamp + 30.0 && away >= 5.0 && away <= 25.0;
+    };
+    while (k < all.size() && !fits()) ++k;
+    if (k >= all.size()) break;
+    ++cuts;
+    shift += all[k].scan->stamp - all[k - 1].scan->stamp > 0.0
+                 ? all[k - 1].scan->stamp - m.scan->stamp
+                 : 0.0;
+    frame = frame * m.odometry * all[k - 1].odometry.inverse();
+    i = k - 1;
+  }
+  return out;
+}
+
 /// A run through the localiser: one entry per update, and what could not be used.
 struct Replay {
   std::vector<hyselam::StampedPose2> trajectory;
   std::vector<double> update_ms;
   std::size_t without_odometry = 0, refused = 0;
+  double travelled = 0.0;
   nlohmann::json converged_at = nullptr;
   nlohmann::json phases = nlohmann::json::array();
 
   void add(const fsd_localization::LocalizationResult& result) {
     trajectory.push_back({result.stamp, result.base_in_map});
+    travelled = result.travelled;
     if (result.converged && converged_at.is_null()) converged_at = result.travelled;
     const std::string phase = toString(result.phase);
     if (phases.empty() || phases.back()["phase"] != phase) {
@@ -161,7 +131,8 @@ struct Replay {
 };
 
 Replay replay(fsd_localization::Localizer& localizer, const hyselam::RobotLog& log,
-              const std::vector<hyselam::StampedPose2>& truth, const Options& o, Score& score) {
+              const std::vector<hyselam::StampedPose2>& truth, const Options& o,
+              LocalizationScore& score) {
   const double begin = log.scans.front().stamp + o.start;
   hyselam::Progress progress("localising", log.scans.size());
   Replay out;
@@ -193,7 +164,7 @@ Replay replay(fsd_localization::Localizer& localizer, const hyselam::RobotLog& l
     out.add(*result);
     travelled = result->travelled;
     if (const auto at = hyselam::poseAt(truth, scan.stamp, 0.05)) {
-      score.add(result->base_in_map, *at, result->travelled, result->converged);
+      score.add(*result, *at);
     }
   }
   return out;
@@ -202,7 +173,7 @@ Replay replay(fsd_localization::Localizer& localizer, const hyselam::RobotLog& l
 nlohmann::json run(const Options& o) {
   const fsd_localization::LocalizerParams params = localizerParams(o);
   const hyselam::OccupancyGrid map = hyselam::loadMap(o.map);
-  const hyselam::RobotLog log = hyselam::readRobotLog(o.log, o.bag_options);
+  hyselam::RobotLog log = hyselam::readRobotLog(o.log, o.bag_options);
   std::vector<hyselam::StampedPose2> truth = log.ground_truth;
   if (!o.reference.empty()) truth = hyselam::readPoses(o.reference).poses;
   if (log.scans.front().stamp + o.start > log.scans.back().stamp) {
@@ -210,9 +181,20 @@ nlohmann::json run(const Options& o) {
                               "lies after the last scan");
   }
 
+  if (o.kidnaps > 0) log = withKidnaps(log, truth, o.kidnaps);
   const auto localizer = makeLocalizer(map, params, o);
-  Score score(o);
-  const Replay result = replay(*localizer, log, truth, o, score);
+  if (o.start_known) {
+    const double begin = log.scans.front().stamp + o.start;
+    const auto scan = std::find_if(log.scans.begin(), log.scans.end(),
+                                   [&](const auto& s) { return s.stamp >= begin; });
+    const auto at = hyselam::poseAt(truth, scan->stamp, 1.0);
+    if (!at) throw hyselam::InputError(o.log, "--start-known", "no true pose at the first scan");
+    localizer->setInitialPose(*at, {0.5, 0.5, hyselam::radians(15.0)});
+  }
+  const std::clock_t cpu = std::clock();
+  LocalizationScore score({o.success_m, o.success_deg});
+  const Replay result = replay(*localizer, log, o.kidnaps > 0 ? log.ground_truth : truth, o, score);
+  const double cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   if (result.trajectory.empty()) {
     throw hyselam::InputError(o.log, "", "no scan could be used for an update");
   }
@@ -226,6 +208,8 @@ nlohmann::json run(const Options& o) {
                       {"updates", result.trajectory.size()},
                       {"median_update_ms", sorted[sorted.size() / 2]},
                       {"worst_update_ms", sorted.back()},
+                      {"cpu_s", cpu_s},
+                      {"travelled_m", result.travelled},
                       {"converged_at_m", result.converged_at},
                       {"phases", result.phases},
                       {"scans_without_odometry", result.without_odometry},
@@ -257,6 +241,12 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--distance", o.distance, "metres of travel to use; 0: to the end")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--kidnaps", o.kidnaps,
+                 "times that the robot is carried off: a part of the log, "
+                 "over 30 s long and ending 5 to 25 m away, is cut out, unknown to the wheels");
+  app.add_flag("--start-known", o.start_known, "the first pose is told, to 0.5 m and 15 degrees");
+  app.add_flag("--raw-odometry", o.raw_odometry, "odometry is not refined by scans");
+  app.add_flag("--without-search", o.without_search, "the filter alone, without search by submaps");
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
   app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");

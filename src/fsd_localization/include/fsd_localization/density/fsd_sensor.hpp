@@ -48,6 +48,10 @@ class FsdSensor {
   /// Integrates a scan into the local map; call it with every scan. @throws hyselam::InputError for
   /// a scan or pose that cannot be used; nothing is changed then.
   void integrate(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
+  /// Throws what integrate() would, and changes nothing.
+  void check(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom) const {
+    map_.check(scan, base_in_odom);
+  }
   /// Computes the densities around the robot. All are undefined before the first scan.
   FsdObservation observe();
   /// Clears the local map (the robot was moved by hand, the clock jumped back).

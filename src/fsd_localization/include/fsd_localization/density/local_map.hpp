@@ -49,6 +49,8 @@ class LocalMap {
   /// limits
   ///   that are not ordered, a laser outside the window, not finite numbers); the map is unchanged.
   void update(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
+  /// Throws what update() would, and changes nothing.
+  void check(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom) const;
   /// Clears the map.
   void clear();
 
@@ -93,6 +95,7 @@ class LocalMap {
   std::size_t index(hyselam::Cell c) const {
     return static_cast<std::size_t>((c.y + pad_) * stride_ + c.x + pad_);
   }
+  hyselam::Cell cellOf(const hyselam::Pose2& in_odom) const;
   void layOut(int pad);
   void moveTo(hyselam::Cell robot_in_odom);
   void forgetOutside();

@@ -138,30 +138,36 @@ void LocalMap::clear() {
   placed_ = false;
 }
 
-void LocalMap::update(const LaserScan& scan, const Pose2& base_in_odom) {
+void LocalMap::check(const LaserScan& scan, const Pose2& base_in_odom) const {
   checkScan(scan, base_in_odom);
-  const Pose2 laser_in_odom = base_in_odom * scan.laser_in_base;
-  const auto cellOf = [this](const Pose2& p) {
-    return Cell{static_cast<int>(std::floor(p.x / params_.resolution)),
-                static_cast<int>(std::floor(p.y / params_.resolution))};
-  };
   constexpr double kFarthest = 1e8;  // [cells]: beyond it cell numbers would not fit an int
   if (std::abs(base_in_odom.x) > kFarthest * params_.resolution ||
       std::abs(base_in_odom.y) > kFarthest * params_.resolution) {
     throw hyselam::InputError("laser scan", "pose in odom",
                               "farther than 1e8 cells from the origin");
   }
-  const Cell robot = cellOf(base_in_odom), laser = cellOf(laser_in_odom);
-  const int off = std::max(std::abs(laser.x - robot.x), std::abs(laser.y - robot.y));
-  if (off >= radius_cells_) {
+  const Cell robot = cellOf(base_in_odom), laser = cellOf(base_in_odom * scan.laser_in_base);
+  if (std::max(std::abs(laser.x - robot.x), std::abs(laser.y - robot.y)) >= radius_cells_) {
     throw hyselam::InputError("laser scan", "pose of the laser on the robot",
                               "the laser sits outside the local map");
   }
+}
+
+void LocalMap::update(const LaserScan& scan, const Pose2& base_in_odom) {
+  check(scan, base_in_odom);
+  const Pose2 laser_in_odom = base_in_odom * scan.laser_in_base;
+  const Cell robot = cellOf(base_in_odom), laser = cellOf(laser_in_odom);
+  const int off = std::max(std::abs(laser.x - robot.x), std::abs(laser.y - robot.y));
   if (off > pad_) layOut(off);
   moveTo(robot);
   sweep(scan, laser_in_odom.theta, {laser.x - window_.x, laser.y - window_.y});
   forgetOutside();
   clearFootprint();
+}
+
+hyselam::Cell LocalMap::cellOf(const Pose2& p) const {
+  return {static_cast<int>(std::floor(p.x / params_.resolution)),
+          static_cast<int>(std::floor(p.y / params_.resolution))};
 }
 
 void LocalMap::moveTo(Cell robot_in_odom) {

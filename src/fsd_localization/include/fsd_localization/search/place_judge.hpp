@@ -1,0 +1,27 @@
+// Does another place explain the last metres better? Odds instead of an absolute share: clutter
+// that the map lacks lowers the scores of all places.
+#pragma once
+
+#include "fsd_localization/search/background_search.hpp"
+
+namespace fsd_localization {
+
+/// How sure it is that a place is the right one.
+///
+/// @param score Place::seen. @param rival of the best other place; 0 if there is none.
+/// @param length of the submap [m].
+/// @return probability, 0..1, calibrated on logs (docs/algorithms/localization.md).
+double probabilityOfPlace(double score, double rival, double length);
+
+/// The best place of an answer and how sure it is.
+struct Verdict {
+  Place best;
+  double probability = 0.0;
+  bool is_believed = false;  ///< it is the believed one
+  /// Places that are not much worse, the best one included.
+  std::vector<Place> hypotheses;
+};
+/// Nothing if nothing was found and nothing believed.
+std::optional<Verdict> judge(const SearchAnswer& answer);
+
+}  // namespace fsd_localization

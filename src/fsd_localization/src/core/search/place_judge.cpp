@@ -1,0 +1,50 @@
+#include "fsd_localization/search/place_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fsd_localization {
+
+namespace {
+constexpr double kHypothesisMargin = 0.15;  // of the score, from the best
+constexpr std::size_t kMaxHypotheses = 20;
+
+// Fitted by bench/localization judge.
+constexpr double kBias = -3.0, kMargin = 40.0, kScore = 2.0, kLength = 0.5;
+}  // namespace
+
+double probabilityOfPlace(double score, double rival, double length) {
+  const double margin = std::min(score - rival, 0.3);  // beyond it is as sure as it gets
+  const double odds = kBias + kMargin * margin + kScore * score + kLength * std::log1p(length);
+  return 1.0 / (1.0 + std::exp(-odds));
+}
+
+std::optional<Verdict> judge(const SearchAnswer& answer) {
+  std::vector<Place> places = answer.places;
+  if (answer.believed) {
+    // The same place may have been found by a better way, or not at all.
+    const Place& b = *answer.believed;
+    const auto same = std::find_if(places.begin(), places.end(),
+                                   [&](const Place& p) { return isSamePlace(p.base, b.base); });
+    if (same == places.end()) {
+      places.push_back(b);
+    } else if (b.seen > same->seen) {
+      *same = b;
+    }
+    std::stable_sort(places.begin(), places.end(),
+                     [](const Place& p, const Place& q) { return p.seen > q.seen; });
+  }
+  if (places.empty()) return std::nullopt;
+  Verdict v;
+  v.best = places.front();
+  v.is_believed = answer.believed && isSamePlace(v.best.base, answer.believed->base);
+  v.probability =
+      probabilityOfPlace(v.best.seen, places.size() > 1 ? places[1].seen : 0.0, answer.length);
+  for (const Place& p : places) {
+    if (p.seen < v.best.seen - kHypothesisMargin || v.hypotheses.size() == kMaxHypotheses) break;
+    v.hypotheses.push_back(p);
+  }
+  return v;
+}
+
+}  // namespace fsd_localization

@@ -1,0 +1,92 @@
+#include "fsd_localization/search/submap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace fsd_localization {
+
+using hyselam::Point2;
+using hyselam::Pose2;
+
+namespace {
+constexpr double kStep = 0.3;           // [m] between kept scans
+constexpr double kTurn = 0.3;           // [rad] or so
+constexpr double kPointSpacing = 0.15;  // [m]
+constexpr std::size_t kViews = 12;
+constexpr std::size_t kBeams = 60;
+}  // namespace
+
+void SubmapBuilder::reset() {
+  *this = SubmapBuilder();
+}
+
+SubmapBuilder::Kept SubmapBuilder::kept(const hyselam::LaserScan& scan, const Pose2& base) {
+  Kept k;
+  k.base = base;
+  k.laser = {scan.laser_in_base.x, scan.laser_in_base.y};
+  const double limit = std::min(scan.range_max, kMaxRange);
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const auto r = static_cast<double>(scan.ranges[i]);
+    if (!(r >= scan.range_min && r < limit)) continue;
+    const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    k.ends.push_back(scan.laser_in_base * Point2{r * std::cos(bearing), r * std::sin(bearing)});
+  }
+  return k;
+}
+
+void SubmapBuilder::add(const hyselam::LaserScan& scan, const Pose2& base) {
+  if (!scans_.empty()) {
+    const Pose2 step = between(scans_.back().base, base);
+    travelled_ += std::hypot(step.x, step.y);
+    turned_ += std::abs(step.theta);
+    if (!last_is_step_) scans_.pop_back();
+  }
+  Kept now = kept(scan, base);
+  now.travelled = travelled_;
+  now.turned = turned_;
+  last_is_step_ = scans_.empty() || travelled_ - scans_.back().travelled >= kStep ||
+                  turned_ - scans_.back().turned >= kTurn;
+  scans_.push_back(std::move(now));
+  while (travelled_ - scans_.front().travelled > kMaxLength) scans_.pop_front();
+}
+
+Submap SubmapBuilder::build(double length) const {
+  Submap map;
+  if (scans_.empty()) return map;
+  const Pose2 to_newest = scans_.back().base.inverse();
+  std::size_t first = 0;
+  while (travelled_ - scans_[first].travelled > length) ++first;
+  map.length = travelled_ - scans_[first].travelled;
+  map.turned = turned_ - scans_[first].turned;
+  std::set<std::pair<int, int>> taken;
+  const std::size_t count = scans_.size() - first;
+  const std::size_t views = std::min(count, kViews);
+  std::size_t next_view = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Kept& k = scans_[scans_.size() - 1 - i];  // the newest first: its points are the surest
+    const Pose2 here = to_newest * k.base;
+    std::vector<Point2> ends;
+    ends.reserve(k.ends.size());
+    for (const Point2& e : k.ends) ends.push_back(here * e);
+    for (const Point2& e : ends) {
+      if (taken
+              .insert({static_cast<int>(std::floor(e.x / kPointSpacing)),
+                       static_cast<int>(std::floor(e.y / kPointSpacing))})
+              .second) {
+        map.points.push_back(e);
+      }
+    }
+    if (i != next_view * count / views) continue;
+    ++next_view;
+    Submap::View view;
+    view.laser = here * k.laser;
+    const std::size_t beams = std::min(kBeams, ends.size());
+    for (std::size_t b = 0; b < beams; ++b) view.ends.push_back(ends[b * ends.size() / beams]);
+    map.views.push_back(std::move(view));
+  }
+  return map;
+}
+
+}  // namespace fsd_localization

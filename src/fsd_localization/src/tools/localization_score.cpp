@@ -1,0 +1,143 @@
+#include "localization_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fsd_localization {
+
+namespace {
+constexpr double kJump = 1.0;       // [m] more than was travelled: the robot was carried
+constexpr double kRightWay = 5.0;   // [m] right for so long: found
+constexpr double kAlarmLook = 0.5;  // [m] before an alarm: was the pose right?
+}  // namespace
+
+void LocalizationScore::add(const LocalizationResult& result, const hyselam::Pose2& truth) {
+  Entry e;
+  e.travelled = result.travelled;
+  e.error_m = hyselam::distance(result.base_in_map, truth);
+  e.error_deg =
+      hyselam::degrees(std::abs(hyselam::normalizeAngle(result.base_in_map.theta - truth.theta)));
+  e.good = e.error_m < limits_.position && e.error_deg < limits_.heading;
+  e.converged = result.converged;
+  e.phase = result.phase;
+  if (!entries_.empty() &&
+      hyselam::distance(truth_, truth) > e.travelled - entries_.back().travelled + kJump) {
+    jumps_.push_back(entries_.size());
+  }
+  truth_ = truth;
+  entries_.push_back(e);
+}
+
+nlohmann::json LocalizationScore::report() const {
+  const std::size_t held = heldFrom(0, entries_.size());
+  const bool success = held < entries_.size();
+  nlohmann::json j = {{"success", success},
+                      {"held_from_m", nullptr},
+                      {"kept_m", 0.0},
+                      {"right_share", rightShare()},
+                      {"median_error_m", nullptr},
+                      {"median_error_deg", nullptr},
+                      {"wrongly_converged_m", wronglyConverged()},
+                      {"alarms", alarms()},
+                      {"kidnaps", kidnaps()}};
+  if (!success) return j;
+  j["held_from_m"] = entries_[held].travelled;
+  j["kept_m"] = entries_.back().travelled - entries_[held].travelled;
+  j["median_error_m"] = median(held, &Entry::error_m);
+  j["median_error_deg"] = median(held, &Entry::error_deg);
+  return j;
+}
+
+std::size_t LocalizationScore::heldFrom(std::size_t begin, std::size_t end) const {
+  if (end == begin || !entries_[end - 1].good) return entries_.size();
+  while (end > begin && entries_[end - 1].good) --end;
+  return end;
+}
+
+double LocalizationScore::wronglyConverged() const {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < entries_.size(); ++i) {
+    if (entries_[i].converged && !entries_[i].good) {
+      sum += entries_[i].travelled - entries_[i - 1].travelled;
+    }
+  }
+  return sum;
+}
+
+double LocalizationScore::rightShare() const {
+  double right = 0.0;
+  for (std::size_t i = 1; i < entries_.size(); ++i) {
+    if (entries_[i].good) right += entries_[i].travelled - entries_[i - 1].travelled;
+  }
+  const double way = entries_.back().travelled - entries_.front().travelled;
+  return way > 0.0 ? right / way : (entries_.back().good ? 1.0 : 0.0);
+}
+
+nlohmann::json LocalizationScore::firstRight(std::size_t begin, std::size_t end) const {
+  std::size_t from = begin;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!entries_[i].good) {
+      from = i + 1;
+    } else if (entries_[i].travelled - entries_[from].travelled >= kRightWay) {
+      return entries_[from].travelled - entries_[begin].travelled;
+    }
+  }
+  return nullptr;
+}
+
+nlohmann::json LocalizationScore::alarms() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = 1; i < entries_.size(); ++i) {
+    if (entries_[i].phase != Phase::kLost || entries_[i - 1].phase != Phase::kTracking) continue;
+    // Wrong to say so, if the pose was right all the time before.
+    bool was_right = true;
+    for (std::size_t k = i;
+         k-- > 0 && entries_[i].travelled - entries_[k].travelled < kAlarmLook;) {
+      was_right = was_right && entries_[k].good;
+    }
+    was_right = was_right && entries_[i].good;
+    list.push_back({{"at_m", entries_[i].travelled}, {"false", was_right}});
+  }
+  return list;
+}
+
+nlohmann::json LocalizationScore::kidnaps() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = 0; i < jumps_.size(); ++i) {
+    const std::size_t first = jumps_[i];
+    const std::size_t end = i + 1 < jumps_.size() ? jumps_[i + 1] : entries_.size();
+    const std::size_t held = heldFrom(first, end);
+    const double at = entries_[first].travelled;
+    const auto sinceJump = [&](std::size_t k) -> nlohmann::json {
+      if (k >= end) return nullptr;
+      return entries_[k].travelled - at;
+    };
+    std::size_t noticed = first;
+    while (noticed < end && entries_[noticed].phase == Phase::kTracking &&
+           !entries_[noticed].good) {
+      ++noticed;
+    }
+    double wrong = 0.0;
+    for (std::size_t k = first + 1; k < end; ++k) {
+      if (entries_[k].converged && !entries_[k].good) {
+        wrong += entries_[k].travelled - entries_[k - 1].travelled;
+      }
+    }
+    list.push_back({{"at_m", at},
+                    {"was_tracking", first > 0 && entries_[first - 1].phase == Phase::kTracking},
+                    {"noticed_after_m", sinceJump(noticed)},
+                    {"right_after_m", firstRight(first, end)},
+                    {"recovered_after_m", sinceJump(held)},
+                    {"wrongly_converged_m", wrong}});
+  }
+  return list;
+}
+
+double LocalizationScore::median(std::size_t from, double Entry::*field) const {
+  std::vector<double> v;
+  for (std::size_t i = from; i < entries_.size(); ++i) v.push_back(entries_[i].*field);
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+}  // namespace fsd_localization

@@ -1,0 +1,49 @@
+// The estimates of a run against true poses.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "fsd_localization/localizer.hpp"
+
+namespace fsd_localization {
+
+class LocalizationScore {
+ public:
+  /// An estimate with smaller errors is right.
+  struct Limits {
+    double position = 0.5;  ///< [m]
+    double heading = 15.0;  ///< [deg]
+  };
+  explicit LocalizationScore(const Limits& limits) : limits_(limits) {}
+
+  bool empty() const { return entries_.empty(); }
+  void add(const LocalizationResult& result, const hyselam::Pose2& truth);
+
+  nlohmann::json report() const;
+
+ private:
+  struct Entry {
+    double travelled, error_m, error_deg;
+    bool good, converged;
+    Phase phase;
+  };
+
+  /// The first good estimate of [begin, end) after the last bad one; the number of all if the last
+  /// is bad.
+  std::size_t heldFrom(std::size_t begin, std::size_t end) const;
+  double wronglyConverged() const;
+  double rightShare() const;
+  /// Metres after `begin` from which estimates were right for 5 m; null without such.
+  nlohmann::json firstRight(std::size_t begin, std::size_t end) const;
+  nlohmann::json alarms() const;
+  nlohmann::json kidnaps() const;
+  double median(std::size_t from, double Entry::*field) const;
+
+  Limits limits_;
+  hyselam::Pose2 truth_;
+  std::vector<Entry> entries_;
+  std::vector<std::size_t> jumps_;  // first entry after each
+};
+
+}  // namespace fsd_localization
