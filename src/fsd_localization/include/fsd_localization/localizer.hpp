@@ -37,8 +37,8 @@ struct LocalizerParams {
   /// what is believed.
   bool submap_search = true;
   double search_latency = 0.5;      ///< an answer counts so long after its question [s]
-  double found_probability = 0.95;  ///< a place is believed from this probability on
-  double lost_probability = 0.9;    ///< another one says from this on that the robot is lost
+  double found_probability = 0.98;  ///< a place is believed from this probability on
+  double lost_probability = 0.95;   ///< another one says from this on that the robot is lost
 
   FsdMapParams map;  ///< densities of the map: their kernels, what counts as free
   LocalMapParams local_map;
@@ -193,9 +193,10 @@ class Localizer {
   struct Search {
     SubmapBuilder submap;
     std::unique_ptr<BackgroundSearch> background;
-    double way = 0.0;                // [m] of motion, turns counted
-    std::optional<double> asked_at;  // on that way
-    double suspicious_until = -1.0;  // something happened: ask often until then
+    double way = 0.0;                  // [m] of motion, turns counted
+    std::optional<double> asked_at;    // on that way
+    double suspicious_until = -1.0;    // something happened: ask often until then
+    std::optional<double> alarm_from;  // on that way
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

@@ -19,6 +19,8 @@ constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because
 constexpr double kTurnAsTravel = 0.5;         // [m/rad] a turn shows as much as so much travel
 constexpr double kFarthest = 1e6;             // [m] beyond it cell numbers would not fit an int
 constexpr double kSuspiciousWay = 3.0;        // [m] that a break of the motion is looked into
+constexpr double kWeakMatch = 0.4;            // a scan of which less lies on what was seen last ...
+constexpr double kWeakWay = 1.0;              // [m] ... is looked into so long
 constexpr std::size_t kStayEvery = 10;  // each tenth particle stays at the old place when lost
 
 // Streams of random numbers that differ from each other: one per cause, and per millimetre
@@ -286,6 +288,9 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
   if (refinesOdometry()) {
     const auto step = scan_odometry_.add(scan, base_in_odom);
     smooth = step.pose;
+    if (step.matched && step.inlier_ratio < kWeakMatch) {
+      search_.suspicious_until = std::max(search_.suspicious_until, search_.way + kWeakWay);
+    }
     if (step.broken && search_.background) {  // what was seen before lies nobody knows where
       search_.submap.reset();
       search_.background->drop();

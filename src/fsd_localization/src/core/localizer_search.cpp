@@ -11,11 +11,12 @@ using hyselam::Pose2;
 
 namespace {
 
-constexpr double kAskStep = 0.5;      // [m] between questions of a robot that is not found
-constexpr double kAlarmLength = 2.0;  // [m] of scans that an alarm is about
-constexpr double kFirstCheck = 2.0;   // [m] after a place was found, and then twice as far
-constexpr double kCheckStep = 30.0;   // [m] at most between checks
-constexpr double kFits = 0.3;         // a place with a lower score does not explain what is seen
+constexpr double kAskStep = 0.5;       // [m] between questions of a robot that is not found
+constexpr double kAlarmLength = 2.0;   // [m] of scans at most that an alarm is about
+constexpr double kFirstCheck = 2.0;    // [m] after a place was found, and then twice as far
+constexpr double kCheckStep = 30.0;    // [m] at most between checks
+constexpr double kTurnAsTravel = 0.5;  // [m/rad] as for the alarms
+constexpr double kFits = 0.3;          // a place with a lower score does not explain what is seen
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
 
@@ -27,6 +28,7 @@ void Localizer::forgetSearch() {
   search_.asked_at.reset();
   search_.verdict.reset();
   search_.suspicious_until = -1.0;
+  search_.alarm_from.reset();
   search_.guided = false;
 }
 
@@ -39,8 +41,13 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     inliers_.add(result.inlier_ratio, motion);
   }
   if (tracking) {
+    const bool suspicious = search_.way < search_.suspicious_until;
+    const bool alarm =
+        suspicious || inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+    if (!alarm) search_.alarm_from.reset();
+    if (alarm && !search_.alarm_from) search_.alarm_from = search_.way;
     // Meanwhile nobody should rely on it; but the robot is not lost before another place is better.
-    if (inliers_.isBelow(params_.lost_inlier_ratio, 0.0)) result.converged = false;
+    if (suspicious || inliers_.isBelow(params_.lost_inlier_ratio, 0.0)) result.converged = false;
   } else if (search_.guided && result.converged &&
              inliers_.average() >= params_.found_inlier_ratio) {
     search_.guided = false;
@@ -65,22 +72,24 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
   if (search_.background->busy() || search_.submap.empty()) return;
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   if (since < kAskStep) return;
-  double length = SubmapBuilder::kMaxLength;
+  double length = SubmapBuilder::kMaxLength, turn_as_travel = 0.0;
   std::optional<Pose2> believed;
   if (state_ == LocalizerState::kTracking) {
-    const bool alarm = search_.way < search_.suspicious_until ||
-                       inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+    const bool alarm = search_.alarm_from.has_value();
     const bool check = search_.way - search_.tracked_from >= search_.next_check;
     if (!alarm && !check) return;
     if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
-    if (alarm) length = kAlarmLength;
+    if (alarm) {  // what was seen before it may belong to another place
+      length = std::min(kAlarmLength, kAskStep + search_.way - *search_.alarm_from);
+      turn_as_travel = kTurnAsTravel;
+    }
     believed = estimate.mean;
   } else if (search_.guided) {
     believed = estimate.mean;
   }
   search_.asked_at = search_.way;
-  search_.background->ask(observation_.scan.stamp, *updated_odom_, search_.submap.build(length),
-                          believed);
+  search_.background->ask(observation_.scan.stamp, *updated_odom_,
+                          search_.submap.build(length, turn_as_travel), believed);
 }
 
 void Localizer::takeAnswer(LocalizationResult& result) {
@@ -123,6 +132,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.tracked_from = search_.way;
   search_.next_check = kFirstCheck;
   search_.suspicious_until = -1.0;
+  search_.alarm_from.reset();
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),

@@ -32,8 +32,9 @@ class SubmapBuilder {
   void reset();
 
   bool empty() const { return scans_.empty(); }
-  /// Seen from the newest pose, no farther back than `length` [m] of travel.
-  Submap build(double length = kMaxLength) const;
+  /// Seen from the newest pose, no farther back than `length` [m] of travel. Each radian turned
+  /// counts as `turn_as_travel` [m].
+  Submap build(double length = kMaxLength, double turn_as_travel = 0.0) const;
 
  private:
   struct Kept {

@@ -10,7 +10,7 @@ constexpr double kHypothesisMargin = 0.15;  // of the score, from the best
 constexpr std::size_t kMaxHypotheses = 20;
 
 // Fitted by bench/localization judge.
-constexpr double kBias = -3.0, kMargin = 40.0, kScore = 2.0, kLength = 0.5;
+constexpr double kBias = -5.980, kMargin = 34.766, kScore = 6.535, kLength = 0.596;
 }  // namespace
 
 double probabilityOfPlace(double score, double rival, double length) {

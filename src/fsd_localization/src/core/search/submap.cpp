@@ -52,12 +52,15 @@ void SubmapBuilder::add(const hyselam::LaserScan& scan, const Pose2& base) {
   while (travelled_ - scans_.front().travelled > kMaxLength) scans_.pop_front();
 }
 
-Submap SubmapBuilder::build(double length) const {
+Submap SubmapBuilder::build(double length, double turn_as_travel) const {
   Submap map;
   if (scans_.empty()) return map;
   const Pose2 to_newest = scans_.back().base.inverse();
   std::size_t first = 0;
-  while (travelled_ - scans_[first].travelled > length) ++first;
+  while (travelled_ - scans_[first].travelled + turn_as_travel * (turned_ - scans_[first].turned) >
+         length) {
+    ++first;
+  }
   map.length = travelled_ - scans_[first].travelled;
   map.turned = turned_ - scans_[first].turned;
   std::set<std::pair<int, int>> taken;
