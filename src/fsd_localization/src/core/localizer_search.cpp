@@ -11,12 +11,13 @@ using hyselam::Pose2;
 
 namespace {
 
-constexpr double kAskStep = 0.5;       // [m] between questions of a robot that is not found
-constexpr double kAlarmLength = 2.0;   // [m] of scans at most that an alarm is about
-constexpr double kFirstCheck = 2.0;    // [m] after a place was found, and then twice as far
-constexpr double kCheckStep = 30.0;    // [m] at most between checks
-constexpr double kTurnAsTravel = 0.5;  // [m/rad] as for the alarms
-constexpr double kFits = 0.3;          // a place with a lower score does not explain what is seen
+constexpr double kSupposedVariance = 1.0;  // [m^2], along each axis, at least
+constexpr double kAskStep = 0.5;           // [m] between questions of a robot that is not found
+constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
+constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
+constexpr double kCheckStep = 30.0;        // [m] at most between checks
+constexpr double kTurnAsTravel = 0.5;      // [m/rad] as for the alarms
+constexpr double kFits = 0.3;  // a place with a lower score does not explain what is seen
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
 
@@ -58,6 +59,11 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     result.converged = false;
   }
   takeAnswer(result);
+  // A place that is only supposed, the only one that fits, does not look certain.
+  if (!result.converged && state_ != LocalizerState::kTracking) {
+    result.covariance(0, 0) = std::max(result.covariance(0, 0), kSupposedVariance);
+    result.covariance(1, 1) = std::max(result.covariance(1, 1), kSupposedVariance);
+  }
   askSearch(estimate);
   if (search_.verdict) {
     result.place_probability = search_.verdict->probability;
