@@ -4,53 +4,14 @@
 
 #include <limits>
 
+#include "drawn_room.hpp"
 #include "fsd_localization/localizer.hpp"
-#include "hyselam_common/testing/drawn_grid.hpp"
-#include "random_worlds.hpp"
 
 using namespace fsd_localization;  // NOLINT: a test, not a header
 using hyselam::Point2;
 using hyselam::Pose2;
 
 namespace {
-
-hyselam::OccupancyGrid gridOf(const transcription::Cells& cells) {
-  hyselam::GridGeometry g;
-  g.width = cells.width;
-  g.height = cells.height;
-  hyselam::OccupancyGrid map(g);
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      map.at({x, y}) = cells.at(x, y) == transcription::Cells::kOccupied ? 100
-                       : cells.at(x, y) == transcription::Cells::kFree   ? 0
-                                                                         : -1;
-    }
-  }
-  return map;
-}
-
-hyselam::OccupancyGrid room() {
-  return hyselam::testing::drawnGrid({"#######",  //
-                                      "#.....#",  //
-                                      "#.#...#",  //
-                                      "#.....#",  //
-                                      "#...#.#",  //
-                                      "#######"},
-                                     0.1, {3, 27, 10, 30, 5, 42, 3}, {3, 17, 10, 20, 27, 3});
-}
-
-hyselam::LaserScan look(const GridRayCaster& rays, const Pose2& at, double stamp) {
-  hyselam::LaserScan s;
-  s.stamp = stamp;
-  s.angle_min = -hyselam::kPi / 2;
-  s.angle_increment = hyselam::kPi / 180;
-  s.range_max = 30.0;
-  for (int b = 0; b < 181; ++b) {
-    s.ranges.push_back(static_cast<float>(
-        rays.range(at.x, at.y, at.theta + s.angle_min + b * s.angle_increment, 30.0)));
-  }
-  return s;
-}
 
 Submap submapOf(const std::vector<hyselam::LaserScan>& scans, const std::vector<Pose2>& poses) {
   SubmapBuilder builder;
