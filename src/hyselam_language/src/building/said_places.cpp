@@ -112,6 +112,12 @@ std::string saidText(const Statement& s, const SaidName& name) {
                 : name.text;
 }
 
+/// "The men's": a noun of places by itself.
+bool isPlaceNoun(const Statement& s, const SaidName& name) {
+  const auto* type = s.listener().grammar.compiled().nameType("place");
+  return type != nullptr && type->nouns.count(hyselam::utf8Fold(name.text)) != 0;
+}
+
 /// What "the chemistry one", "Mary's" and "the big one" leave out.
 std::string kindLeftOut(Statement& s, const SaidName& name) {
   const DescriptionContext& context = s.context();
@@ -121,8 +127,7 @@ std::string kindLeftOut(Statement& s, const SaidName& name) {
   if (owned && !context.owned_kind.empty()) return context.owned_kind;
   // "You are in the corridor. The last door is Joe's": nobody's corridor.
   if (owned && s.listener().names.kindOf(context.kind_word) == PlaceKind::kCorridor) {
-    const bool has_name = type != nullptr && type->nouns.count(hyselam::utf8Fold(name.text)) != 0;
-    return has_name ? "" : s.listener().grammar.say("office");
+    return isPlaceNoun(s, name) ? "" : s.listener().grammar.say("office");
   }
   const std::string& kind =
       owned || context.described_kind.empty() ? context.kind_word : context.described_kind;
@@ -236,9 +241,7 @@ std::string fullName(Statement& s, const SaidName& name) {
     return writer.phrase("elliptic",
                          {{"owner", name.text, false, true}, {"kind", word, false, true}});
   };
-  const auto* type = grammar.compiled().nameType("place");
-  const bool has_name = type != nullptr && type->nouns.count(hyselam::utf8Fold(name.text)) != 0;
-  if (kind.empty() && has_name) return name.text;  // "the men's"
+  if (kind.empty() && isPlaceNoun(s, name)) return name.text;  // "the men's"
   if (kind.empty()) {
     s.fail(IssueKind::kAsk, "what_of",
            {{"name", saidText(s, name)}, {"example", full(grammar.say("office"))}});
