@@ -101,6 +101,10 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
             "model.txt [of_two]: line 2: there is no class 1");
   EXPECT_EQ(reason(with("[of_two]\nclasses none", "[of_two]\nclasses none\nf 0:nan")),
             "model.txt [of_two]: line 2: '0:nan' is not CLASS:WEIGHT");
+  EXPECT_EQ(reason(with("[tagger]\nclasses O", "[tagger]\nclasses B-thing")),
+            "model.txt [tagger]: 'O': no such tag");
+  EXPECT_EQ(reason(with("[tagger]\nclasses O", "[tagger]\nclasses O B")),
+            "model.txt [tagger]: 'B': is no tag");
   EXPECT_EQ(reason(with("noun lab", "verb go")),
             "model.txt [lexicon]: 'verb go': is no kind of word");
 }

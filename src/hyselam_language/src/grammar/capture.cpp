@@ -88,9 +88,11 @@ class Capture {
   Slot& slotOf(const Edge& edge, std::size_t from, std::size_t to) {
     const SlotType& type = pattern_.slots[static_cast<std::size_t>(edge.a)];
     const auto& tokens = words_.tokens;
-    const TextRange range{
-        tokens[std::min(from, tokens.size() - 1)].range.begin,
-        to > from ? tokens[to - 1].range.end : tokens[from > 0 ? from - 1 : 0].range.end};
+    // What takes no word ("there", left out) stands behind the word before.
+    const std::size_t behind = from > 0 ? tokens[from - 1].range.end : tokens.front().range.begin;
+    const TextRange range = to > from
+                                ? TextRange{tokens[from].range.begin, tokens[to - 1].range.end}
+                                : TextRange{behind, behind};
     for (Slot& slot : clause_.slots) {
       if (slot.name != type.name) continue;
       slot.range.end = std::max(slot.range.end, range.end);
@@ -145,7 +147,9 @@ class Capture {
     reference.reference = value == kAgain ? "it" : value;
     clause_.only_corrects = clause_.only_corrects || value == kAgain;
     reference.range = slot.range;
-    reference.text = words_.textOf(slot.range);
+    // One that was not spoken ("[the workshop is] João's") is named by what it stands for.
+    reference.text =
+        slot.range.begin < slot.range.end ? words_.textOf(slot.range) : reference.reference;
     slot.names.push_back(std::move(reference));
   }
 

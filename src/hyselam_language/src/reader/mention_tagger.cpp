@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hyselam_common/errors.hpp"
+
 namespace hyselam_topo {
 namespace language {
 namespace {
@@ -98,6 +100,20 @@ void addTagBefore(const HeardText& text, std::size_t token, const std::string& t
   features->push_back("t-1w-1=" + tag + "_" + text.word(at - 1));
   features->push_back("t-1k=" + tag + "_" + kindOf(text, at) + shapeOf(text, at) +
                       kindOf(text, at + 1));
+}
+
+void checkTags(const std::string& source, const LinearClassifier& tagger) {
+  const auto& tags = tagger.classes();
+  const auto has = [&](const std::string& tag) {
+    return std::find(tags.begin(), tags.end(), tag) != tags.end();
+  };
+  if (!has("O")) throw hyselam::InputError(source, "'O'", "no such tag");
+  for (const std::string& tag : tags) {
+    const bool is_of_kind = std::any_of(kKinds.begin(), kKinds.end(), [&](const std::string& kind) {
+      return tag == "B-" + kind || tag == "I-" + kind;
+    });
+    if (tag != "O" && !is_of_kind) throw hyselam::InputError(source, "'" + tag + "'", "is no tag");
+  }
 }
 
 double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at) {

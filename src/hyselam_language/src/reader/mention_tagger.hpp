@@ -2,6 +2,7 @@
 // is none (BIO tags), by its own looks and its neighbours; the likeliest row of tags counts.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "heard_text.hpp"
@@ -12,6 +13,10 @@ namespace language {
 
 /// "O", or B or I with the kind of the mention: "B-thing".
 std::vector<std::string> tagsOf(const HeardText& text, const std::vector<Mention>& mentions);
+
+/// Refuses a tagger that has no "O", or tags that tagsOf() never gives. Throws InputError with the
+/// source.
+void checkTags(const std::string& source, const LinearClassifier& tagger);
 
 /// What the word at that place looks like to the tagger.
 Features tokenFeatures(const HeardText& text, std::size_t at);

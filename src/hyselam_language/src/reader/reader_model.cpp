@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "mention_tagger.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -51,6 +52,7 @@ ReaderModel ReaderModel::fromText(const std::string& source, const std::string& 
     model.*classifier =
         LinearClassifier::fromText(source + " [" + std::string(name) + "]", section(name));
   }
+  checkTags(source + " [tagger]", model.tagger);
   model.lexicon = ReaderLexicon::fromText(source + " [lexicon]", section("lexicon"));
   std::istringstream calibration(section("calibration"));
   if (!(calibration >> model.slope >> model.offset)) {

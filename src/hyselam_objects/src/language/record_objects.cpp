@@ -28,6 +28,9 @@ FillMap::Question FillMap::interpretPlace(const ObjectStatement& statement,
     if (meaning.room_name.empty()) {
       return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", statement.room->text}});
     }
+    if (!mayRelateToPlace(*statement.relation)) {
+      return reply(ReplyKind::kQuestion, "is_place", {{"what", statement.room->text}});
+    }
     meaning.target.room = findPlace(meaning.room_name);
   }
   if (!statement.place) return std::nullopt;
