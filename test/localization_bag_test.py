@@ -66,6 +66,7 @@ class LocalizationBagTest(unittest.TestCase):
             for name in ("localization", "fsd"):
                 values = self.values(f"{ns}/{name}")
                 self.assertEqual((values["scans used"], values["scans dropped"]), (str(len(self.run_.scans)), "0"), values)
+            self.assertEqual(self.value(f"{ns}/localization", "searches late"), "0")
 
     def test_robot_is_found(self):
         for ns in ("nodelet", "node"):
@@ -82,7 +83,7 @@ class LocalizationBagTest(unittest.TestCase):
     def test_live_equals_offline(self):
         out = os.path.join(self.run_.folder.name, "offline.tum")
         subprocess.run(["rosrun", "fsd_localization", "localize_offline", "--map", self.run_.yaml, "--bag", self.run_.bag,
-                        "--trajectory", out, "--without-search"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                        "--trajectory", out], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         with open(out) as file:
             offline = [[float(v) for v in line.split()] for line in file if not line.startswith("#")]
         for ns in ("nodelet", "node"):

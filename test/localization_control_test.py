@@ -313,11 +313,11 @@ class LocalizationControlTest(unittest.TestCase):
     # What is said while nothing is known.
 
     def test_a_guess_does_not_look_certain(self):
-        rig = self.started(scans=20, submap_search=False)  # which may know the place by now
+        rig = self.started(scans=20, found_probability=1 - 1e-12)  # the search may suppose the right place by now
         self.assertFalse(self.last_status(rig).converged)
         self.assertEqual(self.last_status(rig).phase, 0)
         covariance = rig.poses.messages[-1].pose.covariance
-        self.assertGreater(covariance[0] + covariance[7], 1.0, "[m^2], of all particles")
+        self.assertTrue(covariance[0] >= 1.0 and covariance[7] >= 1.0, "[m^2]")
         self.assertEqual(rig.odom_in_map(), [])
 
     def test_unconverged_tf_on_request(self):
@@ -357,8 +357,8 @@ class LocalizationControlTest(unittest.TestCase):
         self.assertEqual(rig.value("scans used"), "3")
 
     def test_update_without_motion(self):
-        # With the search each of its answers is an update, too.
-        rig = self.started(scans=1, update_min_d=100.0, update_min_a=100.0, submap_search=False)
+        # An answer of the search is an update, too: it counts after the test.
+        rig = self.started(scans=1, update_min_d=100.0, update_min_a=100.0, search_latency=60.0)
         rig.poses.wait()
         self.assertEqual(len(rig.poses.messages), 1)
         rig.feed(10)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 
 #include "drawn_room.hpp"
 #include "fsd_localization/localizer.hpp"
@@ -167,10 +168,35 @@ TEST(BackgroundSearch, answersCountByStamps) {
     EXPECT_EQ(answer->places[k].seen, direct[k].seen);
   }
   search.ask(11.0, {}, submap, {});
+  EXPECT_FALSE(search.isLate(11.4)) << "nobody needs it yet";
   search.drop();
   EXPECT_FALSE(search.isDue(20.0));
   EXPECT_FALSE(search.take(20.0, true));
   EXPECT_FALSE(search.busy());
+  search.ask(21.0, {}, submap, {});  // at once, whatever the dropped one is doing
+  const auto next = search.take(21.5, true);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->stamp, 21.0);
+  EXPECT_EQ(next->places.size(), direct.size());
+  EXPECT_FALSE(search.isLate(30.0)) << "taken";
+}
+
+TEST(BackgroundSearch, whoAsksIsLateNeedsNotWait) {
+  const auto map = room();
+  const Submap submap = submapOf({look(GridRayCaster(map), {2.0, 2.0, 0.3}, 1.0)}, {{}});
+  BackgroundSearch search(std::make_shared<const PlaceSearch>(map), 0.5);
+  search.ask(10.0, {}, submap, {});
+  while (search.isLate(10.5)) std::this_thread::yield();
+  EXPECT_TRUE(search.take(10.5, false));
+}
+
+TEST(PlaceSearch, endsWhereItIsNotWantedAnyMore) {
+  const auto map = room();
+  const PlaceSearch search(map);
+  const Submap submap = submapOf({look(GridRayCaster(map), {2.0, 2.0, 0.3}, 1.0)}, {{}});
+  int asked = 0;
+  EXPECT_TRUE(search.search(submap, [&] { return ++asked > 0; }).empty());
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(PlaceJudge, comparesPlacesAndKeepsWhatIsBelieved) {
@@ -247,4 +273,24 @@ TEST(Localizer, isFoundStandingStillWhereOneScanDecides) {
   EXPECT_EQ(last->phase, Phase::kTracking);
   EXPECT_TRUE(last->converged);
   EXPECT_LT(distance(last->base_in_map, at), 0.1);
+}
+
+TEST(Localizer, aPlaceThatIsOnlySupposedDoesNotLookCertain) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  LocalizerParams params;
+  params.found_probability = 1.0 - 1e-12;  // nothing is so sure
+  Localizer localizer(map, params);
+  Pose2 at{2.0, 2.0, 0.0};
+  std::optional<LocalizationResult> last;
+  for (int i = 0; i < 60; ++i) {
+    at = at * Pose2{0.05, 0.0, 0.0};
+    if (const auto r = localizer.update(look(rays, at, 0.1 * i), at)) last = r;
+  }
+  ASSERT_TRUE(last);
+  EXPECT_FALSE(last->converged);
+  EXPECT_LT(distance(last->base_in_map, at), 0.3) << "the place is the right one";
+  EXPECT_EQ(last->cluster_weight, 1.0) << "and the only one";
+  EXPECT_GE(last->covariance(0, 0), 1.0);
+  EXPECT_GE(last->covariance(1, 1), 1.0);
 }

@@ -76,6 +76,20 @@ TEST_F(WaitingQueueTest, NoMessageOvertakesOneThatWaits) {
   EXPECT_EQ(timed_out_, (std::map<int, std::string>{{9, "waits for 9"}}));
 }
 
+TEST_F(WaitingQueueTest, MessagesThatAreHeldAreNotGivenUp) {
+  Queue waiting = queue();
+  bool busy = true;
+  waiting.holdWhile([&](const int& number) { return busy && number == 2; });
+  ready_ = 5;
+  for (int number : {1, 2, 3}) waiting.add(number, at(0.0, 0.0));
+  waiting.serve(at(9.0, 9.0));
+  EXPECT_EQ(used_, (std::vector<int>{1}));
+  EXPECT_TRUE(timed_out_.empty()) << "nothing is missing";
+  busy = false;
+  waiting.serve(at(9.1, 9.1));
+  EXPECT_EQ(used_, (std::vector<int>{1, 2, 3}));
+}
+
 TEST_F(WaitingQueueTest, OldestIsGivenUpWhereTheQueueIsFull) {
   Queue waiting = queue();
   for (int number : {1, 2, 3, 4}) waiting.add(number, at(0.0, 0.0));

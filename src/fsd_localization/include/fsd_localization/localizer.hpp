@@ -130,8 +130,13 @@ class Localizer {
   void restartClock();
 
   /// Whether update() waits for an answer that is due (the default: equal runs give equal poses),
-  /// or takes it up later.
+  /// or takes it up later. Whoever does not want to be held up asks isSearchLate() first.
   void waitForSearch(bool wait) { wait_for_search_ = wait; }
+  /// Whether update() with a scan of this stamp needs an answer of the search that is not there
+  /// yet.
+  bool isSearchLate(double stamp) const {
+    return search_.background && search_.background->isLate(stamp);
+  }
 
   const LocalizerParams& params() const { return params_; }
   const FsdMap& map() const { return *map_; }
@@ -144,6 +149,8 @@ class Localizer {
   const std::string& mapCacheProblem() const { return map_cache_problem_; }
 
  private:
+  static constexpr double kTurnAsTravel = 0.5;  // [m/rad] a turn shows as much as so much travel
+
   bool isHybrid() const { return params_.model == ObservationModelKind::kHybrid; }
   bool usesFsd() const {
     return params_.model == ObservationModelKind::kFsd || (isHybrid() && isSearching(state_));

@@ -16,7 +16,6 @@ namespace {
 
 constexpr Pose2 kHypothesisBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of a search
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
-constexpr double kTurnAsTravel = 0.5;         // [m/rad] a turn shows as much as so much travel
 constexpr double kFarthest = 1e6;             // [m] beyond it cell numbers would not fit an int
 constexpr double kSuspiciousWay = 3.0;        // [m] that a break of the motion is looked into
 constexpr double kWeakMatch = 0.4;            // a scan of which less lies on what was seen last ...

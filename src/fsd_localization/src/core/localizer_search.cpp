@@ -16,7 +16,6 @@ constexpr double kAskStep = 0.5;           // [m] between questions of a robot t
 constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
 constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
 constexpr double kCheckStep = 30.0;        // [m] at most between checks
-constexpr double kTurnAsTravel = 0.5;      // [m/rad] as for the alarms
 constexpr double kFits = 0.3;  // a place with a lower score does not explain what is seen
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;

@@ -118,6 +118,7 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
   } else {
     requestMap(0.0);
   }
+  input_.holdWhile([this](const ros::Time& stamp) { return isHeldUp(stamp); });
   initial_pose_subscriber_ =
       nh.subscribe("initialpose", 2, &LocalizationServer::onInitialPose, this);
   services_.push_back(nh.advertiseService<Empty::Request, Empty::Response>(
@@ -211,7 +212,7 @@ void LocalizationServer::takeOverMap() {
   }
   pending_initial_.reset();
   localizer_ = std::move(outcome->localizer);
-  localizer_->waitForSearch(false);  // a callback waits for nothing
+  localizer_->waitForSearch(false);  // a callback waits for nothing; the scans do
   map_error_.clear();
   const FsdMap& map = localizer_->map();
   ROS_INFO_STREAM(log_name_ << " map ready: " << map.freeCells().size() << " free cells, "
@@ -230,6 +231,29 @@ void LocalizationServer::takeOverMap() {
 }
 
 // ---- scans
+
+/// An answer of the search counts at a certain scan. If it is not there when that scan comes, the
+/// scan waits, so that results do not depend on how busy the machine is; but not for ever.
+bool LocalizationServer::isHeldUp(const ros::Time& stamp) {
+  if (!localizer_ || !localizer_->isSearchLate(stamp.toSec())) {
+    search_wait_.since.reset();
+    search_wait_.over = false;
+    return false;
+  }
+  if (search_wait_.over) return false;
+  const ros::WallTime now = ros::WallTime::now();
+  if (!search_wait_.since) search_wait_.since = now;
+  const double waited = (now - *search_wait_.since).toSec();
+  if (waited < params_.search_wait) return true;
+  search_wait_.over = true;
+  ++search_wait_.late;
+  ROS_WARN_STREAM_THROTTLE(
+      30.0, log_name_ << " a search of the map has taken longer than search_latency, "
+                      << params_.localizer.search_latency << " s, and search_wait, "
+                      << params_.search_wait << " s: the machine is too slow, or the map too large."
+                      << " Its answer counts when it comes; the same scans may give other poses");
+  return false;
+}
 
 bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odom,
                                 const ros::Time& stamp) {
@@ -406,6 +430,7 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   addValue(status, "model", toString(params_.localizer.model));
   addValue(status, "updates", updates_.count);
   addValue(status, "last update [ms]", updates_.last_ms);
+  addValue(status, "searches late", search_wait_.late);
   if (last_result_) {
     const Eigen::Matrix3d& c = last_result_->covariance;
     addValue(status, "phase", toString(last_result_->phase));

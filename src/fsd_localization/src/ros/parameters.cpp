@@ -87,6 +87,9 @@ void LocalizationServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("tf_broadcast", tf_broadcast, "publish global_frame_id -> odom_frame_id");
   visit("publish_unconverged_tf", publish_unconverged_tf,
         "also from estimates that have not converged, as amcl does");
+  visit("search_wait", search_wait, Range::between(0.0, 3600.0), "s",
+        "wall time that scans wait for an answer of the search that is due; one that takes longer "
+        "counts when it comes");
   visit("transform_tolerance", transform_tolerance, Range::between(0.0, 60.0), "s",
         "the transform is dated this far ahead");
   visit("save_pose_rate", save_pose_rate, hyselam::rateRange(), "Hz",

@@ -53,6 +53,11 @@ ScanInput::ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const st
                              &ScanInput::onScan, this, tcpNoDelay());
 }
 
+void ScanInput::holdWhile(std::function<bool(const ros::Time&)> busy) {
+  waiting_.holdWhile(
+      [busy = std::move(busy)](const ScanPtr& scan) { return busy(scan->header.stamp); });
+}
+
 void ScanInput::checkClock() {
   const ros::Time now = ros::Time::now();
   const double back = (last_now_ - now).toSec();

@@ -38,6 +38,7 @@ class LocalizationServer {
   void refuseMap(const std::string& why);
 
   // Scans.
+  bool isHeldUp(const ros::Time& stamp);
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
               const ros::Time& stamp);
   void noteResult(const LocalizationResult& result, const hyselam::Pose2& base_in_odom);
@@ -73,6 +74,11 @@ class LocalizationServer {
     std::size_t count = 0;
   } updates_;
   ros::WallTime saved_;
+  struct SearchWait {
+    std::optional<ros::WallTime> since;  // a scan has waited for the answer that is due
+    bool over = false;                   // and did so long enough
+    std::size_t late = 0;                // answers that were not waited for to the end
+  } search_wait_;
 
   hyselam::ScanInput input_;
   ros::WallTime reminded_of_map_ = ros::WallTime::now();

@@ -34,8 +34,9 @@ struct LocalizationServerParams {
   std::string cache_dir;         ///< density fields are kept there between runs; empty: nowhere
   bool tf_broadcast = true;
   bool publish_unconverged_tf = false;  ///< map -> odom before convergence too, as amcl does
-  double transform_tolerance = 0.1;     ///< added to the stamp of map -> odom, as in amcl [s]
-  double save_pose_rate = 0.5;     ///< of saving the pose on the parameter server [Hz]; -1: never
+  double search_wait = 1.0;  ///< a scan waits at most this long for an answer of the search [s]
+  double transform_tolerance = 0.1;  ///< added to the stamp of map -> odom, as in amcl [s]
+  double save_pose_rate = 0.5;       ///< of saving the pose on the parameter server [Hz]; -1: never
   double gui_publish_rate = -1.0;  ///< of particlecloud, local_map, fsd_markers [Hz]; -1: no limit
   int max_cloud_particles = 5000;  ///< in particlecloud; of more, a fair sample
   int density_field_kernel = 1;    ///< index into the kernels; -1: density_field is not published

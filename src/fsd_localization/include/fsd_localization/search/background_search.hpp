@@ -1,9 +1,11 @@
 // Searches the map for a submap in a thread of its own.
 #pragma once
 
+#include <atomic>
 #include <future>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "fsd_localization/search/place_search.hpp"
 
@@ -18,31 +20,41 @@ struct SearchAnswer {
   std::optional<Place> believed;  ///< the pose that was asked about, refined
 };
 
-/// One search at a time. An answer counts from `latency` after its question on, by the stamps of
-/// scans: so the same run gives the same poses, online and offline, as long as searches take less.
+/// One search at a time. An answer counts at the first scan that comes `latency` or more after its
+/// question, by their stamps, and not before: whoever waits there for it (isLate) gets the same
+/// poses from the same run, however busy the machine is.
 class BackgroundSearch {
  public:
   BackgroundSearch(std::shared_ptr<const PlaceSearch> search, double latency)
       : search_(std::move(search)), latency_(latency) {}
+  ~BackgroundSearch() { drop(); }
+  BackgroundSearch(const BackgroundSearch&) = delete;
+  BackgroundSearch& operator=(const BackgroundSearch&) = delete;
 
   const PlaceSearch& places() const { return *search_; }
-  bool busy() const { return pending_.valid(); }
+  bool busy() const { return running_.answer.valid(); }
   /// @param believed pose in the grid's frame that is compared with what is found.
   void ask(double stamp, const hyselam::Pose2& base_in_odom, Submap submap,
            const std::optional<hyselam::Pose2>& believed);
   /// Whether take() may have an answer at this time.
-  bool isDue(double stamp) const { return busy() && !dropped_ && stamp >= asked_ + latency_; }
+  bool isDue(double stamp) const { return busy() && stamp >= asked_ + latency_; }
+  /// Whether an answer is due that has not come.
+  bool isLate(double stamp) const;
   /// The answer, once it is due. Without `wait` one that is late comes later.
   std::optional<SearchAnswer> take(double stamp, bool wait);
-  /// The answer of the search under way is not wanted any more.
-  void drop() { dropped_ = busy(); }
+  /// The answer of the search under way is not wanted any more; another may be asked for at once.
+  void drop();
 
  private:
+  struct Running {
+    std::shared_ptr<std::atomic<bool>> cancelled;
+    std::future<SearchAnswer> answer;
+  };
   std::shared_ptr<const PlaceSearch> search_;
   double latency_;  // [s]
   double asked_ = 0.0;
-  bool dropped_ = false;
-  std::future<SearchAnswer> pending_;
+  Running running_;
+  std::vector<std::future<SearchAnswer>> ending_;  // dropped, and not yet at their ends
 };
 
 }  // namespace fsd_localization

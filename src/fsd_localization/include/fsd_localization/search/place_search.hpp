@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -35,8 +36,10 @@ class PlaceSearch {
                        const OccupancyThresholds& thresholds = {});
 
   /// The places that fit, refined, each once, best `seen` first; none for a submap without points.
-  /// Deterministic.
-  std::vector<Place> search(const Submap& submap) const;
+  /// Deterministic. @param cancelled asked now and then; what comes after it said yes is
+  ///   incomplete.
+  std::vector<Place> search(const Submap& submap,
+                            const std::function<bool()>& cancelled = {}) const;
   /// The best pose near `guess`.
   Place refine(const Submap& submap, const hyselam::Pose2& guess) const;
 
@@ -45,7 +48,8 @@ class PlaceSearch {
   /// round(255 exp(-d^2 / 2 kSigma^2)) / 255, where d is the least distance of an obstacle from a
   /// cell of the map in the lattice's cell that the point falls on; 0 off the map. Positions are
   /// the middles of lattice cells that hold a free cell of the map.
-  std::vector<Place> latticeSearch(const Submap& submap, std::size_t max_places) const;
+  std::vector<Place> latticeSearch(const Submap& submap, std::size_t max_places,
+                                   const std::function<bool()>& cancelled = {}) const;
 
   std::size_t bytes() const;
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kHypothesisMargin = 0.15;  // of the score, from the best
 constexpr std::size_t kMaxHypotheses = 20;
 
-// Fitted by bench/localization judge.
+// Fitted by bench/place_judge.
 constexpr double kBias = -5.980, kMargin = 34.766, kScore = 6.535, kLength = 0.596;
 }  // namespace
 

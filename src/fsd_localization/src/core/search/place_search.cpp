@@ -24,6 +24,8 @@ constexpr double kMinScore = 0.3;           // on the lattice; below nothing fit
 constexpr double kMaxDrop = 0.25;           // on the lattice, from the best: no rival any more
 constexpr std::size_t kMaxNodes = 6000000;  // a bound on time; not reached on buildings
 
+constexpr std::size_t kAskEvery = 4096;  // squares, whether the search is still wanted
+
 constexpr std::size_t kRefinePoints = 300;
 constexpr double kWideSigma = 0.2, kSharpSigma = 0.12;  // [m] of the refinement
 constexpr double kInTheWay = 0.3;  // [m] an obstacle so much before a beam's end stands in the way
@@ -77,11 +79,12 @@ class LatticeSearch {
     open_.resize(255 * count_ + 1);
   }
 
-  std::vector<Place> run(std::size_t max_places) {
+  std::vector<Place> run(std::size_t max_places, const std::function<bool()>& cancelled) {
     std::vector<Place> places;
     if (count_ == 0) return places;
     lowest_ = static_cast<int>(std::ceil(kMinScore * 255.0 * static_cast<double>(count_)));
     pushRoots();
+    std::size_t visited = 0;
     std::vector<bool> taken(static_cast<std::size_t>(tilesAcross() * tilesUp()) *
                             (PlaceSearch::kHeadings / kTileHeadings));
     for (int bound = static_cast<int>(open_.size()) - 1; bound >= lowest_; --bound) {
@@ -89,6 +92,7 @@ class LatticeSearch {
       while (!bucket.empty()) {
         const Node node = bucket.back();
         bucket.pop_back();
+        if (++visited % kAskEvery == 0 && cancelled && cancelled()) return places;
         // A square no larger than a tile lies in one.
         if (node.level <= kTileLevel && taken[tileOf(node)]) continue;
         if (node.level > 0) {
@@ -252,8 +256,9 @@ std::size_t PlaceSearch::bytes() const {
   return sum;
 }
 
-std::vector<Place> PlaceSearch::latticeSearch(const Submap& submap, std::size_t max_places) const {
-  return LatticeSearch(*this, submap).run(max_places);
+std::vector<Place> PlaceSearch::latticeSearch(const Submap& submap, std::size_t max_places,
+                                              const std::function<bool()>& cancelled) const {
+  return LatticeSearch(*this, submap).run(max_places, cancelled);
 }
 
 namespace {
@@ -285,10 +290,12 @@ Submap thinned(const Submap& submap) {
 
 }  // namespace
 
-std::vector<Place> PlaceSearch::search(const Submap& submap) const {
+std::vector<Place> PlaceSearch::search(const Submap& submap,
+                                       const std::function<bool()>& cancelled) const {
   const Submap few = thinned(submap);
   std::vector<Place> quick;
-  for (const Place& coarse : latticeSearch(submap, kMaxPlaces)) {
+  for (const Place& coarse : latticeSearch(submap, kMaxPlaces, cancelled)) {
+    if (cancelled && cancelled()) return {};
     Place p = climb(few, coarse.base, false);
     p.coarse = coarse.coarse;
     quick.push_back(p);
@@ -297,6 +304,7 @@ std::vector<Place> PlaceSearch::search(const Submap& submap) const {
   if (quick.size() > kMaxRefined) quick.resize(kMaxRefined);
   std::vector<Place> refined;
   for (const Place& q : quick) {
+    if (cancelled && cancelled()) return {};
     Place p = refine(submap, q.base);
     p.coarse = q.coarse;
     refined.push_back(p);

@@ -37,6 +37,10 @@ class ScanInput {
   ScanInput(ros::NodeHandle nh, const ScanInputParams& params, const std::string& log_name,
             ScanHandler on_scan, TimeJumpHandler on_time_jump);
 
+  /// Scans whose transforms are known wait, too, while `busy` says so of the oldest (by its stamp):
+  /// the handler is not ready for it, and must be before long.
+  void holdWhile(std::function<bool(const ros::Time&)> busy);
+
   /// Whether the clock was set back; the servers call it when no scan comes.
   void checkClock();
   /// The motion of the base in odom from `from` to the newest known; empty if tf does not know.

@@ -62,6 +62,10 @@ class WaitingQueue {
         use_(std::move(use)),
         give_up_(std::move(give_up)) {}
 
+  /// Messages that lack nothing wait, too, as long as `hold` says so of the oldest; they are not
+  /// given up for that. Whoever holds them sees to it that it ends.
+  void holdWhile(std::function<bool(const Message&)> hold) { hold_ = std::move(hold); }
+
   void add(Message message, const Now& now) {
     if (waiting_.size() >= params_.queue_size) {
       const Message oldest = takeFirst();
@@ -76,6 +80,7 @@ class WaitingQueue {
       const std::string missing = missing_(waiting_.front().message);
       const bool ready = missing.empty();
       if (!ready && !waitedTooLong(waiting_.front().since, now)) return;
+      if (ready && hold_ && hold_(waiting_.front().message)) return;
       const Message message = takeFirst();
       if (ready) {
         use_(message);
@@ -111,6 +116,7 @@ class WaitingQueue {
   const Missing missing_;
   const Use use_;
   const GiveUp give_up_;
+  std::function<bool(const Message&)> hold_;
   std::deque<Waiting> waiting_;
 };
 
@@ -144,6 +150,9 @@ class WaitForTransform {
   }
   WaitForTransform(const WaitForTransform&) = delete;  // the timer holds it
   WaitForTransform& operator=(const WaitForTransform&) = delete;
+
+  /// See WaitingQueue.
+  void holdWhile(std::function<bool(const Message&)> hold) { queue_.holdWhile(std::move(hold)); }
 
   /// Queues the message; uses it at once if nothing is missing and none waits before it.
   void add(Message message) {
