@@ -86,8 +86,10 @@ geometry_msgs::PoseWithCovarianceStamped toMsg(const LocalizationResult& result,
   } else {
     const Pose2& origin = localizer.map().geometry().origin;
     const Pose2 base_in_grid = hyselam::between(origin, result.base_in_map);
-    fillCovariance(rotated(spreadAround(base_in_grid, localizer.particles()), origin.theta),
-                   msg.pose.covariance);
+    Eigen::Matrix3d c = rotated(spreadAround(base_in_grid, localizer.particles()), origin.theta);
+    // All particles may lie at one place that is only supposed.
+    for (int i : {0, 1}) c(i, i) = std::max(c(i, i), result.covariance(i, i));
+    fillCovariance(c, msg.pose.covariance);
   }
   return msg;
 }
