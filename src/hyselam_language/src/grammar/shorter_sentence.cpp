@@ -133,7 +133,10 @@ class Shortening {
       }
     }
     patterns_ = cost;
-    for (std::size_t at = 0; at < kept_.size(); ++at) patterns_ -= kept_[at] ? 0 : costs_[at];
+    // What must stay and is not kept was skipped by the pattern at a price of its own.
+    for (std::size_t at = 0; at < kept_.size(); ++at) {
+      patterns_ -= kept_[at] || costs_[at] >= kNever ? 0 : costs_[at];
+    }
   }
 
   TextRange longestRunLeftOut() const {
