@@ -249,6 +249,26 @@ TEST(ParticleFilter, weightsStayFiniteWithoutResampling) {
   }
 }
 
+TEST(MotionModel, noiseIsScaled) {
+  const auto spread = [](double noise) {
+    Particles p;
+    p.resize(4000);
+    for (std::size_t i = 0; i < p.size(); ++i) p.set(i, {1.0, 2.0, 0.0}, 1.0F);
+    MotionModel().move({0.5, 0.0, 0.0}, 7, p, noise);
+    double sum = 0.0, squares = 0.0;
+    for (const float x : p.x) {
+      sum += x;
+      squares += static_cast<double>(x) * x;
+    }
+    const double n = static_cast<double>(p.size()), mean = sum / n;
+    EXPECT_NEAR(mean, 1.5, 0.01);
+    return std::sqrt(std::max(0.0, squares / n - mean * mean));
+  };
+  EXPECT_LT(spread(0.0), 1e-3);
+  EXPECT_NEAR(spread(1.0), 0.5 * std::sqrt(MotionParams{}.alpha3), 0.01);
+  EXPECT_NEAR(spread(0.3), 0.3 * spread(1.0), 0.005);
+}
+
 TEST(Localizer, refusesBadScansAndKeepsItsState) {
   const auto map = room();
   const GridRayCaster rays(map);

@@ -161,7 +161,7 @@ TEST(BackgroundSearch, answersCountByStamps) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->stamp, 10.0);
   EXPECT_EQ(answer->base_in_odom.theta, 3.0);
-  const std::vector<Place> direct = places->search(submap);
+  const std::vector<Place> direct = places->search(submap, at);
   ASSERT_EQ(answer->places.size(), direct.size());
   for (std::size_t k = 0; k < direct.size(); ++k) {
     EXPECT_EQ(answer->places[k].base.x, direct[k].base.x);
@@ -177,7 +177,7 @@ TEST(BackgroundSearch, answersCountByStamps) {
   const auto next = search.take(21.5, true);
   ASSERT_TRUE(next);
   EXPECT_EQ(next->stamp, 21.0);
-  EXPECT_EQ(next->places.size(), direct.size());
+  EXPECT_EQ(next->places.size(), places->search(submap).size()) << "nothing was believed";
   EXPECT_FALSE(search.isLate(30.0)) << "taken";
 }
 
@@ -190,12 +190,31 @@ TEST(BackgroundSearch, whoAsksIsLateNeedsNotWait) {
   EXPECT_TRUE(search.take(10.5, false));
 }
 
+TEST(PlaceSearch, whatIsMuchWorseThanTheBelievedPlaceIsLeftOut) {
+  const auto map = room();
+  const PlaceSearch search(map);
+  const Pose2 at{2.0, 2.0, 0.3};
+  const Submap submap = submapOf({look(GridRayCaster(map), at, 1.0)}, {{}});
+  const std::vector<Place> all = search.latticeSearch(submap, 1000);
+  const std::vector<Place> rivals = search.latticeSearch(submap, 1000, at);
+  const double least = all.front().coarse - 0.1;
+  const auto better = std::count_if(all.begin(), all.end(),
+                                    [&](const Place& p) { return p.coarse >= least + 1e-4; });
+  EXPECT_LT(rivals.size(), all.size());
+  ASSERT_GE(rivals.size(), static_cast<std::size_t>(better)) << "none that is as good is lost";
+  for (std::size_t k = 0; k < static_cast<std::size_t>(better); ++k) {
+    EXPECT_EQ(rivals[k].coarse, all[k].coarse);
+  }
+  // A wrong belief leaves out nothing.
+  EXPECT_EQ(search.latticeSearch(submap, 1000, Pose2{100.0, 0.0, 0.0}).size(), all.size());
+}
+
 TEST(PlaceSearch, endsWhereItIsNotWantedAnyMore) {
   const auto map = room();
   const PlaceSearch search(map);
   const Submap submap = submapOf({look(GridRayCaster(map), {2.0, 2.0, 0.3}, 1.0)}, {{}});
   int asked = 0;
-  EXPECT_TRUE(search.search(submap, [&] { return ++asked > 0; }).empty());
+  EXPECT_TRUE(search.search(submap, {}, [&] { return ++asked > 0; }).empty());
   EXPECT_EQ(asked, 1);
 }
 

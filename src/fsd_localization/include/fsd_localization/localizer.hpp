@@ -193,6 +193,7 @@ class Localizer {
   std::optional<hyselam::Pose2> last_odom_;     // of the last scan, as it came
   std::optional<hyselam::Pose2> updated_odom_;  // of the last update, refined
   hyselam_scan_matching::ScanOdometry scan_odometry_;
+  bool by_wheels_ = false;  // since the last update a scan left the motion to the wheels
   double travelled_ = 0.0;
   InlierMonitor inliers_;  // since the likelihood field became active
 
@@ -204,6 +205,7 @@ class Localizer {
     std::optional<double> asked_at;    // on that way
     double suspicious_until = -1.0;    // something happened: ask often until then
     std::optional<double> alarm_from;  // on that way
+    double alarm_step = 0.0;           // [m] before it is asked about again
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

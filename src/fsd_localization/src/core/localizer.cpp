@@ -16,10 +16,11 @@ namespace {
 
 constexpr Pose2 kHypothesisBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of a search
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
-constexpr double kFarthest = 1e6;             // [m] beyond it cell numbers would not fit an int
-constexpr double kSuspiciousWay = 3.0;        // [m] that a break of the motion is looked into
-constexpr double kWeakMatch = 0.4;            // a scan of which less lies on what was seen last ...
-constexpr double kWeakWay = 1.0;              // [m] ... is looked into so long
+constexpr double kMatchedNoise = 0.3;   // of the wheels' noise, where scans confirm the motion
+constexpr double kFarthest = 1e6;       // [m] beyond it cell numbers would not fit an int
+constexpr double kSuspiciousWay = 3.0;  // [m] that a break of the motion is looked into
+constexpr double kWeakMatch = 0.4;      // a scan of which less lies on what was seen last ...
+constexpr double kWeakWay = 1.0;        // [m] ... is looked into so long
 constexpr std::size_t kStayEvery = 10;  // each tenth particle stays at the old place when lost
 
 // Streams of random numbers that differ from each other: one per cause, and per millimetre
@@ -287,6 +288,7 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
   if (refinesOdometry()) {
     const auto step = scan_odometry_.add(scan, base_in_odom);
     smooth = step.pose;
+    if (step.broken || (step.matched && step.inlier_ratio < kWeakMatch)) by_wheels_ = true;
     if (step.matched && step.inlier_ratio < kWeakMatch) {
       search_.suspicious_until = std::max(search_.suspicious_until, search_.way + kWeakWay);
     }
@@ -324,7 +326,10 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
 
   observation_.scan = scan;
   observation_.fsd = usesFsd() ? sensor_.observe() : FsdObservation{};
-  const FilterStep step = filter_.step(delta, activeModel(), observation_);
+  const bool is_sure = refinesOdometry() && !by_wheels_ && !isSearching(state_);
+  by_wheels_ = false;
+  const FilterStep step =
+      filter_.step(delta, activeModel(), observation_, is_sure ? kMatchedNoise : 1.0);
   const PoseEstimate estimate = estimatePose(filter_.particles());
 
   LocalizationResult result = resultOf(estimate, step.effective_size);

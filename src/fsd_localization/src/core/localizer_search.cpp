@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSupposedVariance = 1.0;  // [m^2], along each axis, at least
 constexpr double kAskStep = 0.5;           // [m] between questions of a robot that is not found
+constexpr double kLargestAlarmStep = 4.0;  // [m] between those about an alarm that was found false
 constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
 constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
 constexpr double kCheckStep = 30.0;        // [m] at most between checks
@@ -44,7 +45,10 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     const bool suspicious = search_.way < search_.suspicious_until;
     const bool alarm =
         suspicious || inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
-    if (!alarm) search_.alarm_from.reset();
+    if (!alarm) {
+      search_.alarm_from.reset();
+      search_.alarm_step = kAskStep;
+    }
     if (alarm && !search_.alarm_from) search_.alarm_from = search_.way;
     // Meanwhile nobody should rely on it; but the robot is not lost before another place is better.
     if (suspicious || inliers_.isBelow(params_.lost_inlier_ratio, 0.0)) result.converged = false;
@@ -82,7 +86,7 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
   if (state_ == LocalizerState::kTracking) {
     const bool alarm = search_.alarm_from.has_value();
     const bool check = search_.way - search_.tracked_from >= search_.next_check;
-    if (!alarm && !check) return;
+    if (!check && !(alarm && since >= search_.alarm_step)) return;
     if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
     if (alarm) {  // what was seen before it may belong to another place
       length = std::min(kAlarmLength, kAskStep + search_.way - *search_.alarm_from);
@@ -116,6 +120,7 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
       search_.asked_at.reset();  // at once again, with another scan
     } else if (verdict.is_believed) {
       inliers_.reset();  // no place fits better: what is seen now is normal here
+      search_.alarm_step = std::clamp(2.0 * search_.alarm_step, kAskStep, kLargestAlarmStep);
     }
     return;
   }

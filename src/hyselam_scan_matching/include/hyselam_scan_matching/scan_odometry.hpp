@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 
 #include "hyselam_scan_matching/icp.hpp"
 
@@ -61,13 +62,18 @@ class ScanOdometry {
   };
   void begin(const SurfacePoints& points);
   void addKeyframe(const SurfacePoints& points);
-  IcpResult match(const SurfacePoints& points, const hyselam::Pose2& motion) const;
+  IcpResult match(const SurfacePoints& points, const hyselam::Pose2& motion);
 
   ScanOdometryParams params_;
   SurfaceMap local_map_;
   std::deque<Keyframe> keyframes_;
   bool started_ = false;
-  int weak_ = 0;                                    // matches in a row
+  int weak_ = 0;  // matches in a row
+  struct InVain {
+    hyselam::Pose2 pose;
+    double inlier_ratio;  // without the search
+  };
+  std::optional<InVain> searched_in_vain_;          // the last search, if it found nothing better
   hyselam::Pose2 pose_, odometry_;                  // at the last scan
   hyselam::Pose2 matched_pose_, matched_odometry_;  // at the last match
 };

@@ -75,6 +75,7 @@ void ScanOdometry::reset() {
 void ScanOdometry::begin(const SurfacePoints& points) {
   keyframes_.clear();
   weak_ = 0;
+  searched_in_vain_.reset();
   matched_pose_ = pose_;
   matched_odometry_ = odometry_;
   addKeyframe(points);
@@ -133,21 +134,30 @@ ScanOdometry::Step ScanOdometry::add(const hyselam::LaserScan& scan, const Pose2
 }
 
 /// Matches with the local map; a scan that does not fit is searched around the pose.
-IcpResult ScanOdometry::match(const SurfacePoints& points, const Pose2& motion) const {
+IcpResult ScanOdometry::match(const SurfacePoints& points, const Pose2& motion) {
   const Eigen::Matrix3d information = odometryInformation(motion);
   IcpResult best = alignIcp(points, local_map_, pose_, information, params_.refine);
   if (best.matched >= params_.min_inlier_ratio || points.size() <= kMinSearchPoints ||
       local_map_.empty()) {
     return best;
   }
+  // What a search did not find it does not find a step farther, unless the scan fits still worse.
+  const bool again = searched_in_vain_ && best.matched > searched_in_vain_->inlier_ratio - 0.1 &&
+                     isWithin(between(searched_in_vain_->pose, pose_), params_.keyframe_step,
+                              params_.keyframe_turn);
+  if (again) return best;
+  searched_in_vain_ = InVain{pose_, best.matched};
   CorrelativeMatcherParams search;
   search.linear_window = params_.search_window;
   search.angular_window = params_.search_angle;
   search.min_score = params_.search_min_score;
   if (const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_)) {
-    const IcpResult again = alignIcp(points, local_map_, found->pose,
-                                     kSearchedOdometryScale * information, params_.refine);
-    if (again.matched > best.matched + params_.search_min_gain) best = again;
+    const IcpResult better = alignIcp(points, local_map_, found->pose,
+                                      kSearchedOdometryScale * information, params_.refine);
+    if (better.matched > best.matched + params_.search_min_gain) {
+      best = better;
+      searched_in_vain_.reset();
+    }
   }
   return best;
 }

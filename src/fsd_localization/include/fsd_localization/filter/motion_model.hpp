@@ -25,8 +25,10 @@ class MotionModel {
   const MotionParams& params() const { return params_; }
 
   /// Moves every particle by a sample of the motion `delta` (new base pose in the old base frame).
-  /// `stream` selects the noise: another one for each step.
-  void move(const hyselam::Pose2& delta, std::uint64_t stream, Particles& particles) const;
+  /// `stream` selects the noise: another one for each step; its deviations are those of the
+  /// parameters times `noise`.
+  void move(const hyselam::Pose2& delta, std::uint64_t stream, Particles& particles,
+            double noise = 1.0) const;
 
  private:
   MotionParams params_;

@@ -50,8 +50,9 @@ class ParticleFilter {
   void setParticles(Particles particles);
 
   /// One round of Alg. 2.1. @param delta motion since the last step, in the old base frame.
+  /// @param motion_noise see MotionModel::move.
   FilterStep step(const hyselam::Pose2& delta, const ObservationModel& model,
-                  const Observation& observation);
+                  const Observation& observation, double motion_noise = 1.0);
 
   const Particles& particles() const { return particles_; }
   const FilterParams& params() const { return params_; }

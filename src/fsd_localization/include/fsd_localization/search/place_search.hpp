@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fsd_localization/models/distance_field.hpp"
@@ -36,9 +37,11 @@ class PlaceSearch {
                        const OccupancyThresholds& thresholds = {});
 
   /// The places that fit, refined, each once, best `seen` first; none for a submap without points.
-  /// Deterministic. @param cancelled asked now and then; what comes after it said yes is
-  ///   incomplete.
+  /// Deterministic. @param believed if given, places are left out that are much worse than it, by
+  ///   their score on the lattice: they do not speak against it, and most of the map is.
+  /// @param cancelled asked now and then; what comes after it said yes is incomplete.
   std::vector<Place> search(const Submap& submap,
+                            const std::optional<hyselam::Pose2>& believed = {},
                             const std::function<bool()>& cancelled = {}) const;
   /// The best pose near `guess`.
   Place refine(const Submap& submap, const hyselam::Pose2& guess) const;
@@ -48,7 +51,9 @@ class PlaceSearch {
   /// round(255 exp(-d^2 / 2 kSigma^2)) / 255, where d is the least distance of an obstacle from a
   /// cell of the map in the lattice's cell that the point falls on; 0 off the map. Positions are
   /// the middles of lattice cells that hold a free cell of the map.
+  /// @param believed, cancelled see search().
   std::vector<Place> latticeSearch(const Submap& submap, std::size_t max_places,
+                                   const std::optional<hyselam::Pose2>& believed = {},
                                    const std::function<bool()>& cancelled = {}) const;
 
   std::size_t bytes() const;

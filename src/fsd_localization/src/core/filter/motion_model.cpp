@@ -49,7 +49,7 @@ void MotionParams::validate() const {
   }
 }
 
-void MotionModel::move(const Pose2& delta, std::uint64_t stream, Particles& p) const {
+void MotionModel::move(const Pose2& delta, std::uint64_t stream, Particles& p, double noise) const {
   const double translation = std::hypot(delta.x, delta.y);
   // Turning on the spot has no direction of travel; driving backwards is no half turn.
   const double rot1 = translation < 0.01 ? 0.0 : std::atan2(delta.y, delta.x);
@@ -58,10 +58,12 @@ void MotionModel::move(const Pose2& delta, std::uint64_t stream, Particles& p) c
     return std::min(std::abs(normalizeAngle(r)), std::abs(normalizeAngle(r - kPi)));
   };
   const double r1 = turn(rot1), r2 = turn(rot2), t2 = translation * translation;
-  const auto s1 = static_cast<float>(std::sqrt(params_.alpha1 * r1 * r1 + params_.alpha2 * t2));
-  const auto st =
-      static_cast<float>(std::sqrt(params_.alpha3 * t2 + params_.alpha4 * (r1 * r1 + r2 * r2)));
-  const auto s2 = static_cast<float>(std::sqrt(params_.alpha1 * r2 * r2 + params_.alpha2 * t2));
+  const auto s1 =
+      static_cast<float>(noise * std::sqrt(params_.alpha1 * r1 * r1 + params_.alpha2 * t2));
+  const auto st = static_cast<float>(
+      noise * std::sqrt(params_.alpha3 * t2 + params_.alpha4 * (r1 * r1 + r2 * r2)));
+  const auto s2 =
+      static_cast<float>(noise * std::sqrt(params_.alpha1 * r2 * r2 + params_.alpha2 * t2));
   const auto base1 = toBinaryAngle(rot1), base2 = toBinaryAngle(rot2);
   const auto step = static_cast<float>(translation);
   constexpr auto kPerRadian = static_cast<float>(4294967296.0 / (2.0 * kPi));

@@ -79,9 +79,9 @@ void ParticleFilter::setParticles(Particles particles) {
 }
 
 FilterStep ParticleFilter::step(const Pose2& delta, const ObservationModel& model,
-                                const Observation& observation) {
+                                const Observation& observation, double motion_noise) {
   FilterStep result;
-  motion_.move(delta, nextStream(), particles_);
+  motion_.move(delta, nextStream(), particles_, motion_noise);
   result.likelihood = model.weigh(observation, particles_);
   result.effective_size = effectiveSampleSize(particles_);
 

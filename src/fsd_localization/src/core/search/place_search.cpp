@@ -20,10 +20,12 @@ constexpr int kTileHeadings = 12;
 constexpr std::size_t kMaxPlaces = 1000;
 constexpr std::size_t kMaxRefined = 60;
 constexpr std::size_t kQuickPoints = 100, kQuickViews = 4;
-constexpr double kMinScore = 0.3;           // on the lattice; below nothing fits
-constexpr double kMaxDrop = 0.25;           // on the lattice, from the best: no rival any more
-constexpr std::size_t kMaxNodes = 6000000;  // a bound on time; not reached on buildings
+constexpr double kMinScore = 0.3;             // on the lattice; below nothing fits
+constexpr double kMaxDrop = 0.25;             // on the lattice, from the best: no rival any more
+constexpr double kMaxDropFromBelieved = 0.1;  // the same, from what is believed
+constexpr std::size_t kMaxNodes = 6000000;    // a bound on time; not reached on buildings
 
+constexpr std::size_t kAtOnce = 20;      // points, before the rest is given up
 constexpr std::size_t kAskEvery = 4096;  // squares, whether the search is still wanted
 
 constexpr std::size_t kRefinePoints = 300;
@@ -79,10 +81,12 @@ class LatticeSearch {
     open_.resize(255 * count_ + 1);
   }
 
-  std::vector<Place> run(std::size_t max_places, const std::function<bool()>& cancelled) {
+  std::vector<Place> run(std::size_t max_places, const std::optional<Pose2>& believed,
+                         const std::function<bool()>& cancelled) {
     std::vector<Place> places;
     if (count_ == 0) return places;
     lowest_ = static_cast<int>(std::ceil(kMinScore * 255.0 * static_cast<double>(count_)));
+    if (believed) lowest_ = std::max(lowest_, bestNear(*believed) - scoreOf(kMaxDropFromBelieved));
     pushRoots();
     std::size_t visited = 0;
     std::vector<bool> taken(static_cast<std::size_t>(tilesAcross() * tilesUp()) *
@@ -102,8 +106,7 @@ class LatticeSearch {
         taken[tileOf(node)] = true;
         places.push_back(placeOf(node, bound));
         if (places.size() == max_places) return places;
-        lowest_ = std::max(lowest_, static_cast<int>((places.front().coarse - kMaxDrop) * 255.0 *
-                                                     static_cast<double>(count_)));
+        lowest_ = std::max(lowest_, scoreOf(places.front().coarse - kMaxDrop));
       }
     }
     return places;
@@ -121,6 +124,49 @@ class LatticeSearch {
 
   static int cellOffset(double metres) {
     return static_cast<int>(std::floor(metres / PlaceSearch::kCell + 0.5));
+  }
+  int scoreOf(double coarse) const {
+    return static_cast<int>(coarse * 255.0 * static_cast<double>(count_));
+  }
+  int sumOf(int level, int heading, int x, int y, int least) const {
+    const PlaceSearch::Level& l = search_.levels_[static_cast<std::size_t>(level)];
+    const Offset* offset = &offsets_[static_cast<std::size_t>(heading) * count_];
+    const int x0 = x + kMargin, y0 = y + kMargin;
+    const auto columns = static_cast<unsigned>(search_.stride_);
+    const auto rows = static_cast<unsigned>(search_.height_ + kMargin);
+    int sum = 0;
+    for (std::size_t i = 0; i < count_;) {
+      // Most squares are hopeless long before the last point.
+      const std::size_t end = std::min(count_, i + kAtOnce);
+      for (; i < end; ++i) {
+        const auto px = static_cast<unsigned>(x0 + offset[i].x);
+        const auto py = static_cast<unsigned>(y0 + offset[i].y);
+        if (px < columns && py < rows) {
+          sum += l.score[static_cast<std::size_t>(py) * columns + px];
+        }
+      }
+      if (sum + 255 * static_cast<int>(count_ - i) < least) return -1;
+    }
+    return sum;
+  }
+  /// The best score of the lattice poses around a pose; -1 off the lattice.
+  int bestNear(const Pose2& pose) const {
+    const int cx = static_cast<int>(std::floor(pose.x / PlaceSearch::kCell));
+    const int cy = static_cast<int>(std::floor(pose.y / PlaceSearch::kCell));
+    const int turn =
+        static_cast<int>(std::lround(pose.theta / (2.0 * hyselam::kPi) * PlaceSearch::kHeadings));
+    int best = -1;
+    for (int h = turn - 1; h <= turn + 1; ++h) {
+      const int heading =
+          (h % PlaceSearch::kHeadings + PlaceSearch::kHeadings) % PlaceSearch::kHeadings;
+      for (int y = cy - 1; y <= cy + 1; ++y) {
+        for (int x = cx - 1; x <= cx + 1; ++x) {
+          if (x < 0 || y < 0 || x >= search_.width_ || y >= search_.height_) continue;
+          best = std::max(best, sumOf(0, heading, x, y, best));
+        }
+      }
+    }
+    return best;
   }
   int tilesAcross() const { return (search_.width_ >> kTileLevel) + 1; }
   int tilesUp() const { return (search_.height_ >> kTileLevel) + 1; }
@@ -142,17 +188,9 @@ class LatticeSearch {
     const int stride = search_.stride_;
     if (level.free[static_cast<std::size_t>((n.y + kMargin) * stride + n.x + kMargin)] == 0) return;
     ++nodes_;
-    const Offset* offset = &offsets_[static_cast<std::size_t>(n.heading) * count_];
-    const int x0 = n.x + kMargin, y0 = n.y + kMargin;
-    const auto columns = static_cast<unsigned>(stride);
-    const auto rows = static_cast<unsigned>(search_.height_ + kMargin);
-    int sum = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const auto x = static_cast<unsigned>(x0 + offset[i].x);
-      const auto y = static_cast<unsigned>(y0 + offset[i].y);
-      if (x < columns && y < rows) sum += level.score[static_cast<std::size_t>(y) * columns + x];
-    }
-    if (sum >= lowest_) open_[static_cast<std::size_t>(sum)].push_back(n);
+    const int sum = sumOf(n.level, n.heading, n.x, n.y, lowest_);
+    if (sum < 0) return;
+    open_[static_cast<std::size_t>(sum)].push_back(n);
   }
   void pushRoots() {
     constexpr int kSide = 1 << (kLevels - 1);
@@ -257,8 +295,9 @@ std::size_t PlaceSearch::bytes() const {
 }
 
 std::vector<Place> PlaceSearch::latticeSearch(const Submap& submap, std::size_t max_places,
+                                              const std::optional<Pose2>& believed,
                                               const std::function<bool()>& cancelled) const {
-  return LatticeSearch(*this, submap).run(max_places, cancelled);
+  return LatticeSearch(*this, submap).run(max_places, believed, cancelled);
 }
 
 namespace {
@@ -290,11 +329,11 @@ Submap thinned(const Submap& submap) {
 
 }  // namespace
 
-std::vector<Place> PlaceSearch::search(const Submap& submap,
+std::vector<Place> PlaceSearch::search(const Submap& submap, const std::optional<Pose2>& believed,
                                        const std::function<bool()>& cancelled) const {
   const Submap few = thinned(submap);
   std::vector<Place> quick;
-  for (const Place& coarse : latticeSearch(submap, kMaxPlaces, cancelled)) {
+  for (const Place& coarse : latticeSearch(submap, kMaxPlaces, believed, cancelled)) {
     if (cancelled && cancelled()) return {};
     Place p = climb(few, coarse.base, false);
     p.coarse = coarse.coarse;
