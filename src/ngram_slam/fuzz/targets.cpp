@@ -112,7 +112,8 @@ void semanticForest(const std::uint8_t* data, std::size_t size) {
 /// written to what is read as the same.
 void signatureModel(const std::uint8_t* data, std::size_t size) {
   std::string text =
-      "ngram_slam place signatures 1\ncommand: \ndata: \nin sample: \nout of sample: \nfeatures: " +
+      "ngram_slam place signatures 2\ncommand: \ndata: \nin sample: \nout of sample: \n"
+      "sensor: spacing 0.5 half_window 5 resolution 0.2 range 20 kernels 1 1.5 2.5 4\nfeatures: " +
       std::to_string(SignatureFeatures::kSize) +
       " values: " + std::to_string(PlaceSignature::kSize) + "\n" +
       hyselam::testing::textOf(data, size);

@@ -254,13 +254,16 @@ TEST(SignatureModel, refusesWhatIsDamaged) {
   EXPECT_NE(refusal("something else\n").find("is no model"), std::string::npos);
   EXPECT_NE(refusal(text.substr(0, text.size() / 2)).find("checksum"), std::string::npos);
   EXPECT_NE(refusal(text + "more").find("checksum"), std::string::npos);
-  EXPECT_NE(refusal(replaced("features: 209", "features: 210")).find("line 6"), std::string::npos);
+  EXPECT_NE(refusal(replaced("features: 209", "features: 210")).find("line 7"), std::string::npos);
+  EXPECT_NE(refusal(replaced("half_window 5", "half_window x")).find("line 6"), std::string::npos);
+  EXPECT_NE(refusal(replaced("half_window 5", "half_window -5")).find("line 6"), std::string::npos);
+  EXPECT_NE(refusal(replaced("range 20", "range 30")).find("line 6"), std::string::npos);
   EXPECT_NE(refusal(replaced("data: ", "date: ")).find("line 3"), std::string::npos);
   const std::size_t row = text.find('\n', text.find("features:")) + 1;
   const std::string number = text.substr(row, text.find(' ', row) - row);
-  EXPECT_NE(refusal(replaced("\n" + number + " ", "\nnan ")).find("line 7"), std::string::npos);
+  EXPECT_NE(refusal(replaced("\n" + number + " ", "\nnan ")).find("line 8"), std::string::npos);
   EXPECT_NE(refusal(replaced("\n" + number + " ", "\n0.5 ")).find("above 1"), std::string::npos);
-  EXPECT_NE(refusal(replaced("\n" + number + " ", "\n")).find("line 7"), std::string::npos);
+  EXPECT_NE(refusal(replaced("\n" + number + " ", "\n")).find("line 8"), std::string::npos);
   const std::string without_last = text.substr(0, text.rfind('\n', text.rfind("crc32 ") - 2) + 1);
   EXPECT_NE(refusal(sealed(without_last)).find("63"), std::string::npos);
 }
@@ -336,6 +339,23 @@ TEST(PlaceIndex, findsWhatExactSearchFinds) {
   ASSERT_EQ(exact.size(), same.size());
   for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_EQ(exact[i].place, same[i].place);
   EXPECT_TRUE(index.search(wanted, 20, 0).empty());
+}
+
+TEST(PlaceIndex, looksAtPlacesOfAllAgesWhereTheyAreTooMany) {
+  Rng rng(12);
+  const SignatureModel& model = SignatureModel::shipped();
+  PlaceIndex index(model);
+  // One building that looks the same everywhere: all places in one cell.
+  const PlaceSignature place = randomSignature(rng);
+  constexpr std::uint32_t kPlaces = 4 * PlaceIndex::kMaxSeen;
+  for (std::uint32_t i = 0; i < kPlaces; ++i) index.add(place);
+  const auto found = index.search(place, PlaceIndex::kMaxSeen, kPlaces);
+  ASSERT_EQ(found.size(), PlaceIndex::kMaxSeen);
+  std::array<int, 4> of_quarter{};
+  for (const auto& f : found) ++of_quarter[f.place / PlaceIndex::kMaxSeen];
+  for (const int count : of_quarter) {
+    EXPECT_EQ(count, static_cast<int>(PlaceIndex::kMaxSeen / 4));
+  }
 }
 
 TEST(PlaceRecognizer, findsAWayAgainInBothDirections) {

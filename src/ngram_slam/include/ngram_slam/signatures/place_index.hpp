@@ -23,7 +23,7 @@ class PlaceIndex {
   };
   /// Fewer places than this are all compared.
   static constexpr std::uint32_t kFew = 16384;
-  /// Places that a search compares at most.
+  /// Places that a search compares at most: of the last cell that it looks into, evenly old ones.
   static constexpr std::size_t kMaxSeen = 16384;
 
   /// `model` must outlive the index.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ngram_slam/signatures/place_features.hpp"
+#include "ngram_slam/signatures/signature_sensor.hpp"
 
 namespace ngram_slam {
 
@@ -53,10 +54,11 @@ class SignatureModel {
   static constexpr std::size_t kSize = PlaceSignature::kSize;
   using Row = SignatureFeatures::Vector;
 
-  /// `rows`: of the map; `offsets`: added; `variances`: of the values among all places, above 1.
+  /// `rows`: of the map; `offsets`: added; `variances`: of the values among all places, above 1;
+  /// `sensor`: what made the features that it was learnt from.
   /// @throws hyselam::ParameterError for numbers that are not finite or out of range.
   SignatureModel(std::vector<Row> rows, std::vector<float> offsets, std::vector<float> variances,
-                 SignatureOrigin origin = {});
+                 const SignatureSensorParams& sensor = {}, SignatureOrigin origin = {});
   /// The model that comes with the package.
   static const SignatureModel& shipped();
   /// @throws hyselam::InputError for a file that cannot be read or is damaged.
@@ -73,6 +75,10 @@ class SignatureModel {
   const std::vector<float>& steps() const { return steps_; }
   const std::vector<float>& variances() const { return variances_; }
   const SignatureOrigin& origin() const { return origin_; }
+  const SignatureSensorParams& sensor() const { return sensor_; }
+  /// Features of another sensor mean something else.
+  /// @throws hyselam::ParameterError unless `sensor` makes them as that of the model does.
+  void requireSensor(const SignatureSensorParams& sensor) const;
 
   /// logRatio() is constant() + own(a) + own(b) + the sum of cross()[i] * a[i] * b[i].
   float constant() const { return constant_; }
@@ -82,6 +88,7 @@ class SignatureModel {
  private:
   std::vector<Row> rows_;
   std::vector<float> offsets_, variances_;
+  SignatureSensorParams sensor_;
   SignatureOrigin origin_;
   std::vector<float> steps_;
   float constant_ = 0.0F;

@@ -44,16 +44,23 @@ struct SignatureCandidate {
 /// Not thread-safe.
 class SignaturePlaces {
  public:
+  SignaturePlaces(const SignaturePlaces&) = delete;
+  SignaturePlaces& operator=(const SignaturePlaces&) = delete;
+
   /// How far odometry may be off after so much path, both in [m].
   using Uncertainty = std::function<double(double path_length)>;
 
   /// Places of the run that odometry excludes are no candidates; none are excluded without
   /// `uncertainty`.
-  /// @throws hyselam::ParameterError; hyselam::InputError for a model that cannot be read.
+  /// @throws hyselam::ParameterError, also for a sensor other than the model's;
+  /// hyselam::InputError for a model that cannot be read.
   explicit SignaturePlaces(const SignaturePlacesParams& params, Uncertainty uncertainty = {});
   SignaturePlaces(const SignaturePlacesParams& params, std::shared_ptr<const SignatureModel> model,
                   Uncertainty uncertainty);
 
+  /// Places at keyframes before this one are only found by others: they were asked for when they
+  /// were new, before the map was saved.
+  void askFrom(int keyframe) { first_asked_ = keyframe; }
   /// Adds the next keyframe. Returns the candidates of the places that are complete now.
   std::vector<SignatureCandidate> add(const SignatureKeyframe& keyframe);
   /// Ends the run: its last places are made and asked for.
@@ -75,6 +82,7 @@ class SignaturePlaces {
   SignatureSensor sensor_;
   hyselam::Pose2 pose_;
   std::uint32_t next_asked_ = 0;
+  int first_asked_ = 0;  // keyframe
 };
 
 }  // namespace ngram_slam

@@ -71,6 +71,12 @@ class SlamEngine {
   /// Continues a saved map: the next scan begins another run, see startRun().
   /// @throws hyselam::ParameterError; hyselam::InputError for a state that is inconsistent.
   SlamEngine(const SlamParams& params, SlamState state);
+  /// No copies: jobs change what is recognised. Another engine is made of state().
+  SlamEngine(const SlamEngine&) = delete;
+  SlamEngine& operator=(const SlamEngine&) = delete;
+  SlamEngine(SlamEngine&&) = default;
+  SlamEngine& operator=(SlamEngine&&) = default;
+  ~SlamEngine() = default;
 
   /// Adds a scan; `odometry`: base in odom at its stamp.
   /// @throws hyselam::InputError for a stamp that is not finite or not after the last one of the
@@ -212,7 +218,6 @@ class SlamEngine {
   std::shared_ptr<SignaturePlaces> signatures_;  // used by jobs only
   std::vector<SignatureKeyframe> keyframes_to_sign_;  // for the next job
   bool run_to_end_ = false;                           // behind them
-  int first_to_recognize_ = 0;                        // keyframe: older ones were, before
   GraphPathLengths path_lengths_;
   hyselam_scan_matching::SurfaceMap local_map_;
   std::vector<LoopTask> tasks_;

@@ -143,10 +143,15 @@ std::vector<PlaceIndex::Found> PlaceIndex::search(const PlaceSignature& wanted, 
   std::size_t seen = 0;
   for (const std::uint16_t number : nearestCells(wanted)) {
     const GridCell& cell = cells_[number];
-    for (std::size_t i = 0; i < cell.places.size() && cell.places[i] < end && seen < kMaxSeen;
-         ++i, ++seen) {
+    const auto below = static_cast<std::size_t>(
+        std::lower_bound(cell.places.begin(), cell.places.end(), end) - cell.places.begin());
+    // Of a cell that holds more than may be seen, places of all ages: evenly from all of them.
+    const std::size_t looks = std::min(below, kMaxSeen - seen);
+    for (std::size_t k = 0; k < looks; ++k) {
+      const std::size_t i = k * below / looks;
       found.push_back({cell.places[i], score(q, cell, i)});
     }
+    seen += looks;
     if (seen >= kMaxSeen) break;
     if (found.size() >= 4 * count + kSlack) keepBest(&found, count);
   }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "hyselam_common/atomic_file.hpp"
@@ -12,7 +13,7 @@ namespace ngram_slam {
 
 namespace {
 
-constexpr const char* kMagic = "ngram_slam place signatures 1";
+constexpr const char* kMagic = "ngram_slam place signatures 2";
 constexpr const char* kSumName = "crc32 ";
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 constexpr double kLargest = 1e6;  // of any number of a model
@@ -28,6 +29,45 @@ constexpr std::array<OriginLine, 4> kOriginLines{
      {"data: ", &SignatureOrigin::data},
      {"in sample: ", &SignatureOrigin::in_sample},
      {"out of sample: ", &SignatureOrigin::out_of_sample}}};
+
+struct SensorField {
+  const char* name;
+  double SignatureSensorParams::*member;
+};
+constexpr std::array<SensorField, 3> kSensorFields{
+    {{"spacing", &SignatureSensorParams::spacing},
+     {"half_window", &SignatureSensorParams::half_window},
+     {"resolution", &SignatureSensorParams::resolution}}};
+
+/// What the signatures are made of: parameters of the sensor, and what is fixed.
+std::string sensorLine(const SignatureSensorParams& sensor) {
+  std::ostringstream out;
+  out << "sensor:";
+  for (const SensorField& f : kSensorFields) out << " " << f.name << " " << sensor.*f.member;
+  out << " range " << PlaceFeatures::kRange << " kernels";
+  for (const double bandwidth : PlaceFeatures::kBandwidths) out << " " << bandwidth;
+  return out.str();
+}
+
+/// The parameters in a line that sensorLine() could have made; nothing for any other.
+std::optional<SignatureSensorParams> parseSensor(std::string_view line) {
+  SignatureSensorParams sensor;
+  std::vector<std::string_view> fields;
+  hyselam::splitFields(line, &fields);
+  if (fields.size() < 1 + 2 * kSensorFields.size()) return std::nullopt;
+  for (std::size_t i = 0; i < kSensorFields.size(); ++i) {
+    const auto value = hyselam::parseNumber(fields[2 + 2 * i]);
+    if (!value) return std::nullopt;
+    sensor.*kSensorFields[i].member = *value;
+  }
+  if (line != sensorLine(sensor)) return std::nullopt;
+  try {
+    sensor.validate();
+  } catch (const hyselam::ParameterError&) {
+    return std::nullopt;
+  }
+  return sensor;
+}
 
 std::string sizesLine() {
   return "features: " + std::to_string(SignatureFeatures::kSize) +
@@ -54,10 +94,12 @@ void check(const char* name, float value, double least) {
 }  // namespace
 
 SignatureModel::SignatureModel(std::vector<Row> rows, std::vector<float> offsets,
-                               std::vector<float> variances, SignatureOrigin origin)
+                               std::vector<float> variances, const SignatureSensorParams& sensor,
+                               SignatureOrigin origin)
     : rows_(std::move(rows)),
       offsets_(std::move(offsets)),
       variances_(std::move(variances)),
+      sensor_((sensor.validate(), sensor)),
       origin_(std::move(origin)) {
   if (rows_.size() != kSize || offsets_.size() != kSize || variances_.size() != kSize) {
     throw hyselam::ParameterError("rows", rows_.size(), std::to_string(kSize));
@@ -83,6 +125,16 @@ SignatureModel::SignatureModel(std::vector<Row> rows, std::vector<float> offsets
     cross_[i] = static_cast<float>(shared / determinant * step * step);
   }
   constant_ = static_cast<float>(constant);
+}
+
+void SignatureModel::requireSensor(const SignatureSensorParams& sensor) const {
+  for (const SensorField& f : kSensorFields) {
+    const double given = sensor.*f.member, learnt = sensor_.*f.member;
+    if (std::abs(given - learnt) <= 1e-6 * learnt) continue;
+    std::ostringstream expected;
+    expected << learnt << ", with which the model of the signatures was learnt";
+    throw hyselam::ParameterError(f.name, given, expected.str());
+  }
 }
 
 PlaceSignature SignatureModel::signatureOf(const PlaceFeatures& features) const {
@@ -119,7 +171,7 @@ std::string SignatureModel::text() const {
   std::ostringstream out;
   out << kMagic << "\n";
   for (const OriginLine& line : kOriginLines) out << line.name << origin_.*line.member << "\n";
-  out << sizesLine() << "\n";
+  out << sensorLine(sensor_) << "\n" << sizesLine() << "\n";
   for (std::size_t i = 0; i < kSize; ++i) {
     out << shortText(variances_[i]) << " " << shortText(offsets_[i]);
     for (const float weight : rows_[i]) out << " " << shortText(weight);
@@ -150,10 +202,17 @@ SignatureModel SignatureModel::parse(std::string_view text, const std::string& s
   std::vector<Row> rows;
   std::vector<float> offsets, variances;
   SignatureOrigin origin;
-  constexpr std::size_t kHead = 2 + kOriginLines.size();
+  SignatureSensorParams sensor;
+  constexpr std::size_t kHead = 3 + kOriginLines.size();
   std::vector<std::string_view> fields;
   hyselam::forEachLine(text.substr(0, sum), [&](std::size_t number, std::string_view line) {
     if (number == 1) return;
+    if (number == kHead - 1) {
+      const auto given = parseSensor(line);
+      if (!given) refuse(number, "is not like \"" + sensorLine(sensor) + "\"");
+      sensor = *given;
+      return;
+    }
     if (number < kHead) {
       const OriginLine& expected = kOriginLines[number - 2];
       const std::string_view name = expected.name;
@@ -190,7 +249,7 @@ SignatureModel SignatureModel::parse(std::string_view text, const std::string& s
         source, "end",
         "has " + std::to_string(rows.size()) + " values instead of " + std::to_string(kSize));
   }
-  return {std::move(rows), std::move(offsets), std::move(variances), std::move(origin)};
+  return {std::move(rows), std::move(offsets), std::move(variances), sensor, std::move(origin)};
 }
 
 }  // namespace ngram_slam

@@ -116,7 +116,7 @@ SignatureModel trainSignatures(const std::vector<std::vector<SignatureExample>>&
     offsets.push_back(static_cast<float>(-axis.dot(mean)));
     variances.push_back(static_cast<float>(std::max(1.01, solver.eigenvalues()[k])));
   }
-  return {std::move(rows), std::move(offsets), std::move(variances), origin};
+  return {std::move(rows), std::move(offsets), std::move(variances), p.sensor, origin};
 }
 
 }  // namespace ngram_slam

@@ -38,7 +38,9 @@ SignaturePlaces::SignaturePlaces(const SignaturePlacesParams& params,
       sensor_(params.sensor, [this](const PlaceOnWay& place, const PlaceFeatures& features) {
         recognizer_.add(model_->signatureOf(features));
         places_.push_back(place);
-      }) {}
+      }) {
+  model_->requireSensor(params.sensor);
+}
 
 bool SignaturePlaces::odometryAllows(std::uint32_t newer, std::uint32_t older) const {
   if (!uncertainty_ || older < recognizer_.runOf(newer).first) return true;
@@ -70,6 +72,7 @@ std::vector<SignatureCandidate> SignaturePlaces::endRun() {
 std::vector<SignatureCandidate> SignaturePlaces::ask(std::uint32_t end) {
   std::vector<SignatureCandidate> found;
   for (; next_asked_ < end; next_asked_ += static_cast<std::uint32_t>(params_.interval)) {
+    if (keyframeOf(next_asked_) < first_asked_) continue;
     const auto may_be = [&](std::uint32_t older) { return odometryAllows(next_asked_, older); };
     for (const PlaceCandidate& c : recognizer_.candidates(next_asked_, may_be)) {
       found.push_back({keyframeOf(c.newer), keyframeOf(c.older), c.direction, c.score});

@@ -176,13 +176,14 @@ int SlamEngine::keyframeAt(double stamp) const {
 
 /// Those of a saved map, whose signatures are not saved.
 void SlamEngine::queueSavedKeyframes() {
-  first_to_recognize_ = static_cast<int>(state_.keyframes.size());
   if (!usesSignatures()) return;
+  const auto saved = static_cast<int>(state_.keyframes.size());
+  signatures_->askFrom(saved);
   std::vector<const Pose2*> motions(state_.keyframes.size(), nullptr);
   for (const auto& e : state_.odometry) {
     if (e.from + 1 == e.to) motions[static_cast<std::size_t>(e.to)] = &e.measured;
   }
-  for (int k = 0; k < first_to_recognize_; ++k) {
+  for (int k = 0; k < saved; ++k) {
     queueKeyframe(k, motions[static_cast<std::size_t>(k)]);
   }
   run_to_end_ = true;
@@ -202,7 +203,7 @@ void SlamEngine::searchSignatureLoops(const std::vector<SignatureCandidate>& can
   int searched = -1;
   std::vector<double> path_lengths;
   for (const SignatureCandidate& c : candidates) {
-    if (c.keyframe_newer < first_to_recognize_ || c.keyframe_newer <= c.keyframe_older) continue;
+    if (c.keyframe_newer <= c.keyframe_older) continue;
     const SlamKeyframe& newer = keyframe(c.keyframe_newer);
     const SlamKeyframe& older = keyframe(c.keyframe_older);
     if (newer.run == older.run && newer.path_length - older.path_length < p.min_path_length) {
