@@ -38,7 +38,8 @@ BENCHMARK(PairOfPlaces_Icp)->Unit(benchmark::kMicrosecond);
 
 void PairOfPlaces_Context(benchmark::State& state) {
   std::vector<PolarContext> contexts;
-  for (const Station& s : stations()) contexts.push_back(contextOf(s));
+  for (const Station& s : stations())
+    contexts.push_back(contextOf(returnsOf(s.scan), kContextRange));
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(

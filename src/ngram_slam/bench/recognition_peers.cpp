@@ -68,7 +68,8 @@ nlohmann::json run(const Options& o) {
     for (const Station& s : stations) clouds.push_back(cloudOf(s));
     distance = [&](std::uint32_t a, std::uint32_t b) { return icp(clouds[a], clouds[b]); };
   } else {
-    for (const Station& s : stations) contexts.push_back(contextOf(s));
+    for (const Station& s : stations)
+      contexts.push_back(contextOf(returnsOf(s.scan), kContextRange));
     distance = [&](std::uint32_t a, std::uint32_t b) {
       return contextDistance(contexts[a], contexts[b]);
     };

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "hyselam_common/carmen_log.hpp"
 #include "hyselam_common/errors.hpp"
@@ -75,12 +76,61 @@ TEST(SlamEngine, mapsABuildingFarBetterThanOdometry) {
 TEST(SlamEngine, acceptsNoFalseLoop) {
   const SlamEngine& engine = withAllLoops();
   for (const SlamLoop& l : engine.loops()) {
-    const LoopError e = loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
-                                  engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured,
-                                  building().ground_truth);
-    EXPECT_FALSE(e.isFalse()) << l.older << " and " << l.newer << ": " << e.distance << " m, "
-                              << hyselam::degrees(e.angle) << " deg";
+    const auto e = loopError(engine.keyframes()[static_cast<std::size_t>(l.older)],
+                             engine.keyframes()[static_cast<std::size_t>(l.newer)], l.measured,
+                             building().ground_truth);
+    ASSERT_TRUE(e.has_value());
+    EXPECT_FALSE(e->isFalse()) << l.older << " and " << l.newer << ": " << e->distance << " m, "
+                               << hyselam::degrees(e->angle) << " deg";
   }
+  const SlamKeyframe& first = engine.keyframes().front();
+  EXPECT_FALSE(loopError(first, engine.keyframes().back(), {}, {}).has_value());
+}
+
+// Jobs change what is recognised, which two engines must not share.
+static_assert(!std::is_copy_constructible_v<SlamEngine>);
+static_assert(std::is_move_constructible_v<SlamEngine>);
+
+TEST(SlamEngine, closesFarLoopsBySignaturesOnly) {
+  const SlamEngine engine = mapped(LoopClosureMode::kSignatures);
+  const SlamCounters& c = engine.counters();
+  EXPECT_GT(c.signatures.tried, 0U);
+  EXPECT_GT(c.signatures.accepted, 0U);
+  EXPECT_EQ(c.far.tried + c.words.tried, 0U);
+  EXPECT_TRUE(engine.matches().empty());
+  EXPECT_LT(trajectoryError(engine.trajectory(), building().ground_truth).rms, 0.15);
+}
+
+TEST(SlamEngine, asksASavedMapForNewPlacesOnly) {
+  SlamParams params;
+  params.loops = LoopClosureMode::kSignatures;
+  SlamEngine first(params);
+  feed(&first, building(), 0, 900);
+  finish(&first);
+  SlamEngine second(params, first.state());
+  const auto saved = static_cast<int>(second.keyframes().size());
+  bool made = false;
+  while (const auto job = second.takeFinalJob()) {
+    made = made || !job->keyframes.empty();
+    const SlamJobResult result = runJob(*job);
+    EXPECT_TRUE(result.candidates.empty());
+    second.apply(result);
+  }
+  EXPECT_TRUE(made);
+  bool asked = false;
+  for (std::size_t i = 900; i < std::min<std::size_t>(2200, building().scans.size()); ++i) {
+    const auto& scan = building().scans[i];
+    second.add(scan, *hyselam::poseAt(building().odometry, scan.stamp, 1.0));
+    while (const auto job = second.takeJob()) {
+      const SlamJobResult result = runJob(*job);
+      for (const SignatureCandidate& candidate : result.candidates) {
+        EXPECT_GE(candidate.keyframe_newer, saved);
+        asked = true;
+      }
+      second.apply(result);
+    }
+  }
+  EXPECT_TRUE(asked);
 }
 
 TEST(SlamEngine, givesTheSameMapForTheSameInput) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -67,6 +68,7 @@ SlamState fullState() {
   loop.far = true;
   loop.inlier_ratio = 0.75;
   loop.weight = 0.5;
+  loop.fit = 0.6875123;
   s.loops.push_back(loop);
   loop.source = LoopSource::kProximity;
   s.pending_loops.push_back(loop);
@@ -108,6 +110,7 @@ void expectSame(const SlamState& a, const SlamState& b) {
   EXPECT_EQ(a.odometry.back().information, b.odometry.back().information);
   ASSERT_EQ(a.loops.size(), b.loops.size());
   EXPECT_EQ(a.loops.back().information, b.loops.back().information);
+  EXPECT_EQ(a.loops.back().fit, b.loops.back().fit);
   EXPECT_EQ(a.loops.back().source, b.loops.back().source);
   EXPECT_EQ(a.loops.back().far, b.loops.back().far);
   EXPECT_EQ(a.loops.back().weight, b.loops.back().weight);
@@ -199,6 +202,36 @@ TEST(SlamStateFile, namesAnotherVersion) {
   hyselam::testing::writeFile(folder / "map.slam", bytes);
   const std::string damaged = messageOf<hyselam::InputError>([&] { load(folder / "map.slam"); });
   EXPECT_NE(damaged.find("version"), std::string::npos) << damaged;
+}
+
+TEST(SlamStateFile, readsTheFirstVersionWhoseLoopsTellNoFit) {
+  TemporaryDirectory folder;
+  const SlamState state = fullState();
+  SlamStateFile::save(folder / "map.slam", state);
+  std::string bytes = hyselam::testing::fileBytes(folder / "map.slam");
+  // As it was written then: without the numbers that stand for the fit.
+  const double fit = 0.6875123;
+  const std::string told(reinterpret_cast<const char*>(&fit), sizeof(fit));
+  std::size_t taken_out = 0;
+  for (auto at = bytes.find(told); at != std::string::npos; at = bytes.find(told)) {
+    bytes.erase(at, sizeof(fit));
+    ++taken_out;
+  }
+  ASSERT_EQ(taken_out, state.loops.size() + state.pending_loops.size());
+  const auto put = [&](std::size_t at, std::uint64_t value, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) bytes[at + i] = static_cast<char>(value >> 8 * i & 0xff);
+  };
+  put(8, 1, 4);
+  put(12, bytes.size() - 28, 8);
+  put(20, hyselam::checksumOf(bytes, 0, 20), 4);
+  put(bytes.size() - 4, hyselam::checksumOf(bytes, 24, bytes.size() - 4), 4);
+  hyselam::testing::writeFile(folder / "old.slam", bytes);
+  const SlamState old = load(folder / "old.slam");
+  ASSERT_EQ(old.loops.size(), state.loops.size());
+  EXPECT_EQ(old.loops.back().fit, 0.85);
+  EXPECT_EQ(old.loops.back().weight, state.loops.back().weight);
+  EXPECT_EQ(old.pending_loops.back().inlier_ratio, state.pending_loops.back().inlier_ratio);
+  EXPECT_EQ(old.matches.size(), state.matches.size());
 }
 
 TEST(SlamStateFile, refusesPartsThatDoNotFit) {

@@ -1,40 +1,59 @@
-// A descriptor of the field for single planar scans: what is seen in rings and sectors around the
-// robot ("scan context", Kim and Kim 2018, with the count of returns for the height of buildings).
+// A descriptor of the field for planar scans: what is seen in rings and sectors around the robot
+// (Kim and Kim, "Scan Context: Egocentric Spatial Descriptor for Place Recognition within 3D Point
+// Cloud Map", IROS 2018, with the count of returns for the height of buildings).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
-#include "stations.hpp"
+#include "hyselam_common/laser_scan.hpp"
 
 namespace ngram_slam_peers {
 
 struct PolarContext {
   static constexpr std::size_t kRings = 20, kSectors = 60;
-  static constexpr double kRange = 10.0;  ///< [m]
   std::array<std::array<float, kRings>, kSectors> columns{};
   std::array<float, kSectors> norms{};
+
+  void computeNorms() {
+    for (std::size_t s = 0; s < kSectors; ++s) {
+      float sum = 0.0F;
+      for (const float v : columns[s]) sum += v * v;
+      norms[s] = std::sqrt(sum);
+    }
+  }
 };
 
-inline PolarContext contextOf(const Station& station) {
+/// What a scan hit, in the robot's frame [m].
+inline std::vector<hyselam::Point2> returnsOf(const hyselam::LaserScan& scan) {
+  std::vector<hyselam::Point2> points;
+  for (std::size_t b = 0; b < scan.ranges.size(); ++b) {
+    const double r = scan.ranges[b];
+    if (!(r >= scan.range_min && r < scan.range_max)) continue;
+    const double bearing = scan.angle_min + static_cast<double>(b) * scan.angle_increment;
+    points.push_back(scan.laser_in_base *
+                     hyselam::Point2{r * std::cos(bearing), r * std::sin(bearing)});
+  }
+  return points;
+}
+
+/// Of points around the robot, to `range` [m].
+inline PolarContext contextOf(const std::vector<hyselam::Point2>& points, double range) {
   PolarContext context;
-  for (const hyselam::Point2& p : returnsOf(station.scan)) {
+  for (const hyselam::Point2& p : points) {
     const double r = std::hypot(p.x, p.y);
-    if (r >= PolarContext::kRange) continue;
+    if (r >= range) continue;
     const double bearing = std::atan2(p.y, p.x) + hyselam::kPi;
     const auto sector =
         std::min(PolarContext::kSectors - 1,
                  static_cast<std::size_t>(bearing / (2 * hyselam::kPi) * PolarContext::kSectors));
-    const auto ring = static_cast<std::size_t>(r / PolarContext::kRange * PolarContext::kRings);
+    const auto ring = static_cast<std::size_t>(r / range * PolarContext::kRings);
     context.columns[sector][ring] += 1.0F;
   }
-  for (std::size_t s = 0; s < PolarContext::kSectors; ++s) {
-    float sum = 0.0F;
-    for (float v : context.columns[s]) sum += v * v;
-    context.norms[s] = std::sqrt(sum);
-  }
+  context.computeNorms();
   return context;
 }
 

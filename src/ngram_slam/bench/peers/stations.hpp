@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hyselam_common/robot_log.hpp"
+#include "polar_context.hpp"
 
 namespace ngram_slam_peers {
 
@@ -19,24 +20,14 @@ struct Station {
   std::vector<hyselam::Point2> points;  ///< in the robot's frame there
 };
 
+constexpr double kContextRange = 10.0;  ///< of the polar context of a station [m]
+
 struct StationParams {
   double stride = 2.0;       ///< of way between stations [m]: 20 steps of 0.1 m (5.3.2)
   double radius = 4.0;       ///< of the local map [m]
   double memory = 4.0;       ///< way that the local map remembers [m]
   std::size_t points = 150;  ///< of a station (5.3.2)
 };
-
-inline std::vector<hyselam::Point2> returnsOf(const hyselam::LaserScan& scan) {
-  std::vector<hyselam::Point2> points;
-  for (std::size_t b = 0; b < scan.ranges.size(); ++b) {
-    const double r = scan.ranges[b];
-    if (!(r >= scan.range_min && r < scan.range_max)) continue;
-    const double bearing = scan.angle_min + static_cast<double>(b) * scan.angle_increment;
-    points.push_back(scan.laser_in_base *
-                     hyselam::Point2{r * std::cos(bearing), r * std::sin(bearing)});
-  }
-  return points;
-}
 
 inline std::vector<Station> stationsOf(const hyselam::RobotLog& log, const StationParams& params) {
   struct Seen {

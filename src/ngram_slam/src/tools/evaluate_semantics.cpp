@@ -8,6 +8,7 @@
 #include "hyselam_sim/data.hpp"
 #include "ngram_slam/semantics/semantic_forest.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
+#include "reference_poses.hpp"
 #include "semantic_runs.hpp"
 
 namespace {
@@ -17,8 +18,8 @@ using namespace ngram_slam;  // NOLINT: a program, not a header
 struct Options {
   SemanticRunOptions run;
   DecisionTreeParams tree;
-  std::vector<std::string> logs;
-  std::string plan, model, confusion, regions;
+  std::vector<std::string> logs, references;
+  std::string plan, compared, model, confusion, regions;
   std::uint32_t tolerance = 10;
 };
 
@@ -43,6 +44,27 @@ void requireCsv(const std::string& option, const std::string& path) {
   }
 }
 
+hyselam_sim::FloorPlan planOf(const std::string& name) {
+  hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile(name));
+  if (plan.areas.empty() && plan.floor_kind.empty()) {
+    throw hyselam::InputError(plan.source, "keys 'areas', 'floor_kind'",
+                              "missing: the plan does not say what its places are");
+  }
+  return plan;
+}
+
+/// Answers of another drawing. Where it says nothing, the truth is taken out too.
+std::vector<SemanticClass> drawnClasses(const hyselam::RobotLog& log,
+                                        const hyselam_sim::FloorPlan& drawing, SemanticRun* run) {
+  std::vector<SemanticClass> classes;
+  const auto drawn = truthOf(log, run->stamps, drawing);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (!drawn[i]) run->truth[i] = std::nullopt;
+    classes.push_back(drawn[i].value_or(SemanticClass::kCorridor));
+  }
+  return classes;
+}
+
 nlohmann::json evaluate(const Options& o) {
   o.run.semantics.validate();
   requireCsv("--confusion", o.confusion);
@@ -57,23 +79,27 @@ nlohmann::json evaluate(const Options& o) {
   if (!o.regions.empty() && o.logs.size() != 1) {
     throw hyselam::ParameterError("--regions", o.regions, "used with one log only");
   }
-  const hyselam_sim::FloorPlan plan = hyselam_sim::loadFloorPlan(hyselam_sim::planFile(o.plan));
-  if (plan.areas.empty() && plan.floor_kind.empty()) {
-    throw hyselam::InputError(plan.source, "keys 'areas', 'floor_kind'",
-                              "missing: the plan does not say what its places are");
+  const hyselam_sim::FloorPlan plan = planOf(o.plan);
+  std::optional<hyselam_sim::FloorPlan> drawing;
+  if (!o.compared.empty()) drawing = planOf(o.compared);
+  if (!o.references.empty() && o.references.size() != o.logs.size()) {
+    throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
   }
 
   SemanticConfusion confusion, strict;
   std::size_t regions = 0, observations = 0;
-  for (const std::string& path : o.logs) {
-    const hyselam::RobotLog log = hyselam::readRobotLog(path);
+  for (std::size_t i = 0; i < o.logs.size(); ++i) {
+    const std::string& path = o.logs[i];
+    hyselam::RobotLog log = hyselam::readRobotLog(path);
+    log.ground_truth = referenceOf(o.references.empty() ? "" : o.references[i], log);
     if (log.ground_truth.empty()) {
       throw hyselam::InputError(path, "", "has no ground truth to look up in the plan");
     }
     hyselam::Progress progress("densities of " + path, log.scans.size());
-    const SemanticRun run = semanticRun(log, o.run, classifier, &plan,
-                                        [&](std::size_t done) { progress.update(done); });
-    const std::vector<SemanticClass> classes = classesOf(run);
+    SemanticRun run = semanticRun(log, o.run, classifier, &plan,
+                                  [&](std::size_t done) { progress.update(done); });
+    const std::vector<SemanticClass> classes =
+        drawing ? drawnClasses(log, *drawing, &run) : classesOf(run);
     confusion.add(compareClasses(run.truth, classes, o.tolerance));
     strict.add(compareClasses(run.truth, classes, o.tolerance, BorderRule::kStrict));
     regions += run.regions.size();
@@ -84,7 +110,7 @@ nlohmann::json evaluate(const Options& o) {
   nlohmann::json j = toJson(confusion);
   j["strict"] = toJson(strict);
   j["plan"] = plan.name;
-  j["classifier"] = o.model.empty() ? "tree" : "forest";
+  j["classifier"] = drawing ? drawing->name : o.model.empty() ? "tree" : "forest";
   j["observations"] = observations;
   j["regions"] = regions;
   std::cout << j.dump(2) << "\n";
@@ -101,10 +127,16 @@ int main(int argc, char** argv) {
       "places were found).",
       "evaluate_semantics");
   Options o;
-  app.add_option("logs", o.logs, "bags with ground truth, each a run")->required();
+  app.add_option("logs", o.logs, "bags with ground truth, or logs, each a run")->required();
   o.run.addTo(app);
   app.add_option("--plan", o.plan, "floor plan with areas: a .yaml file or a shipped one's name")
       ->required();
+  app.add_option("--reference", o.references,
+                 "true poses of each log in the plan's frame (TUM, a table with one pose for each "
+                 "scan, or a corrected log); default: the logs' ground truth");
+  app.add_option("--compare-plan", o.compared,
+                 "another drawing of the same building, taken for a classifier's answer: how far "
+                 "two drawings agree");
   app.add_option("--model", o.model,
                  "forest of train_semantic, or 'shipped'; without: the decision tree");
   app.add_option("--tolerance", o.tolerance, "of borders [observations]");

@@ -11,10 +11,10 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/ros/bag_tool.hpp"
-#include "hyselam_common/trajectory_io.hpp"
 #include "ngram_slam/signatures/signature_sensor.hpp"
 #include "ngram_slam/signatures/signature_training.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
+#include "reference_poses.hpp"
 
 namespace ngram_slam {
 
@@ -31,18 +31,6 @@ struct PlaceLog {
   std::vector<hyselam::StampedPose2> reference;
   std::vector<LogPlace> places;
 };
-
-/// The reference poses of a log: a table or TUM file, a corrected log, or the log's own truth.
-inline std::vector<hyselam::StampedPose2> referenceOf(const std::string& path,
-                                                      const hyselam::RobotLog& log) {
-  if (path.empty()) return log.ground_truth;
-  if (path.find(".log") != std::string::npos) return hyselam::readRobotLog(path).odometry;
-  hyselam::PoseFile file = hyselam::readPoses(path);
-  for (std::size_t i = 0; file.one_per_scan && i < file.poses.size() && i < log.scans.size(); ++i) {
-    file.poses[i].stamp = log.scans[i].stamp;  // its times may be another clock's
-  }
-  return file.poses;
-}
 
 inline PlaceLog placesOf(const std::string& name, const hyselam::RobotLog& log,
                          std::vector<hyselam::StampedPose2> reference,

@@ -37,6 +37,18 @@ struct SemanticRun {
   std::vector<std::optional<SemanticClass>> truth;  ///< empty without plan
 };
 
+/// What a plan says of the places where the robot truly was.
+inline std::vector<std::optional<SemanticClass>> truthOf(const hyselam::RobotLog& log,
+                                                         const std::vector<double>& stamps,
+                                                         const hyselam_sim::FloorPlan& plan) {
+  std::vector<std::optional<SemanticClass>> truth;
+  for (const double stamp : stamps) {
+    const auto pose = hyselam::poseAt(log.ground_truth, stamp, 0.5);
+    truth.push_back(pose ? semanticClassFromString(plan.kindAt({pose->x, pose->y})) : std::nullopt);
+  }
+  return truth;
+}
+
 inline SemanticRun semanticRun(const hyselam::RobotLog& log, const SemanticRunOptions& options,
                                std::shared_ptr<const SemanticClassifier> classifier,
                                const hyselam_sim::FloorPlan* plan,
@@ -50,11 +62,8 @@ inline SemanticRun semanticRun(const hyselam::RobotLog& log, const SemanticRunOp
        observationsOf(log, options.observations, progress).observations) {
     run.stamps.push_back(o.stamp);
     keep(segmenter.add(o));
-    if (plan == nullptr) continue;
-    const auto pose = hyselam::poseAt(log.ground_truth, o.stamp, 0.5);
-    run.truth.push_back(pose ? semanticClassFromString(plan->kindAt({pose->x, pose->y}))
-                             : std::nullopt);
   }
+  if (plan != nullptr) run.truth = truthOf(log, run.stamps, *plan);
   keep(segmenter.finish());
   return run;
 }

@@ -21,6 +21,7 @@
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
+#include "reference_poses.hpp"
 #include "slam_report.hpp"
 #include "word_tables.hpp"
 
@@ -169,9 +170,10 @@ struct FalseLoops {
 FalseLoops falseLoops(const SlamEngine& engine,
                       const std::vector<hyselam::StampedPose2>& reference) {
   const auto isFalse = [&](int older, int newer, const Pose2& measured) {
-    return loopError(engine.keyframes()[static_cast<std::size_t>(older)],
-                     engine.keyframes()[static_cast<std::size_t>(newer)], measured, reference)
-        .isFalse();
+    const auto error =
+        loopError(engine.keyframes()[static_cast<std::size_t>(older)],
+                  engine.keyframes()[static_cast<std::size_t>(newer)], measured, reference);
+    return error && error->isFalse();
   };
   FalseLoops count;
   for (const SlamLoop& l : engine.loops()) {
@@ -255,20 +257,6 @@ SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
   return params;
 }
 
-/// The poses to compare with: those given, else the ground truth of the log. May be empty.
-std::vector<hyselam::StampedPose2> referenceOf(const Options& o, const hyselam::RobotLog& log) {
-  if (o.reference.empty()) return log.ground_truth;
-  const hyselam::PoseFile file = hyselam::readPoses(o.reference);
-  std::vector<hyselam::StampedPose2> reference = file.poses;
-  // Tables count scans: their times may be another clock's.
-  if (file.one_per_scan) {
-    for (std::size_t i = 0; i < reference.size() && i < log.scans.size(); ++i) {
-      reference[i].stamp = log.scans[i].stamp;
-    }
-  }
-  return reference;
-}
-
 /// @throws hyselam::InputError
 void makeFolder(const std::string& path) {
   std::error_code error;
@@ -320,7 +308,7 @@ nlohmann::json run(const Options& o) {
   hyselam::RobotLog log = readLog(o);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
   if (o.noise > 0.0) addOdometryNoise(o.noise, o.seed, &log.odometry);
-  const std::vector<hyselam::StampedPose2> reference = referenceOf(o, log);
+  const std::vector<hyselam::StampedPose2> reference = referenceOf(o.reference, log);
   makeFolder(o.out);
 
   const Run main_run = runSlam(log, params, "SLAM of " + name);
@@ -369,8 +357,9 @@ int main(int argc, char** argv) {
       "--loops", o.loops,
       "none, proximity, ngrams (far places by words only), signatures (far places by their "
       "signatures only), all, or thesis (words accepted without verification)");
-  app.add_option("--reference", o.reference,
-                 "poses to compare with: TUM, or a table with one pose for each scan");
+  app.add_option(
+      "--reference", o.reference,
+      "poses to compare with: TUM, a table with one pose for each scan, or a corrected log");
   app.add_option("--resolution", o.resolution, "of the map [m]");
   app.add_option("--odometry-noise", o.noise,
                  "add errors to the odometry: this many per cent of distance and rotation, and as "

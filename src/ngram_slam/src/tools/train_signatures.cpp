@@ -17,7 +17,7 @@ struct Options {
   SignatureTrainingParams training;
   int buildings = 0;
   std::uint64_t seed = 1;
-  std::string out;
+  std::string out, out_without_each;
 };
 
 PlaceLog drive(const Options& o, int number) {
@@ -30,6 +30,9 @@ PlaceLog drive(const Options& o, int number) {
 nlohmann::json train(const Options& o) {
   if (o.buildings < 0 || o.buildings > 10000) {
     throw hyselam::ParameterError("--buildings", o.buildings, "0 to 10000");
+  }
+  if (!o.out_without_each.empty() && o.logs.logs.size() < 2) {
+    throw hyselam::ParameterError("--out-without-each", o.logs.logs.size(), "two logs or more");
   }
   std::vector<std::vector<SignatureExample>> ways;
   SignatureOrigin origin;
@@ -60,6 +63,16 @@ nlohmann::json train(const Options& o) {
   origin.out_of_sample = "evaluate_places --leave-one-out, docs/algorithms/signatures.md";
   const SignatureModel model = trainSignatures(ways, o.training, origin);
   if (!o.out.empty()) model.save(o.out);
+  for (std::size_t i = 0; !o.out_without_each.empty() && i < o.logs.logs.size(); ++i) {
+    auto others = ways;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const std::string left_out = nameOfLog(o.logs.logs[i]);
+    SignatureOrigin other = origin;
+    other.command += " --out-without-each DIR";
+    other.data += "; without " + left_out;
+    trainSignatures(others, o.training, other)
+        .save(o.out_without_each + "/without-" + left_out + ".txt");
+  }
   nlohmann::json j = {{"places", places}, {"ways", ways.size()}, {"features_crc32", sum_text}};
   std::cout << j.dump(2) << "\n";
   return j;
@@ -75,6 +88,8 @@ int main(int argc, char** argv) {
   Options o;
   o.logs.addTo(app);
   app.add_option("--out", o.out, "file for the model");
+  app.add_option("--out-without-each", o.out_without_each,
+                 "folder for a model for each log, without-LOG.txt, learnt from all but it");
   app.add_option("--buildings", o.buildings, "simulated ones to learn from as well");
   app.add_option("--seed", o.seed, "of the buildings and of all noise");
   app.add_option("--ridge", o.training.ridge, "part of each variance between visits added to it");

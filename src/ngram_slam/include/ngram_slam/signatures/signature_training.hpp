@@ -17,9 +17,9 @@ struct SignatureExample {
 
 struct SignatureTrainingParams {
   SignatureSensorParams sensor;  ///< that made the places
-  double max_distance = 0.75;   ///< two places nearer than this are one [m]
-  std::size_t separation = 20;  ///< if the way has so many places between them
-  double ridge = 0.1;           ///< part of the variance between visits that is added to it
+  double max_distance = 0.75;    ///< two places nearer than this are one [m]
+  std::size_t separation = 20;   ///< if the way has so many places between them
+  double ridge = 0.1;            ///< part of the variance between visits that is added to it
   std::size_t max_places = 1500, max_pairs = 4000;  ///< more of a way count no more
 };
 

@@ -166,6 +166,8 @@ struct LoopParams {
   /// than this part of those that do not, [m] and > 0; 0 m: they are not asked.
   double company_half_length = 10.0;
   double max_contradiction = 0.5;
+  /// A far loop by signatures that is less probable (loopProbability()) waits for more company.
+  double min_signature_probability = 0.5;
 
   double thesis_position_stddev = 0.5;  ///< position, for edges of kThesis [m], > 0
   double thesis_heading_stddev = 0.2;   ///< heading, for edges of kThesis [rad], > 0

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
@@ -28,8 +29,9 @@ struct LoopError {
   /// More than a meter or 20 degrees off: another place.
   bool isFalse() const { return distance > 1.0 || angle > hyselam::radians(20.0); }
 };
-LoopError loopError(const SlamKeyframe& older, const SlamKeyframe& newer,
-                    const hyselam::Pose2& measured,
-                    const std::vector<hyselam::StampedPose2>& reference);
+/// Nothing where the reference has no pose within 0.5 s of both.
+std::optional<LoopError> loopError(const SlamKeyframe& older, const SlamKeyframe& newer,
+                                   const hyselam::Pose2& measured,
+                                   const std::vector<hyselam::StampedPose2>& reference);
 
 }  // namespace ngram_slam

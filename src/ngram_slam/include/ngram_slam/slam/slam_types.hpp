@@ -44,7 +44,10 @@ struct SlamLoop {
   LoopSource source = LoopSource::kProximity;
   bool far = false;           ///< found by a wide search, accepted with consistent loops
   double inlier_ratio = 0.0;  ///< fraction of the points on known surfaces, 0..1
-  double weight = 1.0;        ///< by the last optimization, 0..1; below 1: contradicts others
+  /// Of what both segments observed of each other, the fraction on surfaces instead of in free
+  /// space, in the direction in which it is less, 0..1.
+  double fit = 1.0;
+  double weight = 1.0;  ///< by the last optimization, 0..1; below 1: contradicts others
 };
 
 /// An n-gram match between words of the path, and the result of its verification by scans.

@@ -147,10 +147,9 @@ void judgePose(const LoopTask& task, const SlamParams& params, const SurfaceMap&
   spaces->make(task, p);
   answer->new_in_old = spaces->of_old->overlap(loop.measured, points);
   answer->old_in_new = spaces->of_new->overlap(loop.measured.inverse(), old_map.points());
+  loop.fit = std::min(answer->new_in_old.surface_ratio, answer->old_in_new.surface_ratio);
   const double min_ratio = task.far ? p.far_min_surface_ratio : p.near_min_surface_ratio;
-  answer->verified = answer->new_in_old.observed_ratio >= p.min_overlap &&
-                     answer->new_in_old.surface_ratio >= min_ratio &&
-                     answer->old_in_new.surface_ratio >= min_ratio;
+  answer->verified = answer->new_in_old.observed_ratio >= p.min_overlap && loop.fit >= min_ratio;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "ngram_slam/slam/far_loops.hpp"
 #include "ngram_slam/slam/path_segment.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
@@ -314,41 +315,13 @@ void SlamEngine::addFarLoop(const SlamLoop& loop) {
       distance(known, loop.measured) > p.positionUncertainty(length) + p.visibility_margin) {
     return;
   }
-  // One that is consistent with an accepted one needs no others.
   std::vector<SlamLoop> accepted;
   for (const SlamLoop& l : state_.loops) {
     if (l.far && l.weight >= kMinLoopWeight) accepted.push_back(l);
   }
-  if (!consistentLoops(loop, accepted, state_.keyframes, p).empty()) {
-    acceptFarLoop(loop);
-    return;
-  }
-  std::vector<SlamLoop>& pending = state_.pending_loops;
-  std::vector<SlamLoop> others = accepted;
-  others.insert(others.end(), pending.begin(), pending.end());
-  if (!companyOf(loop, others, state_.keyframes, p).isTrusted(p)) {
-    pending.push_back(loop);
-    return;
-  }
-  const std::vector<std::size_t> group = consistentLoops(loop, pending, state_.keyframes, p);
-  double first = keyframe(loop.newer).path_length, last = first;
-  bool only_signatures = loop.source == LoopSource::kSignature;
-  for (const std::size_t i : group) {
-    only_signatures = only_signatures && pending[i].source == LoopSource::kSignature;
-    const double at = keyframe(pending[i].newer).path_length;
-    first = std::min(first, at);
-    last = std::max(last, at);
-  }
-  // Loops from one spot are one opinion.
-  const int enough = only_signatures ? p.min_consistent_signature_loops : p.min_consistent_loops;
-  if (static_cast<int>(group.size()) + 1 < enough || last - first < p.consistency_min_span) {
-    pending.push_back(loop);
-    return;
-  }
-  acceptFarLoop(loop);
-  for (auto i = group.rbegin(); i != group.rend(); ++i) {
-    acceptFarLoop(pending[*i]);
-    pending.erase(pending.begin() + static_cast<std::ptrdiff_t>(*i));
+  for (const SlamLoop& l :
+       believeFarLoops(loop, accepted, state_.keyframes, p, &state_.pending_loops)) {
+    acceptFarLoop(l);
   }
 }
 

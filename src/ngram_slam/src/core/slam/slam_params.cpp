@@ -199,6 +199,8 @@ void describeConsistency(LoopParams& p, ParameterVisitor& visit) {
         "of path before and after a far loop, whose far loops are asked; 0: none");
   visit("max_contradiction", p.max_contradiction, kPositive, "",
         "those that contradict it weigh less than this part of those that do not");
+  visit("min_signature_probability", p.min_signature_probability, kRatio, "",
+        "far loops by signatures that are less probable wait for others like them");
   visit("thesis_position_stddev", p.thesis_position_stddev, kPositive, "m",
         "of the edges of loops = thesis");
   visit("thesis_heading_stddev", p.thesis_heading_stddev, kPositive, "rad",

@@ -67,13 +67,14 @@ TrajectoryError trajectoryError(const std::vector<hyselam::StampedPose2>& trajec
   return e;
 }
 
-LoopError loopError(const SlamKeyframe& older, const SlamKeyframe& newer, const Pose2& measured,
-                    const std::vector<hyselam::StampedPose2>& reference) {
+std::optional<LoopError> loopError(const SlamKeyframe& older, const SlamKeyframe& newer,
+                                   const Pose2& measured,
+                                   const std::vector<hyselam::StampedPose2>& reference) {
   const auto a = hyselam::poseAt(reference, older.stamp, kTolerance);
   const auto b = hyselam::poseAt(reference, newer.stamp, kTolerance);
-  if (!a || !b) return {};
+  if (!a || !b) return std::nullopt;
   const Pose2 off = between(between(*a, *b), measured);
-  return {std::hypot(off.x, off.y), std::abs(off.theta)};
+  return LoopError{std::hypot(off.x, off.y), std::abs(off.theta)};
 }
 
 }  // namespace ngram_slam

@@ -18,6 +18,9 @@ using hyselam::InputError;
 using hyselam::Pose2;
 
 constexpr char kMagic[] = "NGRAMSLM";
+constexpr std::uint32_t kFirstVersion = 1;
+// Of loops in files that do not tell: LoopParams::near_min_surface_ratio and far_min_surface_ratio.
+constexpr double kLeastFit = 0.85;
 constexpr std::size_t kHeaderBytes = 20, kChecksumBytes = 4;
 constexpr std::size_t kBodyBegin = kHeaderBytes + kChecksumBytes;
 
@@ -34,6 +37,7 @@ class Out {
     for (const float r : values) writer_->put(r);
   }
   void rangeMax(double value) { writer_->put(value); }
+  void fit(double value) { writer_->put(value); }
   template <typename Values>
   void size(const Values& values, std::size_t) {
     writer_->put(static_cast<std::uint32_t>(values.size()));
@@ -46,8 +50,8 @@ class Out {
 /// Never reads beyond the end.
 class In {
  public:
-  In(const std::string& body, const std::string& path)
-      : reader_(body), left_(body.size()), path_(path) {}
+  In(const std::string& body, std::uint32_t version, const std::string& path)
+      : reader_(body), version_(version), left_(body.size()), path_(path) {}
   template <typename... T>
   void numbers(T&... values) {
     (finite(values), ...);
@@ -59,6 +63,10 @@ class In {
   void rangeMax(double& value) {
     get(value);
     if (std::isnan(value)) refuse("holds a scan whose largest range is not a number");
+  }
+  void fit(double& value) {
+    value = kLeastFit;
+    if (version_ > kFirstVersion) finite(value);
   }
   /// `bytes`: what each value takes at least.
   template <typename Values>
@@ -95,6 +103,7 @@ class In {
   }
 
   hyselam::BinaryReader reader_;
+  std::uint32_t version_;
   std::size_t left_;
   std::string path_;
 };
@@ -132,6 +141,7 @@ void loop(Io& io, L& l) {
   pose(io, l.measured);
   matrix(io, l.information);
   io.numbers(l.source, l.far, l.inlier_ratio, l.weight);
+  io.fit(l.fit);
 }
 
 template <typename Io, typename M>
@@ -175,8 +185,13 @@ void rest(Io& io, State& s) {
   for (auto& k : s.keyframe_of_observation) io.numbers(k);
 }
 
+struct Body {
+  std::uint32_t version;
+  std::string text;
+};
+
 /// The body of a file, after its header and checksums were checked.
-std::string bodyOf(const std::string& text, const std::string& path) {
+Body bodyOf(const std::string& text, const std::string& path) {
   const auto refuse = [&](const std::string& place, const std::string& reason) {
     throw InputError(path, place, reason);
   };
@@ -186,9 +201,10 @@ std::string bodyOf(const std::string& text, const std::string& path) {
   header.skip(8);
   const auto version = header.get<std::uint32_t>();
   const auto length = header.get<std::uint64_t>();
-  if (version != SlamStateFile::kVersion) {
+  if (version < kFirstVersion || version > SlamStateFile::kVersion) {
     refuse("version", "is " + std::to_string(version) + ", but only " +
-                          std::to_string(SlamStateFile::kVersion) + " is known");
+                          std::to_string(kFirstVersion) + " to " +
+                          std::to_string(SlamStateFile::kVersion) + " are known");
   }
   if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes)) {
     refuse("header", "is damaged (wrong checksum)");
@@ -203,7 +219,7 @@ std::string bodyOf(const std::string& text, const std::string& path) {
   if (tail.get<std::uint32_t>() != hyselam::checksumOf(text, kBodyBegin, kBodyBegin + length)) {
     refuse("body", "is damaged (wrong checksum)");
   }
-  return text.substr(kBodyBegin, length);
+  return {version, text.substr(kBodyBegin, length)};
 }
 
 }  // namespace
@@ -240,8 +256,8 @@ void SlamStateFile::save(const std::string& path, const SlamState& state) {
 
 SlamState SlamStateFile::load(const std::string& path,
                               const hyselam_scan_matching::SurfacePointParams& surface) {
-  const std::string body = bodyOf(hyselam::readTextFile(path), path);
-  In in(body, path);
+  const auto [version, body] = bodyOf(hyselam::readTextFile(path), path);
+  In in(body, version, path);
   SlamState state;
   in.size(state.keyframes, 100);
   for (SlamKeyframe& k : state.keyframes) {

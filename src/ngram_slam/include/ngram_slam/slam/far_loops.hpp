@@ -1,0 +1,22 @@
+// Which verified far loops are believed: one rule, of SLAM and of the evaluation of recognition.
+#pragma once
+
+#include <vector>
+
+#include "ngram_slam/slam/slam_params.hpp"
+#include "ngram_slam/slam/slam_types.hpp"
+
+namespace ngram_slam {
+
+/// Adds a verified far loop to those that `wait`. Returns those that are believed now, itself or
+/// some that waited for one like it, and takes them out; `accepted`: far loops believed before.
+///
+/// A loop is believed if its company does not contradict it (companyOf()), it is not less probable
+/// than `LoopParams::min_signature_probability` where signatures proposed it (loopProbability()),
+/// and it is consistent with an accepted one or with enough others of which the same is true
+/// (`min_consistent_loops`, `min_consistent_signature_loops`) along `consistency_min_span` of path.
+std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<SlamLoop>& accepted,
+                                      const std::vector<SlamKeyframe>& keyframes,
+                                      const LoopParams& params, std::vector<SlamLoop>* waiting);
+
+}  // namespace ngram_slam

@@ -1,0 +1,120 @@
+// Questions about places of a recorded run, and the earlier places that may answer them.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "../../bench/peers/polar_context.hpp"
+#include "ngram_slam/signatures/place_recognizer.hpp"
+#include "place_logs.hpp"
+
+namespace ngram_slam {
+
+constexpr double kPlaceDistance = 2.0;  // of one place [m]
+constexpr double kPlaceHeading = hyselam::radians(45.0);
+constexpr std::uint32_t kPlaceSeparation = 20;  // places, 10 m
+constexpr std::uint32_t kOldPlace = 80;         // places, 40 m
+constexpr std::uint32_t kQuestionInterval = 4;  // places from question to question
+
+/// How candidates are found.
+struct CandidateOptions {
+  std::string method = "signatures";  ///< context-scan, context-submap
+  bool exact = false;
+  int candidates = 8;
+};
+
+/// Which places of a log were visited before.
+struct Revisit {
+  bool any = false, same = false, old = false;
+};
+
+inline bool isTruePlace(const LogPlace& a, const LogPlace& b) {
+  return a.truth && b.truth && distance(*a.truth, *b.truth) <= kPlaceDistance;
+}
+
+inline Revisit revisitOf(const PlaceLog& log, std::uint32_t i) {
+  Revisit r;
+  bool recent = false;
+  for (std::uint32_t j = 0; j + kPlaceSeparation <= i; ++j) {
+    if (!isTruePlace(log.places[i], log.places[j])) continue;
+    r.any = true;
+    recent |= j + kOldPlace > i;
+    const double turn = log.places[i].truth->theta - log.places[j].truth->theta;
+    r.same |= std::abs(hyselam::normalizeAngle(turn)) <= kPlaceHeading;
+  }
+  r.old = r.any && !recent;
+  return r;
+}
+
+/// As the SLAM knows before any loop.
+inline bool odometryAllows(const PlaceLog& log, std::uint32_t newer, std::uint32_t older) {
+  const PlaceOnWay &a = log.places[newer].on_way, &b = log.places[older].on_way;
+  return a.way < b.way || distance(a.pose, b.pose) <= LoopParams().signatureReach(a.way - b.way);
+}
+
+/// Candidates for each question of a log.
+using Candidates = std::vector<std::vector<PlaceCandidate>>;
+
+inline Candidates bySignatures(const CandidateOptions& o, const PlaceLog& log,
+                               const SignatureModel& model) {
+  PlaceRecognizerParams params;
+  params.max_candidates = std::max(10, o.candidates);
+  PlaceRecognizer recognizer(model, params);
+  for (const LogPlace& p : log.places) recognizer.add(model.signatureOf(p.features));
+  Candidates all;
+  for (std::uint32_t i = 0; i < log.places.size(); i += kQuestionInterval) {
+    const auto may_be = [&](std::uint32_t older) { return odometryAllows(log, i, older); };
+    all.push_back(o.exact ? recognizer.candidatesOfAll(i, may_be)
+                          : recognizer.candidates(i, may_be));
+  }
+  return all;
+}
+
+/// The polar context of the submap around a place.
+inline ngram_slam_peers::PolarContext contextOf(const PlaceFeatures& features) {
+  ngram_slam_peers::PolarContext context;
+  for (std::size_t s = 0; s < context.columns.size(); ++s) {
+    for (std::size_t r = 0; r < context.columns[s].size(); ++r) {
+      context.columns[s][r] = static_cast<float>(features.context[s][r]);
+    }
+  }
+  context.computeNorms();
+  return context;
+}
+
+/// By the distance of polar contexts of all earlier places.
+inline Candidates byContexts(const CandidateOptions& o, const PlaceLog& log) {
+  std::vector<ngram_slam_peers::PolarContext> contexts;
+  for (const LogPlace& p : log.places) {
+    const SlamKeyframe& k = log.keyframes[static_cast<std::size_t>(p.on_way.keyframe)];
+    contexts.push_back(o.method == "context-scan"
+                           ? ngram_slam_peers::contextOf(ngram_slam_peers::returnsOf(*k.scan),
+                                                         PlaceFeatures::kRange)
+                           : contextOf(p.features));
+  }
+  const PlaceRecognizerParams params;
+  Candidates all;
+  for (std::uint32_t i = 0; i < contexts.size(); i += kQuestionInterval) {
+    std::vector<PlaceCandidate> found, told;
+    for (std::uint32_t j = 0; j + kPlaceSeparation <= i; ++j) {
+      if (!odometryAllows(log, i, j)) continue;
+      found.push_back(
+          {i, j, Direction::kSame, -ngram_slam_peers::contextDistance(contexts[i], contexts[j])});
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.score > b.score; });
+    for (const PlaceCandidate& c : found) {
+      if (static_cast<int>(told.size()) == std::max(10, o.candidates)) break;
+      const bool near = std::any_of(told.begin(), told.end(), [&](const PlaceCandidate& t) {
+        return std::max(t.older, c.older) - std::min(t.older, c.older) <=
+               static_cast<std::uint32_t>(params.candidate_spacing);
+      });
+      if (!near) told.push_back(c);
+    }
+    all.push_back(told);
+  }
+  return all;
+}
+
+}  // namespace ngram_slam

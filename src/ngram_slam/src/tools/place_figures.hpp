@@ -1,0 +1,256 @@
+// Candidates verified by the scans and believed or not as in SLAM, and the figures of one log.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ngram_slam/slam/far_loops.hpp"
+#include "ngram_slam/slam/loop_confidence.hpp"
+#include "ngram_slam/slam/path_segment.hpp"
+#include "ngram_slam/slam/slam_score.hpp"
+#include "place_candidates.hpp"
+
+namespace ngram_slam {
+
+constexpr double kPairDistance = 1.0;  // of places laid over each other [m]
+constexpr double kSure = 0.95;         // least probability of a match that is told as sure
+constexpr int kPairs = 4;              // places before and after a match
+
+inline double processSeconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+inline LoopVerification verify(const PlaceLog& log, const PlaceCandidate& c,
+                               const SlamParams& params) {
+  LoopTask task;
+  task.older = static_cast<int>(log.places[c.older].on_way.keyframe);
+  task.newer = static_cast<int>(log.places[c.newer].on_way.keyframe);
+  task.source = LoopSource::kSignature;
+  task.far = true;
+  task.any_heading = true;
+  task.window = params.loop.signature_search_window;
+  task.angle = params.loop.signature_search_angle;
+  const double newer_length = log.keyframes[static_cast<std::size_t>(task.newer)].path_length;
+  task.old_segment =
+      segmentAround(log.keyframes, task.older, params.loop.far_old_segment_half_length,
+                    newer_length - params.loop.segment_separation);
+  task.new_segment =
+      segmentAround(log.keyframes, task.newer, params.loop.far_new_segment_half_length,
+                    std::numeric_limits<double>::infinity());
+  return verifyLoop(task, params);
+}
+
+/// Counts of one log.
+struct Figures {
+  std::size_t questions = 0, revisits = 0, revisits_same = 0, revisits_old = 0;
+  std::array<std::size_t, 3> first{};  // a true place among the first 1, 5, 10
+  std::size_t matches = 0, wrong = 0, pairs = 0, true_pairs = 0;
+  std::size_t verified_matches = 0, verified_wrong = 0, sure = 0, sure_wrong = 0;
+  std::size_t unknown = 0;  // matches that no reference tells right or wrong; in none of the others
+  std::size_t found = 0, found_same = 0, found_old = 0, verified = 0;
+  double verification_s = 0.0, retrieval_s = 0.0, recall_unverified = 0.0;
+
+  static double share(std::size_t part, std::size_t of) {
+    return of == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(of);
+  }
+  nlohmann::json json(const std::string& name) const {
+    return {
+        {"log", name},
+        {"questions", questions},
+        {"revisits", revisits},
+        {"revisits_same", revisits_same},
+        {"revisits_old", revisits_old},
+        {"first_1", share(first[0], revisits)},
+        {"first_5", share(first[1], revisits)},
+        {"first_10", share(first[2], revisits)},
+        {"recall_unverified_none_wrong", recall_unverified},
+        {"verified", verified_matches},
+        {"verified_wrong", verified_wrong},
+        {"matches", matches},
+        {"matches_wrong", wrong},
+        {"matches_without_reference", unknown},
+        {"sure", sure},
+        {"sure_wrong", sure_wrong},
+        {"pair_precision", pairs == 0 ? 1.0 : share(true_pairs, pairs)},
+        {"recall", share(found, revisits)},
+        {"recall_same", share(found_same, revisits_same)},
+        {"recall_old", share(found_old, revisits_old)},
+        {"ms_retrieval", questions == 0 ? 0.0 : 1e3 * retrieval_s / static_cast<double>(questions)},
+        {"ms_verification",
+         verified == 0 ? 0.0 : 1e3 * verification_s / static_cast<double>(verified)}};
+  }
+};
+
+/// The pairs of places that a match lays over each other.
+inline void countPairs(const PlaceLog& log, const PlaceCandidate& c,
+                       const hyselam::Pose2& newer_in_older, Figures* f) {
+  const auto& older_frame =
+      log.keyframes[static_cast<std::size_t>(log.places[c.older].on_way.keyframe)].pose;
+  const auto& newer_frame =
+      log.keyframes[static_cast<std::size_t>(log.places[c.newer].on_way.keyframe)].pose;
+  const auto last = static_cast<std::int64_t>(log.places.size()) - 1;
+  for (std::int64_t n = std::max<std::int64_t>(0, static_cast<std::int64_t>(c.newer) - kPairs);
+       n <= std::min<std::int64_t>(last, static_cast<std::int64_t>(c.newer) + kPairs); ++n) {
+    const LogPlace& newer = log.places[static_cast<std::size_t>(n)];
+    const hyselam::Pose2 there =
+        older_frame * newer_in_older * between(newer_frame, newer.on_way.pose);
+    const LogPlace* nearest = nullptr;
+    for (std::int64_t m = std::max<std::int64_t>(0, static_cast<std::int64_t>(c.older) - 20);
+         m <= std::min<std::int64_t>(n - 1, static_cast<std::int64_t>(c.older) + 20); ++m) {
+      const LogPlace& older = log.places[static_cast<std::size_t>(m)];
+      if (distance(older.on_way.pose, there) > kPairDistance) continue;
+      if (nearest == nullptr ||
+          distance(older.on_way.pose, there) < distance(nearest->on_way.pose, there)) {
+        nearest = &older;
+      }
+    }
+    if (nearest == nullptr || !newer.truth || !nearest->truth) continue;
+    ++f->pairs;
+    f->true_pairs += isTruePlace(newer, *nearest) ? 1 : 0;
+  }
+}
+
+/// Recall of the best candidates by themselves, as far as none better than them is wrong.
+inline double recallUnverified(const PlaceLog& log, const Candidates& all, std::size_t revisits) {
+  std::vector<std::pair<double, bool>> tops;
+  for (const auto& candidates : all) {
+    if (candidates.empty() || !log.places[candidates[0].newer].truth) continue;
+    tops.emplace_back(candidates[0].score, isTruePlace(log.places[candidates[0].newer],
+                                                       log.places[candidates[0].older]));
+  }
+  std::sort(tops.begin(), tops.end(),
+            [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::size_t right = 0;
+  while (right < tops.size() && tops[right].second) ++right;
+  return Figures::share(right, revisits);
+}
+
+/// A candidate that the scans fit.
+struct Match {
+  PlaceCandidate candidate;
+  std::size_t rank;
+  LoopVerification verification;
+  LoopCompany company;
+  bool is_believed;  ///< as SLAM believes it, by the loops found until then and soon after
+  std::optional<bool> is_right;  ///< nothing where no reference tells
+};
+
+/// Whether SLAM believes each, in the order in which they are found.
+inline void believe(const PlaceLog& log, const LoopParams& params, std::vector<Match>* matches) {
+  std::vector<SlamLoop> believed, waiting;
+  for (const Match& m : *matches) {
+    if (!m.verification.verified) continue;
+    const auto now =
+        believeFarLoops(m.verification.loop, believed, log.keyframes, params, &waiting);
+    believed.insert(believed.end(), now.begin(), now.end());
+  }
+  for (Match& m : *matches) {
+    m.is_believed = std::any_of(believed.begin(), believed.end(), [&](const SlamLoop& l) {
+      const SlamLoop& own = m.verification.loop;
+      return l.older == own.older && l.newer == own.newer && l.measured.x == own.measured.x &&
+             l.measured.y == own.measured.y;
+    });
+  }
+}
+
+/// The first `verified` candidates of each question, compared by the scans.
+inline std::vector<Match> matchesOf(const PlaceLog& log, const Candidates& all,
+                                    std::size_t verified, Figures* f) {
+  const SlamParams params;
+  std::vector<Match> matches;
+  std::vector<SlamLoop> loops;
+  hyselam::Progress progress("verification in " + log.name, all.size());
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    progress.update(q + 1);
+    if (!log.places[q * kQuestionInterval].truth) continue;
+    for (std::size_t k = 0; k < std::min(verified, all[q].size()); ++k) {
+      const double begin = processSeconds();
+      const LoopVerification v = verify(log, all[q][k], params);
+      f->verification_s += processSeconds() - begin;
+      ++f->verified;
+      if (v.score == 0.0) continue;
+      const auto error = loopError(log.keyframes[static_cast<std::size_t>(v.loop.older)],
+                                   log.keyframes[static_cast<std::size_t>(v.loop.newer)],
+                                   v.loop.measured, log.reference);
+      std::optional<bool> is_right;
+      if (error) is_right = !error->isFalse();
+      matches.push_back({all[q][k], k, v, {}, false, is_right});
+      if (v.verified) loops.push_back(v.loop);
+    }
+  }
+  for (Match& m : matches) {
+    m.company = companyOf(m.verification.loop, loops, log.keyframes, params.loop);
+  }
+  believe(log, params.loop, &matches);
+  return matches;
+}
+
+inline void writeRows(const PlaceLog& log, const std::vector<Match>& matches, std::ostream& out) {
+  for (const Match& m : matches) {
+    const LoopVerification& v = m.verification;
+    out << log.name << ',' << m.candidate.newer << ',' << m.candidate.older << ',' << m.rank << ','
+        << m.candidate.score << ',' << v.score << ',' << v.loop.inlier_ratio << ','
+        << v.new_in_old.observed_ratio << ',' << v.new_in_old.surface_ratio << ','
+        << v.old_in_new.surface_ratio << ',' << v.ambiguous_score << ',' << m.company.support << ','
+        << m.company.contradiction << ',' << (v.verified ? loopProbability(v.loop, m.company) : 0.0)
+        << ',' << (v.verified ? 1 : 0) << ',' << (m.is_believed ? 1 : 0) << ','
+        << (m.is_right ? *m.is_right ? 1 : 0 : -1) << '\n';
+  }
+}
+
+/// `verified`: candidates of each question that are; `rows`: what each came to, if not null.
+inline Figures figuresOf(const PlaceLog& log, const Candidates& all, std::size_t verified,
+                         std::ostream* rows) {
+  Figures f;
+  const std::vector<Match> matches = matchesOf(log, all, verified, &f);
+  if (rows != nullptr) writeRows(log, matches, *rows);
+  std::vector<char> right(all.size(), 0);
+  for (const Match& m : matches) {
+    if (!m.verification.verified) continue;
+    if (!m.is_right) {
+      ++f.unknown;
+      continue;
+    }
+    ++f.verified_matches;
+    f.verified_wrong += *m.is_right ? 0 : 1;
+    if (loopProbability(m.verification.loop, m.company) >= kSure) {
+      ++f.sure;
+      f.sure_wrong += *m.is_right ? 0 : 1;
+    }
+    if (!m.is_believed) continue;
+    ++f.matches;
+    f.wrong += *m.is_right ? 0 : 1;
+    if (*m.is_right) right[m.candidate.newer / kQuestionInterval] = 1;
+    countPairs(log, m.candidate, m.verification.loop.measured, &f);
+  }
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    const auto i = static_cast<std::uint32_t>(q * kQuestionInterval);
+    if (!log.places[i].truth) continue;
+    ++f.questions;
+    const Revisit revisit = revisitOf(log, i);
+    f.revisits += revisit.any ? 1 : 0;
+    f.revisits_same += revisit.same ? 1 : 0;
+    f.revisits_old += revisit.old ? 1 : 0;
+    f.found += right[q] != 0 && revisit.any ? 1 : 0;
+    f.found_same += right[q] != 0 && revisit.same ? 1 : 0;
+    f.found_old += right[q] != 0 && revisit.old ? 1 : 0;
+    for (std::size_t k = 0; k < all[q].size(); ++k) {
+      if (!isTruePlace(log.places[i], log.places[all[q][k].older])) continue;
+      for (std::size_t n = 0; n < 3; ++n) f.first[n] += k < std::array{1U, 5U, 10U}[n] ? 1 : 0;
+      break;
+    }
+  }
+  f.recall_unverified = recallUnverified(log, all, f.revisits);
+  return f;
+}
+
+}  // namespace ngram_slam

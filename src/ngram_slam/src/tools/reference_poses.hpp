@@ -1,0 +1,26 @@
+// True poses for tools that compare with them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+
+namespace ngram_slam {
+
+/// The reference poses of a log: of a TUM file, a table with one pose for each scan, or a corrected
+/// log (".log", ".log.gz"); without a file the log's own truth, which may be empty.
+/// @throws hyselam::InputError
+inline std::vector<hyselam::StampedPose2> referenceOf(const std::string& path,
+                                                      const hyselam::RobotLog& log) {
+  if (path.empty()) return log.ground_truth;
+  if (path.find(".log") != std::string::npos) return hyselam::readRobotLog(path).odometry;
+  hyselam::PoseFile file = hyselam::readPoses(path);
+  for (std::size_t i = 0; file.one_per_scan && i < file.poses.size() && i < log.scans.size(); ++i) {
+    file.poses[i].stamp = log.scans[i].stamp;  // its times may be another clock's
+  }
+  return file.poses;
+}
+
+}  // namespace ngram_slam
