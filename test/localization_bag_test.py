@@ -79,6 +79,8 @@ class LocalizationBagTest(unittest.TestCase):
             self.assertTrue(status.converged and status.phase == LocalizationStatus.TRACKING)
             self.assertGreater(status.match_quality, 0.8)
             self.assertEqual(pose.header.frame_id, "map")
+            self.assertGreaterEqual(int(self.value(f"{ns}/localization", "places")), 1)
+            self.assertGreater(float(self.value(f"{ns}/localization", "place probability")), 0.5)
 
     def test_live_equals_offline(self):
         out = os.path.join(self.run_.folder.name, "offline.tum")

@@ -441,6 +441,10 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
              std::to_string(std::sqrt(c(0, 0))) + " " + std::to_string(std::sqrt(c(1, 1))) + " " +
                  std::to_string(hyselam::degrees(std::sqrt(c(2, 2)))));
     if (last_result_->inlier_ratio) addValue(status, "inlier ratio", *last_result_->inlier_ratio);
+    if (last_result_->place_probability) {
+      addValue(status, "place probability", *last_result_->place_probability);
+      addValue(status, "places", last_result_->places);
+    }
     addValue(status, "travelled [m]", last_result_->travelled);
   }
   addValue(status, "publishing tf", odom_in_map_.has_value() && params_.tf_broadcast);
