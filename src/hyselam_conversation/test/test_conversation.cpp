@@ -34,6 +34,18 @@ TEST(Conversation, DescriptionsNamePlaces) {
   EXPECT_TRUE(corridor.confirmed);
 }
 
+/// Whose "my office" is, is asked, and known from then on.
+TEST(Conversation, MyOfficeIsTheSpeakers) {
+  ExampleTalk example;
+  example.talk.confirmNames("SS12", {"Tom's office"});
+  EXPECT_TRUE(contains(example.talk.say("Where is my office?").replyText(), "your name"));
+  const Exchange told = example.talk.say("I am Tom.");
+  EXPECT_TRUE(contains(told.replyText(), "Tom's office is SS12")) << told.replyText();
+  const Exchange again = example.talk.say("Where is my office?");
+  EXPECT_EQ(again.question, "");
+  EXPECT_TRUE(contains(again.replyText(), "Tom's office is SS12")) << again.replyText();
+}
+
 TEST(Conversation, ObjectsAreForTheOtherLayer) {
   ExampleTalk example;
   example.talk.confirmNames("CC11", {"corridor"});

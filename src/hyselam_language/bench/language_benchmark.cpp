@@ -60,6 +60,22 @@ void BM_NotUnderstood(benchmark::State& state) {
 }
 BENCHMARK(BM_NotUnderstood)->Unit(benchmark::kMicrosecond);
 
+/// 600 words, none of them a sentence that anybody understands.
+void BM_LongNotUnderstood(benchmark::State& state) {
+  std::string text;
+  for (int i = 0; i < 40; ++i) {
+    text += "The quick brown fox jumps over the lazy dog while the kitchen looks away, ";
+  }
+  run(state, text, "en", 1);
+}
+BENCHMARK(BM_LongNotUnderstood)->Unit(benchmark::kMillisecond);
+
+void BM_SecondReaderLoads(benchmark::State& state) {
+  const hyselam_topo::Grammar grammar = hyselam_topo::Grammar::shipped("en");
+  for (auto _ : state) benchmark::DoNotOptimize(hyselam_topo::FactReader::shipped(grammar));
+}
+BENCHMARK(BM_SecondReaderLoads)->Unit(benchmark::kMillisecond);
+
 void BM_DescriptionIntoGraph(benchmark::State& state) {
   for (auto _ : state) {
     DescriptionBuilder builder(parser());

@@ -78,7 +78,8 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
           "good",
           "# made\n[lexicon]\nnoun lab\n[tagger]\nclasses O\n[of_one]\nclasses "
           "none\n[of_two]\nclasses "
-          "none\n[of_text]\nclasses none\n[modifiers]\nclasses plain\n[calibration]\n1 0\n")
+          "none\n[of_text]\nclasses none\n[modifiers]\nclasses plain\n[calibration]\nreading 1 0 "
+          "0\nfact 1 0 0\nother 1 0 0\n")
           .toText();
   const auto reason = [](const std::string& text) -> std::string {
     try {
@@ -95,9 +96,9 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
   EXPECT_EQ(reason(good), "");
   EXPECT_EQ(reason(""), "model.txt: [tagger]: is missing");
   EXPECT_EQ(reason("nonsense\n"), "model.txt: line 1: stands before the first section");
-  EXPECT_EQ(reason(with("[calibration]\n1 0", "[calibration]\n1 x")),
-            "model.txt: [calibration]: needs slope and offset");
-  EXPECT_EQ(reason(with("[of_two]\nclasses none", "[of_two]\nclasses none\nf 1:0.5")),
+  EXPECT_EQ(reason(with("fact 1 0 0", "fact 1 x 0")),
+            "model.txt: [calibration]: needs 'fact' and three numbers");
+  EXPECT_EQ(reason(with("[of_two]\nclasses none", "[of_two]\nclasses none\nf 1:500")),
             "model.txt [of_two]: line 2: there is no class 1");
   EXPECT_EQ(reason(with("[of_two]\nclasses none", "[of_two]\nclasses none\nf 0:nan")),
             "model.txt [of_two]: line 2: '0:nan' is not CLASS:WEIGHT");

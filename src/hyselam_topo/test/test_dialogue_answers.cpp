@@ -284,6 +284,41 @@ TEST(DialogueKnowledge, RelationsAreAnsweredFromWhatWasTold) {
   EXPECT_TRUE(has(talk.say("What do you know about the pantry?"), "next to the kitchen"));
 }
 
+TEST(DialogueKnowledge, WhatWasToldOfASideIsThere) {
+  Talk talk;
+  talk.say("You are in the kitchen. The cellar is on your left.");
+  const std::string left = talk.say("What is on your left?");
+  EXPECT_TRUE(has(left, "cellar")) << left;
+  const std::string right = talk.say("What is on your right?");
+  EXPECT_FALSE(has(right, "cellar")) << right;
+}
+
+TEST(DialogueProposal, AfterANoTheNextReadingIsAsked) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  hyselam_topo::ForwardedSentence heard;
+  heard.text = "pantry, like, by the kitchen";
+  heard.refusal = "I did not understand.";
+  heard.suggests_meaning = true;
+  heard.suggestion = "The pantry is on your left.";
+  heard.alternatives = {"The pantry is next to the kitchen.", "The pantry is gone."};
+  heard.rest = "I did not understand 'like'.";
+  const std::string first = talk.dialogue.refuse(heard).text();
+  EXPECT_TRUE(has(first, heard.rest) && has(first, heard.suggestion)) << first;
+  const std::string second = talk.say("No.");
+  EXPECT_TRUE(has(second, heard.alternatives[0])) << second;
+  EXPECT_FALSE(has(second, heard.suggestion)) << second;
+  talk.say("Yes.");
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone);
+  EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "Yes.");
+  heard.alternatives.resize(1);
+  talk.dialogue.refuse(heard);
+  talk.say("No.");
+  const std::string last = talk.say("No.");
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone) << last;
+  EXPECT_FALSE(has(last, "Did you mean")) << last;
+}
+
 TEST(DialogueKnowledge, TheSpeakerIsKnown) {
   Talk talk;
   EXPECT_TRUE(has(talk.say("What is my name?"), "I do not know your name"));

@@ -9,6 +9,7 @@
 #include "hyselam_common/errors.hpp"
 #include "issue_texts.hpp"
 #include "said_places.hpp"
+#include "sentence_writer.hpp"
 #include "statement.hpp"
 
 namespace hyselam_topo {
@@ -114,6 +115,11 @@ std::vector<DescriptionIssue> DescriptionBuilder::add(const Utterance& u) {
     return {};
   }
   return record(u);
+}
+
+std::string DescriptionBuilder::ofSpeaker(const std::string& kind) const {
+  const SentenceWriter writer(grammars_[language_], false);
+  return writer.phrase("owned", {{"owner", speaker_, false, true}, {"kind", kind, false, true}});
 }
 
 std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {

@@ -32,18 +32,34 @@ constexpr std::size_t kLongestText = 4000;  // bytes
 constexpr double kMayName = 0.15;           // of a word
 constexpr double kSmallest = 1e-6;          // of probabilities, so that one decision is never all
 
+constexpr double kMayBeMeant = 0.1;  // of what is less likely than another
+
 struct Decision {
   FactCandidate candidate;
   std::string label;
   double probability = 0.0;
 };
 
-/// The likeliest class and its probability.
-std::pair<std::string, double> likeliest(const LinearClassifier& classifier,
-                                         const Features& features) {
+using Likely = std::pair<std::string, double>;  // a class and its probability
+
+/// The likeliest class, and the one after it.
+std::pair<Likely, Likely> likeliestTwo(const LinearClassifier& classifier,
+                                       const Features& features) {
   const std::vector<double> all = classifier.probabilities(features);
-  const auto best = std::max_element(all.begin(), all.end());
-  return {classifier.classes()[static_cast<std::size_t>(best - all.begin())], *best};
+  Likely first{"", -1.0}, second{kNoFact, 0.0};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i] > first.second) {
+      if (i > 0) second = std::move(first);
+      first = {classifier.classes()[i], all[i]};
+    } else if (all[i] > second.second) {
+      second = {classifier.classes()[i], all[i]};
+    }
+  }
+  return {std::move(first), std::move(second)};
+}
+
+Likely likeliest(const LinearClassifier& classifier, const Features& features) {
+  return likeliestTwo(classifier, features).first;
 }
 
 /// Of two facts about the same pair the likelier stays: "A next to B" is "B next to A".
@@ -151,12 +167,15 @@ Reading FactReader::read(const std::string& said) const {
     reading.mentions.push_back(text.tokens()[at].range);
   }
 
-  std::vector<Decision> decisions;
+  std::vector<Decision> decisions, others;
   for (const FactCandidate& candidate : context.candidates()) {
     const LinearClassifier& classifier = candidate.by ? learnt.of_two : learnt.of_one;
-    auto [label, p] = likeliest(classifier, context.features(candidate));
-    count(p);
-    if (label != kNoFact) decisions.push_back({candidate, std::move(label), p});
+    auto [first, second] = likeliestTwo(classifier, context.features(candidate));
+    count(first.second);
+    for (Likely* each : {&first, &second}) {
+      if (each->first == kNoFact || each->second < kMayBeMeant) continue;
+      (each == &first ? decisions : others).push_back({candidate, each->first, each->second});
+    }
   }
   const auto [text_label, text_p] = likeliest(learnt.of_text, context.textFeatures());
   count(text_p);
@@ -164,7 +183,7 @@ Reading FactReader::read(const std::string& said) const {
     reading.facts.push_back(factOf(text_label, {}));
     reading.facts.back().probability = text_p;
   }
-  for (const Decision& each : withoutMirrors(decisions)) {
+  const auto factFrom = [&](const Decision& each, bool counts) {
     std::vector<FactArgument> arguments{
         argumentOf(model_->grammar, text, mentions[each.candidate.what])};
     double p = each.probability * mentions[each.candidate.what].probability;
@@ -175,15 +194,28 @@ Reading FactReader::read(const std::string& said) const {
     ReadFact fact = factOf(each.label, arguments);
     const auto [modifier, modifier_p] =
         likeliest(learnt.modifiers, context.features(each.candidate));
-    count(modifier_p);
+    if (counts) count(modifier_p);
     fact.denied = modifier == "denied";
     fact.asked = modifier == "asked";
     fact.probability = p * modifier_p;
-    reading.facts.push_back(std::move(fact));
+    return fact;
+  };
+  for (const Decision& each : withoutMirrors(decisions)) {
+    reading.facts.push_back(factFrom(each, true));
   }
   reading.facts = withBetweenJoined(std::move(reading.facts));
-  const double log_odds = log_p - std::log1p(-std::exp(log_p));
-  reading.probability = 1.0 / (1.0 + std::exp(-(learnt.slope * log_odds + learnt.offset)));
+  for (const Decision& each : others) reading.others.push_back(factFrom(each, false));
+  const double whole = std::exp(log_p);
+  for (ReadFact& each : reading.facts) {
+    each.probability = learnt.of_fact.probability(each.probability, whole);
+  }
+  for (ReadFact& each : reading.others) {
+    each.probability = learnt.of_other.probability(each.probability, whole);
+  }
+  std::stable_sort(
+      reading.others.begin(), reading.others.end(),
+      [](const ReadFact& a, const ReadFact& b) { return a.probability > b.probability; });
+  reading.probability = learnt.of_reading.probability(whole, whole);
   return reading;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hyselam_common/errors.hpp"
 
@@ -138,14 +139,16 @@ std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardTex
   };
   std::vector<std::vector<Cell>> cells(count, std::vector<Cell>(kinds));
   for (std::size_t at = 0; at < count; ++at) {
-    const Features own = tokenFeatures(text, at);
+    const std::vector<double> own = tagger.scores(tokenFeatures(text, at));
     for (std::size_t before = 0; before < kinds; ++before) {
       const double so_far =
           at == 0 ? (before == outside ? 0.0 : kNever) : cells[at - 1][before].best;
       if (so_far == kNever) continue;
-      Features features = own;
-      addTagBefore(text, at, tags[before], &features);
-      const auto p = tagger.probabilities(features);
+      Features behind;
+      addTagBefore(text, at, tags[before], &behind);
+      std::vector<double> scores = tagger.scores(behind);
+      for (std::size_t tag = 0; tag < kinds; ++tag) scores[tag] += own[tag];
+      const auto p = LinearClassifier::probabilitiesOf(std::move(scores));
       for (std::size_t tag = 0; tag < kinds; ++tag) {
         if ((text.endsSentence(at) && tag != outside) || !mayFollow(tags[before], tags[tag]))
           continue;

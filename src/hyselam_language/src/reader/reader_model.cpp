@@ -1,6 +1,8 @@
 #include "reader_model.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -18,6 +20,11 @@ constexpr std::array<std::pair<const char*, LinearClassifier ReaderModel::*>, 5>
      {"of_two", &ReaderModel::of_two},
      {"of_text", &ReaderModel::of_text},
      {"modifiers", &ReaderModel::modifiers}}};
+
+constexpr std::array<std::pair<const char*, Odds ReaderModel::*>, 3> kOdds{
+    {{"reading", &ReaderModel::of_reading},
+     {"fact", &ReaderModel::of_fact},
+     {"other", &ReaderModel::of_other}}};
 
 /// The lines of each section "[name]"; lines that begin with '#' before the first are comments.
 std::map<std::string, std::string> sectionsOf(const std::string& source, const std::string& text) {
@@ -40,6 +47,20 @@ std::map<std::string, std::string> sectionsOf(const std::string& source, const s
 
 }  // namespace
 
+double logOdds(double probability) {
+  constexpr double kSmallest = 1e-12;  // no decision is ever all
+  const double p = std::min(std::max(probability, kSmallest), 1.0 - kSmallest);
+  return std::log(p / (1.0 - p));
+}
+
+double Odds::of(double own_log_odds, double whole_log_odds) const {
+  return 1.0 / (1.0 + std::exp(-(own * own_log_odds + whole * whole_log_odds + offset)));
+}
+
+double Odds::probability(double own_p, double whole_p) const {
+  return of(logOdds(own_p), logOdds(whole_p));
+}
+
 ReaderModel ReaderModel::fromText(const std::string& source, const std::string& text) {
   const auto sections = sectionsOf(source, text);
   const auto section = [&](const std::string& name) {
@@ -55,8 +76,13 @@ ReaderModel ReaderModel::fromText(const std::string& source, const std::string& 
   checkTags(source + " [tagger]", model.tagger);
   model.lexicon = ReaderLexicon::fromText(source + " [lexicon]", section("lexicon"));
   std::istringstream calibration(section("calibration"));
-  if (!(calibration >> model.slope >> model.offset)) {
-    throw hyselam::InputError(source, "[calibration]", "needs slope and offset");
+  for (const auto& [name, odds] : kOdds) {
+    Odds& of = model.*odds;
+    std::string said;
+    if (!(calibration >> said >> of.own >> of.whole >> of.offset) || said != name) {
+      throw hyselam::InputError(source, "[calibration]",
+                                "needs '" + std::string(name) + "' and three numbers");
+    }
   }
   return model;
 }
@@ -67,7 +93,11 @@ std::string ReaderModel::toText() const {
   for (const auto& [name, classifier] : kSections) {
     out << '[' << name << "]\n" << (this->*classifier).toText();
   }
-  out << "[calibration]\n" << slope << ' ' << offset << '\n';
+  out << "[calibration]\n";
+  for (const auto& [name, odds] : kOdds) {
+    const Odds& of = this->*odds;
+    out << name << ' ' << of.own << ' ' << of.whole << ' ' << of.offset << '\n';
+  }
   return out.str();
 }
 

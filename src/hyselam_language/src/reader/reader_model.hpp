@@ -9,6 +9,20 @@
 namespace hyselam_topo {
 namespace language {
 
+/// log(p / (1 - p)), kept finite.
+double logOdds(double probability);
+
+/// How probable it is that something read is right, by a logistic regression over what the
+/// classifiers say of it and of the whole text, were all their decisions independent.
+struct Odds {
+  double own = 1.0;
+  double whole = 0.0;
+  double offset = 0.0;
+
+  double of(double own_log_odds, double whole_log_odds) const;
+  double probability(double own_p, double whole_p) const;
+};
+
 struct ReaderModel {
   ReaderLexicon lexicon;
   LinearClassifier tagger;     ///< of words: which belong to mentions
@@ -16,10 +30,9 @@ struct ReaderModel {
   LinearClassifier of_two;     ///< of a pair of mentions
   LinearClassifier of_text;    ///< of a whole text: orders and answers without a name
   LinearClassifier modifiers;  ///< of a fact found: "plain", "denied" or "asked"
-  /// The probability that a reading is right is 1 / (1 + exp(-(slope x + offset))), x the
-  /// logarithm of the odds that all decisions are right, were they independent.
-  double slope = 1.0;
-  double offset = 0.0;
+  Odds of_reading;             ///< that all facts are right and none is missing
+  Odds of_fact;                ///< that a fact is right
+  Odds of_other;               ///< that one is which was less likely than another, or than nothing
 
   /// Sections "[lexicon]" ... "[calibration]". Throws hyselam::InputError.
   static ReaderModel fromText(const std::string& source, const std::string& text);

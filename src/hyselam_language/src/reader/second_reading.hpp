@@ -11,10 +11,10 @@
 
 namespace hyselam_topo {
 
-/// Fills `suggestion` of refused utterances in which facts are found, unless what was said is
-/// doubted or a choice: to ask for where they are likely, else as an example of how it is said.
-/// Refused parts that state nothing and name nothing, beside statements that were understood,
-/// become words left out of these.
+/// Fills `suggestion` of refused utterances in which facts are found, and `alternatives`, unless
+/// what was said is doubted, a choice or under a condition: to ask for where they are likely
+/// enough, else as an example of how it is said. Refused parts that state nothing and name nothing,
+/// beside statements that were understood, become words left out of these.
 void readAgain(const FactReader& reader, const Grammar& grammar, const std::string& text,
                std::vector<Utterance>* utterances);
 

@@ -159,7 +159,7 @@ std::vector<AnnotatedText> loadAnnotated(const std::string& path) {
       each.text = json.at("text").get<std::string>();
       each.language = json.at("lang").get<std::string>();
       each.layer = json.at("layer").get<std::string>();
-      each.writer = path.substr(path.rfind('/') + 1) + " " + json.at("role").get<std::string>();
+      each.writer = path.substr(path.rfind('/') + 1);
       for (const auto& fact : json.at("facts")) {
         each.facts.push_back(factOf(fact.get<std::vector<std::string>>()));
       }

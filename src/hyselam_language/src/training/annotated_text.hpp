@@ -20,7 +20,7 @@ struct AnnotatedText {
   std::string text;
   std::string language;
   std::string layer;
-  std::string writer;           ///< file and role: one person
+  std::string writer;           ///< one person, in many roles: the file
   std::vector<ReadFact> facts;  ///< arguments without ranges
 };
 

@@ -1,9 +1,11 @@
 #include "reader_training.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "grammar/text_reader.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "hyselam_language/reader/fact_reader.hpp"
 #include "linear_training.hpp"
@@ -75,6 +77,24 @@ void addExamples(const CompiledGrammar& grammar, const ReaderLexicon& lexicon,
   }
 }
 
+/// Logistic regression by Newton's method.
+Odds fittedOdds(const std::vector<ReaderEvaluation::Guess>& guesses) {
+  constexpr double kRidge = 1e-3;  // where a variable says nothing
+  Eigen::Vector3d w(1.0, 0.0, 0.0);
+  for (int round = 0; round < 50; ++round) {
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d curvature = kRidge * Eigen::Matrix3d::Identity();
+    for (const ReaderEvaluation::Guess& each : guesses) {
+      const Eigen::Vector3d x(each.own, each.whole, 1.0);
+      const double p = 1.0 / (1.0 + std::exp(-w.dot(x)));
+      gradient += ((each.right ? 1.0 : 0.0) - p) * x;
+      curvature += p * (1.0 - p) * x * x.transpose();
+    }
+    w += curvature.ldlt().solve(gradient);
+  }
+  return {w[0], w[1], w[2]};
+}
+
 }  // namespace
 
 ReaderModel trainReader(const Grammar& grammar, const ReaderLexicon& lexicon,
@@ -140,35 +160,35 @@ ReaderEvaluation evaluateReader(const Grammar& grammar, const ReaderLexicon& lex
       for (const std::string& fact : wanted) {
         if (read.count(fact) == 0) words += "\n    missed  " + fact;
       }
-      // The uncalibrated model has slope 1 and offset 0.
-      const double p = std::min(std::max(reading.probability, 1e-12), 1.0 - 1e-12);
-      result.readings.push_back(
-          {std::log(p / (1.0 - p)), wanted == read, !read.empty(), each, words});
+      // What the grammar understands is never asked of the reader, and is easier.
+      const auto said = readText(grammar.compiled(), each->text, {});
+      const bool refused =
+          std::any_of(said.begin(), said.end(), [](const Utterance& u) { return !u.understood(); });
+      if (!refused) continue;
+      // The model that is not calibrated yet has the odds themselves.
+      const double whole = logOdds(reading.probability);
+      const auto add = [&](const std::vector<ReadFact>& facts,
+                           std::vector<ReaderEvaluation::Guess>* guesses) {
+        for (const ReadFact& fact : facts) {
+          guesses->push_back({logOdds(fact.probability), whole, wanted.count(inWords(fact)) != 0});
+        }
+      };
+      add(reading.facts, &result.facts);
+      add(reading.others, &result.others);
+      result.readings.push_back({{whole, 0.0, wanted == read}, !read.empty(), each, words});
     }
   }
   return result;
 }
 
-void calibrate(const std::vector<ReaderEvaluation::Reading>& readings, ReaderModel* model) {
-  // Newton's method for the logistic regression of one variable.
-  double slope = 1.0, offset = 0.0;
-  for (int round = 0; round < 50; ++round) {
-    double g0 = 0, g1 = 0, h00 = 1e-9, h01 = 0, h11 = 1e-9;
-    for (const auto& each : readings) {
-      if (!each.any) continue;
-      const double x = each.log_odds;
-      const double p = 1.0 / (1.0 + std::exp(-(slope * x + offset)));
-      const double error = (each.exact ? 1.0 : 0.0) - p, w = p * (1.0 - p);
-      g0 += error, g1 += error * x;
-      h00 += w, h01 += w * x, h11 += w * x * x;
-    }
-    const double det = h00 * h11 - h01 * h01;
-    if (det <= 0) break;
-    offset += (h11 * g0 - h01 * g1) / det;
-    slope += (h00 * g1 - h01 * g0) / det;
+void calibrate(const ReaderEvaluation& evaluation, ReaderModel* model) {
+  std::vector<ReaderEvaluation::Guess> readings;
+  for (const auto& each : evaluation.readings) {
+    if (each.any) readings.push_back(each.guess);
   }
-  model->slope = slope;
-  model->offset = offset;
+  model->of_reading = fittedOdds(readings);
+  model->of_fact = fittedOdds(evaluation.facts);
+  model->of_other = fittedOdds(evaluation.others);
 }
 
 }  // namespace language

@@ -16,7 +16,7 @@ namespace language {
 struct ReaderTrainingParams {
   double cost = 3.0;           ///< liblinear's C: smaller gives fewer weights
   std::size_t least_seen = 1;  ///< features of fewer examples are left out
-  std::size_t folds = 6;       ///< of writers, for calibration and evaluation
+  std::size_t folds = 4;       ///< of writers, for calibration and evaluation
 };
 
 /// Without calibration.
@@ -33,23 +33,28 @@ struct ReaderScore {
 
 /// How readings fare on writers that the model was not trained with.
 struct ReaderEvaluation {
+  /// Something read, before calibration.
+  struct Guess {
+    double own = 0.0, whole = 0.0;  ///< log odds: of itself, of all that was read in the text
+    bool right = false;
+  };
+  std::vector<Guess> facts, others;  ///< see Reading; of texts that the grammar refuses
   std::map<std::string, ReaderScore> by_layer;
   struct Reading {
-    double log_odds = 0.0;
-    bool exact = false;
+    Guess guess;       ///< right: all of it, and complete
     bool any = false;  ///< anything was read
     const AnnotatedText* text = nullptr;
     std::string read;  ///< in words, for people
   };
-  std::vector<Reading> readings;
+  std::vector<Reading> readings;  ///< of texts that the grammar refuses
 };
 
 ReaderEvaluation evaluateReader(const Grammar& grammar, const ReaderLexicon& lexicon,
                                 const std::vector<const AnnotatedText*>& texts,
                                 const ReaderTrainingParams& params);
 
-/// Fits slope and offset so that readings of p = x are right in a share x.
-void calibrate(const std::vector<ReaderEvaluation::Reading>& readings, ReaderModel* model);
+/// Fits the odds so that of what is told as p = x a share x is right.
+void calibrate(const ReaderEvaluation& evaluation, ReaderModel* model);
 
 }  // namespace language
 }  // namespace hyselam_topo

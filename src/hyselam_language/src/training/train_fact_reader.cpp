@@ -31,6 +31,31 @@ std::string percent(std::size_t part, std::size_t of) {
   return out.str() + " %";
 }
 
+/// How often what is told as so probable is right.
+void printTold(const std::string& what, const std::vector<ReaderEvaluation::Guess>& guesses,
+               const Odds& odds) {
+  struct Bin {
+    std::size_t count = 0, right = 0;
+    double sum = 0.0;
+  };
+  std::array<Bin, 20> bins;
+  for (const auto& each : guesses) {
+    const double p = odds.of(each.own, each.whole);
+    Bin& bin = bins[static_cast<std::size_t>(
+        std::min<double>(bins.size() - 1.0, std::floor(p * bins.size())))];
+    ++bin.count;
+    bin.sum += p;
+    bin.right += each.right ? 1 : 0;
+  }
+  std::cout << what << ": told as, right, number\n";
+  for (const Bin& bin : bins) {
+    if (bin.count == 0) continue;
+    std::cout << "  "
+              << percent(static_cast<std::size_t>(std::lround(bin.sum * 10)), bin.count * 10)
+              << "  " << percent(bin.right, bin.count) << "  " << bin.count << '\n';
+  }
+}
+
 void print(const ReaderEvaluation& evaluation, const ReaderModel& calibrated, bool show) {
   for (const auto& [layer, score] : evaluation.by_layer) {
     std::cout << layer << ": " << score.texts << " texts, exact "
@@ -40,28 +65,18 @@ void print(const ReaderEvaluation& evaluation, const ReaderModel& calibrated, bo
               << score.facts << ", precision " << percent(score.right, score.read) << ", recall "
               << percent(score.right, score.facts) << '\n';
   }
-  struct Bin {
-    std::size_t count = 0, right = 0;
-    double sum = 0.0;
-  };
-  std::array<Bin, 10> bins;
+  std::vector<ReaderEvaluation::Guess> readings;
   for (const auto& each : evaluation.readings) {
     if (!each.any) continue;
-    const double p =
-        1.0 / (1.0 + std::exp(-(calibrated.slope * each.log_odds + calibrated.offset)));
-    Bin& bin = bins[static_cast<std::size_t>(std::min(9.0, std::floor(p * 10.0)))];
-    ++bin.count;
-    bin.sum += p;
-    bin.right += each.exact ? 1 : 0;
-    if (show && !each.exact) std::cout << p << "  " << each.text->text << each.read << '\n';
+    readings.push_back(each.guess);
+    if (show && !each.guess.right) {
+      std::cout << calibrated.of_reading.of(each.guess.own, each.guess.whole) << "  "
+                << each.text->text << each.read << '\n';
+    }
   }
-  std::cout << "calibration: told as, right, texts\n";
-  for (const Bin& bin : bins) {
-    if (bin.count == 0) continue;
-    std::cout << "  "
-              << percent(static_cast<std::size_t>(std::lround(bin.sum * 10)), bin.count * 10)
-              << "  " << percent(bin.right, bin.count) << "  " << bin.count << '\n';
-  }
+  printTold("readings, all right and complete", readings, calibrated.of_reading);
+  printTold("facts", evaluation.facts, calibrated.of_fact);
+  printTold("others that may be meant", evaluation.others, calibrated.of_other);
 }
 
 nlohmann::json run(const Options& o) {
@@ -82,7 +97,7 @@ nlohmann::json run(const Options& o) {
   const ReaderEvaluation evaluation = evaluateReader(grammar, lexicon, texts, o.params);
   ReaderModel model;
   if (!o.out.empty()) model = trainReader(grammar, lexicon, texts, o.params);
-  calibrate(evaluation.readings, &model);
+  calibrate(evaluation, &model);
   print(evaluation, model, o.show);
   if (!o.out.empty()) {
     std::ostringstream head;

@@ -28,7 +28,8 @@ std::vector<ObjectReply> FillMap::process(const std::string& text) {
   return processAll(parser_.parse(text, expected, language_));
 }
 
-/// What a sentence goes on with waits if its beginning leads to a question.
+/// What a sentence goes on with waits if its beginning leads to a question. Words that were left
+/// out beside statements are told.
 std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>& statements) {
   std::vector<ObjectReply> replies;
   for (std::size_t i = 0; i < statements.size(); ++i) {
@@ -47,6 +48,16 @@ std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>&
     std::string all;
     for (const std::string& fact : each.facts) all += (all.empty() ? "" : "; ") + fact;
     each.text = phraseText("done", {{"what", all}});
+  }
+  std::string left_out;
+  for (const ObjectStatement& each : statements) {
+    if (each.kind != UtteranceKind::kStatement) continue;
+    for (const std::string& words : each.left_out) {
+      left_out += (left_out.empty() ? "" : "', '") + words;
+    }
+  }
+  if (!left_out.empty() && !replies.empty()) {
+    replies.back().text += " " + phraseText("left_out", {{"text", left_out}});
   }
   return replies;
 }
@@ -91,6 +102,19 @@ bool FillMap::isWhole(const std::string& sentence) const {
   });
 }
 
+std::optional<ObjectReply> FillMap::proposed(const ObjectStatement& statement, std::size_t from) {
+  std::vector<std::string> all{statement.suggestion};
+  all.insert(all.end(), statement.alternatives.begin(), statement.alternatives.end());
+  for (std::size_t i = from; i < all.size(); ++i) {
+    if (!isWhole(all[i])) continue;
+    ObjectStatement asked = statement;
+    asked.suggestion = all[i];
+    asked.alternatives.assign(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, all.end());
+    return askBack(asked, "proposal", {{"suggestion", all[i]}}, Asked::kProposal);
+  }
+  return std::nullopt;
+}
+
 /// A question stays for one text that was not understood: it may have been the answer.
 ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   if (pending_ && !question_is_new_ && ++pending_->failures > 1) pending_.reset();
@@ -106,8 +130,8 @@ ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   const std::string own = "instead_" + statement.reason_code;
   const bool proposes =
       statement.suggests_meaning && !statement.suggestion.empty() && !grammar.has(own);
-  if (proposes && !question_is_new_ && isWhole(statement.suggestion)) {
-    return askBack(statement, "proposal", values, Asked::kProposal);
+  if (proposes && !question_is_new_) {
+    if (auto asked = proposed(statement, 0)) return *std::move(asked);
   }
   ObjectReply out = reply(ReplyKind::kNotUnderstood, "not_understood", values);
   out.reason = statement.reason;

@@ -100,6 +100,9 @@ std::vector<ObjectReply> FillMap::answerPending(const Pending& pending,
     question_is_new_ = true;
     return replies;
   }
+  if (pending.asked == Asked::kProposal && answer.intent == "no") {
+    if (auto next = proposed(pending.statement, 1)) return {std::move(*next)};
+  }
   if (yes && pending.asked == Asked::kYesNo) {
     again.correction = again.moved = true;
     return {record(again)};

@@ -193,8 +193,14 @@ void Dialogue::answerNo(const Question& asked, Reply& out) {
       out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
       return;
     }
-    case Question::Kind::kNewName:
     case Question::Kind::kProposal:
+      if (!asked.alternatives.empty()) {
+        askProposal(asked.alternatives, out);
+        return;
+      }
+      out.sentences.push_back(p.say("say_otherwise"));
+      return;
+    case Question::Kind::kNewName:
       out.sentences.push_back(p.say("say_otherwise"));
       return;
     default:

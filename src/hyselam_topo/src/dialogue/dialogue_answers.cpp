@@ -351,9 +351,26 @@ void Dialogue::answerOnSide(const Utterance& u, Turn& turn) {
   for (const auto& [distance, id] : seen) {
     if (std::count(places.begin(), places.end(), id) == 0) places.push_back(id);
   }
-  if (places.empty()) {
+  // What was told and no door of the map shows, as it is seen from here now.
+  SaidName here;
+  here.reference = "here";
+  std::vector<std::string> told;
+  const std::vector<Id> at = described(here);
+  for (const DescribedConnection& each : builder_.building().connections) {
+    const bool from_here = std::find(at.begin(), at.end(), each.from) != at.end();
+    const Side now = sideSeenFrom(each.side, each.seen_from,
+                                  robot().has_pose ? std::optional(robot().pose) : std::nullopt);
+    if (!from_here || now != *side) continue;
+    const DescribedPlace* place = builder_.building().findPlace(each.to);
+    const std::vector<Id> known = place == nullptr ? std::vector<Id>() : places_.find(place->name);
+    const bool seen_there =
+        std::find_first_of(known.begin(), known.end(), places.begin(), places.end()) != known.end();
+    if (place != nullptr && !isCode(place->name) && !seen_there) told.push_back(place->name);
+  }
+  if (!told.empty()) out.sentences.push_back(p.say("found_there", {{"places", p.list(told)}}));
+  if (places.empty() && told.empty()) {
     out.sentences.push_back(p.say("nothing_on_side", {{"side", p.side(*side)}}));
-  } else {
+  } else if (!places.empty()) {
     out.sentences.push_back(
         p.say("on_side", {{"side", p.side(*side)}, {"places", p.list(labels(places))}}));
   }

@@ -32,6 +32,28 @@ bool isOfReferences(const Utterance& u) {
                      [](const SaidName& name) { return !name.reference.empty(); });
 }
 
+/// What may be meant by the parts is one question; of the other parts it is told that they are not
+/// understood.
+void proposeTogether(const std::vector<ForwardedSentence>& parts, ForwardedSentence* whole) {
+  std::string together;
+  const ForwardedSentence* only = nullptr;
+  for (const ForwardedSentence& each : parts) {
+    if (!each.suggests_meaning) {
+      whole->rest += (whole->rest.empty() ? "" : " ") + each.refusal;
+      continue;
+    }
+    only = together.empty() ? &each : nullptr;
+    together += (together.empty() ? "" : " ") + each.suggestion;
+  }
+  if (together.empty()) {
+    whole->rest.clear();
+    return;
+  }
+  whole->suggests_meaning = true;
+  whole->suggestion = together;
+  if (only != nullptr) whole->alternatives = only->alternatives;
+}
+
 /// If no utterance of a text was understood, the text is forwarded as a whole, as it was said.
 void joinForwarded(const std::string& text, std::size_t utterances,
                    std::vector<ForwardedSentence>& forwarded) {
@@ -49,7 +71,15 @@ void joinForwarded(const std::string& text, std::size_t utterances,
     whole.about_object = whole.about_object && each.about_object;
     if (whole.suggestion.empty()) whole.suggestion = each.suggestion;
   }
+  proposeTogether(forwarded, &whole);
   forwarded = {whole};
+}
+
+std::vector<std::string> proposalsOf(const std::string& first,
+                                     const std::vector<std::string>& others) {
+  std::vector<std::string> all{first};
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
 }
 
 }  // namespace
@@ -294,11 +324,12 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
     forwarded.reason = u.reason;
     forwarded.suggestion = u.suggestion;
     forwarded.suggests_meaning = proposes;
+    forwarded.alternatives = u.alternatives;
     return;
   }
   turn.reply.refusals.push_back({u.text, u.reason, false, u.suggestion});
-  if (proposes && turn.proposal.empty()) {
-    turn.proposal = u.suggestion;
+  if (proposes && turn.proposals.empty()) {
+    turn.proposals = proposalsOf(u.suggestion, u.alternatives);
     turn.refusal_of_proposal = refusal;
   } else {
     turn.not_understood.push_back(refusal);
@@ -306,19 +337,20 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
 }
 
 void Dialogue::propose(Turn& turn) {
-  if (turn.proposal.empty()) return;
+  if (turn.proposals.empty()) return;
   auto& sentences = turn.reply.sentences;
   if (questions_.isOpen() && questions_.isNew()) {  // one question at a time
     sentences.insert(sentences.end() - 1, turn.refusal_of_proposal);
     return;
   }
-  askProposal(turn.proposal, turn.reply);
+  askProposal(turn.proposals, turn.reply);
 }
 
 Reply Dialogue::refuse(const ForwardedSentence& sentence) {
   Reply out = reply();
   if (sentence.suggests_meaning && !(questions_.isOpen() && questions_.isNew())) {
-    askProposal(sentence.suggestion, out);
+    if (!sentence.rest.empty()) out.sentences.push_back(sentence.rest);
+    askProposal(proposalsOf(sentence.suggestion, sentence.alternatives), out);
   } else {
     out.sentences.push_back(sentence.refusal);
   }
@@ -327,7 +359,38 @@ Reply Dialogue::refuse(const ForwardedSentence& sentence) {
   return out;
 }
 
-void Dialogue::handleCommand(const Utterance& u, Turn& turn) {
+bool Dialogue::askWhose(const Utterance& u, Turn& turn) {
+  if (u.intent == "this_is") return false;  // "my classroom": there is one here
+  for (const Slot& slot : u.slots) {
+    for (const SaidName& name : slot.names) {
+      if (!name.speaker || name.elliptic || !builder_.speaker().empty()) continue;
+      if (!places_.find(name.text).empty()) continue;
+      Question question;
+      question.kind = Question::Kind::kSpeaker;
+      question.sentence = u.text;
+      ask(std::move(question), phrases().say("speaker_unknown"), turn.reply);
+      return true;
+    }
+  }
+  return false;
+}
+
+Utterance Dialogue::withSpeaker(Utterance u) const {
+  if (builder_.speaker().empty() || u.intent == "this_is") return u;
+  for (Slot& slot : u.slots) {
+    for (SaidName& name : slot.names) {
+      // "My mum's café" is hers.
+      if (!name.speaker || name.elliptic || name.text.find('\'') != std::string::npos) continue;
+      name.text = builder_.ofSpeaker(name.text);
+      name.speaker = false;
+    }
+  }
+  return u;
+}
+
+void Dialogue::handleCommand(const Utterance& heard, Turn& turn) {
+  if (askWhose(heard, turn)) return;
+  const Utterance u = withSpeaker(heard);
   Reply& out = turn.reply;
   const std::size_t said = out.sentences.size(), done = out.actions.size(),
                     goals = turn.goals.size();

@@ -52,11 +52,12 @@ void Dialogue::askNewName(Id place, const std::vector<std::string>& names,
   ask(std::move(question), phrases().say(key, {{"name", phrases().list(names)}}), out);
 }
 
-void Dialogue::askProposal(const std::string& sentence, Reply& out) {
+void Dialogue::askProposal(const std::vector<std::string>& proposals, Reply& out) {
   Question question;
   question.kind = Question::Kind::kProposal;
-  question.sentence = sentence;
-  ask(std::move(question), phrases().say("ask_proposal", {{"suggestion", sentence}}), out);
+  question.sentence = proposals.front();
+  question.alternatives.assign(proposals.begin() + 1, proposals.end());
+  ask(std::move(question), phrases().say("ask_proposal", {{"suggestion", proposals.front()}}), out);
 }
 
 void Dialogue::tellMoved(std::vector<MovedName> moved, bool asks, Reply& out) {

@@ -23,17 +23,17 @@ struct Dialogue::Turn {
   bool sides = false;                       ///< ... with sides
   std::vector<std::string> here;            ///< ... where the robot is; empty: not described
   std::vector<DescriptionIssue> issues;
-  std::vector<NamedGoal> goals;     ///< where to go, in order
-  bool told = false;                ///< of other places than the one where the robot is
-  std::size_t used = 0;             ///< utterances that the open question has taken as its answer
-  bool answered = false;            ///< an answer was given, or met
-  bool about_else = false;          ///< something was said that is no answer
-  bool says_more = false;           ///< something was said that is understood and no answer
-  bool forwarded_last = false;      ///< others hear the utterance before
-  bool broken_off = false;          ///< what follows waits for the answer to a question
-  std::string proposal;             ///< what may have been meant, ...
-  std::string refusal_of_proposal;  ///< ... and what is said where it cannot be asked
-  std::string again;                ///< a sentence of before that is heard now
+  std::vector<NamedGoal> goals;  ///< where to go, in order
+  bool told = false;             ///< of other places than the one where the robot is
+  std::size_t used = 0;          ///< utterances that the open question has taken as its answer
+  bool answered = false;         ///< an answer was given, or met
+  bool about_else = false;       ///< something was said that is no answer
+  bool says_more = false;        ///< something was said that is understood and no answer
+  bool forwarded_last = false;   ///< others hear the utterance before
+  bool broken_off = false;       ///< what follows waits for the answer to a question
+  std::vector<std::string> proposals;      ///< what may have been meant, best first, ...
+  std::string refusal_of_proposal;         ///< ... and what is said where it cannot be asked
+  std::string again;                       ///< a sentence of before that is heard now
   std::optional<DescriptionIssue> to_ask;  ///< what the person can answer
   bool asks_speaker = false;               ///< ... by telling who speaks
   /// The description before the statements of this turn.

@@ -74,6 +74,8 @@ class DescriptionBuilder {
   /// From now on "my office" is the office of this person; "" of nobody known.
   void setSpeaker(const std::string& name) { speaker_ = name; }
   const std::string& speaker() const { return speaker_; }
+  /// "office" as that person's: "Tom's office". The speaker must be known.
+  std::string ofSpeaker(const std::string& kind) const;
 
   /// Where the robot stands and looks in the frame of the map while people tell what lies on which
   /// side; nothing: not known. Kept with what they tell.

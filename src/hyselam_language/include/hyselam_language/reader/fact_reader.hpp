@@ -26,12 +26,15 @@ struct ReadFact {
   std::string relation;  ///< "left", "nth_left", "next", "between", "ask_where", ...
   std::vector<FactArgument> arguments;
   bool denied = false;
-  bool asked = false;        ///< "is it so?"
-  double probability = 0.0;  ///< that names and relation are right, as the model has it
+  bool asked = false;  ///< "is it so?"
+  /// That names and relation are right, calibrated on people that the model has not been trained
+  /// with.
+  double probability = 0.0;
 };
 
 struct Reading {
   std::vector<ReadFact> facts;      ///< in the order of what they are told of
+  std::vector<ReadFact> others;     ///< what might be meant instead or besides, likeliest first
   std::vector<TextRange> mentions;  ///< words that may name things, persons or values
   /// That all facts are right and none is missing, calibrated on people that the model has not
   /// been trained with.

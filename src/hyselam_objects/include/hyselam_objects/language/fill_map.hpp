@@ -112,6 +112,9 @@ class FillMap {
   std::vector<ObjectReply> processOne(const ObjectStatement& statement);
   ObjectReply processStatement(const ObjectStatement& statement);
   bool isWhole(const std::string& sentence) const;
+  /// Asks for what a refused statement may have meant, its suggestion (0) or the alternatives from
+  /// that number on; nothing without one that makes sense.
+  std::optional<ObjectReply> proposed(const ObjectStatement& statement, std::size_t from);
   ObjectReply refuse(const ObjectStatement& statement);
   ObjectReply record(const ObjectStatement& statement);
   /// `replaces`: the reply tells again of the objects of the one before, and more.

@@ -82,8 +82,11 @@ struct ForwardedSentence {
   bool understood = false;
   std::string reason;      ///< of the refusal, without the sentence around it
   std::string suggestion;  ///< as Refusal::suggestion
-  /// The suggestion is what may have been meant: Dialogue::refuse() asks for it.
+  /// The suggestion is what may have been meant: Dialogue::refuse() asks for it, and after a "no"
+  /// for the alternatives.
   bool suggests_meaning = false;
+  std::vector<std::string> alternatives;
+  std::string rest;  ///< the refusals of parts that the suggestion is not about
 };
 
 /// A statement, or part of one, that is not understood or contradicts what is known.
@@ -221,14 +224,19 @@ class Dialogue {
                            Turn& turn);
   /// Asks whether something was meant that was not understood.
   void propose(Turn& turn);
-  void askProposal(const std::string& sentence, Reply& reply);
+  /// The first of the proposals; the others after a "no". At least one.
+  void askProposal(const std::vector<std::string>& proposals, Reply& reply);
   /// Stop or cancel was said.
   Reply obey(const UrgentWords& urgent);
   void heedRest(const UrgentRest& rest, Turn& turn);
   /// Puts the open question again, or drops it if the text was about something else.
   void settleQuestion(Turn& turn);
   void handleUtterance(const Utterance& u, Turn& turn);
-  void handleCommand(const Utterance& u, Turn& turn);
+  void handleCommand(const Utterance& heard, Turn& turn);
+  /// Asks who speaks if "my office" cannot be told otherwise.
+  bool askWhose(const Utterance& u, Turn& turn);
+  /// What is the speaker's under its full name: "Tom's office".
+  Utterance withSpeaker(Utterance u) const;
   /// The member function for an intent of the grammar; nullptr for one that is not handled.
   static Handler handlerOf(const Utterance& u);
   void forward(const Utterance& u, const std::string& refusal, Turn& turn);

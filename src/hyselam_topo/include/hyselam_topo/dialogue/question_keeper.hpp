@@ -45,6 +45,8 @@ struct Question {
   DescribedWall wall;
   /// kWall, kWallLength: the search for the described glass wall, continued with the answer.
   std::shared_ptr<GlassWallSearch> search;
+  /// kProposal: what to ask after a "no".
+  std::vector<std::string> alternatives;
   /// kNewName: the statement that has the name; empty: it is that of `place`.
   std::string sentence;
   std::vector<MovedName> moved;

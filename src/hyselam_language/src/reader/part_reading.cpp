@@ -1,0 +1,141 @@
+#include "part_reading.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "fact_writer.hpp"
+#include "grammar/compiled_grammar.hpp"
+#include "grammar/sentence_matcher.hpp"
+#include "hyselam_common/utf8.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+using language::CompiledGrammar;
+
+/// Of a question: a "yes" spares saying it all again, a "no" costs a word.
+constexpr double kWorthAsking = 0.28;
+constexpr double kLikely = 0.5;            // where words may turn what is said
+constexpr double kWorthShowing = 0.15;     // as an example of what would be understood
+constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more
+constexpr std::size_t kMostQuestions = 2;  // after a "no"
+
+/// A fact that the grammar has a sentence for.
+struct SaidFact {
+  const ReadFact* fact = nullptr;
+  std::string sentence;
+};
+
+bool hasName(const Utterance& utterance, const std::string& name) {
+  const std::string wanted = hyselam::utf8Lower(name);
+  return std::any_of(utterance.slots.begin(), utterance.slots.end(), [&](const Slot& slot) {
+    return std::any_of(slot.names.begin(), slot.names.end(), [&](const SaidName& each) {
+      return hyselam::utf8Lower(each.text) == wanted;
+    });
+  });
+}
+
+/// The fact in words, if the grammar takes them as a whole and with the very names of the fact.
+std::optional<SaidFact> inWords(const FactWriter& writer, const Grammar& grammar,
+                                const ReadFact& fact) {
+  const CompiledGrammar& compiled = grammar.compiled();
+  SaidFact in_words{&fact, writer.sentence(fact)};
+  if (in_words.sentence.empty()) return std::nullopt;
+  std::vector<Utterance> said;
+  for (const auto& each : language::splitSentences(in_words.sentence, compiled.tokenRules())) {
+    for (Utterance& u : language::readSentence(compiled, in_words.sentence, each, {})) {
+      said.push_back(std::move(u));
+    }
+  }
+  if (said.size() != 1 || !said.front().understood()) return std::nullopt;
+  // Owners are named by themselves, values by their numbers.
+  const auto& arguments = fact.arguments;
+  const bool named = arguments.empty() || arguments.front().isReference() ||
+                     hasName(said.front(), arguments.front().text);
+  if (!named) return std::nullopt;
+  return in_words;
+}
+
+/// Whether what the fact tells stands within the range: its last name does. Without a name it is
+/// of the whole text.
+bool belongsTo(const TextRange& range, bool is_whole, const ReadFact& fact) {
+  std::size_t last = std::string::npos;
+  for (const FactArgument& each : fact.arguments) {
+    if (!each.isReference() && (last == std::string::npos || each.range.begin > last)) {
+      last = each.range.begin;
+    }
+  }
+  if (last == std::string::npos) return is_whole;
+  return range.begin <= last && last < range.end;
+}
+
+/// All facts that are likely together, then with the least likely ones left out.
+void askTogether(const std::vector<SaidFact>& likely, double least, PartReading* part) {
+  std::vector<const SaidFact*> best;
+  for (const SaidFact& each : likely) best.push_back(&each);
+  std::stable_sort(best.begin(), best.end(), [](const SaidFact* a, const SaidFact* b) {
+    return a->fact->probability > b->fact->probability;
+  });
+  double together = 1.0;
+  std::size_t count = 0;
+  for (; count < std::min(best.size(), kMostFacts); ++count) {
+    if (together * best[count]->fact->probability < least) break;
+    together *= best[count]->fact->probability;
+  }
+  if (count > 0) part->probability = together;
+  for (; count > 0; --count) {
+    std::string sentences;
+    for (const SaidFact& each : likely) {  // in the order said
+      if (std::find(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(count), &each) ==
+          best.begin() + static_cast<std::ptrdiff_t>(count)) {
+        continue;
+      }
+      sentences += (sentences.empty() ? "" : " ") + each.sentence;
+    }
+    part->asked.push_back(std::move(sentences));
+  }
+}
+
+/// Never asked on a mere chance.
+bool takesAway(const ReadFact& fact) {
+  return fact.relation == "gone" || fact.relation == "forget" || fact.relation == "rename";
+}
+
+}  // namespace
+
+PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar& grammar) {
+  const Reading& reading = of.reading;
+  const double least = of.is_turned ? kLikely : kWorthAsking;
+  const FactWriter writer(grammar);
+  const auto inPart = [&](const std::vector<ReadFact>& facts) {
+    std::vector<SaidFact> all;
+    for (const ReadFact& fact : facts) {
+      if (fact.probability < kWorthShowing || !belongsTo(utterance.range, of.is_whole, fact))
+        continue;
+      if (auto said = inWords(writer, grammar, fact)) all.push_back(std::move(*said));
+    }
+    return all;
+  };
+  PartReading part;
+  const std::vector<SaidFact> likely = inPart(reading.facts);
+  askTogether(likely, least, &part);
+  // What a "no" to the best reading makes likely.
+  double left = 1.0 - part.probability;
+  for (const SaidFact& each : inPart(reading.others)) {
+    if (each.fact->probability < least * left) break;
+    if (takesAway(*each.fact)) continue;
+    if (std::count(part.asked.begin(), part.asked.end(), each.sentence) != 0) continue;
+    if (part.asked.empty()) part.probability = each.fact->probability;
+    part.asked.push_back(each.sentence);
+    left -= each.fact->probability;
+  }
+  if (part.asked.size() > 1 + kMostQuestions) part.asked.resize(1 + kMostQuestions);
+  const auto best = std::max_element(
+      likely.begin(), likely.end(),
+      [](const auto& a, const auto& b) { return a.fact->probability < b.fact->probability; });
+  if (best != likely.end()) part.example = best->sentence;
+  return part;
+}
+
+}  // namespace hyselam_topo

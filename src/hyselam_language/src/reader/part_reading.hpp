@@ -1,0 +1,32 @@
+// What the second reader makes of one part of a text that the grammar has refused: what to ask for,
+// as sentences of the grammar's own.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hyselam_language/grammar/grammar.hpp"
+#include "hyselam_language/grammar/utterance.hpp"
+#include "hyselam_language/reader/fact_reader.hpp"
+
+namespace hyselam_topo {
+
+/// What was read in a part that the grammar refused.
+struct PartReading {
+  std::vector<std::string> asked;  ///< readings, each one or several sentences, best first
+  double probability = 0.0;        ///< of the best reading to ask for
+  std::string example;             ///< the likeliest of what is too unlikely to ask for
+};
+
+/// Where a part stands.
+struct PartOf {
+  const Reading& reading;  ///< of the whole text
+  bool is_whole = false;   ///< the part is all of the text
+  /// Something is denied or past, or the refusal has a reason: only what is likelier than not is
+  /// asked.
+  bool is_turned = false;
+};
+
+PartReading readPart(const Utterance& part, const PartOf& of, const Grammar& grammar);
+
+}  // namespace hyselam_topo
