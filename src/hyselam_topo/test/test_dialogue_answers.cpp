@@ -367,6 +367,15 @@ TEST(DialogueStatement, IsReadBack) {
   EXPECT_TRUE(has(talk.say("The pantry is next to the kitchen."), "I knew that already."));
 }
 
+TEST(DialogueStatement, OwnersHaveTheKindThatWasSaidAndPlacesHaveNoOffice) {
+  Talk talk;
+  const std::string lab = talk.say("This lab belongs to Professor Lindqvist.");
+  EXPECT_TRUE(has(lab, "Professor Lindqvist's lab")) << lab;
+  talk.say("You are in the corridor.");
+  const std::string chapel = talk.say("The chapel's ower there past the hall.");
+  EXPECT_TRUE(has(chapel, "What of 'chapel's'?")) << chapel;
+}
+
 TEST(DialogueStatement, SidesAreToldFromThePlaceThatWasNamed) {
   Talk talk;
   talk.say("This is the kitchen.");

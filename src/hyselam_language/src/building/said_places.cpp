@@ -127,7 +127,10 @@ std::string kindLeftOut(Statement& s, const SaidName& name) {
   if (owned && !context.owned_kind.empty()) return context.owned_kind;
   // "You are in the corridor. The last door is Joe's": nobody's corridor.
   if (owned && s.listener().names.kindOf(context.kind_word) == PlaceKind::kCorridor) {
-    return isPlaceNoun(s, name) ? "" : s.listener().grammar.say("office");
+    // "The chapel's ower there": of no person, so that is asked.
+    const std::string owner = name.text.substr(0, name.text.find_first_of("'\xe2"));
+    const bool is_place = isPlaceNoun(s, name) || !s.listener().names.headOf(owner).empty();
+    return is_place ? "" : s.listener().grammar.say("office");
   }
   const std::string& kind =
       owned || context.described_kind.empty() ? context.kind_word : context.described_kind;

@@ -196,7 +196,10 @@ void owner(Statement& s) {
   // "Tom's lab" of a lab, "Tom's office" of a room.
   const std::string name =
       said[0].reference.empty() ? fullName(s, said[0]) : s.nameOf(placeOf(s, said[0]));
-  const std::string kind = names.isPlainRoom(name) ? grammar.say("office") : names.headOf(name);
+  // "This lab belongs to her": where nothing has a name yet, too.
+  const std::string pointed = said[0].reference.empty() ? "" : names.headOf(said[0].text);
+  std::string kind = names.isPlainRoom(name) ? pointed : names.headOf(name);
+  if (kind.empty() || names.isPlainRoom(kind)) kind = grammar.say("office");
   // "Room 5 was Tom's, now it is Ann's."
   forgetNames(s, ownedPlaces(s, kind, "former"));
   std::vector<SaidName> owned = ownedPlaces(s, kind);
