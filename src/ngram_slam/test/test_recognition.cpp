@@ -196,6 +196,20 @@ TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
   EXPECT_GE(j["match_precision"], 0.95);
 }
 
+TEST_F(Tools, evaluatePlacesRefusesOptionsThatItWouldIgnore) {
+  const std::string tool = "evaluate_places " + d / "r.bag ";
+  expectRefused(tool + "--candidates 0", "--candidates");
+  expectRefused(tool + "--candidates 101", "--candidates");
+  expectRefused(tool + "--leave-one-out", "--leave-one-out");
+  expectRefused(tool + d / "r.bag" + " --leave-one-out --model m.txt", "--model");
+  expectRefused(tool + "--no-verification --matches " + d / "m.csv", "--matches");
+  const std::string peer = tool + "--method context-scan ";
+  expectRefused(peer + "--model m.txt", "--model");
+  expectRefused(peer + "--leave-one-out", "--leave-one-out");
+  expectRefused(peer + "--exact", "--exact");
+  expectRefused(tool + "--reference a --reference b", "--reference");
+}
+
 TEST_F(Tools, refuseUnusableInputInOneLine) {
   expectRefused("words_offline /nowhere.bag --out " + d / "x", "/nowhere.bag");
   writeFile(d / "bad.log", "FLASER nonsense\n");

@@ -564,7 +564,9 @@ TEST(FarLoops, waitForTwoOthersThatAgree) {
   EXPECT_TRUE(believeFarLoops(signatureLoop(10, 150), {}, keyframes, params, &waiting).empty());
   EXPECT_TRUE(believeFarLoops(signatureLoop(12, 152), {}, keyframes, params, &waiting).empty());
   EXPECT_EQ(waiting.size(), 2U);
-  EXPECT_EQ(believeFarLoops(signatureLoop(14, 154), {}, keyframes, params, &waiting).size(), 3U);
+  const auto believed = believeFarLoops(signatureLoop(14, 154), {}, keyframes, params, &waiting);
+  ASSERT_EQ(believed.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(believed[i].newer, 154 - 2 * static_cast<int>(i));
   EXPECT_TRUE(waiting.empty());
   // From one spot they are one opinion, and the same loop twice is one.
   for (const int newer : {150, 151, 151}) {

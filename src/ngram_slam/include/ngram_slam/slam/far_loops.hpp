@@ -9,7 +9,8 @@
 namespace ngram_slam {
 
 /// Adds a verified far loop to those that `wait`. Returns those that are believed now, itself or
-/// some that waited for one like it, and takes them out; `accepted`: far loops believed before.
+/// some that waited for one like it, the newest first, and takes them out; `accepted`: far loops
+/// believed before.
 ///
 /// A loop is believed if its company does not contradict it (companyOf()), it is not less probable
 /// than `LoopParams::min_signature_probability` where signatures proposed it (loopProbability()),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_confidence.hpp"
@@ -75,14 +76,15 @@ std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<Sl
   std::vector<SlamLoop> believed;
   for (bool found = true; found;) {
     found = false;
-    for (auto i = waiting->begin(); i != waiting->end(); ++i) {
+    // The newest first. Their order in the graph moves a map's error by about a hundredth of it.
+    for (auto i = waiting->rbegin(); i != waiting->rend(); ++i) {
       if (std::abs(judge.pathLengthAt(*i) - judge.pathLengthAt(loop)) > reach ||
           !judge.isBelieved(*i, *waiting)) {
         continue;
       }
       believed.push_back(*i);
       judge.accept(*i);
-      waiting->erase(i);
+      waiting->erase(std::next(i).base());
       found = true;
       break;
     }
