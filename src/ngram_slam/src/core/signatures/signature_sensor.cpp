@@ -11,19 +11,6 @@ namespace ngram_slam {
 
 using hyselam::Pose2;
 
-void SignatureSensorParams::describe(hyselam::ParameterVisitor& visit) {
-  using hyselam::Range;
-  visit("spacing", spacing, Range::between(0.1, 5.0), "m",
-        "of way between places with a signature");
-  visit("half_window", half_window, Range::between(1.0, 20.0), "m",
-        "of way before and after a place, whose scans its signature is made of");
-  visit("resolution", resolution, Range::between(0.05, 0.5), "m", "of the map of these scans");
-}
-
-void SignatureSensorParams::validate() const {
-  hyselam::checkParameters(*this);
-}
-
 SignatureSensor::SignatureSensor(const SignatureSensorParams& params, Use use)
     : params_((params.validate(), params)),
       use_(std::move(use)),
