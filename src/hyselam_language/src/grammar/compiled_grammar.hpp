@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "automaton.hpp"
+#include "example_sentences.hpp"
 #include "hyselam_language/grammar/utterance.hpp"
 #include "pattern_index.hpp"
 #include "tokens.hpp"
@@ -137,6 +138,7 @@ struct CompiledGrammar {
   std::vector<NameType> name_types;
   std::vector<IntentInfo> intents;
   PatternIndex index;               ///< of the patterns of all intents
+  ExampleSentences examples;        ///< of all intents
   std::vector<std::string> values;  ///< entries of word classes
   UrgentPhrases urgent;
   std::map<std::string, std::string> refusing_words;

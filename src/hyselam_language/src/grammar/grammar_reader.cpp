@@ -40,6 +40,7 @@ class Reader {
     grammar_->telling_words.insert(grammar_->unit_words.begin(), grammar_->unit_words.end());
     addLightWords();
     finishKnownWords();
+    grammar_->examples = ExampleSentences(*grammar_);
     return grammar_;
   }
 

@@ -345,7 +345,10 @@ std::vector<FoundName> NameFinder::find(std::size_t at, const NameType& type) {
     } else if (refuses(token) && !isCompassOfName(begin, k, type)) {
       break;
     } else if (isStop(token, type)) {
-      if (!isLetterOfTitle(begin, k, type)) break;
+      const bool number =
+          k > begin && type.titles.count(tokens_[k - 1].folded) != 0 && isNumberOfTitle(k, type);
+      if (!number && !isLetterOfTitle(begin, k, type)) break;
+      is_last = number;  // "room one"
     } else if (k > begin && mayBeArticle(k, type)) {
       const std::string& before = tokens_[k - 1].folded;
       if (type.joiners.count(before) != 0) {
@@ -500,7 +503,9 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
   for (std::size_t k = begin; k < end; ++k) {
     const auto forbidden = type.forbidden.find(tokens_[k].folded);
     if (forbidden != type.forbidden.end() && !has_noun) return forbidden->second;
-    only_generic = only_generic && type.generic.count(tokens_[k].folded) != 0;
+    const bool numbered = k > begin && type.titles.count(tokens_[k - 1].folded) != 0 &&
+                          isNumberOfTitle(k, type);  // "room one"
+    only_generic = only_generic && type.generic.count(tokens_[k].folded) != 0 && !numbered;
   }
   // "clean room", though "clean" and "room" tell nothing alone.
   std::string phrase;

@@ -277,7 +277,7 @@ void propose(const SentenceWords& words, Utterance* refused) {
       return;
     }
   }
-  refused->suggestion = nearestExample(words);
+  refused->suggestion = words.grammar.examples.nearest(words.tokens, words.sentence.is_question);
 }
 
 }  // namespace
@@ -403,8 +403,8 @@ std::vector<Utterance> consistent(const CompiledGrammar& grammar, const std::str
     refused.culprit = at->range;
     refused.reason_code = grammar.reasons.count("contrary") != 0 ? "contrary" : "denial";
     refused.reason = grammar.reason(refused.reason_code, at->text);
-    refused.suggestion = nearestExample(SentenceWords(
-        grammar, text, sentence, tokenize(text, sentence.range, grammar.tokenRules())));
+    refused.suggestion = grammar.examples.nearest(
+        tokenize(text, sentence.range, grammar.tokenRules()), sentence.is_question);
     return {refused};
   }
   return said;

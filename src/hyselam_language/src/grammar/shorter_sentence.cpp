@@ -1,9 +1,7 @@
 #include "shorter_sentence.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -185,49 +183,6 @@ class Shortening {
 std::optional<ShorterSentence> shorterSentence(const SentenceWords& words) {
   if (words.tokens.empty() || words.tokens.size() > kLongest) return std::nullopt;
   return Shortening(words).find();
-}
-
-std::string nearestExample(const SentenceWords& words) {
-  const CompiledGrammar& grammar = words.grammar;
-  std::set<std::string> said;
-  for (const Token& token : words.tokens) {
-    if (token.kind == TokenKind::kWord) said.insert(token.folded);
-  }
-  // A word counts the more the fewer examples have it, and little if it tells nothing of places.
-  constexpr double kTellsNothing = 0.05;
-  std::vector<std::pair<std::set<std::string>, std::string>> examples;
-  std::map<std::string, int> frequency;
-  for (const IntentInfo& intent : grammar.intents) {
-    const bool asks = intent.kind == UtteranceKind::kQuestion;
-    // Those that cost less than nothing are for what the robot itself says.
-    const bool for_people = intent.refuse.empty() && intent.cost >= 0;
-    if (!for_people || intent.kind == UtteranceKind::kAnswer ||
-        asks != words.sentence.is_question) {
-      continue;
-    }
-    for (const std::string& example : intent.examples) {
-      std::set<std::string> has;
-      for (const Token& token : tokenize(example, {0, example.size()}, grammar.tokenRules())) {
-        if (token.kind == TokenKind::kWord) has.insert(token.folded);
-      }
-      for (const std::string& word : has) ++frequency[word];
-      examples.emplace_back(std::move(has), example);
-    }
-  }
-  double best = -1.0;
-  std::string nearest;
-  for (const auto& [has, example] : examples) {
-    double shared = 0.0;
-    for (const std::string& word : has) {
-      const double weight = grammar.telling_words.count(word) != 0 ? 1.0 : kTellsNothing;
-      if (said.count(word) != 0) shared += weight / frequency[word];
-    }
-    if (shared > best) {
-      best = shared;
-      nearest = example;
-    }
-  }
-  return nearest;
 }
 
 }  // namespace language

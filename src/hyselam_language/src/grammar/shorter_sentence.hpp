@@ -21,9 +21,5 @@ struct ShorterSentence {
 /// Nothing if too much would have to be left out.
 std::optional<ShorterSentence> shorterSentence(const SentenceWords& words);
 
-/// An example sentence of the kind that shares the most telling words with this one; "" without
-/// examples.
-std::string nearestExample(const SentenceWords& words);
-
 }  // namespace language
 }  // namespace hyselam_topo
