@@ -145,14 +145,56 @@ TEST(DialogueViews, WhatIsNotTakenDownTellsOfNoPlace) {
 TEST(DialogueViews, ANameThatWasToldOfTakesItIn) {
   Tour t;
   t.at(1.0, 1.2, 0.0);
-  t.say("The kitchen is next to the corridor.");
+  t.say("The kitchen is next to the north corridor.");
   t.say("The first door on the left is the kitchen.");
   ASSERT_EQ(3u, t.dialogue.description().places.size());
-  t.say("This is the corridor.");
+  t.say("This is the north corridor.");
   ASSERT_EQ(2u, t.dialogue.description().places.size());
   ASSERT_EQ(1u, t.dialogue.description().connections.size());
   EXPECT_EQ(1, *t.dialogue.description().connections.front().rank);
   EXPECT_EQ("kitchen", t.room(3, true));
+}
+
+TEST(DialogueViews, TheCorridorIsTheOneThatTheRobotStandsInAlsoWithoutAName) {
+  Tour t;
+  t.at(1.0, 1.2, 0.0);
+  t.say("The lab is on the left. At the end of the corridor there is the archive.");
+  // The corridor, the lab and the archive.
+  EXPECT_EQ(3u, t.dialogue.description().places.size());
+  EXPECT_EQ(std::string::npos, t.say("Where is the archive?").find("corridor may be"));
+  t.say("You are in the corridor.");
+  ASSERT_EQ(3u, t.dialogue.description().places.size());
+  const auto& places = t.dialogue.description().places;
+  EXPECT_TRUE(std::any_of(places.begin(), places.end(),
+                          [](const auto& place) { return place.name == "corridor"; }));
+}
+
+TEST(DialogueViews, InARoomTheCorridorIsAnotherPlace) {
+  Tour t;
+  t.at(3.0, 5.0, 1.57);
+  t.say("The lab is at the end of the corridor.");
+  EXPECT_EQ(2u, t.dialogue.description().places.size());
+}
+
+TEST(DialogueViews, ARenamedPlaceTakesWhatWasToldOfItAlong) {
+  Tour t;
+  t.at(1.0, 1.2, 0.0);
+  t.say("This is the lobby. The first door on the left is the kitchen.");
+  t.say("Rename this place to north corridor.");
+  const auto& places = t.dialogue.description().places;
+  ASSERT_EQ(2u, places.size());
+  EXPECT_TRUE(std::none_of(places.begin(), places.end(),
+                           [](const auto& place) { return place.name == "lobby"; }));
+}
+
+TEST(DialogueViews, APlaceThatIsDeniedIsNotNamedSo) {
+  Tour t;
+  t.at(3.0, 5.0, 1.57);
+  t.say("Esta é a cozinha.");
+  ASSERT_EQ("cozinha", t.room(3, true));
+  const std::string reply = t.say("Isto aqui não é a cozinha.");
+  EXPECT_EQ("", t.room(3, true)) << reply;
+  EXPECT_EQ(std::string::npos, reply.find("?")) << reply;
 }
 
 TEST(DialogueViews, AreKeptInFiles) {

@@ -7,6 +7,7 @@
 
 #include "edit_description.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "issue_texts.hpp"
 #include "said_places.hpp"
 #include "sentence_writer.hpp"
@@ -258,12 +259,19 @@ std::vector<Id> DescriptionBuilder::find(const std::string& name) const {
   return placesOf(name, state_, names_);
 }
 
-void DescriptionBuilder::setRobotPlace(const std::string& name) {
+bool DescriptionBuilder::isCorridorWithoutName(const std::string& name) const {
+  return hyselam::utf8Fold(name) == names_.headOf(name) &&
+         names_.kindOf(name) == PlaceKind::kCorridor;
+}
+
+void DescriptionBuilder::setRobotPlace(const std::string& name, std::optional<PlaceKind> kind) {
   const std::vector<Id> ids = find(name);
   if (ids.size() > 1) {
     throw hyselam::InputError("robot's place", "", "'" + name + "' may mean several places");
   }
   const Id id = ids.empty() ? addPlace(name, names_.kindOf(name), &state_.building) : ids.front();
+  DescribedPlace& place = *state_.building.findPlace(id);
+  if (!place.kind) place.kind = kind;
   state_.building.robot_place = id;
   state_.context.subjects = {id};
   rememberKind(name, names_, grammars_[language_], &state_.context);
@@ -277,9 +285,9 @@ void DescriptionBuilder::setViewpoint(const std::optional<hyselam::Pose2>& viewp
 
 void DescriptionBuilder::giveName(const std::string& made_up, const std::string& name) {
   const std::vector<Id> from = find(made_up), to = find(name);
-  if (from.size() != 1 || to.size() > 1 || from == to) return;
+  if (from.size() != 1 || to.size() > 1) return;
   DescribedBuilding& building = state_.building;
-  if (to.empty()) {
+  if (to.empty() || to == from) {
     DescribedPlace& place = *building.findPlace(from.front());
     place.name = name;
     if (!place.kind) place.kind = names_.kindOf(name);

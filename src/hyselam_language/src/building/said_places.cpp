@@ -183,11 +183,14 @@ std::vector<Id> placesOf(const std::string& name, const DescriptionState& state,
   std::vector<Id> ids;
   for (const std::size_t i : names.find(name, all)) ids.push_back(state.building.places[i].id);
   if (!ids.empty() || !state.building.robot_place) return ids;
-  // "You are in the main corridor. ... the corridor": the one where the robot is.
+  // "You are in the main corridor. ... the corridor": the one where the robot is, also if nobody
+  // has named it, or the name tells no kind.
   const DescribedPlace* here = state.building.findPlace(*state.building.robot_place);
   const bool bare = hyselam::utf8Fold(name) == names.headOf(name);
+  const bool nameless = here != nullptr && here->kind == PlaceKind::kCorridor &&
+                        !names.kindOf(here->name).has_value();
   if (bare && here != nullptr && names.kindOf(name) == PlaceKind::kCorridor &&
-      names.headOf(here->name) == names.headOf(name)) {
+      (nameless || names.headOf(here->name) == names.headOf(name))) {
     ids.push_back(here->id);
   }
   return ids;

@@ -66,18 +66,6 @@ bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::s
                       });
 }
 
-/// "If you do not mind": nothing but a phrase that the grammar leaves out beside a statement.
-bool isFiller(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
-              const CompiledGrammar& grammar) {
-  const auto is = [&](const Phrase& phrase) {
-    return phrase.size() == end - begin && standsAt(phrase, tokens, begin, grammar);
-  };
-  // A single word may stand for a name.
-  return end > begin + 1 &&
-         (std::any_of(grammar.fillers_before.begin(), grammar.fillers_before.end(), is) ||
-          std::any_of(grammar.fillers_after.begin(), grammar.fillers_after.end(), is));
-}
-
 /// Whether tokens [begin, end) are words of correction and nothing else.
 bool corrects(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
               const CompiledGrammar& grammar) {
@@ -130,14 +118,27 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
     }
     ++parts;
     if (tells) {
-      tells =
-          !saysNothingOfNow(tokens, begin, end, grammar) && !isFiller(tokens, begin, end, grammar);
+      tells = !saysNothingOfNow(tokens, begin, end, grammar) &&
+              fillerEnd(tokens, begin, grammar) != end;
     }
     if (!tells) asides.push_back({begin, end});
     begin = end;
   }
   if (asides.size() == parts && !all) asides.clear();
   return asides;
+}
+
+std::size_t fillerEnd(const std::vector<Token>& tokens, std::size_t at,
+                      const CompiledGrammar& grammar) {
+  std::size_t end = at;
+  for (const auto* phrases : {&grammar.fillers_before, &grammar.fillers_after}) {
+    for (const Phrase& phrase : *phrases) {
+      // A single word may stand for a name.
+      if (phrase.size() < 2 || at + phrase.size() <= end) continue;
+      if (standsAt(phrase, tokens, at, grammar)) end = at + phrase.size();
+    }
+  }
+  return end;
 }
 
 std::vector<std::vector<Aside>> asidesOfCorrections(const std::vector<Token>& tokens,

@@ -22,6 +22,11 @@ struct Aside {
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
                             bool all = false);
 
+/// Where the longest phrase ends that begins at a token, has two words or more, and that the
+/// grammar leaves out beside a statement, as "if you do not mind"; `at` without one.
+std::size_t fillerEnd(const std::vector<Token>& tokens, std::size_t at,
+                      const CompiledGrammar& grammar);
+
 /// What may be left out of a correction, each time less likely: "No, I measured it again, four by
 /// seven", "six, no, hang on, I counted them, seven". Never what has a name, a kind of place, a
 /// number or doubt.

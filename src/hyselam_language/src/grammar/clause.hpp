@@ -1,6 +1,7 @@
 // A part of a sentence that a pattern fits to.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "compiled_grammar.hpp"
@@ -20,8 +21,14 @@ struct Clause {
   std::vector<Slot> slots;
   std::vector<Spelling> spelling;
 
+  /// Whatever kind of name the patterns asked for: "the gym" is the gym.
   bool meansTheSameAs(const Clause& other) const {
-    return intent == other.intent && correction == other.correction && slots == other.slots;
+    const auto same = [](const Slot& a, Slot b) {
+      if (!a.names.empty() && !b.names.empty()) b.type = a.type;
+      return a == b;
+    };
+    return intent == other.intent && correction == other.correction &&
+           std::equal(slots.begin(), slots.end(), other.slots.begin(), other.slots.end(), same);
   }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "asides.hpp"
+
 namespace hyselam_topo {
 namespace language {
 namespace {
@@ -12,7 +14,11 @@ constexpr char kPart[] = "part_of_place";
 /// A word that no sentence may have, as of a denial.
 std::optional<Utterance> refusingWord(const SentenceWords& words) {
   const auto& known = words.grammar.refusing_words;
-  for (const Token& token : words.tokens) {
+  for (std::size_t at = 0; at < words.tokens.size(); ++at) {
+    // "If you please" is no condition.
+    at = fillerEnd(words.tokens, at, words.grammar);
+    if (at == words.tokens.size()) break;
+    const Token& token = words.tokens[at];
     const auto code = known.find(token.folded);
     if (token.kind == TokenKind::kWord && code != known.end()) {
       return refusal(words, code->second, token.range, token.text);

@@ -52,6 +52,8 @@ std::vector<Part> partsOf(const std::vector<Token>& tokens, const CompiledGramma
 bool mayChangeOthers(const Part& part, const std::vector<Token>& tokens,
                      const CompiledGrammar& grammar) {
   for (std::size_t at = part.begin; at < part.end; ++at) {
+    at = fillerEnd(tokens, at, grammar);
+    if (at >= part.end) break;
     const auto code = grammar.refusing_words.find(tokens[at].folded);
     const bool doubts =
         code != grammar.refusing_words.end() &&
@@ -59,6 +61,21 @@ bool mayChangeOthers(const Part& part, const std::vector<Token>& tokens,
     if (doubts || standsAt(grammar.corrections, tokens, at, grammar.vocabulary)) return true;
   }
   return false;
+}
+
+/// "[The lab is next to the bar,] not next to the library", "not the kitchen": it denies nothing
+/// that is told beside it.
+bool isContrast(const Part& part, const std::vector<Token>& tokens,
+                const CompiledGrammar& grammar) {
+  std::size_t at = part.begin;
+  if (standsAt(grammar.clause_separators, tokens, at, grammar.vocabulary)) ++at;
+  if (at + 1 >= part.end) return false;
+  const auto code = grammar.refusing_words.find(tokens[at].folded);
+  if (code == grammar.refusing_words.end() || code->second != "denial") return false;
+  const Token& next = tokens[at + 1];
+  const NameType* places = grammar.nameType("place");
+  return grammar.placing_words.count(next.folded) != 0 || next.starts_upper ||
+         (places != nullptr && places->isArticle(next.folded));
 }
 
 class Parts {
@@ -118,21 +135,26 @@ class Parts {
       const Best& part = best_[end];
       if (part.understood) {
         // "Between A, which …, and B is C": what stands behind a lost part may be a piece of it.
+        // "Yes, that's the one, the lab": a "yes" at the beginning is one whatever follows.
         const bool is_piece =
             std::any_of(part.said.begin(), part.said.end(), [&](const Utterance& u) {
-              return u.kind == UtteranceKind::kAnswer || (lost_before && u.intent == "alias");
+              const bool yes = end == ends.front() && u.intent == "yes";
+              return (u.kind == UtteranceKind::kAnswer && !yes) ||
+                     (lost_before && u.intent == "alias");
             });
         if (is_piece) return {};
         all.insert(all.end(), part.said.begin(), part.said.end());
         // A greeting is no part that anything is clear of.
         understood =
             understood || std::any_of(part.said.begin(), part.said.end(), [](const Utterance& u) {
-              return u.kind == UtteranceKind::kStatement || !u.slots.empty();
+              return u.kind == UtteranceKind::kStatement || !u.slots.empty() ||
+                     u.intent == "follow_me";
             });
         continue;
       }
-      if (mayChangeOthers(parts_[end - 1], tokens_, grammar_)) return {};
-      if (tells(end - 1)) {
+      const bool contrast = understood && isContrast(parts_[end - 1], tokens_, grammar_);
+      if (!contrast && mayChangeOthers(parts_[end - 1], tokens_, grammar_)) return {};
+      if (!contrast && tells(end - 1)) {
         lost_before = true;
         all.push_back(part.said.front());
       } else {

@@ -40,7 +40,7 @@ std::string capital(std::string text) {
 
 void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   // Where the robot has gone is nothing that is told.
-  if (u.intent != "robot_in") followRobot(isSeenFromRobot(u));
+  if (u.intent != "robot_in") followRobot(isSeenFromRobot(u) || saysItsCorridor(u));
   if (!turn.before) turn.before = builder_.building();
   const std::vector<SaidName> place = u.names("place");
   if (u.intent == "robot_in" && !std::all_of(place.begin(), place.end(), [&](const auto& name) {
@@ -55,6 +55,14 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   const auto issues = builder_.add(u);
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
   turn.described = true;
+  if (u.intent == "robot_in" && !u.word("denied").empty()) {
+    // "This is not the library": whatever it is, it is not called so.
+    if (places_.map().findPlace(robot().place) != nullptr) {
+      places_.reject(robot().place, textsOf(place));
+    }
+    turn.beyond_here = turn.told = true;
+    return;
+  }
   if (u.intent == "robot_in") {
     told_at_ = robot().place;
     // Described from several places in thought, the first one is where the robot is.
@@ -80,6 +88,17 @@ bool Dialogue::isCode(const std::string& name) const {
                      [&](const Place& place) { return places_.sameName(codeOf(place), name); });
 }
 
+bool Dialogue::saysItsCorridor(const Utterance& u) const {
+  const Place* here = places_.map().findPlace(robot().place);
+  if (here == nullptr || here->kind != PlaceKind::kCorridor) return false;
+  return std::any_of(u.slots.begin(), u.slots.end(), [&](const Slot& slot) {
+    return std::any_of(slot.names.begin(), slot.names.end(), [&](const SaidName& name) {
+      return name.reference.empty() && builder_.isCorridorWithoutName(name.text) &&
+             builder_.find(name.text).empty();
+    });
+  });
+}
+
 void Dialogue::followRobot(bool also_unnamed) {
   const bool can_look = robot().has_pose && !robot().in_doorway;
   builder_.setViewpoint(robot().has_pose ? std::optional(robot().pose) : std::nullopt);
@@ -98,7 +117,8 @@ void Dialogue::followRobot(bool also_unnamed) {
     return builder_.find(name).size() < 2;
   });
   if (fits == names.end()) return;
-  builder_.setRobotPlace(*fits);
+  const bool corridor = here->kind == PlaceKind::kCorridor;
+  builder_.setRobotPlace(*fits, corridor ? std::optional(PlaceKind::kCorridor) : std::nullopt);
   told_at_ = here->id;
 }
 

@@ -175,6 +175,12 @@ void Dialogue::rename(const Utterance& u, Turn& turn) {
   const auto names = textsOf(u.names("name"));
   if (found.empty() || names.empty()) return;
   for (const Id id : found) {
+    const Place& place = *places_.map().findPlace(id);
+    // What was told of it under the name that goes is told of it under the new one; not what was
+    // told of a place that is only guessed to be this one.
+    if (nameStateOf(place) == NameState::kConfirmed) {
+      for (const std::string& old : namesOf(place)) builder_.giveName(old, names.front());
+    }
     places_.forget(id);
     confirmNames(id, {names.front()}, out);
   }

@@ -92,7 +92,8 @@ class DescriptionBuilder {
   const Utterance* lastStatement() const;
 
   /// Sets the robot's place from another source than the description; adds the place if new.
-  void setRobotPlace(const std::string& name);
+  /// `kind`: known of the place where its name does not tell it.
+  void setRobotPlace(const std::string& name, std::optional<PlaceKind> kind = std::nullopt);
 
   const DescribedBuilding& building() const { return state_.building; }
   /// A place that was told of under a name that nobody gave it, as the map's own for it, has this
@@ -101,6 +102,8 @@ class DescriptionBuilder {
 
   /// The places that a name means; none, one, or several if it is ambiguous.
   std::vector<Id> find(const std::string& name) const;
+  /// "Corridor", "hallway": a word for a corridor, and nothing that tells which.
+  bool isCorridorWithoutName(const std::string& name) const;
 
  private:
   struct Recorded {

@@ -253,6 +253,8 @@ class Dialogue {
   /// Sides are told from where the robot is, also where it has been driven since that was told.
   /// `also_unnamed`: also where nobody has named the place, then under the map's own name.
   void followRobot(bool also_unnamed);
+  /// "The corridor", where the robot stands in one and nobody has told of another.
+  bool saysItsCorridor(const Utterance& u) const;
   /// Names of a place that was told of under the map's own name for it.
   void giveNames(Id place);
   /// Whether a name is the map's own for a place of it (SS03).
