@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
@@ -135,6 +136,61 @@ TEST(ShippedAreas, TellWhatTheScenariosOfChapter6AreMadeOf) {
   EXPECT_EQ(counts("ngram_a"), (Counts{{"bifurcation", 5}, {"corner", 4}}));
   EXPECT_EQ(counts("ngram_b"), (Counts{{"bifurcation", 12}, {"corner", 11}}));
   EXPECT_EQ(counts("university"), (Counts{{"bifurcation", 2}, {"corner", 4}}));
+}
+
+// Offices are rooms with one door, entered by the route; things stand in halls and offices only.
+TEST(GeneratedCorridors, HaveOfficesAndFurnitureIfWanted) {
+  CorridorParams params;
+  params.legs = 12;
+  params.halls = 0.5;
+  params.max_hall = 20.0;
+  params.min_spacing = 10.0;
+  params.max_spacing = 26.0;
+  params.offices = 0.8;
+  params.furniture = 0.15;
+  int entered = 0, things = 0, driven = 0;
+  double widest = 0.0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    SCOPED_TRACE(seed);
+    const CorridorBuilding building = generateCorridors(seed, params);
+    const auto grid = rasterize(building.plan);  // refuses what leaks
+    int offices = 0;
+    for (const PlanPlace& place : building.plan.places) {
+      if (place.name.rfind("office", 0) != 0) continue;
+      ++offices;
+      EXPECT_EQ(building.plan.kindAt(place.at), "dead-end") << place.name;
+      EXPECT_EQ(grid.valueOr(grid.geometry.cellAt(place.at)), hyselam::OccupancyGrid::kFree);
+    }
+    EXPECT_GT(offices, 3);
+    for (const Area& area : building.plan.areas) {
+      if (area.kind == "hall") widest = std::max(widest, area.outline[1].x - area.outline[0].x);
+    }
+    for (const Furniture& thing : building.plan.furniture) {
+      const Point2 middle = 0.5 * (thing.outline[0] + thing.outline[2]);
+      const std::string& kind = building.plan.kindAt(middle);
+      EXPECT_TRUE(kind == "hall" || kind == "dead-end") << thing.name << " in " << kind;
+      ++things;
+    }
+    for (const RouteStep& step : building.route.steps) {
+      entered += step.spot.place.rfind("office", 0) == 0 ? 1 : 0;
+    }
+    try {
+      driven += simulate(building.plan, building.route, seed).visits.size() ==
+                building.route.steps.size();
+    } catch (const hyselam::InputError&) {  // things block the way
+    }
+  }
+  EXPECT_GT(widest, 12.0);
+  EXPECT_GT(entered, 20);
+  EXPECT_GT(things, 50);
+  EXPECT_GE(driven, 5);
+}
+
+// What is not wanted changes nothing: models name the buildings that they were learnt in by seeds.
+TEST(GeneratedCorridors, AreTheSameWithoutOfficesAndFurniture) {
+  std::string all;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) all += toYaml(generateCorridors(seed).plan);
+  EXPECT_EQ(hyselam::crc32Text(all), "0612e399");
 }
 
 }  // namespace

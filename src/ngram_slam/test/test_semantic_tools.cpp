@@ -160,3 +160,38 @@ TEST_F(SemanticTools, badInputIsStatus2) {
   expectRefused("train_semantic --trees 0", "trees");
   expectRefused("train_semantic --depth many", "--depth");
 }
+
+TEST_F(SemanticTools, wayForestIsLearntAndTellsTheKindsOfAnotherBuilding) {
+  const std::string train = "train_way_regions --buildings 5 --trees 20 --out " + d / "way.txt";
+  ASSERT_EQ(run(train), 0) << errors;
+  const std::string first = fileBytes(d / "way.txt");
+  ASSERT_EQ(run(train), 0) << errors;
+  EXPECT_EQ(fileBytes(d / "way.txt"), first);
+  EXPECT_NE(first.find("command: train_way_regions"), std::string::npos);
+  ASSERT_EQ(run(evaluate() + " --way-model " + d / "way.txt" + " --places " + d / "places.csv" +
+                " --json " + d / "way.json"),
+            0)
+      << errors;
+  const auto score = nlohmann::json::parse(fileBytes(d / "way.json"));
+  EXPECT_EQ(score["classifier"], "way forest");
+  EXPECT_GT(score["accuracy"], 0.8);
+  EXPECT_GT(score["average_recall"], 0.5);
+  const std::string places = fileBytes(d / "places.csv");
+  EXPECT_EQ(places.rfind("x,y,truth,class\n", 0), 0u);
+  EXPECT_GT(std::count(places.begin(), places.end(), '\n'), 500);
+
+  // The same log as a lesson, drawn by two.
+  const std::string lesson =
+      "train_way_regions " + d / "run.bag" + " --buildings 0 --trees 5 --out " + d / "own.txt";
+  EXPECT_EQ(run(lesson + " --drawing " + d / "plan.yaml" + " " + d / "plan.yaml"), 0) << errors;
+  expectRefused(lesson, "--drawing");
+  expectRefused(lesson + " --drawing " + d / "none.yaml", "none.yaml");
+  expectRefused("train_way_regions --buildings 0", "--buildings");
+  expectRefused("train_way_regions --buildings 1 --simulated-weight 0", "--simulated-weight");
+  expectRefused("train_way_regions --buildings 1 --trees 0", "trees");
+  expectRefused(lesson + " --drawing " + d / "plan.yaml" + " --out-without-each " + d / ".",
+                "--out-without-each");
+  expectRefused(evaluate() + " --way-model " + d / "plan.yaml", "plan.yaml");
+  expectRefused(evaluate() + " --way-model shipped --model shipped", "--way-model");
+  expectRefused(evaluate() + " --way-model " + d / "way.txt" + " --change-cost -1", "change_cost");
+}

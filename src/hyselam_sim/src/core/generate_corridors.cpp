@@ -30,11 +30,13 @@ struct Edge {
   int a, b;  // nodes; b is east or north of a
   bool east;
   int passed = 0;
+  std::vector<int> offices = {};  // numbers of those with a door to it
 };
 
 class Builder {
  public:
-  Builder(std::uint64_t seed, const CorridorParams& params) : params_(params), rng_(seed, 17) {
+  Builder(std::uint64_t seed, const CorridorParams& params)
+      : params_(params), rng_(seed, 17), more_(seed, 18) {
     width_ = rng_.uniform(params.min_width, params.max_width);
     for (auto* at : {&x_, &y_}) {
       at->push_back(0.0);
@@ -45,6 +47,13 @@ class Builder {
     for (const Edge& e : edges_) free_.push_back(corridor(e));
     for (int n = 0; n < nodes(); ++n) furnishNode(n);
     for (const Edge& e : edges_) addRoom(e);
+    if (params.offices > 0.0) {
+      for (Edge& e : edges_) addOffices(e);
+    }
+    if (params.furniture > 0.0) {
+      for (const Box& hall : halls_) furnish(hall);
+      for (const Office& office : offices_) furnish(office.box);
+    }
     out_.plan.name = out_.route.plan = "corridors " + std::to_string(seed);
     out_.plan.source = out_.route.source = out_.route.name = out_.plan.name;
     out_.plan.floor_kind = "corridor";
@@ -113,7 +122,7 @@ class Builder {
     const std::vector<std::size_t> here = edgesAt(node);
     std::string kind;
     Box area = boxAround(at(node), width_, width_);
-    const double side = std::min(12.0, roomAround(node) - 1.0);
+    const double side = std::min(params_.max_hall, roomAround(node) - 1.0);
     if (here.size() == 1) {
       kind = "dead-end";
       if (rng_.uniform() < 0.7)
@@ -124,6 +133,7 @@ class Builder {
       kind = "hall";
       area = boxAround(at(node), side, side);
       free_.push_back(area);
+      halls_.push_back(area);
     } else if (here.size() >= 3) {
       kind = "bifurcation";
     } else if (edges_[here[0]].east != edges_[here[1]].east) {
@@ -131,6 +141,21 @@ class Builder {
     }
     if (!kind.empty()) out_.plan.areas.push_back({kind, outlineOf(area)});
     taken_.push_back(area);
+  }
+
+  /// Whether nothing but the corridor is where a room beside it is to be.
+  bool isClear(const Box& room, const Edge& e) const {
+    const Box clear{room.x0 - 0.3, room.y0 - 0.3, room.x1 + 0.3, room.y1 + 0.3};
+    const Box own = corridor(e);
+    for (const std::vector<Box>* boxes : {&free_, &taken_}) {
+      for (const Box& b : *boxes) {
+        const bool is_own = b.x0 == own.x0 && b.y0 == own.y0 && b.x1 == own.x1 && b.y1 == own.y1;
+        if (!is_own && b.x0 < clear.x1 && b.x1 > clear.x0 && b.y0 < clear.y1 && b.y1 > clear.y0) {
+          return false;
+        }
+      }
+    }
+    return true;
   }
 
   /// A small room with an open door at the side of a corridor, where nothing else is.
@@ -142,17 +167,74 @@ class Builder {
     const Point2 m = middle(e), to = e.east ? Point2{0.0, side} : Point2{side, 0.0};
     const Point2 center = m + gap * to, sill = m + (0.5 * width_ + 0.1) * to;
     const Box room = e.east ? boxAround(center, along, depth) : boxAround(center, depth, along);
-    const Box clear{room.x0 - 0.3, room.y0 - 0.3, room.x1 + 0.3, room.y1 + 0.3};
-    const Box own = corridor(e);
-    for (const std::vector<Box>* boxes : {&free_, &taken_}) {
-      for (const Box& b : *boxes) {
-        const bool is_own = b.x0 == own.x0 && b.y0 == own.y0 && b.x1 == own.x1 && b.y1 == own.y1;
-        if (!is_own && b.x0 < clear.x1 && b.x1 > clear.x0 && b.y0 < clear.y1 && b.y1 > clear.y0)
-          return;
-      }
-    }
+    if (!isClear(room, e)) return;
     free_.push_back(room);
     free_.push_back(e.east ? boxAround(sill, door, 0.4) : boxAround(sill, 0.4, door));
+  }
+
+  /// Rooms behind doors along both sides of a corridor, in rows without regular widths.
+  void addOffices(Edge& e) {
+    const Point2 along = e.east ? Point2{1.0, 0.0} : Point2{0.0, 1.0},
+                 across = e.east ? Point2{0.0, 1.0} : Point2{1.0, 0.0};
+    const double length = hyselam_sim::length(at(e.b) - at(e.a));
+    const auto box = [&](Point2 middle, double w, double d) {
+      return e.east ? boxAround(middle, w, d) : boxAround(middle, d, w);
+    };
+    for (const double side : {-1.0, 1.0}) {
+      const double depth = more_.uniform(3.0, 6.5);
+      for (double from = 0.5 * width_ + 0.3; from < length - 2.5;) {
+        const double w = more_.uniform(2.6, 6.0), door = more_.uniform(0.85, 1.3);
+        const double middle = from + 0.5 * w;
+        const double slack = 0.5 * (w - door) - 0.1;
+        const Point2 sill = at(e.a) + (middle + more_.uniform(-slack, slack)) * along +
+                            side * (0.5 * width_ + 0.1) * across;
+        const Point2 center =
+            at(e.a) + middle * along + side * (0.5 * width_ + 0.2 + 0.5 * depth) * across;
+        const Box room = box(center, w, depth);
+        const bool wanted = more_.uniform() < params_.offices;
+        from += w + 0.4;
+        if (!wanted || from > length || !isClear(room, e)) continue;
+        free_.push_back(room);
+        free_.push_back(box(sill, door, 0.4));
+        out_.plan.areas.push_back({"dead-end", outlineOf(room)});
+        e.offices.push_back(static_cast<int>(offices_.size()));
+        offices_.push_back({room, center, sill});
+      }
+    }
+  }
+
+  /// Things of all sizes, one may walk between them; the middle and the doors stay clear.
+  void furnish(const Box& b) {
+    const Point2 middle = 0.5 * Point2{b.x0 + b.x1, b.y0 + b.y1};
+    std::vector<Box> placed;
+    double open = params_.furniture * (b.x1 - b.x0) * (b.y1 - b.y0);
+    const int tries = 4 + static_cast<int>((b.x1 - b.x0) * (b.y1 - b.y0));
+    const auto gap = [](const Box& one, const Box& other) {
+      return std::max({one.x0 - other.x1, other.x0 - one.x1, one.y0 - other.y1, other.y0 - one.y1});
+    };
+    for (int i = 0; i < tries && open > 0.0; ++i) {
+      const double most = std::min(3.0, 0.4 * std::min(b.x1 - b.x0, b.y1 - b.y0));
+      const double w = more_.uniform(0.3, most), h = more_.uniform(0.3, most);
+      double x = more_.uniform(b.x0, b.x1 - w), y = more_.uniform(b.y0, b.y1 - h);
+      // Half of them stand at a wall.
+      const std::uint32_t wall = more_.below(8);
+      if (wall == 0) x = b.x0;
+      if (wall == 1) x = b.x1 - w;
+      if (wall == 2) y = b.y0;
+      if (wall == 3) y = b.y1 - h;
+      const Box thing{x, y, x + w, y + h};
+      bool clear = gap(thing, boxAround(middle, 0.0, 0.0)) > 0.8;
+      for (const Box& other : placed) clear = clear && gap(thing, other) > 1.0;
+      for (const Office& o : offices_)
+        clear = clear && gap(thing, boxAround(o.sill, 0.0, 0.0)) > 1.2;
+      // Corridors that lead into a hall are not blocked.
+      for (const Edge& e : edges_) clear = clear && gap(thing, corridor(e)) > 0.0;
+      if (!clear) continue;
+      placed.push_back(thing);
+      open -= w * h;
+      out_.plan.furniture.push_back(
+          {"thing " + std::to_string(out_.plan.furniture.size()), outlineOf(thing)});
+    }
   }
 
   /// Walls along the rim of all free boxes, as closed lines.
@@ -224,6 +306,9 @@ class Builder {
     for (std::size_t i = 0; i < edges_.size(); ++i)
       place(middle(edges_[i]), "corridor " + std::to_string(i));
     for (int n = 0; n < nodes(); ++n) place(at(n), nameOf(n));
+    for (std::size_t i = 0; i < offices_.size(); ++i) {
+      place(offices_[i].middle, "office " + std::to_string(i));
+    }
     const auto go = [&](const std::string& name) {
       RouteStep step;
       step.spot.place = name;
@@ -254,17 +339,28 @@ class Builder {
       }
       edge = best;
       ++edges_[edge].passed;
+      const std::vector<int>& offices = edges_[edge].offices;
+      if (!offices.empty() && more_.uniform() < 0.6) {
+        const auto k = more_.below(static_cast<std::uint32_t>(offices.size()));
+        go("office " + std::to_string(offices[k]));
+      }
       go("corridor " + std::to_string(edge));
       node = edges_[edge].a == node ? edges_[edge].b : edges_[edge].a;
     }
   }
 
   CorridorParams params_;
+  struct Office {
+    Box box;
+    Point2 middle, sill;
+  };
   hyselam::Rng rng_;
+  hyselam::Rng more_;  // for what is not in every building, which is then the same without it
   double width_ = 2.0;
   std::vector<double> x_, y_;
   std::vector<Edge> edges_;
-  std::vector<Box> free_, taken_;
+  std::vector<Box> free_, taken_, halls_;
+  std::vector<Office> offices_;
   CorridorBuilding out_;
 };
 
@@ -284,6 +380,11 @@ void CorridorParams::describe(hyselam::ParameterVisitor& visit) {
         "share of the meeting points with room for it that are halls");
   visit("rooms", rooms, Range::between(0.0, 1.0), "",
         "share of the corridors with an open room at their side");
+  visit("max_hall", max_hall, Range::between(7.5, 40.0), "m", "longest side of a hall");
+  visit("offices", offices, Range::between(0.0, 1.0), "",
+        "share of the stretches beside corridors that are offices behind a door");
+  visit("furniture", furniture, Range::between(0.0, 0.4), "",
+        "share of the floor in halls and offices that things stand on");
   visit("legs", legs, Range::between(1, 100000), "", "corridors that the route passes");
 }
 

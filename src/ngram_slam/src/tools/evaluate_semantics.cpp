@@ -1,6 +1,7 @@
 // evaluate_semantics: the classes of regions in recorded runs, against the plan of the building.
 #include <iostream>
 
+#include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/confusion_csv.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
@@ -10,6 +11,7 @@
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "reference_poses.hpp"
 #include "semantic_runs.hpp"
+#include "way_runs.hpp"
 
 namespace {
 
@@ -19,7 +21,8 @@ struct Options {
   SemanticRunOptions run;
   DecisionTreeParams tree;
   std::vector<std::string> logs, references;
-  std::string plan, compared, model, confusion, regions;
+  WayDecisionParams decision;
+  std::string plan, compared, model, way_model, confusion, regions, places;
   std::uint32_t tolerance = 10;
 };
 
@@ -65,9 +68,45 @@ std::vector<SemanticClass> drawnClasses(const hyselam::RobotLog& log,
   return classes;
 }
 
+/// The forest of places along the way, if it is asked for.
+std::optional<WayForest> wayForestOf(const Options& o) {
+  if (o.way_model.empty()) return std::nullopt;
+  const bool other = !o.model.empty() || !o.compared.empty() || !o.regions.empty();
+  if (other) {
+    throw hyselam::ParameterError("--way-model", o.way_model,
+                                  "without --model, --compare-plan and --regions");
+  }
+  o.decision.validate();
+  return o.way_model == "shipped" ? WayForest::shipped() : WayForest::load(o.way_model);
+}
+
+std::vector<SemanticClass> wayClasses(const std::string& path, const hyselam::RobotLog& log,
+                                      const std::vector<double>& stamps, const WayForest& forest,
+                                      const WayDecisionParams& params) {
+  const PlaceLog places = placesOf(nameOfLog(path), log, log.ground_truth, waySensorParams());
+  return classesAt(stamps, wayRunsOf(places), forest, params);
+}
+
+/// Where each observation was made, what the plan says of it and what was answered: for
+/// bench/regions/draw.
+void writePlaces(const std::string& path, const hyselam::RobotLog& log, const SemanticRun& run,
+                 const std::vector<SemanticClass>& classes) {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
+    out << "x,y,truth,class\n";
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      const auto pose = hyselam::poseAt(log.ground_truth, run.stamps[i], 0.5);
+      if (!pose) continue;
+      out << pose->x << "," << pose->y << "," << (run.truth[i] ? toString(*run.truth[i]) : "")
+          << "," << toString(classes[i]) << "\n";
+    }
+  });
+}
+
 nlohmann::json evaluate(const Options& o) {
   o.run.semantics.validate();
   requireCsv("--confusion", o.confusion);
+  requireCsv("--places", o.places);
+  const std::optional<WayForest> way_forest = wayForestOf(o);
   std::shared_ptr<const SemanticClassifier> classifier;
   if (o.model.empty()) {
     classifier = std::make_shared<DecisionTree>(o.tree);
@@ -78,6 +117,9 @@ nlohmann::json evaluate(const Options& o) {
   }
   if (!o.regions.empty() && o.logs.size() != 1) {
     throw hyselam::ParameterError("--regions", o.regions, "used with one log only");
+  }
+  if (!o.places.empty() && o.logs.size() != 1) {
+    throw hyselam::ParameterError("--places", o.places, "used with one log only");
   }
   const hyselam_sim::FloorPlan plan = planOf(o.plan);
   std::optional<hyselam_sim::FloorPlan> drawing;
@@ -99,18 +141,24 @@ nlohmann::json evaluate(const Options& o) {
     SemanticRun run = semanticRun(log, o.run, classifier, &plan,
                                   [&](std::size_t done) { progress.update(done); });
     const std::vector<SemanticClass> classes =
-        drawing ? drawnClasses(log, *drawing, &run) : classesOf(run);
+        way_forest ? wayClasses(path, log, run.stamps, *way_forest, o.decision)
+        : drawing  ? drawnClasses(log, *drawing, &run)
+                   : classesOf(run);
     confusion.add(compareClasses(run.truth, classes, o.tolerance));
     strict.add(compareClasses(run.truth, classes, o.tolerance, BorderRule::kStrict));
     regions += run.regions.size();
     observations += run.stamps.size();
+    if (!o.places.empty()) writePlaces(o.places, log, run, classes);
     if (!o.regions.empty()) writeRegions(o.regions, run.regions, run.stamps);
   }
   if (!o.confusion.empty()) hyselam::writeConfusionCsv(o.confusion, tableOf(confusion));
   nlohmann::json j = toJson(confusion);
   j["strict"] = toJson(strict);
   j["plan"] = plan.name;
-  j["classifier"] = drawing ? drawing->name : o.model.empty() ? "tree" : "forest";
+  j["classifier"] = way_forest        ? "way forest"
+                    : drawing         ? drawing->name
+                    : o.model.empty() ? "tree"
+                                      : "forest";
   j["observations"] = observations;
   j["regions"] = regions;
   std::cout << j.dump(2) << "\n";
@@ -139,6 +187,14 @@ int main(int argc, char** argv) {
                  "two drawings agree");
   app.add_option("--model", o.model,
                  "forest of train_semantic, or 'shipped'; without: the decision tree");
+  app.add_option(
+      "--way-model", o.way_model,
+      "forest of train_way_regions, or 'shipped': decides by what is seen around the way "
+      "after refined odometry");
+  app.add_option("--change-cost", o.decision.change_cost, "of a change of kind, with --way-model");
+  app.add_option(
+      "--places", o.places,
+      "table to write of where observations were made, their kinds and the answers (CSV)");
   app.add_option("--tolerance", o.tolerance, "of borders [observations]");
   app.add_option("--confusion", o.confusion,
                  "confusion matrix to write (CSV), for scripts/plot_confusion");
