@@ -26,7 +26,7 @@ const std::vector<Station>& stations() {
 
 void PairOfPlaces_Icp(benchmark::State& state) {
   std::vector<Cloud::Ptr> clouds;
-  for (const Station& s : stations()) clouds.push_back(cloudOf(s));
+  for (const Station& s : stations()) clouds.push_back(cloudOf(s.points));
   IcpDistance icp;
   std::size_t i = 0;
   for (auto _ : state) {

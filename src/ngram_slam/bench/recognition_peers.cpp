@@ -65,7 +65,7 @@ nlohmann::json run(const Options& o) {
   std::vector<PolarContext> contexts;
   IcpDistance icp;
   if (o.method == "icp") {
-    for (const Station& s : stations) clouds.push_back(cloudOf(s));
+    for (const Station& s : stations) clouds.push_back(cloudOf(s.points));
     distance = [&](std::uint32_t a, std::uint32_t b) { return icp(clouds[a], clouds[b]); };
   } else {
     for (const Station& s : stations)

@@ -196,6 +196,29 @@ TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
   EXPECT_GE(j["match_precision"], 0.95);
 }
 
+TEST_F(Tools, evaluatePlacesAsksAllMethodsTheSame) {
+  ASSERT_EQ(run("evaluate_places " + d / "r.bag" +
+                " --method signatures,words-thesis,context-submap --no-verification --json " +
+                d / "p.json"),
+            0);
+  const auto j = nlohmann::json::parse(fileBytes(d / "p.json"));
+  ASSERT_EQ(j.size(), 3u);
+  for (const auto& row : j) {
+    EXPECT_EQ(row["questions"], j[0]["questions"]);
+    EXPECT_EQ(row["revisits"], j[0]["revisits"]);
+    EXPECT_GT(row["revisits"], 0);
+    EXPECT_EQ(row["verified"], 0);
+    // What is found alone is among what is found at all, and pairs are judged harder than places.
+    EXPECT_LE(row["recall_unverified_none_wrong"], row["first_1"]);
+    EXPECT_LE(row["recall_unverified_no_pair_wrong"], row["recall_unverified_none_wrong"]);
+    EXPECT_LE(row["first_1"], row["first_10"]);
+  }
+  // A second lap of the same corridors: each of them finds places again.
+  EXPECT_GT(j[0]["first_5"], 0.5);
+  EXPECT_GT(j[1]["first_5"], 0.1);
+  EXPECT_GT(j[2]["first_5"], 0.5);
+}
+
 TEST_F(Tools, evaluatePlacesRefusesOptionsThatItWouldIgnore) {
   const std::string tool = "evaluate_places " + d / "r.bag ";
   expectRefused(tool + "--candidates 0", "--candidates");
@@ -207,6 +230,8 @@ TEST_F(Tools, evaluatePlacesRefusesOptionsThatItWouldIgnore) {
   expectRefused(peer + "--model m.txt", "--model");
   expectRefused(peer + "--leave-one-out", "--leave-one-out");
   expectRefused(peer + "--exact", "--exact");
+  expectRefused(peer + "--matches " + d / "m.csv", "--matches");
+  expectRefused(tool + "--method signatures,letters", "letters");
   expectRefused(tool + "--reference a --reference b", "--reference");
 }
 

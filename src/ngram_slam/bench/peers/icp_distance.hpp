@@ -15,9 +15,9 @@ namespace ngram_slam_peers {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-inline Cloud::Ptr cloudOf(const Station& station) {
+inline Cloud::Ptr cloudOf(const std::vector<hyselam::Point2>& points) {
   auto cloud = Cloud::Ptr(new Cloud);
-  for (const hyselam::Point2& p : station.points) {
+  for (const hyselam::Point2& p : points) {
     cloud->push_back(pcl::PointXYZ(static_cast<float>(p.x), static_cast<float>(p.y), 0.0F));
   }
   return cloud;

@@ -29,12 +29,37 @@ struct StationParams {
   std::size_t points = 150;  ///< of a station (5.3.2)
 };
 
+/// A scan of the local map, and the pose at which it was made.
+struct Seen {
+  double way;
+  hyselam::Pose2 pose;
+  const hyselam::LaserScan* scan;
+};
+
+/// What the scans of the local map saw around `pose`, in its frame.
+template <typename Scans>
+std::vector<hyselam::Point2> pointsAround(const hyselam::Pose2& pose, const Scans& scans,
+                                          const StationParams& params) {
+  std::vector<hyselam::Point2> points;
+  std::set<std::pair<int, int>> cells;  // of 0.1 m, so that near walls do not count more
+  for (const Seen& seen : scans) {
+    const hyselam::Pose2 relative = hyselam::between(pose, seen.pose);
+    for (const hyselam::Point2& p : returnsOf(*seen.scan)) {
+      const hyselam::Point2 q = relative * p;
+      if (std::hypot(q.x, q.y) > params.radius) continue;
+      if (cells.emplace(std::lround(q.x * 10), std::lround(q.y * 10)).second) points.push_back(q);
+    }
+  }
+  // Evenly from all of them.
+  const std::size_t all = points.size();
+  if (all > params.points) {
+    for (std::size_t i = 0; i < params.points; ++i) points[i] = points[i * all / params.points];
+    points.resize(params.points);
+  }
+  return points;
+}
+
 inline std::vector<Station> stationsOf(const hyselam::RobotLog& log, const StationParams& params) {
-  struct Seen {
-    double way;
-    hyselam::Pose2 pose;
-    const hyselam::LaserScan* scan;
-  };
   std::deque<Seen> recent;
   std::vector<Station> stations;
   double way = 0.0, due = 0.0;
@@ -46,29 +71,7 @@ inline std::vector<Station> stationsOf(const hyselam::RobotLog& log, const Stati
     while (way - recent.front().way > params.memory) recent.pop_front();
     if (way < due) continue;
     due = way + params.stride;
-    Station station;
-    station.stamp = scan.stamp;
-    station.scan = scan;
-    std::set<std::pair<int, int>> cells;  // of 0.1 m, so that near walls do not count more
-    for (const Seen& seen : recent) {
-      const hyselam::Pose2 relative = hyselam::between(*pose, seen.pose);
-      for (const hyselam::Point2& p : returnsOf(*seen.scan)) {
-        const hyselam::Point2 q = relative * p;
-        if (std::hypot(q.x, q.y) > params.radius) continue;
-        if (cells.emplace(std::lround(q.x * 10), std::lround(q.y * 10)).second) {
-          station.points.push_back(q);
-        }
-      }
-    }
-    // Evenly from all of them.
-    const std::size_t all = station.points.size();
-    if (all > params.points) {
-      for (std::size_t i = 0; i < params.points; ++i) {
-        station.points[i] = station.points[i * all / params.points];
-      }
-      station.points.resize(params.points);
-    }
-    stations.push_back(std::move(station));
+    stations.push_back({scan.stamp, scan, pointsAround(*pose, recent, params)});
   }
   return stations;
 }

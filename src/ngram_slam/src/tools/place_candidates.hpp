@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "../../bench/peers/polar_context.hpp"
@@ -19,9 +19,10 @@ constexpr std::uint32_t kQuestionInterval = 4;  // places from question to quest
 
 /// How candidates are found.
 struct CandidateOptions {
-  std::string method = "signatures";  ///< context-scan, context-submap
   bool exact = false;
-  int candidates = 8;
+  int candidates = 8;  ///< verified of each question
+
+  int told() const { return std::max(10, candidates); }
 };
 
 /// Which places of a log were visited before.
@@ -59,7 +60,7 @@ using Candidates = std::vector<std::vector<PlaceCandidate>>;
 inline Candidates bySignatures(const CandidateOptions& o, const PlaceLog& log,
                                const SignatureModel& model) {
   PlaceRecognizerParams params;
-  params.max_candidates = std::max(10, o.candidates);
+  params.max_candidates = o.told();
   PlaceRecognizer recognizer(model, params);
   for (const LogPlace& p : log.places) recognizer.add(model.signatureOf(p.features));
   Candidates all;
@@ -83,36 +84,40 @@ inline ngram_slam_peers::PolarContext contextOf(const PlaceFeatures& features) {
   return context;
 }
 
+/// The best, and of several near each other the best, as PlaceRecognizer tells them.
+inline std::vector<PlaceCandidate> spaced(std::vector<PlaceCandidate> found, int count) {
+  const auto spacing = static_cast<std::uint32_t>(PlaceRecognizerParams().candidate_spacing);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
+  std::vector<PlaceCandidate> told;
+  for (const PlaceCandidate& c : found) {
+    if (static_cast<int>(told.size()) == count) break;
+    const bool near = std::any_of(told.begin(), told.end(), [&](const PlaceCandidate& t) {
+      return std::max(t.older, c.older) - std::min(t.older, c.older) <= spacing;
+    });
+    if (!near) told.push_back(c);
+  }
+  return told;
+}
+
 /// By the distance of polar contexts of all earlier places.
-inline Candidates byContexts(const CandidateOptions& o, const PlaceLog& log) {
+inline Candidates byContexts(const CandidateOptions& o, const PlaceLog& log, bool of_scan) {
   std::vector<ngram_slam_peers::PolarContext> contexts;
   for (const LogPlace& p : log.places) {
     const SlamKeyframe& k = log.keyframes[static_cast<std::size_t>(p.on_way.keyframe)];
-    contexts.push_back(o.method == "context-scan"
-                           ? ngram_slam_peers::contextOf(ngram_slam_peers::returnsOf(*k.scan),
-                                                         PlaceFeatures::kRange)
-                           : contextOf(p.features));
+    contexts.push_back(of_scan ? ngram_slam_peers::contextOf(ngram_slam_peers::returnsOf(*k.scan),
+                                                             PlaceFeatures::kRange)
+                               : contextOf(p.features));
   }
-  const PlaceRecognizerParams params;
   Candidates all;
   for (std::uint32_t i = 0; i < contexts.size(); i += kQuestionInterval) {
-    std::vector<PlaceCandidate> found, told;
+    std::vector<PlaceCandidate> found;
     for (std::uint32_t j = 0; j + kPlaceSeparation <= i; ++j) {
       if (!odometryAllows(log, i, j)) continue;
       found.push_back(
           {i, j, Direction::kSame, -ngram_slam_peers::contextDistance(contexts[i], contexts[j])});
     }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const auto& a, const auto& b) { return a.score > b.score; });
-    for (const PlaceCandidate& c : found) {
-      if (static_cast<int>(told.size()) == std::max(10, o.candidates)) break;
-      const bool near = std::any_of(told.begin(), told.end(), [&](const PlaceCandidate& t) {
-        return std::max(t.older, c.older) - std::min(t.older, c.older) <=
-               static_cast<std::uint32_t>(params.candidate_spacing);
-      });
-      if (!near) told.push_back(c);
-    }
-    all.push_back(told);
+    all.push_back(spaced(std::move(found), o.told()));
   }
   return all;
 }

@@ -8,9 +8,9 @@
 #include <optional>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "hyselam_common/tool.hpp"
 #include "ngram_slam/slam/far_loops.hpp"
 #include "ngram_slam/slam/loop_confidence.hpp"
 #include "ngram_slam/slam/path_segment.hpp"
@@ -57,14 +57,18 @@ struct Figures {
   std::size_t verified_matches = 0, verified_wrong = 0, sure = 0, sure_wrong = 0;
   std::size_t unknown = 0;  // matches that no reference tells right or wrong; in none of the others
   std::size_t found = 0, found_same = 0, found_old = 0, verified = 0;
-  double verification_s = 0.0, retrieval_s = 0.0, recall_unverified = 0.0;
+  // The best candidate of a question by itself; "alone": none that is surer or as sure is wrong.
+  std::size_t first_told = 0, first_wrong = 0;
+  std::size_t alone = 0, alone_same = 0, alone_old = 0, alone_by_pair = 0;
+  double verification_s = 0.0, retrieval_s = 0.0;
 
   static double share(std::size_t part, std::size_t of) {
     return of == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(of);
   }
-  nlohmann::json json(const std::string& name) const {
+  nlohmann::json json(const std::string& name, const std::string& method) const {
     return {
         {"log", name},
+        {"method", method},
         {"questions", questions},
         {"revisits", revisits},
         {"revisits_same", revisits_same},
@@ -72,7 +76,12 @@ struct Figures {
         {"first_1", share(first[0], revisits)},
         {"first_5", share(first[1], revisits)},
         {"first_10", share(first[2], revisits)},
-        {"recall_unverified_none_wrong", recall_unverified},
+        {"first_told", first_told},
+        {"first_wrong", first_wrong},
+        {"recall_unverified_none_wrong", share(alone, revisits)},
+        {"recall_unverified_none_wrong_same", share(alone_same, revisits_same)},
+        {"recall_unverified_none_wrong_old", share(alone_old, revisits_old)},
+        {"recall_unverified_no_pair_wrong", share(alone_by_pair, revisits)},
         {"verified", verified_matches},
         {"verified_wrong", verified_wrong},
         {"matches", matches},
@@ -119,19 +128,44 @@ inline void countPairs(const PlaceLog& log, const PlaceCandidate& c,
   }
 }
 
-/// Recall of the best candidates by themselves, as far as none better than them is wrong.
-inline double recallUnverified(const PlaceLog& log, const Candidates& all, std::size_t revisits) {
-  std::vector<std::pair<double, bool>> tops;
+/// Whether a candidate by itself lays a pair of places over each other that is none, along `reach`
+/// places before and after.
+inline bool hasWrongPair(const PlaceLog& log, const PlaceCandidate& c, int reach) {
+  const int step = c.direction == Direction::kSame ? 1 : -1;
+  for (int d = -reach; d <= reach; ++d) {
+    const std::int64_t n = std::int64_t{c.newer} + d, o = std::int64_t{c.older} + step * d;
+    const auto end = static_cast<std::int64_t>(log.places.size());
+    if (n < 0 || o < 0 || n >= end || o >= end) continue;
+    const LogPlace& newer = log.places[static_cast<std::size_t>(n)];
+    const LogPlace& older = log.places[static_cast<std::size_t>(o)];
+    if (newer.truth && older.truth && !isTruePlace(newer, older)) return true;
+  }
+  return false;
+}
+
+/// What the best candidates by themselves find, as far as none surer or as sure is wrong.
+inline void countUnverified(const PlaceLog& log, const Candidates& all, int reach, Figures* f) {
+  std::vector<PlaceCandidate> tops;
   for (const auto& candidates : all) {
     if (candidates.empty() || !log.places[candidates[0].newer].truth) continue;
-    tops.emplace_back(candidates[0].score, isTruePlace(log.places[candidates[0].newer],
-                                                       log.places[candidates[0].older]));
+    if (log.places[candidates[0].older].truth) tops.push_back(candidates[0]);
   }
-  std::sort(tops.begin(), tops.end(),
-            [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::size_t right = 0;
-  while (right < tops.size() && tops[right].second) ++right;
-  return Figures::share(right, revisits);
+  const double nothing = -std::numeric_limits<double>::infinity();
+  double wrong = nothing, wrong_pair = nothing;  // surest of those
+  for (const PlaceCandidate& c : tops) {
+    if (!isTruePlace(log.places[c.newer], log.places[c.older])) wrong = std::max(wrong, c.score);
+    if (hasWrongPair(log, c, reach)) wrong_pair = std::max(wrong_pair, c.score);
+    f->first_wrong += isTruePlace(log.places[c.newer], log.places[c.older]) ? 0 : 1;
+  }
+  f->first_told = tops.size();
+  for (const PlaceCandidate& c : tops) {
+    if (c.score > wrong_pair && c.score > wrong) ++f->alone_by_pair;
+    if (c.score <= wrong) continue;
+    const Revisit revisit = revisitOf(log, c.newer);
+    f->alone += revisit.any ? 1 : 0;
+    f->alone_same += revisit.same ? 1 : 0;
+    f->alone_old += revisit.old ? 1 : 0;
+  }
 }
 
 /// A candidate that the scans fit.
@@ -207,9 +241,10 @@ inline void writeRows(const PlaceLog& log, const std::vector<Match>& matches, st
   }
 }
 
-/// `verified`: candidates of each question that are; `rows`: what each came to, if not null.
-inline Figures figuresOf(const PlaceLog& log, const Candidates& all, std::size_t verified,
-                         std::ostream* rows) {
+/// `reach`: places before and after that an unverified candidate lays over each other; `verified`:
+/// candidates of each question that are; `rows`: what each came to, if not null.
+inline Figures figuresOf(const PlaceLog& log, const Candidates& all, int reach,
+                         std::size_t verified, std::ostream* rows) {
   Figures f;
   const std::vector<Match> matches = matchesOf(log, all, verified, &f);
   if (rows != nullptr) writeRows(log, matches, *rows);
@@ -249,7 +284,7 @@ inline Figures figuresOf(const PlaceLog& log, const Candidates& all, std::size_t
       break;
     }
   }
-  f.recall_unverified = recallUnverified(log, all, f.revisits);
+  countUnverified(log, all, reach, &f);
   return f;
 }
 

@@ -20,17 +20,35 @@ namespace ngram_slam {
 
 struct LogPlace {
   PlaceOnWay on_way;
+  double stamp = 0.0;  // [s]
   PlaceFeatures features;
   std::optional<hyselam::Pose2> truth;
 };
 
 /// A log after SLAM without loops.
 struct PlaceLog {
-  std::string name;
+  std::string name, path;
   std::vector<SlamKeyframe> keyframes;
   std::vector<hyselam::StampedPose2> reference;
   std::vector<LogPlace> places;
 };
+
+/// When the robot was at a place: between its keyframe and the nearer one beside.
+inline double stampOf(const std::vector<SlamKeyframe>& keyframes, const PlaceOnWay& at) {
+  const auto k = static_cast<std::size_t>(at.keyframe);
+  const double own = distance(keyframes[k].pose, at.pose);
+  std::optional<std::size_t> beside;
+  for (const std::size_t n : {k - 1, k + 1}) {
+    if (n >= keyframes.size() || keyframes[n].run != keyframes[k].run) continue;
+    if (!beside ||
+        distance(keyframes[n].pose, at.pose) < distance(keyframes[*beside].pose, at.pose)) {
+      beside = n;
+    }
+  }
+  if (!beside || own == 0.0) return keyframes[k].stamp;
+  const double other = distance(keyframes[*beside].pose, at.pose);
+  return keyframes[k].stamp + own / (own + other) * (keyframes[*beside].stamp - keyframes[k].stamp);
+}
 
 inline PlaceLog placesOf(const std::string& name, const hyselam::RobotLog& log,
                          std::vector<hyselam::StampedPose2> reference,
@@ -58,7 +76,7 @@ inline PlaceLog placesOf(const std::string& name, const hyselam::RobotLog& log,
     const SlamKeyframe& k = out.keyframes[static_cast<std::size_t>(at.keyframe)];
     auto truth = hyselam::poseAt(out.reference, k.stamp, 0.5);
     if (truth) truth = *truth * between(k.pose, at.pose);
-    out.places.push_back({at, features, truth});
+    out.places.push_back({at, stampOf(out.keyframes, at), features, truth});
   });
   for (std::size_t k = 0; k < out.keyframes.size(); ++k) {
     sensor.add(static_cast<std::int64_t>(k), out.keyframes[k].pose, out.keyframes[k].scan);
@@ -93,6 +111,7 @@ struct PlaceLogOptions {
       const hyselam::RobotLog log = hyselam::readRobotLog(logs[i]);
       all.push_back(placesOf(nameOfLog(logs[i]), log,
                              referenceOf(references.empty() ? "" : references[i], log), {}));
+      all.back().path = logs[i];
     }
     return all;
   }
