@@ -197,12 +197,13 @@ TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
 }
 
 TEST_F(Tools, evaluatePlacesAsksAllMethodsTheSame) {
-  ASSERT_EQ(run("evaluate_places " + d / "r.bag" +
-                " --method signatures,words-thesis,context-submap --no-verification --json " +
-                d / "p.json"),
-            0);
+  ASSERT_EQ(
+      run("evaluate_places " + d / "r.bag" +
+          " --method signatures,words-thesis,context-submap,chains --no-verification --json " +
+          d / "p.json"),
+      0);
   const auto j = nlohmann::json::parse(fileBytes(d / "p.json"));
-  ASSERT_EQ(j.size(), 3u);
+  ASSERT_EQ(j.size(), 4u);
   for (const auto& row : j) {
     EXPECT_EQ(row["questions"], j[0]["questions"]);
     EXPECT_EQ(row["revisits"], j[0]["revisits"]);
@@ -217,6 +218,7 @@ TEST_F(Tools, evaluatePlacesAsksAllMethodsTheSame) {
   EXPECT_GT(j[0]["first_5"], 0.5);
   EXPECT_GT(j[1]["first_5"], 0.1);
   EXPECT_GT(j[2]["first_5"], 0.5);
+  EXPECT_GT(j[3]["first_5"], 0.5);
 }
 
 TEST_F(Tools, evaluatePlacesRefusesOptionsThatItWouldIgnore) {

@@ -420,10 +420,76 @@ TEST(PlaceRecognizer, scoresAsThePlainSumOfItsPairs) {
   }
 }
 
+namespace {
+
+/// A way, and a second run in which parts of it are travelled again among places never seen.
+void addWayWithParts(PlaceRecognizer* recognizer, const SignatureModel& model, Rng& rng) {
+  std::vector<PlaceSignature> way;
+  for (int i = 0; i < 60; ++i) {
+    way.push_back(randomSignature(rng));
+    recognizer->add(visited(way.back(), model, rng));
+  }
+  recognizer->endRun();
+  for (int i = 0; i < 60; ++i) {
+    const bool is_known = i % 20 < 13;
+    const auto again = static_cast<std::size_t>(i < 40 ? i : 99 - i);  // the last third backwards
+    recognizer->add(is_known ? visited(way[again], model, rng) : randomSignature(rng));
+  }
+}
+
+}  // namespace
+
+TEST(PlaceRecognizer, scoresChainsAsTheBestNgramsThroughTheirPairs) {
+  Rng rng(18);
+  const SignatureModel& model = SignatureModel::shipped();
+  PlaceRecognizerParams params;
+  params.chain_length = 12;
+  params.chain_decay = 0.8;
+  PlaceRecognizer recognizer(model, params);
+  addWayWithParts(&recognizer, model, rng);
+  const PlaceIndex& index = recognizer.index();
+  int long_ones = 0;
+  for (std::uint32_t newer = 60; newer < 120; ++newer) {
+    for (std::uint32_t older = 0; older < 60; ++older) {
+      for (const Direction direction : {Direction::kSame, Direction::kReverse}) {
+        const auto ratio = [&](int d) -> std::optional<double> {
+          const int a = static_cast<int>(newer) + d;
+          const int b = static_cast<int>(older) + (direction == Direction::kSame ? d : -d);
+          if (a < 60 || a >= 120 || b < 0 || b >= 60) return std::nullopt;
+          return index.score(index.questionOf(index[static_cast<std::uint32_t>(a)]),
+                             static_cast<std::uint32_t>(b));
+        };
+        const double expected = transcription::chainScore(ratio, 12, 4, 0.8);
+        EXPECT_NEAR(recognizer.score(newer, older, direction), expected,
+                    1e-9 * (1.0 + std::abs(expected)));
+        long_ones += expected > 3.0 * std::max(1.0, ratio(0).value()) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(long_ones, 20);  // n-grams of several places are among them
+  const auto found = recognizer.candidates(70);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().older, 10U);
+  EXPECT_EQ(found.front().score, recognizer.score(70, 10, Direction::kSame));
+  const auto backwards = recognizer.candidates(110);
+  ASSERT_FALSE(backwards.empty());
+  EXPECT_EQ(backwards.front().older, 49U);
+  EXPECT_EQ(backwards.front().direction, Direction::kReverse);
+}
+
 TEST(PlaceRecognizer, refusesParametersOutOfRange) {
+  const auto refuses = [](const PlaceRecognizerParams& params) {
+    EXPECT_THROW(PlaceRecognizer(SignatureModel::shipped(), params), hyselam::ParameterError);
+  };
   PlaceRecognizerParams params;
   params.max_candidates = 0;
-  EXPECT_THROW(PlaceRecognizer(SignatureModel::shipped(), params), hyselam::ParameterError);
+  refuses(params);
+  params = {};
+  params.chain_length = -1;
+  refuses(params);
+  params = {};
+  params.chain_decay = 1.0;
+  refuses(params);
 }
 
 TEST(SignatureSensor, makesAPlaceEachHalfMeterOfEachRun) {

@@ -19,6 +19,10 @@ struct Options {
   bool leave_one_out = false, no_verification = false;
 };
 
+bool asks(const Options& o, const std::string& method) {
+  return std::find(o.methods.begin(), o.methods.end(), method) != o.methods.end();
+}
+
 /// Options that would be ignored are refused.
 void check(const Options& o) {
   const CandidateOptions& c = o.candidates;
@@ -28,12 +32,14 @@ void check(const Options& o) {
   if (c.candidates < 1 || c.candidates > 100) {
     refuse("--candidates", std::to_string(c.candidates), "1 to 100");
   }
-  if (std::find(o.methods.begin(), o.methods.end(), "signatures") == o.methods.end()) {
-    const char* why = "used with --method signatures only";
+  if (!asks(o, "signatures") && !asks(o, "chains")) {
+    const char* why = "used with --method signatures or chains only";
     if (!o.model.empty()) refuse("--model", o.model, why);
     if (o.leave_one_out) refuse("--leave-one-out", "given", why);
     if (c.exact) refuse("--exact", "given", why);
-    if (!o.matches.empty()) refuse("--matches", o.matches, why);
+  }
+  if (!asks(o, "signatures") && !o.matches.empty()) {
+    refuse("--matches", o.matches, "used with --method signatures only");
   }
   if (o.leave_one_out && !o.model.empty()) {
     refuse("--model", o.model, "not used with --leave-one-out, which learns its own");
@@ -48,8 +54,9 @@ void check(const Options& o) {
 
 Candidates candidatesOf(const Options& o, const std::string& method, const PlaceLog& log,
                         const std::optional<SignatureModel>& own) {
-  if (method == "signatures") {
-    return bySignatures(o.candidates, log, own ? *own : SignatureModel::shipped());
+  if (method == "signatures" || method == "chains") {
+    return bySignatures(o.candidates, log, own ? *own : SignatureModel::shipped(),
+                        method == "chains" ? kChainLength : 0);
   }
   if (method.rfind("words", 0) == 0) return byWords(o.candidates, log, method);
   return byContexts(o.candidates, log, method == "context-scan");
@@ -115,11 +122,12 @@ int main(int argc, char** argv) {
   o.logs.addTo(app);
   app.add_option(
          "--method", o.methods,
-         "signatures, or peers: context-scan, context-submap (Scan Context, Kim and Kim, "
+         "signatures; chains (of 12 m, see chain_length); or peers: context-scan, context-submap "
+         "(Scan Context, Kim and Kim, "
          "IROS 2018), words (as SLAM makes them), words-thesis, words-thesis-wide (t_o = 3, "
          "size tolerance 30 %); several, by commas, are asked the same")
       ->delimiter(',')
-      ->check(CLI::IsMember({"signatures", "context-scan", "context-submap", "words",
+      ->check(CLI::IsMember({"signatures", "chains", "context-scan", "context-submap", "words",
                              "words-thesis", "words-thesis-wide"}));
   app.add_option("--model", o.model, "file of another model of signatures");
   app.add_flag("--leave-one-out", o.leave_one_out, "learn a model for each log from the others");

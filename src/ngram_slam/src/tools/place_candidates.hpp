@@ -16,6 +16,7 @@ constexpr double kPlaceHeading = hyselam::radians(45.0);
 constexpr std::uint32_t kPlaceSeparation = 20;  // places, 10 m
 constexpr std::uint32_t kOldPlace = 80;         // places, 40 m
 constexpr std::uint32_t kQuestionInterval = 4;  // places from question to question
+constexpr int kChainLength = 24;                // places of the longest chain, 12 m
 
 /// How candidates are found.
 struct CandidateOptions {
@@ -57,9 +58,11 @@ inline bool odometryAllows(const PlaceLog& log, std::uint32_t newer, std::uint32
 /// Candidates for each question of a log.
 using Candidates = std::vector<std::vector<PlaceCandidate>>;
 
+/// `chain_length`: PlaceRecognizerParams::chain_length.
 inline Candidates bySignatures(const CandidateOptions& o, const PlaceLog& log,
-                               const SignatureModel& model) {
+                               const SignatureModel& model, int chain_length = 0) {
   PlaceRecognizerParams params;
+  params.chain_length = chain_length;
   params.max_candidates = o.told();
   PlaceRecognizer recognizer(model, params);
   for (const LogPlace& p : log.places) recognizer.add(model.signatureOf(p.features));

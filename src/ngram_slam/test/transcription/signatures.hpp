@@ -1,9 +1,12 @@
 // Plain transcriptions of what the signatures compute, to compare the fast code with.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -79,6 +82,32 @@ inline double logRatio(const ngram_slam::SignatureModel& model, const ngram_slam
     sum += together - alone;
   }
   return sum;
+}
+
+/// The likeliest n-gram through two places: on each side of them as many places of the way as make
+/// the sum greatest.
+/// `ratio(d)`: log of the ratio of likelihoods of the places at a distance of d, nothing beyond a
+/// run.
+inline double chainScore(const std::function<std::optional<double>(int)>& ratio, int before,
+                         int after, double decay) {
+  const auto side = [&](int step, int length) {
+    // The best of all lengths.
+    double best = 0.0;
+    for (int n = 1; n <= length; ++n) {
+      double sum = 0.0, weight = 1.0;
+      bool whole = true;
+      for (int d = 1; d <= n; ++d) {
+        const auto r = ratio(step * d);
+        whole = whole && r;
+        if (!whole) break;
+        weight *= decay;
+        sum += weight * *r;
+      }
+      if (whole) best = std::max(best, sum);
+    }
+    return best;
+  };
+  return ratio(0).value_or(0.0) + side(-1, before) + side(1, after);
 }
 
 }  // namespace transcription

@@ -1,6 +1,7 @@
 // Finds earlier places by the signatures of some metres of way.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -19,6 +20,10 @@ struct PlaceRecognizerParams {
   int max_candidates = 8;     ///< earlier places told for one
   int candidate_spacing = 6;  ///< of several as near as this the best is told [places]
   int shortlist = 60;         ///< places looked up for each of five of the way
+  /// Longest chain of places before one that are compared along with it, see
+  /// PlaceRecognizer::score(); 0: no chains, the mean over `half_length` decides.
+  int chain_length = 0;
+  double chain_decay = 0.9;  ///< weight of a place of a chain against the next one, (0, 1)
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
@@ -29,7 +34,7 @@ struct PlaceRecognizerParams {
 struct PlaceCandidate {
   std::uint32_t newer = 0, older = 0;
   Direction direction = Direction::kSame;  ///< in which the ways fit each other better
-  double score = 0.0;                      ///< mean log of the ratio of likelihoods along the way
+  double score = 0.0;                      ///< see PlaceRecognizer::score()
 };
 
 class PlaceRecognizer {
@@ -49,17 +54,25 @@ class PlaceRecognizer {
   std::vector<PlaceCandidate> candidates(std::uint32_t place, const MayBe& may_be = {}) const;
   /// The same, compared with all earlier places.
   std::vector<PlaceCandidate> candidatesOfAll(std::uint32_t place, const MayBe& may_be = {}) const;
-  /// The score of two places in one direction: over the pairs of places as far before and after
-  /// them as both ways reach.
+  /// The score of two places in one direction. Without chains the mean log of the ratio of
+  /// likelihoods over the pairs of places as far before and after them as both ways reach.
+  ///
+  /// With chains the places are soft words and their likeliest n-gram counts: the sum over the
+  /// places before and after, up to `chain_length` and `half_length`, for as long as it gains, each
+  /// farther place weighing less by `chain_decay`. So n is counted in metres and in rarity: what is
+  /// common adds little, and what contradicts ends the n-gram.
   double score(std::uint32_t newer, std::uint32_t older, Direction direction) const;
   /// First place of the run of a place, and the one behind its last.
   std::pair<std::uint32_t, std::uint32_t> runOf(std::uint32_t place) const;
 
  private:
-  /// The places around one, each made ready to be compared; none beyond the ends of its run.
-  std::vector<std::optional<PlaceIndex::Question>> questionsAround(std::uint32_t place) const;
-  double score(const std::vector<std::optional<PlaceIndex::Question>>& questions,
-               std::uint32_t older, Direction direction) const;
+  using Questions = std::vector<std::optional<PlaceIndex::Question>>;
+  /// The places around one, each made ready to be compared, from before() before it on; none beyond
+  /// the ends of its run.
+  Questions questionsAround(std::uint32_t place) const;
+  double score(const Questions& questions, std::uint32_t older, Direction direction) const;
+  double chainScore(const std::vector<std::optional<double>>& pairs) const;
+  int before() const { return std::max(params_.half_length, params_.chain_length); }
   /// The places that may be candidates are below this.
   std::uint32_t endOfOlder(std::uint32_t place) const;
   std::vector<PlaceCandidate> best(std::vector<PlaceCandidate> all) const;

@@ -17,6 +17,11 @@ void PlaceRecognizerParams::describe(hyselam::ParameterVisitor& visit) {
         "of several candidates this near the best is told");
   visit("shortlist", shortlist, Range::between(1, 10000), "",
         "places looked up for each of five of the way");
+  visit("chain_length", chain_length, Range::between(0, 200), "places",
+        "of the longest chain before a place that is compared along with it; 0: the mean over "
+        "half_length");
+  visit("chain_decay", chain_decay, Range::between(0.1, 0.99), "",
+        "weight of a place of a chain against the next one");
 }
 
 void PlaceRecognizerParams::validate() const {
@@ -41,11 +46,10 @@ std::uint32_t PlaceRecognizer::endOfOlder(std::uint32_t place) const {
   return std::max(begin, place + 1 > separation ? place + 1 - separation : 0);
 }
 
-std::vector<std::optional<PlaceIndex::Question>> PlaceRecognizer::questionsAround(
-    std::uint32_t place) const {
+PlaceRecognizer::Questions PlaceRecognizer::questionsAround(std::uint32_t place) const {
   const auto [begin, end] = runOf(place);
-  std::vector<std::optional<PlaceIndex::Question>> questions;
-  for (int o = -params_.half_length; o <= params_.half_length; ++o) {
+  Questions questions;
+  for (int o = -before(); o <= params_.half_length; ++o) {
     const std::int64_t at = static_cast<std::int64_t>(place) + o;
     questions.emplace_back();
     if (at >= begin && at < end) {
@@ -55,21 +59,39 @@ std::vector<std::optional<PlaceIndex::Question>> PlaceRecognizer::questionsAroun
   return questions;
 }
 
-double PlaceRecognizer::score(const std::vector<std::optional<PlaceIndex::Question>>& questions,
-                              std::uint32_t older, Direction direction) const {
+double PlaceRecognizer::score(const Questions& questions, std::uint32_t older,
+                              Direction direction) const {
   const auto [begin, end] = runOf(older);
   const int step = direction == Direction::kSame ? 1 : -1;
-  std::int64_t at = static_cast<std::int64_t>(older) - step * params_.half_length;
+  std::int64_t at = static_cast<std::int64_t>(older) - step * before();
+  std::vector<std::optional<double>> pairs;
   double sum = 0.0;
-  int pairs = 0;
+  int count = 0;
   for (const auto& question : questions) {
+    pairs.emplace_back();
     if (question && at >= begin && at < end) {
-      sum += static_cast<double>(index_.score(*question, static_cast<std::uint32_t>(at)));
-      ++pairs;
+      pairs.back() = static_cast<double>(index_.score(*question, static_cast<std::uint32_t>(at)));
+      sum += *pairs.back();
+      ++count;
     }
     at += step;
   }
-  return pairs > 0 ? sum / pairs : 0.0;
+  if (params_.chain_length > 0) return chainScore(pairs);
+  return count > 0 ? sum / count : 0.0;
+}
+
+double PlaceRecognizer::chainScore(const std::vector<std::optional<double>>& pairs) const {
+  const auto middle = static_cast<std::ptrdiff_t>(before());
+  const auto side = [&](std::ptrdiff_t step, std::ptrdiff_t length) {
+    double gain = 0.0;  // of the chain from the farthest place on
+    for (std::ptrdiff_t d = length; d > 0; --d) {
+      const auto& pair = pairs[static_cast<std::size_t>(middle + step * d)];
+      gain = pair ? std::max(0.0, *pair + params_.chain_decay * gain) : 0.0;
+    }
+    return params_.chain_decay * gain;
+  };
+  return pairs[static_cast<std::size_t>(middle)].value_or(0.0) + side(-1, params_.chain_length) +
+         side(1, params_.half_length);
 }
 
 double PlaceRecognizer::score(std::uint32_t newer, std::uint32_t older, Direction direction) const {
