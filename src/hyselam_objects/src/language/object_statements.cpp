@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hyselam_common/numbers.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "object_phrases.hpp"
 
 namespace hyselam_objects {
@@ -109,9 +110,26 @@ class StatementReader {
       if (found != words_.properties.end()) out.properties.insert(found->second);
     }
     readRelations(&out);
+    readAccents(&out);
     takeFrom(&out);
     if (out.moved) dropOrigin(&out);
     return out;
+  }
+
+  /// "O copo está na secretária": a desk. Without its accent it is an office, and the grammar,
+  /// which forgives accents, reads the one for the other.
+  void readAccents(ObjectStatement* out) {
+    if (!out->place || !relations_.empty() || out->intent != "is_at") return;
+    const std::string said = lowerCase(out->place->text);
+    const bool thing = words_.things.count(said) != 0 && words_.place_kinds.count(said) == 0 &&
+                       words_.place_kinds.count(hyselam::utf8Fold(said)) != 0;
+    if (!thing) return;
+    SaidRelation relation;
+    relation.word = RelationWord::kIn;
+    relation.landmarks = {phraseOf(words_, *out->place, text_)};
+    out->place.reset();
+    onTop(&relation);
+    relations_.push_back(std::move(relation));
   }
 
   /// "a vermelha está na gaveta": of the kind that was mentioned last.
