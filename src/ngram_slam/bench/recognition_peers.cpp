@@ -5,11 +5,10 @@
 #include <memory>
 #include <numeric>
 
+#include "../src/tools/reference_poses.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/progress.hpp"
-#include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/tool.hpp"
-#include "hyselam_common/trajectory_io.hpp"
 #include "ngram_slam/matching/recognition_score.hpp"
 #include "peers/icp_distance.hpp"
 #include "peers/polar_context.hpp"
@@ -23,7 +22,8 @@ using ngram_slam::RecognitionScore;
 using ngram_slam::RecognitionTruth;
 
 struct Options {
-  std::vector<std::string> logs, references;
+  std::vector<std::string> logs;
+  ngram_slam::ReferenceFiles references;
   std::string method = "icp";
   StationParams stations;
   int queries = 150;
@@ -35,9 +35,7 @@ struct Compared {
 };
 
 nlohmann::json run(const Options& o) {
-  if (!o.references.empty() && o.references.size() != o.logs.size()) {
-    throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
-  }
+  o.references.check(o.logs.size());
   if (o.queries < 1) throw hyselam::ParameterError("--queries", o.queries, ">= 1");
   if (!(o.stations.stride > 0.0)) {
     throw hyselam::ParameterError("--stride", o.stations.stride, "> 0 [m]");
@@ -47,8 +45,7 @@ nlohmann::json run(const Options& o) {
   std::vector<std::uint32_t> runs;
   for (std::size_t i = 0; i < o.logs.size(); ++i) {
     const hyselam::RobotLog log = hyselam::readRobotLog(o.logs[i]);
-    const auto reference =
-        o.references.empty() ? log.ground_truth : hyselam::readPoses(o.references[i]).poses;
+    const auto reference = o.references.of(i, log);
     for (Station& station : stationsOf(log, o.stations)) {
       poses.push_back(hyselam::poseAt(reference, station.stamp, 0.5));
       runs.push_back(static_cast<std::uint32_t>(i));
@@ -140,7 +137,7 @@ int main(int argc, char** argv) {
   Options o;
   app.option_defaults()->always_capture_default();
   app.add_option("logs", o.logs, "bags or CARMEN logs, one run each")->required();
-  app.add_option("--reference", o.references, "true poses of each log; default: its ground truth");
+  o.references.addTo(app);
   app.add_option("--method", o.method, "icp or context")->check(CLI::IsMember({"icp", "context"}));
   app.add_option("--stride", o.stations.stride, "way between places [m]");
   app.add_option("--radius", o.stations.radius, "of the local map [m]");

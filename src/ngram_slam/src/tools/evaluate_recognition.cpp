@@ -7,9 +7,9 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_common/trajectory_io.hpp"
 #include "ngram_slam/matching/match_evaluation.hpp"
 #include "recognition_options.hpp"
+#include "reference_poses.hpp"
 #include "similarity_matrix.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ constexpr int kPoints = 200;  // of a curve
 
 struct Options {
   RecognitionOptions recognition;
-  std::vector<std::string> references;
+  ReferenceFiles references;
   ScoreParams score;
   double heading_deg = 45.0;
   std::string n;                         // to sweep
@@ -31,15 +31,12 @@ struct Options {
 
 using Truth = std::shared_ptr<const RecognitionTruth>;
 
-/// Poses of a run in the common frame: a file, or the log's own ground truth.
-std::vector<hyselam::StampedPose2> referenceOf(const Options& o, std::size_t run) {
-  if (run < o.references.size()) return hyselam::readPoses(o.references[run]).poses;
-  auto truth =
-      hyselam::readRobotLog(o.recognition.logs[run], o.recognition.bag_options).ground_truth;
-  if (truth.empty()) {
-    throw hyselam::InputError(o.recognition.logs[run], "", "has no ground truth: give --reference");
-  }
-  return truth;
+/// Poses of a run in the common frame.
+std::vector<hyselam::StampedPose2> posesOf(const Options& o, std::size_t run) {
+  const std::string& path = o.recognition.logs[run];
+  auto poses = o.references.of(run, hyselam::readRobotLog(path, o.recognition.bag_options));
+  if (poses.empty()) throw hyselam::InputError(path, "", "has no ground truth: give --reference");
+  return poses;
 }
 
 Truth truthOf(const Options& o, const ObservationStore& observations,
@@ -49,7 +46,7 @@ Truth truthOf(const Options& o, const ObservationStore& observations,
   std::vector<std::optional<hyselam::Pose2>> poses;
   std::vector<std::uint32_t> runs;  // a log in which the robot was carried off has several
   for (std::size_t log = 0; log < logs.size(); ++log) {
-    const std::vector<hyselam::StampedPose2> reference = referenceOf(o, log);
+    const std::vector<hyselam::StampedPose2> reference = posesOf(o, log);
     for (const DensityObservation& observation : logs[log].observations) {
       runs.push_back(observations.runOf(static_cast<std::uint32_t>(runs.size())));
       poses.push_back(hyselam::poseAt(reference, observation.stamp, 0.5));
@@ -200,9 +197,7 @@ nlohmann::json curve(const Options& o, const NgramRecognizer& recognizer,
 }
 
 nlohmann::json run(const Options& o) {
-  if (!o.references.empty() && o.references.size() != o.recognition.logs.size()) {
-    throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
-  }
+  o.references.check(o.recognition.logs.size());
   if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
   NgramRecognizer recognizer(o.recognition.params());
   const std::vector<Run> runs = readRuns(o.recognition);
@@ -236,9 +231,7 @@ int main(int argc, char** argv) {
       "evaluate_recognition");
   Options o;
   o.recognition.addTo(app);
-  app.add_option(
-      "--reference", o.references,
-      "true poses of each log (TUM, or a reference table); default: the logs' ground truth");
+  o.references.addTo(app);
   app.add_option("--distance", o.score.distance, "of a true pair at most [m]");
   app.add_option("--heading", o.heading_deg, "difference of headings of a true pair at most [deg]");
   app.add_option("--separation", o.score.separation,

@@ -20,7 +20,8 @@ using namespace ngram_slam;  // NOLINT: a program, not a header
 struct Options {
   SemanticRunOptions run;
   DecisionTreeParams tree;
-  std::vector<std::string> logs, references;
+  std::vector<std::string> logs;
+  ReferenceFiles references;
   WayDecisionParams decision;
   std::string plan, compared, model, way_model, confusion, regions, places;
   std::uint32_t tolerance = 10;
@@ -124,16 +125,14 @@ nlohmann::json evaluate(const Options& o) {
   const hyselam_sim::FloorPlan plan = planOf(o.plan);
   std::optional<hyselam_sim::FloorPlan> drawing;
   if (!o.compared.empty()) drawing = planOf(o.compared);
-  if (!o.references.empty() && o.references.size() != o.logs.size()) {
-    throw hyselam::ParameterError("--reference", o.references.size(), "one file for each log");
-  }
+  o.references.check(o.logs.size());
 
   SemanticConfusion confusion, strict;
   std::size_t regions = 0, observations = 0;
   for (std::size_t i = 0; i < o.logs.size(); ++i) {
     const std::string& path = o.logs[i];
     hyselam::RobotLog log = hyselam::readRobotLog(path);
-    log.ground_truth = referenceOf(o.references.empty() ? "" : o.references[i], log);
+    log.ground_truth = o.references.of(i, log);
     if (log.ground_truth.empty()) {
       throw hyselam::InputError(path, "", "has no ground truth to look up in the plan");
     }
@@ -179,9 +178,7 @@ int main(int argc, char** argv) {
   o.run.addTo(app);
   app.add_option("--plan", o.plan, "floor plan with areas: a .yaml file or a shipped one's name")
       ->required();
-  app.add_option("--reference", o.references,
-                 "true poses of each log in the plan's frame (TUM, a table with one pose for each "
-                 "scan, or a corrected log); default: the logs' ground truth");
+  o.references.addTo(app, "true poses of each log in the plan's frame");
   app.add_option("--compare-plan", o.compared,
                  "another drawing of the same building, taken for a classifier's answer: how far "
                  "two drawings agree");

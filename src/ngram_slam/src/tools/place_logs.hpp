@@ -93,24 +93,20 @@ inline std::string nameOfLog(const std::string& path) {
 }
 
 struct PlaceLogOptions {
-  std::vector<std::string> logs, references;
+  std::vector<std::string> logs;
+  ReferenceFiles references;
 
   void addTo(CLI::App& app) {
     app.option_defaults()->always_capture_default();
     app.add_option("logs", logs, "CARMEN logs or bags, plain or gzip")->required();
-    app.add_option("--reference", references,
-                   "true poses of each log (TUM, a reference table, or a corrected log); default: "
-                   "the logs' ground truth");
+    references.addTo(app);
   }
   std::vector<PlaceLog> read() const {
-    if (!references.empty() && references.size() != logs.size()) {
-      throw hyselam::ParameterError("--reference", references.size(), "one file for each log");
-    }
+    references.check(logs.size());
     std::vector<PlaceLog> all;
     for (std::size_t i = 0; i < logs.size(); ++i) {
       const hyselam::RobotLog log = hyselam::readRobotLog(logs[i]);
-      all.push_back(placesOf(nameOfLog(logs[i]), log,
-                             referenceOf(references.empty() ? "" : references[i], log), {}));
+      all.push_back(placesOf(nameOfLog(logs[i]), log, references.of(i, log), {}));
       all.back().path = logs[i];
     }
     return all;

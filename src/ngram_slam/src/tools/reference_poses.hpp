@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
+#include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
 namespace ngram_slam {
@@ -22,5 +24,27 @@ inline std::vector<hyselam::StampedPose2> referenceOf(const std::string& path,
   }
   return file.poses;
 }
+
+/// The option --reference of tools that read several logs: a file for each of them, or none at all.
+struct ReferenceFiles {
+  std::vector<std::string> paths;
+
+  void addTo(CLI::App& app, const std::string& what = "true poses of each log") {
+    app.add_option("--reference", paths,
+                   what +
+                       " (TUM, a table with one pose for each scan, or a corrected log); "
+                       "default: the logs' ground truth");
+  }
+  /// Before any log is read. @throws hyselam::ParameterError
+  void check(std::size_t logs) const {
+    if (!paths.empty() && paths.size() != logs) {
+      throw hyselam::ParameterError("--reference", paths.size(), "one file for each log");
+    }
+  }
+  /// referenceOf() the `i`-th log.
+  std::vector<hyselam::StampedPose2> of(std::size_t i, const hyselam::RobotLog& log) const {
+    return referenceOf(paths.empty() ? "" : paths[i], log);
+  }
+};
 
 }  // namespace ngram_slam
