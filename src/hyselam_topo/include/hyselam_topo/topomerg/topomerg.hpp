@@ -26,7 +26,7 @@ struct SolverParams {
   /// connected with each other.
   bool connected = true;
   /// The exact solver stops after this and returns its best assignment with the gap; the tree
-  /// search makes no further attempt after it [s].
+  /// search makes no further attempt after it [s of processor time].
   double time_limit = std::numeric_limits<double>::infinity();
   /// Maximum number of assignments that are kept, >= 1.
   std::size_t max_solutions = 1000;
