@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
@@ -150,6 +151,25 @@ TEST(Icp, ABareCorridorGivesNoInformationAlongIt) {
   EXPECT_LT(r.information(0, 0), 1e-3 * r.information(1, 1));
 }
 
+TEST(Icp, CostTellsTheRightPoseFromAnotherOneThatFits) {
+  const SurfaceMap map = roomMap();
+  const Pose2 truth{2.5, 2.0, 0.3};
+  const SurfacePoints scan = surfacePoints(roomScan(truth));
+  const Pose2 guess = truth * Pose2{0.9, 0.3, 0.5};  // too far for the iteration
+  const Eigen::Matrix3d odometry = Eigen::Vector3d(1, 1, 1).asDiagonal();
+  const IcpResult there = alignIcp(scan, map, guess, odometry);
+  const IcpResult right = alignIcpFrom(truth * Pose2{0.05, 0.05, 0.03}, scan, map, guess, odometry);
+  EXPECT_LT(distance(right.pose, truth), 0.01);
+  EXPECT_GT(distance(there.pose, truth), 0.1);
+  EXPECT_LT(right.cost, there.cost);
+  EXPECT_GE(right.cost, 0.0);
+  // Where the iteration begins is no prior: it ends at the same pose as from the guess.
+  const Pose2 near = truth * Pose2{0.05, 0.05, 0.03};
+  const IcpResult a = alignIcp(scan, map, near, odometry);
+  const IcpResult b = alignIcpFrom(truth, scan, map, near, odometry);
+  EXPECT_LT(distance(a.pose, b.pose), 1e-3);
+}
+
 TEST(Icp, ReturnsTheGuessWithoutAnythingToMatch) {
   const IcpResult a = alignIcp({}, roomMap(), {1, 2, 3});
   SurfaceMap nothing;
@@ -205,6 +225,91 @@ TEST(CorrelativeMatcher, EqualsExhaustiveSearch) {
     const auto found = CorrelativeMatcher(map, params).match(few, guess);
     ASSERT_TRUE(found.has_value());
     EXPECT_NEAR(found->score, bestOfAllPoses(map, few, guess, params), 0.004) << k;
+  }
+}
+
+/// The plain search: a score for each cell, each pose of the window one by one. The best sum of
+/// those that are farther than `min_distance` from `best`, which may be null.
+int plainBestSum(const SurfaceMap& map, const SurfacePoints& scan, const Pose2& guess,
+                 const CorrelativeMatcherParams& p, const Pose2* best, double min_distance) {
+  const double r = p.resolution;
+  double x0 = map.points()[0].x, y0 = map.points()[0].y, far = 1.0;
+  for (const SurfacePoint& q : map.points()) {
+    x0 = std::min(x0, q.x);
+    y0 = std::min(y0, q.y);
+  }
+  x0 -= p.max_distance + r;
+  y0 -= p.max_distance + r;
+  for (const SurfacePoint& q : scan) far = std::max(far, std::hypot(q.x, q.y));
+  constexpr int kSide = 400;
+  std::vector<int> score(std::size_t{kSide} * kSide, 0);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      int& cell = score[static_cast<std::size_t>(y * kSide + x)];
+      for (const SurfacePoint& q : map.points()) {
+        const double dx = x0 + (x + 0.5) * r - q.x, dy = y0 + (y + 0.5) * r - q.y;
+        const double part = 2.0 * (dx * dx + dy * dy) / (p.max_distance * p.max_distance);
+        if (part < 2.0)
+          cell = std::max(cell, static_cast<int>(0.5 + 255.0 * std::exp(-2.0 * part)));
+      }
+    }
+  }
+  const double step = std::max(r / far, 0.002);
+  const int turns = static_cast<int>(std::ceil(p.angular_window / step));
+  const int cells = static_cast<int>(std::ceil(p.linear_window / r));
+  int largest = -1;
+  for (int t = -turns; t <= turns; ++t) {
+    const double c = std::cos(guess.theta + t * step), s = std::sin(guess.theta + t * step);
+    for (int dy = -cells; dy <= cells; ++dy) {
+      for (int dx = -cells; dx <= cells; ++dx) {
+        if (best != nullptr && std::hypot(dx - (best->x - guess.x) / r,
+                                          dy - (best->y - guess.y) / r) <= min_distance / r) {
+          continue;
+        }
+        int sum = 0;
+        for (const SurfacePoint& q : scan) {
+          const int x = dx + static_cast<int>(std::floor((guess.x + c * q.x - s * q.y - x0) / r));
+          const int y = dy + static_cast<int>(std::floor((guess.y + s * q.x + c * q.y - y0) / r));
+          if (x >= 0 && y >= 0 && x < kSide && y < kSide) {
+            sum += score[static_cast<std::size_t>(y * kSide + x)];
+          }
+        }
+        largest = std::max(largest, sum);
+      }
+    }
+  }
+  return largest;
+}
+
+TEST(CorrelativeMatcher, FindsTheScoreOfThePlainSearchAlsoBesideTheMap) {
+  SurfaceMap map;  // coarse, the plain search is slow
+  map.insert({2, 2, 0}, surfacePoints(roomScan({2, 2, 0})));
+  map.finish();
+  hyselam::Rng rng(4);
+  for (int k = 0; k < 4; ++k) {
+    const Pose2 truth{1.5 + 3.0 * rng.uniform(), 1.0 + 3.0 * rng.uniform(), 6.0 * rng.uniform()};
+    const SurfacePoints scan = surfacePoints(roomScan(truth));
+    SurfacePoints few;
+    for (std::size_t i = 0; i < scan.size(); i += 5) few.push_back(scan[i]);
+    CorrelativeMatcherParams params;
+    params.resolution = k % 2 == 0 ? 0.1 : 0.07;
+    params.max_distance = 0.3;
+    params.linear_window = 0.5 + 0.6 * k;  // of one level of squares to five
+    params.angular_window = 0.06;
+    params.min_score = 0.0;
+    // Half of the scan is beyond the border.
+    const Pose2 guess = truth * Pose2{k == 3 ? 6.0 : 0.2, -0.1, 0.03};
+    const CorrelativeMatcher matcher(map, params);
+    const double full = 255.0 * static_cast<double>(few.size());
+    const auto found = matcher.match(few, guess);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_DOUBLE_EQ(found->score, plainBestSum(map, few, guess, params, nullptr, 0.0) / full) << k;
+    const auto other = matcher.secondBest(few, guess, found->pose, 0.35, 0.0);
+    ASSERT_TRUE(other.has_value());
+    EXPECT_DOUBLE_EQ(other->score, plainBestSum(map, few, guess, params, &found->pose, 0.35) / full)
+        << k;
+    EXPECT_GT(distance(other->pose, found->pose), 0.35 - 1e-9);
+    EXPECT_LE(other->score, found->score);
   }
 }
 

@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "hyselam_common/carmen_log.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
@@ -71,6 +73,51 @@ TEST(SlamEngine, mapsABuildingFarBetterThanOdometry) {
   EXPECT_LT(slam.rms, 0.15);
   EXPECT_LT(10.0 * slam.rms, odometry.rms);
   EXPECT_GT(engine.loops().size(), 10U);
+}
+
+/// The same round with a scan each meter, and odometry that errs by 10 cm and 0.1 rad in it.
+hyselam::RobotLog sparseLogOfABadRobot(std::uint64_t seed) {
+  hyselam::RobotLog log = building();
+  log.scans.clear();
+  log.odometry.clear();
+  hyselam::Rng rng(seed);
+  Pose2 told;
+  std::optional<Pose2> last;
+  for (const hyselam::LaserScan& scan : building().scans) {
+    const auto truth = hyselam::poseAt(building().ground_truth, scan.stamp, 1.0);
+    if (!truth || (last && distance(*last, *truth) < 1.0)) continue;
+    if (last) {
+      told = told * between(*last, *truth) *
+             Pose2{rng.gaussian(0.0, 0.1), rng.gaussian(0.0, 0.1), rng.gaussian(0.0, 0.1)};
+    }
+    log.odometry.push_back({scan.stamp, told});
+    log.scans.push_back(scan);
+    last = *truth;
+  }
+  return log;
+}
+
+double errorWithoutLoops(const hyselam::RobotLog& log, double max_deviations) {
+  SlamParams params;
+  params.loops = LoopClosureMode::kNone;
+  params.relocalization.max_deviations = max_deviations;
+  SlamEngine engine(params);
+  feed(&engine, log, 0, log.scans.size());
+  finish(&engine);
+  if (max_deviations > 0.0) {
+    // Straight on, the model expects 0.06 rad.
+    EXPECT_GT(engine.odometryNoise().headingScale(), 1.0);
+  }
+  return trajectoryError(engine.trajectory(), log.ground_truth).mean_step;
+}
+
+TEST(SlamEngine, searchesWhatHopelessOdometryLeavesOpen) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const hyselam::RobotLog log = sparseLogOfABadRobot(seed);
+    const double searched = errorWithoutLoops(log, SlamParams().relocalization.max_deviations);
+    EXPECT_LT(searched, 0.06) << seed;
+    EXPECT_LT(1.5 * searched, errorWithoutLoops(log, 0.0)) << seed;
+  }
 }
 
 TEST(SlamEngine, acceptsNoFalseLoop) {

@@ -53,7 +53,6 @@ class CorrelativeMatcher {
   };
   void rasterize(const SurfaceMap& map);
   void buildPyramid();
-  std::uint8_t at(int level, int x, int y) const;
 
   CorrelativeMatcherParams params_;
   double x0_ = 0.0, y0_ = 0.0;

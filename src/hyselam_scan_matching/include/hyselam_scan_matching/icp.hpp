@@ -28,6 +28,9 @@ struct IcpResult {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double matched = 0.0;  ///< share of the scan's points with a surface within final_distance, 0..1
   double rms = 0.0;      ///< of their distances from the surfaces [m]
+  /// Negative logarithm of the likelihood of the scan, up to a constant: points without a surface
+  /// within final_distance count as if one were just there. The prior is not in it.
+  double cost = 0.0;
   int iterations = 0;
   bool converged = false;
 };
@@ -37,5 +40,10 @@ struct IcpResult {
 IcpResult alignIcp(const SurfacePoints& scan, const SurfaceMap& map, const hyselam::Pose2& guess,
                    const Eigen::Matrix3d& guess_information = Eigen::Matrix3d::Zero(),
                    const IcpParams& params = {});
+/// The same prior, but the iteration begins at `start`: a search found it, the guess stays what
+/// odometry says.
+IcpResult alignIcpFrom(const hyselam::Pose2& start, const SurfacePoints& scan,
+                       const SurfaceMap& map, const hyselam::Pose2& guess,
+                       const Eigen::Matrix3d& guess_information, const IcpParams& params = {});
 
 }  // namespace hyselam_scan_matching

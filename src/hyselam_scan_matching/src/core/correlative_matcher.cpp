@@ -14,6 +14,8 @@ using hyselam::Range;
 
 constexpr int kLevels = 7;  // the largest square has 64 cells a side
 constexpr double kMaxCellScore = 255.0;
+constexpr int kFullScore = 255;
+constexpr std::size_t kBoundBlock = 32;  // points between two looks at what is still possible
 constexpr std::size_t kMaxCells = std::size_t{1} << 26;
 constexpr double kMinHeadingStep = 0.002;  // [rad]
 
@@ -37,6 +39,18 @@ struct Candidate {
 struct ExcludedCircle {
   double x, y, radius;
 };
+
+/// Of the window, each way.
+int windowCells(const CorrelativeMatcherParams& p) {
+  return static_cast<int>(std::ceil(p.linear_window / p.resolution));
+}
+
+/// The level that a search begins at: of the largest squares that the window holds.
+int topLevel(int window_cells) {
+  int level = 0;
+  while (level + 1 < kLevels && (1 << (level + 1)) <= window_cells) ++level;
+  return level;
+}
 
 bool isBetter(const Candidate& a, const Candidate& b) {
   if (a.bound != b.bound) return a.bound > b.bound;
@@ -62,8 +76,7 @@ class WindowSearch {
       : matcher_(matcher),
         guess_(guess),
         points_(static_cast<double>(scan.size())),
-        cells_(static_cast<int>(
-            std::ceil(matcher.params_.linear_window / matcher.params_.resolution))) {
+        cells_(windowCells(matcher.params_)) {
     const double r = matcher.params_.resolution;
     double farthest = 1.0;
     for (const SurfacePoint& p : scan) farthest = std::max(farthest, std::hypot(p.x, p.y));
@@ -85,8 +98,7 @@ class WindowSearch {
 
   std::optional<CorrelativeMatch> run(double min_score, const ExcludedCircle* excluded) {
     best_sum_ = static_cast<int>(std::ceil(min_score * points_ * kMaxCellScore)) - 1;
-    int level = 0;
-    while (level + 1 < kLevels && (1 << (level + 1)) <= cells_) ++level;
+    const int level = topLevel(cells_);
     for (const Candidate& start : squaresOf(level)) {
       if (start.bound <= best_sum_) break;
       descend(level, start, excluded);
@@ -104,10 +116,26 @@ class WindowSearch {
     Candidate candidate;
   };
 
+  /// Not less than the score of any position of a square. Where that cannot exceed the best one,
+  /// any number that does not is told: the rest of the points is not looked up.
   int bound(int level, const Candidate& c) const {
+    const CorrelativeMatcher::Level& grid = matcher_.levels_[static_cast<std::size_t>(level)];
+    const int pad = (1 << level) - 1;
+    const auto width = static_cast<unsigned>(matcher_.width_ + pad);
+    const auto height = static_cast<unsigned>(matcher_.height_ + pad);
+    const int dx = c.dx + pad, dy = c.dy + pad;
+    const std::vector<Cell>& cells = headings_[c.heading].cells;
+    const std::uint8_t* scores = grid.cells.data();
     int sum = 0;
-    for (const Cell& cell : headings_[c.heading].cells) {
-      sum += matcher_.at(level, cell.x + c.dx, cell.y + c.dy);
+    for (std::size_t begin = 0; begin < cells.size(); begin += kBoundBlock) {
+      const std::size_t end = std::min(cells.size(), begin + kBoundBlock);
+      for (std::size_t i = begin; i < end; ++i) {
+        // Below the grid is far above it in unsigned numbers.
+        const auto x = static_cast<unsigned>(cells[i].x + dx);
+        const auto y = static_cast<unsigned>(cells[i].y + dy);
+        if (x < width && y < height) sum += scores[std::size_t{y} * width + x];
+      }
+      if (sum + static_cast<int>(cells.size() - end) * kFullScore <= best_sum_) return best_sum_;
     }
     return sum;
   }
@@ -120,7 +148,7 @@ class WindowSearch {
         for (int dx = -cells_; dx <= cells_; dx += 1 << level) {
           Candidate c{h, dx, dy, 0};
           c.bound = bound(level, c);
-          squares.push_back(c);
+          if (c.bound > best_sum_) squares.push_back(c);
         }
       }
     }
@@ -236,34 +264,33 @@ void CorrelativeMatcher::rasterize(const SurfaceMap& map) {
 }
 
 /// Each level from the one before: the maximum of four squares of half its size. Squares reach
-/// beyond the upper and right border, where all is 0, and begin beyond the lower and left one: see
-/// at().
+/// beyond the upper and right border, where all is 0, and begin as far beyond the lower and left
+/// one.
 void CorrelativeMatcher::buildPyramid() {
-  for (int level = 1; level < kLevels; ++level) {
-    const int half = 1 << (level - 1), pad = (1 << level) - 1;
-    const int w = width_ + pad, h = height_ + pad;
+  const int top = topLevel(windowCells(params_));
+  for (int level = 1; level <= top; ++level) {
+    const std::size_t half = std::size_t{1} << (level - 1);
+    const std::size_t w = static_cast<std::size_t>(width_) + half - 1,
+                      h = levels_.back().cells.size() / w;
+    const std::size_t wide = w + half, high = h + half;
+    const std::uint8_t* from = levels_.back().cells.data();
     Level next;
-    next.cells.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
-    for (int y = 0; y < h; ++y) {
-      for (int x = 0; x < w; ++x) {
-        const int gx = x - pad, gy = y - pad;  // lower left corner of the square
-        next.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(w) +
-                   static_cast<std::size_t>(x)] =
-            std::max({at(level - 1, gx, gy), at(level - 1, gx + half, gy),
-                      at(level - 1, gx, gy + half), at(level - 1, gx + half, gy + half)});
-      }
+    next.cells.assign(wide * high, 0);
+    const auto raise = [](const std::uint8_t* values, std::size_t n, std::uint8_t* to) {
+      for (std::size_t i = 0; i < n; ++i) to[i] = std::max(to[i], values[i]);
+    };
+    // Along the rows in place, then along the columns from the last row on, which changes nothing
+    // that is still to be read.
+    for (std::size_t y = 0; y < h; ++y) {
+      std::uint8_t* row = next.cells.data() + y * wide;
+      std::copy(from + y * w, from + (y + 1) * w, row);
+      raise(from + y * w, w, row + half);
+    }
+    for (std::size_t y = high; y-- > half;) {
+      raise(next.cells.data() + (y - half) * wide, wide, next.cells.data() + y * wide);
     }
     levels_.push_back(std::move(next));
   }
-}
-
-std::uint8_t CorrelativeMatcher::at(int level, int x, int y) const {
-  const int pad = (1 << level) - 1;
-  const int px = x + pad, py = y + pad, w = width_ + pad;
-  if (px < 0 || py < 0 || px >= w || py >= height_ + pad) return 0;
-  return levels_[static_cast<std::size_t>(level)]
-      .cells[static_cast<std::size_t>(py) * static_cast<std::size_t>(w) +
-             static_cast<std::size_t>(px)];
 }
 
 std::optional<CorrelativeMatch> CorrelativeMatcher::match(const SurfacePoints& scan,

@@ -22,8 +22,9 @@ struct Equations {
   int pairs = 0;
 };
 
+/// `cost`: null if it is not asked for; logarithms are slow.
 Equations equations(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& pose,
-                    double radius, double sigma) {
+                    double radius, double sigma, double* cost) {
   Equations e;
   const double c = std::cos(pose.theta), s = std::sin(pose.theta);
   for (const SurfacePoint& p : scan) {
@@ -46,6 +47,7 @@ Equations equations(const SurfacePoints& scan, const SurfaceMap& map, const Pose
     e.h += weight * j * j.transpose();
     e.g += weight * r * j;
     e.squares += r * r;
+    if (cost != nullptr) *cost += 0.5 * std::log1p(t * t);
     ++e.pairs;
   }
   return e;
@@ -72,12 +74,18 @@ void IcpParams::validate() const {
 
 IcpResult alignIcp(const SurfacePoints& scan, const SurfaceMap& map, const Pose2& guess,
                    const Eigen::Matrix3d& guess_information, const IcpParams& params) {
+  return alignIcpFrom(guess, scan, map, guess, guess_information, params);
+}
+
+IcpResult alignIcpFrom(const Pose2& start, const SurfacePoints& scan, const SurfaceMap& map,
+                       const Pose2& guess, const Eigen::Matrix3d& guess_information,
+                       const IcpParams& params) {
   IcpResult result;
-  result.pose = guess;
+  result.pose = start;
   if (scan.empty() || map.empty()) return result;
   double radius = params.initial_distance;
   for (; result.iterations < params.max_iterations; ++result.iterations) {
-    Equations e = equations(scan, map, result.pose, radius, params.sigma);
+    Equations e = equations(scan, map, result.pose, radius, params.sigma, nullptr);
     const Pose2 off = between(guess, result.pose);
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     rotation.topLeftCorner<2, 2>() << std::cos(off.theta), -std::sin(off.theta),
@@ -97,10 +105,14 @@ IcpResult alignIcp(const SurfacePoints& scan, const SurfaceMap& map, const Pose2
     }
     radius = std::max(params.final_distance, radius * 0.7);
   }
-  const Equations end = equations(scan, map, result.pose, params.final_distance, params.sigma);
+  const Equations end =
+      equations(scan, map, result.pose, params.final_distance, params.sigma, &result.cost);
   result.information = end.h;
   result.matched = static_cast<double>(end.pairs) / static_cast<double>(scan.size());
   result.rms = end.pairs > 0 ? std::sqrt(end.squares / end.pairs) : 0.0;
+  const double farthest = params.final_distance / params.sigma;
+  result.cost += 0.5 * std::log1p(farthest * farthest) *
+                 static_cast<double>(scan.size() - static_cast<std::size_t>(end.pairs));
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <ctime>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -56,11 +57,12 @@ struct Figures {
   std::size_t matches = 0, wrong = 0, pairs = 0, true_pairs = 0;
   std::size_t verified_matches = 0, verified_wrong = 0, sure = 0, sure_wrong = 0;
   std::size_t unknown = 0;  // matches that no reference tells right or wrong; in none of the others
-  std::size_t found = 0, found_same = 0, found_old = 0, verified = 0;
+  std::size_t found = 0, found_same = 0, found_old = 0;
   // The best candidate of a question by itself; "alone": none that is surer or as sure is wrong.
   std::size_t first_told = 0, first_wrong = 0;
   std::size_t alone = 0, alone_same = 0, alone_old = 0, alone_by_pair = 0;
-  double verification_s = 0.0, retrieval_s = 0.0;
+  std::vector<double> verification_s;  // of each candidate
+  double retrieval_s = 0.0;
 
   static double share(std::size_t part, std::size_t of) {
     return of == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(of);
@@ -95,7 +97,19 @@ struct Figures {
         {"recall_old", share(found_old, revisits_old)},
         {"ms_retrieval", questions == 0 ? 0.0 : 1e3 * retrieval_s / static_cast<double>(questions)},
         {"ms_verification",
-         verified == 0 ? 0.0 : 1e3 * verification_s / static_cast<double>(verified)}};
+         verification_s.empty()
+             ? 0.0
+             : 1e3 * std::accumulate(verification_s.begin(), verification_s.end(), 0.0) /
+                   static_cast<double>(verification_s.size())},
+        {"ms_verification_95_percent", 1e3 * verificationQuantile(0.95)},
+        {"ms_verification_worst", 1e3 * verificationQuantile(1.0)}};
+  }
+  /// Seconds that this part of the verifications did not exceed.
+  double verificationQuantile(double part) const {
+    if (verification_s.empty()) return 0.0;
+    std::vector<double> sorted = verification_s;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
   }
 };
 
@@ -209,8 +223,7 @@ inline std::vector<Match> matchesOf(const PlaceLog& log, const Candidates& all,
     for (std::size_t k = 0; k < std::min(verified, all[q].size()); ++k) {
       const double begin = processSeconds();
       const LoopVerification v = verify(log, all[q][k], params);
-      f->verification_s += processSeconds() - begin;
-      ++f->verified;
+      f->verification_s.push_back(processSeconds() - begin);
       if (v.score == 0.0) continue;
       const auto error = loopError(log.keyframes[static_cast<std::size_t>(v.loop.older)],
                                    log.keyframes[static_cast<std::size_t>(v.loop.newer)],

@@ -18,6 +18,7 @@
 #include "hyselam_scan_matching/surface_map.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
+#include "ngram_slam/slam/odometry_noise.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
@@ -125,6 +126,8 @@ class SlamEngine {
   const std::vector<std::int32_t>& keyframeOfObservation() const {
     return state_.keyframe_of_observation;
   }
+  /// What the scans taught about the odometry since the process began: not saved.
+  const OdometryNoiseLearner& odometryNoise() const { return odometry_noise_; }
   /// State for serialization.
   SlamState state() const;
 
@@ -175,11 +178,19 @@ class SlamEngine {
   Eigen::Matrix3d matchScan(const hyselam_scan_matching::SurfacePoints& points,
                             const Motion& motion, SlamUpdate* update);
   hyselam_scan_matching::IcpResult matchLocalMap(const hyselam_scan_matching::SurfacePoints& points,
-                                                 const Eigen::Matrix3d& odometry_information,
-                                                 SlamUpdate* update);
+                                                 const Motion& motion, SlamUpdate* update);
+  bool isBeyondRefinement(const hyselam_scan_matching::SurfacePoints& points,
+                          const Motion& motion) const;
+  std::optional<hyselam_scan_matching::IcpResult> searchByLikelihood(
+      const hyselam_scan_matching::SurfacePoints& points, const Motion& motion,
+      const hyselam_scan_matching::IcpResult& best) const;
+  std::optional<hyselam_scan_matching::IcpResult> searchByInliers(
+      const hyselam_scan_matching::SurfacePoints& points, const Motion& motion,
+      const hyselam_scan_matching::IcpResult& best) const;
   bool needsKeyframe(const Motion& motion) const;
   hyselam_pose_graph::PoseEdge odometryEdge(const Motion& motion,
                                             const Eigen::Matrix3d& scan_information) const;
+  void learnOdometryNoise(const Motion& motion, const Eigen::Matrix3d& scan_information);
   void recordScanPose(double stamp);
   void addKeyframe(const hyselam::LaserScan& scan, Points points,
                    const hyselam_pose_graph::PoseEdge* edge);
@@ -214,6 +225,7 @@ class SlamEngine {
 
   SlamParams params_;
   SlamState state_;
+  OdometryNoiseLearner odometry_noise_;
   WordPlaces words_;                             // the words of the path and their n-gram matches
   std::shared_ptr<SignaturePlaces> signatures_;  // used by jobs only
   std::vector<SignatureKeyframe> keyframes_to_sign_;  // for the next job

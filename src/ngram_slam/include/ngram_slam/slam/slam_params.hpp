@@ -13,24 +13,11 @@
 #include "hyselam_scan_matching/icp.hpp"
 #include "hyselam_scan_matching/surface_points.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/slam/odometry_noise.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/words/observation_sensor.hpp"
 
 namespace ngram_slam {
-
-/// Odometry noise model: standard deviations of a motion of `d` meters that turns by `a` radians.
-struct OdometryNoise {
-  double position_base = 0.01;        ///< of the position, constant term [m], > 0
-  double position_per_meter = 0.1;    ///< [m/m], >= 0
-  double position_per_radian = 0.05;  ///< [m/rad], >= 0
-  double heading_base = 0.01;         ///< of the heading, constant term [rad], > 0
-  double heading_per_radian = 0.1;    ///< [rad/rad], >= 0
-  double heading_per_meter = 0.05;    ///< [rad/m], >= 0
-
-  void describe(hyselam::ParameterVisitor& visit);
-  /// Inverse covariance of (x, y, theta) of the motion.
-  Eigen::Matrix3d information(const hyselam::Pose2& motion) const;
-};
 
 /// Which loop closure candidates are used.
 enum class LoopClosureMode {
@@ -48,7 +35,8 @@ const char* toString(LoopClosureMode mode);
 /// @throws hyselam::ParameterError `loops` for any other text.
 LoopClosureMode loopClosureModeFromString(const std::string& text);
 
-/// A scan with too few inliers on the local map is relocalized by a search around its pose.
+/// A scan is searched around its pose if too few of its points lie on the local map, or if odometry
+/// may have put them farther from their surfaces than IcpParams::initial_distance.
 ///
 /// Score of a search, here and below: mean over the points of the scan of a value that falls from 1
 /// on a known surface to 0 at CorrelativeMatcherParams::max_distance from it.
@@ -60,6 +48,12 @@ struct RelocalizationParams {
   double min_gain = 0.1;   ///< minimum gain in inlier ratio to accept the pose found, 0..1
   /// Odometry's information is weighted by this factor when the pose found is refined, 0..1.
   double odometry_information_scale = 0.05;
+  /// Odometry counts with errors of this many standard deviations, >= 0; 0: searched only if too
+  /// few points fit.
+  double max_deviations = 3.0;
+  /// Then this many standard deviations are searched, > 0, instead of `window` and `angle` ...
+  double window_deviations = 4.0;
+  double uncertain_resolution = 0.1;  ///< ... with cells of this size [m], 0.01..1
 
   void describe(hyselam::ParameterVisitor& visit);
 };
@@ -196,6 +190,7 @@ struct SlamParams {
   hyselam_scan_matching::SurfacePointParams surface;
   hyselam_scan_matching::IcpParams refine;
   OdometryNoise odometry;
+  OdometryLearningParams odometry_learning;
   bool refine_odometry = true;  ///< match scans to the local map; false: raw odometry
   /// A scan within scan_step and scan_turn of the last matched one takes its pose from odometry.
   double scan_step = 0.05;         ///< [m], >= 0

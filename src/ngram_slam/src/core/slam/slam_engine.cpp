@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kMaxCoordinate = 0.99e7;  // [m] cells beyond 10^7 m have no number in local maps
 constexpr double kMaxLaserOffset = 5.0;    // [m] it must lie on the local map of the words' sensor
+constexpr double kInlierCells = 3.0;       // points score up to so many cells from a surface
 
 void checkScan(const hyselam::LaserScan& scan) {
   if (!std::isfinite(scan.stamp)) throw hyselam::InputError("scan", "", "its time is not finite");
@@ -54,6 +55,14 @@ SlamParams checked(const SlamParams& p) {
   return p;
 }
 
+double positionStddev(const Eigen::Matrix3d& odometry_information) {
+  return 1.0 / std::sqrt(odometry_information(0, 0));
+}
+
+double headingStddev(const Eigen::Matrix3d& odometry_information) {
+  return 1.0 / std::sqrt(odometry_information(2, 2));
+}
+
 /// Whether a motion is shorter than `step` [m] and turns by less than `turn` [rad].
 bool isWithin(const Pose2& motion, double step, double turn) {
   return std::hypot(motion.x, motion.y) < step && std::abs(motion.theta) < turn;
@@ -66,6 +75,7 @@ SlamEngine::SlamEngine(const SlamParams& params) : SlamEngine(params, SlamState{
 SlamEngine::SlamEngine(const SlamParams& params, SlamState state)
     : params_(checked(params)),
       state_((state.validate(), std::move(state))),
+      odometry_noise_(params.odometry, params.odometry_learning),
       words_(params.observations, params.words, std::move(state_.corpus)),
       local_map_(params.local_map_resolution) {
   state_.corpus = {};
@@ -125,6 +135,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   const Points points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
   const Eigen::Matrix3d scan_information = matchScan(*points, motion, &update);
   if (needsKeyframe(motion)) {
+    if (!update.weak_match) learnOdometryNoise(motion, scan_information);
     const PoseEdge edge = odometryEdge(motion, scan_information);
     addKeyframe(scan, points, &edge);
     searchLoopClosures();
@@ -147,7 +158,7 @@ SlamEngine::Motion SlamEngine::advanceOdometry(const Pose2& odometry) {
     motion.information = params_.jump_information * Eigen::Matrix3d::Identity();
   } else {
     motion.pose = between(matched_odometry_, odometry);
-    motion.information = params_.odometry.information(motion.pose);
+    motion.information = odometry_noise_.noise().information(motion.pose);
     const Pose2 step = between(odometry_, odometry);
     path_length_ += std::hypot(step.x, step.y);
   }
@@ -165,7 +176,7 @@ Eigen::Matrix3d SlamEngine::matchScan(const SurfacePoints& points, const Motion&
                                       SlamUpdate* update) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   if (params_.refine_odometry) {
-    const IcpResult refined = matchLocalMap(points, motion.information, update);
+    const IcpResult refined = matchLocalMap(points, motion, update);
     information = refined.information;
     pose_ = refined.pose;
   }
@@ -175,27 +186,21 @@ Eigen::Matrix3d SlamEngine::matchScan(const SurfacePoints& points, const Motion&
   return information;
 }
 
-/// Matches with the local map; a scan that does not fit is searched around the pose.
-IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points,
-                                    const Eigen::Matrix3d& odometry_information,
+/// Matches with the local map; a scan that does not fit, or whose points odometry may have put
+/// beyond the reach of the refinement, is searched around the pose.
+IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points, const Motion& motion,
                                     SlamUpdate* update) {
   ++state_.counters.matched;
   const RelocalizationParams& p = params_.relocalization;
-  IcpResult best = alignIcp(points, local_map_, pose_, odometry_information, params_.refine);
-  if (best.matched < params_.min_inlier_ratio &&
-      points.size() > static_cast<std::size_t>(p.min_points) && !local_map_.empty()) {
-    hyselam_scan_matching::CorrelativeMatcherParams search;
-    search.linear_window = p.window;
-    search.angular_window = p.angle;
-    search.min_score = p.min_score;
-    if (const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_)) {
-      const IcpResult again =
-          alignIcp(points, local_map_, found->pose,
-                   p.odometry_information_scale * odometry_information, params_.refine);
-      if (again.matched > best.matched + p.min_gain) {
-        best = again;
-        ++state_.counters.relocalized;
-      }
+  IcpResult best = alignIcp(points, local_map_, pose_, motion.information, params_.refine);
+  if (points.size() > static_cast<std::size_t>(p.min_points) && !local_map_.empty()) {
+    const auto better =
+        isBeyondRefinement(points, motion)        ? searchByLikelihood(points, motion, best)
+        : best.matched < params_.min_inlier_ratio ? searchByInliers(points, motion, best)
+                                                  : std::nullopt;
+    if (better) {
+      best = *better;
+      ++state_.counters.relocalized;
     }
   }
   if (best.matched < params_.weak_match_factor * params_.min_inlier_ratio) {
@@ -205,9 +210,78 @@ IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points,
   return best;
 }
 
+/// Whether errors of the odometry put points of the scan farther from their surfaces than the
+/// refinement looks for them. It may then end beside the true pose with most points near some
+/// surface: a share of inliers does not tell.
+bool SlamEngine::isBeyondRefinement(const SurfacePoints& points, const Motion& motion) const {
+  if (motion.jump) return false;
+  double squares = 0.0;
+  for (const auto& q : points) squares += q.x * q.x + q.y * q.y;
+  const double lever = std::sqrt(squares / static_cast<double>(points.size()));
+  return params_.relocalization.max_deviations *
+             std::hypot(positionStddev(motion.information),
+                        lever * headingStddev(motion.information)) >
+         params_.refine.initial_distance;
+}
+
+/// A search of the window that the odometry's noise leaves, wider for a scan that does not fit.
+/// What it finds is taken if it is more probable than `best`, by the scan and by odometry.
+std::optional<IcpResult> SlamEngine::searchByLikelihood(const SurfacePoints& points,
+                                                        const Motion& motion,
+                                                        const IcpResult& best) const {
+  const RelocalizationParams& p = params_.relocalization;
+  const Eigen::Matrix3d& odometry = motion.information;
+  const bool lost = best.matched < params_.min_inlier_ratio;
+  hyselam_scan_matching::CorrelativeMatcherParams search;
+  search.resolution = p.uncertain_resolution;
+  search.max_distance = kInlierCells * p.uncertain_resolution;
+  search.linear_window =
+      std::max(lost ? p.window : 0.0, p.window_deviations * positionStddev(odometry));
+  search.angular_window = std::min(
+      hyselam::kPi, std::max(lost ? p.angle : 0.0, p.window_deviations * headingStddev(odometry)));
+  search.min_score = 0.0;  // the likelihood decides
+  const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_);
+  if (!found) return std::nullopt;
+  const IcpResult other =
+      alignIcpFrom(found->pose, points, local_map_, pose_, odometry, params_.refine);
+  const auto cost = [&](const IcpResult& r) {
+    const Pose2 error = between(pose_, r.pose);
+    const Eigen::Vector3d e(error.x, error.y, error.theta);
+    return params_.scan_information_scale * r.cost + 0.5 * e.dot(odometry * e);
+  };
+  return cost(other) < cost(best) ? std::make_optional(other) : std::nullopt;
+}
+
+/// A search of a fixed window. What it finds is taken if clearly more of the points fit than in
+/// `best`.
+std::optional<IcpResult> SlamEngine::searchByInliers(const SurfacePoints& points,
+                                                     const Motion& motion,
+                                                     const IcpResult& best) const {
+  const RelocalizationParams& p = params_.relocalization;
+  hyselam_scan_matching::CorrelativeMatcherParams search;
+  search.linear_window = p.window;
+  search.angular_window = p.angle;
+  search.min_score = p.min_score;
+  const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_);
+  if (!found) return std::nullopt;
+  const IcpResult other =
+      alignIcp(points, local_map_, found->pose, p.odometry_information_scale * motion.information,
+               params_.refine);
+  return other.matched > best.matched + p.min_gain ? std::make_optional(other) : std::nullopt;
+}
+
 bool SlamEngine::needsKeyframe(const Motion& motion) const {
   return motion.jump || !isWithin(between(state_.keyframes.back().pose, pose_),
                                   params_.keyframe_step, params_.keyframe_turn);
+}
+
+/// What odometry said since the last keyframe, against what the scans did.
+void SlamEngine::learnOdometryNoise(const Motion& motion, const Eigen::Matrix3d& scan_information) {
+  if (motion.jump || !params_.refine_odometry) return;
+  const SlamKeyframe& last = state_.keyframes.back();
+  const Pose2 told = between(last.odometry, odometry_);
+  odometry_noise_.add(told, between(told, between(last.pose, pose_)),
+                      params_.scan_information_scale * scan_information);
 }
 
 /// From the last keyframe to the pose.
@@ -218,7 +292,7 @@ PoseEdge SlamEngine::odometryEdge(const Motion& motion,
   edge.to = edge.from + 1;
   edge.measured = between(state_.keyframes.back().pose, pose_);
   const Eigen::Matrix3d odometry =
-      motion.jump ? motion.information : params_.odometry.information(edge.measured);
+      motion.jump ? motion.information : odometry_noise_.noise().information(edge.measured);
   edge.information = params_.refine_odometry
                          ? Eigen::Matrix3d(params_.scan_information_scale * scan_information +
                                            params_.odometry_information_scale * odometry)

@@ -1,6 +1,5 @@
 #include "ngram_slam/slam/slam_params.hpp"
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -29,14 +28,6 @@ const Range kCount = Range::between(1, 1e6);
 
 }  // namespace
 
-Eigen::Matrix3d OdometryNoise::information(const hyselam::Pose2& motion) const {
-  const double length = std::hypot(motion.x, motion.y), angle = std::abs(motion.theta);
-  const double position = position_base + position_per_meter * length + position_per_radian * angle;
-  const double heading = heading_base + heading_per_radian * angle + heading_per_meter * length;
-  const double p = 1.0 / (position * position);
-  return Eigen::Vector3d(p, p, 1.0 / (heading * heading)).asDiagonal();
-}
-
 const char* toString(LoopClosureMode mode) {
   for (const auto& [name, value] : loopClosureModes()) {
     if (value == mode) return name.c_str();
@@ -52,21 +43,6 @@ LoopClosureMode loopClosureModeFromString(const std::string& text) {
                                 "none, proximity, ngrams, signatures, all or thesis");
 }
 
-void OdometryNoise::describe(ParameterVisitor& visit) {
-  visit("position_base", position_base, kPositive, "m",
-        "standard deviation of the position, of every motion");
-  visit("position_per_meter", position_per_meter, kNotNegative, "m/m",
-        "standard deviation of the position, per meter driven");
-  visit("position_per_radian", position_per_radian, kNotNegative, "m/rad",
-        "standard deviation of the position, per radian turned");
-  visit("heading_base", heading_base, kPositive, "rad",
-        "standard deviation of the heading, of every motion");
-  visit("heading_per_radian", heading_per_radian, kNotNegative, "rad/rad",
-        "standard deviation of the heading, per radian turned");
-  visit("heading_per_meter", heading_per_meter, kNotNegative, "rad/m",
-        "standard deviation of the heading, per meter driven");
-}
-
 void RelocalizationParams::describe(ParameterVisitor& visit) {
   visit("min_points", min_points, Range::between(0, 1e6), "",
         "a scan of fewer surface points is not searched");
@@ -77,6 +53,13 @@ void RelocalizationParams::describe(ParameterVisitor& visit) {
   visit("min_gain", min_gain, kRatio, "", "in inlier ratio, for the pose found to be taken");
   visit("odometry_information_scale", odometry_information_scale, kRatio, "",
         "weight of odometry in the refinement of the pose found");
+  visit("max_deviations", max_deviations, kNotNegative, "",
+        "standard deviations of odometry; a scan whose points so large an error moves farther than "
+        "refine/initial_distance is searched too; 0: none");
+  visit("window_deviations", window_deviations, kPositive, "",
+        "standard deviations of odometry that are searched then");
+  visit("uncertain_resolution", uncertain_resolution, Range::between(0.01, 1.0), "m",
+        "of that search");
 }
 
 void RunStartParams::describe(ParameterVisitor& visit) {
@@ -225,6 +208,7 @@ void SlamParams::describe(ParameterVisitor& visit) {
   visit.group(
       "odometry/", odometry,
       {{"position_per_meter", "odometry_noise"}, {"heading_per_radian", "odometry_turn_noise"}});
+  visit.group("odometry_learning/", odometry_learning);
   visit("scan_step", scan_step, kNotNegative, "m",
         "scans nearer to the last one matched are placed by odometry");
   visit("scan_turn", scan_turn, kNotNegative, "rad", "and turned by less than this");
