@@ -214,6 +214,68 @@ TEST(ObjectText, TellsTheChoices) {
       "the hall?");
 }
 
+// The detector removes objects between a question and its answer.
+TEST(ObjectText, AsksAgainWhereWhatWasMeantIsGone) {
+  const ObjectParser parser = ObjectParser::shipped("en");
+  const auto tellOfPens = [](FillMap& fill) {
+    fill.process("There is a pen on the desk in the kitchen.");
+    fill.process("There is a pen on the shelf in the hall.");
+    fill.resetContext();
+  };
+  const auto idIn = [](const ObjectMap& map, const std::string& place) {
+    for (const auto& object : map.objects) {
+      if (object.kind == "pen" && map.findPlace(map.placeOf(object.id))->name == place) {
+        return object.id;
+      }
+    }
+    return hyselam_objects::Id{0};
+  };
+  {  // chosen, then contradicted
+    ObjectMap map;
+    FillMap fill(parser, map);
+    tellOfPens(fill);
+    fill.process("The pen is red.");
+    fill.process("the one in the hall");
+    fill.resetContext();
+    fill.process("The pen is blue.");
+    ASSERT_EQ(fill.process("the one in the hall").front().code, "contradiction");
+    map.remove(idIn(map, "hall"));
+    EXPECT_EQ(fill.process("Yes.").front().code, "unknown");
+    checkMap(map, "map");
+  }
+  {  // all that could be chosen
+    ObjectMap map;
+    FillMap fill(parser, map);
+    tellOfPens(fill);
+    ASSERT_EQ(fill.process("The pen is blue.").front().code, "which_one");
+    map.remove(idIn(map, "hall"));
+    map.remove(idIn(map, "kitchen"));
+    EXPECT_EQ(fill.process("Yes.").front().code, "nothing_asked");
+  }
+  {  // one of those that could be chosen
+    ObjectMap map;
+    FillMap fill(parser, map);
+    tellOfPens(fill);
+    fill.process("There is a pen in the lab.");
+    fill.resetContext();
+    ASSERT_EQ(fill.process("The pen is blue.").front().code, "which_one");
+    map.remove(idIn(map, "hall"));
+    EXPECT_EQ(fill.process("the one in the hall").front().code, "which_one");
+    EXPECT_EQ(fill.process("the one in the lab").front().kind, hyselam_objects::ReplyKind::kDone);
+  }
+  {  // what was taken down last of a chosen one is corrected
+    ObjectMap map;
+    FillMap fill(parser, map);
+    tellOfPens(fill);
+    fill.process("The pen is on the table.");
+    fill.process("the one in the hall");
+    if (fill.hasQuestion()) fill.process("Yes.");
+    for (const std::string place : {"hall", "kitchen"}) map.remove(idIn(map, place));
+    fill.process("Sorry, the cup.");
+    checkMap(map, "map");
+  }
+}
+
 TEST(ObjectText, ExamplesOfRefusalsAreUnderstood) {
   for (const char* const language : {"en", "pt"}) {
     const ObjectParser parser = ObjectParser::shipped(language);

@@ -16,16 +16,32 @@ const char* toString(ReplyKind kind) {
 FillMap::FillMap(const ObjectParser& parser, ObjectMap& map) : parser_(parser), map_(map) {}
 
 std::vector<ObjectReply> FillMap::process(const std::string& text) {
-  // The detector may have merged or removed some objects in the meantime.
-  last_objects_.erase(std::remove_if(last_objects_.begin(), last_objects_.end(),
-                                     [this](Id id) { return map_.find(id) == nullptr; }),
-                      last_objects_.end());
+  forgetGone();
   question_is_new_ = false;
   std::set<std::string> expected;
   if (pending_ && pending_->asked == Asked::kPlace) expected.insert("place_answer");
   if (pending_ && pending_->asked == Asked::kCount) expected.insert("count_answer");
   if (pending_ && pending_->asked == Asked::kChoice) expected.insert("choice_answer");
   return processAll(parser_.parse(text, expected, language_));
+}
+
+/// The detector may have merged or removed some objects in the meantime. A question which of them
+/// is meant is over with the last of them; other phrases that mean them look for others
+/// (candidates()).
+void FillMap::forgetGone() {
+  last_objects_ = stillThere(last_objects_);
+  landmarks_told_ = stillThere(landmarks_told_);
+  last_added_ = stillThere(last_added_);
+  if (!pending_ || pending_->asked != Asked::kChoice) return;
+  pending_->choices = stillThere(pending_->choices);
+  if (pending_->choices.empty()) pending_.reset();
+}
+
+std::vector<Id> FillMap::stillThere(const std::vector<Id>& objects) const {
+  std::vector<Id> left;
+  std::copy_if(objects.begin(), objects.end(), std::back_inserter(left),
+               [this](Id id) { return map_.find(id) != nullptr; });
+  return left;
 }
 
 /// What a sentence goes on with waits if its beginning leads to a question. Words that were left

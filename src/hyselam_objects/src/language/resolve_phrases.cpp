@@ -44,7 +44,7 @@ bool FillMap::matchesPhrase(const ObjectInstance& object, const ObjectPhrase& ph
 }
 
 std::vector<Id> FillMap::candidates(const ObjectPhrase& phrase) const {
-  if (!phrase.chosen.empty()) return phrase.chosen;
+  if (!phrase.chosen.empty()) return stillThere(phrase.chosen);
   std::vector<Id> ids;
   for (const ObjectInstance& object : map_.objects) {
     if (matchesPhrase(object, phrase)) ids.push_back(object.id);
@@ -62,7 +62,7 @@ std::vector<Id> FillMap::candidates(const ObjectPhrase& phrase) const {
 
 std::vector<Id> FillMap::resolveReference(const ObjectPhrase& phrase, Id place,
                                           bool only_there) const {
-  if (!phrase.chosen.empty()) return phrase.chosen;
+  if (!phrase.chosen.empty()) return stillThere(phrase.chosen);
   if (!phrase.reference.empty()) {
     if (phrase.reference == "it" && last_objects_.size() != 1) return {};
     return last_objects_;

@@ -108,6 +108,9 @@ class FillMap {
   /// The question that must be answered first, if any.
   using Question = std::optional<ObjectReply>;
 
+  void forgetGone();
+  /// Those that the map still has.
+  std::vector<Id> stillThere(const std::vector<Id>& objects) const;
   std::vector<ObjectReply> processAll(const std::vector<ObjectStatement>& statements);
   std::vector<ObjectReply> processOne(const ObjectStatement& statement);
   ObjectReply processStatement(const ObjectStatement& statement);
