@@ -104,11 +104,9 @@ Reply Dialogue::reply() const {
 Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   Reply out = reply();
   const bool first = !places_.hasMap();
-  places_.setMap(fresh);
+  const CarryOverReport report = places_.setMap(fresh);
   topo_state_.mapChanged(places_.map());
-  const bool about_lost_place =
-      question().place != 0 && places_.map().findPlace(question().place) == nullptr;
-  if (about_lost_place) questions_.drop();
+  forgetLost(report.lost);
   // What there is to ask of the place is asked with the next pose: the names may change now.
   if (robot().has_pose && topo_state_.update(places_.map(), robot().stamp, robot().pose)) {
     entered_ = true;
@@ -116,6 +114,17 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   if (!builder_.building().places.empty()) matchDescription(out, first);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;
+}
+
+void Dialogue::forgetLost(const std::vector<Id>& lost) {
+  // A map of another frame may give their ids to other places.
+  const auto isLost = [&](Id id) { return std::find(lost.begin(), lost.end(), id) != lost.end(); };
+  const std::vector<Id> asked = placesIn(question());
+  if (std::any_of(asked.begin(), asked.end(), isLost)) questions_.drop();
+  dropStaleQuestion();
+  for (auto* before : {&named_now_, &named_last_}) {
+    if (*before && isLost((*before)->place)) before->reset();
+  }
 }
 
 void Dialogue::setGrid(hyselam::OccupancyGrid grid) {

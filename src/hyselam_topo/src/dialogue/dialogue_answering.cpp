@@ -179,7 +179,7 @@ void Dialogue::answerNo(const Question& asked, Reply& out) {
       const Place& place = *places_.map().findPlace(asked.place);
       const std::vector<std::string> names = namesOf(place);
       // What was described from here is told of the place that it is.
-      if (builder_.building().robot_place) builder_.setRobotPlace(names.front());
+      if (builder_.building().robot_place) tellRobotPlace(place.id, names);
       out.sentences.push_back(
           p.say("at_named", {{"code", codeOf(place)}, {"names", p.list(names)}}));
       break;

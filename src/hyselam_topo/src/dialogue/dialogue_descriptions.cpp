@@ -110,6 +110,13 @@ void Dialogue::followRobot(bool also_unnamed) {
   std::vector<std::string> names;
   if (nameStateOf(*here) == NameState::kConfirmed) names = namesOf(*here);
   if (names.empty() && also_unnamed) names.push_back(codeOf(*here));
+  const bool corridor = here->kind == PlaceKind::kCorridor;
+  tellRobotPlace(here->id, std::move(names),
+                 corridor ? std::optional(PlaceKind::kCorridor) : std::nullopt);
+}
+
+void Dialogue::tellRobotPlace(Id place, std::vector<std::string> names,
+                              std::optional<PlaceKind> kind) {
   // One that was told of, best; else the first.
   std::stable_partition(names.begin(), names.end(),
                         [&](const std::string& name) { return builder_.find(name).size() == 1; });
@@ -117,9 +124,8 @@ void Dialogue::followRobot(bool also_unnamed) {
     return builder_.find(name).size() < 2;
   });
   if (fits == names.end()) return;
-  const bool corridor = here->kind == PlaceKind::kCorridor;
-  builder_.setRobotPlace(*fits, corridor ? std::optional(PlaceKind::kCorridor) : std::nullopt);
-  told_at_ = here->id;
+  builder_.setRobotPlace(*fits, kind);
+  told_at_ = place;
 }
 
 void Dialogue::giveNames(Id place) {

@@ -187,6 +187,7 @@ ParsedText Dialogue::parse(const std::string& text) {
 
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   questions_.beginUtterance();
+  dropStaleQuestion();
   named_last_ = std::move(named_now_);
   named_now_.reset();
   const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
@@ -206,7 +207,7 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
   turn.says_more = std::any_of(parsed.utterances.begin(), parsed.utterances.end(),
                                [](const Utterance& u) { return u.understood() && !isAnswer(u); });
   if (refuseOtherLanguage(parsed, language_before, turn)) return turn.reply;
-  if (!options.others_asked_last) takeAnswer(parsed, turn);
+  if (!options.others_asked_last) attempt(turn.reply, [&] { takeAnswer(parsed, turn); });
   for (std::size_t i = turn.used; i < parsed.utterances.size() && !turn.broken_off; ++i) {
     const Utterance& u = parsed.utterances[i];
     handleUtterance(u, turn);

@@ -30,8 +30,10 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
   const Phrases& p = phrases();
   std::map<Id, std::vector<PlaceTerm>> words;
   for (const Place& each : places_.map().places) words[each.id] = each.words;
-  named_now_.emplace(BeforeNaming{place, std::move(words), builder_});
+  BeforeNaming before{place, std::move(words), builder_};
+  // Nothing has changed where this throws, and nothing behind it does.
   const std::vector<Id> losers = places_.confirm(place, names);
+  named_now_.emplace(std::move(before));
   const Place& named = *places_.map().findPlace(place);
   out.sentences.push_back(
       p.say("named", {{"code", codeOf(named)}, {"names", p.list(namesOf(named))}}));
@@ -43,10 +45,7 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
   subject_ = place;
   // Sides are told from here.
   giveNames(place);
-  if (place == robot().place) {
-    builder_.setRobotPlace(namesOf(named).front());
-    told_at_ = place;
-  }
+  if (place == robot().place) tellRobotPlace(place, namesOf(named));
   matchDescription(out, false);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
@@ -75,12 +74,15 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
   }
   Reply out = reply();
   confirmNames(place, names, out);
+  dropStaleQuestion();
   return out;
 }
 
 Reply Dialogue::forget(Id place) {
   Reply out = reply();
   places_.forget(place);
+  if (question().isAboutName() && question().place == place) questions_.drop();
+  dropStaleQuestion();
   out.sentences.push_back(phrases().say("forgot_names", {{"places", label(place)}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;

@@ -12,6 +12,10 @@ void Dialogue::ask(Question question, const std::string& sentence, Reply& out) {
   out.sentences.push_back(sentence);
 }
 
+void Dialogue::dropStaleQuestion() {
+  if (!isStillValid(question(), places_)) questions_.drop();
+}
+
 void Dialogue::askConfirm(Id place, Reply& out) {
   Question question;
   question.kind = Question::Kind::kConfirmName;

@@ -1,10 +1,36 @@
 #include "hyselam_topo/dialogue/question_keeper.hpp"
 
+#include <algorithm>
+
 namespace hyselam_topo {
 
 bool Question::isAboutName() const {
   return kind == Kind::kConfirmName || kind == Kind::kAlsoName || kind == Kind::kName ||
          (kind == Kind::kNewName && place != 0);
+}
+
+std::vector<Id> placesIn(const Question& question) {
+  std::vector<Id> all;
+  if (question.place != 0) all.push_back(question.place);
+  const auto add = [&](const std::vector<Id>& ids) {
+    all.insert(all.end(), ids.begin(), ids.end());
+  };
+  for (const MovedName& each : question.moved) {
+    add(each.from);
+    add(each.to);
+  }
+  for (const NamedGoal& goal : question.goals) add(goal.second);
+  return all;
+}
+
+bool isStillValid(const Question& question, const PlaceMan& places) {
+  const std::vector<Id> all = placesIn(question);
+  if (!std::all_of(all.begin(), all.end(),
+                   [&](Id id) { return places.map().findPlace(id) != nullptr; })) {
+    return false;
+  }
+  return question.kind != Question::Kind::kAlsoName ||
+         nameStateOf(*places.map().findPlace(question.place)) == NameState::kConfirmed;
 }
 
 void QuestionKeeper::ask(Question question, std::string sentence) {

@@ -141,7 +141,17 @@ void TopoEngineServer::onText(const std_msgs::String::ConstPtr& msg) {
     return;
   }
   input_.text_error.clear();
-  hear(msg->data);
+  try {
+    hear(msg->data);
+  } catch (const std::exception& e) {
+    refuseText("human_text", e);
+  }
+}
+
+void TopoEngineServer::refuseText(const std::string& topic, const std::exception& e) {
+  ++input_.refused;
+  input_.text_error = topic + ": " + e.what();
+  ROS_ERROR_STREAM(who_ << " this text is not used: " << input_.text_error);
 }
 
 Reply TopoEngineServer::hear(const std::string& text) {
@@ -164,6 +174,15 @@ void TopoEngineServer::finishHearing(const Reply& reply) {
 
 void TopoEngineServer::onObjectAnswer(const ForwardedSentence& sentence,
                                       const hyselam_msgs::ObjectAnswer* answer) {
+  try {
+    takeObjectAnswer(sentence, answer);
+  } catch (const std::exception& e) {
+    refuseText("object_answer", e);
+  }
+}
+
+void TopoEngineServer::takeObjectAnswer(const ForwardedSentence& sentence,
+                                        const hyselam_msgs::ObjectAnswer* answer) {
   if (answer == nullptr) {
     act(shared_.answered(sentence, nullptr));
     return;

@@ -255,6 +255,10 @@ class Dialogue {
   void followRobot(bool also_unnamed);
   /// "The corridor", where the robot stands in one and nobody has told of another.
   bool saysItsCorridor(const Utterance& u) const;
+  /// In the description the robot is where one of the names belongs; it stays where it was told to
+  /// be if each of them fits several places that were told of. `kind` as setRobotPlace().
+  void tellRobotPlace(Id place, std::vector<std::string> names,
+                      std::optional<PlaceKind> kind = std::nullopt);
   /// Names of a place that was told of under the map's own name for it.
   void giveNames(Id place);
   /// Whether a name is the map's own for a place of it (SS03).
@@ -290,6 +294,8 @@ class Dialogue {
   void enterPlace(Reply& reply);
   void askAboutPlace(Id place, AskPolicy policy, Reply& reply);
   void askConfirm(Id place, Reply& reply);
+  /// The open question is over if what it is about is gone.
+  void dropStaleQuestion();
   void askName(Id place, Reply& reply);
   /// Asks whether a place with other names has these as well.
   void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
@@ -298,6 +304,8 @@ class Dialogue {
   /// Asks whether a place may be called so; `sentence`: Question::sentence.
   void askNewName(Id place, const std::vector<std::string>& names, const std::string& sentence,
                   Reply& reply);
+  /// What was asked or told right before of places that a new map does not have is over.
+  void forgetLost(const std::vector<Id>& lost);
   /// Tells which names are elsewhere now; `asks`: whether that is right.
   void tellMoved(std::vector<MovedName> moved, bool asks, Reply& reply);
   void ask(Question question, const std::string& sentence, Reply& reply);

@@ -56,6 +56,13 @@ struct Question {
   bool isAboutName() const;
 };
 
+/// The places that a question is about.
+std::vector<Id> placesIn(const Question& question);
+
+/// Whether a question can still be answered: all its places are there, and one that has other names
+/// still has them.
+bool isStillValid(const Question& question, const PlaceMan& places);
+
 /// Keeps one question at most. It is over when it is answered, when another one is asked, and
 /// after the next utterance about something else.
 class QuestionKeeper {

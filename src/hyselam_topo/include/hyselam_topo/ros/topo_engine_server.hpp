@@ -51,6 +51,10 @@ class TopoEngineServer {
   /// Carries a reply out, and passes on what is for other nodes.
   void finishHearing(const Reply& reply);
   void onObjectAnswer(const ForwardedSentence& sentence, const hyselam_msgs::ObjectAnswer* answer);
+  void takeObjectAnswer(const ForwardedSentence& sentence,
+                        const hyselam_msgs::ObjectAnswer* answer);
+  /// Nothing that a text leads to may end the node.
+  void refuseText(const std::string& topic, const std::exception& e);
   /// Publishes the sentences of a reply and carries its actions out.
   void act(const Reply& reply);
   void say(const std::string& sentence);
