@@ -218,6 +218,21 @@ TEST(Conversation, GoesOnFromAState) {
   EXPECT_EQ(after.say("Go to the kitchen.").goal, 1u);
 }
 
+TEST(Conversation, NothingOfTheTalkBeforeOutlivesAState) {
+  const hyselam_topo::DialogueState state = ExampleTalk().talk.dialogue().state();
+  ExampleTalk example(driving());
+  example.talk.say("The pen is in the kitchen.");
+  ASSERT_NE(example.talk.say("The pen is in the library.").question, "");
+  example.talk.driveTo("SS12");
+  example.talk.restore(state);
+  EXPECT_EQ(example.talk.motion(), Motion::kStanding);
+  EXPECT_EQ(example.talk.question(), "");
+  EXPECT_FALSE(contains(example.talk.say("Yes.").replyText(), "Noted"));
+  EXPECT_TRUE(contains(example.talk.say("Where is the pen?").replyText(), "kitchen"));
+  example.talk.restore(state);
+  EXPECT_FALSE(contains(example.talk.say("It is green.").replyText(), "Noted"));
+}
+
 TEST(Conversation, RefusesPlacesThatAreNotThere) {
   ExampleTalk example;
   EXPECT_THROW(example.talk.standAt("the moon"), hyselam::InputError);

@@ -391,6 +391,40 @@ TEST(DialogueStatement, PlacesThatSoundLikeNoneAreAskedAbout) {
   EXPECT_TRUE(talk.dialogue.description().places.empty());
 }
 
+// What is said beside "stop" follows the same rules as what is said without it.
+
+TEST(DialogueStop, WordsLeftOutOfStatementsBesideItAreTold) {
+  const std::string said = "The kitchen, which by the way has terrible coffee, is next to the lab.";
+  const std::string told = "I have left out";
+  Talk without, with;
+  EXPECT_TRUE(has(without.say(said), told));
+  const std::string reply = with.say("Stop! " + said);
+  EXPECT_TRUE(has(reply, told)) << reply;
+  EXPECT_TRUE(has(reply, "Noted: ")) << reply;
+}
+
+TEST(DialogueStop, WhatHangsOnAnUnknownNameBesideItWaitsForTheAnswer) {
+  Talk talk;
+  const std::string reply = talk.say("Stop! We're in the Blue Whale. On the left is the kitchen.");
+  EXPECT_EQ(talk.asked(), Question::Kind::kNewName) << reply;
+  EXPECT_TRUE(talk.dialogue.description().places.empty()) << reply;
+  talk.say("Yes.");
+  EXPECT_EQ(talk.dialogue.description().places.size(), 2u);
+  Talk later;
+  const std::string both = later.say("We're in the Blue Whale. Stop! On the left is the kitchen.");
+  EXPECT_EQ(later.asked(), Question::Kind::kNewName) << both;
+  EXPECT_TRUE(has(both, "not taken")) << both;
+  EXPECT_TRUE(later.dialogue.description().places.empty()) << both;
+}
+
+TEST(DialogueStop, StatementsBesideItAreWhatItMeansNext) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.say("Stop! The lab is next to the kitchen.");
+  talk.say("It is also called the workshop.");
+  EXPECT_EQ(talk.names(1), Names{"kitchen"});
+}
+
 // ---- A name taken back ----
 
 TEST(DialogueNames, UndoRightAfterTakesTheNameBack) {

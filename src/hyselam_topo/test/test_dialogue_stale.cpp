@@ -112,6 +112,39 @@ TEST(DialogueStale, ANameThatIsRefusedLeavesNothingToUndo) {
   EXPECT_TRUE(has(reply, "nothing was told")) << reply;
 }
 
+// ---- A talk that is gone ----
+
+TEST(DialogueStale, NothingOfTheTalkBeforeOutlivesAnotherState) {
+  Talk other;
+  other.say("The lab is next to the library.");
+  const DialogueState state = other.dialogue.state();
+  Talk talk;
+  talk.say("You are in Narnia.");
+  talk.say("Yes.");
+  ASSERT_TRUE(talk.isConfirmed(1));
+  talk.dialogue.restore(state);
+  talk.at(2.0);
+  EXPECT_TRUE(has(talk.say("Undo that."), "nothing was told"));
+  EXPECT_EQ(talk.dialogue.description().places.size(), 2u);
+  EXPECT_TRUE(has(talk.say("You are in Narnia."), "Shall I call")) << "nobody here has agreed";
+  EXPECT_FALSE(talk.isConfirmed(1));
+}
+
+TEST(DialogueStale, WhatWasSaidAndDoneBeforeAnotherStateIsOver) {
+  const DialogueState state = Talk().dialogue.state();
+  Talk talk;
+  ASSERT_TRUE(has(talk.say("Go to SS02."), "SS02"));
+  talk.dialogue.restore(state);
+  talk.at(2.0);
+  EXPECT_FALSE(has(talk.say("What?"), "SS02")) << "nothing was said yet";
+  EXPECT_FALSE(talk.dialogue.hear("No.").has(hyselam_topo::DialogueAction::Kind::kStop));
+  talk.say("The lab is next to the library.");
+  talk.dialogue.restore(state);
+  talk.at(2.0);
+  EXPECT_EQ(talk.say("It is also called the toilet."), "Thank you. SS01 is toilet.")
+      << "'it' is where the robot is";
+}
+
 // ---- Places that are gone ----
 
 TEST(DialogueStale, ANameOfALostPlaceCannotBeTakenBack) {

@@ -86,7 +86,10 @@ Exchange Conversation::setMap(const hyselam_topo::AugmentedTopologicalMap& map) 
 
 void Conversation::restore(hyselam_topo::DialogueState state) {
   if (state.places.map.grid) dialogue_.setGrid(gridOf(*state.places.map.grid));
-  dialogue_.restore(std::move(state));
+  shared_.restore(std::move(state));
+  fill_map_.resetContext();
+  motion_ = Motion::kStanding;
+  ahead_.clear();
   question_.clear();
 }
 

@@ -336,10 +336,14 @@ ObjectReply FillMap::setProperties(const ObjectStatement& statement, const std::
 
 void FillMap::resetContext() {
   last_objects_.clear();
+  landmarks_told_.clear();
+  last_added_.clear();
+  last_landmark_ = last_place_ = 0;
+  last_kind_.clear();
+  last_statement_.reset();
   last_question_.reset();
   missed_.reset();
-  last_kind_.clear();
-  last_place_ = 0;
+  question_is_new_ = false;
   pending_.reset();
 }
 

@@ -1,6 +1,7 @@
 #include "hyselam_topo/dialogue/dialogue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "dialogue_turn.hpp"
@@ -71,6 +72,17 @@ bool Reply::has(DialogueAction::Kind kind) const {
                      [&](const DialogueAction& action) { return action.kind == kind; });
 }
 
+void Reply::append(Reply next) {
+  const auto move = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  language = next.language;
+  move(next.sentences, sentences);
+  move(next.actions, actions);
+  move(next.refusals, refusals);
+  move(next.utterances, utterances);
+}
+
 Dialogue::Dialogue(const DialogueParams& params)
     : Dialogue(params, TopoParser(), shippedPhrases()) {}
 
@@ -109,7 +121,7 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   forgetLost(report.lost);
   // What there is to ask of the place is asked with the next pose: the names may change now.
   if (robot().has_pose && topo_state_.update(places_.map(), robot().stamp, robot().pose)) {
-    entered_ = true;
+    talk_.entered = true;
   }
   if (!builder_.building().places.empty()) matchDescription(out, first);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
@@ -120,9 +132,9 @@ void Dialogue::forgetLost(const std::vector<Id>& lost) {
   // A map of another frame may give their ids to other places.
   const auto isLost = [&](Id id) { return std::find(lost.begin(), lost.end(), id) != lost.end(); };
   const std::vector<Id> asked = placesIn(question());
-  if (std::any_of(asked.begin(), asked.end(), isLost)) questions_.drop();
+  if (std::any_of(asked.begin(), asked.end(), isLost)) talk_.questions.drop();
   dropStaleQuestion();
-  for (auto* before : {&named_now_, &named_last_}) {
+  for (auto* before : {&talk_.named_now, &talk_.named_last}) {
     if (*before && isLost((*before)->place)) before->reset();
   }
 }
@@ -133,9 +145,9 @@ void Dialogue::setGrid(hyselam::OccupancyGrid grid) {
 
 Reply Dialogue::setPose(double stamp, const hyselam::Pose2& pose) {
   Reply out = reply();
-  if (topo_state_.update(places_.map(), stamp, pose)) entered_ = true;
-  if (!entered_) return out;
-  entered_ = false;
+  if (topo_state_.update(places_.map(), stamp, pose)) talk_.entered = true;
+  if (!talk_.entered) return out;
+  talk_.entered = false;
   enterPlace(out);
   return out;
 }
@@ -147,21 +159,21 @@ Reply Dialogue::losePose(double stamp) {
 
 void Dialogue::enterPlace(Reply& out) {
   const Id here = robot().place;
-  if (here != asked_) {
-    asked_ = 0;
+  if (here != talk_.asked) {
+    talk_.asked = 0;
     // The robot has left the place that it asked about.
-    if (question().isAboutName() && question().place != here) questions_.drop();
+    if (question().isAboutName() && question().place != here) talk_.questions.drop();
   }
-  if (here == 0 || robot().in_doorway || here == asked_) return;
-  if (questions_.isOpen()) return;
-  asked_ = here;
+  if (here == 0 || robot().in_doorway || here == talk_.asked) return;
+  if (talk_.questions.isOpen()) return;
+  talk_.asked = here;
   askAboutPlace(here, params_.ask, out);
 }
 
 Reply Dialogue::askHere() {
   Reply out = reply();
   const Id here = robot().place;
-  if (here == 0 || questions_.isOpen()) return out;
+  if (here == 0 || talk_.questions.isOpen()) return out;
   askAboutPlace(here, AskPolicy::kAlways, out);
   return out;
 }
@@ -233,10 +245,7 @@ void Dialogue::restore(DialogueState state) {
   heading_ = state.heading;
   position_ = state.position;
   told_at_ = places_.map().findPlace(state.told_at) == nullptr ? 0 : state.told_at;
-  questions_.drop();
-  asked_ = 0;
-  subject_ = 0;
-  match_.reset();
+  talk_ = {};
   topo_state_.mapChanged(places_.map());
 }
 
@@ -282,7 +291,8 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
     if (robot().place != 0) found.push_back(robot().place);
     if (found.empty()) out.sentences.push_back(phrases().say("no_place_here"));
   } else if (name.reference == "it") {
-    if (subject_ != 0 && places_.map().findPlace(subject_) != nullptr) found.push_back(subject_);
+    if (talk_.subject != 0 && places_.map().findPlace(talk_.subject) != nullptr)
+      found.push_back(talk_.subject);
     if (found.empty()) {
       out.sentences.push_back(phrases().say("unknown_place", {{"name", "'" + name.text + "'"}}));
       out.unknown_name = true;
@@ -294,7 +304,7 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
       out.unknown_name = true;
     }
   }
-  if (!found.empty()) subject_ = found.front();
+  if (!found.empty()) talk_.subject = found.front();
   return found;
 }
 

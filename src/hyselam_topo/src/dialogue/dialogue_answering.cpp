@@ -18,7 +18,7 @@ std::vector<std::string> texts(const std::vector<SaidName>& names) {
 
 bool Dialogue::isPlaceName(const SaidName& name) const {
   if (name.quoted || names_.isOfPlace(name.text) ||
-      accepted_.count(names_.key(name.text).full) != 0) {
+      talk_.accepted.count(names_.key(name.text).full) != 0) {
     return true;
   }
   const std::vector<std::string> known = knownNames();
@@ -27,7 +27,7 @@ bool Dialogue::isPlaceName(const SaidName& name) const {
 }
 
 void Dialogue::takeAnswer(const ParsedText& text, Turn& turn) {
-  if (!questions_.isOpen()) return;
+  if (!talk_.questions.isOpen()) return;
   SaidAnswer said = answerIn(text, question(), robot().place);
   if (!said.any()) return;
   if (!said.names.empty() && !said.yes && !said.no) heedFirstWord(turn.text, &said);
@@ -35,7 +35,7 @@ void Dialogue::takeAnswer(const ParsedText& text, Turn& turn) {
   turn.answered = true;
   // "Yes, no." and "Pardon?": it is put again.
   if (said.repeat || (said.yes && said.no)) {
-    turn.reply.sentences.push_back(questions_.sentence());
+    turn.reply.sentences.push_back(talk_.questions.sentence());
     return;
   }
   answer(said, turn);
@@ -66,14 +66,14 @@ void Dialogue::answer(const SaidAnswer& said, Turn& turn) {
   } else if (said.no) {
     answerNo(asked, out);
   } else {
-    questions_.drop();
+    talk_.questions.drop();
     out.sentences.push_back(phrases().say("cancelled"));
   }
 }
 
 void Dialogue::answerName(const SaidAnswer& said, const Question& asked, Reply& out) {
   const std::vector<std::string> names = texts(said.names);
-  questions_.drop();
+  talk_.questions.drop();
   if (asked.kind == Question::Kind::kSpeaker) {
     setSpeaker(names.front(), out);
     return;
@@ -107,7 +107,7 @@ void Dialogue::answerName(const SaidAnswer& said, const Question& asked, Reply& 
 }
 
 void Dialogue::answerLength(double length, const Question& asked, Reply& out) {
-  questions_.drop();
+  talk_.questions.drop();
   if (asked.kind == Question::Kind::kRadius) {
     addVirtualAndAsk(asked.point, length, asked.names, out);
   } else {
@@ -122,10 +122,10 @@ void Dialogue::answerYes(const Question& asked, Turn& turn) {
   // A name or a length is no matter of yes.
   if (asked.kind == Kind::kName || asked.kind == Kind::kRadius || asked.kind == Kind::kWallLength ||
       asked.kind == Kind::kSpeaker) {
-    out.sentences.push_back(questions_.sentence());
+    out.sentences.push_back(talk_.questions.sentence());
     return;
   }
-  questions_.drop();
+  talk_.questions.drop();
   switch (asked.kind) {
     case Kind::kConfirmName:
     case Kind::kAlsoName:
@@ -162,7 +162,7 @@ void Dialogue::answerYes(const Question& asked, Turn& turn) {
 
 void Dialogue::answerNo(const Question& asked, Reply& out) {
   const Phrases& p = phrases();
-  questions_.drop();
+  talk_.questions.drop();
   switch (asked.kind) {
     case Question::Kind::kConfirmName:
       rejectGuess(asked, out);
@@ -226,9 +226,9 @@ void Dialogue::meetAnswer(const Utterance& u, Turn& turn) {
   Reply& out = turn.reply;
   if (turn.answered) return;  // one utterance answers one question
   turn.answered = true;
-  if (u.intent == "repeat" && !last_said_.empty()) {
-    out.sentences = last_said_;
-  } else if (u.intent == "no" && under_way_) {
+  if (u.intent == "repeat" && !talk_.last_said.empty()) {
+    out.sentences = talk_.last_said;
+  } else if (u.intent == "no" && talk_.under_way) {
     halt(out);
     out.sentences.push_back(phrases().say("stopped"));
   } else if (u.intent == "yes" || u.intent == "no" || u.intent == "unknown_answer" ||

@@ -93,7 +93,7 @@ void Dialogue::goToPreviousPlace(const Utterance&, Turn& turn) {
 
 void Dialogue::followPerson(const Utterance&, Turn& turn) {
   turn.reply.actions.push_back({DialogueAction::Kind::kFollow, {}, 0.0});
-  under_way_ = Id{0};
+  talk_.under_way = Id{0};
   say("following", turn);
 }
 
@@ -111,14 +111,14 @@ void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
 }
 
 void Dialogue::stop(const Utterance&, Turn& turn) {
-  questions_.drop();
+  talk_.questions.drop();
   turn.goals.clear();
   halt(turn.reply);
   say("stopped", turn);
 }
 
 void Dialogue::cancel(const Utterance&, Turn& turn) {
-  questions_.drop();
+  talk_.questions.drop();
   turn.goals.clear();
   halt(turn.reply);
   say("cancelled", turn);
@@ -140,7 +140,8 @@ bool Dialogue::isUnsure(const NamedGoal& goal) const {
   const bool guessed = std::all_of(goal.second.begin(), goal.second.end(), [&](Id id) {
     return nameStateOf(*places_.map().findPlace(id)) == NameState::kUnconfirmed;
   });
-  return guessed && std::any_of(unsure_.names.begin(), unsure_.names.end(), [&](const auto& name) {
+  return guessed &&
+         std::any_of(talk_.unsure.names.begin(), talk_.unsure.names.end(), [&](const auto& name) {
            if (places_.sameName(name, goal.first)) return true;
            const std::vector<Id> found = places_.find(name);
            return std::find_first_of(found.begin(), found.end(), goal.second.begin(),
@@ -197,7 +198,7 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
   out.sentences.push_back(p.say("going", {{"places", p.list(labels(stops))}}));
   if (closed) out.sentences.push_back(p.say("door_closed"));
   out.actions.push_back(std::move(action));
-  under_way_ = stops.back();
+  talk_.under_way = stops.back();
 }
 
 // ---- Questions ----
@@ -210,7 +211,7 @@ void Dialogue::answerWhereAreYou(const Utterance&, Turn& turn) {
     out.sentences.push_back(p.say("at_unknown"));
     return;
   }
-  subject_ = here;
+  talk_.subject = here;
   const Place& place = *places_.map().findPlace(here);
   const std::string code = codeOf(place);
   if (nameStateOf(place) == NameState::kConfirmed) {

@@ -190,14 +190,14 @@ void Dialogue::recordStatements(Turn& turn) {
     return;
   }
   if (!here.empty() && robot().place != 0) {
-    if (question().place == robot().place) questions_.drop();
+    if (question().place == robot().place) talk_.questions.drop();
     if (!named_otherwise && beyond_here) {
       places_.confirm(robot().place, here);
       giveNames(robot().place);
     } else if (!named_otherwise) {
       confirmNames(robot().place, here, out);
     }
-    subject_ = robot().place;
+    talk_.subject = robot().place;
   } else if (!here.empty() && !beyond_here) {
     out.sentences.push_back(p.say("no_place_here"));
   }
@@ -244,8 +244,8 @@ void Dialogue::askAboutIssue(const DescriptionIssue& issue, bool asks_speaker, R
 }
 
 void Dialogue::matchDescription(Reply& out, bool report) {
-  match_.reset();
-  unsure_ = {};
+  talk_.match.reset();
+  talk_.unsure = {};
   const DescribedBuilding& building = builder_.building();
   if (!places_.hasMap() || building.places.empty()) return;
   const GuessedPlaces guessed_before = guessedPlaces(places_, building);
@@ -257,22 +257,22 @@ void Dialogue::matchDescription(Reply& out, bool report) {
   try {
     const MatchProblem problem =
         compileMatch(building, places_.map(), observer, constraintsOf(places_, builder_));
-    match_ = solveExact(problem, params_.match);
-    if (report && params_.ask_from_afar && match_->found()) problem_to_ask = problem;
-    if (match_->found()) {
+    talk_.match = solveExact(problem, params_.match);
+    if (report && params_.ask_from_afar && talk_.match->found()) problem_to_ask = problem;
+    if (talk_.match->found()) {
       std::vector<std::pair<Id, std::vector<std::string>>> guesses;
       for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
-        const int name = nameAt(match_->best(), v);
+        const int name = nameAt(talk_.match->best(), v);
         if (name < 0) continue;
         const DescribedPlace* place =
             building.findPlace(problem.names[static_cast<std::size_t>(name)]);
         if (!isCode(place->name)) guesses.emplace_back(problem.vertices[v], allNamesOf(*place));
       }
       places_.guess(guesses);
-      unsure_ = uncertaintyOf(*match_, problem, params_.match, building);
+      talk_.unsure = uncertaintyOf(*talk_.match, problem, params_.match, building);
     }
   } catch (const hyselam::InputError& e) {
-    match_.reset();
+    talk_.match.reset();
     if (report) out.sentences.push_back(phrases().say("cannot_match", {{"reason", e.what()}}));
     return;
   }
@@ -301,13 +301,13 @@ void Dialogue::reportMatch(Reply& out) const {
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
   if (!missing.empty()) out.sentences.push_back(p.say("not_found", {{"names", p.list(missing)}}));
-  if (unsure_.names.empty()) return;
-  const std::vector<std::string> names(unsure_.names.begin(), unsure_.names.end());
-  if (unsure_.answers < 2) {
+  if (talk_.unsure.names.empty()) return;
+  const std::vector<std::string> names(talk_.unsure.names.begin(), talk_.unsure.names.end());
+  if (talk_.unsure.answers < 2) {
     out.sentences.push_back(p.say("unsure", {{"names", p.list(names)}}));
     return;
   }
-  const std::string number = std::to_string(unsure_.answers) + (unsure_.more ? "+" : "");
+  const std::string number = std::to_string(talk_.unsure.answers) + (talk_.unsure.more ? "+" : "");
   out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
 }
 

@@ -1,6 +1,5 @@
 // From a text to what it leads to: its utterances one by one, each by the handler of its intent.
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -12,18 +11,6 @@
 
 namespace hyselam_topo {
 namespace {
-
-/// What `next` says and does comes after what `reply` does.
-void append(Reply next, Reply& reply) {
-  const auto move = [](auto& from, auto& to) {
-    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-  };
-  reply.language = next.language;
-  move(next.sentences, reply.sentences);
-  move(next.actions, reply.actions);
-  move(next.refusals, reply.refusals);
-  move(next.utterances, reply.utterances);
-}
 
 /// "it's in the hall": no place is named that lies within another.
 bool isOfReferences(const Utterance& u) {
@@ -160,7 +147,7 @@ bool Dialogue::knowsLanguage(const std::string& language) const {
 }
 
 bool Dialogue::isOfThisPlace(const Utterance& u, const Turn& turn) const {
-  if (u.intent != "alias" || turn.described || described_last_) return false;
+  if (u.intent != "alias" || turn.described || talk_.described_last) return false;
   const std::vector<SaidName> place = u.names("place");
   return place.size() == 1 && !place.front().reference.empty() && u.find("aliases") != nullptr;
 }
@@ -186,13 +173,13 @@ ParsedText Dialogue::parse(const std::string& text) {
 }
 
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
-  questions_.beginUtterance();
+  talk_.questions.beginUtterance();
   dropStaleQuestion();
-  named_last_ = std::move(named_now_);
-  named_now_.reset();
+  talk_.named_last = std::move(talk_.named_now);
+  talk_.named_now.reset();
   const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
   Reply out = urgent.urgency == Urgency::kNone ? understand(text, options) : obey(urgent);
-  if (!out.sentences.empty()) last_said_ = out.sentences;
+  if (!out.sentences.empty()) talk_.last_said = out.sentences;
   return out;
 }
 
@@ -214,21 +201,25 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
     turn.end = std::min(text.size(), u.range.end);
   }
   joinForwarded(text, parsed.utterances.size(), turn.reply.forwarded);
+  finish(turn);
+  turn.reply.ends_other_question =
+      options.others_asked_last && turn.about_else && turn.reply.forwarded.empty();
+  return turn.reply;
+}
+
+void Dialogue::finish(Turn& turn) {
   attempt(turn.reply, [&] { recordStatements(turn); });
   startGoal(turn);
   tellLeftOut(turn);
   auto& sentences = turn.reply.sentences;
   // Questions come last, where they are answered.
-  const bool asks = questions_.isOpen() && questions_.isNew() && !sentences.empty();
+  const bool asks = talk_.questions.isOpen() && talk_.questions.isNew() && !sentences.empty();
   sentences.insert(asks ? sentences.end() - 1 : sentences.end(), turn.not_understood.begin(),
                    turn.not_understood.end());
   propose(turn);
   settleQuestion(turn);
-  described_last_ = turn.told;
-  turn.reply.ends_other_question =
-      options.others_asked_last && turn.about_else && turn.reply.forwarded.empty();
-  if (!turn.again.empty()) append(understand(turn.again, {}), turn.reply);
-  return turn.reply;
+  talk_.described_last = turn.told;
+  if (!turn.again.empty()) turn.reply.append(understand(turn.again, {}));
 }
 
 void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
@@ -340,7 +331,7 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
 void Dialogue::propose(Turn& turn) {
   if (turn.proposals.empty()) return;
   auto& sentences = turn.reply.sentences;
-  if (questions_.isOpen() && questions_.isNew()) {  // one question at a time
+  if (talk_.questions.isOpen() && talk_.questions.isNew()) {  // one question at a time
     sentences.insert(sentences.end() - 1, turn.refusal_of_proposal);
     return;
   }
@@ -349,14 +340,14 @@ void Dialogue::propose(Turn& turn) {
 
 Reply Dialogue::refuse(const ForwardedSentence& sentence) {
   Reply out = reply();
-  if (sentence.suggests_meaning && !(questions_.isOpen() && questions_.isNew())) {
+  if (sentence.suggests_meaning && !(talk_.questions.isOpen() && talk_.questions.isNew())) {
     if (!sentence.rest.empty()) out.sentences.push_back(sentence.rest);
     askProposal(proposalsOf(sentence.suggestion, sentence.alternatives), out);
   } else {
     out.sentences.push_back(sentence.refusal);
   }
   out.refusals.push_back({sentence.text, sentence.reason, false, sentence.suggestion});
-  last_said_ = out.sentences;
+  talk_.last_said = out.sentences;
   return out;
 }
 

@@ -36,7 +36,7 @@ const Grammar& Dialogue::grammar() const {
 
 std::vector<Id> Dialogue::described(const SaidName& name) const {
   if (name.reference.empty()) return builder_.find(name.text);
-  const Id place = name.reference == "here" ? robot().place : subject_;
+  const Id place = name.reference == "here" ? robot().place : talk_.subject;
   const Place* known = places_.map().findPlace(place);
   std::vector<Id> found;
   if (known == nullptr) return found;

@@ -33,7 +33,7 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
   BeforeNaming before{place, std::move(words), builder_};
   // Nothing has changed where this throws, and nothing behind it does.
   const std::vector<Id> losers = places_.confirm(place, names);
-  named_now_.emplace(std::move(before));
+  talk_.named_now.emplace(std::move(before));
   const Place& named = *places_.map().findPlace(place);
   out.sentences.push_back(
       p.say("named", {{"code", codeOf(named)}, {"names", p.list(namesOf(named))}}));
@@ -41,8 +41,8 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
     out.sentences.push_back(
         p.say("moved_name", {{"code", codeOf(*places_.map().findPlace(loser))}}));
   }
-  if (question().place == place) questions_.drop();
-  subject_ = place;
+  if (question().place == place) talk_.questions.drop();
+  talk_.subject = place;
   // Sides are told from here.
   giveNames(place);
   if (place == robot().place) tellRobotPlace(place, namesOf(named));
@@ -52,7 +52,7 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
 
 void Dialogue::acceptNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    accepted_.insert(names_.key(name).full);
+    talk_.accepted.insert(names_.key(name).full);
     builder_.acceptName(name);
   }
 }
@@ -81,7 +81,7 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
 Reply Dialogue::forget(Id place) {
   Reply out = reply();
   places_.forget(place);
-  if (question().isAboutName() && question().place == place) questions_.drop();
+  if (question().isAboutName() && question().place == place) talk_.questions.drop();
   dropStaleQuestion();
   out.sentences.push_back(phrases().say("forgot_names", {{"places", label(place)}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
@@ -111,13 +111,13 @@ void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
 }
 
 bool Dialogue::takeNameBack(Turn& turn) {
-  if (questions_.isOpen() && question().isAboutName()) {
-    questions_.drop();
+  if (talk_.questions.isOpen() && question().isAboutName()) {
+    talk_.questions.drop();
     say("cancelled", turn);
     return true;
   }
-  std::optional<BeforeNaming>& before = named_now_ ? named_now_ : named_last_;
-  if (!before || described_last_) return false;
+  std::optional<BeforeNaming>& before = talk_.named_now ? talk_.named_now : talk_.named_last;
+  if (!before || talk_.described_last) return false;
   for (const auto& [id, words] : before->words) {
     if (places_.map().findPlace(id) != nullptr) places_.setWords(id, words);
   }
@@ -142,8 +142,8 @@ void Dialogue::forgetEverything(Reply& out) {
   builder_ = DescriptionBuilder(parser_);
   builder_.setLanguage(language_);
   builder_.setSpeaker(speaker);
-  match_.reset();
-  unsure_ = {};
+  talk_.match.reset();
+  talk_.unsure = {};
   out.sentences.push_back(phrases().say("forgot_all"));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
@@ -166,7 +166,7 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
     if (!by_name) had = places_.forget(id) || had;
   }
   if (by_name) had = !places_.forgetName(said.front().text).empty();
-  if (question().kind == Question::Kind::kConfirmName) questions_.drop();
+  if (question().kind == Question::Kind::kConfirmName) talk_.questions.drop();
   out.sentences.push_back(p.say(had ? "forgot_names" : "no_names", {{"places", p.list(codes)}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }

@@ -8,12 +8,12 @@
 namespace hyselam_topo {
 
 void Dialogue::ask(Question question, const std::string& sentence, Reply& out) {
-  questions_.ask(std::move(question), sentence);
+  talk_.questions.ask(std::move(question), sentence);
   out.sentences.push_back(sentence);
 }
 
 void Dialogue::dropStaleQuestion() {
-  if (!isStillValid(question(), places_)) questions_.drop();
+  if (!isStillValid(question(), places_)) talk_.questions.drop();
 }
 
 void Dialogue::askConfirm(Id place, Reply& out) {
@@ -90,9 +90,9 @@ void Dialogue::tellMoved(std::vector<MovedName> moved, bool asks, Reply& out) {
   if (elsewhere.empty()) return;
   // One question at a time; what was told to be unsure moves without one.
   const bool any_sure = std::any_of(elsewhere.begin(), elsewhere.end(), [&](const MovedName& each) {
-    return unsure_.names.count(each.name) == 0;
+    return talk_.unsure.names.count(each.name) == 0;
   });
-  if (!asks || !any_sure || (questions_.isOpen() && questions_.isNew())) {
+  if (!asks || !any_sure || (talk_.questions.isOpen() && talk_.questions.isNew())) {
     out.sentences.push_back(p.say("told_moved", {{"moves", p.list(told)}}));
     return;
   }
@@ -105,8 +105,8 @@ void Dialogue::tellMoved(std::vector<MovedName> moved, bool asks, Reply& out) {
 // Asks the question that best discriminates between near-equal assignments.
 void Dialogue::askMostInformativeQuestion(const MatchProblem& problem, Reply& out) {
   constexpr double kWorthAsking = 0.2;  // [bits] that an answer must be worth to bother people
-  if (questions_.isOpen()) return;
-  const auto best = mostInformativeQuestion(problem, *match_);
+  if (talk_.questions.isOpen()) return;
+  const auto best = mostInformativeQuestion(problem, *talk_.match);
   if (!best || best->bits < kWorthAsking) return;
   const Place& place = *places_.map().findPlace(best->place);
   const bool guessed = nameStateOf(place) == NameState::kUnconfirmed;
@@ -131,9 +131,9 @@ void Dialogue::settleQuestion(Turn& turn) {
   } else if (!turn.not_understood.empty() || !turn.reply.forwarded.empty()) {
     topic = Topic::kNotUnderstood;
   }
-  const bool again = questions_.endUtterance(topic);
+  const bool again = talk_.questions.endUtterance(topic);
   if (again && turn.reply.forwarded.empty()) {
-    turn.reply.sentences.push_back(questions_.sentence());
+    turn.reply.sentences.push_back(talk_.questions.sentence());
   }
 }
 

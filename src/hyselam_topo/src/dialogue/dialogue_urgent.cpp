@@ -17,7 +17,7 @@ bool isMotion(const Utterance& u) {
 }  // namespace
 
 void Dialogue::halt(Reply& out) {
-  under_way_.reset();
+  talk_.under_way.reset();
   out.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
 }
 
@@ -27,7 +27,7 @@ Reply Dialogue::obey(const UrgentWords& urgent) {
   if (!spoken && !languages.empty() && phrases_.count(languages.front()) != 0) {
     language_ = languages.front();
   }
-  questions_.drop();
+  talk_.questions.drop();
   Turn turn;
   turn.reply = reply();
   halt(turn.reply);
@@ -35,9 +35,11 @@ Reply Dialogue::obey(const UrgentWords& urgent) {
   turn.reply.ends_other_question = true;
   const bool stop = urgent.urgency == Urgency::kStop;
   turn.reply.sentences.push_back(phrases().say(stop ? "stopped" : "cancelled"));
-  for (const UrgentRest& rest : urgent.rest) heedRest(rest, turn);
-  attempt(turn.reply, [&] { recordStatements(turn); });
-  startGoal(turn);
+  for (const UrgentRest& rest : urgent.rest) {
+    // Behind what waits for an answer, in words that would not be heard again.
+    turn.broken_off ? refuseRest(rest, turn) : heedRest(rest, turn);
+  }
+  finish(turn);
   return turn.reply;
 }
 
@@ -56,18 +58,23 @@ void Dialogue::heedRest(const UrgentRest& rest, Turn& turn) {
     return u.understood() && (rest.after || !isMotion(u));
   });
   if (!all) {
-    const std::string reason = phrases().say("not_taken", {{"text", rest.text}});
-    turn.reply.sentences.push_back(reason);
-    turn.reply.refusals.push_back({rest.text, reason, false, ""});
+    refuseRest(rest, turn);
     return;
   }
   turn.text = rest.text;
   turn.end = 0;
   for (const Utterance& u : said) {
+    if (turn.broken_off) return;
     // What was asked before is over, and so are its answers.
     if (!isAnswer(u)) handleUtterance(u, turn);
     turn.end = std::min(turn.text.size(), u.range.end);
   }
+}
+
+void Dialogue::refuseRest(const UrgentRest& rest, Turn& turn) {
+  const std::string reason = phrases().say("not_taken", {{"text", rest.text}});
+  turn.reply.refusals.push_back({rest.text, reason, false, ""});
+  turn.not_understood.push_back(reason);
 }
 
 }  // namespace hyselam_topo

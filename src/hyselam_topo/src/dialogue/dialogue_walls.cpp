@@ -21,7 +21,7 @@ void Dialogue::addWall(const Utterance& u, Turn& turn) {
     out.sentences.push_back(p.say(grid_ ? "at_unknown" : "no_grid"));
     return;
   }
-  questions_.drop();
+  talk_.questions.drop();
   Question question;
   try {
     // Walls described before are seen: their posts are no corners any more.
@@ -127,10 +127,10 @@ void Dialogue::addVirtualAndAsk(hyselam::Point2 centre, double radius,
   }
   out.sentences.push_back(p.say("virtual_added", {{"code", codeOf(*places_.map().findPlace(id))}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
-  subject_ = id;
+  talk_.subject = id;
   topo_state_.mapChanged(places_.map());
   if (robot().has_pose) topo_state_.update(places_.map(), robot().stamp, robot().pose);
-  if (robot().place == id) asked_ = id;
+  if (robot().place == id) talk_.asked = id;
   if (names.empty()) askName(id, out);
 }
 

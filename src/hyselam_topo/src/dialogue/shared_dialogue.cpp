@@ -1,22 +1,13 @@
 #include "hyselam_topo/dialogue/shared_dialogue.hpp"
 
-#include <iterator>
+#include <utility>
 
 namespace hyselam_topo {
-namespace {
 
-/// What `next` says and does comes after what `reply` does.
-void append(Reply next, Reply& reply) {
-  const auto move = [](auto& from, auto& to) {
-    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-  };
-  reply.language = next.language;
-  move(next.sentences, reply.sentences);
-  move(next.actions, reply.actions);
-  move(next.refusals, reply.refusals);
+void SharedDialogue::restore(DialogueState state) {
+  dialogue_.restore(std::move(state));
+  objects_spoken_of_ = object_asked_last_ = false;
 }
-
-}  // namespace
 
 Reply SharedDialogue::hear(const std::string& text, bool others_listen) {
   HearOptions options;
@@ -37,7 +28,7 @@ Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAns
   if (answer != nullptr && answer->understood) return carryOut(*answer);
   Reply reply = dialogue_.reply();
   if (sentence.refusal.empty()) {
-    append(dialogue_.hear(sentence.text), reply);
+    reply.append(dialogue_.hear(sentence.text));
   } else {
     const bool by_other = answer != nullptr &&
                           (sentence.about_object || (answer->about_things && !sentence.understood));
@@ -45,7 +36,7 @@ Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAns
       reply.sentences.push_back(answer->reply);
       reply.refusals.push_back({sentence.text, answer->reason, true, ""});
     } else {
-      append(dialogue_.refuse(sentence), reply);
+      reply.append(dialogue_.refuse(sentence));
     }
   }
   if (answer == nullptr) reply.sentences.push_back(dialogue_.sayNobodyAnswers());
@@ -61,7 +52,7 @@ Reply SharedDialogue::carryOut(const OtherAnswer& answer) {
   const std::vector<Id> goals = goalsOf(answer);
   const std::string name = answer.places.empty() ? "" : answer.places.front().name;
   if (goals.empty() && name.empty()) return reply;  // the answer has told why
-  append(dialogue_.goTo(name, goals), reply);
+  reply.append(dialogue_.goTo(name, goals));
   return reply;
 }
 

@@ -36,7 +36,12 @@ void TopoEngineServer::restoreState() {
 }
 
 void TopoEngineServer::load(const std::string& path) {
-  dialogue_.restore(loadDialogueState(path));
+  shared_.restore(loadDialogueState(path));
+  // Of the talk before; at the start there was none.
+  if (forwarder_) {
+    forwarder_->dropAll();
+    forwarder_->endQuestion();
+  }
   changed_ = false;
   // What was shown before is gone, also if the state has no map and no question.
   if (!dialogue_.places().hasMap())

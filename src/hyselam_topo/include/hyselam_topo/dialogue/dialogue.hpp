@@ -112,6 +112,8 @@ struct Reply {
 
   std::string text() const;  ///< the sentences, separated by spaces
   bool has(DialogueAction::Kind kind) const;
+  /// What `next` says and does comes after what this does, in its language.
+  void append(Reply next);
 };
 
 struct HearOptions {
@@ -188,11 +190,11 @@ class Dialogue {
   const PlaceMan& places() const { return places_; }
   const RobotPlace& robot() const { return topo_state_.robot(); }
   const DescribedBuilding& description() const { return builder_.building(); }
-  const Question& question() const { return questions_.question(); }
+  const Question& question() const { return talk_.questions.question(); }
   /// The open question as it was put; "" for none.
-  const std::string& openQuestion() const { return questions_.sentence(); }
+  const std::string& openQuestion() const { return talk_.questions.sentence(); }
   /// Assignment of the description's names to places of the map; nothing if there is none.
-  const std::optional<PlaceAssignment>& match() const { return match_; }
+  const std::optional<PlaceAssignment>& match() const { return talk_.match; }
   /// The grid map with all described walls in it; nothing without a grid map.
   std::optional<hyselam::OccupancyGrid> gridWithWalls() const;
   /// All place names, confirmed, guessed or only described, sorted.
@@ -204,7 +206,7 @@ class Dialogue {
   std::optional<std::pair<Id, PlacePose>> poseOf(const std::string& name) const;
 
   DialogueState state() const;
-  /// @throws hyselam::InputError for an inconsistent state.
+  /// The talk begins anew with that state. @throws hyselam::InputError for an inconsistent one.
   void restore(DialogueState state);
 
  private:
@@ -217,6 +219,8 @@ class Dialogue {
   bool knowsLanguage(const std::string& language) const;
   /// What remains after stop and cancel.
   Reply understand(const std::string& text, const HearOptions& options);
+  /// What all texts end with: statements are recorded, goals set out for, questions asked.
+  void finish(Turn& turn);
   void tellLeftOut(Turn& turn);
   void refuse(const Utterance& u, Turn& turn);
   /// Nothing of it was understood, and it is in another language.
@@ -229,6 +233,7 @@ class Dialogue {
   /// Stop or cancel was said.
   Reply obey(const UrgentWords& urgent);
   void heedRest(const UrgentRest& rest, Turn& turn);
+  void refuseRest(const UrgentRest& rest, Turn& turn);
   /// Puts the open question again, or drops it if the text was about something else.
   void settleQuestion(Turn& turn);
   void handleUtterance(const Utterance& u, Turn& turn);
@@ -403,27 +408,32 @@ class Dialogue {
   PlaceMan places_;
   DescriptionBuilder builder_;
   TopoState topo_state_;
-  bool entered_ = false;  ///< the robot's place or the map has changed; not processed yet
   std::optional<hyselam::OccupancyGrid> grid_;
-  std::optional<PlaceAssignment> match_;
   std::optional<double> heading_;            // DialogueState::heading
   std::optional<hyselam::Point2> position_;  ///< then
   Id told_at_ = 0;                           ///< DialogueState::told_at
-  Uncertainty unsure_;                       // of match_
-  QuestionKeeper questions_;
-  std::optional<Id> under_way_;         // the place that it drives to; 0: it follows a person
-  std::set<std::string> accepted_;      // names that a person has agreed to (NameKey::full)
-  std::vector<std::string> last_said_;  // for "what?"
-  bool described_last_ = false;         // the last utterance told of places: "it" is one of them
+
   /// What "undo that" goes back to after a name was told.
   struct BeforeNaming {
     Id place = 0;
     std::map<Id, std::vector<PlaceTerm>> words;
     DescriptionBuilder builder;
   };
-  std::optional<BeforeNaming> named_now_, named_last_;  // in this text, in the one before
-  Id asked_ = 0;    // the place for which a question was considered since entering it
-  Id subject_ = 0;  // antecedent of "it"
+  /// What is in no DialogueState: nothing of it outlives restore().
+  struct Talk {
+    bool entered = false;  ///< the robot's place or the map has changed; not processed yet
+    Id asked = 0;          ///< the place for which a question was considered since entering it
+    std::optional<PlaceAssignment> match;
+    Uncertainty unsure;  ///< of match
+    QuestionKeeper questions;
+    std::optional<Id> under_way;         ///< the place that it drives to; 0: it follows a person
+    std::set<std::string> accepted;      ///< names that a person has agreed to (NameKey::full)
+    std::vector<std::string> last_said;  ///< for "what?"
+    bool described_last = false;         ///< the last utterance told of places: "it" is one of them
+    std::optional<BeforeNaming> named_now, named_last;  ///< in this text, in the one before
+    Id subject = 0;                                     ///< antecedent of "it"
+  };
+  Talk talk_;
 };
 
 }  // namespace hyselam_topo

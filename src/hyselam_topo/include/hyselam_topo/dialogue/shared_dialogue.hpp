@@ -32,6 +32,8 @@ class SharedDialogue {
   /// `dialogue` must outlive this.
   explicit SharedDialogue(Dialogue& dialogue) : dialogue_(dialogue) {}
 
+  /// Dialogue::restore(), and nothing was said of objects yet. Throws likewise.
+  void restore(DialogueState state);
   /// Any text of a person. `others_listen`: there is a node that handles objects; the sentences for
   /// it are in Reply::forwarded, and each is to be given to answered() with its answer.
   Reply hear(const std::string& text, bool others_listen);
