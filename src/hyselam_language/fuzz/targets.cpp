@@ -91,9 +91,9 @@ void readerModel(const std::uint8_t* data, std::size_t size) {
   static const Grammar kGrammar = Grammar::shipped("en");
   try {
     const FactReader reader(kGrammar, "fuzz", textOf(data, size));
-    const Reading reading =
+    const auto reading =
         reader.read("The cup is next to the lab, isn't it? Mary's is on the left.");
-    require(reading.probability >= 0.0 && reading.probability <= 1.0);
+    require(reading && reading->probability >= 0.0 && reading->probability <= 1.0);
   } catch (const hyselam::InputError&) {
   }
 }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <iostream>
 #include <random>
+#include <set>
 
 #include "building/sentence_writer.hpp"
 #include "grammar/compiled_grammar.hpp"
@@ -15,6 +16,7 @@
 #include "hyselam_language/reader/fact_reader.hpp"
 #include "reader/fact_writer.hpp"
 #include "reader/linear_classifier.hpp"
+#include "reader/part_reading.hpp"
 #include "reader/reader_model.hpp"
 
 namespace hyselam_topo {
@@ -34,7 +36,8 @@ const FactReader& reader(const std::string& language) {
 /// "not next lab library".
 std::vector<std::string> factsOf(const std::string& language, const std::string& text) {
   std::vector<std::string> facts;
-  for (const ReadFact& fact : reader(language).read(text).facts) {
+  const Reading reading_of_text = reader(language).read(text).value();
+  for (const ReadFact& fact : reading_of_text.facts) {
     std::string words =
         std::string(fact.denied ? "not " : "") + (fact.asked ? "ask " : "") + fact.relation;
     for (const FactArgument& each : fact.arguments) words += " | " + each.text;
@@ -76,7 +79,8 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
   const std::string good =
       language::ReaderModel::fromText(
           "good",
-          "# made\n[lexicon]\nnoun lab\n[tagger]\nclasses O\n[of_one]\nclasses "
+          "hyselam_fact_reader 1\nlanguage en\ncommand by hand\ndata none\nleft_out "
+          "none\n[lexicon]\nnoun lab\n[tagger]\nclasses O\n[of_one]\nclasses "
           "none\n[of_two]\nclasses "
           "none\n[of_text]\nclasses none\n[modifiers]\nclasses plain\n[calibration]\nreading 1 0 "
           "0\nfact 1 0 0\nother 1 0 0\n")
@@ -94,8 +98,34 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
     return text.replace(text.find(what), what.size(), by);
   };
   EXPECT_EQ(reason(good), "");
-  EXPECT_EQ(reason(""), "model.txt: [tagger]: is missing");
-  EXPECT_EQ(reason("nonsense\n"), "model.txt: line 1: stands before the first section");
+  EXPECT_EQ(reason(good.substr(0, good.find("[lexicon]"))), "model.txt: [tagger]: is missing");
+  EXPECT_EQ(reason(with("[lexicon]", "nonsense\n[lexicon]")),
+            "model.txt: line 6: stands before the first section");
+  EXPECT_EQ(reason("nonsense\n"), "model.txt: line 1: is no 'hyselam_fact_reader 1'");
+  EXPECT_EQ(reason(with("reader 1", "reader 2")),
+            "model.txt: line 1: is no 'hyselam_fact_reader 1'");
+  EXPECT_EQ(reason(with("left_out none\n", "")), "model.txt: line 5: 'left_out' is expected");
+  const std::string old =
+      "model.txt: line 1: is no 'hyselam_fact_reader 1': models without that head are of an older "
+      "format, which is not read; train it again (bench/readers --retrain)";
+  EXPECT_EQ(reason("# The second reader, language 'en'.\n[lexicon]\n"), old);
+  EXPECT_EQ(reason(good.substr(good.find("[lexicon]"))), old);
+  EXPECT_EQ(reason(with("[of_text]\nclasses none", "[of_text]\nclasses  none")),
+            "model.txt [of_text]: line 1: has a class without a name");
+  EXPECT_EQ(reason(with("[of_text]\nclasses none", "[of_text]\nclasses none none")),
+            "model.txt [of_text]: line 1: has class 'none' twice");
+  EXPECT_EQ(reason(with("[of_text]\nclasses none", "[of_text]\nclasses none\nbias 0:-1000000")),
+            "model.txt [of_text]: line 2: weight -1000000 is not within +-100000");
+  EXPECT_EQ(reason(with("[of_text]\nclasses none", "[of_text]\nclasses stop")),
+            "model.txt [of_text]: 'none': no such class");
+  EXPECT_EQ(reason(with("[of_two]\nclasses none", "[of_two]\nclasses none between/*")),
+            "model.txt [of_two]: 'between/*': is no label of a fact with 2 names");
+  EXPECT_EQ(reason(with("[of_one]\nclasses none", "[of_one]\nclasses none /*")),
+            "model.txt [of_one]: '/*': is no label of a fact with 1 names");
+  EXPECT_EQ(reason(with("classes plain", "classes loud")),
+            "model.txt [modifiers]: 'loud': is no modifier");
+  EXPECT_EQ(reason(with("reading 1 0 0", "reading 1e300 0 0")),
+            "model.txt: [calibration]: the numbers of 'reading' are too large");
   EXPECT_EQ(reason(with("fact 1 0 0", "fact 1 x 0")),
             "model.txt: [calibration]: needs 'fact' and three numbers");
   EXPECT_EQ(reason(with("[of_two]\nclasses none", "[of_two]\nclasses none\nf 1:500")),
@@ -110,7 +140,28 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
             "model.txt [lexicon]: 'verb go': is no kind of word");
 }
 
-/// Sentences of the tests' own; what a training yields may miss some of them.
+TEST(FactReader, RefusesAModelOfAnotherLanguage) {
+  const Grammar pt = Grammar::shipped("pt");
+  const std::string model =
+      "hyselam_fact_reader 1\nlanguage en\ncommand by hand\ndata none\nleft_out none\n[lexicon]\n"
+      "[tagger]\nclasses O\n[of_one]\nclasses none\n[of_two]\nclasses none\n[of_text]\n"
+      "classes none\n[modifiers]\nclasses plain\n[calibration]\nreading 1 0 0\nfact 1 0 0\n"
+      "other 1 0 0\n";
+  EXPECT_THROW(FactReader(pt, "model.txt", model), hyselam::InputError);
+  EXPECT_NO_THROW(FactReader(Grammar::shipped("en"), "model.txt", model));
+}
+
+/// Sums that no probability can be made of one by one.
+TEST(LinearClassifier, SharesOfTheLargestSumsAreNumbers) {
+  language::LinearClassifier classifier({"a", "b"});
+  for (int i = 0; i < 100; ++i) classifier.setWeight("f" + std::to_string(i), 0, -100.0f);
+  for (int i = 0; i < 100; ++i) classifier.setWeight("f" + std::to_string(i), 1, -100.0f);
+  language::Features features;
+  for (int i = 0; i < 100; ++i) features.push_back("f" + std::to_string(i));
+  EXPECT_EQ(classifier.probabilities(features), (std::vector<double>{0.5, 0.5}));
+}
+
+/// Sentences of the tests' own; the shipped models misread one of them (printed).
 TEST(FactReader, ReadsMostOfWhatItWasNotTrainedWith) {
   const std::vector<std::array<std::string, 3>> said{
       {"en", "well you see the spice store is right beside the tailor's workshop you know",
@@ -136,12 +187,12 @@ TEST(FactReader, ReadsMostOfWhatItWasNotTrainedWith) {
     right += is_right ? 1 : 0;
     if (!is_right) std::cout << "misread: " << text << '\n';
   }
-  EXPECT_GE(right, 8u);
+  EXPECT_GE(right, said.size() - 1);
 }
 
 TEST(FactReader, KeepsArticlesAndPlaces) {
   const std::string text = "na verdade a tipografia fica em frente do arquivo";
-  const Reading reading = reader("pt").read(text);
+  const Reading reading = reader("pt").read(text).value();
   ASSERT_EQ(reading.facts.size(), 1u);
   ASSERT_EQ(reading.facts[0].arguments.size(), 2u);
   for (const FactArgument& each : reading.facts[0].arguments) {
@@ -163,15 +214,15 @@ TEST(FactReader, LivesWithAnyText) {
     for (std::size_t n = random() % 40; n > 0; --n)
       text += pieces[random() % std::size(pieces)] + (random() % 3 ? " " : "");
     for (const char* language : {"en", "pt"}) {
-      const Reading reading = reader(language).read(text);
-      EXPECT_TRUE(reading.probability >= 0.0 && reading.probability <= 1.0) << text;
+      const auto reading = reader(language).read(text);
+      EXPECT_TRUE(!reading || (reading->probability >= 0.0 && reading->probability <= 1.0)) << text;
     }
   }
-  EXPECT_TRUE(reader("en").read(std::string(100000, 'x')).facts.empty());
+  EXPECT_FALSE(reader("en").read(std::string(100000, 'x'))) << "not the same as nothing stated";
   std::string many;
   for (int i = 0; i < 500; ++i) many += "the lab is next to the store and ";
-  EXPECT_TRUE(reader("en").read(many).facts.empty());
-  EXPECT_TRUE(reader("en").read("").facts.empty());
+  EXPECT_FALSE(reader("en").read(many));
+  EXPECT_TRUE(reader("en").read("").value().facts.empty());
 }
 
 /// Each sentence that may be proposed, with names of all kinds, is one that the grammar takes.
@@ -220,6 +271,12 @@ TEST(SecondReading, ProposesWhatTheGrammarCannotRead) {
       "innit.");
   ASSERT_EQ(parsed.utterances.size(), 1u);
   EXPECT_TRUE(parsed.utterances[0].suggests_meaning);
+  // What it makes of "opposite" is wrong here; the likelier fact alone is asked after a "no".
+  EXPECT_EQ(parsed.utterances[0].suggestion.find("The lab comes right after the kitchen."), 0u);
+  const auto& next = parsed.utterances[0].alternatives;
+  EXPECT_TRUE(std::any_of(next.begin(), next.end(), [](const std::string& each) {
+    return each == "The lab comes right after the kitchen.";
+  })) << parsed.utterances[0].suggestion;
   EXPECT_EQ(parser().parse(parsed.utterances[0].suggestion).misunderstood(), 0u);
 }
 
@@ -243,6 +300,114 @@ TEST(SecondReading, NeverTakesAThingsPlaceForTheRobots) {
       EXPECT_NE(each.intent, "robot_in") << text;
     }
   }
+}
+
+/// A text with places, and what may be read in it.
+struct ReadText {
+  std::string text = "the lab the store the vault the library the kitchen the hall";
+  Reading reading;
+
+  FactArgument named(const std::string& name) const {
+    const std::size_t at = text.find(name);
+    return {name, "the", {at, at + name.size()}};
+  }
+  ReadFact fact(const std::string& relation, const std::string& a, const std::string& b,
+                double probability) const {
+    ReadFact made;
+    made.relation = relation;
+    made.arguments = {named(a), named(b)};
+    made.probability = probability;
+    return made;
+  }
+  PartReading part(bool is_turned = false) const {
+    Utterance refused;
+    refused.text = text;
+    refused.range = {0, text.size()};
+    return readPart(refused, {reading, true, is_turned}, Grammar::shipped("en"));
+  }
+};
+
+TEST(PartReading, AsksForWhatIsLikelyTogetherAndThenWithoutTheLeastSure) {
+  ReadText of;
+  of.reading.facts = {of.fact("next", "lab", "store", 0.6),
+                      of.fact("opposite", "vault", "library", 0.9)};
+  const PartReading part = of.part();
+  EXPECT_EQ(part.asked, (Facts{"The lab is next to the store. The vault is opposite the library.",
+                               "The vault is opposite the library."}));
+  EXPECT_NEAR(part.probability, 0.54, 1e-9);
+  // Turned, both together are likelier than not; three of that probability are not.
+  EXPECT_EQ(of.part(true).asked, part.asked);
+  of.reading.facts.push_back(of.fact("next", "kitchen", "hall", 0.6));
+  EXPECT_EQ(of.part(true).asked.front(), part.asked.front());
+}
+
+TEST(PartReading, AsksFromTwentyEightPercentOn) {
+  ReadText of;
+  of.reading.facts = {of.fact("next", "lab", "store", 0.29)};
+  EXPECT_EQ(of.part().asked, Facts{"The lab is next to the store."});
+  EXPECT_TRUE(of.part(true).asked.empty()) << "what may be turned is asked from one half on";
+  of.reading.facts.front().probability = 0.27;
+  EXPECT_TRUE(of.part().asked.empty());
+  EXPECT_EQ(of.part().example, "The lab is next to the store.");
+  of.reading.facts.front().probability = 0.14;
+  EXPECT_EQ(of.part().example, "");
+}
+
+TEST(PartReading, AsksTwiceAtMostAfterANoAndNeverTheSame) {
+  ReadText of;
+  of.reading.facts = {of.fact("next", "lab", "store", 0.4)};
+  of.reading.others = {of.fact("next", "store", "lab", 0.39),  // the same, the other way round
+                       of.fact("opposite", "lab", "store", 0.3),
+                       of.fact("left", "lab", "store", 0.25),
+                       of.fact("right", "lab", "store", 0.2)};
+  EXPECT_EQ(of.part().asked,
+            (Facts{"The lab is next to the store.", "The lab is opposite the store.",
+                   "The lab is on the left of the store."}));
+}
+
+/// What is too long to be read again is refused, and other nodes hear of it; it is no mere talk.
+TEST(SecondReading, LeavesNothingOutOfWhatItHasNotRead) {
+  for (const int sentences : {1, 26}) {
+    std::string text;
+    for (int i = 0; i < sentences; ++i) text += "The lab is next to the library. ";
+    text += "Pedro borrowed the stapler.";
+    const ParsedText parsed = parser().parse(text);
+    EXPECT_EQ(parsed.misunderstood(), 1u) << text;
+    for (const Utterance& each : parsed.utterances) EXPECT_TRUE(each.left_out.empty()) << text;
+  }
+}
+
+/// After a "no" nothing is asked that says again what was denied.
+TEST(SecondReading, AlternativesDoNotRepeatWhatWasDenied) {
+  const auto sentencesOf = [](const std::string& proposal) {
+    std::set<std::string> sentences;
+    for (const Utterance& each : parser().parse(proposal).utterances) sentences.insert(each.text);
+    return sentences;
+  };
+  int proposed = 0;
+  for (const char* text :
+       {"So the lab, that's gonna be just up there past the kitchen, opposite the print room, "
+        "innit.",
+        "They've the vault and the saddlery kind of next to one another y'know",
+        "the kiln, well that one kind of shares the wall the forge has",
+        "right so the map room, it's kinda next the harp room and opposite the vault",
+        "you've the tailor's workshop stuck to the spice store like",
+        "pronto, a tipografia, essa fica assim coladinha ao arquivo e frente à estufa"}) {
+    for (const Utterance& each : parser().parse(text).utterances) {
+      if (!each.suggests_meaning) continue;
+      ++proposed;
+      std::vector<std::set<std::string>> denied{sentencesOf(each.suggestion)};
+      for (const std::string& next : each.alternatives) {
+        const std::set<std::string> now = sentencesOf(next);
+        for (const auto& before : denied) {
+          EXPECT_FALSE(std::includes(now.begin(), now.end(), before.begin(), before.end()))
+              << text << ": " << next;
+        }
+        denied.push_back(now);
+      }
+    }
+  }
+  EXPECT_GE(proposed, 2);
 }
 
 TEST(SecondReading, LeavesOutTalkBesideTheMatter) {

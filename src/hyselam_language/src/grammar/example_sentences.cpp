@@ -9,6 +9,8 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
+/// Intents whose first examples are plain.
+constexpr char kPlainStatement[] = "next_to", kPlainQuestion[] = "where_is";
 constexpr double kTellsNothing = 0.05;  ///< the weight of a word that tells nothing of places
 
 std::set<std::string> wordsOf(const std::vector<Token>& tokens) {
@@ -24,8 +26,10 @@ std::set<std::string> wordsOf(const std::vector<Token>& tokens) {
 ExampleSentences::ExampleSentences(const CompiledGrammar& grammar)
     : questions_(examplesOf(grammar, true)), others_(examplesOf(grammar, false)) {}
 
-std::vector<ExampleSentences::Example> ExampleSentences::examplesOf(const CompiledGrammar& grammar,
-                                                                    bool is_question) {
+ExampleSentences::Kind ExampleSentences::examplesOf(const CompiledGrammar& grammar,
+                                                    bool is_question) {
+  Kind kind;
+  const std::string plain = is_question ? kPlainQuestion : kPlainStatement;
   std::vector<std::pair<std::string, std::set<std::string>>> examples;
   std::map<std::string, int> frequency;
   for (const IntentInfo& intent : grammar.intents) {
@@ -33,34 +37,39 @@ std::vector<ExampleSentences::Example> ExampleSentences::examplesOf(const Compil
     // Those that cost less than nothing are for what the robot itself says.
     const bool for_people = intent.refuse.empty() && intent.cost >= 0;
     if (!for_people || intent.kind == UtteranceKind::kAnswer || asks != is_question) continue;
+    if (intent.name == plain && !intent.examples.empty()) kind.plain = intent.examples.front();
     for (const std::string& text : intent.examples) {
       examples.emplace_back(text, wordsOf(tokenize(text, {0, text.size()}, grammar.tokenRules())));
       for (const std::string& word : examples.back().second) ++frequency[word];
     }
   }
   // A word counts the more the fewer examples have it.
-  std::vector<Example> weighted;
   for (auto& [text, words] : examples) {
     Example example{text, {}};
     for (const std::string& word : words) {
-      const double tells = grammar.telling_words.count(word) != 0 ? 1.0 : kTellsNothing;
-      example.words.emplace_back(word, tells / frequency[word]);
+      const bool tells = grammar.telling_words.count(word) != 0;
+      example.words.push_back({word, (tells ? 1.0 : kTellsNothing) / frequency[word], tells});
     }
-    weighted.push_back(std::move(example));
+    kind.all.push_back(std::move(example));
   }
-  return weighted;
+  if (kind.plain.empty() && !kind.all.empty()) kind.plain = kind.all.front().text;
+  return kind;
 }
 
 std::string ExampleSentences::nearest(const std::vector<Token>& said, bool is_question) const {
   const std::set<std::string> words = wordsOf(said);
+  const Kind& kind = is_question ? questions_ : others_;
   double best = -1.0;
-  std::string nearest;
-  for (const Example& example : is_question ? questions_ : others_) {
+  std::string nearest = kind.plain;
+  for (const Example& example : kind.all) {
     double shared = 0.0;
-    for (const auto& [word, weight] : example.words) {
-      if (words.count(word) != 0) shared += weight;
+    bool any_tells = false;
+    for (const Word& word : example.words) {
+      if (words.count(word.text) == 0) continue;
+      shared += word.weight;
+      any_tells = any_tells || word.tells;
     }
-    if (shared > best) {
+    if (any_tells && shared > best) {
       best = shared;
       nearest = example.text;
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tokens.hpp"
@@ -19,18 +18,29 @@ class ExampleSentences {
   /// Of the intents of a grammar that is read to its end.
   explicit ExampleSentences(const CompiledGrammar& grammar);
 
-  /// The example of the kind (question or not) that shares the most telling words with the tokens;
+  /// The example of the kind (question or not) that shares the most telling words with the tokens,
+  /// a plain one if none shares any: what is near by other words has nothing to do with what was
+  /// said.
   /// "" without examples.
   std::string nearest(const std::vector<Token>& said, bool is_question) const;
 
  private:
+  struct Word {
+    std::string text;
+    double weight = 0.0;
+    bool tells = false;  ///< of places
+  };
   struct Example {
     std::string text;
-    std::vector<std::pair<std::string, double>> words;  ///< in their order, each once; its weight
+    std::vector<Word> words;  ///< in their order, each once
   };
-  static std::vector<Example> examplesOf(const CompiledGrammar& grammar, bool is_question);
+  struct Kind {
+    std::vector<Example> all;
+    std::string plain;
+  };
+  static Kind examplesOf(const CompiledGrammar& grammar, bool is_question);
 
-  std::vector<Example> questions_, others_;
+  Kind questions_, others_;
 };
 
 }  // namespace language

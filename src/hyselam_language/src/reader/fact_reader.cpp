@@ -127,7 +127,13 @@ std::vector<ReadFact> withBetweenJoined(std::vector<ReadFact> facts) {
 }  // namespace
 
 FactReader::FactReader(const Grammar& grammar, const std::string& source, const std::string& model)
-    : model_(std::make_shared<const Model>(Model{grammar, ReaderModel::fromText(source, model)})) {}
+    : model_(std::make_shared<const Model>(Model{grammar, ReaderModel::fromText(source, model)})) {
+  const std::string& language = model_->learnt.origin.language;
+  if (language != grammar.language()) {
+    throw hyselam::InputError(source, "language",
+                              "is '" + language + "', not '" + grammar.language() + "'");
+  }
+}
 
 bool FactReader::isShipped(const std::string& language) {
   const auto& all = language::kShippedReaders;
@@ -145,13 +151,14 @@ FactReader FactReader::shipped(const Grammar& grammar) {
   throw hyselam::InputError("reader", language, "no such model is shipped");
 }
 
-Reading FactReader::read(const std::string& said) const {
+std::optional<Reading> FactReader::read(const std::string& said) const {
   const ReaderModel& learnt = model_->learnt;
   const CompiledGrammar& grammar = model_->grammar.compiled();
-  Reading reading;
-  if (said.size() > kLongestText) return reading;
+  if (said.size() > kLongestText) return std::nullopt;
   const HeardText text(grammar, learnt.lexicon, said);
-  if (text.tokens().empty() || text.tokens().size() > kLongest) return reading;
+  if (text.tokens().size() > kLongest) return std::nullopt;
+  Reading reading;
+  if (text.tokens().empty()) return reading;
   const std::vector<Mention> mentions = findMentions(learnt.tagger, text);
   const MentionContext context(learnt.lexicon, text, mentions);
   double log_p = 0.0;  // that all decisions are right, were they independent

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -13,7 +14,9 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
-constexpr float kUnit = 1000.0f;  // weights are written in thousandths
+constexpr float kUnit = 1000.0f;       // weights are written in thousandths
+constexpr int kHeaviest = 100'000;     // of them: ten times what training has ever given
+constexpr double kLargestSum = 700.0;  // whose exponential is a number
 
 /// Up to the separator, which goes with it.
 std::string_view cut(std::string_view* rest, char separator) {
@@ -43,7 +46,15 @@ LinearClassifier LinearClassifier::fromText(const std::string& source, const std
     if (feature.empty()) fail("is empty");
     if (number == 1) {
       if (feature != "classes") fail("must begin with 'classes'");
-      while (!line.empty()) model.classes_.emplace_back(cut(&line, ' '));
+      while (!line.empty()) {
+        const std::string name(cut(&line, ' '));
+        if (name.empty()) fail("has a class without a name");
+        const auto& before = model.classes_;
+        if (std::find(before.begin(), before.end(), name) != before.end()) {
+          fail("has class '" + name + "' twice");
+        }
+        model.classes_.push_back(name);
+      }
       if (model.classes_.empty()) fail("names no class");
       continue;
     }
@@ -55,6 +66,9 @@ LinearClassifier LinearClassifier::fromText(const std::string& source, const std
       int weight = 0;
       if (!isNumber(index_text, &index) || !isNumber(weight_text, &weight)) {
         fail("'" + std::string(field) + "' is not CLASS:WEIGHT");
+      }
+      if (std::abs(static_cast<long>(weight)) > kHeaviest) {
+        fail("weight " + std::to_string(weight) + " is not within +-" + std::to_string(kHeaviest));
       }
       if (index >= model.classes_.size()) fail("there is no class " + std::to_string(index));
       model.setWeight(feature, index, static_cast<float>(weight) / kUnit);
@@ -104,7 +118,10 @@ std::vector<double> LinearClassifier::scores(const Features& features) const {
 
 std::vector<double> LinearClassifier::probabilitiesOf(std::vector<double> scores) {
   double sum = 0.0;
-  for (double& score : scores) sum += score = 1.0 / (1.0 + std::exp(-score));
+  for (double& score : scores) {
+    const double bounded = std::min(std::max(score, -kLargestSum), kLargestSum);
+    sum += score = 1.0 / (1.0 + std::exp(-bounded));
+  }
   for (double& score : scores) score /= sum;
   return scores;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "fact_labels.hpp"
 #include "fact_writer.hpp"
 #include "grammar/compiled_grammar.hpp"
 #include "grammar/sentence_matcher.hpp"
@@ -16,7 +17,6 @@ using language::CompiledGrammar;
 
 /// Of a question: a "yes" spares saying it all again, a "no" costs a word.
 constexpr double kWorthAsking = 0.28;
-constexpr double kLikely = 0.5;            // where words may turn what is said
 constexpr double kWorthShowing = 0.15;     // as an example of what would be understood
 constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more
 constexpr std::size_t kMostQuestions = 2;  // after a "no"
@@ -70,8 +70,9 @@ bool belongsTo(const TextRange& range, bool is_whole, const ReadFact& fact) {
   return range.begin <= last && last < range.end;
 }
 
-/// All facts that are likely together, then with the least likely ones left out.
-void askTogether(const std::vector<SaidFact>& likely, double least, PartReading* part) {
+/// All facts that are likely together, then with the least likely ones left out. Returns the fact
+/// that is asked for alone at last; nullptr if nothing is asked.
+const ReadFact* askTogether(const std::vector<SaidFact>& likely, double least, PartReading* part) {
   std::vector<const SaidFact*> best;
   for (const SaidFact& each : likely) best.push_back(&each);
   std::stable_sort(best.begin(), best.end(), [](const SaidFact* a, const SaidFact* b) {
@@ -95,6 +96,22 @@ void askTogether(const std::vector<SaidFact>& likely, double least, PartReading*
     }
     part->asked.push_back(std::move(sentences));
   }
+  return part->asked.empty() ? nullptr : best.front()->fact;
+}
+
+/// "A next to B" is "B next to A".
+bool saySame(const ReadFact& a, const ReadFact& b) {
+  const auto same = [](const FactArgument& x, const FactArgument& y) {
+    return x.text == y.text && x.range == y.range;
+  };
+  const auto &of_a = a.arguments, &of_b = b.arguments;
+  if (a.relation != b.relation || a.denied != b.denied || a.asked != b.asked ||
+      of_a.size() != of_b.size()) {
+    return false;
+  }
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(), same) ||
+         (language::isSymmetric(a.relation) &&
+          std::equal(of_a.begin(), of_a.end(), of_b.rbegin(), same));
 }
 
 /// Never asked on a mere chance.
@@ -106,7 +123,7 @@ bool takesAway(const ReadFact& fact) {
 
 PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar& grammar) {
   const Reading& reading = of.reading;
-  const double least = of.is_turned ? kLikely : kWorthAsking;
+  const double least = of.is_turned ? kLikelierThanNot : kWorthAsking;
   const FactWriter writer(grammar);
   const auto inPart = [&](const std::vector<ReadFact>& facts) {
     std::vector<SaidFact> all;
@@ -119,15 +136,21 @@ PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar
   };
   PartReading part;
   const std::vector<SaidFact> likely = inPart(reading.facts);
-  askTogether(likely, least, &part);
+  std::vector<const ReadFact*> denied;  // each alone, by a "no" to what is asked before
+  if (const ReadFact* alone = askTogether(likely, least, &part)) denied.push_back(alone);
   // What a "no" to the best reading makes likely.
   double left = 1.0 - part.probability;
   for (const SaidFact& each : inPart(reading.others)) {
     if (each.fact->probability < least * left) break;
     if (takesAway(*each.fact)) continue;
-    if (std::count(part.asked.begin(), part.asked.end(), each.sentence) != 0) continue;
+    if (std::count(part.asked.begin(), part.asked.end(), each.sentence) != 0 ||
+        std::any_of(denied.begin(), denied.end(),
+                    [&](const ReadFact* before) { return saySame(*before, *each.fact); })) {
+      continue;
+    }
     if (part.asked.empty()) part.probability = each.fact->probability;
     part.asked.push_back(each.sentence);
+    denied.push_back(each.fact);
     left -= each.fact->probability;
   }
   if (part.asked.size() > 1 + kMostQuestions) part.asked.resize(1 + kMostQuestions);

@@ -11,6 +11,9 @@
 
 namespace hyselam_topo {
 
+/// Of a proposal: before it, other proposals and reasons to be careful count.
+inline constexpr double kLikelierThanNot = 0.5;
+
 /// What was read in a part that the grammar refused.
 struct PartReading {
   std::vector<std::string> asked;  ///< readings, each one or several sentences, best first

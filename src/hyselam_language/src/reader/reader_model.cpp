@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "fact_labels.hpp"
 #include "hyselam_common/errors.hpp"
 #include "mention_tagger.hpp"
 
@@ -21,23 +22,58 @@ constexpr std::array<std::pair<const char*, LinearClassifier ReaderModel::*>, 5>
      {"of_text", &ReaderModel::of_text},
      {"modifiers", &ReaderModel::modifiers}}};
 
+constexpr double kMostOdds = 1000.0;  // of a calibration: more is a mistake
+
 constexpr std::array<std::pair<const char*, Odds ReaderModel::*>, 3> kOdds{
     {{"reading", &ReaderModel::of_reading},
      {"fact", &ReaderModel::of_fact},
      {"other", &ReaderModel::of_other}}};
 
-/// The lines of each section "[name]"; lines that begin with '#' before the first are comments.
-std::map<std::string, std::string> sectionsOf(const std::string& source, const std::string& text) {
+constexpr const char* kFormat = "hyselam_fact_reader 1";
+
+constexpr std::array<std::pair<const char*, std::string ReaderOrigin::*>, 4> kHead{
+    {{"language", &ReaderOrigin::language},
+     {"command", &ReaderOrigin::command},
+     {"data", &ReaderOrigin::data},
+     {"left_out", &ReaderOrigin::left_out}}};
+
+/// Takes the lines of the head off.
+ReaderOrigin takeHead(const std::string& source, std::istream* lines) {
+  const auto fail = [&](std::size_t at, const std::string& reason) {
+    throw hyselam::InputError(source, "line " + std::to_string(at), reason);
+  };
+  std::string line;
+  std::getline(*lines, line);
+  if (line.empty() || line.front() == '#' || line.front() == '[') {
+    fail(1, std::string("is no '") + kFormat +
+                "': models without that head are of an older format, which is not read; train it "
+                "again (bench/readers --retrain)");
+  }
+  if (line != kFormat) fail(1, std::string("is no '") + kFormat + "'");
+  ReaderOrigin origin;
+  std::size_t number = 1;
+  for (const auto& [key, value] : kHead) {
+    ++number;
+    const std::string begin = std::string(key) + " ";
+    if (!std::getline(*lines, line) || line.compare(0, begin.size(), begin) != 0) {
+      fail(number, "'" + std::string(key) + "' is expected");
+    }
+    origin.*value = line.substr(begin.size());
+  }
+  return origin;
+}
+
+/// The lines of each section "[name]".
+std::map<std::string, std::string> sectionsOf(const std::string& source, std::istream* lines) {
   std::map<std::string, std::string> sections;
   std::string* section = nullptr;
-  std::istringstream lines(text);
   std::string line;
-  for (std::size_t number = 1; std::getline(lines, line); ++number) {
+  for (std::size_t number = kHead.size() + 2; std::getline(*lines, line); ++number) {
     if (line.size() > 2 && line.front() == '[' && line.back() == ']') {
       section = &sections[line.substr(1, line.size() - 2)];
     } else if (section != nullptr) {
       *section += line + '\n';
-    } else if (line.empty() || line[0] != '#') {
+    } else {
       throw hyselam::InputError(source, "line " + std::to_string(number),
                                 "stands before the first section");
     }
@@ -62,18 +98,29 @@ double Odds::probability(double own_p, double whole_p) const {
 }
 
 ReaderModel ReaderModel::fromText(const std::string& source, const std::string& text) {
-  const auto sections = sectionsOf(source, text);
+  std::istringstream lines(text);
+  const ReaderOrigin origin = takeHead(source, &lines);
+  const auto sections = sectionsOf(source, &lines);
   const auto section = [&](const std::string& name) {
     const auto found = sections.find(name);
     if (found == sections.end()) throw hyselam::InputError(source, "[" + name + "]", "is missing");
     return found->second;
   };
   ReaderModel model;
+  model.origin = origin;
   for (const auto& [name, classifier] : kSections) {
     model.*classifier =
         LinearClassifier::fromText(source + " [" + std::string(name) + "]", section(name));
   }
   checkTags(source + " [tagger]", model.tagger);
+  checkLabels(source + " [of_one]", model.of_one, 1);
+  checkLabels(source + " [of_two]", model.of_two, 2);
+  checkLabels(source + " [of_text]", model.of_text, 0);
+  for (const std::string& each : model.modifiers.classes()) {
+    if (each != "plain" && each != "denied" && each != "asked") {
+      throw hyselam::InputError(source + " [modifiers]", "'" + each + "'", "is no modifier");
+    }
+  }
   model.lexicon = ReaderLexicon::fromText(source + " [lexicon]", section("lexicon"));
   std::istringstream calibration(section("calibration"));
   for (const auto& [name, odds] : kOdds) {
@@ -83,12 +130,20 @@ ReaderModel ReaderModel::fromText(const std::string& source, const std::string& 
       throw hyselam::InputError(source, "[calibration]",
                                 "needs '" + std::string(name) + "' and three numbers");
     }
+    for (const double each : {of.own, of.whole, of.offset}) {
+      if (std::abs(each) > kMostOdds) {
+        throw hyselam::InputError(source, "[calibration]",
+                                  "the numbers of '" + std::string(name) + "' are too large");
+      }
+    }
   }
   return model;
 }
 
 std::string ReaderModel::toText() const {
   std::ostringstream out;
+  out << kFormat << '\n';
+  for (const auto& [key, value] : kHead) out << key << ' ' << origin.*value << '\n';
   out << "[lexicon]\n" << lexicon.toText();
   for (const auto& [name, classifier] : kSections) {
     out << '[' << name << "]\n" << (this->*classifier).toText();

@@ -23,7 +23,16 @@ struct Odds {
   double probability(double own_p, double whole_p) const;
 };
 
+/// What a model says of itself, each a line of its head.
+struct ReaderOrigin {
+  std::string language;
+  std::string command;   ///< that made it
+  std::string data;      ///< that it was learnt from
+  std::string left_out;  ///< how it fares on writers whom it was not learnt from
+};
+
 struct ReaderModel {
+  ReaderOrigin origin;
   ReaderLexicon lexicon;
   LinearClassifier tagger;     ///< of words: which belong to mentions
   LinearClassifier of_one;     ///< of a mention: what is stated of it alone
@@ -34,13 +43,11 @@ struct ReaderModel {
   Odds of_fact;                ///< that a fact is right
   Odds of_other;               ///< that one is which was less likely than another, or than nothing
 
-  /// Sections "[lexicon]" ... "[calibration]". Throws hyselam::InputError.
+  /// The head: format with its version, and the lines of the origin; then the sections "[lexicon]"
+  /// ... "[calibration]". Throws hyselam::InputError.
   static ReaderModel fromText(const std::string& source, const std::string& text);
   std::string toText() const;
 };
-
-/// What a classifier says of a candidate that states nothing.
-inline const std::string kNoFact = "none";
 
 }  // namespace language
 }  // namespace hyselam_topo

@@ -1,6 +1,7 @@
 #include "second_reading.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -12,12 +13,12 @@ namespace {
 
 using language::CompiledGrammar;
 
-constexpr double kLikely = 0.5;           // likelier than a sentence without the words in the way
 constexpr double kComplete = 0.6;         // of a reading, that it misses nothing
 constexpr std::size_t kShortestTalk = 3;  // words: a single one may be a name
 
 /// Refusals for want of a pattern; others have a reason that stands.
-const std::set<std::string> kGuesses{"no_pattern", "no_name", "misspelt", "ambiguous", "not_now"};
+const std::set<std::string> kWithoutReason{"no_pattern", "no_name", "misspelt", "ambiguous",
+                                           "not_now"};
 
 std::vector<std::string> wordsOf(const std::string& text, const CompiledGrammar& grammar) {
   std::vector<std::string> words;
@@ -62,7 +63,7 @@ bool isBesideTheMatter(const Utterance& utterance, const Reading& reading,
   const auto isInside = [&](const TextRange& each) {
     return utterance.range.begin <= each.begin && each.begin < utterance.range.end;
   };
-  if (kGuesses.count(utterance.reason_code) == 0 ||
+  if (kWithoutReason.count(utterance.reason_code) == 0 ||
       std::any_of(reading.mentions.begin(), reading.mentions.end(), isInside)) {
     return false;
   }
@@ -71,18 +72,44 @@ bool isBesideTheMatter(const Utterance& utterance, const Reading& reading,
          (reading.probability >= kComplete || !hasAny(words, grammar.telling_words));
 }
 
-/// The readings become what is asked; the grammar's own proposal goes before unlikely ones.
-void propose(const PartReading& part, Utterance* utterance) {
+std::set<std::string> sentencesOf(const std::string& text, const CompiledGrammar& grammar) {
+  std::set<std::string> sentences;
+  for (const auto& each : language::splitSentences(text, grammar.tokenRules())) {
+    std::string words;
+    for (const auto& token : language::tokenize(text, each.range, grammar.tokenRules())) {
+      words += token.folded + " ";
+    }
+    sentences.insert(std::move(words));
+  }
+  return sentences;
+}
+
+/// Whether one proposal tells all that another does: a "no" to that is one to it.
+bool includes(const std::string& proposal, const std::string& denied,
+              const CompiledGrammar& grammar) {
+  const auto all = sentencesOf(proposal, grammar), some = sentencesOf(denied, grammar);
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+/// The readings become what is asked; the grammar's own proposal, without the words
+/// in its way, goes before unlikely ones.
+void propose(const PartReading& part, const CompiledGrammar& grammar, Utterance* utterance) {
   if (part.asked.empty()) {
     if (!utterance->suggests_meaning && !part.example.empty()) utterance->suggestion = part.example;
     return;
   }
   utterance->alternatives = part.asked;
-  const bool keeps = utterance->suggests_meaning && part.probability < kLikely;
+  const bool keeps = utterance->suggests_meaning && part.probability < kLikelierThanNot;
   if (!keeps) {
     utterance->suggestion = part.asked.front();
     utterance->alternatives.erase(utterance->alternatives.begin());
   }
+  auto& next = utterance->alternatives;  // each is asked after a "no" to the suggestion
+  next.erase(std::remove_if(next.begin(), next.end(),
+                            [&](const std::string& each) {
+                              return includes(each, utterance->suggestion, grammar);
+                            }),
+             next.end());
   utterance->suggests_meaning = true;
 }
 
@@ -116,12 +143,15 @@ void readAgain(const FactReader& reader, const Grammar& grammar, const std::stri
   const auto isRefused = [](const Utterance& u) { return !u.understood(); };
   if (std::none_of(utterances->begin(), utterances->end(), isRefused)) return;
   if (isDoubted(text, grammar.compiled())) return;
-  const Reading reading = reader.read(text);
+  const std::optional<Reading> read = reader.read(text);
+  if (!read) return;  // not known to state or name nothing
+  const Reading& reading = *read;
   const bool is_whole = utterances->size() == 1, is_turned = isTurned(text, grammar.compiled());
   for (Utterance& utterance : *utterances) {
     if (utterance.understood()) continue;
-    const bool has_reason = kGuesses.count(utterance.reason_code) == 0;
-    propose(readPart(utterance, {reading, is_whole, is_turned || has_reason}, grammar), &utterance);
+    const bool has_reason = kWithoutReason.count(utterance.reason_code) == 0;
+    propose(readPart(utterance, {reading, is_whole, is_turned || has_reason}, grammar),
+            grammar.compiled(), &utterance);
   }
   dropTalk(reading, grammar.compiled(), utterances);
 }

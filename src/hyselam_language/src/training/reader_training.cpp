@@ -10,6 +10,7 @@
 #include "hyselam_language/reader/fact_reader.hpp"
 #include "linear_training.hpp"
 #include "reader/fact_candidates.hpp"
+#include "reader/fact_labels.hpp"
 #include "reader/mention_tagger.hpp"
 
 namespace hyselam_topo {
@@ -28,8 +29,7 @@ std::string inWords(const ReadFact& fact) {
   if (fact.relation == "between" && arguments.size() == 3) {
     std::sort(arguments.begin() + 1, arguments.end());
   }
-  static const std::set<std::string> kSymmetric{"next", "opposite", "joined", "same"};
-  if (kSymmetric.count(fact.relation) != 0) std::sort(arguments.begin(), arguments.end());
+  if (isSymmetric(fact.relation)) std::sort(arguments.begin(), arguments.end());
   for (const std::string& each : arguments) words += " | " + each;
   return words;
 }
@@ -103,6 +103,7 @@ ReaderModel trainReader(const Grammar& grammar, const ReaderLexicon& lexicon,
   std::array<TrainingSet, 5> sets;
   for (const AnnotatedText* each : texts) addExamples(grammar.compiled(), lexicon, *each, &sets);
   ReaderModel model;
+  model.origin.language = grammar.language();
   model.lexicon = lexicon;
   model.tagger = sets[0].train(params.cost, params.least_seen);
   model.of_one = sets[1].train(params.cost, params.least_seen);
@@ -132,7 +133,8 @@ ReaderEvaluation evaluateReader(const Grammar& grammar, const ReaderLexicon& lex
     const FactReader reader(grammar, "fold " + std::to_string(fold), model.toText());
     for (const AnnotatedText* each : texts) {
       if (foldOf(*each) != fold) continue;
-      const Reading reading = reader.read(each->text);
+      // Of texts that are too long nothing is read.
+      const Reading reading = reader.read(each->text).value_or(Reading{});
       const auto wanted = inWords(each->facts), read = inWords(reading.facts);
       std::vector<std::string> both;
       std::set_intersection(wanted.begin(), wanted.end(), read.begin(), read.end(),

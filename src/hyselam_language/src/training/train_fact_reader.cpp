@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "reader_training.hpp"
@@ -79,6 +80,29 @@ void print(const ReaderEvaluation& evaluation, const ReaderModel& calibrated, bo
   printTold("others that may be meant", evaluation.others, calibrated.of_other);
 }
 
+/// What the model says of itself.
+ReaderOrigin originOf(const Options& o, std::size_t sentences, const ReaderEvaluation& evaluation) {
+  ReaderOrigin origin;
+  origin.language = o.language;
+  std::ostringstream command;
+  command << "train_fact_reader FILE... --language " << o.language << " --nouns NOUNS --cost "
+          << o.params.cost << " --least-seen " << o.params.least_seen << " --folds "
+          << o.params.folds << " (bench/readers --retrain)";
+  origin.command = command.str();
+  std::string contents;
+  for (const std::string& file : o.files) contents += hyselam::readTextFile(file);
+  origin.data = std::to_string(sentences) + " annotated sentences of " +
+                std::to_string(o.files.size()) + " files (CRC-32 " + hyselam::crc32Text(contents) +
+                ")";
+  for (const auto& [layer, score] : evaluation.by_layer) {
+    origin.left_out +=
+        (origin.left_out.empty() ? "" : "; ") + layer + ": " + std::to_string(score.texts) +
+        " texts, exact " + percent(score.exact, score.texts) + ", facts precision " +
+        percent(score.right, score.read) + ", recall " + percent(score.right, score.facts);
+  }
+  return origin;
+}
+
 nlohmann::json run(const Options& o) {
   std::vector<AnnotatedText> all;
   for (const std::string& file : o.files) {
@@ -100,12 +124,8 @@ nlohmann::json run(const Options& o) {
   calibrate(evaluation, &model);
   print(evaluation, model, o.show);
   if (!o.out.empty()) {
-    std::ostringstream head;
-    head << "# The second reader, language '" << o.language << "'. Made by train_fact_reader from "
-         << texts.size() << " annotated sentences: --cost " << o.params.cost << " --least-seen "
-         << o.params.least_seen << " --folds " << o.params.folds << '\n';
-    hyselam::writeFileAtomically(o.out,
-                                 [&](std::ostream& out) { out << head.str() << model.toText(); });
+    model.origin = originOf(o, texts.size(), evaluation);
+    hyselam::writeFileAtomically(o.out, [&](std::ostream& out) { out << model.toText(); });
   }
   nlohmann::json json;
   for (const auto& [layer, score] : evaluation.by_layer) {

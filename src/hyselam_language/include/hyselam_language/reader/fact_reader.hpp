@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,14 +46,15 @@ struct Reading {
 class FactReader {
  public:
   /// `grammar` splits texts into words. Throws hyselam::InputError, naming `source` and the line,
-  /// for a text that is no model.
+  /// for a text that is no model, or one of another language.
   FactReader(const Grammar& grammar, const std::string& source, const std::string& model);
   /// The shipped model of the grammar's language; throws hyselam::InputError if there is none.
   static FactReader shipped(const Grammar& grammar);
   static bool isShipped(const std::string& language);
 
-  /// Texts of any content; nothing for those longer than 120 words or 4000 bytes.
-  Reading read(const std::string& text) const;
+  /// Texts of any content. Nothing is read in those longer than 120 words or 4000 bytes: whether
+  /// they state or name anything is not known then.
+  std::optional<Reading> read(const std::string& text) const;
 
  private:
   struct Model;
