@@ -327,6 +327,21 @@ struct ReadText {
   }
 };
 
+TEST(SecondReading, WhatIsDeniedIsNotAskedAsIfItWereSaid) {
+  const TopoParser parser;
+  for (const char* text :
+       {"Don't you dare drive to the library.", "Do not ever go to the gym, mate.",
+        "The gym is nowhere near the library."}) {
+    for (const Utterance& u : parser.parse(text).utterances) {
+      EXPECT_FALSE(u.suggests_meaning) << text << ": " << u.suggestion;
+    }
+  }
+  // A question states nothing.
+  for (const Utterance& u : parser.parse("Whose office is next to the kitchen?").utterances) {
+    EXPECT_FALSE(u.suggests_meaning && u.suggestion.back() != '?') << u.suggestion;
+  }
+}
+
 TEST(PartReading, AsksForWhatIsLikelyTogetherAndThenWithoutTheLeastSure) {
   ReadText of;
   of.reading.facts = {of.fact("next", "lab", "store", 0.6),

@@ -394,9 +394,14 @@ std::vector<Utterance> consistent(const CompiledGrammar& grammar, const std::str
     const auto at = said.begin() + static_cast<std::ptrdiff_t>(i);
     const bool contrary =
         std::any_of(said.begin(), at, [&](const Utterance& u) { return isContrary(*at, u); });
+    // "Go to the kitchen, but not now": nowhere.
+    const bool put_off = (at->intent == "unknown_answer" || at->intent == "no") &&
+                         std::any_of(said.begin(), at, [](const Utterance& u) {
+                           return u.kind == UtteranceKind::kCommand && !u.slots.empty();
+                         });
     const bool taken_back = denies(*at) && std::any_of(said.begin(), at, states) &&
                             std::none_of(at, said.end(), states);
-    if (!contrary && !taken_back) continue;
+    if (!contrary && !taken_back && !put_off) continue;
     Utterance refused;
     refused.range = sentence.range;
     refused.text = text.substr(sentence.range.begin, sentence.range.end - sentence.range.begin);

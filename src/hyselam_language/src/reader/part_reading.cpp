@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "fact_labels.hpp"
@@ -17,6 +18,8 @@ using language::CompiledGrammar;
 
 /// Of a question: a "yes" spares saying it all again, a "no" costs a word.
 constexpr double kWorthAsking = 0.28;
+/// Of a fact that the reader takes for told in a text that denies something.
+constexpr double kSureBesideDenial = 0.8;
 constexpr double kWorthShowing = 0.15;     // as an example of what would be understood
 constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more
 constexpr std::size_t kMostQuestions = 2;  // after a "no"
@@ -114,6 +117,36 @@ bool saySame(const ReadFact& a, const ReadFact& b) {
           std::equal(of_a.begin(), of_a.end(), of_b.rbegin(), same));
 }
 
+/// Whether something is denied between the commas around the last name of the fact.
+bool isDeniedThere(const ReadFact& fact, const Utterance& part, const CompiledGrammar& grammar) {
+  if (fact.arguments.empty()) return true;
+  const std::size_t begin = fact.arguments.back().range.begin;
+  const std::string& text = part.text;
+  if (begin < part.range.begin || begin - part.range.begin >= text.size()) return true;
+  const std::size_t at = begin - part.range.begin;
+  const std::size_t from = text.rfind(',', at), to = text.find(',', at);
+  const std::size_t first = from == std::string::npos ? 0 : from;
+  const TextRange range{first, to == std::string::npos ? text.size() : to};
+  const auto tokens = language::tokenize(text, range, grammar.tokenRules());
+  return std::any_of(tokens.begin(), tokens.end(), [&](const language::Token& token) {
+    const auto found = grammar.refusing_words.find(token.folded);
+    return found != grammar.refusing_words.end() && found->second == "denial";
+  });
+}
+
+/// What the form of the part rules out, however likely: orders where anything is denied, what may
+/// well be denied, and statements in a question.
+bool isRuledOut(const ReadFact& fact, const Utterance& part, const PartOf& of,
+                const CompiledGrammar& grammar) {
+  static const std::set<std::string> kOrders{"go", "follow_me", "come", "back"};
+  const bool order = kOrders.count(fact.relation) != 0;
+  if (of.is_denied) {
+    const bool sure = fact.denied || fact.probability >= kSureBesideDenial;
+    if (order || (!sure && isDeniedThere(fact, part, grammar))) return true;
+  }
+  return of.is_question && !order && !fact.asked && fact.relation.compare(0, 4, "ask_") != 0;
+}
+
 /// Never asked on a mere chance.
 bool takesAway(const ReadFact& fact) {
   return fact.relation == "gone" || fact.relation == "forget" || fact.relation == "rename";
@@ -128,8 +161,9 @@ PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar
   const auto inPart = [&](const std::vector<ReadFact>& facts) {
     std::vector<SaidFact> all;
     for (const ReadFact& fact : facts) {
-      if (fact.probability < kWorthShowing || !belongsTo(utterance.range, of.is_whole, fact))
+      if (fact.probability < kWorthShowing || isRuledOut(fact, utterance, of, grammar.compiled()))
         continue;
+      if (!belongsTo(utterance.range, of.is_whole, fact)) continue;
       if (auto said = inWords(writer, grammar, fact)) all.push_back(std::move(*said));
     }
     return all;

@@ -28,6 +28,8 @@ struct PartOf {
   /// Something is denied or past, or the refusal has a reason: only what is likelier than not is
   /// asked.
   bool is_turned = false;
+  bool is_question = false;  ///< it ends with a question mark: it states nothing
+  bool is_denied = false;    ///< it has a word of denial: "don't go", "nowhere near"
 };
 
 PartReading readPart(const Utterance& part, const PartOf& of, const Grammar& grammar);

@@ -47,13 +47,13 @@ bool isDoubted(const std::string& text, const CompiledGrammar& grammar) {
   return denials > 1;
 }
 
-/// Whether something in the text is denied, compared, under a condition, or of another time.
-bool isTurned(const std::string& text, const CompiledGrammar& grammar) {
-  static const std::set<std::string> kTurns{"denial", "not_now", "condition", "comparison"};
+/// Whether the text has a word that the grammar refuses for one of the reasons.
+bool hasWordOf(const std::string& text, const std::set<std::string>& reasons,
+               const CompiledGrammar& grammar) {
   const std::vector<std::string> words = wordsOf(text, grammar);
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
     const auto found = grammar.refusing_words.find(word);
-    return found != grammar.refusing_words.end() && kTurns.count(found->second) != 0;
+    return found != grammar.refusing_words.end() && reasons.count(found->second) != 0;
   });
 }
 
@@ -146,12 +146,16 @@ void readAgain(const FactReader& reader, const Grammar& grammar, const std::stri
   const std::optional<Reading> read = reader.read(text);
   if (!read) return;  // not known to state or name nothing
   const Reading& reading = *read;
-  const bool is_whole = utterances->size() == 1, is_turned = isTurned(text, grammar.compiled());
+  const bool is_whole = utterances->size() == 1;
+  const bool is_turned =
+      hasWordOf(text, {"denial", "not_now", "condition", "comparison"}, grammar.compiled());
   for (Utterance& utterance : *utterances) {
     if (utterance.understood()) continue;
     const bool has_reason = kWithoutReason.count(utterance.reason_code) == 0;
-    propose(readPart(utterance, {reading, is_whole, is_turned || has_reason}, grammar),
-            grammar.compiled(), &utterance);
+    const bool is_question = !utterance.text.empty() && utterance.text.back() == '?';
+    const bool is_denied = hasWordOf(utterance.text, {"denial"}, grammar.compiled());
+    const PartOf of{reading, is_whole, is_turned || has_reason, is_question, is_denied};
+    propose(readPart(utterance, of, grammar), grammar.compiled(), &utterance);
   }
   dropTalk(reading, grammar.compiled(), utterances);
 }

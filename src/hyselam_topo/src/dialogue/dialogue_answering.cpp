@@ -133,11 +133,12 @@ void Dialogue::answerYes(const Question& asked, Turn& turn) {
       break;
     case Kind::kNewName:
       acceptNames(asked.names);
-      if (asked.sentence.empty()) {
-        if (isNamedOtherwise(asked.place, asked.names)) places_.forget(asked.place);
-        confirmNames(asked.place, asked.names, out);
-      } else {
+      if (!asked.sentence.empty()) {
         turn.again = asked.sentence;
+      } else if (isNamedOtherwise(asked.place, asked.names)) {
+        askAlso(asked.place, asked.names, out);  // a confirmed name does not go unasked
+      } else {
+        confirmNames(asked.place, asked.names, out);
       }
       break;
     case Kind::kWall:
