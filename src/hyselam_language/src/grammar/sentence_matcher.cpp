@@ -20,6 +20,11 @@
 
 namespace hyselam_topo {
 namespace language {
+
+bool isUnderstood(const std::vector<Utterance>& said) {
+  return std::all_of(said.begin(), said.end(), [](const Utterance& u) { return u.understood(); });
+}
+
 namespace {
 
 /// Finds the cheapest row of clauses that covers the sentence.
@@ -206,10 +211,6 @@ class SentenceReader {
   std::vector<Reading> ends_;  ///< at each token
   std::vector<Clause> clauses_;
 };
-
-bool isUnderstood(const std::vector<Utterance>& said) {
-  return std::all_of(said.begin(), said.end(), [](const Utterance& u) { return u.understood(); });
-}
 
 /// Whether clauses may follow one another with nothing between: not where a word like "no" would
 /// be taken for a clause of its own.

@@ -16,6 +16,9 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
                                     const Sentence& sentence,
                                     const std::set<std::string>& expected);
 
+/// Whether all of it is.
+bool isUnderstood(const std::vector<Utterance>& said);
+
 /// See Grammar::isPlainName().
 bool isPlainName(const CompiledGrammar& grammar, const std::string& name, const std::string& type);
 

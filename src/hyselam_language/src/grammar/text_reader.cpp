@@ -16,10 +16,6 @@ void speakerFirst(std::vector<Utterance>* utterances) {
   std::stable_partition(utterances->begin(), utterances->end(), speaks);
 }
 
-bool isUnderstood(const std::vector<Utterance>& said) {
-  return std::all_of(said.begin(), said.end(), [](const Utterance& u) { return u.understood(); });
-}
-
 /// "The toilets? They're next to the bar.": what a question only brings up, and what is told of it;
 /// nothing if the two make no statement together.
 std::vector<Utterance> withTopic(const CompiledGrammar& grammar, const std::string& text,
