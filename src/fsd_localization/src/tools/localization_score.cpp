@@ -8,7 +8,7 @@ namespace fsd_localization {
 namespace {
 constexpr double kJump = 1.0;       // [m] more than was travelled: the robot was carried
 constexpr double kRightWay = 5.0;   // [m] right for so long: found
-constexpr double kAlarmLook = 0.5;  // [m] before an alarm: was the pose right?
+constexpr double kAlarmLook = 0.5;  // [m] before an alarm or doubt: was the pose right?
 }  // namespace
 
 void LocalizationScore::add(const LocalizationResult& result, const hyselam::Pose2& truth) {
@@ -39,6 +39,7 @@ nlohmann::json LocalizationScore::report() const {
                       {"median_error_deg", nullptr},
                       {"wrongly_converged_m", wronglyConverged()},
                       {"alarms", alarms()},
+                      {"false_doubts", falseDoubts()},
                       {"kidnaps", kidnaps()}};
   if (!success) return j;
   j["held_from_m"] = entries_[held].travelled;
@@ -85,20 +86,29 @@ nlohmann::json LocalizationScore::firstRight(std::size_t begin, std::size_t end)
   return nullptr;
 }
 
+bool LocalizationScore::wasRight(std::size_t i) const {
+  bool right = entries_[i].good;
+  for (std::size_t k = i; k-- > 0 && entries_[i].travelled - entries_[k].travelled < kAlarmLook;) {
+    right = right && entries_[k].good;
+  }
+  return right;
+}
+
 nlohmann::json LocalizationScore::alarms() const {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 1; i < entries_.size(); ++i) {
     if (entries_[i].phase != Phase::kLost || entries_[i - 1].phase != Phase::kTracking) continue;
-    // Wrong to say so, if the pose was right all the time before.
-    bool was_right = true;
-    for (std::size_t k = i;
-         k-- > 0 && entries_[i].travelled - entries_[k].travelled < kAlarmLook;) {
-      was_right = was_right && entries_[k].good;
-    }
-    was_right = was_right && entries_[i].good;
-    list.push_back({{"at_m", entries_[i].travelled}, {"false", was_right}});
+    list.push_back({{"at_m", entries_[i].travelled}, {"false", wasRight(i)}});
   }
   return list;
+}
+
+std::size_t LocalizationScore::falseDoubts() const {
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < entries_.size(); ++i) {
+    if (entries_[i - 1].converged && !entries_[i].converged && wasRight(i)) ++count;
+  }
+  return count;
 }
 
 nlohmann::json LocalizationScore::kidnaps() const {

@@ -36,7 +36,13 @@ class LocalizationScore {
   double rightShare() const;
   /// Metres after `begin` from which estimates were right for 5 m; null without such.
   nlohmann::json firstRight(std::size_t begin, std::size_t end) const;
+  /// Whether the estimates of the last half metre up to an entry were all right: then it is wrong
+  /// to say anything else.
+  bool wasRight(std::size_t i) const;
   nlohmann::json alarms() const;
+  /// Times that a right pose that was told as sure is told as not sure any more. Unlike alarms,
+  /// this can be asked of any localisation.
+  std::size_t falseDoubts() const;
   nlohmann::json kidnaps() const;
   double median(std::size_t from, double Entry::*field) const;
 
