@@ -131,12 +131,11 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
 std::size_t fillerEnd(const std::vector<Token>& tokens, std::size_t at,
                       const CompiledGrammar& grammar) {
   std::size_t end = at;
-  for (const auto* phrases : {&grammar.fillers_before, &grammar.fillers_after}) {
-    for (const Phrase& phrase : *phrases) {
-      // A single word may stand for a name.
-      if (phrase.size() < 2 || at + phrase.size() <= end) continue;
-      if (standsAt(phrase, tokens, at, grammar)) end = at + phrase.size();
-    }
+  const auto with = grammar.long_fillers.find(at < tokens.size() ? tokens[at].lower : "");
+  if (with == grammar.long_fillers.end()) return end;
+  for (const Phrase& phrase : with->second) {
+    if (at + phrase.size() <= end) continue;
+    if (standsAt(phrase, tokens, at, grammar)) end = at + phrase.size();
   }
   return end;
 }

@@ -117,6 +117,8 @@ struct CompiledGrammar {
   std::set<std::string> known_words;  ///< folded words that are never misspelt keywords
   std::vector<Phrase> fillers_before, fillers_after, corrections, clause_separators;
   std::set<int> fillers_inner;
+  /// Those before and after that have two words or more, by their first word.
+  std::unordered_map<std::string, std::vector<Phrase>> long_fillers;
   /// Around a statement that ends with a question mark: "can you note that", "ok"; the longest
   /// first.
   std::vector<Words> told_before, told_after;

@@ -40,6 +40,13 @@ class Reader {
     grammar_->telling_words.insert(grammar_->unit_words.begin(), grammar_->unit_words.end());
     addLightWords();
     finishKnownWords();
+    for (const auto* phrases : {&grammar_->fillers_before, &grammar_->fillers_after}) {
+      for (const Phrase& phrase : *phrases) {
+        // A single word may stand for a name.
+        if (phrase.size() < 2) continue;
+        grammar_->long_fillers[grammar_->vocabulary.text(phrase.front())].push_back(phrase);
+      }
+    }
     grammar_->examples = ExampleSentences(*grammar_);
     return grammar_;
   }
