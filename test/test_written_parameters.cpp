@@ -95,15 +95,22 @@ std::vector<Nodelet> nodelets() {
 struct Reconfigurable {
   std::string package, node, name;
   std::vector<std::string> parameters;
+  std::vector<ParameterRow> unused;  ///< offered for others' tools, beside those of the nodelet
 };
 
 std::vector<Reconfigurable> reconfigurable() {
+  fsd_localization::UnusedAmclParams of_amcl;
+  hyselam::ParameterTable table;
+  table.group("", of_amcl);
   return {{"hyselam_topo",
            "gr2to",
            "Gr2To",
            {"mode", "free_max", "working_resolution", "max_clutter_size", "min_place_area",
             "thesis_door_min", "thesis_door_max", "thesis_critical_radius", "thesis_wall_share",
-            "max_free_height", "min_occupied_height", "marker_alpha"}}};
+            "max_free_height", "min_occupied_height", "marker_alpha"},
+           {}},
+          {"fsd_localization", "localization", "Localization", fsd_localization::dynamicParams(),
+           table.rows()}};
 }
 
 /// A number with so many digits, as people write it; other text as it is.
@@ -178,7 +185,9 @@ std::string configFile(const Nodelet& n) {
 std::string reconfigureFile(const Reconfigurable& r) {
   for (const Nodelet& n : nodelets()) {
     if (n.package != r.package || n.name != r.name) continue;
-    return hyselam::reconfigureCfg(n.rows, r.parameters, r.package, r.node, r.name);
+    std::vector<ParameterRow> rows = n.rows;
+    rows.insert(rows.end(), r.unused.begin(), r.unused.end());
+    return hyselam::reconfigureCfg(rows, r.parameters, r.package, r.node, r.name);
   }
   return "";
 }

@@ -80,3 +80,9 @@ TEST(Written, readmeHasEveryParameterOfFsd) {
   EXPECT_GT(all.size(), 15U);
   for (const Entry& e : all) EXPECT_TRUE(readmeHas(e, "")) << e.name << " = " << e.value;
 }
+
+TEST(OfAmcl, everyDynamicParameterIsOneOfOursOrKnownAsUnused) {
+  ParamLoader loader = loaderFor("hybrid");
+  loadLocalizationParams(loader);
+  for (const std::string& name : dynamicParams()) EXPECT_EQ(loader.known().count(name), 1U) << name;
+}

@@ -21,6 +21,13 @@ LocalizationPublisher::LocalizationPublisher(ros::NodeHandle nh,
   }
 }
 
+void LocalizationPublisher::setParams(const LocalizationServerParams& params) {
+  if (params.gui_publish_rate != params_.gui_publish_rate) {
+    gui_rate_ = hyselam::RateLimit(params.gui_publish_rate);
+  }
+  params_ = params;
+}
+
 std_msgs::Header LocalizationPublisher::header(const ros::Time& stamp,
                                                const std::string& frame) const {
   std_msgs::Header h;

@@ -166,17 +166,49 @@ bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::
                             << map.geometry.height << " cells of " << map.geometry.resolution
                             << " m");
   if (localizer_) pending_initial_.reset();  // it was for a map that is not wanted any more
-  preparation_.start([map = std::move(map)](const std::function<bool()>&) { return map; });
-  map_timer_.start();
+  startPreparation([map = std::move(map)](const std::function<bool()>&) { return map; });
   return true;
 }
 
 void LocalizationServer::requestMap(double pause) {
-  preparation_.start([ask = map_service_, pause](const std::function<bool()>& cancelled) {
-    pauseFor(pause, cancelled);
-    return ask(cancelled);
+  // Kept for other parameters; only the thread of the preparation sees it.
+  auto kept = std::make_shared<std::optional<hyselam::OccupancyGrid>>();
+  startPreparation([ask = map_service_, pause, kept](const std::function<bool()>& cancelled) {
+    if (!*kept) {
+      pauseFor(pause, cancelled);
+      *kept = ask(cancelled);
+    }
+    return *kept;
   });
+}
+
+void LocalizationServer::startPreparation(MapPreparation::Source source) {
+  last_source_ = std::move(source);
+  preparation_.start(last_source_);
   map_timer_.start();
+}
+
+namespace {
+
+/// Values of all parameters, to be compared.
+std::vector<std::string> valuesOf(LocalizerParams params) {
+  hyselam::ParameterTable table;
+  table.group("", params);
+  std::vector<std::string> values;
+  for (const hyselam::ParameterRow& row : table.rows()) values.push_back(row.default_yaml);
+  return values;
+}
+
+}  // namespace
+
+void LocalizationServer::setParams(const LocalizationServerParams& params) {
+  const bool other_localizer = valuesOf(params.localizer) != valuesOf(params_.localizer);
+  params_ = params;
+  publisher_.setParams(params_);
+  if (!other_localizer) return;
+  preparation_.setParams(params_.localizer);
+  // Without a map yet, the first one will find the new parameters.
+  if (last_source_) startPreparation(last_source_);
 }
 
 void LocalizationServer::refuseMap(const std::string& why) {
@@ -342,7 +374,7 @@ void LocalizationServer::onInitialPose(
       pose.base_in_map = pose.base_in_map * *motion;
     }
   }
-  startAt(pose);
+  if (startAt(pose) && params_.force_update_after_initialpose) force_update_ = true;
 }
 
 bool LocalizationServer::startAt(const InitialPose& pose) {
@@ -392,6 +424,7 @@ bool LocalizationServer::onSetMap(nav_msgs::SetMap::Request& request,
   } else {
     response.success = startAt(pose);  // it was the same map
   }
+  if (response.success && params_.force_update_after_set_map) force_update_ = true;
   return true;
 }
 

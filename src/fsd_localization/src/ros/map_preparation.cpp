@@ -27,6 +27,11 @@ void MapPreparation::start(Source source) {
   wake_.notify_all();
 }
 
+void MapPreparation::setParams(const LocalizerParams& params) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  params_ = params;
+}
+
 std::optional<MapPreparation::Outcome> MapPreparation::take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::optional<Outcome> outcome = std::move(done_);
@@ -50,18 +55,20 @@ void MapPreparation::run() {
     wake_.wait(lock, [this] { return stop_ || next_; });
     if (stop_) return;
     const Source source = std::move(next_);
+    const LocalizerParams params = params_;
     next_ = nullptr;
     working_ = true;
     progress_ = 0.0;
     lock.unlock();
-    Outcome outcome = prepare(source);
+    Outcome outcome = prepare(source, params);
     lock.lock();
     working_ = false;
     if (!next_ && !stop_) done_ = std::move(outcome);
   }
 }
 
-MapPreparation::Outcome MapPreparation::prepare(const Source& source) {
+MapPreparation::Outcome MapPreparation::prepare(const Source& source,
+                                                const LocalizerParams& params) {
   Outcome outcome;
   try {
     const std::optional<hyselam::OccupancyGrid> map = source([this] { return superseded(); });
@@ -71,10 +78,10 @@ MapPreparation::Outcome MapPreparation::prepare(const Source& source) {
     if (!cache_dir_.empty()) {
       char name[32];
       std::snprintf(name, sizeof name, "/%016llx.fsd",
-                    static_cast<unsigned long long>(FsdMap::fingerprint(*map, params_.map)));
+                    static_cast<unsigned long long>(FsdMap::fingerprint(*map, params.map)));
       cache = cache_dir_ + name;
     }
-    outcome.localizer = std::make_unique<Localizer>(*map, params_, cache,
+    outcome.localizer = std::make_unique<Localizer>(*map, params, cache,
                                                     [this](double share) { progress_ = share; });
     outcome.cached = outcome.localizer->mapWasCached();
     outcome.cache_problem = outcome.localizer->mapCacheProblem();

@@ -14,22 +14,13 @@ using hyselam::Range;
 
 namespace {
 
-constexpr const char* kIgnoredOfAmcl[] = {"odom_model_type",
-                                          "odom_alpha5",
-                                          "laser_model_type",
-                                          "laser_min_range",
-                                          "resample_interval",
-                                          "selective_resampling",
-                                          "do_beamskip",
-                                          "beam_skip_distance",
-                                          "beam_skip_threshold",
-                                          "beam_skip_error_threshold",
-                                          "bag_scan_period",
-                                          "std_warn_level_x",
-                                          "std_warn_level_y",
-                                          "std_warn_level_yaw",
-                                          "force_update_after_initialpose",
-                                          "force_update_after_set_map",
+constexpr const char* kIgnoredOfAmcl[] = {"odom_model_type",     "odom_alpha5",
+                                          "laser_model_type",    "laser_min_range",
+                                          "resample_interval",   "selective_resampling",
+                                          "do_beamskip",         "beam_skip_distance",
+                                          "beam_skip_threshold", "beam_skip_error_threshold",
+                                          "bag_scan_period",     "std_warn_level_x",
+                                          "std_warn_level_y",    "std_warn_level_yaw",
                                           "restore_defaults"};
 
 /// The beams' parameters of the models that are not in use.
@@ -50,6 +41,73 @@ constexpr const char* kBeamParams[] = {"laser_max_beams",
 const Range kDiagnosticPeriod = Range::between(0.05, 60.0);
 
 }  // namespace
+
+void UnusedAmclParams::describe(hyselam::ParameterVisitor& visit) {
+  const std::string unused = "amcl's; has no effect here";
+  const std::string beam_only = "amcl's; of the model 'beam' only";
+  const Range any = Range::any();
+  visit("odom_model_type", odom_model_type, unused);
+  visit("odom_alpha5", odom_alpha5, any, "", unused);
+  visit("laser_model_type", laser_model_type, unused + ", see 'model'");
+  visit("laser_min_range", laser_min_range, any, "m", unused);
+  visit("resample_interval", resample_interval, any, "", unused);
+  visit("do_beamskip", do_beamskip, unused);
+  visit("beam_skip_distance", beam_skip_distance, any, "m", unused);
+  visit("beam_skip_threshold", beam_skip_threshold, any, "", unused);
+  visit("laser_z_short", laser_z_short, Range::between(0.0, 1.0), "", beam_only);
+  visit("laser_z_max", laser_z_max, Range::between(0.0, 1.0), "", beam_only);
+  visit("laser_lambda_short", laser_lambda_short, Range::between(0.001, 100.0), "1/m", beam_only);
+  visit("restore_defaults", restore_defaults, "back to the values of the start");
+}
+
+std::vector<std::string> dynamicParams() {
+  return {"min_particles",
+          "max_particles",
+          "kld_err",
+          "kld_z",
+          "update_min_d",
+          "update_min_a",
+          "resample_interval",
+          "transform_tolerance",
+          "recovery_alpha_slow",
+          "recovery_alpha_fast",
+          "do_beamskip",
+          "beam_skip_distance",
+          "beam_skip_threshold",
+          "tf_broadcast",
+          "force_update_after_initialpose",
+          "force_update_after_set_map",
+          "gui_publish_rate",
+          "save_pose_rate",
+          "use_map_topic",
+          "first_map_only",
+          "laser_min_range",
+          "laser_max_range",
+          "laser_max_beams",
+          "laser_z_hit",
+          "laser_z_short",
+          "laser_z_max",
+          "laser_z_rand",
+          "laser_sigma_hit",
+          "laser_lambda_short",
+          "laser_likelihood_max_dist",
+          "laser_model_type",
+          "odom_model_type",
+          "odom_alpha1",
+          "odom_alpha2",
+          "odom_alpha3",
+          "odom_alpha4",
+          "odom_alpha5",
+          "odom_frame_id",
+          "base_frame_id",
+          "global_frame_id",
+          "restore_defaults"};
+}
+
+bool isReadAtStartOnly(const std::string& name) {
+  return name == "use_map_topic" || name == "odom_frame_id" || name == "base_frame_id" ||
+         name == "global_frame_id";
+}
 
 void FsdServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit.group("", input);
@@ -85,6 +143,10 @@ void LocalizationServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("cache_dir", cache_dir,
         "existing folder that keeps density fields between runs; empty: none are kept");
   visit("tf_broadcast", tf_broadcast, "publish global_frame_id -> odom_frame_id");
+  visit("force_update_after_initialpose", force_update_after_initialpose,
+        "after a pose on initialpose the next scan gives an update without motion");
+  visit("force_update_after_set_map", force_update_after_set_map,
+        "after the service set_map likewise");
   visit("publish_unconverged_tf", publish_unconverged_tf,
         "also from estimates that have not converged, as amcl does");
   visit("search_wait", search_wait, Range::between(0.0, 3600.0), "s",

@@ -15,6 +15,8 @@ class LocalizationPublisher {
  public:
   LocalizationPublisher(ros::NodeHandle nh, const LocalizationServerParams& params);
 
+  /// What may change while it runs: rates, tolerances, the cloud's size.
+  void setParams(const LocalizationServerParams& params);
   /// `density_field`, latched, when a map is ready.
   void publishMap(const Localizer& localizer);
   /// `amcl_pose` and `localization_status` at each update; `particlecloud`, `local_map` and

@@ -29,11 +29,18 @@ class LocalizationServer {
   /// @throws hyselam::ParameterError.
   LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh);
 
+  const LocalizationServerParams& params() const { return params_; }
+  /// What concerns the localiser itself makes a new one of the same map, in the background; it goes
+  /// on from the last trusted pose. Frames and the source of the map stay what they were.
+  /// @param params that have been validated.
+  void setParams(const LocalizationServerParams& params);
+
  private:
   // Maps.
   void onMap(const nav_msgs::OccupancyGrid::ConstPtr& msg);
   bool prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source);
   void requestMap(double pause);
+  void startPreparation(MapPreparation::Source source);
   void takeOverMap();
   void refuseMap(const std::string& why);
 
@@ -60,6 +67,7 @@ class LocalizationServer {
   LocalizationPublisher publisher_;
   std::atomic<bool> map_seen_{false};   // a map that looks usable has come
   MapPreparation::Source map_service_;  // static_map
+  MapPreparation::Source last_source_;  // of the map in use or on its way, for other parameters
   MapPreparation preparation_;          // its thread sets map_seen_: ends before that does
   std::unique_ptr<Localizer> localizer_;
   std::uint64_t fingerprint_ = 0;  // of the newest map that came by topic or set_map

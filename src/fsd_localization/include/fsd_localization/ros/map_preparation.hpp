@@ -37,6 +37,8 @@ class MapPreparation {
   ~MapPreparation();
 
   void start(Source source);
+  /// For the next start().
+  void setParams(const LocalizerParams& params);
   /// The newest finished map, once.
   std::optional<Outcome> take();
   bool busy() const;
@@ -45,7 +47,7 @@ class MapPreparation {
 
  private:
   void run();
-  Outcome prepare(const Source& source);
+  Outcome prepare(const Source& source, const LocalizerParams& params);
   bool superseded() const;
 
   LocalizerParams params_;

@@ -33,6 +33,8 @@ struct LocalizationServerParams {
   int max_map_cells = 50000000;  ///< a larger map is refused
   std::string cache_dir;         ///< density fields are kept there between runs; empty: nowhere
   bool tf_broadcast = true;
+  bool force_update_after_initialpose = false;  ///< the next scan is used without motion
+  bool force_update_after_set_map = false;
   bool publish_unconverged_tf = false;  ///< map -> odom before convergence too, as amcl does
   double search_wait = 1.0;  ///< a scan waits at most this long for an answer of the search [s]
   double transform_tolerance = 0.1;  ///< added to the stamp of map -> odom, as in amcl [s]
@@ -46,6 +48,26 @@ struct LocalizationServerParams {
   void describe(hyselam::ParameterVisitor& visit);
   void validate() const;  ///< @throws hyselam::ParameterError
 };
+
+/// What amcl offers to dynamic_reconfigure and nothing here uses, with amcl's defaults: its tools
+/// find the names, and are told.
+struct UnusedAmclParams {
+  std::string odom_model_type = "diff", laser_model_type = "likelihood_field";
+  double odom_alpha5 = 0.2, laser_min_range = -1.0;
+  int resample_interval = 2;
+  bool do_beamskip = false;
+  double beam_skip_distance = 0.5, beam_skip_threshold = 0.3;
+  // Of the model `beam` only.
+  double laser_z_short = 0.1, laser_z_max = 0.05, laser_lambda_short = 0.1;
+  bool restore_defaults = false;
+
+  void describe(hyselam::ParameterVisitor& visit);
+};
+
+/// The names that dynamic_reconfigure offers: those of amcl.
+std::vector<std::string> dynamicParams();
+/// Those of them that are read at the start only.
+bool isReadAtStartOnly(const std::string& name);
 
 /// @throws hyselam::ParameterError naming parameter, value and range. Nothing is logged.
 FsdServerParams loadFsdParams(hyselam::ParamLoader& loader);
