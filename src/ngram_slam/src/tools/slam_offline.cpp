@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <sstream>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
@@ -21,6 +22,7 @@
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
+#include "ngram_slam/slam/slam_state_io.hpp"
 #include "reference_poses.hpp"
 #include "slam_report.hpp"
 #include "word_tables.hpp"
@@ -31,7 +33,7 @@ using namespace ngram_slam;  // NOLINT: a program, not a header
 using hyselam::Pose2;
 
 struct Options {
-  std::string bag, carmen, out, reference, loops = "all";
+  std::string bag, carmen, out, reference, loops = "all", state, save_state, start;
   int levels = 3;
   std::uint64_t seed = 1;
   double noise = 0.0, resolution = 0.05;
@@ -85,16 +87,51 @@ void addOdometryNoise(double factor, std::uint64_t seed,
   }
 }
 
+/// Where the robot of a recording stands at its beginning in a saved map: "X,Y,THETA" [m, rad].
+/// @throws hyselam::InputError
+Pose2 parseStart(const std::string& text) {
+  Pose2 pose;
+  char comma = 0, other = 0;
+  std::istringstream in(text);
+  if (!(in >> pose.x >> comma >> pose.y >> other >> pose.theta) || comma != ',' || other != ',' ||
+      !(in >> std::ws).eof() || !pose.isFinite()) {
+    throw hyselam::InputError("--start", text, "is neither X,Y,THETA nor unknown");
+  }
+  return pose;
+}
+
+/// The poses of the recording's own scans; those of the saved map come before them.
+std::vector<hyselam::StampedPose2> ownTrajectory(const SlamEngine& engine, std::size_t saved) {
+  auto all = engine.trajectory();
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(saved));
+  return all;
+}
+
 struct Run {
   std::unique_ptr<SlamEngine> engine;
+  std::size_t saved_scans = 0;  ///< of the map that it goes on with
   std::size_t without_odometry = 0, refused = 0;
   double cpu = 0.0;
 };
 
-Run runSlam(const hyselam::RobotLog& log, const SlamParams& params, const std::string& label) {
+/// The engine that goes on with the saved map, if there is one.
+std::unique_ptr<SlamEngine> makeEngine(const Options& o, const SlamParams& params) {
+  if (o.state.empty()) return std::make_unique<SlamEngine>(params);
+  auto engine = std::make_unique<SlamEngine>(params, SlamStateFile::load(o.state, params.surface));
+  if (o.start == "unknown") {
+    engine->startRun({}, SlamEngine::kMaxStartWindow, hyselam::kPi);
+  } else if (!o.start.empty()) {
+    engine->startRun(parseStart(o.start));
+  }
+  return engine;
+}
+
+Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
+            const std::string& label) {
   const double begin = cpuSeconds();
   Run run;
-  run.engine = std::make_unique<SlamEngine>(params);
+  run.engine = std::move(engine);
+  run.saved_scans = run.engine->trajectory().size();
   hyselam::Progress progress(label, log.scans.size());
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     progress.update(i + 1);
@@ -189,9 +226,9 @@ FalseLoops falseLoops(const SlamEngine& engine,
   return count;
 }
 
-nlohmann::json errorOf(const SlamEngine& engine,
-                       const std::vector<hyselam::StampedPose2>& reference) {
-  const TrajectoryError e = trajectoryError(engine.trajectory(), reference);
+nlohmann::json errorOf(const Run& run, const std::vector<hyselam::StampedPose2>& reference) {
+  const SlamEngine& engine = *run.engine;
+  const TrajectoryError e = trajectoryError(ownTrajectory(engine, run.saved_scans), reference);
   const FalseLoops false_loops = falseLoops(engine, reference);
   const auto without_weight =
       std::count_if(engine.loops().begin(), engine.loops().end(),
@@ -273,8 +310,11 @@ void checkMapped(const Run& run, const std::string& name, std::size_t scans) {
                                 std::to_string(run.refused) + " cannot be used");
 }
 
-void writeResults(const Options& o, const SlamEngine& engine, const hyselam::RobotLog& log) {
-  hyselam::writeTum(o.out + "/trajectory.tum", engine.trajectory());
+void writeResults(const Options& o, const Run& run, const hyselam::RobotLog& log) {
+  const SlamEngine& engine = *run.engine;
+  hyselam::writeTum(o.out + "/trajectory.tum", ownTrajectory(engine, run.saved_scans));
+  if (!o.state.empty()) hyselam::writeTum(o.out + "/trajectory_map.tum", engine.trajectory());
+  if (!o.save_state.empty()) SlamStateFile::save(o.save_state, engine.state());
   hyselam::writeTum(o.out + "/odometry.tum", log.odometry);
   hyselam_pose_graph::writeG2o(o.out + "/graph.g2o", engine.graph());
   hyselam::saveMap(o.out + "/map.yaml", mapOf(engine, o.resolution));
@@ -304,6 +344,9 @@ void makePage(const std::string& folder) {
 nlohmann::json run(const Options& o) {
   const SlamParams params = paramsOf(o, loopClosureModeFromString(o.loops));
   if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
+  if (!o.start.empty() && o.state.empty())
+    throw hyselam::InputError("--start", o.start, "is a place in a saved map: give --state too");
+  if (!o.start.empty() && o.start != "unknown") parseStart(o.start);
   emptyMap(o.resolution);  // refused before the work, not after it
   hyselam::RobotLog log = readLog(o);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
@@ -311,22 +354,22 @@ nlohmann::json run(const Options& o) {
   const std::vector<hyselam::StampedPose2> reference = referenceOf(o.reference, log);
   makeFolder(o.out);
 
-  const Run main_run = runSlam(log, params, "SLAM of " + name);
+  const Run main_run = runSlam(log, makeEngine(o, params), "SLAM of " + name);
   const SlamEngine& engine = *main_run.engine;
   checkMapped(main_run, name, log.scans.size());
   const auto span = hyselam::timeSpan(log);
   nlohmann::json summary = summaryOf(main_run, span ? span->end - span->begin : 0.0);
   summary["loops_mode"] = o.loops;
-  if (!reference.empty()) summary["errors"] = errorOf(engine, reference);
-  writeResults(o, engine, log);
+  if (!reference.empty()) summary["errors"] = errorOf(main_run, reference);
+  writeResults(o, main_run, log);
 
   nlohmann::json figures = {figureJson("loops: " + o.loops, "map.yaml", engine)};
   for (const LoopClosureMode other : {LoopClosureMode::kNone, LoopClosureMode::kThesis}) {
     if (!o.side_by_side || other == params.loops) continue;
     const std::string mode = toString(other), label = "loops: " + mode, map = "map_" + mode;
-    const Run r = runSlam(log, paramsOf(o, other), label);
+    const Run r = runSlam(log, std::make_unique<SlamEngine>(paramsOf(o, other)), label);
     nlohmann::json s = {{"loops", r.engine->loops().size()}, {"cpu_seconds", r.cpu}};
-    if (!reference.empty()) s.update(errorOf(*r.engine, reference));
+    if (!reference.empty()) s.update(errorOf(r, reference));
     summary["side_by_side_" + mode] = s;
     hyselam::writeTum(o.out + "/trajectory_" + mode + ".tum", r.engine->trajectory());
     hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o.resolution));
@@ -364,6 +407,13 @@ int main(int argc, char** argv) {
   app.add_option("--odometry-noise", o.noise,
                  "add errors to the odometry: this many per cent of distance and rotation, and as "
                  "many centiradians a meter");
+  app.add_option("--state", o.state,
+                 "a saved map to go on with; trajectory.tum has the poses of this recording, "
+                 "trajectory_map.tum those of all");
+  app.add_option("--start", o.start,
+                 "where the robot stands in the saved map, X,Y,THETA [m, rad], or unknown; without "
+                 "it, where the last run ended");
+  app.add_option("--save-state", o.save_state, "file for the map, to go on with later");
   app.add_flag("--raw-odometry", o.raw_odometry, "do not refine the odometry by scans");
   app.add_flag("--side-by-side", o.side_by_side,
                "the same without loops and in thesis mode too, for the report");
