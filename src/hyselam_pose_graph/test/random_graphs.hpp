@@ -55,4 +55,18 @@ inline Known streets(int poses, double sigma, std::uint64_t seed) {
   return k;
 }
 
+/// Leaves loops out until those that stay end at least `every` poses apart.
+inline void thinLoops(hyselam_pose_graph::PoseGraph* graph, int every) {
+  std::vector<hyselam_pose_graph::PoseEdge> kept;
+  int last = -every;
+  for (const hyselam_pose_graph::PoseEdge& e : graph->edges) {
+    if (!isOdometry(e)) {
+      if (e.to - last < every) continue;
+      last = e.to;
+    }
+    kept.push_back(e);
+  }
+  graph->edges = kept;
+}
+
 }  // namespace random_graphs

@@ -201,6 +201,84 @@ TEST(GraphOptimizer, DcsWeakensAFalseLoop) {
   EXPECT_LT(worst(r.poses, clean.poses), 0.05);
 }
 
+/// Over walks so long that loops look tens of meters wrong from odometry.
+struct LongWalks {
+  std::size_t true_loops = 0, lost = 0, false_kept = 0;
+  int followed_all = 0;
+  double worst_error = 0.0;  ///< of a trajectory, in parts of odometry's
+
+  /// `every`: poses between loops at least. `false_share`: false loops per true loop.
+  LongWalks(const OptimizeParams& params, int every, double false_share) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      random_graphs::Known known = random_graphs::streets(1500, 0.02, seed);
+      random_graphs::thinLoops(&known.graph, every);
+      const double odometry = false_loops::trajectoryError(known.graph.poses, known.truth);
+      const std::size_t own_edges = known.graph.edges.size();
+      true_loops += own_edges - (known.graph.poses.size() - 1);
+      false_loops::add(&known.graph, false_share, seed);
+      const OptimizeResult r = GraphOptimizer(known.graph).optimize(params);
+      std::size_t agreeing = 0;
+      for (std::size_t k = 0; k < r.weights.size(); ++k) {
+        const bool kept = r.weights[k] >= kAgreeingWeight;
+        agreeing += kept ? 1 : 0;
+        if (k < own_edges) lost += kept ? 0 : 1;
+        if (k >= own_edges) false_kept += kept ? 1 : 0;
+      }
+      EXPECT_EQ(r.agreeing_edges, agreeing);
+      followed_all += r.followed_all ? 1 : 0;
+      worst_error =
+          std::max(worst_error, false_loops::trajectoryError(r.poses, known.truth) / odometry);
+    }
+  }
+  double lostShare() const { return static_cast<double>(lost) / static_cast<double>(true_loops); }
+};
+
+OptimizeParams robustParams(GraphRobust robust, FollowLoops follow) {
+  OptimizeParams params;
+  params.robust = robust;
+  params.follow = follow;
+  return params;
+}
+
+TEST(GraphOptimizer, VerifiedLoopsAreKeptHoweverFarOdometryIsOff) {
+  for (const GraphStart start : {GraphStart::kGiven, GraphStart::kChordal}) {
+    OptimizeParams params = robustParams(GraphRobust::kDcs, FollowLoops::kNone);
+    params.start = start;
+    const LongWalks before(params, 20, 0.0);
+    params.follow = FollowLoops::kAll;
+    const LongWalks all(params, 20, 0.0);
+    EXPECT_EQ(all.lost, 0u);
+    if (start != GraphStart::kGiven) continue;
+    EXPECT_GT(before.lostShare(), 0.5) << "odometry leads to the loops: the test shows nothing";
+    EXPECT_EQ(all.followed_all, 10);
+  }
+  EXPECT_EQ(LongWalks(robustParams(GraphRobust::kGnc, FollowLoops::kAll), 20, 0.0).lost, 0u);
+}
+
+TEST(GraphOptimizer, TrueLoopsAreKeptAndFalseOnesRejectedHoweverFarOdometryIsOff) {
+  const LongWalks before(robustParams(GraphRobust::kDcs, FollowLoops::kNone), 1, 0.05);
+  EXPECT_GT(before.lostShare(), 0.5) << "odometry leads to the loops: the test shows nothing";
+  for (const GraphRobust robust : {GraphRobust::kDcs, GraphRobust::kGnc}) {
+    const LongWalks best(robustParams(robust, FollowLoops::kBest), 1, 0.05);
+    EXPECT_LT(best.lostShare(), 0.01);
+    EXPECT_LE(best.false_kept, before.false_kept);
+    EXPECT_LT(best.worst_error, before.worst_error);
+  }
+}
+
+TEST(GraphOptimizer, FollowingAllLoopsCountsNothingWhereTheStartAgreesWithThem) {
+  const auto known = random_graphs::streets(200, 0.01, 3);
+  OptimizeParams params = robustParams(GraphRobust::kDcs, FollowLoops::kNone);
+  params.start = GraphStart::kChordal;
+  const OptimizeResult none = GraphOptimizer(known.graph).optimize(params);
+  ASSERT_EQ(none.agreeing_edges, known.graph.edges.size());
+  params.follow = FollowLoops::kAll;
+  const OptimizeResult all = GraphOptimizer(known.graph).optimize(params);
+  EXPECT_FALSE(all.followed_all);
+  EXPECT_EQ(all.iterations, none.iterations);
+  for (std::size_t i = 0; i < all.poses.size(); ++i) EXPECT_EQ(all.poses[i].x, none.poses[i].x);
+}
+
 TEST(GraphOptimizer, CovariancesEqualTheDenseInverse) {
   const auto known = random_graphs::streets(30, 0.02, 11);
   const GraphOptimizer optimizer(known.graph);

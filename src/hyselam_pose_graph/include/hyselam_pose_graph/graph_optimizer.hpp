@@ -35,6 +35,20 @@ enum class GraphRobust {
   kGnc   ///< graduated non-convexity with truncated least squares (Yang et al. 2020)
 };
 
+/// Other starts of robust modes, tried where loops lose their weight. A loop that closes after
+/// hundreds of meters looks wrong from odometry, however right it is.
+enum class FollowLoops {
+  kNone,  ///< only the start that is asked for
+  kAll,  ///< the poses at which all loops have full weight: of two results the one that agrees with
+         ///< more edges. For loops that were verified before
+  kBest  ///< those that the loops lead to which confirm one another and, where most loops or the
+         ///< odometry are doubtful even so, as kAll: the likeliest result, with odometry that may
+         ///< be worse than it says
+};
+
+/// Below this weight an edge contradicts the others so much that it is not used.
+constexpr double kAgreeingWeight = 0.3;
+
 struct OptimizeParams {
   GraphStart start = GraphStart::kBest;
   GraphMethod method = GraphMethod::kLevenbergMarquardt;
@@ -44,6 +58,7 @@ struct OptimizeParams {
   double dcs_phi = 5.0;      ///< squared error above which DCS reduces the weight, > 0
   /// Squared error that a true edge stays below, > 0 (chi^2 with 3 degrees of freedom, 99.9 %).
   double gnc_inlier_threshold = 16.266;
+  FollowLoops follow = FollowLoops::kBest;
   /// kBest: a larger rotation error of an edge at the minimum [rad], > 0, starts the global
   /// relaxation, which takes some hundred times as long.
   double max_rotation_error = 1.0;
@@ -61,6 +76,9 @@ struct OptimizeResult {
   bool converged = false;       ///< the tolerance was reached
   bool global = false;          ///< the poses come from the global relaxation
   std::vector<double> weights;  ///< of each edge, 0..1; empty without robust
+  /// Edges that keep at least kAgreeingWeight; all of them without robust.
+  std::size_t agreeing_edges = 0;
+  bool followed_all = false;  ///< the poses come from those with all loops at full weight
 };
 
 /// Optimizes one graph. The sparsity pattern of its linear system is computed by the constructor

@@ -73,9 +73,25 @@ class GncSolver {
         weights_(graph.edges.size(), 1.0) {}
 
   OptimizeResult solve() {
-    selectFirstLoops();
+    const ConsistentLoops all = findConsistentLoops(graph_, threshold_, kMaxLoopDistance);
+    selectFirstLoops(all);
+    scaleThreshold(all);
+    return solveStages(true);
+  }
+
+  OptimizeResult solveFrom(const OptimizeResult& known) {
+    scaleThreshold(findConsistentLoops(graph_, threshold_, kMaxLoopDistance));
+    poses_ = PoseSystem::system(known.poses);
+    for (std::size_t k = 0; k < weights_.size(); ++k)
+      weights_[k] = known.weights[k] >= kAgreeingWeight ? 1.0 : 0.0;
+    return solveStages(false);
+  }
+
+ private:
+  /// `first`: there are no poses worth starting from.
+  OptimizeResult solveStages(bool first) {
     const std::vector<double> selected = weights_;
-    solveStage([&](std::size_t k) { return selected[k] > 0.0; }, true);
+    solveStage([&](std::size_t k) { return selected[k] > 0.0; }, first);
     // Rejected loops that fit are taken back, until nothing changes.
     std::vector<double> before;
     for (int round = 0; round < kMaxRounds && weights_ != before; ++round) {
@@ -88,10 +104,8 @@ class GncSolver {
     return std::move(result_);
   }
 
- private:
-  /// Sets weights 0 and 1, and the threshold of the stages that follow.
-  void selectFirstLoops() {
-    const ConsistentLoops all = findConsistentLoops(graph_, threshold_, kMaxLoopDistance);
+  /// Sets weights 0 and 1.
+  void selectFirstLoops(const ConsistentLoops& all) {
     any_support_ = std::any_of(all.support.begin(), all.support.end(), [](int n) { return n > 0; });
     if (!any_support_) {
       anneal(
@@ -102,10 +116,13 @@ class GncSolver {
     }
     const ConsistentLoops closest = findConsistentLoops(
         graph_, threshold_ * std::min(1.0, kFirstMargin * all.error_scale), kMaxLoopDistance);
-    threshold_ *= std::min(1.0, kMargin * all.error_scale);
     for (std::size_t k = 0; k < weights_.size(); ++k) {
       weights_[k] = isOdometry(graph_.edges[k]) || closest.support[k] > 0 ? 1.0 : 0.0;
     }
+  }
+  /// The threshold of the stages after the first selection; without consistent loops as it was.
+  void scaleThreshold(const ConsistentLoops& all) {
+    threshold_ *= std::min(1.0, kMargin * all.error_scale);
   }
 
   /// Anneals odometry and the loops that `keep`, then finds the loops that fit the result.
@@ -152,6 +169,11 @@ class GncSolver {
 OptimizeResult solveGnc(const PoseGraph& graph, const PoseSystem& system,
                         const OptimizeParams& params) {
   return GncSolver(graph, system, params).solve();
+}
+
+OptimizeResult solveGncFrom(const OptimizeResult& known, const PoseGraph& graph,
+                            const PoseSystem& system, const OptimizeParams& params) {
+  return GncSolver(graph, system, params).solveFrom(known);
 }
 
 }  // namespace hyselam_pose_graph

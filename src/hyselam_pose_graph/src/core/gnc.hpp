@@ -15,4 +15,9 @@ namespace hyselam_pose_graph {
 OptimizeResult solveGnc(const PoseGraph& graph, const PoseSystem& system,
                         const OptimizeParams& params);
 
+/// The same with the loops that agree with a known solution (kAgreeingWeight) in the first stage,
+/// starting there.
+OptimizeResult solveGncFrom(const OptimizeResult& known, const PoseGraph& graph,
+                            const PoseSystem& system, const OptimizeParams& params);
+
 }  // namespace hyselam_pose_graph

@@ -38,6 +38,7 @@ nlohmann::json run(const Options& o) {
     int refused = 0;
     for (const double w : result.weights) refused += w < 0.5 ? 1 : 0;
     j["refused_edges"] = refused;
+    j["followed_all"] = result.followed_all;
   }
   std::cout << j.dump(2) << "\n";
   return j;
@@ -61,6 +62,14 @@ int main(int argc, char** argv) {
                  "non-convexity)")
       ->transform(CLI::CheckedTransformer(robust))
       ->default_str("none");
+  const std::map<std::string, FollowLoops> follow = {
+      {"none", FollowLoops::kNone}, {"all", FollowLoops::kAll}, {"best", FollowLoops::kBest}};
+  app.add_option("--follow", o.params.follow,
+                 "other starts of --robust, where loops lose their weight: none, all (all loops at "
+                 "full weight first; for verified ones), best (first those that confirm one "
+                 "another; the likeliest result)")
+      ->transform(CLI::CheckedTransformer(follow))
+      ->default_str("best");
   const std::map<std::string, GraphStart> start = {{"given", GraphStart::kGiven},
                                                    {"composed", GraphStart::kComposed},
                                                    {"chordal", GraphStart::kChordal},

@@ -1,5 +1,4 @@
 // Work of the engine that may run on another thread: making it, running it, applying the result.
-#include <algorithm>
 #include <utility>
 
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -10,6 +9,7 @@ using hyselam::Pose2;
 
 namespace {
 
+using hyselam_pose_graph::FollowLoops;
 using hyselam_pose_graph::GraphOptimizer;
 using hyselam_pose_graph::GraphRobust;
 using hyselam_pose_graph::GraphStart;
@@ -19,28 +19,17 @@ using hyselam_pose_graph::OptimizeResult;
 // A job is made of no fewer, about 2 m of path.
 constexpr std::size_t kKeyframesToSign = 8;
 
-/// The number of edges that the result agrees with.
-std::size_t inlierEdges(const OptimizeResult& r) {
-  return static_cast<std::size_t>(std::count_if(r.weights.begin(), r.weights.end(),
-                                                [](double w) { return w >= kMinLoopWeight; }));
-}
+static_assert(hyselam_pose_graph::kAgreeingWeight == kMinLoopWeight,
+              "the optimizer counts the loops that the engine uses");
 
-/// From the poses as they are. A loop that closes after hundreds of meters looks wrong from there,
-/// however right it is: where loops would lose their weight, the graph is also solved with all of
-/// them at full weight, and those poses are the start if more loops keep their weight from there.
+/// From the poses as they are, and where loops would lose their weight also from all of them.
 OptimizeResult optimize(hyselam_pose_graph::PoseGraph graph, const SlamParams& params) {
   OptimizeParams p;
   p.start = GraphStart::kGiven;
   p.dcs_phi = params.dcs_phi;
   p.robust = params.loops == LoopClosureMode::kThesis ? GraphRobust::kNone : GraphRobust::kDcs;
-  OptimizeResult result = GraphOptimizer(graph).optimize(p);
-  if (p.robust == GraphRobust::kNone || inlierEdges(result) == graph.edges.size()) return result;
-  OptimizeParams all = p;
-  all.start = GraphStart::kChordal;
-  all.robust = GraphRobust::kNone;
-  graph.poses = GraphOptimizer(graph).optimize(all).poses;
-  OptimizeResult other = GraphOptimizer(std::move(graph)).optimize(p);
-  return inlierEdges(other) > inlierEdges(result) ? other : result;
+  p.follow = FollowLoops::kAll;
+  return GraphOptimizer(std::move(graph)).optimize(p);
 }
 
 }  // namespace
