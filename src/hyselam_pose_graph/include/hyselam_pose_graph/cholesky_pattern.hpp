@@ -7,8 +7,7 @@
 
 namespace hyselam_pose_graph {
 
-/// The pattern of L with P A P^T = L L^T, ordered by approximate minimum degree (AMD of
-/// SuiteSparse).
+/// The pattern of L with P A P^T = L L^T, in an order of little fill (elimination_order.hpp).
 struct CholeskyPattern {
   int size = 0;               ///< rows of blocks
   std::vector<int> position;  ///< of each variable in the elimination order

@@ -33,6 +33,11 @@ bool isInformation(const Eigen::Matrix3d& m) {
   if (!m.allFinite()) return false;
   const double scale = m.cwiseAbs().maxCoeff();
   if ((m - m.transpose()).cwiseAbs().maxCoeff() > 1e-6 * scale) return false;
+  // Nearly every matrix is positive definite by its minors, which takes no eigenvalues.
+  const double minor = m(0, 0) * m(1, 1) - m(1, 0) * m(1, 0);
+  const double determinant = m(2, 2) * minor - m(2, 1) * (m(0, 0) * m(2, 1) - m(1, 0) * m(2, 0)) +
+                             m(2, 0) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
+  if (m(0, 0) > 0.0 && minor > 0.0 && determinant > 0.0) return true;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(m, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().minCoeff() >= -1e-6 * scale;
@@ -133,25 +138,26 @@ std::vector<Pose2> composedPoses(const PoseGraph& graph) {
 }
 
 std::vector<int> connectedComponents(const PoseGraph& graph) {
-  const auto list = neighbors(graph);
-  std::vector<int> component(graph.poses.size(), -1);
-  int components = 0;
-  std::vector<std::size_t> stack;
-  for (std::size_t first = 0; first < component.size(); ++first) {
-    if (component[first] >= 0) continue;
-    component[first] = components;
-    stack.push_back(first);
-    while (!stack.empty()) {
-      const std::size_t at = stack.back();
-      stack.pop_back();
-      for (const Neighbor& n : list[at]) {
-        const auto next = static_cast<std::size_t>(n.pose);
-        if (component[next] >= 0) continue;
-        component[next] = components;
-        stack.push_back(next);
-      }
+  // A forest in which every pose points to an earlier one of its component, or to itself.
+  std::vector<int> earlier(graph.poses.size());
+  for (std::size_t i = 0; i < earlier.size(); ++i) earlier[i] = static_cast<int>(i);
+  const auto first = [&](int pose) {
+    for (;;) {
+      int& up = earlier[static_cast<std::size_t>(pose)];
+      if (up == pose) return pose;
+      up = earlier[static_cast<std::size_t>(up)];  // halves the way for the next one
+      pose = up;
     }
-    ++components;
+  };
+  for (const PoseEdge& edge : graph.edges) {
+    const int a = first(edge.from), b = first(edge.to);
+    earlier[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  std::vector<int> component(graph.poses.size());
+  int components = 0;
+  for (std::size_t i = 0; i < component.size(); ++i) {
+    const auto up = static_cast<std::size_t>(earlier[i]);
+    component[i] = up == i ? components++ : component[up];
   }
   return component;
 }
