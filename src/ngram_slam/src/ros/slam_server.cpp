@@ -80,7 +80,8 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
       publisher_(nh) {
   SlamState state;
   if (!params_.state.empty() && exists(params_.state)) {
-    state = SlamStateFile::load(params_.state, params_.slam.surface);
+    state = consolidated(SlamStateFile::load(params_.state, params_.slam.surface),
+                         params_.slam.consolidation);
     ROS_INFO_STREAM(log_name_ << " goes on with " << params_.state << ": " << state.keyframes.size()
                               << " keyframes, " << state.loops.size() << " loops");
   }

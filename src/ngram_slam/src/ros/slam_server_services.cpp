@@ -94,8 +94,9 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
                         hyselam_msgs::StatePath::Response& out) {
   try {
     const std::string path = pathOrDefault(request.path);
-    auto mapping =
-        std::make_unique<Mapping>(params_, SlamStateFile::load(path, params_.slam.surface));
+    auto mapping = std::make_unique<Mapping>(
+        params_,
+        consolidated(SlamStateFile::load(path, params_.slam.surface), params_.slam.consolidation));
     out.message = path + ": " + std::to_string(mapping->engine.keyframes().size()) +
                   " keyframes, " + std::to_string(mapping->engine.loops().size()) + " loops";
     {

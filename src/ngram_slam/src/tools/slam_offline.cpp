@@ -37,7 +37,7 @@ struct Options {
   int levels = 3;
   std::uint64_t seed = 1;
   double noise = 0.0, resolution = 0.05;
-  bool side_by_side = false, raw_odometry = false;
+  bool side_by_side = false, raw_odometry = false, keep_all = false;
   hyselam::BagOptions bag_options;
 };
 
@@ -117,7 +117,9 @@ struct Run {
 /// The engine that goes on with the saved map, if there is one.
 std::unique_ptr<SlamEngine> makeEngine(const Options& o, const SlamParams& params) {
   if (o.state.empty()) return std::make_unique<SlamEngine>(params);
-  auto engine = std::make_unique<SlamEngine>(params, SlamStateFile::load(o.state, params.surface));
+  SlamState state = SlamStateFile::load(o.state, params.surface);
+  auto engine =
+      std::make_unique<SlamEngine>(params, consolidated(std::move(state), params.consolidation));
   if (o.start == "unknown") {
     engine->startRun({}, SlamEngine::kMaxStartWindow, hyselam::kPi);
   } else if (!o.start.empty()) {
@@ -276,6 +278,19 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
   return j;
 }
 
+/// Saves the map for the next run, and tells how large it is.
+nlohmann::json saveMapState(const std::string& path, const SlamEngine& engine) {
+  const double begin = cpuSeconds();
+  const SlamState state = consolidated(engine.state(), engine.params().consolidation);
+  SlamStateFile::save(path, state);
+  return {{"keyframes", state.keyframes.size()},
+          {"loops", state.loops.size()},
+          {"scans", state.scans.size()},
+          {"observations", state.corpus.observations.size()},
+          {"bytes", std::filesystem::file_size(path)},
+          {"cpu_seconds", cpuSeconds() - begin}};
+}
+
 SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
   if (o.levels < 1 || o.levels > WordLattice::kMaxLevels)
     throw hyselam::ParameterError("levels", o.levels,
@@ -290,6 +305,7 @@ SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
   }
   params.loops = loops;
   params.refine_odometry = !o.raw_odometry;
+  params.consolidation.enabled = !o.keep_all;
   params.validate();
   return params;
 }
@@ -314,7 +330,6 @@ void writeResults(const Options& o, const Run& run, const hyselam::RobotLog& log
   const SlamEngine& engine = *run.engine;
   hyselam::writeTum(o.out + "/trajectory.tum", ownTrajectory(engine, run.saved_scans));
   if (!o.state.empty()) hyselam::writeTum(o.out + "/trajectory_map.tum", engine.trajectory());
-  if (!o.save_state.empty()) SlamStateFile::save(o.save_state, engine.state());
   hyselam::writeTum(o.out + "/odometry.tum", log.odometry);
   hyselam_pose_graph::writeG2o(o.out + "/graph.g2o", engine.graph());
   hyselam::saveMap(o.out + "/map.yaml", mapOf(engine, o.resolution));
@@ -362,6 +377,7 @@ nlohmann::json run(const Options& o) {
   summary["loops_mode"] = o.loops;
   if (!reference.empty()) summary["errors"] = errorOf(main_run, reference);
   writeResults(o, main_run, log);
+  if (!o.save_state.empty()) summary["saved"] = saveMapState(o.save_state, engine);
 
   nlohmann::json figures = {figureJson("loops: " + o.loops, "map.yaml", engine)};
   for (const LoopClosureMode other : {LoopClosureMode::kNone, LoopClosureMode::kThesis}) {
@@ -414,6 +430,9 @@ int main(int argc, char** argv) {
                  "where the robot stands in the saved map, X,Y,THETA [m, rad], or unknown; without "
                  "it, where the last run ended");
   app.add_option("--save-state", o.save_state, "file for the map, to go on with later");
+  app.add_flag("--keep-all", o.keep_all,
+               "keep all keyframes of the maps that are loaded and saved, whether they add to "
+               "them or not");
   app.add_flag("--raw-odometry", o.raw_odometry, "do not refine the odometry by scans");
   app.add_flag("--side-by-side", o.side_by_side,
                "the same without loops and in thesis mode too, for the report");

@@ -13,6 +13,7 @@
 #include "hyselam_scan_matching/icp.hpp"
 #include "hyselam_scan_matching/surface_points.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/slam/consolidation.hpp"
 #include "ngram_slam/slam/odometry_noise.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/words/observation_sensor.hpp"
@@ -223,6 +224,7 @@ struct SlamParams {
 
   int optimize_interval = 20;  ///< keyframes between optimizations when there are new loops, >= 1
   double dcs_phi = 20.0;       ///< squared error above which loops lose weight, > 0
+  ConsolidationParams consolidation;  ///< of a saved map, before another run begins
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError

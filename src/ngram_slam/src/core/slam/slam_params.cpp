@@ -238,6 +238,7 @@ void SlamParams::describe(ParameterVisitor& visit) {
   visit("optimize_interval", optimize_interval, kCount, "keyframes",
         "between optimizations when there are new loops");
   visit("dcs_phi", dcs_phi, kPositive, "", "squared error from which loops lose weight");
+  visit.group("consolidation/", consolidation);
 }
 
 SlamParams::SlamParams() : words(NgramRecognizerParams::improved()) {

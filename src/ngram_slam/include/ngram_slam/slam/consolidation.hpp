@@ -1,0 +1,40 @@
+// A map of many visits becomes as large as the building, not as the years.
+#pragma once
+
+#include "hyselam_common/parameters.hpp"
+#include "ngram_slam/slam/redundant_keyframes.hpp"
+#include "ngram_slam/slam/slam_types.hpp"
+
+namespace ngram_slam {
+
+struct ConsolidationParams {
+  bool enabled = true;
+  RedundancyParams keyframes;
+  /// Loops are counted by pairs of pieces of path of this length [m], > 0.
+  double place_length = 2.0;
+  int max_loops = 2;  ///< between two such pieces, >= 1; more are averaged
+  /// An observation run is forgotten with its words if this part of it was made at keyframes that
+  /// are dropped, 0..1: an earlier run has the same words.
+  double redundant_observations = 0.9;
+  /// Scans whose poses are remembered, the newest; those of the last run always are. 0: all.
+  int max_scans = 50000;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError
+  void validate() const;
+};
+
+/// The state without the keyframes of later runs that add nothing to what earlier ones saw (see
+/// redundantKeyframes()). A state of one run is returned as it is, and so is one that was
+/// consolidated before. Poses of keyframes and of scans stay where they are.
+///
+/// What dropped keyframes said of the others stays in the graph: their edges are marginalized (see
+/// marginalizedEdges()), loops that have lost their weight are left out. Their scans, observations
+/// and matches go to the nearest keyframe that stays.
+///
+/// To be called between runs: a state of which a run goes on loses nothing that it needs, but the
+/// engine would have to be made again. Deterministic. @throws hyselam::ParameterError,
+/// hyselam::InputError for a state that is not consistent.
+SlamState consolidated(SlamState state, const ConsolidationParams& params = {});
+
+}  // namespace ngram_slam
