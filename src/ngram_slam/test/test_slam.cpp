@@ -507,6 +507,42 @@ TEST(GraphPathLengths, useLoopsAsShortcuts) {
   EXPECT_TRUE(std::isinf(lengths.from(150)[0]));
 }
 
+TEST(GraphPathLengths, toWantedKeyframesAreThoseOfTheWholeGraph) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    hyselam::Rng rng(seed);
+    std::vector<SlamKeyframe> keyframes(200);
+    GraphPathLengths lengths;
+    for (std::size_t i = 1; i < keyframes.size(); ++i) {
+      SlamKeyframe& k = keyframes[i];
+      k.pose = keyframes[i - 1].pose * Pose2{1.0, 0.0, rng.gaussian(0.0, 0.3)};
+      k.path_length = static_cast<double>(i);
+      // Two parts of the graph, and the second goes over the place of the first.
+      if (i != 60) lengths.addEdge(static_cast<int>(i) - 1, static_cast<int>(i), 1.0);
+    }
+    for (int l = 0; l < 10; ++l) {
+      lengths.addEdge(static_cast<int>(rng.uniform(60.0, 100.0)),
+                      static_cast<int>(rng.uniform(100.0, 199.0)), 0.5);
+    }
+    const LoopParams params;
+    for (const int k : {59, 130, 199}) {
+      const auto wanted = keyframesInReach(keyframes, k, params);
+      const auto all = lengths.from(k), some = lengths.from(k, wanted);
+      for (const int w : wanted) {
+        EXPECT_EQ(some[static_cast<std::size_t>(w)], all[static_cast<std::size_t>(w)]);
+      }
+      const auto expected = loopCandidates(keyframes, k, all, params);
+      const auto found = loopCandidates(keyframes, k, some, params);
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].older, expected[i].older);
+        EXPECT_EQ(found[i].position_uncertainty, expected[i].position_uncertainty);
+      }
+    }
+    EXPECT_TRUE(std::isinf(lengths.from(59, {120})[120]));
+    EXPECT_EQ(lengths.from(199, {198, 198, 5000})[198], lengths.from(199)[198]);
+  }
+}
+
 TEST(ConsistentLoops, excludeLoopsThatContradict) {
   std::vector<SlamKeyframe> keyframes(40);
   for (std::size_t i = 0; i < keyframes.size(); ++i) {

@@ -17,6 +17,9 @@ class GraphPathLengths {
   /// Adds an undirected edge.
   void addEdge(int a, int b, double length);
   std::vector<double> from(int keyframe) const;
+  /// The same for the `wanted` keyframes only: what the others have is not used. Ends when these
+  /// are known, which is soon where they are near.
+  std::vector<double> from(int keyframe, const std::vector<int>& wanted) const;
   int keyframes() const { return static_cast<int>(edges_.size()); }
   void clear() { edges_.clear(); }
 
@@ -25,8 +28,15 @@ class GraphPathLengths {
     int to;
     float length;
   };
+  std::vector<double> search(int keyframe, const std::vector<int>* wanted) const;
+
   std::vector<std::vector<Edge>> edges_;
 };
+
+/// The keyframes before `keyframe` that may become candidates by where they are: loopCandidates()
+/// asks for the path lengths of no others.
+std::vector<int> keyframesInReach(const std::vector<SlamKeyframe>& keyframes, int keyframe,
+                                  const LoopParams& params);
 
 /// An older keyframe that may show the same place.
 struct LoopCandidate {
@@ -36,7 +46,7 @@ struct LoopCandidate {
 };
 
 /// The nearest keyframe of each segment of the old path that may be where `keyframe` is, nearest
-/// first. `path_lengths`: GraphPathLengths::from(keyframe).
+/// first. `path_lengths`: GraphPathLengths::from(keyframe), of those in reach at least.
 std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyframes, int keyframe,
                                           const std::vector<double>& path_lengths,
                                           const LoopParams& params);

@@ -19,6 +19,7 @@
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
 #include "ngram_slam/slam/odometry_noise.hpp"
+#include "ngram_slam/slam/run_graph.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
@@ -204,6 +205,7 @@ class SlamEngine {
 
   // Loops, in slam_loops.cpp.
   void searchLoopClosures();
+  std::vector<double> pathLengthsInReach(int keyframe) const;
   void searchNearLoops();
   void searchFarLoops();
   void addWordMatches(WordPlaces::Update update);
@@ -244,7 +246,7 @@ class SlamEngine {
   std::optional<RunStart> start_;
   bool loops_changed_ = false, optimize_now_ = false;
   int optimized_keyframes_ = 0;
-  std::size_t job_odometry_edges_ = 0;  // in the graph of the pending job
+  RunGraph job_graph_;  // of the pending job, which has its poses and edges
   int revision_ = 0;
 };
 

@@ -18,18 +18,38 @@ void GraphPathLengths::addEdge(int a, int b, double length) {
 }
 
 std::vector<double> GraphPathLengths::from(int keyframe) const {
+  return search(keyframe, nullptr);
+}
+
+std::vector<double> GraphPathLengths::from(int keyframe, const std::vector<int>& wanted) const {
+  return search(keyframe, &wanted);
+}
+
+std::vector<double> GraphPathLengths::search(int keyframe, const std::vector<int>* wanted) const {
   std::vector<double> lengths(std::max(edges_.size(), static_cast<std::size_t>(keyframe) + 1),
                               std::numeric_limits<double>::infinity());
-  // Dijkstra's algorithm.
+  // Dijkstra's algorithm: what leaves the queue is final.
+  std::vector<bool> is_wanted(wanted == nullptr ? 0 : lengths.size(), false);
+  std::size_t missing = wanted == nullptr ? std::numeric_limits<std::size_t>::max() : 0;
+  for (std::size_t i = 0; wanted != nullptr && i < wanted->size(); ++i) {
+    const auto k = static_cast<std::size_t>((*wanted)[i]);
+    if (k >= lengths.size() || is_wanted[k]) continue;
+    is_wanted[k] = true;
+    ++missing;
+  }
   using Open = std::pair<double, int>;
   std::priority_queue<Open, std::vector<Open>, std::greater<Open>> open;
   lengths[static_cast<std::size_t>(keyframe)] = 0.0;
   open.push({0.0, keyframe});
-  while (!open.empty()) {
+  while (!open.empty() && missing > 0) {
     const auto [length, at] = open.top();
     open.pop();
     const auto here = static_cast<std::size_t>(at);
     if (length > lengths[here] || here >= edges_.size()) continue;
+    if (wanted != nullptr && is_wanted[here]) {
+      is_wanted[here] = false;
+      --missing;
+    }
     for (const Edge& edge : edges_[here]) {
       const double next = length + static_cast<double>(edge.length);
       if (next >= lengths[static_cast<std::size_t>(edge.to)]) continue;
@@ -38,6 +58,20 @@ std::vector<double> GraphPathLengths::from(int keyframe) const {
     }
   }
   return lengths;
+}
+
+std::vector<int> keyframesInReach(const std::vector<SlamKeyframe>& keyframes, int keyframe,
+                                  const LoopParams& params) {
+  const hyselam::Pose2& here = keyframes[static_cast<std::size_t>(keyframe)].pose;
+  const double reach = params.max_position_uncertainty + params.visibility_margin;
+  std::vector<int> found;
+  for (int k = 0; k < keyframe; ++k) {
+    const hyselam::Pose2& pose = keyframes[static_cast<std::size_t>(k)].pose;
+    const double dx = pose.x - here.x, dy = pose.y - here.y;
+    // A little more than distance() would say.
+    if (dx * dx + dy * dy < reach * reach * (1.0 + 1e-9)) found.push_back(k);
+  }
+  return found;
 }
 
 std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyframes, int keyframe,

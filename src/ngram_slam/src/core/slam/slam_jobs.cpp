@@ -55,8 +55,11 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
     job.signatures = signatures_;
     run_to_end_ = false;
   } else if (loops_changed_ && due) {
-    job.graph = graph();
-    job_odometry_edges_ = state_.odometry.size();
+    // A map that is known stays where it is while a run goes on in it, unless far loops move it.
+    const bool in_known_map =
+        run_open_ && !final && !optimize_now_ && params_.loops != LoopClosureMode::kThesis;
+    job_graph_ = runGraph(state_, in_known_map ? first_of_run_ : 0);
+    job.graph = std::move(job_graph_.graph);
     loops_changed_ = optimize_now_ = false;
     optimized_keyframes_ = n;
   } else {
@@ -94,19 +97,21 @@ void SlamEngine::apply(const SlamJobResult& result) {
   searchSignatureLoops(result.candidates);
   if (!result.optimized || result.optimized->poses.empty()) return;
   const auto& optimized = *result.optimized;
-  const std::size_t n = optimized.poses.size();
+  const auto first = static_cast<std::size_t>(job_graph_.first);
+  const std::size_t n = first + optimized.poses.size() - job_graph_.offset;
   // What came since moves along with the last pose that was optimized.
-  const Pose2 correction = optimized.poses[n - 1] * state_.keyframes[n - 1].pose.inverse();
-  for (std::size_t i = 0; i < state_.keyframes.size(); ++i) {
+  const Pose2 correction = optimized.poses.back() * state_.keyframes[n - 1].pose.inverse();
+  for (std::size_t i = first; i < state_.keyframes.size(); ++i) {
     Pose2& pose = state_.keyframes[i].pose;
-    pose = i < n ? optimized.poses[i] : correction * pose;
+    pose = i < n ? optimized.poses[i - first + job_graph_.offset] : correction * pose;
   }
   pose_ = correction * pose_;
   matched_pose_ = correction * matched_pose_;
-  // Behind the edges of odometry in the graph stand the loops, in their order.
-  for (std::size_t i = job_odometry_edges_, l = 0;
-       l < state_.loops.size() && i < optimized.weights.size(); ++i, ++l) {
-    state_.loops[l].weight = optimized.weights[i];
+  for (std::size_t i = 0; i < job_graph_.loops.size(); ++i) {
+    const std::size_t edge = job_graph_.odometry_edges + i;
+    if (edge < optimized.weights.size()) {
+      state_.loops[job_graph_.loops[i]].weight = optimized.weights[edge];
+    }
   }
   rebuildPathLengths();
   rebuildLocalMap();

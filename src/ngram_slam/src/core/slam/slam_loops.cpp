@@ -55,12 +55,16 @@ void SlamEngine::searchLoopClosures() {
   if (path_length_ - far_search_path_length_ >= p.far_search_interval) searchFarLoops();
 }
 
+std::vector<double> SlamEngine::pathLengthsInReach(int k) const {
+  return path_lengths_.from(k, keyframesInReach(state_.keyframes, k, params_.loop));
+}
+
 void SlamEngine::searchNearLoops() {
   const LoopParams& p = params_.loop;
   const int newest = lastKeyframe();
   int requested = 0;
   for (const LoopCandidate& c :
-       loopCandidates(state_.keyframes, newest, path_lengths_.from(newest), p)) {
+       loopCandidates(state_.keyframes, newest, pathLengthsInReach(newest), p)) {
     if (c.position_uncertainty > p.near_max_uncertainty) continue;
     if (requested++ == p.near_max_candidates) break;
     requestVerification({c.older, newest, false, LoopSource::kProximity,
@@ -80,7 +84,7 @@ void SlamEngine::searchFarLoops() {
   }
   int requested = 0;
   for (const LoopCandidate& c :
-       loopCandidates(state_.keyframes, middle, path_lengths_.from(middle), p)) {
+       loopCandidates(state_.keyframes, middle, pathLengthsInReach(middle), p)) {
     if (c.position_uncertainty <= p.near_max_uncertainty) continue;
     if (requested++ == p.far_max_candidates) break;
     requestVerification({c.older, middle, true, LoopSource::kProximity,
@@ -309,7 +313,8 @@ void SlamEngine::addLoopEdge(const SlamLoop& loop) {
 void SlamEngine::addFarLoop(const SlamLoop& loop) {
   const LoopParams& p = params_.loop;
   // A place that the graph excludes.
-  const double length = path_lengths_.from(loop.newer)[static_cast<std::size_t>(loop.older)];
+  const double length =
+      path_lengths_.from(loop.newer, {loop.older})[static_cast<std::size_t>(loop.older)];
   const Pose2 known = between(keyframe(loop.older).pose, keyframe(loop.newer).pose);
   if (std::isfinite(length) &&
       distance(known, loop.measured) > p.positionUncertainty(length) + p.visibility_margin) {
