@@ -53,13 +53,13 @@ TEST(LoopCompany, outweighsALoopThatContradictsIt) {
   };
   const std::vector<SlamLoop> others{loop(10, 150), loop(12, 152), loop(14, 154)};
   const LoopParams params;
-  EXPECT_TRUE(companyOf(loop(16, 156), others, keyframes, params).isTrusted(params));
-  const LoopCompany alias = companyOf(loop(46, 156), others, keyframes, params);
+  EXPECT_TRUE(companyOf(loop(16, 156), others, keyframes, {}, params).isTrusted(params));
+  const LoopCompany alias = companyOf(loop(46, 156), others, keyframes, {}, params);
   EXPECT_FALSE(alias.isTrusted(params));
   EXPECT_NEAR(alias.contradiction, 3 * 0.8, 1e-9);
   EXPECT_NEAR(alias.support, 0.8, 1e-9);
   // Far along the way nobody is asked.
-  EXPECT_TRUE(companyOf(loop(46, 190), others, keyframes, params).isTrusted(params));
+  EXPECT_TRUE(companyOf(loop(46, 190), others, keyframes, {}, params).isTrusted(params));
 }
 
 namespace {
@@ -95,24 +95,26 @@ TEST(FarLoops, waitForTwoOthersThatAgree) {
   const auto keyframes = straightWay(200);
   const LoopParams params;
   std::vector<SlamLoop> waiting;
-  EXPECT_TRUE(believeFarLoops(signatureLoop(10, 150), {}, keyframes, params, &waiting).empty());
-  EXPECT_TRUE(believeFarLoops(signatureLoop(12, 152), {}, keyframes, params, &waiting).empty());
+  EXPECT_TRUE(believeFarLoops(signatureLoop(10, 150), {}, keyframes, {}, params, &waiting).empty());
+  EXPECT_TRUE(believeFarLoops(signatureLoop(12, 152), {}, keyframes, {}, params, &waiting).empty());
   EXPECT_EQ(waiting.size(), 2U);
-  const auto believed = believeFarLoops(signatureLoop(14, 154), {}, keyframes, params, &waiting);
+  const auto believed =
+      believeFarLoops(signatureLoop(14, 154), {}, keyframes, {}, params, &waiting);
   ASSERT_EQ(believed.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(believed[i].newer, 154 - 2 * static_cast<int>(i));
   EXPECT_TRUE(waiting.empty());
   // From one spot they are one opinion, and the same loop twice is one.
   for (const int newer : {150, 151, 151}) {
-    EXPECT_TRUE(believeFarLoops(signatureLoop(newer - 140, newer), {}, keyframes, params, &waiting)
-                    .empty());
+    EXPECT_TRUE(
+        believeFarLoops(signatureLoop(newer - 140, newer), {}, keyframes, {}, params, &waiting)
+            .empty());
   }
   // With an accepted one no other is needed.
   waiting.clear();
-  EXPECT_EQ(
-      believeFarLoops(signatureLoop(20, 160), {signatureLoop(14, 154)}, keyframes, params, &waiting)
-          .size(),
-      1U);
+  EXPECT_EQ(believeFarLoops(signatureLoop(20, 160), {signatureLoop(14, 154)}, keyframes, {}, params,
+                            &waiting)
+                .size(),
+            1U);
 }
 
 TEST(FarLoops, areEachAskedForTheirCompany) {
@@ -121,10 +123,11 @@ TEST(FarLoops, areEachAskedForTheirCompany) {
   params.company_half_length = 3.0;
   // Three that agree, the first of which two others contradict: it neither counts nor is believed.
   std::vector<SlamLoop> waiting{signatureLoop(60, 148), signatureLoop(61, 149)};
-  EXPECT_TRUE(believeFarLoops(signatureLoop(10, 150), {}, keyframes, params, &waiting).empty());
-  EXPECT_TRUE(believeFarLoops(signatureLoop(14, 154), {}, keyframes, params, &waiting).empty());
-  EXPECT_TRUE(believeFarLoops(signatureLoop(17, 157), {}, keyframes, params, &waiting).empty());
-  const auto believed = believeFarLoops(signatureLoop(20, 160), {}, keyframes, params, &waiting);
+  EXPECT_TRUE(believeFarLoops(signatureLoop(10, 150), {}, keyframes, {}, params, &waiting).empty());
+  EXPECT_TRUE(believeFarLoops(signatureLoop(14, 154), {}, keyframes, {}, params, &waiting).empty());
+  EXPECT_TRUE(believeFarLoops(signatureLoop(17, 157), {}, keyframes, {}, params, &waiting).empty());
+  const auto believed =
+      believeFarLoops(signatureLoop(20, 160), {}, keyframes, {}, params, &waiting);
   ASSERT_EQ(believed.size(), 3U);
   for (const SlamLoop& l : believed) EXPECT_GE(l.newer, 154);
   EXPECT_EQ(waiting.size(), 3U);
@@ -136,11 +139,13 @@ TEST(FarLoops, waitWhileTheyAreImprobable) {
   std::vector<SlamLoop> waiting;
   params.min_signature_probability = 1.0;
   for (const int newer : {150, 152, 154, 156}) {
-    EXPECT_TRUE(believeFarLoops(signatureLoop(newer - 140, newer), {}, keyframes, params, &waiting)
-                    .empty());
+    EXPECT_TRUE(
+        believeFarLoops(signatureLoop(newer - 140, newer), {}, keyframes, {}, params, &waiting)
+            .empty());
   }
   params.min_signature_probability = 0.5;
-  EXPECT_EQ(believeFarLoops(signatureLoop(18, 158), {}, keyframes, params, &waiting).size(), 5U);
+  EXPECT_EQ(believeFarLoops(signatureLoop(18, 158), {}, keyframes, {}, params, &waiting).size(),
+            5U);
 }
 
 TEST(LoopProbability, risesWithFitAndCompanyAndFallsWithContradiction) {

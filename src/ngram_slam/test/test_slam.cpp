@@ -349,7 +349,7 @@ TEST(SlamEngine, assignsWeightsToTheirLoopsWhenARunBeganMeanwhile) {
   }
   ASSERT_TRUE(job && job->graph);
   const std::size_t loops = engine.loops().size();
-  engine.endRun();
+  engine.startRun(engine.pose(), 1.0, 0.5, RunTrust::kKnown);
   add();
   ASSERT_EQ(engine.loops().size(), loops + 1);  // the edge to the run before
   SlamJobResult result = runJob(*job);
@@ -556,11 +556,11 @@ TEST(ConsistentLoops, excludeLoopsThatContradict) {
   b.older = 4;
   b.newer = 32;
   b.measured = {0.35, 0.05, 0.0};
-  EXPECT_EQ(consistentLoops(a, {b}, keyframes, LoopParams{}).size(), 1U);
+  EXPECT_EQ(consistentLoops(a, {b}, keyframes, {}, LoopParams{}).size(), 1U);
   b.measured = {1.5, 0.0, 0.0};
-  EXPECT_TRUE(consistentLoops(a, {b}, keyframes, LoopParams{}).empty());
+  EXPECT_TRUE(consistentLoops(a, {b}, keyframes, {}, LoopParams{}).empty());
   b.measured = {0.35, 0.05, 0.5};
-  EXPECT_TRUE(consistentLoops(a, {b}, keyframes, LoopParams{}).empty());
+  EXPECT_TRUE(consistentLoops(a, {b}, keyframes, {}, LoopParams{}).empty());
 }
 
 TEST(TrajectoryError, ignoresTheFrame) {

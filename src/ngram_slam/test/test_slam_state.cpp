@@ -161,7 +161,7 @@ TEST(SlamStateFile, letsSlamContinueInIt) {
   SlamStateFile::save(folder / "map.slam", first.state());
   SlamEngine second(first.params(), load(folder / "map.slam"));
   // The robot was moved half a metre while it was off, and its odometry begins at 0.
-  second.startRun(first.pose(), 1.5, 0.5);
+  second.startRun(first.pose(), 1.5, 0.5, RunTrust::kKnown);
   const double x = 0.1 * 99 + 0.5;
   const SlamUpdate u = second.add(corridor(x, 500.0), {0.0, 0.0, 0.0});
   EXPECT_NEAR(u.base_in_map.x, x, 0.05);

@@ -1,6 +1,9 @@
 #include "ngram_slam/ros/slam_messages.hpp"
 
 #include <algorithm>
+#include <iomanip>
+#include <limits>
+#include <sstream>
 
 #include "hyselam_common/ros/conversions.hpp"
 #include "marker_parts.hpp"
@@ -104,10 +107,51 @@ hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMa
   return msg;
 }
 
+hyselam_msgs::LocalizationStatus statusMsg(const SlamEngine& engine, double update_ms,
+                                           const std_msgs::Header& header) {
+  using hyselam_msgs::LocalizationStatus;
+  LocalizationStatus msg;
+  msg.header = header;
+  msg.match_quality = std::numeric_limits<float>::quiet_NaN();
+  msg.travelled = engine.pathOfRun();
+  msg.update_ms = static_cast<float>(update_ms);
+  const RunPlace place = engine.runPlace();
+  msg.converged = place != RunPlace::kSupposed;
+  msg.phase = msg.converged ? LocalizationStatus::TRACKING : LocalizationStatus::GLOBAL;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1);
+  switch (place) {
+    case RunPlace::kFirst:
+      text << "a new map";
+      break;
+    case RunPlace::kSupposed:
+      text << "not recognised in the known map after " << engine.pathOfRun()
+           << " m: the pose is a guess";
+      break;
+    case RunPlace::kTied:
+      text << "in the known map, since " << engine.pathUntilTied().value_or(0.0)
+           << " m after the start";
+      break;
+    case RunPlace::kOwnMap:
+      text << "a map of its own: nothing known was recognised in " << engine.pathOfRun() << " m";
+      break;
+  }
+  if (engine.tiesWithdrawn() > 0) {
+    text << "; taken elsewhere before, " << engine.tiesWithdrawn() << " times";
+  }
+  msg.text = text.str();
+  return msg;
+}
+
 visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
+                                            const std::vector<bool>& shown,
                                             const std::vector<SlamLoop>& loops,
                                             const RegionGraph& graph,
                                             const std_msgs::Header& header) {
+  const auto isShown = [&](std::uint32_t run) {
+    return (run < shown.size() && shown[run]) || run == keyframes.back().run;
+  };
+  const auto runOf = [&](int k) { return keyframes[static_cast<std::size_t>(k)].run; };
   visualization_msgs::MarkerArray array;
   Marker clear;
   clear.header = header;
@@ -119,32 +163,37 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
 
   Marker path = marker(header, "path", Marker::LINE_LIST, 0.06);
   for (std::size_t i = 1; i < keyframes.size(); ++i)
-    if (keyframes[i].run == keyframes[i - 1].run)
+    if (keyframes[i].run == keyframes[i - 1].run && isShown(keyframes[i].run))
       addLine(&path, keyframes[i - 1].pose, keyframes[i].pose, 0.05,
               keyframes[i].run == keyframes.back().run ? color(0.15, 0.35, 0.85)
                                                        : color(0.55, 0.55, 0.6));
   add(std::move(path));
 
   Marker lines = marker(header, "loops", Marker::LINE_LIST, 0.05);
-  for (const SlamLoop& l : loops)
+  for (const SlamLoop& l : loops) {
+    if (!isShown(runOf(l.older)) || !isShown(runOf(l.newer))) continue;
     addLine(&lines, keyframes[static_cast<std::size_t>(l.older)].pose,
             keyframes[static_cast<std::size_t>(l.newer)].pose, 0.1,
             l.weight < 0.5                       ? color(0.9, 0.1, 0.1)
             : l.source == LoopSource::kNgram     ? color(0.85, 0.1, 0.75)
             : l.source == LoopSource::kSignature ? color(0.95, 0.55, 0.1)
                                                  : color(0.1, 0.65, 0.25));
+  }
   add(std::move(lines));
 
   Marker links = marker(header, "region_links", Marker::LINE_LIST, 0.08);
-  for (const RegionEdge& link : graph.edges)
+  for (const RegionEdge& link : graph.edges) {
+    if (!isShown(graph.nodes[link.a].run) || !isShown(graph.nodes[link.b].run)) continue;
     addLine(&links, graph.nodes[link.a].pose, graph.nodes[link.b].pose, 1.0,
             link.kind == RegionEdge::Kind::kLoop ? color(0.85, 0.1, 0.75, 0.6)
                                                  : color(0.25, 0.25, 0.25, 0.6));
+  }
   add(std::move(links));
 
   Marker balls = marker(header, "regions", Marker::SPHERE_LIST, 0.6);
   balls.scale.y = balls.scale.z = 0.6;
   for (const RegionNode& node : graph.nodes) {
+    if (!isShown(node.run)) continue;
     balls.points.push_back(at(node.pose, 1.0));
     balls.colors.push_back(colorOf(node.semantic_class));
   }
@@ -153,6 +202,7 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
   Marker name = marker(header, "region_names", Marker::TEXT_VIEW_FACING, 0.0);
   name.scale.z = 0.5;
   for (const RegionNode& node : graph.nodes) {
+    if (!isShown(node.run)) continue;
     name.id = static_cast<int>(&node - graph.nodes.data());
     name.pose.position = at(node.pose * hyselam::Pose2{0.0, 0.6, 0.0}, 1.3);
     name.text = toString(node.semantic_class);

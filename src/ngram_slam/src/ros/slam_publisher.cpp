@@ -22,7 +22,8 @@ SlamPublisher::SlamPublisher(ros::NodeHandle nh)
       regions_(nh.advertise<hyselam_msgs::SemanticRegionArray>("semantic_regions", kQueue)),
       graph_(nh.advertise<hyselam_msgs::RegionGraph>("region_graph", 1, true)),
       path_(nh.advertise<nav_msgs::Path>("path", 1, true)),
-      markers_(nh.advertise<visualization_msgs::MarkerArray>("slam_markers", 1, true)) {}
+      markers_(nh.advertise<visualization_msgs::MarkerArray>("slam_markers", 1, true)),
+      status_(nh.advertise<hyselam_msgs::LocalizationStatus>("localization_status", 1, true)) {}
 
 void SlamPublisher::publishWords(const hyselam_msgs::WordArray& words,
                                  const hyselam_msgs::WordMatchArray& matches) {
@@ -34,10 +35,14 @@ void SlamPublisher::publishRegions(const hyselam_msgs::SemanticRegionArray& regi
   regions_.publish(regions);
 }
 
+void SlamPublisher::publishStatus(const hyselam_msgs::LocalizationStatus& status) {
+  status_.publish(status);
+}
+
 void SlamPublisher::publishMap(const hyselam::OccupancyGrid& grid,
                                const std::vector<SlamKeyframe>& keyframes,
-                               const std::vector<SlamLoop>& loops, const RegionGraph& graph,
-                               const std_msgs::Header& header) {
+                               const std::vector<bool>& shown, const std::vector<SlamLoop>& loops,
+                               const RegionGraph& graph, const std_msgs::Header& header) {
   nav_msgs::OccupancyGrid map = hyselam::toMsg(grid, header.frame_id, header.stamp);
   map.info.map_load_time = header.stamp;
   map_.publish(map);
@@ -48,7 +53,7 @@ void SlamPublisher::publishMap(const hyselam::OccupancyGrid& grid,
   }
   graph_.publish(toMsg(graph, header));
   path_.publish(pathMsg(keyframes, header));
-  markers_.publish(slamMarkers(keyframes, loops, graph, header));
+  markers_.publish(slamMarkers(keyframes, shown, loops, graph, header));
 }
 
 bool SlamPublisher::newestMap(nav_msgs::GetMap::Response& out) const {

@@ -23,6 +23,7 @@ using Lock = std::unique_lock<std::mutex>;
 
 namespace {
 
+constexpr double kStatusRate = 1.0;      // [1/s]
 constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry gives the start
 constexpr double kOdometryDrift = 0.1;   // [m/m], [rad/m]
 
@@ -76,6 +77,7 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
     : log_name_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndLogParams(private_nh, loadSlamParams)),
       initial_pose_(params_.initialPose()),
+      status_rate_(kStatusRate),
       map_rate_(drawsMaps() ? 1.0 / params_.map_update_interval : -1.0),
       publisher_(nh) {
   SlamState state;
@@ -142,6 +144,7 @@ bool SlamServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odo
     }
     addScan(scan, base_in_odom);
     last_scan_ = {stamp, base_in_odom};
+    publishStatus();
     publishNewWords();
     publishNewRegions();
     if (drawsMaps() && map_rate_.pass(stamp)) map_due_ = true;
@@ -173,7 +176,7 @@ void SlamServer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
 /// Where the next scan begins a run, more or less. With mutex_ held.
 SlamServer::RunStart SlamServer::runStart(const Pose2& base_in_odom) const {
   const SlamEngine& engine = mapping_->engine;
-  RunStart start{engine.pose(), params_.start_window, params_.start_angle};
+  RunStart start{engine.pose(), params_.start_window, params_.start_angle, RunTrust::kSupposed};
   // Odometry that went on is better than a search that one scan decides.
   const auto startByOdometry = [&](const Pose2& guess, double driven) {
     start.base_in_map = guess;
@@ -191,6 +194,7 @@ SlamServer::RunStart SlamServer::runStart(const Pose2& base_in_odom) const {
   } else if (next_scan_ == NextScan::kAfterJump) {
     start.base_in_map = placeByOdometry(engine.keyframes(), base_in_odom);
   } else if (mapping_->localized) {  // paused: it may have been driven meanwhile
+    if (engine.runPlace() != RunPlace::kSupposed) start.trust = RunTrust::kKnown;
     startByOdometry(engine.odomInMap() * base_in_odom, distance(last_scan_.odometry, base_in_odom));
   } else {
     // A state was loaded. Where odometry is still near to what it was then, it was not interrupted.
@@ -211,9 +215,11 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
     const RunStart start = runStart(base_in_odom);
     const Pose2& at = start.base_in_map;
     ROS_INFO_STREAM(log_name_ << " a run begins at x " << at.x << " m, y " << at.y << " m, "
-                              << hyselam::degrees(at.theta) << " deg, searched within "
-                              << start.window << " m");
-    engine.startRun(at, start.window, start.angle);
+                              << hyselam::degrees(at.theta) << " deg, "
+                              << (start.trust == RunTrust::kKnown
+                                      ? "where odometry says"
+                                      : "supposedly: to be confirmed by what it sees"));
+    engine.startRun(at, start.window, start.angle, start.trust);
   }
   initial_pose_.reset();
   next_scan_ = NextScan::kGoesOn;
@@ -265,6 +271,16 @@ std_msgs::Header SlamServer::header(const std::string& frame) const {
   h.stamp = last_scan_.stamp;
   h.frame_id = frame;
   return h;
+}
+
+/// When it changed, and once a second. With mutex_ held.
+void SlamServer::publishStatus() {
+  const auto place = std::make_pair(mapping_->engine.runPlace(), mapping_->engine.tiesWithdrawn());
+  const bool due = status_rate_.pass(last_scan_.stamp);
+  if (place == published_place_ && !due) return;
+  published_place_ = place;
+  publisher_.publishStatus(
+      statusMsg(mapping_->engine, status_.scan_ms, header(params_.global_frame_id)));
 }
 
 /// Words and matches that are new, or all of them when the classes have changed. With mutex_ held.

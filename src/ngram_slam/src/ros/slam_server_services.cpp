@@ -144,6 +144,9 @@ void SlamServer::report(DiagnosticStatus& status) {
     addRemark(status, DiagnosticStatus::OK,
               std::to_string(engine.keyframes().size()) + " keyframes, " +
                   std::to_string(engine.loops().size()) + " loops");
+    if (engine.runPlace() == RunPlace::kSupposed && mapping_->localized) {
+      addRemark(status, DiagnosticStatus::WARN, "not recognised in the known map yet");
+    }
     if (paused_) addRemark(status, DiagnosticStatus::WARN, "paused");
     addError("optimization: ", status_.job_error);
     addError("map: ", status_.map_error);
@@ -151,6 +154,11 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "paused", paused_);
     addValue(status, "scans while paused", status_.paused_scans);
     addValue(status, "publishing tf", params_.tf_broadcast && mapping_->localized);
+    addValue(status, "place of the run", toString(engine.runPlace()));
+    if (const auto tied = engine.pathUntilTied()) {
+      addValue(status, "recognised after [m]", *tied);
+    }
+    addValue(status, "ties withdrawn", engine.tiesWithdrawn());
     addValue(status, "runs", engine.keyframes().empty() ? 0 : engine.keyframes().back().run + 1);
     addValue(status, "keyframes", engine.keyframes().size());
     addValue(status, "loops", engine.loops().size());

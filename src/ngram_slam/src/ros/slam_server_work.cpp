@@ -65,6 +65,7 @@ std::optional<SlamServer::MapRequest> SlamServer::awaitMapRequest() {
   request.loops = engine.loops();
   request.graph = regionGraph(engine, mapping_->regions);
   request.header = header(params_.global_frame_id);
+  request.shown = engine.shownRuns();
   request.revision = engine.revision();
   request.epoch = epoch_;
   return request;
@@ -81,10 +82,10 @@ void SlamServer::drawMap(const MapRequest& request, KeyframeMapper* mapper) {
       ROS_ERROR_STREAM_THROTTLE(10.0, log_name_ << " the map is not complete: " << error);
     }
   };
-  attempt([&] { mapper->update(request.keyframes, request.revision); });
+  attempt([&] { mapper->update(request.keyframes, request.shown, request.revision); });
   attempt([&] {  // what fits
-    publisher_.publishMap(mapper->grid(), request.keyframes, request.loops, request.graph,
-                          request.header);
+    publisher_.publishMap(mapper->grid(), request.keyframes, request.shown, request.loops,
+                          request.graph, request.header);
   });
   const Lock lock(mutex_);
   status_.map_error = error;

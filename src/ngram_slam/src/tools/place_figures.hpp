@@ -198,7 +198,7 @@ inline void believe(const PlaceLog& log, const LoopParams& params, std::vector<M
   for (const Match& m : *matches) {
     if (!m.verification.verified) continue;
     const auto now =
-        believeFarLoops(m.verification.loop, believed, log.keyframes, params, &waiting);
+        believeFarLoops(m.verification.loop, believed, log.keyframes, {}, params, &waiting);
     believed.insert(believed.end(), now.begin(), now.end());
   }
   for (Match& m : *matches) {
@@ -235,7 +235,7 @@ inline std::vector<Match> matchesOf(const PlaceLog& log, const Candidates& all,
     }
   }
   for (Match& m : matches) {
-    m.company = companyOf(m.verification.loop, loops, log.keyframes, params.loop);
+    m.company = companyOf(m.verification.loop, loops, log.keyframes, {}, params.loop);
   }
   believe(log, params.loop, &matches);
   return matches;

@@ -121,7 +121,7 @@ std::unique_ptr<SlamEngine> makeEngine(const Options& o, const SlamParams& param
   auto engine =
       std::make_unique<SlamEngine>(params, consolidated(std::move(state), params.consolidation));
   if (o.start == "unknown") {
-    engine->startRun({}, SlamEngine::kMaxStartWindow, hyselam::kPi);
+    engine->startRunAnywhere();
   } else if (!o.start.empty()) {
     engine->startRun(parseStart(o.start));
   }
@@ -163,7 +163,10 @@ hyselam::OccupancyMapper emptyMap(double resolution) {
 
 hyselam::OccupancyGrid mapOf(const SlamEngine& engine, double resolution) {
   hyselam::OccupancyMapper mapper = emptyMap(resolution);
-  for (const SlamKeyframe& k : engine.keyframes()) mapper.insert(k.pose, *k.scan);
+  const std::vector<bool> shown = engine.shownRuns();
+  for (const SlamKeyframe& k : engine.keyframes()) {
+    if (shown[k.run]) mapper.insert(k.pose, *k.scan);
+  }
   return mapper.grid();
 }
 
@@ -275,6 +278,10 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
                       {"cpu_seconds", run.cpu},
                       {"times_real_time", run.cpu > 0.0 ? log_seconds / run.cpu : 0.0},
                       {"peak_memory_mb", peakMegabytes()}};
+  j["place"] = toString(e.runPlace());
+  const auto tied = e.pathUntilTied();
+  j["tied_after_m"] = tied ? nlohmann::json(*tied) : nlohmann::json();
+  j["ties_withdrawn"] = e.tiesWithdrawn();
   return j;
 }
 

@@ -1,6 +1,7 @@
 // What SLAM knows as messages.
 #pragma once
 
+#include <hyselam_msgs/LocalizationStatus.h>
 #include <hyselam_msgs/RegionGraph.h>
 #include <hyselam_msgs/WordMatch.h>
 #include <nav_msgs/Path.h>
@@ -10,6 +11,7 @@
 
 #include "ngram_slam/matching/ngram_recognizer.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
 namespace ngram_slam {
@@ -26,7 +28,14 @@ hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMa
 /// Namespaces: "path", lines between keyframes; "loops", green by proximity, magenta by words, red
 /// where they contradict others; "regions", one ball per region coloured by class; "region_links",
 /// lines between them, those of loops in magenta; "region_names".
+/// Whether the pose is to be trusted: not while it is only supposed where the run began.
+/// @param update_ms wall time of the last scan.
+hyselam_msgs::LocalizationStatus statusMsg(const SlamEngine& engine, double update_ms,
+                                           const std_msgs::Header& header);
+
+/// @param shown as SlamEngine::shownRuns(); the current run is always drawn.
 visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
+                                            const std::vector<bool>& shown,
                                             const std::vector<SlamLoop>& loops,
                                             const RegionGraph& graph,
                                             const std_msgs::Header& header);

@@ -1,6 +1,7 @@
 // The topics of SLAM, and its newest map for those who ask.
 #pragma once
 
+#include <hyselam_msgs/LocalizationStatus.h>
 #include <hyselam_msgs/SemanticRegionArray.h>
 #include <hyselam_msgs/WordArray.h>
 #include <hyselam_msgs/WordMatchArray.h>
@@ -27,15 +28,17 @@ class SlamPublisher {
   void publishWords(const hyselam_msgs::WordArray& words,
                     const hyselam_msgs::WordMatchArray& matches);
   void publishRegions(const hyselam_msgs::SemanticRegionArray& regions);
+  void publishStatus(const hyselam_msgs::LocalizationStatus& status);
+  /// @param shown as SlamEngine::shownRuns().
   /// @param header map frame; stamp of the newest scan.
   void publishMap(const hyselam::OccupancyGrid& grid, const std::vector<SlamKeyframe>& keyframes,
-                  const std::vector<SlamLoop>& loops, const RegionGraph& graph,
-                  const std_msgs::Header& header);
+                  const std::vector<bool>& shown, const std::vector<SlamLoop>& loops,
+                  const RegionGraph& graph, const std_msgs::Header& header);
   /// The service `dynamic_map`: false without a map.
   bool newestMap(nav_msgs::GetMap::Response& out) const;
 
  private:
-  ros::Publisher map_, metadata_, words_, matches_, regions_, graph_, path_, markers_;
+  ros::Publisher map_, metadata_, words_, matches_, regions_, graph_, path_, markers_, status_;
   mutable std::mutex mutex_;
   std::optional<nav_msgs::OccupancyGrid> newest_map_;
 };

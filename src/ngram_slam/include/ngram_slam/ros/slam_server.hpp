@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/rate_limit.hpp"
@@ -27,8 +28,9 @@
 namespace ngram_slam {
 
 /// Topics: in `scan`, tf, `initialpose`; out `map`, `map_metadata`, `region_graph` (latched),
-/// `words`, `word_matches`, `semantic_regions`, `path`, `slam_markers`, tf map -> odom,
-/// /diagnostics. Services: `dynamic_map`, `~save`, `~load`, `~pause`, `~resume`.
+/// `localization_status` (latched), `words`, `word_matches`, `semantic_regions`, `path`,
+/// `slam_markers`, tf map -> odom, /diagnostics. Services: `dynamic_map`, `~save`, `~load`,
+/// `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
 /// poses optimized on one thread, maps drawn and saved on another, services answered on a third:
@@ -70,6 +72,7 @@ class SlamServer {
     std::vector<SlamKeyframe> keyframes;
     std::vector<SlamLoop> loops;
     RegionGraph graph;
+    std::vector<bool> shown;  // runs
     std_msgs::Header header;
     long revision = 0, epoch = -1;
   };
@@ -88,6 +91,7 @@ class SlamServer {
   struct RunStart {
     hyselam::Pose2 base_in_map;
     double window, angle;
+    RunTrust trust;
   };
   struct LastScan {
     ros::Time stamp;
@@ -102,6 +106,7 @@ class SlamServer {
   void startRun(const hyselam::Pose2& base_in_odom);
   void onTimeJump();
   void onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg);
+  void publishStatus();
   void publishNewWords();
   void publishNewRegions();
   void broadcast(const ros::Time& stamp);
@@ -132,11 +137,12 @@ class SlamServer {
   NextScan next_scan_ = NextScan::kGoesOn;
   std::optional<hyselam::InitialPose> initial_pose_;  // not yet used
   Status status_;
+  std::pair<RunPlace, int> published_place_{RunPlace::kFirst, -1};  // with ties withdrawn
   OdomInMapBroadcaster broadcaster_;
 
   std::mutex save_mutex_;  // one saving at a time
 
-  hyselam::RateLimit map_rate_;
+  hyselam::RateLimit status_rate_, map_rate_;
   SlamPublisher publisher_;
   Services services_;
   std::unique_ptr<hyselam::ScanInput> input_;

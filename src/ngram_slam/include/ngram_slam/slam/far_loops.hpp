@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
@@ -16,8 +17,10 @@ namespace ngram_slam {
 /// than `LoopParams::min_signature_probability` where signatures proposed it (loopProbability()),
 /// and it is consistent with an accepted one or with enough others of which the same is true
 /// (`min_consistent_loops`, `min_consistent_signature_loops`) along `consistency_min_span` of path.
+/// One that ties two maps together needs more: `min_tie_loops` along `tie_min_span`.
 std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<SlamLoop>& accepted,
                                       const std::vector<SlamKeyframe>& keyframes,
-                                      const LoopParams& params, std::vector<SlamLoop>* waiting);
+                                      const RunConnections& connections, const LoopParams& params,
+                                      std::vector<SlamLoop>* waiting);
 
 }  // namespace ngram_slam

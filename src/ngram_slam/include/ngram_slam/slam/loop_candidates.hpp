@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
@@ -54,16 +55,20 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
 /// How much two loops contradict each other: the pose of the one as predicted from the other and
 /// the poses between their ends.
 struct LoopInconsistency {
-  double path_length = 0.0;  ///< between both ends, along the path [m]; infinite: other runs
-  double distance = 0.0;     ///< [m]
-  double angle = 0.0;        ///< [rad], >= 0
+  /// Between both ends, along the path or, from one run of a map to another, straight [m];
+  /// infinite: other maps.
+  double path_length = 0.0;
+  double distance = 0.0;  ///< [m]
+  double angle = 0.0;     ///< [rad], >= 0
 };
 LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
-                                    const std::vector<SlamKeyframe>& keyframes);
+                                    const std::vector<SlamKeyframe>& keyframes,
+                                    const RunConnections& connections);
 
 /// The indices of the loops in `others` that are pairwise consistent with `loop`.
 std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector<SlamLoop>& others,
                                          const std::vector<SlamKeyframe>& keyframes,
+                                         const RunConnections& connections,
                                          const LoopParams& params);
 
 /// What the loops close to one along the newer path say of it: in a building that repeats itself
@@ -76,6 +81,7 @@ struct LoopCompany {
   }
 };
 LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
-                      const std::vector<SlamKeyframe>& keyframes, const LoopParams& params);
+                      const std::vector<SlamKeyframe>& keyframes, const RunConnections& connections,
+                      const LoopParams& params);
 
 }  // namespace ngram_slam

@@ -61,6 +61,8 @@ class SignaturePlaces {
   /// Places at keyframes before this one are only found by others: they were asked for when they
   /// were new, before the map was saved.
   void askFrom(int keyframe) { first_asked_ = keyframe; }
+  /// From now on each place is asked for, or again one in `interval`.
+  void askEach(bool each) { interval_ = each ? 1 : params_.interval; }
   /// Adds the next keyframe. Returns the candidates of the places that are complete now.
   std::vector<SignatureCandidate> add(const SignatureKeyframe& keyframe);
   /// Ends the run: its last places are made and asked for.
@@ -82,6 +84,7 @@ class SignaturePlaces {
   SignatureSensor sensor_;
   hyselam::Pose2 pose_;
   std::uint32_t next_asked_ = 0;
+  int interval_;         // of places that are asked for
   int first_asked_ = 0;  // keyframe
 };
 

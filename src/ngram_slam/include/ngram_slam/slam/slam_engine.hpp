@@ -19,6 +19,7 @@
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
 #include "ngram_slam/slam/odometry_noise.hpp"
+#include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/run_graph.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
@@ -36,6 +37,7 @@ struct SlamJob {
   std::vector<SignatureKeyframe> keyframes;     ///< the next ones
   bool ends_run = false;                        ///< with the last of them
   std::shared_ptr<SignaturePlaces> signatures;  ///< what keyframes are added to; null: none are
+  bool ask_each = false;  ///< asks for each of their places: the run is not tied to the map
 };
 struct SlamJobResult {
   std::vector<LoopTask> tasks;  ///< of the job, without the scans of their path segments
@@ -54,6 +56,22 @@ struct SlamUpdate {
   bool odometry_jump = false;  ///< odometry jumped: the robot is assumed stationary
   int word_matches = 0;        ///< new n-gram matches of words, not yet verified
 };
+
+/// How far the pose that a run starts at is to be trusted.
+enum class RunTrust {
+  kSupposed,  ///< it may be wrong by metres or by half a turn, or be in another building
+  kKnown      ///< the robot has not been moved unseen: the first scan is matched near it
+};
+
+/// What is known of where the current run lies.
+enum class RunPlace {
+  kFirst,     ///< there is no other run
+  kSupposed,  ///< not tied to an earlier run: its poses are a guess
+  kTied,      ///< loops tie it to the map of earlier runs
+  kOwnMap     ///< not tied after RunStartParams::own_map_path: a map of its own, until it is
+};
+/// "first", "supposed", "tied", "own map".
+const char* toString(RunPlace place);
 
 /// Usage, on one thread (deterministic: the same calls give the same bytes):
 ///
@@ -87,13 +105,15 @@ class SlamEngine {
   SlamUpdate add(const hyselam::LaserScan& scan, const hyselam::Pose2& odometry);
   /// Ends the run: its pending words are matched. The next scan starts another run.
   void endRun();
-  /// Ends the run and sets where the next one starts; otherwise it is assumed to start where
-  /// the last one ended. The first scan is matched within `window` [m] and `angle` [rad] of the
-  /// pose.
+  /// Ends the run and sets where the next one starts; otherwise it is supposed to start where
+  /// the last one ended. A pose that is supposed is searched around first, the whole map later; one
+  /// that is known is refined by matching the first scan within `window` [m] and `angle` [rad].
   /// @throws hyselam::ParameterError, before anything is changed, for a pose that is not finite, a
   /// window outside of 0 (excluded) to kMaxStartWindow, an angle outside of 0 to pi.
   void startRun(const hyselam::Pose2& base_in_map, double window = kDefaultStartWindow,
-                double angle = kDefaultStartAngle);
+                double angle = kDefaultStartAngle, RunTrust trust = RunTrust::kSupposed);
+  /// The same without any idea where: the whole map is searched.
+  void startRunAnywhere();
 
   /// Loops to verify; if there are none, a graph to optimize when that is due. Empty if there is
   /// nothing to do or a job is pending.
@@ -127,6 +147,18 @@ class SlamEngine {
   const std::vector<std::int32_t>& keyframeOfObservation() const {
     return state_.keyframe_of_observation;
   }
+  RunPlace runPlace() const;
+  /// Length of the current run [m].
+  double pathOfRun() const { return path_length_ - run_.begin; }
+  /// How much of it was driven when it was tied to an earlier one [m]; nothing if it is not.
+  std::optional<double> pathUntilTied() const;
+  /// How often loops contradicted the ties of a run so much that these were given up, since the
+  /// process began.
+  int tiesWithdrawn() const { return ties_withdrawn_; }
+  const RunConnections& connections() const { return connections_; }
+  /// By run, whether it belongs to the map that the pose refers to. While the run's place is only
+  /// supposed that is the map it was supposed in, without the run.
+  std::vector<bool> shownRuns() const;
   /// What the scans taught about the odometry since the process began: not saved.
   const OdometryNoiseLearner& odometryNoise() const { return odometry_noise_; }
   /// State for serialization.
@@ -143,6 +175,17 @@ class SlamEngine {
   struct RunStart {
     hyselam::Pose2 pose;
     double window, angle;
+    RunTrust trust;
+    bool anywhere;  // the pose says nothing
+  };
+  /// The current run, all in [m] of path.
+  struct Run {
+    double begin = 0.0;
+    double searched = 0.0, searched_map = 0.0;  // last, for a place in another map
+    std::optional<double> tied;
+    bool known = false;             // RunTrust::kKnown
+    bool anywhere = false;          // nothing is supposed of where it begins
+    std::uint32_t supposed_in = 0;  // map
   };
   /// A keyframe and a pose of another one relative to it, with the window to search.
   struct LoopGuess {
@@ -152,6 +195,7 @@ class SlamEngine {
     hyselam::Pose2 newer_in_older;
     double window, angle;
     std::int64_t match;  // of SlamState::matches, or kNoMatch
+    bool any_heading = false;
   };
   static constexpr std::int64_t kNoMatch = -1;
   /// The loop verifications requested for one new word.
@@ -200,12 +244,25 @@ class SlamEngine {
 
   // The start of a run, in slam_runs.cpp.
   void beginRun(const hyselam::LaserScan& scan, const hyselam::Pose2& odometry);
-  void beginRunInKnownMap(const hyselam::LaserScan& scan, Points points);
+  void beginRunInKnownMap(const hyselam::LaserScan& scan, Points points, const RunStart& start);
+  void beginRunSomewhere(const hyselam::LaserScan& scan, Points points, const RunStart& start);
   hyselam_scan_matching::SurfaceMap mapAround(const RunStart& start) const;
+
+  // Where a run lies in other maps, in run_places.cpp.
+  std::uint32_t currentRun() const { return state_.keyframes.back().run; }
+  bool isUntied() const;
+  bool mayBeDoubted() const;
+  std::uint32_t largestMapBut(std::uint32_t run) const;
+  std::vector<int> placesOfOtherMaps(int keyframe) const;
+  void searchOtherMaps();
+  void placeRun(const SlamLoop& tie);
+  void doubtTies(const SlamLoop& loop);
+  void refreshConnections();
 
   // Loops, in slam_loops.cpp.
   void searchLoopClosures();
   std::vector<double> pathLengthsInReach(int keyframe) const;
+  int middleOfNewSegment() const;
   void searchNearLoops();
   void searchFarLoops();
   void addWordMatches(WordPlaces::Update update);
@@ -217,7 +274,9 @@ class SlamEngine {
   void requestVerification(const LoopGuess& guess);
   SlamCounters::Loops& counterOf(LoopSource source, bool far);
   void applyVerification(const LoopTask& task, const LoopVerification& answer);
+  bool isWhereSupposed(const SlamLoop& loop) const;
   void addFarLoop(const SlamLoop& loop);
+  std::vector<SlamLoop> usedFarLoops() const;
   void acceptFarLoop(const SlamLoop& loop);
   void addLoopEdge(const SlamLoop& loop);
   void rebuildPathLengths();
@@ -233,6 +292,7 @@ class SlamEngine {
   std::vector<SignatureKeyframe> keyframes_to_sign_;  // for the next job
   bool run_to_end_ = false;                           // behind them
   GraphPathLengths path_lengths_;
+  RunConnections connections_;  // by the loops
   hyselam_scan_matching::SurfaceMap local_map_;
   std::vector<LoopTask> tasks_;
   bool run_open_ = false, job_pending_ = false;
@@ -244,6 +304,9 @@ class SlamEngine {
   double path_length_ = 0.0;    // [m] driven over all runs
   double far_search_path_length_ = 0.0;  // path_length_ at the last far search
   std::optional<RunStart> start_;
+  Run run_;
+  std::vector<SlamLoop> doubts_;  // verified far loops that contradict the ties of the run
+  int ties_withdrawn_ = 0;
   bool loops_changed_ = false, optimize_now_ = false;
   int optimized_keyframes_ = 0;
   RunGraph job_graph_;  // of the pending job, which has its poses and edges

@@ -59,7 +59,12 @@ struct RelocalizationParams {
   void describe(hyselam::ParameterVisitor& visit);
 };
 
-/// The first scan of a run in a known map is relocalized by a search around the start pose.
+/// Where a run begins in a known map.
+///
+/// A pose that is known (RunTrust::kKnown: the robot was switched to another mode meanwhile) is
+/// refined by a search of the first scan and tied to the map at once. One that is supposed may be
+/// wrong by metres or by half a turn, or be in another building: the run is a map of its own until
+/// far loops tie it to the known one.
 struct RunStartParams {
   double map_radius =
       10.0;  ///< beyond the window of SlamEngine::startRun(), of keyframes used [m], >= 0
@@ -71,6 +76,15 @@ struct RunStartParams {
   /// Old keyframes within this distance are added to the local map until the run has
   /// local_map_keyframes of its own [m], >= 0.
   double local_map_radius = 3.0;
+
+  // A supposed start.
+  double search_interval = 1.0;     ///< path between searches around the supposed pose [m], > 0
+  double search_radius = 5.0;       ///< of what is searched around it, at any heading [m], > 0
+  double whole_map_interval = 8.0;  ///< path between searches of the whole map [m], > 0
+  double place_spacing = 4.0;       ///< between places that are searched [m], > 0
+  /// A run that is not tied after this much path is shown as a map of its own; one that is tied
+  /// listens to loops that contradict its ties for as long [m], >= 0.
+  double own_map_path = 60.0;
 
   void describe(hyselam::ParameterVisitor& visit);
 };
@@ -151,6 +165,10 @@ struct LoopParams {
   /// The same of a group in which all come from signatures: buildings repeat themselves, and nobody
   /// has driven there from where odometry expects it.
   int min_consistent_signature_loops = 3;
+  /// Far loops that tie a run to another map: nothing else is known of where it lies there. All of
+  /// them have to be as probable as those by signatures.
+  int min_tie_loops = 3;
+  double tie_min_span = 2.0;  ///< minimum path covered by their newer keyframes [m], >= 0
   double consistency_max_path_length = 40.0;  ///< maximum path between two of its loops [m], > 0
   double consistency_min_span = 1.5;   ///< minimum path covered by its newer keyframes [m], >= 0
   double consistency_distance = 0.25;  ///< maximum position error between two loops [m], > 0

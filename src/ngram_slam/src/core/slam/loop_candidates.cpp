@@ -115,17 +115,20 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
 }
 
 LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
-                                    const std::vector<SlamKeyframe>& keyframes) {
+                                    const std::vector<SlamKeyframe>& keyframes,
+                                    const RunConnections& connections) {
   const auto at = [&](int k) -> const SlamKeyframe& {
     return keyframes[static_cast<std::size_t>(k)];
   };
+  const auto pathLength = [&](const SlamKeyframe& one, const SlamKeyframe& other) {
+    if (one.run == other.run) return std::abs(one.path_length - other.path_length);
+    return connections.connected(one.run, other.run) ? distance(one.pose, other.pose)
+                                                     : std::numeric_limits<double>::infinity();
+  };
   LoopInconsistency result;
-  if (at(a.newer).run != at(b.newer).run || at(a.older).run != at(b.older).run) {
-    result.path_length = std::numeric_limits<double>::infinity();
-    return result;
-  }
-  result.path_length = std::max(std::abs(at(a.newer).path_length - at(b.newer).path_length),
-                                std::abs(at(a.older).path_length - at(b.older).path_length));
+  result.path_length =
+      std::max(pathLength(at(a.newer), at(b.newer)), pathLength(at(a.older), at(b.older)));
+  if (!std::isfinite(result.path_length)) return result;
   const Pose2 predicted = between(at(a.older).pose, at(b.older).pose) * b.measured *
                           between(at(b.newer).pose, at(a.newer).pose);
   result.distance = distance(predicted, a.measured);
@@ -135,10 +138,11 @@ LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
 
 std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector<SlamLoop>& others,
                                          const std::vector<SlamKeyframe>& keyframes,
+                                         const RunConnections& connections,
                                          const LoopParams& params) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < others.size(); ++i) {
-    const LoopInconsistency c = loopInconsistency(loop, others[i], keyframes);
+    const LoopInconsistency c = loopInconsistency(loop, others[i], keyframes, connections);
     const double max_distance =
         params.consistency_distance + params.consistency_distance_per_meter * c.path_length;
     if (c.path_length <= params.consistency_max_path_length &&
@@ -150,7 +154,8 @@ std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector
 }
 
 LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
-                      const std::vector<SlamKeyframe>& keyframes, const LoopParams& params) {
+                      const std::vector<SlamKeyframe>& keyframes, const RunConnections& connections,
+                      const LoopParams& params) {
   LoopCompany company{loop.inlier_ratio, 0.0};
   if (params.company_half_length <= 0.0) return company;
   const SlamKeyframe& here = keyframes[static_cast<std::size_t>(loop.newer)];
@@ -161,7 +166,7 @@ LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
         std::abs(here.path_length - there.path_length) > params.company_half_length) {
       continue;
     }
-    const LoopInconsistency c = loopInconsistency(loop, other, keyframes);
+    const LoopInconsistency c = loopInconsistency(loop, other, keyframes, connections);
     if (!std::isfinite(c.path_length)) continue;
     // As much as odometry may be off between the two places.
     const double max_distance = params.positionUncertainty(c.path_length) + 1.0;

@@ -35,10 +35,12 @@ SignaturePlaces::SignaturePlaces(const SignaturePlacesParams& params,
       model_(std::move(model)),
       recognizer_(*model_, params.recognizer),
       uncertainty_(std::move(uncertainty)),
-      sensor_(params.sensor, [this](const PlaceOnWay& place, const PlaceFeatures& features) {
-        recognizer_.add(model_->signatureOf(features));
-        places_.push_back(place);
-      }) {
+      sensor_(params.sensor,
+              [this](const PlaceOnWay& place, const PlaceFeatures& features) {
+                recognizer_.add(model_->signatureOf(features));
+                places_.push_back(place);
+              }),
+      interval_(params.interval) {
   model_->requireSensor(params.sensor);
 }
 
@@ -71,7 +73,7 @@ std::vector<SignatureCandidate> SignaturePlaces::endRun() {
 
 std::vector<SignatureCandidate> SignaturePlaces::ask(std::uint32_t end) {
   std::vector<SignatureCandidate> found;
-  for (; next_asked_ < end; next_asked_ += static_cast<std::uint32_t>(params_.interval)) {
+  for (; next_asked_ < end; next_asked_ += static_cast<std::uint32_t>(interval_)) {
     if (keyframeOf(next_asked_) < first_asked_) continue;
     const auto may_be = [&](std::uint32_t older) { return odometryAllows(next_asked_, older); };
     for (const PlaceCandidate& c : recognizer_.candidates(next_asked_, may_be)) {

@@ -86,9 +86,10 @@ SlamEngine::SlamEngine(const SlamParams& params, SlamState state)
   }
   rebuildPathLengths();
   if (state_.keyframes.empty()) return;
+  connections_ = RunConnections(state_.keyframes, state_.loops);
   queueSavedKeyframes();
   const SlamKeyframe& last = state_.keyframes.back();
-  path_length_ = last.path_length;
+  path_length_ = run_.begin = last.path_length;
   far_search_path_length_ = path_length_;
   pose_ = matched_pose_ = last.pose;
   odometry_ = matched_odometry_ = last.odometry;
@@ -343,7 +344,8 @@ void SlamEngine::rebuildLocalMap() {
   // A run that has only begun is matched with what earlier ones saw there.
   if (first_of_run_ > 0 && n - first < params_.local_map_keyframes) {
     for (int k = 0; k < first_of_run_; ++k) {
-      if (distance(keyframe(k).pose, here) < params_.run_start.local_map_radius) {
+      if (connections_.connected(keyframe(k).run, currentRun()) &&
+          distance(keyframe(k).pose, here) < params_.run_start.local_map_radius) {
         local_map_.insert(keyframe(k).pose, *keyframe(k).points);
       }
     }

@@ -53,6 +53,7 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
     job.keyframes.swap(keyframes_to_sign_);
     job.ends_run = run_to_end_;
     job.signatures = signatures_;
+    job.ask_each = isUntied();
     run_to_end_ = false;
   } else if (loops_changed_ && due) {
     // A map that is known stays where it is while a run goes on in it, unless far loops move it.
@@ -84,6 +85,7 @@ SlamJobResult runJob(const SlamJob& job) {
   const auto take = [&](const std::vector<SignatureCandidate>& candidates) {
     result.candidates.insert(result.candidates.end(), candidates.begin(), candidates.end());
   };
+  job.signatures->askEach(job.ask_each);
   for (const SignatureKeyframe& k : job.keyframes) take(job.signatures->add(k));
   if (job.ends_run) take(job.signatures->endRun());
   return result;
@@ -113,6 +115,9 @@ void SlamEngine::apply(const SlamJobResult& result) {
       state_.loops[job_graph_.loops[i]].weight = optimized.weights[edge];
     }
   }
+  const bool was_tied = run_.tied.has_value();
+  refreshConnections();
+  if (was_tied && !run_.tied) ++ties_withdrawn_;
   rebuildPathLengths();
   rebuildLocalMap();
   ++state_.counters.optimizations;

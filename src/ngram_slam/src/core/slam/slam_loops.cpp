@@ -47,6 +47,7 @@ void SlamEngine::rebuildPathLengths() {
 void SlamEngine::searchLoopClosures() {
   if (params_.loops == LoopClosureMode::kNone || params_.loops == LoopClosureMode::kThesis) return;
   const LoopParams& p = params_.loop;
+  searchOtherMaps();
   if (lastKeyframe() % p.near_search_interval == 0) searchNearLoops();
   // Far ones by words only, or by signatures only.
   if (params_.loops == LoopClosureMode::kNgrams || params_.loops == LoopClosureMode::kSignatures) {
@@ -73,15 +74,20 @@ void SlamEngine::searchNearLoops() {
   }
 }
 
+/// Of the path driven last.
+int SlamEngine::middleOfNewSegment() const {
+  int middle = lastKeyframe();
+  while (middle > first_of_run_ &&
+         path_length_ - keyframe(middle).path_length < params_.loop.far_new_segment_half_length) {
+    --middle;
+  }
+  return middle;
+}
+
 void SlamEngine::searchFarLoops() {
   const LoopParams& p = params_.loop;
   far_search_path_length_ = path_length_;
-  // The middle of the segment driven last.
-  int middle = lastKeyframe();
-  while (middle > first_of_run_ &&
-         path_length_ - keyframe(middle).path_length < p.far_new_segment_half_length) {
-    --middle;
-  }
+  const int middle = middleOfNewSegment();
   int requested = 0;
   for (const LoopCandidate& c :
        loopCandidates(state_.keyframes, middle, pathLengthsInReach(middle), p)) {
@@ -221,10 +227,10 @@ void SlamEngine::searchSignatureLoops(const std::vector<SignatureCandidate>& can
     const double length = path_lengths[static_cast<std::size_t>(c.keyframe_older)];
     const double uncertainty = p.positionUncertainty(length);
     if (uncertainty <= p.near_max_uncertainty) continue;  // searchNearLoops() looks there
-    // addFarLoop() would not believe what is found.
-    if (std::isfinite(length) && distance(newer.pose, older.pose) > uncertainty +
-                                                                        p.visibility_margin +
-                                                                        p.signature_search_window) {
+    // addFarLoop() would not believe what is found, unless it doubts where the run lies.
+    if (std::isfinite(length) && (newer.run == older.run || !mayBeDoubted()) &&
+        distance(newer.pose, older.pose) >
+            uncertainty + p.visibility_margin + p.signature_search_window) {
       continue;
     }
     requestVerification({c.keyframe_older,
@@ -260,7 +266,7 @@ void SlamEngine::requestVerification(const LoopGuess& guess) {
   task.window = guess.window;
   task.angle = std::min(guess.angle, hyselam::kPi);
   task.match = guess.match;
-  task.any_heading = guess.source == LoopSource::kSignature;
+  task.any_heading = guess.source == LoopSource::kSignature || guess.any_heading;
   // The new segment must not be compared with itself.
   const double max_path_length =
       older.run == newer.run ? newer.path_length - p.segment_separation : kInfinity;
@@ -298,14 +304,25 @@ void SlamEngine::applyVerification(const LoopTask& task, const LoopVerification&
     addFarLoop(answer.loop);
     return;
   }
+  if (!isWhereSupposed(answer.loop)) return;
   if (match != nullptr) match->accepted = true;
   ++count.accepted;
   addLoopEdge(answer.loop);
 }
 
+/// Whether a near loop still is one: its run may have been taken elsewhere while it was verified.
+bool SlamEngine::isWhereSupposed(const SlamLoop& loop) const {
+  const SlamKeyframe &older = keyframe(loop.older), &newer = keyframe(loop.newer);
+  if (older.run == newer.run) return true;
+  return connections_.connected(older.run, newer.run) &&
+         distance(between(older.pose, newer.pose), loop.measured) <=
+             params_.loop.near_max_uncertainty + params_.loop.visibility_margin;
+}
+
 void SlamEngine::addLoopEdge(const SlamLoop& loop) {
   state_.loops.push_back(loop);
   path_lengths_.addEdge(loop.older, loop.newer, params_.loop.loop_path_length);
+  connections_.connect(keyframe(loop.older).run, keyframe(loop.newer).run);
   loops_changed_ = true;
 }
 
@@ -318,16 +335,21 @@ void SlamEngine::addFarLoop(const SlamLoop& loop) {
   const Pose2 known = between(keyframe(loop.older).pose, keyframe(loop.newer).pose);
   if (std::isfinite(length) &&
       distance(known, loop.measured) > p.positionUncertainty(length) + p.visibility_margin) {
+    doubtTies(loop);
     return;
   }
-  std::vector<SlamLoop> accepted;
-  for (const SlamLoop& l : state_.loops) {
-    if (l.far && l.weight >= kMinLoopWeight) accepted.push_back(l);
-  }
-  for (const SlamLoop& l :
-       believeFarLoops(loop, accepted, state_.keyframes, p, &state_.pending_loops)) {
+  for (const SlamLoop& l : believeFarLoops(loop, usedFarLoops(), state_.keyframes, connections_, p,
+                                           &state_.pending_loops)) {
     acceptFarLoop(l);
   }
+}
+
+std::vector<SlamLoop> SlamEngine::usedFarLoops() const {
+  std::vector<SlamLoop> used;
+  for (const SlamLoop& l : state_.loops) {
+    if (l.far && l.weight >= kMinLoopWeight) used.push_back(l);
+  }
+  return used;
 }
 
 void SlamEngine::acceptFarLoop(const SlamLoop& loop) {
@@ -337,6 +359,7 @@ void SlamEngine::acceptFarLoop(const SlamLoop& loop) {
       m.accepted = true;
     }
   }
+  placeRun(loop);
   addLoopEdge(loop);
   optimize_now_ = true;
 }

@@ -71,6 +71,15 @@ void RunStartParams::describe(ParameterVisitor& visit) {
   visit("heading_information", heading_information, kPositive, "1/rad^2", "of that edge");
   visit("local_map_radius", local_map_radius, kNotNegative, "m",
         "old keyframes this near join the local map of a run that has just begun");
+  visit("search_interval", search_interval, kPositive, "m",
+        "path between searches around a start that is supposed only");
+  visit("search_radius", search_radius, kPositive, "m", "of what is searched around it");
+  visit("whole_map_interval", whole_map_interval, kPositive, "m",
+        "path between searches of the whole map, until the run is tied to it");
+  visit("place_spacing", place_spacing, kPositive, "m", "between the places that are searched");
+  visit("own_map_path", own_map_path, kNotNegative, "m",
+        "path after which a run that is not tied is a map of its own, and one that is keeps its "
+        "ties");
 }
 
 namespace {
@@ -168,6 +177,10 @@ void describeConsistency(LoopParams& p, ParameterVisitor& visit) {
         "far loops that are pairwise consistent, to be accepted");
   visit("min_consistent_signature_loops", p.min_consistent_signature_loops, kCount, "",
         "the same where all of them come from signatures");
+  visit("min_tie_loops", p.min_tie_loops, kCount, "",
+        "the same for those that tie a run to another map");
+  visit("tie_min_span", p.tie_min_span, kNotNegative, "m",
+        "of path that the new ends of these cover");
   visit("consistency_max_path_length", p.consistency_max_path_length, kPositive, "m",
         "between consistent loops");
   visit("consistency_min_span", p.consistency_min_span, kNotNegative, "m",

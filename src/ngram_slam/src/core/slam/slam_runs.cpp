@@ -16,7 +16,7 @@ using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
-void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle) {
+void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle, RunTrust trust) {
   if (!base_in_map.isFinite()) throw hyselam::ParameterError("base_in_map", "not finite", "finite");
   if (!(window > 0.0 && window <= kMaxStartWindow)) {
     throw hyselam::ParameterError("window", window, "above 0, at most 50 m");
@@ -25,7 +25,12 @@ void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle)
     throw hyselam::ParameterError("angle", angle, "from 0 to pi");
   }
   endRun();
-  start_ = RunStart{base_in_map, window, angle};
+  start_ = RunStart{base_in_map, window, angle, trust, false};
+}
+
+void SlamEngine::startRunAnywhere() {
+  endRun();
+  start_ = RunStart{pose_, kMaxStartWindow, hyselam::kPi, RunTrust::kSupposed, true};
 }
 
 void SlamEngine::endRun() {
@@ -40,11 +45,19 @@ void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry)
   odometry_ = matched_odometry_ = odometry;
   smooth_pose_ = odometry;
   first_of_run_ = static_cast<int>(state_.keyframes.size());
+  run_ = Run{};
+  run_.begin = run_.searched = run_.searched_map = path_length_;
+  doubts_.clear();
+  const RunStart start = start_.value_or(
+      RunStart{pose_, kDefaultStartWindow, kDefaultStartAngle, RunTrust::kSupposed, false});
   if (first_of_run_ == 0) {
-    pose_ = start_ ? start_->pose : odometry;
+    pose_ = start_ && !start_->anywhere ? start_->pose : odometry;
     addKeyframe(scan, std::move(points), nullptr);
+  } else if (start.trust == RunTrust::kKnown || params_.loops == LoopClosureMode::kNone ||
+             params_.loops == LoopClosureMode::kThesis) {  // no loops would tell
+    beginRunInKnownMap(scan, std::move(points), start);
   } else {
-    beginRunInKnownMap(scan, std::move(points));
+    beginRunSomewhere(scan, std::move(points), start);
   }
   matched_pose_ = pose_;
   start_.reset();
@@ -52,10 +65,19 @@ void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry)
   if (usesWords()) addWords(scan);
 }
 
+/// A map of its own, until loops tell where it lies.
+void SlamEngine::beginRunSomewhere(const hyselam::LaserScan& scan, Points points,
+                                   const RunStart& start) {
+  pose_ = start.pose;
+  run_.anywhere = start.anywhere;
+  run_.supposed_in = largestMapBut(currentRun() + 1);
+  addKeyframe(scan, std::move(points), nullptr);
+}
+
 /// Searches the first scan of a run around where it starts, and ties it to the nearest keyframe.
-void SlamEngine::beginRunInKnownMap(const hyselam::LaserScan& scan, Points points) {
+void SlamEngine::beginRunInKnownMap(const hyselam::LaserScan& scan, Points points,
+                                    const RunStart& start) {
   const RunStartParams& p = params_.run_start;
-  const RunStart start = start_.value_or(RunStart{pose_, kDefaultStartWindow, kDefaultStartAngle});
   pose_ = start.pose;
   const auto nearest =
       std::min_element(state_.keyframes.begin(), state_.keyframes.end(),
@@ -86,6 +108,8 @@ void SlamEngine::beginRunInKnownMap(const hyselam::LaserScan& scan, Points point
   tie.measured = between(nearest->pose, pose_);
   addKeyframe(scan, std::move(points), nullptr);
   addLoopEdge(tie);
+  run_.tied = path_length_;
+  run_.known = true;
 }
 
 /// What earlier runs saw around the start.

@@ -1,0 +1,181 @@
+// Where a run lies in the maps of earlier ones: it is searched for, placed, doubted.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ngram_slam/slam/far_loops.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+
+namespace ngram_slam {
+
+using hyselam::between;
+using hyselam::Pose2;
+
+namespace {
+
+constexpr double kOtherView = hyselam::kPi / 2.0;  // a laser may see only what is ahead
+
+double sumOfInliers(const std::vector<SlamLoop>& loops) {
+  double sum = 0.0;
+  for (const SlamLoop& l : loops) sum += l.inlier_ratio;
+  return sum;
+}
+
+}  // namespace
+
+const char* toString(RunPlace place) {
+  switch (place) {
+    case RunPlace::kFirst:
+      return "first";
+    case RunPlace::kSupposed:
+      return "supposed";
+    case RunPlace::kTied:
+      return "tied";
+    case RunPlace::kOwnMap:
+      return "own map";
+  }
+  return "";
+}
+
+bool SlamEngine::isUntied() const {
+  return first_of_run_ > 0 && first_of_run_ <= lastKeyframe() &&
+         connections_.mapOf(currentRun()) == currentRun();
+}
+
+RunPlace SlamEngine::runPlace() const {
+  if (state_.keyframes.empty() || currentRun() == 0) return RunPlace::kFirst;
+  if (!isUntied()) return RunPlace::kTied;
+  return pathOfRun() < params_.run_start.own_map_path ? RunPlace::kSupposed : RunPlace::kOwnMap;
+}
+
+std::optional<double> SlamEngine::pathUntilTied() const {
+  return run_.tied ? std::make_optional(*run_.tied - run_.begin) : std::nullopt;
+}
+
+std::vector<bool> SlamEngine::shownRuns() const {
+  if (state_.keyframes.empty()) return {};
+  const std::uint32_t map =
+      runPlace() == RunPlace::kSupposed ? run_.supposed_in : connections_.mapOf(currentRun());
+  std::vector<bool> shown;
+  for (std::uint32_t run = 0; run <= currentRun(); ++run) {
+    shown.push_back(connections_.mapOf(run) == map);
+  }
+  return shown;
+}
+
+/// The map of most keyframes, the earliest of equal ones, without that of a run.
+std::uint32_t SlamEngine::largestMapBut(std::uint32_t run) const {
+  std::map<std::uint32_t, int> keyframes;
+  for (const SlamKeyframe& k : state_.keyframes) ++keyframes[connections_.mapOf(k.run)];
+  keyframes.erase(connections_.mapOf(run));
+  const auto largest =
+      std::max_element(keyframes.begin(), keyframes.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return largest == keyframes.end() ? 0 : largest->first;
+}
+
+/// Keyframes of other maps than that of `keyframe` that stand for what is around them, nearest to
+/// it by their supposed poses first.
+std::vector<int> SlamEngine::placesOfOtherMaps(int k) const {
+  std::vector<int> places;
+  const SlamKeyframe& here = keyframe(k);
+  for (int other = 0; other < first_of_run_; ++other) {
+    const SlamKeyframe& there = keyframe(other);
+    if (connections_.connected(there.run, here.run)) continue;
+    const bool stood_for = std::any_of(places.begin(), places.end(), [&](int place) {
+      const SlamKeyframe& p = keyframe(place);
+      return connections_.connected(p.run, there.run) &&
+             distance(p.pose, there.pose) < params_.run_start.place_spacing &&
+             std::abs(hyselam::normalizeAngle(p.pose.theta - there.pose.theta)) < kOtherView;
+    });
+    if (!stood_for) places.push_back(other);
+  }
+  std::stable_sort(places.begin(), places.end(), [&](int a, int b) {
+    return distance(keyframe(a).pose, here.pose) < distance(keyframe(b).pose, here.pose);
+  });
+  return places;
+}
+
+/// While the run is not tied: asks the scans, around where it is supposed to be, now and then in
+/// the whole of the other maps.
+void SlamEngine::searchOtherMaps() {
+  const RunStartParams& p = params_.run_start;
+  if (!isUntied() || runPlace() == RunPlace::kOwnMap) return;
+  const bool whole_map = path_length_ - run_.searched_map >= p.whole_map_interval;
+  const bool around = !run_.anywhere && path_length_ - run_.searched >= p.search_interval;
+  if (!whole_map && !around) return;
+  run_.searched = path_length_;
+  if (whole_map) run_.searched_map = path_length_;
+  const int middle = middleOfNewSegment();
+  for (const int place : placesOfOtherMaps(middle)) {
+    if (!whole_map && distance(keyframe(place).pose, keyframe(middle).pose) > p.search_radius) {
+      break;
+    }
+    requestVerification({place, middle, true, LoopSource::kProximity, Pose2{},
+                         params_.loop.signature_search_window, params_.loop.signature_search_angle,
+                         kNoMatch, true});
+  }
+}
+
+/// Moves the later one of two maps to where a loop between them says that it lies.
+void SlamEngine::placeRun(const SlamLoop& tie) {
+  const SlamKeyframe &older = keyframe(tie.older), &newer = keyframe(tie.newer);
+  const std::uint32_t a = connections_.mapOf(older.run), b = connections_.mapOf(newer.run);
+  if (a == b) return;
+  Pose2 correction = older.pose * tie.measured * newer.pose.inverse();
+  if (b < a) correction = correction.inverse();
+  const std::uint32_t moved = std::max(a, b);
+  for (SlamKeyframe& k : state_.keyframes) {
+    if (connections_.mapOf(k.run) == moved) k.pose = correction * k.pose;
+  }
+  if (connections_.mapOf(currentRun()) == moved) {
+    pose_ = correction * pose_;
+    matched_pose_ = correction * matched_pose_;
+    run_.tied = path_length_;
+  }
+  connections_.connect(a, b);
+  rebuildLocalMap();
+  ++revision_;
+}
+
+/// Whether the run was tied by far loops not long ago.
+bool SlamEngine::mayBeDoubted() const {
+  return run_.tied && !run_.known && path_length_ - *run_.tied <= params_.run_start.own_map_path;
+}
+
+/// A far loop between the run and others that its ties exclude. Loops that agree with each other
+/// and weigh more than the ties take their place.
+void SlamEngine::doubtTies(const SlamLoop& loop) {
+  const std::uint32_t run = currentRun();
+  if (keyframe(loop.newer).run != run || keyframe(loop.older).run == run || !mayBeDoubted()) {
+    return;
+  }
+  const std::vector<SlamLoop> others = loopsWithinRuns(state_.loops, state_.keyframes, run);
+  const RunConnections untied(state_.keyframes, others);
+  std::vector<SlamLoop> waiting = doubts_;
+  doubts_.push_back(loop);
+  const std::vector<SlamLoop> group =
+      believeFarLoops(loop, {}, state_.keyframes, untied, params_.loop, &waiting);
+  std::vector<SlamLoop> ties;
+  for (const SlamLoop& l : usedFarLoops()) {
+    if ((keyframe(l.older).run == run) != (keyframe(l.newer).run == run)) ties.push_back(l);
+  }
+  if (group.empty() || sumOfInliers(group) <= sumOfInliers(ties)) return;
+  state_.loops = others;
+  ++ties_withdrawn_;
+  doubts_.clear();
+  refreshConnections();
+  rebuildPathLengths();
+  for (const SlamLoop& l : group) acceptFarLoop(l);
+}
+
+/// After loops lost their weight or were taken away.
+void SlamEngine::refreshConnections() {
+  connections_ = RunConnections(state_.keyframes, state_.loops);
+  if (isUntied()) {
+    run_.tied.reset();
+    run_.searched = run_.searched_map = path_length_;
+  }
+}
+
+}  // namespace ngram_slam

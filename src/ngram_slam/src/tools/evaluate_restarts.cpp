@@ -1,0 +1,301 @@
+// evaluate_restarts: SLAM goes on in the map of a log's first half, from many places of its second
+// half and with starts that are right, wrong, or unknown. When is the run tied to the map, and is
+// that right?
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/rng.hpp"
+#include "hyselam_common/robot_log.hpp"
+#include "hyselam_common/tool.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+#include "ngram_slam/slam/slam_score.hpp"
+#include "place_logs.hpp"
+#include "reference_poses.hpp"
+
+namespace {
+
+using namespace ngram_slam;  // NOLINT: a program, not a header
+using hyselam::Pose2;
+
+struct Options {
+  std::vector<std::string> logs;
+  ReferenceFiles references;
+  std::vector<std::string> modes = {"right", "3m", "10m", "90deg", "180deg", "unknown", "moved"};
+  int starts = 20;
+  double path = 60.0;
+  std::uint64_t seed = 1;
+};
+
+constexpr double kMoved = 25.0;     // [m] driven while SLAM was off
+constexpr double kTolerance = 0.5;  // [s] between a scan and its true pose
+
+struct Step {
+  const hyselam::LaserScan* scan;
+  Pose2 odometry;
+  std::optional<Pose2> truth;
+  double way;  // [m] by odometry
+};
+
+struct Log {
+  std::string name;
+  hyselam::RobotLog log;
+  std::vector<hyselam::StampedPose2> reference;
+  std::vector<Step> steps;
+};
+
+Log readLog(const std::string& path, const ReferenceFiles& references, std::size_t i) {
+  Log out;
+  out.name = nameOfLog(path);
+  out.log = hyselam::readRobotLog(path);
+  out.reference = references.of(i, out.log);
+  double way = 0.0;
+  for (const hyselam::LaserScan& scan : out.log.scans) {
+    const auto odometry = hyselam::poseAt(out.log.odometry, scan.stamp, 0.2);
+    if (!odometry) continue;
+    if (!out.steps.empty()) way += distance(out.steps.back().odometry, *odometry);
+    out.steps.push_back(
+        {&scan, *odometry, hyselam::poseAt(out.reference, scan.stamp, kTolerance), way});
+  }
+  if (out.steps.empty()) throw hyselam::InputError(path, "", "has no scan with odometry");
+  return out;
+}
+
+void add(SlamEngine* engine, const Step& step) {
+  try {
+    engine->add(*step.scan, step.odometry);
+  } catch (const hyselam::InputError&) {  // of one scan
+  }
+  while (const auto job = engine->takeJob()) engine->apply(runJob(*job));
+}
+
+/// A keyframe of the first half and its true pose, where the robot really is nearest to.
+struct Anchor {
+  Pose2 pose, truth;
+};
+std::optional<Anchor> anchorOf(const std::vector<SlamKeyframe>& keyframes, const Log& log,
+                               double end_stamp, const Pose2& truth) {
+  std::optional<Anchor> nearest;
+  for (const SlamKeyframe& k : keyframes) {
+    if (k.stamp > end_stamp) continue;
+    const auto there = hyselam::poseAt(log.reference, k.stamp, kTolerance);
+    if (there && (!nearest || distance(*there, truth) < distance(nearest->truth, truth))) {
+      nearest = Anchor{k.pose, *there};
+    }
+  }
+  return nearest;
+}
+
+/// A true pose as the map of the first half has it.
+std::optional<Pose2> inMap(const std::vector<SlamKeyframe>& keyframes, const Log& log,
+                           double end_stamp, const std::optional<Pose2>& truth) {
+  if (!truth) return std::nullopt;
+  const auto anchor = anchorOf(keyframes, log, end_stamp, *truth);
+  if (!anchor) return std::nullopt;
+  return anchor->pose * between(anchor->truth, *truth);
+}
+
+/// The first half, and the whole log without a break.
+struct Mapped {
+  SlamState state;                     // after the first half
+  double end_stamp = 0.0;              // of the first half
+  std::size_t half = 0;                // step
+  std::vector<SlamKeyframe> unbroken;  // all keyframes
+  std::vector<hyselam::StampedPose2> unbroken_path;
+};
+
+Mapped mapOf(const Log& log) {
+  Mapped out;
+  while (log.steps[out.half].way < 0.5 * log.steps.back().way) ++out.half;
+  SlamEngine engine;
+  hyselam::Progress progress("map of " + log.name, log.steps.size());
+  for (std::size_t i = 0; i < log.steps.size(); ++i) {
+    progress.update(i + 1);
+    if (i == out.half) {
+      out.state = engine.state();
+      out.end_stamp = log.steps[i - 1].scan->stamp;
+    }
+    add(&engine, log.steps[i]);
+  }
+  engine.endRun();
+  while (const auto job = engine.takeFinalJob()) engine.apply(runJob(*job));
+  out.unbroken = engine.keyframes();
+  out.unbroken_path = engine.trajectory();
+  return out;
+}
+
+struct Outcome {
+  bool tied = false, right = false, wrong = false;
+  double until_tied = 0.0;             // [m]
+  double error = 0.0, unbroken = 0.0;  // mean over the scans after [m]
+  int withdrawn = 0;
+};
+
+void begin(const std::string& mode, const Pose2& right, const Pose2& before, hyselam::Rng* rng,
+           SlamEngine* engine) {
+  const auto beside = [&](double distance) {
+    const double angle = rng->uniform(-hyselam::kPi, hyselam::kPi);
+    return Pose2{right.x + distance * std::cos(angle), right.y + distance * std::sin(angle),
+                 right.theta};
+  };
+  const double turn = rng->uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0;
+  if (mode == "unknown") return engine->startRunAnywhere();
+  if (mode == "moved") return engine->startRun(before);
+  if (mode == "3m") return engine->startRun(beside(3.0));
+  if (mode == "10m") return engine->startRun(beside(10.0));
+  if (mode == "90deg") return engine->startRun(right * Pose2{0.0, 0.0, turn * hyselam::kPi / 2.0});
+  if (mode == "180deg") return engine->startRun(right * Pose2{0.0, 0.0, hyselam::kPi});
+  if (mode == "right") return engine->startRun(right);
+  throw hyselam::ParameterError("modes", mode, "right, 3m, 10m, 90deg, 180deg, unknown, moved");
+}
+
+bool isTiedWrongly(const SlamEngine& engine, const Log& log, std::uint32_t run) {
+  return std::any_of(engine.loops().begin(), engine.loops().end(), [&](const SlamLoop& l) {
+    const SlamKeyframe& older = engine.keyframes()[static_cast<std::size_t>(l.older)];
+    const SlamKeyframe& newer = engine.keyframes()[static_cast<std::size_t>(l.newer)];
+    if (l.weight < kMinLoopWeight || (older.run == run) == (newer.run == run)) return false;
+    const auto error = loopError(older, newer, l.measured, log.reference);
+    return error && error->isFalse();
+  });
+}
+
+Outcome restart(const Log& log, const Mapped& mapped, const std::string& mode, std::size_t first,
+                double path, hyselam::Rng* rng) {
+  SlamEngine engine(SlamParams{}, mapped.state);
+  const std::uint32_t run = engine.keyframes().back().run + 1;
+  std::size_t before = first;
+  while (before > 0 && log.steps[first].way - log.steps[before].way < kMoved) --before;
+  const auto& saved = mapped.state.keyframes;
+  const auto right = inMap(saved, log, mapped.end_stamp, log.steps[first].truth);
+  const auto moved_from = inMap(saved, log, mapped.end_stamp, log.steps[before].truth);
+  begin(mode, right.value(), moved_from.value_or(right.value()), rng, &engine);
+  Outcome out;
+  int compared = 0;
+  std::size_t loops = 0;
+  for (std::size_t i = first;
+       i < log.steps.size() && log.steps[i].way - log.steps[first].way < path; ++i) {
+    add(&engine, log.steps[i]);
+    out.tied = engine.runPlace() == RunPlace::kTied;
+    if (!out.tied) continue;
+    if (loops != engine.loops().size()) out.wrong = out.wrong || isTiedWrongly(engine, log, run);
+    loops = engine.loops().size();
+    const auto truth = inMap(saved, log, mapped.end_stamp, log.steps[i].truth);
+    const auto unbroken = hyselam::poseAt(mapped.unbroken_path, log.steps[i].scan->stamp, 0.1);
+    if (!truth || !unbroken) continue;
+    const auto anchored = inMap(mapped.unbroken, log, mapped.end_stamp, log.steps[i].truth);
+    const auto now = inMap(
+        {engine.keyframes().begin(), engine.keyframes().begin() + static_cast<long>(saved.size())},
+        log, mapped.end_stamp, log.steps[i].truth);
+    const double error = distance(engine.pose(), *now);
+    out.error += error;
+    out.unbroken += distance(*unbroken, *anchored);
+    out.right =
+        error < 1.0 && std::abs(hyselam::normalizeAngle(engine.pose().theta - now->theta)) < 0.35;
+    ++compared;
+  }
+  out.right = out.right && out.tied;
+  out.until_tied = engine.pathUntilTied().value_or(path);
+  out.withdrawn = engine.tiesWithdrawn();
+  if (compared > 0) {
+    out.error /= compared;
+    out.unbroken /= compared;
+  }
+  return out;
+}
+
+double quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(q * static_cast<double>(values.size())))];
+}
+
+nlohmann::json figuresOf(const std::vector<Outcome>& all) {
+  std::vector<double> ways;
+  int right = 0, wrong = 0, withdrawn = 0, tied = 0;
+  double error = 0.0, unbroken = 0.0;
+  for (const Outcome& o : all) {
+    ways.push_back(o.until_tied);
+    right += o.right;
+    wrong += o.wrong;
+    withdrawn += o.withdrawn;
+    if (!o.right) continue;
+    ++tied;
+    error += o.error;
+    unbroken += o.unbroken;
+  }
+  const double n = std::max(1, tied);
+  return {{"starts", all.size()},
+          {"right", right},
+          {"wrong_ties", wrong},
+          {"withdrawn", withdrawn},
+          {"median_m", quantile(ways, 0.5)},
+          {"p90_m", quantile(ways, 0.9)},
+          {"worst_m", quantile(ways, 1.0)},
+          {"error_m", error / n},
+          {"unbroken_error_m", unbroken / n}};
+}
+
+nlohmann::json run(const Options& o) {
+  if (o.starts < 1) throw hyselam::ParameterError("starts", o.starts, "at least 1");
+  if (!(o.path > 0.0)) throw hyselam::ParameterError("path", o.path, "above 0 m");
+  o.references.check(o.logs.size());
+  nlohmann::json json;
+  std::cout
+      << "| log | start | right | median until tied [m] | 90 % [m] | wrong ties | withdrawn | "
+         "error [m] | unbroken [m] |\n|---|---|---|---|---|---|---|---|---|\n";
+  for (std::size_t l = 0; l < o.logs.size(); ++l) {
+    const Log log = readLog(o.logs[l], o.references, l);
+    const Mapped mapped = mapOf(log);
+    const double begin = log.steps[mapped.half].way, end = log.steps.back().way - o.path;
+    if (end <= begin) throw hyselam::InputError(log.name, "", "is too short for --path");
+    for (const std::string& mode : o.modes) {
+      hyselam::Rng rng(o.seed);
+      std::vector<Outcome> outcomes;
+      hyselam::Progress progress(log.name + " " + mode, static_cast<std::size_t>(o.starts));
+      for (int s = 0; s < o.starts; ++s) {
+        progress.update(static_cast<std::size_t>(s) + 1);
+        const double way = begin + (end - begin) * (s + rng.uniform(0.0, 1.0)) / o.starts;
+        std::size_t first = mapped.half;
+        while (first + 1 < log.steps.size() &&
+               (log.steps[first].way < way || !log.steps[first].truth)) {
+          ++first;
+        }
+        outcomes.push_back(restart(log, mapped, mode, first, o.path, &rng));
+      }
+      const nlohmann::json f = figuresOf(outcomes);
+      std::cout << std::fixed << std::setprecision(1) << "| " << log.name << " | " << mode << " | "
+                << f["right"] << "/" << f["starts"] << " | " << f["median_m"].get<double>() << " | "
+                << f["p90_m"].get<double>() << " | " << f["wrong_ties"] << " | " << f["withdrawn"]
+                << " | " << std::setprecision(3) << f["error_m"].get<double>() << " | "
+                << f["unbroken_error_m"].get<double>() << " |\n"
+                << std::flush;
+      json[log.name][mode] = f;
+    }
+  }
+  return json;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Restarts of SLAM in the map of each log's first half, from places of its second half.",
+      "evaluate_restarts");
+  Options o;
+  app.option_defaults()->always_capture_default();
+  app.add_option("logs", o.logs, "CARMEN logs or bags, plain or gzip")->required();
+  o.references.addTo(app);
+  app.add_option("--modes", o.modes,
+                 "what is told of the start: right, 3m, 10m, 90deg, 180deg (off by so much), "
+                 "unknown, moved (25 m since)");
+  app.add_option("--starts", o.starts, "of each mode");
+  app.add_option("--path", o.path, "driven after each start [m]");
+  app.add_option("--seed", o.seed, "of the starts");
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+}

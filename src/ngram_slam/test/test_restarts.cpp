@@ -1,0 +1,227 @@
+// SLAM goes on in a saved map from starts that are right, wrong, unknown, or in another building.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hyselam_common/robot_log.hpp"
+#include "hyselam_sim/generate_corridors.hpp"
+#include "hyselam_sim/simulation.hpp"
+#include "ngram_slam/slam/run_connections.hpp"
+#include "ngram_slam/slam/slam_engine.hpp"
+
+namespace ngram_slam {
+namespace {
+
+using hyselam::Pose2;
+
+/// A round through corridors; `visit`: another one has other errors.
+hyselam::RobotLog visit(std::uint64_t building, std::uint64_t visit) {
+  hyselam_sim::CorridorParams corridors;
+  corridors.lines = 3;
+  corridors.loops = 1.0;
+  corridors.legs = 16;
+  const auto made = hyselam_sim::generateCorridors(building, corridors);
+  hyselam_sim::SimulationParams params;
+  params.scan_rate = 5.0;
+  params.odometry.sigma = 0.01;
+  return hyselam_sim::simulate(made.plan, made.route, visit, params).log;
+}
+
+void feed(SlamEngine* engine, const hyselam::RobotLog& log, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < std::min(end, log.scans.size()); ++i) {
+    engine->add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
+    while (const auto job = engine->takeJob()) engine->apply(runJob(*job));
+  }
+}
+
+const hyselam::RobotLog& firstVisit() {
+  static const hyselam::RobotLog log = visit(5, 3);
+  return log;
+}
+const hyselam::RobotLog& secondVisit() {
+  static const hyselam::RobotLog log = visit(5, 4);
+  return log;
+}
+const hyselam::RobotLog& otherBuilding() {
+  static const hyselam::RobotLog log = visit(11, 5);
+  return log;
+}
+
+/// The map of the first visit.
+const SlamState& knownMap() {
+  static const SlamState state = [] {
+    SlamEngine engine;
+    feed(&engine, firstVisit(), 0, 100000);
+    engine.endRun();
+    while (const auto job = engine.takeFinalJob()) engine.apply(runJob(*job));
+    return engine.state();
+  }();
+  return state;
+}
+
+Pose2 truthAt(const hyselam::RobotLog& log, std::size_t scan) {
+  return *hyselam::poseAt(log.ground_truth, log.scans[scan].stamp, 1.0);
+}
+
+/// A true pose as the known map has it.
+Pose2 inMap(const Pose2& truth) {
+  const SlamKeyframe* nearest = nullptr;
+  Pose2 its_truth;
+  for (const SlamKeyframe& k : knownMap().keyframes) {
+    const Pose2 there = *hyselam::poseAt(firstVisit().ground_truth, k.stamp, 1.0);
+    if (nearest == nullptr || distance(there, truth) < distance(its_truth, truth)) {
+      nearest = &k;
+      its_truth = there;
+    }
+  }
+  return nearest->pose * between(its_truth, truth);
+}
+
+constexpr std::size_t kFirstScan = 200;
+
+/// Goes on in the known map until the run is tied to it.
+void driveUntilTied(SlamEngine* engine, std::size_t* scan) {
+  while (*scan < secondVisit().scans.size() && engine->pathOfRun() < 60.0) {
+    feed(engine, secondVisit(), *scan, *scan + 1);
+    ++*scan;
+    if (engine->runPlace() == RunPlace::kTied) return;
+  }
+}
+
+class Restarts : public testing::TestWithParam<Pose2> {};
+
+TEST_P(Restarts, areTiedWhereTheRobotIs) {
+  SlamEngine engine(SlamParams{}, knownMap());
+  engine.startRun(inMap(truthAt(secondVisit(), kFirstScan)) * GetParam());
+  std::size_t scan = kFirstScan;
+  feed(&engine, secondVisit(), scan, scan + 1);
+  ++scan;
+  EXPECT_EQ(engine.runPlace(), RunPlace::kSupposed);
+  EXPECT_FALSE(engine.pathUntilTied());
+  driveUntilTied(&engine, &scan);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_LT(*engine.pathUntilTied(), 20.0);
+  feed(&engine, secondVisit(), scan, scan + 50);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), scan + 49))), 0.5);
+  EXPECT_EQ(engine.shownRuns(), (std::vector<bool>{true, true}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Starts, Restarts,
+                         testing::Values(Pose2{}, Pose2{0.0, 3.0, 0.0}, Pose2{10.0, 0.0, 0.0},
+                                         Pose2{0.0, 0.0, hyselam::kPi},
+                                         Pose2{3.0, 2.0, -hyselam::kPi / 2.0}));
+
+TEST(Restart, anywhereIsFound) {
+  SlamEngine engine(SlamParams{}, knownMap());
+  engine.startRunAnywhere();
+  std::size_t scan = kFirstScan;
+  driveUntilTied(&engine, &scan);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), scan - 1))), 0.5);
+}
+
+TEST(Restart, inAnotherBuildingIsAMapOfItsOwn) {
+  SlamEngine engine(SlamParams{}, knownMap());
+  feed(&engine, otherBuilding(), 0, 100);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kSupposed);
+  EXPECT_EQ(engine.shownRuns(), (std::vector<bool>{true, false}));
+  feed(&engine, otherBuilding(), 100, 100000);
+  ASSERT_GT(engine.pathOfRun(), engine.params().run_start.own_map_path);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kOwnMap);
+  EXPECT_EQ(engine.shownRuns(), (std::vector<bool>{false, true}));
+}
+
+TEST(Restart, atAKnownPoseIsTiedAtOnce) {
+  SlamEngine engine(SlamParams{}, knownMap());
+  engine.startRun(inMap(truthAt(secondVisit(), kFirstScan)) * Pose2{0.2, 0.1, 0.05}, 1.0, 0.5,
+                  RunTrust::kKnown);
+  feed(&engine, secondVisit(), kFirstScan, kFirstScan + 1);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_EQ(engine.pathUntilTied(), 0.0);
+  EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), kFirstScan))), 0.1);
+}
+
+/// A far loop by signatures, as if the scans had verified it.
+void tell(SlamEngine* engine, int older, int newer, const Pose2& measured) {
+  SlamJobResult result;
+  LoopTask task;
+  task.far = true;
+  task.source = LoopSource::kSignature;
+  task.older = older;
+  task.newer = newer;
+  LoopVerification answer;
+  answer.verified = true;
+  answer.loop.older = older;
+  answer.loop.newer = newer;
+  answer.loop.far = true;
+  answer.loop.source = LoopSource::kSignature;
+  answer.loop.measured = measured;
+  answer.loop.information = 100.0 * Eigen::Matrix3d::Identity();
+  answer.loop.inlier_ratio = 0.9;
+  answer.loop.fit = 0.98;
+  result.tasks.push_back(task);
+  result.verifications.push_back(answer);
+  engine->apply(result);
+}
+
+TEST(Restart, givesUpTiesThatMoreLoopsContradict) {
+  SlamParams params;
+  params.loops = LoopClosureMode::kNgrams;  // nothing is found by itself in so short a path
+  params.run_start.search_interval = params.run_start.whole_map_interval = 1e6;
+  SlamEngine engine(params, knownMap());
+  const auto first = static_cast<int>(engine.keyframes().size());
+  std::size_t scan = kFirstScan;
+  while (engine.keyframes().size() < static_cast<std::size_t>(first) + 30) {
+    engine.add(secondVisit().scans[scan],
+               *hyselam::poseAt(secondVisit().odometry, secondVisit().scans[scan].stamp, 1.0));
+    ++scan;
+  }
+  // Beside keyframe 10 of the known map, 40 m and half a turn from ...
+  const auto& keyframes = engine.keyframes();
+  const Pose2 wrong = keyframes[10].pose * Pose2{0.3, 0.2, 0.4} * keyframes[first].pose.inverse();
+  const Pose2 right = Pose2{40.0, 5.0, 3.0} * wrong;
+  const auto measured = [&](int older, int newer, const Pose2& correction, const Pose2& pose) {
+    return between(keyframes[static_cast<std::size_t>(older)].pose, correction * pose);
+  };
+  std::vector<Pose2> poses;  // as they were
+  for (const SlamKeyframe& k : keyframes) poses.push_back(k.pose);
+  for (const int i : {0, 5, 10}) {
+    EXPECT_EQ(engine.runPlace(), RunPlace::kSupposed);
+    tell(&engine, 10 + i, first + i,
+         measured(10 + i, first + i, wrong, poses[static_cast<std::size_t>(first + i)]));
+  }
+  ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_LT(distance(engine.keyframes().back().pose, wrong * poses.back()), 0.01);
+  int told = 0;
+  for (const int i : {0, 4, 8, 12, 16, 20}) {
+    tell(&engine, 10 + i, first + i,
+         measured(10 + i, first + i, right, poses[static_cast<std::size_t>(first + i)]));
+    ++told;
+    if (engine.tiesWithdrawn() > 0) break;
+  }
+  EXPECT_GE(told, 4);  // as many say nothing
+  EXPECT_EQ(engine.tiesWithdrawn(), 1);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_LT(distance(engine.keyframes().back().pose, right * poses.back()), 0.01);
+}
+
+TEST(RunConnections, joinRunsByLoopsThatAreUsed) {
+  std::vector<SlamKeyframe> keyframes(5);
+  for (std::uint32_t k = 0; k < 5; ++k) keyframes[k].run = k;
+  std::vector<SlamLoop> loops(3);
+  loops[0].older = 3, loops[0].newer = 4;
+  loops[1].older = 0, loops[1].newer = 1, loops[1].weight = 0.5 * kMinLoopWeight;
+  loops[2].older = 1, loops[2].newer = 4;
+  const RunConnections c(keyframes, loops);
+  EXPECT_FALSE(c.connected(0, 1));
+  EXPECT_TRUE(c.connected(1, 3));
+  EXPECT_EQ(c.mapOf(4), 1u);
+  EXPECT_EQ(c.mapOf(2), 2u);
+  EXPECT_EQ(c.mapOf(7), 7u);
+  EXPECT_EQ(loopsWithinRuns(loops, keyframes, 4).size(), 1u);
+  EXPECT_EQ(loopsWithinRuns(loops, keyframes, 2).size(), 3u);
+}
+
+}  // namespace
+}  // namespace ngram_slam
