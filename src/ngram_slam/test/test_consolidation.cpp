@@ -322,7 +322,7 @@ SlamState firstVisit() {
 /// The state after another drive in the map. `begin`: where it begins, in the hall.
 SlamState nextVisit(const SlamState& state, double begin, double end, double box = -1.0) {
   SlamEngine engine(SlamParams{}, state);
-  engine.startRun({begin, 0.0, begin < end ? 0.0 : hyselam::kPi}, 0.5, 0.2);
+  engine.startRun({begin, 0.0, begin < end ? 0.0 : hyselam::kPi}, 0.5, 0.2, RunTrust::kKnown);
   drive(engine, begin, end, box);
   return engine.state();
 }
@@ -480,7 +480,7 @@ TEST(Consolidation, KeepsAMapThatIsNotTied) {
 TEST(Consolidation, LetsSlamContinue) {
   const SlamState state = consolidated(nextVisit(firstVisit(), 1.0, 11.0));
   SlamEngine engine(SlamParams{}, state);
-  engine.startRun({0.1, 0.0, 0.0}, 0.5, 0.2);
+  engine.startRun({0.1, 0.0, 0.0}, 0.5, 0.2, RunTrust::kKnown);
   drive(engine, 0.1, 10.1);
   EXPECT_NEAR(engine.pose().x, 10.1, 0.1);
   EXPECT_NEAR(engine.pose().y, 0.0, 0.1);

@@ -100,7 +100,7 @@ TEST_P(Restarts, areTiedWhereTheRobotIs) {
   EXPECT_FALSE(engine.pathUntilTied());
   driveUntilTied(&engine, &scan);
   ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
-  EXPECT_LT(*engine.pathUntilTied(), 20.0);
+  EXPECT_LT(*engine.pathUntilTied(), 30.0);
   feed(&engine, secondVisit(), scan, scan + 50);
   EXPECT_EQ(engine.runPlace(), RunPlace::kTied);
   EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), scan + 49))), 0.5);
@@ -181,7 +181,7 @@ TEST(Restart, givesUpTiesThatMoreLoopsContradict) {
   const auto& keyframes = engine.keyframes();
   const Pose2 wrong = keyframes[10].pose * Pose2{0.3, 0.2, 0.4} * keyframes[first].pose.inverse();
   const Pose2 right = Pose2{40.0, 5.0, 3.0} * wrong;
-  const auto measured = [&](int older, int newer, const Pose2& correction, const Pose2& pose) {
+  const auto measured = [&](int older, const Pose2& correction, const Pose2& pose) {
     return between(keyframes[static_cast<std::size_t>(older)].pose, correction * pose);
   };
   std::vector<Pose2> poses;  // as they were
@@ -189,14 +189,14 @@ TEST(Restart, givesUpTiesThatMoreLoopsContradict) {
   for (const int i : {0, 5, 10}) {
     EXPECT_EQ(engine.runPlace(), RunPlace::kSupposed);
     tell(&engine, 10 + i, first + i,
-         measured(10 + i, first + i, wrong, poses[static_cast<std::size_t>(first + i)]));
+         measured(10 + i, wrong, poses[static_cast<std::size_t>(first + i)]));
   }
   ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
   EXPECT_LT(distance(engine.keyframes().back().pose, wrong * poses.back()), 0.01);
   int told = 0;
   for (const int i : {0, 4, 8, 12, 16, 20}) {
     tell(&engine, 10 + i, first + i,
-         measured(10 + i, first + i, right, poses[static_cast<std::size_t>(first + i)]));
+         measured(10 + i, right, poses[static_cast<std::size_t>(first + i)]));
     ++told;
     if (engine.tiesWithdrawn() > 0) break;
   }
