@@ -33,8 +33,9 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-constexpr double kMoved = 25.0;     // [m] driven while SLAM was off
-constexpr double kTolerance = 0.5;  // [s] between a scan and its true pose
+constexpr double kMoved = 25.0;      // [m] driven while SLAM was off
+constexpr double kKnownPlace = 2.0;  // [m] from a keyframe of the first half
+constexpr double kTolerance = 0.5;   // [s] between a scan and its true pose
 
 struct Step {
   const hyselam::LaserScan* scan;
@@ -75,36 +76,42 @@ void add(SlamEngine* engine, const Step& step) {
   while (const auto job = engine->takeJob()) engine->apply(runJob(*job));
 }
 
-/// A keyframe of the first half and its true pose, where the robot really is nearest to.
-struct Anchor {
-  Pose2 pose, truth;
-};
-std::optional<Anchor> anchorOf(const std::vector<SlamKeyframe>& keyframes, const Log& log,
-                               double end_stamp, const Pose2& truth) {
-  std::optional<Anchor> nearest;
-  for (const SlamKeyframe& k : keyframes) {
-    if (k.stamp > end_stamp) continue;
-    const auto there = hyselam::poseAt(log.reference, k.stamp, kTolerance);
-    if (there && (!nearest || distance(*there, truth) < distance(nearest->truth, truth))) {
-      nearest = Anchor{k.pose, *there};
+/// The keyframes of the first half, by where they truly were taken.
+class TrueKeyframes {
+ public:
+  TrueKeyframes() = default;
+  TrueKeyframes(const std::vector<SlamKeyframe>& keyframes, const Log& log) {
+    for (const SlamKeyframe& k : keyframes) {
+      truths_.push_back(hyselam::poseAt(log.reference, k.stamp, kTolerance));
     }
   }
-  return nearest;
-}
+  /// The nearest one.
+  std::size_t nearest(const Pose2& truth) const {
+    std::optional<std::size_t> found;
+    for (std::size_t k = 0; k < truths_.size(); ++k) {
+      if (truths_[k] &&
+          (!found || distance(*truths_[k], truth) < distance(*truths_[*found], truth))) {
+        found = k;
+      }
+    }
+    if (!found) throw hyselam::InputError("reference", "", "has no pose of the first half");
+    return *found;
+  }
+  /// A true pose in a map of these keyframes, first in it.
+  Pose2 inMap(const Pose2& truth, const std::vector<SlamKeyframe>& keyframes) const {
+    const std::size_t k = nearest(truth);
+    return keyframes[k].pose * between(*truths_[k], truth);
+  }
+  double distanceTo(const Pose2& truth) const { return distance(*truths_[nearest(truth)], truth); }
 
-/// A true pose as the map of the first half has it.
-std::optional<Pose2> inMap(const std::vector<SlamKeyframe>& keyframes, const Log& log,
-                           double end_stamp, const std::optional<Pose2>& truth) {
-  if (!truth) return std::nullopt;
-  const auto anchor = anchorOf(keyframes, log, end_stamp, *truth);
-  if (!anchor) return std::nullopt;
-  return anchor->pose * between(anchor->truth, *truth);
-}
+ private:
+  std::vector<std::optional<Pose2>> truths_;
+};
 
 /// The first half, and the whole log without a break.
 struct Mapped {
   SlamState state;                     // after the first half
-  double end_stamp = 0.0;              // of the first half
+  TrueKeyframes truths;                // of it
   std::size_t half = 0;                // step
   std::vector<SlamKeyframe> unbroken;  // all keyframes
   std::vector<hyselam::StampedPose2> unbroken_path;
@@ -119,7 +126,7 @@ Mapped mapOf(const Log& log) {
     progress.update(i + 1);
     if (i == out.half) {
       out.state = engine.state();
-      out.end_stamp = log.steps[i - 1].scan->stamp;
+      out.truths = TrueKeyframes(out.state.keyframes, log);
     }
     add(&engine, log.steps[i]);
   }
@@ -133,6 +140,7 @@ Mapped mapOf(const Log& log) {
 struct Outcome {
   bool tied = false, right = false, wrong = false;
   double until_tied = 0.0;             // [m]
+  double known_until_tied = 0.0;       // of it, where the first half had been [m]
   double error = 0.0, unbroken = 0.0;  // mean over the scans after [m]
   int withdrawn = 0;
 };
@@ -159,7 +167,8 @@ bool isTiedWrongly(const SlamEngine& engine, const Log& log, std::uint32_t run) 
   return std::any_of(engine.loops().begin(), engine.loops().end(), [&](const SlamLoop& l) {
     const SlamKeyframe& older = engine.keyframes()[static_cast<std::size_t>(l.older)];
     const SlamKeyframe& newer = engine.keyframes()[static_cast<std::size_t>(l.newer)];
-    if (l.weight < kMinLoopWeight || (older.run == run) == (newer.run == run)) return false;
+    if (!l.far || l.weight < kMinLoopWeight || (older.run == run) == (newer.run == run))
+      return false;
     const auto error = loopError(older, newer, l.measured, log.reference);
     return error && error->isFalse();
   });
@@ -172,41 +181,67 @@ Outcome restart(const Log& log, const Mapped& mapped, const std::string& mode, s
   std::size_t before = first;
   while (before > 0 && log.steps[first].way - log.steps[before].way < kMoved) --before;
   const auto& saved = mapped.state.keyframes;
-  const auto right = inMap(saved, log, mapped.end_stamp, log.steps[first].truth);
-  const auto moved_from = inMap(saved, log, mapped.end_stamp, log.steps[before].truth);
-  begin(mode, right.value(), moved_from.value_or(right.value()), rng, &engine);
+  const auto inMap = [&](const std::optional<Pose2>& truth) {
+    return mapped.truths.inMap(truth.value_or(*log.steps[first].truth), saved);
+  };
+  begin(mode, inMap(log.steps[first].truth), inMap(log.steps[before].truth), rng, &engine);
   Outcome out;
   int compared = 0;
   std::size_t loops = 0;
   for (std::size_t i = first;
        i < log.steps.size() && log.steps[i].way - log.steps[first].way < path; ++i) {
-    add(&engine, log.steps[i]);
+    const Step& step = log.steps[i];
+    add(&engine, step);
     out.tied = engine.runPlace() == RunPlace::kTied;
-    if (!out.tied) continue;
+    if (!step.truth) continue;
+    if (!out.tied) {
+      out.until_tied = step.way - log.steps[first].way;
+      if (mapped.truths.distanceTo(*step.truth) < kKnownPlace) {
+        out.known_until_tied += step.way - log.steps[i - 1].way;
+      }
+      continue;
+    }
     if (loops != engine.loops().size()) out.wrong = out.wrong || isTiedWrongly(engine, log, run);
     loops = engine.loops().size();
-    const auto truth = inMap(saved, log, mapped.end_stamp, log.steps[i].truth);
-    const auto unbroken = hyselam::poseAt(mapped.unbroken_path, log.steps[i].scan->stamp, 0.1);
-    if (!truth || !unbroken) continue;
-    const auto anchored = inMap(mapped.unbroken, log, mapped.end_stamp, log.steps[i].truth);
-    const auto now = inMap(
-        {engine.keyframes().begin(), engine.keyframes().begin() + static_cast<long>(saved.size())},
-        log, mapped.end_stamp, log.steps[i].truth);
-    const double error = distance(engine.pose(), *now);
+    const auto unbroken = hyselam::poseAt(mapped.unbroken_path, step.scan->stamp, 0.1);
+    if (!unbroken || mapped.truths.distanceTo(*step.truth) >= kKnownPlace) continue;
+    const Pose2 right = mapped.truths.inMap(*step.truth, engine.keyframes());
+    const double error = distance(engine.pose(), right);
     out.error += error;
-    out.unbroken += distance(*unbroken, *anchored);
+    out.unbroken += distance(*unbroken, mapped.truths.inMap(*step.truth, mapped.unbroken));
     out.right =
-        error < 1.0 && std::abs(hyselam::normalizeAngle(engine.pose().theta - now->theta)) < 0.35;
+        error < 1.0 && std::abs(hyselam::normalizeAngle(engine.pose().theta - right.theta)) < 0.35;
     ++compared;
   }
   out.right = out.right && out.tied;
-  out.until_tied = engine.pathUntilTied().value_or(path);
   out.withdrawn = engine.tiesWithdrawn();
   if (compared > 0) {
     out.error /= compared;
     out.unbroken /= compared;
   }
   return out;
+}
+
+/// The scans of the second half from which the robot drives on in places of the first: half of the
+/// next metres, at least.
+std::vector<std::size_t> knownStarts(const Log& log, const Mapped& mapped) {
+  constexpr double kAhead = 20.0;  // [m]
+  std::vector<bool> known;
+  for (const Step& step : log.steps) {
+    known.push_back(step.truth && mapped.truths.distanceTo(*step.truth) < kKnownPlace);
+  }
+  std::vector<std::size_t> starts;
+  for (std::size_t i = mapped.half; i < log.steps.size(); ++i) {
+    if (!known[i] || log.steps[i].way + kAhead > log.steps.back().way) continue;
+    double ahead = 0.0, in_known = 0.0;
+    for (std::size_t k = i + 1; k < log.steps.size() && ahead < kAhead; ++k) {
+      const double step = log.steps[k].way - log.steps[k - 1].way;
+      ahead += step;
+      if (known[k]) in_known += step;
+    }
+    if (in_known >= 0.5 * ahead) starts.push_back(i);
+  }
+  return starts;
 }
 
 double quantile(std::vector<double> values, double q) {
@@ -216,11 +251,12 @@ double quantile(std::vector<double> values, double q) {
 }
 
 nlohmann::json figuresOf(const std::vector<Outcome>& all) {
-  std::vector<double> ways;
+  std::vector<double> ways, known;
   int right = 0, wrong = 0, withdrawn = 0, tied = 0;
   double error = 0.0, unbroken = 0.0;
   for (const Outcome& o : all) {
     ways.push_back(o.until_tied);
+    known.push_back(o.known_until_tied);
     right += o.right;
     wrong += o.wrong;
     withdrawn += o.withdrawn;
@@ -236,6 +272,8 @@ nlohmann::json figuresOf(const std::vector<Outcome>& all) {
           {"withdrawn", withdrawn},
           {"median_m", quantile(ways, 0.5)},
           {"p90_m", quantile(ways, 0.9)},
+          {"known_median_m", quantile(known, 0.5)},
+          {"known_p90_m", quantile(known, 0.9)},
           {"worst_m", quantile(ways, 1.0)},
           {"error_m", error / n},
           {"unbroken_error_m", unbroken / n}};
@@ -246,34 +284,35 @@ nlohmann::json run(const Options& o) {
   if (!(o.path > 0.0)) throw hyselam::ParameterError("path", o.path, "above 0 m");
   o.references.check(o.logs.size());
   nlohmann::json json;
-  std::cout
-      << "| log | start | right | median until tied [m] | 90 % [m] | wrong ties | withdrawn | "
-         "error [m] | unbroken [m] |\n|---|---|---|---|---|---|---|---|---|\n";
+  std::cout << "| log | start | right | median until tied [m] | 90 % [m] | of it in known places: "
+               "median | 90 % | wrong ties | withdrawn | "
+               "error [m] | unbroken [m] |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t l = 0; l < o.logs.size(); ++l) {
     const Log log = readLog(o.logs[l], o.references, l);
     const Mapped mapped = mapOf(log);
-    const double begin = log.steps[mapped.half].way, end = log.steps.back().way - o.path;
-    if (end <= begin) throw hyselam::InputError(log.name, "", "is too short for --path");
+    const std::vector<std::size_t> known = knownStarts(log, mapped);
+    if (known.empty()) {
+      std::cerr << log.name << ": its second half does not drive where the first had been\n";
+      continue;
+    }
     for (const std::string& mode : o.modes) {
       hyselam::Rng rng(o.seed);
       std::vector<Outcome> outcomes;
       hyselam::Progress progress(log.name + " " + mode, static_cast<std::size_t>(o.starts));
       for (int s = 0; s < o.starts; ++s) {
         progress.update(static_cast<std::size_t>(s) + 1);
-        const double way = begin + (end - begin) * (s + rng.uniform(0.0, 1.0)) / o.starts;
-        std::size_t first = mapped.half;
-        while (first + 1 < log.steps.size() &&
-               (log.steps[first].way < way || !log.steps[first].truth)) {
-          ++first;
-        }
+        const double part = (s + rng.uniform(0.0, 1.0)) / o.starts;
+        const std::size_t first =
+            known[static_cast<std::size_t>(part * static_cast<double>(known.size()))];
         outcomes.push_back(restart(log, mapped, mode, first, o.path, &rng));
       }
       const nlohmann::json f = figuresOf(outcomes);
       std::cout << std::fixed << std::setprecision(1) << "| " << log.name << " | " << mode << " | "
                 << f["right"] << "/" << f["starts"] << " | " << f["median_m"].get<double>() << " | "
-                << f["p90_m"].get<double>() << " | " << f["wrong_ties"] << " | " << f["withdrawn"]
-                << " | " << std::setprecision(3) << f["error_m"].get<double>() << " | "
-                << f["unbroken_error_m"].get<double>() << " |\n"
+                << f["p90_m"].get<double>() << " | " << f["known_median_m"].get<double>() << " | "
+                << f["known_p90_m"].get<double>() << " | " << f["wrong_ties"] << " | "
+                << f["withdrawn"] << " | " << std::setprecision(3) << f["error_m"].get<double>()
+                << " | " << f["unbroken_error_m"].get<double>() << " |\n"
                 << std::flush;
       json[log.name][mode] = f;
     }

@@ -80,7 +80,7 @@ struct RunStartParams {
   // A supposed start.
   double search_interval = 1.0;     ///< path between searches around the supposed pose [m], > 0
   double search_radius = 5.0;       ///< of what is searched around it, at any heading [m], > 0
-  double whole_map_interval = 8.0;  ///< path between searches of the whole map [m], > 0
+  double whole_map_interval = 5.0;  ///< path between searches of the whole map [m], > 0
   double place_spacing = 4.0;       ///< between places that are searched [m], > 0
   /// A run that is not tied after this much path is shown as a map of its own; one that is tied
   /// listens to loops that contradict its ties for as long [m], >= 0.

@@ -84,13 +84,21 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
   std::vector<Near> found;
   const SlamKeyframe& here = keyframes[static_cast<std::size_t>(keyframe)];
   double last_path_length = -std::numeric_limits<double>::infinity();
+  int first_of_run = keyframe;
+  while (first_of_run > 0 &&
+         keyframes[static_cast<std::size_t>(first_of_run) - 1].run == here.run) {
+    --first_of_run;
+  }
+  const bool has_only_begun =
+      here.path_length - keyframes[static_cast<std::size_t>(first_of_run)].path_length <
+      params.segment_separation;
   for (int k = 0; k < keyframe; ++k) {
     const SlamKeyframe& old = keyframes[static_cast<std::size_t>(k)];
     if (old.run == here.run && here.path_length - old.path_length < params.min_path_length) break;
     const double length = path_lengths[static_cast<std::size_t>(k)];
     if (!std::isfinite(length)) continue;
     // A run that has only begun beside an old one: its views may have little in common with those.
-    if (old.run != here.run && length < params.min_path_length) continue;
+    if (old.run != here.run && length < params.min_path_length && has_only_begun) continue;
     const double uncertainty =
         std::min(params.max_position_uncertainty, params.positionUncertainty(length));
     const double distance_to = distance(old.pose, here.pose);

@@ -77,8 +77,8 @@ void SlamEngine::searchNearLoops() {
 /// Of the path driven last.
 int SlamEngine::middleOfNewSegment() const {
   int middle = lastKeyframe();
-  while (middle > first_of_run_ &&
-         path_length_ - keyframe(middle).path_length < params_.loop.far_new_segment_half_length) {
+  const double half = std::min(params_.loop.far_new_segment_half_length, 0.5 * pathOfRun());
+  while (middle > first_of_run_ && path_length_ - keyframe(middle).path_length < half) {
     --middle;
   }
   return middle;
