@@ -117,6 +117,56 @@ TEST(FarLoops, waitForTwoOthersThatAgree) {
             1U);
 }
 
+TEST(FarLoops, countOnceWhatIsSaidTwice) {
+  const auto keyframes = straightWay(200);
+  const LoopParams params;
+  std::vector<SlamLoop> waiting;
+  for (const int newer : {150, 152, 152, 150, 152}) {
+    EXPECT_TRUE(
+        believeFarLoops(signatureLoop(newer - 140, newer), {}, keyframes, {}, params, &waiting)
+            .empty());
+  }
+  EXPECT_EQ(waiting.size(), 2U);
+  // Nor is an accepted one believed again; one that contradicts it is heard.
+  const std::vector<SlamLoop> accepted{signatureLoop(10, 150)};
+  waiting.clear();
+  EXPECT_TRUE(
+      believeFarLoops(signatureLoop(10, 150), accepted, keyframes, {}, params, &waiting).empty());
+  EXPECT_TRUE(waiting.empty());
+  SlamLoop other = signatureLoop(10, 150);
+  other.measured = {30.0, 0.0, 0.0};
+  EXPECT_TRUE(believeFarLoops(other, accepted, keyframes, {}, params, &waiting).empty());
+  EXPECT_EQ(waiting.size(), 1U);
+  EXPECT_GT(companyOf(signatureLoop(10, 150), waiting, keyframes, {}, params).contradiction, 0.0);
+}
+
+TEST(FarLoops, agreeInPairs) {
+  const auto keyframes = straightWay(200);
+  LoopParams params;
+  params.consistency_distance_per_meter = 0.0;
+  std::vector<SlamLoop> waiting;
+  const auto shifted = [](int newer, double y) {
+    SlamLoop l = signatureLoop(newer - 140, newer);
+    l.measured.y = y;
+    return l;
+  };
+  // The second agrees with both, but these do not agree with each other.
+  EXPECT_TRUE(believeFarLoops(shifted(150, 0.0), {}, keyframes, {}, params, &waiting).empty());
+  EXPECT_TRUE(believeFarLoops(shifted(152, 0.2), {}, keyframes, {}, params, &waiting).empty());
+  EXPECT_TRUE(believeFarLoops(shifted(154, 0.4), {}, keyframes, {}, params, &waiting).empty());
+  EXPECT_GE(believeFarLoops(shifted(156, 0.3), {}, keyframes, {}, params, &waiting).size(), 3U);
+}
+
+TEST(FarLoops, giveUpTheOldestThatWait) {
+  const auto keyframes = straightWay(2000);
+  const LoopParams params;
+  std::vector<SlamLoop> waiting;
+  for (int i = 0; i < 450; ++i) {
+    believeFarLoops(signatureLoop((i * 7) % 900, 1000 + i), {}, keyframes, {}, params, &waiting);
+  }
+  EXPECT_LE(waiting.size(), 400U);
+}
+
 TEST(FarLoops, areEachAskedForTheirCompany) {
   const auto keyframes = straightWay(200);
   LoopParams params;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +51,36 @@ FreeSpaceGrid drawnView(int reach, int quarters, std::uint64_t seed) {
     for (int i = 0; i < length; ++i) put(x + i, y, true);
   }
   return view;
+}
+
+/// As a German user's process writes numbers.
+struct Commas : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(SignatureModel, isTheSameWhereNumbersHaveCommas) {
+  const std::string text = SignatureModel::shipped().text();
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new Commas));  // owned by the locale
+  std::string with_commas;
+  EXPECT_NO_THROW(with_commas = SignatureModel::parse(text, "shipped").text());
+  std::locale::global(before);
+  EXPECT_EQ(with_commas, text);
+}
+
+TEST(SignatureModel, refusesWhatItCouldNotReadBack) {
+  const std::vector<SignatureModel::Row> rows(SignatureModel::kSize);
+  const std::vector<float> zeros(SignatureModel::kSize, 0.0F);
+  std::vector<float> variances(SignatureModel::kSize, 2.0F);
+  EXPECT_NO_THROW(SignatureModel(rows, zeros, variances, {}, {}));
+  variances[3] = 1.0000002F;  // written as 1
+  EXPECT_THROW(SignatureModel(rows, zeros, variances, {}, {}), hyselam::ParameterError);
+  variances[3] = 2.0F;
+  std::vector<float> offsets = zeros;
+  offsets[5] = 999999.9F;  // written as 1e+06
+  EXPECT_THROW(SignatureModel(rows, offsets, variances, {}, {}), hyselam::ParameterError);
 }
 
 }  // namespace

@@ -171,6 +171,20 @@ TEST(SlamStateFile, letsSlamContinueInIt) {
   EXPECT_EQ(second.keyframes().back().run, 1u);
 }
 
+TEST(SlamState, isRefusedWithScansThatTheEngineWouldRefuse) {
+  SlamState state = engineAfter(20).state();
+  EXPECT_EQ(state.error(), nullptr);
+  SlamState far_laser = state;
+  auto scan = std::make_shared<hyselam::LaserScan>(*state.keyframes[1].scan);
+  scan->laser_in_base.x = 6.0;
+  far_laser.keyframes[1].scan = scan;
+  ASSERT_NE(far_laser.error(), nullptr);
+  EXPECT_NE(std::string(far_laser.error()).find("5 m"), std::string::npos);
+  SlamState far_away = state;
+  far_away.keyframes[1].pose.x = 1e8;
+  EXPECT_NE(far_away.error(), nullptr);
+}
+
 TEST(SlamStateFile, refusesAnyDamage) {
   TemporaryDirectory folder;
   SlamStateFile::save(folder / "map.slam", fullState());

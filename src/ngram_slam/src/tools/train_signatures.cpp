@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "hyselam_common/checksum.hpp"
+#include "hyselam_common/numbers.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
@@ -56,7 +57,8 @@ nlohmann::json train(const Options& o) {
   char sum_text[16];
   std::snprintf(sum_text, sizeof(sum_text), "%08x", sum);
   origin.command = "train_signatures LOG... --reference FILE... --buildings " +
-                   std::to_string(o.buildings) + " --seed " + std::to_string(o.seed);
+                   std::to_string(o.buildings) + " --seed " + std::to_string(o.seed) + " --ridge " +
+                   hyselam::formatNumber(o.training.ridge);
   origin.data = std::to_string(places) + " places: " + names +
                 "simulated buildings: " + std::to_string(o.buildings) + "; crc32 " + sum_text;
   origin.in_sample = "see out of sample";

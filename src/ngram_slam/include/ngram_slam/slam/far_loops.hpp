@@ -11,11 +11,13 @@ namespace ngram_slam {
 
 /// Adds a verified far loop to those that `wait`. Returns those that are believed now, itself or
 /// some that waited for one like it, the newest first, and takes them out; `accepted`: far loops
-/// believed before.
+/// believed before. One that says again what an accepted or a waiting one says of the same
+/// keyframes is no news. At most 400 wait: the oldest are given up.
 ///
 /// A loop is believed if its company does not contradict it (companyOf()), it is not less probable
 /// than `LoopParams::min_signature_probability` where signatures proposed it (loopProbability()),
-/// and it is consistent with an accepted one or with enough others of which the same is true
+/// and it is consistent with an accepted one or, pairwise, with enough others of which the same is
+/// true
 /// (`min_consistent_loops`, `min_consistent_signature_loops`) along `consistency_min_span` of path.
 /// One that ties two maps together needs more: `min_tie_loops` along `tie_min_span`.
 std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<SlamLoop>& accepted,

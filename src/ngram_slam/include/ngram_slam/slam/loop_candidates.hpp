@@ -52,6 +52,9 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
                                           const std::vector<double>& path_lengths,
                                           const LoopParams& params);
 
+/// Whether two loops lie between the same keyframes.
+bool isSamePair(const SlamLoop& a, const SlamLoop& b);
+
 /// How much two loops contradict each other: the pose of the one as predicted from the other and
 /// the poses between their ends.
 struct LoopInconsistency {
@@ -65,7 +68,7 @@ LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
                                     const std::vector<SlamKeyframe>& keyframes,
                                     const RunConnections& connections);
 
-/// The indices of the loops in `others` that are pairwise consistent with `loop`.
+/// The indices of the loops in `others` that are consistent with `loop`.
 std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector<SlamLoop>& others,
                                          const std::vector<SlamKeyframe>& keyframes,
                                          const RunConnections& connections,

@@ -246,6 +246,8 @@ class SlamEngine {
   void beginRun(const hyselam::LaserScan& scan, const hyselam::Pose2& odometry);
   void beginRunInKnownMap(const hyselam::LaserScan& scan, Points points, const RunStart& start);
   void beginRunSomewhere(const hyselam::LaserScan& scan, Points points, const RunStart& start);
+  std::optional<hyselam_scan_matching::IcpResult> matchAround(
+      const RunStart& start, const hyselam_scan_matching::SurfacePoints& points) const;
   hyselam_scan_matching::SurfaceMap mapAround(const RunStart& start) const;
 
   // Where a run lies in other maps, in run_places.cpp.

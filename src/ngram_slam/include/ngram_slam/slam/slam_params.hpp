@@ -121,8 +121,8 @@ struct LoopParams {
   /// Of the points in space observed by the other segment, the fraction on its surfaces instead of
   /// in its free space; required in both directions, 0..1.
   double far_min_surface_ratio = 0.85;
-  int far_max_points = 250;           ///< points used in the search, >= 1
-  int far_max_refined_points = 1000;  ///< points used to refine the pose found, >= 1
+  int far_max_points = 250;           ///< points used in the search, up to twice as many, >= 1
+  int far_max_refined_points = 1000;  ///< used to refine the pose found, up to twice as many, >= 1
 
   /// Minimum fraction of the new points on surfaces or in free space of the old segment, 0..1.
   double min_overlap = 0.5;

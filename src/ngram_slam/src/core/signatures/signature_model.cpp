@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <optional>
 #include <sstream>
 
@@ -42,6 +43,7 @@ constexpr std::array<SensorField, 3> kSensorFields{
 /// What the signatures are made of: parameters of the sensor, and what is fixed.
 std::string sensorLine(const SignatureSensorParams& sensor) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());  // whatever the process writes numbers like
   out << "sensor:";
   for (const SensorField& f : kSensorFields) out << " " << f.name << " " << sensor.*f.member;
   out << " range " << PlaceFeatures::kRange << " kernels";
@@ -76,19 +78,20 @@ std::string sizesLine() {
 
 /// Six digits: the model in memory is the one that is read back.
 std::string shortText(float value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", static_cast<double>(value));
-  return text;
-}
-float rounded(float value) {
-  return static_cast<float>(hyselam::parseNumber(shortText(value)).value_or(0.0));
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  out << static_cast<double>(value);
+  return out.str();
 }
 
-void check(const char* name, float value, double least) {
-  if (!(value > least && value < kLargest)) {
+/// As it is written: what is refused when it is read is refused here.
+float rounded(const char* name, float value, double least) {
+  const auto written = hyselam::parseNumber(shortText(value));
+  if (!written || !(*written > least && *written < kLargest)) {
     throw hyselam::ParameterError(name, static_cast<double>(value),
                                   least < 0.0 ? "finite, below 1e6" : "above 1, below 1e6");
   }
+  return static_cast<float>(*written);
 }
 
 }  // namespace
@@ -105,17 +108,12 @@ SignatureModel::SignatureModel(std::vector<Row> rows, std::vector<float> offsets
     throw hyselam::ParameterError("rows", rows_.size(), std::to_string(kSize));
   }
   for (Row& row : rows_) {
-    for (float& value : row) {
-      check("weight", value, -kLargest);
-      value = rounded(value);
-    }
+    for (float& value : row) value = rounded("weight", value, -kLargest);
   }
   double constant = 0.0;
   for (std::size_t i = 0; i < kSize; ++i) {
-    check("offset", offsets_[i], -kLargest);
-    check("variance", variances_[i], 1.0);
-    offsets_[i] = rounded(offsets_[i]);
-    variances_[i] = rounded(variances_[i]);
+    offsets_[i] = rounded("offset", offsets_[i], -kLargest);
+    variances_[i] = rounded("variance", variances_[i], 1.0);
     const double all = std::max(1.0 + 1e-6, static_cast<double>(variances_[i])), shared = all - 1.0;
     const double determinant = all * all - shared * shared;
     const double step = kTold * std::sqrt(all) / 127.0;
@@ -169,6 +167,7 @@ double SignatureModel::logRatio(const PlaceSignature& a, const PlaceSignature& b
 
 std::string SignatureModel::text() const {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out << kMagic << "\n";
   for (const OriginLine& line : kOriginLines) out << line.name << origin_.*line.member << "\n";
   out << sensorLine(sensor_) << "\n" << sizesLine() << "\n";

@@ -51,6 +51,9 @@ Differences differencesOf(const std::vector<SignatureExample>& way, const Matrix
 
 SignatureModel trainSignatures(const std::vector<std::vector<SignatureExample>>& ways,
                                const SignatureTrainingParams& p, const SignatureOrigin& origin) {
+  if (!(p.ridge >= 0.0 && std::isfinite(p.ridge))) {
+    throw hyselam::ParameterError("ridge", p.ridge, "at least 0, finite");
+  }
   Vector mean = Vector::Zero(kFeatures), square = Vector::Zero(kFeatures);
   double count = 0.0;
   for (const auto& way : ways) {
@@ -98,6 +101,9 @@ SignatureModel trainSignatures(const std::vector<std::vector<SignatureExample>>&
 
   // What varies most among all places while it varies by 1 between visits.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(all, within);
+  if (solver.info() != Eigen::Success) {
+    throw hyselam::InputError("training", "", "the features of its places vary too little");
+  }
   std::vector<SignatureModel::Row> rows;
   std::vector<float> offsets, variances;
   for (std::size_t i = 0; i < PlaceSignature::kSize; ++i) {

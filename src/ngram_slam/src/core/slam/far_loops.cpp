@@ -11,9 +11,7 @@ namespace ngram_slam {
 
 namespace {
 
-bool isSamePair(const SlamLoop& a, const SlamLoop& b) {
-  return a.older == b.older && a.newer == b.newer;
-}
+constexpr std::size_t kMaxWaiting = 400;  // the oldest are given up
 
 /// The accepted loops, and those that wait.
 class Judge {
@@ -26,31 +24,54 @@ class Judge {
   double pathLengthAt(const SlamLoop& l) const {
     return keyframes_[static_cast<std::size_t>(l.newer)].path_length;
   }
+  bool areConsistent(const SlamLoop& a, const SlamLoop& b) const {
+    return !consistentLoops(a, {b}, keyframes_, connections_, params_).empty();
+  }
   void accept(const SlamLoop& loop) { accepted_.push_back(loop); }
 
   bool isBelieved(const SlamLoop& loop, const std::vector<SlamLoop>& waiting) const {
     if (!isPlausible(loop, waiting)) return false;
     if (!consistentLoops(loop, accepted_, keyframes_, connections_, params_).empty()) return true;
-    double first = pathLengthAt(loop), last = first;
-    bool only_signatures = loop.source == LoopSource::kSignature;
-    int group = 1;
+    std::vector<const SlamLoop*> others;
     for (const std::size_t i : consistentLoops(loop, waiting, keyframes_, connections_, params_)) {
-      const SlamLoop& other = waiting[i];
-      if (isSamePair(loop, other) || !isPlausible(other, waiting)) continue;
-      ++group;
-      only_signatures = only_signatures && other.source == LoopSource::kSignature;
-      first = std::min(first, pathLengthAt(other));
-      last = std::max(last, pathLengthAt(other));
+      if (!isSamePair(loop, waiting[i]) && isPlausible(waiting[i], waiting)) {
+        others.push_back(&waiting[i]);
+      }
+    }
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      if (isGroup(loop, others, i)) return true;
+    }
+    return false;
+  }
+
+ private:
+  /// Whether a loop and pairwise consistent ones of the others, taken in turn from one of them on,
+  /// are enough.
+  bool isGroup(const SlamLoop& loop, const std::vector<const SlamLoop*>& others,
+               std::size_t begin) const {
+    std::vector<const SlamLoop*> group{&loop};
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const SlamLoop& other = *others[(begin + i) % others.size()];
+      const bool fits = std::all_of(group.begin() + 1, group.end(), [&](const SlamLoop* l) {
+        return !isSamePair(*l, other) && areConsistent(*l, other);
+      });
+      if (fits) group.push_back(&other);
+    }
+    double first = pathLengthAt(loop), last = first;
+    bool only_signatures = true;
+    for (const SlamLoop* l : group) {
+      only_signatures = only_signatures && l->source == LoopSource::kSignature;
+      first = std::min(first, pathLengthAt(*l));
+      last = std::max(last, pathLengthAt(*l));
     }
     // Loops from one spot are one opinion.
     const int min_loops = isTie(loop)       ? params_.min_tie_loops
                           : only_signatures ? params_.min_consistent_signature_loops
                                             : params_.min_consistent_loops;
-    return group >= min_loops &&
+    return static_cast<int>(group.size()) >= min_loops &&
            last - first >= (isTie(loop) ? params_.tie_min_span : params_.consistency_min_span);
   }
 
- private:
   /// Whether it joins two maps.
   bool isTie(const SlamLoop& loop) const {
     return !connections_.connected(keyframes_[static_cast<std::size_t>(loop.older)].run,
@@ -79,18 +100,30 @@ std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<Sl
                                       const RunConnections& connections, const LoopParams& params,
                                       std::vector<SlamLoop>* waiting) {
   Judge judge(accepted, keyframes, connections, params);
+  // What is known already is no further opinion.
+  for (const std::vector<SlamLoop>* known :
+       {&accepted, static_cast<const std::vector<SlamLoop>*>(waiting)}) {
+    for (const SlamLoop& l : *known) {
+      if (isSamePair(l, loop) && judge.areConsistent(l, loop)) return {};
+    }
+  }
+  if (waiting->size() >= kMaxWaiting) waiting->erase(waiting->begin());
   waiting->push_back(loop);
-  // What the new loop may have changed.
-  const double reach = std::max(params.company_half_length, params.consistency_max_path_length);
+  // What the new loop, or one believed since, may have changed.
+  const double reach = params.company_half_length + params.consistency_max_path_length;
+  std::vector<double> changed{judge.pathLengthAt(loop)};
+  const auto mayHaveChanged = [&](const SlamLoop& l) {
+    return std::any_of(changed.begin(), changed.end(), [&](double path_length) {
+      return std::abs(judge.pathLengthAt(l) - path_length) <= reach;
+    });
+  };
   std::vector<SlamLoop> believed;
   for (bool found = true; found;) {
     found = false;
     // The newest first. Their order in the graph moves a map's error by about a hundredth of it.
     for (auto i = waiting->rbegin(); i != waiting->rend(); ++i) {
-      if (std::abs(judge.pathLengthAt(*i) - judge.pathLengthAt(loop)) > reach ||
-          !judge.isBelieved(*i, *waiting)) {
-        continue;
-      }
+      if (!mayHaveChanged(*i) || !judge.isBelieved(*i, *waiting)) continue;
+      changed.push_back(judge.pathLengthAt(*i));
       believed.push_back(*i);
       judge.accept(*i);
       waiting->erase(std::next(i).base());

@@ -122,6 +122,10 @@ std::vector<LoopCandidate> loopCandidates(const std::vector<SlamKeyframe>& keyfr
   return out;
 }
 
+bool isSamePair(const SlamLoop& a, const SlamLoop& b) {
+  return a.older == b.older && a.newer == b.newer;
+}
+
 LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
                                     const std::vector<SlamKeyframe>& keyframes,
                                     const RunConnections& connections) {
@@ -169,7 +173,6 @@ LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
   const SlamKeyframe& here = keyframes[static_cast<std::size_t>(loop.newer)];
   for (const SlamLoop& other : others) {
     const SlamKeyframe& there = keyframes[static_cast<std::size_t>(other.newer)];
-    if (other.newer == loop.newer && other.older == loop.older) continue;
     if (here.run != there.run ||
         std::abs(here.path_length - there.path_length) > params.company_half_length) {
       continue;
@@ -181,8 +184,9 @@ LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
     const double max_angle = std::min(
         3.0,
         3.0 * (params.heading_uncertainty + params.heading_uncertainty_per_meter * c.path_length));
-    (c.distance > max_distance || c.angle > max_angle ? company.contradiction : company.support) +=
-        other.inlier_ratio;
+    const bool contradicts = c.distance > max_distance || c.angle > max_angle;
+    if (!contradicts && isSamePair(loop, other)) continue;  // the same opinion
+    (contradicts ? company.contradiction : company.support) += other.inlier_ratio;
   }
   return company;
 }

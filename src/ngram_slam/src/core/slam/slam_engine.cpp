@@ -9,6 +9,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_scan_matching/correlative_matcher.hpp"
+#include "ngram_slam/slam/input_checks.hpp"
 
 namespace ngram_slam {
 
@@ -22,31 +23,18 @@ using hyselam_scan_matching::SurfacePoints;
 
 namespace {
 
-constexpr double kMaxCoordinate = 0.99e7;  // [m] cells beyond 10^7 m have no number in local maps
-constexpr double kMaxLaserOffset = 5.0;    // [m] it must lie on the local map of the words' sensor
-constexpr double kInlierCells = 3.0;       // points score up to so many cells from a surface
+constexpr double kInlierCells = 3.0;  // points score up to so many cells from a surface
 
 void checkScan(const hyselam::LaserScan& scan) {
   if (!std::isfinite(scan.stamp)) throw hyselam::InputError("scan", "", "its time is not finite");
-  const std::string place = "scan at " + std::to_string(scan.stamp) + " s";
-  if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) ||
-      !std::isfinite(scan.range_min) || std::isnan(scan.range_max) ||
-      !scan.laser_in_base.isFinite()) {
-    throw hyselam::InputError("scan", place, "its geometry is not finite");
-  }
-  if (std::hypot(scan.laser_in_base.x, scan.laser_in_base.y) > kMaxLaserOffset) {
-    throw hyselam::InputError("scan", place, "the laser is more than 5 m from the base");
-  }
-  if (!scan.ranges.empty() && scan.angle_increment == 0.0) {
-    throw hyselam::InputError("scan", place, "all beams have one bearing: angle_increment is 0");
+  if (const char* reason = scanError(scan)) {
+    throw hyselam::InputError("scan", "scan at " + std::to_string(scan.stamp) + " s", reason);
   }
 }
 
 void checkOdometry(const Pose2& odometry, double stamp) {
-  const std::string place = "scan at " + std::to_string(stamp) + " s";
-  if (!odometry.isFinite()) throw hyselam::InputError("odometry", place, "is not finite");
-  if (std::max(std::abs(odometry.x), std::abs(odometry.y)) > kMaxCoordinate) {
-    throw hyselam::InputError("odometry", place, "is more than 10000 km from its origin");
+  if (const char* reason = poseError(odometry)) {
+    throw hyselam::InputError("odometry", "scan at " + std::to_string(stamp) + " s", reason);
   }
 }
 

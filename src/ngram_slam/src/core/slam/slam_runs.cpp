@@ -65,12 +65,19 @@ void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry)
   if (usesWords()) addWords(scan);
 }
 
-/// A map of its own, until loops tell where it lies.
+/// A map of its own, until loops tell where it lies. Its first scan is laid on what is supposed to
+/// be around it: a better guess, which counts for nothing else.
 void SlamEngine::beginRunSomewhere(const hyselam::LaserScan& scan, Points points,
                                    const RunStart& start) {
   pose_ = start.pose;
   run_.anywhere = start.anywhere;
   run_.supposed_in = largestMapBut(currentRun() + 1);
+  if (!start.anywhere) {
+    RunStart near = start;
+    near.window = std::min(start.window, kDefaultStartWindow);
+    near.angle = std::min(start.angle, kDefaultStartAngle);
+    if (const auto found = matchAround(near, *points)) pose_ = found->pose;
+  }
   addKeyframe(scan, std::move(points), nullptr);
 }
 
@@ -90,26 +97,32 @@ void SlamEngine::beginRunInKnownMap(const hyselam::LaserScan& scan, Points point
   tie.information =
       Eigen::Vector3d(p.position_information, p.position_information, p.heading_information)
           .asDiagonal();
-  const SurfaceMap map = mapAround(start);
-  hyselam_scan_matching::CorrelativeMatcherParams search;
-  search.linear_window = start.window;
-  search.angular_window = start.angle;
-  search.min_score = p.min_score;
-  if (const auto found = CorrelativeMatcher(map, search).match(*points, start.pose)) {
-    const IcpResult r =
-        alignIcp(*points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
-    if (r.matched >= params_.min_inlier_ratio) {
-      pose_ = r.pose;
-      tie.inlier_ratio = r.matched;
-      tie.information += params_.scan_information_scale * r.information;
-      tie.information = (0.5 * (tie.information + tie.information.transpose())).eval();
-    }
+  if (const auto found = matchAround(start, *points)) {
+    pose_ = found->pose;
+    tie.inlier_ratio = found->matched;
+    tie.information += params_.scan_information_scale * found->information;
+    tie.information = (0.5 * (tie.information + tie.information.transpose())).eval();
   }
   tie.measured = between(nearest->pose, pose_);
   addKeyframe(scan, std::move(points), nullptr);
   addLoopEdge(tie);
   run_.tied = path_length_;
   run_.known = true;
+}
+
+/// Searches a scan around a start; nothing if it does not fit there.
+std::optional<IcpResult> SlamEngine::matchAround(const RunStart& start,
+                                                 const SurfacePoints& points) const {
+  const SurfaceMap map = mapAround(start);
+  hyselam_scan_matching::CorrelativeMatcherParams search;
+  search.linear_window = start.window;
+  search.angular_window = start.angle;
+  search.min_score = params_.run_start.min_score;
+  const auto found = CorrelativeMatcher(map, search).match(points, start.pose);
+  if (!found) return std::nullopt;
+  const IcpResult refined =
+      alignIcp(points, map, found->pose, Eigen::Matrix3d::Zero(), params_.refine);
+  return refined.matched >= params_.min_inlier_ratio ? std::make_optional(refined) : std::nullopt;
 }
 
 /// What earlier runs saw around the start.

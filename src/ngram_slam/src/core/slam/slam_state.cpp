@@ -1,4 +1,5 @@
 #include "hyselam_common/errors.hpp"
+#include "ngram_slam/slam/input_checks.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
 namespace ngram_slam {
@@ -13,6 +14,10 @@ const char* graphError(const SlamState& state) {
     if (!k.scan || !k.points || !k.pose.isFinite() || !k.odometry.isFinite()) {
       return "a keyframe lacks its scan or pose";
     }
+    if (poseError(k.pose) != nullptr || poseError(k.odometry) != nullptr) {
+      return "a keyframe is more than 10000 km from the origin";
+    }
+    if (const char* reason = scanError(*k.scan)) return reason;
   }
   for (const PlacedScan& p : state.scans) {
     if (!exists(p.keyframe)) return "a scan has no keyframe";
