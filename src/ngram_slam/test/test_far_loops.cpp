@@ -117,6 +117,20 @@ TEST(FarLoops, waitForTwoOthersThatAgree) {
             1U);
 }
 
+TEST(FarLoops, needFewerWhereWordsProposedOne) {
+  const auto keyframes = straightWay(200);
+  const LoopParams params;
+  for (const LoopSource source : {LoopSource::kProximity, LoopSource::kNgram}) {
+    std::vector<SlamLoop> waiting;
+    SlamLoop first = signatureLoop(10, 150), second = signatureLoop(13, 153);
+    first.source = LoopSource::kProximity;
+    second.source = source;
+    EXPECT_TRUE(believeFarLoops(first, {}, keyframes, {}, params, &waiting).empty());
+    EXPECT_EQ(believeFarLoops(second, {}, keyframes, {}, params, &waiting).size(),
+              source == LoopSource::kNgram ? 2U : 0U);
+  }
+}
+
 TEST(FarLoops, countOnceWhatIsSaidTwice) {
   const auto keyframes = straightWay(200);
   const LoopParams params;

@@ -162,8 +162,8 @@ struct LoopParams {
 
   // Far loops are accepted in groups of pairwise consistent ones (as by PCM, Mangelson 2018).
   int min_consistent_loops = 2;  ///< minimum size of a group, >= 1
-  /// The same of a group in which all come from signatures: buildings repeat themselves, and nobody
-  /// has driven there from where odometry expects it.
+  /// The same of a group in which none comes from words: buildings repeat themselves, and both
+  /// signatures and searches of wide windows find their copies.
   int min_consistent_signature_loops = 3;
   /// Far loops that tie a run to another map: nothing else is known of where it lies there. All of
   /// them have to be as probable as those by signatures.

@@ -58,16 +58,16 @@ class Judge {
       if (fits) group.push_back(&other);
     }
     double first = pathLengthAt(loop), last = first;
-    bool only_signatures = true;
+    bool with_words = false;
     for (const SlamLoop* l : group) {
-      only_signatures = only_signatures && l->source == LoopSource::kSignature;
+      with_words = with_words || l->source == LoopSource::kNgram;
       first = std::min(first, pathLengthAt(*l));
       last = std::max(last, pathLengthAt(*l));
     }
     // Loops from one spot are one opinion.
-    const int min_loops = isTie(loop)       ? params_.min_tie_loops
-                          : only_signatures ? params_.min_consistent_signature_loops
-                                            : params_.min_consistent_loops;
+    const int min_loops = isTie(loop)  ? params_.min_tie_loops
+                          : with_words ? params_.min_consistent_loops
+                                       : params_.min_consistent_signature_loops;
     return static_cast<int>(group.size()) >= min_loops &&
            last - first >= (isTie(loop) ? params_.tie_min_span : params_.consistency_min_span);
   }

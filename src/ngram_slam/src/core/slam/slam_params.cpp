@@ -176,7 +176,7 @@ void describeConsistency(LoopParams& p, ParameterVisitor& visit) {
   visit("min_consistent_loops", p.min_consistent_loops, kCount, "",
         "far loops that are pairwise consistent, to be accepted");
   visit("min_consistent_signature_loops", p.min_consistent_signature_loops, kCount, "",
-        "the same where all of them come from signatures");
+        "the same where none of them comes from words");
   visit("min_tie_loops", p.min_tie_loops, kCount, "",
         "the same for those that tie a run to another map");
   visit("tie_min_span", p.tie_min_span, kNotNegative, "m",
