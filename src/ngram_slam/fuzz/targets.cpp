@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "hyselam_common/binary_io.hpp"
@@ -6,6 +7,7 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "ngram_slam/semantics/semantic_forest.hpp"
+#include "ngram_slam/semantics/way_forest.hpp"
 #include "ngram_slam/signatures/place_signature.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "ngram_slam/words/corpus.hpp"
@@ -72,17 +74,24 @@ void slamState(const std::uint8_t* data, std::size_t size) {
           same.matches.size() == state.matches.size());
 }
 
+/// A file of trees: its head, the trees, and the checksum put right.
+std::string forestText(const char* format, const std::vector<std::string>& features,
+                       const std::string& trees) {
+  std::string text =
+      std::string(format) + "\ncommand: \ndata: \nin sample: \nout of sample: \nfeatures:";
+  for (const std::string& feature : features) text += " " + feature;
+  text += "\n" + trees;
+  return text + "crc32 " + hyselam::crc32Text(text) + "\n";
+}
+
 /// The trees of a forest of semantic classes, whose head and checksum are put right: refused, or a
 /// class for any features, and saved and loaded as the same.
 void semanticForest(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
-  std::string text =
-      "ngram_slam semantic forest 3\ncommand: \ndata: \nin sample: \nout of sample: \nfeatures:";
-  for (const SemanticFeature& feature : kSemanticFeatureList) {
-    text += std::string(" ") + feature.name;
-  }
-  text += "\n" + hyselam::testing::textOf(data, size);
-  text += "crc32 " + hyselam::crc32Text(text) + "\n";
+  std::vector<std::string> names;
+  for (const SemanticFeature& feature : kSemanticFeatureList) names.emplace_back(feature.name);
+  const std::string text =
+      forestText("ngram_slam semantic forest 3", names, hyselam::testing::textOf(data, size));
   const auto predictionsOf = [](const SemanticForest& forest) {
     std::vector<SemanticPrediction> predictions;
     for (const double value : {0.0, -1.0, 0.5, 1e6}) {
@@ -92,20 +101,42 @@ void semanticForest(const std::uint8_t* data, std::size_t size) {
     }
     return predictions;
   };
+  std::optional<SemanticForest> forest;
   try {
-    const SemanticForest forest = SemanticForest::load(folder.put("forest.txt", text));
-    const auto predictions = predictionsOf(forest);
-    for (const SemanticPrediction& prediction : predictions) {
-      require(prediction.confidence >= 0.0 && prediction.confidence <= 1.0);
-    }
-    forest.save(folder.path("again.txt"));
-    const auto again = predictionsOf(SemanticForest::load(folder.path("again.txt")));
-    for (std::size_t i = 0; i < predictions.size(); ++i) {
-      require(again[i].semantic_class == predictions[i].semantic_class &&
-              again[i].confidence == predictions[i].confidence);
-    }
+    forest = SemanticForest::load(folder.put("forest.txt", text));
   } catch (const hyselam::InputError&) {
+    return;
   }
+  const auto predictions = predictionsOf(*forest);
+  for (const SemanticPrediction& prediction : predictions) {
+    require(prediction.confidence >= 0.0 && prediction.confidence <= 1.0);
+  }
+  forest->save(folder.path("again.txt"));
+  const auto again = predictionsOf(SemanticForest::load(folder.path("again.txt")));
+  for (std::size_t i = 0; i < predictions.size(); ++i) {
+    require(again[i].semantic_class == predictions[i].semantic_class &&
+            again[i].confidence == predictions[i].confidence);
+  }
+}
+
+/// The trees of a forest of kinds along ways, in the same manner.
+void wayForest(const std::uint8_t* data, std::size_t size) {
+  const std::string text = forestText("ngram_slam way forest 1", wayFeatureNames(),
+                                      hyselam::testing::textOf(data, size));
+  const auto sharesOf = [](const WayForest& forest) {
+    std::vector<ClassShares> shares;
+    for (const float value : {0.0F, -1.0F, 0.5F, 1e6F}) {
+      shares.push_back(forest.sharesOf(std::vector<float>(wayFeatureNames().size(), value)));
+    }
+    return shares;
+  };
+  std::optional<WayForest> forest;
+  try {
+    forest = WayForest::parse(text, "fuzz");
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+  require(sharesOf(WayForest::parse(forest->text(), "again")) == sharesOf(*forest));
 }
 
 /// The rows of a model of place signatures, whose head and checksum are put right: refused, or
@@ -118,13 +149,15 @@ void signatureModel(const std::uint8_t* data, std::size_t size) {
       " values: " + std::to_string(PlaceSignature::kSize) + "\n" +
       hyselam::testing::textOf(data, size);
   text += "crc32 " + hyselam::crc32Text(text) + "\n";
+  std::optional<SignatureModel> model;
   try {
-    const SignatureModel model = SignatureModel::parse(text, "fuzz");
-    const std::string again = model.text();
-    require(SignatureModel::parse(again, "fuzz").text() == again);
-    require(std::isfinite(model.logRatio({}, {})));
+    model = SignatureModel::parse(text, "fuzz");
   } catch (const hyselam::InputError&) {
+    return;
   }
+  const std::string again = model->text();
+  require(SignatureModel::parse(again, "again").text() == again);
+  require(std::isfinite(model->logRatio({}, {})));
 }
 
 }  // namespace
@@ -135,5 +168,6 @@ std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
   return {{"corpus", corpus},
           {"slamState", slamState},
           {"semanticForest", semanticForest},
-          {"signatureModel", signatureModel}};
+          {"signatureModel", signatureModel},
+          {"wayForest", wayForest}};
 }

@@ -2,6 +2,7 @@
 // them, with the truth.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,21 +34,26 @@ struct PlaceLog {
   std::vector<LogPlace> places;
 };
 
-/// When the robot was at a place: between its keyframe and the nearer one beside.
-inline double stampOf(const std::vector<SlamKeyframe>& keyframes, const PlaceOnWay& at) {
-  const auto k = static_cast<std::size_t>(at.keyframe);
-  const double own = distance(keyframes[k].pose, at.pose);
-  std::optional<std::size_t> beside;
-  for (const std::size_t n : {k - 1, k + 1}) {
-    if (n >= keyframes.size() || keyframes[n].run != keyframes[k].run) continue;
-    if (!beside ||
-        distance(keyframes[n].pose, at.pose) < distance(keyframes[*beside].pose, at.pose)) {
-      beside = n;
+/// A place lies between two keyframes, by its way from one to the other; its stamp too.
+inline double stampOf(const PlaceOnWay& at, const std::vector<SlamKeyframe>& keyframes) {
+  const auto nearest = static_cast<std::size_t>(at.keyframe);
+  const SlamKeyframe& k = keyframes[nearest];
+  double stamp = k.stamp, best = distance(k.pose, at.pose);
+  const auto tryNeighbor = [&](std::size_t other) {
+    if (other >= keyframes.size()) return;
+    const SlamKeyframe& n = keyframes[other];
+    const double length = distance(k.pose, n.pose);
+    if (!(length > 0.0) || length > SignatureSensor::kMaxStep) return;
+    const double share = std::min(1.0, distance(k.pose, at.pose) / length);
+    const double miss = distance(hyselam::interpolate(k.pose, n.pose, share), at.pose);
+    if (miss < best) {
+      best = miss;
+      stamp = k.stamp + share * (n.stamp - k.stamp);
     }
-  }
-  if (!beside || own == 0.0) return keyframes[k].stamp;
-  const double other = distance(keyframes[*beside].pose, at.pose);
-  return keyframes[k].stamp + own / (own + other) * (keyframes[*beside].stamp - keyframes[k].stamp);
+  };
+  if (nearest > 0) tryNeighbor(nearest - 1);
+  tryNeighbor(nearest + 1);
+  return stamp;
 }
 
 inline PlaceLog placesOf(const std::string& name, const hyselam::RobotLog& log,
@@ -76,7 +82,7 @@ inline PlaceLog placesOf(const std::string& name, const hyselam::RobotLog& log,
     const SlamKeyframe& k = out.keyframes[static_cast<std::size_t>(at.keyframe)];
     auto truth = hyselam::poseAt(out.reference, k.stamp, 0.5);
     if (truth) truth = *truth * between(k.pose, at.pose);
-    out.places.push_back({at, stampOf(out.keyframes, at), features, truth});
+    out.places.push_back({at, stampOf(at, out.keyframes), features, truth});
   });
   for (std::size_t k = 0; k < out.keyframes.size(); ++k) {
     sensor.add(static_cast<std::int64_t>(k), out.keyframes[k].pose, out.keyframes[k].scan);

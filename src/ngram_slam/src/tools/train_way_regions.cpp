@@ -86,7 +86,7 @@ std::vector<WayRun> drive(const hyselam_sim::CorridorBuilding& building, std::ui
     out.keyframes.push_back(keyframe);
   }
   SignatureSensor sensor(waySensorParams(), [&](const PlaceOnWay& at, const PlaceFeatures& f) {
-    out.places.push_back({at, stampOf(out.keyframes, at), f, at.pose});
+    out.places.push_back({at, stampOf(at, out.keyframes), f, at.pose});
   });
   for (std::size_t k = 0; k < out.keyframes.size(); ++k) {
     sensor.add(static_cast<std::int64_t>(k), out.keyframes[k].pose, out.keyframes[k].scan);

@@ -20,34 +20,12 @@ struct WayRun {
   std::vector<std::optional<hyselam::Pose2>> truth;
 };
 
-/// A place lies between two keyframes, by its way from one to the other; its stamp too.
-inline double stampOf(const PlaceOnWay& at, const std::vector<SlamKeyframe>& keyframes) {
-  const auto nearest = static_cast<std::size_t>(at.keyframe);
-  const SlamKeyframe& k = keyframes[nearest];
-  double stamp = k.stamp, best = distance(k.pose, at.pose);
-  const auto tryNeighbor = [&](std::size_t other) {
-    if (other >= keyframes.size()) return;
-    const SlamKeyframe& n = keyframes[other];
-    const double length = distance(k.pose, n.pose);
-    if (!(length > 0.0) || length > SignatureSensor::kMaxStep) return;
-    const double share = std::min(1.0, distance(k.pose, at.pose) / length);
-    const double miss = distance(hyselam::interpolate(k.pose, n.pose, share), at.pose);
-    if (miss < best) {
-      best = miss;
-      stamp = k.stamp + share * (n.stamp - k.stamp);
-    }
-  };
-  if (nearest > 0) tryNeighbor(nearest - 1);
-  tryNeighbor(nearest + 1);
-  return stamp;
-}
-
 inline std::vector<WayRun> wayRunsOf(const PlaceLog& log) {
   std::vector<WayRun> runs;
   for (const LogPlace& p : log.places) {
     if (runs.empty() || p.on_way.way <= runs.back().places.back().way) runs.emplace_back();
     runs.back().places.push_back({p.on_way.way, p.on_way.pose, wayShapeOf(p.features)});
-    runs.back().stamps.push_back(stampOf(p.on_way, log.keyframes));
+    runs.back().stamps.push_back(p.stamp);
     runs.back().truth.push_back(p.truth);
   }
   return runs;
