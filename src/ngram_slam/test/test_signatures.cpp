@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <clocale>
 #include <cmath>
 #include <limits>
 #include <locale>
@@ -68,6 +69,20 @@ TEST(SignatureModel, isTheSameWhereNumbersHaveCommas) {
   EXPECT_NO_THROW(with_commas = SignatureModel::parse(text, "shipped").text());
   std::locale::global(before);
   EXPECT_EQ(with_commas, text);
+}
+
+TEST(SignatureModel, isTheSameWhereCFunctionsWriteCommas) {
+  const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+  const char* found = nullptr;
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "pt_BR.UTF-8", "fr_FR.UTF-8"}) {
+    if (found == nullptr) found = std::setlocale(LC_NUMERIC, name);
+  }
+  if (found == nullptr) GTEST_SKIP() << "no locale with a decimal comma is installed";
+  const std::string text = SignatureModel::shipped().text();
+  const std::string again = SignatureModel::parse(text, "shipped").text();
+  std::setlocale(LC_NUMERIC, before.c_str());
+  EXPECT_EQ(again, text);
+  EXPECT_NE(text.find("0.5"), std::string::npos);
 }
 
 TEST(SignatureModel, refusesWhatItCouldNotReadBack) {

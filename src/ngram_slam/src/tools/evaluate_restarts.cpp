@@ -24,10 +24,13 @@ namespace {
 using namespace ngram_slam;  // NOLINT: a program, not a header
 using hyselam::Pose2;
 
+const std::vector<std::string> kModes = {"right",  "3m",      "10m",  "90deg",
+                                         "180deg", "unknown", "moved"};
+
 struct Options {
   std::vector<std::string> logs;
   ReferenceFiles references;
-  std::vector<std::string> modes = {"right", "3m", "10m", "90deg", "180deg", "unknown", "moved"};
+  std::vector<std::string> modes = kModes;
   int starts = 20;
   double path = 60.0;
   std::uint64_t seed = 1;
@@ -65,6 +68,9 @@ Log readLog(const std::string& path, const ReferenceFiles& references, std::size
         {&scan, *odometry, hyselam::poseAt(out.reference, scan.stamp, kTolerance), way});
   }
   if (out.steps.empty()) throw hyselam::InputError(path, "", "has no scan with odometry");
+  if (out.reference.empty()) {
+    throw hyselam::InputError(path, "", "has no true poses: give --reference");
+  }
   return out;
 }
 
@@ -159,8 +165,7 @@ void begin(const std::string& mode, const Pose2& right, const Pose2& before, hys
   if (mode == "10m") return engine->startRun(beside(10.0));
   if (mode == "90deg") return engine->startRun(right * Pose2{0.0, 0.0, turn * hyselam::kPi / 2.0});
   if (mode == "180deg") return engine->startRun(right * Pose2{0.0, 0.0, hyselam::kPi});
-  if (mode == "right") return engine->startRun(right);
-  throw hyselam::ParameterError("modes", mode, "right, 3m, 10m, 90deg, 180deg, unknown, moved");
+  return engine->startRun(right);
 }
 
 bool isTiedWrongly(const SlamEngine& engine, const Log& log, std::uint32_t run) {
@@ -282,6 +287,11 @@ nlohmann::json figuresOf(const std::vector<Outcome>& all) {
 nlohmann::json run(const Options& o) {
   if (o.starts < 1) throw hyselam::ParameterError("starts", o.starts, "at least 1");
   if (!(o.path > 0.0)) throw hyselam::ParameterError("path", o.path, "above 0 m");
+  for (const std::string& mode : o.modes) {
+    if (std::find(kModes.begin(), kModes.end(), mode) == kModes.end()) {
+      throw hyselam::ParameterError("modes", mode, "right, 3m, 10m, 90deg, 180deg, unknown, moved");
+    }
+  }
   o.references.check(o.logs.size());
   nlohmann::json json;
   std::cout << "| log | start | right | median until tied [m] | 90 % [m] | of it in known places: "

@@ -24,7 +24,8 @@ struct WayDecisionParams {
 using ClassShares = std::array<double, kSemanticClasses>;
 
 /// The sequence of classes with the greatest sum of logarithms of its shares less the costs of its
-/// changes (Viterbi 1967); among equal ones the first in the order of the classes, from the end.
+/// changes (Viterbi 1967); among equal ones that with the first class at the end and, from there
+/// back, with fewer changes.
 /// @throws hyselam::ParameterError
 std::vector<SemanticClass> mostLikelyClasses(const std::vector<ClassShares>& shares,
                                              const WayDecisionParams& params = {});

@@ -107,7 +107,7 @@ std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<Sl
       if (isSamePair(l, loop) && judge.areConsistent(l, loop)) return {};
     }
   }
-  if (waiting->size() >= kMaxWaiting) waiting->erase(waiting->begin());
+  while (waiting->size() >= kMaxWaiting) waiting->erase(waiting->begin());
   waiting->push_back(loop);
   // What the new loop, or one believed since, may have changed.
   const double reach = params.company_half_length + params.consistency_max_path_length;
