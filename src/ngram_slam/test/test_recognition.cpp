@@ -196,6 +196,36 @@ TEST_F(Tools, evaluateRecognitionFindsTheLaterLaps) {
   EXPECT_GE(j["match_precision"], 0.95);
 }
 
+TEST_F(Tools, evaluateRecognitionTellsOfPlacesAsSlamRecognizesThemUnlessAskedForWords) {
+  const std::string tool = "evaluate_recognition " + d / "r.bag";
+  ASSERT_EQ(run(tool + " --json " + d / "j.json"), 0) << errors;
+  const auto j = nlohmann::json::parse(fileBytes(d / "j.json"));
+  EXPECT_EQ(j["recognized_by"], "places");
+  EXPECT_GT(j["words"], 0);
+  EXPECT_GT(j["matches"], 0);
+  EXPECT_GE(j["match_precision"], 0.95);
+  EXPECT_GE(j["precision"], 0.95);
+  EXPECT_GE(j["recall_any_direction"], 0.5);
+  EXPECT_GE(j["revisits_any_direction"], j["revisits"]);
+  EXPECT_GE(j["revisits_any_direction"], j["revisits_older_than_40_m"]);
+  // A revisit may have more than one earlier pass, and not all of them are told.
+  EXPECT_LE(j["pass_recall_any_direction"], j["recall_any_direction"]);
+
+  // Two logs are asked apart; the figures are of all their questions.
+  ASSERT_EQ(run(tool + " " + d / "r.bag" + " --json " + d / "two.json"), 0) << errors;
+  const auto two = nlohmann::json::parse(fileBytes(d / "two.json"));
+  ASSERT_EQ(two["logs"].size(), 2u);
+  EXPECT_EQ(two["matches"], 2 * j["matches"].get<int>());
+  EXPECT_EQ(two["recall_any_direction"], j["recall_any_direction"]);
+
+  ASSERT_EQ(run(tool + " --by words --json " + d / "w.json"), 0) << errors;
+  EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "w.json"))["recognized_by"], "words");
+  expectRefused(tool + " --by places --levels 2", "--levels");
+  expectRefused(tool + " --by letters", "letters");
+  expectRefused(tool + " --by words --model m.txt", "--model");
+  expectRefused(tool + " --model " + d / "no.txt", "no.txt");
+}
+
 TEST_F(Tools, evaluatePlacesAsksAllMethodsTheSame) {
   ASSERT_EQ(
       run("evaluate_places " + d / "r.bag" +

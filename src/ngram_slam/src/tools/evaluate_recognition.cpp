@@ -1,221 +1,73 @@
-// evaluate_recognition: what is recognized in recorded runs, against reference poses.
+// evaluate_recognition: what is recognized in recorded runs, against reference poses: by the
+// stack's default, or by words alone.
 #include <algorithm>
-#include <cmath>
-#include <ctime>
+#include <array>
 #include <iostream>
-#include <sstream>
+#include <string>
 
-#include "hyselam_common/atomic_file.hpp"
-#include "hyselam_common/errors.hpp"
-#include "ngram_slam/matching/match_evaluation.hpp"
-#include "recognition_options.hpp"
-#include "reference_poses.hpp"
-#include "similarity_matrix.hpp"
+#include "place_figures.hpp"
+#include "word_candidates.hpp"
+#include "word_recognition.hpp"
 
 namespace {
 
 using namespace ngram_slam;  // NOLINT: a program, not a header
 
-constexpr int kParts = 40;    // rows of precision and recall over time
-constexpr int kPoints = 200;  // of a curve
+/// Options that both ways of recognizing have.
+constexpr std::array kCommon{"logs",       "reference", "scan-topic", "odom-topic", "odom-frame",
+                             "base-frame", "by",        "model",      "help"};
 
-struct Options {
-  RecognitionOptions recognition;
-  ReferenceFiles references;
-  ScoreParams score;
-  double heading_deg = 45.0;
-  std::string n;                         // to sweep
-  std::vector<double> sizes;             // to sweep
-  std::string table, curve, similarity;  // files
-};
-
-using Truth = std::shared_ptr<const RecognitionTruth>;
-
-/// Poses of a run in the common frame.
-std::vector<hyselam::StampedPose2> posesOf(const Options& o, std::size_t run) {
-  const std::string& path = o.recognition.logs[run];
-  auto poses = o.references.of(run, hyselam::readRobotLog(path, o.recognition.bag_options));
-  if (poses.empty()) throw hyselam::InputError(path, "", "has no ground truth: give --reference");
-  return poses;
+/// Marks the options of words in the help; whether one of them was given is asked after parsing.
+std::vector<const CLI::Option*> wordOptions(CLI::App& app) {
+  std::vector<const CLI::Option*> options;
+  for (CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_single_name();
+    if (std::find(kCommon.begin(), kCommon.end(), name) != kCommon.end()) continue;
+    option->group("Words");
+    options.push_back(option);
+  }
+  return options;
 }
 
-Truth truthOf(const Options& o, const ObservationStore& observations,
-              const std::vector<Run>& logs) {
-  ScoreParams params = o.score;
-  params.heading = hyselam::radians(o.heading_deg);
-  std::vector<std::optional<hyselam::Pose2>> poses;
-  std::vector<std::uint32_t> runs;  // a log in which the robot was carried off has several
-  for (std::size_t log = 0; log < logs.size(); ++log) {
-    const std::vector<hyselam::StampedPose2> reference = posesOf(o, log);
-    for (const DensityObservation& observation : logs[log].observations) {
-      runs.push_back(observations.runOf(static_cast<std::uint32_t>(runs.size())));
-      poses.push_back(hyselam::poseAt(reference, observation.stamp, 0.5));
+/// The best signatures of each question, and what SLAM's words propose beside them.
+Candidates byDefault(const PlaceLog& log, const SignatureModel& model, std::size_t* words_made) {
+  const CandidateOptions options;
+  Candidates all = bySignatures(options, log, model);
+  const Candidates words = byWords(options, log, "words", words_made);
+  const auto most = static_cast<std::size_t>(options.candidates);
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    all[q].resize(std::min(all[q].size(), most));
+    const std::vector<PlaceCandidate> signatures = all[q];
+    for (const PlaceCandidate& c : words[q]) {
+      if (!isNearOne(c, signatures)) all[q].push_back(c);
     }
   }
-  return std::make_shared<const RecognitionTruth>(std::move(poses), std::move(runs), params);
+  return all;
 }
 
-nlohmann::json summary(const MatchEvaluation& evaluation) {
-  const RecognitionFigures f = evaluation.score().figures();
-  return {{"matches", evaluation.matches()},
-          {"match_precision", evaluation.matchPrecision()},
-          {"pairs", f.pairs},
-          {"precision", f.precision()},
-          {"revisits", f.revisits},
-          {"recall", f.recall()},
-          {"pass_recall", f.passRecall()},
-          {"revisits_any_direction", f.revisits_any},
-          {"recall_any_direction", f.recallAnyDirection()},
-          {"pass_recall_any_direction", f.passRecallAnyDirection()}};
-}
-
-/// "1..20", "7,10,13", "5" as a list. @throws hyselam::ParameterError
-std::vector<int> listOf(const std::string& name, const std::string& text) {
-  std::vector<int> list;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, ',');) {
-    int first = 0, last = 0;
-    char rest = 0;
-    const int read = std::sscanf(part.c_str(), "%d..%d%c", &first, &last, &rest);
-    if (read == 1 && std::to_string(first) == part) {
-      last = first;
-    } else if (read != 2) {
-      throw hyselam::ParameterError(name, text, "numbers like 7,10 or 1..20");
-    }
-    if (first < 1 || last < first || last > 65535) {
-      throw hyselam::ParameterError(name, text, "rising numbers from 1 to 65535");
-    }
-    for (int i = first; i <= last; ++i) list.push_back(i);
+/// Figures of all logs together; with several also of each.
+nlohmann::json recognizePlaces(const WordRecognitionOptions& o, const std::string& model_file) {
+  const SignatureModel model =
+      model_file.empty() ? SignatureModel::shipped() : SignatureModel::load(model_file);
+  const PlaceLogOptions source{o.recognition.logs, o.references, o.recognition.bag_options};
+  Figures sum;
+  nlohmann::json each = nlohmann::json::array();
+  for (const PlaceLog& log : source.read()) {
+    const double begin = processSeconds();
+    std::size_t words = 0;
+    const Candidates candidates = byDefault(log, model, &words);
+    const double retrieval = processSeconds() - begin;
+    Figures f =
+        figuresOf(log, candidates, kPairs, std::numeric_limits<std::size_t>::max(), nullptr);
+    f.retrieval_s = retrieval;
+    f.words = words;
+    each.push_back(f.recognition());
+    each.back()["log"] = log.name;
+    sum += f;
   }
-  if (list.empty()) throw hyselam::ParameterError(name, text, "numbers like 7,10 or 1..20");
-  return list;
-}
-
-std::vector<NgramMatch> recognise(NgramRecognizer& recognizer, const std::vector<Run>& runs) {
-  std::vector<NgramMatch> matches;
-  feed(runs, recognizer, [&](const NgramRecognizerUpdate& u) {
-    if (u.requantised) matches.clear();
-    matches.insert(matches.end(), u.matches.begin(), u.matches.end());
-  });
-  return matches;
-}
-
-/// One row per n and size tolerance, and where the run stood by then.
-nlohmann::json sweep(const Options& o, const std::vector<Run>& runs, const Truth& truth) {
-  const NgramRecognizerParams base = o.recognition.params();
-  const std::vector<int> list =
-      o.n.empty() ? std::vector<int>{base.matcher.min_n.front()} : listOf("--n", o.n);
-  const std::vector<double> sizes =
-      o.sizes.empty() ? std::vector<double>{base.matcher.tolerance.size} : o.sizes;
-  nlohmann::json rows = nlohmann::json::array();
-  hyselam::Progress progress("sweep", list.size() * sizes.size());
-  for (const double size : sizes) {
-    for (const int n : list) {
-      NgramRecognizerParams params = base;
-      params.matcher.tolerance.size = size;
-      for (std::size_t l = 0; l < params.matcher.min_n.size(); ++l) {
-        params.matcher.min_n[l] = n + base.matcher.min_n[l] - base.matcher.min_n[0];
-      }
-      params.validate();
-      NgramRecognizer recognizer(params);
-      MatchEvaluation evaluation(recognizer, truth);
-      evaluation.add(recognise(recognizer, runs));
-      nlohmann::json row = summary(evaluation);
-      row["n"] = n;
-      row["size_tolerance"] = size;
-      for (int part = 1; part <= kParts; ++part) {
-        const auto until = static_cast<std::uint32_t>(static_cast<std::uint64_t>(truth->size()) *
-                                                      static_cast<std::uint64_t>(part) / kParts);
-        const RecognitionFigures f = evaluation.score().figures(until);
-        row["over_time"].push_back(
-            {f.precision(), f.recall(), static_cast<double>(part) / kParts, f.pairs});
-      }
-      rows.push_back(row);
-      progress.update(rows.size());
-    }
-  }
-  if (!o.table.empty()) {
-    hyselam::writeFileAtomically(o.table, [&](std::ostream& out) {
-      const std::vector<const char*> columns{"n",
-                                             "size_tolerance",
-                                             "matches",
-                                             "match_precision",
-                                             "pairs",
-                                             "precision",
-                                             "recall",
-                                             "pass_recall",
-                                             "recall_any_direction",
-                                             "pass_recall_any_direction"};
-      for (const char* column : columns) out << column << (column == columns.back() ? "\n" : ",");
-      for (const auto& row : rows) {
-        for (const char* column : columns) {
-          out << row[column] << (column == columns.back() ? "\n" : ",");
-        }
-      }
-    });
-  }
-  return rows;
-}
-
-/// Precision and recall while ever less sure matches are taken in.
-nlohmann::json curve(const Options& o, const NgramRecognizer& recognizer,
-                     std::vector<NgramMatch> matches, const Truth& truth) {
-  const NgramRecognizerParams& params = recognizer.params();
-  const auto key = [&](const NgramMatch& m) {
-    if (params.with_probability) return m.probability;
-    return params.max_chance > 0.0 ? -m.chance : static_cast<double>(m.n);
-  };
-  std::stable_sort(matches.begin(), matches.end(),
-                   [&](const NgramMatch& a, const NgramMatch& b) { return key(a) > key(b); });
-  nlohmann::json points = nlohmann::json::array();
-  MatchEvaluation evaluation(recognizer, truth);
-  std::size_t told = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    evaluation.add(matches[i]);
-    const bool last = i + 1 == matches.size();
-    if (!last &&
-        (key(matches[i]) == key(matches[i + 1]) || (i + 1) * kPoints < told * matches.size())) {
-      continue;
-    }
-    told = (i + 1) * kPoints / matches.size() + 1;
-    nlohmann::json point = summary(evaluation);
-    point["threshold"] = std::abs(key(matches[i]));
-    points.push_back(point);
-  }
-  if (!o.curve.empty()) {
-    hyselam::writeFileAtomically(o.curve, [&](std::ostream& out) {
-      out << "threshold,matches,precision,recall,pass_recall,recall_any_direction,"
-             "pass_recall_any_direction\n";
-      for (const auto& p : points) {
-        out << p["threshold"] << ',' << p["matches"] << ',' << p["precision"] << ',' << p["recall"]
-            << ',' << p["pass_recall"] << ',' << p["recall_any_direction"] << ','
-            << p["pass_recall_any_direction"] << '\n';
-      }
-    });
-  }
-  return points;
-}
-
-nlohmann::json run(const Options& o) {
-  o.references.check(o.recognition.logs.size());
-  if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
-  NgramRecognizer recognizer(o.recognition.params());
-  const std::vector<Run> runs = readRuns(o.recognition);
-  const std::clock_t begin = std::clock();
-  const std::vector<NgramMatch> matches = recognise(recognizer, runs);
-  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  const Truth truth = truthOf(o, recognizer.observations(), runs);
-  MatchEvaluation evaluation(recognizer, truth);
-  evaluation.add(matches);
-
-  nlohmann::json j = summary(evaluation);
-  j["observations"] = recognizer.observations().size();
-  j["words"] = recognizer.text().positions();
+  nlohmann::json j = sum.recognition();
+  if (each.size() > 1) j["logs"] = each;
   std::cout << j.dump(2) << "\n";
-  j["matching_s"] = seconds;  // words, matches and what judges them, without densities
-  if (!o.similarity.empty()) writeSimilarityMatrix(o.similarity, evaluation.score());
-  if (!o.table.empty() || !o.n.empty() || !o.sizes.empty()) j["sweep"] = sweep(o, runs, truth);
-  if (!o.curve.empty()) j["curve"] = curve(o, recognizer, matches, truth);
   return j;
 }
 
@@ -223,29 +75,35 @@ nlohmann::json run(const Options& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Recognises places in recorded runs and compares with reference poses. A pair of "
-      "observations is true if they were made within --distance and --heading of each other (or "
-      "of the opposite heading, where a match in reverse is told). A revisit is an observation "
-      "for which such an earlier one exists; recall is the share of revisits recognized, pass "
-      "recall the share of all earlier passes of all revisits.",
+      "Recognizes places in recorded runs and compares with reference poses.\n\n"
+      "By places (the default, as SLAM recognizes): every 2 m of way the places with the likest "
+      "signatures and those that words propose are verified by the scans, and believed by SLAM's "
+      "rule. A place is a revisit if an earlier one, 10 m of way or more before, lies within 2 m; "
+      "recall is the share of revisits with a believed match that is right (1 m, 20 degrees), pass "
+      "recall the share of all their earlier passes.\n\n"
+      "By words (if any of their options is given): a pair of observations is true if they were "
+      "made "
+      "within --distance and --heading of each other (or of the opposite heading, where a match in "
+      "reverse is told). A revisit is an observation for which such an earlier one exists; recall "
+      "is "
+      "the share of revisits recognized, pass recall the share of all earlier passes of all "
+      "revisits.",
       "evaluate_recognition");
-  Options o;
-  o.recognition.addTo(app);
-  o.references.addTo(app);
-  app.add_option("--distance", o.score.distance, "of a true pair at most [m]");
-  app.add_option("--heading", o.heading_deg, "difference of headings of a true pair at most [deg]");
-  app.add_option("--separation", o.score.separation,
-                 "observations between the two of a pair in one run at least");
-  app.add_option("--n", o.n,
-                 "also a table over the least words of the first level, like 1..20 or 5,7; other "
-                 "levels keep their distance to it");
-  app.add_option("--size-tolerances", o.sizes, "of the table, like 0.1,0.2,0.3")->delimiter(',');
-  app.add_option("--table", o.table, "the table as CSV");
-  app.add_option("--curve", o.curve,
-                 "precision and recall as CSV while ever shorter (with --max-chance: likelier by "
-                 "chance; with --probability: less probable) matches are taken in");
-  app.add_option("--similarity", o.similarity,
-                 "similarity matrix to write (JSON): what is true, and what was recognized; for "
-                 "scripts/plot_similarity");
-  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+  WordRecognitionOptions options;
+  options.addTo(app);
+  const std::vector<const CLI::Option*> of_words = wordOptions(app);
+  std::string by, model;
+  app.add_option("--by", by, "places or words; default: words if one of their options is given")
+      ->check(CLI::IsMember({"places", "words"}));
+  app.add_option("--model", model, "file of another model of signatures, for places");
+  return hyselam::runTool(argc, argv, app, [&] {
+    const auto given = std::find_if(of_words.begin(), of_words.end(),
+                                    [](const CLI::Option* option) { return option->count() > 0; });
+    if (by == "places" && given != of_words.end()) {
+      throw hyselam::ParameterError((*given)->get_name(), "given", "used with --by words only");
+    }
+    if (by != "words" && given == of_words.end()) return recognizePlaces(options, model);
+    if (!model.empty()) throw hyselam::ParameterError("--model", model, "used for places only");
+    return recognizeByWords(options);
+  });
 }

@@ -26,27 +26,48 @@ struct CandidateOptions {
   int told() const { return std::max(10, candidates); }
 };
 
-/// Which places of a log were visited before.
-struct Revisit {
-  bool any = false, same = false, old = false;
-};
-
 inline bool isTruePlace(const LogPlace& a, const LogPlace& b) {
   return a.truth && b.truth && distance(*a.truth, *b.truth) <= kPlaceDistance;
 }
 
-inline Revisit revisitOf(const PlaceLog& log, std::uint32_t i) {
-  Revisit r;
-  bool recent = false;
+/// Earlier visits of a place: runs of places along the way, [first, last], that lie where it lies.
+struct Pass {
+  std::uint32_t first = 0, last = 0;
+  bool same = false;  ///< direction
+};
+
+/// Passes are apart by `kQuestionInterval` places or more, or by their direction.
+inline std::vector<Pass> passesOf(const PlaceLog& log, std::uint32_t i) {
+  std::vector<Pass> passes;
   for (std::uint32_t j = 0; j + kPlaceSeparation <= i; ++j) {
     if (!isTruePlace(log.places[i], log.places[j])) continue;
-    r.any = true;
-    recent |= j + kOldPlace > i;
     const double turn = log.places[i].truth->theta - log.places[j].truth->theta;
-    r.same |= std::abs(hyselam::normalizeAngle(turn)) <= kPlaceHeading;
+    const bool same = std::abs(hyselam::normalizeAngle(turn)) <= kPlaceHeading;
+    if (!passes.empty() && passes.back().same == same &&
+        j - passes.back().last < kQuestionInterval) {
+      passes.back().last = j;
+    } else {
+      passes.push_back({j, j, same});
+    }
   }
-  r.old = r.any && !recent;
+  return passes;
+}
+
+/// What kind of revisit a place is.
+struct Revisit {
+  bool any = false, same = false, old = false;
+};
+
+inline Revisit revisitOf(const std::vector<Pass>& passes, std::uint32_t i) {
+  Revisit r;
+  r.any = !passes.empty();
+  r.same = std::any_of(passes.begin(), passes.end(), [](const Pass& p) { return p.same; });
+  r.old = r.any && std::none_of(passes.begin(), passes.end(),
+                                [i](const Pass& p) { return p.last + kOldPlace > i; });
   return r;
+}
+inline Revisit revisitOf(const PlaceLog& log, std::uint32_t i) {
+  return revisitOf(passesOf(log, i), i);
 }
 
 /// As the SLAM knows before any loop.
@@ -87,18 +108,22 @@ inline ngram_slam_peers::PolarContext contextOf(const PlaceFeatures& features) {
   return context;
 }
 
+/// Whether one of the candidates tells of the same earlier place, more or less.
+inline bool isNearOne(const PlaceCandidate& c, const std::vector<PlaceCandidate>& candidates) {
+  const auto spacing = static_cast<std::uint32_t>(PlaceRecognizerParams().candidate_spacing);
+  return std::any_of(candidates.begin(), candidates.end(), [&](const PlaceCandidate& t) {
+    return std::max(t.older, c.older) - std::min(t.older, c.older) <= spacing;
+  });
+}
+
 /// The best, and of several near each other the best, as PlaceRecognizer tells them.
 inline std::vector<PlaceCandidate> spaced(std::vector<PlaceCandidate> found, int count) {
-  const auto spacing = static_cast<std::uint32_t>(PlaceRecognizerParams().candidate_spacing);
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
   std::vector<PlaceCandidate> told;
   for (const PlaceCandidate& c : found) {
     if (static_cast<int>(told.size()) == count) break;
-    const bool near = std::any_of(told.begin(), told.end(), [&](const PlaceCandidate& t) {
-      return std::max(t.older, c.older) - std::min(t.older, c.older) <= spacing;
-    });
-    if (!near) told.push_back(c);
+    if (!isNearOne(c, told)) told.push_back(c);
   }
   return told;
 }

@@ -58,6 +58,9 @@ struct Figures {
   std::size_t verified_matches = 0, verified_wrong = 0, sure = 0, sure_wrong = 0;
   std::size_t unknown = 0;  // matches that no reference tells right or wrong; in none of the others
   std::size_t found = 0, found_same = 0, found_old = 0;
+  std::size_t passes = 0, passes_same = 0;  // earlier ones of the revisits
+  std::size_t found_passes = 0, found_passes_same = 0;
+  std::size_t words = 0;  // that were made of the log, if any were
   // The best candidate of a question by itself; "alone": none that is surer or as sure is wrong.
   std::size_t first_told = 0, first_wrong = 0;
   std::size_t alone = 0, alone_same = 0, alone_old = 0, alone_by_pair = 0;
@@ -66,6 +69,69 @@ struct Figures {
 
   static double share(std::size_t part, std::size_t of) {
     return of == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(of);
+  }
+  Figures& operator+=(const Figures& o) {
+    for (std::size_t Figures::*count : {&Figures::questions,
+                                        &Figures::revisits,
+                                        &Figures::revisits_same,
+                                        &Figures::revisits_old,
+                                        &Figures::matches,
+                                        &Figures::wrong,
+                                        &Figures::pairs,
+                                        &Figures::true_pairs,
+                                        &Figures::verified_matches,
+                                        &Figures::verified_wrong,
+                                        &Figures::sure,
+                                        &Figures::sure_wrong,
+                                        &Figures::unknown,
+                                        &Figures::found,
+                                        &Figures::found_same,
+                                        &Figures::found_old,
+                                        &Figures::passes,
+                                        &Figures::passes_same,
+                                        &Figures::found_passes,
+                                        &Figures::found_passes_same,
+                                        &Figures::words,
+                                        &Figures::first_told,
+                                        &Figures::first_wrong,
+                                        &Figures::alone,
+                                        &Figures::alone_same,
+                                        &Figures::alone_old,
+                                        &Figures::alone_by_pair}) {
+      this->*count += o.*count;
+    }
+    for (std::size_t i = 0; i < first.size(); ++i) first[i] += o.first[i];
+    verification_s.insert(verification_s.end(), o.verification_s.begin(), o.verification_s.end());
+    retrieval_s += o.retrieval_s;
+    return *this;
+  }
+  /// What is recognized, in the names that evaluate_recognition has for words, too: `revisits`,
+  /// `recall`, `pass_recall` in the same direction.
+  nlohmann::json recognition() const {
+    return {{"recognized_by", "places"},
+            {"words", words},
+            {"questions", questions},
+            {"matches", matches},
+            {"match_precision", matches == 0 ? 1.0 : 1.0 - share(wrong, matches)},
+            {"matches_without_reference", unknown},
+            {"pairs", pairs},
+            {"precision", pairs == 0 ? 1.0 : share(true_pairs, pairs)},
+            {"revisits", revisits_same},
+            {"recall", share(found_same, revisits_same)},
+            {"pass_recall", share(found_passes_same, passes_same)},
+            {"revisits_any_direction", revisits},
+            {"recall_any_direction", share(found, revisits)},
+            {"pass_recall_any_direction", share(found_passes, passes)},
+            {"revisits_older_than_40_m", revisits_old},
+            {"recall_older_than_40_m", share(found_old, revisits_old)},
+            {"verified", verified_matches},
+            {"verified_precision",
+             verified_matches == 0 ? 1.0 : 1.0 - share(verified_wrong, verified_matches)},
+            {"sure", sure},
+            {"sure_precision", sure == 0 ? 1.0 : 1.0 - share(sure_wrong, sure)},
+            {"first_candidate_right", share(first[0], revisits)},
+            {"recall_unverified_none_wrong", share(alone, revisits)},
+            {"ms_verification_95_percent", 1e3 * verificationQuantile(0.95)}};
   }
   nlohmann::json json(const std::string& name, const std::string& method) const {
     return {
@@ -254,6 +320,21 @@ inline void writeRows(const PlaceLog& log, const std::vector<Match>& matches, st
   }
 }
 
+/// Which earlier passes of a question's place were told by matches with these earlier places: a
+/// match tells of what lies within the distance of one place.
+inline void countPasses(const std::vector<Pass>& passes, const std::vector<std::uint32_t>& told,
+                        Figures* f) {
+  for (const Pass& p : passes) {
+    const bool found = std::any_of(told.begin(), told.end(), [&](std::uint32_t older) {
+      return older + kQuestionInterval >= p.first && older <= p.last + kQuestionInterval;
+    });
+    ++f->passes;
+    f->found_passes += found ? 1 : 0;
+    f->passes_same += p.same ? 1 : 0;
+    f->found_passes_same += found && p.same ? 1 : 0;
+  }
+}
+
 /// `reach`: places before and after that an unverified candidate lays over each other; `verified`:
 /// candidates of each question that are; `rows`: what each came to, if not null.
 inline Figures figuresOf(const PlaceLog& log, const Candidates& all, int reach,
@@ -261,7 +342,7 @@ inline Figures figuresOf(const PlaceLog& log, const Candidates& all, int reach,
   Figures f;
   const std::vector<Match> matches = matchesOf(log, all, verified, &f);
   if (rows != nullptr) writeRows(log, matches, *rows);
-  std::vector<char> right(all.size(), 0);
+  std::vector<std::vector<std::uint32_t>> right(all.size());  // earlier places, of each question
   for (const Match& m : matches) {
     if (!m.verification.verified) continue;
     if (!m.is_right) {
@@ -277,20 +358,22 @@ inline Figures figuresOf(const PlaceLog& log, const Candidates& all, int reach,
     if (!m.is_believed) continue;
     ++f.matches;
     f.wrong += *m.is_right ? 0 : 1;
-    if (*m.is_right) right[m.candidate.newer / kQuestionInterval] = 1;
+    if (*m.is_right) right[m.candidate.newer / kQuestionInterval].push_back(m.candidate.older);
     countPairs(log, m.candidate, m.verification.loop.measured, &f);
   }
   for (std::size_t q = 0; q < all.size(); ++q) {
     const auto i = static_cast<std::uint32_t>(q * kQuestionInterval);
     if (!log.places[i].truth) continue;
     ++f.questions;
-    const Revisit revisit = revisitOf(log, i);
+    const std::vector<Pass> passes = passesOf(log, i);
+    countPasses(passes, right[q], &f);
+    const Revisit revisit = revisitOf(passes, i);
     f.revisits += revisit.any ? 1 : 0;
     f.revisits_same += revisit.same ? 1 : 0;
     f.revisits_old += revisit.old ? 1 : 0;
-    f.found += right[q] != 0 && revisit.any ? 1 : 0;
-    f.found_same += right[q] != 0 && revisit.same ? 1 : 0;
-    f.found_old += right[q] != 0 && revisit.old ? 1 : 0;
+    f.found += !right[q].empty() && revisit.any ? 1 : 0;
+    f.found_same += !right[q].empty() && revisit.same ? 1 : 0;
+    f.found_old += !right[q].empty() && revisit.old ? 1 : 0;
     for (std::size_t k = 0; k < all[q].size(); ++k) {
       if (!isTruePlace(log.places[i], log.places[all[q][k].older])) continue;
       for (std::size_t n = 0; n < 3; ++n) f.first[n] += k < std::array{1U, 5U, 10U}[n] ? 1 : 0;

@@ -29,6 +29,7 @@ struct LogPlace {
 /// A log after SLAM without loops.
 struct PlaceLog {
   std::string name, path;
+  hyselam::BagOptions bag_options;
   std::vector<SlamKeyframe> keyframes;
   std::vector<hyselam::StampedPose2> reference;
   std::vector<LogPlace> places;
@@ -101,19 +102,25 @@ inline std::string nameOfLog(const std::string& path) {
 struct PlaceLogOptions {
   std::vector<std::string> logs;
   ReferenceFiles references;
+  hyselam::BagOptions bag_options;
 
   void addTo(CLI::App& app) {
     app.option_defaults()->always_capture_default();
     app.add_option("logs", logs, "CARMEN logs or bags, plain or gzip")->required();
+    hyselam::addBagOptions(app, &bag_options);
     references.addTo(app);
   }
+  /// @throws hyselam::InputError for a log that cannot be read or has no true poses
   std::vector<PlaceLog> read() const {
     references.check(logs.size());
     std::vector<PlaceLog> all;
     for (std::size_t i = 0; i < logs.size(); ++i) {
-      const hyselam::RobotLog log = hyselam::readRobotLog(logs[i]);
-      all.push_back(placesOf(nameOfLog(logs[i]), log, references.of(i, log), {}));
+      const hyselam::RobotLog log = hyselam::readRobotLog(logs[i], bag_options);
+      const auto reference = references.of(i, log);
+      if (reference.empty()) throw hyselam::InputError(logs[i], "", kNoTruth);
+      all.push_back(placesOf(nameOfLog(logs[i]), log, reference, {}));
       all.back().path = logs[i];
+      all.back().bag_options = bag_options;
     }
     return all;
   }

@@ -11,6 +11,8 @@
 
 namespace ngram_slam {
 
+constexpr const char* kNoTruth = "has no ground truth: give --reference";
+
 /// The reference poses of a log: of a TUM file, a table with one pose for each scan, or a corrected
 /// log (".log", ".log.gz"); without a file the log's own truth, which may be empty.
 /// @throws hyselam::InputError

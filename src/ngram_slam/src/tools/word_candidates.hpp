@@ -91,11 +91,13 @@ class WordCandidates {
   std::map<std::tuple<std::uint32_t, std::uint32_t, Direction>, double> found_;
 };
 
-inline Candidates byWords(const CandidateOptions& o, const PlaceLog& log,
-                          const std::string& method) {
+/// `made`: becomes the number of words of the log, if not null.
+inline Candidates byWords(const CandidateOptions& o, const PlaceLog& log, const std::string& method,
+                          std::size_t* made = nullptr) {
   const auto [words, observations] = wordParams(method);
   RecognitionOptions source;
   source.logs = {log.path};
+  source.bag_options = log.bag_options;
   source.observations = observations;
   NgramRecognizer recognizer(words);
   std::vector<NgramMatch> matches;
@@ -103,6 +105,7 @@ inline Candidates byWords(const CandidateOptions& o, const PlaceLog& log,
     if (u.requantised) matches.clear();
     matches.insert(matches.end(), u.matches.begin(), u.matches.end());
   });
+  if (made != nullptr) *made = recognizer.text().positions();
   WordCandidates found(log, recognizer);
   for (const NgramMatch& m : matches) found.add(m);
   return found.candidates(o.told());
