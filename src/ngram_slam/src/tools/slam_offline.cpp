@@ -1,8 +1,5 @@
 // slam_offline: a recorded run through the same SLAM as the nodelet, without a master.
-#include <spawn.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -24,6 +21,7 @@
 #include "ngram_slam/slam/slam_score.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "reference_poses.hpp"
+#include "report_page.hpp"
 #include "slam_report.hpp"
 #include "word_tables.hpp"
 
@@ -349,20 +347,6 @@ void writeJson(const std::string& path, const nlohmann::json& json, int indent) 
   hyselam::writeFileAtomically(path, [&](std::ostream& out) { out << json.dump(indent) << "\n"; });
 }
 
-/// report.html, by the script beside this program. Without it (no jinja2) there is no page.
-void makePage(const std::string& folder) {
-  const std::string script =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "slam_report";
-  std::string program = script, argument = folder;
-  char* const arguments[] = {program.data(), argument.data(), nullptr};
-  pid_t child = 0;
-  int status = 0;
-  if (::posix_spawn(&child, script.c_str(), nullptr, nullptr, arguments, environ) != 0 ||
-      ::waitpid(child, &status, 0) != child || status != 0) {
-    std::cerr << "warning: " << folder << "/report.html was not made (" << script << ")\n";
-  }
-}
-
 nlohmann::json run(const Options& o) {
   const SlamParams params = paramsOf(o, loopClosureModeFromString(o.loops));
   if (!(o.noise >= 0.0)) throw hyselam::ParameterError("odometry-noise", o.noise, "at least 0");
@@ -401,7 +385,7 @@ nlohmann::json run(const Options& o) {
   writeJson(o.out + "/report.json",
             reportJson(std::filesystem::path(name).filename().string(), engine, figures), -1);
   writeJson(o.out + "/summary.json", summary, 2);
-  makePage(o.out);
+  makePage("slam_report", o.out);
   std::cout << summary.dump(2) << "\n";
   return summary;
 }

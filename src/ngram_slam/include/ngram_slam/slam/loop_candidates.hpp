@@ -2,6 +2,7 @@
 // loops.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "ngram_slam/slam/run_connections.hpp"
@@ -21,6 +22,8 @@ class GraphPathLengths {
   /// The same for the `wanted` keyframes only: what the others have is not used. Ends when these
   /// are known, which is soon where they are near.
   std::vector<double> from(int keyframe, const std::vector<int>& wanted) const;
+  /// The keyframes that are no farther than `max_length` [m], with their lengths, by number.
+  std::vector<std::pair<int, double>> within(int keyframe, double max_length) const;
   int keyframes() const { return static_cast<int>(edges_.size()); }
   void clear() { edges_.clear(); }
 
@@ -67,6 +70,9 @@ struct LoopInconsistency {
 LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
                                     const std::vector<SlamKeyframe>& keyframes,
                                     const RunConnections& connections);
+
+/// Whether two loops cannot both be right, even if odometry between them is as bad as it may be.
+bool isContradiction(const LoopInconsistency& inconsistency, const LoopParams& params);
 
 /// The indices of the loops in `others` that are consistent with `loop`.
 std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector<SlamLoop>& others,

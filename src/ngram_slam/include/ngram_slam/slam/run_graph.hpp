@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "hyselam_pose_graph/graph_optimizer.hpp"
 #include "hyselam_pose_graph/pose_graph.hpp"
+#include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
 namespace ngram_slam {
@@ -21,5 +23,10 @@ struct RunGraph {
 
 /// The whole graph for `first` 0.
 RunGraph runGraph(const SlamState& state, int first);
+
+/// Optimized robustly from the poses as they are, and where loops would lose their weight also from
+/// all of them.
+hyselam_pose_graph::OptimizeResult optimizedGraph(hyselam_pose_graph::PoseGraph graph,
+                                                  const SlamParams& params);
 
 }  // namespace ngram_slam

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <queue>
 #include <utility>
 
@@ -58,6 +59,29 @@ std::vector<double> GraphPathLengths::search(int keyframe, const std::vector<int
     }
   }
   return lengths;
+}
+
+std::vector<std::pair<int, double>> GraphPathLengths::within(int keyframe,
+                                                             double max_length) const {
+  std::map<int, double> lengths{{keyframe, 0.0}};
+  using Open = std::pair<double, int>;
+  std::priority_queue<Open, std::vector<Open>, std::greater<Open>> open;
+  open.push({0.0, keyframe});
+  while (!open.empty()) {
+    const auto [length, at] = open.top();
+    open.pop();
+    const auto here = static_cast<std::size_t>(at);
+    if (length > lengths[at] || here >= edges_.size()) continue;
+    for (const Edge& edge : edges_[here]) {
+      const double next = length + static_cast<double>(edge.length);
+      if (next > max_length) continue;
+      const auto [known, is_new] = lengths.emplace(edge.to, next);
+      if (!is_new && next >= known->second) continue;
+      known->second = next;
+      open.push({next, edge.to});
+    }
+  }
+  return {lengths.begin(), lengths.end()};
 }
 
 std::vector<int> keyframesInReach(const std::vector<SlamKeyframe>& keyframes, int keyframe,
@@ -165,6 +189,15 @@ std::vector<std::size_t> consistentLoops(const SlamLoop& loop, const std::vector
   return out;
 }
 
+bool isContradiction(const LoopInconsistency& c, const LoopParams& params) {
+  // As much as odometry may be off between the two places.
+  const double max_distance = params.positionUncertainty(c.path_length) + 1.0;
+  const double max_angle = std::min(
+      3.0,
+      3.0 * (params.heading_uncertainty + params.heading_uncertainty_per_meter * c.path_length));
+  return c.distance > max_distance || c.angle > max_angle;
+}
+
 LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
                       const std::vector<SlamKeyframe>& keyframes, const RunConnections& connections,
                       const LoopParams& params) {
@@ -179,12 +212,7 @@ LoopCompany companyOf(const SlamLoop& loop, const std::vector<SlamLoop>& others,
     }
     const LoopInconsistency c = loopInconsistency(loop, other, keyframes, connections);
     if (!std::isfinite(c.path_length)) continue;
-    // As much as odometry may be off between the two places.
-    const double max_distance = params.positionUncertainty(c.path_length) + 1.0;
-    const double max_angle = std::min(
-        3.0,
-        3.0 * (params.heading_uncertainty + params.heading_uncertainty_per_meter * c.path_length));
-    const bool contradicts = c.distance > max_distance || c.angle > max_angle;
+    const bool contradicts = isContradiction(c, params);
     if (!contradicts && isSamePair(loop, other)) continue;  // the same opinion
     (contradicts ? company.contradiction : company.support) += other.inlier_ratio;
   }

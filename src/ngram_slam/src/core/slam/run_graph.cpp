@@ -1,6 +1,11 @@
 #include "ngram_slam/slam/run_graph.hpp"
 
+#include <utility>
+
 namespace ngram_slam {
+
+static_assert(hyselam_pose_graph::kAgreeingWeight == kMinLoopWeight,
+              "the optimizer counts the loops that the engine uses");
 
 RunGraph runGraph(const SlamState& state, int first) {
   RunGraph run;
@@ -36,6 +41,17 @@ RunGraph runGraph(const SlamState& state, int first) {
     run.loops.push_back(l);
   }
   return run;
+}
+
+hyselam_pose_graph::OptimizeResult optimizedGraph(hyselam_pose_graph::PoseGraph graph,
+                                                  const SlamParams& params) {
+  using hyselam_pose_graph::GraphRobust;
+  hyselam_pose_graph::OptimizeParams p;
+  p.start = hyselam_pose_graph::GraphStart::kGiven;
+  p.dcs_phi = params.dcs_phi;
+  p.robust = params.loops == LoopClosureMode::kThesis ? GraphRobust::kNone : GraphRobust::kDcs;
+  p.follow = hyselam_pose_graph::FollowLoops::kAll;
+  return hyselam_pose_graph::GraphOptimizer(std::move(graph)).optimize(p);
 }
 
 }  // namespace ngram_slam

@@ -9,28 +9,8 @@ using hyselam::Pose2;
 
 namespace {
 
-using hyselam_pose_graph::FollowLoops;
-using hyselam_pose_graph::GraphOptimizer;
-using hyselam_pose_graph::GraphRobust;
-using hyselam_pose_graph::GraphStart;
-using hyselam_pose_graph::OptimizeParams;
-using hyselam_pose_graph::OptimizeResult;
-
 // A job is made of no fewer, about 2 m of path.
 constexpr std::size_t kKeyframesToSign = 8;
-
-static_assert(hyselam_pose_graph::kAgreeingWeight == kMinLoopWeight,
-              "the optimizer counts the loops that the engine uses");
-
-/// From the poses as they are, and where loops would lose their weight also from all of them.
-OptimizeResult optimize(hyselam_pose_graph::PoseGraph graph, const SlamParams& params) {
-  OptimizeParams p;
-  p.start = GraphStart::kGiven;
-  p.dcs_phi = params.dcs_phi;
-  p.robust = params.loops == LoopClosureMode::kThesis ? GraphRobust::kNone : GraphRobust::kDcs;
-  p.follow = FollowLoops::kAll;
-  return GraphOptimizer(std::move(graph)).optimize(p);
-}
 
 }  // namespace
 
@@ -80,7 +60,7 @@ SlamJobResult runJob(const SlamJob& job) {
     done.new_segment.clear();
     result.tasks.push_back(std::move(done));
   }
-  if (job.graph) result.optimized = optimize(*job.graph, job.params);
+  if (job.graph) result.optimized = optimizedGraph(*job.graph, job.params);
   if (job.signatures == nullptr) return result;
   const auto take = [&](const std::vector<SignatureCandidate>& candidates) {
     result.candidates.insert(result.candidates.end(), candidates.begin(), candidates.end());

@@ -10,7 +10,10 @@ namespace {
 const char* graphError(const SlamState& state) {
   const auto n = static_cast<int>(state.keyframes.size());
   const auto exists = [n](int k) { return k >= 0 && k < n; };
+  std::uint32_t run = 0;
   for (const SlamKeyframe& k : state.keyframes) {
+    if (k.run < run) return "a keyframe belongs to an earlier run than the one before it";
+    run = k.run;
     if (!k.scan || !k.points || !k.pose.isFinite() || !k.odometry.isFinite()) {
       return "a keyframe lacks its scan or pose";
     }

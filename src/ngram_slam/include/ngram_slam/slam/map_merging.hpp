@@ -1,0 +1,114 @@
+// Maps of several sessions or robots, of which nobody knows how they lie to each other, become one
+// map with one graph, as far as their places are recognized.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hyselam_common/parameters.hpp"
+#include "ngram_slam/slam/slam_params.hpp"
+#include "ngram_slam/slam/slam_types.hpp"
+
+namespace ngram_slam {
+
+struct MapMergingParams {
+  SlamParams slam;  ///< of the engines that made the maps and that will go on with the result
+  int threads = 1;  ///< that verify loops, >= 1; the result does not depend on it
+  /// Places of one map that are asked for in all others: one each so many metres of path, with the
+  /// best so many candidates; first few, then more where the map is not tied yet or the graph knows
+  /// little. [m] and > 0; >= 1.
+  double first_interval = 4.0;
+  int first_candidates = 3;
+  double second_interval = 2.0;
+  int second_candidates = 5;
+  /// Around a verified loop between maps that are not tied, each place is asked for on so much path
+  /// before and after it [m], >= 0.
+  double ask_around = 8.0;
+  /// Two maps are not tied by loops that more than this part of what supports them contradicts,
+  /// 0..1, wherever the others are in the maps.
+  double max_contradiction = 0.5;
+  /// A tie is borne out if at least this part of the near loops beside it that are tried fit, 0..1.
+  double min_near_ratio = 0.25;
+  /// ... of at least so many, >= 1; of fewer nothing is said.
+  int min_near_tried = 12;
+  /// Of two sessions that share more than this part of the keyframes of the smaller one, 0..1, that
+  /// one is left out: both hold the same recording.
+  double max_shared_keyframes = 0.1;
+
+  void describe(hyselam::ParameterVisitor& visit);
+  /// @throws hyselam::ParameterError
+  void validate() const;
+};
+
+/// A saved map, by its name.
+struct MapSession {
+  std::string name;
+  SlamState state;
+};
+
+/// A session that is not in the result, and why.
+struct LeftOutSession {
+  std::string name, reason;
+};
+
+/// What joins two sessions, or does not.
+struct MapMeeting {
+  std::size_t a = 0, b = 0;  ///< sessions as given, a < b
+  int far_loops = 0;         ///< in the graph
+  int near_loops = 0;
+  /// Verified by the scans, but not believed: too few, or contradicted.
+  int doubted = 0;
+  double fit = 0.0;  ///< mean of the far loops, 0..1
+};
+
+/// Part of a session in a merged map.
+struct MergedPart {
+  std::size_t session = 0;                        ///< as given
+  std::vector<std::uint32_t> runs;                ///< of the map
+  std::vector<hyselam::StampedPose2> trajectory;  ///< of all scans, in the map
+};
+
+struct MergedMap {
+  SlamState state;
+  std::vector<MergedPart> parts;  ///< in the order given
+};
+
+struct MapMergingCounters {
+  int questions = 0;  ///< places of one map asked for in others
+  int tried = 0;      ///< far loops
+  int verified = 0;   ///< of them
+  int near_tried = 0, near_verified = 0;
+  int ties = 0;            ///< of maps, made
+  int ties_withdrawn = 0;  ///< of them
+};
+
+struct MergedMaps {
+  std::vector<MergedMap> maps;       ///< the one of most keyframes first
+  std::vector<MapMeeting> meetings;  ///< pairs of which some loop was verified
+  std::vector<LeftOutSession> left_out;
+  std::vector<LeftOutSession> doubtful;  ///< merged, but of another kind of laser
+  MapMergingCounters counters;
+};
+
+/// Told now and then: what is done, how much of it.
+using MergingProgress =
+    std::function<void(const std::string& step, std::size_t done, std::size_t total)>;
+
+/// Signatures find places of one map in the others (SignaturePlaces), the scans verify them
+/// (verifyLoop()), and what SLAM believes of a run in a known map is believed of two maps
+/// (believeFarLoops()): three loops that agree, are likelier right than wrong, and are not
+/// contradicted, here by nothing in both maps. The best known tie first; it is borne out by near
+/// loops along the common path, which go into the graph, or withdrawn. The graph is optimized with
+/// all loops and robustly, as by SlamEngine.
+///
+/// Sessions without keyframes, that are inconsistent, or that hold a recording of another one are
+/// left out. Maps that meet no other come back as they are. Runs of one session that no loop joins
+/// are maps of their own here too. The result is consolidated (ConsolidationParams), but forgets no
+/// scan. Deterministic, with threads too.
+/// @throws hyselam::ParameterError
+MergedMaps mergeMaps(std::vector<MapSession> sessions, const MapMergingParams& params = {},
+                     const MergingProgress& progress = {});
+
+}  // namespace ngram_slam

@@ -1,0 +1,87 @@
+// The work of mergeMaps(), for its own files only.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ngram_slam/slam/loop_candidates.hpp"
+#include "ngram_slam/slam/map_merging.hpp"
+#include "ngram_slam/slam/map_questions.hpp"
+#include "ngram_slam/slam/map_ties.hpp"
+#include "ngram_slam/slam/run_connections.hpp"
+
+namespace ngram_slam {
+
+/// Sessions joined to one state, in which loops are found between its maps.
+class MapMerger {
+ public:
+  MapMerger(const std::vector<SlamState>& sessions, const MapMergingParams& params,
+            MergingProgress progress);
+  void run();
+
+  std::uint32_t runs() const { return static_cast<std::uint32_t>(session_of_run_.size()); }
+  std::size_t sessionOf(std::uint32_t run) const { return session_of_run_[run]; }
+  /// The first run of the map that a run belongs to now.
+  std::uint32_t mapOf(std::uint32_t run) const { return connections_.mapOf(run); }
+  const SlamState& state() const { return state_; }
+  const MapMergingCounters& counters() const { return counters_; }
+  std::vector<MapMeeting> meetings() const;
+  struct TakenScan {
+    std::size_t session;
+    std::uint32_t map;
+    hyselam::StampedPose2 pose;
+  };
+  std::vector<TakenScan> scans() const;
+
+ private:
+  const SlamKeyframe& keyframe(int k) const {
+    return state_.keyframes[static_cast<std::size_t>(k)];
+  }
+  std::size_t sessionOfKeyframe(int k) const { return session_of_run_[keyframe(k).run]; }
+  std::uint32_t mapOfKeyframe(int k) const { return connections_.mapOf(keyframe(k).run); }
+  /// Whether two keyframes were in different maps when this began.
+  bool areStrangers(int a, int b) const {
+    return !given_.connected(keyframe(a).run, keyframe(b).run);
+  }
+
+  bool isMerged(std::uint32_t map) const;
+
+  // Far loops.
+  void askAll(const std::string& step, double interval, int candidates);
+  void askAroundVerified();
+  bool isOpen(int older, int newer);
+  void verifyFar(const std::string& step, const std::vector<SignatureCandidate>& candidates);
+  std::vector<LoopVerification> verified(const std::vector<LoopTask>& tasks) const;
+
+  // Ties and what follows from them.
+  void settle();
+  std::optional<MapTie> bestTieOfAll() const;
+  void join(const MapTie& tie);
+  bool isBorneOut(const std::vector<std::uint32_t>& maps_before);
+  void withdraw(const std::vector<std::uint32_t>& maps_before);
+  void addLoop(const SlamLoop& loop);
+  bool believeWithinMaps();
+  bool excludes(const SlamLoop& loop) const;
+  std::vector<LoopTask> nearTasks();
+  void closeNear(std::uint32_t run);
+  void optimize(std::uint32_t map);
+  void rebuildPathLengths();
+
+  MapMergingParams params_;
+  MergingProgress progress_;
+  SlamState state_;
+  std::vector<std::size_t> session_of_run_, session_of_scan_;
+  RunConnections given_, connections_;
+  GraphPathLengths path_lengths_;
+  std::optional<MapQuestions> questions_;
+  std::vector<SlamLoop> pending_;  // verified far loops that are not in the graph
+  std::vector<bool> near_asked_;   // by keyframe
+  MapMergingCounters counters_;
+  std::vector<int> near_asked_since_;       // the last tie
+  int near_tried_ = 0, near_verified_ = 0;  // since the last tie
+  int lengths_of_ = -1;                     // keyframe of isOpen()
+  std::vector<double> lengths_;
+};
+
+}  // namespace ngram_slam

@@ -1,0 +1,252 @@
+// merge_maps: saved maps of several sessions or robots become one, as far as they recognize each
+// other's places.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "hyselam_common/atomic_file.hpp"
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/map_io.hpp"
+#include "hyselam_common/occupancy_mapper.hpp"
+#include "hyselam_common/progress.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_common/trajectory_io.hpp"
+#include "ngram_slam/slam/map_merging.hpp"
+#include "ngram_slam/slam/slam_state_io.hpp"
+#include "report_page.hpp"
+#include "slam_report.hpp"
+
+namespace {
+
+using namespace ngram_slam;  // NOLINT: a program, not a header
+using nlohmann::json;
+
+struct Options {
+  std::vector<std::string> states;
+  std::string out, model;
+  double resolution = 0.05;
+  int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  bool keep_all = false;
+};
+
+double cpuSeconds() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(use.ru_utime) + seconds(use.ru_stime);
+}
+
+/// Short names for the sessions of files, each another one: what tells them apart.
+std::vector<std::string> labelsOf(const std::vector<std::string>& files) {
+  std::vector<std::string> labels;
+  std::map<std::string, int> stems, folders, taken;
+  const auto stemOf = [](const std::string& f) { return std::filesystem::path(f).stem().string(); };
+  const auto folderOf = [](const std::string& f) {
+    return std::filesystem::path(f).parent_path().filename().string();
+  };
+  for (const std::string& f : files) {
+    ++stems[stemOf(f)];
+    ++folders[folderOf(f)];
+  }
+  for (const std::string& f : files) {
+    const std::string stem = stemOf(f), folder = folderOf(f);
+    std::string label = stems[stem] == 1 || folder.empty() ? stem
+                        : folders[folder] == 1             ? folder
+                                                           : folder + "_" + stem;
+    const int before = taken[label]++;
+    if (before > 0) label += "_" + std::to_string(before + 1);
+    labels.push_back(label);
+  }
+  return labels;
+}
+
+hyselam::OccupancyMapper emptyMap(double resolution) {
+  hyselam::OccupancyMapperParams p;
+  p.resolution = resolution;
+  return hyselam::OccupancyMapper(p);
+}
+
+struct Loaded {
+  std::vector<MapSession> sessions;  // by file
+  std::vector<std::string> files;    // of the sessions
+  std::vector<LeftOutSession> broken;
+};
+
+Loaded load(const Options& o, const MapMergingParams& params) {
+  Loaded loaded;
+  hyselam::Progress progress("loading maps", o.states.size());
+  for (std::size_t i = 0; i < o.states.size(); ++i) {
+    progress.update(i + 1);
+    try {
+      loaded.sessions.push_back(
+          {o.states[i], SlamStateFile::load(o.states[i], params.slam.surface)});
+      loaded.files.push_back(o.states[i]);
+    } catch (const hyselam::InputError& e) {
+      loaded.broken.push_back({o.states[i], e.what()});
+    }
+  }
+  return loaded;
+}
+
+/// Of a map, counted from 0: the largest one has no number.
+std::string nameOfMap(std::size_t i) {
+  return i == 0 ? "map" : "map_" + std::to_string(i + 1);
+}
+
+json writeMap(const Options& o, const MergedMap& map, std::size_t number,
+              const std::vector<std::string>& labels, const std::vector<std::string>& files) {
+  const std::string name = nameOfMap(number);
+  SlamStateFile::save(o.out + "/" + name + ".state", map.state);
+  hyselam::OccupancyMapper mapper = emptyMap(o.resolution);
+  for (const SlamKeyframe& k : map.state.keyframes) mapper.insert(k.pose, *k.scan);
+  hyselam::saveMap(o.out + "/" + name + ".yaml", mapper.grid());
+  json sessions = json::array();
+  for (const MergedPart& part : map.parts) {
+    std::string trajectory = "trajectory_" + labels[part.session];
+    // A session whose runs lie in several maps.
+    if (number > 0) trajectory += "_" + name;
+    trajectory += ".tum";
+    hyselam::writeTum(o.out + "/" + trajectory, part.trajectory);
+    double path = 0.0;
+    for (std::size_t i = 1; i < part.trajectory.size(); ++i) {
+      path += distance(part.trajectory[i - 1].pose, part.trajectory[i].pose);
+    }
+    sessions.push_back({{"name", labels[part.session]},
+                        {"file", files[part.session]},
+                        {"runs", part.runs.size()},
+                        {"scans", part.trajectory.size()},
+                        {"path_m", rounded(path)},
+                        {"trajectory", trajectory}});
+  }
+  return {{"name", name},
+          {"state", name + ".state"},
+          {"map", name + ".yaml"},
+          {"keyframes", map.state.keyframes.size()},
+          {"loops", map.state.loops.size()},
+          {"bytes", std::filesystem::file_size(o.out + "/" + name + ".state")},
+          {"sessions", sessions}};
+}
+
+json namesAndReasons(const std::vector<LeftOutSession>& sessions) {
+  json out = json::array();
+  for (const LeftOutSession& s : sessions) out.push_back({{"file", s.name}, {"reason", s.reason}});
+  return out;
+}
+
+json toJson(const MapMergingCounters& c) {
+  return {{"places_asked_for", c.questions},        {"loops_tried", c.tried},
+          {"loops_verified", c.verified},           {"near_loops_tried", c.near_tried},
+          {"near_loops_verified", c.near_verified}, {"ties", c.ties},
+          {"ties_withdrawn", c.ties_withdrawn}};
+}
+
+/// For people: which maps there are now, and who met whom.
+void print(const json& report) {
+  for (const json& map : report["maps"]) {
+    std::cout << map["name"].get<std::string>() << ": " << map["keyframes"] << " keyframes of";
+    for (const json& s : map["sessions"]) std::cout << " " << s["name"].get<std::string>();
+    std::cout << "\n";
+  }
+  if (!report["meetings"].empty()) {
+    std::cout << "\n| session | met | far loops | near loops | not believed | fit |\n"
+                 "|---|---|---|---|---|---|\n";
+  }
+  for (const json& m : report["meetings"]) {
+    std::cout << "| " << m["a"].get<std::string>() << " | " << m["b"].get<std::string>() << " | "
+              << m["far_loops"] << " | " << m["near_loops"] << " | " << m["doubted"] << " | "
+              << std::fixed << std::setprecision(2) << m["fit"].get<double>() << " |\n";
+  }
+  if (report["maps"].size() > 1) {
+    std::cout << "\n"
+              << report["maps"].size() << " maps that do not know where they lie to each other.\n";
+  }
+}
+
+json run(const Options& o) {
+  MapMergingParams params;
+  params.threads = o.threads;
+  params.slam.signatures.model = o.model;
+  params.slam.consolidation.enabled = !o.keep_all;
+  params.validate();
+  emptyMap(o.resolution);  // refused before the work, not after it
+  Loaded loaded = load(o, params);
+  std::error_code error;
+  std::filesystem::create_directories(o.out, error);
+  if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
+
+  const double begin = cpuSeconds();
+  std::unique_ptr<hyselam::Progress> progress;
+  std::string shown;
+  const auto tell = [&](const std::string& step, std::size_t done, std::size_t total) {
+    if (step != shown) progress = std::make_unique<hyselam::Progress>(step, total);
+    shown = step;
+    progress->update(done);
+  };
+  const MergedMaps merged = mergeMaps(std::move(loaded.sessions), params, tell);
+  progress.reset();
+  std::vector<LeftOutSession> left_out = loaded.broken;
+  left_out.insert(left_out.end(), merged.left_out.begin(), merged.left_out.end());
+  for (const LeftOutSession& s : left_out) {
+    std::cerr << "warning: " << s.name << ": left out: " << s.reason << "\n";
+  }
+  for (const LeftOutSession& s : merged.doubtful) {
+    std::cerr << "warning: " << s.name << ": " << s.reason << "\n";
+  }
+  if (merged.maps.empty()) {
+    throw hyselam::InputError(
+        "merge_maps", "", "none of the " + std::to_string(o.states.size()) + " maps can be used");
+  }
+  const std::vector<std::string> labels = labelsOf(loaded.files);
+  json report = {{"left_out", namesAndReasons(left_out)},
+                 {"doubtful", namesAndReasons(merged.doubtful)},
+                 {"meetings", json::array()},
+                 {"maps", json::array()},
+                 {"counters", toJson(merged.counters)}};
+  for (const MapMeeting& m : merged.meetings) {
+    report["meetings"].push_back({{"a", labels[m.a]},
+                                  {"b", labels[m.b]},
+                                  {"far_loops", m.far_loops},
+                                  {"near_loops", m.near_loops},
+                                  {"doubted", m.doubted},
+                                  {"fit", rounded(m.fit)}});
+  }
+  for (std::size_t i = 0; i < merged.maps.size(); ++i) {
+    report["maps"].push_back(writeMap(o, merged.maps[i], i, labels, loaded.files));
+  }
+  hyselam::writeFileAtomically(o.out + "/report.json",
+                               [&](std::ostream& out) { out << report.dump(2) << "\n"; });
+  makePage("merge_report", o.out);
+  print(report);
+  report["cpu_seconds"] = cpuSeconds() - begin;
+  return report;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Saved maps (of slam_offline, NgramSlam or this program) of several sessions or robots "
+      "become one map, as far as they recognize each other's places. Nothing needs to be known of "
+      "where they lie to each other. What does not connect stays apart: map, map_2, ... by size.",
+      "merge_maps");
+  Options o;
+  app.option_defaults()->always_capture_default();
+  app.add_option("states", o.states, "states of SLAM")->required();
+  app.add_option("--out", o.out,
+                 "folder for map.state, map.yaml, map.pgm, the trajectory of each session, "
+                 "report.json and report.html")
+      ->required();
+  app.add_option("--resolution", o.resolution, "of the maps [m]");
+  app.add_option("--threads", o.threads, "that verify loops; the result does not depend on it");
+  app.add_option("--model", o.model, "another model of signatures; without it the shipped one");
+  app.add_flag("--keep-all", o.keep_all, "keep all keyframes, whether they add to the map or not");
+  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+}
