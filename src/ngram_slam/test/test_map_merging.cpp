@@ -200,7 +200,7 @@ TEST(MapMerging, RefusesImpossibleParameters) {
   params.threads = 0;
   EXPECT_THROW(mergeMaps({}, params), hyselam::ParameterError);
   params = {};
-  params.max_contradiction = 1.5;
+  params.max_rival = 1.5;
   EXPECT_THROW(mergeMaps({}, params), hyselam::ParameterError);
 }
 
@@ -275,7 +275,7 @@ TEST(MapTies, TheOneWithMostSupportIsTold) {
   ASSERT_TRUE(tie);
   EXPECT_EQ(tie->loops.size(), 8U);
   EXPECT_NEAR(tie->support, 8 * 0.8, 1e-9);
-  EXPECT_NEAR(tie->contradiction, 3 * 0.8, 1e-9);
+  EXPECT_NEAR(tie->rival, 3 * 0.8, 1e-9);
   for (const SlamLoop& l : tie->loops) EXPECT_LT(l.newer, 60 + 20);
   // As many say the other.
   for (const int i : {46, 48, 50, 52, 54}) loops.push_back(runs.loop(i - 20, i, wrong));

@@ -26,9 +26,9 @@ struct MapMergingParams {
   /// Around a verified loop between maps that are not tied, each place is asked for on so much path
   /// before and after it [m], >= 0.
   double ask_around = 8.0;
-  /// Two maps are not tied by loops that more than this part of what supports them contradicts,
-  /// 0..1, wherever the others are in the maps.
-  double max_contradiction = 0.5;
+  /// Two maps are not tied if there is another tie with more than this part of the support of the
+  /// best one, 0..1: see bestTie().
+  double max_rival = 0.5;
   /// A tie is borne out if at least this part of the near loops beside it that are tried fit, 0..1.
   double min_near_ratio = 0.25;
   /// ... of at least so many, >= 1; of fewer nothing is said.

@@ -167,8 +167,7 @@ std::optional<MapTie> MapMerger::bestTieOfAll() const {
   }
   std::optional<MapTie> best;
   for (const auto& [maps, loops] : by_maps) {
-    auto tie = bestTie(loops, state_.keyframes, connections_, params_.slam.loop,
-                       params_.max_contradiction);
+    auto tie = bestTie(loops, state_.keyframes, connections_, params_.slam.loop, params_.max_rival);
     if (tie && (!best || tie->support > best->support)) best = std::move(tie);
   }
   return best;

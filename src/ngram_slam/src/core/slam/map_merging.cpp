@@ -166,8 +166,7 @@ void MapMergingParams::describe(hyselam::ParameterVisitor& visit) {
   visit("second_candidates", second_candidates, Range::between(1, 20), "", "for each of them");
   visit("ask_around", ask_around, Range::atLeast(0.0), "m",
         "of path around a verified loop between untied maps on which each place is asked for");
-  visit("max_contradiction", max_contradiction, ratio, "",
-        "part of the support of a tie that may contradict it");
+  visit("max_rival", max_rival, ratio, "", "support of another tie, against that of the best");
   visit("min_near_ratio", min_near_ratio, ratio, "",
         "part of the near loops beside a tie that must fit");
   visit("min_near_tried", min_near_tried, Range::between(1, 1e6), "",

@@ -46,29 +46,42 @@ std::vector<SlamLoop> believedOf(const std::vector<SlamLoop>& between,
 std::optional<MapTie> bestTie(const std::vector<SlamLoop>& between,
                               const std::vector<SlamKeyframe>& keyframes,
                               const RunConnections& connections, const LoopParams& params,
-                              double max_contradiction) {
+                              double max_rival) {
   const auto contradict = [&](const SlamLoop& a, const SlamLoop& b) {
     return isContradiction(loopInconsistency(a, b, keyframes, connections), params);
   };
   const std::vector<SlamLoop> believed = believedOf(between, keyframes, connections, params);
-  MapTie best;
+  const SlamLoop* best = nullptr;
+  MapTie tie;
   for (const SlamLoop& candidate : believed) {
-    MapTie tie;
-    tie.loops.push_back(candidate);
+    double support = 0.0;
     for (const SlamLoop& other : between) {
-      (contradict(candidate, other) ? tie.contradiction : tie.support) += other.inlier_ratio;
+      if (!contradict(candidate, other)) support += other.inlier_ratio;
     }
-    if (best.loops.empty() || tie.support > best.support) best = tie;
+    if (best != nullptr && support <= tie.support) continue;
+    best = &candidate;
+    tie.support = support;
   }
-  if (best.loops.empty() || best.contradiction > max_contradiction * best.support) {
-    return std::nullopt;
+  if (best == nullptr) return std::nullopt;
+  std::vector<const SlamLoop*> with, against;
+  for (const SlamLoop& l : between) (contradict(*best, l) ? against : with).push_back(&l);
+  for (const SlamLoop* rival : against) {
+    // What speaks for one of the two only.
+    double for_rival = 0.0, for_best = 0.0;
+    for (const SlamLoop* l : against) {
+      if (!contradict(*rival, *l)) for_rival += l->inlier_ratio;
+    }
+    for (const SlamLoop* l : with) {
+      if (contradict(*rival, *l)) for_best += l->inlier_ratio;
+    }
+    if (for_rival > max_rival * for_best) return std::nullopt;
+    tie.rival = std::max(tie.rival, for_rival);
   }
+  tie.loops.push_back(*best);
   for (const SlamLoop& l : believed) {
-    if (!isSamePair(l, best.loops.front()) && !contradict(best.loops.front(), l)) {
-      best.loops.push_back(l);
-    }
+    if (!isSamePair(l, *best) && !contradict(*best, l)) tie.loops.push_back(l);
   }
-  return best;
+  return tie;
 }
 
 }  // namespace ngram_slam
