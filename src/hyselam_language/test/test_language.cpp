@@ -192,6 +192,25 @@ TEST(TopoParser, RangesNameAllBetween) {
   const Utterance said = parser().parse("On your left you have rooms 101 to 104.").utterances.at(0);
   EXPECT_EQ(testing::outline(said),
             "neighbours places=room 101,room 102,room 103,room 104 side=left");
+  for (const char* text : {"Dressing rooms one to four are on your left.",
+                           "The dressing rooms 1 to 4 are on your left."}) {
+    EXPECT_EQ(testing::outline(parser().parse(text).utterances.at(0)),
+              "neighbours places=dressing room 1,dressing room 2,dressing room 3,dressing room 4 "
+              "side=left");
+  }
+  EXPECT_EQ(
+      testing::outline(parser().parse("On your left you have rooms two to three.").utterances[0]),
+      "neighbours places=room 2,room 3 side=left");
+  EXPECT_EQ(
+      testing::outline(parser().parse("As salas um a três ficam à sua esquerda.").utterances[0]),
+      "neighbours places=sala 1,sala 2,sala 3 side=left");
+  // What is measured, and what counts down, is none.
+  for (const char* text : {"On your left you have rooms two to three metres long.",
+                           "On your left you have rooms four to one."}) {
+    for (const Utterance& each : parser().parse(text).utterances) {
+      EXPECT_EQ(testing::outline(each).find("room 3"), std::string::npos) << text;
+    }
+  }
 }
 
 TEST(PlaceNames, AdjectivesTellPlacesApart) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr char kMarksInNames[] = "-/#+_";
 constexpr std::size_t kLongestNoun = 3;  // words
+constexpr int kLongestRange = 50;        // rooms
 
 bool isMarkOfNames(const Token& token) {
   return token.kind == TokenKind::kMark && token.text.size() == 1 &&
@@ -119,13 +120,11 @@ std::string NameFinder::titleOfRow(std::size_t at, const NameType& type) const {
 std::optional<FoundName> NameFinder::inRow(std::size_t at, const NameType& type) const {
   std::size_t begin = at;
   if (mayBeArticle(begin, type)) ++begin;
-  if (begin < tokens_.size() && type.plurals.count(tokens_[begin].folded) != 0) {
-    ++begin;
-  } else {
-    begin = at;
-  }
+  const std::size_t noun = begin;
+  const bool plural = begin < tokens_.size() && type.plurals.count(tokens_[begin].folded) != 0;
+  begin = plural ? begin + 1 : at;
   const std::size_t end = codeEnd(begin);
-  if (end == 0) return std::nullopt;
+  if (end == 0) return rangeInWords(noun, type);
   const std::string title = titleOfRow(begin, type);
   if (title.empty()) return std::nullopt;
   SaidName name = nameOf(begin, end);
@@ -135,8 +134,48 @@ std::optional<FoundName> NameFinder::inRow(std::size_t at, const NameType& type)
   return found;
 }
 
+std::optional<int> NameFinder::numberAt(std::size_t at) const {
+  const Token& token = tokens_[at];
+  if (token.kind == TokenKind::kNumber) return wholeNumber(token.text);
+  const auto word = grammar_.number_words.find(token.folded);
+  if (token.kind != TokenKind::kWord || word == grammar_.number_words.end()) return std::nullopt;
+  return static_cast<int>(word->second.first);
+}
+
+std::optional<FoundName> NameFinder::rangeInWords(std::size_t begin, const NameType& type) const {
+  constexpr std::size_t kTokens = 4;  // "rooms", "one", "to", "four"
+  std::size_t at = begin;
+  while (at < begin + kLongestNoun - 1 && at + kTokens < tokens_.size() &&
+         type.plurals.count(tokens_[at].folded) == 0) {
+    ++at;
+  }
+  const std::size_t end = at + kTokens;
+  if (end > tokens_.size() || type.range_words.count(tokens_[at + 2].lower) == 0) return {};
+  const auto plural = type.plurals.find(tokens_[at].folded);
+  const auto first = numberAt(at + 1), last = numberAt(end - 1);
+  if (plural == type.plurals.end() || !first || !last || *last <= *first ||
+      *last - *first > kLongestRange) {
+    return {};
+  }
+  // "rooms two to three metres long"
+  const bool goes_on = end < tokens_.size() && tokens_[end].kind == TokenKind::kWord;
+  if (goes_on && (grammar_.unit_words.count(tokens_[end].folded) != 0 || numberAt(end))) return {};
+  std::string title;
+  for (std::size_t k = begin; k < at; ++k) title += tokens_[k].lower + " ";
+  title += plural->second;
+  if (at > begin && type.nouns.count(hyselam::utf8Fold(title)) == 0) return {};
+  FoundName found{end, kNameCost + kNameWordCost, nameOf(at, at + 2), {}};
+  SaidName each = found.name;
+  each.range = tokens_[end - 1].range;
+  found.name.text = title + " " + std::to_string(*first);
+  for (int number = *first + 1; number <= *last; ++number) {
+    each.text = title + " " + std::to_string(number);
+    found.more.push_back(each);
+  }
+  return found;
+}
+
 void NameFinder::addRange(const NameType& type, const std::string& title, FoundName* first) const {
-  constexpr int kLongestRange = 50;
   const Token& from = tokens_[first->end - 1];
   std::optional<int> begin = wholeNumber(from.text), last;
   std::size_t end = first->end;

@@ -49,6 +49,10 @@ class NameFinder {
   std::optional<FoundName> inRow(std::size_t at, const NameType& type) const;
   /// "101 to 106": the rest of it behind the first code; does nothing for what is no such range.
   void addRange(const NameType& type, const std::string& title, FoundName* first) const;
+  /// Of digits or of a word.
+  std::optional<int> numberAt(std::size_t at) const;
+  /// "rooms one to four", "dressing rooms 1 to 4", without the article.
+  std::optional<FoundName> rangeInWords(std::size_t begin, const NameType& type) const;
   /// "Mary's", "da Teresa": the noun that was said before it in the sentence: "office"; "" for
   /// none.
   std::string nounBefore(std::size_t at, const NameType& type) const;
