@@ -221,6 +221,32 @@ void recordConnection(Statement& s, const Placement& placement) {
   insertConnection(s, p, wanted);
 }
 
+/// What a correction takes the place of. "No, it is next to the lab": what it was said to be next
+/// to; if nothing was, the one relation that the last statement told of it.
+std::vector<DescribedRelation>::iterator replacedBy(Statement& s,
+                                                    const DescribedRelation& relation) {
+  auto& all = s.building().relations;
+  const DescribedBuilding* before = s.listener().before_last;
+  const auto wasTold = [&](const DescribedRelation& other) {
+    if (before == nullptr) return false;
+    const auto& told = before->relations;
+    return std::find(told.begin(), told.end(), other) != told.end();
+  };
+  std::vector<std::vector<DescribedRelation>::iterator> same, last;
+  for (auto i = all.begin(); i != all.end(); ++i) {
+    if (i->denied || i->a != relation.a) continue;
+    if (i->kind == relation.kind) same.push_back(i);
+    if (!wasTold(*i)) last.push_back(i);
+  }
+  if (same.size() > 1) {
+    same.erase(std::remove_if(same.begin(), same.end(), [&](auto i) { return wasTold(*i); }),
+               same.end());
+  } else if (same.empty()) {
+    same = last;
+  }
+  return same.size() == 1 ? same.front() : all.end();
+}
+
 void recordRelation(Statement& s, const DescribedRelation& relation) {
   const auto& [kind, a, b, c, side, denied, seen_from] = relation;
   if (a == b || a == c || b == c) s.fail(IssueKind::kMeaningless, "twice");
@@ -242,22 +268,9 @@ void recordRelation(Statement& s, const DescribedRelation& relation) {
     return !other.denied && saysTheSame(s, other, relation);
   });
   if (known) return;
-  // "No, it is next to the lab": instead of what it was said to be next to.
   if (s.isCorrection() && !s.hasCorrected()) {
-    std::vector<DescribedRelation> same;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(same), [&](const auto& other) {
-      return other.kind == relation.kind && other.a == relation.a && !other.denied;
-    });
-    const DescribedBuilding* before = s.listener().before_last;
-    const auto wasTold = [&](const DescribedRelation& other) {
-      const auto& told = before->relations;
-      return std::find(told.begin(), told.end(), other) != told.end();
-    };
-    if (before != nullptr && same.size() > 1) {
-      same.erase(std::remove_if(same.begin(), same.end(), wasTold), same.end());
-    }
-    if (same.size() == 1) {
-      all.erase(std::find(all.begin(), all.end(), same.front()));
+    if (const auto replaced = replacedBy(s, relation); replaced != all.end()) {
+      all.erase(replaced);
       s.setCorrected();
     }
   }
