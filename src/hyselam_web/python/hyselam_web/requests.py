@@ -1,0 +1,83 @@
+"""What pages may ask for: one JSON object a message, each field of a kind and within limits; all else is refused."""
+import json
+import math
+import unicodedata
+
+from . import limits
+
+# name: (role, bucket, {field: kind}); a kind that ends with ? may be missing.
+REQUESTS = {
+    "stop": ("", "message", {}),
+    "hide": ("look", "message", {"on": "flag"}),
+    "say": ("talk", "say", {"text": "text"}),
+    "name": ("talk", "act", {"place": "id", "names": "names"}),
+    "go": ("drive", "act", {"place": "id", "language": "language"}),
+    "here": ("drive", "act", {"place": "id"}),
+    "pose": ("drive", "act", {"x": "coordinate", "y": "coordinate", "yaw": "coordinate"}),
+    "wall": ("drive", "act", {"ax": "coordinate", "ay": "coordinate", "bx": "coordinate", "by": "coordinate"}),
+    "shut": ("drive", "act", {"door": "id"}),
+    "learn": ("drive", "slow", {"on": "flag"}),
+    "save": ("drive", "slow", {}),
+    "doctor": ("look", "slow", {}),
+}
+
+
+class Refused(ValueError):
+    """A request that is not taken: a word for programs, a reason for people."""
+
+    def __init__(self, code, reason):
+        super().__init__(reason)
+        self.code = code
+
+
+def clean(text):
+    """Without control characters; None: nothing is left."""
+    kept = "".join(" " if unicodedata.category(c) in ("Cc", "Zl", "Zp") else c for c in text
+                   if unicodedata.category(c) not in ("Cf", "Cs", "Co", "Cn") or c in "\u200c\u200d")
+    return " ".join(kept.split()) or None
+
+
+def checked(kind, value):
+    """The value, or None: it is not of the kind."""
+    if kind == "flag":
+        return value if isinstance(value, bool) else None
+    if kind == "id":
+        return value if isinstance(value, int) and not isinstance(value, bool) and 0 < value < 2 ** 32 else None
+    if kind == "coordinate":
+        fits = isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e5 and math.isfinite(value)
+        return float(value) if fits else None
+    if kind == "language":
+        return value if value in ("en", "pt") else None
+    if kind == "text":
+        return clean(value) if isinstance(value, str) and len(value) <= limits.MAX_TEXT else None
+    if kind == "names":
+        if not isinstance(value, list) or len(value) > limits.MAX_NAMES:
+            return None
+        names = [clean(v) if isinstance(v, str) and len(v) <= limits.MAX_NAME else None for v in value]
+        return None if None in names else names
+    raise KeyError(kind)
+
+
+def parse(text):
+    """(name, fields) of a message. @throws Refused."""
+    def no_constant(_):
+        raise ValueError("not a number")
+    try:
+        message = json.loads(text, parse_constant=no_constant)
+    except (ValueError, RecursionError):
+        raise Refused("malformed", "this is no JSON")
+    if not isinstance(message, dict) or not isinstance(message.get("do"), str):
+        raise Refused("malformed", "this is no request")
+    name = message.pop("do")
+    if name not in REQUESTS:
+        raise Refused("unknown", "there is no such request")
+    message.pop("n", None)
+    kinds, fields = REQUESTS[name][2], {}
+    for field, kind in kinds.items():
+        value = checked(kind, message.pop(field, None))
+        if value is None:
+            raise Refused("invalid", f"'{field}' is missing, or no {kind}, or too long")
+        fields[field] = value
+    if message:
+        raise Refused("invalid", "there are fields that do not belong to it")
+    return name, fields

@@ -1,0 +1,112 @@
+"""A grid map in tiles, so that only those that changed go to the pages. Tiles lie on the lattice of the map's cells, not on its corner:
+a map that grows keeps them. Each is a PNG of two bits a cell (no library for pictures: they take more memory than all else)."""
+import math
+import struct
+import zlib
+
+import numpy as np
+
+SIDE = 256  # cells
+UNKNOWN, FREE, OCCUPIED, UNSURE = 0, 1, 2, 3
+FREE_MAX, OCCUPIED_MIN = 25, 65  # as in Gr2To
+PALETTE = bytes([0, 0, 0, 255, 255, 255, 24, 32, 44, 158, 164, 172])  # by class
+ALPHA = bytes([0, 255, 255, 255])
+MAX_CELLS = 50000000
+
+
+def classes():
+    """Class of each value of an occupancy grid, read as unsigned byte."""
+    table = np.full(256, UNKNOWN, np.uint8)
+    table[:101] = UNSURE
+    table[:FREE_MAX + 1] = FREE
+    table[OCCUPIED_MIN:101] = OCCUPIED
+    return table
+
+
+CLASSES = classes()
+
+
+def png(cells):
+    """Classes of SIDE x SIDE cells, row 0 is the lowest, as a PNG, whose row 0 is the highest."""
+    rows = cells[::-1]
+    packed = np.zeros((SIDE, SIDE // 4 + 1), np.uint8)  # one byte for the filter
+    packed[:, 1:] = rows[:, 0::4] << 6 | rows[:, 1::4] << 4 | rows[:, 2::4] << 2 | rows[:, 3::4]
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", SIDE, SIDE, 2, 3, 0, 0, 0)) + chunk(b"PLTE", PALETTE) +
+            chunk(b"tRNS", ALPHA) + chunk(b"IDAT", zlib.compress(packed.tobytes(), 6)) + chunk(b"IEND", b""))
+
+
+class Prepared:
+    """What a new map changes; commit() takes it over."""
+
+    def __init__(self, identity, info, pictures, checksums, emptied):
+        self.identity, self.info, self.pictures, self.checksums, self.emptied = identity, info, pictures, checksums, emptied
+
+
+class MapTiles:
+    """The tiles of the newest map, {(column, row): (number of the change, PNG)}. A PNG of no bytes: nothing is known there."""
+
+    def __init__(self):
+        self.info = None
+        self.tiles = {}
+        self._checksums = {}
+        self._identity = None
+
+    def prepare(self, width, height, resolution, origin, data):
+        """A new map; origin (x, y, yaw) of its corner; data: int8, row by row. Changes nothing: may run in a thread, one at a time.
+        @throws ValueError for a map that is none."""
+        if not (width > 0 and height > 0 and width * height <= MAX_CELLS and len(data) == width * height):
+            raise ValueError(f"{len(data)} cells are not {width} x {height}, or more than {MAX_CELLS}")
+        if not (math.isfinite(resolution) and resolution > 0 and all(math.isfinite(v) for v in origin)):
+            raise ValueError(f"cells of {resolution} m at {origin} are not possible")
+        yaw = origin[2]
+        # The corner in the axes of the cells.
+        along = math.cos(yaw) * origin[0] + math.sin(yaw) * origin[1]
+        across = -math.sin(yaw) * origin[0] + math.cos(yaw) * origin[1]
+        if max(abs(along), abs(across)) > 1e6 * resolution:
+            raise ValueError(f"cells of {resolution} m at {origin} are too far from the origin")
+        column, row = round(along / resolution), round(across / resolution)
+        rest = (along - column * resolution, across - row * resolution)
+        identity = (round(resolution, 9), round(yaw, 6), round(rest[0], 4), round(rest[1], 4))
+        same = identity == self._identity  # else other cells: nothing of the old map fits
+        grid = np.frombuffer(data, np.uint8).reshape(height, width)
+        pictures, checksums = {}, {}
+        for ty in range(row // SIDE, (row + height - 1) // SIDE + 1):
+            for tx in range(column // SIDE, (column + width - 1) // SIDE + 1):
+                x0, y0 = tx * SIDE - column, ty * SIDE - row  # of the tile in the grid
+                part = grid[max(0, y0):y0 + SIDE, max(0, x0):x0 + SIDE]
+                cells = np.zeros((SIDE, SIDE), np.uint8)
+                left, low = max(0, -x0), max(0, -y0)
+                cells[low:low + part.shape[0], left:left + part.shape[1]] = CLASSES[part]
+                if not cells.any():
+                    continue
+                checksums[(tx, ty)] = (zlib.crc32(cells), zlib.adler32(cells))
+                if not same or self._checksums.get((tx, ty)) != checksums[(tx, ty)]:
+                    pictures[(tx, ty)] = png(cells)
+        emptied = [key for key, (_, picture) in self.tiles.items() if picture and key not in checksums]
+        info = {"resolution": resolution, "yaw": round(yaw, 6), "rest": [round(v, 6) for v in rest], "side": SIDE,
+                "box": [column, row, column + width, row + height]}
+        return Prepared(identity, info, pictures, checksums, emptied)
+
+    def commit(self, prepared, next_version):
+        """next_version() numbers each changed tile. Returns how many changed."""
+        for key in prepared.emptied:
+            self.tiles[key] = (next_version(), b"")
+        for key, picture in prepared.pictures.items():
+            self.tiles[key] = (next_version(), picture)
+        self._identity, self._checksums, self.info = prepared.identity, prepared.checksums, prepared.info
+        return len(prepared.pictures) + len(prepared.emptied)
+
+    def changed_since(self, version):
+        """Keys of the tiles that changed after it."""
+        return [key for key, (number, _) in self.tiles.items() if number > version]
+
+
+HEADER = struct.Struct("<iiI")
+
+
+def frame(key, tile):
+    """A tile as it goes to the pages: column, row, number of the change, PNG."""
+    return HEADER.pack(key[0], key[1], tile[0] & 0xffffffff) + tile[1]

@@ -1,0 +1,212 @@
+"""A real browser for tests: headless Chromium, driven by its own protocol (Chrome DevTools) over aiohttp. Waits for conditions, never for
+time. No test; others import it."""
+import asyncio
+import base64
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import threading
+import time
+
+import aiohttp
+
+WAIT = float(os.environ.get("HYSELAM_SLOWNESS", "1")) * 30.0  # [s] never reached when all is well
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+         "--disable-sync", "--disable-quic", "--disable-extensions", "--disable-default-apps", "--disable-dev-shm-usage", "--hide-scrollbars",
+         "--mute-audio", "--remote-debugging-port=0", "--remote-allow-origins=*"]
+PHONE, DESKTOP = (360, 740, True), (1280, 800, False)
+
+
+def program():
+    return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+class Browser:
+    def __init__(self):
+        self.folder = tempfile.mkdtemp(prefix="hyselam_browser_")
+        self.process = subprocess.Popen([program(), *FLAGS, f"--user-data-dir={self.folder}", "about:blank"], stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.loop = asyncio.new_event_loop()
+        threading.Thread(target=self.loop.run_forever, daemon=True).start()
+        self.number, self.waiting, self.tabs = 0, {}, {}
+        try:
+            port = self._port()
+            self.run(self._connect(port))
+        except BaseException:
+            self.close()
+            raise
+
+    def _port(self):
+        path, deadline = os.path.join(self.folder, "DevToolsActivePort"), time.monotonic() + 2 * WAIT
+        while time.monotonic() < deadline and self.process.poll() is None:
+            try:
+                with open(path) as file:
+                    lines = file.read().splitlines()
+                if len(lines) >= 2:
+                    return f"ws://127.0.0.1:{lines[0]}{lines[1]}"
+            except OSError:
+                pass
+            time.sleep(0.05)
+        raise AssertionError(f"the browser did not start (status {self.process.poll()})")
+
+    def run(self, coroutine, wait=WAIT):
+        return asyncio.run_coroutine_threadsafe(coroutine, self.loop).result(wait)
+
+    async def _connect(self, address):
+        self.session = aiohttp.ClientSession()
+        self.socket = await self.session.ws_connect(address, max_msg_size=0)
+        asyncio.ensure_future(self._receive())
+
+    async def _receive(self):
+        async for message in self.socket:
+            value = json.loads(message.data)
+            if "id" in value:
+                future = self.waiting.pop(value["id"], None)
+                if future is not None and not future.done():
+                    future.set_result(value)
+            elif value.get("sessionId") in self.tabs:
+                self.tabs[value["sessionId"]].on_event(value["method"], value.get("params", {}))
+
+    async def _send(self, method, params, session):
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": params}
+        if session:
+            message["sessionId"] = session
+        self.waiting[self.number] = future = self.loop.create_future()
+        await self.socket.send_str(json.dumps(message))
+        answer = await future
+        if "error" in answer:
+            raise AssertionError(f"{method}: {answer['error']}")
+        return answer["result"]
+
+    def send(self, method, session=None, **params):
+        return self.run(self._send(method, params, session))
+
+    def tab(self, size=DESKTOP, dark=False, language="en-US", ratio=1):
+        """A page with cookies of its own."""
+        return Tab(self, size, dark, language, ratio)
+
+    async def _disconnect(self):
+        await self.socket.close()
+        await self.session.close()
+
+    def close(self):
+        if hasattr(self, "socket"):
+            self.run(self._disconnect())
+        self.process.terminate()
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class Tab:
+    def __init__(self, browser, size, dark, language, ratio):
+        self.browser, self.errors, self.size = browser, [], size
+        context = browser.send("Target.createBrowserContext")["browserContextId"]
+        target = browser.send("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
+        self.session = browser.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        browser.tabs[self.session] = self
+        self.target = target
+        for domain in ("Page", "Runtime", "Log"):
+            self.send(domain + ".enable")
+        width, height, touch = size
+        self.touch = touch
+        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=touch)
+        self.send("Emulation.setTouchEmulationEnabled", enabled=touch)
+        self.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        agent = browser.send("Browser.getVersion")["userAgent"]
+        self.send("Emulation.setUserAgentOverride", userAgent=agent, acceptLanguage=language)
+
+    def send(self, method, **params):
+        return self.browser.send(method, self.session, **params)
+
+    def on_event(self, method, params):
+        if method == "Runtime.exceptionThrown":
+            details = params["exceptionDetails"]
+            self.errors.append(details.get("exception", {}).get("description") or details["text"])
+        elif method == "Log.entryAdded" and params["entry"]["level"] == "error":
+            self.errors.append(f"{params['entry']['text']} {params['entry'].get('url', '')}")
+
+    def goto(self, address):
+        self.send("Page.navigate", url=address)
+        self.wait("document.readyState === 'complete'", "the page")
+
+    def eval(self, expression):
+        answer = self.send("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise AssertionError(f"{expression}: {answer['exceptionDetails'].get('exception', {}).get('description')}")
+        return answer["result"].get("value")
+
+    def wait(self, condition, what, seconds=WAIT):
+        """Until an expression is true; its value."""
+        deadline = time.monotonic() + seconds
+        while True:
+            try:
+                value = self.eval(condition)
+            except AssertionError as error:  # while a page is left there is nobody to ask
+                value, last = None, str(error)
+            else:
+                last = value
+            if value:
+                return value
+            if time.monotonic() > deadline:
+                raise AssertionError(f"not within {seconds:.0f} s: {what} ({condition}: {last}; errors: {self.errors[-3:]})")
+            time.sleep(0.05)
+
+    def middle(self, selector):
+        """Where an element is, scrolled into view; it must be there, seen and not covered."""
+        found = json.dumps(selector)
+        at = self.wait(f"""(() => {{ const e = document.querySelector({found}); if (!e || e.disabled) return null;
+            e.scrollIntoView({{block: 'nearest', inline: 'nearest'}}); const b = e.getBoundingClientRect(); if (!b.width || !b.height) return null;
+            const x = b.x + b.width / 2, y = b.y + b.height / 2, top = document.elementFromPoint(x, y);
+            return top && (e === top || e.contains(top) || top.contains(e)) ? [x, y] : null; }})()""", f"{selector} to be seen")
+        return at
+
+    def press(self, x, y):
+        if self.touch:
+            self.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+            self.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        else:
+            for kind in ("mousePressed", "mouseReleased"):
+                self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def click(self, selector):
+        self.press(*self.middle(selector))
+
+    def drag(self, a, b):
+        if self.touch:
+            self.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": a[0], "y": a[1]}])
+            for share in (0.3, 0.7, 1.0):
+                point = {"x": a[0] + share * (b[0] - a[0]), "y": a[1] + share * (b[1] - a[1])}
+                self.send("Input.dispatchTouchEvent", type="touchMove", touchPoints=[point])
+            self.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        else:
+            self.send("Input.dispatchMouseEvent", type="mousePressed", x=a[0], y=a[1], button="left", clickCount=1)
+            for share in (0.3, 0.7, 1.0):
+                self.send("Input.dispatchMouseEvent", type="mouseMoved", x=a[0] + share * (b[0] - a[0]), y=a[1] + share * (b[1] - a[1]), button="left", buttons=1)
+            self.send("Input.dispatchMouseEvent", type="mouseReleased", x=b[0], y=b[1], button="left", clickCount=1)
+
+    def type(self, text):
+        self.send("Input.insertText", text=text)
+
+    def key(self, name, code=None):
+        codes = {"Enter": 13, "Tab": 9, "Escape": 27, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
+        more = {"text": "\r"} if name == "Enter" else {"text": name} if len(name) == 1 else {}
+        self.send("Input.dispatchKeyEvent", type="keyDown", key=name, code=code or name, windowsVirtualKeyCode=codes.get(name, ord(name[0])), **more)
+        self.send("Input.dispatchKeyEvent", type="keyUp", key=name, code=code or name, windowsVirtualKeyCode=codes.get(name, ord(name[0])))
+
+    def picture(self, path):
+        data = base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"])
+        with open(path, "wb") as file:
+            file.write(data)
+        return path
+
+    def close(self):
+        self.browser.send("Target.closeTarget", targetId=self.target)
+        self.browser.tabs.pop(self.session, None)

@@ -1,0 +1,107 @@
+// All that the page says, in English and Portuguese.
+import {remembered, remember} from "./dom.js";
+
+const TEXTS = {
+  en: {
+    title: "Robot", skip_to_talk: "Skip to the talk", change_language: "Mudar para português", other_language: "PT",
+    map_label: "Map of the building", map_keys: "Arrow keys move the map, plus and minus zoom, 0 shows all of it, R goes to the robot, Enter opens the place in the middle. All places are also in the list Places.",
+    map_empty: "There is no map yet. It grows as the robot drives.", zoom_in: "Zoom in", zoom_out: "Zoom out", fit_map: "Show the whole map", follow_robot: "Stay with the robot",
+    talk_label: "The talk with the robot", suggestions: "Suggestions", say_label: "Say something to the robot", say_placeholder: "Say something…", answer_placeholder: "Your answer…",
+    send: "Send", listen: "Speak instead of typing", listening: "Listening…", yes: "Yes", no: "No", stop: "STOP", undo: "Undo",
+    tabs_label: "Views", tab_talk: "Talk", tab_places: "Places", tab_robot: "Robot", tab_back: "History",
+    welcome: "Tell the robot about the building, as you would tell a visitor. The names appear on the map.",
+    login_title: "Password, please", login_text: "STOP works without it.", login_token: "Password", login_go: "Open", login_wrong: "That is not the password.", login_often: "Too many tries. Wait a moment.",
+    lost_connection: "No connection: what you see may be old. Trying again…", lost_master: "The robot's computer does not answer (no ROS master). What you see may be old.",
+    not_connected: "Not connected: it was not sent.", stop_sent: "Stop was sent.", stop_failed: "STOP WAS NOT SENT: there is no connection!",
+    in_place: "In {name}", in_doorway: "In the doorway of {name}", nowhere: "Its place is not known", phase_search: "looking for itself", phase_lost: "lost", phase_sure: "it knows where it is", going: "on its way", following: "following a person",
+    place_of: "Place {code}", named_guess: "A guess, from what it was told.", named_sure: "Its name is confirmed.", unnamed: "It has no name yet.", kind_0: "A room", kind_1: "A corridor", kind_2: "A part of a room", about: "{kind} of about {area} m².", robot_is_here: "The robot is here.",
+    beside: "Next to: {names}.", things: "Things here: {names}.", asked_here: "The robot asks about this place.",
+    right_name: "Yes, right", wrong_name: "No", go_there: "Go there", name_it: "Name it", rename_it: "Rename", ask_about: "What is this?", here_you_are: "The robot is here", name_label: "Name of the place", save_name: "Save", forget_name: "Forget the name", cancel: "Cancel", close: "Close", examples: "for example: kitchen",
+    doors: "Doors", door_to: "Door to {name}", shut: "Treat as shut", shut_done: "The robot takes this door for shut now. “Undo that” opens it.", door_closed: "was closed",
+    what_next: "What is next to {name}?", undo_sentence: "Undo that.", what_is: "What is {name}?",
+    no_places: "No places yet: the robot finds them in its map.", search_places: "Search", objects: "Things", no_objects: "Nothing was told or seen yet.", seen: "on the map", told: "told", no_name: "no name yet",
+    pose_title: "Where it is", camera_title: "What the camera thinks", camera_nothing: "The picture shows no place in particular.", layers_title: "Parts of the robot", do_title: "Do", page_title: "This page",
+    set_pose: "Show where it is", draw_wall: "Draw a glass wall", check: "Check everything", checking: "Checking, 5 seconds…", save: "Save what it knows", saving: "Saving…", saved: "Saved.", learn: "Learn how places look", unlearn: "Stop learning", learning: "It is learning.", not_learning: "It has stopped learning.",
+    all_right: "Nothing is wrong.", speak: "Read answers aloud", theme: "Light or dark", logout: "Log out", no_layers: "No part reports anything.",
+    tool_pose: "Touch where the robot is and drag towards where it looks.", tool_wall: "Drag from one end of the glass to the other.", tool_keys: "With keys: move the map, Enter, move, Enter.", tool_second: "Now the other end: Enter.", pose_sent: "Thank you. The robot starts from there.", wall_sent: "The glass wall is on the map.",
+    reports: "Reports", no_reports: "There are no reports here.", watch: "Watch this day again", watch_text: "Everything that this page showed since the robot was started.", back_live: "Back to now", play: "Play", pause: "Pause", time_label: "Time of the day", speed_label: "Speed", replay: "Recording", no_recording: "There is no recording.",
+    error_too_often: "Too much at once. Wait a moment.", error_not_allowed: "You are not allowed to do that.", error_nobody: "That part of the robot does not run.", error_no_answer: "The robot did not answer in time.", error_busy: "The robot is busy. Try again.", error_failed: "That did not work.", error_invalid: "That is not possible.", error_unknown: "That is not there any more.", error_malformed: "That was not understood.",
+    start_where: "Where are you?", start_in: "You are in the ", start_left: "On your left you have ", start_right: "On your right you have ", start_this: "This is the ", start_go: "Go to ", start_help: "Help", start_told: "What have I told you?",
+  },
+  pt: {
+    title: "Robô", skip_to_talk: "Saltar para a conversa", change_language: "Switch to English", other_language: "EN",
+    map_label: "Mapa do edifício", map_keys: "As setas movem o mapa, mais e menos ampliam, 0 mostra tudo, R vai para o robô, Enter abre o lugar do meio. Todos os lugares estão também na lista Lugares.",
+    map_empty: "Ainda não há mapa. Cresce quando o robô anda.", zoom_in: "Ampliar", zoom_out: "Reduzir", fit_map: "Mostrar o mapa todo", follow_robot: "Acompanhar o robô",
+    talk_label: "A conversa com o robô", suggestions: "Sugestões", say_label: "Diga algo ao robô", say_placeholder: "Diga algo…", answer_placeholder: "A sua resposta…",
+    send: "Enviar", listen: "Falar em vez de escrever", listening: "A ouvir…", yes: "Sim", no: "Não", stop: "PARAR", undo: "Desfazer",
+    tabs_label: "Vistas", tab_talk: "Conversa", tab_places: "Lugares", tab_robot: "Robô", tab_back: "Histórico",
+    welcome: "Descreva o edifício ao robô, como a uma visita. Os nomes aparecem no mapa.",
+    login_title: "Senha, por favor", login_text: "PARAR funciona sem ela.", login_token: "Senha", login_go: "Abrir", login_wrong: "A senha não está certa.", login_often: "Demasiadas tentativas. Espere um momento.",
+    lost_connection: "Sem ligação: o que vê pode ser antigo. A tentar de novo…", lost_master: "O computador do robô não responde (sem ROS master). O que vê pode ser antigo.",
+    not_connected: "Sem ligação: não foi enviado.", stop_sent: "A ordem de parar foi enviada.", stop_failed: "A ORDEM DE PARAR NÃO FOI ENVIADA: não há ligação!",
+    in_place: "Em: {name}", in_doorway: "À porta de: {name}", nowhere: "Não se sabe onde está", phase_search: "à procura de si", phase_lost: "perdido", phase_sure: "sabe onde está", going: "a caminho", following: "a seguir uma pessoa",
+    place_of: "Lugar {code}", named_guess: "Um palpite, pelo que lhe disseram.", named_sure: "O nome está confirmado.", unnamed: "Ainda não tem nome.", kind_0: "Uma sala", kind_1: "Um corredor", kind_2: "Uma parte de uma sala", about: "{kind} de cerca de {area} m².", robot_is_here: "O robô está aqui.",
+    beside: "Ao lado: {names}.", things: "Coisas aqui: {names}.", asked_here: "O robô pergunta por este lugar.",
+    right_name: "Sim, certo", wrong_name: "Não", go_there: "Ir para lá", name_it: "Dar nome", rename_it: "Mudar o nome", ask_about: "O que é isto?", here_you_are: "O robô está aqui", name_label: "Nome do lugar", save_name: "Guardar", forget_name: "Esquecer o nome", cancel: "Cancelar", close: "Fechar", examples: "por exemplo: cozinha",
+    doors: "Portas", door_to: "Porta para {name}", shut: "Tratar como fechada", shut_done: "O robô trata agora esta porta como fechada. “Desfaz isso” abre-a.", door_closed: "estava fechada",
+    what_next: "O que há ao lado de {name}?", undo_sentence: "Desfaz isso.", what_is: "O que é {name}?",
+    no_places: "Ainda não há lugares: o robô encontra-os no mapa.", search_places: "Procurar", objects: "Coisas", no_objects: "Ainda nada foi dito nem visto.", seen: "no mapa", told: "dito", no_name: "ainda sem nome",
+    pose_title: "Onde está", camera_title: "O que a câmara pensa", camera_nothing: "A imagem não mostra nenhum lugar em particular.", layers_title: "Partes do robô", do_title: "Fazer", page_title: "Esta página",
+    set_pose: "Mostrar onde está", draw_wall: "Desenhar parede de vidro", check: "Verificar tudo", checking: "A verificar, 5 segundos…", save: "Guardar o que sabe", saving: "A guardar…", saved: "Guardado.", learn: "Aprender o aspeto dos lugares", unlearn: "Parar de aprender", learning: "Está a aprender.", not_learning: "Parou de aprender.",
+    all_right: "Está tudo bem.", speak: "Ler as respostas em voz alta", theme: "Claro ou escuro", logout: "Sair", no_layers: "Nenhuma parte diz nada.",
+    tool_pose: "Toque onde o robô está e arraste para onde ele olha.", tool_wall: "Arraste de uma ponta do vidro à outra.", tool_keys: "Com teclas: mover o mapa, Enter, mover, Enter.", tool_second: "Agora a outra ponta: Enter.", pose_sent: "Obrigado. O robô parte daí.", wall_sent: "A parede de vidro está no mapa.",
+    reports: "Relatórios", no_reports: "Aqui não há relatórios.", watch: "Rever este dia", watch_text: "Tudo o que esta página mostrou desde que o robô foi ligado.", back_live: "Voltar ao presente", play: "Reproduzir", pause: "Pausa", time_label: "Hora do dia", speed_label: "Velocidade", replay: "Gravação", no_recording: "Não há gravação.",
+    error_too_often: "Demasiado de uma vez. Espere um momento.", error_not_allowed: "Não tem permissão para isso.", error_nobody: "Essa parte do robô não está a funcionar.", error_no_answer: "O robô não respondeu a tempo.", error_busy: "O robô está ocupado. Tente de novo.", error_failed: "Não resultou.", error_invalid: "Isso não é possível.", error_unknown: "Isso já não existe.", error_malformed: "Não se percebeu.",
+    start_where: "Onde estás?", start_in: "Estás no ", start_left: "À tua esquerda tens ", start_right: "À tua direita tens ", start_this: "Esta é a ", start_go: "Vai para ", start_help: "Ajuda", start_told: "O que te disse?",
+  },
+};
+
+let language = "en";
+const listeners = [];
+
+export function currentLanguage() {
+  return language;
+}
+
+export function t(key, values = {}) {
+  const text = TEXTS[language][key] ?? TEXTS.en[key];
+  if (text === undefined) throw new Error(`no text ${key}`);
+  return text.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? String(values[name]) : whole));
+}
+
+export function onLanguage(listener) {
+  listeners.push(listener);
+}
+
+function translatePage() {
+  document.documentElement.lang = language;
+  document.title = t("title");
+  for (const element of document.querySelectorAll("[data-t]")) element.textContent = t(element.dataset.t);
+  for (const element of document.querySelectorAll("[data-label]")) {
+    element.setAttribute("aria-label", t(element.dataset.label));
+    if (element.tagName === "BUTTON") element.title = t(element.dataset.label);
+  }
+  for (const element of document.querySelectorAll("[data-placeholder]")) element.placeholder = t(element.dataset.placeholder);
+}
+
+export function setLanguage(wanted, keep = false) {
+  language = wanted in TEXTS ? wanted : "en";
+  if (keep) remember("language", language);
+  translatePage();
+  for (const listener of listeners) listener();
+}
+
+// What was chosen here before, what the browser prefers, what the robot begins with.
+export function firstLanguage(robots) {
+  const chosen = remembered("language");
+  if (chosen in TEXTS) return chosen;
+  for (const preferred of navigator.languages ?? []) {
+    const short = preferred.slice(0, 2).toLowerCase();
+    if (short in TEXTS) return short;
+  }
+  return robots;
+}
+
+export function missingTexts() {
+  return Object.keys(TEXTS.en).filter((key) => !(key in TEXTS.pt)).concat(Object.keys(TEXTS.pt).filter((key) => !(key in TEXTS.en)));
+}

@@ -1,0 +1,225 @@
+// The page: its parts, and what joins them.
+import {byId, make, button, toast, remembered} from "./dom.js";
+import {t, setLanguage, currentLanguage, firstLanguage, onLanguage, missingTexts} from "./i18n.js";
+import {Model} from "./model.js";
+import {Connection} from "./connection.js";
+import {MapView} from "./map_view.js";
+import {Talk, reasonOf} from "./talk.js";
+import {Places} from "./places.js";
+import {RobotPanel} from "./robot_panel.js";
+import {LookBack} from "./look_back.js";
+import {Replay, entriesOf} from "./replay.js";
+
+const ROLES = ["look", "talk", "drive"];
+const TABS = ["talk", "places", "robot", "back"];
+
+class Page {
+  constructor() {
+    const theme = remembered("theme");
+    if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
+    this.session = {role: "", login: false, language: "en", recording: false};
+    this.model = new Model();
+    const recorded = globalThis.HYSELAM_RECORDING;
+    this.replay = Boolean(recorded) || new URLSearchParams(location.search).has("replay");
+    setLanguage(firstLanguage("en"));
+    if (this.replay) this.source = {replays: true, ask: () => Promise.reject({code: "not_connected"})};
+    else this.source = new Connection(this.model, {onState: (on) => this.onState(on), onSession: (session) => this.onSession(session), onTiles: () => this.map.tilesChanged()});
+    this.build();
+    if (this.replay) this.startReplay(recorded);
+    else this.source.start();
+  }
+
+  may(role) {
+    return !this.replay && ROLES.indexOf(this.session.role) >= ROLES.indexOf(role);
+  }
+
+  build() {
+    const {model, source} = this;
+    const may = (role) => this.may(role);
+    this.map = new MapView(byId("map"), model, {
+      onTap: (x, y, place, object) => this.onTap(place, object),
+      onLine: (from, to) => this.onLine(from, to),
+      onFirstEnd: () => this.showTool("tool_second"),
+      onUserMove: () => byId("follow").setAttribute("aria-pressed", "false"),
+      onEscape: () => (this.map.tool ? this.setTool(null) : this.places.close()),
+    });
+    this.talk = new Talk(model, source, may);
+    this.places = new Places(model, source, may, {
+      showOnMap: (x, y) => this.map.show(x, y),
+      say: (text) => this.talk.say(text),
+      openTalk: () => this.openTab("talk"),
+      selected: (id) => {
+        this.map.selected = id;
+        this.map.invalidate();
+      },
+    });
+    this.robot = new RobotPanel(model, source, may, {
+      tool: (kind) => this.setTool(kind),
+      themeChanged: () => this.map.themeChanged(),
+      login: () => this.session.login,
+      logout: async () => {
+        await fetch("logout", {method: "POST"}).catch(() => {});
+        location.reload();
+      },
+    });
+    this.back = new LookBack(source);
+    byId("zoom-in").onclick = () => this.map.zoom(1.5);
+    byId("zoom-out").onclick = () => this.map.zoom(1 / 1.5);
+    byId("fit").onclick = () => this.map.fit();
+    byId("follow").onclick = (event) => {
+      this.map.setFollow(!this.map.follows);
+      event.currentTarget.setAttribute("aria-pressed", String(this.map.follows));
+    };
+    byId("stop").onclick = () => this.stop();
+    byId("language").onclick = () => setLanguage(currentLanguage() === "en" ? "pt" : "en", true);
+    byId("login-form").onsubmit = (event) => this.login(event);
+    for (const name of TABS) byId(`tab-${name}`).onclick = () => this.openTab(name, true);
+    byId("tabs").addEventListener("keydown", (event) => this.moveTab(event));
+    const empty = () => { byId("map-empty").hidden = Boolean(model.values.map) || Object.keys(model.tables.places).length > 0; };
+    model.on(["map", "places"], empty);
+    model.on(["reach"], () => this.showLost());
+    const named = () => { byId("language").textContent = t("other_language"); };
+    onLanguage(() => {
+      named();
+      this.showLost();
+      if (this.map.tool) this.showTool();
+    });
+    named();
+    empty();
+  }
+
+  // ---- Connection ----
+
+  onSession(session) {
+    const changed = JSON.stringify(session) !== JSON.stringify(this.session);
+    const first = this.session.run === undefined;
+    this.session = session;
+    this.source.allowed = session.role !== "";
+    if (first && !remembered("language")) setLanguage(firstLanguage(session.language));
+    byId("login").hidden = session.role !== "";
+    byId("tabs").inert = session.role === "";
+    if (session.role === "" && first) byId("token").focus();
+    this.back.recording = session.recording;
+    if (changed) {
+      this.robot.build();
+      this.talk.showAsked();
+      byId("say-form").hidden = byId("chips").hidden = !this.may("talk");
+      if (this.places.open) this.places.showCard();
+    }
+  }
+
+  onState(connected) {
+    this.connected = connected;
+    document.body.classList.toggle("unconnected", !connected);
+    this.showLost();
+  }
+
+  showLost() {
+    const bar = byId("lost");
+    const text = this.replay ? "" : this.connected === false ? t("lost_connection") : this.model.values.reach?.master === false ? t("lost_master") : "";
+    if (bar.textContent !== text) bar.textContent = text;
+    bar.hidden = !text;
+  }
+
+  async login(event) {
+    event.preventDefault();
+    const answer = await fetch("login", {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify({token: byId("token").value})}).catch(() => null);
+    byId("login-error").textContent = !answer ? t("not_connected") : answer.ok ? "" : t(answer.status === 429 ? "login_often" : "login_wrong");
+    if (!answer?.ok) return;
+    byId("token").value = "";
+    this.source.start();
+  }
+
+  async stop() {
+    const sent = await this.source.stop();
+    toast(t(sent ? "stop_sent" : "stop_failed"), !sent);
+  }
+
+  // ---- Map ----
+
+  onTap(place, object) {
+    if (object !== null) this.places.show("object", object);
+    else if (place !== null) {
+      this.places.show("place", place, this.map.keys);
+      const center = this.model.place(place).c;
+      if (center) this.map.show(...center);
+    } else this.places.close();
+  }
+
+  setTool(kind) {
+    this.map.setTool(kind);
+    this.places.close();
+    byId("tool-bar").hidden = !kind;
+    if (kind) {
+      this.showTool();
+      byId("map").focus({preventScroll: true});
+    }
+  }
+
+  showTool(key = `tool_${this.map.tool.kind}`) {
+    byId("tool-bar").replaceChildren(t(key), make("div", {class: "row"}, button(t("cancel"), () => this.setTool(null)), make("span", {class: "note"}, t("tool_keys"))));
+  }
+
+  async onLine(from, to) {
+    const {kind} = this.map.tool;
+    try {
+      if (kind === "pose") await this.source.ask("pose", {x: from[0], y: from[1], yaw: Math.atan2(to[1] - from[1], to[0] - from[0])});
+      else await this.source.ask("wall", {ax: from[0], ay: from[1], bx: to[0], by: to[1]});
+      toast(t(kind === "pose" ? "pose_sent" : "wall_sent"));
+      this.setTool(null);
+    } catch (error) {
+      toast(reasonOf(error), true);
+    }
+  }
+
+  // ---- Tabs ----
+
+  openTab(name, may_fold = false) {
+    const was_open = byId(`tab-${name}`).getAttribute("aria-selected") === "true";
+    // Once more on the open tab of a phone: the whole screen for the map.
+    document.body.classList.toggle("folded", may_fold && was_open && innerWidth < 900 && !document.body.classList.contains("folded"));
+    for (const each of TABS) {
+      const tab = byId(`tab-${each}`);
+      tab.setAttribute("aria-selected", String(each === name));
+      tab.tabIndex = each === name ? 0 : -1;
+      byId(`panel-${each}`).hidden = each !== name;
+    }
+    if (name === "back") this.back.show();
+    if (name === "talk") this.talk.log.scrollTop = this.talk.log.scrollHeight;
+  }
+
+  moveTab(event) {
+    const at = TABS.findIndex((name) => byId(`tab-${name}`) === document.activeElement);
+    const to = {ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: TABS.length - 1}[event.key];
+    if (at < 0 || to === undefined) return;
+    const name = TABS[(to + TABS.length) % TABS.length];
+    this.openTab(name);
+    byId(`tab-${name}`).focus();
+    event.preventDefault();
+  }
+
+  // ---- A recorded day ----
+
+  async startReplay(recorded) {
+    document.body.classList.add("replay");
+    byId("player").hidden = false;
+    let entries = recorded;
+    if (!entries) {
+      const answer = await fetch("recording").catch(() => null);
+      entries = answer?.ok ? entriesOf(await answer.text()) : [];
+    }
+    if (!entries.length) {
+      toast(t("no_recording"), true);
+      return;
+    }
+    const replay = new Replay(this.model, entries, () => this.map.tilesChanged());
+    this.replayer = replay;
+    replay.showButton();
+    this.source.live = !recorded;
+    replay.goTo(replay.begin);
+    replay.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  }
+}
+
+globalThis.hyselam = new Page();
+globalThis.hyselam.missingTexts = missingTexts;

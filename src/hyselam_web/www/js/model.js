@@ -1,0 +1,122 @@
+// What the page knows, as the server tells it: values, tables, the talk, and the tiles of the map.
+export class Model {
+  constructor() {
+    this.listeners = new Map();
+    this.tiles = new Map(); // "column,row": {column, row, version, picture}
+    this.clear();
+  }
+
+  clear() {
+    this.version = 0;
+    this.values = {};
+    this.tables = {places: {}, doors: {}, walls: {}, objects: {}, layers: {}};
+    this.talk = [];
+  }
+
+  // listener(names): some of these channels have changed.
+  on(names, listener) {
+    for (const name of names) {
+      if (!this.listeners.has(name)) this.listeners.set(name, new Set());
+      this.listeners.get(name).add(listener);
+    }
+  }
+
+  tell(names) {
+    const called = new Set();
+    for (const name of names) for (const listener of this.listeners.get(name) ?? []) called.add(listener);
+    for (const listener of called) listener(names);
+  }
+
+  apply(message, quiet = false) {
+    const changed = new Set(Object.keys(message.d));
+    if (message.full) {
+      for (const name of [...Object.keys(this.values), ...Object.keys(this.tables), "talk"]) changed.add(name);
+      this.clear();
+    }
+    this.version = message.v ?? this.version;
+    for (const [name, change] of Object.entries(message.d)) {
+      if (name === "talk") {
+        const last = this.talk.length ? this.talk[this.talk.length - 1].i : -1;
+        this.talk.push(...change.filter((entry) => entry.i > last));
+        if (this.talk.length > 300) this.talk.splice(0, this.talk.length - 300);
+      } else if (name in this.tables) {
+        for (const key of change["-"] ?? []) delete this.tables[name][key];
+        Object.assign(this.tables[name], change["+"] ?? {});
+      } else {
+        this.values[name] = change;
+      }
+    }
+    if (!quiet) this.tell([...changed]);
+  }
+
+  // A picture of null: nothing is known there any more.
+  setTile(column, row, version, picture) {
+    const key = `${column},${row}`;
+    if (picture === null) this.tiles.delete(key);
+    else this.tiles.set(key, {column, row, version, picture});
+  }
+
+  // All tiles that the server has are here: it adds the numbers of their changes.
+  get complete() {
+    let sum = 0;
+    for (const tile of this.tiles.values()) sum = (sum + tile.version) % 2 ** 32;
+    return !this.values.map || this.values.map.sum === sum;
+  }
+
+  place(id) {
+    return this.tables.places[id];
+  }
+
+  // The name of a place: text, whether a person has confirmed it.
+  nameOf(id) {
+    const place = this.place(id);
+    if (!place) return {text: String(id), sure: false, none: true};
+    const confirmed = place.n.find((word) => word[1]);
+    const word = confirmed ?? place.n[0];
+    return word ? {text: word[0], sure: Boolean(confirmed), none: false} : {text: place.e, sure: false, none: true};
+  }
+
+  labelOf(id) {
+    const name = this.nameOf(id);
+    return name.text + (name.sure || name.none ? "" : "?");
+  }
+
+  neighbours(id) {
+    const found = new Set();
+    for (const door of Object.values(this.tables.doors)) {
+      if (door.a === Number(id)) found.add(door.b);
+      if (door.b === Number(id)) found.add(door.a);
+    }
+    return [...found].filter((each) => this.place(each));
+  }
+
+  // The smallest place whose outline holds a point; its id, or null.
+  placeAt(x, y) {
+    let best = null;
+    for (const [id, place] of Object.entries(this.tables.places)) {
+      if (place.o && inside(place.o, x, y) && (best === null || place.s < this.place(best).s)) best = id;
+    }
+    return best;
+  }
+}
+
+export function inside(outline, x, y) {
+  let odd = false;
+  for (let i = 0, j = outline.length - 2; i < outline.length; j = i, i += 2) {
+    const [ax, ay, bx, by] = [outline[i], outline[i + 1], outline[j], outline[j + 1]];
+    if (ay > y !== by > y && x < ax + ((y - ay) * (bx - ax)) / (by - ay)) odd = !odd;
+  }
+  return odd;
+}
+
+// Points in base64: little-endian whole numbers of centimetres; [x, y, x, y, ...] in metres.
+export function unpack(text, bytes) {
+  const raw = atob(text);
+  const view = new DataView(new ArrayBuffer(raw.length));
+  for (let i = 0; i < raw.length; ++i) view.setUint8(i, raw.charCodeAt(i));
+  const points = new Float32Array(raw.length / bytes);
+  for (let i = 0; i < points.length; ++i) {
+    points[i] = (bytes === 2 ? view.getInt16(2 * i, true) : view.getInt32(4 * i, true)) / 100;
+  }
+  return points;
+}

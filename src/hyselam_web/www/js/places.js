@@ -1,0 +1,217 @@
+// Places: the list of all, and the card of the one that was tapped, with what can be done there.
+import {byId, make, button, toast} from "./dom.js";
+import {t, onLanguage, currentLanguage} from "./i18n.js";
+import {reasonOf} from "./talk.js";
+
+export class Places {
+  // actions: showOnMap(id), say(text), openTalk()
+  constructor(model, connection, may, actions) {
+    Object.assign(this, {model, connection, may, actions});
+    this.card = byId("card");
+    this.list = byId("panel-places");
+    this.open = null; // {kind: "place" or "object", id}
+    this.naming = false;
+    this.filter = "";
+    model.on(["places", "doors", "objects", "here", "asked"], () => {
+      this.showList();
+      if (this.open && !this.naming) this.showCard();
+    });
+    onLanguage(() => {
+      this.buildList();
+      if (this.open) this.showCard();
+    });
+    this.card.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.close();
+    });
+    this.buildList();
+  }
+
+  // ---- The card ----
+
+  show(kind, id, focus = false) {
+    this.open = {kind, id: String(id)};
+    this.naming = false;
+    this.showCard();
+    if (focus) this.card.querySelector("button:not(.close)")?.focus();
+  }
+
+  close() {
+    const was_inside = this.card.contains(document.activeElement);
+    this.open = null;
+    this.naming = false;
+    this.card.hidden = true;
+    this.actions.selected(null);
+    if (was_inside) byId("map").focus();
+  }
+
+  showCard() {
+    const {kind, id} = this.open;
+    const content = kind === "place" ? this.placeCard(id) : this.objectCard(id);
+    if (!content) {
+      this.close();
+      return;
+    }
+    const inside = this.card.contains(document.activeElement) && document.activeElement.dataset.key;
+    this.card.replaceChildren(...content.filter(Boolean), button("×", () => this.close(), {class: "close", "aria-label": t("close"), "data-key": "close"}));
+    this.card.hidden = false;
+    this.actions.selected(kind === "place" ? id : null);
+    if (inside) this.card.querySelector(`[data-key="${inside}"]`)?.focus();
+  }
+
+  describe(id) {
+    const {model} = this;
+    const place = model.place(id);
+    const name = model.nameOf(id);
+    const parts = [];
+    if (model.values.asked?.place === Number(id)) parts.push(t("asked_here"));
+    parts.push(t(name.none ? "unnamed" : name.sure ? "named_sure" : "named_guess"));
+    if (place.s) parts.push(t("about", {kind: t(`kind_${place.k}`), area: Math.round(place.s)}));
+    if (place.n.length > 1) parts.push(place.n.slice(1).map((word) => word[0]).join(", ") + ".");
+    const beside = model.neighbours(id).map((each) => model.labelOf(each));
+    if (beside.length) parts.push(t("beside", {names: beside.slice(0, 5).join(", ") + (beside.length > 5 ? "…" : "")}));
+    const things = Object.values(model.tables.objects).filter((each) => each.c && model.placeAt(...each.c) === String(id)).map((each) => each.k);
+    if (things.length) parts.push(t("things", {names: [...new Set(things)].slice(0, 6).join(", ")}));
+    if (model.values.here?.place === Number(id)) parts.push(t("robot_is_here"));
+    return parts.join(" ");
+  }
+
+  placeCard(id) {
+    const {model} = this;
+    const place = model.place(id);
+    if (!place) return null;
+    const name = model.nameOf(id);
+    const title = make("h2", {id: "card-title"}, name.none ? t("place_of", {code: place.e}) : model.labelOf(id));
+    if (this.naming) return [title, this.nameForm(id, name)];
+    const row = make("div", {class: "row"});
+    const add = (key, action, properties = {}) => row.append(button(t(key), action, {"data-key": key, ...properties}));
+    const guess = !name.none && !name.sure;
+    if (this.may("talk") && guess) {
+      add("right_name", () => this.name(id, [name.text]), {class: "primary"});
+      add("wrong_name", () => this.startNaming());
+    }
+    if (this.may("drive")) add("go_there", () => {
+      this.close();
+      this.actions.openTalk(); // the answer comes there
+      this.ask("go", {place: Number(id), language: currentLanguage()}, null);
+    }, guess ? {} : {class: "primary"});
+    if (this.may("talk") && !guess) add(name.none ? "name_it" : "rename_it", () => this.startNaming());
+    if (this.may("talk")) add("ask_about", () => {
+      this.close();
+      this.actions.openTalk();
+      this.actions.say(t(name.none ? "what_next" : "what_is", {name: name.none ? place.e : name.text}));
+    });
+    if (this.may("drive")) add("here_you_are", () => this.ask("here", {place: Number(id)}, t("pose_sent")));
+    return [title, make("p", {}, this.describe(id)), row, this.doorsOf(id)];
+  }
+
+  doorsOf(id) {
+    const doors = Object.entries(this.model.tables.doors).filter(([, door]) => door.r && (door.a === Number(id) || door.b === Number(id)));
+    if (!doors.length || !this.may("drive")) return null;
+    const was_open = this.card.querySelector("details")?.open && this.doorsOpenFor === id;
+    const details = make("details", {}, make("summary", {}, t("doors")));
+    details.open = Boolean(was_open);
+    details.addEventListener("toggle", () => { this.doorsOpenFor = id; });
+    const list = make("ul", {class: "list"});
+    for (const [number, door] of doors) {
+      const other = door.a === Number(id) ? door.b : door.a;
+      list.append(make("li", {}, make("span", {class: "rest"}, t("door_to", {name: this.model.labelOf(other)}), door.st === 2 ? make("span", {class: "sub"}, t("door_closed")) : null),
+        button(t("shut"), () => this.ask("shut", {door: Number(number)}, t("shut_done")), {"data-key": "shut" + number})));
+    }
+    details.append(list);
+    return details;
+  }
+
+  objectCard(id) {
+    const each = this.model.tables.objects[id];
+    if (!each) return null;
+    const place = each.c ? this.model.placeAt(...each.c) : null;
+    const where = place ? this.model.labelOf(place) : each.at ? each.at.join(" ") : "";
+    return [make("h2", {id: "card-title"}, each.k), make("p", {}, [where, ...each.p].filter(Boolean).join(" · "))];
+  }
+
+  // ---- Names ----
+
+  startNaming() {
+    this.naming = true;
+    this.showCard();
+    this.card.querySelector("input").focus();
+  }
+
+  nameForm(id, name) {
+    const input = make("input", {type: "text", maxlength: 80, id: "new-name", placeholder: t("examples"), autocomplete: "off", autocapitalize: "off", enterkeyhint: "done"});
+    if (name.sure) input.value = name.text;
+    const form = make("form", {class: "row", onsubmit: (event) => {
+      event.preventDefault();
+      if (input.value.trim()) this.name(id, [input.value.trim()]);
+    }}, make("label", {for: "new-name", class: "unseen"}, t("name_label")), input, make("button", {type: "submit", class: "primary"}, t("save_name")),
+    name.none ? null : button(t("forget_name"), () => this.name(id, [])),
+    button(t("cancel"), () => {
+      this.naming = false;
+      this.showCard();
+    }));
+    return form;
+  }
+
+  async name(id, names) {
+    this.naming = false;
+    await this.ask("name", {place: Number(id), names});
+    if (this.open) this.showCard();
+  }
+
+  async ask(what, fields, done = undefined) {
+    try {
+      const result = await this.connection.ask(what, fields);
+      const answer = done ?? (result.message || "");
+      if (answer) toast(answer);
+    } catch (error) {
+      toast(reasonOf(error), true);
+    }
+  }
+
+  // ---- The list ----
+
+  buildList() {
+    this.places = make("ul", {class: "list"});
+    this.objects = make("ul", {class: "list"});
+    const search = make("input", {type: "search", "aria-label": t("search_places"), placeholder: t("search_places"), class: "whole", maxlength: 80, value: this.filter});
+    search.addEventListener("input", () => {
+      this.filter = search.value;
+      this.showList();
+    });
+    this.list.replaceChildren(search, this.places, make("h3", {}, t("objects")), this.objects);
+    this.showList();
+  }
+
+  showList() {
+    const {model} = this;
+    const wanted = this.filter.trim().toLowerCase();
+    const order = (id) => {
+      const name = model.nameOf(id);
+      return [name.none ? 1 : 0, name.text.toLowerCase()];
+    };
+    const ids = Object.keys(model.tables.places).filter((id) => !wanted || model.nameOf(id).text.toLowerCase().includes(wanted))
+      .sort((a, b) => order(a)[0] - order(b)[0] || order(a)[1].localeCompare(order(b)[1], undefined, {numeric: true}));
+    const key = JSON.stringify([ids.map((id) => [id, model.labelOf(id), model.place(id).s, model.values.here?.place === Number(id)]), Object.entries(model.tables.objects), document.documentElement.lang]);
+    if (key === this.listKey && this.places.children.length) return;
+    this.listKey = key;
+    this.places.replaceChildren(...ids.map((id) => this.placeLine(id)));
+    if (!ids.length) this.places.append(make("li", {class: "note"}, t("no_places")));
+    const objects = Object.entries(model.tables.objects);
+    this.objects.replaceChildren(...objects.map(([id, each]) => make("li", {}, button("", () => {
+      if (each.c) this.actions.showOnMap(...each.c);
+      this.show("object", id, true);
+    }, {}), make("span", {class: "sub"}, t(each.c ? "seen" : "told")))));
+    objects.forEach(([, each], i) => this.objects.children[i].firstChild.append(each.k, make("span", {class: "sub"}, [...(each.at ?? []), ...each.p].join(" "))));
+    if (!objects.length) this.objects.append(make("li", {class: "note"}, t("no_objects")));
+  }
+
+  placeLine(id) {
+    const place = this.model.place(id);
+    const name = this.model.nameOf(id);
+    const about = [name.none ? t("no_name") : place.e, place.s ? `${Math.round(place.s)} m²` : "", this.model.values.here?.place === Number(id) ? t("robot_is_here") : ""];
+    return make("li", {}, make("button", {type: "button", onclick: () => {
+      if (place.c) this.actions.showOnMap(...place.c);
+      this.show("place", id, true);
+    }}, this.model.labelOf(id), make("span", {class: "sub"}, about.filter(Boolean).join(" · "))));
+  }
+}

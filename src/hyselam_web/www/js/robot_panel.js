@@ -1,0 +1,140 @@
+// The robot itself: where it believes to be, what its camera thinks, its parts, and what it can be told to do.
+import {byId, make, button, toast, remember} from "./dom.js";
+import {t, onLanguage} from "./i18n.js";
+import {reasonOf} from "./talk.js";
+import {canSpeak, setAloud, speaksAloud} from "./speech.js";
+
+const SIGNS = {ok: "✓", warn: "!", error: "✗", stale: "…", WRONG: "✗", note: "!"};
+
+export class RobotPanel {
+  // actions: tool(kind), themeChanged(), logout()
+  constructor(model, connection, may, actions) {
+    Object.assign(this, {model, connection, may, actions});
+    this.panel = byId("panel-robot");
+    this.learning = false;
+    model.on(["status", "here", "camera", "layers", "can", "pose", "way", "following", "refused"], () => {
+      this.showWhere();
+      this.showState();
+    });
+    onLanguage(() => this.build());
+    this.build();
+  }
+
+  build() {
+    this.state = make("div");
+    this.findings = make("ul", {class: "list"});
+    const actions = make("div", {class: "actions"});
+    const add = (key, role, action) => {
+      if (this.may(role)) actions.append(button(t(key), action, {id: "do-" + key}));
+    };
+    add("set_pose", "drive", () => this.actions.tool("pose"));
+    add("draw_wall", "drive", () => this.actions.tool("wall"));
+    add("check", "look", (event) => this.check(event.target));
+    if (this.model.values.can?.save) add("save", "drive", (event) => this.save(event.target));
+    if (this.model.tables.layers.semantic_localization) add(this.learning ? "unlearn" : "learn", "drive", (event) => this.learn(event.target));
+    const page = make("div", {class: "actions"});
+    if (canSpeak()) {
+      page.append(button(t("speak"), (event) => {
+        setAloud(!speaksAloud());
+        event.target.setAttribute("aria-pressed", String(speaksAloud()));
+      }, {"aria-pressed": String(speaksAloud())}));
+    }
+    page.append(button(t("theme"), () => {
+      const now = document.documentElement.dataset.theme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+      document.documentElement.dataset.theme = now === "dark" ? "light" : "dark";
+      remember("theme", document.documentElement.dataset.theme);
+      this.actions.themeChanged();
+    }));
+    if (this.actions.login()) page.append(button(t("logout"), () => this.actions.logout()));
+    this.panel.replaceChildren(...(this.connection.replays ? [] : [make("h2", {}, t("do_title")), actions, this.findings]), this.state, make("h3", {}, t("page_title")), page);
+    this.key = "";
+    this.showWhere();
+    this.showState();
+  }
+
+  showWhere() {
+    const {here, status, way, following} = this.model.values;
+    const name = here?.place ? this.model.labelOf(here.place) : "";
+    const parts = [here?.place ? t(here.door ? "in_doorway" : "in_place", {name}) : this.model.values.pose ? t("nowhere") : t("title")];
+    if (status && status.phase !== "sure") parts.push(t(`phase_${status.phase}`));
+    if (following) parts.push(t("following"));
+    else if (way?.length) parts.push(t("going"));
+    const text = parts.join(" · ");
+    const box = byId("where");
+    if (box.dataset.text === text + status?.phase) return;
+    box.dataset.text = text + status?.phase;
+    box.replaceChildren(make("span", {class: `dot ${status?.phase ?? (here?.place ? "sure" : "")}`, "aria-hidden": "true"}), text);
+  }
+
+  showState() {
+    const {status, camera, refused} = this.model.values;
+    const layers = this.model.tables.layers;
+    const known = Object.keys(layers).includes("semantic_localization") + String(this.model.values.can?.save);
+    if (known !== this.builtFor) {
+      this.builtFor = known;
+      this.build();
+      return;
+    }
+    const key = JSON.stringify([status?.phase, status?.text, camera, layers, refused]);
+    if (key === this.key) return;
+    this.key = key;
+    const parts = [];
+    if (refused) parts.push(make("p", {class: "error"}, refused));
+    if (status) {
+      parts.push(make("h3", {}, t("pose_title")), make("p", {}, t(`phase_${status.phase}`), make("span", {class: "sub note"}, ` (${status.text})`)));
+    }
+    if (camera) {
+      parts.push(make("h3", {}, t("camera_title")));
+      if (!camera.seen) parts.push(make("p", {class: "note"}, t("camera_nothing")));
+      for (const [name, p] of camera.top) {
+        const bar = make("i");
+        bar.style.width = `${Math.round(100 * p)}%`;
+        parts.push(make("div", {class: "meter"}, make("span", {}, name), make("span", {}, bar), make("span", {}, `${Math.round(100 * p)} %`)));
+      }
+    }
+    parts.push(make("h3", {}, t("layers_title")));
+    const lines = Object.entries(layers).map(([name, each]) => make("li", {}, make("span", {class: `level ${each.level}`, "aria-label": each.level}, SIGNS[each.level]),
+      make("span", {}, name, make("span", {class: "sub"}, each.text))));
+    parts.push(lines.length ? make("ul", {class: "list"}, ...lines) : make("p", {class: "note"}, t("no_layers")));
+    this.state.replaceChildren(...parts);
+  }
+
+  async busy(element, text, action) {
+    const before = element.textContent;
+    element.disabled = true;
+    element.textContent = text;
+    try {
+      await action();
+    } catch (error) {
+      toast(reasonOf(error), true);
+    }
+    element.disabled = false;
+    element.textContent = before;
+  }
+
+  check(element) {
+    return this.busy(element, t("checking"), async () => {
+      const {findings} = await this.connection.ask("doctor", {}, 70000);
+      const lines = findings.filter((each) => each.level !== "ok").map((each) => make("li", {}, make("span", {class: `level ${each.level === "note" ? "note-level" : each.level}`}, SIGNS[each.level]),
+        make("span", {}, `${each.name}: ${each.text}`, make("span", {class: "sub"}, each.hint))));
+      if (!lines.length) lines.push(make("li", {}, make("span", {class: "level ok"}, "✓"), t("all_right")));
+      this.findings.replaceChildren(...lines);
+    });
+  }
+
+  save(element) {
+    return this.busy(element, t("saving"), async () => {
+      await this.connection.ask("save", {}, 70000);
+      toast(t("saved"));
+    });
+  }
+
+  async learn(element) {
+    await this.busy(element, "…", async () => {
+      const result = await this.connection.ask("learn", {on: !this.learning});
+      this.learning = !this.learning;
+      toast(result.message || t(this.learning ? "learning" : "not_learning"));
+    });
+    this.build();
+  }
+}

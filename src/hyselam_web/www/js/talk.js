@@ -1,0 +1,197 @@
+// The talk: what was said, what the robot answered, undo, yes and no, suggestions.
+import {byId, make, button, toast} from "./dom.js";
+import {t, onLanguage} from "./i18n.js";
+import {canListen, listen, speak} from "./speech.js";
+
+// Answers after which there is something to take back.
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (added|forgotten|a place)|I have taken|Anotado:|Obrigad[oa]\. |Isso muda|Acrescentei|Esqueci|Anotei|Tenho (um )?lugar)/;
+const MAX_CHIPS = 8;
+
+export function reasonOf(error) {
+  if (error.code === "not_connected") return t("not_connected");
+  const text = t(["too_often", "not_allowed", "nobody", "no_answer", "busy", "failed", "invalid", "unknown"].includes(error.code) ? `error_${error.code}` : "error_malformed");
+  return error.reason && ["failed", "nobody", "not_allowed", "invalid"].includes(error.code) ? `${text} (${error.reason})` : text;
+}
+
+// Starts and names that go on with what is typed: whole lines.
+export function suggestions(line, names, sentences) {
+  if (!line.trim()) return sentences;
+  const lower = line.toLowerCase();
+  const found = sentences.filter((each) => each.toLowerCase().startsWith(lower) && each.length > line.length);
+  for (let begin = 0; begin < line.length; ++begin) {
+    if (begin && line[begin - 1] !== " ") continue;
+    const part = lower.slice(begin);
+    if (part.length < 1) continue;
+    for (const name of names) {
+      if (name.toLowerCase().startsWith(part) && name.length > part.length) found.push(line.slice(0, begin) + name);
+    }
+    if (found.length > MAX_CHIPS) break;
+  }
+  if (line.endsWith(" ")) found.push(...names.map((name) => line + name));
+  return [...new Set(found)].slice(0, MAX_CHIPS);
+}
+
+export class Talk {
+  constructor(model, connection, may) {
+    Object.assign(this, {model, connection, may});
+    this.log = byId("talk-log");
+    this.line = byId("say");
+    this.pending = []; // said, and not yet come back from the robot
+    this.said = [];
+    this.recalled = 0;
+    this.shownTo = 0;
+    this.first = true;
+    byId("say-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.say(this.line.value.trim());
+    });
+    this.line.addEventListener("input", () => this.showChips());
+    this.line.addEventListener("keydown", (event) => this.key(event));
+    byId("yes").onclick = () => this.say(t("yes") + ".");
+    byId("no").onclick = () => this.say(t("no") + ".");
+    this.listenButton = byId("listen");
+    this.listenButton.hidden = !canListen();
+    this.listenButton.onclick = () => this.toggleListening();
+    model.on(["talk"], () => this.showTalk());
+    model.on(["asked"], () => this.showAsked());
+    model.on(["names"], () => this.showChips());
+    onLanguage(() => {
+      this.showTalk();
+      this.showChips();
+      this.showAsked();
+    });
+  }
+
+  async say(text) {
+    if (!text) return;
+    if (!this.may("talk")) {
+      toast(t("error_not_allowed"), true);
+      return;
+    }
+    const entry = {text, failed: ""};
+    this.pending.push(entry);
+    if (this.said[this.said.length - 1] !== text) this.said.push(text);
+    this.recalled = 0;
+    if (this.line.value.trim() === text) this.line.value = "";
+    this.showChips();
+    this.showTalk(true);
+    try {
+      await this.connection.ask("say", {text});
+      // The robot's own record of the talk follows; without it the sentence goes when it was answered.
+      setTimeout(() => this.forget(entry), 1500);
+    } catch (error) {
+      entry.failed = reasonOf(error);
+      if (!this.line.value) this.line.value = text; // to try again
+      setTimeout(() => this.forget(entry), 12000);
+    }
+    this.showTalk(true);
+  }
+
+  forget(entry) {
+    this.pending = this.pending.filter((each) => each !== entry);
+    this.showTalk();
+  }
+
+  key(event) {
+    if (event.key === "Tab" && !event.shiftKey && !event.altKey && this.line.value.trim()) {
+      const [first] = this.chips ?? [];
+      if (!first || this.dismissed === this.line.value) return; // on to the next element
+      this.complete(first);
+      event.preventDefault();
+    } else if (event.key === "Escape") {
+      this.dismissed = this.line.value;
+    } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && this.said.length) {
+      this.recalled = Math.max(0, Math.min(this.said.length, this.recalled + (event.key === "ArrowUp" ? 1 : -1)));
+      this.line.value = this.recalled ? this.said[this.said.length - this.recalled] : "";
+      this.showChips();
+      event.preventDefault();
+    }
+  }
+
+  complete(text) {
+    this.line.value = text;
+    this.line.focus();
+    this.line.setSelectionRange(text.length, text.length);
+    this.showChips();
+  }
+
+  showChips() {
+    const sentences = ["start_in", "start_left", "start_right", "start_this", "start_where", "start_go", "start_told", "start_help"].map((key) => t(key));
+    this.chips = this.model.values.asked && !this.line.value ? [] : suggestions(this.line.value, this.model.values.names ?? [], sentences);
+    byId("chips").replaceChildren(...this.chips.map((text) => {
+      const whole = /[?!.]$/.test(text) || text === t("start_help");
+      const from = this.line.value.lastIndexOf(" ") + 1;
+      const shown = this.line.value && text.startsWith(this.line.value.slice(0, from)) ? text.slice(from).trim() || text : text.trim() + (whole ? "" : "…");
+      return button(shown, () => (whole && !this.line.value ? this.say(text) : this.complete(text)));
+    }));
+  }
+
+  showAsked() {
+    const asked = this.model.values.asked;
+    byId("answers").hidden = !(asked && asked.yes && this.may("talk"));
+    this.line.placeholder = t(asked && !asked.yes ? "answer_placeholder" : "say_placeholder");
+    this.showChips();
+  }
+
+  showTalk(own = false) {
+    const {talk} = this.model;
+    const newest = talk.length ? talk[talk.length - 1].i : 0;
+    for (const entry of talk) {
+      if (entry.w === "human" && entry.i > this.shownTo) {
+        const at = this.pending.findIndex((each) => each.text === entry.s && !each.failed);
+        if (at >= 0) this.pending.splice(at, 1);
+      }
+      if (entry.w === "robot" && entry.i > this.shownTo && !this.first && !this.connection.replays) speak(entry.s);
+    }
+    const below = this.log.scrollHeight - this.log.scrollTop - this.log.clientHeight < 60;
+    if (newest !== this.shownTo || own || !this.log.children.length || this.drawnLanguage !== document.documentElement.lang || this.pending.length || this.hadPending) {
+      this.log.replaceChildren(...this.lines());
+      this.drawnLanguage = document.documentElement.lang;
+    }
+    this.hadPending = this.pending.length > 0;
+    if (below || own || this.first) this.log.scrollTop = this.log.scrollHeight;
+    if (talk.length) this.first = false;
+    this.shownTo = newest;
+  }
+
+  lines() {
+    const {talk} = this.model;
+    const elements = [];
+    if (!talk.length && !this.pending.length) elements.push(make("p", {class: "welcome"}, t("welcome")));
+    let last_human = -1;
+    talk.forEach((entry, i) => { if (entry.w === "human") last_human = i; });
+    let undo = false;
+    talk.forEach((entry, i) => {
+      elements.push(make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, entry.s));
+      undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
+    });
+    if (undo && this.may("talk") && !this.connection.replays) {
+      elements.push(button(t("undo"), () => this.say(t("undo_sentence")), {class: "undo"}));
+    }
+    for (const each of this.pending) {
+      elements.push(make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, each.text, each.failed ? make("span", {class: "why"}, each.failed) : null));
+    }
+    return elements;
+  }
+
+  toggleListening() {
+    if (this.stopListening) {
+      this.stopListening();
+      return;
+    }
+    const placeholder = this.line.placeholder;
+    this.line.placeholder = t("listening");
+    this.listenButton.setAttribute("aria-pressed", "true");
+    this.stopListening = listen({
+      onText: (text, final) => {
+        this.line.value = text;
+        if (final) this.say(text.trim());
+      },
+      onEnd: () => {
+        this.stopListening = null;
+        this.line.placeholder = placeholder;
+        this.listenButton.setAttribute("aria-pressed", "false");
+      },
+    });
+  }
+}
