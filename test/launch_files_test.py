@@ -109,6 +109,14 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertIn("pose (default", told)
         self.assertNotIn("pose_number", told)
 
+    def test_the_page_is_started_on_request_with_what_the_layers_read(self):
+        self.assertNotIn("/web", self.whole()[0])
+        nodes, config = self.whole("web:=true", "scan:=base_scan", "base_frame:=base", "web_port:=9000", "web_host:=0.0.0.0", "web_token_file:=/nowhere/tokens")
+        self.assertIn(("scan", "base_scan"), [tuple(r) for r in nodes["/web"].remap_args])
+        values = {key: p.value for key, p in config.params.items()}
+        self.assertEqual([values["/web/" + name] for name in ("port", "host", "token_file", "base_frame", "map_frame")],
+                         [9000, "0.0.0.0", "/nowhere/tokens", "base", "map"])
+
     def test_what_dies_is_started_again_unless_told_otherwise(self):
         for more, back in (([], True), (["respawn:=false"], False)):
             for pose in ("slam", "localization"):

@@ -148,7 +148,7 @@ class Tab:
         deadline = time.monotonic() + seconds
         while True:
             try:
-                value = self.eval(condition)
+                value = self.eval(f"((v) => v instanceof Node || v)({condition})")
             except AssertionError as error:  # while a page is left there is nobody to ask
                 value, last = None, str(error)
             else:

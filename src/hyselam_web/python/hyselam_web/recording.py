@@ -73,7 +73,7 @@ def read(path):
     return entries
 
 
-IMPORT = re.compile(r'^import [^;]*? from "\./([a-z_]+\.js)";\n', re.MULTILINE | re.DOTALL)
+IMPORT = re.compile(r'^import [^;]*? from "\./([a-z0-9_]+\.js)";\n', re.MULTILINE | re.DOTALL)
 
 
 def one_script(folder, first):

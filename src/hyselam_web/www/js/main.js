@@ -141,8 +141,6 @@ class Page {
     if (object !== null) this.places.show("object", object);
     else if (place !== null) {
       this.places.show("place", place, this.map.keys);
-      const center = this.model.place(place).c;
-      if (center) this.map.show(...center);
     } else this.places.close();
   }
 

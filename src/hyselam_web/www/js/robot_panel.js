@@ -54,7 +54,8 @@ export class RobotPanel {
 
   showWhere() {
     const {here, status, way, following} = this.model.values;
-    const name = here?.place ? this.model.labelOf(here.place) : "";
+    const known = here?.place ? this.model.nameOf(here.place) : null;
+    const name = !known ? "" : known.none ? t("place_of", {code: known.text}) : this.model.labelOf(here.place);
     const parts = [here?.place ? t(here.door ? "in_doorway" : "in_place", {name}) : this.model.values.pose ? t("nowhere") : t("title")];
     if (status && status.phase !== "sure") parts.push(t(`phase_${status.phase}`));
     if (following) parts.push(t("following"));

@@ -69,6 +69,7 @@ export class Talk {
       return;
     }
     const entry = {text, failed: ""};
+    this.pending = this.pending.filter((each) => !each.failed);
     this.pending.push(entry);
     if (this.said[this.said.length - 1] !== text) this.said.push(text);
     this.recalled = 0;
@@ -82,7 +83,6 @@ export class Talk {
     } catch (error) {
       entry.failed = reasonOf(error);
       if (!this.line.value) this.line.value = text; // to try again
-      setTimeout(() => this.forget(entry), 12000);
     }
     this.showTalk(true);
   }

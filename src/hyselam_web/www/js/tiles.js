@@ -1,4 +1,5 @@
 // Pictures of the map's tiles, in the colours of the page, and one small picture of all of it for looks from afar.
+const AT_ONCE = 16; // tiles that are decoded together
 const SHRINK = 8; // cells of a pixel of the small picture
 
 export class TilePictures {
@@ -20,29 +21,35 @@ export class TilePictures {
     do {
       this.again = false;
       for (const key of [...this.drawn.keys()]) if (!this.model.tiles.has(key)) this.drawn.delete(key);
-      for (const [key, tile] of [...this.model.tiles]) {
+      const stale = [...this.model.tiles].filter(([key, tile]) => {
         const known = this.drawn.get(key);
-        if (known && known.version === tile.version && known.dark === this.dark) continue;
-        try {
-          const image = await createImageBitmap(tile.picture);
-          this.drawn.set(key, {version: tile.version, dark: this.dark, ...this.colored(image)});
-          image.close();
-          this.redraw();
-        } catch {
-          this.drawn.set(key, {version: tile.version, dark: this.dark, canvas: null}); // it is no picture
-        }
+        return !known || known.version !== tile.version || known.dark !== this.dark;
+      });
+      for (let begin = 0; begin < stale.length; begin += AT_ONCE) {
+        await Promise.all(stale.slice(begin, begin + AT_ONCE).map(([key, tile]) => this.decode(key, tile)));
+        this.redraw();
       }
     } while (this.again);
     this.busy = false;
     this.redraw();
   }
 
+  async decode(key, tile) {
+    const of_tile = {version: tile.version, dark: this.dark};
+    try {
+      this.drawn.set(key, {...of_tile, ...this.colored(await createImageBitmap(tile.picture))});
+    } catch {
+      this.drawn.set(key, {...of_tile, canvas: null}); // it is no picture
+    }
+  }
+
   colored(image) {
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.width, image.height];
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
+    let canvas = image;
     if (this.dark) { // white becomes dark and black light; what is unknown stays clear
+      canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
       context.globalCompositeOperation = "difference";
       context.fillStyle = "#ecebe6";
       context.fillRect(0, 0, image.width, image.height);
