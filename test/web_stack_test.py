@@ -1,0 +1,277 @@
+#!/usr/bin/env python3
+"""The page with the whole talk behind it, in a real browser: a person with a phone sees the map, describes the building, sees names land, answers a
+question, sends the robot, sees the way, stops it. The master gone and back; roles; a server that would be open to all does not start."""
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+import xmlrpc.client
+
+import rospkg
+import rospy
+import rostest
+from hyselam_msgs.srv import TellRobot
+from std_msgs.msg import String
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(rospkg.RosPack().get_path("hyselam_web"), "test"))
+from conversation_test import MIDDLE, Robot, building
+from devtools import Browser, DESKTOP, PHONE, program as browser_program
+from faults_rig import program, run
+from localization_rig import free_port, wait_until
+from web_bad_input_test import Pages, Socket
+
+SHOTS = os.environ.get("HYSELAM_SHOTS", "")
+DESCRIPTION = "You are in the corridor. On your left you have room A, then the kitchen and the library. On your right you have the workshop."
+
+
+class Server:
+    """The server as roslaunch starts it, in the robot's namespace."""
+
+    def __init__(self, namespace, environment=None, **params):
+        params = dict({"port": 0, "base_frame": namespace + "_base"}, **params)
+        arguments = [f"_{name}:={value}" for name, value in params.items()]
+        self.environment = dict(os.environ, ROS_NAMESPACE=namespace, **(environment or {}))
+        self.process = subprocess.Popen([program("hyselam_web", "server"), "__name:=web", *arguments], env=self.environment)
+        self.namespace, self.port = namespace, 0
+
+    def wait(self):
+        name = f"/{self.namespace}/web/bound_port"
+        wait_until(lambda: rospy.has_param(name) or self.process.poll() is not None, "the server does not start")
+        self.port = rospy.get_param(name)
+        return self
+
+    @property
+    def address(self):
+        return f"http://localhost:{self.port}"
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait(30)
+        if rospy.has_param(f"/{self.namespace}/web/bound_port"):
+            rospy.delete_param(f"/{self.namespace}/web/bound_port")
+
+
+class WebStackTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.record = os.path.join(cls.folder.name, "web")
+        cls.robot = Robot("phone", building(cls.folder.name))
+        assert cls.robot.loaded
+        wait_until(lambda: cls.robot.maps.messages, "no map")
+        cls.robot.stand(*MIDDLE["corridor"])
+        cls.server = Server("phone", record=cls.record).wait()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.close()
+        cls.robot.close()
+
+    def places(self):
+        return self.robot.maps.messages[-1].places
+
+    def confirmed(self):
+        return {w.text for p in self.places() for w in p.words if w.confirmed}
+
+    @unittest.skipUnless(browser_program(), "Chromium is not installed (scripts/deps)")
+    def test_a_person_with_a_phone_describes_answers_sends_and_stops(self):
+        browser = Browser()
+        self.addCleanup(browser.close)
+        tab = browser.tab(PHONE, ratio=2)
+        tab.goto(self.server.address)
+        tab.wait("window.hyselam && hyselam.map.drawnTiles > 0 && hyselam.model.values.pose && Object.keys(hyselam.model.tables.places).length > 5", "the map")
+
+        def say(text):
+            tab.click("#say")
+            tab.type(text)
+            tab.key("Enter")
+
+        say(DESCRIPTION)
+        tab.wait("document.querySelector('#talk-log').textContent.includes('Noted:')", "what it understood")
+        tab.wait("['room A', 'kitchen', 'library', 'workshop'].every(n => Object.keys(hyselam.model.tables.places).some(id => hyselam.model.nameOf(id).text === n))",
+                 "the names on the map")
+        self.shot(tab, "stack_names")
+        # A guess is confirmed by tapping its place.
+        kitchen = tab.eval("Object.keys(hyselam.model.tables.places).find(id => hyselam.model.nameOf(id).text === 'kitchen')")
+        if not tab.eval(f"hyselam.model.nameOf({kitchen}).sure"):
+            self.tap(tab, kitchen)
+            tab.click("#card button.primary")
+            wait_until(lambda: "kitchen" in self.confirmed(), "the kitchen is not confirmed")
+            tab.click("#card .close")
+        # It is sent there, asks or goes; the way is shown.
+        self.tap(tab, kitchen)
+        tab.click("#card [data-key=go_there]")
+        tab.wait("(hyselam.model.values.way ?? []).length > 1 || !document.querySelector('#answers').hidden", "the way, or a question")
+        if tab.eval("!document.querySelector('#answers').hidden"):
+            tab.click("#yes")
+        tab.wait("(hyselam.model.values.way ?? []).length > 1", "the way")
+        self.shot(tab, "stack_way")
+        wait_until(lambda: self.robot.paths.messages[-1].poses, "no way")
+        tab.click("#stop")
+        wait_until(lambda: not self.robot.paths.messages[-1].poses, "it has not stopped")
+        tab.wait("(hyselam.model.values.way ?? []).length === 0", "the end of the way")
+        # Driven into a room with a guessed name it asks; the person answers with a button.
+        there = next(p for p in self.places() if any(w.text == "library" for w in p.words))
+        self.robot.stand(there.centre.x, there.centre.y)
+        tab.wait("!document.querySelector('#answers').hidden && hyselam.model.values.asked.text.includes('library')", "the question")
+        self.shot(tab, "stack_question")
+        tab.click("#yes")
+        wait_until(lambda: "library" in self.confirmed(), "the library is not confirmed")
+        self.robot.stand(*MIDDLE["corridor"])
+        # Portuguese, and back.
+        say("Onde estás?")
+        tab.wait("document.querySelector('#talk-log').textContent.includes('Estou em')", "the answer in Portuguese")
+        say("Where are you?")
+        self.assertEqual([e for e in tab.errors], [])
+        desktop = browser.tab(DESKTOP)
+        desktop.goto(self.server.address)
+        desktop.wait("hyselam.map.labels > 3 && hyselam.map.drawnTiles > 0", "the map")
+        self.shot(desktop, "stack_desktop")
+
+    def tap(self, tab, place):
+        x, y = tab.eval(f"(() => {{ const c = hyselam.model.place({place}).c, p = hyselam.map.toScreen(...c), b = hyselam.map.canvas.getBoundingClientRect(); "
+                        "return [p[0] + b.x, p[1] + b.y]; })()")
+        tab.press(x, y)
+        tab.wait("!document.querySelector('#card').hidden", "the card")
+
+    def shot(self, tab, name):
+        if SHOTS:
+            tab.picture(os.path.join(SHOTS, name + ".png"))
+
+    def test_places_are_named_walls_drawn_and_doors_shut_by_requests(self):
+        pages = Pages()
+        self.addCleanup(pages.close)
+        page = Socket(pages, self.server)
+        self.addCleanup(page.close)
+        wait_until(lambda: "places" in page.state and page.tiles and "map" in page.state, "the map")
+        room = next(p for p in self.places() if p.kind == 0)
+        self.assertEqual(page.ask("name", place=room.id, names=["Ana's room"])["done"], "name")
+        wait_until(lambda: "Ana's room" in self.confirmed(), "the name")
+        self.assertEqual(page.ask("name", place=room.id, names=[])["done"], "name")
+        wait_until(lambda: "Ana's room" not in self.confirmed(), "the name is not forgotten")
+        self.assertEqual(page.ask("name", place=4000000, names=["x"])["error"], "unknown")
+        page.ask("here", place=room.id)
+        wait_until(lambda: self.robot.initial.messages, "no pose was set")
+        before = len(self.robot.initial.messages)
+        answer = page.ask("pose", x=1.0, y=1.2, yaw=1.57)
+        self.assertEqual(answer["done"], "pose")
+        wait_until(lambda: len(self.robot.initial.messages) > before, "the pose was not sent")
+        self.assertAlmostEqual(self.robot.initial.messages[-1].pose.pose.position.x, 1.0)
+        door = next(d for e in self.robot.maps.messages[-1].edges for d in e.doors if d.real)
+        grids = len(self.robot.grids.messages)
+        self.assertEqual(page.ask("shut", door=door.id)["done"], "shut", "the door")
+        wait_until(lambda: len(self.robot.grids.messages) > grids, "the door is not in the map with walls")
+        self.assertIn("done", page.ask("say", text="Undo that."))
+        self.assertEqual(page.ask("wall", ax=0, ay=0, bx=0.01, by=0)["error"], "invalid")
+        self.assertEqual(page.ask("learn", on=True)["error"], "nobody")
+        self.assertEqual(page.ask("save")["error"], "nobody")
+
+    def test_who_may_talk_but_not_drive_is_stopped(self):
+        self.server.close()
+        type(self).server = Server("phone", token="talk=talktome1 drive=driveme11").wait()
+        pages = Pages()
+        self.addCleanup(pages.close)
+
+        def open_as(token):
+            body = json.dumps({"token": token})
+            _, _, headers = pages.request("POST", self.server.address + "/login", data=body, headers={"Origin": self.server.address})
+            page = Socket(pages, self.server, cookie=headers["Set-Cookie"].split("=", 1)[1].split(";")[0])
+            self.addCleanup(page.close)
+            wait_until(lambda: "places" in page.state, "the map")
+            return page
+
+        self.robot.service("tell_robot", TellRobot)("Stop.")
+        target = next(p for p in self.places() if p.kind == 0)
+        code = f"SS{target.id:02d}"
+        talker, driver = open_as("talktome1"), open_as("driveme11")
+        answer = talker.ask("say", text=f"Go to {code}.")
+        self.assertEqual(answer.get("error"), "not_allowed")
+        wait_until(lambda: not self.robot.paths.messages or not self.robot.paths.messages[-1].poses, "a talker drives the robot")
+        self.assertEqual(talker.ask("go", place=target.id, language="en")["error"], "not_allowed")
+        self.assertIn("answers", talker.ask("say", text="Where are you?")["result"])
+        self.assertEqual(driver.ask("go", place=target.id, language="en")["done"], "go")
+        wait_until(lambda: self.robot.paths.messages[-1].poses, "the driver does not drive")
+        self.assertEqual(driver.ask("go", place=target.id, language="pt")["done"], "go")
+        self.assertEqual(talker.ask("stop")["done"], "stop")
+        wait_until(lambda: not self.robot.paths.messages[-1].poses, "it does not stop")
+        self.server.close()
+        type(self).server = Server("phone").wait()
+
+    def test_a_server_that_would_be_open_does_not_start(self):
+        for argument, reason in (("_host:=0.0.0.0", "Give a token"), ("_token:=short", "fewer than 8"), ("_token:=boss=longenough", "the role 'boss'"),
+                                 ("_token_file:=/nowhere/tokens", "No such file"), ("_language:=fr", "en or pt"), ("_port:=70000", "[0, 65535]"),
+                                 ("_certificate:=/nowhere/cert.pem", "No such file")):
+            code, text = run(program("hyselam_web", "server"), "__name:=refused", argument, ROS_NAMESPACE="refused")
+            self.assertEqual(code, 2, text)
+            self.assertIn(reason, text)
+            name = argument[1:].split(":=")[0]
+            if rospy.has_param(f"/refused/refused/{name}"):
+                rospy.delete_param(f"/refused/refused/{name}")
+
+    def test_master_gone_and_back(self):
+        port = free_port()
+        environment = {"ROS_MASTER_URI": f"http://localhost:{port}"}
+
+        def start_master():
+            process = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+            def answers():
+                with socket.socket() as s:
+                    return s.connect_ex(("localhost", port)) == 0
+            wait_until(answers, "no master")
+            return process
+
+        def end(process):
+            process.kill()
+            process.wait()
+        master = start_master()
+        proxy = xmlrpc.client.ServerProxy(environment["ROS_MASTER_URI"])
+        server = Server("alone", environment=environment)
+        self.addCleanup(lambda: end(server.process))
+        wait_until(lambda: proxy.hasParam("/test", "/alone/web/bound_port")[2], "the server does not start")
+        server.port = proxy.getParam("/test", "/alone/web/bound_port")[2]
+        pages = Pages()
+        self.addCleanup(pages.close)
+        page = Socket(pages, server)
+        self.addCleanup(page.close)
+        wait_until(lambda: page.state.get("reach") == {"master": True}, "the page")
+        end(master)
+        wait_until(lambda: page.state.get("reach") == {"master": False}, "the page does not show that the master is gone")
+        master = start_master()
+        self.addCleanup(lambda: end(master))
+        wait_until(lambda: any(t == "/alone/conversation" and "/alone/web" in nodes for t, nodes in proxy.getSystemState("/test")[2][1]), "not registered again")
+        wait_until(lambda: page.state.get("reach") == {"master": True}, "the page does not show that the master is back")
+        # Who publishes now is heard: the page goes on.
+        talker = subprocess.Popen(["rostopic", "pub", "-r", "2", "/alone/conversation", "std_msgs/String", "data: 'robot: I am back.'"],
+                                  env=dict(os.environ, **environment), stdout=subprocess.DEVNULL)
+        self.addCleanup(lambda: end(talker))
+        wait_until(lambda: any(e["s"] == "I am back." for e in page.talk), "what is published after the restart is not heard")
+        self.assertIsNone(page.code)
+
+    def test_a_topic_of_another_type_is_left_out(self):
+        publisher = rospy.Publisher("/phone/object_map", String, queue_size=1, latch=True)
+        publisher.publish(String(data="no map"))
+        pages = Pages()
+        self.addCleanup(pages.close)
+        page = Socket(pages, self.server)
+        self.addCleanup(page.close)
+        wait_until(lambda: "places" in page.state, "the map")
+        self.assertIn("done", page.ask("say", text="Where are you?"))
+        publisher.unregister()
+
+    def test_the_recording_is_a_page_at_the_end(self):
+        record = os.path.join(self.folder.name, "recorded")
+        server = Server("recorded", record=record).wait()
+        server.close()
+        self.assertEqual(server.process.returncode, 0)
+        with open(os.path.join(record, "index.html")) as file:
+            self.assertIn("HYSELAM_RECORDING", file.read())
+
+
+if __name__ == "__main__":
+    rospy.init_node("web_stack_test")
+    rostest.rosrun("hyselam_bringup", "web_stack_test", WebStackTest)
