@@ -34,9 +34,9 @@ DESCRIPTION = (
     "robotics room. Room i-109 is also known as mobile robotics room. Finally, room i-108 has 15 by 6 meters.")
 
 
-def building(folder):
-    """The grid map of the building as a laser would make it, which looks through the glass."""
-    plan = os.path.join(rospkg.RosPack().get_path("hyselam_topo"), "test", "data", "glass_building.yaml")
+def building(folder, plan=None):
+    """The grid map of a building, by default that with glass, as a laser would make it, which looks through the glass."""
+    plan = plan or os.path.join(rospkg.RosPack().get_path("hyselam_topo"), "test", "data", "glass_building.yaml")
     yaml = os.path.join(folder, "map.yaml")
     subprocess.run(["rosrun", "hyselam_sim", "plan_to_map", plan, yaml, "--resolution", "0.05"],
                    check=True, stdout=subprocess.DEVNULL)

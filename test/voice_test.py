@@ -14,14 +14,15 @@ import rostest
 from std_msgs.msg import String
 
 sys.dont_write_bytecode = True
-from conversation_test import MIDDLE, Robot, building
+from conversation_test import Robot, building
 from localization_rig import Listener, wait_until
 
 NEEDED = ("espeak-ng", "pocketsphinx_continuous")
 MODEL = "/usr/share/pocketsphinx/model/en-us/en-us"
 MISSING = [n for n in NEEDED if shutil.which(n) is None] + ([] if os.path.isdir(MODEL) else [MODEL])
-NAMES = ["corridor", "kitchen", "library", "workshop", "stairs", "hall"]
-SENTENCES = ["You are in the corridor.", "On your left you have the kitchen, then the library, then the workshop.", "In front of you is the hall."]
+NAMES = ["corridor", "kitchen", "library", "workshop", "meeting room", "reception"]
+SENTENCES = ["You are in the corridor.", "On your right you have the kitchen, then the library, then the workshop.", "In front of you is the reception."]
+CORRIDOR = (10.0, 8.0)  # in the office
 
 
 @unittest.skipIf(MISSING, f"the robot's voice is not tested: {', '.join(MISSING)} not installed (scripts/deps)")
@@ -32,10 +33,10 @@ class VoiceTest(unittest.TestCase):
         cls.ears, cls.mouth = (os.path.join(cls.folder.name, n) for n in ("ears", "mouth"))
         os.mkdir(cls.ears)
         os.mkdir(cls.mouth)
-        cls.robot = Robot("spoken", building(cls.folder.name), ask="never")
+        cls.robot = Robot("spoken", building(cls.folder.name, "office"), ask="never")
         assert cls.robot.loaded
         wait_until(lambda: cls.robot.maps.messages, "no map")
-        cls.robot.stand(*MIDDLE["corridor"])
+        cls.robot.stand(*CORRIDOR)
         cls.heard = Listener("/spoken/human_text", String)
         environment = dict(os.environ, ROS_NAMESPACE="spoken")
         cls.bridges = [subprocess.Popen(["rosrun", "hyselam_topo", *command], env=environment) for command in (
@@ -69,7 +70,7 @@ class VoiceTest(unittest.TestCase):
         answers = len(self.robot.answers.messages)
         for number, sentence in enumerate(SENTENCES):
             print(f"said: {sentence} heard: {self.speak(number, sentence)}")
-        wait_until(lambda: {"corridor", "kitchen", "library", "workshop", "hall"} <= self.named(), lambda: f"named only {self.named()}")
+        wait_until(lambda: {"corridor", "kitchen", "library", "workshop", "reception"} <= self.named(), lambda: f"named only {self.named()}")
         wait_until(lambda: len(self.robot.answers.messages) > answers, "no answers")
         wait_until(lambda: any(n.endswith(".wav") for n in os.listdir(self.mouth)), "nothing was spoken")
         with wave.open(os.path.join(self.mouth, sorted(n for n in os.listdir(self.mouth) if n.endswith(".wav"))[0])) as sound:

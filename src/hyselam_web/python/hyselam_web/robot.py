@@ -269,7 +269,7 @@ class Robot:
             time.sleep(MASTER_PERIOD)
             try:
                 known = any(name in nodes for kind in master.getSystemState()[:2] for _, nodes in kind)
-                if not known:
+                if not known and not rospy.is_shutdown():
                     rospy.logwarn("the master does not know this node: it registers again")
                     self._register()
                 self._reached = True
@@ -332,7 +332,11 @@ class Robot:
 
     async def _do_go(self, fields, role):
         place = self._place(fields["place"])
-        sentence = ("Vai para {}." if fields["language"] == "pt" else "Go to {}.").format(place["e"])
+        # By its name where that can be no other place.
+        names = [text for text, sure in place["n"] if sure]
+        others = [word[0] for each in self.world.table("places").values() for word in each["n"] if each is not place]
+        goal = names[0] if names and names[0] not in others else place["e"]
+        sentence = ("Vai para {}." if fields["language"] == "pt" else "Go to {}.").format(goal)
         return await self._do_say({"text": sentence}, role)
 
     def _place(self, number):

@@ -154,7 +154,7 @@ export class Places {
 
   async name(id, names) {
     this.naming = false;
-    await this.ask("name", {place: Number(id), names});
+    await this.ask("name", {place: Number(id), names}, ""); // the card and the talk show it
     if (this.open) this.showCard();
   }
 

@@ -12,7 +12,7 @@ export class RobotPanel {
     Object.assign(this, {model, connection, may, actions});
     this.panel = byId("panel-robot");
     this.learning = false;
-    model.on(["status", "here", "camera", "layers", "can", "pose", "way", "following", "refused"], () => {
+    model.on(["status", "here", "places", "camera", "layers", "can", "pose", "way", "following", "refused"], () => {
       this.showWhere();
       this.showState();
     });
