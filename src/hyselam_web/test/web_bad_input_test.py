@@ -125,6 +125,8 @@ class Case(unittest.TestCase):
                     if not part:
                         return out, True
                     out += part
+                    if b"\x88" in out.partition(b"\r\n\r\n")[2] and b"101 Switching" in out:  # the server says that it closes
+                        return out, True
             except socket.timeout:
                 return out, False
             except ConnectionError:
