@@ -178,7 +178,7 @@ struct LoopParams {
   /// Far loops from this much path, before and after, that contradict a far loop must weigh less
   /// than this part of those that do not, [m] and > 0; 0 m: they are not asked.
   double company_half_length = 10.0;
-  double max_contradiction = 0.5;
+  double max_contradiction = 0.33;
   /// A far loop by signatures that is less probable (loopProbability()) waits for more company.
   double min_signature_probability = 0.5;
 
