@@ -14,7 +14,7 @@ import numpy as np
 sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = HERE.parent
-sys.path.insert(0, str(PACKAGE / "python"))
+sys.path.insert(0, str(PACKAGE / "scripts"))
 
 from hyselam_web import access, app, reports, sights, tiles, world  # noqa: E402
 from hyselam_web.requests import Refused  # noqa: E402

@@ -470,16 +470,23 @@ export class MapView {
     c.textAlign = "center";
     c.textBaseline = "middle";
     for (const {place, name, is_asked} of labels) {
-      const [x, y] = this.toScreen(...place.c);
+      let [x, y] = this.toScreen(...place.c);
       if (x < -80 || y < -40 || x > width + 80 || y > height + 40) continue;
       const size = (name.none ? 11 : 14) - (this.scale < 12 ? 2 : 0);
       c.font = `${name.none ? "" : name.sure ? "600 " : "italic 500 "}${size}px system-ui, "Liberation Sans", sans-serif`;
       const lines = wrapped(is_asked && name.none ? "?" : this.labelText(name));
       const wide = Math.max(...lines.map((line) => c.measureText(line).width)) + 6;
       const high = lines.length * (size + 2) + 2;
-      const box = [x - wide / 2, y - high / 2, x + wide / 2, y + high / 2];
-      if (taken.some((other) => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1])) continue;
-      taken.push(box);
+      // A little higher or lower in its place, where another name is in the way.
+      const ys = (place.o ?? []).filter((_, i) => i % 2);
+      const room = Math.max(0, (Math.max(...ys) - Math.min(...ys)) * this.scale * 0.5 - high / 2);
+      const shift = [0, 0.5, -0.5, 1, -1].map((share) => share * Math.min(room || 0, 1.6 * high)).find((dy) => {
+        const box = [x - wide / 2, y + dy - high / 2, x + wide / 2, y + dy + high / 2];
+        return !taken.some((other) => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1]);
+      });
+      if (shift === undefined) continue;
+      y += shift;
+      taken.push([x - wide / 2, y - high / 2, x + wide / 2, y + high / 2]);
       const color = is_asked ? this.colors.asked : name.none ? this.colors.soft : this.colors.text;
       lines.forEach((line, i) => this.haloed(c, line, x, y + (i - (lines.length - 1) / 2) * (size + 2), color));
     }
@@ -581,7 +588,7 @@ export function wrapped(text) {
   const lines = [""];
   for (const word of text.split(" ")) {
     const last = lines[lines.length - 1];
-    if (last && last.length + word.length > 11) lines.push(word);
+    if (last && last.length + 1 + word.length > 11) lines.push(word);
     else lines[lines.length - 1] = last ? `${last} ${word}` : word;
   }
   const cut = lines.slice(0, 3).map((line) => (line.length > 18 ? line.slice(0, 17) + "…" : line));

@@ -89,12 +89,14 @@ export class Places {
       add("right_name", () => this.name(id, [name.text]), {class: "primary"});
       add("wrong_name", () => this.startNaming());
     }
+    const rename = () => add(name.none ? "name_it" : "rename_it", () => this.startNaming(), name.none ? {class: "primary"} : {});
+    if (this.may("talk") && name.none) rename();
     if (this.may("drive")) add("go_there", () => {
       this.close();
       this.actions.openTalk(); // the answer comes there
       this.ask("go", {place: Number(id), language: currentLanguage()}, null);
-    }, guess ? {} : {class: "primary"});
-    if (this.may("talk") && !guess) add(name.none ? "name_it" : "rename_it", () => this.startNaming());
+    }, guess || name.none ? {} : {class: "primary"});
+    if (this.may("talk") && name.sure) rename();
     if (this.may("talk")) add("ask_about", () => {
       this.close();
       this.actions.openTalk();
