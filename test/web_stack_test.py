@@ -104,6 +104,7 @@ class WebStackTest(unittest.TestCase):
             self.tap(tab, kitchen)
             tab.click("#card button.primary")
             wait_until(lambda: "kitchen" in self.confirmed(), "the kitchen is not confirmed")
+            tab.wait("document.querySelector('#card-title').textContent === 'kitchen'", "the confirmed name")
             tab.click("#card .close")
         # It is sent there, asks or goes; the way is shown.
         self.tap(tab, kitchen)

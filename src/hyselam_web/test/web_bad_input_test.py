@@ -245,6 +245,18 @@ class FloodsTest(Case):
         self.assertEqual(page.ask("stop")["done"], "stop")
         self.assertEqual(self.robot.stops, 1)
 
+    def test_a_flood_of_stops_stops_and_does_not_fill_the_talk(self):
+        page = self.open()
+        begin = time.monotonic()
+        for _ in range(300):
+            page.send('{"do":"stop"}')
+        page.ask("stop")
+        took, stops = time.monotonic() - begin, self.robot.stops
+        self.assertGreaterEqual(stops, 1)
+        self.assertLessEqual(stops, 2 + took / app.STOP_PERIOD)
+        wait_until(lambda: not self.served.server._stop_again, "the last stop")
+        self.assertGreater(self.robot.stops, 1)
+
     def test_slow_requests_cannot_be_heaped_up(self):
         page = self.open()
         answers = [page.ask("doctor") for _ in range(6)]

@@ -394,6 +394,17 @@ class RecordingTest(unittest.TestCase):
                 file.truncate(os.path.getsize(path) - 5)
             self.assertEqual(recording.read(path), entries[:-1])
 
+    @unittest.skipUnless(os.path.exists("/dev/full"), "this system has no /dev/full")
+    def test_a_full_disc_ends_the_recording_and_nothing_else(self):
+        w = world.World()
+        recorder = recording.Recorder("/dev/full")
+        w.set("value", 1)
+        with self.assertLogs("hyselam_web", "ERROR"):
+            recorder.take(0.0, w, tiles.MapTiles())
+        self.assertTrue(recorder.full)
+        recorder.take(5.0, w, tiles.MapTiles())
+        recorder.close()
+
     def test_files_that_are_no_recordings_are_refused_with_their_line(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "day.jsonl")

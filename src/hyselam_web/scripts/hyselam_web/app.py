@@ -20,6 +20,7 @@ from . import limits, reports as report_files, requests, tiles as map_tiles, wor
 PERIOD = 0.2  # [s] between two looks at the robot
 ALIVE = 5.0  # [s] after which a page that nothing was sent to hears that the server lives
 TILES_AT_ONCE = 16
+STOP_PERIOD = 0.3  # [s] between two stops that go to the robot
 COOKIE = "hyselam_web"
 UNUSED = 15.0  # [s] that a connection may be open without asking for anything
 MAX_CONNECTIONS = 400
@@ -50,6 +51,7 @@ class Page:
 
     def __init__(self, socket, role, address, since):
         self.socket, self.role, self.address, self.since = socket, role, address, since
+        self.number = secrets.token_hex(6)
         self.tiles_from, self.tiles_sent = since, {}
         self.hidden, self.refused = False, 0
         self.news = asyncio.Event()
@@ -65,6 +67,7 @@ class Server:
         self.run = secrets.token_hex(6)
         self.pages = set()
         self.buckets = limits.Buckets()
+        self._stopped, self._stop_again = -1e9, False
         self._texts = {}  # {since: text} of the newest version
         self._texts_of = -1
         self._seen = {}  # connection: since when it has asked for nothing
@@ -121,7 +124,8 @@ class Server:
                                   "recording": self.recorder is not None})
 
     async def on_login(self, request):
-        if not (self.buckets.take(request.remote, "login", self.clock()) and self.buckets.take("everybody", "login", self.clock() / 4)):
+        now = self.clock()
+        if not (self.buckets.take(request.remote, "login", now) and self.buckets.take("everybody", "logins", now)):
             return web.json_response({"error": "too often"}, status=429)
         try:
             given = await request.json()
@@ -143,7 +147,7 @@ class Server:
 
     async def on_stop(self, _):
         """For everybody who reaches the server, logged in or not."""
-        self.robot.stop()
+        self.stop()
         return web.json_response({"done": True})
 
     def _only_for(self, request, role):
@@ -214,13 +218,13 @@ class Server:
             number = self._number_of(text)
             role, bucket, _ = requests.REQUESTS[name]
             if name == "stop":
-                self.robot.stop()
+                self.stop()
                 await self._tell(page, {"n": number, "done": "stop"})
                 return
             if not accesses.may(page.role, role):
                 raise requests.Refused("not_allowed", f"this needs the role {role}")
             now = self.clock()
-            if not self.buckets.take(id(page), "message", now) or (bucket != "message" and not self.buckets.take(id(page), bucket, now)):
+            if not self.buckets.take(page.number, "message", now) or (bucket != "message" and not self.buckets.take(page.number, bucket, now)):
                 raise requests.Refused("too_often", "too much at once: wait a moment")
             if name == "hide":
                 page.hidden = fields["on"]
@@ -295,9 +299,18 @@ class Server:
         except (ConnectionError, RuntimeError, asyncio.CancelledError):
             pass  # it has gone; on_socket ends, too
 
+    def stop(self):
+        """At once; of a flood of them a few in a second, the last one for certain: something may have begun in between."""
+        self._stop_again = self.clock() - self._stopped < STOP_PERIOD
+        if not self._stop_again:
+            self._stopped = self.clock()
+            self.robot.stop()
+
     # ---- Time ----
 
     def tick(self):
+        if self._stop_again:
+            self.stop()
         self.robot.collect()
         if self.recorder is not None:
             self.recorder.take(self.robot.now(), self.robot.world, self.robot.tiles)

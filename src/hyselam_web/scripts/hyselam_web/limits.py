@@ -12,7 +12,8 @@ STALLED = 30.0  # [s] that a page may not take anything
 FLOOD = 200  # refused messages after which a page is disconnected
 
 # What may be asked for: so many at once, so many a second.
-RATES = {"message": (40, 20.0), "say": (5, 1.0), "act": (10, 2.0), "slow": (2, 0.1), "login": (5, 0.1)}
+RATES = {"message": (40, 20.0), "say": (5, 1.0), "act": (10, 2.0), "slow": (2, 0.1), "login": (5, 0.1),  # of an address
+         "logins": (30, 0.5)}
 
 
 class Bucket:

@@ -2,6 +2,7 @@
 it, from the server or from a folder without any."""
 import base64
 import json
+import logging
 import os
 import re
 
@@ -45,11 +46,18 @@ class Recorder:
             entry["tiles"] = pictures
         self._since, self._last = delta["v"], now
         if entry["d"] or pictures:
-            self._write(entry)
-            self._file.flush()
+            try:
+                self._write(entry)
+                self._file.flush()
+            except OSError as error:  # a full disc: pages go on
+                self.full = True
+                logging.getLogger("hyselam_web").error("%s: the recording ends: %s", self.path, error.strerror or error)
 
     def close(self):
-        self._file.close()
+        try:
+            self._file.close()
+        except OSError:
+            pass  # said before
 
 
 def read(path):

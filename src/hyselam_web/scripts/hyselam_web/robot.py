@@ -146,8 +146,9 @@ class Robot:
         world = self.world
         world.set("reach", {"master": self._reached})
         self._collect_pose()
-        if self._due("slowly", 1.0):
+        if self._due("places", 0.4):
             self._collect_places()
+        if self._due("slowly", 1.0):
             self._collect_particles()
             self._collect_diagnostics()
         way = self.topics["goal_path"].message()
