@@ -435,7 +435,8 @@ class ReportsTest(unittest.TestCase):
     def test_only_files_below_the_folder_are_found_by_names_from_the_list(self):
         with tempfile.TemporaryDirectory() as folder:
             os.makedirs(os.path.join(folder, "day/slam"))
-            for name in ("day/slam/report.html", "day/map.png", "day/secret.key", "day/.hidden.html"):
+            os.makedirs(os.path.join(folder, "day/web"))
+            for name in ("day/slam/report.html", "day/map.png", "day/secret.key", "day/.hidden.html", "day/web/day.jsonl", "day/web/index.html"):
                 with open(os.path.join(folder, name), "w") as file:
                     file.write(name)
             os.symlink("/etc/passwd", os.path.join(folder, "day/link.txt"))

@@ -3,6 +3,7 @@ import os
 
 TYPES = {".html": "text/html", ".png": "image/png", ".jpg": "image/jpeg", ".svg": "image/svg+xml", ".csv": "text/csv", ".json": "application/json",
          ".txt": "text/plain"}
+RECORDING = "day.jsonl"
 MAX_FILES = 2000
 MAX_BYTES = 50000000
 # Nothing is run, and nothing is asked of anybody.
@@ -21,7 +22,7 @@ class Reports:
         files = {}
         for root, folders, names in os.walk(self.folder) if self.folder else ():
             folders[:] = sorted(f for f in folders if not f.startswith(".") and not os.path.islink(os.path.join(root, f)))
-            for name in sorted(names):
+            for name in sorted(names) if RECORDING not in names else ():  # the page plays it itself
                 path = os.path.join(root, name)
                 ending = os.path.splitext(name)[1].lower()
                 if ending in TYPES and not name.startswith(".") and not os.path.islink(path) and os.path.isfile(path):
