@@ -39,6 +39,7 @@ struct LocalizerParams {
   double search_latency = 0.5;      ///< an answer counts so long after its question [s]
   double found_probability = 0.98;  ///< a place is believed from this probability on
   double lost_probability = 0.95;   ///< another one says from this on that the robot is lost
+  PlaceOdds place_odds;
 
   FsdMapParams map;  ///< densities of the map: their kernels, what counts as free
   LocalMapParams local_map;
@@ -163,6 +164,7 @@ class Localizer {
   /// The decisions of the search by submaps; see localizer_search.cpp.
   void updateBySearch(const PoseEstimate& estimate, double motion, LocalizationResult& result);
   void askSearch(const PoseEstimate& estimate);
+  double lengthOfAlarm() const;
   void takeAnswer(LocalizationResult& result);
   void decide(const SearchAnswer& answer, const Verdict& verdict, LocalizationResult& result);
   void trackAt(const hyselam::Pose2& base_in_grid, LocalizationResult& result);
@@ -206,6 +208,7 @@ class Localizer {
     double suspicious_until = -1.0;    // something happened: ask often until then
     std::optional<double> alarm_from;  // on that way
     double alarm_step = 0.0;           // [m] before it is asked about again
+    bool confirmed = false;            // a search found no better place since the alarm
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

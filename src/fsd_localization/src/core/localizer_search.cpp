@@ -30,6 +30,7 @@ void Localizer::forgetSearch() {
   search_.verdict.reset();
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
+  search_.confirmed = false;
   search_.guided = false;
 }
 
@@ -48,10 +49,15 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     if (!alarm) {
       search_.alarm_from.reset();
       search_.alarm_step = kAskStep;
+      search_.confirmed = false;
     }
     if (alarm && !search_.alarm_from) search_.alarm_from = search_.way;
-    // Meanwhile nobody should rely on it; but the robot is not lost before another place is better.
-    if (suspicious || inliers_.isBelow(params_.lost_inlier_ratio, 0.0)) result.converged = false;
+    // Meanwhile nobody should rely on the pose, unless the map confirms it or a search has done so;
+    // but the robot is not lost before another place is better.
+    const bool strange = suspicious && !inliers_.isUsual(result.inlier_ratio, params_.lost_relative_ratio);
+    if (!search_.confirmed && (strange || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
+      result.converged = false;
+    }
   } else if (search_.guided && result.converged &&
              inliers_.average() >= params_.found_inlier_ratio) {
     search_.guided = false;
@@ -76,6 +82,11 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
   }
 }
 
+/// What was seen before an alarm may belong to another place.
+double Localizer::lengthOfAlarm() const {
+  return search_.alarm_from ? std::min(kAlarmLength, search_.way - *search_.alarm_from) : kAlarmLength;
+}
+
 /// Asks when there is a reason to: not found yet; an alarm; a place found lately.
 void Localizer::askSearch(const PoseEstimate& estimate) {
   if (search_.background->busy() || search_.submap.empty()) return;
@@ -88,8 +99,8 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
     const bool check = search_.way - search_.tracked_from >= search_.next_check;
     if (!check && !(alarm && since >= search_.alarm_step)) return;
     if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
-    if (alarm) {  // what was seen before it may belong to another place
-      length = std::min(kAlarmLength, kAskStep + search_.way - *search_.alarm_from);
+    if (alarm) {
+      length = lengthOfAlarm();
       turn_as_travel = kTurnAsTravel;
     }
     believed = estimate.mean;
@@ -104,7 +115,7 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
 void Localizer::takeAnswer(LocalizationResult& result) {
   const auto answer = search_.background->take(observation_.scan.stamp, wait_for_search_);
   if (!answer) return;
-  search_.verdict = judge(*answer);
+  search_.verdict = judge(*answer, params_.place_odds);
   if (search_.verdict) decide(*answer, *search_.verdict, result);
 }
 
@@ -115,11 +126,13 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     if (!answer.believed) return;  // asked before
     if (!verdict.is_believed && verdict.probability >= params_.lost_probability) {
       state_ = LocalizerState::kLostSearch;
+      search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
       followPlaces(verdict.hypotheses, motion);
       result.converged = false;
       search_.asked_at.reset();  // at once again, with another scan
     } else if (verdict.is_believed) {
       inliers_.reset();  // no place fits better: what is seen now is normal here
+      search_.confirmed = search_.alarm_from.has_value();
       search_.alarm_step = std::clamp(2.0 * search_.alarm_step, kAskStep, kLargestAlarmStep);
     }
     return;
@@ -143,6 +156,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.next_check = kFirstCheck;
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
+  search_.confirmed = false;
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <ostream>
 
 namespace fsd_localization {
 
@@ -20,6 +22,7 @@ void LocalizationScore::add(const LocalizationResult& result, const hyselam::Pos
   e.good = e.error_m < limits_.position && e.error_deg < limits_.heading;
   e.converged = result.converged;
   e.phase = result.phase;
+  e.result = result;
   if (!entries_.empty() &&
       hyselam::distance(truth_, truth) > e.travelled - entries_.back().travelled + kJump) {
     jumps_.push_back(entries_.size());
@@ -47,6 +50,25 @@ nlohmann::json LocalizationScore::report() const {
   j["median_error_m"] = median(held, &Entry::error_m);
   j["median_error_deg"] = median(held, &Entry::error_deg);
   return j;
+}
+
+void LocalizationScore::writeTable(std::ostream& out) const {
+  out << "stamp,travelled_m,phase,converged,right,error_m,error_deg,cluster_weight,deviation_m,"
+         "particles,inlier_ratio,place_probability,places\n";
+  const auto orNothing = [&](const std::optional<double>& value) {
+    if (value) out << *value;
+  };
+  for (const Entry& e : entries_) {
+    const LocalizationResult& r = e.result;
+    out << std::fixed << std::setprecision(3) << r.stamp << ',' << e.travelled << ','
+        << toString(e.phase) << ',' << e.converged << ',' << e.good << ',' << e.error_m << ','
+        << e.error_deg << ',' << r.cluster_weight << ','
+        << std::sqrt(std::max(r.covariance(0, 0), r.covariance(1, 1))) << ',' << r.particles << ',';
+    orNothing(r.inlier_ratio);
+    out << ',';
+    orNothing(r.place_probability);
+    out << ',' << r.places << '\n';
+  }
 }
 
 std::size_t LocalizationScore::heldFrom(std::size_t begin, std::size_t end) const {

@@ -21,12 +21,15 @@ class LocalizationScore {
   void add(const LocalizationResult& result, const hyselam::Pose2& truth);
 
   nlohmann::json report() const;
+  /// All updates, a line each (CSV with a heading); what is not known stays empty.
+  void writeTable(std::ostream& out) const;
 
  private:
   struct Entry {
     double travelled, error_m, error_deg;
     bool good, converged;
     Phase phase;
+    LocalizationResult result;
   };
 
   /// The first good estimate of [begin, end) after the last bad one; the number of all if the last

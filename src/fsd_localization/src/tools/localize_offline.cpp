@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "fsd_localization/localizer.hpp"
+#include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
@@ -21,8 +22,8 @@ using fsd_localization::LocalizationScore;
 using hyselam::Pose2;
 
 struct Options {
-  std::string map, log, model = "hybrid", kernel = "uniform", trajectory, reference;
-  std::vector<double> bandwidths{1.5, 3.0, 5.0};
+  std::string map, log, model = "hybrid", kernel = "uniform", trajectory, reference, updates;
+  std::vector<double> bandwidths{1.5, 3.0, 5.0}, place_odds;
   std::size_t particles = 20000;
   std::uint64_t seed = 1;
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
@@ -37,6 +38,9 @@ fsd_localization::LocalizerParams localizerParams(const Options& o) {
   p.seed = o.seed;
   p.refine_odometry = !o.raw_odometry;
   p.submap_search = !o.without_search;
+  if (!o.place_odds.empty()) {
+    p.place_odds = {o.place_odds[0], o.place_odds[1], o.place_odds[2], o.place_odds[3]};
+  }
   p.filter.max_particles = o.particles;
   p.filter.min_particles = std::min(p.filter.min_particles, o.particles);
   p.map.kernels.clear();
@@ -199,6 +203,9 @@ nlohmann::json run(const Options& o) {
     throw hyselam::InputError(o.log, "", "no scan could be used for an update");
   }
   if (!o.trajectory.empty()) hyselam::writeTum(o.trajectory, result.trajectory);
+  if (!o.updates.empty()) {
+    hyselam::writeFileAtomically(o.updates, [&](std::ostream& out) { score.writeTable(out); });
+  }
 
   std::vector<double> sorted = result.update_ms;
   std::sort(sorted.begin(), sorted.end());
@@ -250,6 +257,11 @@ int main(int argc, char** argv) {
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
   app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");
+  app.add_option("--updates", o.updates, "table to write (CSV), one line per update with a true pose");
+  app.add_option("--place-odds", o.place_odds,
+                 "bias, margin, score and length of the judge of places (bench/place_judge)")
+      ->delimiter(',')
+      ->expected(4);
   app.add_flag("--cache", o.cache, "keep the density fields beside the map (MAP.yaml.fsd)");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

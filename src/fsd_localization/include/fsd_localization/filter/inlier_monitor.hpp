@@ -18,6 +18,8 @@ class InlierMonitor {
 
   /// The fast average; 0 before the first ratio.
   double average() const { return fast_.value_or(0.0); }
+  /// Whether a scan fits at least `min_relative` times as well as is normal here.
+  bool isUsual(const std::optional<double>& inlier_ratio, double min_relative) const;
   /// Whether the last scan had returns, the robot has moved enough to judge, and the fast average
   /// lies below `min_ratio`, or below `min_relative` times the slow one.
   bool isBelow(double min_ratio, double min_relative) const;

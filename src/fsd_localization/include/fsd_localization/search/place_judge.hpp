@@ -3,15 +3,27 @@
 #pragma once
 
 #include "fsd_localization/search/background_search.hpp"
+#include "hyselam_common/parameters.hpp"
 
 namespace fsd_localization {
+
+/// Log odds that the best place is right: bias + margin * min(margin to the best other place, 0.3) +
+/// score * Place::seen + length * log(1 + metres of the submap). Fitted by bench/place_judge.
+struct PlaceOdds {
+  double bias = -5.980;
+  double margin = 34.766;
+  double score = 6.535;
+  double length = 0.596;
+
+  void describe(hyselam::ParameterVisitor& visit);
+};
 
 /// How sure it is that a place is the right one.
 ///
 /// @param score Place::seen. @param rival of the best other place; 0 if there is none.
 /// @param length of the submap [m].
 /// @return probability, 0..1, calibrated on logs (docs/algorithms/localization.md).
-double probabilityOfPlace(double score, double rival, double length);
+double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds = {});
 
 /// The best place of an answer and how sure it is.
 struct Verdict {
@@ -22,6 +34,6 @@ struct Verdict {
   std::vector<Place> hypotheses;
 };
 /// Nothing if nothing was found and nothing believed.
-std::optional<Verdict> judge(const SearchAnswer& answer);
+std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds = {});
 
 }  // namespace fsd_localization

@@ -30,6 +30,8 @@ class SubmapBuilder {
   /// @param base in a frame that moves smoothly.
   void add(const hyselam::LaserScan& scan, const hyselam::Pose2& base);
   void reset();
+  /// Forgets what was seen farther back than `length` [m]; build() says how that is counted.
+  void keepLast(double length, double turn_as_travel);
 
   bool empty() const { return scans_.empty(); }
   /// Seen from the newest pose, no farther back than `length` [m] of travel. Each radian turned
@@ -43,6 +45,8 @@ class SubmapBuilder {
     hyselam::Point2 laser;  // in the base frame, as the ends
     std::vector<hyselam::Point2> ends;
   };
+  /// The number of the first scan no farther back than that.
+  std::size_t firstWithin(double length, double turn_as_travel) const;
   static Kept kept(const hyselam::LaserScan& scan, const hyselam::Pose2& base);
 
   std::deque<Kept> scans_;  // the newest scan always last, the others a step apart

@@ -25,6 +25,10 @@ void InlierMonitor::add(const std::optional<double>& inlier_ratio, double motion
   follow(slow_, kSlowMemory);
 }
 
+bool InlierMonitor::isUsual(const std::optional<double>& inlier_ratio, double min_relative) const {
+  return inlier_ratio && slow_ && *inlier_ratio >= min_relative * *slow_;
+}
+
 bool InlierMonitor::isBelow(double min_ratio, double min_relative) const {
   return current_ && motion_ > kFastMemory && *fast_ < std::max(min_ratio, min_relative * *slow_);
 }

@@ -8,18 +8,25 @@ namespace fsd_localization {
 namespace {
 constexpr double kHypothesisMargin = 0.15;  // of the score, from the best
 constexpr std::size_t kMaxHypotheses = 20;
-
-// Fitted by bench/place_judge.
-constexpr double kBias = -5.980, kMargin = 34.766, kScore = 6.535, kLength = 0.596;
+constexpr double kLargestMargin = 0.3;  // beyond it is as sure as it gets
 }  // namespace
 
-double probabilityOfPlace(double score, double rival, double length) {
-  const double margin = std::min(score - rival, 0.3);  // beyond it is as sure as it gets
-  const double odds = kBias + kMargin * margin + kScore * score + kLength * std::log1p(length);
-  return 1.0 / (1.0 + std::exp(-odds));
+void PlaceOdds::describe(hyselam::ParameterVisitor& visit) {
+  const auto range = hyselam::Range::between(-1000.0, 1000.0);
+  visit("bias", bias, range, "", "log odds that the best place of a search is right: without more");
+  visit("margin", margin, range, "", "by its margin in score to the best other place, 0.3 at most");
+  visit("score", score, range, "", "by its score");
+  visit("length", length, range, "", "by log(1 + metres of scans)");
 }
 
-std::optional<Verdict> judge(const SearchAnswer& answer) {
+double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds) {
+  const double margin = std::min(score - rival, kLargestMargin);
+  const double log_odds = odds.bias + odds.margin * margin + odds.score * score +
+                          odds.length * std::log1p(length);
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds) {
   std::vector<Place> places = answer.places;
   if (answer.believed) {
     // The same place may have been found by a better way, or not at all.
@@ -39,7 +46,7 @@ std::optional<Verdict> judge(const SearchAnswer& answer) {
   v.best = places.front();
   v.is_believed = answer.believed && isSamePlace(v.best.base, answer.believed->base);
   v.probability =
-      probabilityOfPlace(v.best.seen, places.size() > 1 ? places[1].seen : 0.0, answer.length);
+      probabilityOfPlace(v.best.seen, places.size() > 1 ? places[1].seen : 0.0, answer.length, odds);
   for (const Place& p : places) {
     if (p.seen < v.best.seen - kHypothesisMargin || v.hypotheses.size() == kMaxHypotheses) break;
     v.hypotheses.push_back(p);

@@ -52,15 +52,28 @@ void SubmapBuilder::add(const hyselam::LaserScan& scan, const Pose2& base) {
   while (travelled_ - scans_.front().travelled > kMaxLength) scans_.pop_front();
 }
 
+std::size_t SubmapBuilder::firstWithin(double length, double turn_as_travel) const {
+  std::size_t first = 0;
+  while (first + 1 < scans_.size() &&
+         travelled_ - scans_[first].travelled +
+                 turn_as_travel * (turned_ - scans_[first].turned) >
+             length) {
+    ++first;
+  }
+  return first;
+}
+
+void SubmapBuilder::keepLast(double length, double turn_as_travel) {
+  const std::size_t first = firstWithin(length, turn_as_travel);
+  scans_.erase(scans_.begin(), scans_.begin() + static_cast<std::ptrdiff_t>(first));
+  if (scans_.size() == 1) last_is_step_ = true;
+}
+
 Submap SubmapBuilder::build(double length, double turn_as_travel) const {
   Submap map;
   if (scans_.empty()) return map;
   const Pose2 to_newest = scans_.back().base.inverse();
-  std::size_t first = 0;
-  while (travelled_ - scans_[first].travelled + turn_as_travel * (turned_ - scans_[first].turned) >
-         length) {
-    ++first;
-  }
+  const std::size_t first = firstWithin(length, turn_as_travel);
   map.length = travelled_ - scans_[first].travelled;
   map.turned = turned_ - scans_[first].turned;
   std::set<std::pair<int, int>> taken;
