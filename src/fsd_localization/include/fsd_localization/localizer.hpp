@@ -205,9 +205,11 @@ class Localizer {
     std::unique_ptr<BackgroundSearch> background;
     double way = 0.0;                  // [m] of motion, turns counted
     std::optional<double> asked_at;    // on that way
-    double suspicious_until = -1.0;    // something happened: ask often until then
+    double suspicious_for = 0.0;       // [m] since the last update something happened
+    double suspicious_until = -1.0;    // on that way
     std::optional<double> alarm_from;  // on that way
     double alarm_step = 0.0;           // [m] before it is asked about again
+    bool urgent = false;               // the map does not fit, either
     bool confirmed = false;            // a search found no better place since the alarm
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since

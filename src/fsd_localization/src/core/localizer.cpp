@@ -291,12 +291,12 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
     smooth = step.pose;
     if (step.broken || (step.matched && step.inlier_ratio < kWeakMatch)) by_wheels_ = true;
     if (step.matched && step.inlier_ratio < kWeakMatch) {
-      search_.suspicious_until = std::max(search_.suspicious_until, search_.way + kWeakWay);
+      search_.suspicious_for = std::max(search_.suspicious_for, kWeakWay);
     }
     if (step.broken && search_.background) {  // what was seen before lies nobody knows where
       search_.submap.reset();
       search_.background->drop();
-      search_.suspicious_until = search_.way + kSuspiciousWay;
+      search_.suspicious_for = kSuspiciousWay;
     }
   }
   sensor_.integrate(scan, smooth);

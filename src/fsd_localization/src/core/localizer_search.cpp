@@ -17,6 +17,8 @@ constexpr double kLargestAlarmStep = 4.0;  // [m] between those about an alarm t
 constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
 constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
 constexpr double kCheckStep = 30.0;        // [m] at most between checks
+constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan, or as good as one
+constexpr double kUsual = 0.75;  // of the usual share of inliers, that confirms a pose
 constexpr double kFits = 0.3;  // a place with a lower score does not explain what is seen
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
@@ -30,7 +32,7 @@ void Localizer::forgetSearch() {
   search_.verdict.reset();
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
-  search_.confirmed = false;
+  search_.confirmed = search_.urgent = false;
   search_.guided = false;
 }
 
@@ -43,18 +45,24 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     inliers_.add(result.inlier_ratio, motion);
   }
   if (tracking) {
+    search_.suspicious_until =
+        std::max(search_.suspicious_until, search_.way + search_.suspicious_for);
+    search_.suspicious_for = 0.0;
     const bool suspicious = search_.way < search_.suspicious_until;
-    const bool alarm =
-        suspicious || inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
-    if (!alarm) {
+    // The last scans fit neither each other nor the map.
+    const bool strange = suspicious && !inliers_.isUsual(kUsual);
+    const bool low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+    if (!suspicious && !low) {
       search_.alarm_from.reset();
-      search_.alarm_step = kAskStep;
       search_.confirmed = false;
+    } else if (!search_.alarm_from) {
+      search_.alarm_from = search_.asked_at = search_.way;  // one that the map confirms can wait
+      search_.alarm_step = kAskStep;
     }
-    if (alarm && !search_.alarm_from) search_.alarm_from = search_.way;
-    // Meanwhile nobody should rely on the pose, unless the map confirms it or a search has done so;
-    // but the robot is not lost before another place is better.
-    const bool strange = suspicious && !inliers_.isUsual(result.inlier_ratio, params_.lost_relative_ratio);
+    if ((strange || low) && !search_.urgent) search_.asked_at.reset();
+    search_.urgent = strange || low;
+    // Meanwhile nobody should rely on the pose, unless a search has confirmed it; but the robot is
+    // not lost before another place is better.
     if (!search_.confirmed && (strange || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
       result.converged = false;
     }
@@ -97,7 +105,8 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
   if (state_ == LocalizerState::kTracking) {
     const bool alarm = search_.alarm_from.has_value();
     const bool check = search_.way - search_.tracked_from >= search_.next_check;
-    if (!check && !(alarm && since >= search_.alarm_step)) return;
+    const bool again = alarm && (!search_.asked_at || since >= search_.alarm_step);
+    if (!check && !again) return;
     if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
     if (alarm) {
       length = lengthOfAlarm();
@@ -125,6 +134,8 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   if (state_ == LocalizerState::kTracking) {
     if (!answer.believed) return;  // asked before
     if (!verdict.is_believed && verdict.probability >= params_.lost_probability) {
+      // A single scan was odd, and those after it are not.
+      if (answer.length < kOneScan && inliers_.isUsual(params_.lost_relative_ratio)) return;
       state_ = LocalizerState::kLostSearch;
       search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
       followPlaces(verdict.hypotheses, motion);
@@ -156,7 +167,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.next_check = kFirstCheck;
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
-  search_.confirmed = false;
+  search_.confirmed = search_.urgent = false;
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),

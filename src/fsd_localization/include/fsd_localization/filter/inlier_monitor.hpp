@@ -6,9 +6,9 @@
 
 namespace fsd_localization {
 
-/// Two moving averages of an inlier ratio over the motion of the robot: a fast one, by which a
-/// place is judged, and a slow one, which shows what is normal at this place (people and furniture
-/// that are not on the map).
+/// Moving averages of an inlier ratio over the motion of the robot: a fast one, by which a place is
+/// judged, and a slow one, which shows what is normal at this place (people and furniture that are
+/// not on the map); and one over the last steps, in which a single odd scan does not show.
 class InlierMonitor {
  public:
   /// Clears the averages: another pose hypothesis is judged from now on.
@@ -18,8 +18,9 @@ class InlierMonitor {
 
   /// The fast average; 0 before the first ratio.
   double average() const { return fast_.value_or(0.0); }
-  /// Whether a scan fits at least `min_relative` times as well as is normal here.
-  bool isUsual(const std::optional<double>& inlier_ratio, double min_relative) const;
+  /// Whether the scans of the last steps (an average over about 0.3 m) fit at least `min_relative`
+  /// times as well as is normal here.
+  bool isUsual(double min_relative) const;
   /// Whether the last scan had returns, the robot has moved enough to judge, and the fast average
   /// lies below `min_ratio`, or below `min_relative` times the slow one.
   bool isBelow(double min_ratio, double min_relative) const;
@@ -27,7 +28,7 @@ class InlierMonitor {
  private:
   bool current_ = false;  // the last scan had returns
   double motion_ = 0.0;   // [m] since reset()
-  std::optional<double> fast_, slow_;
+  std::optional<double> last_, fast_, slow_;
 };
 
 }  // namespace fsd_localization

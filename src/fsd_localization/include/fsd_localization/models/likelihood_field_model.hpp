@@ -19,7 +19,7 @@ struct LikelihoodFieldParams {
   double sigma_hit = 0.1;           ///< [m]
   double max_distance = 1.0;        ///< beyond it the hit term is 0 [m]
   double independent_beams = 60.0;  ///< the beams of a scan count as this many independent ones
-  double occupied_penalty = 0.05;   ///< factor for a pose on a cell that is not free
+  double occupied_penalty = 0.05;   ///< factor for a pose on an obstacle or off the map
   double surface_offset = 0.5;  ///< from the centre of a wall's outermost cell out to its surface
                                 ///< [cells]: 0.5 on drawn plans, 0 where cells mark laser returns
 
@@ -65,7 +65,7 @@ class LikelihoodFieldModel final : public ObservationModel {
   int fine_width_ = 0;            // the frame of one far cell included
   int fine_height_ = 0;
   std::vector<std::uint8_t> cost_;  // -log likelihood in steps of step_
-  std::vector<bool> free_;
+  std::vector<bool> occupied_;
   double step_ = 0.0;
   double best_ = 0.0;  // log likelihood at distance 0
 };

@@ -5,7 +5,8 @@
 namespace fsd_localization {
 
 namespace {
-constexpr double kFastMemory = 1.0;   // [m] of motion
+constexpr double kLastMemory = 0.3;   // [m] of motion
+constexpr double kFastMemory = 1.0;   // [m]
 constexpr double kSlowMemory = 30.0;  // [m]
 }  // namespace
 
@@ -21,12 +22,13 @@ void InlierMonitor::add(const std::optional<double>& inlier_ratio, double motion
     const double before = average.value_or(*inlier_ratio);
     average = before + std::min(1.0, motion / memory) * (*inlier_ratio - before);
   };
+  follow(last_, kLastMemory);
   follow(fast_, kFastMemory);
   follow(slow_, kSlowMemory);
 }
 
-bool InlierMonitor::isUsual(const std::optional<double>& inlier_ratio, double min_relative) const {
-  return inlier_ratio && slow_ && *inlier_ratio >= min_relative * *slow_;
+bool InlierMonitor::isUsual(double min_relative) const {
+  return last_ && *last_ >= min_relative * *slow_;
 }
 
 bool InlierMonitor::isBelow(double min_ratio, double min_relative) const {

@@ -25,7 +25,7 @@ void LikelihoodFieldParams::describe(hyselam::ParameterVisitor& visit) {
   visit("independent_beams", independent_beams, Range::between(0.1, 1e4), "",
         "what the beams of a scan count as");
   visit("occupied_penalty", occupied_penalty, Range::between(1e-9, 1.0), "",
-        "factor where the map is not free");
+        "factor where the map is occupied, or ends");
   visit("surface_offset", surface_offset, Range::between(0.0, 0.5), "cells",
         "from the center of a wall's outermost cell to its surface: 0.5 on drawn plans, 0 where "
         "cells mark laser returns");
@@ -70,9 +70,9 @@ LikelihoodFieldModel::LikelihoodFieldModel(const OccupancyGrid& map,
     }
   }
 
-  free_.resize(geometry_.cellCount());
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    free_[i] = map.cells[i] >= 0 && map.cells[i] < thresholds.free_below;
+  occupied_.resize(geometry_.cellCount());
+  for (std::size_t i = 0; i < occupied_.size(); ++i) {
+    occupied_[i] = map.cells[i] >= thresholds.occupied_from;
   }
 }
 
@@ -137,7 +137,7 @@ std::optional<double> LikelihoodFieldModel::weigh(const Observation& observation
     float w = std::exp(scale * static_cast<float>(sum));
     const double cx = p.x[i] / geometry_.resolution, cy = p.y[i] / geometry_.resolution;
     const bool inside = cx >= 0.0 && cy >= 0.0 && cx < width && cy < height;
-    if (!inside || !free_[geometry_.index({static_cast<int>(cx), static_cast<int>(cy)})]) {
+    if (!inside || occupied_[geometry_.index({static_cast<int>(cx), static_cast<int>(cy)})]) {
       w *= static_cast<float>(params_.occupied_penalty);
     }
     p.weight[i] *= w;
