@@ -146,6 +146,24 @@ TEST(Submap, keepsTheLastMetresOnly) {
   EXPECT_TRUE(builder.empty());
 }
 
+TEST(Submap, forgetsWhatIsAskedTo) {
+  const GridRayCaster rays(room());
+  SubmapBuilder builder;
+  builder.keepLast(0.0, 0.5);
+  EXPECT_TRUE(builder.empty());
+  for (int i = 0; i < 100; ++i) {
+    builder.add(look(rays, {1.5 + 0.05 * i, 2.0, 0.0}, i), {0.05 * i, 0.0, 0.0});
+  }
+  builder.keepLast(2.0, 0.5);
+  EXPECT_LE(builder.build().length, 2.0);
+  EXPECT_GT(builder.build().length, 1.6);
+  builder.keepLast(0.0, 0.5);
+  EXPECT_EQ(builder.build().length, 0.0) << "the newest scan stays";
+  EXPECT_FALSE(builder.build().points.empty());
+  builder.add(look(rays, {6.5, 2.0, 0.0}, 100), {5.0, 0.0, 0.0});
+  EXPECT_NEAR(builder.build().length, 0.05, 1e-9) << "and the next one joins it";
+}
+
 TEST(BackgroundSearch, answersCountByStamps) {
   const auto map = room();
   const Pose2 at{2.0, 2.0, 0.3};
@@ -277,6 +295,75 @@ TEST(Localizer, keepsARightPoseInClutterThatTheMapLacks) {
       EXPECT_GT(alarms, 0) << "the clutter is too little to tell anything";
     }
   }
+}
+
+TEST(Localizer, oneOddScanRaisesNoDoubt) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  Pose2 at{1.5, 2.0, 0.0};
+  localizer.setInitialPose(at, {0.2, 0.2, 0.1});
+  bool was_sure = false;
+  for (int i = 0; i < 28; ++i) {
+    at = at * Pose2{0.101, 0.0, 0.0};  // each scan is an update
+    hyselam::LaserScan scan = look(rays, at, 0.3 * i);
+    for (std::size_t b = 0; i == 20 && b < 120; ++b) {  // somebody stands before the laser
+      scan.ranges[b] = std::min(scan.ranges[b], 0.6F);
+    }
+    const auto result = localizer.update(scan, at);
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->converged || !was_sure) << "at scan " << i;
+    was_sure = result->converged;
+  }
+  EXPECT_TRUE(was_sure);
+}
+
+TEST(Localizer, whatWasSeenBeforeItWasCarriedOffDoesNotMislead) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
+  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  double wrong = 0.0;
+  std::optional<LocalizationResult> last;
+  for (int i = 0; i < 400; ++i) {
+    const Pose2 step{0.02, 0.0, 0.02};  // a circle of 1 m, in 6.3 m
+    at = at * step;
+    wheels = wheels * step;
+    if (i == 315) at = {9.0, 5.0, -2.0};
+    const auto result = localizer.update(look(rays, at, 0.1 * i), wheels);
+    if (!result) continue;
+    if (i >= 315 && result->converged && distance(result->base_in_map, at) > 0.5) {
+      wrong += result->travelled - last->travelled;
+    }
+    last = result;
+  }
+  EXPECT_LT(wrong, 0.3) << "sure of a wrong pose for so many metres";
+  EXPECT_TRUE(last->converged);
+  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+}
+
+TEST(Localizer, keepsItsPoseOnCellsThatTheMapDoesNotKnow) {
+  auto map = room();
+  const GridRayCaster rays(map);
+  // The robot drives through a patch that nobody has seen when the map was made.
+  const auto& g = map.geometry;
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      const Point2 p = g.center({x, y});
+      if (map.at({x, y}) == 0 && std::hypot(p.x - 3.0, p.y - 3.0) < 0.6) map.at({x, y}) = -1;
+    }
+  }
+  Localizer localizer(map, LocalizerParams{});
+  Pose2 at{2.0, 2.0, 0.0};
+  localizer.setInitialPose(at, {0.1, 0.1, 0.05});
+  double worst = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    at = at * Pose2{0.02, 0.0, 0.02};
+    const auto result = localizer.update(look(rays, at, 0.1 * i), at);
+    if (result && i > 30) worst = std::max(worst, distance(result->base_in_map, at));
+  }
+  EXPECT_LT(worst, 0.12);
 }
 
 TEST(Localizer, isFoundStandingStillWhereOneScanDecides) {
