@@ -54,7 +54,7 @@ struct LocalizerParams {
   double converged_stddev = 0.75;         ///< of the position, along its widest axis [m]
 
   // Hybrid only: FSD searches, then the likelihood field takes over.
-  std::size_t tracking_particles = 2000;  ///< minimum while tracking
+  std::size_t tracking_particles = 1000;  ///< minimum while tracking
   /// While the likelihood field disambiguates the remaining pose hypotheses.
   std::size_t hypothesis_particles = 20000;
   /// Effective number of independent beams of a scan in this state; low, so that weights change

@@ -31,6 +31,13 @@ std::uint64_t millimeters(double travelled) {
   return static_cast<std::uint64_t>(travelled * 1000);
 }
 
+/// Each scan of an update is matched, and few others.
+hyselam_scan_matching::ScanOdometryParams scanOdometryParams() {
+  hyselam_scan_matching::ScanOdometryParams p;
+  p.scan_step = p.scan_turn = 0.08;
+  return p;
+}
+
 FsdSensorParams sensorParams(const LocalizerParams& p) {
   FsdSensorParams s;
   s.local_map = p.local_map;
@@ -164,7 +171,8 @@ Localizer::Localizer(const hyselam::OccupancyGrid& map, const LocalizerParams& p
     : params_((params.validate(), params)),
       map_(densityMap(map, params, cache_path, progress, &map_was_cached_, &map_cache_problem_)),
       sensor_(sensorParams(params)),
-      filter_(map_, params_.filter, params.seed) {
+      filter_(map_, params_.filter, params.seed),
+      scan_odometry_(scanOdometryParams()) {
   const auto rays = [&] {
     return std::make_shared<const GridRayCaster>(map, params.map.thresholds);
   };

@@ -12,7 +12,7 @@
 namespace fsd_localization {
 
 struct LikelihoodFieldParams {
-  int max_beams = 180;
+  int max_beams = 90;
   double max_range = 30.0;          ///< [m]
   double z_hit = 0.9;               ///< share of returns from mapped obstacles
   double z_rand = 0.1;              ///< share of returns from anywhere

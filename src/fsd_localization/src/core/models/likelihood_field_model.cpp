@@ -25,7 +25,7 @@ void LikelihoodFieldParams::describe(hyselam::ParameterVisitor& visit) {
   visit("independent_beams", independent_beams, Range::between(0.1, 1e4), "",
         "what the beams of a scan count as");
   visit("occupied_penalty", occupied_penalty, Range::between(1e-9, 1.0), "",
-        "factor where the map is occupied, or ends");
+        "factor on an obstacle and off the map");
   visit("surface_offset", surface_offset, Range::between(0.0, 0.5), "cells",
         "from the center of a wall's outermost cell to its surface: 0.5 on drawn plans, 0 where "
         "cells mark laser returns");
