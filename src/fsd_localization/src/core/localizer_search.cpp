@@ -18,7 +18,7 @@ constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm
 constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
 constexpr double kCheckStep = 30.0;        // [m] at most between checks
 constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan, or as good as one
-constexpr double kUsual = 0.75;  // of the usual share of inliers, that confirms a pose
+constexpr double kUsual = 0.75;            // of the usual share of inliers, that confirms a pose
 constexpr double kFits = 0.3;  // a place with a lower score does not explain what is seen
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
@@ -92,7 +92,8 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
 
 /// What was seen before an alarm may belong to another place.
 double Localizer::lengthOfAlarm() const {
-  return search_.alarm_from ? std::min(kAlarmLength, search_.way - *search_.alarm_from) : kAlarmLength;
+  return search_.alarm_from ? std::min(kAlarmLength, search_.way - *search_.alarm_from)
+                            : kAlarmLength;
 }
 
 /// Asks when there is a reason to: not found yet; an alarm; a place found lately.

@@ -257,7 +257,8 @@ int main(int argc, char** argv) {
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
   app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");
-  app.add_option("--updates", o.updates, "table to write (CSV), one line per update with a true pose");
+  app.add_option("--updates", o.updates,
+                 "table to write (CSV), one line per update with a true pose");
   app.add_option("--place-odds", o.place_odds,
                  "bias, margin, score and length of the judge of places (bench/place_judge)")
       ->delimiter(',')

@@ -7,8 +7,8 @@
 
 namespace fsd_localization {
 
-/// Log odds that the best place is right: bias + margin * min(margin to the best other place, 0.3) +
-/// score * Place::seen + length * log(1 + metres of the submap). Fitted by bench/place_judge.
+/// Log odds that the best place is right: bias + margin * min(margin to the best other place, 0.3)
+/// + score * Place::seen + length * log(1 + metres of the submap). Fitted by bench/place_judge.
 struct PlaceOdds {
   double bias = -5.980;
   double margin = 34.766;

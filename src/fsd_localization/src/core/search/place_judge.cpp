@@ -21,8 +21,8 @@ void PlaceOdds::describe(hyselam::ParameterVisitor& visit) {
 
 double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds) {
   const double margin = std::min(score - rival, kLargestMargin);
-  const double log_odds = odds.bias + odds.margin * margin + odds.score * score +
-                          odds.length * std::log1p(length);
+  const double log_odds =
+      odds.bias + odds.margin * margin + odds.score * score + odds.length * std::log1p(length);
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
@@ -45,8 +45,8 @@ std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds) 
   Verdict v;
   v.best = places.front();
   v.is_believed = answer.believed && isSamePlace(v.best.base, answer.believed->base);
-  v.probability =
-      probabilityOfPlace(v.best.seen, places.size() > 1 ? places[1].seen : 0.0, answer.length, odds);
+  v.probability = probabilityOfPlace(v.best.seen, places.size() > 1 ? places[1].seen : 0.0,
+                                     answer.length, odds);
   for (const Place& p : places) {
     if (p.seen < v.best.seen - kHypothesisMargin || v.hypotheses.size() == kMaxHypotheses) break;
     v.hypotheses.push_back(p);

@@ -55,8 +55,7 @@ void SubmapBuilder::add(const hyselam::LaserScan& scan, const Pose2& base) {
 std::size_t SubmapBuilder::firstWithin(double length, double turn_as_travel) const {
   std::size_t first = 0;
   while (first + 1 < scans_.size() &&
-         travelled_ - scans_[first].travelled +
-                 turn_as_travel * (turned_ - scans_[first].turned) >
+         travelled_ - scans_[first].travelled + turn_as_travel * (turned_ - scans_[first].turned) >
              length) {
     ++first;
   }
