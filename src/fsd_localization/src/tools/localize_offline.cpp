@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -15,6 +16,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "localization_score.hpp"
+#include "search_alone.hpp"
 
 namespace {
 
@@ -28,7 +30,8 @@ struct Options {
   std::uint64_t seed = 1;
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
   std::size_t kidnaps = 0;
-  bool cache = false, start_known = false, raw_odometry = false, without_search = false;
+  bool cache = false, start_known = false, raw_odometry = false, without_search = false,
+       search_alone = false;
   hyselam::BagOptions bag_options;
 };
 
@@ -134,7 +137,10 @@ struct Replay {
   }
 };
 
-Replay replay(fsd_localization::Localizer& localizer, const hyselam::RobotLog& log,
+using Update = std::function<std::optional<fsd_localization::LocalizationResult>(
+    const hyselam::LaserScan&, const Pose2&)>;
+
+Replay replay(const Update& update, const hyselam::RobotLog& log,
               const std::vector<hyselam::StampedPose2>& truth, const Options& o,
               LocalizationScore& score) {
   const double begin = log.scans.front().stamp + o.start;
@@ -155,7 +161,7 @@ Replay replay(fsd_localization::Localizer& localizer, const hyselam::RobotLog& l
     const auto t0 = std::chrono::steady_clock::now();
     std::optional<fsd_localization::LocalizationResult> result;
     try {
-      result = localizer.update(scan, *odom);
+      result = update(scan, *odom);
     } catch (const hyselam::InputError& e) {
       if (out.refused++ == 0) {
         std::cerr << "warning: scan at " << std::fixed << scan.stamp << " s: " << e.what() << "\n";
@@ -195,9 +201,14 @@ nlohmann::json run(const Options& o) {
     if (!at) throw hyselam::InputError(o.log, "--start-known", "no true pose at the first scan");
     localizer->setInitialPose(*at, {0.5, 0.5, hyselam::radians(15.0)});
   }
+  std::optional<fsd_localization::SearchAlone> alone;
+  if (o.search_alone) alone.emplace(map, params);
+  const Update update = [&](const hyselam::LaserScan& scan, const Pose2& odom) {
+    return alone ? alone->update(scan, odom) : localizer->update(scan, odom);
+  };
   const std::clock_t cpu = std::clock();
   LocalizationScore score({o.success_m, o.success_deg});
-  const Replay result = replay(*localizer, log, o.kidnaps > 0 ? log.ground_truth : truth, o, score);
+  const Replay result = replay(update, log, o.kidnaps > 0 ? log.ground_truth : truth, o, score);
   const double cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   if (result.trajectory.empty()) {
     throw hyselam::InputError(o.log, "", "no scan could be used for an update");
@@ -254,6 +265,7 @@ int main(int argc, char** argv) {
   app.add_flag("--start-known", o.start_known, "the first pose is told, to 0.5 m and 15 degrees");
   app.add_flag("--raw-odometry", o.raw_odometry, "odometry is not refined by scans");
   app.add_flag("--without-search", o.without_search, "the filter alone, without search by submaps");
+  app.add_flag("--search-alone", o.search_alone, "the search by submaps alone, without filter");
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
   app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");
