@@ -163,6 +163,7 @@ class Localizer {
 
   /// The decisions of the search by submaps; see localizer_search.cpp.
   void updateBySearch(const PoseEstimate& estimate, double motion, LocalizationResult& result);
+  void watchForAlarms(LocalizationResult& result);
   void askSearch(const PoseEstimate& estimate);
   double lengthOfAlarm() const;
   void takeAnswer(LocalizationResult& result);
@@ -209,7 +210,8 @@ class Localizer {
     double suspicious_until = -1.0;    // on that way
     std::optional<double> alarm_from;  // on that way
     double alarm_step = 0.0;           // [m] before it is asked about again
-    bool urgent = false;               // the map does not fit, either
+    bool strange = false;              // the last scans fit neither each other nor the map
+    bool low = false;                  // an average of the inliers is below its limit
     bool confirmed = false;            // a search found no better place since the alarm
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since

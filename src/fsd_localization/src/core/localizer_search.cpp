@@ -32,8 +32,40 @@ void Localizer::forgetSearch() {
   search_.verdict.reset();
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
-  search_.confirmed = search_.urgent = false;
+  search_.suspicious_for = 0.0;
+  search_.confirmed = search_.strange = search_.low = false;
   search_.guided = false;
+}
+
+/// While tracking: whether something speaks against the pose, and whether it is told as sure.
+void Localizer::watchForAlarms(LocalizationResult& result) {
+  search_.suspicious_until =
+      std::max(search_.suspicious_until, search_.way + search_.suspicious_for);
+  search_.suspicious_for = 0.0;
+  const bool suspicious = search_.way < search_.suspicious_until;
+  // The last scans fit neither each other nor the map.
+  const bool strange = suspicious && !inliers_.isUsual(kUsual);
+  const bool low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+  const bool begins = strange && !search_.strange;  // perhaps elsewhere: a new alarm
+  if ((!suspicious && !low) || begins) {
+    search_.alarm_from.reset();
+    search_.confirmed = false;
+  }
+  if ((suspicious || low) && !search_.alarm_from) {
+    search_.alarm_from = search_.asked_at = search_.way;  // one that the map confirms can wait
+    search_.alarm_step = kAskStep;
+  }
+  if (begins || (low && !search_.low)) {  // what is asked by now is out of date
+    search_.asked_at.reset();
+    search_.background->drop();
+  }
+  search_.strange = strange;
+  search_.low = low;
+  // Meanwhile nobody should rely on the pose, unless a search has confirmed it; but the robot is
+  // not lost before another place is better.
+  if (!search_.confirmed && (strange || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
+    result.converged = false;
+  }
 }
 
 void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
@@ -45,27 +77,7 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     inliers_.add(result.inlier_ratio, motion);
   }
   if (tracking) {
-    search_.suspicious_until =
-        std::max(search_.suspicious_until, search_.way + search_.suspicious_for);
-    search_.suspicious_for = 0.0;
-    const bool suspicious = search_.way < search_.suspicious_until;
-    // The last scans fit neither each other nor the map.
-    const bool strange = suspicious && !inliers_.isUsual(kUsual);
-    const bool low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
-    if (!suspicious && !low) {
-      search_.alarm_from.reset();
-      search_.confirmed = false;
-    } else if (!search_.alarm_from) {
-      search_.alarm_from = search_.asked_at = search_.way;  // one that the map confirms can wait
-      search_.alarm_step = kAskStep;
-    }
-    if ((strange || low) && !search_.urgent) search_.asked_at.reset();
-    search_.urgent = strange || low;
-    // Meanwhile nobody should rely on the pose, unless a search has confirmed it; but the robot is
-    // not lost before another place is better.
-    if (!search_.confirmed && (strange || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
-      result.converged = false;
-    }
+    watchForAlarms(result);
   } else if (search_.guided && result.converged &&
              inliers_.average() >= params_.found_inlier_ratio) {
     search_.guided = false;
@@ -168,7 +180,8 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.next_check = kFirstCheck;
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
-  search_.confirmed = search_.urgent = false;
+  search_.suspicious_for = 0.0;
+  search_.confirmed = search_.strange = search_.low = false;
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),
