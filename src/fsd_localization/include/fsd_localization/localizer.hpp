@@ -168,6 +168,7 @@ class Localizer {
   double lengthOfAlarm() const;
   void takeAnswer(LocalizationResult& result);
   void decide(const SearchAnswer& answer, const Verdict& verdict, LocalizationResult& result);
+  bool isContradicted(const SearchAnswer& answer, const Verdict& verdict);
   void trackAt(const hyselam::Pose2& base_in_grid, LocalizationResult& result);
   void followPlaces(const std::vector<Place>& places, const hyselam::Pose2& motion);
   void forgetSearch();
@@ -200,6 +201,9 @@ class Localizer {
   double travelled_ = 0.0;
   InlierMonitor inliers_;  // since the likelihood field became active
 
+  struct Rival {
+    hyselam::Pose2 place, base_in_odom;
+  };
   /// The search by submaps; hybrid only.
   struct Search {
     SubmapBuilder submap;
@@ -212,6 +216,8 @@ class Localizer {
     double alarm_step = 0.0;           // [m] before it is asked about again
     bool strange = false;              // the last scans fit neither each other nor the map
     bool low = false;                  // an average of the inliers is below its limit
+    bool carried = false;              // they did so since the alarm
+    std::optional<Rival> rival;        // another place was better
     bool confirmed = false;            // a search found no better place since the alarm
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since

@@ -33,7 +33,8 @@ void Localizer::forgetSearch() {
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
   search_.suspicious_for = 0.0;
-  search_.confirmed = search_.strange = search_.low = false;
+  search_.confirmed = search_.strange = search_.low = search_.carried = false;
+  search_.rival.reset();
   search_.guided = false;
 }
 
@@ -49,7 +50,7 @@ void Localizer::watchForAlarms(LocalizationResult& result) {
   const bool begins = strange && !search_.strange;  // perhaps elsewhere: a new alarm
   if ((!suspicious && !low) || begins) {
     search_.alarm_from.reset();
-    search_.confirmed = false;
+    search_.confirmed = search_.carried = false;
   }
   if ((suspicious || low) && !search_.alarm_from) {
     search_.alarm_from = search_.asked_at = search_.way;  // one that the map confirms can wait
@@ -59,11 +60,13 @@ void Localizer::watchForAlarms(LocalizationResult& result) {
     search_.asked_at.reset();
     search_.background->drop();
   }
+  search_.carried = search_.carried || strange;
   search_.strange = strange;
   search_.low = low;
   // Meanwhile nobody should rely on the pose, unless a search has confirmed it; but the robot is
   // not lost before another place is better.
-  if (!search_.confirmed && (strange || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
+  if (!search_.confirmed &&
+      (strange || search_.rival || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
     result.converged = false;
   }
 }
@@ -118,7 +121,8 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
   if (state_ == LocalizerState::kTracking) {
     const bool alarm = search_.alarm_from.has_value();
     const bool check = search_.way - search_.tracked_from >= search_.next_check;
-    const bool again = alarm && (!search_.asked_at || since >= search_.alarm_step);
+    const bool again =
+        search_.rival || (alarm && (!search_.asked_at || since >= search_.alarm_step));
     if (!check && !again) return;
     if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
     if (alarm) {
@@ -149,12 +153,17 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     if (!verdict.is_believed && verdict.probability >= params_.lost_probability) {
       // A single scan was odd, and those after it are not.
       if (answer.length < kOneScan && inliers_.isUsual(params_.lost_relative_ratio)) return;
+      if (!isContradicted(answer, verdict)) {
+        result.converged = false;
+        return;
+      }
       state_ = LocalizerState::kLostSearch;
       search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
       followPlaces(verdict.hypotheses, motion);
       result.converged = false;
       search_.asked_at.reset();  // at once again, with another scan
     } else if (verdict.is_believed) {
+      search_.rival.reset();
       inliers_.reset();  // no place fits better: what is seen now is normal here
       search_.confirmed = search_.alarm_from.has_value();
       search_.alarm_step = std::clamp(2.0 * search_.alarm_step, kAskStep, kLargestAlarmStep);
@@ -172,6 +181,20 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   }
 }
 
+/// Whether the pose is given up for a better place. Scans that fit neither each other nor the map
+/// say that the robot was carried off, one answer is enough. Where they fit each other it is rather
+/// the map that is wrong: the same place must be better again, half a metre on.
+bool Localizer::isContradicted(const SearchAnswer& answer, const Verdict& verdict) {
+  if (search_.carried) return true;
+  const std::optional<Rival> before = search_.rival;
+  const bool same =
+      before && isSamePlace(before->place * between(before->base_in_odom, answer.base_in_odom),
+                            verdict.best.base);
+  if (!same) search_.rival = Rival{verdict.best.base, answer.base_in_odom};
+  search_.confirmed = false;
+  return same && hyselam::distance(before->base_in_odom, answer.base_in_odom) >= kAskStep;
+}
+
 void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   const std::uint64_t stream = hyselam::mix(
       params_.seed, kPlaceStream + static_cast<std::uint64_t>(observation_.scan.stamp * 1e3));
@@ -181,7 +204,8 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.suspicious_until = -1.0;
   search_.alarm_from.reset();
   search_.suspicious_for = 0.0;
-  search_.confirmed = search_.strange = search_.low = false;
+  search_.confirmed = search_.strange = search_.low = search_.carried = false;
+  search_.rival.reset();
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),
