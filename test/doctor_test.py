@@ -2,7 +2,9 @@
 """The doctor at robots that are well and robots that are not: each ill is told by name, the healthy are let go."""
 import copy
 import json
+import math
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -189,6 +191,19 @@ class DoctorTest(unittest.TestCase):
         status, findings = self.call(self.robot(static=static, scans=ENOUGH_TO_SEE_THE_MOUNT))
         self.assertEqual(status, 1)
         self.assertIn("mounted backwards:", self.wrong(findings, "laser"), self.said)
+
+    def test_a_laser_some_centimetres_and_degrees_beside_its_place(self):
+        static = copy.deepcopy(self.recording.static)
+        for t in static:
+            t.transform.translation.x += 0.08
+            t.transform.rotation.z, t.transform.rotation.w = math.sin(math.radians(2.5)), math.cos(math.radians(2.5))
+        status, findings = self.call(self.robot(static=static, scans=ENOUGH_TO_SEE_THE_MOUNT))
+        self.assertEqual(status, 1)
+        said = self.wrong(findings, "laser")
+        self.assertIn("it is not where tf says", said, self.said)
+        off = [float(number) for number in re.findall(r"(?:x|y|heading) ([+-][0-9.]+)", said)]
+        self.assertAlmostEqual(off[0], -0.08, delta=0.03, msg=said)
+        self.assertAlmostEqual(off[2], -5.0, delta=1.0, msg=said)
 
     def test_wrong_frame_no_pose_and_no_free_map(self):
         grid = copy.deepcopy(self.recording.map)

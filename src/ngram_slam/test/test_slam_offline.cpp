@@ -112,7 +112,31 @@ TEST_F(SlamOffline, givesTheSameBytesForTheSameLog) {
     EXPECT_EQ(fileBytes(d / "b" + "/" + name), fileBytes(d / "c" + "/" + name)) << name;
 }
 
+TEST_F(SlamOffline, tellsTheTroubleThatItMakes) {
+  ASSERT_EQ(run("--bag " + d / "run.bag" + " --out " + d / "smooth --json " + d / "smooth.json"), 0)
+      << errors;
+  EXPECT_TRUE(nlohmann::json::parse(fileBytes(d / "smooth.json"))["trouble"].empty());
+  ASSERT_EQ(run("--bag " + d / "run.bag" + " --freeze-odometry 30,5 --gap 50,5 --laser-error " +
+                "-0.1,0.08,5 --correct-laser --out " + d / "rough --json " + d / "rough.json"),
+            0)
+      << errors;
+  const auto rough = nlohmann::json::parse(fileBytes(d / "rough.json"));
+  EXPECT_GT(rough["rough_road"]["path_unseen_m"], 1.0);
+  EXPECT_GT(rough["rough_road"]["gaps"], 0);
+  EXPECT_LT(rough["scans"], scans);
+  EXPECT_TRUE(rough["laser_mount"]["wrong"]);
+  EXPECT_TRUE(rough["laser_mount"]["corrected"]);
+  EXPECT_NE(rough["trouble"].dump().find("while the odometry stands still"), std::string::npos);
+  EXPECT_LT(rough["errors"]["rms_m"], 0.3);
+}
+
 TEST_F(SlamOffline, refusesUnusableInput) {
+  const std::string some = "--bag " + d / "run.bag" + " --out " + d / "x ";
+  expectRefused(some + "--freeze-odometry 100", "is not 2 numbers");
+  expectRefused(some + "--gap 5,100", "EVERY above FOR");
+  expectRefused(some + "--gap 100,5,", "is not 2 numbers");
+  expectRefused(some + "--every 0", "--every");
+  expectRefused(some + "--laser-error 1,2,left", "is not 3 numbers");
   expectRefused("--out " + d / "x", "--bag or --carmen");
   expectRefused("--bag " + d / "none.bag" + " --out " + d / "x", "none.bag");
   expectRefused("--bag " + d / "run.bag" + " --loops some --out " + d / "x", "loops");

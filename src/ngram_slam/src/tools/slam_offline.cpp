@@ -7,6 +7,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "degrade.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
@@ -18,6 +19,7 @@
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
+#include "ngram_slam/slam/laser_mount.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "reference_poses.hpp"
@@ -30,12 +32,18 @@ namespace {
 using namespace ngram_slam;  // NOLINT: a program, not a header
 using hyselam::Pose2;
 
+// Motion that the odometry did not tell, of a whole recording.
+constexpr double kTellPath = 1.0, kTellTurn = 0.5;  // [m], [rad]
+
+constexpr double kGapsOfScans = 0.2;  // more of them are no gaps
+
 struct Options {
   std::string bag, carmen, out, reference, loops = "all", state, save_state, start;
   int levels = 3;
   std::uint64_t seed = 1;
   double noise = 0.0, resolution = 0.05;
-  bool side_by_side = false, raw_odometry = false, keep_all = false;
+  bool side_by_side = false, raw_odometry = false, keep_all = false, correct_laser = false;
+  Degradation degradation;
   hyselam::BagOptions bag_options;
 };
 
@@ -107,7 +115,7 @@ std::vector<hyselam::StampedPose2> ownTrajectory(const SlamEngine& engine, std::
 
 struct Run {
   std::unique_ptr<SlamEngine> engine;
-  std::size_t saved_scans = 0;  ///< of the map that it goes on with
+  std::size_t saved_scans = 0, saved_keyframes = 0;  ///< of the map that it goes on with
   std::size_t without_odometry = 0, refused = 0;
   double cpu = 0.0;
 };
@@ -132,6 +140,7 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
   Run run;
   run.engine = std::move(engine);
   run.saved_scans = run.engine->trajectory().size();
+  run.saved_keyframes = run.engine->keyframes().size();
   hyselam::Progress progress(label, log.scans.size());
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     progress.update(i + 1);
@@ -280,7 +289,67 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
   const auto tied = e.pathUntilTied();
   j["tied_after_m"] = tied ? nlohmann::json(*tied) : nlohmann::json();
   j["ties_withdrawn"] = e.tiesWithdrawn();
+  const RoughRoad& road = e.roughRoad();
+  j["rough_road"] = {{"scans_moved_unseen", road.scans_moved_unseen},
+                     {"path_unseen_m", road.path_unseen},
+                     {"turn_unseen_deg", hyselam::degrees(road.turn_unseen)},
+                     {"odometry_overruled", road.odometry_overruled},
+                     {"wide_searches", road.wide_searches},
+                     {"gaps", road.gaps},
+                     {"lost", road.lost},
+                     {"runs_split", road.runs_split}};
   return j;
+}
+
+/// By the keyframes of the recording itself.
+std::optional<LaserMount> mountOf(const Run& run) {
+  const auto& all = run.engine->keyframes();
+  return estimateLaserMount(
+      {all.begin() + static_cast<std::ptrdiff_t>(run.saved_keyframes), all.end()});
+}
+
+nlohmann::json toJson(const std::optional<LaserMount>& mount, bool corrected) {
+  if (!mount) return {{"told", "the recording turns too little, or its scans do not overlap"}};
+  const auto pose = [](const Pose2& p) {
+    return nlohmann::json{{"x_m", p.x}, {"y_m", p.y}, {"deg", hyselam::degrees(p.theta)}};
+  };
+  return {{"told", mount->text()},
+          {"as_told", pose(mount->told)},
+          {"estimated", pose(mount->estimated)},
+          {"standard_deviation", pose({mount->stddev[0], mount->stddev[1], mount->stddev[2]})},
+          {"pairs", mount->pairs},
+          {"wrong", mount->wrong()},
+          {"corrected", corrected},
+          {"odometry_tells_of_distance", mount->distance_scale},
+          {"odometry_tells_of_rotation", mount->rotation_scale}};
+}
+
+/// What makes the map doubtful, in sentences; none for a run that went well.
+nlohmann::json troubleOf(const Run& run, const std::optional<LaserMount>& mount, bool corrected) {
+  const RoughRoad& road = run.engine->roughRoad();
+  nlohmann::json sentences = nlohmann::json::array();
+  const auto tell = [&](std::uint64_t count, const std::string& what) {
+    if (count > 0) sentences.push_back(std::to_string(count) + " " + what);
+  };
+  if (road.path_unseen > kTellPath || road.turn_unseen > kTellTurn) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << "the scans show " << road.path_unseen << " m and "
+         << std::setprecision(0) << hyselam::degrees(road.turn_unseen)
+         << " deg of motion while the odometry stands still";
+    sentences.push_back(text.str());
+  }
+  // Recordings of key scans only have nothing else.
+  if (road.gaps < kGapsOfScans * static_cast<double>(run.engine->counters().scans)) {
+    tell(road.gaps, "gaps without scans");
+  }
+  tell(road.lost, "times neither odometry nor scans told how the robot moved");
+  tell(road.runs_split, "times the run was split there; loops join its pieces again");
+  if (run.engine->runPlace() == RunPlace::kSupposed ||
+      run.engine->runPlace() == RunPlace::kOwnMap) {
+    sentences.push_back("the last piece of the run is not joined to the rest of the map");
+  }
+  if (mount && mount->wrong() && !corrected) sentences.push_back(mount->text());
+  return sentences;
 }
 
 /// Saves the map for the next run, and tells how large it is.
@@ -356,16 +425,25 @@ nlohmann::json run(const Options& o) {
   emptyMap(o.resolution);  // refused before the work, not after it
   hyselam::RobotLog log = readLog(o);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
+  degrade(o.degradation, &log);
   if (o.noise > 0.0) addOdometryNoise(o.noise, o.seed, &log.odometry);
   const std::vector<hyselam::StampedPose2> reference = referenceOf(o.reference, log);
   makeFolder(o.out);
 
-  const Run main_run = runSlam(log, makeEngine(o, params), "SLAM of " + name);
-  const SlamEngine& engine = *main_run.engine;
+  Run main_run = runSlam(log, makeEngine(o, params), "SLAM of " + name);
   checkMapped(main_run, name, log.scans.size());
+  const auto mount = mountOf(main_run);
+  const bool corrected = o.correct_laser && mount && mount->wrong();
+  if (corrected) {
+    for (hyselam::LaserScan& scan : log.scans) scan.laser_in_base = mount->estimated;
+    main_run = runSlam(log, makeEngine(o, params), "again, with the laser where it is");
+  }
+  const SlamEngine& engine = *main_run.engine;
   const auto span = hyselam::timeSpan(log);
   nlohmann::json summary = summaryOf(main_run, span ? span->end - span->begin : 0.0);
   summary["loops_mode"] = o.loops;
+  summary["laser_mount"] = toJson(mount, corrected);
+  summary["trouble"] = troubleOf(main_run, mount, corrected);
   if (!reference.empty()) summary["errors"] = errorOf(main_run, reference);
   writeResults(o, main_run, log);
   if (!o.save_state.empty()) summary["saved"] = saveMapState(o.save_state, engine);
@@ -414,6 +492,10 @@ int main(int argc, char** argv) {
   app.add_option("--odometry-noise", o.noise,
                  "add errors to the odometry: this many per cent of distance and rotation, and as "
                  "many centiradians a meter");
+  addDegradationOptions(app, &o.degradation);
+  app.add_flag("--correct-laser", o.correct_laser,
+               "where the recording shows that the laser is mounted elsewhere than told, map it "
+               "again with the laser there");
   app.add_option("--state", o.state,
                  "a saved map to go on with; trajectory.tum has the poses of this recording, "
                  "trajectory_map.tum those of all");

@@ -18,6 +18,7 @@
 #include "hyselam_scan_matching/surface_map.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
+#include "ngram_slam/slam/odometry_doubt.hpp"
 #include "ngram_slam/slam/odometry_noise.hpp"
 #include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/run_graph.hpp"
@@ -51,10 +52,15 @@ SlamJobResult runJob(const SlamJob& job);
 /// What adding a scan did.
 struct SlamUpdate {
   hyselam::Pose2 base_in_map;
-  bool keyframe = false;       ///< the scan became a keyframe
-  bool weak_match = false;     ///< few points on known surfaces: pose mostly from odometry
-  bool odometry_jump = false;  ///< odometry jumped: the robot is assumed stationary
-  int word_matches = 0;        ///< new n-gram matches of words, not yet verified
+  bool keyframe = false;            ///< the scan became a keyframe
+  bool weak_match = false;          ///< few points on known surfaces: pose mostly from odometry
+  bool odometry_jump = false;       ///< odometry jumped: the robot is assumed stationary
+  bool odometry_overruled = false;  ///< the scan told the motion, odometry told another
+  /// Neither odometry nor the scan tell how the robot moved. The scan begins another run, which
+  /// loops tie to the map again; without loops by scans it stays where odometry has it.
+  bool lost = false;
+  bool awaited = false;  ///< the scan does not fit, later ones may: it counts for nothing
+  int word_matches = 0;  ///< new n-gram matches of words, not yet verified
 };
 
 /// How far the pose that a run starts at is to be trusted.
@@ -159,6 +165,8 @@ class SlamEngine {
   /// By run, whether it belongs to the map that the pose refers to. While the run's place is only
   /// supposed that is the map it was supposed in, without the run.
   std::vector<bool> shownRuns() const;
+  /// Trouble with odometry and missing scans since the process began: not saved.
+  const RoughRoad& roughRoad() const { return doubt_.road; }
   /// What the scans taught about the odometry since the process began: not saved.
   const OdometryNoiseLearner& odometryNoise() const { return odometry_noise_; }
   /// State for serialization.
@@ -171,6 +179,16 @@ class SlamEngine {
     hyselam::Pose2 pose;          // by odometry
     Eigen::Matrix3d information;  // of the motion
     bool jump;
+    double seconds = 0.0;  // since the last scan that was matched
+    bool unseen = false;   // odometry tells hardly any, the scan is another one than then
+  };
+  /// What tells that odometry fails.
+  struct Doubt {
+    hyselam::LaserScan matched;      // the last scan that was
+    std::optional<double> unfit_since;  // [s]: scans that do not fit are awaited to
+    bool since_keyframe = false;     // odometry was overruled since the last keyframe
+    double stamp_of_keyframe = 0.0;  // [s]
+    RoughRoad road;
   };
   struct RunStart {
     hyselam::Pose2 pose;
@@ -220,6 +238,7 @@ class SlamEngine {
   // The steps of add(), in slam_engine.cpp.
   Motion advanceOdometry(const hyselam::Pose2& odometry);
   bool isNearLastMatch(const Motion& motion) const;
+  bool mayStand(const hyselam::LaserScan& scan, Motion* motion) const;
   Eigen::Matrix3d matchScan(const hyselam_scan_matching::SurfacePoints& points,
                             const Motion& motion, SlamUpdate* update);
   hyselam_scan_matching::IcpResult matchLocalMap(const hyselam_scan_matching::SurfacePoints& points,
@@ -232,6 +251,19 @@ class SlamEngine {
   std::optional<hyselam_scan_matching::IcpResult> searchByInliers(
       const hyselam_scan_matching::SurfacePoints& points, const Motion& motion,
       const hyselam_scan_matching::IcpResult& best) const;
+  // Where odometry is not to be believed, in slam_doubt.cpp.
+  void doubtOdometry(const hyselam_scan_matching::SurfacePoints& points, const Motion& motion,
+                     hyselam_scan_matching::IcpResult* best, SlamUpdate* update);
+  std::optional<hyselam_scan_matching::IcpResult> searchWide(
+      const hyselam_scan_matching::SurfacePoints& points, const Motion& motion) const;
+  void searchAfterJump(const hyselam_scan_matching::SurfacePoints& points, const Motion& motion,
+                       hyselam_scan_matching::IcpResult* best);
+  bool tellsNothing(const Motion& motion, const SlamUpdate& update) const;
+  bool awaitsMore(const Motion& motion);
+  bool splitsRuns() const;
+  void splitRun(const hyselam::LaserScan& scan);
+  void noteMatched(const hyselam::LaserScan& scan);
+
   bool needsKeyframe(const Motion& motion) const;
   hyselam_pose_graph::PoseEdge odometryEdge(const Motion& motion,
                                             const Eigen::Matrix3d& scan_information) const;
@@ -308,6 +340,7 @@ class SlamEngine {
   std::optional<RunStart> start_;
   Run run_;
   std::vector<SlamLoop> doubts_;  // verified far loops that contradict the ties of the run
+  Doubt doubt_;
   int ties_withdrawn_ = 0;
   bool loops_changed_ = false, optimize_now_ = false;
   int optimized_keyframes_ = 0;

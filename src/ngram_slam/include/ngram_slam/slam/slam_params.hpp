@@ -14,6 +14,7 @@
 #include "hyselam_scan_matching/surface_points.hpp"
 #include "ngram_slam/matching/ngram_recognizer.hpp"
 #include "ngram_slam/slam/consolidation.hpp"
+#include "ngram_slam/slam/odometry_doubt.hpp"
 #include "ngram_slam/slam/odometry_noise.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/words/observation_sensor.hpp"
@@ -210,8 +211,10 @@ struct SlamParams {
   hyselam_scan_matching::IcpParams refine;
   OdometryNoise odometry;
   OdometryLearningParams odometry_learning;
+  OdometryDoubtParams odometry_doubt;
   bool refine_odometry = true;  ///< match scans to the local map; false: raw odometry
-  /// A scan within scan_step and scan_turn of the last matched one takes its pose from odometry.
+  /// A scan within scan_step and scan_turn of the last matched one takes its pose from odometry,
+  /// unless OdometryDoubtParams says otherwise.
   double scan_step = 0.05;         ///< [m], >= 0
   double scan_turn = 0.03;         ///< [rad], >= 0
   double max_odometry_step = 5.0;  ///< larger steps between two scans are odometry jumps [m], > 0

@@ -114,17 +114,31 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
     update.base_in_map = pose_;
     return update;
   }
-  const Motion motion = advanceOdometry(odometry);
+  Motion motion = advanceOdometry(odometry);
+  motion.seconds = scan.stamp - doubt_.matched.stamp;
   update.odometry_jump = motion.jump;
-  if (isNearLastMatch(motion)) {
+  if (motion.seconds >= params_.odometry_doubt.gap) ++doubt_.road.gaps;
+  if (isNearLastMatch(motion) && mayStand(scan, &motion)) {
     recordScanPose(scan.stamp);
     update.base_in_map = pose_;
     return update;
   }
   const Points points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
   const Eigen::Matrix3d scan_information = matchScan(*points, motion, &update);
+  if (update.awaited) {
+    recordScanPose(scan.stamp);
+    update.base_in_map = pose_;
+    return update;
+  }
+  noteMatched(scan);
+  if (update.lost && splitsRuns()) {
+    splitRun(scan);
+    update.keyframe = true;
+    update.base_in_map = pose_;
+    return update;
+  }
   if (needsKeyframe(motion)) {
-    if (!update.weak_match) learnOdometryNoise(motion, scan_information);
+    if (!update.weak_match && !doubt_.since_keyframe) learnOdometryNoise(motion, scan_information);
     const PoseEdge edge = odometryEdge(motion, scan_information);
     addKeyframe(scan, points, &edge);
     searchLoopClosures();
@@ -166,6 +180,7 @@ Eigen::Matrix3d SlamEngine::matchScan(const SurfacePoints& points, const Motion&
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   if (params_.refine_odometry) {
     const IcpResult refined = matchLocalMap(points, motion, update);
+    if (update->awaited) return information;
     information = refined.information;
     pose_ = refined.pose;
   }
@@ -192,9 +207,15 @@ IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points, const Motion& m
       ++state_.counters.relocalized;
     }
   }
+  doubtOdometry(points, motion, &best, update);
   if (best.matched < params_.weak_match_factor * params_.min_inlier_ratio) {
     update->weak_match = true;
     ++state_.counters.weak_matches;
+  }
+  if (tellsNothing(motion, *update)) {
+    update->awaited = awaitsMore(motion);
+    update->lost = !update->awaited;
+    if (update->lost) ++doubt_.road.lost;
   }
   return best;
 }
@@ -281,7 +302,10 @@ PoseEdge SlamEngine::odometryEdge(const Motion& motion,
   edge.to = edge.from + 1;
   edge.measured = between(state_.keyframes.back().pose, pose_);
   const Eigen::Matrix3d odometry =
-      motion.jump ? motion.information : odometry_noise_.noise().information(edge.measured);
+      motion.jump ? motion.information
+      : doubt_.since_keyframe
+          ? params_.odometry_doubt.freeMotionInformation(last_stamp_ - doubt_.stamp_of_keyframe)
+          : odometry_noise_.noise().information(edge.measured);
   edge.information = params_.refine_odometry
                          ? Eigen::Matrix3d(params_.scan_information_scale * scan_information +
                                            params_.odometry_information_scale * odometry)
@@ -308,6 +332,8 @@ void SlamEngine::addKeyframe(const hyselam::LaserScan& scan, Points points, cons
   k.points = std::move(points);
   state_.keyframes.push_back(std::move(k));
   state_.scans.push_back({scan.stamp, lastKeyframe(), {}});
+  doubt_.since_keyframe = false;
+  doubt_.stamp_of_keyframe = scan.stamp;
   if (edge != nullptr) {
     state_.odometry.push_back(*edge);
     path_lengths_.addEdge(edge->from, edge->to, std::hypot(edge->measured.x, edge->measured.y));

@@ -222,6 +222,7 @@ void SlamParams::describe(ParameterVisitor& visit) {
       "odometry/", odometry,
       {{"position_per_meter", "odometry_noise"}, {"heading_per_radian", "odometry_turn_noise"}});
   visit.group("odometry_learning/", odometry_learning);
+  visit.group("odometry_doubt/", odometry_doubt);
   visit("scan_step", scan_step, kNotNegative, "m",
         "scans nearer to the last one matched are placed by odometry");
   visit("scan_turn", scan_turn, kNotNegative, "rad", "and turned by less than this");

@@ -43,6 +43,7 @@ void SlamEngine::endRun() {
 void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry) {
   Points points = std::make_shared<const SurfacePoints>(surfacePoints(scan, params_.surface));
   odometry_ = matched_odometry_ = odometry;
+  noteMatched(scan);
   smooth_pose_ = odometry;
   first_of_run_ = static_cast<int>(state_.keyframes.size());
   run_ = Run{};
