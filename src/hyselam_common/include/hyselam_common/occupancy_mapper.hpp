@@ -50,6 +50,18 @@ class OccupancyMapper {
   /// The map so far, cropped to the observed cells plus a margin of two unknown cells; its origin
   /// is a multiple of the resolution. Without any observation: 1 x 1 unknown cell.
   OccupancyGrid grid() const;
+  /// Calls `use(x, y, hits, misses)` for each observed cell, in the same order each time. The cell
+  /// covers x to x + 1 times the resolution, and y to y + 1.
+  template <typename Use>
+  void forEachObserved(Use use) const {
+    std::size_t i = 0;
+    for (int y = box_.min_y; y <= box_.max_y; ++y) {
+      for (int x = box_.min_x; x <= box_.max_x; ++x, ++i) {
+        const Counts& c = counts_[i];
+        if (c.hits + c.misses > 0) use(x, y, c.hits, c.misses);
+      }
+    }
+  }
 
  private:
   struct Counts {

@@ -17,6 +17,7 @@
 #include "hyselam_gr2to/octomap/octomap_compression.hpp"
 #include "hyselam_gr2to/overview.hpp"
 #include "hyselam_gr2to/segmentation/border_model.hpp"
+#include "hyselam_topological_map/carry_over.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 
 namespace {
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 using namespace hyselam_topo;  // NOLINT: a program, not a header
 
 struct Options {
-  std::string map_file, out, mode = "default", border_model;
+  std::string map_file, out, mode = "default", border_model, previous;
   Gr2ToParams gr2to;
   OverviewOptions picture;
   CompressionParams octomap;
@@ -40,6 +41,8 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--out", o.out,
                  "folder to write to: topo.xml, labels.png, doors.csv, overview.png, summary.json")
       ->required();
+  app.add_option("--previous", o.previous,
+                 "topo.xml of an earlier map in the same frame: ids and words go on");
   app.add_option("--mode", o.mode, "default: merged and without clutter; thesis: as in the thesis")
       ->check(CLI::IsMember({"default", "thesis"}));
   app.add_option("--free-max", o.gr2to.segmentation.free_max, "cells of 0 .. this value are free");
@@ -160,12 +163,23 @@ nlohmann::json run(Options& o) {
   hyselam::Progress progress("gr2to", 4);
   const hyselam::OccupancyGrid grid = loadGrid(o);
   progress.update(1);
-  const Gr2ToResult result = gr2to(grid, o.gr2to);
+  Gr2ToResult result = gr2to(grid, o.gr2to);
+  CarryOverReport carried;
+  if (!o.previous.empty()) {
+    result.map = carryOver(loadXml(o.previous), result.map, CarryOverParams{}, carried);
+  }
   progress.update(2);
   saveMapFiles(o, result);
   progress.update(3);
   saveImage(o.out + "/overview.png", drawOverview(grid, result, o.picture));
-  const nlohmann::json summary = summaryOf(o, grid, result);
+  nlohmann::json summary = summaryOf(o, grid, result);
+  if (!o.previous.empty()) {
+    summary["carried_over"] = {{"kept", carried.kept},
+                               {"created", carried.created},
+                               {"merged", carried.merged},
+                               {"split_off", carried.split_off},
+                               {"lost", carried.lost}};
+  }
   hyselam::writeFileAtomically(o.out + "/summary.json",
                                [&](std::ostream& file) { file << summary.dump(2) << '\n'; });
   progress.update(4);

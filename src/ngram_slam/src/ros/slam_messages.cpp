@@ -143,6 +143,60 @@ hyselam_msgs::LocalizationStatus statusMsg(const SlamEngine& engine, double upda
   return msg;
 }
 
+hyselam_msgs::MapChangeArray changesMsg(const std::vector<MapChange>& changes, double cell,
+                                        const std_msgs::Header& header) {
+  hyselam_msgs::MapChangeArray msg;
+  msg.header = header;
+  msg.cell = static_cast<float>(cell);
+  for (const MapChange& change : changes) {
+    hyselam_msgs::MapChange m;
+    m.kind = change.kind == MapChange::Kind::kAppeared ? hyselam_msgs::MapChange::APPEARED
+                                                       : hyselam_msgs::MapChange::GONE;
+    m.again = change.again;
+    for (const hyselam::Point2& p : change.cells) m.cells.push_back(hyselam::at(p.x, p.y, 0.0));
+    m.center = hyselam::at(change.center.x, change.center.y, 0.0);
+    m.size = static_cast<float>(change.size);
+    m.probability = static_cast<float>(change.probability);
+    msg.changes.push_back(std::move(m));
+  }
+  return msg;
+}
+
+visualization_msgs::MarkerArray changeMarkers(const std::vector<MapChange>& changes, double cell,
+                                              const std_msgs::Header& header) {
+  constexpr double kNamedSize = 0.3;  // [m]
+  visualization_msgs::MarkerArray array;
+  Marker clear;
+  clear.header = header;
+  clear.action = Marker::DELETEALL;
+  array.markers.push_back(clear);
+  for (const auto kind : {MapChange::Kind::kAppeared, MapChange::Kind::kGone}) {
+    const bool appeared = kind == MapChange::Kind::kAppeared;
+    Marker cells = marker(header, toString(kind), Marker::CUBE_LIST, cell);
+    cells.scale.y = cell;
+    cells.scale.z = 0.05;
+    cells.color = appeared ? color(0.0, 0.65, 0.25, 0.9) : color(0.9, 0.15, 0.15, 0.9);
+    for (const MapChange& change : changes) {
+      if (change.kind != kind) continue;
+      for (const hyselam::Point2& p : change.cells) {
+        cells.points.push_back(hyselam::at(p.x, p.y, 0.1));
+      }
+    }
+    if (!cells.points.empty()) array.markers.push_back(std::move(cells));
+  }
+  Marker name = marker(header, "names", Marker::TEXT_VIEW_FACING, 0.0);
+  name.scale.z = 0.25;
+  for (const MapChange& change : changes) {
+    if (change.size < kNamedSize) continue;
+    name.pose.position = hyselam::at(change.center.x, change.center.y + 0.35, 0.3);
+    name.text =
+        change.again ? std::string(toString(change.kind)) + " again" : toString(change.kind);
+    array.markers.push_back(name);
+    ++name.id;
+  }
+  return array;
+}
+
 visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
                                             const std::vector<bool>& shown,
                                             const std::vector<SlamLoop>& loops,

@@ -23,7 +23,11 @@ SlamPublisher::SlamPublisher(ros::NodeHandle nh)
       graph_(nh.advertise<hyselam_msgs::RegionGraph>("region_graph", 1, true)),
       path_(nh.advertise<nav_msgs::Path>("path", 1, true)),
       markers_(nh.advertise<visualization_msgs::MarkerArray>("slam_markers", 1, true)),
-      status_(nh.advertise<hyselam_msgs::LocalizationStatus>("localization_status", 1, true)) {}
+      status_(nh.advertise<hyselam_msgs::LocalizationStatus>("localization_status", 1, true)),
+      certainty_(nh.advertise<nav_msgs::OccupancyGrid>("map_certainty", 1, true)),
+      changes_(nh.advertise<hyselam_msgs::MapChangeArray>("map_changes", 1, true)),
+      change_markers_(
+          nh.advertise<visualization_msgs::MarkerArray>("map_change_markers", 1, true)) {}
 
 void SlamPublisher::publishWords(const hyselam_msgs::WordArray& words,
                                  const hyselam_msgs::WordMatchArray& matches) {
@@ -39,11 +43,11 @@ void SlamPublisher::publishStatus(const hyselam_msgs::LocalizationStatus& status
   status_.publish(status);
 }
 
-void SlamPublisher::publishMap(const hyselam::OccupancyGrid& grid,
+void SlamPublisher::publishMap(const PresentMap::Drawn& drawn,
                                const std::vector<SlamKeyframe>& keyframes,
                                const std::vector<bool>& shown, const std::vector<SlamLoop>& loops,
                                const RegionGraph& graph, const std_msgs::Header& header) {
-  nav_msgs::OccupancyGrid map = hyselam::toMsg(grid, header.frame_id, header.stamp);
+  nav_msgs::OccupancyGrid map = hyselam::toMsg(drawn.grid, header.frame_id, header.stamp);
   map.info.map_load_time = header.stamp;
   map_.publish(map);
   metadata_.publish(map.info);
@@ -51,6 +55,10 @@ void SlamPublisher::publishMap(const hyselam::OccupancyGrid& grid,
     const std::lock_guard<std::mutex> lock(mutex_);
     newest_map_ = std::move(map);
   }
+  certainty_.publish(hyselam::toMsg(drawn.probabilities, header.frame_id, header.stamp));
+  const double cell = drawn.grid.geometry.resolution;
+  changes_.publish(changesMsg(drawn.changes, cell, header));
+  change_markers_.publish(changeMarkers(drawn.changes, cell, header));
   graph_.publish(toMsg(graph, header));
   path_.publish(pathMsg(keyframes, header));
   markers_.publish(slamMarkers(keyframes, shown, loops, graph, header));

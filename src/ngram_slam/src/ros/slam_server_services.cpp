@@ -14,6 +14,12 @@ using hyselam::addValue;
 using Lock = std::unique_lock<std::mutex>;
 using DiagnosticStatus = diagnostic_msgs::DiagnosticStatus;
 
+namespace {
+
+constexpr double kMotionUnseen = 1.0;  // [m], [rad] that odometry did not tell
+
+}  // namespace
+
 void SlamServer::advertiseServices(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
   ros::NodeHandle public_services(nh), private_services(private_nh);
   public_services.setCallbackQueue(&services_.queue);
@@ -132,6 +138,24 @@ bool SlamServer::onPause(bool pause, std_srvs::Trigger::Response& out) {
 
 // ---- diagnostics
 
+/// Of odometry that fails and scans that are missing.
+static void reportRoughRoad(DiagnosticStatus& status, const RoughRoad& road) {
+  if (road.path_unseen > kMotionUnseen || road.turn_unseen > kMotionUnseen) {
+    addRemark(status, DiagnosticStatus::WARN, "the robot moves while its odometry stands still");
+  }
+  if (road.lost > 0) {
+    addRemark(status, DiagnosticStatus::WARN,
+              "lost " + std::to_string(road.lost) +
+                  " times: neither odometry nor scans told how it moved");
+  }
+  addValue(status, "scans that moved while odometry stood", road.scans_moved_unseen);
+  addValue(status, "path that odometry did not tell [m]", road.path_unseen);
+  addValue(status, "scans searched wide", road.wide_searches);
+  addValue(status, "gaps without scans", road.gaps);
+  addValue(status, "times lost", road.lost);
+  addValue(status, "runs split there", road.runs_split);
+}
+
 void SlamServer::report(DiagnosticStatus& status) {
   input_->checkClock();
   {
@@ -169,6 +193,8 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "optimizations", c.optimizations);
     addValue(status, "scans that hardly matched", status_.weak_matches);
     addValue(status, "odometry jumps", c.odometry_jumps);
+    reportRoughRoad(status, engine.roughRoad());
+    addValue(status, "since the last session", status_.changes);
     addValue(status, "last scan [ms]", status_.scan_ms);
     addValue(status, "slowest scan [ms]", status_.max_scan_ms);
     addValue(status, "last loops and optimization [ms]", status_.job_ms);

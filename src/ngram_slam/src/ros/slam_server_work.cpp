@@ -66,12 +66,14 @@ std::optional<SlamServer::MapRequest> SlamServer::awaitMapRequest() {
   request.graph = regionGraph(engine, mapping_->regions);
   request.header = header(params_.global_frame_id);
   request.shown = engine.shownRuns();
+  request.settled = engine.settled();
+  request.session = engine.firstRunOfSession();
   request.revision = engine.revision();
   request.epoch = epoch_;
   return request;
 }
 
-void SlamServer::drawMap(const MapRequest& request, KeyframeMapper* mapper) {
+void SlamServer::drawMap(const MapRequest& request, PresentMap* mapper) {
   const ros::WallTime begin = ros::WallTime::now();
   std::string error;
   const auto attempt = [&](const auto& work) {
@@ -82,18 +84,28 @@ void SlamServer::drawMap(const MapRequest& request, KeyframeMapper* mapper) {
       ROS_ERROR_STREAM_THROTTLE(10.0, log_name_ << " the map is not complete: " << error);
     }
   };
-  attempt([&] { mapper->update(request.keyframes, request.shown, request.revision); });
+  attempt([&] {
+    mapper->update(
+        {request.keyframes, request.settled, request.shown, request.session, request.revision});
+  });
+  std::string changes;
   attempt([&] {  // what fits
-    publisher_.publishMap(mapper->grid(), request.keyframes, request.shown, request.loops,
-                          request.graph, request.header);
+    const PresentMap::Drawn drawn = mapper->draw();
+    changes = summaryOf(drawn.changes);
+    publisher_.publishMap(drawn, request.keyframes, request.shown, request.loops, request.graph,
+                          request.header);
   });
   const Lock lock(mutex_);
   status_.map_error = error;
+  status_.changes = changes;
   status_.map_ms = millisecondsSince(begin);
 }
 
 void SlamServer::runMapper() {
-  KeyframeMapper mapper(params_.map);
+  const auto emptyMap = [this] {
+    return PresentMap(params_.map, params_.slam.consolidation.present);
+  };
+  PresentMap mapper = emptyMap();
   long epoch = -1;
   ros::WallTime saved = ros::WallTime::now();
   const auto isEnding = [this] {
@@ -102,7 +114,7 @@ void SlamServer::runMapper() {
   };
   while (!isEnding()) {
     if (const auto request = awaitMapRequest()) {
-      if (epoch != request->epoch) mapper = KeyframeMapper(params_.map);
+      if (epoch != request->epoch) mapper = emptyMap();
       epoch = request->epoch;
       if (!request->keyframes.empty()) drawMap(*request, &mapper);
     }

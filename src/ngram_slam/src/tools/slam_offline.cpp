@@ -11,7 +11,6 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
-#include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/ros/bag_tool.hpp"
@@ -20,6 +19,7 @@
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "ngram_slam/slam/laser_mount.hpp"
+#include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "reference_poses.hpp"
@@ -162,19 +162,28 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
   return run;
 }
 
-hyselam::OccupancyMapper emptyMap(double resolution) {
+PresentMap emptyMap(double resolution, const PresentMapParams& params = {}) {
   hyselam::OccupancyMapperParams p;
   p.resolution = resolution;
-  return hyselam::OccupancyMapper(p);
+  return PresentMap(p, params);
 }
 
-hyselam::OccupancyGrid mapOf(const SlamEngine& engine, double resolution) {
-  hyselam::OccupancyMapper mapper = emptyMap(resolution);
-  const std::vector<bool> shown = engine.shownRuns();
-  for (const SlamKeyframe& k : engine.keyframes()) {
-    if (shown[k.run]) mapper.insert(k.pose, *k.scan);
-  }
-  return mapper.grid();
+PresentMap mapOf(const SlamEngine& engine, double resolution) {
+  PresentMap map = emptyMap(resolution, engine.params().consolidation.present);
+  map.update({engine.keyframes(), engine.settled(), engine.shownRuns(), engine.firstRunOfSession(),
+              engine.revision()});
+  return map;
+}
+
+/// A line for each thing that came or went since the saved map.
+void writeChanges(const std::string& path, const std::vector<MapChange>& changes) {
+  hyselam::writeFileAtomically(path, [&](std::ostream& out) {
+    out << "kind,again,x,y,size,cells,probability\n";
+    for (const MapChange& c : changes) {
+      out << toString(c.kind) << ',' << (c.again ? 1 : 0) << ',' << c.center.x << ',' << c.center.y
+          << ',' << c.size << ',' << c.cells.size() << ',' << c.probability << '\n';
+    }
+  });
 }
 
 /// x, y, theta: where the newer observation was made, in the frame of the older one; by the scans
@@ -400,13 +409,16 @@ void checkMapped(const Run& run, const std::string& name, std::size_t scans) {
                                 std::to_string(run.refused) + " cannot be used");
 }
 
-void writeResults(const Options& o, const Run& run, const hyselam::RobotLog& log) {
+void writeResults(const Options& o, const Run& run, const PresentMap& map,
+                  const hyselam::RobotLog& log) {
   const SlamEngine& engine = *run.engine;
   hyselam::writeTum(o.out + "/trajectory.tum", ownTrajectory(engine, run.saved_scans));
   if (!o.state.empty()) hyselam::writeTum(o.out + "/trajectory_map.tum", engine.trajectory());
   hyselam::writeTum(o.out + "/odometry.tum", log.odometry);
   hyselam_pose_graph::writeG2o(o.out + "/graph.g2o", engine.graph());
-  hyselam::saveMap(o.out + "/map.yaml", mapOf(engine, o.resolution));
+  hyselam::saveMap(o.out + "/map.yaml", map.grid());
+  hyselam::saveMap(o.out + "/certainty.yaml", map.probabilities());
+  if (!o.state.empty()) writeChanges(o.out + "/changes.csv", map.changes());
   writeWords(o.out + "/words.csv", engine.recognizer());
   writeSemanticRegions(o.out + "/regions.csv", engine);
   writeMatches(o.out + "/matches.csv", engine.matches());
@@ -445,10 +457,14 @@ nlohmann::json run(const Options& o) {
   summary["laser_mount"] = toJson(mount, corrected);
   summary["trouble"] = troubleOf(main_run, mount, corrected);
   if (!reference.empty()) summary["errors"] = errorOf(main_run, reference);
-  writeResults(o, main_run, log);
+  const PresentMap present = mapOf(engine, o.resolution);
+  const std::vector<MapChange> changes = present.changes();
+  if (!o.state.empty()) summary["changes"] = summaryOf(changes);
+  writeResults(o, main_run, present, log);
   if (!o.save_state.empty()) summary["saved"] = saveMapState(o.save_state, engine);
 
   nlohmann::json figures = {figureJson("loops: " + o.loops, "map.yaml", engine)};
+  figures[0]["changes"] = toJson(changes, o.resolution);
   for (const LoopClosureMode other : {LoopClosureMode::kNone, LoopClosureMode::kThesis}) {
     if (!o.side_by_side || other == params.loops) continue;
     const std::string mode = toString(other), label = "loops: " + mode, map = "map_" + mode;
@@ -457,7 +473,7 @@ nlohmann::json run(const Options& o) {
     if (!reference.empty()) s.update(errorOf(r, reference));
     summary["side_by_side_" + mode] = s;
     hyselam::writeTum(o.out + "/trajectory_" + mode + ".tum", r.engine->trajectory());
-    hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o.resolution));
+    hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o.resolution).grid());
     figures.push_back(figureJson(label, map + ".yaml", *r.engine));
   }
   writeJson(o.out + "/report.json",

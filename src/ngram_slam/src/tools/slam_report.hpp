@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
@@ -37,6 +38,19 @@ inline nlohmann::json figureJson(const std::string& title, const std::string& ma
   return {{"title", title},           {"map", map},
           {"trajectory", trajectory}, {"proximity_loops", proximity},
           {"word_loops", words},      {"regions", regions}};
+}
+
+/// What came and went, cell by cell: lower left corners.
+inline nlohmann::json toJson(const std::vector<MapChange>& changes, double cell) {
+  using nlohmann::json;
+  json appeared = json::array(), gone = json::array();
+  for (const MapChange& c : changes) {
+    for (const hyselam::Point2& p : c.cells) {
+      (c.kind == MapChange::Kind::kAppeared ? appeared : gone)
+          .push_back({rounded(p.x - 0.5 * cell), rounded(p.y - 0.5 * cell)});
+    }
+  }
+  return {{"cell", cell}, {"appeared", appeared}, {"gone", gone}};
 }
 
 /// `figures`: of figureJson(). Loops and matches by the path lengths of their keyframes [m].

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <hyselam_msgs/LocalizationStatus.h>
+#include <hyselam_msgs/MapChangeArray.h>
 #include <hyselam_msgs/RegionGraph.h>
 #include <hyselam_msgs/WordMatch.h>
 #include <nav_msgs/Path.h>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "ngram_slam/matching/ngram_recognizer.hpp"
+#include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
@@ -33,6 +35,13 @@ hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMa
 hyselam_msgs::LocalizationStatus statusMsg(const SlamEngine& engine, double update_ms,
                                            const std_msgs::Header& header);
 
+/// `cell`: side of the cells [m].
+hyselam_msgs::MapChangeArray changesMsg(const std::vector<MapChange>& changes, double cell,
+                                        const std_msgs::Header& header);
+/// Cells that are occupied now in green, those that are free now in red, and a name above each
+/// thing of some size.
+visualization_msgs::MarkerArray changeMarkers(const std::vector<MapChange>& changes, double cell,
+                                              const std_msgs::Header& header);
 /// @param shown as SlamEngine::shownRuns(); the current run is always drawn.
 visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
                                             const std::vector<bool>& shown,

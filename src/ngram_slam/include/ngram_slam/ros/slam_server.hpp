@@ -21,15 +21,16 @@
 #include "hyselam_common/ros/scan_input.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
 #include "ngram_slam/ros/slam_publisher.hpp"
-#include "ngram_slam/slam/keyframe_mapper.hpp"
+#include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
 
-/// Topics: in `scan`, tf, `initialpose`; out `map`, `map_metadata`, `region_graph` (latched),
-/// `localization_status` (latched), `words`, `word_matches`, `semantic_regions`, `path`,
-/// `slam_markers`, tf map -> odom, /diagnostics. Services: `dynamic_map`, `~save`, `~load`,
+/// Topics: in `scan`, tf, `initialpose`; out `map`, `map_metadata`, `map_certainty`, `map_changes`,
+/// `map_change_markers`, `region_graph`, `localization_status` (latched), `words`, `word_matches`,
+/// `semantic_regions`, `path`, `slam_markers`, tf map -> odom, /diagnostics. Services:
+/// `dynamic_map`, `~save`, `~load`,
 /// `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
@@ -66,6 +67,7 @@ class SlamServer {
     std::string job_error, map_error, save_error;
     double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
     std::size_t paused_scans = 0, weak_matches = 0;
+    std::string changes = "nothing changed";  // since the last session
   };
   /// What a map is drawn from, copied from the engine.
   struct MapRequest {
@@ -73,6 +75,8 @@ class SlamServer {
     std::vector<SlamLoop> loops;
     RegionGraph graph;
     std::vector<bool> shown;  // runs
+    SettledMap settled;
+    std::uint32_t session = 0;  // its first run
     std_msgs::Header header;
     long revision = 0, epoch = -1;
   };
@@ -118,7 +122,7 @@ class SlamServer {
   void runJobs();
   void runMapper();
   std::optional<MapRequest> awaitMapRequest();
-  void drawMap(const MapRequest& request, KeyframeMapper* mapper);
+  void drawMap(const MapRequest& request, PresentMap* mapper);
   std::string saveState(const std::string& path);
   void saveIfChanged(const char* when);
   std::string pathOrDefault(const std::string& path) const;

@@ -162,6 +162,10 @@ class SlamEngine {
   /// process began.
   int tiesWithdrawn() const { return ties_withdrawn_; }
   const RunConnections& connections() const { return connections_; }
+  /// What is known of the map besides the keyframes.
+  const SettledMap& settled() const { return state_.settled; }
+  /// The first run that is not of the saved map the engine was made with.
+  std::uint32_t firstRunOfSession() const { return session_; }
   /// By run, whether it belongs to the map that the pose refers to. While the run's place is only
   /// supposed that is the map it was supposed in, without the run.
   std::vector<bool> shownRuns() const;
@@ -184,10 +188,10 @@ class SlamEngine {
   };
   /// What tells that odometry fails.
   struct Doubt {
-    hyselam::LaserScan matched;      // the last scan that was
+    hyselam::LaserScan matched;         // the last scan that was
     std::optional<double> unfit_since;  // [s]: scans that do not fit are awaited to
-    bool since_keyframe = false;     // odometry was overruled since the last keyframe
-    double stamp_of_keyframe = 0.0;  // [s]
+    bool since_keyframe = false;        // odometry was overruled since the last keyframe
+    double stamp_of_keyframe = 0.0;     // [s]
     RoughRoad road;
   };
   struct RunStart {
@@ -341,6 +345,7 @@ class SlamEngine {
   Run run_;
   std::vector<SlamLoop> doubts_;  // verified far loops that contradict the ties of the run
   Doubt doubt_;
+  std::uint32_t session_ = 0;
   int ties_withdrawn_ = 0;
   bool loops_changed_ = false, optimize_now_ = false;
   int optimized_keyframes_ = 0;

@@ -9,12 +9,12 @@
 namespace ngram_slam {
 
 /// Layout (little-endian): "NGRAMSLM", version u32, length of the body u64, CRC-32 of these; body;
-/// CRC-32 of the body. Version 1, which is still read, has no SlamLoop::fit: the least that
-/// verified loops have is taken. Scans are stored as they were measured; surfaces are made of them
-/// on loading.
+/// CRC-32 of the body. Older versions are still read: version 1 has no SlamLoop::fit (the least
+/// that verified loops have is taken), version 2 no settled map. Scans are stored as they were
+/// measured; surfaces are made of them on loading.
 class SlamStateFile {
  public:
-  static constexpr std::uint32_t kVersion = 2;
+  static constexpr std::uint32_t kVersion = 3;
 
   /// Atomic: a reader sees the old file or the new one.
   /// @throws hyselam::InputError when the place cannot be written.

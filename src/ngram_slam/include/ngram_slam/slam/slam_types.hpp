@@ -66,6 +66,22 @@ struct SlamMatch {
   bool accepted = false;  ///< the loop is in the graph
 };
 
+/// A cell of the map of which the keyframes that were kept do not tell what all did: what was known
+/// when the others were dropped.
+struct SettledCell {
+  int keyframe = 0;        ///< that it moves with
+  hyselam::Point2 center;  ///< in the frame of the keyframe [m]
+  float log_odds = 0.0F;   ///< that it is occupied
+  std::uint16_t visits = 0, changes = 0;
+};
+
+/// See SettledCell; the runs after `last_run` come on top of it.
+struct SettledMap {
+  std::uint32_t last_run = 0;
+  double cell = 0.05;  ///< side [m], > 0
+  std::vector<SettledCell> cells;
+};
+
 /// Counts of events.
 struct SlamCounters {
   std::uint64_t scans = 0;           ///< added
@@ -92,6 +108,7 @@ struct SlamState {
   Corpus corpus;
   std::vector<std::int32_t> keyframe_of_observation;  ///< index of a keyframe per observation
   SlamCounters counters;
+  SettledMap settled;
 
   /// Describes an inconsistency (an index out of range, a keyframe without scan or finite pose);
   /// nullptr if there is none.

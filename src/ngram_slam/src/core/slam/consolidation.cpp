@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "ngram_slam/slam/graph_reduction.hpp"
 #include "ngram_slam/slam/keyframe_grid.hpp"
+#include "ngram_slam/slam/run_connections.hpp"
 
 namespace ngram_slam {
 
@@ -276,6 +279,47 @@ std::vector<SlamLoop> limited(std::vector<SlamLoop> loops, int max_loops, const 
   return loops;
 }
 
+using LoopGroups = std::map<std::pair<int, int>, std::vector<SlamLoop>>;
+
+/// Leaves out groups of new loops alone, within a run, of which a piece ends enough loops already;
+/// the best ones stay.
+void leaveOutWhereEnough(const SlamState& state, const Edges& edges, const PathPieces& pieces,
+                         int max_place_loops, LoopGroups* groups) {
+  std::map<int, int> ends;  // by piece
+  std::set<std::pair<int, int>> known;
+  for (const SlamLoop& l : edges.loops) {
+    const int a = pieces.of(l.older), b = pieces.of(l.newer);
+    ++ends[a];
+    ++ends[b];
+    known.insert(std::minmax({a, b}));
+  }
+  struct Fresh {
+    std::pair<int, int> pair;
+    double information;
+  };
+  std::vector<Fresh> fresh;
+  for (const auto& [pair, group] : *groups) {
+    const auto isWithinRun = [&](const SlamLoop& l) {
+      return state.keyframes[static_cast<std::size_t>(l.older)].run ==
+             state.keyframes[static_cast<std::size_t>(l.newer)].run;
+    };
+    if (known.count(pair) > 0 || !std::all_of(group.begin(), group.end(), isWithinRun)) continue;
+    double best = 0.0;
+    for (const SlamLoop& l : group) best = std::max(best, l.information.determinant());
+    fresh.push_back({pair, best});
+  }
+  std::stable_sort(fresh.begin(), fresh.end(),
+                   [](const Fresh& a, const Fresh& b) { return a.information > b.information; });
+  for (const Fresh& f : fresh) {
+    if (ends[f.pair.first] >= max_place_loops || ends[f.pair.second] >= max_place_loops) {
+      groups->erase(f.pair);
+    } else {
+      ++ends[f.pair.first];
+      ++ends[f.pair.second];
+    }
+  }
+}
+
 /// Adds the new loops to the others: between pieces of path where there are new ones, no more than
 /// the limit stay.
 std::vector<SlamLoop> withNewLoops(const SlamState& state, const Edges& edges,
@@ -284,7 +328,7 @@ std::vector<SlamLoop> withNewLoops(const SlamState& state, const Edges& edges,
   const auto pairOf = [&](const SlamLoop& l) {
     return std::minmax({pieces.of(l.older), pieces.of(l.newer)});  // a list: values, no references
   };
-  std::map<std::pair<int, int>, std::vector<SlamLoop>> groups;
+  LoopGroups groups;
   for (const SlamLoop& l : edges.new_loops) {
     // Within a piece odometry says enough.
     if (pieces.of(l.older) != pieces.of(l.newer)) groups[pairOf(l)];
@@ -303,6 +347,7 @@ std::vector<SlamLoop> withNewLoops(const SlamState& state, const Edges& edges,
     if (group != groups.end()) group->second.push_back(l);
   }
   const std::vector<Pose2> poses = posesOf(state);
+  leaveOutWhereEnough(state, edges, pieces, params.max_place_loops, &groups);
   for (auto& [pair, group] : groups) {
     const auto few = limited(std::move(group), params.max_loops, pieces, poses);
     loops.insert(loops.end(), few.begin(), few.end());
@@ -400,6 +445,24 @@ void renameWords(const Renaming& renaming, const std::vector<std::int64_t>& numb
   state->matches = std::move(matches);
 }
 
+/// What the map is without the dropped keyframes, numbered as before.
+SettledMap settledWithout(const SlamState& state, const std::vector<bool>& dropped,
+                          const ConsolidationParams& params) {
+  const RunConnections connections(state.keyframes, state.loops);
+  std::vector<std::uint32_t> map_of_run;
+  for (std::uint32_t run = 0; run <= state.keyframes.back().run; ++run) {
+    map_of_run.push_back(connections.mapOf(run));
+  }
+  std::vector<bool> kept;
+  for (const bool d : dropped) kept.push_back(!d);
+  try {
+    return settledMap(state.keyframes, kept, map_of_run, state.settled, params.settled_cell,
+                      params.present);
+  } catch (const std::length_error&) {
+    return {};  // no map could be drawn
+  }
+}
+
 }  // namespace
 
 void ConsolidationParams::describe(hyselam::ParameterVisitor& visit) {
@@ -409,10 +472,15 @@ void ConsolidationParams::describe(hyselam::ParameterVisitor& visit) {
   visit("place_length", place_length, Range::above(0.0), "m",
         "of the pieces of path between which loops are counted");
   visit("max_loops", max_loops, Range::between(1, 1e6), "", "between two of them");
+  visit("max_place_loops", max_place_loops, Range::between(1, 1e6), "",
+        "that a piece of path ends, from which it gets no more of dropped keyframes");
   visit("redundant_observations", redundant_observations, Range::between(0.0, 1.0), "",
         "part of a run at dropped keyframes, from which its words are forgotten");
   visit("max_scans", max_scans, Range::between(0, 1e9), "",
         "whose poses are remembered, those of the last run besides; 0: all");
+  visit.group("", present);
+  visit("settled_cell", settled_cell, Range::between(0.01, 1.0), "m",
+        "side of the cells in which the map of dropped keyframes is remembered");
 }
 
 void ConsolidationParams::validate() const {
@@ -430,6 +498,8 @@ SlamState consolidated(SlamState state, const ConsolidationParams& params) {
 
   const Successors successors = successorsOf(state, dropped, components);
   const Renaming renaming(state, successors);
+  state.settled = settledWithout(state, dropped, params);
+  for (SettledCell& c : state.settled.cells) c.keyframe = renaming.index(c.keyframe);
   Edges edges = edgesWithout(state, dropped);
   std::vector<SlamLoop> loops = withNewLoops(state, edges, params);
   state.scans = renamedScans(state, renaming, params.max_scans);

@@ -1,5 +1,6 @@
 // Where the engine does not believe odometry: wheels that stand in it while the robot moves, slip,
 // gaps without scans.
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -73,7 +74,12 @@ void SlamEngine::doubtOdometry(const SurfacePoints& points, const Motion& motion
   };
   // While odometry stands and the scan is another one, odometry fails more often: but people who
   // walk past change scans, too.
-  const double penalty = motion.unseen ? kUnseenPenalty : -std::log(p.failure_probability);
+  // Otherwise the wider distribution has to be worth its width.
+  const double penalty =
+      motion.unseen
+          ? kUnseenPenalty
+          : std::max(0.0, 0.5 * std::log(motion.information.determinant() / free.determinant())) -
+                std::log(p.failure_probability);
   if (cost(other, free) + penalty >= cost(*best, motion.information)) return;
   const Pose2 driven = between(matched_pose_, other.pose);
   if (motion.unseen && std::hypot(driven.x, driven.y) < params_.scan_step &&

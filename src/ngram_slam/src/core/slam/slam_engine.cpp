@@ -77,6 +77,7 @@ SlamEngine::SlamEngine(const SlamParams& params, SlamState state)
   connections_ = RunConnections(state_.keyframes, state_.loops);
   queueSavedKeyframes();
   const SlamKeyframe& last = state_.keyframes.back();
+  session_ = last.run + 1;
   path_length_ = run_.begin = last.path_length;
   far_search_path_length_ = path_length_;
   pose_ = matched_pose_ = last.pose;

@@ -35,6 +35,10 @@ const char* graphError(const SlamState& state) {
       }
     }
   }
+  if (!(state.settled.cell > 0.0)) return "cells of the settled map have no size";
+  for (const SettledCell& c : state.settled.cells) {
+    if (!exists(c.keyframe)) return "a settled cell has no keyframe";
+  }
   return nullptr;
 }
 

@@ -19,6 +19,7 @@ using hyselam::Pose2;
 
 constexpr char kMagic[] = "NGRAMSLM";
 constexpr std::uint32_t kFirstVersion = 1;
+constexpr std::uint32_t kSettledVersion = 3;  // the first that has a settled map
 // Of loops in files that do not tell: LoopParams::near_min_surface_ratio and far_min_surface_ratio.
 constexpr double kLeastFit = 0.85;
 constexpr std::size_t kHeaderBytes = 20, kChecksumBytes = 4;
@@ -38,6 +39,7 @@ class Out {
   }
   void rangeMax(double value) { writer_->put(value); }
   void fit(double value) { writer_->put(value); }
+  static bool hasSettled() { return true; }
   template <typename Values>
   void size(const Values& values, std::size_t) {
     writer_->put(static_cast<std::uint32_t>(values.size()));
@@ -68,6 +70,7 @@ class In {
     value = kLeastFit;
     if (version_ > kFirstVersion) finite(value);
   }
+  bool hasSettled() const { return version_ >= kSettledVersion; }
   /// `bytes`: what each value takes at least.
   template <typename Values>
   void size(Values& values, std::size_t bytes) {
@@ -183,6 +186,12 @@ void rest(Io& io, State& s) {
   counters(io, s.counters);
   io.size(s.keyframe_of_observation, 4);
   for (auto& k : s.keyframe_of_observation) io.numbers(k);
+  if (!io.hasSettled()) return;
+  io.numbers(s.settled.last_run, s.settled.cell);
+  io.size(s.settled.cells, 28);
+  for (auto& c : s.settled.cells) {
+    io.numbers(c.keyframe, c.center.x, c.center.y, c.log_odds, c.visits, c.changes);
+  }
 }
 
 struct Body {

@@ -1,0 +1,442 @@
+#include "ngram_slam/slam/present_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "ngram_slam/slam/keyframe_grid.hpp"
+
+namespace ngram_slam {
+
+using hyselam::OccupancyGrid;
+using hyselam::OccupancyMapper;
+using hyselam::Point2;
+using hyselam::Pose2;
+
+namespace {
+
+constexpr int kMargin = 2;  // of unknown cells around a map
+
+double probabilityOf(double log_odds) {
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+/// The log odds after the cell may have changed with that probability.
+double afterChange(double log_odds, double change) {
+  const double p = probabilityOf(log_odds);
+  const double later = p * (1.0 - change) + (1.0 - p) * change;
+  return std::log(later / (1.0 - later));
+}
+
+std::uint16_t more(std::uint16_t count, std::uint64_t by) {
+  return static_cast<std::uint16_t>(
+      std::min<std::uint64_t>(std::numeric_limits<std::uint16_t>::max(), count + by));
+}
+
+}  // namespace
+
+void PresentMapParams::describe(hyselam::ParameterVisitor& visit) {
+  using hyselam::Range;
+  visit("change_probability", change_probability, Range::between(0.0, 0.5), "",
+        "of a cell from one visit to the next, before anything is known of it");
+  visit("change_memory", change_memory, Range::above(0.0), "visits", "that this counts as");
+  visit("observation", observation, Range::above(0.0), "",
+        "log odds by which an observation beyond occupied_ratio moves a cell");
+  visit("max_visit", max_visit, Range::above(0.0), "", "log odds by which a visit moves it");
+  visit("max_log_odds", max_log_odds, Range::above(0.0), "", "of a cell");
+  visit("change_tolerance", tolerance, Range::between(0, 20), "cells",
+        "changes nearer to where the same was before are errors of the poses");
+  visit("change_min_cells", min_cells, Range::atLeast(1), "", "of a change that is told");
+  visit("change_sure", sure, Range::atLeast(0.0), "",
+        "log odds, before and now, of a cell that is said to have changed");
+}
+
+const char* toString(MapChange::Kind kind) {
+  return kind == MapChange::Kind::kAppeared ? "appeared" : "gone";
+}
+
+std::string summaryOf(const std::vector<MapChange>& changes) {
+  if (changes.empty()) return "nothing changed";
+  std::size_t appeared = 0, again = 0;
+  for (const MapChange& c : changes) {
+    appeared += c.kind == MapChange::Kind::kAppeared ? 1 : 0;
+    again += c.again ? 1 : 0;
+  }
+  const std::size_t gone = changes.size() - appeared;
+  std::string text = std::to_string(appeared) + (appeared == 1 ? " thing" : " things") +
+                     " appeared, " + std::to_string(gone) + (gone == 1 ? " is" : " are") + " gone";
+  if (again > 0) text += ", " + std::to_string(again) + " of them not for the first time";
+  return text;
+}
+
+PresentMap::PresentMap(const hyselam::OccupancyMapperParams& map, const PresentMapParams& params)
+    : map_(map), params_(params), visit_(map) {
+  hyselam::checkParameters(params_);
+}
+
+void PresentMap::Grid::cover(int min_x, int min_y, int max_x, int max_y) {
+  if (width > 0 && min_x >= x0 && min_y >= y0 && max_x < x0 + width && max_y < y0 + height) return;
+  Grid grown;
+  grown.x0 = width > 0 ? std::min(min_x, x0) : min_x;
+  grown.y0 = width > 0 ? std::min(min_y, y0) : min_y;
+  grown.width = (width > 0 ? std::max(max_x, x0 + width - 1) : max_x) - grown.x0 + 1;
+  grown.height = (width > 0 ? std::max(max_y, y0 + height - 1) : max_y) - grown.y0 + 1;
+  grown.cells.resize(static_cast<std::size_t>(grown.width) *
+                     static_cast<std::size_t>(grown.height));
+  for (int y = 0; y < height; ++y) {
+    const auto from = cells.begin() + static_cast<std::ptrdiff_t>(y) * width;
+    std::copy(from, from + width, &grown.of(x0, y0 + y));
+  }
+  *this = std::move(grown);
+}
+
+bool PresentMap::isKnown(const Belief& b) const {
+  return b.observations >= map_.min_observations;
+}
+
+/// One visit of a cell: it may have changed since, and then was observed.
+void PresentMap::fold(const OccupancyMapper& visit, bool now, Grid* grid) const {
+  int min_x = std::numeric_limits<int>::max(), min_y = min_x, max_x = -min_x, max_y = -min_x;
+  visit.forEachObserved([&](int x, int y, std::uint32_t, std::uint32_t) {
+    min_x = std::min(min_x, x);
+    min_y = std::min(min_y, y);
+    max_x = std::max(max_x, x);
+    max_y = std::max(max_y, y);
+  });
+  if (min_x > max_x) return;
+  grid->cover(min_x, min_y, max_x, max_y);
+  visit.forEachObserved([&](int x, int y, std::uint32_t hits, std::uint32_t misses) {
+    Belief& b = grid->of(x, y);
+    const double total = static_cast<double>(hits) + misses;
+    const double evidence =
+        std::clamp(params_.observation * (static_cast<double>(hits) - map_.occupied_ratio * total),
+                   -params_.max_visit, params_.max_visit);
+    double log_odds = static_cast<double>(b.log_odds);
+    if (b.visits > 0) {
+      const double change = (b.changes + params_.change_memory * params_.change_probability) /
+                            (b.visits + params_.change_memory);
+      log_odds = afterChange(log_odds, std::min(0.5, change));
+    }
+    const bool was_occupied = b.log_odds > 0.0F, was_known = isKnown(b);
+    log_odds = std::clamp(log_odds + evidence, -params_.max_log_odds, params_.max_log_odds);
+    b.log_odds = static_cast<float>(log_odds);
+    b.visits = more(b.visits, 1);
+    b.observations = more(b.observations, static_cast<std::uint64_t>(hits) + misses);
+    if (was_known && was_occupied != (b.log_odds > 0.0F)) b.changes = more(b.changes, 1);
+    b.now = b.now || now;
+  });
+}
+
+void PresentMap::closeRun() {
+  if (open_) fold(visit_, in_session_, &past_);
+  visit_.clear();
+  open_ = false;
+}
+
+/// The cells that were settled take the place of what the kept keyframes say.
+void PresentMap::settle(const Source& source) {
+  const double resolution = map_.resolution, half = 0.5 * source.settled.cell;
+  for (const SettledCell& c : source.settled.cells) {
+    const SlamKeyframe& k = source.keyframes[static_cast<std::size_t>(c.keyframe)];
+    if (k.run >= shown_.size() || !shown_[k.run]) continue;
+    const Point2 center = k.pose * c.center;
+    const auto first = [&](double v) {
+      return static_cast<int>(std::ceil((v - half) / resolution - 0.5 - 1e-9));
+    };
+    const auto last = [&](double v) {
+      return static_cast<int>(std::ceil((v + half) / resolution - 0.5 - 1e-9)) - 1;
+    };
+    const int min_x = first(center.x), max_x = last(center.x);
+    const int min_y = first(center.y), max_y = last(center.y);
+    if (min_x > max_x || min_y > max_y) continue;
+    // What no kept keyframe saw at all is not worth a larger map.
+    for (int y = std::max(min_y, past_.y0); y <= std::min(max_y, past_.y0 + past_.height - 1);
+         ++y) {
+      for (int x = std::max(min_x, past_.x0); x <= std::min(max_x, past_.x0 + past_.width - 1);
+           ++x) {
+        Belief& b = past_.of(x, y);
+        b.log_odds = c.log_odds;
+        b.visits = c.visits;
+        b.changes = c.changes;
+        b.observations = more(b.observations, static_cast<std::uint64_t>(map_.min_observations));
+      }
+    }
+  }
+}
+
+/// What has to be done before a keyframe of another run, or none, is inserted.
+void PresentMap::closeRunsBefore(const SlamKeyframe* next, const Source& source) {
+  const bool other_run = next == nullptr || !open_ || next->run != run_;
+  if (!other_run) return;
+  if (next == nullptr) return;
+  closeRun();
+  if (!settled_ && next->run > source.settled.last_run) {
+    settle(source);
+    settled_ = true;
+  }
+  if (!in_session_ && next->run >= source.session) {
+    before_ = past_;
+    in_session_ = true;
+  }
+  run_ = next->run;
+  open_ = true;
+}
+
+void PresentMap::update(const Source& source) {
+  if (source.revision != revision_ || source.keyframes.size() < inserted_ ||
+      source.shown != shown_ || source.session != session_ ||
+      source.settled.cells.size() != settled_cells_) {
+    visit_.clear();
+    past_ = before_ = Grid{};
+    inserted_ = 0;
+    run_ = 0;
+    open_ = settled_ = in_session_ = false;
+    revision_ = source.revision;
+    shown_ = source.shown;
+    session_ = source.session;
+    settled_cells_ = source.settled.cells.size();
+  }
+  while (inserted_ < source.keyframes.size()) {
+    const SlamKeyframe& k = source.keyframes[inserted_++];
+    if (k.run >= shown_.size() || !shown_[k.run]) continue;
+    closeRunsBefore(&k, source);
+    visit_.insert(k.pose, *k.scan);
+  }
+  // A map that is only shown, before any scan of a session.
+  if (!settled_ && !source.settled.cells.empty()) {
+    closeRun();
+    settle(source);
+    settled_ = true;
+  }
+}
+
+PresentMap::Grid PresentMap::present() const {
+  Grid g = past_;
+  if (open_) fold(visit_, in_session_, &g);
+  return g;
+}
+
+OccupancyGrid PresentMap::emptyGrid(const Grid& g) const {
+  int min_x = g.width, min_y = g.height, max_x = -1, max_y = -1;
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      if (g.at(x, y).observations == 0) continue;
+      min_x = std::min(min_x, x);
+      min_y = std::min(min_y, y);
+      max_x = std::max(max_x, x);
+      max_y = std::max(max_y, y);
+    }
+  }
+  hyselam::GridGeometry geometry;
+  geometry.resolution = map_.resolution;
+  if (max_x < 0) {
+    geometry.width = geometry.height = 1;
+    return OccupancyGrid(geometry);
+  }
+  geometry.width = max_x - min_x + 1 + 2 * kMargin;
+  geometry.height = max_y - min_y + 1 + 2 * kMargin;
+  geometry.origin = {(g.x0 + min_x - kMargin) * map_.resolution,
+                     (g.y0 + min_y - kMargin) * map_.resolution, 0.0};
+  return OccupancyGrid(geometry);
+}
+
+namespace {
+
+/// Column and row of the first cell of a map in the lattice of its frame.
+int latticeOf(double origin, double resolution) {
+  return static_cast<int>(std::lround(origin / resolution));
+}
+
+}  // namespace
+
+OccupancyGrid PresentMap::grid() const {
+  const Grid g = present();
+  OccupancyGrid grid = emptyGrid(g);
+  const int x0 = latticeOf(grid.geometry.origin.x, map_.resolution);
+  const int y0 = latticeOf(grid.geometry.origin.y, map_.resolution);
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      const Belief& b = g.at(x, y);
+      if (!isKnown(b)) continue;
+      grid.at({x + g.x0 - x0, y + g.y0 - y0}) =
+          b.log_odds > 0.0F ? OccupancyGrid::kOccupied : OccupancyGrid::kFree;
+    }
+  }
+  return grid;
+}
+
+OccupancyGrid PresentMap::probabilities() const {
+  const Grid g = present();
+  OccupancyGrid grid = emptyGrid(g);
+  const int x0 = latticeOf(grid.geometry.origin.x, map_.resolution);
+  const int y0 = latticeOf(grid.geometry.origin.y, map_.resolution);
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      const Belief& b = g.at(x, y);
+      if (!isKnown(b)) continue;
+      grid.at({x + g.x0 - x0, y + g.y0 - y0}) = static_cast<std::int8_t>(
+          std::lround(100.0 * probabilityOf(static_cast<double>(b.log_odds))));
+    }
+  }
+  return grid;
+}
+
+std::vector<MapChange> PresentMap::changes() const {
+  std::vector<MapChange> changes;
+  if (before_.width == 0) return changes;
+  const Grid now = present();
+  const auto beliefIn = [](const Grid& g, int x, int y) -> const Belief* {
+    if (x < g.x0 || y < g.y0 || x >= g.x0 + g.width || y >= g.y0 + g.height) return nullptr;
+    return &g.at(x - g.x0, y - g.y0);
+  };
+  const auto isOccupied = [&](const Grid& g, int x, int y) {
+    const Belief* b = beliefIn(g, x, y);
+    return b != nullptr && isKnown(*b) && b->log_odds > 0.0F;
+  };
+  const auto isNear = [&](const Grid& g, int x, int y) {
+    for (int dy = -params_.tolerance; dy <= params_.tolerance; ++dy) {
+      for (int dx = -params_.tolerance; dx <= params_.tolerance; ++dx) {
+        if (isOccupied(g, x + dx, y + dy)) return true;
+      }
+    }
+    return false;
+  };
+  // 1: appeared, 2: gone.
+  std::vector<std::uint8_t> kind(now.cells.size(), 0);
+  const auto indexOf = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) +
+           static_cast<std::size_t>(x);
+  };
+  for (int y = 0; y < now.height; ++y) {
+    for (int x = 0; x < now.width; ++x) {
+      const Belief& b = now.at(x, y);
+      const Belief* old = beliefIn(before_, x + now.x0, y + now.y0);
+      if (!b.now || old == nullptr || !isKnown(*old) || !isKnown(b)) continue;
+      if (std::abs(static_cast<double>(b.log_odds)) < params_.sure ||
+          std::abs(static_cast<double>(old->log_odds)) < params_.sure) {
+        continue;
+      }
+      const bool occupied = b.log_odds > 0.0F, was = old->log_odds > 0.0F;
+      if (occupied && !was && !isNear(before_, x + now.x0, y + now.y0)) kind[indexOf(x, y)] = 1;
+      if (!occupied && was && !isNear(now, x + now.x0, y + now.y0)) kind[indexOf(x, y)] = 2;
+    }
+  }
+  std::vector<std::pair<int, int>> open;
+  for (int y = 0; y < now.height; ++y) {
+    for (int x = 0; x < now.width; ++x) {
+      const std::uint8_t what = kind[indexOf(x, y)];
+      if (what == 0) continue;
+      MapChange change;
+      change.kind = what == 1 ? MapChange::Kind::kAppeared : MapChange::Kind::kGone;
+      int min_x = x, max_x = x, min_y = y, max_y = y;
+      std::size_t again = 0;
+      open.assign(1, {x, y});
+      kind[indexOf(x, y)] = 0;
+      while (!open.empty()) {
+        const auto [cx, cy] = open.back();
+        open.pop_back();
+        min_x = std::min(min_x, cx);
+        max_x = std::max(max_x, cx);
+        min_y = std::min(min_y, cy);
+        max_y = std::max(max_y, cy);
+        const Belief& b = now.at(cx, cy);
+        const Belief& old = *beliefIn(before_, cx + now.x0, cy + now.y0);
+        const double occupied = probabilityOf(static_cast<double>(b.log_odds)),
+                     was = probabilityOf(static_cast<double>(old.log_odds));
+        change.probability += what == 1 ? occupied * (1.0 - was) : (1.0 - occupied) * was;
+        again += b.changes > 1 ? 1 : 0;
+        const Point2 center{(cx + now.x0 + 0.5) * map_.resolution,
+                            (cy + now.y0 + 0.5) * map_.resolution};
+        change.center.x += center.x;
+        change.center.y += center.y;
+        change.cells.push_back(center);
+        // Sides of one thing are seen with gaps between them.
+        for (int ny = std::max(0, cy - 2); ny <= std::min(now.height - 1, cy + 2); ++ny) {
+          for (int nx = std::max(0, cx - 2); nx <= std::min(now.width - 1, cx + 2); ++nx) {
+            if (kind[indexOf(nx, ny)] != what) continue;
+            kind[indexOf(nx, ny)] = 0;
+            open.emplace_back(nx, ny);
+          }
+        }
+      }
+      if (change.cells.size() < static_cast<std::size_t>(params_.min_cells)) continue;
+      const auto n = static_cast<double>(change.cells.size());
+      change.center.x /= n;
+      change.center.y /= n;
+      change.probability /= n;
+      change.again = 2 * again > change.cells.size();
+      change.size = map_.resolution * (1 + std::max(max_x - min_x, max_y - min_y));
+      changes.push_back(std::move(change));
+    }
+  }
+  std::stable_sort(changes.begin(), changes.end(), [](const MapChange& a, const MapChange& b) {
+    return a.cells.size() > b.cells.size();
+  });
+  return changes;
+}
+
+namespace {
+
+int nearestKept(const std::vector<SlamKeyframe>& keyframes, const KeyframeGrid& grid,
+                const std::vector<bool>& usable, const Point2& p) {
+  int best = -1;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (double radius = 1.0; best < 0 && radius < 200.0; radius *= 2.0) {
+    grid.forEachNear({p.x, p.y, 0.0}, radius, [&](int k, double d) {
+      if (!usable[static_cast<std::size_t>(k)] || d > nearest || (d == nearest && k > best)) return;
+      nearest = d;
+      best = k;
+    });
+  }
+  for (std::size_t k = 0; best < 0 && k < keyframes.size(); ++k) {
+    if (usable[k]) best = static_cast<int>(k);
+  }
+  return best;
+}
+
+}  // namespace
+
+SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vector<bool>& kept,
+                      const std::vector<std::uint32_t>& map_of_run, const SettledMap& before,
+                      double cell, const PresentMapParams& params) {
+  SettledMap settled;
+  settled.cell = cell;
+  if (keyframes.empty()) return settled;
+  settled.last_run = keyframes.back().run;
+  hyselam::OccupancyMapperParams map;
+  map.resolution = cell;
+  std::vector<SlamKeyframe> staying;
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    if (kept[k]) staying.push_back(keyframes[k]);
+  }
+  const KeyframeGrid grid(keyframes, 1.0);
+  const SettledMap none;
+  for (const std::uint32_t one : std::set<std::uint32_t>(map_of_run.begin(), map_of_run.end())) {
+    std::vector<bool> shown;
+    for (const std::uint32_t m : map_of_run) shown.push_back(m == one);
+    PresentMap all(map, params), few(map, params);
+    all.update({keyframes, before, shown, settled.last_run + 1, 0});
+    few.update({staying, none, shown, settled.last_run + 1, 0});
+    std::vector<bool> usable(keyframes.size(), false);
+    for (std::size_t k = 0; k < keyframes.size(); ++k) {
+      usable[k] = kept[k] && shown[keyframes[k].run];
+    }
+    const OccupancyGrid told = few.grid();
+    const int x0 = latticeOf(told.geometry.origin.x, cell);
+    const int y0 = latticeOf(told.geometry.origin.y, cell);
+    all.forEachKnown([&](int x, int y, const PresentMap::Belief& b) {
+      if (!all.isKnown(b)) return;
+      const std::int8_t is = b.log_odds > 0.0F ? OccupancyGrid::kOccupied : OccupancyGrid::kFree;
+      if (told.valueOr({x - x0, y - y0}) == is && b.changes == 0) return;
+      const Point2 center{(x + 0.5) * cell, (y + 0.5) * cell};
+      const int k = nearestKept(keyframes, grid, usable, center);
+      if (k < 0) return;
+      const Pose2& pose = keyframes[static_cast<std::size_t>(k)].pose;
+      settled.cells.push_back({k, pose.inverse() * center, b.log_odds, b.visits, b.changes});
+    });
+  }
+  return settled;
+}
+
+}  // namespace ngram_slam
