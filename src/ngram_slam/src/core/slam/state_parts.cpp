@@ -74,6 +74,14 @@ void append(const SlamState& s, SlamState* all) {
   for (const std::int32_t k : s.keyframe_of_observation) {
     all->keyframe_of_observation.push_back(k + keyframes);
   }
+  if (!s.settled.cells.empty()) {
+    if (all->settled.cells.empty()) all->settled.cell = s.settled.cell;
+    all->settled.last_run = run;  // what others saw before is told by their cells
+    for (SettledCell c : s.settled.cells) {
+      c.keyframe += keyframes;
+      all->settled.cells.push_back(c);
+    }
+  }
   appendObservations(s.corpus.observations, &all->corpus.observations);
   if (observations == 0) all->corpus.classes = s.corpus.classes;
   addCounters(s.counters, &all->counters);
@@ -190,6 +198,12 @@ SlamState partOfState(const SlamState& state, const std::vector<bool>& runs) {
   }
   part.loops = loopsOf(state.loops, keyframes);
   part.pending_loops = loopsOf(state.pending_loops, keyframes);
+  part.settled.cell = state.settled.cell;
+  part.settled.last_run = part.keyframes.empty() ? 0 : part.keyframes.back().run;
+  for (SettledCell c : state.settled.cells) {
+    c.keyframe = keyframes[static_cast<std::size_t>(c.keyframe)];
+    if (c.keyframe != kLeftOut) part.settled.cells.push_back(c);
+  }
   takeWords(state, keyframes, &part);
   part.counters.scans = part.scans.size();
   return part;
