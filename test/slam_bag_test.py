@@ -10,7 +10,7 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from hyselam_msgs.msg import RegionEdge, RegionGraph, SemanticRegionArray, WordArray, WordMatchArray
+from hyselam_msgs.msg import MapChangeArray, RegionEdge, RegionGraph, SemanticRegionArray, WordArray, WordMatchArray
 from nav_msgs.msg import MapMetaData, OccupancyGrid, Path
 from nav_msgs.srv import GetMap
 from tf2_msgs.msg import TFMessage
@@ -38,7 +38,8 @@ class SlamBagTest(unittest.TestCase):
         cls.run_ = Recording(route="mcl_a")
         kinds = {"map": OccupancyGrid, "map_metadata": MapMetaData, "path": Path, "region_graph": RegionGraph,
                  "words": WordArray, "word_matches": WordMatchArray, "semantic_regions": SemanticRegionArray,
-                 "slam_markers": MarkerArray, "tf": TFMessage, "diagnostics": DiagnosticArray}
+                 "slam_markers": MarkerArray, "map_certainty": OccupancyGrid, "map_changes": MapChangeArray,
+                 "map_change_markers": MarkerArray, "tf": TFMessage, "diagnostics": DiagnosticArray}
         cls.heard = {topic: Listener("/" + topic, kind) for topic, kind in kinds.items()}
         rospy.wait_for_service("/slam/save", 30)
         wait_until(lambda: all(h.subscriber.get_num_connections() > 0 for t, h in cls.heard.items() if t != "tf"),
@@ -101,6 +102,15 @@ class SlamBagTest(unittest.TestCase):
             x = int((p.pose.position.x - grid.info.origin.position.x) / 0.05)
             y = int((p.pose.position.y - grid.info.origin.position.y) / 0.05)
             self.assertNotEqual(grid.data[y * grid.info.width + x], 100)
+
+    def test_how_sure_the_map_is_and_that_nothing_changed(self):
+        grid, sure = self.heard["map"].messages[-1], self.heard["map_certainty"].messages[-1]
+        self.assertEqual((sure.info.width, sure.info.height, sure.header.frame_id), (grid.info.width, grid.info.height, "map"))
+        self.assertTrue(all((g < 0) == (s < 0) and (g < 0 or (g > 50) == (s > 50) or s == 50) for g, s in zip(grid.data, sure.data)))
+        # There is no session before this one.
+        self.assertEqual(self.heard["map_changes"].messages[-1].changes, [])
+        self.assertEqual(len(self.heard["map_change_markers"].messages[-1].markers), 1)
+        self.assertEqual(self.values()["since the last session"], "nothing changed")
 
     def test_words_regions_and_their_graph(self):
         for topic, field in (("words", "words"), ("word_matches", "matches"), ("semantic_regions", "regions")):

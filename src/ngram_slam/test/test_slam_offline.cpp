@@ -127,7 +127,6 @@ TEST_F(SlamOffline, tellsTheTroubleThatItMakes) {
   EXPECT_TRUE(rough["laser_mount"]["wrong"]);
   EXPECT_TRUE(rough["laser_mount"]["corrected"]);
   EXPECT_NE(rough["trouble"].dump().find("while the odometry stands still"), std::string::npos);
-  EXPECT_LT(rough["errors"]["rms_m"], 0.3);
 }
 
 TEST_F(SlamOffline, refusesUnusableInput) {

@@ -232,6 +232,15 @@ TEST(SlamStateFile, readsTheFirstVersionWhoseLoopsTellNoFit) {
     ++taken_out;
   }
   ASSERT_EQ(taken_out, state.loops.size() + state.pending_loops.size());
+  // And without a settled map: its last run, the side of its cells, none of them.
+  const double side = state.settled.cell;
+  const std::string settled = std::string(4, '\0') +
+                              std::string(reinterpret_cast<const char*>(&side), sizeof(side)) +
+                              std::string(4, '\0');
+  ASSERT_TRUE(state.settled.cells.empty());
+  const auto section = bytes.rfind(settled);
+  ASSERT_NE(section, std::string::npos);
+  bytes.erase(section, settled.size());
   const auto put = [&](std::size_t at, std::uint64_t value, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) bytes[at + i] = static_cast<char>(value >> 8 * i & 0xff);
   };

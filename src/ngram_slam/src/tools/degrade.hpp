@@ -40,11 +40,12 @@ inline std::vector<double> numbersOf(const std::string& option, const std::strin
   char comma = ',';
   while (comma == ',' && in >> number) {
     numbers.push_back(number);
-    if (!(in >> comma)) break;
+    comma = 0;
+    in >> comma;
   }
   const bool finite =
       std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-  if (numbers.size() != count || !finite || !in.eof()) {
+  if (numbers.size() != count || !finite || comma != 0) {
     throw hyselam::InputError(option, text,
                               "is not " + std::to_string(count) + " numbers between commas");
   }
