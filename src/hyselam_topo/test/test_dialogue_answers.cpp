@@ -96,6 +96,26 @@ TEST(DialogueAnswer, NotThisButThatIsOneAnswer) {
   EXPECT_EQ(talk.names(1), Names{"Bruno's office"});
 }
 
+TEST(DialogueAnswer, DenyingTheAskedNameIsANo) {
+  for (const char* said : {"No, this isn't the kitchen. It's the pantry.",
+                           "This is not the kitchen. It is the pantry.", "Not the kitchen."}) {
+    Talk talk;
+    talk.askAboutKitchen();
+    const std::string reply = talk.say(said);
+    EXPECT_FALSE(has(reply, "not asked") || has(reply, "understand")) << said << ": " << reply;
+    EXPECT_EQ(talk.names(1), has(said, "pantry") ? Names{"pantry"} : Names{})
+        << said << ": " << reply;
+  }
+  Talk talk;
+  talk.askAboutKitchen();
+  talk.say("Não, isto não é kitchen. É a despensa.");
+  EXPECT_EQ(talk.names(1), Names{"despensa"});
+  // Another name than the one that is asked about is no answer.
+  Talk other;
+  other.askAboutKitchen();
+  EXPECT_FALSE(has(other.say("This is not the library."), "What is the name"));
+}
+
 TEST(DialogueAnswer, YesWithAnotherNameIsAskedAbout) {
   Talk talk;
   talk.askAboutKitchen();

@@ -28,7 +28,9 @@ bool Dialogue::isPlaceName(const SaidName& name) const {
 
 void Dialogue::takeAnswer(const ParsedText& text, Turn& turn) {
   if (!talk_.questions.isOpen()) return;
-  SaidAnswer said = answerIn(text, question(), robot().place);
+  SaidAnswer said = answerIn(text, question(), robot().place, [this](const auto& a, const auto& b) {
+    return places_.sameName(a, b);
+  });
   if (!said.any()) return;
   if (!said.names.empty() && !said.yes && !said.no) heedFirstWord(turn.text, &said);
   turn.used = said.used;

@@ -156,7 +156,7 @@ ParsedText Dialogue::parse(const std::string& text) {
   ParseOptions options;
   const bool asks_for_name =
       question().isAboutName() || question().kind == Question::Kind::kSpeaker;
-  if (asks_for_name) options.expected = {"name_answer"};
+  if (asks_for_name) options.expected = {"name_answer", "denied_name"};
   options.preferred = language_;
   ParsedText parsed = parser_.parse(text, options);
   // A word or two that nobody understands is of no other language than the talk.

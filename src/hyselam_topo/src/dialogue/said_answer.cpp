@@ -25,13 +25,24 @@ std::vector<SaidName> namesIn(const Utterance& u, const Question& question, Id h
   return names;
 }
 
+/// "This is not the kitchen", of the names that are asked about.
+bool deniesNames(const Utterance& u, const Question& question, const IsSameName& is_same_name) {
+  if (u.intent != "denied_name" || !question.isAboutName()) return false;
+  const std::vector<SaidName> denied = u.names("was");
+  return !denied.empty() && std::all_of(denied.begin(), denied.end(), [&](const SaidName& name) {
+    return std::any_of(question.names.begin(), question.names.end(),
+                       [&](const std::string& asked) { return is_same_name(asked, name.text); });
+  });
+}
+
 }  // namespace
 
 bool isAnswer(const Utterance& u) {
   return (u.kind == UtteranceKind::kAnswer && u.intent != "this_is") || u.intent == "repeat";
 }
 
-SaidAnswer answerIn(const ParsedText& text, const Question& question, Id here) {
+SaidAnswer answerIn(const ParsedText& text, const Question& question, Id here,
+                    const IsSameName& is_same_name) {
   SaidAnswer answer;
   const bool measured = question.kind == Question::Kind::kRadius || question.search != nullptr;
   for (const Utterance& u : text.utterances) {
@@ -39,7 +50,7 @@ SaidAnswer answerIn(const ParsedText& text, const Question& question, Id here) {
     const auto length = u.number("length") ? u.number("length") : u.number("radius");
     if (u.intent == "yes") {
       answer.yes = true;
-    } else if (u.intent == "no") {
+    } else if (u.intent == "no" || deniesNames(u, question, is_same_name)) {
       answer.no = true;
     } else if (u.intent == "unknown_answer") {
       answer.unknown = true;

@@ -1,6 +1,7 @@
 // What an utterance says to the robot's question, taken together: "No, no, it is the kitchen."
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,9 +23,13 @@ struct SaidAnswer {
   bool any() const { return used > 0; }
 };
 
+/// Whether two names are one, however they are written.
+using IsSameName = std::function<bool(const std::string&, const std::string&)>;
+
 /// The answer at the begin of a text to this question. `here`: the robot's place; what "this" is
 /// called answers questions about that place.
-SaidAnswer answerIn(const ParsedText& text, const Question& question, Id here);
+SaidAnswer answerIn(const ParsedText& text, const Question& question, Id here,
+                    const IsSameName& is_same_name);
 
 /// Yes, no, a name on its own, a length, "what?": utterances that say nothing without a question.
 bool isAnswer(const Utterance& u);
