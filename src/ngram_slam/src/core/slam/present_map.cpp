@@ -282,98 +282,137 @@ OccupancyGrid PresentMap::probabilities() const {
   return grid;
 }
 
-std::vector<MapChange> PresentMap::changes() const {
-  std::vector<MapChange> changes;
-  if (before_.width == 0) return changes;
-  const Grid now = present();
-  const auto beliefIn = [](const Grid& g, int x, int y) -> const Belief* {
-    if (x < g.x0 || y < g.y0 || x >= g.x0 + g.width || y >= g.y0 + g.height) return nullptr;
-    return &g.at(x - g.x0, y - g.y0);
-  };
-  const auto isOccupied = [&](const Grid& g, int x, int y) {
-    const Belief* b = beliefIn(g, x, y);
-    return b != nullptr && isKnown(*b) && b->log_odds > 0.0F;
-  };
-  const auto isNear = [&](const Grid& g, int x, int y) {
-    for (int dy = -params_.tolerance; dy <= params_.tolerance; ++dy) {
-      for (int dx = -params_.tolerance; dx <= params_.tolerance; ++dx) {
-        if (isOccupied(g, x + dx, y + dy)) return true;
+namespace {
+
+/// What changed between two grids of one lattice.
+template <typename Grid>
+class Comparison {
+ public:
+  Comparison(const hyselam::OccupancyMapperParams& map, const PresentMapParams& params,
+             const Grid& before, const Grid& now)
+      : map_(map), params_(params), before_(before), now_(now), kind_(now.cells.size(), kSame) {
+    for (int y = 0; y < now.height; ++y) {
+      for (int x = 0; x < now.width; ++x) kind_[indexOf(x, y)] = kindOf(x, y);
+    }
+  }
+
+  std::vector<MapChange> groups() {
+    std::vector<MapChange> all;
+    for (int y = 0; y < now_.height; ++y) {
+      for (int x = 0; x < now_.width; ++x) {
+        if (kind_[indexOf(x, y)] == kSame) continue;
+        MapChange change = takeGroup(x, y);
+        if (change.cells.size() >= static_cast<std::size_t>(params_.min_cells)) {
+          all.push_back(std::move(change));
+        }
+      }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const MapChange& a, const MapChange& b) {
+      return a.cells.size() > b.cells.size();
+    });
+    return all;
+  }
+
+ private:
+  using Belief = PresentMap::Belief;
+  enum : std::uint8_t { kSame = 0, kCame = 1, kWent = 2 };
+
+  std::size_t indexOf(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(now_.width) +
+           static_cast<std::size_t>(x);
+  }
+  /// Of a cell of `now_`; null where the grid does not reach.
+  const Belief* beliefIn(const Grid& g, int x, int y) const {
+    const int gx = x + now_.x0 - g.x0, gy = y + now_.y0 - g.y0;
+    return gx < 0 || gy < 0 || gx >= g.width || gy >= g.height ? nullptr : &g.at(gx, gy);
+  }
+  bool isOccupiedNear(const Grid& g, int x, int y) const {
+    const int reach = params_.tolerance;
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx) {
+        const Belief* b = beliefIn(g, x + dx, y + dy);
+        if (b != nullptr && isKnown(*b) && b->log_odds > 0.0F) return true;
       }
     }
     return false;
-  };
-  // 1: appeared, 2: gone.
-  std::vector<std::uint8_t> kind(now.cells.size(), 0);
-  const auto indexOf = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) +
-           static_cast<std::size_t>(x);
-  };
-  for (int y = 0; y < now.height; ++y) {
-    for (int x = 0; x < now.width; ++x) {
-      const Belief& b = now.at(x, y);
-      const Belief* old = beliefIn(before_, x + now.x0, y + now.y0);
-      if (!b.now || old == nullptr || !isKnown(*old) || !isKnown(b)) continue;
-      if (std::abs(static_cast<double>(b.log_odds)) < params_.sure ||
-          std::abs(static_cast<double>(old->log_odds)) < params_.sure) {
-        continue;
-      }
-      const bool occupied = b.log_odds > 0.0F, was = old->log_odds > 0.0F;
-      if (occupied && !was && !isNear(before_, x + now.x0, y + now.y0)) kind[indexOf(x, y)] = 1;
-      if (!occupied && was && !isNear(now, x + now.x0, y + now.y0)) kind[indexOf(x, y)] = 2;
-    }
   }
-  std::vector<std::pair<int, int>> open;
-  for (int y = 0; y < now.height; ++y) {
-    for (int x = 0; x < now.width; ++x) {
-      const std::uint8_t what = kind[indexOf(x, y)];
-      if (what == 0) continue;
-      MapChange change;
-      change.kind = what == 1 ? MapChange::Kind::kAppeared : MapChange::Kind::kGone;
-      int min_x = x, max_x = x, min_y = y, max_y = y;
-      std::size_t again = 0;
-      open.assign(1, {x, y});
-      kind[indexOf(x, y)] = 0;
-      while (!open.empty()) {
-        const auto [cx, cy] = open.back();
-        open.pop_back();
-        min_x = std::min(min_x, cx);
-        max_x = std::max(max_x, cx);
-        min_y = std::min(min_y, cy);
-        max_y = std::max(max_y, cy);
-        const Belief& b = now.at(cx, cy);
-        const Belief& old = *beliefIn(before_, cx + now.x0, cy + now.y0);
-        const double occupied = probabilityOf(static_cast<double>(b.log_odds)),
-                     was = probabilityOf(static_cast<double>(old.log_odds));
-        change.probability += what == 1 ? occupied * (1.0 - was) : (1.0 - occupied) * was;
-        again += b.changes > 1 ? 1 : 0;
-        const Point2 center{(cx + now.x0 + 0.5) * map_.resolution,
-                            (cy + now.y0 + 0.5) * map_.resolution};
-        change.center.x += center.x;
-        change.center.y += center.y;
-        change.cells.push_back(center);
-        // Sides of one thing are seen with gaps between them.
-        for (int ny = std::max(0, cy - 2); ny <= std::min(now.height - 1, cy + 2); ++ny) {
-          for (int nx = std::max(0, cx - 2); nx <= std::min(now.width - 1, cx + 2); ++nx) {
-            if (kind[indexOf(nx, ny)] != what) continue;
-            kind[indexOf(nx, ny)] = 0;
-            open.emplace_back(nx, ny);
-          }
+  bool isKnown(const Belief& b) const { return b.observations >= map_.min_observations; }
+  bool isSure(const Belief* b) const {
+    return b != nullptr && isKnown(*b) &&
+           std::abs(static_cast<double>(b->log_odds)) >= params_.sure;
+  }
+  std::uint8_t kindOf(int x, int y) const {
+    const Belief& b = now_.at(x, y);
+    const Belief* old = beliefIn(before_, x, y);
+    if (!b.now || !isSure(&b) || !isSure(old)) return kSame;
+    const bool occupied = b.log_odds > 0.0F, was = old->log_odds > 0.0F;
+    if (occupied && !was && !isOccupiedNear(before_, x, y)) return kCame;
+    if (!occupied && was && !isOccupiedNear(now_, x, y)) return kWent;
+    return kSame;
+  }
+
+  /// The cells that changed like this one and hang together with it; sides of one thing are seen
+  /// with gaps between them.
+  MapChange takeGroup(int x, int y) {
+    constexpr int kReach = 2;
+    const std::uint8_t what = kind_[indexOf(x, y)];
+    std::vector<std::pair<int, int>> cells = {{x, y}};
+    kind_[indexOf(x, y)] = kSame;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto [cx, cy] = cells[i];
+      for (int ny = std::max(0, cy - kReach); ny <= std::min(now_.height - 1, cy + kReach); ++ny) {
+        for (int nx = std::max(0, cx - kReach); nx <= std::min(now_.width - 1, cx + kReach); ++nx) {
+          if (kind_[indexOf(nx, ny)] != what) continue;
+          kind_[indexOf(nx, ny)] = kSame;
+          cells.emplace_back(nx, ny);
         }
       }
-      if (change.cells.size() < static_cast<std::size_t>(params_.min_cells)) continue;
-      const auto n = static_cast<double>(change.cells.size());
-      change.center.x /= n;
-      change.center.y /= n;
-      change.probability /= n;
-      change.again = 2 * again > change.cells.size();
-      change.size = map_.resolution * (1 + std::max(max_x - min_x, max_y - min_y));
-      changes.push_back(std::move(change));
     }
+    return describe(cells, what == kCame);
   }
-  std::stable_sort(changes.begin(), changes.end(), [](const MapChange& a, const MapChange& b) {
-    return a.cells.size() > b.cells.size();
-  });
-  return changes;
+
+  MapChange describe(const std::vector<std::pair<int, int>>& cells, bool came) const {
+    MapChange change;
+    change.kind = came ? MapChange::Kind::kAppeared : MapChange::Kind::kGone;
+    int min_x = cells[0].first, max_x = min_x, min_y = cells[0].second, max_y = min_y;
+    std::size_t again = 0;
+    const double side = map_.resolution;
+    for (const auto& [x, y] : cells) {
+      min_x = std::min(min_x, x);
+      max_x = std::max(max_x, x);
+      min_y = std::min(min_y, y);
+      max_y = std::max(max_y, y);
+      const Belief& b = now_.at(x, y);
+      const double occupied = probabilityOf(static_cast<double>(b.log_odds));
+      const double was = probabilityOf(static_cast<double>(beliefIn(before_, x, y)->log_odds));
+      change.probability += came ? occupied * (1.0 - was) : (1.0 - occupied) * was;
+      again += b.changes > 1 ? 1 : 0;
+      const Point2 center{(x + now_.x0 + 0.5) * side, (y + now_.y0 + 0.5) * side};
+      change.center.x += center.x;
+      change.center.y += center.y;
+      change.cells.push_back(center);
+    }
+    const auto n = static_cast<double>(cells.size());
+    change.center.x /= n;
+    change.center.y /= n;
+    change.probability /= n;
+    change.again = 2 * again > cells.size();
+    change.size = side * (1 + std::max(max_x - min_x, max_y - min_y));
+    return change;
+  }
+
+  const hyselam::OccupancyMapperParams& map_;
+  const PresentMapParams& params_;
+  const Grid &before_, &now_;
+  std::vector<std::uint8_t> kind_;
+};
+
+}  // namespace
+
+std::vector<MapChange> PresentMap::changes() const {
+  if (before_.width == 0) return {};
+  const Grid now = present();
+  return Comparison<Grid>(map_, params_, before_, now).groups();
 }
 
 namespace {
