@@ -11,17 +11,16 @@
 namespace ngram_slam {
 
 struct MapTie {
-  std::vector<SlamLoop> loops;  ///< that are believed and do not contradict the first one
-  /// Sum of the inlier ratios of all loops between both maps that may be right if the first one is.
-  double support = 0.0;
-  double rival = 0.0;  ///< the same of those that agree with the best of the others
+  std::vector<SlamLoop> loops;  ///< that are believed, of the group that decides
+  double support = 0.0;         ///< sum of the inlier ratios of that group
+  double rival = 0.0;           ///< of the best group of the other loops
 };
 
-/// The best tie of two maps by the verified far loops between them: of the loops that are believed
-/// (believeFarLoops()) the one with most support. None if none is believed, or if there is a rival:
-/// a loop that contradicts it, and of what speaks for one of the two only, the part for the rival
-/// is more than `max_rival` of that for the best. Buildings that repeat themselves have many
-/// rivals, each with little.
+/// The best tie of two maps by the verified far loops between them: of the groups of which no two
+/// loops contradict each other, and at least one is believed (believeFarLoops()), the one with most
+/// support. None if no loop is believed, or if the best group of the others has more than
+/// `max_rival` of its support. Buildings that repeat themselves have many such groups, each with
+/// little.
 std::optional<MapTie> bestTie(const std::vector<SlamLoop>& between,
                               const std::vector<SlamKeyframe>& keyframes,
                               const RunConnections& connections, const LoopParams& params,

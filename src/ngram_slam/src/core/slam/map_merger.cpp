@@ -73,24 +73,34 @@ void MapMerger::askAll(const std::string& step, double interval, int candidates)
                       &counters_.questions));
 }
 
-/// Loops between maps that are not tied, too few to be believed, may have company.
+/// Loops between maps that are not tied, too few to be believed, may have company: the same two
+/// maps are asked at each place around them.
 void MapMerger::askAroundVerified() {
   std::vector<SlamLoop> found;
   for (const SlamLoop& l : pending_) {
     if (mapOfKeyframe(l.older) != mapOfKeyframe(l.newer)) found.push_back(l);
   }
+  int maps_around = -1;  // keyframe
+  std::set<std::uint32_t> maps;
   const auto isNear = [&](int k) {
-    return std::any_of(found.begin(), found.end(), [&](const SlamLoop& l) {
-      return keyframe(k).run == keyframe(l.newer).run &&
-             std::abs(keyframe(k).path_length - keyframe(l.newer).path_length) <=
-                 params_.ask_around;
-    });
+    if (k == maps_around) return !maps.empty();
+    maps_around = k;
+    maps.clear();
+    for (const SlamLoop& l : found) {
+      if (keyframe(k).run == keyframe(l.newer).run &&
+          std::abs(keyframe(k).path_length - keyframe(l.newer).path_length) <= params_.ask_around) {
+        maps.insert(mapOfKeyframe(l.older));
+      }
+    }
+    return !maps.empty();
   };
-  verifyFar(
-      "asking around",
-      questions_->ask(
-          params_.slam.signatures.sensor.spacing, params_.second_candidates, isNear,
-          [this](int older, int newer) { return isOpen(older, newer); }, &counters_.questions));
+  verifyFar("asking around",
+            questions_->ask(
+                params_.slam.signatures.sensor.spacing, params_.second_candidates, isNear,
+                [&](int older, int newer) {
+                  return isNear(newer) && maps.count(mapOfKeyframe(older)) > 0;
+                },
+                &counters_.questions));
 }
 
 /// Between maps that were given: of two that are tied, where the graph knows little.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ngram_slam/slam/far_loops.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
@@ -41,45 +42,103 @@ std::vector<SlamLoop> believedOf(const std::vector<SlamLoop>& between,
   return believed;
 }
 
+// Loops that a group is begun with: those that most others may agree with.
+constexpr std::size_t kMostBeginnings = 30;
+
+/// Loops of which no two contradict each other.
+struct Group {
+  std::vector<std::size_t> loops;
+  double support = 0.0;  // sum of the inlier ratios
+};
+
+/// Who contradicts whom.
+class Contradictions {
+ public:
+  Contradictions(const std::vector<SlamLoop>& loops, const std::vector<SlamKeyframe>& keyframes,
+                 const RunConnections& connections, const LoopParams& params)
+      : loops_(loops), all_(loops.size(), std::vector<bool>(loops.size(), false)) {
+    for (std::size_t a = 0; a < loops.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const LoopInconsistency c = loopInconsistency(loops[a], loops[b], keyframes, connections);
+        all_[a][b] = all_[b][a] = isContradiction(c, params);
+      }
+      paths_.push_back(keyframes[static_cast<std::size_t>(loops[a].newer)].path_length);
+    }
+  }
+
+  /// The largest group of those of `from`, begun with one of `beginnings`.
+  Group best(const std::vector<std::size_t>& beginnings,
+             const std::vector<std::size_t>& from) const {
+    std::vector<std::pair<double, std::size_t>> order;  // by how many may agree
+    for (const std::size_t b : beginnings) {
+      double agree = 0.0;
+      for (const std::size_t l : from) agree += all_[b][l] ? 0.0 : loops_[l].inlier_ratio;
+      order.emplace_back(-agree, b);
+    }
+    std::sort(order.begin(), order.end());
+    Group best;
+    for (std::size_t i = 0; i < std::min(order.size(), kMostBeginnings); ++i) {
+      const Group group = around(order[i].second, from);
+      if (group.support > best.support) best = group;
+    }
+    return best;
+  }
+
+ private:
+  /// The nearest ones first: of these is known best whether they contradict.
+  Group around(std::size_t beginning, std::vector<std::size_t> from) const {
+    std::stable_sort(from.begin(), from.end(), [&](std::size_t a, std::size_t b) {
+      return std::abs(paths_[a] - paths_[beginning]) < std::abs(paths_[b] - paths_[beginning]);
+    });
+    Group group{{beginning}, loops_[beginning].inlier_ratio};
+    for (const std::size_t l : from) {
+      if (l == beginning || std::any_of(group.loops.begin(), group.loops.end(),
+                                        [&](std::size_t g) { return all_[g][l]; })) {
+        continue;
+      }
+      group.loops.push_back(l);
+      group.support += loops_[l].inlier_ratio;
+    }
+    return group;
+  }
+
+  const std::vector<SlamLoop>& loops_;
+  std::vector<std::vector<bool>> all_;
+  std::vector<double> paths_;
+};
+
+bool contains(const std::vector<std::size_t>& all, std::size_t one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
 }  // namespace
 
 std::optional<MapTie> bestTie(const std::vector<SlamLoop>& between,
                               const std::vector<SlamKeyframe>& keyframes,
                               const RunConnections& connections, const LoopParams& params,
                               double max_rival) {
-  const auto contradict = [&](const SlamLoop& a, const SlamLoop& b) {
-    return isContradiction(loopInconsistency(a, b, keyframes, connections), params);
-  };
-  const std::vector<SlamLoop> believed = believedOf(between, keyframes, connections, params);
-  const SlamLoop* best = nullptr;
+  const std::vector<SlamLoop> believed_loops = believedOf(between, keyframes, connections, params);
+  if (believed_loops.empty()) return std::nullopt;
+  std::vector<std::size_t> all, believed;
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    all.push_back(i);
+    if (std::any_of(believed_loops.begin(), believed_loops.end(),
+                    [&](const SlamLoop& l) { return isSamePair(l, between[i]); })) {
+      believed.push_back(i);
+    }
+  }
+  const Contradictions contradictions(between, keyframes, connections, params);
+  const Group best = contradictions.best(believed, all);
+  std::vector<std::size_t> others;
+  for (const std::size_t i : all) {
+    if (!contains(best.loops, i)) others.push_back(i);
+  }
   MapTie tie;
-  for (const SlamLoop& candidate : believed) {
-    double support = 0.0;
-    for (const SlamLoop& other : between) {
-      if (!contradict(candidate, other)) support += other.inlier_ratio;
-    }
-    if (best != nullptr && support <= tie.support) continue;
-    best = &candidate;
-    tie.support = support;
-  }
-  if (best == nullptr) return std::nullopt;
-  std::vector<const SlamLoop*> with, against;
-  for (const SlamLoop& l : between) (contradict(*best, l) ? against : with).push_back(&l);
-  for (const SlamLoop* rival : against) {
-    // What speaks for one of the two only.
-    double for_rival = 0.0, for_best = 0.0;
-    for (const SlamLoop* l : against) {
-      if (!contradict(*rival, *l)) for_rival += l->inlier_ratio;
-    }
-    for (const SlamLoop* l : with) {
-      if (contradict(*rival, *l)) for_best += l->inlier_ratio;
-    }
-    if (for_rival > max_rival * for_best) return std::nullopt;
-    tie.rival = std::max(tie.rival, for_rival);
-  }
-  tie.loops.push_back(*best);
-  for (const SlamLoop& l : believed) {
-    if (!isSamePair(l, *best) && !contradict(*best, l)) tie.loops.push_back(l);
+  tie.support = best.support;
+  tie.rival = contradictions.best(others, others).support;
+  if (tie.rival > max_rival * tie.support) return std::nullopt;
+  for (const std::size_t i : best.loops) {
+    if (contains(believed, i)) tie.loops.push_back(between[i]);
   }
   return tie;
 }
