@@ -30,8 +30,9 @@ struct MapMergingParams {
   /// best one, 0..1: see bestTie().
   double max_rival = 0.5;
   /// A tie is borne out if at least this part of the near loops beside it that are tried fit, 0..1.
-  /// Right ties of intel, aces and mit-killian had 0.60 to 0.91, a wrong one 0.26.
-  double min_near_ratio = 0.4;
+  /// Right ties of intel, aces and mit-killian had 0.60 to 0.91, two wrong ones
+  /// 0.26 and 0.48.
+  double min_near_ratio = 0.55;
   /// ... of at least so many, >= 1; of fewer nothing is said.
   int min_near_tried = 12;
   /// Of two sessions that share more than this part of the keyframes of the smaller one, 0..1, that
