@@ -154,6 +154,15 @@ nlohmann::json summaryOf(const Options& o, const hyselam::OccupancyGrid& grid,
           {"seconds", seconds}};
 }
 
+/// Label n is map place n again, after the map was given other ids.
+void renumberLabels(const PlaceGrid& places, cv::Mat* labels) {
+  for (int y = 0; y < labels->rows; ++y) {
+    for (int x = 0; x < labels->cols; ++x) {
+      labels->at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(places.placeOf({x, y}));
+    }
+  }
+}
+
 nlohmann::json run(Options& o) {
   o.gr2to.mode = o.mode == "thesis" ? Gr2ToParams::Mode::kThesis : Gr2ToParams::Mode::kDefault;
   if (!o.border_model.empty()) {
@@ -167,6 +176,7 @@ nlohmann::json run(Options& o) {
   CarryOverReport carried;
   if (!o.previous.empty()) {
     result.map = carryOver(loadXml(o.previous), result.map, CarryOverParams{}, carried);
+    renumberLabels(*result.map.grid, &result.labels);
   }
   progress.update(2);
   saveMapFiles(o, result);

@@ -18,6 +18,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "ngram_slam/slam/map_merging.hpp"
+#include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "report_page.hpp"
 #include "slam_report.hpp"
@@ -68,10 +69,18 @@ std::vector<std::string> labelsOf(const std::vector<std::string>& files) {
   return labels;
 }
 
-hyselam::OccupancyMapper emptyMap(double resolution) {
+PresentMap emptyMap(double resolution, const PresentMapParams& params = {}) {
   hyselam::OccupancyMapperParams p;
   p.resolution = resolution;
-  return hyselam::OccupancyMapper(p);
+  return PresentMap(p, params);
+}
+
+/// As NgramSlam shows it: what was seen last, and what was settled of keyframes that are dropped.
+hyselam::OccupancyGrid gridOf(const SlamState& state, double resolution) {
+  PresentMap map = emptyMap(resolution);
+  const std::uint32_t runs = state.keyframes.empty() ? 0 : state.keyframes.back().run + 1;
+  map.update({state.keyframes, state.settled, std::vector<bool>(runs, true), runs, 0});
+  return map.grid();
 }
 
 struct Loaded {
@@ -105,9 +114,7 @@ json writeMap(const Options& o, const MergedMap& map, std::size_t number,
               const std::vector<std::string>& labels, const std::vector<std::string>& files) {
   const std::string name = nameOfMap(number);
   SlamStateFile::save(o.out + "/" + name + ".state", map.state);
-  hyselam::OccupancyMapper mapper = emptyMap(o.resolution);
-  for (const SlamKeyframe& k : map.state.keyframes) mapper.insert(k.pose, *k.scan);
-  hyselam::saveMap(o.out + "/" + name + ".yaml", mapper.grid());
+  hyselam::saveMap(o.out + "/" + name + ".yaml", gridOf(map.state, o.resolution));
   json sessions = json::array();
   for (const MergedPart& part : map.parts) {
     std::string trajectory = "trajectory_" + labels[part.session];

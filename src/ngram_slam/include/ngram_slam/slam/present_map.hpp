@@ -113,7 +113,8 @@ class PresentMap {
       return cells[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width) +
                    static_cast<std::size_t>(x - x0)];
     }
-    void cover(int min_x, int min_y, int max_x, int max_y);
+    /// @throws std::length_error beyond `max_cells`.
+    void cover(int min_x, int min_y, int max_x, int max_y, std::size_t max_cells);
   };
   void closeRun();
   void closeRunsBefore(const SlamKeyframe* next, const Source& source);

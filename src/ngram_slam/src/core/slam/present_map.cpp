@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "ngram_slam/slam/keyframe_grid.hpp"
 
@@ -75,15 +76,17 @@ PresentMap::PresentMap(const hyselam::OccupancyMapperParams& map, const PresentM
   hyselam::checkParameters(params_);
 }
 
-void PresentMap::Grid::cover(int min_x, int min_y, int max_x, int max_y) {
+void PresentMap::Grid::cover(int min_x, int min_y, int max_x, int max_y, std::size_t max_cells) {
   if (width > 0 && min_x >= x0 && min_y >= y0 && max_x < x0 + width && max_y < y0 + height) return;
   Grid grown;
   grown.x0 = width > 0 ? std::min(min_x, x0) : min_x;
   grown.y0 = width > 0 ? std::min(min_y, y0) : min_y;
   grown.width = (width > 0 ? std::max(max_x, x0 + width - 1) : max_x) - grown.x0 + 1;
   grown.height = (width > 0 ? std::max(max_y, y0 + height - 1) : max_y) - grown.y0 + 1;
-  grown.cells.resize(static_cast<std::size_t>(grown.width) *
-                     static_cast<std::size_t>(grown.height));
+  const auto cells_of_all =
+      static_cast<std::size_t>(grown.width) * static_cast<std::size_t>(grown.height);
+  if (cells_of_all > max_cells) throw std::length_error("the map would be too large");
+  grown.cells.resize(cells_of_all);
   for (int y = 0; y < height; ++y) {
     const auto from = cells.begin() + static_cast<std::ptrdiff_t>(y) * width;
     std::copy(from, from + width, &grown.of(x0, y0 + y));
@@ -105,7 +108,7 @@ void PresentMap::fold(const OccupancyMapper& visit, bool now, Grid* grid) const 
     max_y = std::max(max_y, y);
   });
   if (min_x > max_x) return;
-  grid->cover(min_x, min_y, max_x, max_y);
+  grid->cover(min_x, min_y, max_x, max_y, map_.max_cells);
   visit.forEachObserved([&](int x, int y, std::uint32_t hits, std::uint32_t misses) {
     Belief& b = grid->of(x, y);
     const double total = static_cast<double>(hits) + misses;

@@ -69,6 +69,8 @@ void SlamEngine::doubtOdometry(const SurfacePoints& points, const Motion& motion
       if (found->matched > other.matched) other = *found;
     }
   }
+  // What does not fit tells nothing about the odometry.
+  if (other.matched < params_.weak_match_factor * params_.min_inlier_ratio) return;
   const auto cost = [&](const IcpResult& r, const Eigen::Matrix3d& information) {
     return params_.scan_information_scale * r.cost + costOf(between(pose_, r.pose), information);
   };

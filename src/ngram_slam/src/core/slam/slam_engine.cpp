@@ -107,6 +107,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
         "does not come after the last one, " + std::to_string(last_stamp_) + " s");
   }
   ++state_.counters.scans;
+  const double since_last = run_open_ ? scan.stamp - last_stamp_ : 0.0;
   last_stamp_ = scan.stamp;
   SlamUpdate update;
   if (!run_open_) {
@@ -118,7 +119,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   Motion motion = advanceOdometry(odometry);
   motion.seconds = scan.stamp - doubt_.matched.stamp;
   update.odometry_jump = motion.jump;
-  if (motion.seconds >= params_.odometry_doubt.gap) ++doubt_.road.gaps;
+  if (since_last >= params_.odometry_doubt.gap) ++doubt_.road.gaps;
   if (isNearLastMatch(motion) && mayStand(scan, &motion)) {
     recordScanPose(scan.stamp);
     update.base_in_map = pose_;

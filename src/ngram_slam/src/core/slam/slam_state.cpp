@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "hyselam_common/errors.hpp"
 #include "ngram_slam/slam/input_checks.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
@@ -5,6 +7,9 @@
 namespace ngram_slam {
 
 namespace {
+
+constexpr std::uint32_t kMaxRuns = 1000000;
+constexpr double kMaxReach = 1e4;  // [m]
 
 /// Whether keyframes, edges and loops fit together.
 const char* graphError(const SlamState& state) {
@@ -35,9 +40,15 @@ const char* graphError(const SlamState& state) {
       }
     }
   }
-  if (!(state.settled.cell > 0.0)) return "cells of the settled map have no size";
+  if (run > kMaxRuns) return "it has too many runs";
+  if (!(state.settled.cell >= 0.001 && state.settled.cell <= 10.0)) {
+    return "cells of the settled map are not 1 mm to 10 m wide";
+  }
   for (const SettledCell& c : state.settled.cells) {
     if (!exists(c.keyframe)) return "a settled cell has no keyframe";
+    if (!(std::hypot(c.center.x, c.center.y) < kMaxReach)) {
+      return "a settled cell is more than 10 km from its keyframe";
+    }
   }
   return nullptr;
 }
