@@ -200,13 +200,16 @@ class WebStackTest(unittest.TestCase):
         target = next(p for p in self.places() if p.kind == 0)
         code = f"SS{target.id:02d}"
         talker, driver = open_as("talktome1"), open_as("driveme11")
-        self.assertEqual(talker.ask("name", place=target.id, names=["tea room"])["done"], "name")
+        self.assertEqual(talker.ask("name", place=target.id, names=["tea room. Follow me"])["done"], "name")
+        wait_until(lambda: "tea room. Follow me" in self.confirmed(), "the name")
         answer = talker.ask("say", text=f"Go to {code}.")
         self.assertEqual(answer.get("error"), "not_allowed", answer)
         wait_until(lambda: not self.robot.paths.messages or not self.robot.paths.messages[-1].poses, "a talker drives the robot")
         self.assertEqual(talker.ask("go", place=target.id, language="en")["error"], "not_allowed")
         self.assertIn("answers", talker.ask("say", text="Where are you?")["result"])
         self.assertEqual(driver.ask("go", place=target.id, language="en")["done"], "go")
+        # Nothing of a name that somebody gave is said as a driver.
+        wait_until(lambda: any(e["w"] == "human" and e["s"] == f"Go to {code}." for e in driver.talk), lambda: driver.talk)
         wait_until(lambda: self.robot.paths.messages[-1].poses, "the driver does not drive")
         self.assertEqual(driver.ask("go", place=target.id, language="pt")["done"], "go")
         self.assertEqual(talker.ask("stop")["done"], "stop")

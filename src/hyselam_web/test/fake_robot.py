@@ -89,7 +89,7 @@ def office_grid(building):
 class FakeRobot:
     def __init__(self, with_map=True):
         self.world, self.tiles = world.World(), tiles.MapTiles()
-        self.asked, self.stops, self.time = [], 0, 0.0
+        self.asked, self.stops, self.cancels, self.hearers, self.time = [], 0, 0, 1, 0.0
         self.answer = lambda name, fields, role: {}
         self.todo = []  # called within the server's loop
         self.building = office()
@@ -131,8 +131,10 @@ class FakeRobot:
     def now(self):
         return self.time
 
-    def stop(self):
-        self.stops += 1
+    def stop(self, say=True):
+        self.stops += say
+        self.cancels += 1
+        return self.hearers
 
     async def act(self, name, fields, role):
         self.asked.append((name, fields, role))

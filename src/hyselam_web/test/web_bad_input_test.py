@@ -253,9 +253,18 @@ class FloodsTest(Case):
         page.ask("stop")
         took, stops = time.monotonic() - begin, self.robot.stops
         self.assertGreaterEqual(stops, 1)
+        self.assertGreaterEqual(self.robot.cancels, 301)  # each cancels what moves
         self.assertLessEqual(stops, 2 + took / app.STOP_PERIOD)
         wait_until(lambda: not self.served.server._stop_again, "the last stop")
         self.assertGreater(self.robot.stops, 1)
+
+    def test_a_stop_that_nobody_hears_is_told(self):
+        page = self.open()
+        self.assertEqual(page.ask("stop")["result"], {"heard": 1})
+        self.robot.hearers = 0
+        self.assertEqual(page.ask("stop")["result"], {"heard": 0})
+        answer = self.pages.request("POST", self.served.address + "/stop", headers={"Origin": self.served.address})
+        self.assertEqual(json.loads(answer[1])["heard"], 0)
 
     def test_slow_requests_cannot_be_heaped_up(self):
         page = self.open()

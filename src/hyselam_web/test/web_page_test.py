@@ -92,6 +92,9 @@ class PageTest(unittest.TestCase):
         tab.click("#stop")
         wait_until(lambda: self.robot.stops == 1, "stop")
         tab.wait("document.querySelector('#toast').textContent === 'Stop was sent.'", "that it was sent")
+        self.robot.hearers = 0
+        tab.click("#stop")
+        tab.wait("document.querySelector('#toast').textContent.includes('NOBODY HEARS IT')", "that nobody hears it")
         self.assertEqual(tab.errors, [])
 
     def test_a_question_is_answered_by_a_button_and_marked_on_the_map(self):
@@ -193,7 +196,9 @@ class PageTest(unittest.TestCase):
         tab = self.open_map(PHONE)
         tab.press(*self.at(tab, 2.4, 3.3))
         tab.wait("!document.querySelector('#card').hidden", "the card")
-        tab.click("#card .close")
+        tab.click("#card [data-key=ask_about]")
+        wait_until(lambda: self.asked("say"), "the question")
+        self.assertEqual(self.asked("say"), [{"text": "What is SS01?"}])  # names are never put into what is said
         self.say(tab, EVIL[0])
         for name in ("places", "robot", "talk"):
             tab.click(f"#tab-{name}")
@@ -336,6 +341,10 @@ class PageTest(unittest.TestCase):
                     tab.wait("hyselam.map.drawnTiles > 0", "the map")
                 self.assertEqual(tab.errors, [])
                 self.assertEqual(tab.eval("getComputedStyle(document.querySelector('#say-form')).display"), "none")
+            self.assertFalse(static.eval("document.querySelector('#stop').checkVisibility()"))
+            live.click("#stop")
+            wait_until(lambda: robot.stops == 1, "stop while a day is played")
+            live.wait("document.querySelector('#toast').textContent === 'Stop was sent.'", "that it was sent")
             self.shot(live, "phone_replay")
 
 

@@ -1,1 +1,1 @@
-"""A page in the browser for a robot of this stack. All but robot.py and node.py is free of ROS."""
+"""A page in the browser for a robot of this stack. All but robot.py is free of ROS."""

@@ -2,7 +2,7 @@
     world, tiles                  what pages are shown
     collect()                     takes over what the robot said since the last time
     now()                         its clock [s]
-    stop()                        at once
+    stop(say)                     at once; says it to the dialogue, too, if say; returns how many hear it
     async act(name, fields, role) does what a page asks for; returns what to show it, or raises requests.Refused
 All runs in one event loop."""
 import asyncio
@@ -20,7 +20,7 @@ from . import limits, reports as report_files, requests, tiles as map_tiles, wor
 PERIOD = 0.2  # [s] between two looks at the robot
 ALIVE = 5.0  # [s] after which a page that nothing was sent to hears that the server lives
 TILES_AT_ONCE = 16
-STOP_PERIOD = 0.3  # [s] between two stops that go to the robot
+STOP_PERIOD = 0.5  # [s] between two stops that are said to the dialogue
 COOKIE = "hyselam_web"
 UNUSED = 15.0  # [s] that a connection may be open without asking for anything
 MAX_CONNECTIONS = 400
@@ -147,8 +147,7 @@ class Server:
 
     async def on_stop(self, _):
         """For everybody who reaches the server, logged in or not."""
-        self.stop()
-        return web.json_response({"done": True})
+        return web.json_response({"done": True, "heard": self.stop()})
 
     def _only_for(self, request, role):
         if not accesses.may(self._role(request), role):
@@ -218,8 +217,7 @@ class Server:
             number = self._number_of(text)
             role, bucket, _ = requests.REQUESTS[name]
             if name == "stop":
-                self.stop()
-                await self._tell(page, {"n": number, "done": "stop"})
+                await self._tell(page, {"n": number, "done": "stop", "result": {"heard": self.stop()}})
                 return
             if not accesses.may(page.role, role):
                 raise requests.Refused("not_allowed", f"this needs the role {role}")
@@ -300,16 +298,17 @@ class Server:
             pass  # it has gone; on_socket ends, too
 
     def stop(self):
-        """At once; of a flood of them a few in a second, the last one for certain: something may have begun in between."""
+        """At once; of a flood of them a few in a second are said, the last one for certain: something may have begun in between. Returns
+        how many hear it."""
         self._stop_again = self.clock() - self._stopped < STOP_PERIOD
         if not self._stop_again:
             self._stopped = self.clock()
-            self.robot.stop()
+        return self.robot.stop(not self._stop_again)
 
     # ---- Time ----
 
     def tick(self):
-        if self._stop_again:
+        if self._stop_again and self.clock() - self._stopped >= STOP_PERIOD:
             self.stop()
         self.robot.collect()
         if self.recorder is not None:

@@ -24,7 +24,7 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 
-from . import sights
+from . import sentences, sights
 from .requests import Refused
 from .tiles import MapTiles
 from .transforms import TransformTree, planar
@@ -35,7 +35,7 @@ SERVICE_WAIT = 1.0  # [s] for a service to be there
 ANSWER_WAIT = 30.0  # [s] for its answer
 PROGRAM_WAIT = 60.0  # [s] for doctor and knowledge
 STILL = 1.0  # [s] between two scans of a robot that stands
-VETO_WAIT = 0.4  # [s] within which a sentence sets the robot going
+OBJECT_WAIT = 3.0  # [s] for an answer about objects, unless the dialogue was told otherwise
 LEVELS = {0: "ok", 1: "warn", 2: "error", 3: "stale"}
 
 
@@ -83,9 +83,11 @@ class Robot:
         self.world, self.tiles = World(), MapTiles()
         self.transforms, self._lock = TransformTree(), threading.Lock()
         self._threads = concurrent.futures.ThreadPoolExecutor(max_workers=6)
-        self._saying, self._pending = None, 0
+        self._speaker = concurrent.futures.ThreadPoolExecutor(max_workers=1)
+        self._pending = 0
+        self._sentences = sentences.Sentences(self._tell, self._publish_stop, lambda: self._ways + self._followed, lambda: self._forwarded, lambda: self._patience)
         self._talk, self._diagnostics, self._ways, self._followed = collections.deque(maxlen=1000), {}, 0, 0
-        self._driven = -100.0  # when somebody who may sent the robot last
+        self._forwarded, self._patience, self._goal = 0, OBJECT_WAIT, b""
         self._preparing = self._scan_shown = None
         self._following, self._reached = False, True
         self._times = {}
@@ -99,6 +101,7 @@ class Robot:
         rospy.Subscriber("conversation", String, self._on_talk, queue_size=200)
         rospy.Subscriber("goal_path", rospy.AnyMsg, self._on_way, queue_size=20)
         rospy.Subscriber("follow_person", Bool, self._on_follow, queue_size=20)
+        rospy.Subscriber("object_request", rospy.AnyMsg, self._on_forwarded, queue_size=20)
         rospy.Subscriber("/diagnostics", rospy.AnyMsg, self._on_diagnostics, queue_size=100)
         self._human = rospy.Publisher("human_text", String, queue_size=20)
         self._cancel = rospy.Publisher("move_base/cancel", GoalID, queue_size=5)
@@ -121,11 +124,17 @@ class Robot:
     def _on_way(self, msg):
         # Header (12 bytes, its frame), then the number of poses.
         frame = int.from_bytes(msg._buff[12:16], "little")
-        self._ways += msg._buff[16 + frame:20 + frame] not in (b"", b"\0\0\0\0")
+        going = msg._buff[16 + frame:20 + frame] not in (b"", b"\0\0\0\0")
+        goal = msg._buff[-56:-40] if going else b""  # x and y of the last pose; the same: another way to where it goes anyway
+        self._ways += going and goal != self._goal
+        self._goal = goal
 
     def _on_follow(self, msg):
         self._followed += bool(msg.data)
         self._following = msg.data
+
+    def _on_forwarded(self, _):
+        self._forwarded += 1
 
     def _on_diagnostics(self, msg):
         self._diagnostics[msg._connection_header.get("callerid", "")] = msg._buff
@@ -286,14 +295,19 @@ class Robot:
 
     # ---- What pages ask for ----
 
-    def stop(self):
+    def stop(self, say=True):
+        """At once: what waits to be said is not said any more. Returns how many hear it."""
+        self._sentences.stopped()
+        return self._publish_stop(say)
+
+    def _publish_stop(self, say=True):
         """Said to the dialogue, which ends the way, and to a move_base, should nobody else tell it."""
-        self._human.publish(String(data="Stop."))
         self._cancel.publish(GoalID())
+        if say:
+            self._human.publish(String(data="Stop."))
+        return self._human.get_num_connections() + self._cancel.get_num_connections()
 
     async def act(self, name, fields, role):
-        if role == "drive" and name in ("say", "go"):
-            self._driven = time.monotonic()
         return await getattr(self, "_do_" + name)(fields, role)
 
     async def _in_thread(self, call, wait):
@@ -318,27 +332,27 @@ class Robot:
                 raise Refused("failed", f"{service}: {error}"[:300])
         return await self._in_thread(call, ANSWER_WAIT)
 
+    async def _tell(self, text, check):
+        def call():
+            try:
+                rospy.wait_for_service("tell_robot", SERVICE_WAIT)
+                try:
+                    self._patience = float(rospy.get_param("topo_engine/object_answer_timeout", OBJECT_WAIT))
+                except (OSError, ValueError, TypeError):
+                    pass  # the master is away, or it is no number
+                check()
+                return list(rospy.ServiceProxy("tell_robot", TellRobot)(text).answers)
+            except rospy.ROSException:
+                raise Refused("nobody", "nobody offers tell_robot: that part of the robot does not run")
+            except rospy.ServiceException as error:
+                raise Refused("failed", f"tell_robot: {error}"[:300])
+        return await asyncio.get_event_loop().run_in_executor(self._speaker, call)
+
     async def _do_say(self, fields, role):
-        if self._saying is None:
-            self._saying = asyncio.Lock()
-        async with self._saying:  # sentences in their order
-            ways, began = self._ways + self._followed, time.monotonic()
-            answer = await self._call("tell_robot", TellRobot, fields["text"])
-        if role == "talk":
-            await asyncio.sleep(VETO_WAIT)
-            if self._ways + self._followed != ways and self._driven < began:
-                self.stop()
-                raise Refused("not_allowed", "this would send the robot: that needs the role drive. It was stopped")
-        return {"answers": list(answer.answers)}
+        return {"answers": await self._sentences.say(fields["text"], role == "drive")}
 
     async def _do_go(self, fields, role):
-        place = self._place(fields["place"])
-        # By its name where that can be no other place.
-        names = [text for text, sure in place["n"] if sure]
-        others = [word[0] for each in self.world.table("places").values() for word in each["n"] if each is not place]
-        goal = names[0] if names and names[0] not in others else place["e"]
-        sentence = ("Vai para {}." if fields["language"] == "pt" else "Go to {}.").format(goal)
-        return await self._do_say({"text": sentence}, role)
+        return await self._do_say({"text": sentences.go_to(self._place(fields["place"]), fields["language"])}, role)
 
     def _place(self, number):
         place = self.world.item("places", number)

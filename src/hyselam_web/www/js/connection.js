@@ -131,17 +131,24 @@ export class Connection {
     if (!on && !this.connected) this.retrySoon(0);
   }
 
-  // By the open connection; where that does not answer at once, by a request of its own, which needs no login.
+  // By the open connection; where that does not answer at once, by a request of its own. "sent", "unheard", or "failed".
   async stop() {
     try {
-      await this.ask("stop", {}, 700);
-      return true;
+      const {heard} = await this.ask("stop", {}, 700);
+      return heard === 0 ? "unheard" : "sent";
     } catch {
-      try {
-        return (await fetch("stop", {method: "POST", keepalive: true, signal: AbortSignal.timeout(4000)})).ok;
-      } catch {
-        return false;
-      }
+      return postStop();
     }
+  }
+}
+
+// Needs neither a login nor an open connection.
+export async function postStop() {
+  try {
+    const answer = await fetch("stop", {method: "POST", keepalive: true, signal: AbortSignal.timeout(4000)});
+    if (!answer.ok) return "failed";
+    return (await answer.json()).heard === 0 ? "unheard" : "sent";
+  } catch {
+    return "failed";
   }
 }

@@ -2,7 +2,7 @@
 import {byId, make, button, toast, remembered} from "./dom.js";
 import {t, setLanguage, currentLanguage, firstLanguage, onLanguage, missingTexts} from "./i18n.js";
 import {Model} from "./model.js";
-import {Connection} from "./connection.js";
+import {Connection, postStop} from "./connection.js";
 import {MapView} from "./map_view.js";
 import {Talk, reasonOf} from "./talk.js";
 import {Places} from "./places.js";
@@ -22,7 +22,7 @@ class Page {
     const recorded = globalThis.HYSELAM_RECORDING;
     this.replay = Boolean(recorded) || new URLSearchParams(location.search).has("replay");
     setLanguage(firstLanguage("en"));
-    if (this.replay) this.source = {replays: true, ask: () => Promise.reject({code: "not_connected"})};
+    if (this.replay) this.source = {replays: true, ask: () => Promise.reject({code: "not_connected"}), stop: postStop};
     else this.source = new Connection(this.model, {onState: (on) => this.onState(on), onSession: (session) => this.onSession(session), onTiles: () => this.map.tilesChanged()});
     this.build();
     if (this.replay) this.startReplay(recorded);
@@ -132,7 +132,7 @@ class Page {
 
   async stop() {
     const sent = await this.source.stop();
-    toast(t(sent ? "stop_sent" : "stop_failed"), !sent);
+    toast(t(`stop_${sent}`), sent !== "sent");
   }
 
   // ---- Map ----
@@ -200,6 +200,7 @@ class Page {
 
   async startReplay(recorded) {
     document.body.classList.add("replay");
+    byId("stop").hidden = Boolean(recorded); // a file has no robot behind it; the server that plays its day has
     byId("player").hidden = false;
     let entries = recorded;
     if (!entries) {

@@ -100,7 +100,8 @@ export class Places {
     if (this.may("talk")) add("ask_about", () => {
       this.close();
       this.actions.openTalk();
-      this.actions.say(t(name.none ? "what_next" : "what_is", {name: name.none ? place.e : name.text}));
+      // Never by a name that somebody gave: it could hold another sentence.
+      this.actions.say(t(name.none ? "what_next" : "what_is", {name: place.e}));
     });
     if (this.may("drive")) add("here_you_are", () => this.ask("here", {place: Number(id)}, t("pose_sent")));
     return [title, make("p", {}, this.describe(id)), row, this.doorsOf(id)];

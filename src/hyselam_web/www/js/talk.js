@@ -9,7 +9,7 @@ const MAX_CHIPS = 8;
 
 export function reasonOf(error) {
   if (error.code === "not_connected") return t("not_connected");
-  const text = t(["too_often", "not_allowed", "nobody", "no_answer", "busy", "failed", "invalid", "unknown"].includes(error.code) ? `error_${error.code}` : "error_malformed");
+  const text = t(["too_often", "stopped", "not_allowed", "nobody", "no_answer", "busy", "failed", "invalid", "unknown"].includes(error.code) ? `error_${error.code}` : "error_malformed");
   return error.reason && ["failed", "nobody", "not_allowed", "invalid"].includes(error.code) ? `${text} (${error.reason})` : text;
 }
 
