@@ -9,6 +9,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 
 import aiohttp
@@ -163,9 +164,10 @@ class MessagesTest(Case):
 def refused(message, code):
     def test(self):
         page = self.open()
-        page.send(message)
+        numbered = message.startswith("{") and code != "malformed"
+        page.send(message.replace("{", '{"n":7,', 1) if numbered else message)
         wait_until(lambda: any("error" in a[-1] for a in page.answers.values()), "a refusal")
-        self.assertEqual([a[-1]["error"] for a in page.answers.values()], [code])
+        self.assertEqual({n: a[-1]["error"] for n, a in page.answers.items()}, {7 if numbered else None: code})
         self.assertEqual(self.robot.asked, [])
         self.assertIsNone(page.code)
         self.expect_all_is_well()
@@ -229,14 +231,36 @@ class FloodsTest(Case):
         self.assertLess(sum(len(a) for a in page.answers.values()), 60)
         self.expect_all_is_well()
 
+    def stand_still(self):
+        """No bucket fills but when the test says so."""
+        at = [self.served.server.clock()]
+        self.served.server.clock = lambda: at[0]
+        return at
+
     def test_a_flood_of_sentences_reaches_the_robot_in_drops(self):
-        page = self.open()
-        for n in range(60):
+        self.stand_still()
+        page, size = self.open(), limits.RATES["say"][0]
+        for n in range(100, 120):
             page.send(json.dumps({"do": "say", "n": n, "text": f"sentence {n}"}))
-        wait_until(lambda: 59 in page.answers or page.code or len(page.answers) >= 20, "the refusals")
-        page.ask("stop")
-        self.assertLessEqual(len(self.robot.asked), limits.RATES["say"][0] + 5)
-        self.assertEqual(page.answers[20][0]["error"] if 20 in page.answers else "too_often", "too_often")
+        wait_until(lambda: all(n in page.answers for n in range(100, 120)), "an answer to each")
+        self.assertEqual([page.answers[n][0].get("error", "done") for n in range(100, 120)], ["done"] * size + ["too_often"] * (20 - size))
+        self.assertEqual(len(self.robot.asked), size)
+
+    def test_a_second_page_says_no_more_than_one(self):
+        self.stand_still()
+        pages = [self.open(), self.open()]
+        answers = [pages[n % 2].ask("say", text="Hello.").get("error", "done") for n in range(8)]
+        self.assertEqual(answers, ["done"] * 5 + ["too_often"] * 3)
+
+    def test_refusals_of_a_long_day_end_no_page(self):
+        at = self.stand_still()
+        page = self.open()
+        for _ in range(3):
+            for _ in range(limits.FLOOD - 10):
+                page.send("x")
+            self.assertEqual(page.ask("stop")["done"], "stop")
+            at[0] += 3600.0
+        self.assertIsNone(page.code)
 
     def test_stop_goes_through_a_flood(self):
         page = self.open()
@@ -280,6 +304,32 @@ class FloodsTest(Case):
         wait_until(lambda: len(self.served.server.pages) < limits.MAX_PAGES_OF_ADDRESS, "room")
         self.expect_all_is_well()
 
+    def test_a_request_that_does_not_end_is_ended(self):
+        self.addCleanup(setattr, app, "SLOW", app.SLOW)
+        app.SLOW = 0.5
+        head = f"POST /login HTTP/1.1\r\nHost: 127.0.0.1:{self.served.port}\r\nOrigin: http://127.0.0.1:{self.served.port}\r\nContent-Length: 1000\r\n\r\n"
+        page = self.open()
+        out, closed = self.raw(head.encode() + b"{", WAIT)
+        self.assertEqual((out, closed), (b"", True))
+        self.assertEqual(page.ask("say", text="Hello.")["done"], "say")  # a page is open for as long as it likes
+        self.expect_all_is_well()
+
+    def test_pages_that_take_nothing_do_not_hold_up_the_end(self):
+        self.addCleanup(setattr, app, "CLOSING", app.CLOSING)
+        app.CLOSING = 0.2
+        for _ in range(5):
+            s = socket.socket()
+            self.addCleanup(s.close)
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            s.connect(("127.0.0.1", self.served.port))
+            s.sendall(FramesTest.HANDSHAKE.format(port=self.served.port).encode())
+        pages = self.served.server.pages
+        wait_until(lambda: len(pages) == 5, "the pages")
+        self.robot.later(lambda: self.robot.world.set("names", ["x" * 10000000]))
+        wait_until(lambda: all(page.sending is not None for page in pages), "that they take nothing")
+        self.served.close()
+        self.assertFalse(self.served._thread.is_alive())
+
     def test_connections_that_ask_for_nothing_are_closed(self):
         self.addCleanup(setattr, app, "UNUSED", app.UNUSED)
         self.addCleanup(setattr, app, "MAX_CONNECTIONS", app.MAX_CONNECTIONS)
@@ -305,6 +355,7 @@ class FloodsTest(Case):
             s.sendall(FramesTest.HANDSHAKE.format(port=self.served.port).encode())
             wait_until(lambda: self.served.server.pages, "the page")
             other = self.open()
+            wait_until(lambda: len(self.served.server.pages) == 2, "the other page")
             count = [0]
             self.robot.collect = lambda: (self.robot.world.set("names", ["x" * 100000 + str(count[0])]), count.__setitem__(0, count[0] + 1))
             wait_until(lambda: len(self.served.server.pages) == 1, "the end of the page that takes nothing")
@@ -349,6 +400,38 @@ class AccessTest(Case):
         self.assertEqual(statuses[:5], [403] * 5)
         self.assertEqual(statuses[-1], 429)
         self.assertEqual(self.login('{"token":"driveme11"}')[0], 429)  # not by this address, now
+
+    def test_strangers_do_not_keep_out_who_knows_the_token(self):
+        async def guess(address):
+            async with aiohttp.ClientSession(connector=aiohttp.TCPConnector(local_addr=(address, 0))) as session:
+                for _ in range(8):
+                    async with session.post(self.served.address + "/login", json={"token": "guessing"}, headers={"Origin": self.served.address}) as answer:
+                        await answer.read()
+                return answer.status
+        for n in range(2, 12):
+            self.assertEqual(self.pages.run(guess(f"127.0.0.{n}")), 429)
+        self.assertEqual([self.login('{"token":"driveme11"}')[0] for _ in range(8)], [200] * 8)  # right ones are not counted
+
+    def test_pages_without_a_role_leave_room_for_others(self):
+        pages = [self.open() for _ in range(limits.MAX_STRANGERS)]
+        with self.assertRaises(aiohttp.WSServerHandshakeError) as caught:
+            self.open()
+        self.assertEqual((caught.exception.status, len(pages)), (503, limits.MAX_STRANGERS))
+        self.expect_all_is_well()
+
+    def test_a_cookie_that_is_no_text_shows_nothing(self):
+        out = self.raw(f"GET /session HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\nCookie: {app.COOKIE}=\xff.1.2.\xff\r\n\r\n".encode("latin-1"))[0]
+        self.assertIn(b"200 OK", out.split(b"\r\n")[0])
+        self.assertIn(b'"role": ""', out)
+
+    def test_a_login_of_a_charset_that_does_not_exist_is_refused(self):
+        headers = {"Origin": self.served.address, "Content-Type": "application/json; charset=bogus"}
+        self.assertEqual(self.pages.request("POST", self.served.address + "/login", data='{"token":"driveme11"}', headers=headers)[0], 403)
+
+    def test_a_host_with_half_a_bracket_is_refused(self):
+        for host in ("[", "[::1", "[v1.x]"):
+            out = self.raw(f"GET / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())[0]
+            self.assertRegex(out.split(b"\r\n")[0], rb"HTTP/1.1 (400|421)", host)
 
     def test_without_login_nothing_is_shown_and_only_stop_is_done(self):
         page = self.open()
@@ -523,6 +606,21 @@ class NewsTest(Case):
         self.robot.todo.append(fail)
         self.robot.answer = lambda *_: {}
         self.expect_all_is_well()
+
+    def test_pages_hear_of_what_is_known_though_collecting_or_recording_fails_each_time(self):
+        def fail(*_):
+            raise RuntimeError("nobody thought of this")
+        for part in ("collect", "recorder"):
+            with self.subTest(part):
+                page = self.open()
+                wait_until(lambda: "places" in page.state, "the map")
+                if part == "collect":
+                    self.robot.collect = fail
+                else:
+                    self.served.server.recorder = types.SimpleNamespace(take=fail)
+                self.robot.world.set("names", [part])
+                wait_until(lambda: page.state.get("names") == [part], "the news")
+                self.robot.__dict__.pop("collect", None)
 
 
 if __name__ == "__main__":

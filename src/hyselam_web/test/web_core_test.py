@@ -11,15 +11,17 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import types
 import unittest
+import unittest.mock
 import zlib
 
 import numpy as np
 
 sys.dont_write_bytecode = True
 import fake_robot  # noqa: E402, F401 (finds the package)
-from hyselam_web import access, app, limits, recording, reports, requests, sentences, sights, tiles, transforms, world  # noqa: E402
+from hyselam_web import access, app, inbox, limits, recording, reports, requests, sentences, sights, tiles, transforms, world  # noqa: E402
 
 
 def apply(state, message):
@@ -275,11 +277,23 @@ class AccessTest(unittest.TestCase):
     def test_forged_cookies_give_no_role(self):
         cookie = self.access.cookie("look", 1000.0)
         parts = cookie.split(".")
-        for forged in ("", None, "drive", cookie[:-1], cookie + "0", cookie.replace("look", "drive"), ".".join(["drive"] + parts[1:]), "....", "é" * 50):
+        for forged in ("", None, "drive", cookie[:-1], cookie + "0", cookie.replace("look", "drive"), ".".join(["drive"] + parts[1:]), "....", "é" * 50, "\udcff.1.2.\udcff"):
             self.assertEqual(self.access.role_of_cookie(forged, 1001.0), "", forged)
 
+    def test_who_has_a_cookie_cannot_guess_tokens_quickly(self):
+        calls = []
+
+        def slow(known, **how):
+            calls.append((known, how["n"] * how["r"]))
+            return b"k" * how["dklen"]
+        with unittest.mock.patch.object(access.hashlib, "scrypt", slow):
+            made = access.Access(access.parse_tokens("drive=driveme22"))
+        self.assertEqual(made._key, b"k" * 32)
+        self.assertIn(b"driveme22", calls[0][0])
+        self.assertGreaterEqual(calls[0][1], 2 ** 17)  # 16 MB for each guess
+
     def test_only_names_of_this_machine_and_addresses_are_hosts(self):
-        known = [h for h in ("localhost:8090", "robot.local", "ROBOT.LOCAL:80", "192.168.1.7:8090", "[::1]:8090", "evil.example", "localhost.evil.example", "", None, "a b")
+        known = [h for h in ("localhost:8090", "robot.local", "ROBOT.LOCAL:80", "192.168.1.7:8090", "[::1]:8090", "evil.example", "localhost.evil.example", "", None, "a b", "[", "[::1", "]", "[v1.x]")
                  if self.access.knows_host(h)]
         self.assertEqual(known, ["localhost:8090", "robot.local", "ROBOT.LOCAL:80", "192.168.1.7:8090", "[::1]:8090"])
 
@@ -303,6 +317,56 @@ class LimitsTest(unittest.TestCase):
         self.assertLessEqual(len(buckets._known), 10)
 
 
+    def test_to_look_into_a_bucket_takes_nothing_out(self):
+        buckets = limits.Buckets({"login": (2, 0.0)})
+        self.assertEqual([buckets.has("a", "login", 0.0) for _ in range(5)], [True] * 5)
+        self.assertEqual([buckets.take("a", "login", 0.0) for _ in range(3)], [True, True, False])
+        self.assertEqual((buckets.has("a", "login", 0.0), buckets.has("b", "login", 0.0)), (False, True))
+
+
+class InboxTest(unittest.TestCase):
+    def test_no_message_is_lost_or_empty_between_two_threads(self):
+        self.addCleanup(sys.setswitchinterval, sys.getswitchinterval())
+        sys.setswitchinterval(1e-6)
+        newest, last = inbox.Newest(), 30000
+        newest.put(-1)
+        newest.put(0)
+        self.assertEqual((newest.take(), newest.take()), (0, None))
+        putter = threading.Thread(target=lambda: [newest.put(n) for n in range(1, last + 1)])
+        putter.start()
+        taken = []
+        while putter.is_alive() or newest.is_new():
+            if newest.is_new():
+                taken.append(newest.take())
+        self.assertEqual(taken, sorted(set(taken)))
+        self.assertEqual(taken[-1], last)
+        self.assertIsNone(newest.take())
+
+    def test_parts_of_one_process_are_shown_beside_each_other_and_dead_ones_as_such(self):
+        statuses = inbox.Statuses()
+        statuses.put("robot/gr2to: map", 0, "OK", 10.0)
+        statuses.put("robot/topo_engine: dialogue", 1, "no pose", 10.0)
+        statuses.put("other/gr2to: map", 2, "elsewhere", 10.0)
+        self.assertEqual(statuses.layers("/robot/", 11.0), {"gr2to": {"level": "ok", "what": "map", "text": "OK"},
+                                                            "topo_engine": {"level": "warn", "what": "dialogue", "text": "no pose"}})
+        statuses.put("robot/gr2to: map", 0, "OK", 16.0)
+        self.assertEqual({k: v["level"] for k, v in statuses.layers("/robot/", 17.0).items()}, {"gr2to": "ok", "topo_engine": "stale"})
+
+    def test_of_several_statuses_of_a_part_the_worst_is_shown(self):
+        for order in ((0, 2), (2, 0)):
+            statuses = inbox.Statuses()
+            for level in order:
+                statuses.put(f"/gr2to: {level}", level, "", 1.0)
+            self.assertEqual(statuses.layers("/", 1.0)["gr2to"]["level"], "error")
+
+    def test_names_without_end_take_no_memory_without_end(self):
+        statuses = inbox.Statuses()
+        for n in range(5 * inbox.MAX_STATUSES):
+            statuses.put(f"node{n}", 0, "", 1.0)
+        self.assertLessEqual(len(statuses._known), inbox.MAX_STATUSES)
+        self.assertLessEqual(len(statuses.layers("/", 1.0)), 100)
+
+
 class RequestsTest(unittest.TestCase):
     def test_control_characters_and_overrides_of_direction_are_left_out(self):
         self.assertEqual(requests.clean("a\0b\x1b[31mc\u202e\ud800d\r\n\te"), "a b [31mcd e")
@@ -310,9 +374,16 @@ class RequestsTest(unittest.TestCase):
         self.assertEqual(requests.clean("João 🙂 日本"), "João 🙂 日本")
 
     def test_good_requests_come_through(self):
-        self.assertEqual(requests.parse('{"do":"say","n":4,"text":" Hi  there "}'), ("say", {"text": "Hi there"}))
-        self.assertEqual(requests.parse('{"do":"name","place":4,"names":[]}'), ("name", {"place": 4, "names": []}))
-        self.assertEqual(requests.parse('{"do":"pose","x":1,"y":-2.5,"yaw":0}'), ("pose", {"x": 1.0, "y": -2.5, "yaw": 0.0}))
+        self.assertEqual(requests.parse('{"do":"say","n":4,"text":" Hi  there "}'), ("say", {"text": "Hi there"}, 4))
+        self.assertEqual(requests.parse('{"do":"name","place":4,"names":[]}'), ("name", {"place": 4, "names": []}, None))
+        self.assertEqual(requests.parse('{"do":"pose","x":1,"y":-2.5,"yaw":0}'), ("pose", {"x": 1.0, "y": -2.5, "yaw": 0.0}, None))
+
+    def test_a_refusal_carries_the_number_of_its_request(self):
+        for text, number in (('{"do":"say","n":4}', 4), ('{"do":"dance","n":5}', 5), ('{"n":6}', 6), ('{"do":"say","n":7,"text":"hi","path":"/"}', 7),
+                             ('{"do":"dance","n":"8"}', None), ('{"do":"dance","n":true}', None), ('{"do":"dance","n":%d}' % 2 ** 60, None), ("[9]", None)):
+            with self.assertRaises(requests.Refused) as caught:
+                requests.parse(text)
+            self.assertEqual(caught.exception.number, number, text)
 
     def test_random_bytes_are_refused_and_nothing_else_happens(self):
         rng = random.Random(5)
@@ -322,7 +393,7 @@ class RequestsTest(unittest.TestCase):
             for _ in range(rng.randrange(1, 6)):
                 text[rng.randrange(len(text))] = rng.choice(['"', "{", "}", "[", "0", "-", "e", "\\", "\0", "é", "u", "null", "9" * 400])
             try:
-                name, _ = requests.parse("".join(text))
+                name, _, _ = requests.parse("".join(text))
             except requests.Refused:
                 continue
             self.assertIn(name, requests.REQUESTS)
@@ -560,6 +631,30 @@ class RecordingTest(unittest.TestCase):
             with open(path, "r+") as file:
                 file.truncate(os.path.getsize(path) - 5)
             self.assertEqual(recording.read(path), entries[:-1])
+
+    def test_a_server_that_died_leaves_its_recording_to_the_next(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, w = os.path.join(folder, "day.jsonl"), world.World()
+            for morning in range(3):
+                recorder = recording.Recorder(path)  # and never closed
+                w.set("value", morning)
+                recorder.take(float(morning), w, tiles.MapTiles())
+            recording.Recorder(path)
+            recording.Recorder(path).close()  # there is nothing in the one before
+            names = sorted(set(os.listdir(folder)) - {"day.jsonl"})
+            self.assertEqual(len(names), 3, names)
+            self.assertEqual(sorted(recording.read(os.path.join(folder, n))[0]["d"]["value"] for n in names), [0, 1, 2])
+
+    def test_the_size_of_a_recording_is_one_of_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, w = os.path.join(folder, "day.jsonl"), world.World()
+            recorder = recording.Recorder(path, most_bytes=2000)
+            for step in range(100):
+                w.set("value", "日本語" * 10 + str(step))
+                recorder.take(float(step), w, tiles.MapTiles())
+            recorder.close()
+            self.assertTrue(recorder.full)
+            self.assertLessEqual(os.path.getsize(path), 2000)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "this system has no /dev/full")
     def test_a_full_disc_ends_the_recording_and_nothing_else(self):

@@ -39,9 +39,9 @@ class Access:
         self._tokens = {role: token.encode() for role, token in tokens.items()}
         self._hosts = {host.lower() for host in hosts} | {"localhost"}
         self.port = port
-        # Cookies outlive a restart, and end with the tokens.
-        self._key = hashlib.sha256(b"hyselam_web cookie" + b"\0".join(r.encode() + b"=" + t for r, t in sorted(self._tokens.items()))).digest()
-        self._key = self._key if self._tokens else secrets.token_bytes(32)
+        # Cookies outlive a restart, and end with the tokens. Slowly made: who has a cookie could otherwise guess tokens without asking here.
+        known = b"\0".join(r.encode() + b"=" + t for r, t in sorted(self._tokens.items()))
+        self._key = hashlib.scrypt(known, salt=b"hyselam_web cookie", n=2 ** 14, r=8, p=1, dklen=32) if self._tokens else secrets.token_bytes(32)
 
     @property
     def needs_login(self):
@@ -56,7 +56,7 @@ class Access:
         return found
 
     def _sign(self, text):
-        return hmac.new(self._key, text.encode(), hashlib.sha256).hexdigest()
+        return hmac.new(self._key, text.encode("utf-8", "replace"), hashlib.sha256).hexdigest()
 
     def cookie(self, role, now):
         text = f"{role}.{int(now + LIFETIME)}.{secrets.token_hex(8)}"
@@ -74,7 +74,10 @@ class Access:
     def knows_host(self, host):
         """Of the header Host: a name of this machine, or an address. Another name may be someone else's that leads here
         (DNS rebinding)."""
-        name = urlsplit("//" + (host or "")).hostname if host else None
+        try:
+            name = urlsplit("//" + host).hostname if host else None
+        except ValueError:
+            return False
         if not name:
             return False
         if name.lower() in self._hosts:

@@ -6,7 +6,6 @@
     async act(name, fields, role) does what a page asks for; returns what to show it, or raises requests.Refused
 All runs in one event loop."""
 import asyncio
-import json
 import logging
 import os
 import secrets
@@ -24,6 +23,8 @@ STOP_PERIOD = 0.5  # [s] between two stops that are said to the dialogue
 COOKIE = "hyselam_web"
 UNUSED = 15.0  # [s] that a connection may be open without asking for anything
 MAX_CONNECTIONS = 400
+SLOW, SLOW_STRANGER = 600.0, 60.0  # [s] that a request may take, but a WebSocket; of who has no role
+CLOSING = 2.0  # [s] that a page has to say goodbye
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml", ".json": "application/manifest+json"}
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -49,14 +50,20 @@ def static_files(folder):
 class Page:
     """One open page."""
 
-    def __init__(self, socket, role, address, since):
+    def __init__(self, socket, role, address, since, cookie=None):
         self.socket, self.role, self.address, self.since = socket, role, address, since
         self.number = secrets.token_hex(6)
+        self.person = cookie if role and cookie else address  # whose limits count: more pages say no more
         self.tiles_from, self.tiles_sent = since, {}
-        self.hidden, self.refused = False, 0
+        self.hidden = False
         self.news = asyncio.Event()
         self.sending, self.last_sent = None, 0.0  # since when; when
         self.task = None
+
+    def abort(self):
+        transport = self.socket._req.transport if self.socket._req is not None else None
+        if transport is not None:
+            transport.abort()
 
 
 class Server:
@@ -71,6 +78,7 @@ class Server:
         self._texts = {}  # {since: text} of the newest version
         self._texts_of = -1
         self._seen = {}  # connection: since when it has asked for nothing
+        self._begun = {}  # connection: what it asks for, since when
 
     # ---- Application ----
 
@@ -89,8 +97,11 @@ class Server:
         return app
 
     async def _close_pages(self, _):
-        for page in list(self.pages):
-            await page.socket.close(code=WSCloseCode.GOING_AWAY)
+        """All at once, and those that do not answer without their leave."""
+        pages = list(self.pages)
+        await asyncio.gather(*(asyncio.wait_for(page.socket.close(code=WSCloseCode.GOING_AWAY), CLOSING) for page in pages), return_exceptions=True)
+        for page in pages:
+            page.abort()
 
     @web.middleware
     async def _guard(self, request, handler):
@@ -124,16 +135,19 @@ class Server:
                                   "recording": self.recorder is not None})
 
     async def on_login(self, request):
-        now = self.clock()
-        if not (self.buckets.take(request.remote, "login", now) and self.buckets.take("everybody", "logins", now)):
-            return web.json_response({"error": "too often"}, status=429)
         try:
             given = await request.json()
             token = given["token"] if isinstance(given, dict) else None
-        except (ValueError, KeyError, UnicodeDecodeError, RecursionError):
+        except (ValueError, KeyError, LookupError, RecursionError):  # LookupError: of a charset that does not exist
             token = None
+        # From here on nothing waits: many logins at once are as many as one after the other.
+        now = self.clock()
+        if not (self.buckets.has(request.remote, "login", now) and self.buckets.has("everybody", "logins", now)):
+            return web.json_response({"error": "too often"}, status=429)
         role = self.access.role_of_token(token) if isinstance(token, str) and len(token) <= 500 else accesses.NOBODY
-        if role == accesses.NOBODY:
+        if role == accesses.NOBODY:  # only these count: no stranger keeps out who knows a token
+            self.buckets.take(request.remote, "login", now)
+            self.buckets.take("everybody", "logins", now)
             return web.json_response({"error": "wrong"}, status=403)
         response = web.json_response({"role": role})
         response.set_cookie(COOKIE, self.access.cookie(role, self.wall()), max_age=accesses.LIFETIME, httponly=True, samesite="Strict",
@@ -177,12 +191,15 @@ class Server:
             raise web.HTTPForbidden()
         if len(self.pages) >= limits.MAX_PAGES or sum(p.address == request.remote for p in self.pages) >= limits.MAX_PAGES_OF_ADDRESS:
             raise web.HTTPServiceUnavailable()
+        role = self._role(request)
+        if role == accesses.NOBODY and sum(p.role == accesses.NOBODY for p in self.pages) >= limits.MAX_STRANGERS:
+            raise web.HTTPServiceUnavailable()
         socket = web.WebSocketResponse(heartbeat=20.0, max_msg_size=limits.MAX_MESSAGE_BYTES, compress=False)
         await socket.prepare(request)
         since = 0
         if request.query.get("run") == self.run and request.query.get("since", "").isdecimal():
             since = min(int(request.query["since"][:15]), self.robot.world.version)
-        page = Page(socket, self._role(request), request.remote, since)
+        page = Page(socket, role, request.remote, since, request.cookies.get(COOKIE))
         self.pages.add(page)
         page.task = asyncio.ensure_future(self._send_news(page))
         page.news.set()
@@ -192,7 +209,7 @@ class Server:
                     await self._on_message(page, message.data)
                 elif message.type == WSMsgType.BINARY:
                     await self._refuse(page, None, requests.Refused("malformed", "only text is read"))
-                if page.refused > limits.FLOOD:
+                if not self.buckets.has(page.number, "refused", self.clock()):
                     await socket.close(code=WSCloseCode.POLICY_VIOLATION, message=b"too much")
         finally:
             self.pages.discard(page)
@@ -200,8 +217,9 @@ class Server:
         return socket
 
     async def _refuse(self, page, number, error):
-        page.refused += 1
-        if page.refused <= 20 or page.refused % 50 == 0:  # a flood is not answered by one
+        now = self.clock()
+        self.buckets.take(page.number, "refused", now)
+        if self.buckets.take(page.number, "reason", now):  # a flood is not answered by one
             await self._tell(page, {"n": number, "error": error.code, "reason": str(error)})
 
     async def _tell(self, page, value):
@@ -213,8 +231,7 @@ class Server:
     async def _on_message(self, page, text):
         number = None
         try:
-            name, fields = requests.parse(text)
-            number = self._number_of(text)
+            name, fields, number = requests.parse(text)
             role, bucket, _ = requests.REQUESTS[name]
             if name == "stop":
                 await self._tell(page, {"n": number, "done": "stop", "result": {"heard": self.stop()}})
@@ -222,7 +239,7 @@ class Server:
             if not accesses.may(page.role, role):
                 raise requests.Refused("not_allowed", f"this needs the role {role}")
             now = self.clock()
-            if not self.buckets.take(page.number, "message", now) or (bucket != "message" and not self.buckets.take(page.number, bucket, now)):
+            if not self.buckets.take(page.number, "message", now) or (bucket != "message" and not self.buckets.take(page.person, bucket, now)):
                 raise requests.Refused("too_often", "too much at once: wait a moment")
             if name == "hide":
                 page.hidden = fields["on"]
@@ -231,12 +248,7 @@ class Server:
             # The page may say stop meanwhile.
             asyncio.ensure_future(self._act(page, number, name, fields))
         except requests.Refused as error:
-            await self._refuse(page, number, error)
-
-    @staticmethod
-    def _number_of(text):
-        number = json.loads(text).get("n")
-        return number if isinstance(number, int) and abs(number) < 2 ** 53 else None
+            await self._refuse(page, number if error.number is None else error.number, error)
 
     async def _act(self, page, number, name, fields):
         try:
@@ -307,24 +319,29 @@ class Server:
 
     # ---- Time ----
 
+    def _record(self):
+        if self.recorder is not None:
+            self.recorder.take(self.robot.now(), self.robot.world, self.robot.tiles)
+
     def tick(self):
         if self._stop_again and self.clock() - self._stopped >= STOP_PERIOD:
             self.stop()
-        self.robot.collect()
-        if self.recorder is not None:
-            self.recorder.take(self.robot.now(), self.robot.world, self.robot.tiles)
+        # Neither keeps pages from what the other has.
+        for part in (self.robot.collect, self._record):
+            try:
+                part()
+            except Exception:  # a message that nobody thought of must not end the server
+                log.exception("a look at the robot failed")
         now = self.clock()
         for page in list(self.pages):
             if page.sending is not None and now - page.sending > limits.STALLED:
                 log.warning("a page at %s takes nothing: it is disconnected", page.address)
-                transport = page.socket._req.transport if page.socket._req is not None else None
-                if transport is not None:
-                    transport.abort()
+                page.abort()
             elif page.since != self.robot.world.version or now - page.last_sent > ALIVE:
                 page.news.set()
 
     def close_unused(self, connections):
-        """Connections that ask for nothing, and those that are too many."""
+        """Connections that ask for nothing, those that are too many, and requests that do not end."""
         now, connections = self.clock(), list(connections)
         self._seen = {c: self._seen.get(c, now) for c in connections if getattr(c, "_current_request", None) is None}
         idle = sorted(((since, c) for c, since in self._seen.items()), key=lambda each: each[0])
@@ -332,9 +349,25 @@ class Server:
         for begin, connection in idle:
             if now - begin > UNUSED or spare > 0:
                 spare -= 1
-                transport = getattr(connection, "transport", None)
-                if transport is not None:
-                    transport.abort()
+                self._abort(connection)
+        sockets = {id(page.socket._req) for page in self.pages}
+        begun = {}
+        for connection in connections:
+            request = getattr(connection, "_current_request", None)
+            if request is None or id(request) in sockets:
+                continue
+            begun[connection] = self._begun.get(connection, (None, 0))
+            if begun[connection][0] is not request:
+                begun[connection] = (request, now)
+            if now - begun[connection][1] > (SLOW_STRANGER if self._role(request) == accesses.NOBODY else SLOW):
+                self._abort(connection)
+        self._begun = begun
+
+    @staticmethod
+    def _abort(connection):
+        transport = getattr(connection, "transport", None)
+        if transport is not None:
+            transport.abort()
 
     async def run_forever(self, host, port, ssl_context=None, ready=None):
         runner = web.AppRunner(self.application(), access_log=None, handle_signals=False)

@@ -1,10 +1,12 @@
 """A day as the pages saw it, in a file of lines: {"t": seconds, "d": what changed, "tiles": [[column, row, PNG in base64]]}. The page plays
 it, from the server or from a folder without any."""
 import base64
+import itertools
 import json
 import logging
 import os
 import re
+import time
 
 from . import world as worlds
 
@@ -12,22 +14,40 @@ FORMAT = {"format": "hyselam web recording", "version": 1}
 LIVE_ONLY = ("login", "alive")  # channels that make no sense afterwards
 
 
-class Recorder:
-    """Appends what changes to a file, at most once a `period` of the robot's time; ends when the file has `most_bytes`."""
+log = logging.getLogger("hyselam_web")
 
-    def __init__(self, path, period=1.0, most_bytes=100000000):
+
+def put_aside(path):
+    """Renames what was recorded before: day.jsonl becomes day-20261126-081500.jsonl, of the time of its end. Returns the new name, or None."""
+    if not os.path.isfile(path) or os.path.getsize(path) <= len(worlds.to_text(FORMAT)) + 1:
+        return None
+    start, ending = os.path.splitext(path)
+    stamp = time.strftime("-%Y%m%d-%H%M%S", time.gmtime(os.path.getmtime(path)))
+    names = (start + stamp + more + ending for more in itertools.chain([""], (f"-{n}" for n in itertools.count(2))))
+    name = next(each for each in names if not os.path.exists(each))
+    os.rename(path, name)
+    return name
+
+
+class Recorder:
+    """Appends what changes to a new file, at most once a `period` of the robot's time; ends when the file has `most_bytes`. A recording that is
+    there already, of a server that was killed, gets another name."""
+
+    def __init__(self, path, period=1.0, most_bytes=20000000):
         self.path, self.period, self.most_bytes = path, period, most_bytes
         self.full = False
         self._since, self._last = 0, None
         self._bytes = 0
+        put_aside(path)
         self._file = open(path, "w", encoding="utf-8")
         self._write(FORMAT)
 
     def _write(self, value):
         line = worlds.to_text(value) + "\n"
-        self._bytes += len(line)
+        self._bytes += len(line.encode())
         if self._bytes > self.most_bytes:
             self.full = True
+            log.warning("%s: the recording ends: it has %d bytes", self.path, self.most_bytes)
             return
         self._file.write(line)
 
@@ -51,7 +71,7 @@ class Recorder:
                 self._file.flush()
             except OSError as error:  # a full disc: pages go on
                 self.full = True
-                logging.getLogger("hyselam_web").error("%s: the recording ends: %s", self.path, error.strerror or error)
+                log.error("%s: the recording ends: %s", self.path, error.strerror or error)
 
     def close(self):
         try:

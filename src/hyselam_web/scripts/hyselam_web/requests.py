@@ -23,11 +23,11 @@ REQUESTS = {
 
 
 class Refused(ValueError):
-    """A request that is not taken: a word for programs, a reason for people."""
+    """A request that is not taken: a word for programs, a reason for people, the page's number of it."""
 
-    def __init__(self, code, reason):
+    def __init__(self, code, reason, number=None):
         super().__init__(reason)
-        self.code = code
+        self.code, self.number = code, number
 
 
 def clean(text):
@@ -59,25 +59,27 @@ def checked(kind, value):
 
 
 def parse(text):
-    """(name, fields) of a message. @throws Refused."""
+    """(name, fields, the page's number of it or None) of a message. @throws Refused."""
     def no_constant(_):
         raise ValueError("not a number")
     try:
         message = json.loads(text, parse_constant=no_constant)
     except (ValueError, RecursionError):
         raise Refused("malformed", "this is no JSON")
+    number = message.pop("n", None) if isinstance(message, dict) else None
+    if isinstance(number, bool) or not isinstance(number, int) or abs(number) >= 2 ** 53:
+        number = None
     if not isinstance(message, dict) or not isinstance(message.get("do"), str):
-        raise Refused("malformed", "this is no request")
+        raise Refused("malformed", "this is no request", number)
     name = message.pop("do")
     if name not in REQUESTS:
-        raise Refused("unknown", "there is no such request")
-    message.pop("n", None)
+        raise Refused("unknown", "there is no such request", number)
     kinds, fields = REQUESTS[name][2], {}
     for field, kind in kinds.items():
         value = checked(kind, message.pop(field, None))
         if value is None:
-            raise Refused("invalid", f"'{field}' is missing, or no {kind}, or too long")
+            raise Refused("invalid", f"'{field}' is missing, or no {kind}, or too long", number)
         fields[field] = value
     if message:
-        raise Refused("invalid", "there are fields that do not belong to it")
-    return name, fields
+        raise Refused("invalid", "there are fields that do not belong to it", number)
+    return name, fields, number

@@ -24,7 +24,7 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 
-from . import sentences, sights
+from . import inbox, sentences, sights
 from .requests import Refused
 from .tiles import MapTiles
 from .transforms import TransformTree, planar
@@ -36,7 +36,6 @@ ANSWER_WAIT = 30.0  # [s] for its answer
 PROGRAM_WAIT = 60.0  # [s] for doctor and knowledge
 STILL = 1.0  # [s] between two scans of a robot that stands
 OBJECT_WAIT = 3.0  # [s] for an answer about objects, unless the dialogue was told otherwise
-LEVELS = {0: "ok", 1: "warn", 2: "error", 3: "stale"}
 
 
 class Latest:
@@ -44,7 +43,7 @@ class Latest:
 
     def __init__(self, topic, kind, big=False):
         self.topic, self.kind, self.wrong = topic, kind, None
-        self._data, self._new = None, False
+        self._newest = inbox.Newest()
         more = {"buff_size": 1 << 20} if big else {}
         self.subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take, queue_size=1, **more)
 
@@ -55,21 +54,20 @@ class Latest:
                 rospy.logwarn("%s is a %s, not a %s: it is not shown", self.topic, kind, self.kind._type)
             self.wrong = kind
             return
-        self._data, self._new = msg._buff, True
+        self._newest.put(msg._buff)
 
     def is_new(self):
-        return self._new
+        return self._newest.is_new()
 
     def bytes(self):
-        self._new = False
-        data, self._data = self._data, None
-        return data
+        """None: there is nothing new."""
+        return self._newest.take()
 
     def message(self):
         """None: there is nothing new, or it cannot be read."""
-        if not self._new:
-            return None
         data = self.bytes()
+        if data is None:
+            return None
         try:
             return self.kind().deserialize_numpy(data, np)
         except Exception as error:  # genpy raises what struct, numpy and its own checks do
@@ -83,12 +81,14 @@ class Robot:
         self.world, self.tiles = World(), MapTiles()
         self.transforms, self._lock = TransformTree(), threading.Lock()
         self._threads = concurrent.futures.ThreadPoolExecutor(max_workers=6)
-        self._speaker = concurrent.futures.ThreadPoolExecutor(max_workers=1)
+        # What takes long never keeps a sentence waiting, nor the map.
+        self._speaker, self._mapper = (concurrent.futures.ThreadPoolExecutor(max_workers=1) for _ in range(2))
         self._pending = 0
         self._sentences = sentences.Sentences(self._tell, self._publish_stop, lambda: self._ways + self._followed, lambda: self._forwarded, lambda: self._patience)
-        self._talk, self._diagnostics, self._ways, self._followed = collections.deque(maxlen=1000), {}, 0, 0
+        self._talk, self._diagnostics, self._statuses = collections.deque(maxlen=1000), collections.deque(maxlen=1000), inbox.Statuses()
+        self._ways = self._followed = 0
         self._forwarded, self._patience, self._goal = 0, OBJECT_WAIT, b""
-        self._preparing = self._scan_shown = None
+        self._preparing = self._scan_shown = self._doctor = None
         self._following, self._reached = False, True
         self._times = {}
         self._spoken = 0
@@ -137,7 +137,7 @@ class Robot:
         self._forwarded += 1
 
     def _on_diagnostics(self, msg):
-        self._diagnostics[msg._connection_header.get("callerid", "")] = msg._buff
+        self._diagnostics.append((time.monotonic(), msg._buff))
 
     # ---- What pages are shown, in the server's loop ----
 
@@ -176,7 +176,8 @@ class Robot:
         self._collect_talk()
         if self._preparing is None and self.topics["map"].is_new():
             data = self.topics["map"].bytes()
-            self._preparing = asyncio.ensure_future(self._take_map(data))
+            if data is not None:
+                self._preparing = asyncio.ensure_future(self._take_map(data))
 
     async def _take_map(self, data):
         def prepare():
@@ -185,7 +186,7 @@ class Robot:
             return self.tiles.prepare(msg.info.width, msg.info.height, float(np.float32(msg.info.resolution).astype(float).round(7)),
                                       (msg.info.origin.position.x, msg.info.origin.position.y, sights.yaw_of(q)), np.asarray(msg.data, np.int8).tobytes())
         try:
-            prepared = await asyncio.get_event_loop().run_in_executor(self._threads, prepare)
+            prepared = await asyncio.get_event_loop().run_in_executor(self._mapper, prepare)
             self.tiles.commit(prepared, self.world.next_version)
             total = sum(number for number, picture in self.tiles.tiles.values() if picture)
             self.world.set("map", dict(self.tiles.info, sum=total % 2 ** 32))
@@ -244,20 +245,17 @@ class Robot:
             self.world.set("particles", sights.particles(cloud))
 
     def _collect_diagnostics(self):
-        layers = {}
-        mine = rospy.get_namespace()
-        for data in list(self._diagnostics.values()):
+        while self._diagnostics:
+            when, data = self._diagnostics.popleft()
             try:
                 statuses = DiagnosticArray().deserialize(data).status
             except Exception:  # as in Latest
                 continue
             for each in statuses:
-                node, _, what = each.name.partition(":")
-                node = "/" + node.strip().lstrip("/")
-                if node.startswith(mine):
-                    layers[node[len(mine):]] = {"level": LEVELS.get(each.level, "error"), "what": what.strip()[:60], "text": each.message[:300]}
+                self._statuses.put(each.name, each.level, each.message, when)
+        layers = self._statuses.layers(rospy.get_namespace(), time.monotonic())
         if layers:
-            self.world.set_table("layers", dict(sorted(layers.items())[:100]))
+            self.world.set_table("layers", layers)
 
     def _collect_talk(self):
         while self._talk:
@@ -432,6 +430,12 @@ class Robot:
         return {"message": said}
 
     async def _do_doctor(self, _, __):
+        """One at a time: who asks meanwhile gets the same findings."""
+        if self._doctor is None or self._doctor.done():
+            self._doctor = asyncio.ensure_future(self._examine())
+        return await asyncio.shield(self._doctor)
+
+    async def _examine(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "findings.json")
             frames = [f"{key}:={self.params[key]}" for key in ("map_frame", "base_frame")]
