@@ -19,7 +19,8 @@ constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and t
 constexpr double kCheckStep = 30.0;        // [m] at most between checks
 constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan, or as good as one
 constexpr double kUsual = 0.75;            // of the usual share of inliers, that confirms a pose
-constexpr double kFits = 0.3;  // a place with a lower score does not explain what is seen
+constexpr double kFits = 0.3;    // a place with a lower score does not explain what is seen
+constexpr double kLikely = 0.5;  // probability from which on a search confirms a pose
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
 
@@ -164,9 +165,12 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
       search_.asked_at.reset();  // at once again, with another scan
     } else if (verdict.is_believed) {
       search_.rival.reset();
+      search_.alarm_step = std::clamp(2.0 * search_.alarm_step, kAskStep, kLargestAlarmStep);
+      // Where the map explains nothing, or other places together are likelier, nothing is
+      // confirmed.
+      if (verdict.best.seen < kFits || verdict.probability < kLikely) return;
       inliers_.reset();  // no place fits better: what is seen now is normal here
       search_.confirmed = search_.alarm_from.has_value();
-      search_.alarm_step = std::clamp(2.0 * search_.alarm_step, kAskStep, kLargestAlarmStep);
     }
     return;
   }
