@@ -116,10 +116,43 @@ class PageTest(unittest.TestCase):
         tab.press(*self.at(tab, 17.9, 3.4))
         tab.wait("document.querySelector('#card-title')?.textContent === 'Place SS05'", "the card")
         tab.click("#card [data-key=name_it]")
-        tab.type("library")
+        tab.type("libr")
+        tab.click("#language")
+        tab.wait("document.documentElement.lang === 'pt' && document.querySelector('#new-name').value === 'libr'", "what was typed")
+        tab.click("#new-name")
+        tab.key("End")
+        tab.type("ary")
         tab.key("Enter")
         tab.wait("document.querySelector('#card-title')?.textContent === 'library'", "the name")
         self.assertEqual(self.asked("name"), [{"place": 5, "names": ["library"]}])
+
+    def test_what_was_said_before_is_not_made_anew_for_screen_readers(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        self.say(tab, "Hello.")
+        tab.wait("document.querySelectorAll('.said').length === 2 && !document.querySelector('.said.waits')", "the answer")
+        tab.eval("window.before = [...document.querySelectorAll('.said')]")
+        self.say(tab, "Hello again.")
+        tab.wait("document.querySelectorAll('.said').length === 4 && !document.querySelector('.said.waits')", "the second answer")
+        self.assertTrue(tab.eval("before.every((e, i) => document.querySelectorAll('.said')[i] === e)"))
+        texts = tab.eval("[...document.querySelectorAll('.said')].map(e => e.textContent)")
+        self.assertEqual(texts, ["Hello.", "Noted: Hello.", "Hello again.", "Noted: Hello again."])
+        self.assertEqual(tab.errors, [])
+
+    def test_what_one_page_began_to_learn_another_can_end(self):
+        self.serve()
+        self.robot.world.set_table("layers", {"semantic_localization": {"level": "ok", "what": "", "text": ""}})
+        pages = [self.open_map(DESKTOP) for _ in range(2)]
+        for tab in pages:
+            tab.click("#tab-robot")
+            tab.wait("document.querySelector('#do-learn')", "the button")
+        pages[0].click("#do-learn")
+        for tab in pages:
+            tab.wait("document.querySelector('#do-unlearn') && !document.querySelector('#do-learn')", "that it learns")
+        pages[1].click("#do-unlearn")
+        for tab in pages:
+            tab.wait("document.querySelector('#do-learn') && !document.querySelector('#do-unlearn')", "that it does not")
+        self.assertEqual(self.asked("learn"), [{"on": True}, {"on": False}])
 
     def test_keys_alone_are_enough(self):
         self.serve()

@@ -408,7 +408,9 @@ class Robot:
 
     async def _do_learn(self, fields, _):
         answer = await self._call("semantic_localization/" + ("start_learning" if fields["on"] else "stop_learning"), Trigger)
-        return self._checked(answer)
+        result = self._checked(answer)
+        self.world.set("learning", fields["on"])
+        return result
 
     async def _program(self, *command):
         def call():

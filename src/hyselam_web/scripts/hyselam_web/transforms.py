@@ -1,5 +1,5 @@
-"""Where frames are in each other, from the bytes of tf messages. tf2's Python listener takes half a core's tenth for a robot with odometry
-at 100 Hz, most of it for making messages that nobody looks at; of these bytes only a few numbers are read."""
+"""Where frames are in each other, from the bytes of tf messages. No message is made of what nobody looks at: of these bytes only a few
+numbers are read."""
 import collections
 import math
 import struct

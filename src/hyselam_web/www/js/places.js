@@ -136,13 +136,15 @@ export class Places {
 
   startNaming() {
     this.naming = true;
+    this.typed = undefined; // kept when the form is made again, in another language
     this.showCard();
     this.card.querySelector("input").focus();
   }
 
   nameForm(id, name) {
-    const input = make("input", {type: "text", maxlength: 80, id: "new-name", placeholder: t("examples"), autocomplete: "off", autocapitalize: "off", enterkeyhint: "done"});
-    if (name.sure) input.value = name.text;
+    const input = make("input", {type: "text", maxlength: 80, id: "new-name", "data-key": "new-name", placeholder: t("examples"), autocomplete: "off", autocapitalize: "off", enterkeyhint: "done"});
+    input.value = this.typed ?? (name.sure ? name.text : "");
+    input.addEventListener("input", () => { this.typed = input.value; });
     const form = make("form", {class: "row", onsubmit: (event) => {
       event.preventDefault();
       if (input.value.trim()) this.name(id, [input.value.trim()]);

@@ -11,8 +11,7 @@ export class RobotPanel {
   constructor(model, connection, may, actions) {
     Object.assign(this, {model, connection, may, actions});
     this.panel = byId("panel-robot");
-    this.learning = false;
-    model.on(["status", "here", "places", "camera", "layers", "can", "pose", "way", "following", "refused"], () => {
+    model.on(["status", "here", "places", "camera", "layers", "can", "pose", "way", "following", "refused", "learning"], () => {
       this.showWhere();
       this.showState();
     });
@@ -31,7 +30,7 @@ export class RobotPanel {
     add("draw_wall", "drive", () => this.actions.tool("wall"));
     add("check", "look", (event) => this.check(event.target));
     if (this.model.values.can?.save) add("save", "drive", (event) => this.save(event.target));
-    if (this.model.tables.layers.semantic_localization) add(this.learning ? "unlearn" : "learn", "drive", (event) => this.learn(event.target));
+    if (this.model.tables.layers.semantic_localization) add(this.learning() ? "unlearn" : "learn", "drive", (event) => this.learn(event.target));
     const page = make("div", {class: "actions"});
     if (canSpeak()) {
       page.append(button(t("speak"), (event) => {
@@ -70,7 +69,7 @@ export class RobotPanel {
   showState() {
     const {status, camera, refused} = this.model.values;
     const layers = this.model.tables.layers;
-    const known = Object.keys(layers).includes("semantic_localization") + String(this.model.values.can?.save);
+    const known = Object.keys(layers).includes("semantic_localization") + String(this.model.values.can?.save) + this.learning();
     if (known !== this.builtFor) {
       this.builtFor = known;
       this.build();
@@ -132,10 +131,15 @@ export class RobotPanel {
 
   async learn(element) {
     await this.busy(element, "…", async () => {
-      const result = await this.connection.ask("learn", {on: !this.learning});
-      this.learning = !this.learning;
-      toast(result.message || t(this.learning ? "learning" : "not_learning"));
+      const on = !this.learning();
+      const result = await this.connection.ask("learn", {on});
+      toast(result.message || t(on ? "learning" : "not_learning"));
     });
     this.build();
+  }
+
+  // As all pages know it: another one may have asked for it.
+  learning() {
+    return Boolean(this.model.values.learning);
   }
 }

@@ -68,7 +68,7 @@ export class Talk {
       toast(t("error_not_allowed"), true);
       return;
     }
-    const entry = {text, failed: ""};
+    const entry = {text, failed: "", number: (this.sayings = (this.sayings ?? 0) + 1)};
     this.pending = this.pending.filter((each) => !each.failed);
     this.pending.push(entry);
     if (this.said[this.said.length - 1] !== text) this.said.push(text);
@@ -145,7 +145,7 @@ export class Talk {
     }
     const below = this.log.scrollHeight - this.log.scrollTop - this.log.clientHeight < 60;
     if (newest !== this.shownTo || own || !this.log.children.length || this.drawnLanguage !== document.documentElement.lang || this.pending.length || this.hadPending) {
-      this.log.replaceChildren(...this.lines());
+      this.showLines();
       this.drawnLanguage = document.documentElement.lang;
     }
     this.hadPending = this.pending.length > 0;
@@ -154,24 +154,39 @@ export class Talk {
     this.shownTo = newest;
   }
 
+  // What is there stays: a screen reader reads only what is new.
+  showLines() {
+    const lines = this.lines();
+    const wanted = new Set(lines.map(([key]) => key));
+    for (const element of [...this.log.children]) if (!wanted.has(element.dataset.key)) element.remove();
+    lines.forEach(([key, build], i) => {
+      if (this.log.children[i]?.dataset.key === key) return;
+      const element = build();
+      element.dataset.key = key;
+      this.log.insertBefore(element, this.log.children[i] ?? null);
+    });
+  }
+
+  // [key, how it is made] of each line; what is the same has the same key.
   lines() {
     const {talk} = this.model;
-    const elements = [];
-    if (!talk.length && !this.pending.length) elements.push(make("p", {class: "welcome"}, t("welcome")));
+    const language = document.documentElement.lang;
+    const lines = [];
+    if (!talk.length && !this.pending.length) lines.push([`welcome ${language}`, () => make("p", {class: "welcome"}, t("welcome"))]);
     let last_human = -1;
     talk.forEach((entry, i) => { if (entry.w === "human") last_human = i; });
     let undo = false;
     talk.forEach((entry, i) => {
-      elements.push(make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, entry.s));
+      lines.push([`${entry.i} ${entry.t}`, () => make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, entry.s)]);
       undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
     });
     if (undo && this.may("talk") && !this.connection.replays) {
-      elements.push(button(t("undo"), () => this.say(t("undo_sentence")), {class: "undo"}));
+      lines.push([`undo ${language}`, () => button(t("undo"), () => this.say(t("undo_sentence")), {class: "undo"})]);
     }
     for (const each of this.pending) {
-      elements.push(make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, each.text, each.failed ? make("span", {class: "why"}, each.failed) : null));
+      lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, each.text, each.failed ? make("span", {class: "why"}, each.failed) : null)]);
     }
-    return elements;
+    return lines;
   }
 
   toggleListening() {
