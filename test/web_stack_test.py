@@ -3,17 +3,22 @@
 question, sends the robot, sees the way, stops it. The master gone and back; roles; a server that would be open to all does not start."""
 import json
 import os
+import pathlib
 import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 import xmlrpc.client
 
 import rospkg
 import rospy
 import rostest
-from hyselam_msgs.srv import TellRobot
+from geometry_msgs.msg import PoseStamped
+from hyselam_msgs.msg import ObjectRequest
+from hyselam_msgs.srv import TellRobot, TellRobotResponse
+from nav_msgs.msg import Path
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
@@ -219,6 +224,79 @@ class WebStackTest(unittest.TestCase):
         self.server.close()
         type(self).server = Server("phone").wait()
 
+    def page_of(self, namespace, **params):
+        """A page of a server whose dialogue is the test, and what the server says without being answered."""
+        said = []
+        heard = rospy.Subscriber(f"/{namespace}/human_text", String, lambda m: said.append(m.data), queue_size=20)
+        self.addCleanup(heard.unregister)
+        server = Server(namespace, **params).wait()
+        self.addCleanup(server.close)
+        wait_until(lambda: heard.get_num_connections() > 0, "the server is not heard")
+        pages = Pages()
+        self.addCleanup(pages.close)
+        return server, pages, said
+
+    def test_a_stop_cancels_what_waits_behind_a_slow_dialogue(self):
+        told, go_on = [], threading.Event()
+        self.addCleanup(go_on.set)
+
+        def tell(request):
+            told.append(request.text)
+            go_on.wait(30)
+            return TellRobotResponse(language="en", answers=["In the kitchen."])
+        service = rospy.Service("/slow/tell_robot", TellRobot, tell)
+        self.addCleanup(service.shutdown)
+        server, pages, said = self.page_of("slow")
+        page = Socket(pages, server)
+        self.addCleanup(page.close)
+        page.send(json.dumps({"do": "say", "n": 101, "text": "Where are you?"}))
+        page.send(json.dumps({"do": "say", "n": 102, "text": "Go to SS05."}))
+        wait_until(lambda: told, "the first sentence is not told")
+        self.assertEqual(page.ask("stop")["result"], {"heard": 1})
+        go_on.set()
+        wait_until(lambda: 101 in page.answers and 102 in page.answers, "no answers")
+        self.assertEqual((page.answers[101][0].get("done"), page.answers[102][0].get("error")), ("say", "stopped"))
+        self.assertEqual(told, ["Where are you?"])
+        wait_until(lambda: said == ["Stop.", "Stop."], lambda: f"it is stopped once more after what it was being told: {said}")
+
+    def test_a_way_that_comes_of_a_late_answer_about_a_thing_is_stopped(self):
+        requests = rospy.Publisher("/later/object_request", ObjectRequest, queue_size=1)
+        ways = rospy.Publisher("/later/goal_path", Path, queue_size=1)
+        self.addCleanup(requests.unregister)
+        self.addCleanup(ways.unregister)
+
+        def tell(_):
+            requests.publish(ObjectRequest(text="Fetch the pen."))
+            threading.Timer(1.5, lambda: ways.publish(Path(poses=[PoseStamped()]))).start()
+            return TellRobotResponse(language="en")
+        service = rospy.Service("/later/tell_robot", TellRobot, tell)
+        self.addCleanup(service.shutdown)
+        server, pages, said = self.page_of("later", token="talk=talktome1 drive=driveme11")
+        wait_until(lambda: requests.get_num_connections() and ways.get_num_connections(), "the server does not listen")
+        _, _, headers = pages.request("POST", server.address + "/login", data='{"token":"talktome1"}', headers={"Origin": server.address})
+        page = Socket(pages, server, cookie=headers["Set-Cookie"].split("=", 1)[1].split(";")[0])
+        self.addCleanup(page.close)
+        self.assertEqual(page.ask("say", text="Fetch the pen.").get("error"), "not_allowed")
+        self.assertEqual(said, ["Stop."])
+
+    def test_all_who_ask_the_doctor_at_once_get_one_examination(self):
+        calls = os.path.join(self.folder.name, "calls")
+        folder = os.path.join(self.folder.name, "bin")
+        os.makedirs(folder)
+        with open(os.path.join(folder, "rosrun"), "w") as file:  # instead of five seconds of the real one
+            file.write(f"#!/bin/sh\necho called >> {calls}\nsleep 2\nwhile [ \"$1\" != --json ]; do shift; done\n"
+                       "echo '{\"findings\": []}' > \"$2\"\n")
+        os.chmod(os.path.join(folder, "rosrun"), 0o755)
+        server, pages, _ = self.page_of("examined", environment={"PATH": folder + os.pathsep + os.environ["PATH"]})
+        page = Socket(pages, server)
+        self.addCleanup(page.close)
+        for n in (101, 102):
+            page.send(json.dumps({"do": "doctor", "n": n}))
+        wait_until(lambda: 101 in page.answers and 102 in page.answers, "no findings")
+        self.assertEqual([page.answers[n][0].get("result") for n in (101, 102)], [{"findings": []}] * 2)
+        with open(calls) as file:
+            self.assertEqual(file.read().split(), ["called"])
+
     def test_a_server_that_would_be_open_does_not_start(self):
         for argument, reason in (("_host:=0.0.0.0", "Give a token"), ("_token:=short", "fewer than 8"), ("_token:=boss=longenough", "the role 'boss'"),
                                  ("_token_file:=/nowhere/tokens", "No such file"), ("_language:=fr", "en or pt"), ("_port:=70000", "[0, 65535]"),
@@ -290,6 +368,8 @@ class WebStackTest(unittest.TestCase):
     def test_the_recording_is_a_page_at_the_end(self):
         record = os.path.join(self.folder.name, "recorded")
         server = Server("recorded", record=record).wait()
+        day = pathlib.Path(record, "day.jsonl")
+        wait_until(lambda: '"d":' in day.read_text(), "nothing is recorded")
         server.close()
         self.assertEqual(server.process.returncode, 0)
         with open(os.path.join(record, "index.html")) as file:
