@@ -277,7 +277,7 @@ class WebStackTest(unittest.TestCase):
         page = Socket(pages, server, cookie=headers["Set-Cookie"].split("=", 1)[1].split(";")[0])
         self.addCleanup(page.close)
         self.assertEqual(page.ask("say", text="Fetch the pen.").get("error"), "not_allowed")
-        self.assertEqual(said, ["Stop."])
+        wait_until(lambda: said == ["Stop."], lambda: f"it is not stopped: {said}")
 
     def test_all_who_ask_the_doctor_at_once_get_one_examination(self):
         calls = os.path.join(self.folder.name, "calls")
