@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <future>
 #include <map>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "ngram_slam/slam/far_loops.hpp"
@@ -123,10 +123,12 @@ std::vector<LoopVerification> MapMerger::verified(const std::vector<LoopTask>& t
       answers[i] = verifyLoop(tasks[i], params_.slam);
     }
   };
-  std::vector<std::thread> helpers;
-  for (int i = 1; i < params_.threads; ++i) helpers.emplace_back(work);
+  // The future of a thread has its exception.
+  const int threads = std::min(params_.threads, static_cast<int>(tasks.size()));
+  std::vector<std::future<void>> helpers;
+  for (int i = 1; i < threads; ++i) helpers.push_back(std::async(std::launch::async, work));
   work();
-  for (std::thread& t : helpers) t.join();
+  for (std::future<void>& f : helpers) f.get();
   return answers;
 }
 
@@ -153,12 +155,11 @@ void MapMerger::verifyFar(const std::string& step,
 
 void MapMerger::settle() {
   while (const auto tie = bestTieOfAll()) {
-    std::vector<std::uint32_t> before;
-    for (std::uint32_t run = 0; run < runs(); ++run) before.push_back(mapOf(run));
+    const Untied before = untied();
     const std::uint32_t run = keyframe(tie->loops.front().newer).run;
     join(*tie);
     closeNear(run);
-    if (!isBorneOut(before)) withdraw(before);
+    if (!isBorneOut(before.map_of_run)) withdraw(before, *tie);
   }
   // What the maps know of each other now may make more of it believable.
   while (believeWithinMaps()) {
@@ -222,14 +223,20 @@ bool MapMerger::isBorneOut(const std::vector<std::uint32_t>& maps_before) {
          near_verified_ >= params_.min_near_ratio * near_tried_;
 }
 
-/// Forgets what joins the maps that were two before.
-void MapMerger::withdraw(const std::vector<std::uint32_t>& maps_before) {
+MapMerger::Untied MapMerger::untied() const {
+  Untied all;
+  for (std::uint32_t run = 0; run < runs(); ++run) all.map_of_run.push_back(mapOf(run));
+  for (const SlamKeyframe& k : state_.keyframes) all.poses.push_back(k.pose);
+  all.loops = state_.loops;
+  return all;
+}
+
+/// The maps are as they were before the tie, of which none is made of its loops again.
+void MapMerger::withdraw(const Untied& before, const MapTie& tie) {
   ++counters_.ties_withdrawn;
-  std::vector<SlamLoop> kept;
-  for (const SlamLoop& l : state_.loops) {
-    if (maps_before[keyframe(l.older).run] == maps_before[keyframe(l.newer).run]) kept.push_back(l);
-  }
-  state_.loops = std::move(kept);
+  for (std::size_t i = 0; i < before.poses.size(); ++i) state_.keyframes[i].pose = before.poses[i];
+  state_.loops = before.loops;
+  withdrawn_.insert(withdrawn_.end(), tie.loops.begin(), tie.loops.end());
   for (const int k : near_asked_since_) near_asked_[static_cast<std::size_t>(k)] = false;
   connections_ = RunConnections(state_.keyframes, state_.loops);
   rebuildPathLengths();
@@ -433,8 +440,10 @@ std::vector<MapMeeting> MapMerger::meetings() const {
     ++(l.far ? m->far_loops : m->near_loops);
     if (l.far) m->fit += l.fit;
   }
-  for (const SlamLoop& l : pending_) {
-    if (MapMeeting* m = meetingOf(l)) ++m->doubted;
+  for (const auto* loops : {&pending_, &withdrawn_}) {
+    for (const SlamLoop& l : *loops) {
+      if (MapMeeting* m = meetingOf(l)) ++m->doubted;
+    }
   }
   std::vector<MapMeeting> out;
   for (auto& [sessions, m] : all) {

@@ -59,7 +59,14 @@ class MapMerger {
   std::optional<MapTie> bestTieOfAll() const;
   void join(const MapTie& tie);
   bool isBorneOut(const std::vector<std::uint32_t>& maps_before);
-  void withdraw(const std::vector<std::uint32_t>& maps_before);
+  /// What a tie changes.
+  struct Untied {
+    std::vector<std::uint32_t> map_of_run;
+    std::vector<hyselam::Pose2> poses;  // of the keyframes
+    std::vector<SlamLoop> loops;
+  };
+  Untied untied() const;
+  void withdraw(const Untied& before, const MapTie& tie);
   void addLoop(const SlamLoop& loop);
   bool believeWithinMaps();
   bool excludes(const SlamLoop& loop) const;
@@ -75,8 +82,9 @@ class MapMerger {
   RunConnections given_, connections_;
   GraphPathLengths path_lengths_;
   std::optional<MapQuestions> questions_;
-  std::vector<SlamLoop> pending_;  // verified far loops that are not in the graph
-  std::vector<bool> near_asked_;   // by keyframe
+  std::vector<SlamLoop> withdrawn_;  // of ties that were
+  std::vector<SlamLoop> pending_;    // verified far loops that are not in the graph
+  std::vector<bool> near_asked_;     // by keyframe
   MapMergingCounters counters_;
   std::vector<int> near_asked_since_;       // the last tie
   int near_tried_ = 0, near_verified_ = 0;  // since the last tie
