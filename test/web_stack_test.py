@@ -215,6 +215,8 @@ class WebStackTest(unittest.TestCase):
         self.assertEqual(talker.ask("go", place=target.id, language="en")["error"], "not_allowed")
         self.assertIn("answers", talker.ask("say", text="Where are you?")["result"])
         self.assertEqual(driver.ask("go", place=target.id, language="en")["done"], "go")
+        # What the button asks is answered.
+        self.assertIn("Next to tea room", str(driver.ask("say", text=f"What is next to {code}?")["result"]["answers"]))
         # Nothing of a name that somebody gave is said as a driver.
         wait_until(lambda: any(e["w"] == "human" and e["s"] == f"Go to {code}." for e in driver.talk), lambda: driver.talk)
         wait_until(lambda: self.robot.paths.messages[-1].poses, "the driver does not drive")

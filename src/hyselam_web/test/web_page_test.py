@@ -231,7 +231,7 @@ class PageTest(unittest.TestCase):
         tab.wait("!document.querySelector('#card').hidden", "the card")
         tab.click("#card [data-key=ask_about]")
         wait_until(lambda: self.asked("say"), "the question")
-        self.assertEqual(self.asked("say"), [{"text": "What is SS01?"}])  # names are never put into what is said
+        self.assertEqual(self.asked("say"), [{"text": "What is next to SS01?"}])  # names are never put into what is said
         self.say(tab, EVIL[0])
         for name in ("places", "robot", "talk"):
             tab.click(f"#tab-{name}")

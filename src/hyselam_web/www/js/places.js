@@ -101,7 +101,7 @@ export class Places {
       this.close();
       this.actions.openTalk();
       // Never by a name that somebody gave: it could hold another sentence.
-      this.actions.say(t(name.none ? "what_next" : "what_is", {name: place.e}));
+      this.actions.say(t("what_next", {name: place.e}));
     });
     if (this.may("drive")) add("here_you_are", () => this.ask("here", {place: Number(id)}, t("pose_sent")));
     return [title, make("p", {}, this.describe(id)), row, this.doorsOf(id)];
