@@ -97,6 +97,24 @@ class PageTest(unittest.TestCase):
         tab.wait("document.querySelector('#toast').textContent.includes('NOBODY HEARS IT')", "that nobody hears it")
         self.assertEqual(tab.errors, [])
 
+    def test_a_folded_panel_covers_neither_the_tabs_nor_stop(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        for line in range(12):
+            self.robot.say("robot", f"I have said {line} things.")
+        for i, name in enumerate(("talk", "places", "robot", "back")):
+            tab.click(f"#tab-{name}")
+            if not tab.eval("document.body.classList.contains('folded')"):
+                tab.click(f"#tab-{name}")
+            tab.wait("document.body.classList.contains('folded')", f"the folded panel of {name}")
+            on_top = """((wanted) => { const box = wanted.getBoundingClientRect(); return [0.1, 0.5, 0.9].every((share) =>
+                wanted.contains(document.elementFromPoint(box.x + box.width / 2, box.y + share * box.height))); })(document.querySelector('%s'))"""
+            for button in ("#stop", "#tab-talk", "#tab-places", "#tab-robot", "#tab-back"):
+                self.assertTrue(tab.eval(on_top % button), f"{button} under the folded panel of {name}")
+            tab.click("#stop")
+            wait_until(lambda: self.robot.stops == i + 1, f"stop beside the folded panel of {name}")
+        self.assertEqual(tab.errors, [])
+
     def test_a_question_is_answered_by_a_button_and_marked_on_the_map(self):
         self.serve()
         tab = self.open_map(PHONE)
