@@ -115,6 +115,29 @@ class PageTest(unittest.TestCase):
             wait_until(lambda: self.robot.stops == i + 1, f"stop beside the folded panel of {name}")
         self.assertEqual(tab.errors, [])
 
+    def test_the_newest_line_stays_in_sight_while_places_are_tapped(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        for line in range(30):
+            self.robot.say("robot", f"I have said {line} things.")
+        at_end = "((log) => log.scrollTop > 0 && log.scrollHeight - log.scrollTop - log.clientHeight < 60)(document.querySelector('#talk-log'))"
+        tab.wait("document.querySelectorAll('.said.robot').length >= 30", "the talk")
+        tab.wait(at_end, "the newest line")
+        self.robot.names[1] = [("kitchen", False)]
+        self.robot.later(self.robot.show_places)
+        tab.wait("hyselam.model.labelOf(1) === 'kitchen?'", "the name")
+        tab.press(*self.at(tab, 2.4, 3.3))
+        tab.wait("!document.querySelector('#card').hidden", "the card")
+        tab.wait(at_end, "the newest line beside the card")
+        tab.click("#card button.primary")
+        wait_until(lambda: self.asked("name"), "the name")
+        self.robot.say("robot", "Thank you. SS01 is kitchen.")
+        tab.wait("document.querySelectorAll('.said.robot').length >= 31", "the answer")
+        tab.wait(at_end, "the answer in sight")
+        tab.click("#card .close")
+        tab.wait(at_end, "the newest line after the card")
+        self.assertEqual(tab.errors, [])
+
     def test_a_question_is_answered_by_a_button_and_marked_on_the_map(self):
         self.serve()
         tab = self.open_map(PHONE)

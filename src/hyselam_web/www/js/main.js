@@ -183,7 +183,7 @@ class Page {
       byId(`panel-${each}`).hidden = each !== name;
     }
     if (name === "back") this.back.show();
-    if (name === "talk") this.talk.log.scrollTop = this.talk.log.scrollHeight;
+    if (name === "talk") this.talk.showNewest();
   }
 
   moveTab(event) {

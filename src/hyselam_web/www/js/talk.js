@@ -35,6 +35,12 @@ export class Talk {
   constructor(model, connection, may) {
     Object.assign(this, {model, connection, may});
     this.log = byId("talk-log");
+    // The newest line stays in sight, also when the panel was out of it, unless somebody reads further up.
+    this.atEnd = true;
+    this.log.addEventListener("scroll", () => {
+      if (this.log.clientHeight) this.atEnd = this.log.scrollHeight - this.log.scrollTop - this.log.clientHeight < 60;
+    });
+    new ResizeObserver(() => this.atEnd && this.showNewest()).observe(this.log);
     this.line = byId("say");
     this.pending = []; // said, and not yet come back from the robot
     this.said = [];
@@ -143,15 +149,18 @@ export class Talk {
       }
       if (entry.w === "robot" && entry.i > this.shownTo && !this.first && !this.connection.replays) speak(entry.s);
     }
-    const below = this.log.scrollHeight - this.log.scrollTop - this.log.clientHeight < 60;
     if (newest !== this.shownTo || own || !this.log.children.length || this.drawnLanguage !== document.documentElement.lang || this.pending.length || this.hadPending) {
       this.showLines();
       this.drawnLanguage = document.documentElement.lang;
     }
     this.hadPending = this.pending.length > 0;
-    if (below || own || this.first) this.log.scrollTop = this.log.scrollHeight;
+    if (this.atEnd || own || this.first) this.showNewest();
     if (talk.length) this.first = false;
     this.shownTo = newest;
+  }
+
+  showNewest() {
+    this.log.scrollTop = this.log.scrollHeight;
   }
 
   // What is there stays: a screen reader reads only what is new.
