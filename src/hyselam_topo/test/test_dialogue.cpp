@@ -324,12 +324,38 @@ TEST(Dialogue, AsksForTheNameThatSeparatesEqualAssignments) {
       "B. The corridor is connected to room C.");
   EXPECT_TRUE(has(told, "answers fit equally well")) << told.text();
   ASSERT_NE(v.dialogue.question().kind, Question::Kind::kNone) << told.text();
+  // Where each of them may be is told to programs, too: its place on the map first.
+  const auto& unsure = v.dialogue.unsure().places;
+  ASSERT_EQ(unsure.count("room B"), 1U) << told.text();
+  EXPECT_GE(unsure.at("room B").size(), 3U);
+  EXPECT_EQ(v.names(unsure.at("room B").front()), std::vector<std::string>{"room B"});
   const std::size_t before = v.dialogue.match()->equal;
   const Id asked = v.dialogue.question().place;
   EXPECT_TRUE(has(told, hyselam_topo::codeOf(*v.dialogue.map().findPlace(asked))));
   v.say("Room B.");
   EXPECT_EQ(v.names(asked), std::vector<std::string>{"room B"});
   EXPECT_LT(v.dialogue.match()->equal, before);
+}
+
+TEST(Dialogue, ANoAboutAnotherPlaceIsFollowedByAQuestionAboutThatPlace) {
+  DialogueParams params;
+  params.ask_from_afar = true;
+  Visit v(params);
+  tellOfGlass(&v);
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  std::string told = "You are in the corridor.";
+  for (const char* name : {"A", "B", "C", "D", "E", "F"}) {
+    told += std::string(" The corridor is connected to room ") + name + ".";
+  }
+  const Reply asks = v.say(told);
+  ASSERT_EQ(v.dialogue.question().kind, Question::Kind::kConfirmName) << asks.text();
+  const Id asked = v.dialogue.question().place;
+  ASSERT_NE(asked, v.dialogue.robot().place);
+  const Reply next = v.say("No.");
+  ASSERT_EQ(v.dialogue.question().place, asked) << next.text();
+  EXPECT_TRUE(has(next, hyselam_topo::codeOf(*v.dialogue.map().findPlace(asked)))) << next.text();
+  EXPECT_FALSE(has(next, "this place")) << next.text();
 }
 
 TEST(Dialogue, CorrectionsReplaceStatements) {

@@ -218,10 +218,14 @@ void Dialogue::rejectGuess(const Question& asked, Reply& out) {
   places_.reject(asked.place, asked.names);
   matchDescription(out, false);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
-  if (nameStateOf(*places_.map().findPlace(asked.place)) == NameState::kUnconfirmed) {
-    askConfirm(asked.place, out);
+  const Place& place = *places_.map().findPlace(asked.place);
+  const bool guessed = nameStateOf(place) == NameState::kUnconfirmed;
+  if (place.id != robot().place && robot().place != 0) {
+    askFromAfar(place.id, out);  // "this place" would be another one
+  } else if (guessed) {
+    askConfirm(place.id, out);
   } else {
-    askName(asked.place, out);
+    askName(place.id, out);
   }
 }
 

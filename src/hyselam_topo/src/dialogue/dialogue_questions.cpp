@@ -108,7 +108,11 @@ void Dialogue::askMostInformativeQuestion(const MatchProblem& problem, Reply& ou
   if (talk_.questions.isOpen()) return;
   const auto best = mostInformativeQuestion(problem, *talk_.match);
   if (!best || best->bits < kWorthAsking) return;
-  const Place& place = *places_.map().findPlace(best->place);
+  askFromAfar(best->place, out);
+}
+
+void Dialogue::askFromAfar(Id id, Reply& out) {
+  const Place& place = *places_.map().findPlace(id);
   const bool guessed = nameStateOf(place) == NameState::kUnconfirmed;
   Question question;
   question.place = place.id;

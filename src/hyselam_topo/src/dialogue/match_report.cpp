@@ -9,6 +9,19 @@
 namespace hyselam_topo {
 namespace {
 
+/// The places of the map that the kept answers give a name to, without repetition.
+std::vector<Id> placesOf(int name, const PlaceAssignment& match, const MatchProblem& problem) {
+  std::vector<Id> places;
+  for (const MatchSolution& solution : match.solutions) {
+    for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+      const Id place = problem.vertices[v];
+      const bool new_one = std::find(places.begin(), places.end(), place) == places.end();
+      if (nameAt(solution, v) == name && new_one) places.push_back(place);
+    }
+  }
+  return places;
+}
+
 std::vector<Id> only(const std::set<Id>& a, const std::set<Id>& b) {
   std::vector<Id> difference;
   std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(difference));
@@ -65,6 +78,12 @@ Uncertainty uncertaintyOf(const PlaceAssignment& match, const MatchProblem& prob
   }
   for (const NameUncertainty& each : nameUncertainties(problem, params, match)) {
     if (each.place != 0 && each.unsure()) add(each.name);
+  }
+  for (std::size_t n = 0; n < problem.nameCount(); ++n) {
+    const DescribedPlace* place = building.findPlace(problem.names[n]);
+    if (place == nullptr || unsure.names.count(place->name) == 0) continue;
+    std::vector<Id> places = placesOf(static_cast<int>(n), match, problem);
+    if (!places.empty()) unsure.places[place->name] = std::move(places);
   }
   return unsure;
 }

@@ -119,6 +119,16 @@ void TopoEngineServer::publishMap() {
   std_msgs::String names;
   for (const std::string& name : dialogue_.knownNames()) names.data += name + "\n";
   publishers_.names.publish(names);
+  std_msgs::String candidates;
+  for (const auto& [name, places] : dialogue_.unsure().places) {
+    candidates.data += name;
+    for (const Id id : places) {
+      const Place* place = dialogue_.map().findPlace(id);
+      if (place != nullptr) candidates.data += "\t" + codeOf(*place);
+    }
+    candidates.data += "\n";
+  }
+  publishers_.candidates.publish(candidates);
 }
 
 void TopoEngineServer::publishWalls() {

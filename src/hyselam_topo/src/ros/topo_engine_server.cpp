@@ -63,6 +63,7 @@ void TopoEngineServer::advertise(ros::NodeHandle& nh) {
       nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("initialpose", 1);
   publishers_.follow = nh.advertise<std_msgs::Bool>("follow_person", 1, true);
   publishers_.names = nh.advertise<std_msgs::String>("known_names", 1, true);
+  publishers_.candidates = nh.advertise<std_msgs::String>("name_candidates", 1, true);
 }
 
 void TopoEngineServer::offerServices(ros::NodeHandle& nh) {

@@ -195,6 +195,8 @@ class Dialogue {
   const std::string& openQuestion() const { return talk_.questions.sentence(); }
   /// Assignment of the description's names to places of the map; nothing if there is none.
   const std::optional<PlaceAssignment>& match() const { return talk_.match; }
+  /// Names of it whose places are not sure, and where they may be.
+  const Uncertainty& unsure() const { return talk_.unsure; }
   /// The grid map with all described walls in it; nothing without a grid map.
   std::optional<hyselam::OccupancyGrid> gridWithWalls() const;
   /// All place names, confirmed, guessed or only described, sorted.
@@ -305,6 +307,8 @@ class Dialogue {
   /// Asks whether a place with other names has these as well.
   void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
   /// DialogueParams::ask_from_afar.
+  /// For the name of a place where the robot may not be, by its generated id.
+  void askFromAfar(Id place, Reply& reply);
   void askMostInformativeQuestion(const MatchProblem& problem, Reply& reply);
   /// Asks whether a place may be called so; `sentence`: Question::sentence.
   void askNewName(Id place, const std::vector<std::string>& names, const std::string& sentence,

@@ -2,14 +2,20 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
+#include <vector>
+
+#include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
 
 /// Answers that fit as well as the best one put these names elsewhere.
 struct Uncertainty {
   std::set<std::string> names;
+  /// Where each of them is in the answers that were kept, the best answer's places first.
+  std::map<std::string, std::vector<Id>> places;
   std::size_t answers = 1;  ///< that fit equally well
   bool more = false;        ///< at least so many
 };

@@ -127,7 +127,7 @@ class TopoEngineServer {
   std::optional<SentenceForwarder> forwarder_;
   struct Publishers {
     ros::Publisher text, conversation, place, map, markers, question, grid, path, poses,
-        initial_pose, follow, names;
+        initial_pose, follow, names, candidates;
   } publishers_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
