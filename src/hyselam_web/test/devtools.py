@@ -195,9 +195,10 @@ class Tab:
     def type(self, text):
         self.send("Input.insertText", text=text)
 
-    def key(self, name, code=None):
+    def key(self, name, code=None, shift=False):
         codes = {"Enter": 13, "Tab": 9, "Escape": 27, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
         more = {"text": "\r"} if name == "Enter" else {"text": name} if len(name) == 1 else {}
+        more["modifiers"] = 8 if shift else 0
         self.send("Input.dispatchKeyEvent", type="keyDown", key=name, code=code or name, windowsVirtualKeyCode=codes.get(name, ord(name[0])), **more)
         self.send("Input.dispatchKeyEvent", type="keyUp", key=name, code=code or name, windowsVirtualKeyCode=codes.get(name, ord(name[0])))
 

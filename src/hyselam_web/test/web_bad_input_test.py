@@ -1,138 +1,18 @@
 #!/usr/bin/env python3
 """What a page, or who pretends to be one, may send: it is refused with a reason, nothing of it reaches the robot, all others go on. The table
 is in test/bad_input/web.md."""
-import asyncio
 import json
 import os
-import socket
 import sys
 import tempfile
-import threading
-import time
 import types
-import unittest
 
-import aiohttp
+import numpy as np
 
 sys.dont_write_bytecode = True
-from fake_robot import FakeRobot, ServedRobot, WAIT, wait_until
-from hyselam_web import app, limits
-
-TOKENS = "look=lookatme1 talk=talktome1 drive=driveme11"
-
-
-class Pages:
-    """Pages without a browser: one event loop, blocking calls."""
-
-    def __init__(self):
-        self.loop = asyncio.new_event_loop()
-        threading.Thread(target=self.loop.run_forever, daemon=True).start()
-        self.session = self.run(self._open())
-
-    async def _open(self):
-        return aiohttp.ClientSession(cookie_jar=aiohttp.DummyCookieJar())
-
-    def run(self, coroutine):
-        return asyncio.run_coroutine_threadsafe(coroutine, self.loop).result(WAIT)
-
-    def close(self):
-        self.run(self.session.close())
-        self.loop.call_soon_threadsafe(self.loop.stop)
-
-    async def _request(self, method, address, **more):
-        async with self.session.request(method, address, allow_redirects=False, **more) as answer:
-            return answer.status, await answer.read(), answer.headers
-
-    def request(self, method, address, **more):
-        return self.run(self._request(method, address, **more))
-
-
-class Socket:
-    """One open page."""
-
-    def __init__(self, pages, server, cookie="", origin=True, query=""):
-        headers = {"Cookie": f"{app.COOKIE}={cookie}"} if cookie else {}
-        if origin:
-            headers["Origin"] = server.address if origin is True else origin
-        self.pages, self.state, self.talk, self.answers, self.tiles, self.code = pages, {}, [], {}, {}, None
-        self.socket = pages.run(pages.session.ws_connect(server.address + "/ws" + query, headers=headers, autoping=True))
-        self.heard = asyncio.run_coroutine_threadsafe(self._listen(), pages.loop)
-        self.number = 0
-
-    async def _listen(self):
-        async for message in self.socket:
-            if message.type == aiohttp.WSMsgType.TEXT:
-                value = json.loads(message.data)
-                if "d" in value:
-                    self.state.update({k: v for k, v in value["d"].items() if k != "talk"})
-                    self.talk += value["d"].get("talk", [])
-                elif "alive" not in value:
-                    self.answers.setdefault(value.get("n"), []).append(value)
-            elif message.type == aiohttp.WSMsgType.BINARY:
-                self.tiles[message.data[:8]] = message.data[12:]
-        self.code = self.socket.close_code or "closed"
-
-    def send(self, text):
-        self.pages.run(self.socket.send_str(text))
-
-    def ask(self, what, **fields):
-        """The answer."""
-        self.number += 1
-        number = self.number
-        self.send(json.dumps(dict({"do": what, "n": number}, **fields)))
-        wait_until(lambda: self.answers.get(number), f"an answer to {what} {fields}")
-        return self.answers[number][-1]
-
-    def close(self):
-        self.heard.cancel()
-        self.pages.run(self.socket.close())
-
-
-class Case(unittest.TestCase):
-    tokens = ""
-
-    def setUp(self):
-        self.pages = Pages()
-        self.addCleanup(self.pages.close)
-        self.robot = FakeRobot()
-        self.served = ServedRobot(self.robot, self.tokens)
-        self.addCleanup(lambda: self.served.close())
-
-    def open(self, **more):
-        page = Socket(self.pages, self.served, **more)
-        self.addCleanup(page.close)
-        return page
-
-    def expect_all_is_well(self):
-        """A good page is served, and what it says comes through."""
-        page = self.open(cookie=self.cookie("drive") if self.tokens else "")
-        wait_until(lambda: "map" in page.state and page.tiles, "the map")
-        before = len(self.robot.asked)
-        self.assertEqual(page.ask("say", text="Hello.")["done"], "say")
-        self.assertEqual(self.robot.asked[before:], [("say", {"text": "Hello."}, "drive")])
-
-    def cookie(self, role):
-        return self.served.server.access.cookie(role, time.time())
-
-    def raw(self, data, wait=1.0):
-        """Bytes to the server; what comes back until it closes or nothing more comes."""
-        with socket.create_connection(("127.0.0.1", self.served.port), timeout=WAIT) as s:
-            s.sendall(data)
-            s.settimeout(wait)
-            out = b""
-            try:
-                while True:
-                    part = s.recv(65536)
-                    if not part:
-                        return out, True
-                    out += part
-                    if b"\x88" in out.partition(b"\r\n\r\n")[2] and b"101 Switching" in out:  # the server says that it closes
-                        return out, True
-            except socket.timeout:
-                return out, False
-            except ConnectionError:
-                return out, True
-
+from fake_robot import FakeRobot, RESOLUTION, ServedRobot, WAIT, wait_until
+from hyselam_web import app, limits, tiles
+from pages import Case, HANDSHAKE, Pages
 
 REFUSED = {
     # name: (message, code)
@@ -179,11 +59,8 @@ for case, (the_message, the_code) in REFUSED.items():
 
 
 class FramesTest(Case):
-    HANDSHAKE = ("GET /ws HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                 "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n")
-
     def frames(self, data):
-        out, closed = self.raw(self.HANDSHAKE.format(port=self.served.port).encode() + data, WAIT)
+        out, closed = self.raw(HANDSHAKE.format(port=self.served.port).encode() + data, WAIT)
         self.assertIn(b"101 Switching", out)
         self.assertTrue(closed)
         self.assertEqual(self.robot.asked, [])
@@ -217,283 +94,6 @@ class FramesTest(Case):
 
     def test_a_ping_that_is_too_long_ends_its_page(self):
         self.frames(b"\x89\xfe\x00\x80\0\0\0\0" + b"x" * 128)
-
-
-class FloodsTest(Case):
-    def test_a_flood_of_nonsense_ends_its_page_and_is_not_answered_by_a_flood(self):
-        page = self.open()
-        try:
-            for _ in range(limits.FLOOD + 200):
-                page.send("x")
-        except ConnectionError:
-            pass
-        wait_until(lambda: page.code, "the end")
-        self.assertLess(sum(len(a) for a in page.answers.values()), 60)
-        self.expect_all_is_well()
-
-    def stand_still(self):
-        """No bucket fills but when the test says so."""
-        at = [self.served.server.clock()]
-        self.served.server.clock = lambda: at[0]
-        return at
-
-    def test_a_flood_of_sentences_reaches_the_robot_in_drops(self):
-        self.stand_still()
-        page, size = self.open(), limits.RATES["say"][0]
-        for n in range(100, 120):
-            page.send(json.dumps({"do": "say", "n": n, "text": f"sentence {n}"}))
-        wait_until(lambda: all(n in page.answers for n in range(100, 120)), "an answer to each")
-        self.assertEqual([page.answers[n][0].get("error", "done") for n in range(100, 120)], ["done"] * size + ["too_often"] * (20 - size))
-        self.assertEqual(len(self.robot.asked), size)
-
-    def test_a_second_page_says_no_more_than_one(self):
-        self.stand_still()
-        pages = [self.open(), self.open()]
-        answers = [pages[n % 2].ask("say", text="Hello.").get("error", "done") for n in range(8)]
-        self.assertEqual(answers, ["done"] * 5 + ["too_often"] * 3)
-
-    def test_refusals_of_a_long_day_end_no_page(self):
-        at = self.stand_still()
-        page = self.open()
-        for _ in range(3):
-            for _ in range(limits.FLOOD - 10):
-                page.send("x")
-            self.assertEqual(page.ask("stop")["done"], "stop")
-            at[0] += 3600.0
-        self.assertIsNone(page.code)
-
-    def test_stop_goes_through_a_flood(self):
-        page = self.open()
-        for n in range(100):
-            page.send(json.dumps({"do": "say", "text": "go"}))
-        self.assertEqual(page.ask("stop")["done"], "stop")
-        self.assertEqual(self.robot.stops, 1)
-
-    def test_a_flood_of_stops_stops_and_does_not_fill_the_talk(self):
-        page = self.open()
-        begin = time.monotonic()
-        for _ in range(300):
-            page.send('{"do":"stop"}')
-        page.ask("stop")
-        took, stops = time.monotonic() - begin, self.robot.stops
-        self.assertGreaterEqual(stops, 1)
-        self.assertGreaterEqual(self.robot.cancels, 301)  # each cancels what moves
-        self.assertLessEqual(stops, 2 + took / app.STOP_PERIOD)
-        wait_until(lambda: not self.served.server._stop_again, "the last stop")
-        self.assertGreater(self.robot.stops, 1)
-
-    def test_a_stop_that_nobody_hears_is_told(self):
-        page = self.open()
-        self.assertEqual(page.ask("stop")["result"], {"heard": 1})
-        self.robot.hearers = 0
-        self.assertEqual(page.ask("stop")["result"], {"heard": 0})
-        answer = self.pages.request("POST", self.served.address + "/stop", headers={"Origin": self.served.address})
-        self.assertEqual(json.loads(answer[1])["heard"], 0)
-
-    def test_slow_requests_cannot_be_heaped_up(self):
-        page = self.open()
-        answers = [page.ask("doctor") for _ in range(6)]
-        self.assertEqual(sum("done" in a for a in answers), limits.RATES["slow"][0])
-
-    def test_too_many_pages_of_one_address_are_refused(self):
-        pages = [self.open() for _ in range(limits.MAX_PAGES_OF_ADDRESS)]
-        with self.assertRaises(aiohttp.WSServerHandshakeError) as caught:
-            self.open()
-        self.assertEqual(caught.exception.status, 503)
-        pages[0].close()
-        wait_until(lambda: len(self.served.server.pages) < limits.MAX_PAGES_OF_ADDRESS, "room")
-        self.expect_all_is_well()
-
-    def test_a_request_that_does_not_end_is_ended(self):
-        self.addCleanup(setattr, app, "SLOW", app.SLOW)
-        app.SLOW = 0.5
-        head = f"POST /login HTTP/1.1\r\nHost: 127.0.0.1:{self.served.port}\r\nOrigin: http://127.0.0.1:{self.served.port}\r\nContent-Length: 1000\r\n\r\n"
-        page = self.open()
-        out, closed = self.raw(head.encode() + b"{", WAIT)
-        self.assertEqual((out, closed), (b"", True))
-        self.assertEqual(page.ask("say", text="Hello.")["done"], "say")  # a page is open for as long as it likes
-        self.expect_all_is_well()
-
-    def test_pages_that_take_nothing_do_not_hold_up_the_end(self):
-        self.addCleanup(setattr, app, "CLOSING", app.CLOSING)
-        app.CLOSING = 0.2
-        for _ in range(5):
-            s = socket.socket()
-            self.addCleanup(s.close)
-            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            s.connect(("127.0.0.1", self.served.port))
-            s.sendall(FramesTest.HANDSHAKE.format(port=self.served.port).encode())
-        pages = self.served.server.pages
-        wait_until(lambda: len(pages) == 5, "the pages")
-        self.robot.later(lambda: self.robot.world.set("names", ["x" * 10000000]))
-        wait_until(lambda: all(page.sending is not None for page in pages), "that they take nothing")
-        self.served.close()
-        self.assertFalse(self.served._thread.is_alive())
-
-    def test_connections_that_ask_for_nothing_are_closed(self):
-        self.addCleanup(setattr, app, "UNUSED", app.UNUSED)
-        self.addCleanup(setattr, app, "MAX_CONNECTIONS", app.MAX_CONNECTIONS)
-        app.UNUSED, app.MAX_CONNECTIONS = 0.5, 50
-        idle = [socket.create_connection(("127.0.0.1", self.served.port)) for _ in range(100)]
-        for s in idle[::2]:
-            s.sendall(b"GET / HTTP/1.1\r\nHost: ")
-        for s in idle:
-            s.settimeout(WAIT)
-            try:
-                self.assertEqual(s.recv(10), b"")
-            except ConnectionError:
-                pass
-            s.close()
-        self.expect_all_is_well()
-
-    def test_a_page_that_takes_nothing_holds_up_nobody_and_is_disconnected(self):
-        self.addCleanup(setattr, limits, "STALLED", limits.STALLED)
-        limits.STALLED = 1.0
-        with socket.socket() as s:
-            s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            s.connect(("127.0.0.1", self.served.port))
-            s.sendall(FramesTest.HANDSHAKE.format(port=self.served.port).encode())
-            wait_until(lambda: self.served.server.pages, "the page")
-            other = self.open()
-            wait_until(lambda: len(self.served.server.pages) == 2, "the other page")
-            count = [0]
-            self.robot.collect = lambda: (self.robot.world.set("names", ["x" * 100000 + str(count[0])]), count.__setitem__(0, count[0] + 1))
-            wait_until(lambda: len(self.served.server.pages) == 1, "the end of the page that takes nothing")
-            heard = len(str(other.state.get("names")))
-            self.assertGreater(heard, 1000)
-        del self.robot.collect
-        self.expect_all_is_well()
-
-
-class AccessTest(Case):
-    tokens = TOKENS
-
-    def login(self, body, **more):
-        headers = {"Origin": self.served.address, "Content-Type": "application/json"}
-        return self.pages.request("POST", self.served.address + "/login", data=body, headers=headers, **more)
-
-    def test_the_right_token_opens_and_its_cookie_is_not_for_scripts(self):
-        status, _, headers = self.login('{"token":"talktome1"}')
-        self.assertEqual(status, 200)
-        cookie = headers["Set-Cookie"]
-        self.assertIn("HttpOnly", cookie)
-        self.assertIn("SameSite=Strict", cookie)
-        page = self.open(cookie=cookie.split("=", 1)[1].split(";")[0])
-        self.assertEqual(page.ask("say", text="Hello.")["done"], "say")
-        self.assertEqual(self.robot.asked[-1][2], "talk")
-
-    def test_wrong_tokens_are_refused(self):
-        for body in ('{"token":"wrong-token"}', '{"token":""}', '{"token":null}'):
-            status, text, headers = self.login(body)
-            self.assertEqual(status, 403, body)
-            self.assertNotIn("Set-Cookie", headers)
-
-    def test_a_login_that_is_no_json_is_refused(self):
-        for body in ("token=driveme11", "[]", '{"token":["driveme11"]}', b"\xff\xfe"):
-            self.assertEqual(self.login(body)[0], 403)
-
-    def test_a_huge_login_is_refused(self):
-        self.assertEqual(self.login('{"token":"%s"}' % ("x" * 100000))[0], 413)
-
-    def test_guessing_is_slowed_down(self):
-        statuses = [self.login('{"token":"guess%d"}' % n)[0] for n in range(12)]
-        self.assertEqual(statuses[:5], [403] * 5)
-        self.assertEqual(statuses[-1], 429)
-        self.assertEqual(self.login('{"token":"driveme11"}')[0], 429)  # not by this address, now
-
-    def test_strangers_do_not_keep_out_who_knows_the_token(self):
-        async def guess(address):
-            async with aiohttp.ClientSession(connector=aiohttp.TCPConnector(local_addr=(address, 0))) as session:
-                for _ in range(8):
-                    async with session.post(self.served.address + "/login", json={"token": "guessing"}, headers={"Origin": self.served.address}) as answer:
-                        await answer.read()
-                return answer.status
-        for n in range(2, 12):
-            self.assertEqual(self.pages.run(guess(f"127.0.0.{n}")), 429)
-        self.assertEqual([self.login('{"token":"driveme11"}')[0] for _ in range(8)], [200] * 8)  # right ones are not counted
-
-    def test_pages_without_a_role_leave_room_for_others(self):
-        pages = [self.open() for _ in range(limits.MAX_STRANGERS)]
-        with self.assertRaises(aiohttp.WSServerHandshakeError) as caught:
-            self.open()
-        self.assertEqual((caught.exception.status, len(pages)), (503, limits.MAX_STRANGERS))
-        self.expect_all_is_well()
-
-    def test_a_cookie_that_is_no_text_shows_nothing(self):
-        out = self.raw(f"GET /session HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\nCookie: {app.COOKIE}=\xff.1.2.\xff\r\n\r\n".encode("latin-1"))[0]
-        self.assertIn(b"200 OK", out.split(b"\r\n")[0])
-        self.assertIn(b'"role": ""', out)
-
-    def test_a_login_of_a_charset_that_does_not_exist_is_refused(self):
-        headers = {"Origin": self.served.address, "Content-Type": "application/json; charset=bogus"}
-        self.assertEqual(self.pages.request("POST", self.served.address + "/login", data='{"token":"driveme11"}', headers=headers)[0], 403)
-
-    def test_a_host_with_half_a_bracket_is_refused(self):
-        for host in ("[", "[::1", "[v1.x]"):
-            out = self.raw(f"GET / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())[0]
-            self.assertRegex(out.split(b"\r\n")[0], rb"HTTP/1.1 (400|421)", host)
-
-    def test_without_login_nothing_is_shown_and_only_stop_is_done(self):
-        page = self.open()
-        self.assertEqual(page.ask("say", text="Hello.")["error"], "not_allowed")
-        self.assertEqual(page.ask("pose", x=0, y=0, yaw=0)["error"], "not_allowed")
-        self.assertEqual(page.ask("stop")["done"], "stop")
-        self.assertEqual((self.robot.stops, self.robot.asked, page.state, page.tiles), (1, [], {}, {}))
-        for address in ("/reports", "/recording", "/report/x.html"):
-            self.assertEqual(self.pages.request("GET", self.served.address + address)[0], 403, address)
-
-    def test_stop_by_a_request_needs_no_login_but_a_page_from_here(self):
-        self.assertEqual(self.pages.request("POST", self.served.address + "/stop", headers={"Origin": self.served.address})[0], 200)
-        self.assertEqual(self.pages.request("POST", self.served.address + "/stop", headers={"Origin": "http://evil.example"})[0], 403)
-        self.assertEqual(self.pages.request("POST", self.served.address + "/stop")[0], 403)
-        self.assertEqual(self.robot.stops, 1)
-
-    def test_a_forged_cookie_shows_nothing(self):
-        good = self.cookie("look")
-        page = self.open(cookie=good.replace("look", "drive"))
-        self.assertEqual(page.ask("say", text="Hello.")["error"], "not_allowed")
-        self.assertEqual(page.state, {})
-
-    def test_who_may_look_may_not_talk(self):
-        page = self.open(cookie=self.cookie("look"))
-        wait_until(lambda: "map" in page.state, "the map")
-        for what, fields in (("say", {"text": "Go."}), ("name", {"place": 1, "names": ["x"]}), ("go", {"place": 1, "language": "en"}), ("save", {})):
-            self.assertEqual(page.ask(what, **fields)["error"], "not_allowed", what)
-        self.assertEqual(self.robot.asked, [])
-
-    def test_who_may_talk_may_not_drive(self):
-        page = self.open(cookie=self.cookie("talk"))
-        self.assertEqual(page.ask("name", place=1, names=["kitchen"])["done"], "name")
-        for what, fields in (("go", {"place": 1, "language": "en"}), ("pose", {"x": 0, "y": 0, "yaw": 0}), ("wall", {"ax": 0, "ay": 0, "bx": 1, "by": 1}),
-                             ("shut", {"door": 1}), ("here", {"place": 1}), ("learn", {"on": True}), ("save", {})):
-            self.assertEqual(page.ask(what, **fields)["error"], "not_allowed", what)
-        self.assertEqual(len(self.robot.asked), 1)
-
-    def test_pages_of_other_origins_are_refused(self):
-        for origin in ("http://evil.example", "null", f"http://127.0.0.1.evil.example:{self.served.port}", "http://127.0.0.1:1"):
-            with self.assertRaises(aiohttp.WSServerHandshakeError) as caught:
-                self.open(cookie=self.cookie("drive"), origin=origin)
-            self.assertEqual(caught.exception.status, 403, origin)
-
-    def test_a_socket_without_an_origin_is_refused(self):
-        with self.assertRaises(aiohttp.WSServerHandshakeError):
-            self.open(cookie=self.cookie("drive"), origin=False)
-
-    def test_names_that_lead_here_from_elsewhere_are_refused(self):
-        for host in ("evil.example", f"evil.example:{self.served.port}", ""):
-            self.assertIn(self.pages.request("GET", self.served.address + "/", headers={"Host": host})[0], (400, 421), host)
-        self.assertEqual(self.pages.request("GET", self.served.address + "/", headers={"Host": "robot.test"})[0], 200)
-
-    def test_a_restarted_server_knows_its_cookies_and_pages_go_on(self):
-        cookie, port = self.cookie("drive"), self.served.port
-        page = self.open(cookie=cookie)
-        wait_until(lambda: page.state, "the map")
-        self.served.close()
-        wait_until(lambda: page.code, "the end")
-        self.served = ServedRobot(self.robot, TOKENS, port)
-        again = self.open(cookie=cookie, query="?run=older&since=5")
-        wait_until(lambda: "map" in again.state and again.tiles, "the map")
-        self.assertEqual(again.ask("say", text="Hello again.")["done"], "say")
 
 
 class PathsTest(Case):
@@ -563,6 +163,26 @@ class PathsTest(Case):
 
 
 class NewsTest(Case):
+    def test_of_a_large_map_all_is_sent_coarsely_before_its_tiles_and_once(self):
+        page = self.open()
+        wait_until(lambda: "places" in page.state and page.tiles, "the small map")
+        self.assertIsNone(page.overview)
+        self.robot.later(lambda: self.robot.show_map(np.zeros((1400, 1400), np.int8), RESOLUTION, (-10.0, -10.0, 0.0)))
+        count = len([1 for _, picture in self.robot.tiles.tiles.values() if picture])
+        self.assertGreater(count, app.TILES_AT_ONCE)
+        first = self.open()
+        for each in (page, first):
+            wait_until(lambda: len([1 for t in each.tiles.values() if t]) == count, "all tiles")
+        self.assertEqual((first.order[0], first.order.count(tiles.OVERVIEW)), (tiles.OVERVIEW, 1))
+        column, row = tiles.CORNER.unpack(first.overview[:8])
+        self.assertEqual((column, row, first.overview[8:]), self.robot.tiles.overview())
+        self.assertIsNone(page.overview)  # it has seen a map
+        # Who comes back has it, too.
+        again = self.open(query=f"?run={self.served.server.run}&since={self.robot.world.version}")
+        self.robot.later(lambda: self.robot.say("human", "Hello."))
+        wait_until(lambda: again.talk, "the news")
+        self.assertEqual(again.order, [])
+
     def test_a_page_that_comes_back_gets_what_it_missed_and_no_more(self):
         page = self.open()
         wait_until(lambda: page.tiles and "places" in page.state, "the map")

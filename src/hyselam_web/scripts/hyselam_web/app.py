@@ -55,6 +55,7 @@ class Page:
         self.number = secrets.token_hex(6)
         self.person = cookie if role and cookie else address  # whose limits count: more pages say no more
         self.tiles_from, self.tiles_sent = since, {}
+        self.saw_all = since > 0  # coarsely
         self.hidden = False
         self.news = asyncio.Event()
         self.sending, self.last_sent = None, 0.0  # since when; when
@@ -295,6 +296,10 @@ class Server:
                     await page.socket.send_str(text)
                     page.since, page.last_sent = version, self.clock()
                 keys = self._tiles_for(page)
+                overview = self.robot.tiles.overview() if len(keys) == TILES_AT_ONCE and not page.saw_all else None
+                if overview is not None:  # a large map: all of it at once, then what is near
+                    await page.socket.send_bytes(map_tiles.overview_frame(overview))
+                page.saw_all = page.saw_all or bool(keys)
                 for key in keys:
                     tile = self.robot.tiles.tiles[key]
                     await page.socket.send_bytes(map_tiles.frame(key, tile))

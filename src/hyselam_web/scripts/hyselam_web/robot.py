@@ -95,7 +95,8 @@ class Robot:
         self.topics = {name: Latest(name, kind, big) for name, kind, big in (
             ("map", OccupancyGrid, True), ("scan", LaserScan, False), ("particlecloud", PoseArray, False), ("amcl_pose", PoseWithCovarianceStamped, False),
             ("localization_status", LocalizationStatus, False), ("named_map", AugmentedTopologicalMap, True), ("place", PlaceState, False),
-            ("goal_path", Path, False), ("object_map", ObjectMap, False), ("visual_place", VisualPlace, False), ("known_names", String, False))}
+            ("goal_path", Path, False), ("object_map", ObjectMap, False), ("visual_place", VisualPlace, False), ("known_names", String, False),
+            ("name_candidates", String, False))}
         rospy.Subscriber("/tf", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("/tf_static", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("conversation", String, self._on_talk, queue_size=200)
@@ -170,6 +171,9 @@ class Robot:
         names = self.topics["known_names"].message()
         if names is not None:
             world.set("names", [n[:sights.MAX_LABEL] for n in names.data.splitlines()[:1000] if n])
+        candidates = self.topics["name_candidates"].message()
+        if candidates is not None:
+            world.set("candidates", sights.candidates(candidates.data))
         status = self.topics["localization_status"].message()
         if status is not None:
             world.set("status", sights.status(status))

@@ -13,7 +13,7 @@ STEP = 0.05  # [s] between two looks
 
 def go_to(place, language):
     """By the map's own name of the place: one that people gave could be, or hold, another sentence."""
-    return ("Vai para {}." if language == "pt" else "Go to {}.").format(place["e"])
+    return ("Vá para {}." if language == "pt" else "Go to {}.").format(place["e"])
 
 
 class Sentences:

@@ -11,6 +11,7 @@ MAX_WAY = 400  # points of a way
 MAX_ITEMS = 5000  # places, doors, walls, objects
 MAX_OUTLINE = 200
 MAX_LABEL = 200  # characters of a name
+MAX_CANDIDATES = 50  # places that a name may be of
 CODES = {0: "SS", 1: "CC", 2: "VV"}  # as TopoEngine calls places
 VIRTUAL, GLASS = 0, 1  # kinds of walls
 OPEN_QUESTION = re.compile(r"\b(what|which|where|who|whose|how|qual|quais|que|onde|quem|quanto|quantos|quantas|como)\b", re.IGNORECASE)
@@ -137,6 +138,17 @@ def objects(msg):
         if each.id in at:
             item["at"] = at[each.id]
         found[str(each.id)] = item
+    return found
+
+
+def candidates(text):
+    """{name: numbers of the places where it may be} of names whose place is not sure, from lines of a name and ids of the map."""
+    found = {}
+    for line in text.splitlines()[:MAX_ITEMS]:
+        name, *codes = line.split("\t")
+        numbers = [int(each.group(1)) for each in map(CODE.fullmatch, codes) if each]
+        if name and numbers:
+            found[name[:MAX_LABEL]] = numbers[:MAX_CANDIDATES]
     return found
 
 

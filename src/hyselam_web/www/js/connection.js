@@ -2,6 +2,7 @@
 const QUIET = 13000; // [ms] without a word, though the server speaks every five seconds
 const ANSWER = 45000; // [ms] for what was asked for
 const SLOWEST = 8000; // [ms] between two tries
+const IN_ALL = -(2 ** 31); // column of the frame of the coarse picture
 
 export class Connection {
   // events: onState(connected), onSession(session), onTiles()
@@ -39,7 +40,10 @@ export class Connection {
   open(session) {
     this.close();
     const goes_on = session.run === this.run && this.model.complete && this.model.version > 0;
-    if (!goes_on) this.model.tiles.clear();
+    if (!goes_on) {
+      this.model.tiles.clear();
+      this.model.overview = null;
+    }
     const query = goes_on ? `?run=${session.run}&since=${this.model.version}` : "";
     const address = new URL("ws" + query, location.href);
     address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
@@ -89,6 +93,11 @@ export class Connection {
     this.heard = Date.now();
     if (data instanceof ArrayBuffer) {
       const view = new DataView(data);
+      if (view.getInt32(0, true) === IN_ALL) {
+        this.model.overview = {column: view.getInt32(12, true), row: view.getInt32(16, true), picture: new Blob([new Uint8Array(data, 20)], {type: "image/png"})};
+        this.events.onTiles();
+        return;
+      }
       const picture = data.byteLength > 12 ? new Blob([new Uint8Array(data, 12)], {type: "image/png"}) : null;
       this.model.setTile(view.getInt32(0, true), view.getInt32(4, true), view.getUint32(8, true), picture);
       this.events.onTiles();

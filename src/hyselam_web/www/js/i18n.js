@@ -11,11 +11,14 @@ const TEXTS = {
     tabs_label: "Views", tab_talk: "Talk", tab_places: "Places", tab_robot: "Robot", tab_back: "History",
     welcome: "Tell the robot about the building, as you would tell a visitor. The names appear on the map.",
     login_title: "Password, please", login_text: "STOP works without it.", login_token: "Password", login_go: "Open", login_wrong: "That is not the password.", login_often: "Too many tries. Wait a moment.",
-    lost_connection: "No connection: what you see may be old. Trying again…", lost_master: "The robot's computer does not answer (no ROS master). What you see may be old.",
+    lost_connection: "No connection: what you see may be old. Trying again…", lost_master: "The robot's computer does not answer. What you see may be old.",
     not_connected: "Not connected: it was not sent.", stop_sent: "Stop was sent.", stop_failed: "STOP WAS NOT SENT: there is no connection!", stop_unheard: "Stop was sent, but NOBODY HEARS IT: neither the dialogue nor the navigation runs!",
     in_place: "In: {name}", in_doorway: "In the doorway: {name}", nowhere: "Its place is not known", phase_search: "looking for itself", phase_lost: "lost", phase_sure: "it knows where it is", going: "on its way", following: "following a person",
-    place_of: "Place {code}", named_guess: "A guess, from what it was told.", named_sure: "Its name is confirmed.", unnamed: "It has no name yet.", kind_0: "A room", kind_1: "A corridor", kind_2: "A part of a room", about: "{kind} of about {area} m².", robot_is_here: "The robot is here.",
+    place_of: "Place {n}", place_number: "place {n}", named_guess: "A guess, from what it was told.", named_sure: "Its name is confirmed.", unnamed: "It has no name yet.", kind_0: "A room", kind_1: "A corridor", kind_2: "A part of a room", about: "{kind} of about {area} m².", robot_is_here: "The robot is here.",
     beside: "Next to: {names}.", things: "Things here: {names}.", asked_here: "The robot asks about this place.",
+    next_label: "What you can do next", did_you_mean: "Did you mean:", where_is_it: "Where is {name}?", where_then: "Where is {name} then?", other_place: "Another place…", tap_place: "Tap it on the map…", not_now: "Not now", this_is: "This is {name}", show_where: "Show where {name} is",
+    tool_pick: "Tap the place of {name} on the map.", tool_pick_keys: "With keys: move the map, Enter.",
+    kinds: "kitchen, office, library, bathroom, toilet, restroom, corridor, hallway, lobby, laboratory, workshop, reception, entrance, elevator, stairs, meeting room, classroom, storage room, bedroom, living room, dining room, garage, canteen, cafeteria, archive, waiting room, printer room, server room, secretary",
     right_name: "Yes, right", wrong_name: "No", go_there: "Go there", name_it: "Name it", rename_it: "Rename", ask_about: "What is this?", here_you_are: "The robot is here", name_label: "Name of the place", save_name: "Save", forget_name: "Forget the name", cancel: "Cancel", close: "Close", examples: "for example: kitchen",
     doors: "Doors", door_to: "Door to {name}", shut: "Treat as shut", shut_done: "The robot takes this door for shut now. Say “Forget the last wall” to open it.", door_closed: "was closed",
     what_next: "What is next to {name}?", undo_sentence: "Undo that.",
@@ -23,6 +26,9 @@ const TEXTS = {
     pose_title: "Where it is", camera_title: "What the camera thinks", camera_nothing: "The picture shows no place in particular.", layers_title: "Parts of the robot", do_title: "Do", page_title: "This page",
     set_pose: "Show where it is", draw_wall: "Draw a glass wall", check: "Check everything", checking: "Checking, 5 seconds…", save: "Save what it knows", saving: "Saving…", saved: "Saved.", learn: "Learn how places look", unlearn: "Stop learning", learning: "It is learning.", not_learning: "It has stopped learning.",
     all_right: "Nothing is wrong.", speak: "Read answers aloud", theme: "Light or dark", logout: "Log out", no_layers: "No part reports anything.",
+    layer_slam: "Draws the map", layer_localization: "Knows where it is", layer_fsd: "Finds itself when it is lost", layer_words: "Remembers its ways", layer_gr2to: "Finds the rooms on the map", layer_topo_engine: "Talks and keeps the names", layer_semantic_localization: "Knows places by their look", layer_object_engine: "Knows things", layer_map_server: "Shows the map",
+    level_ok: "works", level_warn: "works, but has something to say", level_error: "does not work", level_stale: "says nothing", technical: "Details for technicians", map_refused: "The new map cannot be shown.",
+    found_WRONG: "{what}: something is wrong.", found_note: "{what}: worth a look.", about_tf: "How its parts stand to each other", about_scan: "Laser", about_laser: "Mounting of the laser", about_clock: "Clock", about_map: "Map", about_odometry: "Wheels", about_nodes: "Programs", about_camera: "Camera", about_topics: "Connections between its parts", about_diagnostics: "Report of a part", about_other: "Another part",
     tool_pose: "Touch where the robot is and drag towards where it looks.", tool_wall: "Drag from one end of the glass to the other.", tool_keys: "With keys: move the map, Enter, move, Enter.", tool_second: "Now the other end: Enter.", pose_sent: "Thank you. The robot starts from there.", wall_sent: "The glass wall is on the map. “Forget the last wall” takes it away.",
     reports: "Reports", no_reports: "There are no reports here.", watch: "Watch this day again", watch_text: "Everything that this page showed since the robot was started.", back_live: "Back to now", play: "Play", pause: "Pause", time_label: "Time of the day", speed_label: "Speed", replay: "Recording", no_recording: "There is no recording.",
     error_too_often: "Too much at once. Wait a moment.", error_stopped: "Not said: the robot was stopped meanwhile.", error_not_allowed: "You are not allowed to do that.", error_nobody: "That part of the robot does not run.", error_no_answer: "The robot did not answer in time.", error_busy: "The robot is busy. Try again.", error_failed: "That did not work.", error_invalid: "That is not possible.", error_unknown: "That is not there any more.", error_malformed: "That was not understood.",
@@ -30,29 +36,35 @@ const TEXTS = {
   },
   pt: {
     title: "Robô", skip_to_talk: "Saltar para a conversa", change_language: "Switch to English", other_language: "EN",
-    map_label: "Mapa do edifício", map_keys: "As setas movem o mapa, mais e menos ampliam, 0 mostra tudo, R vai para o robô, Enter abre o lugar do meio. Todos os lugares estão também na lista Lugares.",
+    map_label: "Mapa do edifício", map_keys: "As setas movem o mapa, mais e menos ampliam, 0 mostra tudo, R mostra o robô, Enter abre o lugar do meio. Todos os lugares estão também na lista Lugares.",
     map_empty: "Ainda não há mapa. Cresce quando o robô anda.", zoom_in: "Ampliar", zoom_out: "Reduzir", fit_map: "Mostrar o mapa todo", follow_robot: "Acompanhar o robô",
     talk_label: "A conversa com o robô", suggestions: "Sugestões", say_label: "Diga algo ao robô", say_placeholder: "Diga algo…", answer_placeholder: "A sua resposta…",
-    send: "Enviar", listen: "Falar em vez de escrever", listening: "A ouvir…", yes: "Sim", no: "Não", stop: "PARAR", undo: "Desfazer",
+    send: "Enviar", listen: "Falar em vez de escrever", listening: "Pode falar…", yes: "Sim", no: "Não", stop: "PARAR", undo: "Desfazer",
     tabs_label: "Vistas", tab_talk: "Conversa", tab_places: "Lugares", tab_robot: "Robô", tab_back: "Histórico",
     welcome: "Descreva o edifício ao robô, como a uma visita. Os nomes aparecem no mapa.",
     login_title: "Senha, por favor", login_text: "PARAR funciona sem ela.", login_token: "Senha", login_go: "Abrir", login_wrong: "A senha não está certa.", login_often: "Demasiadas tentativas. Espere um momento.",
-    lost_connection: "Sem ligação: o que vê pode ser antigo. A tentar de novo…", lost_master: "O computador do robô não responde (sem ROS master). O que vê pode ser antigo.",
+    lost_connection: "Sem ligação: o que vê pode ser antigo. Nova tentativa em breve…", lost_master: "O computador do robô não responde. O que vê pode ser antigo.",
     not_connected: "Sem ligação: não foi enviado.", stop_sent: "A ordem de parar foi enviada.", stop_failed: "A ORDEM DE PARAR NÃO FOI ENVIADA: não há ligação!", stop_unheard: "A ordem de parar foi enviada, mas NINGUÉM A OUVE: nem o diálogo nem a navegação funcionam!",
-    in_place: "Em: {name}", in_doorway: "À porta: {name}", nowhere: "Não se sabe onde está", phase_search: "à procura de si", phase_lost: "perdido", phase_sure: "sabe onde está", going: "a caminho", following: "a seguir uma pessoa",
-    place_of: "Lugar {code}", named_guess: "Um palpite, pelo que lhe disseram.", named_sure: "O nome está confirmado.", unnamed: "Ainda não tem nome.", kind_0: "Uma sala", kind_1: "Um corredor", kind_2: "Uma parte de uma sala", about: "{kind} de cerca de {area} m².", robot_is_here: "O robô está aqui.",
+    in_place: "Em: {name}", in_doorway: "À porta: {name}", nowhere: "Não se sabe onde está", phase_search: "procura onde está", phase_lost: "perdido", phase_sure: "sabe onde está", going: "a caminho", following: "segue uma pessoa",
+    place_of: "Lugar {n}", place_number: "lugar {n}", named_guess: "Um palpite, pelo que lhe disseram.", named_sure: "O nome está confirmado.", unnamed: "Ainda não tem nome.", kind_0: "Uma sala", kind_1: "Um corredor", kind_2: "Uma parte de uma sala", about: "{kind} de cerca de {area} m².", robot_is_here: "O robô está aqui.",
     beside: "Ao lado: {names}.", things: "Coisas aqui: {names}.", asked_here: "O robô pergunta por este lugar.",
+    next_label: "O que pode fazer a seguir", did_you_mean: "Queria dizer:", where_is_it: "Onde fica {name}?", where_then: "Então onde fica {name}?", other_place: "Outro lugar…", tap_place: "Tocar no mapa…", not_now: "Agora não", this_is: "Este lugar é {name}", show_where: "Mostrar onde fica {name}",
+    tool_pick: "Toque no mapa, no lugar de {name}.", tool_pick_keys: "Com teclas: mover o mapa, Enter.",
+    kinds: "cozinha, escritório, gabinete, biblioteca, banheiro, casa de banho, lavabo, corredor, átrio, laboratório, oficina, receção, recepção, entrada, elevador, escadas, escada, sala de reuniões, sala de aula, arrecadação, depósito, quarto, sala de estar, sala de jantar, garagem, cantina, refeitório, arquivo, sala de espera, secretaria",
     right_name: "Sim, certo", wrong_name: "Não", go_there: "Ir para lá", name_it: "Dar nome", rename_it: "Mudar o nome", ask_about: "O que é isto?", here_you_are: "O robô está aqui", name_label: "Nome do lugar", save_name: "Guardar", forget_name: "Esquecer o nome", cancel: "Cancelar", close: "Fechar", examples: "por exemplo: cozinha",
-    doors: "Portas", door_to: "Porta para {name}", shut: "Tratar como fechada", shut_done: "O robô trata agora esta porta como fechada. Diga “Esquece a última parede” para a abrir.", door_closed: "estava fechada",
-    what_next: "O que há ao lado de {name}?", undo_sentence: "Desfaz isso.",
+    doors: "Portas", door_to: "Porta para {name}", shut: "Tratar como fechada", shut_done: "O robô trata agora esta porta como fechada. Diga “Esqueça a última parede” para a abrir.", door_closed: "estava fechada",
+    what_next: "O que há ao lado de {name}?", undo_sentence: "Desfaça isso.",
     no_places: "Ainda não há lugares: o robô encontra-os no mapa.", search_places: "Procurar", objects: "Coisas", no_objects: "Ainda nada foi dito nem visto.", seen: "no mapa", told: "dito", no_name: "ainda sem nome",
     pose_title: "Onde está", camera_title: "O que a câmara pensa", camera_nothing: "A imagem não mostra nenhum lugar em particular.", layers_title: "Partes do robô", do_title: "Fazer", page_title: "Esta página",
-    set_pose: "Mostrar onde está", draw_wall: "Desenhar parede de vidro", check: "Verificar tudo", checking: "A verificar, 5 segundos…", save: "Guardar o que sabe", saving: "A guardar…", saved: "Guardado.", learn: "Aprender o aspeto dos lugares", unlearn: "Parar de aprender", learning: "Está a aprender.", not_learning: "Parou de aprender.",
+    set_pose: "Mostrar onde está", draw_wall: "Desenhar parede de vidro", check: "Verificar tudo", checking: "Verificação em curso, 5 segundos…", save: "Guardar o que sabe", saving: "Um momento…", saved: "Guardado.", learn: "Aprender o aspeto dos lugares", unlearn: "Parar de aprender", learning: "Aprende a partir de agora.", not_learning: "Parou de aprender.",
     all_right: "Está tudo bem.", speak: "Ler as respostas em voz alta", theme: "Claro ou escuro", logout: "Sair", no_layers: "Nenhuma parte diz nada.",
-    tool_pose: "Toque onde o robô está e arraste para onde ele olha.", tool_wall: "Arraste de uma ponta do vidro à outra.", tool_keys: "Com teclas: mover o mapa, Enter, mover, Enter.", tool_second: "Agora a outra ponta: Enter.", pose_sent: "Obrigado. O robô parte daí.", wall_sent: "A parede de vidro está no mapa. “Esquece a última parede” tira-a.",
+    layer_slam: "Desenha o mapa", layer_localization: "Sabe onde está", layer_fsd: "Encontra-se quando está perdido", layer_words: "Lembra-se dos caminhos", layer_gr2to: "Encontra as salas no mapa", layer_topo_engine: "Conversa e guarda os nomes", layer_semantic_localization: "Conhece lugares pelo aspeto", layer_object_engine: "Conhece coisas", layer_map_server: "Mostra o mapa",
+    level_ok: "funciona", level_warn: "funciona, mas tem algo a dizer", level_error: "não funciona", level_stale: "não diz nada", technical: "Pormenores para técnicos", map_refused: "O novo mapa não pode ser mostrado.",
+    found_WRONG: "{what}: há algo errado.", found_note: "{what}: convém ver.", about_tf: "Posição das partes entre si", about_scan: "Laser", about_laser: "Montagem do laser", about_clock: "Relógio", about_map: "Mapa", about_odometry: "Rodas", about_nodes: "Programas", about_camera: "Câmara", about_topics: "Ligações entre as partes", about_diagnostics: "Aviso de uma parte", about_other: "Outra parte",
+    tool_pose: "Toque onde o robô está e arraste na direção em que olha.", tool_wall: "Arraste de uma ponta do vidro à outra.", tool_keys: "Com teclas: mover o mapa, Enter, mover, Enter.", tool_second: "Agora a outra ponta: Enter.", pose_sent: "Obrigado. O robô parte daí.", wall_sent: "A parede de vidro está no mapa. “Esqueça a última parede” apaga-a.",
     reports: "Relatórios", no_reports: "Aqui não há relatórios.", watch: "Rever este dia", watch_text: "Tudo o que esta página mostrou desde que o robô foi ligado.", back_live: "Voltar ao presente", play: "Reproduzir", pause: "Pausa", time_label: "Hora do dia", speed_label: "Velocidade", replay: "Gravação", no_recording: "Não há gravação.",
     error_too_often: "Demasiado de uma vez. Espere um momento.", error_stopped: "Não foi dito: entretanto o robô foi mandado parar.", error_not_allowed: "Não tem permissão para isso.", error_nobody: "Essa parte do robô não está a funcionar.", error_no_answer: "O robô não respondeu a tempo.", error_busy: "O robô está ocupado. Tente de novo.", error_failed: "Não resultou.", error_invalid: "Isso não é possível.", error_unknown: "Isso já não existe.", error_malformed: "Não se percebeu.",
-    start_where: "Onde estás?", start_in: "Estás no ", start_left: "À tua esquerda tens ", start_right: "À tua direita tens ", start_this: "Esta é a ", start_go: "Vai para ", start_help: "Ajuda", start_told: "O que te disse?",
+    start_where: "Onde está?", start_in: "Está no ", start_left: "À sua esquerda tem ", start_right: "À sua direita tem ", start_this: "Esta é a ", start_go: "Vá para ", start_help: "Ajuda", start_told: "O que lhe disse?",
   },
 };
 
@@ -63,8 +75,8 @@ export function currentLanguage() {
   return language;
 }
 
-export function t(key, values = {}) {
-  const text = TEXTS[language][key] ?? TEXTS.en[key];
+export function t(key, values = {}, of_language = language) {
+  const text = TEXTS[of_language][key] ?? TEXTS.en[key];
   if (text === undefined) throw new Error(`no text ${key}`);
   return text.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? String(values[name]) : whole));
 }

@@ -6,8 +6,10 @@ import {Connection, postStop} from "./connection.js";
 import {MapView} from "./map_view.js";
 import {Talk, reasonOf} from "./talk.js";
 import {Places} from "./places.js";
+import {NextStep} from "./next_step.js";
 import {RobotPanel} from "./robot_panel.js";
 import {LookBack} from "./look_back.js";
+import {told} from "./wording.js";
 import {Replay, entriesOf} from "./replay.js";
 
 const ROLES = ["look", "talk", "drive"];
@@ -37,17 +39,27 @@ class Page {
     const {model, source} = this;
     const may = (role) => this.may(role);
     this.map = new MapView(byId("map"), model, {
-      onTap: (x, y, place, object) => this.onTap(place, object),
+      onTap: (x, y, place, object) => this.onTap(place, this.picking ? null : object),
       onLine: (from, to) => this.onLine(from, to),
       onFirstEnd: () => this.showTool("tool_second"),
       onUserMove: () => byId("follow").setAttribute("aria-pressed", "false"),
-      onEscape: () => (this.map.tool ? this.setTool(null) : this.places.close()),
+      onEscape: () => (this.map.tool || this.picking ? this.setTool(null) : this.places.close()),
     });
-    this.talk = new Talk(model, source, may);
+    this.talk = new Talk(model, source, may, (text) => this.next.heard(text));
+    this.next = new NextStep(model, source, may, {
+      say: (text) => this.talk.say(text),
+      pick: (name, ids) => this.pick(name, ids),
+      marked: (marked) => {
+        model.marked = marked;
+        model.tell(["marked"]);
+      },
+    });
     this.places = new Places(model, source, may, {
       showOnMap: (x, y) => this.map.show(x, y),
       say: (text) => this.talk.say(text),
       openTalk: () => this.openTab("talk"),
+      pick: (name) => this.pick(name, []),
+      give: (id, name) => this.next.give(id, name),
       selected: (id) => {
         this.map.selected = id;
         this.map.invalidate();
@@ -82,7 +94,8 @@ class Page {
     onLanguage(() => {
       named();
       this.showLost();
-      if (this.map.tool) this.showTool();
+      if (this.map.tool || this.picking) this.showTool();
+      this.map.invalidate();
     });
     named();
     empty();
@@ -103,6 +116,7 @@ class Page {
     if (changed) {
       this.robot.build();
       this.talk.showAsked();
+      this.next.show();
       byId("say-form").hidden = byId("chips").hidden = !this.may("talk");
       if (this.places.open) this.places.showCard();
     }
@@ -138,13 +152,31 @@ class Page {
   // ---- Map ----
 
   onTap(place, object) {
-    if (object !== null) this.places.show("object", object);
+    if (this.picking) {
+      if (place === null) return;
+      const {name} = this.picking;
+      this.setTool(null);
+      this.next.give(place, name);
+    } else if (object !== null) this.places.show("object", object);
     else if (place !== null) {
       this.places.show("place", place, this.map.keys);
     } else this.places.close();
   }
 
+  // The next place that is tapped gets the name.
+  pick(name, ids) {
+    this.setTool(null);
+    this.picking = {name, ids};
+    if (ids.length) this.map.fit();
+    byId("map").classList.add("picking");
+    byId("tool-bar").hidden = false;
+    this.showTool();
+    byId("map").focus({preventScroll: true});
+  }
+
   setTool(kind) {
+    this.picking = null;
+    byId("map").classList.remove("picking");
     this.map.setTool(kind);
     this.places.close();
     byId("tool-bar").hidden = !kind;
@@ -154,8 +186,9 @@ class Page {
     }
   }
 
-  showTool(key = `tool_${this.map.tool.kind}`) {
-    byId("tool-bar").replaceChildren(t(key), make("div", {class: "row"}, button(t("cancel"), () => this.setTool(null)), make("span", {class: "note"}, t("tool_keys"))));
+  showTool(key = this.picking ? "tool_pick" : `tool_${this.map.tool.kind}`) {
+    const keys = t(this.picking ? "tool_pick_keys" : "tool_keys");
+    byId("tool-bar").replaceChildren(t(key, this.picking ?? {}), make("div", {class: "row"}, button(t("cancel"), () => this.setTool(null)), make("span", {class: "note"}, keys)));
   }
 
   async onLine(from, to) {
@@ -222,3 +255,4 @@ class Page {
 
 globalThis.hyselam = new Page();
 globalThis.hyselam.missingTexts = missingTexts;
+globalThis.hyselam.told = (text) => told(text, globalThis.hyselam.model);

@@ -1,6 +1,7 @@
 // The map on a canvas: what the robot knows, in metres, moved and zoomed by fingers, mouse and keys.
 import {unpack} from "./model.js";
 import {TilePictures} from "./tiles.js";
+import {MapLabels, haloed} from "./map_labels.js";
 
 const TAP = 9; // [pixels] that a finger may move within a tap
 const GLIDE = 250; // [ms] in which the robot's picture follows its pose
@@ -15,6 +16,8 @@ export class MapView {
     this.fitted = false;
     this.follows = false;
     this.selected = null;
+    this.hovered = null; // the place under the mouse
+    this.names = new MapLabels(this);
     this.tool = null; // {kind, from, to}
     this.pointers = new Map();
     this.shown = null; // pose that is drawn
@@ -26,7 +29,7 @@ export class MapView {
     const dark = matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", () => this.themeChanged());
     this.themeChanged();
-    model.on(["map", "places", "doors", "walls", "objects", "pose", "spread", "scan", "particles", "way", "here", "asked", "status", "camera"], (names) => {
+    model.on(["map", "places", "doors", "walls", "objects", "pose", "spread", "scan", "particles", "way", "here", "asked", "status", "camera", "marked"], (names) => {
       if (names.includes("scan")) this.scanPoints = null;
       if (names.includes("particles")) this.particlePoints = null;
       if (names.includes("map") && !this.fitted) this.fit();
@@ -167,8 +170,11 @@ export class MapView {
     });
     this.canvas.addEventListener("pointermove", (event) => {
       const pointer = this.pointers.get(event.pointerId);
-      if (!pointer) return;
       const p = at(event);
+      if (!pointer) {
+        this.hover(p);
+        return;
+      }
       if (Math.hypot(p[0] - pointer.start[0], p[1] - pointer.start[1]) > TAP) pointer.moved = true;
       if (this.pointers.size === 2) this.pinch(event.pointerId, p);
       else if (this.tool && this.tool.from) this.tool.to = this.toMap(...p);
@@ -191,6 +197,7 @@ export class MapView {
       }
       this.invalidate();
     };
+    this.canvas.addEventListener("pointerleave", () => this.hover(null));
     this.canvas.addEventListener("pointerup", end);
     this.canvas.addEventListener("pointercancel", end);
     this.canvas.addEventListener("wheel", (event) => {
@@ -202,6 +209,15 @@ export class MapView {
       this.keys = false;
       this.invalidate();
     });
+  }
+
+  // The mouse over a place, or over none.
+  hover(p) {
+    const id = p && !this.tool ? this.names.placeAt(...p) : null;
+    if (id === this.hovered) return;
+    this.hovered = id;
+    this.canvas.title = id === null ? "" : this.model.titleOf(id);
+    this.invalidate();
   }
 
   pan(dx, dy) {
@@ -232,7 +248,7 @@ export class MapView {
       const distance = Math.hypot(ox - px, oy - py);
       if (this.scale > 14 && distance < nearest) [nearest, object] = [distance, id];
     }
-    this.events.onTap(x, y, this.model.placeAt(x, y), object);
+    this.events.onTap(x, y, this.names.placeAt(px, py), object);
   }
 
   key(event) {
@@ -321,10 +337,14 @@ export class MapView {
     this.drawSenses(c);
     c.restore();
     this.drawObjects(c);
-    this.drawNames(c);
+    this.names.draw(c);
     this.drawRobot(c);
     this.drawTool(c);
     this.drawnTiles = this.tiles.drawn.size;
+    this.labels = this.names.shown.size;
+    // When all of the map was seen first, and when in all its cells [ms after the address was given].
+    if (this.tiles.isWhole()) this.seen ??= performance.now();
+    if (this.tiles.isFine()) this.fine ??= performance.now();
   }
 
   outline(c, place) {
@@ -340,10 +360,11 @@ export class MapView {
       this.outline(c, place);
       c.fillStyle = `hsla(${Math.round(id * 222.492) % 360}, 70%, ${this.dark ? 60 : 50}%, ${this.dark ? 0.2 : 0.16})`;
       c.fill();
-      if (String(id) === String(this.selected) || Number(id) === asked) {
+      const open = Number(id) === asked || (this.model.marked?.ids.includes(Number(id)) ?? false);
+      if (String(id) === String(this.selected) || open) {
         c.lineWidth = 3 / this.scale;
-        c.strokeStyle = Number(id) === asked ? this.colors.asked : this.colors.robot;
-        c.setLineDash(Number(id) === asked ? [8 / this.scale, 5 / this.scale] : []);
+        c.strokeStyle = open ? this.colors.asked : this.colors.robot;
+        c.setLineDash(open ? [8 / this.scale, 5 / this.scale] : []);
         c.stroke();
         c.setLineDash([]);
       }
@@ -440,61 +461,8 @@ export class MapView {
       c.rect(x - 5, y - 5, 10, 10);
       c.stroke();
       c.fill();
-      if (this.scale > 28 && !["thing", "furniture"].includes(each.k)) this.haloed(c, each.k, x + 9, y, this.colors.object);
+      if (this.scale > 28 && !["thing", "furniture"].includes(each.k)) haloed(c, each.k, x + 9, y, this.colors.object, this.colors.halo);
     }
-  }
-
-  haloed(c, text, x, y, color) {
-    c.lineWidth = 3.5;
-    c.lineJoin = "round";
-    c.strokeStyle = this.colors.halo;
-    c.strokeText(text, x, y);
-    c.fillStyle = color;
-    c.fillText(text, x, y);
-  }
-
-  // Confirmed names first, then guesses, then codes; what would cover another one waits for a closer look.
-  drawNames(c) {
-    const labels = [];
-    const asked = this.model.values.asked?.place;
-    for (const [id, place] of Object.entries(this.model.tables.places)) {
-      if (!place.c) continue;
-      const name = this.model.nameOf(id);
-      const is_asked = Number(id) === asked;
-      const rank = is_asked ? 0 : String(id) === String(this.selected) ? 1 : name.sure ? 2 : name.none ? 4 : 3;
-      labels.push({rank, place, name, is_asked, area: place.s});
-    }
-    labels.sort((a, b) => a.rank - b.rank || b.area - a.area);
-    const taken = [];
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    c.textAlign = "center";
-    c.textBaseline = "middle";
-    for (const {place, name, is_asked} of labels) {
-      let [x, y] = this.toScreen(...place.c);
-      if (x < -80 || y < -40 || x > width + 80 || y > height + 40) continue;
-      const size = (name.none ? 11 : 14) - (this.scale < 12 ? 2 : 0);
-      c.font = `${name.none ? "" : name.sure ? "600 " : "italic 500 "}${size}px system-ui, "Liberation Sans", sans-serif`;
-      const lines = wrapped(is_asked && name.none ? "?" : this.labelText(name));
-      const wide = Math.max(...lines.map((line) => c.measureText(line).width)) + 6;
-      const high = lines.length * (size + 2) + 2;
-      // A little higher or lower in its place, where another name is in the way.
-      const ys = (place.o ?? []).filter((_, i) => i % 2);
-      const room = Math.max(0, (Math.max(...ys) - Math.min(...ys)) * this.scale * 0.5 - high / 2);
-      const shift = [0, 0.5, -0.5, 1, -1].map((share) => share * Math.min(room || 0, 1.6 * high)).find((dy) => {
-        const box = [x - wide / 2, y + dy - high / 2, x + wide / 2, y + dy + high / 2];
-        return !taken.some((other) => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1]);
-      });
-      if (shift === undefined) continue;
-      y += shift;
-      taken.push([x - wide / 2, y - high / 2, x + wide / 2, y + high / 2]);
-      const color = is_asked ? this.colors.asked : name.none ? this.colors.soft : this.colors.text;
-      lines.forEach((line, i) => this.haloed(c, line, x, y + (i - (lines.length - 1) / 2) * (size + 2), color));
-    }
-    this.labels = taken.length;
-  }
-
-  labelText(name) {
-    return name.text + (name.sure || name.none ? "" : "?");
   }
 
   drawRobot(c) {
@@ -580,18 +548,4 @@ export class MapView {
       c.fill();
     }
   }
-}
-
-// A name in up to three lines.
-export function wrapped(text) {
-  if (text.length <= 11) return [text];
-  const lines = [""];
-  for (const word of text.split(" ")) {
-    const last = lines[lines.length - 1];
-    if (last && last.length + 1 + word.length > 11) lines.push(word);
-    else lines[lines.length - 1] = last ? `${last} ${word}` : word;
-  }
-  const cut = lines.slice(0, 3).map((line) => (line.length > 18 ? line.slice(0, 17) + "…" : line));
-  if (lines.length > 3) cut[2] = cut[2].slice(0, 16) + "…";
-  return cut;
 }

@@ -1,8 +1,11 @@
 // What the page knows, as the server tells it: values, tables, the talk, and the tiles of the map.
+import {t} from "./i18n.js";
+
 export class Model {
   constructor() {
     this.listeners = new Map();
     this.tiles = new Map(); // "column,row": {column, row, version, picture}
+    this.overview = null; // {column, row, picture}: all tiles coarsely, until they are here
     this.clear();
   }
 
@@ -73,12 +76,21 @@ export class Model {
     if (!place) return {text: String(id), sure: false, none: true};
     const confirmed = place.n.find((word) => word[1]);
     const word = confirmed ?? place.n[0];
-    return word ? {text: word[0], sure: Boolean(confirmed), none: false} : {text: place.e, sure: false, none: true};
+    return word ? {text: word[0], sure: Boolean(confirmed), none: false} : {text: t("place_number", {n: id}), sure: false, none: true};
   }
 
   labelOf(id) {
     const name = this.nameOf(id);
     return name.text + (name.sure || name.none ? "" : "?");
+  }
+
+  // As a heading, or on a button.
+  titleOf(id) {
+    return this.nameOf(id).none ? t("place_of", {n: id}) : this.labelOf(id);
+  }
+
+  confirmedNames(id) {
+    return (this.place(id)?.n ?? []).filter((word) => word[1]).map((word) => word[0]);
   }
 
   neighbours(id) {

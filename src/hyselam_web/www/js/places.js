@@ -2,6 +2,7 @@
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
 import {reasonOf} from "./talk.js";
+import {meant, plain} from "./wording.js";
 
 export class Places {
   // actions: showOnMap(id), say(text), openTalk()
@@ -12,7 +13,7 @@ export class Places {
     this.open = null; // {kind: "place" or "object", id}
     this.naming = false;
     this.filter = "";
-    model.on(["places", "doors", "objects", "here", "asked"], () => {
+    model.on(["places", "doors", "objects", "here", "asked", "marked"], () => {
       this.showList();
       if (this.open && !this.naming) this.showCard();
     });
@@ -62,7 +63,7 @@ export class Places {
     const {model} = this;
     const place = model.place(id);
     const name = model.nameOf(id);
-    const parts = [];
+    const parts = name.none ? [] : [t("place_of", {n: id}) + "."];
     if (model.values.asked?.place === Number(id)) parts.push(t("asked_here"));
     parts.push(t(name.none ? "unnamed" : name.sure ? "named_sure" : "named_guess"));
     if (place.s) parts.push(t("about", {kind: t(`kind_${place.k}`), area: Math.round(place.s)}));
@@ -80,11 +81,15 @@ export class Places {
     const place = model.place(id);
     if (!place) return null;
     const name = model.nameOf(id);
-    const title = make("h2", {id: "card-title"}, name.none ? t("place_of", {code: place.e}) : model.labelOf(id));
+    const title = make("h2", {id: "card-title"}, model.titleOf(id));
     if (this.naming) return [title, this.nameForm(id, name)];
     const row = make("div", {class: "row"});
     const add = (key, action, properties = {}) => row.append(button(t(key), action, {"data-key": key, ...properties}));
     const guess = !name.none && !name.sure;
+    const {marked} = model;
+    if (this.may("talk") && marked?.ids.includes(Number(id)) && marked.name !== name.text) {
+      row.append(button(t("this_is", {name: marked.name}), () => this.actions.give(id, marked.name), {"data-key": "this_is", class: "primary"}));
+    }
     if (this.may("talk") && guess) {
       add("right_name", () => this.name(id, [name.text]), {class: "primary"});
       add("wrong_name", () => this.startNaming());
@@ -101,7 +106,7 @@ export class Places {
       this.close();
       this.actions.openTalk();
       // Never by a name that somebody gave: it could hold another sentence.
-      this.actions.say(t("what_next", {name: place.e}));
+      this.actions.say(t("what_next", {name: place.e})); // shown as "place 5"
     });
     if (this.may("drive")) add("here_you_are", () => this.ask("here", {place: Number(id)}, t("pose_sent")));
     return [title, make("p", {}, this.describe(id)), row, this.doorsOf(id)];
@@ -128,7 +133,7 @@ export class Places {
     const each = this.model.tables.objects[id];
     if (!each) return null;
     const place = each.c ? this.model.placeAt(...each.c) : null;
-    const where = place ? this.model.labelOf(place) : each.at ? each.at.join(" ") : "";
+    const where = place ? this.model.labelOf(place) : each.at ? plain(each.at.join(" ")) : "";
     return [make("h2", {id: "card-title"}, each.k), make("p", {}, [where, ...each.p].filter(Boolean).join(" · "))];
   }
 
@@ -145,16 +150,29 @@ export class Places {
     const input = make("input", {type: "text", maxlength: 80, id: "new-name", "data-key": "new-name", placeholder: t("examples"), autocomplete: "off", autocapitalize: "off", enterkeyhint: "done"});
     input.value = this.typed ?? (name.sure ? name.text : "");
     input.addEventListener("input", () => { this.typed = input.value; });
+    const hint = make("p", {class: "hint", hidden: true});
+    const hints = () => {
+      const right = input.value.replace(/\p{L}+/gu, (word) => meant(word, this.model.values.names ?? []) || word);
+      hint.hidden = right === input.value;
+      hint.replaceChildren(t("did_you_mean") + " ", button(right, () => {
+        input.value = this.typed = right;
+        hints();
+        input.focus();
+      }));
+    };
+    input.addEventListener("input", hints);
     const form = make("form", {class: "row", onsubmit: (event) => {
       event.preventDefault();
       if (input.value.trim()) this.name(id, [input.value.trim()]);
     }}, make("label", {for: "new-name", class: "unseen"}, t("name_label")), input, make("button", {type: "submit", class: "primary"}, t("save_name")),
     name.none ? null : button(t("forget_name"), () => this.name(id, [])),
+    name.none || name.sure ? null : button(t("show_where", {name: name.text}), () => this.actions.pick(name.text)),
     button(t("cancel"), () => {
       this.naming = false;
       this.showCard();
     }));
-    return form;
+    hints();
+    return make("div", {}, form, hint);
   }
 
   async name(id, names) {
@@ -166,7 +184,7 @@ export class Places {
   async ask(what, fields, done = undefined) {
     try {
       const result = await this.connection.ask(what, fields);
-      const answer = done ?? (result.message || "");
+      const answer = done ?? plain(result.message || "");
       if (answer) toast(answer);
     } catch (error) {
       toast(reasonOf(error), true);
@@ -206,17 +224,17 @@ export class Places {
       if (each.c) this.actions.showOnMap(...each.c);
       this.show("object", id, true);
     }, {}), make("span", {class: "sub"}, t(each.c ? "seen" : "told")))));
-    objects.forEach(([, each], i) => this.objects.children[i].firstChild.append(each.k, make("span", {class: "sub"}, [...(each.at ?? []), ...each.p].join(" "))));
+    objects.forEach(([, each], i) => this.objects.children[i].firstChild.append(each.k, make("span", {class: "sub"}, plain([...(each.at ?? []), ...each.p].join(" ")))));
     if (!objects.length) this.objects.append(make("li", {class: "note"}, t("no_objects")));
   }
 
   placeLine(id) {
     const place = this.model.place(id);
     const name = this.model.nameOf(id);
-    const about = [name.none ? t("no_name") : place.e, place.s ? `${Math.round(place.s)} m²` : "", this.model.values.here?.place === Number(id) ? t("robot_is_here") : ""];
+    const about = [name.none ? t("no_name") : t("place_number", {n: id}), place.s ? `${Math.round(place.s)} m²` : "", this.model.values.here?.place === Number(id) ? t("robot_is_here") : ""];
     return make("li", {}, make("button", {type: "button", onclick: () => {
       if (place.c) this.actions.showOnMap(...place.c);
       this.show("place", id, true);
-    }}, this.model.labelOf(id), make("span", {class: "sub"}, about.filter(Boolean).join(" · "))));
+    }}, this.model.titleOf(id), make("span", {class: "sub"}, about.filter(Boolean).join(" · "))));
   }
 }

@@ -4,6 +4,8 @@ import {t, onLanguage} from "./i18n.js";
 import {reasonOf} from "./talk.js";
 import {canSpeak, setAloud, speaksAloud} from "./speech.js";
 
+const FINDINGS = ["tf", "scan", "laser", "clock", "map", "odometry", "nodes", "camera", "topics", "diagnostics"];
+const LAYERS = ["slam", "localization", "fsd", "words", "gr2to", "topo_engine", "semantic_localization", "object_engine", "map_server"];
 const SIGNS = {ok: "✓", warn: "!", error: "✗", stale: "…", WRONG: "✗", note: "!"};
 
 export class RobotPanel {
@@ -54,7 +56,7 @@ export class RobotPanel {
   showWhere() {
     const {here, status, way, following} = this.model.values;
     const known = here?.place ? this.model.nameOf(here.place) : null;
-    const name = !known ? "" : known.none ? t("place_of", {code: known.text}) : this.model.labelOf(here.place);
+    const name = known ? this.model.labelOf(here.place) : "";
     const parts = [here?.place ? t(here.door ? "in_doorway" : "in_place", {name}) : this.model.values.pose ? t("nowhere") : t("title")];
     if (status && status.phase !== "sure") parts.push(t(`phase_${status.phase}`));
     if (following) parts.push(t("following"));
@@ -79,10 +81,8 @@ export class RobotPanel {
     if (key === this.key) return;
     this.key = key;
     const parts = [];
-    if (refused) parts.push(make("p", {class: "error"}, refused));
-    if (status) {
-      parts.push(make("h3", {}, t("pose_title")), make("p", {}, t(`phase_${status.phase}`), make("span", {class: "sub note"}, ` (${status.text})`)));
-    }
+    if (refused) parts.push(make("p", {class: "error"}, t("map_refused")));
+    if (status) parts.push(make("h3", {}, t("pose_title")), make("p", {}, t(`phase_${status.phase}`)));
     if (camera) {
       parts.push(make("h3", {}, t("camera_title")));
       if (!camera.seen) parts.push(make("p", {class: "note"}, t("camera_nothing")));
@@ -93,10 +93,21 @@ export class RobotPanel {
       }
     }
     parts.push(make("h3", {}, t("layers_title")));
-    const lines = Object.entries(layers).map(([name, each]) => make("li", {}, make("span", {class: `level ${each.level}`, "aria-label": each.level}, SIGNS[each.level]),
-      make("span", {}, name, make("span", {class: "sub"}, each.text))));
+    const lines = Object.entries(layers).map(([name, each]) => make("li", {}, make("span", {class: `level ${each.level}`, "aria-hidden": "true"}, SIGNS[each.level]),
+      make("span", {}, LAYERS.includes(name) ? t(`layer_${name}`) : name.replaceAll("_", " "), make("span", {class: "sub"}, t(`level_${each.level}`)))));
     parts.push(lines.length ? make("ul", {class: "list"}, ...lines) : make("p", {class: "note"}, t("no_layers")));
+    const technical = [...(refused ? [refused] : []), ...(status ? [status.text] : []), ...Object.entries(layers).map(([name, each]) => `${name}: ${each.text}`)];
+    if (technical.length) parts.push(this.details("state", technical));
     this.state.replaceChildren(...parts);
+  }
+
+  // What technicians want to read; it stays open while its lines change.
+  details(key, lines) {
+    this.opened ??= new Set();
+    const details = make("details", {}, make("summary", {}, t("technical")), ...lines.filter(Boolean).map((line) => make("p", {class: "note"}, line)));
+    details.open = this.opened.has(key);
+    details.addEventListener("toggle", () => (details.open ? this.opened.add(key) : this.opened.delete(key)));
+    return details;
   }
 
   async busy(element, text, action) {
@@ -115,9 +126,15 @@ export class RobotPanel {
   check(element) {
     return this.busy(element, t("checking"), async () => {
       const {findings} = await this.connection.ask("doctor", {}, 70000);
-      const lines = findings.filter((each) => each.level !== "ok").map((each) => make("li", {}, make("span", {class: `level ${each.level === "note" ? "note-level" : each.level}`}, SIGNS[each.level]),
-        make("span", {}, `${each.name}: ${each.text}`, make("span", {class: "sub"}, each.hint))));
-      if (!lines.length) lines.push(make("li", {}, make("span", {class: "level ok"}, "✓"), t("all_right")));
+      const bad = findings.filter((each) => each.level !== "ok");
+      const lines = [];
+      for (const {level, name} of bad) {
+        const text = t(`found_${level === "note" ? "note" : "WRONG"}`, {what: t(`about_${FINDINGS.includes(name) ? name : "other"}`)});
+        if (lines.some((line) => line.dataset.text === text)) continue;
+        lines.push(make("li", {"data-text": text}, make("span", {class: `level ${level === "note" ? "note-level" : level}`, "aria-hidden": "true"}, SIGNS[level]), make("span", {}, text)));
+      }
+      if (!lines.length) lines.push(make("li", {}, make("span", {class: "level ok", "aria-hidden": "true"}, "✓"), t("all_right")));
+      else lines.push(make("li", {}, this.details("findings", bad.map((each) => `${each.name}: ${each.text}${each.hint ? ` → ${each.hint}` : ""}`))));
       this.findings.replaceChildren(...lines);
     });
   }

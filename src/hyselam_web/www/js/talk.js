@@ -1,6 +1,7 @@
 // The talk: what was said, what the robot answered, undo, yes and no, suggestions.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage} from "./i18n.js";
+import {corrected, plain, told} from "./wording.js";
 import {canListen, listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
@@ -9,8 +10,10 @@ const MAX_CHIPS = 8;
 
 export function reasonOf(error) {
   if (error.code === "not_connected") return t("not_connected");
+  // What people can do nothing with is left out.
+  const useful = error.reason && !/[_/]|:=|Error\b/.test(error.reason) && ["failed", "invalid"].includes(error.code);
   const text = t(["too_often", "stopped", "not_allowed", "nobody", "no_answer", "busy", "failed", "invalid", "unknown"].includes(error.code) ? `error_${error.code}` : "error_malformed");
-  return error.reason && ["failed", "nobody", "not_allowed", "invalid"].includes(error.code) ? `${text} (${error.reason})` : text;
+  return useful ? `${text} (${plain(error.reason)})` : text;
 }
 
 // Starts and names that go on with what is typed: whole lines.
@@ -28,12 +31,15 @@ export function suggestions(line, names, sentences) {
     if (found.length > MAX_CHIPS) break;
   }
   if (line.endsWith(" ")) found.push(...names.map((name) => line + name));
+  const right = corrected(line, names);
+  if (right) found.push(right);
   return [...new Set(found)].slice(0, MAX_CHIPS);
 }
 
 export class Talk {
-  constructor(model, connection, may) {
-    Object.assign(this, {model, connection, may});
+  // heard(text): before a sentence is said.
+  constructor(model, connection, may, heard) {
+    Object.assign(this, {model, connection, may, heard});
     this.log = byId("talk-log");
     // The newest line stays in sight, also when the panel was out of it, unless somebody reads further up.
     this.atEnd = true;
@@ -41,6 +47,11 @@ export class Talk {
       if (this.log.clientHeight) this.atEnd = this.log.scrollHeight - this.log.scrollTop - this.log.clientHeight < 60;
     });
     new ResizeObserver(() => this.atEnd && this.showNewest()).observe(this.log);
+    let width = 0;
+    new ResizeObserver(([{contentRect}]) => {
+      if (contentRect.width !== width) this.fitLine();
+      width = contentRect.width;
+    }).observe(byId("say"));
     this.line = byId("say");
     this.pending = []; // said, and not yet come back from the robot
     this.said = [];
@@ -68,18 +79,20 @@ export class Talk {
     });
   }
 
-  async say(text) {
-    if (!text) return;
+  async say(typed) {
+    if (!typed) return;
     if (!this.may("talk")) {
       toast(t("error_not_allowed"), true);
       return;
     }
+    const text = told(typed, this.model);
+    this.heard(text);
     const entry = {text, failed: "", number: (this.sayings = (this.sayings ?? 0) + 1)};
     this.pending = this.pending.filter((each) => !each.failed);
     this.pending.push(entry);
-    if (this.said[this.said.length - 1] !== text) this.said.push(text);
+    if (this.said[this.said.length - 1] !== typed) this.said.push(typed);
     this.recalled = 0;
-    if (this.line.value.trim() === text) this.line.value = "";
+    if (this.line.value.trim() === typed) this.line.value = "";
     this.showChips();
     this.showTalk(true);
     try {
@@ -88,7 +101,8 @@ export class Talk {
       setTimeout(() => this.forget(entry), 1500);
     } catch (error) {
       entry.failed = reasonOf(error);
-      if (!this.line.value) this.line.value = text; // to try again
+      if (!this.line.value) this.line.value = typed; // to try again
+      this.fitLine();
     }
     this.showTalk(true);
   }
@@ -98,7 +112,25 @@ export class Talk {
     this.showTalk();
   }
 
+  // As high as what is typed needs.
+  fitLine() {
+    this.line.style.height = "auto";
+    this.line.style.height = `${this.line.scrollHeight + 2}px`;
+  }
+
+  // Up and down go through what was said where the cursor could not move.
+  recalls(key) {
+    if (!this.said.length || !["ArrowUp", "ArrowDown"].includes(key)) return false;
+    const at = this.line.selectionStart;
+    return this.recalled > 0 || at === (key === "ArrowUp" ? 0 : this.line.value.length);
+  }
+
   key(event) {
+    if (event.key === "Enter" && !event.shiftKey && !event.isComposing) {
+      event.preventDefault();
+      this.say(this.line.value.trim());
+      return;
+    }
     if (event.key === "Tab" && !event.shiftKey && !event.altKey && this.line.value.trim()) {
       const [first] = this.chips ?? [];
       if (!first || this.dismissed === this.line.value) return; // on to the next element
@@ -106,7 +138,7 @@ export class Talk {
       event.preventDefault();
     } else if (event.key === "Escape") {
       this.dismissed = this.line.value;
-    } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && this.said.length) {
+    } else if (this.recalls(event.key)) {
       this.recalled = Math.max(0, Math.min(this.said.length, this.recalled + (event.key === "ArrowUp" ? 1 : -1)));
       this.line.value = this.recalled ? this.said[this.said.length - this.recalled] : "";
       this.showChips();
@@ -122,6 +154,7 @@ export class Talk {
   }
 
   showChips() {
+    this.fitLine();
     const sentences = ["start_in", "start_left", "start_right", "start_this", "start_where", "start_go", "start_told", "start_help"].map((key) => t(key));
     this.chips = this.model.values.asked && !this.line.value ? [] : suggestions(this.line.value, this.model.values.names ?? [], sentences);
     byId("chips").replaceChildren(...this.chips.map((text) => {
@@ -147,7 +180,7 @@ export class Talk {
         const at = this.pending.findIndex((each) => each.text === entry.s && !each.failed);
         if (at >= 0) this.pending.splice(at, 1);
       }
-      if (entry.w === "robot" && entry.i > this.shownTo && !this.first && !this.connection.replays) speak(entry.s);
+      if (entry.w === "robot" && entry.i > this.shownTo && !this.first && !this.connection.replays) speak(plain(entry.s));
     }
     if (newest !== this.shownTo || own || !this.log.children.length || this.drawnLanguage !== document.documentElement.lang || this.pending.length || this.hadPending) {
       this.showLines();
@@ -186,14 +219,14 @@ export class Talk {
     talk.forEach((entry, i) => { if (entry.w === "human") last_human = i; });
     let undo = false;
     talk.forEach((entry, i) => {
-      lines.push([`${entry.i} ${entry.t}`, () => make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, entry.s)]);
+      lines.push([`${entry.i} ${entry.t}`, () => make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, plain(entry.s))]);
       undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
     });
     if (undo && this.may("talk") && !this.connection.replays) {
       lines.push([`undo ${language}`, () => button(t("undo"), () => this.say(t("undo_sentence")), {class: "undo"})]);
     }
     for (const each of this.pending) {
-      lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, each.text, each.failed ? make("span", {class: "why"}, each.failed) : null)]);
+      lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, plain(each.text), each.failed ? make("span", {class: "why"}, each.failed) : null)]);
     }
     return lines;
   }
@@ -209,6 +242,7 @@ export class Talk {
     this.stopListening = listen({
       onText: (text, final) => {
         this.line.value = text;
+        this.fitLine();
         if (final) this.say(text.trim());
       },
       onEnd: () => {

@@ -1,13 +1,23 @@
 // Pictures of the map's tiles, in the colours of the page, and one small picture of all of it for looks from afar.
 const AT_ONCE = 16; // tiles that are decoded together
-const SHRINK = 8; // cells of a pixel of the small picture
+const SHRINK = 8; // cells of a pixel of the small picture, and of the coarse one that comes first
 
 export class TilePictures {
   constructor(model, redraw) {
     this.model = model;
     this.redraw = redraw;
     this.drawn = new Map(); // key: {version, dark, canvas, small}
+    this.overview = null; // {of, dark, canvas}: all tiles coarsely, where they are not drawn yet
     this.busy = false;
+  }
+
+  // All of the map is drawn, coarsely or not.
+  isWhole() {
+    return this.overview !== null || this.isFine();
+  }
+
+  isFine() {
+    return this.drawn.size > 0 && this.drawn.size === this.model.tiles.size && this.model.complete;
   }
 
   // Decodes what is new or has other colours; the rest stays.
@@ -20,6 +30,7 @@ export class TilePictures {
     this.busy = true;
     do {
       this.again = false;
+      await this.updateOverview();
       for (const key of [...this.drawn.keys()]) if (!this.model.tiles.has(key)) this.drawn.delete(key);
       const stale = [...this.model.tiles].filter(([key, tile]) => {
         const known = this.drawn.get(key);
@@ -30,8 +41,24 @@ export class TilePictures {
         this.redraw();
       }
     } while (this.again);
+    await this.updateOverview();
     this.busy = false;
     this.redraw();
+  }
+
+  async updateOverview() {
+    const of = this.model.overview;
+    if (of === null || this.isFine()) {
+      this.model.overview = this.overview = null; // what is fine replaces it
+      return;
+    }
+    if (this.overview?.of === of && this.overview.dark === this.dark) return;
+    try {
+      this.overview = {of, dark: this.dark, canvas: this.inColors(await createImageBitmap(of.picture))};
+      this.redraw();
+    } catch {
+      this.model.overview = this.overview = null; // it is no picture
+    }
   }
 
   async decode(key, tile) {
@@ -43,19 +70,23 @@ export class TilePictures {
     }
   }
 
+  inColors(image) {
+    if (!this.dark) return image;
+    // White becomes dark and black light; what is unknown stays clear.
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    context.globalCompositeOperation = "difference";
+    context.fillStyle = "#ecebe6";
+    context.fillRect(0, 0, image.width, image.height);
+    context.globalCompositeOperation = "destination-in";
+    context.drawImage(image, 0, 0);
+    return canvas;
+  }
+
   colored(image) {
-    let canvas = image;
-    if (this.dark) { // white becomes dark and black light; what is unknown stays clear
-      canvas = document.createElement("canvas");
-      [canvas.width, canvas.height] = [image.width, image.height];
-      const context = canvas.getContext("2d");
-      context.drawImage(image, 0, 0);
-      context.globalCompositeOperation = "difference";
-      context.fillStyle = "#ecebe6";
-      context.fillRect(0, 0, image.width, image.height);
-      context.globalCompositeOperation = "destination-in";
-      context.drawImage(image, 0, 0);
-    }
+    const canvas = this.inColors(image);
     const small = document.createElement("canvas");
     small.width = small.height = image.width / SHRINK;
     const little = small.getContext("2d");
@@ -71,18 +102,33 @@ export class TilePictures {
     context.rotate(info.yaw);
     context.translate(info.rest[0], info.rest[1]);
     context.imageSmoothingEnabled = pixelsPerCell < 3;
-    for (const [key, tile] of this.model.tiles) {
-      const drawn = this.drawn.get(key);
-      if (!drawn || !drawn.canvas) continue;
-      const [x, y] = [tile.column * side, tile.row * side];
-      if (info.yaw === 0 && (x > view.right || x + side < view.left || y > view.top || y + side < view.bottom)) continue;
+    const bleed = 0.3 * info.resolution; // no seams between tiles
+    const paint = (column, row, image, ...part) => {
+      const [x, y] = [column * side, row * side];
+      if (info.yaw === 0 && (x > view.right || x + side < view.left || y > view.top || y + side < view.bottom)) return;
       context.save();
       context.translate(x, y + side);
       context.scale(1, -1);
-      const bleed = 0.3 * info.resolution; // no seams between tiles
-      context.drawImage(pixelsPerCell < 0.25 ? drawn.small : drawn.canvas, 0, 0, side + bleed, side + bleed);
+      context.drawImage(image, ...part, 0, 0, side + bleed, side + bleed);
       context.restore();
+    };
+    if (this.overview) this.drawOverview(info.side / SHRINK, paint);
+    for (const [key, tile] of this.model.tiles) {
+      const drawn = this.drawn.get(key);
+      if (drawn?.canvas) paint(tile.column, tile.row, pixelsPerCell < 0.25 ? drawn.small : drawn.canvas);
     }
     context.restore();
+  }
+
+  // side: pixels of the coarse picture a tile.
+  drawOverview(side, paint) {
+    const {of, canvas} = this.overview;
+    const [columns, rows] = [canvas.width / side, canvas.height / side];
+    for (let i = 0; i < columns; ++i) {
+      for (let j = 0; j < rows; ++j) {
+        const [column, row] = [of.column + i, of.row + j];
+        if (!this.drawn.has(`${column},${row}`)) paint(column, row, canvas, i * side, (rows - 1 - j) * side, side, side);
+      }
+    }
   }
 }

@@ -1,0 +1,111 @@
+// What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
+import {byId, make, button, toast} from "./dom.js";
+import {t, onLanguage} from "./i18n.js";
+import {corrected} from "./wording.js";
+import {reasonOf} from "./talk.js";
+
+const UNSURE = /not sure where|answers fit|certeza onde|respostas servem/i;
+const TAKEN_DOWN = /^(Noted:|Anotado:)/;
+const NO = /^(no|não|nao)\b/i;
+const MAX_BUTTONS = 5;
+
+export class NextStep {
+  // actions: say(text), pick(name, places) lets a place be tapped, marked(places or null) marks places on the map
+  constructor(model, connection, may, actions) {
+    Object.assign(this, {model, connection, may, actions});
+    this.box = byId("next");
+    this.denied = null; // {name, place, at}: "no, that is not the kitchen", said in that entry of the talk
+    this.dismissed = 0; // the entry of the talk whose next step nobody wants
+    this.key = "";
+    model.on(["talk", "candidates", "places", "names"], () => this.show());
+    onLanguage(() => this.show());
+  }
+
+  // Before a sentence is said: a "no" to "is this the kitchen?" leaves open where that is.
+  heard(text) {
+    const {asked} = this.model.values;
+    const guess = asked?.place && this.model.place(asked.place) ? this.model.nameOf(asked.place) : null;
+    const about_name = asked?.yes && guess && !guess.none && !guess.sure && asked.text.includes(guess.text);
+    this.denied = about_name && NO.test(text) ? {name: guess.text, place: asked.place, after: this.newest()} : null;
+    this.show();
+  }
+
+  newest() {
+    const {talk} = this.model;
+    return talk.length ? talk[talk.length - 1].i : 0;
+  }
+
+  // Where a name may be: of the dialogue's candidates those that are there, have no other confirmed name and were not denied.
+  places(name, but = 0) {
+    return (this.model.values.candidates?.[name] ?? []).filter((id) => id !== but && this.model.place(id) && !this.model.nameOf(id).sure);
+  }
+
+  // {kind, at, ...} or null.
+  step() {
+    if (!this.may("talk") || this.connection.replays) return null;
+    const {talk} = this.model;
+    const last = talk.map((entry) => entry.w).lastIndexOf("human");
+    const answers = talk.slice(last + 1).filter((entry) => entry.w === "robot");
+    const at = this.newest();
+    if (this.denied && (last < 0 || talk[last].i <= this.denied.after || NO.test(talk[last].s))) {
+      return {kind: "denied", at: this.denied.after + 1, name: this.denied.name, ids: this.places(this.denied.name, this.denied.place)};
+    }
+    if (last < 0 || !answers.length) return null;
+    if (!answers.some((entry) => TAKEN_DOWN.test(entry.s))) {
+      const doubted = (word) => answers.some((entry) => entry.s.toLowerCase().includes(word.toLowerCase()));
+      const right = corrected(talk[last].s, this.model.values.names ?? [], doubted);
+      if (right) return {kind: "meant", at: talk[last].i, right, ids: []};
+    }
+    if (!answers.some((entry) => UNSURE.test(entry.s))) return null;
+    const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 1);
+    return name ? {kind: "unsure", at: talk[last].i, name, ids: this.places(name)} : null;
+  }
+
+  show() {
+    const step = this.step();
+    const shown = step && step.at > this.dismissed ? step : null;
+    const key = JSON.stringify([shown, shown?.ids.map((id) => this.model.labelOf(id)), document.documentElement.lang]);
+    if (key === this.key) return;
+    this.key = key;
+    this.shown = shown;
+    this.box.hidden = !shown;
+    this.box.replaceChildren(...(shown ? this.parts(shown) : []));
+    this.actions.marked(shown?.name ? {name: shown.name, ids: shown.ids} : null);
+  }
+
+  parts(step) {
+    const row = make("div", {class: "row"});
+    const close = button("×", () => this.dismiss(step.at), {class: "close", "aria-label": t("not_now"), title: t("not_now")});
+    if (step.kind === "meant") {
+      row.append(button(step.right, () => this.actions.say(step.right), {class: "primary"}));
+      return [make("p", {}, t("did_you_mean")), row, close];
+    }
+    for (const id of step.ids.slice(0, MAX_BUTTONS)) row.append(button(this.titleOf(id, step.name), () => this.give(id, step.name), {"data-place": id}));
+    row.append(button(t(step.ids.length ? "other_place" : "tap_place"), () => this.actions.pick(step.name, step.ids), {class: "pick"}));
+    return [make("p", {}, t(step.kind === "denied" ? "where_then" : "where_is_it", {name: step.name})), row, close];
+  }
+
+  // By its number, as on the map; what else it may be, too.
+  titleOf(id, name) {
+    const guess = this.model.nameOf(id);
+    return t("place_of", {n: id}) + (guess.none || guess.text === name ? "" : ` (${this.model.labelOf(id)})`);
+  }
+
+  dismiss(at) {
+    this.dismissed = Math.max(at, this.newest());
+    this.denied = null;
+    this.show();
+  }
+
+  // A person says that a place has this name; those that others have confirmed stay.
+  async give(id, name) {
+    const names = [...this.model.confirmedNames(id).filter((each) => each !== name), name];
+    try {
+      await this.connection.ask("name", {place: Number(id), names});
+      if (this.denied?.name === name) this.denied = null;
+    } catch (error) {
+      toast(reasonOf(error), true);
+    }
+    this.show();
+  }
+}

@@ -1,0 +1,86 @@
+// What the robot says and hears, in words for people: places by their numbers instead of the map's own names (SS05), and slips of the pen.
+import {currentLanguage, t} from "./i18n.js";
+
+const CODE = /\b(?:SS|CC|VV)0*(\d+)\b/g;
+const PORTUGUESE = /[ãõçêôáíóúéà]|\b(?:estou|vou|para|lugar|lado|nome|obrigad[oa]|sim|não|qual|onde|isso|vá|há)\b/i;
+const ENGLISH = /\b(?:the|is|am|are|of|to|you|this|what|where|name|noted|place|next|yes|no)\b/i;
+// "place 5" as it is said; in Portuguese with the article, which goes.
+const SAID = /\b(?:(?:the )?place(?: number)?|(?:(n|d|a)?o )?lugar(?: n[uú]mero)?) 0*(\d{1,6})\b/gi;
+const CONTRACTED = {n: "em ", d: "de ", a: "a "}; // no, do, ao
+const MIN_KIND = 5; // letters of a word that may be meant for a usual kind of place; shorter ones are like too many others
+const MIN_NAME = 4; // for a name that the robot knows
+const TWO_SLIPS = 8; // letters of a word in which two slips are understood
+
+function languageOf(text) {
+  const [portuguese, english] = [PORTUGUESE.test(text), ENGLISH.test(text)];
+  return portuguese === english ? currentLanguage() : portuguese ? "pt" : "en";
+}
+
+// A sentence as it is shown: "Go to place 5."
+export function plain(text) {
+  const language = languageOf(text);
+  return text.replace(CODE, (_, number, at) => {
+    const begins = at === 0 || /[.!?:]["'“]?\s*$/.test(text.slice(0, at));
+    return t(begins ? "place_of" : "place_number", {n: number}, language);
+  });
+}
+
+// A sentence as the robot is told it: its map knows no "place 5", but SS05.
+export function told(text, model) {
+  const names = (model.values.names ?? []).map((name) => name.toLowerCase());
+  return text.replace(SAID, (whole, contracted, number) => {
+    const place = names.some((name) => whole.toLowerCase().endsWith(name)) ? null : model.place(Number(number));
+    return place ? (CONTRACTED[contracted?.toLowerCase()] ?? "") + place.e : whole;
+  });
+}
+
+function folded(word) {
+  return word.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
+}
+
+// Letters to be changed, added, left out or exchanged with their neighbours.
+export function slips(a, b) {
+  let [before, last] = [[], Array.from({length: b.length + 1}, (_, j) => j)];
+  for (let i = 1; i <= a.length; ++i) {
+    const row = [i];
+    for (let j = 1; j <= b.length; ++j) {
+      row[j] = Math.min(last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] === b[j - 1] ? 0 : 1));
+      if (i > 1 && j > 1 && a[i - 1] === b[j - 2] && a[i - 2] === b[j - 1]) row[j] = Math.min(row[j], before[j - 2] + 1);
+    }
+    [before, last] = [last, row];
+  }
+  return last[b.length];
+}
+
+function wordsOf(text) {
+  return text.match(/\p{L}+/gu) ?? [];
+}
+
+export function kinds() {
+  return [...t("kinds", {}, "en").split(", "), ...t("kinds", {}, "pt").split(", ")];
+}
+
+// The word that was meant by one that is none: of a name that the robot knows, or of a usual kind of place; "": it is one, or like none.
+export function meant(word, names) {
+  const [wrong, known] = [folded(word), names.flatMap(wordsOf)];
+  let [best, distance] = ["", Infinity];
+  for (const [least, each] of [...known.map((one) => [MIN_NAME, one]), ...kinds().flatMap(wordsOf).map((one) => [MIN_KIND, one])]) {
+    const right = folded(each);
+    if (right === wrong) return "";
+    const allowed = wrong.length < least || right.length < least ? 0 : Math.min(wrong.length, right.length) < TWO_SLIPS ? 1 : 2;
+    const far = Math.abs(right.length - wrong.length) > 2 ? Infinity : slips(wrong, right);
+    if (far <= allowed && far < distance) [best, distance] = [each, far];
+  }
+  return best;
+}
+
+// A sentence with the words that were meant; "": nothing is to be changed. `doubted` says which words of it are looked at.
+export function corrected(sentence, names, doubted = () => true) {
+  let changed = false;
+  const right = sentence.replace(/\p{L}+/gu, (word) => {
+    const better = doubted(word) ? meant(word, names) : "";
+    changed ||= better !== "";
+    return better || word;
+  });
+  return changed ? right : "";
+}
