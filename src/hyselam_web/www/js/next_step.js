@@ -35,6 +35,11 @@ export class NextStep {
     return talk.length ? talk[talk.length - 1].i : 0;
   }
 
+  // Somebody has said where it is; that it may be elsewhere, too, is nothing to ask about.
+  isPlaced(name) {
+    return Object.keys(this.model.tables.places).some((id) => this.model.confirmedNames(id).includes(name));
+  }
+
   // Where a name may be: of the dialogue's candidates those that are there, have no other confirmed name and were not denied.
   places(name, but = 0) {
     return (this.model.values.candidates?.[name] ?? []).filter((id) => id !== but && this.model.place(id) && !this.model.nameOf(id).sure);
@@ -57,7 +62,7 @@ export class NextStep {
       if (right) return {kind: "meant", at: talk[last].i, right, ids: []};
     }
     if (!answers.some((entry) => UNSURE.test(entry.s))) return null;
-    const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 1);
+    const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 1 && !this.isPlaced(each));
     return name ? {kind: "unsure", at: talk[last].i, name, ids: this.places(name)} : null;
   }
 

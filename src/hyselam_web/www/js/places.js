@@ -52,11 +52,16 @@ export class Places {
       this.close();
       return;
     }
-    const inside = this.card.contains(document.activeElement) && document.activeElement.dataset.key;
-    this.card.replaceChildren(...content.filter(Boolean), button("×", () => this.close(), {class: "close", "aria-label": t("close"), "data-key": "close"}));
+    const holder = make("div", {"data-of": `${kind} ${id}`}, ...content.filter(Boolean), button("×", () => this.close(), {class: "close", "aria-label": t("close"), "data-key": "close"}));
+    // What is the same stays: a finger may be on it.
+    if (this.card.hidden || !this.shownCard?.isEqualNode(holder)) {
+      this.shownCard = holder.cloneNode(true);
+      const inside = this.card.contains(document.activeElement) && document.activeElement.dataset.key;
+      this.card.replaceChildren(...holder.childNodes);
+      if (inside) this.card.querySelector(`[data-key="${inside}"]`)?.focus();
+    }
     this.card.hidden = false;
     this.actions.selected(kind === "place" ? id : null);
-    if (inside) this.card.querySelector(`[data-key="${inside}"]`)?.focus();
   }
 
   describe(id) {
