@@ -7,6 +7,7 @@
 #include "example.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_conversation/transcript_player.hpp"
+#include "hyselam_language/testing/lost_words.hpp"
 
 using namespace hyselam_conversation;  // NOLINT: a test, not a header
 using nlohmann::json;
@@ -63,6 +64,25 @@ TEST(Strangers, WhatWasRightStaysRight) {
   // Twelve batches and what was written with this test; each keeps some.
   EXPECT_EQ(files, 13u);
   EXPECT_GE(texts, 735u);
+}
+
+/// Of all batches, right or not.
+TEST(Strangers, NothingIsDroppedSilently) {
+  const hyselam_topo::TopoParser& parser = exampleLanguages()->places;
+  std::size_t texts = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(HYSELAM_PACKAGE_DIR "/test/data/batches")) {
+    if (file.path().extension() != ".json") continue;
+    for (const json& entry : json::parse(hyselam::readTextFile(file.path(), 1u << 24))) {
+      ++texts;
+      const std::string language = entry["lang"].get<std::string>().substr(0, 2);
+      for (const std::string& lost :
+           hyselam_topo::testing::lostWords(parser, entry["text"].get<std::string>(), language)) {
+        ADD_FAILURE() << entry["id"] << ": " << lost;
+      }
+    }
+  }
+  EXPECT_GE(texts, 1750u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/testing/language_outlines.hpp"
+#include "hyselam_language/testing/lost_words.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -191,6 +192,46 @@ TEST(LanguageCorpus, RefusalsTeach) {
   }
   EXPECT_GT(refusals, 50u);
   std::cout << refusals << " refusals, of " << meant << " the meaning is proposed\n";
+}
+
+/// What a pattern passes over ("after the fire door") is told as left out.
+TEST(LanguageCorpus, NothingIsDroppedSilently) {
+  std::size_t texts = 0;
+  for (const char* name : {"thesis", "corpus_en", "corpus_pt", "refused", "holdout", "holdout_2",
+                           "ways_en", "ways_pt"}) {
+    for (const Item& item : corpus(name)) {
+      ++texts;
+      const std::string language = parser().parse(item.text, {}).language;
+      for (const std::string& lost : testing::lostWords(parser(), item.text, language)) {
+        ADD_FAILURE() << name << ": " << lost;
+      }
+    }
+  }
+  EXPECT_GT(texts, 1000u);
+}
+
+TEST(LanguageCorpus, WhatIsPassedOnTheWayIsToldAndAsked) {
+  const Utterance right =
+      parser()
+          .parse("The fuse room is on the right, immediately after the fire door.")
+          .utterances[0];
+  EXPECT_EQ(right.intent, "neighbours");
+  EXPECT_EQ(right.left_out, std::vector<std::string>{"immediately after the fire door"});
+  EXPECT_EQ(right.to_confirm, "The fuse room is on the right.");
+  // What the robot stands in is no matter of words left out.
+  EXPECT_TRUE(parser()
+                  .parse("The kitchen is down the corridor on the left.")
+                  .utterances[0]
+                  .left_out.empty());
+}
+
+/// Where a part of a sentence was not understood that may say more of a place, the rest is asked.
+TEST(LanguageCorpus, PartsOfASentenceAreAsked) {
+  const ParsedText said = parser().parse("The archive is downstairs, right above the quarry deck.");
+  ASSERT_EQ(said.utterances.size(), 2u);
+  ASSERT_TRUE(said.utterances[0].understood());
+  EXPECT_EQ(said.utterances[0].to_confirm, "The archive is downstairs.");
+  EXPECT_FALSE(said.utterances[1].understood());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace language {
 /// Of the tokens [begin, end).
 struct Clause {
   const IntentInfo* intent = nullptr;
+  const Automaton* pattern = nullptr;  ///< of the intent
   std::size_t begin = 0;
   std::size_t end = 0;
   int cost = 0;

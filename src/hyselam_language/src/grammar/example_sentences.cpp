@@ -24,13 +24,24 @@ std::set<std::string> wordsOf(const std::vector<Token>& tokens) {
 }  // namespace
 
 ExampleSentences::ExampleSentences(const CompiledGrammar& grammar)
-    : questions_(examplesOf(grammar, true)), others_(examplesOf(grammar, false)) {}
+    : questions_(examplesOf(grammar, true)), others_(examplesOf(grammar, false)) {
+  for (const Example& example : others_.all) {
+    if (!example.is_command) continue;
+    const auto tokens = tokenize(example.text, {0, example.text.size()}, grammar.tokenRules());
+    if (!tokens.empty()) orders_.insert(tokens.front().folded);
+  }
+}
 
 ExampleSentences::Kind ExampleSentences::examplesOf(const CompiledGrammar& grammar,
                                                     bool is_question) {
   Kind kind;
   const std::string plain = is_question ? kPlainQuestion : kPlainStatement;
-  std::vector<std::pair<std::string, std::set<std::string>>> examples;
+  struct Text {
+    std::string text;
+    std::set<std::string> words;
+    bool is_command = false;
+  };
+  std::vector<Text> examples;
   std::map<std::string, int> frequency;
   for (const IntentInfo& intent : grammar.intents) {
     const bool asks = intent.kind == UtteranceKind::kQuestion;
@@ -39,13 +50,14 @@ ExampleSentences::Kind ExampleSentences::examplesOf(const CompiledGrammar& gramm
     if (!for_people || intent.kind == UtteranceKind::kAnswer || asks != is_question) continue;
     if (intent.name == plain && !intent.examples.empty()) kind.plain = intent.examples.front();
     for (const std::string& text : intent.examples) {
-      examples.emplace_back(text, wordsOf(tokenize(text, {0, text.size()}, grammar.tokenRules())));
-      for (const std::string& word : examples.back().second) ++frequency[word];
+      examples.push_back({text, wordsOf(tokenize(text, {0, text.size()}, grammar.tokenRules())),
+                          intent.kind == UtteranceKind::kCommand});
+      for (const std::string& word : examples.back().words) ++frequency[word];
     }
   }
   // A word counts the more the fewer examples have it.
-  for (auto& [text, words] : examples) {
-    Example example{text, {}};
+  for (const auto& [text, words, is_command] : examples) {
+    Example example{text, is_command, {}};
     for (const std::string& word : words) {
       const bool tells = grammar.telling_words.count(word) != 0;
       example.words.push_back({word, (tells ? 1.0 : kTellsNothing) / frequency[word], tells});
@@ -61,7 +73,9 @@ std::string ExampleSentences::nearest(const std::vector<Token>& said, bool is_qu
   const Kind& kind = is_question ? questions_ : others_;
   double best = -1.0;
   std::string nearest = kind.plain;
+  const bool orders = !said.empty() && orders_.count(said.front().folded) != 0;
   for (const Example& example : kind.all) {
+    if (!is_question && example.is_command != orders) continue;
     double shared = 0.0;
     bool any_tells = false;
     for (const Word& word : example.words) {

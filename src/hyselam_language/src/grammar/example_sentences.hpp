@@ -1,6 +1,7 @@
 // The grammar's examples, of which a refusal shows the nearest.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,9 @@ class ExampleSentences {
   /// Of the intents of a grammar that is read to its end.
   explicit ExampleSentences(const CompiledGrammar& grammar);
 
-  /// The example of the kind (question or not) that shares the most telling words with the tokens,
-  /// a plain one if none shares any: what is near by other words has nothing to do with what was
-  /// said.
+  /// The example of the kind (question, command or statement, as the sentence begins) that shares
+  /// the most telling words with the tokens, a plain one if none shares any: what is near by other
+  /// words has nothing to do with what was said.
   /// "" without examples.
   std::string nearest(const std::vector<Token>& said, bool is_question) const;
 
@@ -32,6 +33,7 @@ class ExampleSentences {
   };
   struct Example {
     std::string text;
+    bool is_command = false;
     std::vector<Word> words;  ///< in their order, each once
   };
   struct Kind {
@@ -41,6 +43,7 @@ class ExampleSentences {
   static Kind examplesOf(const CompiledGrammar& grammar, bool is_question);
 
   Kind questions_, others_;
+  std::set<std::string> orders_;  ///< words with which commands begin
 };
 
 }  // namespace language

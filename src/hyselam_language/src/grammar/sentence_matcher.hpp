@@ -16,8 +16,8 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
                                     const Sentence& sentence,
                                     const std::set<std::string>& expected);
 
-/// Whether all of it is.
-bool isUnderstood(const std::vector<Utterance>& said);
+/// A sentence that says just what an utterance does, in its own words; "" if they do not alone.
+std::string asSentenceOf(const CompiledGrammar& grammar, const Utterance& utterance);
 
 /// See Grammar::isPlainName().
 bool isPlainName(const CompiledGrammar& grammar, const std::string& name, const std::string& type);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sentence_matcher.hpp"
+#include "sentence_reader.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -36,6 +37,22 @@ std::vector<Utterance> withTopic(const CompiledGrammar& grammar, const std::stri
   return states ? said : std::vector<Utterance>{};
 }
 
+/// Whether a part that was refused may change what was said of a place beside it, and is not asked
+/// about itself: it names a place or a door, and denies nothing.
+bool maySayMore(const Utterance& part, const CompiledGrammar& grammar) {
+  if (part.understood() || part.suggests_meaning || part.reason_code == "object") return false;
+  const auto tokens = tokenize(part.text, {0, part.text.size()}, grammar.tokenRules());
+  const bool denies = std::any_of(tokens.begin(), tokens.end(), [&](const Token& token) {
+    const auto found = grammar.refusing_words.find(token.folded);
+    return found != grammar.refusing_words.end() && found->second == "denial";
+  });
+  const NameType* places = grammar.nameType("place");
+  return !denies && places != nullptr &&
+         std::any_of(tokens.begin(), tokens.end(), [&](const Token& token) {
+           return grammar.isNounOrTitle(token.folded) || places->parts.count(token.folded) != 0;
+         });
+}
+
 }  // namespace
 
 std::vector<Utterance> readText(const CompiledGrammar& compiled, const std::string& text,
@@ -63,6 +80,25 @@ std::vector<Utterance> readText(const CompiledGrammar& compiled, const std::stri
   }
   speakerFirst(&all);
   return all;
+}
+
+void confirmParts(const CompiledGrammar& grammar, const std::string& text,
+                  std::vector<Utterance>* utterances) {
+  for (const Sentence& sentence : splitSentences(text, grammar.tokenRules())) {
+    const auto isInside = [&](const Utterance& each) {
+      return sentence.range.begin <= each.range.begin && each.range.begin < sentence.range.end;
+    };
+    const bool lost = std::any_of(utterances->begin(), utterances->end(), [&](const auto& each) {
+      return isInside(each) && maySayMore(each, grammar);
+    });
+    for (Utterance& each : *utterances) {
+      const bool states = each.kind == UtteranceKind::kStatement && !each.correction &&
+                          each.intent != "robot_in" && each.intent != "this_is";
+      if (lost && states && isInside(each) && each.to_confirm.empty()) {
+        each.to_confirm = asSentenceOf(grammar, each);
+      }
+    }
+  }
 }
 
 }  // namespace language

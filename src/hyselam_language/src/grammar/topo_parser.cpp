@@ -121,6 +121,11 @@ void TopoParser::readAgain(const std::string& text, ParsedText* parsed) const {
     if (grammars_[i].language() != parsed->language || !readers_[i]) continue;
     hyselam_topo::readAgain(*readers_[i], grammars_[i], text, &parsed->utterances);
   }
+  for (const Grammar& each : grammars_) {
+    if (each.language() == parsed->language) {
+      language::confirmParts(each.compiled(), text, &parsed->utterances);
+    }
+  }
 }
 
 }  // namespace hyselam_topo

@@ -117,21 +117,48 @@ bool saySame(const ReadFact& a, const ReadFact& b) {
           std::equal(of_a.begin(), of_a.end(), of_b.rbegin(), same));
 }
 
-/// Whether something is denied between the commas around the last name of the fact.
-bool isDeniedThere(const ReadFact& fact, const Utterance& part, const CompiledGrammar& grammar) {
-  if (fact.arguments.empty()) return true;
+/// The words between the commas around the last name of the fact; none where that cannot be told.
+std::vector<language::Token> clauseOf(const ReadFact& fact, const Utterance& part,
+                                      const CompiledGrammar& grammar) {
+  if (fact.arguments.empty()) return {};
   const std::size_t begin = fact.arguments.back().range.begin;
   const std::string& text = part.text;
-  if (begin < part.range.begin || begin - part.range.begin >= text.size()) return true;
+  if (begin < part.range.begin || begin - part.range.begin >= text.size()) return {};
   const std::size_t at = begin - part.range.begin;
   const std::size_t from = text.rfind(',', at), to = text.find(',', at);
   const std::size_t first = from == std::string::npos ? 0 : from;
   const TextRange range{first, to == std::string::npos ? text.size() : to};
-  const auto tokens = language::tokenize(text, range, grammar.tokenRules());
+  return language::tokenize(text, range, grammar.tokenRules());
+}
+
+/// Whether one of them has one of the codes; `unknown`: where that cannot be told.
+bool hasWordThere(const ReadFact& fact, const Utterance& part, const CompiledGrammar& grammar,
+                  const std::set<std::string>& codes, bool unknown) {
+  const auto tokens = clauseOf(fact, part, grammar);
+  if (tokens.empty()) return unknown;
   return std::any_of(tokens.begin(), tokens.end(), [&](const language::Token& token) {
     const auto found = grammar.refusing_words.find(token.folded);
-    return found != grammar.refusing_words.end() && found->second == "denial";
+    return found != grammar.refusing_words.end() && codes.count(found->second) != 0;
   });
+}
+
+bool isDeniedThere(const ReadFact& fact, const Utterance& part, const CompiledGrammar& grammar) {
+  static const std::set<std::string> kDenial{"denial"};
+  return hasWordThere(fact, part, grammar, kDenial, true);
+}
+
+/// "The lab used to be on the left, ...": of the past alone.
+bool wasThere(const ReadFact& fact, const Utterance& part, const CompiledGrammar& grammar) {
+  static const std::set<std::string> kPast{"not_now", "past"};
+  if (hasWordThere(fact, part, grammar, kPast, false)) return true;
+  const auto tokens = clauseOf(fact, part, grammar);
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    if (std::any_of(grammar.past_asides.begin(), grammar.past_asides.end(),
+                    [&](const auto& phrase) { return standsAt(phrase, tokens, at); })) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// What the form of the part rules out, however likely: orders where anything is denied, what may
@@ -140,6 +167,10 @@ bool isRuledOut(const ReadFact& fact, const Utterance& part, const PartOf& of,
                 const CompiledGrammar& grammar) {
   static const std::set<std::string> kOrders{"go", "follow_me", "come", "back"};
   const bool order = kOrders.count(fact.relation) != 0;
+  static const std::set<std::string> kOfThePast{"alias", "rename", "gone"};
+  if (!fact.denied && kOfThePast.count(fact.relation) == 0 && wasThere(fact, part, grammar)) {
+    return true;
+  }
   if (of.is_denied) {
     const bool sure = fact.denied || fact.probability >= kSureBesideDenial;
     if (order || (!sure && isDeniedThere(fact, part, grammar))) return true;

@@ -102,6 +102,7 @@ void propose(const PartReading& part, const CompiledGrammar& grammar, Utterance*
   const bool keeps = utterance->suggests_meaning && part.probability < kLikelierThanNot;
   if (!keeps) {
     utterance->suggestion = part.asked.front();
+    utterance->left_out.clear();
     utterance->alternatives.erase(utterance->alternatives.begin());
   }
   auto& next = utterance->alternatives;  // each is asked after a "no" to the suggestion

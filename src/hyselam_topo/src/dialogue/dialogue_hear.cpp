@@ -29,6 +29,7 @@ void proposeTogether(const std::vector<ForwardedSentence>& parts, ForwardedSente
       whole->rest += (whole->rest.empty() ? "" : " ") + each.refusal;
       continue;
     }
+    if (!each.rest.empty()) whole->rest += (whole->rest.empty() ? "" : " ") + each.rest;
     only = together.empty() ? &each : nullptr;
     together += (together.empty() ? "" : " ") + each.suggestion;
   }
@@ -270,6 +271,9 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     named.slots = {*u.find("aliases")};
     named.slots.front().name = "place";
     handleCommand(named, turn);
+  } else if (!u.to_confirm.empty() && DescriptionBuilder::handles(u.intent)) {
+    builder_.sentenceRefused();
+    turn.to_confirm += (turn.to_confirm.empty() ? "" : " ") + u.to_confirm;
   } else if (kOwn.count(u.intent) == 0 && DescriptionBuilder::handles(u.intent)) {
     addStatement(u, turn);
   } else {
@@ -310,6 +314,10 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
                     {{"text", u.text}, {"reason", u.reason}, {"suggestion", u.suggestion}})
             : p.say("not_understood", {{"text", u.text}, {"reason", u.reason}});
   const bool proposes = helps && u.suggests_meaning;
+  std::string rest;  // what the proposal does without
+  for (const std::string& words : proposes ? u.left_out : std::vector<std::string>{}) {
+    rest += (rest.empty() ? "" : " ") + p.say("not_understood_part", {{"text", words}});
+  }
   if (turn.options.forward_unknown) {
     forward(u, refusal, turn);
     ForwardedSentence& forwarded = turn.reply.forwarded.back();
@@ -317,18 +325,28 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
     forwarded.suggestion = u.suggestion;
     forwarded.suggests_meaning = proposes;
     forwarded.alternatives = u.alternatives;
+    forwarded.rest = rest;
     return;
   }
   turn.reply.refusals.push_back({u.text, u.reason, false, u.suggestion});
   if (proposes && turn.proposals.empty()) {
     turn.proposals = proposalsOf(u.suggestion, u.alternatives);
     turn.refusal_of_proposal = refusal;
+    if (!rest.empty()) turn.not_understood.push_back(rest);
   } else {
     turn.not_understood.push_back(refusal);
   }
 }
 
 void Dialogue::propose(Turn& turn) {
+  if (!turn.to_confirm.empty()) {
+    // What was understood first; what else may have been meant belongs to it.
+    const bool both = !turn.proposals.empty();
+    turn.proposals = {turn.to_confirm + (both ? " " + turn.proposals.front() : "")};
+    if (both) turn.proposals.push_back(turn.to_confirm);
+    turn.refusal_of_proposal =
+        phrases().say("not_taken_down_say", {{"suggestion", turn.proposals.front()}});
+  }
   if (turn.proposals.empty()) return;
   auto& sentences = turn.reply.sentences;
   if (talk_.questions.isOpen() && talk_.questions.isNew()) {  // one question at a time

@@ -32,6 +32,7 @@ struct Dialogue::Turn {
   bool forwarded_last = false;   ///< others hear the utterance before
   bool broken_off = false;       ///< what follows waits for the answer to a question
   std::vector<std::string> proposals;      ///< what may have been meant, best first, ...
+  std::string to_confirm;                  ///< ... statements understood but for some words, ...
   std::string refusal_of_proposal;         ///< ... and what is said where it cannot be asked
   std::string again;                       ///< a sentence of before that is heard now
   std::optional<DescriptionIssue> to_ask;  ///< what the person can answer

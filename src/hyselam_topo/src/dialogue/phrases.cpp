@@ -51,6 +51,8 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"known", ""},
     {"not_taken", "text"},
     {"left_out", "text"},
+    {"not_taken_down_say", "suggestion"},
+    {"not_understood_part", "text"},
     {"not_understood_say", "text reason suggestion"},
     {"found", "found told confirmed"},
     {"not_found", "names"},

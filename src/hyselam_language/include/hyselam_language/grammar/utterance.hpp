@@ -74,8 +74,12 @@ struct Utterance {
   bool suggests_meaning = false;
   /// What else may have been meant if it is not that, likeliest first.
   std::vector<std::string> alternatives;
-  /// Understood: words left out, as an aside between commas ("which is far too small").
+  /// Understood: words left out, as an aside between commas ("which is far too small"); refused:
+  /// those that `suggestion` does without, if they stand together.
   std::vector<std::string> left_out;
+  /// Understood: what it says without words left out that may matter. The person should be asked
+  /// whether that is meant before it is taken down; "" if nothing need be asked.
+  std::string to_confirm;
 
   bool understood() const { return kind != UtteranceKind::kNotUnderstood; }
   /// nullptr if the slot was not filled.

@@ -1,0 +1,15 @@
+// What is said about a sentence that was not understood: what the person might have meant, or how
+// such things are said.
+#pragma once
+
+#include "hyselam_language/grammar/utterance.hpp"
+#include "sentence_words.hpp"
+
+namespace hyselam_topo {
+namespace language {
+
+/// Gives the refused sentence a suggestion.
+void propose(const SentenceWords& words, Utterance* refused);
+
+}  // namespace language
+}  // namespace hyselam_topo
