@@ -193,16 +193,14 @@ void eachSide(Statement& s) {
   const double count = s.said().number("count").value_or(2.0);
   const std::vector<Id> ids =
       names[0].reference.empty() ? placesOfOneName(s, names[0], count) : placesOf(s, "places");
-  // "There are three storerooms on the right."
-  const bool one_side = !s.said().word("side").empty();
-  if (!one_side && ids.size() % 2 != 0) {
+  if (ids.size() % 2 != 0) {
     s.fail(IssueKind::kMeaningless, "odd_count", {{"count", std::to_string(ids.size())}});
   }
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Placement placement;
     placement.from = from;
     placement.to = ids[i];
-    placement.side = one_side ? sideOf(s) : 2 * i < ids.size() ? Side::kLeft : Side::kRight;
+    placement.side = 2 * i < ids.size() ? Side::kLeft : Side::kRight;
     recordConnection(s, placement);
   }
   s.setSubjects(ids);
