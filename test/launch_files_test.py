@@ -181,11 +181,14 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertIn("--pause", player("paused:=true"))
         self.assertNotIn("--pause", player())
 
-    def test_robots_share_nothing_but_the_master(self):
+    def test_robots_share_the_master_and_the_map(self):
         nodes, config = self.whole("first:=a", "second:=b", "work_dir:=/w", name="two_robots.launch")
         of = {robot: {n[len(robot) + 2:] for n in nodes if n.startswith(f"/{robot}/")} for robot in "ab"}
         self.assertEqual(of["a"], of["b"])
-        self.assertEqual(len(of["a"]) + len(of["b"]), len(nodes))
+        self.assertEqual({n for n in nodes if n.split("/")[1] not in "ab"}, {"/shared_map"})
+        self.assertEqual(config.params["/shared_map/robots"].value, "a b")
+        known, _ = self.whole("map:=/nowhere/x.yaml", name="two_robots.launch")
+        self.assertNotIn("/shared_map", known)
         self.assertEqual(config.params["/a/slam/state"].value, "/w/a/slam.state")
         self.assertEqual(config.params["/b/slam/global_frame_id"].value, "b/map")
         for node in nodes.values():

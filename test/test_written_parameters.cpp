@@ -22,6 +22,7 @@
 #include "hyselam_topo/ros/parameters.hpp"
 #include "hyselam_topo/ros/topo_engine_parameters.hpp"
 #include "ngram_slam/ros/parameters.hpp"
+#include "ngram_slam/ros/shared_map_parameters.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
 #include "selovis/ros/parameters.hpp"
 
@@ -81,6 +82,8 @@ std::vector<Nodelet> nodelets() {
               fsd_localization::loadLocalizationParams, {{"model", "beam"}, {"model", "cosine"}}),
       nodelet("fsd_localization", "Fsd", "fsd", "fsd.launch", fsd_localization::loadFsdParams),
       nodelet("ngram_slam", "NgramSlam", "slam", "slam.launch", ngram_slam::loadSlamParams),
+      nodelet("ngram_slam", "SharedMap", "shared_map", "shared_map.launch",
+              ngram_slam::loadSharedMapParams),
       nodelet("ngram_slam", "Words", "words", "words.launch", ngram_slam::loadWordsParams),
       nodelet("hyselam_topo", "Gr2To", "gr2to", "gr2to.launch", hyselam_topo::loadGr2ToParams),
       nodelet("hyselam_topo", "TopoEngine", "topo_engine", "topo_engine.launch",

@@ -54,9 +54,9 @@ Candidates byIcp(const CandidateOptions& o, const PlaceLog& log) {
 nlohmann::json run(const PlaceLogOptions& logs, const CandidateOptions& o, bool verify) {
   nlohmann::json j = nlohmann::json::array();
   for (const PlaceLog& log : logs.read()) {
-    const double begin = processSeconds();
+    const double begin = cpuSeconds();
     const Candidates all = byIcp(o, log);
-    const double retrieval = processSeconds() - begin;
+    const double retrieval = cpuSeconds() - begin;
     const std::size_t verified = verify ? static_cast<std::size_t>(o.candidates) : 0;
     Figures f = figuresOf(log, all, 0, verified, nullptr);
     f.retrieval_s = retrieval;

@@ -185,6 +185,45 @@ TEST_F(MapFleet, goesOnAfterAKillOnACluster) {
   EXPECT_NE(fileBytes(d / "known.txt").find("robot5b: known"), std::string::npos);
 }
 
+/// What a program in Python says that knows the parts of map_fleet.
+std::string saidBy(const std::string& program, const TemporaryDirectory& d) {
+  writeFile(
+      d / "ask.py",
+      "import importlib.machinery, importlib.util, pathlib, sys\n"
+      "sys.dont_write_bytecode = True\n"
+      "loader = importlib.machinery.SourceFileLoader('fleet', sys.argv[1])\n"
+      "fleet = importlib.util.module_from_spec(importlib.util.spec_from_loader('fleet', loader))\n"
+      "loader.exec_module(fleet)\n" +
+          program);
+  EXPECT_EQ(std::system(("/usr/bin/python3 " + d / "ask.py" + " " + HYSELAM_PACKAGE_DIR +
+                         "/scripts/map_fleet > " + d / "said.txt")
+                            .c_str()),
+            0);
+  return fileBytes(d / "said.txt");
+}
+
+TEST(MapFleetParts, cutsASessionThatLiesInTwoMapsIntoItsRecordings) {
+  const TemporaryDirectory d;
+  EXPECT_EQ(
+      saidBy(
+          "parts = [['a', 5], ['b', 5], ['c', 5]]\n"
+          "print(fleet.pieces_of(parts, [[0, 15]]), fleet.pieces_of(parts, [[3, 4], [12, 1]]))\n",
+          d),
+      "[['a', 5], ['b', 5], ['c', 5]] [['a', 2], ['b', 2], ['c', 1]]\n");
+}
+
+TEST(MapFleetParts, anotherProgramMakesItAnew) {
+  const TemporaryDirectory d;
+  EXPECT_EQ(saidBy("tool = pathlib.Path(sys.argv[0]).parent / 'prefix/lib/p/tool'\n"
+                   "tool.parent.mkdir(parents=True)\n"
+                   "tool.write_text('one'); one = fleet.fingerprint_of(str(tool))\n"
+                   "again = fleet.fingerprint_of(str(tool))\n"
+                   "tool.write_text('two'); two = fleet.fingerprint_of(str(tool))\n"
+                   "print(one == again, one == two)\n",
+                   d),
+            "True False\n");
+}
+
 TEST_F(MapFleet, refusesWhatCannotBeUsed) {
   const auto expectRefused = [&](std::vector<std::string> words, const std::string& part) {
     words.insert(words.begin(), std::string(HYSELAM_TOOLS) + "/map_fleet");

@@ -4,48 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hyselam_common/robot_log.hpp"
 #include "hyselam_common/testing/files.hpp"
-#include "hyselam_sim/generate_corridors.hpp"
-#include "hyselam_sim/simulation.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/map_merging.hpp"
 #include "ngram_slam/slam/map_ties.hpp"
-#include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "ngram_slam/slam/state_parts.hpp"
+#include "visits.hpp"
 
 namespace ngram_slam {
 namespace {
 
 using hyselam::Pose2;
-
-/// A robot's round through corridors; its odometry begins somewhere.
-hyselam::RobotLog visit(std::uint64_t building, std::uint64_t seed, const Pose2& begin) {
-  hyselam_sim::CorridorParams corridors;
-  corridors.lines = 3;
-  corridors.loops = 1.0;
-  corridors.legs = 9;
-  const auto made = hyselam_sim::generateCorridors(building, corridors);
-  hyselam_sim::SimulationParams params;
-  params.scan_rate = 4.0;
-  params.odometry.sigma = 0.02;
-  hyselam::RobotLog log = hyselam_sim::simulate(made.plan, made.route, seed, params).log;
-  for (hyselam::StampedPose2& p : log.odometry) p.pose = begin * p.pose;
-  return log;
-}
-
-SlamState mapOf(const hyselam::RobotLog& log, double from, double to) {
-  SlamEngine engine;
-  const auto n = static_cast<double>(log.scans.size());
-  for (auto i = static_cast<std::size_t>(from * n); i < static_cast<std::size_t>(to * n); ++i) {
-    engine.add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
-    while (const auto job = engine.takeJob()) engine.apply(runJob(*job));
-  }
-  engine.endRun();
-  while (const auto job = engine.takeFinalJob()) engine.apply(runJob(*job));
-  return engine.state();
-}
 
 /// Two robots in one building, one in another.
 struct Visits {
@@ -121,6 +91,18 @@ TEST(MapMerging, TellsWhoMetWhom) {
   EXPECT_EQ(merged().counters.ties_withdrawn, 0);
   EXPECT_TRUE(merged().left_out.empty());
   EXPECT_TRUE(merged().doubtful.empty());
+}
+
+TEST(MapMerging, EachMapIsComparedWithEachOther) {
+  // The second is tied to the first before the third comes: it is compared with that one all the
+  // same.
+  const hyselam::RobotLog third = visit(5, 6, {-3.0, 1.0, -1.0});
+  const MergedMaps m = mergeMaps({{"first", visits().first_map},
+                                  {"third", mapOf(third, 0.35, 0.6)},
+                                  {"second", visits().second_map}});
+  ASSERT_EQ(m.maps.size(), 1U);
+  ASSERT_EQ(m.meetings.size(), 3U);
+  for (const MapMeeting& one : m.meetings) EXPECT_GE(one.near_loops, 5) << one.a << " " << one.b;
 }
 
 TEST(MapMerging, LeavesAnotherBuildingApart) {
@@ -290,6 +272,79 @@ TEST(MapTies, TwoLoopsAreTooFew) {
   loops.push_back(runs.loop(18, 8, where));
   EXPECT_TRUE(bestTie(loops, runs.keyframes, RunConnections{}, LoopParams{}, 0.5));
   EXPECT_FALSE(bestTie({}, runs.keyframes, RunConnections{}, LoopParams{}, 0.5));
+}
+
+TEST(MapTies, RunsOfTwoMapsThatCameInTurnContradictEachOther) {
+  // Runs 0 and 2 are one map, run 1 is another one: between 1 and 2 the older end is in that one.
+  std::vector<SlamKeyframe> keyframes(180);
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    keyframes[k].run = static_cast<std::uint32_t>(k / 60);
+    keyframes[k].pose = {static_cast<double>(k % 60), 0.0, 0.0};
+    keyframes[k].path_length = static_cast<double>(k);
+  }
+  RunConnections connections;
+  connections.connect(0, 2);
+  const auto loop = [&](int older, int newer, const Pose2& measured) {
+    SlamLoop l;
+    l.older = older;
+    l.newer = newer;
+    l.measured = measured;
+    l.source = LoopSource::kSignature;
+    l.far = true;
+    l.inlier_ratio = 0.8;
+    l.fit = 0.97;
+    return l;
+  };
+  // Where the map of run 1 lies in that of 0 and 2.
+  const auto loopsThatSay = [&](const Pose2& where) {
+    std::vector<SlamLoop> loops;
+    for (const int i : {2, 5, 8, 11}) {
+      const Pose2 in_one = keyframes[static_cast<std::size_t>(60 + i)].pose;
+      loops.push_back(
+          loop(i, 60 + i, between(keyframes[static_cast<std::size_t>(i)].pose, where * in_one)));
+    }
+    return loops;
+  };
+  const Pose2 right{3.0, 2.0, 0.3}, wrong{-20.0, 9.0, 2.0};
+  std::vector<SlamLoop> loops = loopsThatSay(right);
+  const auto inTurn = [&](const Pose2& where) {
+    std::vector<SlamLoop> turned;
+    for (const int i : {2, 5, 8, 11}) {
+      turned.push_back(loop(60 + i, 120 + i,
+                            between(where * keyframes[static_cast<std::size_t>(60 + i)].pose,
+                                    keyframes[static_cast<std::size_t>(120 + i)].pose)));
+    }
+    return turned;
+  };
+  for (const bool agree : {true, false}) {
+    std::vector<SlamLoop> all = loops;
+    for (const SlamLoop& l : inTurn(agree ? right : wrong)) all.push_back(l);
+    const auto tie = bestTie(all, keyframes, connections, LoopParams{}, 0.5);
+    ASSERT_EQ(tie.has_value(), agree);
+    if (tie) {
+      EXPECT_NEAR(tie->support, 8 * 0.8, 1e-9);
+    }
+  }
+}
+
+TEST(MapTies, NoLoopIsForgottenAmongMany) {
+  TwoRuns runs;
+  runs.keyframes.resize(1200);
+  for (std::size_t k = 120; k < runs.keyframes.size(); ++k) {
+    runs.keyframes[k].run = 1;
+    runs.keyframes[k].pose = {static_cast<double>(k - 60), 0.0, 0.0};
+    runs.keyframes[k].path_length = static_cast<double>(k);
+  }
+  const Pose2 right{10.0, 3.0, 0.0};
+  std::vector<SlamLoop> loops;
+  for (const int i : {2, 4, 6, 8, 10, 12, 14, 16, 18, 20})
+    loops.push_back(runs.loop(i + 10, i, right));
+  for (int i = 0; i < 500; ++i) {  // far from them, each says another thing
+    loops.push_back(runs.loop(i % 60, 120 + 2 * i, {7.0 * (i % 31), -11.0 * (i % 17), 0.7 * i}));
+  }
+  const auto tie = bestTie(loops, runs.keyframes, RunConnections{}, LoopParams{}, 1.0);
+  ASSERT_TRUE(tie);
+  EXPECT_EQ(tie->loops.size(), 10U);
 }
 
 TEST(GraphPathLengths, WithinAReachAreThoseOfTheWholeSearch) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/robot_log.hpp"
@@ -34,7 +35,7 @@ struct MergeMaps : testing::Test {
     const auto building = hyselam_sim::generateCorridors(4, corridors);
     hyselam_sim::SimulationParams params;
     params.scan_rate = 4.0;
-    for (const std::uint64_t seed : {4, 5}) {
+    for (const std::uint64_t seed : {4, 5, 6}) {
       const auto log = hyselam_sim::simulate(building.plan, building.route, seed, params).log;
       SlamEngine engine;
       for (const hyselam::LaserScan& scan : log.scans) {
@@ -122,6 +123,35 @@ TEST_F(MergeMaps, leavesOutWhatCannotBeUsedAndSaysSo) {
   EXPECT_EQ(report["left_out"].size(), 4U);
   EXPECT_EQ(report["maps"][0]["sessions"].size(), 1U);
   EXPECT_NE(fileBytes(d / "e" + "/report.html").find("left out"), std::string::npos);
+}
+
+TEST_F(MergeMaps, namesEachSessionAnotherWayAndLeavesNothingOfAMergingBefore) {
+  for (const char* folder : {"m", "k/m", "w"}) std::filesystem::create_directories(d / folder);
+  std::filesystem::copy_file(d / "robot4.state", d / "m/x.state");
+  std::filesystem::copy_file(d / "robot5.state", d / "k/m/x.state");
+  std::filesystem::copy_file(d / "robot6.state", d / "w/m_x_2.state");
+  const std::string out = d / "g";
+  ASSERT_EQ(
+      run(d / "m/x.state" + " " + d / "k/m/x.state" + " " + d / "w/m_x_2.state" + " --out " + out),
+      0)
+      << errors;
+  std::set<std::string> names, trajectories;
+  const auto report = nlohmann::json::parse(fileBytes(out + "/report.json"));
+  for (const auto& map : report["maps"]) {
+    for (const auto& s : map["sessions"]) {
+      names.insert(s["name"].get<std::string>());
+      trajectories.insert(s["trajectory"].get<std::string>());
+      EXPECT_EQ(s["scan_ranges"], nlohmann::json::parse("[[0, " + std::to_string(scans) + "]]"));
+    }
+  }
+  EXPECT_EQ(names.size(), 3U);
+  EXPECT_EQ(trajectories.size(), 3U);
+  writeFile(out + "/trajectory_mine.tum", "");
+  ASSERT_EQ(run(state("robot4") + "--out " + out), 0) << errors;
+  EXPECT_TRUE(std::filesystem::exists(out + "/trajectory_robot4.tum"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/trajectory_mine.tum"));
+  for (const std::string& t : trajectories)
+    EXPECT_FALSE(std::filesystem::exists(out + "/" + t)) << t;
 }
 
 TEST_F(MergeMaps, refusesUnusableInput) {

@@ -1,19 +1,23 @@
 // The map of a building that changes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_sim/laser.hpp"
 #include "ngram_slam/slam/consolidation.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
+#include "ngram_slam/slam/state_parts.hpp"
 
 namespace ngram_slam {
 namespace {
 
 using hyselam::OccupancyGrid;
+using hyselam::Point2;
 using hyselam::Pose2;
 
 using Segments = std::vector<hyselam_sim::Segment>;
@@ -175,14 +179,100 @@ TEST(PresentMap, isTheSameWhenKeyframesThatAddNothingAreDropped) {
   EXPECT_TRUE(hasBox(b, 3.0, 1.0));
 }
 
+TEST(PresentMap, whatWasSettledIsUnderWhatWasSeenSince) {
+  // Two robots go on with maps of which keyframes were dropped, as other things stand there now.
+  SlamState first = consolidated(visits({kBefore, kBefore, kBefore}));
+  ASSERT_FALSE(first.settled.cells.empty());
+  visit(room(kAfter), 3, &first);
+  const SlamState second = first;
+  for (const SlamState& state :
+       {joinedStates({first}), joinedStates({first, second}),
+        partOfState(joinedStates({second, first}), {true, true, true, true})}) {
+    ASSERT_EQ(state.error(), nullptr);
+    const OccupancyGrid grid = mapOf(state).grid();
+    EXPECT_FALSE(hasBox(grid, 2.0, 1.0)) << state.keyframes.size();
+    EXPECT_TRUE(hasBox(grid, 3.0, 1.0)) << state.keyframes.size();
+    for (const SlamKeyframe& k : state.keyframes)
+      if (k.stamp < -1e9) std::abort();
+    std::cout << state.keyframes.size() << ' ' << state.settled.cells.front().run << ' '
+              << state.settled.cells.back().run << ' ' << state.keyframes.back().run << '\n';
+  }
+}
+
+TEST(PresentMap, joinsWhatWasSettledInLargeAndInSmallCells) {
+  ConsolidationParams coarse;
+  coarse.settled_cell = 0.1;
+  const SlamState large = consolidated(visits({kBefore, kAfter, kAfter, kAfter}), coarse);
+  const SlamState small = consolidated(visits({kBefore, kAfter, kAfter, kAfter}));
+  ASSERT_FALSE(large.settled.cells.empty());
+  const auto area = [](const SlamState& s) {
+    return s.settled.cell * s.settled.cell * static_cast<double>(s.settled.cells.size());
+  };
+  for (const auto& states : {std::vector<SlamState>{large, small}, {small, large}}) {
+    const SlamState joined = joinedStates(states);
+    EXPECT_EQ(joined.settled.cell, 0.05);
+    EXPECT_NEAR(area(joined), area(large) + area(small), 1e-9);
+  }
+  // A large cell is where it was.
+  const SlamState joined = joinedStates({large, small});
+  Point2 middle{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    middle.x += 0.25 * joined.settled.cells[i].center.x;
+    middle.y += 0.25 * joined.settled.cells[i].center.y;
+  }
+  EXPECT_NEAR(middle.x, large.settled.cells[0].center.x, 1e-9);
+  EXPECT_NEAR(middle.y, large.settled.cells[0].center.y, 1e-9);
+}
+
+TEST(PresentMap, settlesWhatTheMapShows) {
+  // What is beyond the range that the map uses is not settled: it is not shown either.
+  ConsolidationParams strict;
+  strict.map.usable_range = 1.0;
+  const SlamState state = visits({kBefore, kAfter, kAfter, kAfter});
+  const SlamState few = consolidated(state, strict);
+  ASSERT_LT(few.keyframes.size(), state.keyframes.size());
+  for (const SettledCell& c : few.settled.cells) {
+    const Point2 center = few.keyframes[static_cast<std::size_t>(c.keyframe)].pose * c.center;
+    double nearest = 1e9;
+    for (const SlamKeyframe& k : state.keyframes) {
+      nearest = std::min(nearest, std::hypot(center.x - k.pose.x, center.y - k.pose.y));
+    }
+    EXPECT_LT(nearest, 1.3);
+  }
+}
+
+/// Saved as version 3 was: one run for all settled cells.
+SlamState readAsVersion3(const hyselam::testing::TemporaryDirectory& d, const SlamState& state) {
+  SlamStateFile::save(d / "new.state", state);
+  std::string bytes = hyselam::testing::fileBytes(d / "new.state");
+  const auto textOf = [](const auto& value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  const auto n = static_cast<std::uint32_t>(state.settled.cells.size());
+  const auto begin = bytes.rfind(textOf(state.settled.cell) + textOf(n));
+  constexpr std::size_t kCell = 28, kRun = 4;
+  for (std::size_t i = 0; i < n; ++i) bytes.erase(begin + 12 + (i + 1) * kCell, kRun);
+  bytes.insert(begin, textOf(state.settled.cells.front().run));
+  bytes.replace(8, 4, textOf(std::uint32_t{3}));
+  bytes.replace(12, 8, textOf(static_cast<std::uint64_t>(bytes.size() - 28)));
+  bytes.replace(20, 4, textOf(hyselam::checksumOf(bytes, 0, 20)));
+  bytes.replace(bytes.size() - 4, 4, textOf(hyselam::checksumOf(bytes, 24, bytes.size() - 4)));
+  hyselam::testing::writeFile(d / "old.state", bytes);
+  return SlamStateFile::load(d / "old.state", {});
+}
+
 TEST(PresentMap, isSavedWithTheState) {
   const hyselam::testing::TemporaryDirectory d;
   const SlamState few = consolidated(visits({kBefore, kAfter, kAfter, kAfter}));
   SlamStateFile::save(d / "a.state", few);
   const SlamState loaded = SlamStateFile::load(d / "a.state", {});
   ASSERT_EQ(loaded.settled.cells.size(), few.settled.cells.size());
-  EXPECT_EQ(loaded.settled.last_run, few.settled.last_run);
+  for (std::size_t i = 0; i < few.settled.cells.size(); ++i) {
+    EXPECT_EQ(few.settled.cells[i].run, 3U);
+    EXPECT_EQ(loaded.settled.cells[i].run, 3U);
+  }
   EXPECT_EQ(mapOf(loaded).grid().cells, mapOf(few).grid().cells);
+  EXPECT_EQ(readAsVersion3(d, few).settled.cells.back().run, 3U);
   SlamState bad = few;
   bad.settled.cells.at(0).keyframe = 100000;
   EXPECT_NE(bad.error(), nullptr);

@@ -1,6 +1,7 @@
 // SLAM where odometry fails, scans are missing and lasers are not where tf has them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -137,6 +138,17 @@ TEST(RoughRoads, beginsAnotherRunWhereNothingTellsHowTheRobotMoved) {
   EXPECT_GE(one.road.lost, 1U);
   EXPECT_EQ(one.road.runs_split, 0U);
   EXPECT_EQ(one.keyframes.back().run, 0U);
+}
+
+TEST(RoughRoads, anotherRunBeginsWhereOdometryHasIt) {
+  // Not where a scan that does not fit was matched all the same.
+  for (const float range : {1.2F, 1.6F, 2.5F, 3.5F}) {
+    const Mapped m = mapped(standing(10.0, range));
+    const auto first = std::find_if(m.keyframes.begin(), m.keyframes.end(),
+                                    [](const SlamKeyframe& k) { return k.run == 1; });
+    ASSERT_NE(first, m.keyframes.end()) << range;
+    EXPECT_LT(distance(first->pose, m.keyframes.front().pose), 1e-6) << range;
+  }
 }
 
 TEST(RoughRoads, scansDifferWhenManyRangesChanged) {

@@ -232,11 +232,10 @@ TEST(SlamStateFile, readsTheFirstVersionWhoseLoopsTellNoFit) {
     ++taken_out;
   }
   ASSERT_EQ(taken_out, state.loops.size() + state.pending_loops.size());
-  // And without a settled map: its last run, the side of its cells, none of them.
+  // And without a settled map: the side of its cells, none of them.
   const double side = state.settled.cell;
-  const std::string settled = std::string(4, '\0') +
-                              std::string(reinterpret_cast<const char*>(&side), sizeof(side)) +
-                              std::string(4, '\0');
+  const std::string settled =
+      std::string(reinterpret_cast<const char*>(&side), sizeof(side)) + std::string(4, '\0');
   ASSERT_TRUE(state.settled.cells.empty());
   const auto section = bytes.rfind(settled);
   ASSERT_NE(section, std::string::npos);

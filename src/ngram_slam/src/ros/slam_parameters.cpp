@@ -73,6 +73,7 @@ SlamServerParams loadSlamParams(hyselam::ParamLoader& loader) {
   SlamServerParams p;
   hyselam::loadScanInputParams(loader, p.input);
   p.describe(loader);
+  p.slam.consolidation.map = p.map;
   p.validate();
   return p;
 }

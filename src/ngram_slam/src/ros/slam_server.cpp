@@ -49,7 +49,9 @@ Pose2 placeByOdometry(const std::vector<SlamKeyframe>& keyframes, const Pose2& o
 }  // namespace
 
 SlamServer::Mapping::Mapping(const SlamServerParams& params, SlamState state)
-    : engine(params.slam, std::move(state)), segmenter(params.semantic) {
+    : name(ros::this_node::getName() + '@' + std::to_string(ros::WallTime::now().toNSec())),
+      engine(params.slam, std::move(state)),
+      segmenter(params.semantic) {
   segmentNew();
   published_words = engine.recognizer().text().words();
   published_matches = engine.matches().size();

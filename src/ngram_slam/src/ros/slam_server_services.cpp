@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "ngram_slam/ros/slam_graph_messages.hpp"
 #include "ngram_slam/ros/slam_server.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "wall_milliseconds.hpp"
@@ -38,6 +39,7 @@ void SlamServer::advertiseServices(const ros::NodeHandle& nh, const ros::NodeHan
   services_.map = public_services.advertiseService<GetMap::Request, GetMap::Response>(
       "dynamic_map",
       [this](GetMap::Request&, GetMap::Response& out) { return publisher_.newestMap(out); });
+  services_.graph = public_services.advertiseService("slam_graph", &SlamServer::onGraph, this);
 }
 
 /// @returns what was written. @throws hyselam::InputError
@@ -121,6 +123,18 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
     out.message = e.what();
     ROS_ERROR_STREAM(log_name_ << " not loaded: " << e.what());
   }
+  return true;
+}
+
+bool SlamServer::onGraph(hyselam_msgs::SlamGraph::Request& request,
+                         hyselam_msgs::SlamGraph::Response& out) {
+  GraphPart part;
+  {
+    const Lock lock(mutex_);
+    part = newGraphPart(mapping_->engine, mapping_->name, fromMsg(request));
+  }
+  toMsg(part, &out);
+  out.frame = params_.global_frame_id;
   return true;
 }
 

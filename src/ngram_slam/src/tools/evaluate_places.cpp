@@ -87,9 +87,9 @@ nlohmann::json run(const Options& o) {
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const std::optional<SignatureModel> own = modelFor(o, i, ways);
     for (const std::string& method : o.methods) {
-      const double begin = processSeconds();
+      const double begin = cpuSeconds();
       const Candidates all = candidatesOf(o, method, logs[i], own);
-      const double retrieval = processSeconds() - begin;
+      const double retrieval = cpuSeconds() - begin;
       const std::size_t verified =
           o.no_verification ? 0 : static_cast<std::size_t>(o.candidates.candidates);
       // A context tells of one place only, and not which way the robot went.

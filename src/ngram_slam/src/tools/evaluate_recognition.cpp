@@ -53,10 +53,10 @@ nlohmann::json recognizePlaces(const WordRecognitionOptions& o, const std::strin
   Figures sum;
   nlohmann::json each = nlohmann::json::array();
   for (const PlaceLog& log : source.read()) {
-    const double begin = processSeconds();
+    const double begin = cpuSeconds();
     std::size_t words = 0;
     const Candidates candidates = byDefault(log, model, &words);
-    const double retrieval = processSeconds() - begin;
+    const double retrieval = cpuSeconds() - begin;
     Figures f =
         figuresOf(log, candidates, kPairs, std::numeric_limits<std::size_t>::max(), nullptr);
     f.retrieval_s = retrieval;

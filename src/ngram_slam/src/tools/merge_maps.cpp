@@ -1,19 +1,17 @@
 // merge_maps: saved maps of several sessions or robots become one, as far as they recognize each
 // other's places.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
-#include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
@@ -22,6 +20,7 @@
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "report_page.hpp"
 #include "slam_report.hpp"
+#include "tool_parts.hpp"
 
 namespace {
 
@@ -36,19 +35,10 @@ struct Options {
   bool keep_all = false;
 };
 
-double cpuSeconds() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(use.ru_utime) + seconds(use.ru_stime);
-}
-
 /// Short names for the sessions of files, each another one: what tells them apart.
 std::vector<std::string> labelsOf(const std::vector<std::string>& files) {
   std::vector<std::string> labels;
-  std::map<std::string, int> stems, folders, taken;
+  std::map<std::string, int> stems, folders;
   const auto stemOf = [](const std::string& f) { return std::filesystem::path(f).stem().string(); };
   const auto folderOf = [](const std::string& f) {
     return std::filesystem::path(f).parent_path().filename().string();
@@ -57,22 +47,17 @@ std::vector<std::string> labelsOf(const std::vector<std::string>& files) {
     ++stems[stemOf(f)];
     ++folders[folderOf(f)];
   }
+  std::set<std::string> taken;
   for (const std::string& f : files) {
     const std::string stem = stemOf(f), folder = folderOf(f);
-    std::string label = stems[stem] == 1 || folder.empty() ? stem
-                        : folders[folder] == 1             ? folder
-                                                           : folder + "_" + stem;
-    const int before = taken[label]++;
-    if (before > 0) label += "_" + std::to_string(before + 1);
-    labels.push_back(label);
+    const std::string label = stems[stem] == 1 || folder.empty() ? stem
+                              : folders[folder] == 1             ? folder
+                                                                 : folder + "_" + stem;
+    std::string one = label;
+    for (int i = 2; !taken.insert(one).second; ++i) one = label + "_" + std::to_string(i);
+    labels.push_back(one);
   }
   return labels;
-}
-
-PresentMap emptyMap(double resolution, const PresentMapParams& params = {}) {
-  hyselam::OccupancyMapperParams p;
-  p.resolution = resolution;
-  return PresentMap(p, params);
 }
 
 /// As NgramSlam shows it: what was seen last, and what was settled of keyframes that are dropped.
@@ -110,6 +95,48 @@ std::string nameOfMap(std::size_t i) {
   return i == 0 ? "map" : "map_" + std::to_string(i + 1);
 }
 
+/// Numbers that follow each other as [first, count].
+json rangesOf(const std::vector<std::size_t>& numbers) {
+  json ranges = json::array();
+  for (const std::size_t n : numbers) {
+    if (!ranges.empty()) {
+      json& last = ranges.back();
+      if (last[0].get<std::size_t>() + last[1].get<std::size_t>() == n) {
+        last[1] = last[1].get<std::size_t>() + 1;
+        continue;
+      }
+    }
+    ranges.push_back({n, 1});
+  }
+  return ranges;
+}
+
+/// Takes away the maps and trajectories of a merging into the same folder before this one.
+void removeFormer(const std::string& out, const json& report) {
+  const auto filesOf = [](const json& all) {
+    std::set<std::string> files;
+    for (const json& map : all.at("maps")) {
+      const auto name = map.at("name").get<std::string>();
+      for (const char* ending : {".state", ".yaml", ".pgm"}) files.insert(name + ending);
+      for (const json& s : map.at("sessions")) files.insert(s.at("trajectory").get<std::string>());
+    }
+    return files;
+  };
+  std::set<std::string> former;
+  try {
+    former = filesOf(json::parse(hyselam::readTextFile(out + "/report.json")));
+  } catch (const std::exception&) {
+    return;  // there was none
+  }
+  const std::set<std::string> now = filesOf(report);
+  for (const std::string& file : former) {
+    const std::filesystem::path path = file;
+    if (now.count(file) > 0 || path.has_parent_path()) continue;
+    std::error_code error;
+    std::filesystem::remove(out / path, error);
+  }
+}
+
 json writeMap(const Options& o, const MergedMap& map, std::size_t number,
               const std::vector<std::string>& labels, const std::vector<std::string>& files) {
   const std::string name = nameOfMap(number);
@@ -130,6 +157,7 @@ json writeMap(const Options& o, const MergedMap& map, std::size_t number,
                         {"file", files[part.session]},
                         {"runs", part.runs.size()},
                         {"scans", part.trajectory.size()},
+                        {"scan_ranges", rangesOf(part.scans)},
                         {"path_m", rounded(path)},
                         {"trajectory", trajectory}});
   }
@@ -228,6 +256,7 @@ json run(const Options& o) {
   for (std::size_t i = 0; i < merged.maps.size(); ++i) {
     report["maps"].push_back(writeMap(o, merged.maps[i], i, labels, loaded.files));
   }
+  removeFormer(o.out, report);
   hyselam::writeFileAtomically(o.out + "/report.json",
                                [&](std::ostream& out) { out << report.dump(2) << "\n"; });
   makePage("merge_report", o.out);

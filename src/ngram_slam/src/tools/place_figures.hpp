@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -14,9 +13,10 @@
 #include "hyselam_common/tool.hpp"
 #include "ngram_slam/slam/far_loops.hpp"
 #include "ngram_slam/slam/loop_confidence.hpp"
-#include "ngram_slam/slam/path_segment.hpp"
+#include "ngram_slam/slam/loop_tasks.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
 #include "place_candidates.hpp"
+#include "tool_parts.hpp"
 
 namespace ngram_slam {
 
@@ -24,30 +24,12 @@ constexpr double kPairDistance = 1.0;  // of places laid over each other [m]
 constexpr double kSure = 0.95;         // least probability of a match that is told as sure
 constexpr int kPairs = 4;              // places before and after a match
 
-inline double processSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 inline LoopVerification verify(const PlaceLog& log, const PlaceCandidate& c,
                                const SlamParams& params) {
-  LoopTask task;
-  task.older = static_cast<int>(log.places[c.older].on_way.keyframe);
-  task.newer = static_cast<int>(log.places[c.newer].on_way.keyframe);
-  task.source = LoopSource::kSignature;
-  task.far = true;
-  task.any_heading = true;
-  task.window = params.loop.signature_search_window;
-  task.angle = params.loop.signature_search_angle;
-  const double newer_length = log.keyframes[static_cast<std::size_t>(task.newer)].path_length;
-  task.old_segment =
-      segmentAround(log.keyframes, task.older, params.loop.far_old_segment_half_length,
-                    newer_length - params.loop.segment_separation);
-  task.new_segment =
-      segmentAround(log.keyframes, task.newer, params.loop.far_new_segment_half_length,
-                    std::numeric_limits<double>::infinity());
-  return verifyLoop(task, params);
+  return verifyLoop(
+      farLoopTask(log.keyframes, static_cast<int>(log.places[c.older].on_way.keyframe),
+                  static_cast<int>(log.places[c.newer].on_way.keyframe), params.loop),
+      params);
 }
 
 /// Counts of one log.
@@ -287,9 +269,9 @@ inline std::vector<Match> matchesOf(const PlaceLog& log, const Candidates& all,
     progress.update(q + 1);
     if (!log.places[q * kQuestionInterval].truth) continue;
     for (std::size_t k = 0; k < std::min(verified, all[q].size()); ++k) {
-      const double begin = processSeconds();
+      const double begin = cpuSeconds();
       const LoopVerification v = verify(log, all[q][k], params);
-      f->verification_s.push_back(processSeconds() - begin);
+      f->verification_s.push_back(cpuSeconds() - begin);
       if (v.score == 0.0) continue;
       const auto error = loopError(log.keyframes[static_cast<std::size_t>(v.loop.older)],
                                    log.keyframes[static_cast<std::size_t>(v.loop.newer)],

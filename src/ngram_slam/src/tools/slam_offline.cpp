@@ -25,6 +25,7 @@
 #include "reference_poses.hpp"
 #include "report_page.hpp"
 #include "slam_report.hpp"
+#include "tool_parts.hpp"
 #include "word_tables.hpp"
 
 namespace {
@@ -46,15 +47,6 @@ struct Options {
   Degradation degradation;
   hyselam::BagOptions bag_options;
 };
-
-double cpuSeconds() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(use.ru_utime) + seconds(use.ru_stime);
-}
 
 double peakMegabytes() {
   rusage use{};
@@ -116,6 +108,7 @@ std::vector<hyselam::StampedPose2> ownTrajectory(const SlamEngine& engine, std::
 struct Run {
   std::unique_ptr<SlamEngine> engine;
   std::size_t saved_scans = 0, saved_keyframes = 0;  ///< of the map that it goes on with
+  std::uint64_t saved_counts = 0;                    ///< scans that it has counted
   std::size_t without_odometry = 0, refused = 0;
   double cpu = 0.0;
 };
@@ -141,6 +134,7 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
   run.engine = std::move(engine);
   run.saved_scans = run.engine->trajectory().size();
   run.saved_keyframes = run.engine->keyframes().size();
+  run.saved_counts = run.engine->counters().scans;
   hyselam::Progress progress(label, log.scans.size());
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     progress.update(i + 1);
@@ -160,12 +154,6 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
   while (const auto job = run.engine->takeFinalJob()) run.engine->apply(runJob(*job));
   run.cpu = cpuSeconds() - begin;
   return run;
-}
-
-PresentMap emptyMap(double resolution, const PresentMapParams& params = {}) {
-  hyselam::OccupancyMapperParams p;
-  p.resolution = resolution;
-  return PresentMap(p, params);
 }
 
 PresentMap mapOf(const SlamEngine& engine, double resolution) {
@@ -348,7 +336,8 @@ nlohmann::json troubleOf(const Run& run, const std::optional<LaserMount>& mount,
     sentences.push_back(text.str());
   }
   // Recordings of key scans only have nothing else.
-  if (road.gaps < kGapsOfScans * static_cast<double>(run.engine->counters().scans)) {
+  const std::uint64_t scans = run.engine->counters().scans - run.saved_counts;
+  if (static_cast<double>(road.gaps) < kGapsOfScans * static_cast<double>(scans)) {
     tell(road.gaps, "gaps without scans");
   }
   tell(road.lost, "times neither odometry nor scans told how the robot moved");

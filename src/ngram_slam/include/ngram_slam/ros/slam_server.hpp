@@ -3,6 +3,7 @@
 #pragma once
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <hyselam_msgs/SlamGraph.h>
 #include <hyselam_msgs/StatePath.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -30,8 +32,7 @@ namespace ngram_slam {
 /// Topics: in `scan`, tf, `initialpose`; out `map`, `map_metadata`, `map_certainty`, `map_changes`,
 /// `map_change_markers`, `region_graph`, `localization_status` (latched), `words`, `word_matches`,
 /// `semantic_regions`, `path`, `slam_markers`, tf map -> odom, /diagnostics. Services:
-/// `dynamic_map`, `~save`, `~load`,
-/// `~pause`, `~resume`.
+/// `dynamic_map`, `slam_graph`, `~save`, `~load`, `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
 /// poses optimized on one thread, maps drawn and saved on another, services answered on a third:
@@ -53,6 +54,7 @@ class SlamServer {
     /// Segments the observations that came since; returns their regions.
     std::vector<SemanticRegion> segmentNew();
 
+    const std::string name;  // another one for each, of all processes
     SlamEngine engine;
     SemanticSegmenter segmenter;
     std::vector<SemanticRegion> regions;
@@ -83,7 +85,7 @@ class SlamServer {
   /// Their own queue and thread.
   struct Services {
     ros::CallbackQueue queue;
-    ros::ServiceServer save, load, pause, resume, map;
+    ros::ServiceServer save, load, pause, resume, map, graph;
     std::unique_ptr<ros::AsyncSpinner> spinner;
   };
   struct OdomInMapBroadcaster {
@@ -117,6 +119,7 @@ class SlamServer {
   void advertiseServices(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
   bool onSave(hyselam_msgs::StatePath::Request& request, hyselam_msgs::StatePath::Response& out);
   bool onLoad(hyselam_msgs::StatePath::Request& request, hyselam_msgs::StatePath::Response& out);
+  bool onGraph(hyselam_msgs::SlamGraph::Request& request, hyselam_msgs::SlamGraph::Response& out);
   bool onPause(bool pause, std_srvs::Trigger::Response& out);
   bool drawsMaps() const { return params_.map_update_interval > 0.0; }
   void runJobs();

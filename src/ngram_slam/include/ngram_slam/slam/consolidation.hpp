@@ -24,6 +24,9 @@ struct ConsolidationParams {
   int max_scans = 50000;
   PresentMapParams present;    ///< what is remembered of dropped keyframes, see SettledCell
   double settled_cell = 0.05;  ///< [m], 0.01..1
+  /// How maps are drawn of scans, but for the side of their cells: what is settled must be what
+  /// was shown. Not described: it is what the parameters of the map say.
+  hyselam::OccupancyMapperParams map;
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError

@@ -1,6 +1,7 @@
 // Which verified far loops are believed: one rule, of SLAM and of the evaluation of recognition.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "ngram_slam/slam/run_connections.hpp"
@@ -9,10 +10,13 @@
 
 namespace ngram_slam {
 
+/// Loops that may wait in SLAM. A saved map waits for nothing more: there all may.
+constexpr std::size_t kMaxWaitingLoops = 400;
+
 /// Adds a verified far loop to those that `wait`. Returns those that are believed now, itself or
 /// some that waited for one like it, the newest first, and takes them out; `accepted`: far loops
 /// believed before. One that says again what an accepted or a waiting one says of the same
-/// keyframes is no news. At most 400 wait: the oldest are given up.
+/// keyframes is no news. At most `max_waiting` wait: the oldest are given up.
 ///
 /// A loop is believed if its company does not contradict it (companyOf()), it is not less probable
 /// than `LoopParams::min_signature_probability` where signatures proposed it (loopProbability()),
@@ -23,6 +27,7 @@ namespace ngram_slam {
 std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<SlamLoop>& accepted,
                                       const std::vector<SlamKeyframe>& keyframes,
                                       const RunConnections& connections, const LoopParams& params,
-                                      std::vector<SlamLoop>* waiting);
+                                      std::vector<SlamLoop>* waiting,
+                                      std::size_t max_waiting = kMaxWaitingLoops);
 
 }  // namespace ngram_slam

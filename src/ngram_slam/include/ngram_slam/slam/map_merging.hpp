@@ -13,6 +13,8 @@
 
 namespace ngram_slam {
 
+/// All numbers were chosen on intel, aces and mit-killian cut into pieces (bench/merge_maps): in
+/// sample there.
 struct MapMergingParams {
   SlamParams slam;  ///< of the engines that made the maps and that will go on with the result
   int threads = 1;  ///< that verify loops, >= 1; the result does not depend on it
@@ -67,9 +69,11 @@ struct MapMeeting {
 
 /// Part of a session in a merged map.
 struct MergedPart {
-  std::size_t session = 0;                        ///< as given
-  std::vector<std::uint32_t> runs;                ///< of the map
-  std::vector<hyselam::StampedPose2> trajectory;  ///< of all scans, in the map
+  std::size_t session = 0;                  ///< as given
+  std::vector<std::uint32_t> runs;          ///< of the map
+  std::vector<std::uint32_t> session_runs;  ///< the same as the session has them, without gaps
+  std::vector<hyselam::StampedPose2> trajectory;  ///< of all its scans, in the map
+  std::vector<std::size_t> scans;                 ///< their numbers in the session
 };
 
 struct MergedMap {

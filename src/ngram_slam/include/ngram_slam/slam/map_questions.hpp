@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "ngram_slam/slam/loop_verifier.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
 #include "ngram_slam/slam/slam_params.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
@@ -36,14 +35,5 @@ class MapQuestions {
   double spacing_;
   std::set<std::pair<int, int>> told_;  // keyframes
 };
-
-/// The task to verify that two keyframes show the same place, at any heading.
-LoopTask farLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int newer,
-                     const LoopParams& params);
-
-/// The task to verify that the scan of a keyframe is where the poses say beside the path of another
-/// one, within `uncertainty` [m].
-LoopTask nearLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int newer,
-                      double uncertainty, const LoopParams& params);
 
 }  // namespace ngram_slam

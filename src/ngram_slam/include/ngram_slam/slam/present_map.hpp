@@ -75,7 +75,7 @@ class PresentMap {
     hyselam::OccupancyGrid grid, probabilities;
     std::vector<MapChange> changes;
   };
-  Drawn draw() const { return {grid(), probabilities(), changes()}; }
+  Drawn draw() const;
   double cell() const { return map_.resolution; }
   /// Since the runs before the session; nothing in a first session. The largest first.
   std::vector<MapChange> changes() const;
@@ -117,10 +117,15 @@ class PresentMap {
     void cover(int min_x, int min_y, int max_x, int max_y, std::size_t max_cells);
   };
   void closeRun();
-  void closeRunsBefore(const SlamKeyframe* next, const Source& source);
+  void beginRun(std::uint32_t run, const Source& source);
   void fold(const hyselam::OccupancyMapper& visit, bool now, Grid* grid) const;
-  void settle(const Source& source);
+  void settleBefore(std::uint32_t run, const Source& source);
   Grid present() const;
+  template <typename Value>
+  hyselam::OccupancyGrid gridOf(const Grid& g, const Value& value) const;
+  hyselam::OccupancyGrid gridOf(const Grid& g) const;
+  hyselam::OccupancyGrid probabilitiesOf(const Grid& g) const;
+  std::vector<MapChange> changesOf(const Grid& now) const;
   hyselam::OccupancyGrid emptyGrid(const Grid& g) const;
 
   hyselam::OccupancyMapperParams map_;
@@ -130,7 +135,8 @@ class PresentMap {
   Grid before_;                     // of the sessions before this one
   std::size_t inserted_ = 0;
   std::uint32_t run_ = 0, session_ = 0;
-  bool open_ = false, settled_ = false, in_session_ = false;
+  std::uint32_t settled_before_ = 0;  // the cells of earlier runs are in the map
+  bool open_ = false, in_session_ = false;
   std::vector<bool> shown_;
   std::size_t settled_cells_ = 0;
   long revision_ = -1;
@@ -138,9 +144,9 @@ class PresentMap {
 
 /// The cells of which `after` (the keyframes that stay, without what was settled before) does not
 /// tell what `before` does. `map`: by run, the map that it lies in; each is settled by itself.
-/// `kept`: of the keyframes. Their numbers are those of `before`.
+/// `kept`: of the keyframes. Their numbers are those of `before`. `map`: as it is drawn.
 SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vector<bool>& kept,
                       const std::vector<std::uint32_t>& map_of_run, const SettledMap& before,
-                      double cell, const PresentMapParams& params);
+                      const hyselam::OccupancyMapperParams& map, const PresentMapParams& params);
 
 }  // namespace ngram_slam

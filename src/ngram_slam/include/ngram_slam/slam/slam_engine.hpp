@@ -134,6 +134,8 @@ class SlamEngine {
   const SlamCounters& counters() const { return state_.counters; }
   /// Accepted loop closures: the loop edges of graph().
   const std::vector<SlamLoop>& loops() const { return state_.loops; }
+  /// The other edges of graph().
+  const std::vector<hyselam_pose_graph::PoseEdge>& odometry() const { return state_.odometry; }
   /// N-gram matches between words of the path, verified or not.
   const std::vector<SlamMatch>& matches() const { return state_.matches; }
   /// Incremented by every optimization, which moves poses of keyframes.
@@ -265,7 +267,7 @@ class SlamEngine {
   bool tellsNothing(const Motion& motion, const SlamUpdate& update) const;
   bool awaitsMore(const Motion& motion);
   bool splitsRuns() const;
-  void splitRun(const hyselam::LaserScan& scan);
+  void splitRun(const hyselam::LaserScan& scan, const hyselam::Pose2& by_odometry);
   void noteMatched(const hyselam::LaserScan& scan);
 
   bool needsKeyframe(const Motion& motion) const;

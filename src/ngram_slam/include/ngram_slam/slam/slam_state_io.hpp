@@ -10,11 +10,11 @@ namespace ngram_slam {
 
 /// Layout (little-endian): "NGRAMSLM", version u32, length of the body u64, CRC-32 of these; body;
 /// CRC-32 of the body. Older versions are still read: version 1 has no SlamLoop::fit (the least
-/// that verified loops have is taken), version 2 no settled map. Scans are stored as they were
-/// measured; surfaces are made of them on loading.
+/// that verified loops have is taken), version 2 no settled map, version 3 one run for all settled
+/// cells. Scans are stored as they were measured; surfaces are made of them on loading.
 class SlamStateFile {
  public:
-  static constexpr std::uint32_t kVersion = 3;
+  static constexpr std::uint32_t kVersion = 4;
 
   /// Atomic: a reader sees the old file or the new one.
   /// @throws hyselam::InputError when the place cannot be written.

@@ -73,11 +73,11 @@ struct SettledCell {
   hyselam::Point2 center;  ///< in the frame of the keyframe [m]
   float log_odds = 0.0F;   ///< that it is occupied
   std::uint16_t visits = 0, changes = 0;
+  std::uint32_t run = 0;  ///< the runs after it come on top
 };
 
-/// See SettledCell; the runs after `last_run` come on top of it.
+/// See SettledCell.
 struct SettledMap {
-  std::uint32_t last_run = 0;
   double cell = 0.05;  ///< side [m], > 0
   std::vector<SettledCell> cells;
 };

@@ -1,6 +1,7 @@
 // Several states of SLAM as one, and one as several: what is known of runs goes along.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "ngram_slam/slam/slam_types.hpp"
@@ -17,6 +18,9 @@ SlamState joinedStates(const std::vector<SlamState>& states);
 /// that of scans is known.
 /// @throws hyselam::InputError for a state that is not consistent.
 SlamState partOfState(const SlamState& state, const std::vector<bool>& runs);
+
+/// Of each keyframe, a number that tells its scan from all others.
+std::vector<std::uint64_t> scanNumbers(const SlamState& state);
 
 /// Number of runs: one more than the last keyframe's.
 std::uint32_t runsOf(const SlamState& state);

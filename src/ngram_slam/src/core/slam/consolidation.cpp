@@ -455,9 +455,10 @@ SettledMap settledWithout(const SlamState& state, const std::vector<bool>& dropp
   }
   std::vector<bool> kept;
   for (const bool d : dropped) kept.push_back(!d);
+  hyselam::OccupancyMapperParams map = params.map;
+  map.resolution = params.settled_cell;
   try {
-    return settledMap(state.keyframes, kept, map_of_run, state.settled, params.settled_cell,
-                      params.present);
+    return settledMap(state.keyframes, kept, map_of_run, state.settled, map, params.present);
   } catch (const std::length_error&) {
     return {};  // no map could be drawn
   }

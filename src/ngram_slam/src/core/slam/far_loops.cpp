@@ -11,8 +11,6 @@ namespace ngram_slam {
 
 namespace {
 
-constexpr std::size_t kMaxWaiting = 400;  // the oldest are given up
-
 /// The accepted loops, and those that wait.
 class Judge {
  public:
@@ -98,7 +96,7 @@ class Judge {
 std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<SlamLoop>& accepted,
                                       const std::vector<SlamKeyframe>& keyframes,
                                       const RunConnections& connections, const LoopParams& params,
-                                      std::vector<SlamLoop>* waiting) {
+                                      std::vector<SlamLoop>* waiting, std::size_t max_waiting) {
   Judge judge(accepted, keyframes, connections, params);
   // What is known already is no further opinion.
   for (const std::vector<SlamLoop>* known :
@@ -107,7 +105,7 @@ std::vector<SlamLoop> believeFarLoops(const SlamLoop& loop, const std::vector<Sl
       if (isSamePair(l, loop) && judge.areConsistent(l, loop)) return {};
     }
   }
-  while (waiting->size() >= kMaxWaiting) waiting->erase(waiting->begin());
+  while (waiting->size() >= std::max<std::size_t>(max_waiting, 1)) waiting->erase(waiting->begin());
   waiting->push_back(loop);
   // What the new loop, or one believed since, may have changed.
   const double reach = params.company_half_length + params.consistency_max_path_length;

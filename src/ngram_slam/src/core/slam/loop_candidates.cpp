@@ -164,9 +164,19 @@ LoopInconsistency loopInconsistency(const SlamLoop& a, const SlamLoop& b,
   LoopInconsistency result;
   result.path_length =
       std::max(pathLength(at(a.newer), at(b.newer)), pathLength(at(a.older), at(b.older)));
+  int older = b.older, newer = b.newer;
+  Pose2 measured = b.measured;
+  if (!std::isfinite(result.path_length)) {
+    // Runs of two maps may have come in turn: then the older end of the one is in the map of the
+    // newer end of the other.
+    std::swap(older, newer);
+    measured = measured.inverse();
+    result.path_length =
+        std::max(pathLength(at(a.newer), at(newer)), pathLength(at(a.older), at(older)));
+  }
   if (!std::isfinite(result.path_length)) return result;
-  const Pose2 predicted = between(at(a.older).pose, at(b.older).pose) * b.measured *
-                          between(at(b.newer).pose, at(a.newer).pose);
+  const Pose2 predicted = between(at(a.older).pose, at(older).pose) * measured *
+                          between(at(newer).pose, at(a.newer).pose);
   result.distance = distance(predicted, a.measured);
   result.angle = std::abs(hyselam::normalizeAngle(predicted.theta - a.measured.theta));
   return result;

@@ -4,11 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "ngram_slam/slam/far_loops.hpp"
+#include "ngram_slam/slam/loop_tasks.hpp"
 #include "ngram_slam/slam/run_graph.hpp"
 #include "ngram_slam/slam/state_parts.hpp"
 
@@ -33,7 +35,7 @@ MapMerger::MapMerger(const std::vector<SlamState>& sessions, const MapMergingPar
     session_of_run_.resize(session_of_run_.size() + runs, s);
   }
   given_ = connections_ = RunConnections(state_.keyframes, state_.loops);
-  near_asked_.assign(state_.keyframes.size(), false);
+  is_near_asked_.assign(state_.keyframes.size(), false);
   rebuildPathLengths();
 }
 
@@ -209,6 +211,10 @@ void MapMerger::join(const MapTie& tie) {
   }
   near_tried_ = near_verified_ = 0;
   near_asked_since_.clear();
+  // There are new maps to compare them with.
+  for (std::size_t k = 0; k < is_near_asked_.size(); ++k) {
+    if (mapOf(state_.keyframes[k].run) == std::min(a, b)) is_near_asked_[k] = false;
+  }
   optimize(std::min(a, b));
 }
 
@@ -237,7 +243,10 @@ void MapMerger::withdraw(const Untied& before, const MapTie& tie) {
   for (std::size_t i = 0; i < before.poses.size(); ++i) state_.keyframes[i].pose = before.poses[i];
   state_.loops = before.loops;
   withdrawn_.insert(withdrawn_.end(), tie.loops.begin(), tie.loops.end());
-  for (const int k : near_asked_since_) near_asked_[static_cast<std::size_t>(k)] = false;
+  for (const auto& asked : near_asked_since_) {
+    near_asked_.erase(asked);
+    is_near_asked_[static_cast<std::size_t>(asked.first)] = false;
+  }
   connections_ = RunConnections(state_.keyframes, state_.loops);
   rebuildPathLengths();
 }
@@ -264,7 +273,8 @@ bool MapMerger::believeWithinMaps() {
       continue;
     }
     for (const SlamLoop& b :
-         believeFarLoops(l, used, state_.keyframes, connections_, params_.slam.loop, &waiting)) {
+         believeFarLoops(l, used, state_.keyframes, connections_, params_.slam.loop, &waiting,
+                         std::numeric_limits<std::size_t>::max())) {
       believed.push_back(b);
       used.push_back(b);
     }
@@ -283,7 +293,7 @@ bool MapMerger::believeWithinMaps() {
 // ---- near loops
 
 /// Of keyframes whose pose beside the path of another given map is known well, that were not
-/// compared with it yet.
+/// compared with that map yet.
 std::vector<LoopTask> MapMerger::nearTasks() {
   struct Near {
     int older;
@@ -295,14 +305,16 @@ std::vector<LoopTask> MapMerger::nearTasks() {
   std::vector<LoopTask> tasks;
   const auto n = static_cast<int>(state_.keyframes.size());
   for (int k = 0; k < n; k += p.near_search_interval) {
-    const auto asked = near_asked_.begin() + k;
-    if (*asked) continue;
+    if (is_near_asked_[static_cast<std::size_t>(k)]) continue;
     std::vector<Near> found;
     double last_path_length = 0.0;
     std::uint32_t last_run = 0;
     for (const auto& [older, length] : path_lengths_.within(k, reach)) {
       const double uncertainty = p.positionUncertainty(length);
-      if (older >= k || !areStrangers(older, k) || uncertainty > p.near_max_uncertainty) continue;
+      if (older >= k || !areStrangers(older, k) || uncertainty > p.near_max_uncertainty ||
+          near_asked_.count({k, given_.mapOf(keyframe(older).run)}) > 0) {
+        continue;
+      }
       const Near near{older, uncertainty, distance(keyframe(older).pose, keyframe(k).pose)};
       if (near.distance >= uncertainty + p.visibility_margin) continue;
       // One of each segment of the older path: its nearest keyframe.
@@ -318,8 +330,11 @@ std::vector<LoopTask> MapMerger::nearTasks() {
       last_run = keyframe(older).run;
     }
     if (found.empty()) continue;
-    *asked = true;
-    near_asked_since_.push_back(k);
+    is_near_asked_[static_cast<std::size_t>(k)] = true;
+    for (const Near& near : found) {
+      const std::pair<int, std::uint32_t> asked{k, given_.mapOf(keyframe(near.older).run)};
+      if (near_asked_.insert(asked).second) near_asked_since_.push_back(asked);
+    }
     std::stable_sort(found.begin(), found.end(),
                      [](const Near& a, const Near& b) { return a.distance < b.distance; });
     for (int i = 0; i < std::min(p.near_max_candidates, static_cast<int>(found.size())); ++i) {
@@ -455,9 +470,12 @@ std::vector<MapMeeting> MapMerger::meetings() const {
 
 std::vector<MapMerger::TakenScan> MapMerger::scans() const {
   std::vector<TakenScan> out;
+  std::size_t number = 0;
   for (std::size_t i = 0; i < state_.scans.size(); ++i) {
     const PlacedScan& s = state_.scans[i];
+    number = i > 0 && session_of_scan_[i] == session_of_scan_[i - 1] ? number + 1 : 0;
     out.push_back({session_of_scan_[i],
+                   number,
                    mapOfKeyframe(s.keyframe),
                    {s.stamp, keyframe(s.keyframe).pose * s.base_in_keyframe}});
   }

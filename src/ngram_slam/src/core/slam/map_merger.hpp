@@ -1,11 +1,15 @@
 // The work of mergeMaps(), for its own files only.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ngram_slam/slam/loop_candidates.hpp"
+#include "ngram_slam/slam/loop_verifier.hpp"
 #include "ngram_slam/slam/map_merging.hpp"
 #include "ngram_slam/slam/map_questions.hpp"
 #include "ngram_slam/slam/map_ties.hpp"
@@ -29,6 +33,7 @@ class MapMerger {
   std::vector<MapMeeting> meetings() const;
   struct TakenScan {
     std::size_t session;
+    std::size_t number;  // in the session
     std::uint32_t map;
     hyselam::StampedPose2 pose;
   };
@@ -84,11 +89,12 @@ class MapMerger {
   std::optional<MapQuestions> questions_;
   std::vector<SlamLoop> withdrawn_;  // of ties that were
   std::vector<SlamLoop> pending_;    // verified far loops that are not in the graph
-  std::vector<bool> near_asked_;     // by keyframe
+  std::set<std::pair<int, std::uint32_t>> near_asked_;  // keyframe, a given map
+  std::vector<bool> is_near_asked_;  // by keyframe: since its map was tied to another one
   MapMergingCounters counters_;
-  std::vector<int> near_asked_since_;       // the last tie
-  int near_tried_ = 0, near_verified_ = 0;  // since the last tie
-  int lengths_of_ = -1;                     // keyframe of isOpen()
+  std::vector<std::pair<int, std::uint32_t>> near_asked_since_;  // the last tie
+  int near_tried_ = 0, near_verified_ = 0;                       // since the last tie
+  int lengths_of_ = -1;                                          // keyframe of isOpen()
   std::vector<double> lengths_;
 };
 

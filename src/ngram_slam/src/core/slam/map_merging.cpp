@@ -21,22 +21,6 @@ struct Sorted {
   std::vector<LeftOutSession> left_out;
 };
 
-/// Numbers that tell the scans of a session from all others.
-std::vector<std::uint64_t> scansOf(const SlamState& state) {
-  std::vector<std::uint64_t> out;
-  for (const SlamKeyframe& k : state.keyframes) {
-    std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
-    const auto add = [&](const void* data, std::size_t size) {
-      const auto* bytes = static_cast<const unsigned char*>(data);
-      for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
-    };
-    add(&k.stamp, sizeof k.stamp);
-    add(k.scan->ranges.data(), k.scan->ranges.size() * sizeof(float));
-    out.push_back(hash);
-  }
-  return out;
-}
-
 /// The larger ones first: they hold what a smaller one may hold too.
 Sorted sorted(const std::vector<MapSession>& sessions, double max_shared) {
   Sorted out;
@@ -55,7 +39,7 @@ Sorted sorted(const std::vector<MapSession>& sessions, double max_shared) {
   });
   std::map<std::uint64_t, std::size_t> session_of_scan;
   for (const std::size_t s : order) {
-    const std::vector<std::uint64_t> scans = scansOf(sessions[s].state);
+    const std::vector<std::uint64_t> scans = scanNumbers(sessions[s].state);
     std::map<std::size_t, std::size_t> shared;  // by session
     for (const std::uint64_t scan : scans) {
       const auto known = session_of_scan.find(scan);
@@ -116,19 +100,24 @@ std::vector<LeftOutSession> otherLasers(const std::vector<MapSession>& sessions,
 std::vector<MergedPart> partsOf(const MapMerger& merger, std::uint32_t map,
                                 const std::vector<std::size_t>& taken) {
   std::vector<MergedPart> parts;
-  std::uint32_t run_in_map = 0;
+  std::uint32_t run_in_map = 0, first_of_session = 0;
   for (std::uint32_t run = 0; run < merger.runs(); ++run) {
+    if (run > 0 && merger.sessionOf(run) != merger.sessionOf(run - 1)) first_of_session = run;
     if (merger.mapOf(run) != map) continue;
     const std::size_t session = taken[merger.sessionOf(run)];
-    if (parts.empty() || parts.back().session != session) parts.push_back({session, {}, {}});
+    if (parts.empty() || parts.back().session != session)
+      parts.push_back({session, {}, {}, {}, {}});
     parts.back().runs.push_back(run_in_map++);
+    parts.back().session_runs.push_back(run - first_of_session);
   }
   for (const MapMerger::TakenScan& scan : merger.scans()) {
     if (scan.map != map) continue;
     const auto part = std::find_if(parts.begin(), parts.end(), [&](const MergedPart& p) {
       return p.session == taken[scan.session];
     });
-    if (part != parts.end()) part->trajectory.push_back(scan.pose);
+    if (part == parts.end()) continue;
+    part->trajectory.push_back(scan.pose);
+    part->scans.push_back(scan.number);
   }
   return parts;
 }

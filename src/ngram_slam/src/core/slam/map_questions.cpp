@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "ngram_slam/slam/path_segment.hpp"
-
 namespace ngram_slam {
 
 using hyselam::Pose2;
@@ -15,7 +13,6 @@ namespace {
 // Up to so many places all are compared; of more, those that the index finds.
 constexpr std::uint32_t kMaxCompared = 20000;
 constexpr int kMostCandidates = 20;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SignaturePlacesParams paramsOfAll(SignaturePlacesParams params) {
   params.recognizer.max_candidates = kMostCandidates;
@@ -66,36 +63,6 @@ std::vector<SignatureCandidate> MapQuestions::ask(double interval, int candidate
     }
   }
   return out;
-}
-
-LoopTask farLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int newer,
-                     const LoopParams& params) {
-  LoopTask task;
-  task.older = older;
-  task.newer = newer;
-  task.far = task.any_heading = true;
-  task.source = LoopSource::kSignature;
-  task.window = params.signature_search_window;
-  task.angle = std::min(params.signature_search_angle, hyselam::kPi);
-  task.old_segment = segmentAround(keyframes, older, params.far_old_segment_half_length, kInfinity);
-  task.new_segment = segmentAround(keyframes, newer, params.far_new_segment_half_length, kInfinity);
-  return task;
-}
-
-LoopTask nearLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int newer,
-                      double uncertainty, const LoopParams& params) {
-  const SlamKeyframe& from = keyframes[static_cast<std::size_t>(older)];
-  const SlamKeyframe& to = keyframes[static_cast<std::size_t>(newer)];
-  LoopTask task;
-  task.older = older;
-  task.newer = newer;
-  task.initial_guess = between(from.pose, to.pose);
-  task.window = uncertainty;
-  task.angle = std::min(params.near_search_angle, hyselam::kPi);
-  task.old_segment = segmentAround(keyframes, older, params.near_segment_half_length, kInfinity);
-  task.new_segment.push_back(
-      {Pose2{}, to.points, {to.scan->laser_in_base.x, to.scan->laser_in_base.y}});
-  return task;
 }
 
 }  // namespace ngram_slam

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ngram_slam/slam/far_loops.hpp"
@@ -34,8 +35,8 @@ std::vector<SlamLoop> believedOf(const std::vector<SlamLoop>& between,
                                      [&](const SlamLoop& l) { return isSamePair(l, between[k]); });
       if (k != i && !known && !isSamePair(between[k], between[i])) waiting.push_back(between[k]);
     }
-    for (const SlamLoop& l :
-         believeFarLoops(between[i], {}, keyframes, connections, params, &waiting)) {
+    for (const SlamLoop& l : believeFarLoops(between[i], {}, keyframes, connections, params,
+                                             &waiting, std::numeric_limits<std::size_t>::max())) {
       believed.push_back(l);
     }
   }

@@ -137,10 +137,11 @@ void PresentMap::closeRun() {
   open_ = false;
 }
 
-/// The cells that were settled take the place of what the kept keyframes say.
-void PresentMap::settle(const Source& source) {
+/// The cells that were settled before a run take the place of what the kept keyframes say.
+void PresentMap::settleBefore(std::uint32_t run, const Source& source) {
   const double resolution = map_.resolution, half = 0.5 * source.settled.cell;
   for (const SettledCell& c : source.settled.cells) {
+    if (c.run < settled_before_ || c.run >= run) continue;
     const SlamKeyframe& k = source.keyframes[static_cast<std::size_t>(c.keyframe)];
     if (k.run >= shown_.size() || !shown_[k.run]) continue;
     const Point2 center = k.pose * c.center;
@@ -166,23 +167,18 @@ void PresentMap::settle(const Source& source) {
       }
     }
   }
+  settled_before_ = std::max(settled_before_, run);
 }
 
-/// What has to be done before a keyframe of another run, or none, is inserted.
-void PresentMap::closeRunsBefore(const SlamKeyframe* next, const Source& source) {
-  const bool other_run = next == nullptr || !open_ || next->run != run_;
-  if (!other_run) return;
-  if (next == nullptr) return;
+/// What has to be done before the first keyframe of another run is inserted.
+void PresentMap::beginRun(std::uint32_t run, const Source& source) {
   closeRun();
-  if (!settled_ && next->run > source.settled.last_run) {
-    settle(source);
-    settled_ = true;
-  }
-  if (!in_session_ && next->run >= source.session) {
+  settleBefore(run, source);
+  if (!in_session_ && run >= source.session) {
     before_ = past_;
     in_session_ = true;
   }
-  run_ = next->run;
+  run_ = run;
   open_ = true;
 }
 
@@ -194,7 +190,8 @@ void PresentMap::update(const Source& source) {
     past_ = before_ = Grid{};
     inserted_ = 0;
     run_ = 0;
-    open_ = settled_ = in_session_ = false;
+    settled_before_ = 0;
+    open_ = in_session_ = false;
     revision_ = source.revision;
     shown_ = source.shown;
     session_ = source.session;
@@ -203,14 +200,14 @@ void PresentMap::update(const Source& source) {
   while (inserted_ < source.keyframes.size()) {
     const SlamKeyframe& k = source.keyframes[inserted_++];
     if (k.run >= shown_.size() || !shown_[k.run]) continue;
-    closeRunsBefore(&k, source);
+    if (!open_ || k.run != run_) beginRun(k.run, source);
     visit_.insert(k.pose, *k.scan);
   }
-  // A map that is only shown, before any scan of a session.
-  if (!settled_ && !source.settled.cells.empty()) {
+  // What was settled of the last run too, before any scan of a session.
+  const auto is_left = [&](const SettledCell& c) { return c.run >= settled_before_; };
+  if (std::any_of(source.settled.cells.begin(), source.settled.cells.end(), is_left)) {
     closeRun();
-    settle(source);
-    settled_ = true;
+    settleBefore(std::numeric_limits<std::uint32_t>::max(), source);
   }
 }
 
@@ -253,36 +250,45 @@ int latticeOf(double origin, double resolution) {
 
 }  // namespace
 
-OccupancyGrid PresentMap::grid() const {
-  const Grid g = present();
+/// A map of the known cells, each as `value` has it.
+template <typename Value>
+OccupancyGrid PresentMap::gridOf(const Grid& g, const Value& value) const {
   OccupancyGrid grid = emptyGrid(g);
   const int x0 = latticeOf(grid.geometry.origin.x, map_.resolution);
   const int y0 = latticeOf(grid.geometry.origin.y, map_.resolution);
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
       const Belief& b = g.at(x, y);
-      if (!isKnown(b)) continue;
-      grid.at({x + g.x0 - x0, y + g.y0 - y0}) =
-          b.log_odds > 0.0F ? OccupancyGrid::kOccupied : OccupancyGrid::kFree;
+      if (isKnown(b)) grid.at({x + g.x0 - x0, y + g.y0 - y0}) = value(b);
     }
   }
   return grid;
 }
 
+OccupancyGrid PresentMap::gridOf(const Grid& g) const {
+  return gridOf(g, [](const Belief& b) {
+    return b.log_odds > 0.0F ? OccupancyGrid::kOccupied : OccupancyGrid::kFree;
+  });
+}
+
+OccupancyGrid PresentMap::probabilitiesOf(const Grid& g) const {
+  return gridOf(g, [](const Belief& b) {
+    const double p = probabilityOf(static_cast<double>(b.log_odds));
+    return static_cast<std::int8_t>(std::lround(100.0 * p));
+  });
+}
+
+OccupancyGrid PresentMap::grid() const {
+  return gridOf(present());
+}
+
 OccupancyGrid PresentMap::probabilities() const {
-  const Grid g = present();
-  OccupancyGrid grid = emptyGrid(g);
-  const int x0 = latticeOf(grid.geometry.origin.x, map_.resolution);
-  const int y0 = latticeOf(grid.geometry.origin.y, map_.resolution);
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const Belief& b = g.at(x, y);
-      if (!isKnown(b)) continue;
-      grid.at({x + g.x0 - x0, y + g.y0 - y0}) = static_cast<std::int8_t>(
-          std::lround(100.0 * probabilityOf(static_cast<double>(b.log_odds))));
-    }
-  }
-  return grid;
+  return probabilitiesOf(present());
+}
+
+PresentMap::Drawn PresentMap::draw() const {
+  const Grid now = present();
+  return {gridOf(now), probabilitiesOf(now), changesOf(now)};
 }
 
 namespace {
@@ -412,10 +418,13 @@ class Comparison {
 
 }  // namespace
 
-std::vector<MapChange> PresentMap::changes() const {
+std::vector<MapChange> PresentMap::changesOf(const Grid& now) const {
   if (before_.width == 0) return {};
-  const Grid now = present();
   return Comparison<Grid>(map_, params_, before_, now).groups();
+}
+
+std::vector<MapChange> PresentMap::changes() const {
+  return changesOf(present());
 }
 
 namespace {
@@ -441,13 +450,11 @@ int nearestKept(const std::vector<SlamKeyframe>& keyframes, const KeyframeGrid& 
 
 SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vector<bool>& kept,
                       const std::vector<std::uint32_t>& map_of_run, const SettledMap& before,
-                      double cell, const PresentMapParams& params) {
+                      const hyselam::OccupancyMapperParams& map, const PresentMapParams& params) {
   SettledMap settled;
-  settled.cell = cell;
+  const double cell = settled.cell = map.resolution;
   if (keyframes.empty()) return settled;
-  settled.last_run = keyframes.back().run;
-  hyselam::OccupancyMapperParams map;
-  map.resolution = cell;
+  const std::uint32_t last_run = keyframes.back().run;
   std::vector<SlamKeyframe> staying;
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     if (kept[k]) staying.push_back(keyframes[k]);
@@ -458,8 +465,8 @@ SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vec
     std::vector<bool> shown;
     for (const std::uint32_t m : map_of_run) shown.push_back(m == one);
     PresentMap all(map, params), few(map, params);
-    all.update({keyframes, before, shown, settled.last_run + 1, 0});
-    few.update({staying, none, shown, settled.last_run + 1, 0});
+    all.update({keyframes, before, shown, last_run + 1, 0});
+    few.update({staying, none, shown, last_run + 1, 0});
     std::vector<bool> usable(keyframes.size(), false);
     for (std::size_t k = 0; k < keyframes.size(); ++k) {
       usable[k] = kept[k] && shown[keyframes[k].run];
@@ -475,7 +482,8 @@ SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vec
       const int k = nearestKept(keyframes, grid, usable, center);
       if (k < 0) return;
       const Pose2& pose = keyframes[static_cast<std::size_t>(k)].pose;
-      settled.cells.push_back({k, pose.inverse() * center, b.log_odds, b.visits, b.changes});
+      settled.cells.push_back(
+          {k, pose.inverse() * center, b.log_odds, b.visits, b.changes, last_run});
     });
   }
   return settled;

@@ -154,9 +154,9 @@ bool SlamEngine::splitsRuns() const {
 
 /// Begins another run with the scan, supposed to be where the robot is by odometry: a map that is
 /// bent here would be worse than two.
-void SlamEngine::splitRun(const LaserScan& scan) {
+void SlamEngine::splitRun(const LaserScan& scan, const Pose2& by_odometry) {
   const Pose2 odometry = odometry_;
-  startRun(pose_);
+  startRun(by_odometry);
   beginRun(scan, odometry);
   ++doubt_.road.runs_split;
 }

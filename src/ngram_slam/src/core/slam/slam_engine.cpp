@@ -118,6 +118,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   }
   Motion motion = advanceOdometry(odometry);
   motion.seconds = scan.stamp - doubt_.matched.stamp;
+  const Pose2 by_odometry = pose_;
   update.odometry_jump = motion.jump;
   if (since_last >= params_.odometry_doubt.gap) ++doubt_.road.gaps;
   if (isNearLastMatch(motion) && mayStand(scan, &motion)) {
@@ -134,7 +135,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   }
   noteMatched(scan);
   if (update.lost && splitsRuns()) {
-    splitRun(scan);
+    splitRun(scan, by_odometry);
     update.keyframe = true;
     update.base_in_map = pose_;
     return update;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ngram_slam/slam/far_loops.hpp"
-#include "ngram_slam/slam/path_segment.hpp"
+#include "ngram_slam/slam/loop_tasks.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
@@ -14,12 +14,6 @@ using hyselam::between;
 using hyselam::Pose2;
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-hyselam::Point2 laserOf(const SlamKeyframe& k) {
-  return {k.scan->laser_in_base.x, k.scan->laser_in_base.y};
-}
 
 /// The thesis' edge of a match of words: the same pose, with fixed information (5.2.4).
 Eigen::Matrix3d thesisInformation(const LoopParams& p) {
@@ -255,29 +249,15 @@ SlamCounters::Loops& SlamEngine::counterOf(LoopSource source, bool far) {
 
 void SlamEngine::requestVerification(const LoopGuess& guess) {
   const LoopParams& p = params_.loop;
-  const SlamKeyframe& older = keyframe(guess.older);
-  const SlamKeyframe& newer = keyframe(guess.newer);
-  LoopTask task;
-  task.older = guess.older;
-  task.newer = guess.newer;
-  task.far = guess.far;
+  LoopTask task = guess.far
+                      ? farLoopTask(state_.keyframes, guess.older, guess.newer, p)
+                      : nearLoopTask(state_.keyframes, guess.older, guess.newer, guess.window, p);
   task.source = guess.source;
   task.initial_guess = guess.newer_in_older;
   task.window = guess.window;
   task.angle = std::min(guess.angle, hyselam::kPi);
   task.match = guess.match;
   task.any_heading = guess.source == LoopSource::kSignature || guess.any_heading;
-  // The new segment must not be compared with itself.
-  const double max_path_length =
-      older.run == newer.run ? newer.path_length - p.segment_separation : kInfinity;
-  const double half_length = guess.far ? p.far_old_segment_half_length : p.near_segment_half_length;
-  task.old_segment = segmentAround(state_.keyframes, guess.older, half_length, max_path_length);
-  if (guess.far) {
-    task.new_segment =
-        segmentAround(state_.keyframes, guess.newer, p.far_new_segment_half_length, kInfinity);
-  } else {
-    task.new_segment.push_back({Pose2{}, newer.points, laserOf(newer)});
-  }
   if (guess.match != kNoMatch) state_.matches[static_cast<std::size_t>(guess.match)].tried = true;
   ++counterOf(guess.source, guess.far).tried;
   tasks_.push_back(std::move(task));

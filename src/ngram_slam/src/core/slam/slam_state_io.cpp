@@ -20,6 +20,7 @@ using hyselam::Pose2;
 constexpr char kMagic[] = "NGRAMSLM";
 constexpr std::uint32_t kFirstVersion = 1;
 constexpr std::uint32_t kSettledVersion = 3;  // the first that has a settled map
+constexpr std::uint32_t kRunsVersion = 4;     // the first in which each of its cells has a run
 // Of loops in files that do not tell: LoopParams::near_min_surface_ratio and far_min_surface_ratio.
 constexpr double kLeastFit = 0.85;
 constexpr std::size_t kHeaderBytes = 20, kChecksumBytes = 4;
@@ -40,6 +41,7 @@ class Out {
   void rangeMax(double value) { writer_->put(value); }
   void fit(double value) { writer_->put(value); }
   static bool hasSettled() { return true; }
+  static bool hasRuns() { return true; }
   template <typename Values>
   void size(const Values& values, std::size_t) {
     writer_->put(static_cast<std::uint32_t>(values.size()));
@@ -71,6 +73,7 @@ class In {
     if (version_ > kFirstVersion) finite(value);
   }
   bool hasSettled() const { return version_ >= kSettledVersion; }
+  bool hasRuns() const { return version_ >= kRunsVersion; }
   /// `bytes`: what each value takes at least.
   template <typename Values>
   void size(Values& values, std::size_t bytes) {
@@ -163,6 +166,12 @@ void counters(Io& io, C& c) {
   }
 }
 
+/// Of what is read; what is written has it.
+void setRun(std::uint32_t run, SettledCell* cell) {
+  cell->run = run;
+}
+void setRun(std::uint32_t, const SettledCell*) {}
+
 /// All but keyframes and corpus. The numbers: bytes of each at least.
 template <typename Io, typename State>
 void rest(Io& io, State& s) {
@@ -187,10 +196,17 @@ void rest(Io& io, State& s) {
   io.size(s.keyframe_of_observation, 4);
   for (auto& k : s.keyframe_of_observation) io.numbers(k);
   if (!io.hasSettled()) return;
-  io.numbers(s.settled.last_run, s.settled.cell);
+  std::uint32_t run_of_all = 0;
+  if (!io.hasRuns()) io.numbers(run_of_all);
+  io.numbers(s.settled.cell);
   io.size(s.settled.cells, 28);
   for (auto& c : s.settled.cells) {
     io.numbers(c.keyframe, c.center.x, c.center.y, c.log_odds, c.visits, c.changes);
+    if (io.hasRuns()) {
+      io.numbers(c.run);
+    } else {
+      setRun(run_of_all, &c);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 #include "ngram_slam/slam/state_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace ngram_slam {
@@ -34,6 +35,28 @@ void appendObservations(const ObservationStore& from, ObservationStore* to) {
   }
 }
 
+/// The same in smaller cells: as many beside each other as a large one is wide.
+SettledMap withCells(const SettledMap& settled, double cell) {
+  const int n = static_cast<int>(std::ceil(settled.cell / cell - 1e-6));
+  if (n <= 1) {
+    SettledMap same = settled;
+    same.cell = cell;
+    return same;
+  }
+  SettledMap out;
+  out.cell = cell;
+  const double step = settled.cell / n;
+  for (const SettledCell& c : settled.cells) {
+    for (int i = 0; i < n * n; ++i) {
+      SettledCell part = c;
+      part.center.x += step * (i % n - 0.5 * (n - 1));
+      part.center.y += step * (i / n - 0.5 * (n - 1));
+      out.cells.push_back(part);
+    }
+  }
+  return out;
+}
+
 /// Puts a state behind others.
 void append(const SlamState& s, SlamState* all) {
   const auto keyframes = static_cast<int>(all->keyframes.size());
@@ -41,8 +64,10 @@ void append(const SlamState& s, SlamState* all) {
   const double path = keyframes > 0 ? all->keyframes.back().path_length : 0.0;
   const double begin = s.keyframes.empty() ? 0.0 : s.keyframes.front().path_length;
   std::uint32_t run = runs;
+  std::vector<std::uint32_t> run_after(std::max(runsOf(s), 1U), runs);  // by run
   for (std::size_t i = 0; i < s.keyframes.size(); ++i) {
     if (i > 0 && s.keyframes[i].run != s.keyframes[i - 1].run) ++run;  // some may be gone
+    std::fill(run_after.begin() + s.keyframes[i].run, run_after.end(), run);
     all->keyframes.push_back(s.keyframes[i]);
     all->keyframes.back().run = run;
     all->keyframes.back().path_length += path - begin;
@@ -75,10 +100,12 @@ void append(const SlamState& s, SlamState* all) {
     all->keyframe_of_observation.push_back(k + keyframes);
   }
   if (!s.settled.cells.empty()) {
-    if (all->settled.cells.empty()) all->settled.cell = s.settled.cell;
-    all->settled.last_run = run;  // what others saw before is told by their cells
-    for (SettledCell c : s.settled.cells) {
+    const double cell =
+        all->settled.cells.empty() ? s.settled.cell : std::min(all->settled.cell, s.settled.cell);
+    all->settled = withCells(all->settled, cell);
+    for (SettledCell c : withCells(s.settled, cell).cells) {
       c.keyframe += keyframes;
+      c.run = run_after[std::min<std::size_t>(c.run, run_after.size() - 1)];
       all->settled.cells.push_back(c);
     }
   }
@@ -170,6 +197,21 @@ std::uint32_t runsOf(const SlamState& state) {
   return state.keyframes.empty() ? 0 : state.keyframes.back().run + 1;
 }
 
+std::vector<std::uint64_t> scanNumbers(const SlamState& state) {
+  std::vector<std::uint64_t> out;
+  for (const SlamKeyframe& k : state.keyframes) {
+    std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
+    const auto add = [&](const void* data, std::size_t size) {
+      const auto* bytes = static_cast<const unsigned char*>(data);
+      for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
+    };
+    add(&k.stamp, sizeof k.stamp);
+    add(k.scan->ranges.data(), k.scan->ranges.size() * sizeof(float));
+    out.push_back(hash);
+  }
+  return out;
+}
+
 SlamState joinedStates(const std::vector<SlamState>& states) {
   SlamState all;
   for (const SlamState& s : states) {
@@ -199,10 +241,15 @@ SlamState partOfState(const SlamState& state, const std::vector<bool>& runs) {
   part.loops = loopsOf(state.loops, keyframes);
   part.pending_loops = loopsOf(state.pending_loops, keyframes);
   part.settled.cell = state.settled.cell;
-  part.settled.last_run = part.keyframes.empty() ? 0 : part.keyframes.back().run;
   for (SettledCell c : state.settled.cells) {
     c.keyframe = keyframes[static_cast<std::size_t>(c.keyframe)];
-    if (c.keyframe != kLeftOut) part.settled.cells.push_back(c);
+    if (c.keyframe == kLeftOut) continue;
+    // The runs of the part up to that one.
+    const auto end = taken.begin() +
+                     std::min<std::ptrdiff_t>(c.run + 1, static_cast<std::ptrdiff_t>(taken.size()));
+    const auto before = std::count(taken.begin(), end, true);
+    c.run = static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(before - 1, 0));
+    part.settled.cells.push_back(c);
   }
   takeWords(state, keyframes, &part);
   part.counters.scans = part.scans.size();
