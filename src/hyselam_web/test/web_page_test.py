@@ -337,7 +337,8 @@ class PageTest(PageCase):
         tab.wait(f"window.hyselam && hyselam.map.drawnTiles === {count}", "all tiles")
         seen, fine = tab.eval("[hyselam.map.seen, hyselam.map.fine]")
         print(f"4000 x 4000 cells after the address was given: all of it coarsely in {seen / 1000:.2f} s, all {count} tiles in {fine / 1000:.2f} s")
-        self.assertLess(seen, fine)  # the coarse picture came first
+        self.assertLess(tab.eval("hyselam.map.tiles.before"), count / 4)  # the coarse picture came first
+        self.assertLessEqual(seen, fine)
         self.assertTrue(tab.eval("hyselam.model.complete && hyselam.model.overview === null"))
 
     def test_a_recorded_day_is_played_from_the_server_and_from_a_file(self):

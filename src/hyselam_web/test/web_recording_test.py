@@ -2,6 +2,7 @@
 """The recording of the day, reports, and the page as one file."""
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -133,6 +134,12 @@ class PageTest(unittest.TestCase):
         missing, keys = json.loads(node.stdout)
         self.assertEqual(missing, [])
         self.assertGreater(len(keys), 100)
+
+    def test_all_modules_are_asked_for_at_once(self):
+        files = app.static_files(str(fake_robot.PACKAGE / "www"))
+        asked = re.findall(r'<link rel="modulepreload" href="([^"]*)">', files["/"][0].decode())
+        self.assertEqual(["/" + each for each in asked], sorted(address for address in files if address.endswith(".js")))
+        self.assertGreater(len(asked), 15)
 
     def test_nothing_is_loaded_from_elsewhere(self):
         for address, (data, kind) in app.static_files(str(fake_robot.PACKAGE / "www")).items():

@@ -19,6 +19,7 @@ from . import limits, reports as report_files, requests, tiles as map_tiles, wor
 PERIOD = 0.2  # [s] between two looks at the robot
 ALIVE = 5.0  # [s] after which a page that nothing was sent to hears that the server lives
 TILES_AT_ONCE = 16
+HEAD_START = 0.1  # [s] for a page to show the coarse picture before the tiles keep it busy
 STOP_PERIOD = 0.5  # [s] between two stops that are said to the dialogue
 COOKIE = "hyselam_web"
 UNUSED = 15.0  # [s] that a connection may be open without asking for anything
@@ -43,7 +44,10 @@ def static_files(folder):
                 path = os.path.join(root, name)
                 with open(path, "rb") as file:
                     found["/" + os.path.relpath(path, folder).replace(os.sep, "/")] = (file.read(), TYPES[ending])
-    found["/"] = found["/index.html"]
+    # All modules are asked for at once, not each when another one turns out to need it.
+    modules = "".join(f'<link rel="modulepreload" href="{address[1:]}">\n' for address in sorted(found) if address.endswith(".js"))
+    page, kind = found["/index.html"]
+    found["/"] = found["/index.html"] = (page.replace(b"</head>", modules.encode() + b"</head>"), kind)
     return found
 
 
@@ -299,6 +303,7 @@ class Server:
                 overview = self.robot.tiles.overview() if len(keys) == TILES_AT_ONCE and not page.saw_all else None
                 if overview is not None:  # a large map: all of it at once, then what is near
                     await page.socket.send_bytes(map_tiles.overview_frame(overview))
+                    await asyncio.sleep(HEAD_START)
                 page.saw_all = page.saw_all or bool(keys)
                 for key in keys:
                     tile = self.robot.tiles.tiles[key]

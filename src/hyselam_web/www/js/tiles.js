@@ -55,6 +55,7 @@ export class TilePictures {
     if (this.overview?.of === of && this.overview.dark === this.dark) return;
     try {
       this.overview = {of, dark: this.dark, canvas: this.inColors(await createImageBitmap(of.picture))};
+      this.before = this.drawn.size; // tiles that were drawn before it
       this.redraw();
     } catch {
       this.model.overview = this.overview = null; // it is no picture
