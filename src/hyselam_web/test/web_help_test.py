@@ -120,7 +120,9 @@ class HelpTest(PageCase):
         tab.press(*self.at(tab, *tab.eval("hyselam.model.place(7).c")))
         tab.click("#card [data-key=this_is]")
         wait_until(lambda: self.asked("name") == [{"place": 7, "names": ["kitchen"]}], "the name")
+        tab.wait("document.querySelector('#card-title').textContent === 'kitchen'", "the confirmed name")
         tab.click("#card .close")
+        tab.wait("document.querySelector('#card').hidden", "no card")
         # What somebody has placed is not asked about, though the robot thinks that there may be another.
         self.robot.later(lambda: self.robot.world.set("candidates", {"kitchen": [3, 9], "archive": [3, 9]}))
         self.answers("I am not sure where kitchen and archive may be.")
@@ -160,10 +162,12 @@ class HelpTest(PageCase):
             self.robot.later(lambda q=question, n=name: (self.robot.say("robot", q), self.robot.world.set("candidates", {n: [12, 14]})))
             tab.wait("!document.querySelector('#answers').hidden", "yes and no")
             tab.click("#no")
+            tab.wait("document.querySelector('#answers').hidden", "that it is answered")
             wait_until(lambda n=no: {"text": n} in self.asked("say"), "no")
             self.assertEqual(len(self.next(tab, row)), 2)  # place 14, and any other
             self.shot(tab, f"phone_no_{language}")
             tab.click("#next .pick")
+            tab.wait("!document.querySelector('#tool-bar').hidden", "what to do")
             tab.press(*self.at(tab, *tab.eval("hyselam.model.place(8).c")))
             wait_until(lambda n=name: {"place": 8, "names": [n]} == (self.asked("name") or [None])[-1], "the name")
             tab.wait("document.querySelector('#next').hidden", "that nothing is open")
@@ -188,14 +192,14 @@ class HelpTest(PageCase):
     # ---- Slips of the pen ----
 
     def test_a_slip_of_the_pen_is_asked_about_in_both_languages(self):
-        self.serve()
-        self.robot.world.set("names", ["robotics lab", "Maria's office"])
         for language, wrong, answer, right, row in (
                 ("en-US", "Where is the kichen?", "I know of no kichen.", "Where is the kitchen?", "Did you mean:"),
                 ("en-US", "Go to the robotcis lab.", "I do not know the place robotcis lab.", "Go to the robotics lab.", "Did you mean:"),
                 ("en-US", "This is the libary.", "Shall I call this place 'libary'?", "This is the library.", "Did you mean:"),
                 ("pt-PT", "Onde está a cozinhha?", "Não sei nada de 'cozinhha'.", "Onde está a cozinha?", "Queria dizer:"),
                 ("pt-PT", "Esta é a bibloteca.", "Devo chamar 'bibloteca' a este lugar?", "Esta é a biblioteca.", "Queria dizer:")):
+            self.serve()  # anew: a person may not say much at once
+            self.robot.world.set("names", ["robotics lab", "Maria's office"])
             self.answers(answer)
             tab = self.open_map(PHONE, language=language)
             self.say(tab, wrong)
@@ -205,6 +209,7 @@ class HelpTest(PageCase):
             tab.click("#next .row button")
             wait_until(lambda r=right: {"text": r} in self.asked("say"), right)
             tab.wait("document.querySelector('#next').hidden", "that nothing is open")
+            self.served.close()
 
     def test_what_is_no_slip_is_not_asked_about(self):
         self.serve()

@@ -52,7 +52,9 @@ export class NextStep {
     const last = talk.map((entry) => entry.w).lastIndexOf("human");
     const answers = talk.slice(last + 1).filter((entry) => entry.w === "robot");
     const at = this.newest();
-    if (this.denied && (last < 0 || talk[last].i <= this.denied.after || NO.test(talk[last].s))) {
+    // With the answer, so that nothing moves under the finger once it is there.
+    const denies = this.denied && last >= 0 && talk[last].i > this.denied.after && NO.test(talk[last].s);
+    if (denies && answers.length) {
       return {kind: "denied", at: this.denied.after + 1, name: this.denied.name, ids: this.places(this.denied.name, this.denied.place)};
     }
     if (last < 0 || !answers.length) return null;

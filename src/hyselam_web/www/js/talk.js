@@ -87,6 +87,7 @@ export class Talk {
     }
     const text = told(typed, this.model);
     this.heard(text);
+    byId("answers").hidden = true;
     const entry = {text, failed: "", number: (this.sayings = (this.sayings ?? 0) + 1)};
     this.pending = this.pending.filter((each) => !each.failed);
     this.pending.push(entry);
@@ -101,6 +102,7 @@ export class Talk {
       setTimeout(() => this.forget(entry), 1500);
     } catch (error) {
       entry.failed = reasonOf(error);
+      this.showAsked();
       if (!this.line.value) this.line.value = typed; // to try again
       this.fitLine();
     }
@@ -110,6 +112,7 @@ export class Talk {
   forget(entry) {
     this.pending = this.pending.filter((each) => each !== entry);
     this.showTalk();
+    this.showAsked();
   }
 
   // As high as what is typed needs.
