@@ -34,6 +34,24 @@ TEST(Conversation, DescriptionsNamePlaces) {
   EXPECT_TRUE(corridor.confirmed);
 }
 
+/// What is asked of a sentence that was understood in part names what it does without; a "yes"
+/// takes down what was asked.
+TEST(Conversation, WhatAQuestionDoesWithoutIsNamed) {
+  ExampleTalk example;
+  example.talk.say("You are in the corridor.");
+  const Exchange asked =
+      example.talk.say("The fuse room is on the right, immediately after the fire door.");
+  EXPECT_TRUE(contains(asked.replyText(), "immediately after the fire door")) << asked.replyText();
+  EXPECT_NE(asked.question, "");
+  EXPECT_TRUE(asked.understood.empty());
+  const Exchange taken = example.talk.say("Yes.");
+  EXPECT_TRUE(contains(taken.replyText(), "Noted: The fuse room is on the right"))
+      << taken.replyText();
+  const Exchange thing =
+      example.talk.say("Somebody has left a laptop on the table nearest to the door.");
+  EXPECT_TRUE(contains(thing.replyText(), "to the door")) << thing.replyText();
+}
+
 /// Whose "my office" is, is asked, and known from then on.
 TEST(Conversation, MyOfficeIsTheSpeakers) {
   ExampleTalk example;

@@ -25,11 +25,12 @@ std::set<std::string> wordsOf(const std::vector<Token>& tokens) {
 
 ExampleSentences::ExampleSentences(const CompiledGrammar& grammar)
     : questions_(examplesOf(grammar, true)), others_(examplesOf(grammar, false)) {
+  std::set<std::string> others;
   for (const Example& example : others_.all) {
-    if (!example.is_command) continue;
     const auto tokens = tokenize(example.text, {0, example.text.size()}, grammar.tokenRules());
-    if (!tokens.empty()) orders_.insert(tokens.front().folded);
+    if (!tokens.empty()) (example.is_command ? orders_ : others).insert(tokens.front().folded);
   }
+  for (const std::string& word : others) orders_.erase(word);
 }
 
 ExampleSentences::Kind ExampleSentences::examplesOf(const CompiledGrammar& grammar,

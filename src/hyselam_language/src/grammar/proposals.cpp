@@ -155,20 +155,17 @@ bool isWorthAsking(const SentenceWords& words, const std::vector<Utterance>& sai
 /// the door]". What follows is told as left out.
 bool proposeBeginning(const SentenceWords& words, Utterance* refused) {
   constexpr std::size_t kFewest = 4;  // words that are worth a question
-  constexpr int kMostTries = 6;
-  static const std::set<std::string> kNothing;
   const auto& tokens = words.tokens;
   if (words.sentence.is_question || tokens.size() > kLongestRunOn) return false;
-  int tries = 0;
-  for (std::size_t end = tokens.size(); end-- > kFewest && tries < kMostTries;) {
-    if (5 * end < 2 * tokens.size()) return false;
-    if (!mayEndBefore(words, end)) continue;
-    ++tries;
-    const TextRange range{tokens.front().range.begin, tokens[end - 1].range.end};
-    const Sentence beginning{range, false};
-    const std::vector<Utterance> said =
-        readClauses(words.grammar, words.text, beginning, tokensWithin(tokens, range), kNothing);
+  std::vector<std::size_t> ends;  // the longest first
+  for (std::size_t end = tokens.size(); end-- > kFewest && 5 * end >= 2 * tokens.size();) {
+    if (mayEndBefore(words, end)) ends.push_back(end);
+  }
+  if (ends.empty()) return false;
+  for (const auto& [end, said] :
+       readBeginnings(words.grammar, words.text, words.sentence, tokens, ends)) {
     if (!isWorthAsking(words, said)) continue;
+    const TextRange range{tokens.front().range.begin, tokens[end - 1].range.end};
     const TextRange rest{
         tokens[isComma(tokens[end]) ? std::min(end + 1, tokens.size() - 1) : end].range.begin,
         tokens.back().range.end};

@@ -32,7 +32,18 @@ class SentenceReader {
   std::vector<Utterance> read() {
     if (words_.isTooLong()) return {refusal(words_, "too_long", words_.sentence.range, "")};
     findClauses();
-    return assemble();
+    return assemble(words_.tokens.size());
+  }
+
+  std::vector<Beginning> beginnings(const std::vector<std::size_t>& ends) {
+    std::vector<Beginning> all;
+    if (words_.isTooLong()) return all;
+    findClauses();
+    for (const std::size_t end : ends) {
+      if (end >= ends_.size() || ends_[end].cost >= kNever) continue;
+      all.push_back({end, assemble(end)});
+    }
+    return all;
   }
 
  private:
@@ -142,14 +153,15 @@ class SentenceReader {
     return !entry.correction || intent.kind == UtteranceKind::kStatement;
   }
 
-  std::vector<Utterance> assemble() {
-    const Reading& whole = ends_.back();
+  /// Of the tokens before `end`.
+  std::vector<Utterance> assemble(std::size_t end) {
+    const Reading& whole = ends_[end];
     const auto& tokens = words_.tokens;
     if (tokens.empty() || whole.cost >= kNever) {
       return {explain_ ? whyNot(words_, pattern_run_.furthest()) : unexplained()};
     }
     std::vector<Utterance> utterances;
-    std::vector<IdleWords> ranges;
+    std::vector<IdleWords> ranges{{end, tokens.size()}};
     for (const Reading* reading = &whole;;) {
       const Clause& clause = clauses_[static_cast<std::size_t>(reading->clause)];
       const TextRange range{tokens[clause.begin].range.begin, tokens[clause.end - 1].range.end};
@@ -235,6 +247,13 @@ std::vector<Utterance> readClauses(const CompiledGrammar& grammar, const std::st
                                    const std::set<std::string>& expected,
                                    const ClauseOptions& options) {
   return SentenceReader(grammar, text, sentence, std::move(tokens), expected, options).read();
+}
+
+std::vector<Beginning> readBeginnings(const CompiledGrammar& grammar, const std::string& text,
+                                      const Sentence& sentence, std::vector<Token> tokens,
+                                      const std::vector<std::size_t>& ends) {
+  static const std::set<std::string> kNothing;
+  return SentenceReader(grammar, text, sentence, std::move(tokens), kNothing, {}).beginnings(ends);
 }
 
 bool isUnderstood(const std::vector<Utterance>& said) {

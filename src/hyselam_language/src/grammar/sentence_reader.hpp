@@ -27,6 +27,18 @@ std::vector<Utterance> readClauses(const CompiledGrammar& grammar, const std::st
                                    const std::set<std::string>& expected,
                                    const ClauseOptions& options = {});
 
+/// What the tokens before `end` say.
+struct Beginning {
+  std::size_t end = 0;
+  std::vector<Utterance> said;
+};
+
+/// The beginnings that a row of clauses covers, of those that end at `ends`, in their order; all
+/// are read at once.
+std::vector<Beginning> readBeginnings(const CompiledGrammar& grammar, const std::string& text,
+                                      const Sentence& sentence, std::vector<Token> tokens,
+                                      const std::vector<std::size_t>& ends);
+
 /// Whether all of it is.
 bool isUnderstood(const std::vector<Utterance>& said);
 

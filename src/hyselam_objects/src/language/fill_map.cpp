@@ -67,13 +67,17 @@ std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>&
   }
   std::string left_out;
   for (const ObjectStatement& each : statements) {
-    if (each.kind != UtteranceKind::kStatement) continue;
+    // Of a refused one, what the question does without.
+    const bool asked = each.kind == UtteranceKind::kNotUnderstood && each.suggests_meaning;
+    if (each.kind != UtteranceKind::kStatement && !asked) continue;
     for (const std::string& words : each.left_out) {
       left_out += (left_out.empty() ? "" : "', '") + words;
     }
   }
   if (!left_out.empty() && !replies.empty()) {
-    replies.back().text += " " + phraseText("left_out", {{"text", left_out}});
+    const std::string told = phraseText("left_out", {{"text", left_out}});
+    std::string& text = replies.back().text;
+    text = replies.back().kind == ReplyKind::kQuestion ? told + " " + text : text + " " + told;
   }
   return replies;
 }
