@@ -6,7 +6,6 @@
 #include "hyselam_common/utf8.hpp"
 #include "matching_costs.hpp"
 #include "name_finder.hpp"
-#include "sentence_reader.hpp"
 #include "shorter_sentence.hpp"
 
 namespace hyselam_topo {
@@ -66,7 +65,9 @@ std::string withOwnName(const SentenceWords& words, const std::string& example) 
   const NameType* places = words.grammar.nameType("place");
   if (places == nullptr || example.empty()) return example;
   const std::optional<OwnPlace> own = firstPlace(words, *places);
-  if (!own) return example;
+  const bool has_it = own && hyselam::utf8Lower(example).find(hyselam::utf8Lower(own->name.text)) !=
+                                 std::string::npos;
+  if (!own || has_it) return example;
   static const std::set<std::string> kNothing;
   const auto read = [&](const std::string& text) {
     const Sentence sentence{{0, text.size()}, words.sentence.is_question};
@@ -86,10 +87,7 @@ std::string withOwnName(const SentenceWords& words, const std::string& example) 
         places->definite.count(article) != 0 && genderOf(article) == genderOf(own->article) &&
         (article.back() == 's') == (own->article.back() == 's') &&
         example.compare(name.range.begin, name.range.end - name.range.begin, name.text) == 0;
-    const bool other = std::none_of(before.begin(), before.end(), [&](const std::string& each) {
-      return hyselam::utf8Lower(each) == hyselam::utf8Lower(own->name.text);
-    });
-    if (!fits || !other) return example;
+    if (!fits) return example;
     std::string text = example;
     text.replace(name.range.begin, name.range.end - name.range.begin, own->name.text);
     std::vector<std::string> after = before;
@@ -153,17 +151,14 @@ bool isWorthAsking(const SentenceWords& words, const std::vector<Utterance>& sai
 
 /// The longest beginning that is understood: "Somebody has left a laptop on the table[ nearest to
 /// the door]". What follows is told as left out.
-bool proposeBeginning(const SentenceWords& words, Utterance* refused) {
+bool proposeBeginning(const SentenceWords& words, const std::vector<Beginning>& beginnings,
+                      Utterance* refused) {
   constexpr std::size_t kFewest = 4;  // words that are worth a question
   const auto& tokens = words.tokens;
   if (words.sentence.is_question || tokens.size() > kLongestRunOn) return false;
-  std::vector<std::size_t> ends;  // the longest first
-  for (std::size_t end = tokens.size(); end-- > kFewest && 5 * end >= 2 * tokens.size();) {
-    if (mayEndBefore(words, end)) ends.push_back(end);
-  }
-  if (ends.empty()) return false;
-  for (const auto& [end, said] :
-       readBeginnings(words.grammar, words.text, words.sentence, tokens, ends)) {
+  for (const auto& [end, said] : beginnings) {
+    if (end < kFewest || 5 * end < 2 * tokens.size()) return false;
+    if (!mayEndBefore(words, end)) continue;
     if (!isWorthAsking(words, said)) continue;
     const TextRange range{tokens.front().range.begin, tokens[end - 1].range.end};
     const TextRange rest{
@@ -184,7 +179,8 @@ bool proposeBeginning(const SentenceWords& words, Utterance* refused) {
 
 }  // namespace
 
-void propose(const SentenceWords& words, Utterance* refused) {
+void propose(const SentenceWords& words, const std::vector<Beginning>& beginnings,
+             Utterance* refused) {
   if (words.isTooLong()) return;
   // Doubt and denial are no matter of words to leave out.
   static const std::set<std::string> kNothing;
@@ -205,7 +201,7 @@ void propose(const SentenceWords& words, Utterance* refused) {
       return;
     }
   }
-  if (proposeBeginning(words, refused)) return;
+  if (proposeBeginning(words, beginnings, refused)) return;
   refused->suggestion =
       withOwnName(words, words.grammar.examples.nearest(words.tokens, words.sentence.is_question));
 }

@@ -2,14 +2,18 @@
 // such things are said.
 #pragma once
 
+#include <vector>
+
 #include "hyselam_language/grammar/utterance.hpp"
+#include "sentence_reader.hpp"
 #include "sentence_words.hpp"
 
 namespace hyselam_topo {
 namespace language {
 
-/// Gives the refused sentence a suggestion.
-void propose(const SentenceWords& words, Utterance* refused);
+/// Gives the refused sentence a suggestion. `beginnings`: of its tokens, the longest first.
+void propose(const SentenceWords& words, const std::vector<Beginning>& beginnings,
+             Utterance* refused);
 
 }  // namespace language
 }  // namespace hyselam_topo

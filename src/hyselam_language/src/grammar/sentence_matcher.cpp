@@ -48,10 +48,16 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
                                   const Sentence& sentence, const std::vector<Token>& tokens,
                                   const std::set<std::string>& expected) {
   const auto read = [&](std::vector<Token> of, bool run_on) {
-    return readClauses(grammar, text, sentence, std::move(of), expected, {run_on, false});
+    return readClauses(grammar, text, sentence, std::move(of), expected, {run_on, false, nullptr});
   };
-  const auto explained = [&](const Sentence& of) {
-    return readClauses(grammar, text, of, tokensWithin(tokens, of.range), expected, {false, true});
+  const auto explain = [&](const Sentence& of, Utterance* refused) {
+    std::vector<Beginning> beginnings;
+    if (refused->reason_code.empty()) {
+      *refused = readClauses(grammar, text, of, tokensWithin(tokens, of.range), expected,
+                             {false, true, &beginnings})
+                     .front();
+    }
+    propose(SentenceWords(grammar, text, of, tokensWithin(tokens, of.range)), beginnings, refused);
   };
   std::vector<Utterance> said = read(tokens, false);
   if (isUnderstood(said)) return said;
@@ -87,14 +93,12 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
     refuseStrayPlaces(grammar, &parts);
     for (Utterance& part : parts) {
       if (part.understood()) continue;
-      const Sentence alone{part.range, false};
-      if (part.reason_code.empty()) part = explained(alone).front();
-      propose(SentenceWords(grammar, text, alone, tokensWithin(tokens, part.range)), &part);
+      explain({part.range, false}, &part);
     }
     if (!parts.empty()) return parts;
   }
-  if (said.front().reason_code.empty()) said = explained(sentence);
-  propose(SentenceWords(grammar, text, sentence, tokens), &said.front());
+  said.resize(1);
+  explain(sentence, &said.front());
   return said;
 }
 

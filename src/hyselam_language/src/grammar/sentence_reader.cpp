@@ -26,24 +26,20 @@ class SentenceReader {
       : expected_(expected),
         run_on_(options.run_on),
         explain_(options.explain),
+        beginnings_(options.beginnings),
         words_(grammar, text, sentence, std::move(tokens)),
         pattern_run_(&words_, {}, options.explain) {}
 
   std::vector<Utterance> read() {
     if (words_.isTooLong()) return {refusal(words_, "too_long", words_.sentence.range, "")};
     findClauses();
-    return assemble(words_.tokens.size());
-  }
-
-  std::vector<Beginning> beginnings(const std::vector<std::size_t>& ends) {
-    std::vector<Beginning> all;
-    if (words_.isTooLong()) return all;
-    findClauses();
-    for (const std::size_t end : ends) {
-      if (end >= ends_.size() || ends_[end].cost >= kNever) continue;
-      all.push_back({end, assemble(end)});
+    const std::size_t n = words_.tokens.size();
+    if (beginnings_ != nullptr && n > 0 && ends_[n].cost >= kNever) {
+      for (std::size_t end = n; end-- > 1;) {
+        if (ends_[end].cost < kNever) beginnings_->push_back({end, assemble(end)});
+      }
     }
-    return all;
+    return assemble(n);
   }
 
  private:
@@ -234,6 +230,7 @@ class SentenceReader {
   const std::set<std::string>& expected_;
   const bool run_on_;
   const bool explain_;
+  std::vector<Beginning>* const beginnings_;
   SentenceWords words_;
   PatternRun pattern_run_;
   std::vector<Reading> ends_;  ///< at each token
@@ -247,13 +244,6 @@ std::vector<Utterance> readClauses(const CompiledGrammar& grammar, const std::st
                                    const std::set<std::string>& expected,
                                    const ClauseOptions& options) {
   return SentenceReader(grammar, text, sentence, std::move(tokens), expected, options).read();
-}
-
-std::vector<Beginning> readBeginnings(const CompiledGrammar& grammar, const std::string& text,
-                                      const Sentence& sentence, std::vector<Token> tokens,
-                                      const std::vector<std::size_t>& ends) {
-  static const std::set<std::string> kNothing;
-  return SentenceReader(grammar, text, sentence, std::move(tokens), kNothing, {}).beginnings(ends);
 }
 
 bool isUnderstood(const std::vector<Utterance>& said) {

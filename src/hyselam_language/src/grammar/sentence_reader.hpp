@@ -12,6 +12,12 @@
 namespace hyselam_topo {
 namespace language {
 
+/// What the tokens before `end` say.
+struct Beginning {
+  std::size_t end = 0;
+  std::vector<Utterance> said;
+};
+
 struct ClauseOptions {
   /// Clauses may follow one another without a word or comma between them, as speech recognisers
   /// write them.
@@ -19,6 +25,9 @@ struct ClauseOptions {
   /// Follows more patterns, whose way tells why the sentence is not understood; without it nothing
   /// is said about that.
   bool explain = false;
+  /// Of a sentence that is not understood: the beginnings that a row of clauses covers, the longest
+  /// first.
+  std::vector<Beginning>* beginnings = nullptr;
 };
 
 /// The cheapest row of clauses that covers the tokens, or one utterance that was not understood.
@@ -26,18 +35,6 @@ std::vector<Utterance> readClauses(const CompiledGrammar& grammar, const std::st
                                    const Sentence& sentence, std::vector<Token> tokens,
                                    const std::set<std::string>& expected,
                                    const ClauseOptions& options = {});
-
-/// What the tokens before `end` say.
-struct Beginning {
-  std::size_t end = 0;
-  std::vector<Utterance> said;
-};
-
-/// The beginnings that a row of clauses covers, of those that end at `ends`, in their order; all
-/// are read at once.
-std::vector<Beginning> readBeginnings(const CompiledGrammar& grammar, const std::string& text,
-                                      const Sentence& sentence, std::vector<Token> tokens,
-                                      const std::vector<std::size_t>& ends);
 
 /// Whether all of it is.
 bool isUnderstood(const std::vector<Utterance>& said);
