@@ -71,10 +71,10 @@ TEST(PlaceMan, NamesAreGuessedConfirmedRejectedForgotten) {
   EXPECT_EQ(hyselam_topo::namesOf(*man.map().findPlace(1)), Names{"galley"});
   EXPECT_TRUE(man.forget(1));
   EXPECT_FALSE(man.forget(1));
-  man.rename(2, "room B");
+  man.rename(2, {"room B"});
   EXPECT_EQ(man.find("room B"), Ids{2});
   EXPECT_TRUE(man.find("room A").empty());
-  EXPECT_THROW(man.rename(2, std::string("\xff")), InputError);
+  EXPECT_THROW(man.rename(2, {std::string("\xff")}), InputError);
   EXPECT_EQ(man.find("room B"), Ids{2}) << "a name that cannot be used changes nothing";
   EXPECT_THROW(man.confirm(9, {"x"}), InputError);
   EXPECT_THROW(man.confirm(1, {""}), InputError);

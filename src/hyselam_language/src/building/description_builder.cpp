@@ -63,8 +63,13 @@ DescriptionBuilder::DescriptionBuilder(const TopoParser& parser, const Descripti
 
 void DescriptionBuilder::continueFrom(DescribedBuilding building) {
   checkDescription(building, "description");
-  state_ = {std::move(building), {}};
-  history_.clear();
+  restore({{std::move(building), {}}, {}, 0});
+}
+
+void DescriptionBuilder::restore(Memory memory) {
+  state_ = std::move(memory.state);
+  history_ = std::move(memory.history);
+  statements_ = memory.statements;
 }
 
 void DescriptionBuilder::setLanguage(const std::string& language) {
@@ -159,6 +164,7 @@ std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
 void DescriptionBuilder::remember(const DescriptionState& before, const Utterance& said) {
   if (history_.size() == kLongestHistory) history_.erase(history_.begin());
   history_.push_back({before, said});
+  ++statements_;
 }
 
 std::vector<DescriptionIssue> DescriptionBuilder::replaceLast(const Utterance& u) {
@@ -235,6 +241,7 @@ std::vector<DescriptionIssue> DescriptionBuilder::recordInstead(const Utterance&
   if (failed) {
     state_ = now;
     history_.push_back(last);
+    ++statements_;
     state_.context.forgetReferences();
   }
   return issues;
@@ -248,6 +255,7 @@ bool DescriptionBuilder::undo() {
   if (history_.empty()) return false;
   state_ = std::move(history_.back().before);
   history_.pop_back();
+  --statements_;
   return true;
 }
 
@@ -298,6 +306,62 @@ void DescriptionBuilder::giveName(const std::string& made_up, const std::string&
     }
   }
   state_.context.variants.erase(from.front());
+}
+
+Id DescriptionBuilder::called(const std::string& name) const {
+  const auto& places = state_.building.places;
+  const auto exact = std::find_if(places.begin(), places.end(), [&](const DescribedPlace& place) {
+    const std::vector<std::string> all = allNamesOf(place);
+    return std::find(all.begin(), all.end(), name) != all.end();
+  });
+  if (exact != places.end()) return exact->id;
+  const std::vector<Id> found = find(name);
+  return found.size() == 1 ? found.front() : 0;
+}
+
+void DescriptionBuilder::rename(const std::string& old, const std::string& name) {
+  const Id id = called(old);
+  if (id == 0) return;
+  const Id other = called(name);
+  if (other != 0 && other != id) {
+    joinPlaces(id, other, &state_.building);
+    for (Id& subject : state_.context.subjects) {
+      if (subject == id) subject = other;
+    }
+  } else {
+    DescribedPlace& place = *state_.building.findPlace(id);
+    place.name = name;
+    if (!place.kind) place.kind = names_.kindOf(name);
+  }
+  state_.context.variants.erase(id);
+  for (DescribedPlace& place : state_.building.places) {
+    auto& aliases = place.aliases;
+    aliases.erase(std::remove_if(aliases.begin(), aliases.end(),
+                                 [&](const std::string& alias) {
+                                   return alias == old || alias == place.name;
+                                 }),
+                  aliases.end());
+  }
+}
+
+bool DescriptionBuilder::forgetName(const std::string& name) {
+  const Id id = called(name);
+  if (id == 0) return false;
+  const auto isSame = [&](const std::string& each) {
+    return each == name || compare(names_.key(each), names_.key(name)) != SameName::kNo;
+  };
+  DescribedPlace& place = *state_.building.findPlace(id);
+  auto& aliases = place.aliases;
+  aliases.erase(std::remove_if(aliases.begin(), aliases.end(), isSame), aliases.end());
+  if (isSame(place.name) && !aliases.empty()) {
+    place.name = aliases.front();
+    aliases.erase(aliases.begin());
+  } else if (isSame(place.name)) {
+    removePlace(id, &state_.building);
+  }
+  state_.context.variants.erase(id);
+  state_.context.forgetReferences();
+  return true;
 }
 
 }  // namespace hyselam_topo

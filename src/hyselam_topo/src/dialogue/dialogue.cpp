@@ -134,9 +134,7 @@ void Dialogue::forgetLost(const std::vector<Id>& lost) {
   const std::vector<Id> asked = placesIn(question());
   if (std::any_of(asked.begin(), asked.end(), isLost)) talk_.questions.drop();
   dropStaleQuestion();
-  for (auto* before : {&talk_.named_now, &talk_.named_last}) {
-    if (*before && isLost((*before)->place)) before->reset();
-  }
+  if (!lost.empty()) talk_.changes.clear();  // the names of before are of places that are gone
 }
 
 void Dialogue::setGrid(hyselam::OccupancyGrid grid) {

@@ -57,6 +57,7 @@ void Dialogue::heedFirstWord(const std::string& text, SaidAnswer* said) const {
 
 void Dialogue::answer(const SaidAnswer& said, Turn& turn) {
   const Question asked = question();
+  const Change change(this);
   Reply& out = turn.reply;
   if (!said.names.empty()) {
     answerName(said, asked, out);

@@ -137,6 +137,7 @@ Reply Dialogue::goTo(const std::string& name, const std::vector<Id>& places) {
 }
 
 bool Dialogue::isUnsure(const NamedGoal& goal) const {
+  if (isCode(goal.first)) return false;
   const bool guessed = std::all_of(goal.second.begin(), goal.second.end(), [&](Id id) {
     return nameStateOf(*places_.map().findPlace(id)) == NameState::kUnconfirmed;
   });
@@ -183,6 +184,7 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
   action.kind = DialogueAction::Kind::kGo;
   hyselam::Pose2 from = robot().pose;
   std::vector<Id> stops;
+  std::vector<std::string> told;
   bool closed = false;
   for (const auto& [name, places] : goals) {
     const auto leg = planRoute(places_.map(), from, places, params_.route);
@@ -192,10 +194,14 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
     }
     from = leg->waypoints.back();
     stops.push_back(leg->places.back());
+    const bool by_code = isCode(name) && nameStateOf(*places_.map().findPlace(stops.back())) !=
+                                             NameState::kConfirmed;
+    told.push_back(by_code ? codeOf(*places_.map().findPlace(stops.back()))
+                           : labels({stops.back()}).front());
     closed = closed || hasClosedDoor(places_.map(), *leg);
     action.legs.push_back(*leg);
   }
-  out.sentences.push_back(p.say("going", {{"places", p.list(labels(stops))}}));
+  out.sentences.push_back(p.say("going", {{"places", p.list(told)}}));
   if (closed) out.sentences.push_back(p.say("door_closed"));
   out.actions.push_back(std::move(action));
   talk_.under_way = stops.back();

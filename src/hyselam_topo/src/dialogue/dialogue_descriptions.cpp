@@ -39,6 +39,10 @@ std::string capital(std::string text) {
 }  // namespace
 
 void Dialogue::addStatement(const Utterance& u, Turn& turn) {
+  if (!turn.before) {
+    const std::size_t statements = builder_.statementCount();
+    turn.known_before = {places_.names(), std::nullopt, statements, statements, told_at_};
+  }
   // Where the robot has gone is nothing that is told.
   if (u.intent != "robot_in") followRobot(isSeenFromRobot(u) || saysItsCorridor(u));
   if (!turn.before) turn.before = builder_.building();
@@ -170,6 +174,10 @@ void Dialogue::recordStatements(Turn& turn) {
   const bool named_otherwise =
       !here.empty() && robot().place != 0 && isNamedOtherwise(robot().place, here);
   const bool changed = !(before == builder_.building());
+  // Before anything that may fail: names that come with statements go with them.
+  if (builder_.statementCount() > turn.known_before.statements) {
+    remember(std::move(turn.known_before));
+  }
   readBack(before, !here.empty() && !beyond_here && places_.hasMap(), out);
   reportIssues(turn);
   const std::optional<DescriptionIssue> to_ask = std::move(turn.to_ask);
@@ -297,6 +305,17 @@ void Dialogue::reportMatch(Reply& out) const {
       ++confirmed;
     }
   }
+  // What was only named on the map counts, too.
+  for (const Place& place : places_.map().places) {
+    if (nameStateOf(place) != NameState::kConfirmed) continue;
+    const std::vector<std::string> names = namesOf(place);
+    const bool told = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return !builder_.find(name).empty();
+    });
+    if (told) continue;
+    ++all;
+    ++confirmed;
+  }
   out.sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
@@ -307,7 +326,11 @@ void Dialogue::reportMatch(Reply& out) const {
     out.sentences.push_back(p.say("unsure", {{"names", p.list(names)}}));
     return;
   }
-  const std::string number = std::to_string(talk_.unsure.answers) + (talk_.unsure.more ? "+" : "");
+  if (talk_.unsure.more) {
+    out.sentences.push_back(p.say("many_fit", {{"names", p.list(names)}}));
+    return;
+  }
+  const std::string number = std::to_string(talk_.unsure.answers);
   out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
 }
 

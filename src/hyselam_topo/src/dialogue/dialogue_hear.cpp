@@ -153,6 +153,31 @@ bool Dialogue::isOfThisPlace(const Utterance& u, const Turn& turn) const {
   return place.size() == 1 && !place.front().reference.empty() && u.find("aliases") != nullptr;
 }
 
+bool Dialogue::isOfNumberedPlace(const Utterance& u, Utterance* named) const {
+  static const std::set<std::string> kKinds{"alias", "this_is"};
+  if (kKinds.count(u.intent) == 0 || u.slots.size() != 2) return false;
+  const std::vector<SaidName> place = u.names("place"), aliases = u.names("aliases");
+  if (place.size() != 1 || aliases.empty()) return false;
+  const auto isNumber = [&](const SaidName& name) {
+    return name.reference.empty() && isCode(name.text) && places_.find(name.text).size() == 1;
+  };
+  const bool first = isNumber(place.front());
+  const bool second = aliases.size() == 1 && isNumber(aliases.front());
+  if (first == second) return false;
+  *named = u;
+  named->slots = {*u.find(first ? "place" : "aliases"), *u.find(first ? "aliases" : "place")};
+  named->slots.front().name = "place";
+  named->slots.back().name = "aliases";
+  return true;
+}
+
+bool Dialogue::isOnlyOnMap(const Utterance& u) const {
+  const std::vector<std::string> names = textsOf(u.names("place"));
+  return !names.empty() && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    return builder_.find(name).empty() && !places_.find(name).empty();
+  });
+}
+
 ParsedText Dialogue::parse(const std::string& text) {
   ParseOptions options;
   const bool asks_for_name =
@@ -173,11 +198,20 @@ ParsedText Dialogue::parse(const std::string& text) {
   return parsed;
 }
 
+std::vector<std::string> Dialogue::notUnderstood(const std::string& text) const {
+  ParseOptions options;
+  options.preferred = language_;
+  std::vector<std::string> parts;
+  const ParsedText parsed = parser_.parse(text, options);
+  for (const Utterance& u : parsed.utterances) {
+    if (!u.understood()) parts.push_back(u.text);
+  }
+  return parts;
+}
+
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   talk_.questions.beginUtterance();
   dropStaleQuestion();
-  talk_.named_last = std::move(talk_.named_now);
-  talk_.named_now.reset();
   const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
   Reply out = urgent.urgency == Urgency::kNone ? understand(text, options) : obey(urgent);
   if (!out.sentences.empty()) talk_.last_said = out.sentences;
@@ -256,7 +290,7 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     meetAnswer(u, turn);
     return;
   }
-  if (u.intent == "undo" && !turn.described && takeNameBack(turn)) {
+  if (u.intent == "undo" && !turn.described && takeBack(turn)) {
     turn.about_else = true;
     return;
   }
@@ -264,7 +298,18 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   if (kNeutral.count(u.intent) == 0) turn.about_else = true;
   turn.left_out.insert(turn.left_out.end(), u.left_out.begin(), u.left_out.end());
   static const std::set<std::string> kOwn{"this_is", "forget_everything", "speaker"};
-  if (isOfThisPlace(u, turn)) {
+  Utterance numbered;
+  if (isOfNumberedPlace(u, &numbered)) {
+    attempt(turn.reply, [&] {
+      recordStatements(turn);
+      namePlace(places_.find(numbered.slots.front().names.front().text).front(), numbered, turn);
+    });
+  } else if (u.intent == "forget_place" && isOnlyOnMap(u)) {
+    attempt(turn.reply, [&] {
+      recordStatements(turn);
+      forgetNames(u, turn);
+    });
+  } else if (isOfThisPlace(u, turn)) {
     attempt(turn.reply, [&] { recordStatements(turn); });
     Utterance named = u;
     named.intent = "this_is";

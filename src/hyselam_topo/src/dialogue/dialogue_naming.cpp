@@ -26,15 +26,17 @@ bool Dialogue::isNamedOtherwise(Id place, const std::vector<std::string>& names)
   return true;
 }
 
-void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Reply& out) {
+void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Reply& out,
+                            bool instead) {
   const Phrases& p = phrases();
-  std::map<Id, std::vector<PlaceTerm>> words;
-  for (const Place& each : places_.map().places) words[each.id] = each.words;
-  BeforeNaming before{place, std::move(words), builder_};
-  // Nothing has changed where this throws, and nothing behind it does.
-  const std::vector<Id> losers = places_.confirm(place, names);
-  talk_.named_now.emplace(std::move(before));
+  const Change change(this);
   const Place& named = *places_.map().findPlace(place);
+  std::vector<std::string> old;
+  if (instead && nameStateOf(named) == NameState::kConfirmed) old = namesOf(named);
+  // Nothing has changed where this throws, and nothing behind it does.
+  const std::vector<Id> losers =
+      instead ? places_.rename(place, names) : places_.confirm(place, names);
+  dropTold(place, old);
   out.sentences.push_back(
       p.say("named", {{"code", codeOf(named)}, {"names", p.list(namesOf(named))}}));
   for (const Id loser : losers) {
@@ -73,14 +75,24 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
     throw hyselam::InputError("places", "id " + std::to_string(place), "there is no such place");
   }
   Reply out = reply();
-  confirmNames(place, names, out);
+  confirmNames(place, names, out, true);
   dropStaleQuestion();
   return out;
 }
 
 Reply Dialogue::forget(Id place) {
   Reply out = reply();
+  const Change change(this);
+  const Place* known = places_.map().findPlace(place);
+  std::vector<std::string> old;
+  if (known != nullptr) old = namesOf(*known);
+  const bool guessed = known != nullptr && nameStateOf(*known) == NameState::kUnconfirmed;
   places_.forget(place);
+  dropTold(place, old);
+  if (guessed) {
+    for (const std::string& name : old) builder_.forgetName(name);
+  }
+  matchDescription(out, false);
   if (question().isAboutName() && question().place == place) talk_.questions.drop();
   dropStaleQuestion();
   out.sentences.push_back(phrases().say("forgot_names", {{"places", label(place)}}));
@@ -89,17 +101,22 @@ Reply Dialogue::forget(Id place) {
 }
 
 void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
-  Reply& out = turn.reply;
   if (robot().place == 0) {
-    out.sentences.push_back(phrases().say(places_.hasMap() ? "no_place_here" : "no_map"));
+    turn.reply.sentences.push_back(phrases().say(places_.hasMap() ? "no_place_here" : "no_map"));
     return;
   }
-  std::vector<std::string> names = textsOf(u.names("place"));
-  const auto aliases = textsOf(u.names("aliases"));
-  names.insert(names.end(), aliases.begin(), aliases.end());
-  const Id place = robot().place;
+  Utterance named = u;
+  for (Slot& slot : named.slots) {
+    if (slot.name == "place") slot.name = "aliases";
+  }
+  namePlace(robot().place, named, turn);
+}
+
+void Dialogue::namePlace(Id place, const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
+  const std::vector<SaidName> said = u.names("aliases");
+  const std::vector<std::string> names = textsOf(said);
   if (names.empty()) return;
-  const std::vector<SaidName> said = u.names("place");
   if (!std::all_of(said.begin(), said.end(),
                    [&](const SaidName& name) { return isPlaceName(name); })) {
     askNewName(place, names, "", out);
@@ -110,25 +127,6 @@ void Dialogue::nameThisPlace(const Utterance& u, Turn& turn) {
   }
 }
 
-bool Dialogue::takeNameBack(Turn& turn) {
-  if (talk_.questions.isOpen() && question().isAboutName()) {
-    talk_.questions.drop();
-    say("cancelled", turn);
-    return true;
-  }
-  std::optional<BeforeNaming>& before = talk_.named_now ? talk_.named_now : talk_.named_last;
-  if (!before || talk_.described_last) return false;
-  for (const auto& [id, words] : before->words) {
-    if (places_.map().findPlace(id) != nullptr) places_.setWords(id, words);
-  }
-  builder_ = std::move(before->builder);
-  const std::string code = codeOf(*places_.map().findPlace(before->place));
-  before.reset();
-  turn.reply.sentences.push_back(phrases().say("forgot_names", {{"places", code}}));
-  turn.reply.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
-  return true;
-}
-
 void Dialogue::askForgetEverything(const Utterance&, Turn& turn) {
   Question question;
   question.kind = Question::Kind::kForgetAll;
@@ -136,6 +134,7 @@ void Dialogue::askForgetEverything(const Utterance&, Turn& turn) {
 }
 
 void Dialogue::forgetEverything(Reply& out) {
+  const Change change(this);
   places_.forgetAllNames();
   // Or the next sentence would bring them back.
   const std::string speaker = builder_.speaker();
@@ -155,36 +154,61 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
     askForgetEverything(u, turn);
     return;
   }
+  const Change change(this);
   const std::vector<SaidName> said = u.names("place");
+  const bool by_name = !said.empty() && said.front().reference.empty();
+  const bool told = by_name && !builder_.find(said.front().text).empty();
+  if (told && places_.find(said.front().text).empty()) {  // known from descriptions only
+    const bool gone = builder_.forgetName(said.front().text);
+    matchDescription(out, false);
+    const std::string& name = said.front().text;
+    out.sentences.push_back(gone ? p.say("forgot_name", {{"name", name}})
+                                 : p.say("unknown_place", {{"name", name}}));
+    out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+    return;
+  }
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
   std::vector<std::string> codes;
   bool had = false;
-  const bool by_name = !said.empty() && said.front().reference.empty();
   for (const Id id : found) {
     codes.push_back(codeOf(*places_.map().findPlace(id)));
-    if (!by_name) had = places_.forget(id) || had;
+    if (by_name) continue;
+    const std::vector<std::string> names = namesOf(*places_.map().findPlace(id));
+    had = places_.forget(id) || had;
+    dropTold(id, names);
   }
-  if (by_name) had = !places_.forgetName(said.front().text).empty();
+  if (by_name) {
+    const std::string& name = said.front().text;
+    const auto confirmed = confirmedPlaces(name);
+    had = !places_.forgetName(name).empty();
+    for (const Id id : confirmed) dropTold(id, {name});
+    if (confirmed.empty() && had) builder_.forgetName(name);
+  }
+  matchDescription(out, false);
   if (question().kind == Question::Kind::kConfirmName) talk_.questions.drop();
   out.sentences.push_back(p.say(had ? "forgot_names" : "no_names", {{"places", p.list(codes)}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
 
 void Dialogue::rename(const Utterance& u, Turn& turn) {
-  Reply& out = turn.reply;
-  const std::vector<Id> found = resolve(u, "place", out);
+  const Change change(this);
+  const std::vector<Id> found = resolve(u, "place", turn.reply);
   const auto names = textsOf(u.names("name"));
-  if (found.empty() || names.empty()) return;
-  for (const Id id : found) {
-    const Place& place = *places_.map().findPlace(id);
-    // What was told of it under the name that goes is told of it under the new one; not what was
-    // told of a place that is only guessed to be this one.
-    if (nameStateOf(place) == NameState::kConfirmed) {
-      for (const std::string& old : namesOf(place)) builder_.giveName(old, names.front());
-    }
-    places_.forget(id);
-    confirmNames(id, {names.front()}, out);
+  if (names.empty()) return;
+  for (const Id id : found) confirmNames(id, {names.front()}, turn.reply, true);
+}
+
+void Dialogue::dropTold(Id id, const std::vector<std::string>& names) {
+  const Place& place = *places_.map().findPlace(id);
+  const bool has_others = nameStateOf(place) == NameState::kConfirmed;
+  const std::vector<std::string> others = namesOf(place);
+  for (const std::string& name : names) {
+    if (std::find(others.begin(), others.end(), name) != others.end()) continue;
+    // Rooms may be cut into several places with one name.
+    const std::vector<Id> same = confirmedPlaces(name);
+    if (std::any_of(same.begin(), same.end(), [&](Id each) { return each != id; })) continue;
+    builder_.rename(name, has_others ? others.front() : codeOf(place));
   }
 }
 

@@ -40,8 +40,13 @@ void Dialogue::askAlso(Id place, const std::vector<std::string>& names, Reply& o
   question.names = names;
   const std::vector<std::string> known = namesOf(*places_.map().findPlace(place));
   ask(std::move(question),
-      p.say("ask_also",
-            {{"known", p.list(known)}, {"names", p.list(names)}, {"name", names.front()}}),
+      place == robot().place
+          ? p.say("ask_also",
+                  {{"known", p.list(known)}, {"names", p.list(names)}, {"name", names.front()}})
+          : p.say("ask_also_there", {{"code", codeOf(*places_.map().findPlace(place))},
+                                     {"known", p.list(known)},
+                                     {"names", p.list(names)},
+                                     {"name", names.front()}}),
       out);
 }
 

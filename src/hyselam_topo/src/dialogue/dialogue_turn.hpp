@@ -39,6 +39,20 @@ struct Dialogue::Turn {
   bool asks_speaker = false;               ///< ... by telling who speaks
   /// The description before the statements of this turn.
   std::optional<DescribedBuilding> before;
+  KnownBefore known_before;  ///< with `before`
+};
+
+/// What people say of names is one change, which "undo that" takes back as a whole.
+class Dialogue::Change {
+ public:
+  explicit Change(Dialogue* dialogue);
+  ~Change();
+  Change(const Change&) = delete;
+  Change& operator=(const Change&) = delete;
+
+ private:
+  Dialogue* dialogue_ = nullptr;  ///< nullptr: part of another
+  KnownBefore before_;
 };
 
 template <typename Act>

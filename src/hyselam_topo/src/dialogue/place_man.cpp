@@ -195,8 +195,22 @@ void PlaceMan::guess(const std::vector<std::pair<Id, std::vector<std::string>>>&
   }
 }
 
-void PlaceMan::setWords(Id id, std::vector<PlaceTerm> words) {
-  at(id).words = std::move(words);
+PlaceMan::Names PlaceMan::names() const {
+  Names names;
+  for (const Place& place : state_.map.places) names.words[place.id] = place.words;
+  names.rejected = state_.rejected;
+  return names;
+}
+
+void PlaceMan::restoreNames(const Names& before) {
+  for (Place& place : state_.map.places) {
+    const auto found = before.words.find(place.id);
+    if (found != before.words.end()) place.words = found->second;
+  }
+  state_.rejected.clear();
+  for (const auto& each : before.rejected) {
+    if (state_.map.findPlace(each.first) != nullptr) state_.rejected.push_back(each);
+  }
 }
 
 bool PlaceMan::forget(Id id) {
@@ -221,15 +235,16 @@ void PlaceMan::forgetAllNames() {
   state_.rejected.clear();
 }
 
-void PlaceMan::rename(Id id, const std::string& name) {
-  const std::vector<PlaceTerm> before = at(id).words;
-  at(id).words.clear();
-  try {
-    confirm(id, {name});
-  } catch (const InputError&) {
-    at(id).words = before;
-    throw;
+std::vector<Id> PlaceMan::rename(Id id, const std::vector<std::string>& names) {
+  std::vector<Id> losers = confirm(id, names);
+  auto& words = at(id).words;
+  words.clear();
+  for (const std::string& name : names) {
+    const bool twice = std::any_of(words.begin(), words.end(),
+                                   [&](const PlaceTerm& word) { return word.text == name; });
+    if (!twice) words.push_back({name, true});
   }
+  return losers;
 }
 
 std::vector<Id> PlaceMan::find(const std::string& name) const {

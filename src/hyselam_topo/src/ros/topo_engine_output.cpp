@@ -60,6 +60,7 @@ void TopoEngineServer::act(const Reply& reply) {
     changed_ = true;
     publishQuestion();
   }
+  publishOpenQuestion();
   for (const std::string& sentence : reply.sentences) say(sentence);
 }
 
@@ -138,6 +139,14 @@ void TopoEngineServer::publishWalls() {
 
 void TopoEngineServer::publishQuestion() {
   publishers_.question.publish(questionMarkers(dialogue_.question(), frame()));
+}
+
+void TopoEngineServer::publishOpenQuestion() {
+  std_msgs::String msg;
+  if (dialogue_.question().kind != Question::Kind::kNone) msg.data = dialogue_.openQuestion();
+  if (open_question_ && *open_question_ == msg.data) return;
+  open_question_ = msg.data;
+  publishers_.open_question.publish(msg);
 }
 
 void TopoEngineServer::publishPlace() {

@@ -64,11 +64,13 @@ void TopoEngineServer::advertise(ros::NodeHandle& nh) {
   publishers_.follow = nh.advertise<std_msgs::Bool>("follow_person", 1, true);
   publishers_.names = nh.advertise<std_msgs::String>("known_names", 1, true);
   publishers_.candidates = nh.advertise<std_msgs::String>("name_candidates", 1, true);
+  publishers_.open_question = nh.advertise<std_msgs::String>("open_question", 1, true);
 }
 
 void TopoEngineServer::offerServices(ros::NodeHandle& nh) {
   using Self = TopoEngineServer;
   services_ = {nh.advertiseService("tell_robot", &Self::onTell, this),
+               nh.advertiseService("understands", &Self::onUnderstands, this),
                nh.advertiseService("name_place", &Self::onName, this),
                nh.advertiseService("where_am_i", &Self::onWhere, this),
                nh.advertiseService("word_to_pose", &Self::onPose, this),

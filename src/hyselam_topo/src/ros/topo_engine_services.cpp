@@ -45,6 +45,15 @@ bool TopoEngineServer::onTell(hyselam_msgs::TellRobot::Request& request,
   return true;
 }
 
+bool TopoEngineServer::onUnderstands(hyselam_msgs::TellRobot::Request& request,
+                                     hyselam_msgs::TellRobot::Response& response) {
+  response.language = dialogue_.reply().language;
+  const bool too_long = request.text.size() > static_cast<std::size_t>(params_.max_text_bytes);
+  response.answers = too_long ? std::vector<std::string>{"the text has more than max_text_bytes"}
+                              : dialogue_.notUnderstood(request.text);
+  return true;
+}
+
 bool TopoEngineServer::onName(hyselam_msgs::NamePlace::Request& request,
                               hyselam_msgs::NamePlace::Response& response) {
   try {

@@ -49,6 +49,7 @@ void TopoEngineServer::load(const std::string& path) {
   publishMap();
   publishWalls();
   publishQuestion();
+  publishOpenQuestion();
   publishPlace();
   ROS_INFO_STREAM(who_ << " goes on with " << dialogue_.map().places.size() << " places of "
                        << path);

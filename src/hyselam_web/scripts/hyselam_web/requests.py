@@ -10,6 +10,7 @@ REQUESTS = {
     "stop": ("", "message", {}),
     "hide": ("look", "message", {"on": "flag"}),
     "say": ("talk", "say", {"text": "text"}),
+    "try": ("talk", "act", {"text": "text"}),
     "name": ("talk", "act", {"place": "id", "names": "names"}),
     "go": ("drive", "act", {"place": "id", "language": "language"}),
     "here": ("drive", "act", {"place": "id"}),

@@ -35,6 +35,7 @@ SERVICE_WAIT = 1.0  # [s] for a service to be there
 ANSWER_WAIT = 30.0  # [s] for its answer
 PROGRAM_WAIT = 60.0  # [s] for doctor and knowledge
 STILL = 1.0  # [s] between two scans of a robot that stands
+ARRIVED, LEFT = 0.5, 1.0  # [m] from the end of the way
 OBJECT_WAIT = 3.0  # [s] for an answer about objects, unless the dialogue was told otherwise
 
 
@@ -90,13 +91,15 @@ class Robot:
         self._forwarded, self._patience, self._goal = 0, OBJECT_WAIT, b""
         self._preparing = self._scan_shown = self._doctor = None
         self._following, self._reached = False, True
+        self._question, self._other_question = None, None  # of the dialogue, as it tells; what others have asked
+        self._left_goal = False
         self._times = {}
         self._spoken = 0
         self.topics = {name: Latest(name, kind, big) for name, kind, big in (
             ("map", OccupancyGrid, True), ("scan", LaserScan, False), ("particlecloud", PoseArray, False), ("amcl_pose", PoseWithCovarianceStamped, False),
             ("localization_status", LocalizationStatus, False), ("named_map", AugmentedTopologicalMap, True), ("place", PlaceState, False),
             ("goal_path", Path, False), ("object_map", ObjectMap, False), ("visual_place", VisualPlace, False), ("known_names", String, False),
-            ("name_candidates", String, False))}
+            ("name_candidates", String, False), ("open_question", String, False))}
         rospy.Subscriber("/tf", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("/tf_static", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("conversation", String, self._on_talk, queue_size=200)
@@ -164,6 +167,9 @@ class Robot:
         way = self.topics["goal_path"].message()
         if way is not None:
             world.set("way", sights.way(way))
+            world.set("arrived", None)
+            self._left_goal = False
+        self._collect_arrival()
         world.set("following", self._following)
         place = self.topics["place"].message()
         if place is not None:
@@ -261,6 +267,27 @@ class Robot:
         if layers:
             self.world.set_table("layers", layers)
 
+    def _collect_arrival(self):
+        """Where nobody tells that the way is over, its end does."""
+        way, pose = self.world.get("way"), self.world.get("pose")
+        if not way or not pose:
+            return
+        far = math.dist((pose["x"], pose["y"]), way[-1])
+        # There and back: it stands at its goal when it sets out.
+        self._left_goal = self._left_goal or far > LEFT
+        if far < ARRIVED and (self._left_goal or sum(math.dist(a, b) for a, b in zip(way, way[1:])) < LEFT):
+            self.world.set("way", [])
+            self.world.set("arrived", way[-1])
+
+    def _collect_question(self):
+        question = self.topics["open_question"].message()
+        if question is not None:
+            self._question = question.data
+            if self._other_question and self._other_question["text"] == question.data[:500]:
+                self._other_question = None
+        here = (self.world.get("here") or {}).get("place", 0)
+        self.world.set("asked", sights.question(self._question, here, True) if self._question else self._other_question)
+
     def _collect_talk(self):
         while self._talk:
             when, line = self._talk.popleft()
@@ -270,7 +297,8 @@ class Robot:
             self._spoken += 1
             here = self.world.get("here") or {}
             self.world.append("talk", {"i": self._spoken, "w": who, "s": text[:4000], "t": int(when)})
-            self.world.set("asked", sights.question(text, here.get("place", 0)) if who == "robot" else None)
+            self._other_question = sights.question(text, here.get("place", 0)) if who == "robot" and text != self._question else None
+        self._collect_question()
 
     # ---- The master ----
 
@@ -361,6 +389,10 @@ class Robot:
         if place is None:
             raise Refused("unknown", f"there is no place {number}")
         return place
+
+    async def _do_try(self, fields, _):
+        answer = await self._call("understands", TellRobot, fields["text"])
+        return {"understood": not answer.answers}
 
     async def _do_name(self, fields, _):
         self._place(fields["place"])

@@ -167,11 +167,13 @@ def status(msg):
             "q": round(float(msg.match_quality), 2) if finite(msg.match_quality) else None}
 
 
-def question(text, here_now):
-    """What the robot asks with a sentence: of which place, and whether yes or no is an answer; None: it asks nothing."""
-    if not text.rstrip().endswith("?"):
-        return None
-    last = re.split(r"(?<=[.!?])\s+", text.strip())[-1]
+def question(text, here_now, is_open=False):
+    """What the robot asks with a sentence: of which place, and whether yes or no is an answer; None: it asks nothing. Of what is known to be an
+    open question, more may be said behind it."""
+    parts = re.split(r"(?<=[.!?])\s+", text.strip())
+    last = next((part for part in reversed(parts) if part.endswith("?")), "") if is_open else parts[-1]
+    if not last.endswith("?"):
+        return {"text": text[:500], "place": 0, "yes": False} if is_open else None
     code = CODE.search(text)
     this = re.search(r"\b(this place|este lugar|deste lugar|this)\b", last, re.IGNORECASE)
     return {"text": text[:500], "place": int(code.group(1)) if code else here_now if this else 0, "yes": not OPEN_QUESTION.match(last)}

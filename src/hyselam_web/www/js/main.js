@@ -90,6 +90,14 @@ class Page {
     const empty = () => { byId("map-empty").hidden = Boolean(model.values.map) || Object.keys(model.tables.places).length > 0; };
     model.on(["map", "places"], empty);
     model.on(["reach"], () => this.showLost());
+    model.on(["way", "arrived"], () => {
+      const {way, arrived} = model.values;
+      if (arrived && this.going && !way?.length) {
+        const place = model.placeAt(...arrived);
+        toast(t("arrived_at", {name: place === null ? "" : model.titleOf(place)}));
+      }
+      this.going = Boolean(way?.length);
+    });
     const named = () => { byId("language").textContent = t("other_language"); };
     onLanguage(() => {
       named();
@@ -206,6 +214,7 @@ class Page {
   // ---- Tabs ----
 
   openTab(name, may_fold = false) {
+    if (may_fold && (this.map.tool || this.picking)) this.setTool(null);
     const was_open = byId(`tab-${name}`).getAttribute("aria-selected") === "true";
     // Once more on the open tab of a phone: the whole screen for the map.
     document.body.classList.toggle("folded", may_fold && was_open && innerWidth < 900 && !document.body.classList.contains("folded"));

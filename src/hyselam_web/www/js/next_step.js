@@ -1,10 +1,10 @@
 // What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage} from "./i18n.js";
-import {corrected} from "./wording.js";
+import {corrected, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
-const UNSURE = /not sure where|answers fit|certeza onde|respostas servem/i;
+const UNSURE = /not sure where|places fit|answers fit|certeza onde|respostas servem|servem muitos lugares/i;
 const TAKEN_DOWN = /^(Noted:|Anotado:)/;
 const NO = /^(no|não|nao)\b/i;
 const MAX_BUTTONS = 5;
@@ -17,7 +17,8 @@ export class NextStep {
     this.denied = null; // {name, place, at}: "no, that is not the kitchen", said in that entry of the talk
     this.dismissed = 0; // the entry of the talk whose next step nobody wants
     this.key = "";
-    model.on(["talk", "candidates", "places", "names"], () => this.show());
+    this.tried = new Map(); // sentence: whether it would be understood
+    model.on(["talk", "candidates", "places", "names", "asked"], () => this.show());
     onLanguage(() => this.show());
   }
 
@@ -28,6 +29,18 @@ export class NextStep {
     const about_name = asked?.yes && guess && !guess.none && !guess.sure && asked.text.includes(guess.text);
     this.denied = about_name && NO.test(text) ? {name: guess.text, place: asked.place, after: this.newest()} : null;
     this.show();
+  }
+
+  // Nothing is offered that would not be understood; until that is known it is not offered.
+  isUnderstood(sentence) {
+    if (!this.tried.has(sentence)) {
+      this.tried.set(sentence, false);
+      this.connection.ask("try", {text: told(sentence, this.model)}).then(({understood}) => {
+        this.tried.set(sentence, understood === true);
+        this.show();
+      }, () => this.tried.delete(sentence));
+    }
+    return this.tried.get(sentence);
   }
 
   newest() {
@@ -42,7 +55,10 @@ export class NextStep {
 
   // Where a name may be: of the dialogue's candidates those that are there, have no other confirmed name and were not denied.
   places(name, but = 0) {
-    return (this.model.values.candidates?.[name] ?? []).filter((id) => id !== but && this.model.place(id) && !this.model.nameOf(id).sure);
+    const {pose} = this.model.values;
+    const far = (id) => (pose && this.model.place(id).c ? Math.hypot(this.model.place(id).c[0] - pose.x, this.model.place(id).c[1] - pose.y) : 0);
+    return (this.model.values.candidates?.[name] ?? []).filter((id) => id !== but && this.model.place(id) && !this.model.nameOf(id).sure)
+      .sort((a, b) => far(a) - far(b) || a - b);
   }
 
   // {kind, at, ...} or null.
@@ -61,9 +77,9 @@ export class NextStep {
     if (!answers.some((entry) => TAKEN_DOWN.test(entry.s))) {
       const doubted = (word) => answers.some((entry) => entry.s.toLowerCase().includes(word.toLowerCase()));
       const right = corrected(talk[last].s, this.model.values.names ?? [], doubted);
-      if (right) return {kind: "meant", at: talk[last].i, right, ids: []};
+      if (right && this.isUnderstood(right)) return {kind: "meant", at: talk[last].i, right, ids: []};
     }
-    if (!answers.some((entry) => UNSURE.test(entry.s))) return null;
+    if (this.model.values.asked?.yes || !answers.some((entry) => UNSURE.test(entry.s))) return null; // one question at a time
     const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 1 && !this.isPlaced(each));
     return name ? {kind: "unsure", at: talk[last].i, name, ids: this.places(name)} : null;
   }

@@ -13,7 +13,7 @@ export class RobotPanel {
   constructor(model, connection, may, actions) {
     Object.assign(this, {model, connection, may, actions});
     this.panel = byId("panel-robot");
-    model.on(["status", "here", "places", "camera", "layers", "can", "pose", "way", "following", "refused", "learning"], () => {
+    model.on(["status", "here", "places", "camera", "layers", "can", "pose", "way", "arrived", "following", "refused", "learning"], () => {
       this.showWhere();
       this.showState();
     });
@@ -54,13 +54,14 @@ export class RobotPanel {
   }
 
   showWhere() {
-    const {here, status, way, following} = this.model.values;
+    const {here, status, way, arrived, following} = this.model.values;
     const known = here?.place ? this.model.nameOf(here.place) : null;
     const name = known ? this.model.labelOf(here.place) : "";
     const parts = [here?.place ? t(here.door ? "in_doorway" : "in_place", {name}) : this.model.values.pose ? t("nowhere") : t("title")];
     if (status && status.phase !== "sure") parts.push(t(`phase_${status.phase}`));
     if (following) parts.push(t("following"));
     else if (way?.length) parts.push(t("going"));
+    else if (arrived) parts.push(t("arrived"));
     const text = parts.join(" · ");
     const box = byId("where");
     if (box.dataset.text === text + status?.phase) return;
@@ -94,11 +95,22 @@ export class RobotPanel {
     }
     parts.push(make("h3", {}, t("layers_title")));
     const lines = Object.entries(layers).map(([name, each]) => make("li", {}, make("span", {class: `level ${each.level}`, "aria-hidden": "true"}, SIGNS[each.level]),
-      make("span", {}, LAYERS.includes(name) ? t(`layer_${name}`) : name.replaceAll("_", " "), make("span", {class: "sub"}, t(`level_${each.level}`)))));
+      this.layer(name, each)));
     parts.push(lines.length ? make("ul", {class: "list"}, ...lines) : make("p", {class: "note"}, t("no_layers")));
     const technical = [...(refused ? [refused] : []), ...(status ? [status.text] : []), ...Object.entries(layers).map(([name, each]) => `${name}: ${each.text}`)];
     if (technical.length) parts.push(this.details("state", technical));
     this.state.replaceChildren(...parts);
+  }
+
+  // One that has something to say says it when it is tapped.
+  layer(name, each) {
+    const title = [LAYERS.includes(name) ? t(`layer_${name}`) : name.replaceAll("_", " "), make("span", {class: "sub"}, t(`level_${each.level}`))];
+    if (each.level === "ok" || !each.text) return make("span", {}, ...title);
+    this.opened ??= new Set();
+    const details = make("details", {"data-layer": name, class: "rest"}, make("summary", {}, make("span", {}, ...title)), make("p", {class: "note"}, each.text));
+    details.open = this.opened.has(`layer ${name}`);
+    details.addEventListener("toggle", () => (details.open ? this.opened.add(`layer ${name}`) : this.opened.delete(`layer ${name}`)));
+    return details;
   }
 
   // What technicians want to read; it stays open while its lines change.

@@ -5,7 +5,7 @@ import {corrected, plain, told} from "./wording.js";
 import {canListen, listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
-const TAKEN = /^(Noted:|Thank you\. |That moves|I have (added|forgotten|a place)|I have taken|Anotado:|Obrigad[oa]\. |Isso muda|Acrescentei|Esqueci|Anotei|Tenho (um )?lugar)/;
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (added|forgotten|a place)|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Acrescentei|Esqueci|Anotei|Desfiz|Então .* volta a ser|Tenho (um )?lugar)/;
 const MAX_CHIPS = 8;
 
 export function reasonOf(error) {
@@ -70,7 +70,7 @@ export class Talk {
     this.listenButton.hidden = !canListen();
     this.listenButton.onclick = () => this.toggleListening();
     model.on(["talk"], () => this.showTalk());
-    model.on(["asked"], () => this.showAsked());
+    model.on(["asked", "talk"], () => this.showAsked());
     model.on(["names"], () => this.showChips());
     onLanguage(() => {
       this.showTalk();
@@ -171,6 +171,10 @@ export class Talk {
   showAsked() {
     const asked = this.model.values.asked;
     byId("answers").hidden = !(asked && asked.yes && this.may("talk"));
+    // Yes and no stand under their question: the last line of the talk, or once more here.
+    const last = this.model.talk[this.model.talk.length - 1];
+    byId("question").textContent = asked ? plain(asked.text) : "";
+    byId("question").classList.toggle("said-last", Boolean(asked) && !this.pending.length && last?.w === "robot" && last.s === asked.text);
     this.line.placeholder = t(asked && !asked.yes ? "answer_placeholder" : "say_placeholder");
     this.showChips();
   }
@@ -222,7 +226,7 @@ export class Talk {
     talk.forEach((entry, i) => { if (entry.w === "human") last_human = i; });
     let undo = false;
     talk.forEach((entry, i) => {
-      lines.push([`${entry.i} ${entry.t}`, () => make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, plain(entry.s))]);
+      lines.push([`${entry.i} ${entry.t} ${entry.s === "Stop." ? language : ""}`, () => make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, entry.w === "human" && entry.s === "Stop." ? t("stop_said") : plain(entry.s))]);
       undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
     });
     if (undo && this.may("talk") && !this.connection.replays) {

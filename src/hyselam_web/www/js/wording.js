@@ -6,6 +6,12 @@ const PORTUGUESE = /[ãõçêôáíóúéà]|\b(?:estou|vou|para|lugar|lado|nome
 const ENGLISH = /\b(?:the|is|am|are|of|to|you|this|what|where|name|noted|place|next|yes|no)\b/i;
 // "place 5" as it is said; in Portuguese with the article, which goes.
 const SAID = /\b(?:(?:the )?place(?: number)?|(?:(n|d|a)?o )?lugar(?: n[uú]mero)?) 0*(\d{1,6})\b/gi;
+// "Number 5 is the library", "o 5 é a biblioteca", "... and number 7 the kitchen": what is said of it is its name, not where it lies.
+const NAMED = new RegExp("(^\\s*|[.!?;]\\s*|\\s*,?\\s+(?:and|e)\\s+)" +
+  "((?:the |o |a )?(?:place|room|number|no\\.?|lugar|sala|n[uú]mero|n\\.º)(?: number| n[uú]mero)? |[oa] )?0*(\\d{1,6})" +
+  "(\\s+(?:is|é|chama-se|se chama)\\s+|\\s+)(?=(?:called |named )?(?:(?:the|my|our|a|o|as|os)\\s+|\\p{L}+['’]s\\s)" +
+  "(?!(?:first|second|third|last|next|only|big|small|large|primeir|segund|terceir|últim|maior|room\\b|sala\\b(?!\\s+d)|one\\b))" +
+  "(?![^.!?;]*\\b(?:left|right|opposite|beside|between|behind|next to|esquerda|direita|frente|entre|atrás|lado)\\b))", "giu");
 const CONTRACTED = {n: "em ", d: "de ", a: "a "}; // no, do, ao
 const MIN_KIND = 5; // letters of a word that may be meant for a usual kind of place; shorter ones are like too many others
 const MIN_NAME = 4; // for a name that the robot knows
@@ -26,8 +32,17 @@ export function plain(text) {
 }
 
 // A sentence as the robot is told it: its map knows no "place 5", but SS05.
-export function told(text, model) {
+export function told(sentence, model) {
   const names = (model.values.names ?? []).map((name) => name.toLowerCase());
+  let named = false; // one before it
+  const text = sentence.replace(NAMED, (whole, before, what, number, verb) => {
+    const [said, place] = [whole.slice(before.length, whole.length - verb.length).trim().toLowerCase(), model.place(Number(number))];
+    const is_and = /^(and|e)\s/i.test(before.trim() + " ");
+    if (!place || names.includes(said)) return whole; // one that people call so
+    if (verb.trim() === "") return is_and && named ? `. ${place.e} ${/\sis\s/i.test(sentence) ? "is" : "é"} ` : whole;
+    named = true;
+    return (is_and ? ". " : before) + place.e + verb;
+  });
   return text.replace(SAID, (whole, contracted, number) => {
     const place = names.some((name) => whole.toLowerCase().endsWith(name)) ? null : model.place(Number(number));
     return place ? (CONTRACTED[contracted?.toLowerCase()] ?? "") + place.e : whole;

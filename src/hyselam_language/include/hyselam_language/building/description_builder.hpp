@@ -90,6 +90,21 @@ class DescriptionBuilder {
   bool undo();
   /// The statement that undo() would take back; nullptr if there is none.
   const Utterance* lastStatement() const;
+  /// How many statements have changed the description and were not taken back.
+  std::size_t statementCount() const { return statements_; }
+
+  struct Recorded {
+    DescriptionState before;
+    Utterance said;
+  };
+  /// What was told, with what can be taken back of it.
+  struct Memory {
+    DescriptionState state;
+    std::vector<Recorded> history;
+    std::size_t statements = 0;
+  };
+  Memory memory() const { return {state_, history_, statements_}; }
+  void restore(Memory memory);
 
   /// Sets the robot's place from another source than the description; adds the place if new.
   /// `kind`: known of the place where its name does not tell it.
@@ -99,6 +114,11 @@ class DescriptionBuilder {
   /// A place that was told of under a name that nobody gave it, as the map's own for it, has this
   /// one from now on. Where another place has it already, all that was told is of that one.
   void giveName(const std::string& made_up, const std::string& name);
+  /// A place is not called `old` any more, but `name`; as giveName() otherwise.
+  void rename(const std::string& old, const std::string& name);
+  /// Nothing is called so any more: a place that has no other name is gone with all that was told
+  /// of it. Returns whether anything was.
+  bool forgetName(const std::string& name);
 
   /// The places that a name means; none, one, or several if it is ambiguous.
   std::vector<Id> find(const std::string& name) const;
@@ -106,11 +126,8 @@ class DescriptionBuilder {
   bool isCorridorWithoutName(const std::string& name) const;
 
  private:
-  struct Recorded {
-    DescriptionState before;
-    Utterance said;
-  };
-
+  /// The one place that has this name, as it is written best; 0: none, or several.
+  Id called(const std::string& name) const;
   std::vector<DescriptionIssue> record(const Utterance& utterance);
   void remember(const DescriptionState& before, const Utterance& said);
   std::vector<DescriptionIssue> replaceLast(const Utterance& utterance);
@@ -128,6 +145,7 @@ class DescriptionBuilder {
   std::optional<hyselam::Pose2> viewpoint_;
   std::set<std::string> accepted_;  ///< NameKey::full
   std::vector<Recorded> history_;
+  std::size_t statements_ = 0;
 };
 
 }  // namespace hyselam_topo

@@ -161,16 +161,20 @@ class Dialogue {
   Reply hear(const std::string& text, const HearOptions& options = {});
   /// Obeys stop and cancel in a text of any length, and nothing else of it; nothing without them.
   std::optional<Reply> obeyUrgent(const std::string& text);
+  /// What hear() would not understand of a text, part by part; nothing is done.
+  std::vector<std::string> notUnderstood(const std::string& text) const;
   /// No other node has understood a forwarded sentence: the refusal, or what may have been meant
   /// as a question.
   Reply refuse(const ForwardedSentence& sentence);
   /// Drives to the nearest of `places`; replies with the reason if there is none or no path.
   /// `name`: what the replies call them.
   Reply goTo(const std::string& name, const std::vector<Id>& places);
-  /// Confirms the names of any place, e.g. after a click on the map.
+  /// These are the names of any place from now on, e.g. after a click on the map; what it was
+  /// called before is forgotten.
   /// @throws hyselam::InputError without names, and as PlaceMan::confirm().
   Reply name(Id place, const std::vector<std::string>& names);
-  /// Removes all names of a place. Throws as PlaceMan::forget().
+  /// Removes all names of a place; what was told of it stays, without them. Throws as
+  /// PlaceMan::forget().
   Reply forget(Id place);
   /// Adds a place that has no walls, so that segmentation cannot find it: a disc of `radius` [m]
   /// around `centre` [m, map frame]. Throws as PlaceMan::addVirtualPlace().
@@ -282,8 +286,19 @@ class Dialogue {
 
   // names
   void nameThisPlace(const Utterance& u, Turn& turn);
-  /// "Undo that", said right after a name was told or asked about; false if none was.
-  bool takeNameBack(Turn& turn);
+  void namePlace(Id place, const Utterance& u, Turn& turn);
+  /// "SS05 is the library", also the other way round, in `named`: as if said there.
+  bool isOfNumberedPlace(const Utterance& u, Utterance* named) const;
+  /// "Forget the kitchen", which is a name of the map that nobody has told anything of.
+  bool isOnlyOnMap(const Utterance& u) const;
+  /// "Undo that": of the question for a name that was told last, else of the last change of what
+  /// is known; false if there is none.
+  bool takeBack(Turn& turn);
+  /// What has changed since, as sentences.
+  void tellNamesAgain(const PlaceMan::Names& since, Reply& reply) const;
+  /// Names of a place that are no more are gone from what was told, too, but not what was told of
+  /// the place.
+  void dropTold(Id place, const std::vector<std::string>& names);
   void forgetNames(const Utterance& u, Turn& turn);
   void askForgetEverything(const Utterance& u, Turn& turn);
   void forgetEverything(Reply& reply);
@@ -295,7 +310,9 @@ class Dialogue {
   /// Whether a place has confirmed names, and none of these.
   bool isNamedOtherwise(Id place, const std::vector<std::string>& names) const;
   /// Confirms names, updates the match with the description and replies.
-  void confirmNames(Id place, const std::vector<std::string>& names, Reply& reply);
+  /// `instead`: of all names that the place has.
+  void confirmNames(Id place, const std::vector<std::string>& names, Reply& reply,
+                    bool instead = false);
 
   // questions of the robot, and their answers
   void enterPlace(Reply& reply);
@@ -417,12 +434,17 @@ class Dialogue {
   std::optional<hyselam::Point2> position_;  ///< then
   Id told_at_ = 0;                           ///< DialogueState::told_at
 
-  /// What "undo that" goes back to after a name was told.
-  struct BeforeNaming {
-    Id place = 0;
-    std::map<Id, std::vector<PlaceTerm>> words;
-    DescriptionBuilder builder;
+  /// What "undo that" goes back to.
+  struct KnownBefore {
+    PlaceMan::Names names;
+    /// Nothing: only statements, which the description takes back itself, and their names.
+    std::optional<DescriptionBuilder::Memory> told;
+    std::size_t statements = 0;  ///< before ...
+    std::size_t after = 0;       ///< ... and after it
+    Id told_at = 0;
   };
+  class Change;  // of what is known, while it is made
+  void remember(KnownBefore before);
   /// What is in no DialogueState: nothing of it outlives restore().
   struct Talk {
     bool entered = false;  ///< the robot's place or the map has changed; not processed yet
@@ -434,8 +456,9 @@ class Dialogue {
     std::set<std::string> accepted;      ///< names that a person has agreed to (NameKey::full)
     std::vector<std::string> last_said;  ///< for "what?"
     bool described_last = false;         ///< the last utterance told of places: "it" is one of them
-    std::optional<BeforeNaming> named_now, named_last;  ///< in this text, in the one before
-    Id subject = 0;                                     ///< antecedent of "it"
+    std::vector<KnownBefore> changes;    ///< the last one last
+    bool changing = false;               ///< within a Change
+    Id subject = 0;                      ///< antecedent of "it"
   };
   Talk talk_;
 };

@@ -3,6 +3,7 @@
 // walls. These are preserved when the map is segmented again.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -73,16 +74,22 @@ class PlaceMan {
   bool isRejected(Id place, const std::string& name) const;
   /// Replaces all guessed names. Confirmed and rejected names remain as they are.
   void guess(const std::vector<std::pair<Id, std::vector<std::string>>>& guesses);
-  /// Gives a place the names that it had before.
-  void setWords(Id id, std::vector<PlaceTerm> words);
+  /// All that people have said of names, and what is guessed.
+  struct Names {
+    std::map<Id, std::vector<PlaceTerm>> words;  ///< by the place
+    std::vector<std::pair<Id, std::string>> rejected;
+  };
+  Names names() const;
+  /// Gives all places that are still there the names of before.
+  void restoreNames(const Names& before);
   /// Removes all names of a place. False if it had none.
   bool forget(Id place);
   /// Removes a name from all places. Returns the places that had it.
   std::vector<Id> forgetName(const std::string& name);
   /// Removes all names of all places, and the rejected ones.
   void forgetAllNames();
-  /// Removes all names of a place and confirms another one.
-  void rename(Id place, const std::string& name);
+  /// confirm(), and all other names of the place are gone. Throws as it, without effect.
+  std::vector<Id> rename(Id place, const std::vector<std::string>& names);
 
   /// The places with a name or generated id (codeOf()): those where the name is confirmed, else
   /// those where it is guessed.

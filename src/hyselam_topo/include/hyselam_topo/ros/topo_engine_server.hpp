@@ -67,6 +67,8 @@ class TopoEngineServer {
   void publishWalls();
   void publishPlace();
   void publishQuestion();
+  /// Where it has changed.
+  void publishOpenQuestion();
 
   void advertise(ros::NodeHandle& nh);
   void offerServices(ros::NodeHandle& nh);
@@ -84,6 +86,8 @@ class TopoEngineServer {
 
   bool onTell(hyselam_msgs::TellRobot::Request& request,
               hyselam_msgs::TellRobot::Response& response);
+  bool onUnderstands(hyselam_msgs::TellRobot::Request& request,
+                     hyselam_msgs::TellRobot::Response& response);
   bool onName(hyselam_msgs::NamePlace::Request& request,
               hyselam_msgs::NamePlace::Response& response);
   bool onWhere(hyselam_msgs::WhereAmI::Request& request,
@@ -120,6 +124,7 @@ class TopoEngineServer {
   ros::WallTime started_ = ros::WallTime::now();
   ros::WallTime place_published_, saved_;
   hyselam_msgs::PlaceState last_place_;
+  std::optional<std::string> open_question_;  ///< as published
 
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
@@ -127,7 +132,7 @@ class TopoEngineServer {
   std::optional<SentenceForwarder> forwarder_;
   struct Publishers {
     ros::Publisher text, conversation, place, map, markers, question, grid, path, poses,
-        initial_pose, follow, names, candidates;
+        initial_pose, follow, names, candidates, open_question;
   } publishers_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;

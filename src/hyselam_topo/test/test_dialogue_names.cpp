@@ -1,0 +1,162 @@
+// Names: given to places by number, replaced, forgotten, taken back.
+#include <gtest/gtest.h>
+
+#include "talk.hpp"
+
+namespace {
+
+using Names = std::vector<std::string>;
+using hyselam_topo::Question;
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// All that it may say of what it knows.
+std::string allSaid(Talk* talk) {
+  std::string all = talk->say("What have I told you?") + talk->say("Which places do you know?");
+  for (const std::string& name : talk->dialogue.knownNames()) all += " " + name;
+  return all;
+}
+
+}  // namespace
+
+TEST(DialogueNames, ANameThatIsTypedForAPlaceReplacesItsOldOne) {
+  Talk talk;
+  talk.dialogue.name(1, {"coridor"});
+  talk.say("The pantry is next to the coridor.");
+  ASSERT_TRUE(has(allSaid(&talk), "coridor"));
+  const std::string reply = talk.dialogue.name(1, {"corridor"}).text();
+  EXPECT_EQ(reply, "Thank you. SS01 is corridor.");
+  EXPECT_EQ(talk.names(1), Names{"corridor"});
+  EXPECT_FALSE(has(allSaid(&talk), "coridor")) << allSaid(&talk);
+  EXPECT_EQ(talk.say("Is the pantry next to the corridor?"), "Yes.");
+  EXPECT_FALSE(has(talk.say("The attic is next to the pantry."), "coridor"));
+}
+
+TEST(DialogueNames, ANameThatIsTypedInPortugueseReplacesItsOldOne) {
+  Talk talk;
+  talk.say("Esta é a sala da Ana.");
+  talk.dialogue.name(1, {"sala da Carla"});
+  EXPECT_EQ(talk.names(1), Names{"sala da Carla"});
+  EXPECT_FALSE(has(allSaid(&talk), "Ana"));
+}
+
+TEST(DialogueNames, ASentenceThatAddsANameAddsIt) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  ASSERT_TRUE(has(talk.say("This is the canteen."), "also known"));
+  talk.say("Yes.");
+  EXPECT_EQ(talk.names(1), (Names{"kitchen", "canteen"}));
+}
+
+TEST(DialogueNames, APlaceOfTheMapIsNamedByItsNumber) {
+  for (const char* sentence : {"SS02 is the library.", "The library is SS02.",
+                               "SS02 is called the library.", "SS02 é a biblioteca."}) {
+    Talk talk;
+    const std::string reply = talk.say(sentence);
+    ASSERT_EQ(talk.names(2).size(), 1u) << sentence << ": " << reply;
+    EXPECT_TRUE(talk.isConfirmed(2)) << sentence;
+    EXPECT_TRUE(has(reply, "SS02 is library") || has(reply, "SS02 é biblioteca")) << reply;
+    EXPECT_FALSE(has(allSaid(&talk), "also known as library")) << allSaid(&talk);
+  }
+}
+
+TEST(DialogueNames, APlaceWithANameIsAskedForBeforeItsNumberGetsAnother) {
+  Talk talk;
+  talk.dialogue.name(2, {"kitchen"});
+  const std::string reply = talk.say("SS02 is the library.");
+  EXPECT_TRUE(has(reply, "Until now SS02 is kitchen. Is it also known as library?")) << reply;
+  EXPECT_EQ(talk.names(2), Names{"kitchen"});
+  talk.say("Rename SS02 to library.");
+  EXPECT_EQ(talk.names(2), Names{"library"});
+}
+
+TEST(DialogueNames, ManyChangesAreTakenBackOneByOne) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.dialogue.name(1, {"canteen"});
+  talk.say("The pantry is next to the canteen.");
+  talk.dialogue.forget(1);
+  ASSERT_TRUE(talk.names(1).empty());
+  EXPECT_FALSE(has(allSaid(&talk), "canteen"));
+
+  EXPECT_EQ(talk.say("Undo that."), "So SS01 is canteen again.");
+  EXPECT_EQ(talk.names(1), Names{"canteen"});
+  EXPECT_EQ(talk.say("Is the pantry next to the canteen?"), "Yes.");
+
+  EXPECT_EQ(talk.say("Undo that."), "I have taken back: 'The pantry is next to the canteen.'");
+  EXPECT_FALSE(has(allSaid(&talk), "pantry")) << allSaid(&talk);
+  EXPECT_EQ(talk.names(1), Names{"canteen"});
+
+  EXPECT_EQ(talk.say("Undo that."), "So SS01 is kitchen again.");
+  EXPECT_EQ(talk.names(1), Names{"kitchen"});
+  EXPECT_FALSE(has(allSaid(&talk), "canteen"));
+
+  EXPECT_EQ(talk.say("Undo that."), "I have forgotten the names of SS01.");
+  EXPECT_TRUE(talk.names(1).empty());
+  EXPECT_TRUE(has(talk.say("Undo that."), "nothing was told"));
+}
+
+TEST(DialogueNames, ANameThatCameWithAStatementGoesWithIt) {
+  Talk talk;
+  talk.say("You are in the boiler room. The pantry is next to it.");
+  ASSERT_EQ(talk.names(1), Names{"boiler room"});
+  EXPECT_TRUE(has(talk.say("Undo that."), "The pantry is next to it"));
+  EXPECT_EQ(talk.names(1), Names{"boiler room"});
+  EXPECT_TRUE(has(talk.say("Undo that."), "You are in the boiler room"));
+  EXPECT_TRUE(talk.names(1).empty());
+}
+
+TEST(DialogueNames, WhatWasForgottenAsAWholeComesBack) {
+  Talk talk;
+  talk.say("You are in the kitchen. The pantry is next to the kitchen.");
+  talk.say("Forget all names.");
+  talk.say("Yes.");
+  ASSERT_TRUE(talk.dialogue.knownNames().empty());
+  EXPECT_EQ(talk.say("Desfaz isso."), "Então SS01 volta a ser kitchen.");
+  EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "Yes.");
+}
+
+TEST(DialogueNames, AForgottenNameIsGoneFromAllThatIsSaid) {
+  for (const char* forget : {"Forget the name kitchen.", "Forget the kitchen.", ""}) {
+    Talk talk;
+    talk.say("You are in the kitchen. The pantry is next to the kitchen.");
+    if (*forget == 0) {
+      talk.dialogue.forget(1);
+    } else {
+      talk.say(forget);
+    }
+    EXPECT_TRUE(talk.names(1).empty()) << forget;
+    EXPECT_FALSE(has(allSaid(&talk), "kitchen")) << forget << allSaid(&talk);
+    EXPECT_FALSE(has(talk.say("The attic is next to the pantry."), "kitchen")) << forget;
+  }
+}
+
+TEST(DialogueNames, NamesThatAreOnlyToldOrOnlyOnTheMapAreForgotten) {
+  Talk talk;
+  talk.say("The pantry is next to the library. The attic is next to the cellar.");
+  EXPECT_FALSE(has(talk.say("Forget the name attic."), "do not know"));
+  EXPECT_FALSE(has(allSaid(&talk), "attic"));
+  talk.dialogue.name(1, {"gym"});
+  EXPECT_EQ(talk.say("Forget the gym."), "I have forgotten the names of SS01.");
+  EXPECT_TRUE(talk.names(1).empty());
+  EXPECT_TRUE(has(talk.say("Forget the gym."), "was not told of"));
+}
+
+TEST(DialogueNames, ASentenceIsTriedWithoutEffect) {
+  Talk talk;
+  EXPECT_TRUE(
+      talk.dialogue.notUnderstood("This is the kitchen. A cozinha fica à esquerda.").empty());
+  EXPECT_EQ(talk.dialogue.notUnderstood("Where are you? Xyzzy plugh the frobnicated wug.").size(),
+            1u);
+  EXPECT_TRUE(talk.names(1).empty());
+}
+
+TEST(DialogueGo, APlaceThatIsNamedByItsNumberIsNotDoubted) {
+  Talk talk;
+  talk.say("The library is next to the lab.");
+  const hyselam_topo::Reply reply = talk.dialogue.hear("Go to SS02.");
+  EXPECT_TRUE(reply.has(hyselam_topo::DialogueAction::Kind::kGo)) << reply.text();
+  EXPECT_EQ(reply.text(), "I am going to SS02.");
+}
