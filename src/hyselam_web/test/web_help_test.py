@@ -99,7 +99,7 @@ class HelpTest(PageCase):
         tab.wait("hyselam.model.values.candidates", "where it may be")
         self.assertTrue(tab.eval("document.querySelector('#next').hidden"))  # nobody has asked
         self.say(tab, "There is a kitchen.")
-        self.assertEqual(self.next(tab, "Where is kitchen?"), ["Place 3", "Place 5", "Place 7", "Another place…"])
+        self.assertEqual(self.next(tab, "Where is the kitchen?"), ["Place 3", "Place 5", "Place 7", "Another place…"])
         self.assertEqual(tab.eval("hyselam.model.marked.ids"), [3, 5, 7])
         self.shot(tab, "phone_where")
         tab.click("#next [data-place='5']")
@@ -116,7 +116,7 @@ class HelpTest(PageCase):
         self.robot.world.set("candidates", {"kitchen": [3, 7]})
         tab = self.open_map(PHONE)
         self.say(tab, "There is a kitchen.")
-        self.next(tab, "Where is kitchen?")
+        self.next(tab, "Where is the kitchen?")
         tab.press(*self.at(tab, *tab.eval("hyselam.model.place(7).c")))
         tab.click("#card [data-key=this_is]")
         wait_until(lambda: self.asked("name") == [{"place": 7, "names": ["kitchen"]}], "the name")
@@ -127,7 +127,7 @@ class HelpTest(PageCase):
         self.robot.later(lambda: self.robot.world.set("candidates", {"kitchen": [3, 9], "archive": [3, 9]}))
         self.answers("I am not sure where kitchen and archive may be.")
         self.say(tab, "There is an archive.")
-        self.next(tab, "Where is archive?")
+        self.next(tab, "Where is the archive?")
         # Another one than those: a name that somebody has confirmed there stays.
         tab.click("#next .pick")
         tab.wait("document.querySelector('#tool-bar').textContent.includes('Tap the place of archive')", "what to do")
@@ -143,7 +143,7 @@ class HelpTest(PageCase):
         self.robot.world.set("candidates", {"kitchen": [3, 7]})
         tab = self.open_map(PHONE)
         self.say(tab, "There is a kitchen.")
-        self.next(tab, "Where is kitchen?")
+        self.next(tab, "Where is the kitchen?")
         tab.click("#next .close")
         tab.wait("document.querySelector('#next').hidden", "that it is put aside")
         self.answers("I am at SS03.")
@@ -297,11 +297,11 @@ class HelpTest(PageCase):
             self.assertIn("someones driver", seen)
             for technical in ("topo_engine", "/scan", "base_link", "/tf", "particles", "cells", "node", "topic"):
                 self.assertNotIn(technical, seen)
-            self.assertEqual(tab.eval("[...document.querySelectorAll('#panel-robot summary')].map((s) => s.textContent)"), [fold] * 2)
+            self.assertEqual(tab.eval("[...document.querySelectorAll('#panel-robot details:not([data-layer]) > summary')].map((s) => s.textContent)"), [fold] * 2)
             self.shot(tab, f"phone_robot_{language}")
-            tab.click("#panel-robot details:last-of-type summary")
+            tab.click("#panel-robot details:not([data-layer]):last-of-type summary")
             for summary in range(2):
-                tab.eval(f"document.querySelectorAll('#panel-robot details')[{summary}].open = true")
+                tab.eval(f"document.querySelectorAll('#panel-robot details:not([data-layer])')[{summary}].open = true")
             opened = tab.eval("document.querySelector('#panel-robot').innerText")
             for technical in ("topo_engine: 21 places", "no scans on /scan", "start /robot_state_publisher", "3 cells are not 4 x 5", "400 particles"):
                 self.assertIn(technical, opened)

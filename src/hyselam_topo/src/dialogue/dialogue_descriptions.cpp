@@ -164,6 +164,7 @@ void Dialogue::readBack(const DescribedBuilding& before, bool here_told, Reply& 
 void Dialogue::recordStatements(Turn& turn) {
   if (!turn.described) return;
   turn.described = false;
+  const Change change(this, std::move(turn.known_before));  // names that come with statements, too
   Reply& out = turn.reply;
   const Phrases& p = phrases();
   const DescribedBuilding before = *turn.before;
@@ -174,10 +175,6 @@ void Dialogue::recordStatements(Turn& turn) {
   const bool named_otherwise =
       !here.empty() && robot().place != 0 && isNamedOtherwise(robot().place, here);
   const bool changed = !(before == builder_.building());
-  // Before anything that may fail: names that come with statements go with them.
-  if (builder_.statementCount() > turn.known_before.statements) {
-    remember(std::move(turn.known_before));
-  }
   readBack(before, !here.empty() && !beyond_here && places_.hasMap(), out);
   reportIssues(turn);
   const std::optional<DescriptionIssue> to_ask = std::move(turn.to_ask);

@@ -46,6 +46,8 @@ struct Dialogue::Turn {
 class Dialogue::Change {
  public:
   explicit Change(Dialogue* dialogue);
+  /// Of statements, from before the first of them on.
+  Change(Dialogue* dialogue, KnownBefore before);
   ~Change();
   Change(const Change&) = delete;
   Change& operator=(const Change&) = delete;

@@ -40,14 +40,20 @@ Dialogue::Change::Change(Dialogue* dialogue) {
              dialogue_->told_at_};
 }
 
+Dialogue::Change::Change(Dialogue* dialogue, KnownBefore before) {
+  if (dialogue->talk_.changing) return;
+  dialogue_ = dialogue;
+  dialogue_->talk_.changing = true;
+  before_ = std::move(before);
+}
+
 Dialogue::Change::~Change() {
   if (dialogue_ == nullptr) return;
-  Talk& talk = dialogue_->talk_;
-  talk.changing = false;
-  if (sameNames(before_.names, dialogue_->places_.names()) &&
-      before_.told->state.building == dialogue_->builder_.building()) {
-    return;
-  }
+  dialogue_->talk_.changing = false;
+  const DescriptionBuilder& builder = dialogue_->builder_;
+  const bool told_more = before_.told ? !(before_.told->state.building == builder.building())
+                                      : builder.statementCount() > before_.statements;
+  if (!told_more && sameNames(before_.names, dialogue_->places_.names())) return;
   dialogue_->remember(std::move(before_));
 }
 
@@ -89,8 +95,9 @@ bool Dialogue::takeBack(Turn& turn) {
   }
   KnownBefore* last = talk_.changes.empty() ? nullptr : &talk_.changes.back();
   const PlaceMan::Names since = places_.names();
-  if (last != nullptr && last->told && builder_.statementCount() <= last->after) {
-    builder_.restore(std::move(*last->told));
+  const std::size_t statements = builder_.statementCount();
+  if (last != nullptr && statements <= (last->told ? last->after : last->statements)) {
+    if (last->told) builder_.restore(std::move(*last->told));
     told_at_ = last->told_at;
     places_.restoreNames(last->names);
     talk_.changes.pop_back();

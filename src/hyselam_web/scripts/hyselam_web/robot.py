@@ -24,7 +24,7 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 
-from . import inbox, sentences, sights
+from . import inbox, open_ends, sentences, sights
 from .requests import Refused
 from .tiles import MapTiles
 from .transforms import TransformTree, planar
@@ -35,7 +35,6 @@ SERVICE_WAIT = 1.0  # [s] for a service to be there
 ANSWER_WAIT = 30.0  # [s] for its answer
 PROGRAM_WAIT = 60.0  # [s] for doctor and knowledge
 STILL = 1.0  # [s] between two scans of a robot that stands
-ARRIVED, LEFT = 0.5, 1.0  # [m] from the end of the way
 OBJECT_WAIT = 3.0  # [s] for an answer about objects, unless the dialogue was told otherwise
 
 
@@ -91,8 +90,7 @@ class Robot:
         self._forwarded, self._patience, self._goal = 0, OBJECT_WAIT, b""
         self._preparing = self._scan_shown = self._doctor = None
         self._following, self._reached = False, True
-        self._question, self._other_question = None, None  # of the dialogue, as it tells; what others have asked
-        self._left_goal = False
+        self._question, self._arrival = open_ends.OpenQuestion(), open_ends.Arrival()
         self._times = {}
         self._spoken = 0
         self.topics = {name: Latest(name, kind, big) for name, kind, big in (
@@ -168,7 +166,7 @@ class Robot:
         if way is not None:
             world.set("way", sights.way(way))
             world.set("arrived", None)
-            self._left_goal = False
+            self._arrival.sets_out()
         self._collect_arrival()
         world.set("following", self._following)
         place = self.topics["place"].message()
@@ -268,25 +266,16 @@ class Robot:
             self.world.set_table("layers", layers)
 
     def _collect_arrival(self):
-        """Where nobody tells that the way is over, its end does."""
         way, pose = self.world.get("way"), self.world.get("pose")
-        if not way or not pose:
-            return
-        far = math.dist((pose["x"], pose["y"]), way[-1])
-        # There and back: it stands at its goal when it sets out.
-        self._left_goal = self._left_goal or far > LEFT
-        if far < ARRIVED and (self._left_goal or sum(math.dist(a, b) for a, b in zip(way, way[1:])) < LEFT):
+        if way and pose and self._arrival.is_at_end(way, (pose["x"], pose["y"])):
             self.world.set("way", [])
             self.world.set("arrived", way[-1])
 
     def _collect_question(self):
         question = self.topics["open_question"].message()
         if question is not None:
-            self._question = question.data
-            if self._other_question and self._other_question["text"] == question.data[:500]:
-                self._other_question = None
-        here = (self.world.get("here") or {}).get("place", 0)
-        self.world.set("asked", sights.question(self._question, here, True) if self._question else self._other_question)
+            self._question.told(question.data)
+        self.world.set("asked", self._question.shown((self.world.get("here") or {}).get("place", 0)))
 
     def _collect_talk(self):
         while self._talk:
@@ -295,9 +284,8 @@ class Robot:
             if who not in ("human", "robot"):
                 continue
             self._spoken += 1
-            here = self.world.get("here") or {}
             self.world.append("talk", {"i": self._spoken, "w": who, "s": text[:4000], "t": int(when)})
-            self._other_question = sights.question(text, here.get("place", 0)) if who == "robot" and text != self._question else None
+            self._question.heard(who, text)
         self._collect_question()
 
     # ---- The master ----

@@ -175,5 +175,5 @@ def question(text, here_now, is_open=False):
     if not last.endswith("?"):
         return {"text": text[:500], "place": 0, "yes": False} if is_open else None
     code = CODE.search(text)
-    this = re.search(r"\b(this place|este lugar|deste lugar|this)\b", last, re.IGNORECASE)
+    this = re.search(r"\b(this place|este lugar|deste lugar|this)\b", text if is_open else last, re.IGNORECASE)
     return {"text": text[:500], "place": int(code.group(1)) if code else here_now if this else 0, "yes": not OPEN_QUESTION.match(last)}

@@ -1,7 +1,7 @@
 // What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage} from "./i18n.js";
-import {corrected, told} from "./wording.js";
+import {called, corrected, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
 const UNSURE = /not sure where|places fit|answers fit|certeza onde|respostas servem|servem muitos lugares/i;
@@ -105,7 +105,7 @@ export class NextStep {
     }
     for (const id of step.ids.slice(0, MAX_BUTTONS)) row.append(button(this.titleOf(id, step.name), () => this.give(id, step.name), {"data-place": id}));
     row.append(button(t(step.ids.length ? "other_place" : "tap_place"), () => this.actions.pick(step.name, step.ids), {class: "pick"}));
-    return [make("p", {}, t(step.kind === "denied" ? "where_then" : "where_is_it", {name: step.name})), row, close];
+    return [make("p", {}, t(step.kind === "denied" ? "where_then" : "where_is_it", {name: called(step.name)})), row, close];
   }
 
   // By its number, as on the map; what else it may be, too.

@@ -2,7 +2,7 @@
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
 import {reasonOf} from "./talk.js";
-import {meant, plain} from "./wording.js";
+import {called, meant, plain} from "./wording.js";
 
 export class Places {
   // actions: showOnMap(id), say(text), openTalk()
@@ -93,7 +93,7 @@ export class Places {
     const guess = !name.none && !name.sure;
     const {marked} = model;
     if (this.may("talk") && marked?.ids.includes(Number(id)) && marked.name !== name.text) {
-      row.append(button(t("this_is", {name: marked.name}), () => this.actions.give(id, marked.name), {"data-key": "this_is", class: "primary"}));
+      row.append(button(t("this_is", {name: called(marked.name)}), () => this.actions.give(id, marked.name), {"data-key": "this_is", class: "primary"}));
     }
     if (this.may("talk") && guess) {
       add("right_name", () => this.name(id, [name.text]), {class: "primary"});

@@ -22,6 +22,11 @@ function languageOf(text) {
   return portuguese === english ? currentLanguage() : portuguese ? "pt" : "en";
 }
 
+// A name within an English sentence: "the kitchen", but "room A", "Ana's office". The gender of Portuguese ones is not known.
+export function called(name) {
+  return currentLanguage() === "en" && /^\p{Ll}[\p{Ll} -]*$/u.test(name) && !/^(the|my|our) /.test(name) ? `the ${name}` : name;
+}
+
 // A sentence as it is shown: "Go to place 5."
 export function plain(text) {
   const language = languageOf(text);
