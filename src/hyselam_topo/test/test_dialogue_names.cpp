@@ -51,8 +51,8 @@ TEST(DialogueNames, ASentenceThatAddsANameAddsIt) {
 }
 
 TEST(DialogueNames, APlaceOfTheMapIsNamedByItsNumber) {
-  for (const char* sentence : {"SS02 is the library.", "The library is SS02.",
-                               "SS02 is called the library.", "SS02 é a biblioteca."}) {
+  for (const char* sentence : {"SS02 is the library.", "SS02 is called the library.",
+                               "SS02 é a biblioteca.", "O SS02 chama-se biblioteca."}) {
     Talk talk;
     const std::string reply = talk.say(sentence);
     ASSERT_EQ(talk.names(2).size(), 1u) << sentence << ": " << reply;
@@ -60,6 +60,13 @@ TEST(DialogueNames, APlaceOfTheMapIsNamedByItsNumber) {
     EXPECT_TRUE(has(reply, "SS02 is library") || has(reply, "SS02 é biblioteca")) << reply;
     EXPECT_FALSE(has(allSaid(&talk), "also known as library")) << allSaid(&talk);
   }
+}
+
+TEST(DialogueNames, APlaceOfTheMapIsNamedTheOtherWayRoundAfterAYes) {
+  Talk talk;
+  ASSERT_TRUE(has(talk.say("The library is SS02."), "?"));
+  EXPECT_EQ(talk.say("Yes."), "Thank you. SS02 is library.");
+  EXPECT_TRUE(talk.isConfirmed(2));
 }
 
 TEST(DialogueNames, APlaceWithANameIsAskedForBeforeItsNumberGetsAnother) {
@@ -85,7 +92,7 @@ TEST(DialogueNames, ManyChangesAreTakenBackOneByOne) {
   EXPECT_EQ(talk.names(1), Names{"canteen"});
   EXPECT_EQ(talk.say("Is the pantry next to the canteen?"), "Yes.");
 
-  EXPECT_EQ(talk.say("Undo that."), "I have taken back: 'The pantry is next to the canteen.'");
+  EXPECT_EQ(talk.say("Undo that."), "I have taken back: 'The pantry is next to the canteen'.");
   EXPECT_FALSE(has(allSaid(&talk), "pantry")) << allSaid(&talk);
   EXPECT_EQ(talk.names(1), Names{"canteen"});
 
@@ -138,18 +145,17 @@ TEST(DialogueNames, NamesThatAreOnlyToldOrOnlyOnTheMapAreForgotten) {
   talk.say("The pantry is next to the library. The attic is next to the cellar.");
   EXPECT_FALSE(has(talk.say("Forget the name attic."), "do not know"));
   EXPECT_FALSE(has(allSaid(&talk), "attic"));
-  talk.dialogue.name(1, {"gym"});
-  EXPECT_EQ(talk.say("Forget the gym."), "I have forgotten the names of SS01.");
-  EXPECT_TRUE(talk.names(1).empty());
+  talk.dialogue.name(2, {"gym"});
+  EXPECT_EQ(talk.say("Forget the gym."), "I have forgotten the names of SS02.");
+  EXPECT_FALSE(has(allSaid(&talk), "gym")) << allSaid(&talk);
   EXPECT_TRUE(has(talk.say("Forget the gym."), "was not told of"));
 }
 
 TEST(DialogueNames, ASentenceIsTriedWithoutEffect) {
   Talk talk;
-  EXPECT_TRUE(
-      talk.dialogue.notUnderstood("This is the kitchen. A cozinha fica à esquerda.").empty());
-  EXPECT_EQ(talk.dialogue.notUnderstood("Where are you? Xyzzy plugh the frobnicated wug.").size(),
-            1u);
+  EXPECT_TRUE(talk.dialogue.notUnderstood("This is the kitchen. Where are you?").empty());
+  EXPECT_TRUE(talk.dialogue.notUnderstood("Esta é a cozinha.").empty());
+  EXPECT_EQ(talk.dialogue.notUnderstood("Where are you? Xyzzy plugh the wug.").size(), 1u);
   EXPECT_TRUE(talk.names(1).empty());
 }
 
