@@ -35,6 +35,10 @@ class OpenEndsTest(PageCase):
         question.told("Is SS12 John's office?")
         question.heard("robot", "Noted: it rains.")
         self.assertEqual(question.shown(7)["place"], 12)  # open whatever else is said
+        question.heard("human", "What?")
+        self.assertIsNone(question.shown(7))  # until the robot has answered
+        question.heard("robot", "Is SS12 John's office?")
+        self.assertEqual(question.shown(7)["place"], 12)
         question.told("")
         self.assertIsNone(question.shown(7))
         question.heard("robot", "Is the pen red?")  # of who knows things

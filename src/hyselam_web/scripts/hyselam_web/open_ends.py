@@ -11,20 +11,23 @@ class OpenQuestion:
 
     def __init__(self):
         self._own, self._others = None, None
+        self._answered = False  # what was said may have answered it
 
     def told(self, text):
         """The dialogue's question; "": it has none."""
         self._own = text
+        self._answered = False
         if self._others == text:
             self._others = None
 
     def heard(self, who, text):
         """A line of the talk."""
+        self._answered = who == "human"
         self._others = text if who == "robot" and text != self._own else None
 
     def shown(self, here):
         """As sights.question()."""
-        if self._own:
+        if self._own and not self._answered:
             return sights.question(self._own, here, True)
         return sights.question(self._others, here) if self._others else None
 
