@@ -12,6 +12,7 @@
 #include "ngram_slam/slam/laser_mount.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
+#include "ngram_slam/slam/standing_odometry.hpp"
 
 namespace ngram_slam {
 namespace {
@@ -91,6 +92,21 @@ TEST(RoughRoads, survivesWheelsThatStandStillInTheOdometry) {
   EXPECT_LT(with.error, std::max(0.15, 2.0 * onASmoothRoad().error));
   EXPECT_GT(with.road.path_unseen, 3.0);
   EXPECT_GT(with.road.scans_moved_unseen, 20U);
+}
+
+TEST(RoughRoads, standingOdometryIsToldByItsPartOfTheMotion) {
+  std::vector<SlamKeyframe> keyframes(2001);
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    keyframes[k].pose = {0.25 * static_cast<double>(k), 0.0, k % 2 == 0 ? 0.0 : 0.1};
+  }
+  RoughRoad road;
+  road.path_unseen = 2.2;  // as intel has of 509 m
+  road.turn_unseen = 2.4;
+  EXPECT_FALSE(odometryStands(road, keyframes, 0));
+  EXPECT_TRUE(odometryStands(road, keyframes, 1900));  // of the 25 m of this session
+  road.path_unseen = 25.0;
+  EXPECT_TRUE(odometryStands(road, keyframes, 0));
+  EXPECT_TRUE(odometryStands(road, {}, 0));
 }
 
 TEST(RoughRoads, survivesGapsAndFewScans) {

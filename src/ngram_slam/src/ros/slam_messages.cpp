@@ -164,18 +164,23 @@ hyselam_msgs::MapChangeArray changesMsg(const std::vector<MapChange>& changes, d
 
 visualization_msgs::MarkerArray changeMarkers(const std::vector<MapChange>& changes, double cell,
                                               const std_msgs::Header& header) {
-  constexpr double kNamedSize = 0.3;  // [m]
+  constexpr double kNamedSize = 0.3;     // [m]
+  constexpr double kAround = 0.5;        // of a disc, beyond what it surrounds [m]
+  constexpr double kAboveRegions = 1.7;  // [m]
   visualization_msgs::MarkerArray array;
   Marker clear;
   clear.header = header;
   clear.action = Marker::DELETEALL;
   array.markers.push_back(clear);
+  const auto colorOf = [](MapChange::Kind kind, double alpha) {
+    return kind == MapChange::Kind::kAppeared ? color(0.0, 0.65, 0.25, alpha)
+                                              : color(0.9, 0.15, 0.15, alpha);
+  };
   for (const auto kind : {MapChange::Kind::kAppeared, MapChange::Kind::kGone}) {
-    const bool appeared = kind == MapChange::Kind::kAppeared;
     Marker cells = marker(header, toString(kind), Marker::CUBE_LIST, cell);
     cells.scale.y = cell;
     cells.scale.z = 0.05;
-    cells.color = appeared ? color(0.0, 0.65, 0.25, 0.9) : color(0.9, 0.15, 0.15, 0.9);
+    cells.color = colorOf(kind, 0.9);
     for (const MapChange& change : changes) {
       if (change.kind != kind) continue;
       for (const hyselam::Point2& p : change.cells) {
@@ -184,11 +189,21 @@ visualization_msgs::MarkerArray changeMarkers(const std::vector<MapChange>& chan
     }
     if (!cells.points.empty()) array.markers.push_back(std::move(cells));
   }
+  // What is seen from far: a disc around each, and its name above all else.
+  Marker disc = marker(header, "places", Marker::CYLINDER, 0.0);
   Marker name = marker(header, "names", Marker::TEXT_VIEW_FACING, 0.0);
-  name.scale.z = 0.25;
+  name.scale.z = 0.45;
   for (const MapChange& change : changes) {
+    disc.scale.x = disc.scale.y = change.size + 2.0 * kAround;
+    disc.scale.z = 0.02;
+    disc.pose.position = hyselam::at(change.center.x, change.center.y, 0.03);
+    disc.color = colorOf(change.kind, 0.3);
+    array.markers.push_back(disc);
+    ++disc.id;
     if (change.size < kNamedSize) continue;
-    name.pose.position = hyselam::at(change.center.x, change.center.y + 0.35, 0.3);
+    name.pose.position =
+        hyselam::at(change.center.x, change.center.y + 0.5 * change.size + kAround, kAboveRegions);
+    name.color = colorOf(change.kind, 1.0);
     name.text =
         change.again ? std::string(toString(change.kind)) + " again" : toString(change.kind);
     array.markers.push_back(name);

@@ -1,4 +1,5 @@
 // Services, states and diagnostics of the SLAM server.
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -6,6 +7,7 @@
 #include "ngram_slam/ros/slam_graph_messages.hpp"
 #include "ngram_slam/ros/slam_server.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
+#include "ngram_slam/slam/standing_odometry.hpp"
 #include "wall_milliseconds.hpp"
 
 namespace ngram_slam {
@@ -14,12 +16,6 @@ using hyselam::addRemark;
 using hyselam::addValue;
 using Lock = std::unique_lock<std::mutex>;
 using DiagnosticStatus = diagnostic_msgs::DiagnosticStatus;
-
-namespace {
-
-constexpr double kMotionUnseen = 1.0;  // [m], [rad] that odometry did not tell
-
-}  // namespace
 
 void SlamServer::advertiseServices(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
   ros::NodeHandle public_services(nh), private_services(private_nh);
@@ -153,8 +149,13 @@ bool SlamServer::onPause(bool pause, std_srvs::Trigger::Response& out) {
 // ---- diagnostics
 
 /// Of odometry that fails and scans that are missing.
-static void reportRoughRoad(DiagnosticStatus& status, const RoughRoad& road) {
-  if (road.path_unseen > kMotionUnseen || road.turn_unseen > kMotionUnseen) {
+static void reportRoughRoad(DiagnosticStatus& status, const SlamEngine& engine) {
+  const RoughRoad& road = engine.roughRoad();
+  const auto first =
+      std::find_if(engine.keyframes().begin(), engine.keyframes().end(),
+                   [&](const auto& k) { return k.run >= engine.firstRunOfSession(); });
+  if (odometryStands(road, engine.keyframes(),
+                     static_cast<std::size_t>(first - engine.keyframes().begin()))) {
     addRemark(status, DiagnosticStatus::WARN, "the robot moves while its odometry stands still");
   }
   if (road.lost > 0) {
@@ -207,7 +208,7 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "optimizations", c.optimizations);
     addValue(status, "scans that hardly matched", status_.weak_matches);
     addValue(status, "odometry jumps", c.odometry_jumps);
-    reportRoughRoad(status, engine.roughRoad());
+    reportRoughRoad(status, engine);
     addValue(status, "since the last session", status_.changes);
     addValue(status, "last scan [ms]", status_.scan_ms);
     addValue(status, "slowest scan [ms]", status_.max_scan_ms);

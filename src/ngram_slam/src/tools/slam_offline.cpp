@@ -22,6 +22,7 @@
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
+#include "ngram_slam/slam/standing_odometry.hpp"
 #include "reference_poses.hpp"
 #include "report_page.hpp"
 #include "slam_report.hpp"
@@ -32,9 +33,6 @@ namespace {
 
 using namespace ngram_slam;  // NOLINT: a program, not a header
 using hyselam::Pose2;
-
-// Motion that the odometry did not tell, of a whole recording.
-constexpr double kTellPath = 1.0, kTellTurn = 0.5;  // [m], [rad]
 
 constexpr double kGapsOfScans = 0.2;  // more of them are no gaps
 
@@ -328,7 +326,7 @@ nlohmann::json troubleOf(const Run& run, const std::optional<LaserMount>& mount,
   const auto tell = [&](std::uint64_t count, const std::string& what) {
     if (count > 0) sentences.push_back(std::to_string(count) + " " + what);
   };
-  if (road.path_unseen > kTellPath || road.turn_unseen > kTellTurn) {
+  if (odometryStands(road, run.engine->keyframes(), run.saved_keyframes)) {
     std::ostringstream text;
     text << std::fixed << std::setprecision(1) << "the scans show " << road.path_unseen << " m and "
          << std::setprecision(0) << hyselam::degrees(road.turn_unseen)
