@@ -20,10 +20,10 @@ Submap submapOf(const std::vector<hyselam::LaserScan>& scans, const std::vector<
   return builder.build();
 }
 
-/// PlaceSearch::latticeSearch as its header says it, without any haste.
+/// ScoreLattice::search as its header says it, without any haste.
 double exhaustiveBest(const hyselam::OccupancyGrid& map, const Submap& submap) {
   const auto& g = map.geometry;
-  const double r = PlaceSearch::kCell;
+  const double r = ScoreLattice::kCell;
   const int width = static_cast<int>(std::ceil(g.width * g.resolution / r - 1e-9));
   const int height = static_cast<int>(std::ceil(g.height * g.resolution / r - 1e-9));
   std::vector<int> score(static_cast<std::size_t>(width * height));
@@ -52,8 +52,8 @@ double exhaustiveBest(const hyselam::OccupancyGrid& map, const Submap& submap) {
   const std::size_t n = std::min(PlaceSearch::kPoints, submap.points.size());
   for (std::size_t k = 0; k < n; ++k) points.push_back(submap.points[k * submap.points.size() / n]);
   int best = 0;
-  for (int h = 0; h < PlaceSearch::kHeadings; ++h) {
-    const double a = 2.0 * hyselam::kPi * h / PlaceSearch::kHeadings;
+  for (int h = 0; h < ScoreLattice::kHeadings; ++h) {
+    const double a = 2.0 * hyselam::kPi * h / ScoreLattice::kHeadings;
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         if (!free[static_cast<std::size_t>(y * width + x)]) continue;

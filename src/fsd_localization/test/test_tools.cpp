@@ -135,6 +135,9 @@ TEST_F(Tools, WrongUsageIsStatus2) {
   expectRefused(run("localize_offline"), "--");
   expectRefused(localize("--no-such-option"), "--no-such-option");
   expectRefused(localize("--start -1"), "--start");
+  expectRefused(run("localize_offline --map " + d / "m.yaml --bag " + d / "r.bag" +
+                    " --search-alone --start-known"),
+                "--start-known");
   expectRefused(field(""), "--out");
   expectRefused(field("--out " + d / "f.png --threads many"), "--threads");
 }

@@ -20,6 +20,7 @@
 #include "fsd_localization/models/cosine_model.hpp"
 #include "fsd_localization/models/fsd_observation_model.hpp"
 #include "fsd_localization/models/likelihood_field_model.hpp"
+#include "fsd_localization/search/alarm_watch.hpp"
 #include "fsd_localization/search/place_judge.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
@@ -150,8 +151,6 @@ class Localizer {
   const std::string& mapCacheProblem() const { return map_cache_problem_; }
 
  private:
-  static constexpr double kTurnAsTravel = 0.5;  // [m/rad] a turn shows as much as so much travel
-
   bool isHybrid() const { return params_.model == ObservationModelKind::kHybrid; }
   bool usesFsd() const {
     return params_.model == ObservationModelKind::kFsd || (isHybrid() && isSearching(state_));
@@ -163,11 +162,15 @@ class Localizer {
 
   /// The decisions of the search by submaps; see localizer_search.cpp.
   void updateBySearch(const PoseEstimate& estimate, double motion, LocalizationResult& result);
-  void watchForAlarms(LocalizationResult& result);
+  void watchForAlarms(const PoseEstimate& estimate, LocalizationResult& result);
+  bool fitsWorse(const PoseEstimate& estimate);
   void askSearch(const PoseEstimate& estimate);
+  bool wantsSearch();
   double lengthOfAlarm() const;
   void takeAnswer(LocalizationResult& result);
   void decide(const SearchAnswer& answer, const Verdict& verdict, LocalizationResult& result);
+  void confirmPose(const Verdict& verdict);
+  bool isBeaten(const SearchAnswer& answer, const Verdict& verdict) const;
   bool isContradicted(const SearchAnswer& answer, const Verdict& verdict);
   void trackAt(const hyselam::Pose2& base_in_grid, LocalizationResult& result);
   void followPlaces(const std::vector<Place>& places, const hyselam::Pose2& motion);
@@ -201,24 +204,25 @@ class Localizer {
   double travelled_ = 0.0;
   InlierMonitor inliers_;  // since the likelihood field became active
 
+  /// A place that was better than the tracked one.
   struct Rival {
     hyselam::Pose2 place, base_in_odom;
+    double way;  // [m] when it was told
   };
   /// The search by submaps; hybrid only.
   struct Search {
     SubmapBuilder submap;
     std::unique_ptr<BackgroundSearch> background;
-    double way = 0.0;                  // [m] of motion, turns counted
-    std::optional<double> asked_at;    // on that way
-    double suspicious_for = 0.0;       // [m] since the last update something happened
-    double suspicious_until = -1.0;    // on that way
-    std::optional<double> alarm_from;  // on that way
-    double alarm_step = 0.0;           // [m] before it is asked about again
-    bool strange = false;              // the last scans fit neither each other nor the map
-    bool low = false;                  // an average of the inliers is below its limit
-    bool carried = false;              // they did so since the alarm
-    std::optional<Rival> rival;        // another place was better
-    bool confirmed = false;            // a search found no better place since the alarm
+    double way = 0.0;                // [m] of motion, turns counted
+    std::optional<double> asked_at;  // on that way
+    AlarmWatch alarm;
+    AlarmWatch::Signs signs;            // since the last update
+    std::optional<double> usual_match;  // average inlier ratio of scans with those before
+    std::optional<double> usual_score;  // average score of the pose with the last metres
+    double score_at = 0.0;              // on that way, when it was told last
+    bool fits_worse = false;            // then it was far below the average
+    double alarm_step = 0.0;            // [m] before it is asked about again
+    std::optional<Rival> rival;
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

@@ -18,9 +18,9 @@ constexpr Pose2 kHypothesisBlur{0.1, 0.1, hyselam::radians(4.0)};  // between pa
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
 constexpr double kMatchedNoise = 0.3;   // of the wheels' noise, where scans confirm the motion
 constexpr double kFarthest = 1e6;       // [m] beyond it cell numbers would not fit an int
-constexpr double kSuspiciousWay = 3.0;  // [m] that a break of the motion is looked into
-constexpr double kWeakMatch = 0.4;      // a scan of which less lies on what was seen last ...
-constexpr double kWeakWay = 1.0;        // [m] ... is looked into so long
+constexpr double kWeakMatch = 0.4;      // a scan of which less lies on what was seen last
+constexpr double kSuddenMatch = 0.65;   // of the usual share of a scan on what was seen last
+constexpr double kMatchMemory = 0.2;    // weight of a scan in the usual share
 constexpr std::size_t kStayEvery = 10;  // each tenth particle stays at the old place when lost
 
 // Streams of random numbers that differ from each other: one per cause, and per millimetre
@@ -298,13 +298,16 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
     const auto step = scan_odometry_.add(scan, base_in_odom);
     smooth = step.pose;
     if (step.broken || (step.matched && step.inlier_ratio < kWeakMatch)) by_wheels_ = true;
-    if (step.matched && step.inlier_ratio < kWeakMatch) {
-      search_.suspicious_for = std::max(search_.suspicious_for, kWeakWay);
+    if (step.matched) {
+      std::optional<double>& usual = search_.usual_match;
+      if (usual && step.inlier_ratio < kSuddenMatch * *usual) search_.signs.unmatched = true;
+      usual = usual.value_or(step.inlier_ratio) +
+              kMatchMemory * (step.inlier_ratio - usual.value_or(step.inlier_ratio));
     }
     if (step.broken && search_.background) {  // what was seen before lies nobody knows where
       search_.submap.reset();
       search_.background->drop();
-      search_.suspicious_for = kSuspiciousWay;
+      search_.signs.broken = search_.signs.broken || !step.matched;  // the odometry jumped
     }
   }
   sensor_.integrate(scan, smooth);

@@ -11,16 +11,25 @@ using hyselam::Pose2;
 
 namespace {
 
-constexpr double kSupposedVariance = 1.0;  // [m^2], along each axis, at least
-constexpr double kAskStep = 0.5;           // [m] between questions of a robot that is not found
-constexpr double kLargestAlarmStep = 4.0;  // [m] between those about an alarm that was found false
-constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
-constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
-constexpr double kCheckStep = 30.0;        // [m] at most between checks
-constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan, or as good as one
-constexpr double kUsual = 0.75;            // of the usual share of inliers, that confirms a pose
-constexpr double kFits = 0.3;    // a place with a lower score does not explain what is seen
-constexpr double kLikely = 0.5;  // probability from which on a search confirms a pose
+// Where a number was chosen: docs/algorithms/localization.md, "Numbers of the alarms".
+constexpr double kSupposedVariance = 1.0;   // [m^2], along each axis, at least
+constexpr double kAskStep = 0.5;            // [m] between questions of a robot that is not found
+constexpr double kLargestDoubtStep = 4.0;   // [m] between those about a doubt, at most
+constexpr double kLargestAlarmStep = 16.0;  // [m] between those about another alarm
+constexpr double kAlarmLength = 2.0;        // [m] of scans at most that an alarm is about
+constexpr double kFirstCheck = 2.0;         // [m] after a place was found, and then twice as far
+constexpr double kCheckStep = 30.0;         // [m] at most between checks
+constexpr double kCheckLength = 5.0;        // [m] of scans of a check
+constexpr double kOneScan = 0.3;            // [m] a shorter submap is a scan: SubmapBuilder's step
+constexpr double kUsual = 0.75;             // of the usual share of inliers: less is unusual
+constexpr double kScoreStep = 1.0;          // [m] between looks at the score of the pose
+constexpr double kScoreMemory = 1.0 / 30;   // weight of a look in the usual score: 30 m
+constexpr double kWorse = 0.08;             // below the usual score: asked about
+constexpr double kFits = 0.3;       // a place with a lower score does not explain what is seen
+constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
+constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
+constexpr double kImpossible = 1e-6;
+constexpr double kMapEvidence = 1.5;  // [m] of scans
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
 
@@ -31,43 +40,52 @@ void Localizer::forgetSearch() {
   if (search_.background) search_.background->drop();
   search_.asked_at.reset();
   search_.verdict.reset();
-  search_.suspicious_until = -1.0;
-  search_.alarm_from.reset();
-  search_.suspicious_for = 0.0;
-  search_.confirmed = search_.strange = search_.low = search_.carried = false;
+  search_.alarm.reset();
+  search_.signs = {};
+  search_.usual_match.reset();
+  search_.usual_score.reset();
+  search_.fits_worse = false;
   search_.rival.reset();
   search_.guided = false;
 }
 
+/// Now and then: whether the pose explains the last metres worse than usual. In a corridor that
+/// looks alike everywhere nothing else tells that the robot was carried along it.
+bool Localizer::fitsWorse(const PoseEstimate& estimate) {
+  if (search_.way - search_.score_at < kScoreStep || search_.submap.empty()) {
+    return search_.fits_worse;
+  }
+  search_.score_at = search_.way;
+  const Submap submap = search_.submap.build(kAlarmLength, kTurnAsTravel);
+  const double score = search_.background->places().refine(submap, estimate.mean).seen;
+  const double usual = search_.usual_score.value_or(score);
+  search_.fits_worse = score < usual - kWorse;
+  search_.usual_score = usual + kScoreMemory * (score - usual);
+  return search_.fits_worse;
+}
+
 /// While tracking: whether something speaks against the pose, and whether it is told as sure.
-void Localizer::watchForAlarms(LocalizationResult& result) {
-  search_.suspicious_until =
-      std::max(search_.suspicious_until, search_.way + search_.suspicious_for);
-  search_.suspicious_for = 0.0;
-  const bool suspicious = search_.way < search_.suspicious_until;
-  // The last scans fit neither each other nor the map.
-  const bool strange = suspicious && !inliers_.isUsual(kUsual);
-  const bool low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
-  const bool begins = strange && !search_.strange;  // perhaps elsewhere: a new alarm
-  if ((!suspicious && !low) || begins) {
-    search_.alarm_from.reset();
-    search_.confirmed = search_.carried = false;
-  }
-  if ((suspicious || low) && !search_.alarm_from) {
-    search_.alarm_from = search_.asked_at = search_.way;  // one that the map confirms can wait
+void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult& result) {
+  AlarmWatch::Signs signs = search_.signs;
+  search_.signs = {};
+  signs.odd = inliers_.isOdd(kUsual);
+  signs.unusual = !inliers_.isUsual(kUsual);
+  signs.very_low = inliers_.isBelow(params_.lost_inlier_ratio, 0.0);
+  signs.low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+  signs.worse = fitsWorse(estimate);
+  if (search_.alarm.add(search_.way, signs)) {
     search_.alarm_step = kAskStep;
+    if (signs.odd || signs.low) {
+      // At once; a check that was asked for before is out of date.
+      search_.asked_at.reset();
+      search_.background->drop();
+    } else {
+      search_.asked_at = search_.way;  // what the map confirms can wait
+    }
   }
-  if (begins || (low && !search_.low)) {  // what is asked by now is out of date
-    search_.asked_at.reset();
-    search_.background->drop();
-  }
-  search_.carried = search_.carried || strange;
-  search_.strange = strange;
-  search_.low = low;
-  // Meanwhile nobody should rely on the pose, unless a search has confirmed it; but the robot is
-  // not lost before another place is better.
-  if (!search_.confirmed &&
-      (strange || search_.rival || inliers_.isBelow(params_.lost_inlier_ratio, 0.0))) {
+  // Meanwhile nobody should rely on the pose; but the robot is not lost before another place is
+  // better.
+  if (search_.alarm.isDoubtful() || search_.rival) {
     result.converged = false;
   }
 }
@@ -81,7 +99,7 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     inliers_.add(result.inlier_ratio, motion);
   }
   if (tracking) {
-    watchForAlarms(result);
+    watchForAlarms(estimate, result);
   } else if (search_.guided && result.converged &&
              inliers_.average() >= params_.found_inlier_ratio) {
     search_.guided = false;
@@ -106,27 +124,32 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
   }
 }
 
-/// What was seen before an alarm may belong to another place.
+/// What was seen before an alarm may belong to another place, if the scans say so.
 double Localizer::lengthOfAlarm() const {
-  return search_.alarm_from ? std::min(kAlarmLength, search_.way - *search_.alarm_from)
-                            : kAlarmLength;
+  if (!search_.alarm.isSharp()) return kCheckLength;
+  return std::min(kAlarmLength, search_.alarm.length(search_.way).value_or(kAlarmLength));
+}
+
+/// While tracking: an alarm, or a place found lately.
+bool Localizer::wantsSearch() {
+  const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
+  const bool check = search_.way - search_.tracked_from >= search_.next_check;
+  const bool again = search_.rival ||
+                     (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm_step));
+  if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
+  return check || again;
 }
 
 /// Asks when there is a reason to: not found yet; an alarm; a place found lately.
 void Localizer::askSearch(const PoseEstimate& estimate) {
   if (search_.background->busy() || search_.submap.empty()) return;
-  const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
-  if (since < kAskStep) return;
+  if (search_.asked_at && search_.way - *search_.asked_at < kAskStep) return;
   double length = SubmapBuilder::kMaxLength, turn_as_travel = 0.0;
   std::optional<Pose2> believed;
   if (state_ == LocalizerState::kTracking) {
-    const bool alarm = search_.alarm_from.has_value();
-    const bool check = search_.way - search_.tracked_from >= search_.next_check;
-    const bool again =
-        search_.rival || (alarm && (!search_.asked_at || since >= search_.alarm_step));
-    if (!check && !again) return;
-    if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
-    if (alarm) {
+    if (!wantsSearch()) return;
+    length = kCheckLength;
+    if (search_.alarm.isOpen()) {
       length = lengthOfAlarm();
       turn_as_travel = kTurnAsTravel;
     }
@@ -146,36 +169,45 @@ void Localizer::takeAnswer(LocalizationResult& result) {
   if (search_.verdict) decide(*answer, *search_.verdict, result);
 }
 
+/// Whether another place is so much better that the tracked pose is as good as lost; where the
+/// scans fit the map badly, also if several others are and nobody knows which. Where nothing but
+/// the map speaks against the pose, it takes more scans or a greater difference: the map may be
+/// wrong here.
+bool Localizer::isBeaten(const SearchAnswer& answer, const Verdict& verdict) const {
+  if (search_.alarm.looksCarried()) {
+    return verdict.probability >= params_.lost_probability || verdict.believed < kHopeless;
+  }
+  const bool impossible = verdict.believed < kImpossible;
+  if (verdict.probability >= params_.lost_probability) {
+    return impossible || lengthWithTurns(answer.length, answer.turned) >= kMapEvidence;
+  }
+  return impossible && search_.alarm.isSharp() && verdict.probability >= kLikely;
+}
+
 void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
                        LocalizationResult& result) {
   const Pose2 motion = between(answer.base_in_odom, *updated_odom_);
+  const bool is_beaten = answer.believed && !verdict.is_believed && isBeaten(answer, verdict);
   if (state_ == LocalizerState::kTracking) {
     if (!answer.believed) return;  // asked before
-    if (!verdict.is_believed && verdict.probability >= params_.lost_probability) {
-      // A single scan was odd, and those after it are not.
-      if (answer.length < kOneScan && inliers_.isUsual(params_.lost_relative_ratio)) return;
-      if (!isContradicted(answer, verdict)) {
-        result.converged = false;
-        return;
-      }
-      state_ = LocalizerState::kLostSearch;
-      search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
-      followPlaces(verdict.hypotheses, motion);
-      result.converged = false;
-      search_.asked_at.reset();  // at once again, with another scan
-    } else if (verdict.is_believed) {
-      search_.rival.reset();
-      search_.alarm_step = std::clamp(2.0 * search_.alarm_step, kAskStep, kLargestAlarmStep);
-      // Where the map explains nothing, or other places together are likelier, nothing is
-      // confirmed.
-      if (verdict.best.seen < kFits || verdict.probability < kLikely) return;
-      inliers_.reset();  // no place fits better: what is seen now is normal here
-      search_.confirmed = search_.alarm_from.has_value();
+    if (!is_beaten) {
+      confirmPose(verdict);
+      return;
     }
+    // A single scan was odd, and those after it are not.
+    if (lengthWithTurns(answer.length, answer.turned) < kOneScan &&
+        inliers_.isUsual(params_.lost_relative_ratio)) {
+      return;
+    }
+    result.converged = false;
+    if (!isContradicted(answer, verdict)) return;
+    state_ = LocalizerState::kLostSearch;
+    search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
+    followPlaces(verdict.hypotheses, motion);
+    search_.asked_at.reset();  // at once again, with another scan
     return;
   }
-  const bool beaten = !verdict.is_believed && verdict.probability >= params_.lost_probability;
-  if (search_.guided && answer.believed && !beaten)
+  if (search_.guided && answer.believed && !is_beaten)
     return;  // the filter goes on with what was told
   search_.guided = false;
   if (verdict.probability >= params_.found_probability && verdict.best.seen >= kFits) {
@@ -185,18 +217,35 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   }
 }
 
+/// A search has found no place that is better than the tracked one.
+void Localizer::confirmPose(const Verdict& verdict) {
+  search_.alarm_step =
+      std::clamp(2.0 * search_.alarm_step, kAskStep,
+                 search_.alarm.isDoubtful() ? kLargestDoubtStep : kLargestAlarmStep);
+  if (verdict.is_believed || verdict.believed > 1.0 - params_.lost_probability) {
+    search_.rival.reset();
+  }
+  if (!verdict.is_believed) return;
+  // Where the map explains nothing, or other places together are likelier, nothing is confirmed.
+  if (verdict.best.seen < kFits || verdict.probability < kLikely) return;
+  inliers_.accept();  // no place fits better: what is seen now is normal here
+  search_.usual_score.reset();
+  search_.fits_worse = false;
+  search_.alarm.confirm();
+}
+
 /// Whether the pose is given up for a better place. Scans that fit neither each other nor the map
 /// say that the robot was carried off, one answer is enough. Where they fit each other it is rather
 /// the map that is wrong: the same place must be better again, half a metre on.
 bool Localizer::isContradicted(const SearchAnswer& answer, const Verdict& verdict) {
-  if (search_.carried) return true;
+  if (search_.alarm.looksCarried()) return true;
   const std::optional<Rival> before = search_.rival;
+  if (before && search_.way - before->way < kAskStep) return false;
   const bool same =
       before && isSamePlace(before->place * between(before->base_in_odom, answer.base_in_odom),
                             verdict.best.base);
-  if (!same) search_.rival = Rival{verdict.best.base, answer.base_in_odom};
-  search_.confirmed = false;
-  return same && hyselam::distance(before->base_in_odom, answer.base_in_odom) >= kAskStep;
+  search_.rival = Rival{verdict.best.base, answer.base_in_odom, search_.way};
+  return same;
 }
 
 void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
@@ -205,10 +254,10 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   inliers_.reset();
   search_.tracked_from = search_.way;
   search_.next_check = kFirstCheck;
-  search_.suspicious_until = -1.0;
-  search_.alarm_from.reset();
-  search_.suspicious_for = 0.0;
-  search_.confirmed = search_.strange = search_.low = search_.carried = false;
+  search_.alarm.reset();
+  search_.signs = {};
+  search_.usual_score.reset();
+  search_.fits_worse = false;
   search_.rival.reset();
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(

@@ -265,7 +265,14 @@ int main(int argc, char** argv) {
   app.add_flag("--start-known", o.start_known, "the first pose is told, to 0.5 m and 15 degrees");
   app.add_flag("--raw-odometry", o.raw_odometry, "odometry is not refined by scans");
   app.add_flag("--without-search", o.without_search, "the filter alone, without search by submaps");
-  app.add_flag("--search-alone", o.search_alone, "the search by submaps alone, without filter");
+  app.add_flag("--cache", o.cache, "keep the density fields beside the map (MAP.yaml.fsd)");
+  auto* alone =
+      app.add_flag("--search-alone", o.search_alone, "the search by submaps alone, without filter");
+  for (const char* without_effect :
+       {"--model", "--particles", "--seed", "--kernel", "--bandwidths", "--start-known",
+        "--raw-odometry", "--without-search", "--cache"}) {
+    alone->excludes(without_effect);
+  }
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
   app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");
@@ -275,6 +282,5 @@ int main(int argc, char** argv) {
                  "bias, margin, score and length of the judge of places (bench/place_judge)")
       ->delimiter(',')
       ->expected(4);
-  app.add_flag("--cache", o.cache, "keep the density fields beside the map (MAP.yaml.fsd)");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

@@ -16,6 +16,7 @@ struct SearchAnswer {
   double stamp = 0.0;             ///< of the newest scan [s]
   hyselam::Pose2 base_in_odom;    ///< of that scan, in the smooth frame of the motion
   double length = 0.0;            ///< of the submap [m]
+  double turned = 0.0;            ///< in it [rad]
   std::vector<Place> places;      ///< best first, in the grid's frame
   std::optional<Place> believed;  ///< the pose that was asked about, refined
 };

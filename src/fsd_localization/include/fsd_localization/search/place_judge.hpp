@@ -8,12 +8,13 @@
 namespace fsd_localization {
 
 /// Log odds that the best place is right: bias + margin * min(margin to the best other place, 0.3)
-/// + score * Place::seen + length * log(1 + metres of the submap). Fitted by bench/place_judge.
+/// + score * Place::seen + length * log(1 + metres of the submap, turns counted). Fitted by
+/// bench/place_judge.
 struct PlaceOdds {
-  double bias = -5.980;
-  double margin = 34.766;
-  double score = 6.535;
-  double length = 0.596;
+  double bias = -6.139;
+  double margin = 34.652;
+  double score = 6.720;
+  double length = 0.574;
 
   void describe(hyselam::ParameterVisitor& visit);
 };
@@ -21,16 +22,22 @@ struct PlaceOdds {
 /// How sure it is that a place is the right one.
 ///
 /// @param score Place::seen. @param rival of the best other place; 0 if there is none.
-/// @param length of the submap [m].
+/// @param length of the submap [m], with turns: see lengthWithTurns().
 /// @return probability, 0..1, calibrated on logs (docs/algorithms/localization.md).
 double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds = {});
+
+constexpr double kTurnAsTravel = 0.5;  ///< [m/rad] a turn shows as much as so much travel
+inline double lengthWithTurns(double length, double turned) {
+  return length + kTurnAsTravel * turned;
+}
 
 /// The best place of an answer and how sure it is.
 struct Verdict {
   Place best;
   double probability = 0.0;
   bool is_believed = false;  ///< it is the believed one
-  /// Places that are not much worse, the best one included.
+  double believed = 1.0;     ///< probability of the believed one beside the best other place
+  /// Places that are not much worse, the best one included, and the believed one.
   std::vector<Place> hypotheses;
 };
 /// Nothing if nothing was found and nothing believed.

@@ -1,5 +1,5 @@
 // Where on the whole map a submap fits: exhaustively, by branch and bound over free cells and
-// headings with a pyramid of maxima (the bound of Hess et al. 2016), refined on the distance field.
+// headings with maxima of squares (the bound of Hess et al. 2016), refined on the distance field.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "fsd_localization/models/distance_field.hpp"
 #include "fsd_localization/models/grid_ray_caster.hpp"
+#include "fsd_localization/search/score_lattice.hpp"
 #include "fsd_localization/search/submap.hpp"
 
 namespace fsd_localization {
@@ -27,9 +28,8 @@ bool isSamePlace(const hyselam::Pose2& a, const hyselam::Pose2& b);
 
 class PlaceSearch {
  public:
-  static constexpr double kCell = 0.2;         ///< [m] of the lattice of positions
-  static constexpr int kHeadings = 120;        ///< of the lattice
-  static constexpr double kSigma = 0.3;        ///< [m] of the score on the lattice
+  /// [of the score on the lattice] that another place may be worse than the believed one.
+  static constexpr double kMaxDropFromBelieved = 0.1;
   static constexpr std::size_t kPoints = 100;  ///< of a submap, on the lattice
 
   /// @throws hyselam::InputError as distanceField().
@@ -46,11 +46,7 @@ class PlaceSearch {
   /// The best pose near `guess`.
   Place refine(const Submap& submap, const hyselam::Pose2& guess) const;
 
-  /// The best lattice poses, each of another tile (1.6 m, 36 degrees), best first. The score of a
-  /// lattice pose is the mean over the points of `submap` (at most kPoints, evenly taken) of
-  /// round(255 exp(-d^2 / 2 kSigma^2)) / 255, where d is the least distance of an obstacle from a
-  /// cell of the map in the lattice's cell that the point falls on; 0 off the map. Positions are
-  /// the middles of lattice cells that hold a free cell of the map.
+  /// ScoreLattice::search with at most kPoints of the points of `submap`, evenly taken.
   /// @param believed, cancelled see search().
   std::vector<Place> latticeSearch(const Submap& submap, std::size_t max_places,
                                    const std::optional<hyselam::Pose2>& believed = {},
@@ -59,12 +55,6 @@ class PlaceSearch {
   std::size_t bytes() const;
 
  private:
-  friend class LatticeSearch;
-  struct Level {
-    std::vector<std::uint8_t> score;  // maximum of the 2^level cells to the right and up
-    std::vector<std::uint8_t> free;   // whether one of them is
-  };
-  void buildPyramid(const hyselam::OccupancyGrid& map, const OccupancyThresholds& thresholds);
   double distanceAt(double x, double y) const;
   double endScore(const std::vector<hyselam::Point2>& points, const hyselam::Pose2& base,
                   const std::vector<float>& by_distance) const;
@@ -75,9 +65,7 @@ class PlaceSearch {
   hyselam::GridGeometry geometry_;
   std::vector<std::uint8_t> distance_;  // [cm], at most 255, of each cell of the map
   GridRayCaster rays_;
-  int width_ = 0, height_ = 0;  // of the lattice
-  int stride_ = 0;              // with the margin at the left and below
-  std::vector<Level> levels_;
+  std::unique_ptr<const ScoreLattice> lattice_;
 };
 
 }  // namespace fsd_localization

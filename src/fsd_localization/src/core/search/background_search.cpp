@@ -23,6 +23,7 @@ void BackgroundSearch::ask(double stamp, const hyselam::Pose2& base_in_odom, Sub
         answer.stamp = stamp;
         answer.base_in_odom = base_in_odom;
         answer.length = submap.length;
+        answer.turned = submap.turned;
         answer.places = search->search(submap, believed, [&] { return cancelled->load(); });
         if (believed) answer.believed = search->refine(submap, *believed);
         return answer;

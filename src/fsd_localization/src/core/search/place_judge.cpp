@@ -16,7 +16,8 @@ void PlaceOdds::describe(hyselam::ParameterVisitor& visit) {
   visit("bias", bias, range, "", "log odds that the best place of a search is right: without more");
   visit("margin", margin, range, "", "by its margin in score to the best other place, 0.3 at most");
   visit("score", score, range, "", "by its score");
-  visit("length", length, range, "", "by log(1 + metres of scans)");
+  visit("length", length, range, "",
+        "by log(1 + metres of scans), each radian turned counted as half a metre");
 }
 
 double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds) {
@@ -45,11 +46,27 @@ std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds) 
   Verdict v;
   v.best = places.front();
   v.is_believed = answer.believed && isSamePlace(v.best.base, answer.believed->base);
-  v.probability = probabilityOfPlace(v.best.seen, places.size() > 1 ? places[1].seen : 0.0,
-                                     answer.length, odds);
+  const double length = lengthWithTurns(answer.length, answer.turned);
+  double second = places.size() > 1 ? places[1].seen : 0.0;
+  // Nobody has looked at places that are worse than the believed one by so much.
+  if (answer.believed) {
+    second = std::max(second, answer.believed->seen - PlaceSearch::kMaxDropFromBelieved);
+  }
+  v.probability = probabilityOfPlace(v.best.seen, std::min(second, v.best.seen), length, odds);
+  if (answer.believed) {
+    v.believed = v.is_believed
+                     ? v.probability
+                     : probabilityOfPlace(answer.believed->seen, v.best.seen, length, odds);
+  }
   for (const Place& p : places) {
     if (p.seen < v.best.seen - kHypothesisMargin || v.hypotheses.size() == kMaxHypotheses) break;
     v.hypotheses.push_back(p);
+  }
+  const auto isTheBelieved = [&](const Place& p) {
+    return isSamePlace(p.base, answer.believed->base);
+  };
+  if (answer.believed && std::none_of(v.hypotheses.begin(), v.hypotheses.end(), isTheBelieved)) {
+    v.hypotheses.push_back(*answer.believed);
   }
   return v;
 }

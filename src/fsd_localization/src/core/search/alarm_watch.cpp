@@ -1,0 +1,44 @@
+#include "fsd_localization/search/alarm_watch.hpp"
+
+#include <algorithm>
+
+namespace fsd_localization {
+
+namespace {
+constexpr double kBrokenWay = 3.0;     // [m] that a break of the motion is looked into
+constexpr double kUnmatchedWay = 1.0;  // [m] that a scan is which did not fit the one before
+constexpr double kSameAlarm = 1.0;     // [m] what comes and goes within it is one alarm
+}  // namespace
+
+bool AlarmWatch::add(double way, const Signs& signs) {
+  if (signs.broken) suspicious_until_ = std::max(suspicious_until_, way + kBrokenWay);
+  if (signs.unmatched) suspicious_until_ = std::max(suspicious_until_, way + kUnmatchedWay);
+  const bool suspicious = way < suspicious_until_;
+  const bool strange = suspicious && signs.unusual;
+  const bool misfit = signs.odd || signs.low || signs.broken;
+  const bool begins = (strange && way >= strange_until_) || (misfit && from_ && !sharp_);
+  if (strange) strange_until_ = way + kSameAlarm;
+  const bool reason = suspicious || signs.odd || signs.low || signs.worse;
+  const bool opened = begins || (reason && !from_);
+  if (opened) {
+    from_ = way;
+    confirmed_ = carried_ = sharp_ = false;
+  }
+  if (confirmed_ && !reason) from_.reset();
+  carried_ = from_ && (carried_ || strange);
+  sharp_ = from_ && (sharp_ || misfit);
+  doubtful_ = from_ && !confirmed_ && (doubtful_ || strange || signs.very_low);
+  return opened;
+}
+
+void AlarmWatch::confirm() {
+  confirmed_ = from_.has_value();
+  doubtful_ = false;
+}
+
+std::optional<double> AlarmWatch::length(double way) const {
+  if (!from_) return std::nullopt;
+  return way - *from_;
+}
+
+}  // namespace fsd_localization

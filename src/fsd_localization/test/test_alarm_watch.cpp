@@ -1,0 +1,158 @@
+// What raises, confirms and ends an alarm about a tracked pose, and what a search that left places
+// out says.
+#include <gtest/gtest.h>
+
+#include "drawn_room.hpp"
+#include "fsd_localization/filter/inlier_monitor.hpp"
+#include "fsd_localization/localizer.hpp"
+#include "fsd_localization/search/alarm_watch.hpp"
+
+using namespace fsd_localization;  // NOLINT: a test, not a header
+using hyselam::Pose2;
+
+namespace {
+
+AlarmWatch::Signs strangeSigns() {
+  AlarmWatch::Signs signs;
+  signs.unmatched = signs.unusual = signs.odd = true;
+  return signs;
+}
+
+Place placeAt(double x, double seen) {
+  Place p;
+  p.base = {x, 0.0, 0.0};
+  p.seen = seen;
+  return p;
+}
+
+}  // namespace
+
+TEST(AlarmWatch, aDoubtDoesNotExpireUnconfirmed) {
+  AlarmWatch watch;
+  EXPECT_TRUE(watch.add(10.0, strangeSigns()));
+  EXPECT_TRUE(watch.isDoubtful());
+  for (double way = 10.1; way < 40.0; way += 0.1) watch.add(way, {});  // nothing odd any more
+  EXPECT_TRUE(watch.isOpen());
+  EXPECT_TRUE(watch.isDoubtful()) << "nobody has looked whether another place is better";
+  watch.confirm();
+  EXPECT_FALSE(watch.isDoubtful());
+  watch.add(40.1, {});
+  EXPECT_FALSE(watch.isOpen());
+}
+
+TEST(AlarmWatch, whatComesAndGoesIsOneAlarm) {
+  AlarmWatch watch;
+  int new_ones = 0;
+  for (int i = 0; i < 40; ++i) {  // each second update is strange
+    new_ones += watch.add(10.0 + 0.1 * i, i % 2 == 0 ? strangeSigns() : AlarmWatch::Signs{});
+  }
+  EXPECT_EQ(new_ones, 1) << "each of them would drop the search that is under way";
+  EXPECT_NEAR(*watch.length(13.9), 3.9, 1e-9);
+}
+
+TEST(AlarmWatch, scansThatFitTheMapRaiseAQuestionAndNoDoubt) {
+  AlarmWatch watch;
+  AlarmWatch::Signs unmatched;
+  unmatched.unmatched = true;
+  EXPECT_TRUE(watch.add(1.0, unmatched));  // a room that the robot has just turned into
+  EXPECT_TRUE(watch.isOpen());
+  EXPECT_FALSE(watch.isDoubtful());
+  EXPECT_FALSE(watch.looksCarried());
+  EXPECT_FALSE(watch.isSharp());
+  AlarmWatch::Signs low;
+  low.low = true;
+  EXPECT_TRUE(watch.add(1.5, low)) << "from here on it is the map that does not fit";
+  EXPECT_TRUE(watch.isSharp());
+  EXPECT_EQ(*watch.length(1.5), 0.0);
+}
+
+TEST(AlarmWatch, aConfirmedAlarmThatGoesOnRaisesNoDoubtAgain) {
+  AlarmWatch watch;
+  AlarmWatch::Signs low;
+  low.low = low.very_low = true;
+  watch.add(1.0, low);
+  EXPECT_TRUE(watch.isDoubtful());
+  watch.confirm();
+  watch.add(1.1, low);
+  EXPECT_TRUE(watch.isOpen());
+  EXPECT_FALSE(watch.isDoubtful());
+  EXPECT_TRUE(watch.add(1.2, strangeSigns())) << "perhaps elsewhere: a new alarm";
+  EXPECT_TRUE(watch.isDoubtful());
+}
+
+TEST(InlierMonitor, oneScanIsOddAndTwoAreUnusualHoweverFarApart) {
+  InlierMonitor monitor;
+  for (int i = 0; i < 30; ++i) monitor.add(0.95, 1.0);  // each scan a metre after the other
+  monitor.add(0.2, 1.0);
+  EXPECT_TRUE(monitor.isOdd(0.75));
+  EXPECT_TRUE(monitor.isUsual(0.75));
+  EXPECT_FALSE(monitor.isBelow(0.45, 0.85));
+  monitor.add(0.2, 1.0);
+  EXPECT_FALSE(monitor.isUsual(0.75));
+  EXPECT_TRUE(monitor.isBelow(0.45, 0.85));
+}
+
+TEST(InlierMonitor, whatIsAcceptedIsNormalAndWhatComesAfterIsComparedWithIt) {
+  InlierMonitor monitor;
+  for (int i = 0; i < 60; ++i) monitor.add(0.95, 0.5);
+  for (int i = 0; i < 10; ++i) monitor.add(0.7, 0.5);
+  EXPECT_TRUE(monitor.isBelow(0.45, 0.85));
+  monitor.accept();
+  EXPECT_FALSE(monitor.isBelow(0.45, 0.85));
+  monitor.add(0.3, 0.5);
+  monitor.add(0.3, 0.5);
+  EXPECT_FALSE(monitor.isUsual(0.75)) << "a jump right after it is seen";
+}
+
+TEST(PlaceJudge, placesThatASearchLeftOutAreNotTakenForAbsent) {
+  SearchAnswer answer;
+  answer.length = 2.0;
+  answer.places = {placeAt(0, 0.9)};
+  const double alone = judge(answer)->probability;
+  answer.believed = placeAt(0, 0.9);  // what is 0.1 worse on the lattice was not looked at
+  EXPECT_LT(judge(answer)->probability, alone);
+  EXPECT_NEAR(judge(answer)->probability, probabilityOfPlace(0.9, 0.8, 2.0), 1e-9);
+  EXPECT_GT(judge(answer)->probability, 0.5) << "enough to confirm a pose";
+}
+
+TEST(PlaceJudge, turnsCountAsTravel) {
+  SearchAnswer answer;
+  answer.places = {placeAt(0, 0.8), placeAt(20, 0.75)};
+  const double standing = judge(answer)->probability;
+  answer.turned = 6.0;
+  EXPECT_NEAR(judge(answer)->probability, probabilityOfPlace(0.8, 0.75, 3.0), 1e-9);
+  EXPECT_GT(judge(answer)->probability, standing);
+}
+
+TEST(PlaceJudge, aBeatenPoseIsToldHowHopelessItIsAndStaysAHypothesis) {
+  SearchAnswer answer;
+  answer.length = 1.0;
+  answer.places = {placeAt(0, 0.94), placeAt(20, 0.93)};
+  answer.believed = placeAt(60, 0.4);
+  const auto v = judge(answer);
+  ASSERT_TRUE(v);
+  EXPECT_FALSE(v->is_believed);
+  EXPECT_LT(v->probability, 0.95) << "nobody knows which of the two it is";
+  EXPECT_LT(v->believed, 1e-6) << "but not the believed one";
+  ASSERT_EQ(v->hypotheses.size(), 3U);
+  EXPECT_EQ(v->hypotheses.back().base.x, 60.0);
+}
+
+TEST(Localizer, aRobotThatIsCarriedOffAndOnlyTurnsIsFound) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
+  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  std::optional<LocalizationResult> last;
+  for (int i = 0; i < 300; ++i) {
+    const Pose2 step = i < 150 ? Pose2{0.02, 0.0, 0.02} : Pose2{0.0, 0.0, 0.05};
+    at = at * step;
+    wheels = wheels * step;
+    if (i == 150) at = {9.0, 5.0, -2.0};
+    if (const auto r = localizer.update(look(rays, at, 0.1 * i), wheels)) last = r;
+  }
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(last->converged);
+  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+}
