@@ -46,6 +46,7 @@ void SearchAlone::search(const hyselam::Pose2& smooth) {
   SearchAnswer answer;
   const Submap submap = submap_.build();
   answer.length = submap.length;
+  answer.turned = submap.turned;
   answer.places = places_.search(submap);
   const auto verdict = judge(answer, params_.place_odds);
   if (!verdict) return;
