@@ -1,7 +1,9 @@
 // places_table: one descriptor's rows of a table of kernels and filters. The signatures are made
 // once; every kernel learns from them and is asked with them.
+#include <cmath>
 #include <ctime>
 #include <iostream>
+#include <map>
 
 #include "../src/tools/tours.hpp"
 #include "hyselam_common/errors.hpp"
@@ -26,15 +28,52 @@ double cpuMilliseconds() {
   return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+/// How often the most likely place is right, by how likely it is said to be.
+class Reliability {
+ public:
+  void add(const std::vector<double>& probabilities, int truth) {
+    const auto most = std::max_element(probabilities.begin(), probabilities.end());
+    const auto bin = std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(*most * kBins));
+    frames_[bin] += 1.0;
+    said_[bin] += *most;
+    right_[bin] += most - probabilities.begin() == truth;
+  }
+  nlohmann::json toJson() const {
+    nlohmann::json bins = nlohmann::json::array();
+    double all = 0.0, error = 0.0;
+    for (int b = 0; b < kBins; ++b) {
+      all += frames_[b];
+      error += std::abs(said_[b] - right_[b]);
+      if (frames_[b] > 0.0) {
+        bins.push_back({{"frames", frames_[b]},
+                        {"said", said_[b] / frames_[b]},
+                        {"right", right_[b] / frames_[b]}});
+      }
+    }
+    return {{"bins", bins}, {"expected_calibration_error", error / std::max(1.0, all)}};
+  }
+
+ private:
+  static constexpr int kBins = 10;
+  double frames_[kBins] = {}, said_[kBins] = {}, right_[kBins] = {};
+};
+
 struct Asked {
   std::vector<std::vector<float>> signatures;
   std::vector<SensorReadings> readings;  // what the filter over poses needs
   std::vector<std::string> places;
 };
 
+/// "auto": fusion for FUSION and what is joined to it, else exemplar.
+std::string kernelOf(const std::string& kernel, const std::string& descriptor) {
+  if (kernel != "auto") return kernel;
+  return toString(descriptor.compare(0, 6, "FUSION") == 0 ? SvmKernel::kFusion
+                                                          : SvmKernel::kExemplar);
+}
+
 /// The filter over poses on the same frames, with and without odometry.
 void addPoses(const PlaceModel& model, const Asked& tour, nlohmann::json* shares) {
-  if (model.classifier.kernel != SvmKernel::kExemplar || !model.samples.poses.front().isFinite()) {
+  if (!comparesExemplars(model.classifier.kernel) || !model.samples.poses.front().isFinite()) {
     return;
   }
   for (const bool odometry : {false, true}) {
@@ -60,7 +99,6 @@ PlaceModel learn(const Options& o, const std::string& kernel, bool grid,
   t.descriptor = o.descriptor;
   t.classifier.kernel = svmKernelFromString(kernel);
   t.grid_search = grid;
-  if (t.classifier.kernel == SvmKernel::kExemplar) t.views = exemplarViews();
   if (described != nullptr) {
     PlaceModel model = *described;
     model.classifier = t.classifier;
@@ -87,21 +125,41 @@ nlohmann::json rowOf(const PlaceModel& model, const std::vector<Asked>& asked,
     ImageRecognizerParams params;
     ImageRecognizer recognizer(model, model.transitions, params);
     std::vector<int> right(filters.size(), 0);
+    std::map<std::string, int> right_by_part;
+    Reliability reliability;
+    std::size_t unlearned_light = 0;
+    std::vector<double> novelties;
     for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
       const double start = cpuMilliseconds();
-      recognizer.updateWithSignature(tour.signatures[i].data());
+      const Recognition r = recognizer.updateWithSignature(tour.signatures[i].data());
       frame_ms->push_back(cpuMilliseconds() - start);
+      const int truth = model.transitions.indexOf(tour.places[i]);
+      if (const auto* opinions = recognizer.opinions()) {
+        for (const PartOpinion& o : *opinions) right_by_part[o.part] += o.place == truth;
+      }
+      unlearned_light += recognizer.lightIsUnlearned();
+      novelties.push_back(r.novelty);
+      reliability.add(recognizer.frameProbabilities(), truth);
       for (std::size_t f = 0; f < filters.size(); ++f) {
         filters[f].update(recognizer.frameProbabilities());
-        right[f] += filters[f].estimate().place == model.transitions.indexOf(tour.places[i]);
+        right[f] += filters[f].estimate().place == truth;
       }
     }
-    nlohmann::json shares;
+    nlohmann::json shares, parts;
+    for (const auto& [part, count] : right_by_part) {
+      parts[part] = count / static_cast<double>(tour.signatures.size());
+    }
     for (std::size_t f = 0; f < filters.size(); ++f) {
       shares[kFilters[f]] = right[f] / static_cast<double>(tour.signatures.size());
     }
     addPoses(model, tour, &shares);
-    row.push_back({{"frames", tour.signatures.size()}, {"accuracy_by_filter", shares}});
+    row.push_back({{"frames", tour.signatures.size()},
+                   {"accuracy_by_filter", shares},
+                   {"accuracy_by_part", parts},
+                   {"unlearned_light",
+                    static_cast<double>(unlearned_light) / static_cast<double>(novelties.size())},
+                   {"novelties", novelties},
+                   {"reliability", reliability.toJson()}});
   }
   return row;
 }
@@ -118,9 +176,9 @@ nlohmann::json run(const Options& o) {
   std::vector<Asked> asked;
   double descriptor_ms = 0.0;
   for (const auto& name : o.kernels) {
-    const std::string kernel = name.substr(0, name.find(':'));
+    const std::string kernel = kernelOf(name.substr(0, name.find(':')), o.descriptor);
     const bool grid = name.find(":grid") != std::string::npos;
-    const bool exemplar = svmKernelFromString(kernel) == SvmKernel::kExemplar;
+    const bool exemplar = comparesExemplars(svmKernelFromString(kernel));
     // A dictionary depends on the training images only: it is the same for all kernels.
     PlaceModel model = learn(o, kernel, grid, exemplar ? nullptr : described.get());
     if (!exemplar && !described) described = std::make_unique<PlaceModel>(model);
@@ -150,13 +208,16 @@ nlohmann::json run(const Options& o) {
     std::vector<double> frame_ms;
     const nlohmann::json tours = rowOf(model, asked, &frame_ms);
     rows.push_back({{"descriptor", o.descriptor},
-                    {"kernel", name},
+                    {"kernel", name == "auto" ? kernel : name},
                     {"cost", model.classifier.cost},
                     {"gamma", model.classifier.gamma},
                     {"size", model.samples.size},
                     {"asked", tours},
                     {"descriptor_ms", descriptor_ms},
                     {"frame_ms", descriptor_ms + median(frame_ms)}});
+    if (model.classifier.kernel == SvmKernel::kFusion) {
+      rows.back()["fusion"] = nlohmann::json::parse(model.svm);
+    }
   }
   return rows;
 }
@@ -172,7 +233,10 @@ int main(int argc, char** argv) {
   app.add_option("--learn", o.learn, "lists of labelled images, as of train")->required();
   app.add_option("--ask", o.ask, "lists to be asked for")->required();
   app.add_option("--descriptor", o.descriptor, "name");
-  app.add_option("--kernels", o.kernels, "names; with :grid cost and gamma by cross-validation")
+  app.add_option(
+         "--kernels", o.kernels,
+         "names; with :grid cost and gamma by cross-validation; auto: fusion for FUSION, else "
+         "exemplar")
       ->delimiter(',');
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

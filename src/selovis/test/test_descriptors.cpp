@@ -260,6 +260,12 @@ TEST(Descriptors, SizesAreThoseOfTheTables) {
                                                {"LGOP", 540},
                                                {"GLANCE", 1180},
                                                {"GLANCE+scan", 1241},
+                                               {"HSV-HIST", 256},
+                                               {"LOGCHROMA", 384},
+                                               {"RANKS", 576},
+                                               {"GRAY", 768},
+                                               {"FUSION", 4406},
+                                               {"FUSION+scan", 4467},
                                                {"BOF-SIFT200", 200},
                                                {"BOF-ORB500-D", 1500},
                                                {"LBPbyHSV-U8N-D+BOF-ORB500", 1916},
@@ -302,7 +308,8 @@ TEST(Descriptors, BagOfFeaturesLearnsADictionaryAndRestoresIt) {
 TEST(Descriptors, GrayAndUnsuitableImagesAreRefusedWithTheDescriptorsName) {
   const cv::Mat gray(40, 40, CV_8UC1, cv::Scalar(9)), deep(40, 40, CV_16UC3, cv::Scalar(9));
   for (const std::string name :
-       {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP", "GLANCE"}) {
+       {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP", "GLANCE",
+        "FUSION", "HSV-HIST", "LOGCHROMA", "RANKS"}) {
     const auto d = makeDescriptor(name);
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(gray); }).find("grey"),
               std::string::npos)
@@ -310,7 +317,7 @@ TEST(Descriptors, GrayAndUnsuitableImagesAreRefusedWithTheDescriptorsName) {
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(deep); }), "") << name;
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(cv::Mat()); }), "") << name;
   }
-  for (const std::string name : {"LBP8,1", "SLBP", "CENTRIST", "LGOP"}) {  // these need no colour
+  for (const std::string name : {"LBP8,1", "SLBP", "CENTRIST", "LGOP", "GRAY"}) {  // these need no colour
     EXPECT_NO_THROW(makeDescriptor(name)->compute(gray)) << name;
   }
 }
@@ -346,7 +353,7 @@ TEST(Descriptors, BlackAndTinyImagesGiveFiniteSignatures) {
        {cv::Size(640, 480), cv::Size(1, 1), cv::Size(5, 300), cv::Size(7, 7)}) {
     const cv::Mat black(size, CV_8UC3, cv::Scalar::all(0));
     for (const std::string name : {"LBPbyHSV-U8S-IRIS", "LBPbyHSV-U8N-IRIS-VP", "SLBP", "HSV-LBP",
-                                   "LGOP", "HSV-GIST", "GLANCE+scan"}) {
+                                   "LGOP", "HSV-GIST", "GLANCE+scan", "GRAY", "FUSION+scan"}) {
       for (const float v : makeDescriptor(name)->compute(black, readings)) {
         ASSERT_TRUE(std::isfinite(v)) << name << " " << size;
       }
@@ -358,7 +365,8 @@ TEST(Descriptors, OneObjectTakesImagesOfChangingSize) {
   hyselam::Rng rng(16);
   const cv::Mat a = randomImage(rng, 60, 80), b = randomImage(rng, 33, 121);
   for (const std::string name :
-       {"LBPbyHSV-U8S", "LBPbyHSV-U8N-IRIS", "SLBP", "HSV-LBP", "GLANCE", "HSV-GIST"}) {
+       {"LBPbyHSV-U8S", "LBPbyHSV-U8N-IRIS", "SLBP", "HSV-LBP", "GLANCE", "HSV-GIST", "GRAY",
+        "FUSION"}) {
     const auto d = makeDescriptor(name);
     const auto first = d->compute(a);
     EXPECT_EQ(d->compute(b), makeDescriptor(name)->compute(b)) << name;

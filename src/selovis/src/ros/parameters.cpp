@@ -89,7 +89,8 @@ void SemanticLocalizationParams::describe(hyselam::ParameterVisitor& visit) {
         {{"linear", SvmKernel::kLinear},
          {"poly", SvmKernel::kPoly},
          {"rbf", SvmKernel::kRbf},
-         {"exemplar", SvmKernel::kExemplar}},
+         {"exemplar", SvmKernel::kExemplar},
+         {"fusion", SvmKernel::kFusion}},
         "without a model");
   visit.group("", recognizer);
   visit.group("", input);

@@ -55,7 +55,6 @@ std::shared_ptr<const PlaceModel> PlaceLearning::firstModel(
   TrainingOptions options;
   options.descriptor = params.descriptor;
   options.classifier.kernel = params.kernel;
-  if (params.kernel == SvmKernel::kExemplar) options.views = exemplarViews();
   return std::make_shared<PlaceModel>(untrainedPlaceModel(options));
 }
 

@@ -42,6 +42,15 @@ void PlacePublisher::publish(const Recognition& recognition, const ImageRecogniz
   msg.novelty = recognition.novelty;
   msg.names = recognizer.places();
   msg.probabilities = recognizer.probabilities();
+  if (const auto* opinions = recognizer.opinions();
+      opinions != nullptr && recognition.descriptive) {
+    for (const PartOpinion& opinion : *opinions) {
+      msg.parts.push_back(opinion.part);
+      msg.part_names.push_back(nameAt(opinion.place));
+      msg.part_weights.push_back(opinion.weight);
+    }
+    msg.unlearned_light = recognizer.lightIsUnlearned();
+  }
   places_.publish(msg);
   last_place_ = msg.name;
   if (map != nullptr && markers_.getNumSubscribers() > 0) {

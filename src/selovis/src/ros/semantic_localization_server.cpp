@@ -18,11 +18,14 @@ SemanticLocalizationServer::SemanticLocalizationServer(const ros::NodeHandle& nh
       supervision_(nh, private_nh, params_.supervision, log_name_),
       publisher_(nh, params_.marker_height) {
   const auto model = PlaceLearning::firstModel(params_, log_name_);
-  const bool filters_poses = params_.recognizer.filter.kind == PlaceFilterKind::kPoses;
-  if (filters_poses && model->classifier.kernel != SvmKernel::kExemplar) {
+  const PlaceFilterKind filter = params_.recognizer.filter.kind;
+  const bool exemplars = comparesExemplars(model->classifier.kernel);
+  if (filter == PlaceFilterKind::kPoses && !exemplars) {
     throw hyselam::InputError("parameter 'filter'", "",
-                              "'poses' needs a model with the exemplar kernel");
+                              "'poses' needs a model with the kernel fusion or exemplar");
   }
+  const bool filters_poses =
+      filter == PlaceFilterKind::kPoses || (filter == PlaceFilterKind::kAuto && exemplars);
   withSource("parameter 'model'", [&] { updateRecognizer(*model, true); });
   learning_ = std::make_unique<PlaceLearning>(
       nh, private_nh, params_.learning, params_.model, model, log_name_,

@@ -22,7 +22,8 @@ using namespace selovis;  // NOLINT: a program, not a header
 constexpr const char* kUnknown = "unknown";
 
 struct Options {
-  std::string model, labels, topology, filter = "markov", images = "none", predictions, plots;
+  std::string model, labels, topology, filter = toString(PlaceFilterKind::kAuto), images = "none",
+                                       predictions, plots;
   ImageRecognizerParams recognizer;
 };
 
@@ -163,8 +164,9 @@ nlohmann::json summaryOf(const PlaceModel& model, const Options& o, const Evalua
   }
   const double all = static_cast<double>(evaluation.rows.size());
   nlohmann::json by_filter = evaluation.accuracy_by_filter;
-  if (o.recognizer.filter.kind == PlaceFilterKind::kPoses) {
-    by_filter["poses"] = static_cast<double>(right) / all;
+  const PlaceFilterKind filter = o.recognizer.filter.kind;
+  if (filter == PlaceFilterKind::kPoses || filter == PlaceFilterKind::kAuto) {
+    by_filter[toString(filter)] = static_cast<double>(right) / all;
   }
   std::cout << right << " of " << evaluation.rows.size() << " frames right (" << std::fixed
             << std::setprecision(1) << 100.0 * static_cast<double>(right) / all << " %)\n";
@@ -277,7 +279,8 @@ int main(int argc, char** argv) {
   app.add_option("--topology", o.topology,
                  "places and transitions: topo.xml, JSON or CSV; default: those seen in training");
   app.option_defaults()->always_capture_default();
-  app.add_option("--filter", o.filter, "none, lowpass, markov, bayes or poses");
+  app.add_option("--filter", o.filter,
+                 "auto (poses with odometry, else bayes), none, lowpass, markov, bayes or poses");
   app.add_option("--images", o.images, "images rejected: none, or by their sift or corners");
   app.add_option("--min-features", o.recognizer.descriptive.min_features,
                  "below which an image is rejected; 0: 10 by sift, 20 by corners");

@@ -1,4 +1,6 @@
 // train: learns places from labeled images.
+#include <cmath>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 
@@ -35,6 +37,22 @@ class Stages {
   std::unique_ptr<hyselam::Progress> line_;
 };
 
+void printFusion(const nlohmann::json& fusion) {
+  const auto left_out = fusion["left_out"].get<std::string>();
+  if (left_out == "nothing") {
+    std::cout << "parts weighted as other environments suggest: too few frames to leave some out\n";
+    return;
+  }
+  std::cout << fusion["frames"] << " frames asked for, their " << left_out
+            << " left out: " << std::lround(100.0 * fusion["accuracy"].get<double>())
+            << " % right\n";
+  for (const auto& part : fusion["parts"]) {
+    std::cout << "  " << std::left << std::setw(16) << part["name"].get<std::string>() << std::right
+              << std::fixed << std::setprecision(2) << " weight " << part["weight"].get<double>()
+              << ", alone " << std::lround(100.0 * part["accuracy"].get<double>()) << " %\n";
+  }
+}
+
 nlohmann::json run(Options& o) {
   const Tours tours(o.labels);
   const auto load = [&](std::size_t tour, std::size_t i) { return tours.load(tour, i); };
@@ -44,10 +62,7 @@ nlohmann::json run(Options& o) {
     (*stages)(stage, done, all);
   };
   t.classifier.kernel = svmKernelFromString(o.kernel);
-  const bool exemplar = t.classifier.kernel == SvmKernel::kExemplar;
-  t.views = o.views != "auto" ? numbersOf(o.views, "--views")
-            : exemplar        ? exemplarViews()
-                              : std::vector<double>{0.0};
+  if (o.views != "auto") t.views = numbersOf(o.views, "--views");
   PlaceModel model;
   const auto learn = [&](const std::string& libsvm_file) {
     t.libsvm_file = libsvm_file;
@@ -60,14 +75,19 @@ nlohmann::json run(Options& o) {
     hyselam::replaceFileAtomically(o.libsvm, learn);
   }
   savePlaceModel(model, o.out);
-  return {{"descriptor", model.descriptor},
-          {"signature_size", model.samples.size},
-          {"kernel", toString(model.classifier.kernel)},
-          {"cost", model.classifier.cost},
-          {"gamma", model.classifier.gamma},
-          {"places", model.transitions.places},
-          {"signatures", model.samples.count()},
-          {"model", o.out}};
+  nlohmann::json result = {{"descriptor", model.descriptor},
+                           {"signature_size", model.samples.size},
+                           {"kernel", toString(model.classifier.kernel)},
+                           {"cost", model.classifier.cost},
+                           {"gamma", model.classifier.gamma},
+                           {"places", model.transitions.places},
+                           {"signatures", model.samples.count()},
+                           {"model", o.out}};
+  if (model.classifier.kernel == SvmKernel::kFusion) {
+    result["fusion"] = nlohmann::json::parse(model.svm);
+    printFusion(result["fusion"]);
+  }
+  return result;
 }
 
 }  // namespace
@@ -81,7 +101,8 @@ int main(int argc, char** argv) {
   app.add_option("--out", o.out, "model directory")->required();
   app.add_option("--descriptor", t.descriptor, "name, as in the thesis; --list shows some")
       ->capture_default_str();
-  app.add_option("--kernel", o.kernel = "poly", "linear, poly, rbf or exemplar")
+  app.add_option("--kernel", o.kernel = toString(t.classifier.kernel),
+                 "fusion, exemplar, linear, poly or rbf")
       ->capture_default_str();
   app.add_flag("--grid", t.grid_search, "choose cost and gamma (beta) by cross-validation");
   app.add_flag("--add", o.add, "add the frames, and new places, to the model in --out");
@@ -93,8 +114,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--power", t.classifier.power, "each value is raised to it; 1: as it is")
       ->capture_default_str();
-  app.add_option("--views", o.views = "auto",
-                 "sideways shifts of each image, in widths; auto: five for exemplar, else one")
+  app.add_option(
+         "--views", o.views = "auto",
+         "sideways shifts of each image, in widths; auto: five for fusion and exemplar, else one")
       ->capture_default_str();
   app.add_option("--aperture", t.horizontal_fov, "horizontal field of view of the camera [rad]")
       ->capture_default_str();

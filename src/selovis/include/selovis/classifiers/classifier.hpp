@@ -11,16 +11,23 @@
 namespace selovis {
 
 /// The kernel of a support vector machine, or kExemplar: soft nearest neighbors among all training
-/// signatures, without an SVM.
-enum class SvmKernel { kLinear, kPoly, kRbf, kExemplar };
+/// signatures, without an SVM; or kFusion: the same for each part of the signatures, the parts'
+/// answers joined by calibrated weights.
+enum class SvmKernel { kLinear, kPoly, kRbf, kExemplar, kFusion };
 
-/// "linear", "poly", "rbf", "exemplar".
+/// Whether the kind compares with the training signatures themselves: it has distances, and learns
+/// from several views of each image.
+inline bool comparesExemplars(SvmKernel kernel) {
+  return kernel == SvmKernel::kExemplar || kernel == SvmKernel::kFusion;
+}
+
+/// "linear", "poly", "rbf", "exemplar", "fusion".
 const char* toString(SvmKernel kernel);
 /// @throws hyselam::InputError for any other text.
 SvmKernel svmKernelFromString(const std::string& name);
 
 struct ClassifierParams {
-  SvmKernel kernel = SvmKernel::kPoly;
+  SvmKernel kernel = SvmKernel::kFusion;
   /// Each value v of a signature becomes v^power; 0.5 turns the dot product of histograms into the
   /// Bhattacharyya coefficient, 1 leaves them as they are. Then all signatures are scaled so that
   /// their mean squared length is 1. 0.05 to 4.
@@ -36,6 +43,17 @@ struct ClassifierParams {
   void validate() const;
 };
 
+/// What one part of the last signature said.
+struct PartOpinion {
+  std::string part;
+  int place = -1;            ///< the most likely one by this part alone
+  double probability = 0.0;  ///< of it, by this part alone
+  double weight = 0.0;       ///< its share in the answer, 0 to 1; all shares add up to 1
+  /// Its nearest distance lies outside of the range that training saw: it was not asked.
+  bool out_of_range = false;
+  bool absolute_color = false;  ///< SignaturePart::absolute_color
+};
+
 class Classifier {
  public:
   virtual ~Classifier() = default;
@@ -47,14 +65,18 @@ class Classifier {
   /// distance between training signatures: about 1 for familiar images. 0 where the kind of
   /// classifier does not measure it.
   virtual double novelty() const { return 0.0; }
-  /// Squared distances of the last signature to all samples; null where the kind has none.
+  /// Squared distances of the last signature to all samples, in any unit; null where the kind has
+  /// none.
   virtual const std::vector<float>* distances() const { return nullptr; }
+  /// Of the last signature, in the order of its parts; null where the kind does not tell them
+  /// apart.
+  virtual const std::vector<PartOpinion>* opinions() const { return nullptr; }
 };
 
 struct TrainedClassifier {
   std::unique_ptr<Classifier> classifier;
   /// Serialized state, input of restoreClassifier(); empty for an exemplar classifier, whose only
-  /// state are its samples.
+  /// state are its samples; JSON for a fusion.
   std::string state;
 };
 

@@ -20,7 +20,7 @@ struct GridSearchParams {
 };
 
 /// `params` with the cost and gamma (beta of the exemplar classifier) of the highest
-/// cross-validated accuracy, the first among equals.
+/// cross-validated accuracy, the first among equals. A fusion is given back as it is.
 struct GridSearchResult {
   ClassifierParams params;
   double accuracy = -1.0;

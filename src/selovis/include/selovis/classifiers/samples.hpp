@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
@@ -12,10 +13,21 @@ namespace selovis {
 /// A pose that is not known.
 constexpr hyselam::Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
 
+/// A stretch of a signature that means something by itself: a term of a joined descriptor.
+struct SignaturePart {
+  std::string name;
+  int size = 0;
+  double power = 0.5;  ///< that each value is raised to before distances are taken
+  /// It counts colors as they are, and so hangs on the color of the light.
+  bool absolute_color = false;
+};
+
 struct Samples {
   std::size_t size = 0;       ///< length of one signature
   std::vector<float> values;  ///< one signature after the other
-  std::vector<int> places;    ///< class of each sample, from 0 on
+  /// Of each signature, in order (Descriptor::parts); needed by the fusion of parts only.
+  std::vector<SignaturePart> parts;
+  std::vector<int> places;  ///< class of each sample, from 0 on
   /// Number of the frame that each sample was computed from, ascending; views of a frame share it.
   std::vector<int> frames;
   /// Of the camera in the map, turned as the view is; kNoPose where it is not known.

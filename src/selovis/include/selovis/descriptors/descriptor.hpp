@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hyselam_common/pose2.hpp"
+#include "selovis/classifiers/samples.hpp"
 #include "selovis/descriptors/lbp.hpp"
 
 namespace selovis {
@@ -75,6 +76,8 @@ class Descriptor {
   ///   8-bit, empty), or a reading that is missing.
   virtual void compute(const cv::Mat& image, const SensorReadings& readings, float* out) = 0;
   virtual RequiredReadings requiredReadings() const { return {}; }
+  /// What the signature is made of, in order; the sizes add up to size().
+  virtual std::vector<SignaturePart> parts() const { return {{"", size(), 0.5}}; }
 
   /// Descriptors with a dictionary learn it from training images before the first compute().
   virtual bool needsDictionary() const { return false; }
@@ -105,8 +108,14 @@ class Descriptor {
 /// | HSV-LBP, HSV-LBP-u, SLBP | LBP of the HSV channels; of a spatial pyramid |
 /// | HSV-GIST, HSV-GISTs | GIST of an image of 32 x 32, or s x s pixels |
 /// | BOF-SIFTn, BOF-ORBn | bag of n features; with -D for whole, top and bottom |
+/// | SV-GIST | GIST of saturation and brightness |
+/// | HSV-HIST | histogram of 16 hues, 4 saturations, 4 values |
+/// | LOGCHROMA | layout of log-chromaticities, their means taken out (of this package) |
+/// | RANKS | layout of the ranks of colors by channel (of this package) |
+/// | GRAY | gray thumbnail of 32 x 24, mean and contrast taken out |
 /// | LGOP | log-gradient orientation pyramid (of this package) |
 /// | GLANCE | LGOP and GIST without hue (of this package) |
+/// | FUSION | the terms of kFusionTerms, of an image at most 320 wide, for the kernel `fusion` |
 /// | psi, [psi], An | heading; magnetic field and its magnitude; n ranges. Also written with a Greek psi |
 /// | scan | the whole laser scan in 61 groups of beams (of this package) |
 ///
@@ -114,6 +123,9 @@ class Descriptor {
 // clang-format on
 std::unique_ptr<Descriptor> makeDescriptor(const std::string& name,
                                            const DescriptorParams& params = {});
+
+/// What FUSION consists of.
+extern const char* const kFusionTerms;
 
 /// The names that `train --list` prints.
 std::vector<std::string> descriptorNames();

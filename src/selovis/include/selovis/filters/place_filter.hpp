@@ -15,10 +15,11 @@ enum class PlaceFilterKind {
   kLowPass,
   kMarkov,
   kBayes,
-  kPoses  ///< PoseFilter: for an ImageRecognizer, not for a PlaceFilter
+  kPoses,  ///< PoseFilter: for an ImageRecognizer, not for a PlaceFilter
+  kAuto    ///< an ImageRecognizer's choice, frame by frame; a PlaceFilter takes kBayes
 };
 
-/// "none", "lowpass", "markov", "bayes", "poses".
+/// "none", "lowpass", "markov", "bayes", "poses", "auto".
 const char* toString(PlaceFilterKind kind);
 /// @throws hyselam::InputError for any other text.
 PlaceFilterKind placeFilterKindFromString(const std::string& name);
@@ -36,7 +37,7 @@ struct BayesFilterParams {
 };
 
 struct PlaceFilterParams {
-  PlaceFilterKind kind = PlaceFilterKind::kMarkov;
+  PlaceFilterKind kind = PlaceFilterKind::kAuto;
   double low_pass_alpha = 2.0;  ///< weight of the past, alpha of Eq. 6.15, 0 to 1e6
   MarkovChainParams markov;
   BayesFilterParams bayes;

@@ -27,7 +27,7 @@ struct PlaceModel {
   double horizontal_fov = kDefaultFov;  ///< of the camera [rad]
   std::vector<float> dictionary;        ///< of the descriptor, if it has one
   Samples samples;
-  std::string svm;  ///< the state of a trained SVM (TrainedClassifier)
+  std::string svm;  ///< the state of a trained SVM, or of a fusion (TrainedClassifier)
 
   /// The descriptor with its dictionary. @throws hyselam::InputError, hyselam::ParameterError.
   std::unique_ptr<Descriptor> makeDescriptor() const;
@@ -45,10 +45,11 @@ struct TrainingFrame {
 };
 
 struct TrainingOptions {
-  std::string descriptor = "LBPbyHSV-U8N-IRIS";
+  std::string descriptor = "FUSION";
   DescriptorParams descriptor_params;
   ClassifierParams classifier;
-  std::vector<double> views{0.0};       ///< sideways shifts in image widths, each -0.5 to 0.5
+  /// Sideways shifts in image widths, each -0.5 to 0.5; none: viewsFor(classifier.kernel).
+  std::vector<double> views;
   double horizontal_fov = kDefaultFov;  ///< of the camera [rad], 0.01 to 2 pi
   bool grid_search = false;             ///< choose the classifier's parameters by cross-validation
   GridSearchParams grid;
@@ -73,6 +74,8 @@ PlaceModel extendPlaceModel(PlaceModel model, const std::vector<std::size_t>& fr
 
 /// The five sideways shifts that exemplar models have of each image by default.
 std::vector<double> exemplarViews();
+/// Those, or the image alone for an SVM.
+std::vector<double> viewsFor(SvmKernel kernel);
 
 /// Pose of a camera that would have seen a shifted view: content that is shifted to the right is
 /// seen by a camera turned to the left.
@@ -83,7 +86,8 @@ hyselam::Pose2 poseOfView(const hyselam::Pose2& camera, double shift, double hor
 cv::Mat shifted(const cv::Mat& image, double shift);
 
 /// Writes the model into a directory, which is created if need be: `model.json` names descriptor,
-/// parameters, places, and the data files with their size and CRC-32. The data files
+/// parameters, places, what a fusion learned of its parts, and the data files with their size and
+/// CRC-32. The data files
 /// (binary, little-endian) have their checksum in their name and are written first, so that the
 /// directory holds a complete model, old or new, at every moment. @throws hyselam::InputError.
 void savePlaceModel(const PlaceModel& model, const std::string& directory);

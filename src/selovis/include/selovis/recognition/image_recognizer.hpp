@@ -14,7 +14,9 @@ namespace selovis {
 
 struct ImageRecognizerParams {
   DescriptiveFilterParams descriptive;
-  PlaceFilterParams filter;  ///< of the kind kPoses: a PoseFilter takes its place
+  /// Of the kind kPoses: a PoseFilter takes its place. kAuto: both run; the PoseFilter, where the
+  /// model has exemplars with poses, answers frames with odometry, the Bayes filter all others.
+  PlaceFilterParams filter;
   /// A frame of a higher novelty (Classifier::novelty) shows an unknown place; 0: never.
   double max_novelty = 0.0;
   PoseFilterParams poses;
@@ -54,8 +56,13 @@ class ImageRecognizer {
   const std::vector<double>& frameProbabilities() const { return frame_; }
   /// Of each place, by all frames.
   const std::vector<double>& probabilities() const {
-    return poses_ ? poses_->probabilities() : filter_.probabilities();
+    return by_poses_ ? poses_->probabilities() : filter_.probabilities();
   }
+  /// What each part of the last frame said; null where the classifier does not tell them apart.
+  const std::vector<PartOpinion>* opinions() const { return classifier_->opinions(); }
+  /// Its colors lie outside of what was learned, what is independent of light does not: the frame
+  /// was taken in a light that was not learned.
+  bool lightIsUnlearned() const;
   const std::vector<float>& signature() const { return signature_; }
 
  private:
@@ -72,6 +79,7 @@ class ImageRecognizer {
   PlaceTransitions transitions_;
   PlaceFilter filter_;
   std::unique_ptr<PoseFilter> poses_;  // null with all other filters
+  bool by_poses_ = false;              // the last frame
   double last_stamp_;                  // NaN: not known
   std::vector<float> signature_;
   std::vector<double> frame_;

@@ -65,11 +65,9 @@ struct SupervisionParams {
 };
 
 struct SemanticLocalizationParams {
-  SemanticLocalizationParams() { recognizer.filter.kind = PlaceFilterKind::kBayes; }
-
-  std::string model;                        ///< directory; empty: nothing learned yet
-  std::string descriptor = "GLANCE";        ///< without a model
-  SvmKernel kernel = SvmKernel::kExemplar;  ///< without a model
+  std::string model;                      ///< directory; empty: nothing learned yet
+  std::string descriptor = "FUSION";      ///< without a model
+  SvmKernel kernel = SvmKernel::kFusion;  ///< without a model
   ImageRecognizerParams recognizer;
   ImageInputParams input;
   FrameIds frame_ids;

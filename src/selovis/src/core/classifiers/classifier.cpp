@@ -1,6 +1,7 @@
 #include "selovis/classifiers/classifier.hpp"
 
 #include "exemplar_classifier.hpp"
+#include "fusion_classifier.hpp"
 #include "hyselam_common/errors.hpp"
 #include "libsvm_training.hpp"
 #include "svm_classifier.hpp"
@@ -16,18 +17,20 @@ const char* toString(SvmKernel kernel) {
     case SvmKernel::kRbf:
       return "rbf";
     case SvmKernel::kExemplar:
+      return "exemplar";
+    case SvmKernel::kFusion:
       break;
   }
-  return "exemplar";
+  return "fusion";
 }
 
 SvmKernel svmKernelFromString(const std::string& name) {
-  for (const SvmKernel k :
-       {SvmKernel::kLinear, SvmKernel::kPoly, SvmKernel::kRbf, SvmKernel::kExemplar}) {
+  for (const SvmKernel k : {SvmKernel::kLinear, SvmKernel::kPoly, SvmKernel::kRbf,
+                            SvmKernel::kExemplar, SvmKernel::kFusion}) {
     if (name == toString(k)) return k;
   }
   throw hyselam::InputError("kernel '" + name + "'", "",
-                            "is not known: there are linear, poly, rbf, exemplar");
+                            "is not known: there are linear, poly, rbf, exemplar, fusion");
 }
 
 void ClassifierParams::describe(hyselam::ParameterVisitor& visit) {
@@ -36,8 +39,9 @@ void ClassifierParams::describe(hyselam::ParameterVisitor& visit) {
         {{"linear", SvmKernel::kLinear},
          {"poly", SvmKernel::kPoly},
          {"rbf", SvmKernel::kRbf},
-         {"exemplar", SvmKernel::kExemplar}},
-        "of the SVM; exemplar: nearest neighbors");
+         {"exemplar", SvmKernel::kExemplar},
+         {"fusion", SvmKernel::kFusion}},
+        "of the SVM; exemplar: nearest neighbors; fusion: those of each part of the descriptor");
   visit("power", power, Range::between(0.05, 4.0), "",
         "that each value of a signature is raised to");
   visit("cost", cost, Range::between(1e-6, 1e9), "", "C of the SVM");
@@ -58,6 +62,11 @@ TrainedClassifier trainClassifier(const Samples& samples, int places,
   if (params.kernel == SvmKernel::kExemplar) {
     return {std::make_unique<ExemplarClassifier>(samples, places, params), ""};
   }
+  if (params.kernel == SvmKernel::kFusion) {
+    auto fusion = std::make_unique<FusionClassifier>(samples, places, params);
+    std::string state = fusion->state();
+    return {std::move(fusion), std::move(state)};
+  }
   const double scale = normalizationScale(samples, params.power);
   const SvmProblem problem(samples, params.power, scale);
   const SvmModelPtr model = trainSvm(problem, params);
@@ -76,6 +85,9 @@ std::unique_ptr<Classifier> restoreClassifier(const Samples& samples, int places
   requireTwoClasses(samples, places);
   if (params.kernel == SvmKernel::kExemplar) {
     return std::make_unique<ExemplarClassifier>(samples, places, params);
+  }
+  if (params.kernel == SvmKernel::kFusion) {
+    return std::make_unique<FusionClassifier>(samples, places, params, state);
   }
   return std::make_unique<SvmClassifier>(state, samples.size, places, params);
 }

@@ -163,6 +163,7 @@ GridSearchResult searchGrid(const Samples& samples, int places, const GridSearch
                             const std::function<void(std::size_t, std::size_t)>& progress) {
   requireTwoClasses(samples, places);
   hyselam::require("folds", grid.folds, grid.folds >= 2, "2 or more");
+  if (params.kernel == SvmKernel::kFusion) return {params, -1.0};  // it calibrates itself
   const bool exemplar = params.kernel == SvmKernel::kExemplar;
   const Samples searched = exemplar ? samples : subsampled(samples, grid.max_samples);
   const std::vector<int> fold = foldsOf(searched, grid.folds);

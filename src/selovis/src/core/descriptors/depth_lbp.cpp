@@ -25,6 +25,7 @@ class DepthLbp : public Descriptor {
   int size() const override {
     return 3 * kPart + (kind_ == 'A' ? kPart : kind_ == 'S' ? kUniformLabels : 0);
   }
+  std::vector<SignaturePart> parts() const override { return {{"", size(), 0.5, true}}; }
 
   void compute(const cv::Mat& image, const SensorReadings& readings, float* out) override {
     requireColor(image, "sLBP");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "descriptor_terms.hpp"
 #include "hyselam_common/errors.hpp"
@@ -13,6 +14,8 @@ namespace selovis {
 
 using hyselam::InputError;
 
+const char* const kFusionTerms = "LGOP+HSV-GIST+LBPbyHSV-U8N+SLBP+HSV-HIST+LOGCHROMA+RANKS";
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -20,8 +23,19 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Terms joined by '+', one after the other in the vector.
 class JoinedDescriptor : public Descriptor {
  public:
-  explicit JoinedDescriptor(std::vector<DescriptorPtr> terms) : terms_(std::move(terms)) {
+  JoinedDescriptor(std::vector<DescriptorPtr> terms, std::vector<std::string> names)
+      : terms_(std::move(terms)), names_(std::move(names)) {
     for (const auto& term : terms_) size_ += term->size();
+  }
+  std::vector<SignaturePart> parts() const override {
+    std::vector<SignaturePart> all;
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+      for (SignaturePart& part : terms_[t]->parts()) {
+        if (part.name.empty()) part.name = names_[t];
+        all.push_back(std::move(part));
+      }
+    }
+    return all;
   }
   int size() const override { return size_; }
   void compute(const cv::Mat& image, const SensorReadings& readings, float* out) override {
@@ -63,7 +77,29 @@ class JoinedDescriptor : public Descriptor {
   }
 
   std::vector<DescriptorPtr> terms_;
+  std::vector<std::string> names_;
   int size_ = 0;
+};
+
+/// A descriptor of the image brought to at most kFusionWidth: the parts of FUSION need no more, and
+/// with many of them each pixel costs.
+constexpr int kFusionWidth = 320;
+
+class SmallerImage : public Descriptor {
+ public:
+  explicit SmallerImage(DescriptorPtr of) : of_(std::move(of)) {}
+  int size() const override { return of_->size(); }
+  std::vector<SignaturePart> parts() const override { return of_->parts(); }
+  void compute(const cv::Mat& image, const SensorReadings& readings, float* out) override {
+    if (image.cols <= kFusionWidth) return of_->compute(image, readings, out);
+    const int rows = std::max(1, image.rows * kFusionWidth / image.cols);
+    cv::resize(image, small_, cv::Size(kFusionWidth, rows), 0.0, 0.0, cv::INTER_AREA);
+    of_->compute(small_, readings, out);
+  }
+
+ private:
+  DescriptorPtr of_;
+  cv::Mat small_;
 };
 
 /// Greek psi spelled out, and hLBP by its long name.
@@ -85,14 +121,20 @@ DescriptorPtr makeGlance(const std::string& name, const DescriptorParams& params
   std::vector<DescriptorPtr> terms;
   terms.push_back(makeGradientPyramid("LGOP", params));
   terms.push_back(makeSaturationValueGist(kGistWeight));
-  return std::make_unique<JoinedDescriptor>(std::move(terms));
+  return std::make_unique<JoinedDescriptor>(std::move(terms),
+                                            std::vector<std::string>{"LGOP", "SV-GIST"});
+}
+
+DescriptorPtr makeFusion(const std::string& name, const DescriptorParams& params) {
+  if (name != "FUSION") return nullptr;
+  return std::make_unique<SmallerImage>(makeDescriptor(kFusionTerms, params));
 }
 
 /// Each maker returns null for names of other descriptors. A new descriptor is added here.
 using TermMaker = DescriptorPtr (*)(const std::string&, const DescriptorParams&);
 constexpr TermMaker kTermMakers[] = {
-    makeLbpByHsv, makeDepthLbp,      makeLbpBaseline,     makeGist,
-    makeGlance,   makeBagOfFeatures, makeGradientPyramid, makeSensorReadingsTerm};
+    makeLbpByHsv,      makeDepthLbp,        makeLbpBaseline,        makeGist,   makeGlance,
+    makeBagOfFeatures, makeGradientPyramid, makeSensorReadingsTerm, makeFusion, makeColorLayout};
 
 DescriptorPtr makeTerm(const std::string& name, const DescriptorParams& params) {
   for (const TermMaker make : kTermMakers) {
@@ -151,6 +193,7 @@ std::unique_ptr<Descriptor> makeDescriptor(const std::string& name,
                                            const DescriptorParams& params) {
   params.validate();
   std::vector<DescriptorPtr> terms;
+  std::vector<std::string> names;
   int dictionaries = 0;
   for (std::size_t begin = 0; begin <= name.size();) {
     const std::size_t end = std::min(name.find('+', begin), name.size());
@@ -162,13 +205,14 @@ std::unique_ptr<Descriptor> makeDescriptor(const std::string& name,
     }
     dictionaries += made->needsDictionary();
     terms.push_back(std::move(made));
+    names.push_back(term);
     begin = end + 1;
   }
   if (dictionaries > 1) {
     throw InputError("descriptor '" + name + "'", "", "only one term may have a dictionary");
   }
   if (terms.size() == 1) return std::move(terms.front());
-  return std::make_unique<JoinedDescriptor>(std::move(terms));
+  return std::make_unique<JoinedDescriptor>(std::move(terms), std::move(names));
 }
 
 std::vector<std::string> descriptorNames() {
@@ -184,7 +228,8 @@ std::vector<std::string> descriptorNames() {
         "LBP8,3",      "LBP8,3-u",      "CENTRIST",      "HSV-LBP",       "HSV-LBP-u",
         "SLBP",        "HSV-GIST",      "HSV-GIST64",    "HSV-GIST128",   "BOF-SIFT200",
         "BOF-SIFT500", "BOF-ORB500",    "BOF-ORB500-D",  "LGOP",          "LGOP+scan",
-        "GLANCE",      "GLANCE+scan"}) {
+        "GLANCE",      "GLANCE+scan",   "SV-GIST",       "HSV-HIST",      "LOGCHROMA",
+        "RANKS",       "GRAY",          "FUSION",        "FUSION+scan"}) {
     names.push_back(more);
   }
   return names;

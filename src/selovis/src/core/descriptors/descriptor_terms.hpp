@@ -17,6 +17,7 @@ DescriptorPtr makeLbpBaseline(const std::string& name, const DescriptorParams& p
 DescriptorPtr makeGist(const std::string& name, const DescriptorParams& params);
 DescriptorPtr makeBagOfFeatures(const std::string& name, const DescriptorParams& params);
 DescriptorPtr makeGradientPyramid(const std::string& name, const DescriptorParams& params);
+DescriptorPtr makeColorLayout(const std::string& name, const DescriptorParams& params);
 DescriptorPtr makeSensorReadingsTerm(const std::string& name, const DescriptorParams& params);
 
 /// SV-GIST with all values multiplied by `weight`.

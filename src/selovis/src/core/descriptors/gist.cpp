@@ -39,6 +39,11 @@ class Gist : public Descriptor {
 
   int size() const override { return (without_hue_ ? 2 : 3) * kPerChannel; }
 
+  std::vector<SignaturePart> parts() const override {
+    if (without_hue_) return {{"SV-GIST", size(), 0.5}};
+    return {{"H-GIST", kPerChannel, 0.5, true}, {"SV-GIST", 2 * kPerChannel, 0.5}};
+  }
+
   void compute(const cv::Mat& image, const SensorReadings&, float* out) override {
     requireColor(image, without_hue_ ? "SV-GIST" : "HSV-GIST");
     cv::resize(image, small_, cv::Size(side_, side_), 0.0, 0.0, cv::INTER_AREA);

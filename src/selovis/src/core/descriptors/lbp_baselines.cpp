@@ -93,6 +93,7 @@ class HsvLbp : public Descriptor {
  public:
   HsvLbp(const LbpParams& lbp, Bins bins) : radius_(lbp.radius), bins_(bins), stream_(lbp) {}
   int size() const override { return 3 * binCount(bins_); }
+  std::vector<SignaturePart> parts() const override { return {{"", size(), 0.5, true}}; }
   void compute(const cv::Mat& image, const SensorReadings&, float* out) override {
     requireColor(image, "HSV-LBP");
     cv::cvtColor(image, hsv_, cv::COLOR_BGR2HSV);

@@ -36,8 +36,10 @@ class LbpByHsv : public Descriptor {
   }
 
   int size() const override {
-    return variant_.firstLabels() * variant_.colors * parts() + variant_.secondLabels();
+    return variant_.firstLabels() * variant_.colors * regionCount() + variant_.secondLabels();
   }
+
+  std::vector<SignaturePart> parts() const override { return {{"", size(), 0.5, true}}; }
 
   void compute(const cv::Mat& image, const SensorReadings&, float* out) override {
     requireColor(image, "LBPbyHSV");
@@ -60,11 +62,11 @@ class LbpByHsv : public Descriptor {
         for (int k = 0; k < part; ++k) sum[k] += out[r * part + k];
       }
     }
-    if (second) secondStage(out + part * parts());
+    if (second) secondStage(out + part * regionCount());
   }
 
  private:
-  int parts() const {
+  int regionCount() const {
     return variant_.regions == Regions::kWhole ? 1 : variant_.regions == Regions::kHalves ? 3 : 5;
   }
 

@@ -13,7 +13,7 @@ constexpr double kMinLikelihood = 1e-6;  // of the Bayes filter: no frame rules 
 
 constexpr PlaceFilterKind kKinds[] = {PlaceFilterKind::kNone, PlaceFilterKind::kLowPass,
                                       PlaceFilterKind::kMarkov, PlaceFilterKind::kBayes,
-                                      PlaceFilterKind::kPoses};
+                                      PlaceFilterKind::kPoses, PlaceFilterKind::kAuto};
 
 }  // namespace
 
@@ -28,9 +28,11 @@ const char* toString(PlaceFilterKind kind) {
     case PlaceFilterKind::kBayes:
       return "bayes";
     case PlaceFilterKind::kPoses:
+      return "poses";
+    case PlaceFilterKind::kAuto:
       break;
   }
-  return "poses";
+  return "auto";
 }
 
 PlaceFilterKind placeFilterKindFromString(const std::string& name) {
@@ -38,7 +40,7 @@ PlaceFilterKind placeFilterKindFromString(const std::string& name) {
     if (name == toString(kind)) return kind;
   }
   throw hyselam::InputError("filter '" + name + "'", "",
-                            "is not known: there are none, lowpass, markov, bayes, poses");
+                            "is not known: there are auto, none, lowpass, markov, bayes, poses");
 }
 
 void BayesFilterParams::describe(hyselam::ParameterVisitor& visit) {
@@ -54,12 +56,14 @@ void BayesFilterParams::describe(hyselam::ParameterVisitor& visit) {
 void PlaceFilterParams::describe(hyselam::ParameterVisitor& visit) {
   using hyselam::Range;
   visit("filter", kind,
-        {{"none", PlaceFilterKind::kNone},
+        {{"auto", PlaceFilterKind::kAuto},
+         {"none", PlaceFilterKind::kNone},
          {"lowpass", PlaceFilterKind::kLowPass},
          {"markov", PlaceFilterKind::kMarkov},
          {"bayes", PlaceFilterKind::kBayes},
          {"poses", PlaceFilterKind::kPoses}},
-        "filter of the place over time");
+        "filter of the place over time; auto: poses for a frame with odometry, bayes for one "
+        "without");
   visit("low_pass_alpha", low_pass_alpha, Range::between(0.0, 1e6), "",
         "weight of the past in the low-pass filter (Eq. 6.15)");
   visit.group("markov_", markov);
@@ -128,6 +132,7 @@ void PlaceFilter::update(const double* observed) {
       markov_.step(observed, state_);
       break;
     case PlaceFilterKind::kBayes:
+    case PlaceFilterKind::kAuto:
     case PlaceFilterKind::kPoses:
       updateBayes(observed);
       break;

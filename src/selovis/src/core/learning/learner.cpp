@@ -60,7 +60,7 @@ PlaceModel untrainedPlaceModel(const TrainingOptions& options) {
   model.descriptor = options.descriptor;
   model.descriptor_params = options.descriptor_params;
   model.classifier = options.classifier;
-  model.views = options.views;
+  model.views = options.views.empty() ? viewsFor(options.classifier.kernel) : options.views;
   model.horizontal_fov = options.horizontal_fov;
   const auto descriptor = makeDescriptor(options.descriptor, options.descriptor_params);
   if (descriptor->needsDictionary()) {
@@ -68,6 +68,7 @@ PlaceModel untrainedPlaceModel(const TrainingOptions& options) {
                      "needs a dictionary: begin with a model that `train` made");
   }
   model.samples.size = static_cast<std::size_t>(descriptor->size());
+  model.samples.parts = descriptor->parts();
   return model;
 }
 

@@ -244,13 +244,15 @@ PlaceModel modelFromManifest(const json& j) {
 }
 
 /// Refuses a descriptor that this version does not know, and a dictionary that does not fit.
-void checkDescriptor(const PlaceModel& model) {
-  const int size = model.makeDescriptor()->size();
+void checkDescriptor(PlaceModel& model) {
+  const auto descriptor = model.makeDescriptor();
+  const int size = descriptor->size();
   if (static_cast<std::size_t>(size) != model.samples.size) {
     throw InputError("descriptor", "",
                      "'" + model.descriptor + "' gives " + std::to_string(size) +
                          " values, but the signatures have " + std::to_string(model.samples.size));
   }
+  model.samples.parts = descriptor->parts();
 }
 
 /// Removes the data files of earlier models.
@@ -288,7 +290,9 @@ void savePlaceModel(const PlaceModel& model, const std::string& directory) {
   if (std::any_of(poses.begin(), poses.end(), [](const auto& p) { return p.isFinite(); })) {
     j["poses"] = saveData(directory, "poses", posesToBytes(poses));
   }
-  if (!model.svm.empty()) j["svm"] = saveData(directory, "svm", model.svm);
+  const bool fusion = model.classifier.kernel == SvmKernel::kFusion;
+  if (fusion) j["fusion"] = json::parse(model.svm);
+  if (!fusion && !model.svm.empty()) j["svm"] = saveData(directory, "svm", model.svm);
   hyselam::writeFileAtomically(pathIn(directory, kManifest),
                                [&](std::ostream& out) { out << j.dump(1) << '\n'; });
   removeOtherData(directory, j);
@@ -314,7 +318,8 @@ PlaceModel loadPlaceModel(const std::string& directory) {
       });
     }
     withSource(manifest, [&] { checkDescriptor(model); });
-    if (model.classifier.kernel == SvmKernel::kExemplar) {
+    if (comparesExemplars(model.classifier.kernel)) {
+      if (model.classifier.kernel == SvmKernel::kFusion) model.svm = j.at("fusion").dump();
       withSource(manifest, [&] { model.makeClassifier(); });
     } else {
       files.readData("svm", j.at("svm"), [&](const std::string& bytes) {

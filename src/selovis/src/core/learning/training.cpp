@@ -88,7 +88,6 @@ void fitClassifier(PlaceModel& model, const TrainingOptions& options) {
 }
 
 void checkViews(const std::vector<double>& views) {
-  if (views.empty()) throw InputError("views", "", "there must be at least one of each image");
   for (const double v : views) {
     if (!(std::abs(v) <= 0.5)) throw InputError("views", "", "one is shifted by more than half");
   }
@@ -98,6 +97,10 @@ void checkViews(const std::vector<double>& views) {
 
 std::vector<double> exemplarViews() {
   return {0.0, -0.09, 0.09, -0.18, 0.18};
+}
+
+std::vector<double> viewsFor(SvmKernel kernel) {
+  return comparesExemplars(kernel) ? exemplarViews() : std::vector<double>{0.0};
 }
 
 hyselam::Pose2 poseOfView(const hyselam::Pose2& camera, double shift, double horizontal_fov) {
@@ -136,7 +139,7 @@ PlaceModel trainPlaceModel(const std::vector<std::size_t>& frames_of_tours, cons
   model.descriptor = options.descriptor;
   model.descriptor_params = options.descriptor_params;
   model.classifier = options.classifier;
-  model.views = options.views;
+  model.views = options.views.empty() ? viewsFor(options.classifier.kernel) : options.views;
   model.horizontal_fov = options.horizontal_fov;
   auto descriptor = makeDescriptor(options.descriptor, options.descriptor_params);
   if (descriptor->needsDictionary()) {
@@ -144,6 +147,7 @@ PlaceModel trainPlaceModel(const std::vector<std::size_t>& frames_of_tours, cons
     model.dictionary = descriptor->dictionary();
   }
   model.samples.size = static_cast<std::size_t>(descriptor->size());
+  model.samples.parts = descriptor->parts();
   addSignatures(model, *descriptor, frames_of_tours, load, options);
   fitClassifier(model, options);
   return model;

@@ -44,9 +44,17 @@ ImageRecognizer::ImageRecognizer(const PlaceModel& model, const PlaceTransitions
     throw hyselam::InputError("transitions", "", "their places are not those of the model");
   }
   if (params.filter.kind == PlaceFilterKind::kPoses) {
-    if (classifier_->distances() == nullptr) {
-      throw hyselam::InputError("filter 'poses'", "", "needs a model with the exemplar kernel");
+    if (!comparesExemplars(model.classifier.kernel)) {
+      throw hyselam::InputError("filter 'poses'", "",
+                                "needs a model with the kernel fusion or exemplar");
     }
+    by_poses_ = true;
+  }
+  const auto& learned = model.samples.poses;
+  const bool has_poses =
+      comparesExemplars(model.classifier.kernel) &&
+      std::any_of(learned.begin(), learned.end(), [](const auto& p) { return p.isFinite(); });
+  if (by_poses_ || (params.filter.kind == PlaceFilterKind::kAuto && has_poses)) {
     poses_ =
         std::make_unique<PoseFilter>(model.samples, static_cast<int>(places_.size()), params.poses);
   }
@@ -80,13 +88,23 @@ Recognition ImageRecognizer::updateWithSignature(const float* signature,
   }
   result.frame_place =
       static_cast<int>(std::max_element(frame_.begin(), frame_.end()) - frame_.begin());
-  if (poses_) {
-    updatePoses(readings);
-  } else {
-    filter_.update(frame_.data());
-  }
+  const bool choose = params_.filter.kind == PlaceFilterKind::kAuto;
+  if (choose) by_poses_ = poses_ && readings.odometry && readings.odometry->isFinite();
+  if (by_poses_) updatePoses(readings);
+  if (choose || !by_poses_) filter_.update(frame_.data());
   result.estimate = estimate();
   return result;
+}
+
+bool ImageRecognizer::lightIsUnlearned() const {
+  const std::vector<PartOpinion>* opinions = classifier_->opinions();
+  if (opinions == nullptr) return false;
+  int colors = 0, others = 0, colors_out = 0, others_out = 0;
+  for (const PartOpinion& o : *opinions) {
+    (o.absolute_color ? colors : others) += 1;
+    (o.absolute_color ? colors_out : others_out) += o.out_of_range;
+  }
+  return 2 * colors_out > colors && 2 * others_out < others;
 }
 
 void ImageRecognizer::updatePoses(const SensorReadings& readings) {

@@ -1,0 +1,396 @@
+#include "fusion_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hyselam_common/errors.hpp"
+
+namespace selovis {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kFloor = 1e-3;  // probability of each place that a part leaves
+constexpr double kMinSquaredDistance = 1e-6;
+
+// Frames of one tour that are so many numbers apart are taken to be independent; numbers of tours
+// are farther apart than kTourGap.
+constexpr int kStretch = 20, kTourGap = 100;
+constexpr std::size_t kMaxFrames = 400;   // asked for, evenly chosen
+constexpr std::size_t kLeastFrames = 50;  // with fewer the weights are not learned
+constexpr double kLeastShare = 0.3;  // of the frames, whose place is left when their tour is not
+
+// Weights without learning, chosen on environments other than the one that is learned (see
+// docs/algorithms/visual_places.md), and the pull towards them.
+constexpr double kLayoutWeight = 0.5, kColorWeight = 0.2, kTextureWeight = 0.3;
+constexpr double kPull = 0.01, kPullOffset = 0.05;
+constexpr double kMaxWeight = 5.0;
+
+constexpr double kLittle = 0.02;  // share of parts that are all out of range
+constexpr double kUnknownRate = 0.05;
+constexpr double kMaxEvidenceScale = 4.0;
+
+double priorWeight(const SignaturePart& part) {
+  if (part.absolute_color) return kColorWeight;
+  return part.name == "LGOP" || part.name == "SV-GIST" || part.name == "LOGCHROMA" ? kLayoutWeight
+                                                                                   : kTextureWeight;
+}
+
+/// One learned frame, asked for while some frames are blocked.
+struct Question {
+  int place;
+  std::vector<double> nearest;                       // of each part
+  std::vector<std::vector<double>> log_likelihoods;  // of each part, by place
+};
+
+/// The tours of frames, and which frames must not answer for one of them.
+class LeavingOut {
+ public:
+  explicit LeavingOut(const Samples& samples, const FrameIndex& frames) : blocked_(frames.count()) {
+    for (std::size_t f = 0; f < frames.count(); ++f) {
+      numbers_.push_back(samples.frames[frames.begin[f]]);
+      places_.push_back(samples.places[frames.begin[f]]);
+      tours_.push_back(f == 0 ? 0 : tours_.back() + (numbers_[f] - numbers_[f - 1] >= kTourGap));
+    }
+  }
+
+  int placeOf(std::size_t frame) const { return places_[frame]; }
+
+  const std::vector<char>& blockedFor(std::size_t frame, bool tours, bool whole_place) {
+    for (std::size_t f = 0; f < blocked_.size(); ++f) {
+      const bool near = std::abs(numbers_[f] - numbers_[frame]) < kStretch;
+      blocked_[f] = (tours ? tours_[f] == tours_[frame] : near) ||
+                    (whole_place && places_[f] == places_[frame]);
+    }
+    return blocked_;
+  }
+
+  /// Frames whose place is left when they are left out.
+  std::vector<std::size_t> askable(bool tours) {
+    std::vector<std::size_t> frames;
+    if (tours && tours_.back() == 0) return frames;
+    for (std::size_t f = 0; f < blocked_.size(); ++f) {
+      const std::vector<char>& blocked = blockedFor(f, tours, false);
+      for (std::size_t g = 0; g < blocked.size(); ++g) {
+        if (blocked[g] == 0 && places_[g] == places_[f]) {
+          frames.push_back(f);
+          break;
+        }
+      }
+    }
+    return frames;
+  }
+
+ private:
+  std::vector<int> numbers_, places_, tours_;
+  std::vector<char> blocked_;
+};
+
+template <typename T>
+std::vector<T> thinned(const std::vector<T>& all, std::size_t most) {
+  std::vector<T> few;
+  const std::size_t n = std::min(most, all.size());
+  for (std::size_t i = 0; i < n; ++i) few.push_back(all[i * all.size() / n]);
+  return few;
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/// Log loss and accuracy of the weighted sum; `shares` of each question's parts.
+class Objective {
+ public:
+  Objective(const std::vector<Question>& questions, int places)
+      : questions_(questions), sum_(static_cast<std::size_t>(places)) {}
+
+  double logLoss(const std::vector<double>& weights, const std::vector<std::vector<double>>* shares,
+                 double temperature, double* accuracy = nullptr) {
+    double loss = 0.0;
+    std::size_t right = 0;
+    for (std::size_t q = 0; q < questions_.size(); ++q) {
+      const Question& question = questions_[q];
+      std::fill(sum_.begin(), sum_.end(), 0.0);
+      double all = 0.0, asked = 0.0;
+      for (std::size_t p = 0; p < weights.size(); ++p) {
+        all += weights[p];
+        asked += weights[p] * (shares != nullptr ? (*shares)[q][p] : 1.0);
+      }
+      const double sharpness = evidenceScale(all, asked) / temperature;
+      for (std::size_t p = 0; p < weights.size(); ++p) {
+        const double w = sharpness * weights[p] * (shares != nullptr ? (*shares)[q][p] : 1.0);
+        if (w == 0.0) continue;
+        const std::vector<double>& l = question.log_likelihoods[p];
+        for (std::size_t k = 0; k < sum_.size(); ++k) sum_[k] += w * l[k];
+      }
+      const auto most = std::max_element(sum_.begin(), sum_.end());
+      double total = 0.0;
+      for (const double s : sum_) total += std::exp(s - *most);
+      loss += std::log(total) + *most - sum_[static_cast<std::size_t>(question.place)];
+      right += most - sum_.begin() == question.place;
+    }
+    const double n = static_cast<double>(questions_.size());
+    if (accuracy != nullptr) *accuracy = static_cast<double>(right) / n;
+    return loss / n;
+  }
+
+ private:
+  const std::vector<Question>& questions_;
+  std::vector<double> sum_;
+};
+
+/// Cyclic search, one weight after the other, by factors that shrink where none helps.
+void learnWeights(Objective& objective, const std::vector<SignaturePart>& parts,
+                  std::vector<double>& weights) {
+  const auto cost = [&](const std::vector<double>& w) {
+    double pull = 0.0;
+    for (std::size_t p = 0; p < w.size(); ++p) {
+      const double r = std::log((w[p] + kPullOffset) / (priorWeight(parts[p]) + kPullOffset));
+      pull += r * r;
+    }
+    return objective.logLoss(w, nullptr, 1.0) + kPull * pull;
+  };
+  double best = cost(weights);
+  for (double factor = 2.0; factor > 1.05;) {
+    bool better = false;
+    for (std::size_t p = 0; p < weights.size(); ++p) {
+      for (const double f : {factor, 1.0 / factor}) {
+        std::vector<double> tried = weights;
+        tried[p] = std::min(kMaxWeight, tried[p] * f);
+        const double c = cost(tried);
+        if (c < best - 1e-6) {
+          best = c;
+          weights = std::move(tried);
+          better = true;
+          break;
+        }
+      }
+    }
+    if (!better) factor = std::sqrt(factor);
+  }
+}
+
+Question ask(const Samples& samples, int places, double beta, const FrameIndex& frames,
+             std::size_t frame, const std::vector<char>& blocked,
+             std::vector<PartExemplars>& exemplars) {
+  Question question;
+  question.place = samples.places[frames.begin[frame]];
+  const float* part = samples.row(frames.begin[frame]);
+  for (std::size_t p = 0; p < exemplars.size(); part += samples.parts[p].size, ++p) {
+    const auto& nearest = exemplars[p].search(part, &blocked);
+    question.nearest.push_back(nearest.empty() ? std::numeric_limits<double>::infinity()
+                                               : nearest.front().distance);
+    question.log_likelihoods.emplace_back(static_cast<std::size_t>(places));
+    placeLogLikelihoods(nearest, samples.places, beta, question.log_likelihoods.back());
+  }
+  return question;
+}
+
+double noveltyOf(const FusionCalibration& c, const std::vector<double>& nearest) {
+  double novelty = 0.0, weights = 0.0;
+  for (std::size_t p = 0; p < c.parts.size(); ++p) {
+    novelty += c.parts[p].weight * std::sqrt(nearest[p] / std::max(1e-12, c.parts[p].median));
+    weights += c.parts[p].weight;
+  }
+  return novelty / std::max(weights, 1e-12);
+}
+
+void learnRanges(const std::vector<Question>& questions, FusionCalibration& c) {
+  for (std::size_t p = 0; p < c.parts.size(); ++p) {
+    std::vector<double> nearest;
+    std::size_t right = 0;
+    for (const Question& q : questions) {
+      nearest.push_back(q.nearest[p]);
+      const std::vector<double>& l = q.log_likelihoods[p];
+      right += std::max_element(l.begin(), l.end()) - l.begin() == q.place;
+    }
+    c.parts[p].median = std::max(kMinSquaredDistance, quantile(nearest, 0.5));
+    c.parts[p].largest = std::max(1.05 * c.parts[p].median, quantile(nearest, 1.0));
+    c.parts[p].accuracy = static_cast<double>(right) / static_cast<double>(questions.size());
+  }
+}
+
+/// The temperature of the sum as it is made: with the parts that are out of range left out.
+void learnTemperature(Objective& objective, const std::vector<Question>& questions,
+                      const std::vector<SignaturePart>& parts, FusionCalibration& c) {
+  std::vector<std::vector<double>> shares(questions.size(), std::vector<double>(parts.size()));
+  for (std::size_t q = 0; q < questions.size(); ++q) {
+    shareByRange(c, parts, questions[q].nearest, shares[q]);
+  }
+  std::vector<double> weights;
+  for (const PartCalibration& p : c.parts) weights.push_back(p.weight);
+  double best = std::numeric_limits<double>::infinity();
+  for (int step = -16; step <= 16; ++step) {
+    const double temperature = std::exp2(step / 8.0);
+    double accuracy = 0.0;
+    const double loss = objective.logLoss(weights, &shares, temperature, &accuracy);
+    if (loss < best) {
+      best = loss;
+      c.temperature = temperature;
+      c.accuracy = accuracy;
+      c.log_loss = loss;
+    }
+  }
+}
+
+}  // namespace
+
+void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector<int>& labels,
+                         double beta, std::vector<double>& out) {
+  std::fill(out.begin(), out.end(), 0.0);
+  double sum = 0.0;
+  if (!nearest.empty()) {
+    const double least =
+        std::max(kMinSquaredDistance, static_cast<double>(nearest.front().distance));
+    for (const Neighbor& n : nearest) {
+      const double w = std::exp(-beta * (n.distance - least) / least);
+      out[static_cast<std::size_t>(labels[n.sample])] += w;
+      sum += w;
+    }
+  }
+  const double places = static_cast<double>(out.size());
+  for (double& p : out) {
+    p = std::log(((sum > 0.0 ? p / sum : 1.0 / places) + kFloor) / (1.0 + kFloor * places));
+  }
+}
+
+double rangeShare(const PartCalibration& part, double nearest) {
+  if (std::isinf(part.largest)) return 1.0;
+  return std::clamp((part.largest - nearest) / (part.largest - part.median), 0.0, 1.0);
+}
+
+void shareByRange(const FusionCalibration& calibration, const std::vector<SignaturePart>& parts,
+                  const std::vector<double>& nearest, std::vector<double>& shares) {
+  double least_color = 1.0, most = 0.0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    shares[p] = rangeShare(calibration.parts[p], nearest[p]);
+    if (parts[p].absolute_color) least_color = std::min(least_color, shares[p]);
+  }
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (parts[p].absolute_color) shares[p] = least_color;
+    most = std::max(most, shares[p]);
+  }
+  if (most <= 0.0) std::fill(shares.begin(), shares.end(), kLittle);
+}
+
+double evidenceScale(double weights, double asked) {
+  return asked > kLittle * weights * 1.5 ? std::min(kMaxEvidenceScale, weights / asked) : 1.0;
+}
+
+FusionCalibration calibrateFusion(const Samples& samples, int places, double beta,
+                                  const FrameIndex& frames, std::vector<PartExemplars>& exemplars) {
+  FusionCalibration c;
+  c.parts.resize(samples.parts.size());
+  for (std::size_t p = 0; p < c.parts.size(); ++p)
+    c.parts[p].weight = priorWeight(samples.parts[p]);
+  LeavingOut leaving(samples, frames);
+  bool tours = true;
+  std::vector<std::size_t> asked = leaving.askable(true);
+  if (static_cast<double>(asked.size()) < kLeastShare * static_cast<double>(frames.count())) {
+    tours = false;
+    asked = leaving.askable(false);
+  }
+  if (asked.size() < kLeastFrames) return c;
+  c.left_out = tours ? "tours" : "stretches";
+  asked = thinned(asked, kMaxFrames);
+  c.frames = asked.size();
+  std::vector<Question> questions;
+  for (const std::size_t f : asked) {
+    questions.push_back(
+        ask(samples, places, beta, frames, f, leaving.blockedFor(f, tours, false), exemplars));
+  }
+  Objective objective(questions, places);
+  std::vector<double> weights;
+  for (const PartCalibration& p : c.parts) weights.push_back(p.weight);
+  learnWeights(objective, samples.parts, weights);
+  for (std::size_t p = 0; p < c.parts.size(); ++p) c.parts[p].weight = weights[p];
+  learnRanges(questions, c);
+  learnTemperature(objective, questions, samples.parts, c);
+
+  std::vector<double> novelties;
+  for (const Question& q : questions) novelties.push_back(noveltyOf(c, q.nearest));
+  c.unknown_novelty = quantile(novelties, 1.0 - kUnknownRate);
+  std::size_t noticed = 0, strangers = 0;
+  for (const std::size_t f : thinned(asked, kMaxFrames / 4)) {
+    const Question q =
+        ask(samples, places, beta, frames, f, leaving.blockedFor(f, tours, true), exemplars);
+    if (std::isinf(q.nearest.front())) continue;  // no other place was learned
+    ++strangers;
+    noticed += noveltyOf(c, q.nearest) > c.unknown_novelty;
+  }
+  if (strangers > 0) {
+    c.unknown_noticed = static_cast<double>(noticed) / static_cast<double>(strangers);
+  }
+  return c;
+}
+
+std::string toText(const FusionCalibration& c, const std::vector<SignaturePart>& parts) {
+  json j = {{"left_out", c.left_out},
+            {"frames", c.frames},
+            {"temperature", c.temperature},
+            {"accuracy", c.accuracy},
+            {"log_loss", c.log_loss},
+            {"unknown_novelty", c.unknown_novelty},
+            {"unknown_noticed", c.unknown_noticed},
+            {"parts", json::array()}};
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    json part = {{"name", parts[p].name},
+                 {"size", parts[p].size},
+                 {"weight", c.parts[p].weight},
+                 {"accuracy", c.parts[p].accuracy},
+                 {"median", c.parts[p].median}};
+    part["largest"] = std::isinf(c.parts[p].largest) ? json(nullptr) : json(c.parts[p].largest);
+    j["parts"].push_back(part);
+  }
+  return j.dump();
+}
+
+FusionCalibration fusionCalibrationFromText(const std::string& text,
+                                            const std::vector<SignaturePart>& parts) {
+  try {
+    const json j = json::parse(text);
+    const auto number = [](const json& from, const char* name, double low, double high) {
+      const double value = from.at(name).get<double>();
+      if (!(value >= low && value <= high)) {
+        throw hyselam::InputError("fusion", name, "is out of range");
+      }
+      return value;
+    };
+    constexpr double kMost = 1e12;
+    FusionCalibration c;
+    c.left_out = j.at("left_out").get<std::string>();
+    c.frames = static_cast<std::size_t>(number(j, "frames", 0.0, 1e9));
+    c.temperature = number(j, "temperature", 1e-3, 1e3);
+    c.accuracy = number(j, "accuracy", 0.0, 1.0);
+    c.log_loss = number(j, "log_loss", 0.0, kMost);
+    c.unknown_novelty = number(j, "unknown_novelty", 0.0, kMost);
+    c.unknown_noticed = number(j, "unknown_noticed", 0.0, 1.0);
+    if (j.at("parts").size() != parts.size()) {
+      throw hyselam::InputError("fusion", "parts", "are not those of the descriptor");
+    }
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const json& part = j.at("parts").at(p);
+      if (part.at("name").get<std::string>() != parts[p].name) {
+        throw hyselam::InputError("fusion", "parts", "are not those of the descriptor");
+      }
+      PartCalibration calibration;
+      calibration.weight = number(part, "weight", 0.0, kMaxWeight);
+      calibration.accuracy = number(part, "accuracy", 0.0, 1.0);
+      calibration.median = number(part, "median", 0.0, kMost);
+      if (!part.at("largest").is_null()) {
+        calibration.largest = number(part, "largest", 0.0, kMost);
+        if (calibration.largest <= calibration.median) {
+          throw hyselam::InputError("fusion", "largest", "is not above the median");
+        }
+      }
+      c.parts.push_back(calibration);
+    }
+    return c;
+  } catch (const json::exception& e) {
+    throw hyselam::InputError("fusion", "", std::string("is no calibration: ") + e.what());
+  }
+}
+
+}  // namespace selovis
