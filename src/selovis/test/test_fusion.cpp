@@ -274,15 +274,24 @@ TEST(ColorLayout, HistogramCountsEveryPixelOnce) {
   EXPECT_NEAR(red[15], 1.0f, 1e-3f) << "hue 0, the highest saturation, the highest value";
 }
 
-TrainingFrame frameOf(std::size_t i) {
+/// Three rooms, 30 frames in each: something moves through each, and no two tours are the same.
+TrainingFrame frameOf(std::size_t tour, std::size_t i) {
   const int place = static_cast<int>(i / 30 % 3);
   cv::Mat image = scene(static_cast<std::uint64_t>(place) + 1);
-  cv::circle(image, {static_cast<int>(20 + 4 * (i % 30)), 60}, 8, cv::Scalar(20, 200, 90), -1);
+  const int x = static_cast<int>(20 + 4 * (i % 30) + 2 * tour);
+  cv::circle(image, {x, 55 + 5 * static_cast<int>(tour)}, 8, cv::Scalar(20, 200, 90), -1);
+  hyselam::Rng rng(1000 * tour + i);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int k = 0; k < 3 * image.cols; ++k) {
+      std::uint8_t& v = image.ptr(y)[k];
+      v = cv::saturate_cast<std::uint8_t>(v + rng.gaussian(0.0, 3.0));
+    }
+  }
   return {image, {}, "room " + std::to_string(place), {0.3 * static_cast<double>(i), 0.0, 0.0}};
 }
 
 PlaceModel learnedModel() {
-  return trainPlaceModel({90, 90}, [](std::size_t, std::size_t i) { return frameOf(i); }, {});
+  return trainPlaceModel({90, 90}, frameOf, {});
 }
 
 TEST(Fusion, DefaultModelTellsItsPartsInTheManifestAndIsReadBack) {
@@ -318,7 +327,7 @@ TEST(Fusion, FrameInAnUnlearnedLightIsToldAndRecognized) {
   params.filter.kind = PlaceFilterKind::kNone;
   ImageRecognizer r(model, model.transitions, params);
   for (int place = 0; place < 3; ++place) {
-    const cv::Mat image = frameOf(static_cast<std::size_t>(30 * place + 7)).image;
+    const cv::Mat image = frameOf(2, static_cast<std::size_t>(30 * place + 7)).image;
     EXPECT_EQ(r.update(image).frame_place, place);
     EXPECT_FALSE(r.lightIsUnlearned());
     EXPECT_EQ(r.update(inLight(image, 0.45, 0.8, 1.0)).frame_place, place);

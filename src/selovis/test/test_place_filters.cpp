@@ -134,6 +134,7 @@ TEST(MarkovChain, EqualsTheTranscriptionOfTheEquations) {
   for (int round = 0; round < 200; ++round) {
     const PlaceTransitions g = randomGraph(rng);
     PlaceFilterParams p;
+    p.kind = PlaceFilterKind::kMarkov;
     p.markov.rho1 = rng.uniform(0.2, 5.0);
     p.markov.rho2 = rng.uniform(0.0, 4.0);
     PlaceFilter filter(g, p);

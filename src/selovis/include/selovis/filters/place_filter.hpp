@@ -29,7 +29,7 @@ struct BayesFilterParams {
   double stay_probability = 0.93;
   /// Exponent of a frame's likelihoods, below 1 because consecutive frames are not independent;
   /// 0.001 to 10.
-  double likelihood_exponent = 0.5;
+  double likelihood_exponent = 0.75;
   /// Per frame, of being carried to any place, 0 to 1.
   double teleport_probability = 1e-4;
 

@@ -12,19 +12,19 @@ constexpr double kMinProbability = 1e-3;  // no single frame rules a place out
 constexpr float kFar = 1.0f;              // relative squared distance from which a view is far
 // Chosen with the default PoseFilterParams::similarity_beta between the house's tours by lamplight
 // and on two simulated floors.
-constexpr float kViewScale = 4.0f;
+constexpr float kViewScale = 5.3f;
 constexpr double kMinSquaredDistance = 1e-6;
 
 }  // namespace
 
 FusionClassifier::FusionClassifier(const Samples& samples, int places,
-                                   const ClassifierParams& params, bool full_scan)
+                                   const ClassifierParams& params)
     : places_(places),
       params_(params),
       parts_(samples.parts),
       labels_(samples.places),
       frames_(samples) {
-  index(samples, full_scan);
+  index(samples, false);
   calibration_ = calibrateFusion(samples, places, params.beta, frames_, exemplars_);
 }
 

@@ -14,11 +14,11 @@ namespace selovis {
 
 class FusionClassifier : public Classifier {
  public:
-  /// Calibrates itself on the samples. @param full_scan compares with all samples, for tests.
+  /// Calibrates itself on the samples.
   /// @throws hyselam::InputError for samples without parts.
-  FusionClassifier(const Samples& samples, int places, const ClassifierParams& params,
-                   bool full_scan = false);
-  /// With the calibration that state() gave. @throws hyselam::InputError for another text.
+  FusionClassifier(const Samples& samples, int places, const ClassifierParams& params);
+  /// With the calibration that state() gave. @param full_scan compares with all samples, for tests.
+  /// @throws hyselam::InputError for another text.
   FusionClassifier(const Samples& samples, int places, const ClassifierParams& params,
                    const std::string& state, bool full_scan = false);
 

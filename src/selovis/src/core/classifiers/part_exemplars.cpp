@@ -19,8 +19,8 @@ constexpr std::size_t kLane = 8;             // rows are filled up with zeros to
 constexpr std::size_t kComponents = 32;      // principal components
 constexpr std::size_t kComponentRows = 400;  // that they are learned from, at most
 constexpr int kIterations = 4;               // of the subspace
-constexpr std::size_t kCompared = 32;        // frames whose views are compared exactly
-constexpr std::size_t kNeighbors = 100;      // views that are answered
+constexpr std::size_t kCompared = 80;        // frames whose views are compared exactly
+constexpr std::size_t kNeighbors = 200;      // views that are answered
 
 /// Dot product of two rows of 16-bit integers; n is a multiple of kLane.
 float dot16(const std::int16_t* a, const std::int16_t* b, std::size_t n) {
