@@ -20,7 +20,7 @@ int main() {
   };
   const selovis::PlaceModel model = selovis::trainPlaceModel({20}, load, options);
 
-  selovis::ImageRecognizer recognizer(model, model.transitions, {});  // with the Markov chain
+  selovis::ImageRecognizer recognizer(model, model.transitions, {});  // with the Bayes filter
   for (int step = 0; step < 8; ++step) {
     const auto r = recognizer.update(imageOf(step >= 4, step + 3));
     std::printf("%s %.2f\n", recognizer.places()[r.estimate.place].c_str(), r.estimate.probability);

@@ -156,7 +156,7 @@ TEST(Fusion, IndexFindsWhatAFullScanFinds) {
         scanned(samples, kPlaces, fusion(), indexed.state(), true);
     std::vector<double> a(kPlaces), b(kPlaces);
     double difference = 0.0;
-    int same_nearest = 0;
+    int near_enough = 0;
     constexpr int kFrames = 100;
     for (int i = 0; i < kFrames; ++i) {
       const auto signature = world.look(i % kPlaces);
@@ -166,10 +166,10 @@ TEST(Fusion, IndexFindsWhatAFullScanFinds) {
         difference = std::max(
             difference, std::abs(a[static_cast<std::size_t>(k)] - b[static_cast<std::size_t>(k)]));
       }
-      same_nearest += std::abs(indexed.novelty() - scanned.novelty()) < 0.02;
+      near_enough += indexed.novelty() <= 1.05 * scanned.novelty();
     }
     EXPECT_LT(difference, 0.05) << seed;
-    EXPECT_GE(same_nearest, 95) << seed;
+    EXPECT_GE(near_enough, 95) << seed;
   }
 }
 

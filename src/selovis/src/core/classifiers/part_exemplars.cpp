@@ -14,7 +14,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-constexpr float kUnit = 8192.0f;             // of the 16-bit rows, whose mean squared length is 1
+constexpr float kUnit = 8192.0f;  // of the 16-bit rows, whose mean squared length is 1
+constexpr double kMaxScale = 1e12;
 constexpr std::size_t kLane = 8;             // rows are filled up with zeros to multiples of it
 constexpr std::size_t kComponents = 32;      // principal components
 constexpr std::size_t kComponentRows = 400;  // that they are learned from, at most
@@ -61,7 +62,10 @@ PartExemplars::PartExemplars(const Samples& samples, const FrameIndex& frames, s
     normalizeSignature(samples.row(i) + offset, size_, power_, 1.0, buffer_.data());
     sum += dot(buffer_.data(), buffer_.data(), size_);
   }
-  if (sum > 0.0) scale_ = 1.0 / std::sqrt(sum / static_cast<double>(samples.count()));
+  // At most kMaxScale: values that are as good as 0 stay so.
+  if (sum > 0.0) {
+    scale_ = std::min(kMaxScale, 1.0 / std::sqrt(sum / static_cast<double>(samples.count())));
+  }
   for (std::size_t i = 0; i < samples.count(); ++i) {
     quantize(samples.row(i) + offset, rows_.data() + i * padded_);
     squares_[i] = dot16(rows_.data() + i * padded_, rows_.data() + i * padded_, padded_);

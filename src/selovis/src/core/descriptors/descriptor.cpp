@@ -211,7 +211,8 @@ std::unique_ptr<Descriptor> makeDescriptor(const std::string& name,
   if (dictionaries > 1) {
     throw InputError("descriptor '" + name + "'", "", "only one term may have a dictionary");
   }
-  if (terms.size() == 1) return std::move(terms.front());
+  const bool named = !terms.front()->parts().front().name.empty();
+  if (terms.size() == 1 && named) return std::move(terms.front());
   return std::make_unique<JoinedDescriptor>(std::move(terms), std::move(names));
 }
 
