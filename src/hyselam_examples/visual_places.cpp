@@ -15,12 +15,15 @@ int main() {
   selovis::TrainingOptions options;
   options.descriptor = "LBPbyHSV-U8N";
   options.classifier.kernel = selovis::SvmKernel::kExemplar;
+  options.views = {0.0};
   const auto load = [](std::size_t /*tour*/, std::size_t i) -> selovis::TrainingFrame {
     return {imageOf(i >= 10, static_cast<int>(i)), {}, i >= 10 ? "kitchen" : "hall"};
   };
   const selovis::PlaceModel model = selovis::trainPlaceModel({20}, load, options);
 
-  selovis::ImageRecognizer recognizer(model, model.transitions, {});  // with the Bayes filter
+  selovis::ImageRecognizerParams params;
+  params.filter.kind = selovis::PlaceFilterKind::kMarkov;
+  selovis::ImageRecognizer recognizer(model, model.transitions, params);
   for (int step = 0; step < 8; ++step) {
     const auto r = recognizer.update(imageOf(step >= 4, step + 3));
     std::printf("%s %.2f\n", recognizer.places()[r.estimate.place].c_str(), r.estimate.probability);
