@@ -600,5 +600,13 @@ TEST(DescriptionBuilder, ReasonsAreInTheLanguageSpoken) {
   EXPECT_EQ(talk.last.reason, "não me disseram onde está o robô: diga 'você está em ...'");
 }
 
+TEST(DescriptionBuilder, ASubjectThatWasLeftOutIsNotQuoted) {
+  DescriptionBuilder builder(parser());
+  builder.setLanguage("pt");
+  const auto issues = builder.add(parser().parse("É logo ao pé da entrada."));
+  ASSERT_EQ(issues.size(), 1u);
+  EXPECT_EQ(issues[0].reason, "não sei de que lugar se fala: diga o nome");
+}
+
 }  // namespace
 }  // namespace hyselam_topo

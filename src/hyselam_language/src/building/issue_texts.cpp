@@ -62,6 +62,7 @@ const std::map<std::string, std::string>& english() {
        "which number that replaces is not clear: say the whole sentence, as 'The lab is 7 metres "
        "long'"},
       {"it_nothing", "what '{name}' means was not told: say the name"},
+      {"it_unsaid", "which place this is about was not told: say its name"},
       {"it_several", "'{name}' may mean {names}"},
       {"it_what", "'{name}' means no place told of: say the name"},
       {"may_mean", "'{name}' may mean {names}"},

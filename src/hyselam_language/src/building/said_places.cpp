@@ -41,7 +41,11 @@ bool haveOneName(Statement& s, const std::vector<Id>& ids) {
 /// What a word that stands for places means; fails if that was not told.
 std::vector<Id> referred(Statement& s, const SaidName& name) {
   const DescriptionContext& context = s.context();
-  const auto nothing = [&] { s.fail(IssueKind::kNoContext, "it_nothing", {{"name", name.text}}); };
+  const auto nothing = [&] {
+    // A subject that was left out ("fica à direita") has no word to point at.
+    if (name.range.begin == name.range.end) s.fail(IssueKind::kNoContext, "it_unsaid");
+    s.fail(IssueKind::kNoContext, "it_nothing", {{"name", name.text}});
+  };
   if (name.reference == "here") {
     if (!s.building().robot_place) s.fail(IssueKind::kNoContext, "no_robot");
     return {*s.building().robot_place};
