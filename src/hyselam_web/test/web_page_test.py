@@ -286,6 +286,19 @@ class PageTest(PageCase):
         tab.click("#send")
         wait_until(lambda: self.asked("say") == [{"text": "Is anybody there?"}], "what was typed before")
 
+    def test_the_map_cannot_be_dragged_out_of_sight(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        tab.eval("hyselam.map.zoom(4)")
+        for _ in range(12):
+            tab.drag((40, 150), (330, 400))
+        x, y = tab.eval("hyselam.map.center")
+        left, low, right, high = tab.eval("hyselam.map.bounds()")
+        corners = tab.eval("hyselam.map.mapCorners()")
+        self.assertGreaterEqual(x, min([left] + [c[0] for c in corners]) - 0.01)
+        self.assertLessEqual(y, max([high] + [c[1] for c in corners]) + 0.01)
+        self.assertLess(x, right)
+
     def test_pose_and_glass_wall_are_drawn_by_finger_and_by_keys(self):
         self.serve()
         tab = self.open_map(PHONE)

@@ -72,8 +72,17 @@ export class MapView {
     return [(px - this.canvas.clientWidth / 2) / this.scale + this.center[0], this.center[1] - (py - this.canvas.clientHeight / 2) / this.scale];
   }
 
-  bounds() {
+  mapCorners() {
     const map = this.model.values.map;
+    if (!map) return [];
+    const [r, c, s] = [map.resolution, Math.cos(map.yaw), Math.sin(map.yaw)];
+    return [[0, 1], [2, 1], [2, 3], [0, 3]].map(([u, v]) => {
+      const [x, y] = [map.box[u] * r + map.rest[0], map.box[v] * r + map.rest[1]];
+      return [c * x - s * y, s * x + c * y];
+    });
+  }
+
+  bounds() {
     const xs = [];
     const ys = [];
     for (const place of Object.values(this.model.tables.places)) {
@@ -82,12 +91,10 @@ export class MapView {
         ys.push(place.o[i + 1]);
       }
     }
-    if (xs.length < 3 && map) {
-      const [r, c, s] = [map.resolution, Math.cos(map.yaw), Math.sin(map.yaw)];
-      for (const [u, v] of [[0, 1], [2, 1], [2, 3], [0, 3]]) {
-        const [x, y] = [map.box[u] * r + map.rest[0], map.box[v] * r + map.rest[1]];
-        xs.push(c * x - s * y);
-        ys.push(s * x + c * y);
+    if (xs.length < 3) {
+      for (const [x, y] of this.mapCorners()) {
+        xs.push(x);
+        ys.push(y);
       }
     }
     const pose = this.model.values.pose;
@@ -118,8 +125,21 @@ export class MapView {
     this.touched();
   }
 
+  // The middle of the screen stays where something is: nobody drags the building out of sight.
+  keepInSight() {
+    const box = this.bounds();
+    if (!box) return;
+    const pose = this.model.values.pose;
+    const points = [[box[0], box[1]], [box[2], box[3]], ...this.mapCorners(), ...(pose ? [[pose.x, pose.y]] : [])];
+    this.center = this.center.map((at, k) => {
+      const all = points.map((point) => point[k]);
+      return Math.max(Math.min(...all), Math.min(Math.max(...all), at));
+    });
+  }
+
   touched() {
     this.untouched = false;
+    this.keepInSight();
     this.invalidate();
   }
 
@@ -183,7 +203,7 @@ export class MapView {
       this.invalidate();
     });
     // A tap opens a card; the click that browsers make of it must not press what has come under the finger.
-    this.canvas.addEventListener("touchend", (event) => event.preventDefault(), {passive: false});
+    this.canvas.addEventListener("touchend", (event) => { if (event.cancelable) event.preventDefault(); }, {passive: false});
     const end = (event) => {
       const pointer = this.pointers.get(event.pointerId);
       this.pointers.delete(event.pointerId);
