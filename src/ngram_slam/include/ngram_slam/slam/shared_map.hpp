@@ -41,8 +41,8 @@ struct SharedMapState {
 /// start: nothing is taken over from the last time but the frame). Meanwhile keyframes that came
 /// since lie where the last ones of their run that were merged say.
 ///
-/// The shared map is the merged map of most robots, of the first one among equals; until anything
-/// is merged, that of the first robot which has one. A robot that begins another map leaves its
+/// The shared map is the merged map of most robots, among equals the one that it was, else that of
+/// the first robot; until anything is merged, that of the first robot which has one. A robot that begins another map leaves its
 /// former one, unless the new one goes on with it. Not thread-safe; deterministic.
 class SharedMap {
  public:

@@ -217,9 +217,10 @@ void SharedMap::apply(const Work& work, const MergedMaps& merged) {
   ++merges_;
   remarks_ = merged.left_out;
   remarks_.insert(remarks_.end(), merged.doubtful.begin(), merged.doubtful.end());
-  // The map in which most robots are now.
+  // The map in which most robots are now; among equals that which it was: nobody's frame jumps.
   const MergedMap* shared = nullptr;
   std::set<std::size_t> best;
+  bool is_anchored = false;
   for (const MergedMap& map : merged.maps) {
     std::set<std::size_t> robots;
     for (const MergedPart& part : map.parts) {
@@ -229,11 +230,20 @@ void SharedMap::apply(const Work& work, const MergedMaps& merged) {
         robots.insert(session->key.robot);
       }
     }
-    const bool better = robots.size() > best.size() ||
-                        (!robots.empty() && robots.size() == best.size() && robots < best);
+    if (robots.empty()) continue;
+    const bool anchored =
+        std::any_of(map.parts.begin(), map.parts.end(), [&](const MergedPart& part) {
+          return anchor_ && work.keys[part.session] == *anchor_ && !part.session_runs.empty();
+        });
+    const auto rank = [](const std::set<std::size_t>& in, bool anchors) {
+      return std::make_tuple(in.size(), anchors);
+    };
+    const bool better = rank(robots, anchored) > rank(best, is_anchored) ||
+                        (rank(robots, anchored) == rank(best, is_anchored) && robots < best);
     if (better) {
       shared = &map;
       best = robots;
+      is_anchored = anchored;
     }
   }
   if (shared == nullptr) return;
