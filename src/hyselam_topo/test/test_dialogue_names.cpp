@@ -42,6 +42,28 @@ TEST(DialogueNames, ANameThatIsTypedInPortugueseReplacesItsOldOne) {
   EXPECT_FALSE(has(allSaid(&talk), "Ana"));
 }
 
+TEST(DialogueNames, AWrongGuessThatIsForgottenTellsNothingOfThePlace) {
+  Talk talk;
+  talk.say("The library is next to the kitchen.");
+  for (const auto& place : talk.dialogue.map().places) {
+    if (hyselam_topo::nameStateOf(place) != hyselam_topo::NameState::kUnconfirmed) continue;
+    talk.dialogue.forget(place.id);
+    EXPECT_FALSE(has(allSaid(&talk), hyselam_topo::codeOf(place) + " is next to"))
+        << allSaid(&talk);
+    return;
+  }
+  FAIL() << "nothing was guessed";
+}
+
+TEST(DialogueNames, ANameLikeANumberOfAnotherPlaceMisleadsNobody) {
+  Talk talk;
+  talk.dialogue.name(1, {"SS02"});
+  const auto reply = talk.dialogue.hear("Go to SS02.");
+  ASSERT_FALSE(reply.actions.empty()) << reply.text();
+  ASSERT_FALSE(reply.actions.back().legs.empty()) << reply.text();
+  EXPECT_EQ(reply.actions.back().legs.back().places.back(), 2u);
+}
+
 TEST(DialogueNames, ASentenceThatAddsANameAddsIt) {
   Talk talk;
   talk.say("This is the kitchen.");

@@ -56,6 +56,12 @@ TEST(Tools, TrainAndEvaluateWriteTheirFiles) {
                 .status,
             0);
   EXPECT_NE(fileBytes(f / "x.svm").find("svm_type c_svc"), std::string::npos);
+  // Without a support vector machine the file stays what it was.
+  EXPECT_EQ(run(f, "train --labels " + (f / "labels.csv") + " --libsvm " + (f / "x.svm") +
+                       " --out " + (f / "n"))
+                .status,
+            1);
+  EXPECT_NE(fileBytes(f / "x.svm").find("svm_type c_svc"), std::string::npos);
   writeFile(f / "map.csv", "hall,kitchen\n");
   for (const std::string filter : {"none", "lowpass", "markov", "bayes"}) {
     const Result r =

@@ -88,9 +88,11 @@ Reply Dialogue::forget(Id place) {
   if (known != nullptr) old = namesOf(*known);
   const bool guessed = known != nullptr && nameStateOf(*known) == NameState::kUnconfirmed;
   places_.forget(place);
-  dropTold(place, old);
   if (guessed) {
+    // What was told is not about this place.
     for (const std::string& name : old) builder_.forgetName(name);
+  } else {
+    dropTold(place, old);
   }
   matchDescription(out, false);
   if (question().isAboutName() && question().place == place) talk_.questions.drop();
@@ -175,8 +177,9 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
     codes.push_back(codeOf(*places_.map().findPlace(id)));
     if (by_name) continue;
     const std::vector<std::string> names = namesOf(*places_.map().findPlace(id));
+    const bool guessed = nameStateOf(*places_.map().findPlace(id)) == NameState::kUnconfirmed;
     had = places_.forget(id) || had;
-    dropTold(id, names);
+    if (!guessed) dropTold(id, names);
   }
   if (by_name) {
     const std::string& name = said.front().text;

@@ -248,6 +248,10 @@ std::vector<Id> PlaceMan::rename(Id id, const std::vector<std::string>& names) {
 }
 
 std::vector<Id> PlaceMan::find(const std::string& name) const {
+  // The map's own name is that place whatever people call others.
+  for (const Place& place : state_.map.places) {
+    if (codeOf(place) == name) return {place.id};
+  }
   for (const bool confirmed : {true, false}) {
     std::vector<std::vector<std::string>> lists;
     for (const Place& place : state_.map.places) {

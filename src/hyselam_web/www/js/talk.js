@@ -5,7 +5,7 @@ import {corrected, plain, told} from "./wording.js";
 import {canListen, listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
-const TAKEN = /^(Noted:|Thank you\. |That moves|I have (added|forgotten|a place)|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Acrescentei|Esqueci|Anotei|Desfiz|Então .* volta a ser|Tenho (um )?lugar)/;
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|a place)|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Anotei|Desfiz|Então .* volta a ser|Tenho (um )?lugar)/;
 const MAX_CHIPS = 8;
 
 export function reasonOf(error) {

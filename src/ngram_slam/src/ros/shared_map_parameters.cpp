@@ -59,6 +59,9 @@ void SharedMapServerParams::validate() const {
     if (!ros::names::validate(name, reason)) {
       throw ParameterError("robots", "'" + name + "'", "names of namespaces: " + reason);
     }
+    if (name.find('~') != std::string::npos) {
+      throw ParameterError("robots", "'" + name + "'", "names of namespaces, which have no '~'");
+    }
   }
   if (global_frame_id.empty()) throw ParameterError("global_frame_id", "''", "a frame");
 }

@@ -92,10 +92,10 @@ std_msgs::Header SharedMapServer::header() const {
 // ---- what the robots tell
 
 void SharedMapServer::poll(std::size_t robot) {
-  const std::string service = nh_.resolveName(names_[robot] + "/slam_graph");
+  // Not persistent: it connects anew for each call, also after the robot has left and come back.
+  ros::ServiceClient client =
+      nh_.serviceClient<hyselam_msgs::SlamGraph>(nh_.resolveName(names_[robot] + "/slam_graph"));
   do {
-    // A client of its own each time: one that was there when the robot left stays invalid.
-    ros::ServiceClient client = nh_.serviceClient<hyselam_msgs::SlamGraph>(service);
     while (ask(robot, &client)) {
     }
   } while (waitFor(params_.poll_period));
@@ -116,7 +116,7 @@ bool SharedMapServer::ask(std::size_t robot, ros::ServiceClient* client) {
     try {
       take(robot, srv.response);
       more = srv.response.complete == 0 && !srv.response.new_keyframes.empty();
-    } catch (const hyselam::Error& e) {
+    } catch (const std::exception& e) {
       reason = e.what();
     }
   }

@@ -59,6 +59,10 @@ TrainedClassifier trainClassifier(const Samples& samples, int places,
                                   const ClassifierParams& params, const std::string& libsvm_file) {
   params.validate();
   requireTwoClasses(samples, places);
+  if (!libsvm_file.empty() && comparesExemplars(params.kernel)) {
+    throw hyselam::InputError(
+        libsvm_file, "", "only support vector machines have a file of libsvm: linear, poly or rbf");
+  }
   if (params.kernel == SvmKernel::kExemplar) {
     return {std::make_unique<ExemplarClassifier>(samples, places, params), ""};
   }

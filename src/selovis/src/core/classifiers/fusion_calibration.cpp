@@ -245,7 +245,7 @@ void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector
     const double least =
         std::max(kMinSquaredDistance, static_cast<double>(nearest.front().distance));
     for (const Neighbor& n : nearest) {
-      const double w = std::exp(-beta * (n.distance - least) / least);
+      const double w = std::exp(-beta * std::max(0.0, n.distance - least) / least);
       out[static_cast<std::size_t>(labels[n.sample])] += w;
       sum += w;
     }
