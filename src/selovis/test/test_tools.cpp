@@ -60,7 +60,7 @@ TEST(Tools, TrainAndEvaluateWriteTheirFiles) {
   EXPECT_EQ(run(f, "train --labels " + (f / "labels.csv") + " --libsvm " + (f / "x.svm") +
                        " --out " + (f / "n"))
                 .status,
-            1);
+            2);
   EXPECT_NE(fileBytes(f / "x.svm").find("svm_type c_svc"), std::string::npos);
   writeFile(f / "map.csv", "hall,kitchen\n");
   for (const std::string filter : {"none", "lowpass", "markov", "bayes"}) {
