@@ -43,16 +43,22 @@ TEST(DialogueNames, ANameThatIsTypedInPortugueseReplacesItsOldOne) {
 }
 
 TEST(DialogueNames, AWrongGuessThatIsForgottenTellsNothingOfThePlace) {
-  Talk talk;
-  talk.say("The library is next to the kitchen.");
-  for (const auto& place : talk.dialogue.map().places) {
-    if (hyselam_topo::nameStateOf(place) != hyselam_topo::NameState::kUnconfirmed) continue;
-    talk.dialogue.forget(place.id);
-    EXPECT_FALSE(has(allSaid(&talk), hyselam_topo::codeOf(place) + " is next to"))
-        << allSaid(&talk);
-    return;
+  for (const bool spoken : {false, true}) {
+    Talk talk;
+    talk.say("The library is next to the kitchen.");
+    const auto& places = talk.dialogue.map().places;
+    const auto guessed = std::find_if(places.begin(), places.end(), [](const auto& place) {
+      return hyselam_topo::nameStateOf(place) == hyselam_topo::NameState::kUnconfirmed;
+    });
+    ASSERT_NE(guessed, places.end()) << "nothing was guessed";
+    const hyselam_topo::Id id = guessed->id;
+    const std::string code = hyselam_topo::codeOf(*guessed), name = talk.names(id).front();
+    const std::string reply =
+        spoken ? talk.say("Forget the name of " + code + ".") : talk.dialogue.forget(id).text();
+    EXPECT_TRUE(has(reply, "forgotten")) << reply;
+    for (const auto& place : places) EXPECT_NE(talk.names(place.id), Names{name}) << reply;
+    EXPECT_FALSE(has(allSaid(&talk), code + " is next to")) << allSaid(&talk);
   }
-  FAIL() << "nothing was guessed";
 }
 
 TEST(DialogueNames, ANameLikeANumberOfAnotherPlaceMisleadsNobody) {

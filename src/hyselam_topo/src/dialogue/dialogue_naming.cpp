@@ -80,20 +80,26 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
   return out;
 }
 
+/// Of the map, and of what was told: that a place was called so, or, where it was only guessed to
+/// be that place, all of the name, which would be guessed again.
+bool Dialogue::forgetNamesOf(Id id) {
+  const Place* known = places_.map().findPlace(id);
+  if (known == nullptr) return places_.forget(id);
+  const std::vector<std::string> old = namesOf(*known);
+  const bool guessed = nameStateOf(*known) == NameState::kUnconfirmed;
+  const bool had = places_.forget(id);
+  if (guessed) {
+    for (const std::string& name : old) builder_.forgetName(name);
+  } else {
+    dropTold(id, old);
+  }
+  return had;
+}
+
 Reply Dialogue::forget(Id place) {
   Reply out = reply();
   const Change change(this);
-  const Place* known = places_.map().findPlace(place);
-  std::vector<std::string> old;
-  if (known != nullptr) old = namesOf(*known);
-  const bool guessed = known != nullptr && nameStateOf(*known) == NameState::kUnconfirmed;
-  places_.forget(place);
-  if (guessed) {
-    // What was told is not about this place.
-    for (const std::string& name : old) builder_.forgetName(name);
-  } else {
-    dropTold(place, old);
-  }
+  forgetNamesOf(place);
   matchDescription(out, false);
   if (question().isAboutName() && question().place == place) talk_.questions.drop();
   dropStaleQuestion();
@@ -158,7 +164,8 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
   }
   const Change change(this);
   const std::vector<SaidName> said = u.names("place");
-  const bool by_name = !said.empty() && said.front().reference.empty();
+  const bool by_name =
+      !said.empty() && said.front().reference.empty() && !isCode(said.front().text);
   const bool told = by_name && !builder_.find(said.front().text).empty();
   if (told && places_.find(said.front().text).empty()) {  // known from descriptions only
     const bool gone = builder_.forgetName(said.front().text);
@@ -176,10 +183,7 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
   for (const Id id : found) {
     codes.push_back(codeOf(*places_.map().findPlace(id)));
     if (by_name) continue;
-    const std::vector<std::string> names = namesOf(*places_.map().findPlace(id));
-    const bool guessed = nameStateOf(*places_.map().findPlace(id)) == NameState::kUnconfirmed;
-    had = places_.forget(id) || had;
-    if (!guessed) dropTold(id, names);
+    had = forgetNamesOf(id) || had;
   }
   if (by_name) {
     const std::string& name = said.front().text;

@@ -298,6 +298,7 @@ class Dialogue {
   void tellNamesAgain(const PlaceMan::Names& since, Reply& reply) const;
   /// Names of a place that are no more are gone from what was told, too, but not what was told of
   /// the place.
+  bool forgetNamesOf(Id place);
   void dropTold(Id place, const std::vector<std::string>& names);
   void forgetNames(const Utterance& u, Turn& turn);
   void askForgetEverything(const Utterance& u, Turn& turn);
