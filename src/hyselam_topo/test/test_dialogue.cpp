@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
@@ -335,6 +336,31 @@ TEST(Dialogue, AsksForTheNameThatSeparatesEqualAssignments) {
   v.say("Room B.");
   EXPECT_EQ(v.names(asked), std::vector<std::string>{"room B"});
   EXPECT_LT(v.dialogue.match()->equal, before);
+}
+
+TEST(Dialogue, ASentenceThatLetsMoreAnswersFitMovesNoName) {
+  Visit v;
+  tellOfGlass(&v);
+  v.segment();
+  v.at(1.0, 1.2, 0.0);
+  v.say("You are in the corridor. The corridor is connected to room M.");
+  const auto where = [&v] {
+    std::map<std::string, std::vector<Id>> places;
+    for (const auto& place : v.dialogue.map().places) {
+      for (const std::string& name : v.names(place.id)) places[name].push_back(place.id);
+    }
+    return places;
+  };
+  auto known = where();
+  // Rooms that come before it in the alphabet, and after it.
+  for (const char* name : {"room C", "room X", "room A", "the kitchen", "the archive"}) {
+    const Reply told = v.say("The corridor is connected to " + std::string(name) + ".");
+    EXPECT_FALSE(has(told, "moves")) << told.text();
+    auto now = where();
+    for (const auto& [before, places] : known) EXPECT_EQ(now[before], places) << before;
+    known = std::move(now);
+  }
+  EXPECT_EQ(known.size(), 7U);
 }
 
 TEST(Dialogue, ANoAboutAnotherPlaceIsFollowedByAQuestionAboutThatPlace) {

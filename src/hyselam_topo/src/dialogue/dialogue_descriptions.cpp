@@ -263,6 +263,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
     const MatchProblem problem =
         compileMatch(building, places_.map(), observer, constraintsOf(places_, builder_));
     talk_.match = solveExact(problem, params_.match);
+    leaveWhereGuessed(guessed_before, problem, params_.match, building, &*talk_.match);
     if (report && params_.ask_from_afar && talk_.match->found()) problem_to_ask = problem;
     if (talk_.match->found()) {
       std::vector<std::pair<Id, std::vector<std::string>>> guesses;

@@ -28,6 +28,21 @@ std::vector<Id> only(const std::set<Id>& a, const std::set<Id>& b) {
   return difference;
 }
 
+/// Of each name the vertices where it was guessed; empty where it was not.
+std::vector<PlaceSet> verticesOf(const GuessedPlaces& guessed, const MatchProblem& problem,
+                                 const DescribedBuilding& building) {
+  std::vector<PlaceSet> vertices(problem.nameCount());
+  for (std::size_t i = 0; i < problem.nameCount(); ++i) {
+    const DescribedPlace* place = building.findPlace(problem.names[i]);
+    const auto found = place == nullptr ? guessed.end() : guessed.find(place->name);
+    if (found == guessed.end()) continue;
+    for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+      if (found->second.count(problem.vertices[v]) != 0) vertices[i].insert(v);
+    }
+  }
+  return vertices;
+}
+
 }  // namespace
 
 GuessedPlaces guessedPlaces(const PlaceMan& places, const DescribedBuilding& building) {
@@ -60,6 +75,45 @@ std::vector<MovedName> movedNames(const GuessedPlaces& before, const PlaceMan& p
     if (!each.from.empty() && !each.to.empty()) moved.push_back(std::move(each));
   }
   return moved;
+}
+
+void leaveWhereGuessed(const GuessedPlaces& before, const MatchProblem& problem,
+                       const SolverParams& params, const DescribedBuilding& building,
+                       PlaceAssignment* match) {
+  if (before.empty() || !match->found() || match->equal < 2) return;
+  const std::vector<PlaceSet> known = verticesOf(before, problem, building);
+  const auto left = [&](const MatchSolution& solution) {
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
+      const int name = nameAt(solution, v);
+      count += name >= 0 && known[static_cast<std::size_t>(name)].contains(v);
+    }
+    return count;
+  };
+  std::vector<MatchSolution>& all = match->solutions;
+  if (match->more) {
+    MatchProblem as_before = problem;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (!known[i].empty()) as_before.allowed[i] &= known[i];
+    }
+    SolverParams one = params;
+    one.max_solutions = 1;
+    one.keep_within = 0.0;
+    const PlaceAssignment found = solveExact(as_before, one);
+    if (found.found() && found.best().fitness >= match->best().fitness - kEqualFitness &&
+        std::find_if(all.begin(), all.end(), [&](const MatchSolution& s) {
+          return s.assignment == found.best().assignment;
+        }) == all.end()) {
+      all.insert(all.begin() + 1, found.best());
+      ++match->equal;
+    }
+  }
+  auto best = all.begin();
+  const auto equal = all.begin() + static_cast<std::ptrdiff_t>(match->equal);
+  for (auto s = all.begin() + 1; s != equal; ++s) {
+    if (s->vertices <= all.front().vertices && left(*s) > left(*best)) best = s;
+  }
+  std::rotate(all.begin(), best, best + 1);
 }
 
 Uncertainty uncertaintyOf(const PlaceAssignment& match, const MatchProblem& problem,

@@ -23,6 +23,13 @@ GuessedPlaces guessedPlaces(const PlaceMan& places, const DescribedBuilding& bui
 std::vector<MovedName> movedNames(const GuessedPlaces& before, const PlaceMan& places,
                                   const DescribedBuilding& building);
 
+/// Leads with that one of the equally good answers which leaves most names where they were guessed
+/// before: a true sentence that lets more answers fit moves no name. Of those that name no more
+/// places than the first; where more fit than were kept, the names are looked for where they were.
+void leaveWhereGuessed(const GuessedPlaces& before, const MatchProblem& problem,
+                       const SolverParams& params, const DescribedBuilding& building,
+                       PlaceAssignment* match);
+
 /// Names that equally good answers put elsewhere, and those whose calibrated probability is too
 /// small (nameUncertainties()).
 Uncertainty uncertaintyOf(const PlaceAssignment& match, const MatchProblem& problem,
