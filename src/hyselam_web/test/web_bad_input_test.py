@@ -22,6 +22,7 @@ REFUSED = {
     "a_sentence_without_text": ('{"do":"say"}', "invalid"), "a_sentence_that_is_a_number": ('{"do":"say","text":1}', "invalid"),
     "an_empty_sentence": ('{"do":"say","text":""}', "invalid"), "a_sentence_of_control_characters": ('{"do":"say","text":"\\u0000\\u202e\\n"}', "invalid"),
     "a_sentence_that_is_too_long": (json.dumps({"do": "say", "text": "x" * (limits.MAX_TEXT + 1)}), "invalid"),
+    "a_sentence_to_try_that_is_too_long": (json.dumps({"do": "try", "text": "x" * (limits.MAX_QUESTION + 1)}), "invalid"),
     "a_field_too_many": ('{"do":"say","text":"hi","path":"/etc/passwd"}', "invalid"), "a_path_to_save_to": ('{"do":"save","path":"/tmp/x"}', "invalid"),
     "a_place_below_zero": ('{"do":"go","place":-1,"language":"en"}', "invalid"), "a_place_that_is_a_fraction": ('{"do":"go","place":1.5,"language":"en"}', "invalid"),
     "a_place_that_is_true": ('{"do":"go","place":true,"language":"en"}', "invalid"), "a_place_that_is_text": ('{"do":"go","place":"1","language":"en"}', "invalid"),

@@ -89,6 +89,12 @@ class FloodsTest(Case):
         answers = [page.ask("doctor") for _ in range(6)]
         self.assertEqual(sum("done" in a for a in answers), limits.RATES["slow"][0])
 
+    def test_sentences_that_are_only_tried_do_not_hold_up_what_is_done(self):
+        page = self.open()
+        answers = [page.ask("try", text="Where is the lab?") for _ in range(3 * limits.RATES["try"][0])]
+        self.assertIn("too_often", [a.get("error") for a in answers])
+        self.assertEqual(page.ask("go", place=1, language="en").get("error"), None)
+
     def test_too_many_pages_of_one_address_are_refused(self):
         pages = [self.open() for _ in range(limits.MAX_PAGES_OF_ADDRESS)]
         with self.assertRaises(aiohttp.WSServerHandshakeError) as caught:

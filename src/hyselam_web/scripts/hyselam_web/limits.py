@@ -3,6 +3,7 @@ import collections
 
 MAX_MESSAGE_BYTES = 16384  # of one frame from a page
 MAX_TEXT = 2000  # characters of a sentence
+MAX_QUESTION = 200  # of a sentence that is only tried
 MAX_NAME = 80
 MAX_NAMES = 8
 MAX_PAGES = 100
@@ -12,7 +13,7 @@ STALLED = 30.0  # [s] that a page may not take anything
 FLOOD = 200  # refused messages at once after which a page is disconnected
 
 # What may be asked for: so many at once, so many a second.
-RATES = {"message": (40, 20.0), "say": (5, 1.0), "act": (10, 2.0), "slow": (2, 0.1),
+RATES = {"message": (40, 20.0), "say": (5, 1.0), "try": (5, 1.0), "act": (10, 2.0), "slow": (2, 0.1),
          "refused": (FLOOD, 1.0), "reason": (20, 1.0),  # refusals of a page, and those that are told
          "login": (5, 0.1), "logins": (300, 10.0)}  # wrong ones, of an address and of all
 

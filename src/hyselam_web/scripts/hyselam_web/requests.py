@@ -10,7 +10,7 @@ REQUESTS = {
     "stop": ("", "message", {}),
     "hide": ("look", "message", {"on": "flag"}),
     "say": ("talk", "say", {"text": "text"}),
-    "try": ("talk", "act", {"text": "text"}),
+    "try": ("talk", "try", {"text": "short"}),
     "name": ("talk", "act", {"place": "id", "names": "names"}),
     "go": ("drive", "act", {"place": "id", "language": "language"}),
     "here": ("drive", "act", {"place": "id"}),
@@ -49,8 +49,9 @@ def checked(kind, value):
         return float(value) if fits else None
     if kind == "language":
         return value if value in ("en", "pt") else None
-    if kind == "text":
-        return clean(value) if isinstance(value, str) and len(value) <= limits.MAX_TEXT else None
+    if kind in ("text", "short"):
+        most = limits.MAX_TEXT if kind == "text" else limits.MAX_QUESTION
+        return clean(value) if isinstance(value, str) and len(value) <= most else None
     if kind == "names":
         if not isinstance(value, list) or len(value) > limits.MAX_NAMES:
             return None

@@ -52,12 +52,27 @@ def coarse(cells):
     return np.where(count(OCCUPIED) >= WALL_SHARE, OCCUPIED, np.where(free + unsure == 0, UNKNOWN, np.where(free >= unsure, FREE, UNSURE))).astype(np.uint8)
 
 
+def overview_of(coarse_tiles):
+    """What MapTiles.overview() tells of the coarse tiles {(column, row): classes}."""
+    if not coarse_tiles:
+        return None
+    columns, rows = zip(*coarse_tiles)
+    left, low = min(columns), min(rows)
+    side = SIDE // COARSE
+    if (max(rows) - low + 1) * (max(columns) - left + 1) * side * side > MAX_COARSE:
+        return None
+    whole = np.zeros(((max(rows) - low + 1) * side, (max(columns) - left + 1) * side), np.uint8)
+    for (column, row), cells in coarse_tiles.items():
+        whole[(row - low) * side:(row - low + 1) * side, (column - left) * side:(column - left + 1) * side] = cells
+    return left, low, png(whole)
+
+
 class Prepared:
     """What a new map changes; commit() takes it over."""
 
-    def __init__(self, identity, info, pictures, checksums, emptied, coarse_tiles):
+    def __init__(self, identity, info, pictures, checksums, emptied, coarse_tiles, overview):
         self.identity, self.info, self.pictures, self.checksums, self.emptied = identity, info, pictures, checksums, emptied
-        self.coarse_tiles = coarse_tiles
+        self.coarse_tiles, self.overview = coarse_tiles, overview
 
 
 class MapTiles:
@@ -105,7 +120,8 @@ class MapTiles:
         emptied = [key for key, (_, picture) in self.tiles.items() if picture and key not in checksums]
         info = {"resolution": resolution, "yaw": round(yaw, 6), "rest": [round(v, 6) for v in rest], "side": SIDE,
                 "box": [column, row, column + width, row + height]}
-        return Prepared(identity, info, pictures, checksums, emptied, coarse_tiles)
+        all_coarse = {key: coarse_tiles.get(key, self._coarse.get(key)) for key in checksums}
+        return Prepared(identity, info, pictures, checksums, emptied, all_coarse, overview_of(all_coarse))
 
     def commit(self, prepared, next_version):
         """next_version() numbers each changed tile. Returns how many changed."""
@@ -114,22 +130,11 @@ class MapTiles:
         for key, picture in prepared.pictures.items():
             self.tiles[key] = (next_version(), picture)
         self._identity, self._checksums, self.info = prepared.identity, prepared.checksums, prepared.info
-        self._coarse = {key: prepared.coarse_tiles.get(key, self._coarse.get(key)) for key in prepared.checksums}
-        self._overview = None
+        self._coarse, self._overview = prepared.coarse_tiles, prepared.overview
         return len(prepared.pictures) + len(prepared.emptied)
 
     def overview(self):
         """(column, row, PNG) of the lowest left tile and of all tiles in one coarse picture; None: there are none, or it would be too large."""
-        if self._overview is None and self._coarse:
-            columns, rows = zip(*self._coarse)
-            left, low = min(columns), min(rows)
-            side = SIDE // COARSE
-            if (max(rows) - low + 1) * (max(columns) - left + 1) * side * side > MAX_COARSE:
-                return None
-            whole = np.zeros(((max(rows) - low + 1) * side, (max(columns) - left + 1) * side), np.uint8)
-            for (column, row), cells in self._coarse.items():
-                whole[(row - low) * side:(row - low + 1) * side, (column - left) * side:(column - left + 1) * side] = cells
-            self._overview = (left, low, png(whole))
         return self._overview
 
     def changed_since(self, version):

@@ -8,6 +8,7 @@ const UNSURE = /not sure where|places fit|answers fit|certeza onde|respostas ser
 const TAKEN_DOWN = /^(Noted:|Anotado:)/;
 const NO = /^(no|não|nao)\b/i;
 const MAX_BUTTONS = 5;
+const LONGEST = 200; // characters of a sentence that the server tries
 
 export class NextStep {
   // actions: say(text), pick(name, places) lets a place be tapped, marked(places or null) marks places on the map
@@ -33,6 +34,7 @@ export class NextStep {
 
   // Nothing is offered that would not be understood; until that is known it is not offered.
   isUnderstood(sentence) {
+    if (sentence.length > LONGEST) return false;
     if (!this.tried.has(sentence)) {
       this.tried.set(sentence, false);
       this.connection.ask("try", {text: told(sentence, this.model)}).then(({understood}) => {
