@@ -131,7 +131,7 @@ std::string DescriptionBuilder::ofSpeaker(const std::string& kind) const {
 std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
   const DescriptionState before = state_;
   const DescribedBuilding* before_last =
-      history_.empty() ? nullptr : &history_.back().before.building;
+      history_.empty() ? nullptr : &history_.back().base().building;
   const Listener listener{names_,    grammars_[language_], params_,    speaker_,
                           accepted_, viewpoint_,           before_last};
   state_.context.after_refusal = false;
@@ -162,8 +162,12 @@ std::vector<DescriptionIssue> DescriptionBuilder::record(const Utterance& u) {
 }
 
 void DescriptionBuilder::remember(const DescriptionState& before, const Utterance& said) {
+  remember(Recorded{before, said});
+}
+
+void DescriptionBuilder::remember(Recorded recorded) {
   if (history_.size() == kLongestHistory) history_.erase(history_.begin());
-  history_.push_back({before, said});
+  history_.push_back(std::move(recorded));
   ++statements_;
 }
 
@@ -205,7 +209,7 @@ std::vector<DescriptionIssue> DescriptionBuilder::replaceLast(const Utterance& u
                   issueText(grammar, "replace_what", {{"name", name[0].text}, {"names", all}}));
   }
   *meant.front() = name[0];
-  return recordInstead(again);
+  return recordInstead(again, u);
 }
 
 std::vector<DescriptionIssue> DescriptionBuilder::replaceNumber(const Utterance& u) {
@@ -229,21 +233,29 @@ std::vector<DescriptionIssue> DescriptionBuilder::replaceNumber(const Utterance&
   const bool with_unit = u.find("unit") != nullptr;
   if (!metric && !with_unit) return refuse("which_number");
   numbers.front()->number = said->number;
-  return recordInstead(again);
+  return recordInstead(again, u);
 }
 
-std::vector<DescriptionIssue> DescriptionBuilder::recordInstead(const Utterance& again) {
+std::vector<DescriptionIssue> DescriptionBuilder::recordInstead(const Utterance& again,
+                                                                const Utterance& correction) {
   const Recorded last = history_.back();
   const DescriptionState now = state_;
   undo();
-  const std::vector<DescriptionIssue> issues = record(again);
-  const bool failed = state_.building == last.before.building;
-  if (failed) {
+  state_ = last.base();
+  std::vector<DescriptionIssue> issues = record(again);
+  if (state_.building == last.base().building) {
     state_ = now;
-    history_.push_back(last);
-    ++statements_;
+    remember(last);
     state_.context.forgetReferences();
+    return issues;
   }
+  Recorded instead{now, std::move(history_.back().said), last.base()};
+  instead.said.text = correction.text;
+  instead.said.range = correction.range;
+  history_.pop_back();
+  --statements_;
+  remember(last);
+  remember(std::move(instead));
   return issues;
 }
 

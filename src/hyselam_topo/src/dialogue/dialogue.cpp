@@ -116,9 +116,10 @@ Reply Dialogue::reply() const {
 Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   Reply out = reply();
   const bool first = !places_.hasMap();
+  const KnownBefore known = knownNow();
   const CarryOverReport report = places_.setMap(fresh);
   topo_state_.mapChanged(places_.map());
-  forgetLost(report.lost);
+  forgetLost(report.lost, known);
   // What there is to ask of the place is asked with the next pose: the names may change now.
   if (robot().has_pose && topo_state_.update(places_.map(), robot().stamp, robot().pose)) {
     talk_.entered = true;
@@ -128,13 +129,13 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   return out;
 }
 
-void Dialogue::forgetLost(const std::vector<Id>& lost) {
+void Dialogue::forgetLost(const std::vector<Id>& lost, const KnownBefore& known) {
   // A map of another frame may give their ids to other places.
   const auto isLost = [&](Id id) { return std::find(lost.begin(), lost.end(), id) != lost.end(); };
   const std::vector<Id> asked = placesIn(question());
   if (std::any_of(asked.begin(), asked.end(), isLost)) talk_.questions.drop();
   dropStaleQuestion();
-  if (!lost.empty()) talk_.changes.clear();  // the names of before are of places that are gone
+  barChangesOf(lost, known);
 }
 
 void Dialogue::setGrid(hyselam::OccupancyGrid grid) {

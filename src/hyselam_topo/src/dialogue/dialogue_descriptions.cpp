@@ -39,10 +39,7 @@ std::string capital(std::string text) {
 }  // namespace
 
 void Dialogue::addStatement(const Utterance& u, Turn& turn) {
-  if (!turn.before) {
-    const std::size_t statements = builder_.statementCount();
-    turn.known_before = {places_.names(), std::nullopt, statements, statements, told_at_};
-  }
+  if (!turn.before) turn.known_before = knownNow();
   // Where the robot has gone is nothing that is told.
   if (u.intent != "robot_in") followRobot(isSeenFromRobot(u) || saysItsCorridor(u));
   if (!turn.before) turn.before = builder_.building();
@@ -57,6 +54,9 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
     return;
   }
   const auto issues = builder_.add(u);
+  // "... Undo that." behind a statement may go further back.
+  turn.known_before.statements =
+      std::min(turn.known_before.statements, builder_.statementCount());
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
   turn.described = true;
   if (u.intent == "robot_in" && !u.word("denied").empty()) {

@@ -178,7 +178,7 @@ bool Dialogue::isOnlyOnMap(const Utterance& u) const {
   });
 }
 
-ParsedText Dialogue::parse(const std::string& text) {
+ParsedText Dialogue::parsed(const std::string& text) const {
   ParseOptions options;
   const bool asks_for_name =
       question().isAboutName() || question().kind == Question::Kind::kSpeaker;
@@ -192,6 +192,11 @@ ParsedText Dialogue::parse(const std::string& text) {
     options.language = language_;
     parsed = parser_.parse(text, options);
   }
+  return parsed;
+}
+
+ParsedText Dialogue::parse(const std::string& text) {
+  ParsedText parsed = this->parsed(text);
   // Answered in the language of the sentence, understood or not: its reason is in that, too.
   if (phrases_.count(parsed.language) != 0) language_ = parsed.language;
   builder_.setLanguage(parsed.language);
@@ -199,11 +204,8 @@ ParsedText Dialogue::parse(const std::string& text) {
 }
 
 std::vector<std::string> Dialogue::notUnderstood(const std::string& text) const {
-  ParseOptions options;
-  options.preferred = language_;
   std::vector<std::string> parts;
-  const ParsedText parsed = parser_.parse(text, options);
-  for (const Utterance& u : parsed.utterances) {
+  for (const Utterance& u : parsed(text).utterances) {
     if (!u.understood()) parts.push_back(u.text);
   }
   return parts;
@@ -347,7 +349,10 @@ bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& 
 
 void Dialogue::tellLeftOut(Turn& turn) {
   std::string all;
-  for (const std::string& words : turn.left_out) all += (all.empty() ? "" : "', '") + words;
+  std::set<std::string> told;
+  for (const std::string& words : turn.left_out) {
+    if (told.insert(words).second) all += (all.empty() ? "" : "', '") + words;
+  }
   if (!all.empty()) turn.not_understood.push_back(phrases().say("left_out", {{"text", all}}));
 }
 

@@ -19,9 +19,33 @@ std::vector<std::string> confirmedOf(const std::vector<PlaceTerm>& words) {
   return names;
 }
 
+bool has(const std::vector<Id>& all, Id id) {
+  return std::find(all.begin(), all.end(), id) != all.end();
+}
+
+/// What people have said of the names of these places.
+PlaceMan::Names namesOf(const std::vector<Id>& places, const PlaceMan::Names& names) {
+  PlaceMan::Names some;
+  for (const auto& each : names.words) {
+    if (has(places, each.first)) some.words.insert(each);
+  }
+  for (const auto& each : names.rejected) {
+    if (has(places, each.first)) some.rejected.push_back(each);
+  }
+  return some;
+}
+
+std::vector<Id> virtualPlacesOf(const AugmentedTopologicalMap& map) {
+  std::vector<Id> all;
+  for (const Place& place : map.places) {
+    if (place.kind == PlaceKind::kVirtual) all.push_back(place.id);
+  }
+  return all;
+}
+
 /// Guesses follow from what is known.
 bool sameNames(const PlaceMan::Names& a, const PlaceMan::Names& b) {
-  return a.rejected == b.rejected &&
+  return a.rejected == b.rejected && a.words.size() == b.words.size() &&
          std::equal(a.words.begin(), a.words.end(), b.words.begin(), b.words.end(),
                     [](const auto& one, const auto& other) {
                       return one.first == other.first &&
@@ -31,13 +55,27 @@ bool sameNames(const PlaceMan::Names& a, const PlaceMan::Names& b) {
 
 }  // namespace
 
+Dialogue::KnownBefore Dialogue::knownNow() const {
+  KnownBefore now;
+  now.names = places_.names();
+  now.walls = places_.walls();
+  now.virtual_places = virtualPlacesOf(places_.map());
+  now.statements = now.after = builder_.statementCount();
+  now.told_at = told_at_;
+  return now;
+}
+
+bool Dialogue::isChanged(const KnownBefore& since) const {
+  return !sameNames(since.names, places_.names()) || !(since.walls == places_.walls()) ||
+         since.virtual_places != virtualPlacesOf(places_.map());
+}
+
 Dialogue::Change::Change(Dialogue* dialogue) {
   if (dialogue->talk_.changing) return;
   dialogue_ = dialogue;
   dialogue_->talk_.changing = true;
-  const std::size_t statements = dialogue_->builder_.statementCount();
-  before_ = {dialogue_->places_.names(), dialogue_->builder_.memory(), statements, statements,
-             dialogue_->told_at_};
+  before_ = dialogue_->knownNow();
+  before_.told = dialogue_->builder_.memory();
 }
 
 Dialogue::Change::Change(Dialogue* dialogue, KnownBefore before) {
@@ -53,14 +91,101 @@ Dialogue::Change::~Change() {
   const DescriptionBuilder& builder = dialogue_->builder_;
   const bool told_more = before_.told ? !(before_.told->state.building == builder.building())
                                       : builder.statementCount() > before_.statements;
-  if (!told_more && sameNames(before_.names, dialogue_->places_.names())) return;
-  dialogue_->remember(std::move(before_));
+  if (told_more || dialogue_->isChanged(before_)) dialogue_->remember(std::move(before_));
 }
 
 void Dialogue::remember(KnownBefore before) {
   before.after = builder_.statementCount();
   talk_.changes.push_back(std::move(before));
-  if (talk_.changes.size() > kLongest) talk_.changes.erase(talk_.changes.begin());
+  if (talk_.changes.size() > kLongest) bar(1, KnownBefore::Barrier::kTooLongAgo);
+}
+
+void Dialogue::bar(std::size_t change, KnownBefore::Barrier why) {
+  auto& all = talk_.changes;
+  KnownBefore barrier;
+  barrier.barrier = why;
+  barrier.statements = barrier.after = all[change].after;
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(change) + 1);
+  all.insert(all.begin(), std::move(barrier));
+}
+
+void Dialogue::barChangesOf(const std::vector<Id>& lost, const KnownBefore& known) {
+  if (lost.empty()) return;
+  auto& all = talk_.changes;
+  for (std::size_t i = all.size(); i-- > 0 && all[i].barrier == KnownBefore::Barrier::kNone;) {
+    const KnownBefore& next = i + 1 < all.size() ? all[i + 1] : known;
+    const auto had = [&](const KnownBefore& each, Id id) { return has(each.virtual_places, id); };
+    const bool is_of_lost =
+        !sameNames(namesOf(lost, all[i].names), namesOf(lost, next.names)) ||
+        std::any_of(lost.begin(), lost.end(),
+                    [&](Id id) { return had(all[i], id) != had(next, id); });
+    if (!is_of_lost) continue;
+    bar(i, KnownBefore::Barrier::kPlaceGone);
+    break;
+  }
+  // Another map may have other places under their ids.
+  for (KnownBefore& each : all) {
+    for (const Id id : lost) each.names.words.erase(id);
+    auto& rejected = each.names.rejected;
+    rejected.erase(std::remove_if(rejected.begin(), rejected.end(),
+                                  [&](const auto& pair) { return has(lost, pair.first); }),
+                   rejected.end());
+    auto& virtuals = each.virtual_places;
+    virtuals.erase(std::remove_if(virtuals.begin(), virtuals.end(),
+                                  [&](Id id) { return has(lost, id); }),
+                   virtuals.end());
+    if (has(lost, each.told_at)) each.told_at = 0;
+  }
+}
+
+std::string Dialogue::barrierToUndo() const {
+  if (talk_.changes.empty()) return "";
+  const KnownBefore& last = talk_.changes.back();
+  if (last.barrier == KnownBefore::Barrier::kNone || builder_.statementCount() > last.after) {
+    return "";
+  }
+  return last.barrier == KnownBefore::Barrier::kPlaceGone ? "cannot_take_back_gone"
+                                                          : "cannot_take_back";
+}
+
+void Dialogue::restoreKnown(const KnownBefore& before, Reply& out) {
+  const Phrases& p = phrases();
+  const PlaceMan::Names since = places_.names();
+  bool moved = false;
+  std::vector<std::string> told;
+  for (const Id id : virtualPlacesOf(places_.map())) {
+    if (has(before.virtual_places, id)) continue;
+    told.push_back(p.say("virtual_gone", {{"code", codeOf(*places_.map().findPlace(id))}}));
+    places_.removeVirtualPlace(id);
+    if (talk_.subject == id) talk_.subject = 0;
+    moved = true;
+  }
+  if (moved) {
+    topo_state_.mapChanged(places_.map());
+    if (robot().has_pose) topo_state_.update(places_.map(), robot().stamp, robot().pose);
+  }
+  const auto isIn = [](const std::vector<DescribedWall>& all, const DescribedWall& wall) {
+    return std::find(all.begin(), all.end(), wall) != all.end();
+  };
+  const std::size_t before_walls = told.size();
+  for (std::size_t i = places_.walls().size(); i-- > 0;) {
+    const DescribedWall wall = places_.walls()[i];
+    if (isIn(before.walls, wall)) continue;
+    places_.removeWall(i);
+    told.push_back(p.say("wall_forgotten", {{"wall", p.wall(wall.kind)}}));
+  }
+  for (const DescribedWall& wall : before.walls) {
+    if (isIn(places_.walls(), wall)) continue;
+    places_.addWall(wall);
+    told.push_back(p.say("wall_added", {{"wall", p.wall(wall.kind)}}));
+  }
+  if (told.size() > before_walls) {
+    out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
+  }
+  places_.restoreNames(before.names);
+  told_at_ = before.told_at;
+  tellNamesAgain(since, out);
+  out.sentences.insert(out.sentences.end(), told.begin(), told.end());
 }
 
 void Dialogue::tellNamesAgain(const PlaceMan::Names& since, Reply& out) const {
@@ -87,21 +212,24 @@ bool Dialogue::takeBack(Turn& turn) {
   Reply& out = turn.reply;
   const Question::Kind asked = question().kind;
   const bool told_last = asked == Question::Kind::kAlsoName || asked == Question::Kind::kNewName;
-  const bool nothing = talk_.changes.empty() && builder_.statementCount() == 0;
+  const std::string barrier = barrierToUndo();
+  const bool nothing =
+      !barrier.empty() || (talk_.changes.empty() && builder_.statementCount() == 0);
   if (told_last || (nothing && question().isAboutName())) {
     talk_.questions.drop();
     say("cancelled", turn);
     return true;
   }
+  if (!barrier.empty()) {
+    say(barrier.c_str(), turn);
+    return true;
+  }
   KnownBefore* last = talk_.changes.empty() ? nullptr : &talk_.changes.back();
-  const PlaceMan::Names since = places_.names();
   const std::size_t statements = builder_.statementCount();
   if (last != nullptr && statements <= (last->told ? last->after : last->statements)) {
     if (last->told) builder_.restore(std::move(*last->told));
-    told_at_ = last->told_at;
-    places_.restoreNames(last->names);
+    restoreKnown(*last, out);
     talk_.changes.pop_back();
-    tellNamesAgain(since, out);
     if (out.sentences.empty()) say("taken_back", turn);
   } else {
     const Utterance* said = builder_.lastStatement();
@@ -109,11 +237,10 @@ bool Dialogue::takeBack(Turn& turn) {
     out.sentences.push_back(phrases().say("statement_taken_back", {{"text", said->text}}));
     builder_.undo();
     if (builder_.building().places.empty()) places_.guess({});
-    if (last != nullptr && !last->told && builder_.statementCount() <= last->statements) {
-      places_.restoreNames(last->names);
-      told_at_ = last->told_at;
+    if (last != nullptr && last->barrier == KnownBefore::Barrier::kNone && !last->told &&
+        builder_.statementCount() <= last->statements) {
+      restoreKnown(*last, out);
       talk_.changes.pop_back();
-      tellNamesAgain(since, out);
     }
   }
   talk_.questions.drop();

@@ -89,6 +89,7 @@ void Dialogue::forgetWall(const Utterance& u, Turn& turn) {
     out.sentences.push_back(p.say("no_wall"));
     return;
   }
+  const Change change(this);
   const WallKind kind = walls[chosen].kind;
   places_.removeWall(chosen);
   out.sentences.push_back(p.say("wall_forgotten", {{"wall", p.wall(kind)}}));
@@ -118,6 +119,7 @@ void Dialogue::addVirtualPlace(const Utterance& u, Turn& turn) {
 void Dialogue::addVirtualAndAsk(hyselam::Point2 centre, double radius,
                                 const std::vector<std::string>& names, Reply& out) {
   const Phrases& p = phrases();
+  const Change change(this);
   Id id = 0;
   try {
     id = places_.addVirtualPlace(centre, radius, names);
@@ -137,6 +139,7 @@ void Dialogue::addVirtualAndAsk(hyselam::Point2 centre, double radius,
 Reply Dialogue::addVirtualPlace(hyselam::Point2 centre, double radius,
                                 const std::vector<std::string>& names) {
   Reply out = reply();
+  const Change change(this);
   const Id id = places_.addVirtualPlace(centre, radius, names);
   out.sentences.push_back(
       phrases().say("virtual_added", {{"code", codeOf(*places_.map().findPlace(id))}}));
@@ -146,6 +149,7 @@ Reply Dialogue::addVirtualPlace(hyselam::Point2 centre, double radius,
 
 Reply Dialogue::addWall(const DescribedWall& wall) {
   Reply out = reply();
+  const Change change(this);
   places_.addWall(wall);
   out.sentences.push_back(phrases().say("wall_added", {{"wall", phrases().wall(wall.kind)}}));
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});

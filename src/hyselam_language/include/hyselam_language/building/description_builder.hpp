@@ -85,7 +85,7 @@ class DescriptionBuilder {
   /// that have it are recorded from now on.
   void acceptName(const std::string& name);
 
-  /// Takes back the last statement that changed the description; false if there is none (at most
+  /// Takes back the last statement that changed the description, be it a correction; false if there is none (at most
   /// the last 32 can be taken back).
   bool undo();
   /// The statement that undo() would take back; nullptr if there is none.
@@ -96,6 +96,10 @@ class DescriptionBuilder {
   struct Recorded {
     DescriptionState before;
     Utterance said;
+    /// Of one that replaced others ("No, seven"): before the first of them.
+    std::optional<DescriptionState> before_replaced = std::nullopt;
+    /// What a replacement of it goes on from.
+    const DescriptionState& base() const { return before_replaced ? *before_replaced : before; }
   };
   /// What was told, with what can be taken back of it.
   struct Memory {
@@ -130,11 +134,12 @@ class DescriptionBuilder {
   Id called(const std::string& name) const;
   std::vector<DescriptionIssue> record(const Utterance& utterance);
   void remember(const DescriptionState& before, const Utterance& said);
+  void remember(Recorded recorded);
   std::vector<DescriptionIssue> replaceLast(const Utterance& utterance);
   /// "No, seven": the one number of the last statement was another one.
   std::vector<DescriptionIssue> replaceNumber(const Utterance& utterance);
-  /// Takes the last statement back and records it as it should have been.
-  std::vector<DescriptionIssue> recordInstead(const Utterance& again);
+  /// Records the last statement as it should have been, in its place; undo() gives it back.
+  std::vector<DescriptionIssue> recordInstead(const Utterance& again, const Utterance& correction);
 
   DescriptionParams params_;
   std::vector<Grammar> grammars_;

@@ -161,7 +161,8 @@ class Dialogue {
   Reply hear(const std::string& text, const HearOptions& options = {});
   /// Obeys stop and cancel in a text of any length, and nothing else of it; nothing without them.
   std::optional<Reply> obeyUrgent(const std::string& text);
-  /// What hear() would not understand of a text, part by part; nothing is done.
+  /// What hear() would not understand of a text, part by part, as an answer to the open question,
+  /// too; nothing is done.
   std::vector<std::string> notUnderstood(const std::string& text) const;
   /// No other node has understood a forwarded sentence: the refusal, or what may have been meant
   /// as a question.
@@ -217,9 +218,13 @@ class Dialogue {
 
  private:
   struct Turn;  // one text of a person: reply, goals and statements while it is handled
+  struct KnownBefore;  // what "undo that" goes back to
   using Handler = void (Dialogue::*)(const Utterance&, Turn&);
 
   const Phrases& phrases() const;
+  /// As what may answer the open question, if need be; nothing is changed.
+  ParsedText parsed(const std::string& text) const;
+  /// The same; the talk goes on in its language.
   ParsedText parse(const std::string& text);
   /// Whether the parser has a grammar of it.
   bool knowsLanguage(const std::string& language) const;
@@ -294,7 +299,7 @@ class Dialogue {
   /// "Undo that": of the question for a name that was told last, else of the last change of what
   /// is known; false if there is none.
   bool takeBack(Turn& turn);
-  /// What has changed since, as sentences.
+  /// Which names have changed since, as sentences.
   void tellNamesAgain(const PlaceMan::Names& since, Reply& reply) const;
   /// Names of a place that are no more are gone from what was told, too, but not what was told of
   /// the place.
@@ -332,7 +337,7 @@ class Dialogue {
   void askNewName(Id place, const std::vector<std::string>& names, const std::string& sentence,
                   Reply& reply);
   /// What was asked or told right before of places that a new map does not have is over.
-  void forgetLost(const std::vector<Id>& lost);
+  void forgetLost(const std::vector<Id>& lost, const KnownBefore& known);
   /// Tells which names are elsewhere now; `asks`: whether that is right.
   void tellMoved(std::vector<MovedName> moved, bool asks, Reply& reply);
   void ask(Question question, const std::string& sentence, Reply& reply);
@@ -435,9 +440,14 @@ class Dialogue {
   std::optional<hyselam::Point2> position_;  ///< then
   Id told_at_ = 0;                           ///< DialogueState::told_at
 
-  /// What "undo that" goes back to.
   struct KnownBefore {
+    /// Nothing before it can be taken back: a place that it was about is gone, or it is too long
+    /// ago.
+    enum class Barrier { kNone, kPlaceGone, kTooLongAgo };
+    Barrier barrier = Barrier::kNone;
     PlaceMan::Names names;
+    std::vector<DescribedWall> walls;
+    std::vector<Id> virtual_places;
     /// Nothing: only statements, which the description takes back itself, and their names.
     std::optional<DescriptionBuilder::Memory> told;
     std::size_t statements = 0;  ///< before ...
@@ -445,7 +455,18 @@ class Dialogue {
     Id told_at = 0;
   };
   class Change;  // of what is known, while it is made
+  KnownBefore knownNow() const;
   void remember(KnownBefore before);
+  /// Whether names, walls or virtual places are others now.
+  bool isChanged(const KnownBefore& since) const;
+  /// The changes up to that one cannot be taken back any more.
+  void bar(std::size_t change, KnownBefore::Barrier why);
+  /// Changes of names of lost places, as all before them; `known` when they were there.
+  void barChangesOf(const std::vector<Id>& lost, const KnownBefore& known);
+  /// Why "undo that" can take nothing back, as a phrase; "" where it can.
+  std::string barrierToUndo() const;
+  /// The map as it was before, without what statements have told.
+  void restoreKnown(const KnownBefore& before, Reply& reply);
   /// What is in no DialogueState: nothing of it outlives restore().
   struct Talk {
     bool entered = false;  ///< the robot's place or the map has changed; not processed yet
