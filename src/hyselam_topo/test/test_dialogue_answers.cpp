@@ -464,6 +464,16 @@ TEST(DialogueNames, UndoRightAfterTakesTheNameBack) {
   EXPECT_TRUE(talk.names(1).empty()) << "a question changes nothing that is known";
 }
 
+TEST(DialogueAnswers, WhatAnswersTheOpenQuestionIsUnderstood) {
+  Talk talk;
+  EXPECT_FALSE(talk.dialogue.notUnderstood("The snug").empty());
+  talk.dialogue.askHere();
+  ASSERT_EQ(talk.asked(), hyselam_topo::Question::Kind::kName);
+  EXPECT_TRUE(talk.dialogue.notUnderstood("The snug").empty());
+  EXPECT_FALSE(talk.dialogue.notUnderstood("The snug sees the the").empty());
+  EXPECT_EQ(talk.asked(), hyselam_topo::Question::Kind::kName) << "nothing is done";
+}
+
 TEST(DialogueAnswers, AreGivenInManyWords) {
   for (const char* said :
        {"yeah that's the one", "It most certainly is.", "Course it is.", "that's correct"}) {

@@ -133,6 +133,111 @@ TEST(DialogueNames, ManyChangesAreTakenBackOneByOne) {
   EXPECT_TRUE(has(talk.say("Undo that."), "nothing was told"));
 }
 
+TEST(DialogueNames, ACorrectionIsTakenBackToWhatWasSaidBefore) {
+  Talk talk;
+  talk.say("You are in the corridor. On your left you have the kitchen.");
+  talk.say("No, the pantry.");
+  talk.say("No, the canteen.");
+  ASSERT_TRUE(has(allSaid(&talk), "canteen")) << allSaid(&talk);
+  EXPECT_TRUE(has(talk.say("Undo that."), "I have taken back: 'the canteen'"));
+  EXPECT_TRUE(has(allSaid(&talk), "pantry")) << allSaid(&talk);
+  EXPECT_TRUE(has(talk.say("Undo that."), "I have taken back: 'the pantry'"));
+  EXPECT_TRUE(has(allSaid(&talk), "kitchen")) << allSaid(&talk);
+  EXPECT_TRUE(has(talk.say("Undo that."), "On your left you have the kitchen"));
+  EXPECT_FALSE(has(allSaid(&talk), "kitchen")) << allSaid(&talk);
+}
+
+TEST(DialogueNames, ARenamingIsOneChange) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.say("The pantry is next to the kitchen.");
+  talk.say("Rename this place to canteen.");
+  ASSERT_EQ(talk.names(1), Names{"canteen"});
+  EXPECT_TRUE(has(talk.say("Undo that."), "kitchen again"));
+  EXPECT_EQ(talk.names(1), Names{"kitchen"});
+  EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "Yes.");
+}
+
+TEST(DialogueNames, AWallIsTakenBackAndComesBack) {
+  Talk talk;
+  hyselam_topo::DescribedWall wall;
+  wall.line = {{1.0, 1.0}, {1.0, 2.0}};
+  talk.say("The lab is next to the library.");
+  talk.dialogue.addWall(wall);
+  hyselam_topo::Reply undone = talk.dialogue.hear("Undo that.");
+  EXPECT_EQ(undone.text(), "I have forgotten the glass wall.");
+  EXPECT_TRUE(undone.has(hyselam_topo::DialogueAction::Kind::kWalls));
+  EXPECT_TRUE(talk.dialogue.places().walls().empty());
+  EXPECT_EQ(talk.say("Is the lab next to the library?"), "Yes.") << "only the wall";
+
+  talk.dialogue.addWall(wall);
+  talk.say("Forget the glass wall.");
+  ASSERT_TRUE(talk.dialogue.places().walls().empty());
+  EXPECT_EQ(talk.say("Undo that."), "I have added the glass wall.");
+  ASSERT_EQ(talk.dialogue.places().walls().size(), 1u);
+  EXPECT_EQ(talk.dialogue.places().walls().front(), wall);
+}
+
+TEST(DialogueNames, AVirtualPlaceIsTakenBackWithItsName) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.dialogue.addVirtualPlace({2.0, 1.5}, 0.5, {"kitchen"});
+  talk.at(2.0);
+  ASSERT_EQ(talk.dialogue.map().places.size(), 3u);
+  ASSERT_NE(talk.dialogue.robot().place, 1u);
+  const std::string reply = talk.say("Undo that.");
+  EXPECT_TRUE(has(reply, "I have removed the virtual place VV03.")) << reply;
+  EXPECT_EQ(talk.dialogue.map().places.size(), 2u);
+  EXPECT_EQ(talk.names(1), Names{"kitchen"}) << "which had lost it";
+  talk.at(2.0);
+  EXPECT_EQ(talk.dialogue.robot().place, 1u);
+}
+
+TEST(DialogueNames, AKnownNameIsForgottenWithoutAnArticle) {
+  Talk talk;
+  talk.dialogue.name(1, {"Narnia"});
+  talk.dialogue.name(2, {"coridor"});
+  talk.say("forget narnia");
+  EXPECT_TRUE(talk.names(1).empty());
+  talk.say("forget coridor");
+  EXPECT_TRUE(talk.names(2).empty());
+  EXPECT_TRUE(has(talk.say("forget mordor"), "I did not understand"));
+}
+
+TEST(DialogueNames, ASlipInANameToForgetIsAskedAbout) {
+  Talk talk;
+  talk.dialogue.name(1, {"Narnia"});
+  const std::string reply = talk.say("forget narnja");
+  EXPECT_TRUE(has(reply, "Did you mean: 'forget \"Narnia\"'?")) << reply;
+  EXPECT_EQ(talk.names(1), Names{"Narnia"});
+  talk.say("Yes.");
+  EXPECT_TRUE(talk.names(1).empty());
+}
+
+// ---- Names of two languages ----
+
+TEST(DialogueNames, AKindOfPlaceIsFoundInTheOtherLanguage) {
+  Talk talk;
+  talk.dialogue.name(2, {"kitchen"});
+  EXPECT_TRUE(has(talk.say("Vá para a cozinha."), "SS02"));
+  EXPECT_TRUE(has(talk.say("Onde fica a cozinha?"), "SS02"));
+  talk.say("A despensa fica ao lado da cozinha.");
+  EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "Yes.");
+  talk.dialogue.name(1, {"casa de banho"});
+  EXPECT_TRUE(has(talk.say("Where is the toilet?"), "SS01"));
+  EXPECT_TRUE(has(talk.say("Where is the library?"), "I do not know the place library"));
+}
+
+TEST(DialogueNames, SeveralOfAKindInTheOtherLanguageAreAskedAbout) {
+  Talk talk;
+  talk.dialogue.name(1, {"toilet"});
+  talk.dialogue.name(2, {"bathroom"});
+  const hyselam_topo::Reply reply = talk.dialogue.hear("Vá para a casa de banho.");
+  EXPECT_TRUE(has(reply.text(), "Pode ser")) << reply.text();
+  EXPECT_FALSE(reply.has(hyselam_topo::DialogueAction::Kind::kGo));
+  EXPECT_TRUE(has(talk.say("Go to the toilet."), "SS01"));
+}
+
 TEST(DialogueNames, ANameThatCameWithAStatementGoesWithIt) {
   Talk talk;
   talk.say("You are in the boiler room. The pantry is next to it.");

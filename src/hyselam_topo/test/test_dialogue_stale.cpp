@@ -158,6 +158,41 @@ TEST(DialogueStale, ANameOfALostPlaceCannotBeTakenBack) {
   }
 }
 
+TEST(DialogueStale, NothingOlderIsTakenBackInsteadOfWhatIsGone) {
+  for (const Id first : {Id{11}, Id{1}}) {
+    Talk talk;
+    talk.say("The lab is next to the library.");
+    talk.say("This is the kitchen.");
+    talk.dialogue.setMap(otherBuilding(first));
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_TRUE(has(talk.say("Undo that."), "no longer on my map"));
+      EXPECT_EQ(talk.say("Is the lab next to the library?"), "Yes.");
+    }
+    talk.say("The pantry is next to the lab.");
+    EXPECT_TRUE(has(talk.say("Undo that."), "I have taken back: 'The pantry"));
+    EXPECT_TRUE(has(talk.say("Undo that."), "no longer on my map"));
+  }
+}
+
+TEST(DialogueStale, WhatWasSaidOfOtherPlacesIsTakenBackAfterAPlaceIsLost) {
+  Talk talk;
+  talk.say("This is the kitchen.");
+  talk.say("The lab is next to the library.");
+  talk.dialogue.setMap(otherBuilding(11));
+  EXPECT_TRUE(has(talk.say("Undo that."), "I have taken back: 'The lab"));
+  EXPECT_TRUE(has(talk.say("Undo that."), "no longer on my map"));
+}
+
+TEST(DialogueStale, WhatIsTooLongAgoIsToldSo) {
+  Talk talk;
+  talk.say("The lab is next to the library.");
+  for (int i = 0; i < 20; ++i) talk.dialogue.name(1, {i % 2 == 0 ? "kitchen" : "canteen"});
+  std::string reply;
+  for (int i = 0; i < 16; ++i) reply = talk.say("Undo that.");
+  EXPECT_TRUE(has(reply, "too long ago")) << reply;
+  EXPECT_EQ(talk.say("Is the lab next to the library?"), "Yes.");
+}
+
 TEST(DialogueStale, AQuestionIsOverWithItsPlace) {
   for (const Id first : {Id{11}, Id{1}}) {
     Talk talk;

@@ -78,6 +78,7 @@ std::vector<std::string> wordsOfName(const std::string& name) {
 
 SameName compare(const NameKey& a, const NameKey& b) {
   if (a.full == b.full) return SameName::kYes;
+  if (!a.kind.empty() && a.kind == b.kind && a.language != b.language) return SameName::kPerhaps;
   if (a.core.empty() || a.core != b.core) return SameName::kNo;
   if (a.title == b.title) return SameName::kYes;
   return a.title.empty() || b.title.empty() ? SameName::kPerhaps : SameName::kNo;
@@ -97,6 +98,16 @@ NameKey PlaceNames::key(const std::string& name) const {
   const bool article = words.size() > 1 && words[0].size() > 1 &&
                        anyType([&](const NameType* type) { return type->isArticle(words[0]); });
   if (article) words.erase(words.begin());
+  std::string whole;
+  for (const std::string& word : words) whole += (whole.empty() ? "" : " ") + word;
+  for (std::size_t i = 0; i < grammars_.size() && key.kind.empty(); ++i) {
+    const NameType* type = grammars_[i].compiled().nameType(type_);
+    if (type == nullptr) continue;
+    const auto kind = type->kinds.find(whole);
+    if (kind == type->kinds.end()) continue;
+    key.kind = kind->second;
+    key.language = i;
+  }
   ownerFirst(types, &words);
   dropJoiners(types, &words);
   key.full = key.core = joined(words);

@@ -69,6 +69,7 @@ struct NameType {
   std::map<std::string, std::string> forbidden;  ///< word -> code of the reason
   std::map<std::string, std::string> nouns;      ///< phrase -> kind: "dining hall" -> "room"
   std::map<std::string, std::string> titles;     ///< "lab" -> "lab", "laboratory" -> "lab"
+  std::map<std::string, std::string> kinds;      ///< name -> what all languages call alike
   std::map<std::string, std::string> plurals;    ///< "rooms 1 and 2" are "room 1" and "room 2"
   std::set<std::string> between;                 ///< words between the codes of such a row: "and"
   std::set<std::string> parts;                   ///< "door": a door of a place is no place

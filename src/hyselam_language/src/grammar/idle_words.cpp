@@ -36,6 +36,22 @@ bool isDenial(const Token& token, const CompiledGrammar& grammar) {
   return found != grammar.refusing_words.end() && found->second == "denial";
 }
 
+/// Whether a token is one of several words of correction with which a clause begins, with or
+/// without commas: "no, wait"; "no" alone denies.
+bool isOfCorrection(std::size_t token, const Clause& clause, const SentenceWords& words) {
+  return std::any_of(words.grammar.corrections.begin(), words.grammar.corrections.end(),
+                     [&](const Phrase& phrase) {
+                       std::size_t at = clause.begin;
+                       for (const auto& word : phrase) {
+                         while (at < clause.end && words.isComma(at)) ++at;
+                         if (at == clause.end) return false;
+                         if (words.tokens[at++].lower != words.grammar.vocabulary.text(word))
+                           return false;
+                       }
+                       return phrase.size() > 1 && token < at;
+                     });
+}
+
 /// Whether words that place something stand there: "after the fire door", not "the second door".
 bool places(const SentenceWords& words, std::size_t begin, std::size_t end) {
   for (std::size_t at = begin; at < end; ++at) {
@@ -134,7 +150,8 @@ std::vector<IdleWords> idleWordsOf(const Clause& clause, SentenceWords* words, P
                    [&](const Token& token) { return isDenial(token, grammar); });
   for (std::size_t at = clause.begin; at < clause.end; ++at) {
     const bool denies = clause.intent->kind == UtteranceKind::kStatement &&
-                        at == static_cast<std::size_t>(first_denial - tokens.begin());
+                        at == static_cast<std::size_t>(first_denial - tokens.begin()) &&
+                        !isOfCorrection(at, clause, *words);
     if (!denies && !isThing(tokens[at], grammar) && !isNumber(tokens[at], grammar)) continue;
     if (is_free.empty()) {
       run->run(*clause.pattern, clause.begin);

@@ -41,6 +41,7 @@ const std::map<std::string, std::map<std::string, std::string> NameType::*>& mea
       {"forbidden", &NameType::forbidden},
       {"nouns", &NameType::nouns},
       {"titles", &NameType::titles},
+      {"kinds", &NameType::kinds},
       {"plurals", &NameType::plurals}};
   return kKeys;
 }

@@ -284,6 +284,20 @@ std::vector<std::string> Dialogue::labels(const std::vector<Id>& ids) const {
   return all;
 }
 
+bool Dialogue::areOfOtherNames(const std::string& name, const std::vector<Id>& places) const {
+  if (places.size() < 2) return false;
+  const NameKey said = names_.key(name);
+  std::set<std::string> others;
+  for (const Id id : places) {
+    for (const std::string& each : namesOf(*places_.map().findPlace(id))) {
+      const NameKey key = names_.key(each);
+      if (key.full == said.full) return false;
+      if (!key.kind.empty() && key.kind == said.kind) others.insert(key.full);
+    }
+  }
+  return others.size() > 1;
+}
+
 std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
   std::vector<Id> found;
   if (name.reference == "here") {
@@ -298,6 +312,11 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
     }
   } else {
     found = places_.find(name.text);
+    if (areOfOtherNames(name.text, found)) {
+      out.sentences.push_back(
+          phrases().say("which_place", {{"places", phrases().list(labels(found))}}));
+      return {};
+    }
     if (found.empty()) {
       out.sentences.push_back(phrases().say("unknown_place", {{"name", name.text}}));
       out.unknown_name = true;

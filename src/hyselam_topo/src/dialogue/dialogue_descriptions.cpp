@@ -55,8 +55,7 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   }
   const auto issues = builder_.add(u);
   // "... Undo that." behind a statement may go further back.
-  turn.known_before.statements =
-      std::min(turn.known_before.statements, builder_.statementCount());
+  turn.known_before.statements = std::min(turn.known_before.statements, builder_.statementCount());
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
   turn.described = true;
   if (u.intent == "robot_in" && !u.word("denied").empty()) {

@@ -2,15 +2,20 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "dialogue_turn.hpp"
+#include "hyselam_common/edit_distance.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "other_languages.hpp"
 #include "said_answer.hpp"
 
 namespace hyselam_topo {
 namespace {
+
+constexpr std::size_t kMinSlip = 4;  // shorter names may not be misspelt [letters]
 
 /// "it's in the hall": no place is named that lies within another.
 bool isOfReferences(const Utterance& u) {
@@ -61,6 +66,23 @@ void joinForwarded(const std::string& text, std::size_t utterances,
   }
   proposeTogether(forwarded, &whole);
   forwarded = {whole};
+}
+
+/// "No, wait, it's on the windowsill": the one who waits is the speaker, who corrects what was
+/// said.
+void joinCorrections(const std::string& text, std::vector<Utterance>* all) {
+  for (std::size_t i = 0; i + 1 < all->size(); ++i) {
+    Utterance& no = (*all)[i];
+    const Utterance& wait = (*all)[i + 1];
+    if (no.intent != "no" || wait.intent != "stop" || wait.range.begin < no.range.end) continue;
+    const std::string between =
+        text.substr(no.range.end, std::min(wait.range.begin, text.size()) - no.range.end);
+    const bool goes_on = !no.left_out.empty() || !wait.left_out.empty();
+    if (!goes_on || between.find_first_of(".!?;\n") != std::string::npos) continue;
+    no.left_out.insert(no.left_out.end(), wait.left_out.begin(), wait.left_out.end());
+    no.range.end = wait.range.end;
+    all->erase(all->begin() + static_cast<std::ptrdiff_t>(i) + 1);
+  }
 }
 
 std::vector<std::string> proposalsOf(const std::string& first,
@@ -222,7 +244,8 @@ Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
 
 Reply Dialogue::understand(const std::string& text, const HearOptions& options) {
   const std::string language_before = language_;
-  const ParsedText parsed = parse(text);
+  ParsedText parsed = parse(text);
+  if (!talk_.under_way) joinCorrections(text, &parsed.utterances);
   Turn turn;
   turn.reply = reply();
   turn.reply.utterances = parsed.utterances;
@@ -234,6 +257,8 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
   if (!options.others_asked_last) attempt(turn.reply, [&] { takeAnswer(parsed, turn); });
   for (std::size_t i = turn.used; i < parsed.utterances.size() && !turn.broken_off; ++i) {
     const Utterance& u = parsed.utterances[i];
+    const bool last = i + 1 == parsed.utterances.size();
+    turn.until = last ? text.size() : std::min(text.size(), parsed.utterances[i + 1].range.begin);
     handleUtterance(u, turn);
     turn.end = std::min(text.size(), u.range.end);
   }
@@ -262,13 +287,14 @@ void Dialogue::finish(Turn& turn) {
 void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   const HearOptions& options = turn.options;
   if (!u.understood()) {
+    if (forgetsKnown(u, turn)) return;
     builder_.sentenceRefused();
     refuse(u, turn);
     return;
   }
   // "Somebody moved the trolley, it's in the hall now": of what others were told right before.
   const bool goes_on = turn.forwarded_last && u.intent == "contains" && isOfReferences(u);
-  turn.forwarded_last = false;
+  const bool behind_forwarded = std::exchange(turn.forwarded_last, false);
   const bool for_others = (options.others_asked_last && u.kind == UtteranceKind::kAnswer) ||
                           (options.objects_spoken_of && isAboutObject(u)) || goes_on;
   if (options.forward_unknown && for_others) {
@@ -279,16 +305,21 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     return;
   }
   if (isAnswer(u)) {
-    if (turn.says_more) return;
     // "No, on the hook.", of the coat that was spoken of.
-    const bool corrects = !u.left_out.empty() && !turn.answered && options.objects_spoken_of;
-    if (corrects && options.forward_unknown) {
+    const bool new_sentence =
+        turn.text.substr(turn.end, u.range.begin - turn.end).find_first_of(".!?;\n") !=
+        std::string::npos;
+    const bool of_object = (behind_forwarded && u.intent == "no" && new_sentence) ||
+                           (options.objects_spoken_of && !turn.says_more);
+    if (!u.left_out.empty() && !turn.answered && of_object && options.forward_unknown) {
       ForwardedSentence whole;
-      whole.text = turn.text;
+      const std::size_t from = std::min(turn.end == 0 ? 0 : u.range.begin, turn.until);
+      whole.text = turn.text.substr(from, turn.until - from);
       turn.reply.forwarded.push_back(std::move(whole));
-      turn.answered = true;
+      turn.answered = turn.forwarded_last = true;
       return;
     }
+    if (turn.says_more) return;
     meetAnswer(u, turn);
     return;
   }
@@ -328,6 +359,39 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (u.intent != "go_to") startGoal(turn);
     handleCommand(u, turn);
   }
+}
+
+bool Dialogue::forgetsKnown(const Utterance& u, Turn& turn) {
+  if (u.culprit.end <= u.culprit.begin || u.culprit.end > turn.text.size()) return false;
+  const std::string word = turn.text.substr(u.culprit.begin, u.culprit.end - u.culprit.begin);
+  const std::string folded = hyselam::utf8Fold(word);
+  std::set<std::string> same, near;
+  for (const std::string& name : knownNames()) {
+    if (places_.sameName(name, word)) same.insert(name);
+    if (folded.size() >= kMinSlip && hyselam::isOneEditApart(folded, hyselam::utf8Fold(name))) {
+      near.insert(name);
+    }
+  }
+  const std::set<std::string>& meant = same.empty() ? near : same;
+  if (meant.size() != 1) return false;
+  ParseOptions options;
+  options.language = knowsLanguage(language_) ? language_ : "";
+  const std::string quoted = turn.text.substr(u.range.begin, u.culprit.begin - u.range.begin) +
+                             "\"" + *meant.begin() + "\"";
+  const ParsedText again = parser_.parse(quoted, options);
+  if (u.culprit.end < u.range.end || again.utterances.size() != 1) return false;
+  Utterance forget = again.utterances.front();
+  if (forget.intent != "forget_place" && forget.intent != "forget_name") return false;
+  if (same.empty()) {
+    turn.proposals = {forget.text};
+    turn.refusal_of_proposal = phrases().say("not_taken_down_say", {{"suggestion", forget.text}});
+    turn.about_else = true;
+    return true;
+  }
+  forget.text = u.text;
+  forget.range = u.range;
+  handleUtterance(forget, turn);
+  return true;
 }
 
 bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,

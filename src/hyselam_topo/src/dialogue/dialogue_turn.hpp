@@ -14,7 +14,8 @@ namespace hyselam_topo {
 struct Dialogue::Turn {
   std::string text;
   HearOptions options;
-  std::size_t end = 0;  ///< of the utterance before, in the text
+  std::size_t end = 0;    ///< of the utterance before, in the text
+  std::size_t until = 0;  ///< where the next one begins
   Reply reply;
   std::vector<std::string> not_understood;  ///< answers to what was not understood
   std::vector<std::string> left_out;        ///< words without matter beside statements

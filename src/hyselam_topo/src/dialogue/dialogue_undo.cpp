@@ -115,10 +115,9 @@ void Dialogue::barChangesOf(const std::vector<Id>& lost, const KnownBefore& know
   for (std::size_t i = all.size(); i-- > 0 && all[i].barrier == KnownBefore::Barrier::kNone;) {
     const KnownBefore& next = i + 1 < all.size() ? all[i + 1] : known;
     const auto had = [&](const KnownBefore& each, Id id) { return has(each.virtual_places, id); };
-    const bool is_of_lost =
-        !sameNames(namesOf(lost, all[i].names), namesOf(lost, next.names)) ||
-        std::any_of(lost.begin(), lost.end(),
-                    [&](Id id) { return had(all[i], id) != had(next, id); });
+    const bool is_of_lost = !sameNames(namesOf(lost, all[i].names), namesOf(lost, next.names)) ||
+                            std::any_of(lost.begin(), lost.end(),
+                                        [&](Id id) { return had(all[i], id) != had(next, id); });
     if (!is_of_lost) continue;
     bar(i, KnownBefore::Barrier::kPlaceGone);
     break;
@@ -131,9 +130,9 @@ void Dialogue::barChangesOf(const std::vector<Id>& lost, const KnownBefore& know
                                   [&](const auto& pair) { return has(lost, pair.first); }),
                    rejected.end());
     auto& virtuals = each.virtual_places;
-    virtuals.erase(std::remove_if(virtuals.begin(), virtuals.end(),
-                                  [&](Id id) { return has(lost, id); }),
-                   virtuals.end());
+    virtuals.erase(
+        std::remove_if(virtuals.begin(), virtuals.end(), [&](Id id) { return has(lost, id); }),
+        virtuals.end());
     if (has(lost, each.told_at)) each.told_at = 0;
   }
 }

@@ -86,6 +86,7 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"no_way", "place"},
     {"door_closed", ""},
     {"unknown_place", "name"},
+    {"which_place", "places"},
     {"no_previous", ""},
     {"following", ""},
     {"stopped", ""},

@@ -85,8 +85,8 @@ class DescriptionBuilder {
   /// that have it are recorded from now on.
   void acceptName(const std::string& name);
 
-  /// Takes back the last statement that changed the description, be it a correction; false if there is none (at most
-  /// the last 32 can be taken back).
+  /// Takes back the last statement that changed the description, be it a correction; false if there
+  /// is none (at most the last 32 can be taken back).
   bool undo();
   /// The statement that undo() would take back; nullptr if there is none.
   const Utterance* lastStatement() const;

@@ -5,7 +5,8 @@
 // words that join ("gabinete do Rui" is "gabinete de Rui") and the repetition of a title ("room
 // room3"). If they are still different, titles ("room", "lab": word list of the grammar) in front
 // of a code (a digit, one or two letters, a number word) may be missing on one side; purely generic
-// titles ("room") in front of any name.
+// titles ("room") in front of any name. "Kitchen" and "cozinha" are the same kind of place in two
+// languages.
 #pragma once
 
 #include <optional>
@@ -22,11 +23,15 @@ struct NameKey {
   std::string full;   ///< everything: "roomi110"
   std::string core;   ///< without titles: "i110"
   std::string title;  ///< "room"; "" without one
+  /// Of the whole name, the same in all languages: "kitchen" of "cozinha"; "" without one.
+  std::string kind;
+  std::size_t language = 0;  ///< of the kind: number of the grammar
 };
 
 enum class SameName { kNo, kPerhaps, kYes };
 
-/// kYes: equal in full; kPerhaps: equal but for a title that is missing on one side.
+/// kYes: equal in full; kPerhaps: equal but for a title that is missing on one side, or the same
+/// kind of place in two languages.
 SameName compare(const NameKey& a, const NameKey& b);
 
 class PlaceNames {

@@ -217,7 +217,7 @@ class Dialogue {
   void restore(DialogueState state);
 
  private:
-  struct Turn;  // one text of a person: reply, goals and statements while it is handled
+  struct Turn;         // one text of a person: reply, goals and statements while it is handled
   struct KnownBefore;  // what "undo that" goes back to
   using Handler = void (Dialogue::*)(const Utterance&, Turn&);
 
@@ -233,6 +233,9 @@ class Dialogue {
   /// What all texts end with: statements are recorded, goals set out for, questions asked.
   void finish(Turn& turn);
   void tellLeftOut(Turn& turn);
+  /// "Forget Narnia", where a place is called so: without an article it may be anything else. One
+  /// letter away from such a name is asked about. False if nothing known is to be forgotten.
+  bool forgetsKnown(const Utterance& u, Turn& turn);
   void refuse(const Utterance& u, Turn& turn);
   /// Nothing of it was understood, and it is in another language.
   bool refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
@@ -418,6 +421,9 @@ class Dialogue {
   /// The places of the map with a name of the same kind: all toilets.
   std::vector<Id> placesOfKind(const std::string& name) const;
 
+  /// Whether a name of another language may mean several names: "casa de banho" the toilet and the
+  /// bathroom.
+  bool areOfOtherNames(const std::string& name, const std::vector<Id>& places) const;
   /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
   std::vector<Id> resolve(const SaidName& name, Reply& reply);
   std::vector<Id> resolve(const Utterance& u, const std::string& slot, Reply& reply);
