@@ -52,6 +52,32 @@ TEST(Conversation, WhatAQuestionDoesWithoutIsNamed) {
   EXPECT_TRUE(contains(thing.replyText(), "to the door")) << thing.replyText();
 }
 
+/// "No, wait, ..." corrects what was said right before, also of a thing; alone it stops the robot.
+TEST(Conversation, NoWaitCorrectsWhatWasSaid) {
+  for (const char* said : {"No, wait, it's on the table.", "No, hang on, it's on the table.",
+                           "No, it's on the table.", "No wait, it's on the table."}) {
+    for (const bool together : {false, true}) {
+      ExampleTalk example;
+      example.talk.confirmNames("CC11", {"kitchen"});
+      const std::string before = "The cup is in the drawer.";
+      if (!together) example.talk.say(before);
+      const Exchange told = example.talk.say(together ? before + " " + said : said);
+      EXPECT_FALSE(told.stopped) << told.text;
+      EXPECT_TRUE(contains(told.replyText(), "the cup is on the table in the kitchen (before:"))
+          << told.text << " -> " << told.replyText();
+      EXPECT_FALSE(contains(told.replyText(), "left out")) << told.replyText();
+    }
+  }
+  for (const char* said : {"No, wait.", "no wait stop", "The cup is in the drawer. No, stop!"}) {
+    ExampleTalk example;
+    EXPECT_TRUE(example.talk.say(said).stopped) << said;
+  }
+  ExampleTalk example(driving());
+  example.talk.confirmNames("SS12", {"kitchen"});
+  ASSERT_TRUE(example.talk.say("Go to the kitchen.").goal);
+  EXPECT_TRUE(example.talk.say("No, wait, it's on the table.").stopped) << "in doubt, under way";
+}
+
 /// Whose "my office" is, is asked, and known from then on.
 TEST(Conversation, MyOfficeIsTheSpeakers) {
   ExampleTalk example;

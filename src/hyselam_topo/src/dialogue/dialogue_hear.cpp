@@ -306,9 +306,10 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   }
   if (isAnswer(u)) {
     // "No, on the hook.", of the coat that was spoken of.
+    // The sentence before may have its mark with it.
+    const std::size_t mark = std::min(turn.end - std::min<std::size_t>(turn.end, 1), u.range.begin);
     const bool new_sentence =
-        turn.text.substr(turn.end, u.range.begin - turn.end).find_first_of(".!?;\n") !=
-        std::string::npos;
+        turn.text.substr(mark, u.range.begin - mark).find_first_of(".!?;\n") != std::string::npos;
     const bool of_object = (behind_forwarded && u.intent == "no" && new_sentence) ||
                            (options.objects_spoken_of && !turn.says_more);
     if (!u.left_out.empty() && !turn.answered && of_object && options.forward_unknown) {
