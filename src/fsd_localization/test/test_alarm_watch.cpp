@@ -156,3 +156,61 @@ TEST(Localizer, aRobotThatIsCarriedOffAndOnlyTurnsIsFound) {
   EXPECT_TRUE(last->converged);
   EXPECT_LT(distance(last->base_in_map, at), 0.2);
 }
+
+namespace {
+
+/// Two rooms and a wall between them; the second one with a pillar.
+hyselam::OccupancyGrid twoRooms() {
+  return hyselam::testing::drawnGrid({"#########",  //
+                                      "#####...#",  //
+                                      "#...#...#",  //
+                                      "#...#.#.#",  //
+                                      "#...#...#",  //
+                                      "#####...#",  //
+                                      "#########"},
+                                     0.1, {3, 15, 15, 15, 3, 45, 10, 25, 3},
+                                     {3, 20, 30, 10, 15, 15, 3});
+}
+
+/// Stamps at which another answer of the search counted, for a robot that drives circles and, if
+/// `leaps_at` is a time, is in the second room from then on: its wheels know, its laser saw nothing
+/// of the way.
+std::vector<double> answersOf(double latency, double leaps_at) {
+  const auto map = twoRooms();
+  const GridRayCaster rays(map);
+  LocalizerParams params;
+  params.search_latency = latency;
+  Localizer localizer(map, params);
+  Pose2 at{2.5, 3.2, 0.0};
+  localizer.setInitialPose(at, {0.1, 0.1, 0.05});
+  std::vector<double> stamps;
+  double last = -1.0;
+  for (int i = 0; i < 400; ++i) {
+    const double stamp = 0.1 * i;
+    at = at * Pose2{0.05, 0.0, 0.04};
+    const double aside = stamp >= leaps_at ? 4.8 : 0.0;
+    const Pose2 here{at.x + aside, at.y, at.theta};
+    const auto r = localizer.update(look(rays, here, stamp), here);
+    if (!r || !r->place_probability || *r->place_probability == last) continue;
+    last = *r->place_probability;
+    stamps.push_back(stamp);
+  }
+  return stamps;
+}
+
+}  // namespace
+
+TEST(Localizer, whatWasAskedBeforeAnAlarmDoesNotConfirmIt) {
+  constexpr double kLatency = 2.0;
+  const std::vector<double> usual = answersOf(kLatency, 1e9);
+  ASSERT_GE(usual.size(), 2U);
+  const double checked = usual.back();
+  // In a room that was not seen before, where everything fits the map: while the check is under
+  // way.
+  const double leap = checked - 0.5 * kLatency;
+  const std::vector<double> answers = answersOf(kLatency, leap);
+  ASSERT_GT(answers.back(), leap) << "the alarm is looked into";
+  for (double stamp : answers) {
+    EXPECT_TRUE(stamp < leap || stamp > leap + kLatency) << "an answer about the room before";
+  }
+}

@@ -75,10 +75,9 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   signs.worse = fitsWorse(estimate);
   if (search_.alarm.add(search_.way, signs)) {
     search_.alarm_step = kAskStep;
+    search_.background->drop();  // what was asked before says nothing about it
     if (signs.odd || signs.low) {
-      // At once; a check that was asked for before is out of date.
-      search_.asked_at.reset();
-      search_.background->drop();
+      search_.asked_at.reset();  // at once
     } else {
       search_.asked_at = search_.way;  // what the map confirms can wait
     }
