@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "hyselam_common/errors.hpp"
@@ -104,6 +106,40 @@ TEST(SurfaceMap, NearestEqualsExhaustiveSearch) {
     ASSERT_NE(found, nullptr);
     EXPECT_DOUBLE_EQ(std::pow(p.x - found->x, 2) + std::pow(p.y - found->y, 2), best);
   }
+}
+
+TEST(SurfaceMap, AMapThatWasDroppedFromEqualsOneWithoutWhatWasDropped) {
+  hyselam::Rng rng(5);
+  std::deque<std::pair<Pose2, SurfacePoints>> kept;
+  SurfaceMap map(0.1);
+  for (int k = 0; k < 60; ++k) {
+    const Pose2 pose{0.3 * rng.uniform(), 0.3 * rng.uniform(), 6.0 * rng.uniform()};
+    SurfacePoints points;  // crowded, so that cells hold many; sometimes none
+    for (int i = 0; i < 40 * (k % 5); ++i) {
+      const double a = 6.3 * rng.uniform();
+      points.push_back({rng.uniform(), rng.uniform(), std::cos(a), std::sin(a)});
+    }
+    map.insert(pose, points);
+    kept.emplace_back(pose, points);
+    while (kept.size() > 7 || (k == 40 && !kept.empty())) {
+      map.dropOldest();
+      kept.pop_front();
+    }
+    if (k % 3 == 1) continue;  // several at once
+    map.finish();
+    SurfaceMap fresh(0.1);
+    for (const auto& [p, seen] : kept) fresh.insert(p, seen);
+    fresh.finish();
+    ASSERT_EQ(map.size(), fresh.size()) << k;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      const SurfacePoint &a = map.points()[i], &b = fresh.points()[i];
+      ASSERT_TRUE(a.x == b.x && a.y == b.y && a.nx == b.nx && a.ny == b.ny) << k;
+    }
+  }
+  SurfaceMap empty;
+  empty.dropOldest();
+  empty.finish();
+  EXPECT_TRUE(empty.empty());
 }
 
 TEST(SurfaceMap, EmptyMapsAndFarPointsAreHandled) {
@@ -311,6 +347,34 @@ TEST(CorrelativeMatcher, FindsTheScoreOfThePlainSearchAlsoBesideTheMap) {
     EXPECT_GT(distance(other->pose, found->pose), 0.35 - 1e-9);
     EXPECT_LE(other->score, found->score);
   }
+}
+
+TEST(CorrelativeMatcher, FindsTheSameForOneScanAloneAsOnTheWholeMap) {
+  const SurfaceMap map = roomMap();
+  hyselam::Rng rng(6);
+  int found_some = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Pose2 truth{1.0 + 5.0 * rng.uniform(), 1.0 + 3.0 * rng.uniform(), 6.0 * rng.uniform()};
+    SurfacePoints scan;  // what is near: a part of the map is enough
+    for (const SurfacePoint& p : surfacePoints(roomScan(truth))) {
+      if (std::hypot(p.x, p.y) < 0.5 + 0.05 * k) scan.push_back(p);
+    }
+    CorrelativeMatcherParams params;
+    params.linear_window = 0.12 + 0.02 * k;
+    params.angular_window = 0.1;
+    params.min_score = 0.2;
+    const Pose2 guess = truth * Pose2{k % 10 == 9 ? 9.0 : 0.1, -0.1, 0.03};
+    const CorrelativeMatcher whole(map, params), part(map, params, scan, guess);
+    const auto expected = whole.match(scan, guess), match = part.match(scan, guess);
+    ASSERT_EQ(match.has_value(), expected.has_value()) << k;
+    if (!match) continue;
+    ++found_some;
+    EXPECT_EQ(match->pose.x, expected->pose.x);
+    EXPECT_EQ(match->pose.y, expected->pose.y);
+    EXPECT_EQ(match->pose.theta, expected->pose.theta);
+    EXPECT_EQ(match->score, expected->score);
+  }
+  EXPECT_GT(found_some, 30);
 }
 
 TEST(CorrelativeMatcher, FindsThePoseAcrossTheRoom) {

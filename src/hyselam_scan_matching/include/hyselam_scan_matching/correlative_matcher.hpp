@@ -35,6 +35,10 @@ class CorrelativeMatcher {
  public:
   /// @throws hyselam::ParameterError
   explicit CorrelativeMatcher(const SurfaceMap& map, const CorrelativeMatcherParams& params = {});
+  /// For this scan and guess alone: the same matches, and no more of the map is rasterized than
+  /// they need. @throws hyselam::ParameterError
+  CorrelativeMatcher(const SurfaceMap& map, const CorrelativeMatcherParams& params,
+                     const SurfacePoints& scan, const hyselam::Pose2& guess);
 
   /// The best pose of the window around `guess`; nothing if its score is below min_score.
   /// Deterministic.
@@ -51,11 +55,16 @@ class CorrelativeMatcher {
   struct Level {
     std::vector<std::uint8_t> cells;  ///< maximum of the 2^level cells to the right and up
   };
-  void rasterize(const SurfaceMap& map);
+  /// What is needed of the map: a square around a position.
+  struct Surroundings {
+    double x, y, reach;  ///< [m]
+  };
+  void rasterize(const SurfaceMap& map, const Surroundings* needed);
   void buildPyramid();
 
   CorrelativeMatcherParams params_;
   double x0_ = 0.0, y0_ = 0.0;
+  int left_ = 0, low_ = 0;  // cells that are left out on these sides
   int width_ = 0, height_ = 0;
   std::vector<Level> levels_;
 };

@@ -1,7 +1,6 @@
 // Odometry refined by scans: each scan is matched with the surfaces that the last ones saw.
 #pragma once
 
-#include <deque>
 #include <optional>
 
 #include "hyselam_scan_matching/icp.hpp"
@@ -56,17 +55,14 @@ class ScanOdometry {
   void reset();
 
  private:
-  struct Keyframe {
-    hyselam::Pose2 pose;
-    SurfacePoints points;
-  };
   void begin(const SurfacePoints& points);
   void addKeyframe(const SurfacePoints& points);
   IcpResult match(const SurfacePoints& points, const hyselam::Pose2& motion);
 
   ScanOdometryParams params_;
   SurfaceMap local_map_;
-  std::deque<Keyframe> keyframes_;
+  int keyframes_ = 0;             // in the local map
+  hyselam::Pose2 keyframe_pose_;  // of the last one
   bool started_ = false;
   int weak_ = 0;  // matches in a row
   struct InVain {

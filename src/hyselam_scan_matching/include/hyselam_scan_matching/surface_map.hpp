@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "hyselam_scan_matching/surface_points.hpp"
@@ -17,7 +18,10 @@ class SurfaceMap {
   /// Adds the points transformed by `pose`. Points farther than `kMaxExtent` from the first one are
   /// left out.
   void insert(const hyselam::Pose2& pose, const SurfacePoints& points);
-  /// Must be called after the last insert() and before nearest().
+  /// Leaves out the points of the oldest insert() that is still there; a map without them is equal.
+  void dropOldest();
+  /// Must be called after the last insert() or dropOldest() and before nearest(). What was finished
+  /// before costs little.
   void finish();
 
   bool empty() const { return points_.empty(); }
@@ -34,13 +38,37 @@ class SurfaceMap {
     std::int32_t cx, cy;
     double x, y, nx, ny;
     std::int32_t count;
+    std::uint32_t insert;  ///< the number of the insert() that it came with
+
+    bool isBefore(const Sum& other) const { return cy != other.cy ? cy < other.cy : cx < other.cx; }
+    bool isBeside(const Sum& other) const { return cy == other.cy && cx == other.cx; }
   };
-  SurfacePoints mergeCells() const;
+  /// The means of a cell's points that face the same way, at most two.
+  struct Means {
+    SurfacePoint points[2];
+    int count = 0;
+  };
+  struct Insert {
+    std::uint32_t number;
+    double x, y;  ///< the first point
+  };
+  /// A rectangle of buckets.
+  struct Buckets {
+    int left, right, low, high;
+  };
+  static Means meansOf(const Sum* begin, const Sum* end);
+  void takeUpNew();
+  void fillBuckets();
+  const SurfacePoint* nearestOf(const Buckets& buckets, const SurfacePoint& p, double* limit) const;
 
   double cell_;
-  std::vector<Sum> sums_;  ///< as inserted
-  SurfacePoints points_;   ///< by buckets
-  double bucket_ = 0.25;   ///< side [m]
+  std::vector<Sum> sums_;     ///< by cells, in each in the order of insertion
+  std::vector<Means> means_;  ///< of the cells of sums_
+  std::vector<Sum> new_;      ///< inserted since finish()
+  std::deque<Insert> inserts_;
+  std::uint32_t next_insert_ = 0, first_insert_ = 0;
+  SurfacePoints points_;  ///< by buckets
+  double bucket_ = 0.25;  ///< side [m]
   double x0_ = 0.0, y0_ = 0.0;
   int width_ = 0, height_ = 0;
   std::vector<std::int32_t> begin_;  ///< of each bucket in points_

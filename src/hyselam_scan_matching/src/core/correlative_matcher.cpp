@@ -1,6 +1,7 @@
 #include "hyselam_scan_matching/correlative_matcher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"
@@ -89,8 +90,10 @@ class WindowSearch {
       h.cells.reserve(scan.size());
       for (const SurfacePoint& p : scan) {
         h.cells.push_back(
-            {static_cast<int>(std::floor((guess.x + c * p.x - s * p.y - matcher.x0_) / r)),
-             static_cast<int>(std::floor((guess.y + s * p.x + c * p.y - matcher.y0_) / r))});
+            {static_cast<int>(std::floor((guess.x + c * p.x - s * p.y - matcher.x0_) / r)) -
+                 matcher.left_,
+             static_cast<int>(std::floor((guess.y + s * p.x + c * p.y - matcher.y0_) / r)) -
+                 matcher.low_});
       }
       headings_.push_back(std::move(h));
     }
@@ -140,14 +143,49 @@ class WindowSearch {
     return sum;
   }
 
+  /// bound() of the squares in kSide rows and columns that cover the window, in the order of rows.
+  /// Nothing if none of them can exceed the best one.
+  static constexpr int kSide = 4;
+  using Bounds = std::array<int, kSide * kSide>;
+  std::optional<Bounds> bounds(int level, std::size_t heading) const {
+    const int side = 1 << level, pad = side - 1;
+    const int width = matcher_.width_ + pad, height = matcher_.height_ + pad;
+    const std::uint8_t* scores = matcher_.levels_[static_cast<std::size_t>(level)].cells.data();
+    const std::vector<Cell>& cells = headings_[heading].cells;
+    Bounds sums{};
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const int x = cells[i].x - cells_ + pad, y = cells[i].y - cells_ + pad;
+      const bool inside = x >= 0 && x + (kSide - 1) * side < width;
+      for (int row = 0; row < kSide; ++row) {
+        const int at_y = y + row * side;
+        if (at_y < 0 || at_y >= height) continue;
+        const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(at_y) * width + x;
+        int* sum = sums.data() + row * kSide;
+        for (int column = 0; column < kSide; ++column) {
+          const int at_x = x + column * side;
+          if (inside || (at_x >= 0 && at_x < width)) sum[column] += scores[from + column * side];
+        }
+      }
+      if ((i + 1) % kBoundBlock == 0) {
+        const int most = *std::max_element(sums.begin(), sums.end());
+        if (most + static_cast<int>(cells.size() - i - 1) * kFullScore <= best_sum_) return {};
+      }
+    }
+    return sums;
+  }
+
   /// The squares of a level that cover the window, the best bounds first.
   std::vector<Candidate> squaresOf(int level) const {
     std::vector<Candidate> squares;
+    const int side = 1 << level, across = 2 * cells_ / side + 1;
     for (std::size_t h = 0; h < headings_.size(); ++h) {
-      for (int dy = -cells_; dy <= cells_; dy += 1 << level) {
-        for (int dx = -cells_; dx <= cells_; dx += 1 << level) {
-          Candidate c{h, dx, dy, 0};
-          c.bound = bound(level, c);
+      std::optional<Bounds> together;
+      if (across == kSide && !(together = bounds(level, h))) continue;
+      for (int row = 0; row < across; ++row) {
+        for (int column = 0; column < across; ++column) {
+          Candidate c{h, column * side - cells_, row * side - cells_, 0};
+          c.bound = together ? (*together)[static_cast<std::size_t>(row * kSide + column)]
+                             : bound(level, c);
           if (c.bound > best_sum_) squares.push_back(c);
         }
       }
@@ -216,11 +254,54 @@ CorrelativeMatcher::CorrelativeMatcher(const SurfaceMap& map,
     : params_(params) {
   params.validate();
   if (map.empty()) return;
-  rasterize(map);
+  rasterize(map, nullptr);
   buildPyramid();
 }
 
-void CorrelativeMatcher::rasterize(const SurfaceMap& map) {
+CorrelativeMatcher::CorrelativeMatcher(const SurfaceMap& map,
+                                       const CorrelativeMatcherParams& params,
+                                       const SurfacePoints& scan, const hyselam::Pose2& guess)
+    : params_(params) {
+  params.validate();
+  if (map.empty()) return;
+  double farthest = 0.0;
+  for (const SurfacePoint& p : scan) farthest = std::max(farthest, std::hypot(p.x, p.y));
+  // The largest squares reach beyond the window.
+  const int cells = windowCells(params) + (1 << topLevel(windowCells(params))) + 2;
+  const Surroundings needed{guess.x, guess.y, farthest + cells * params.resolution};
+  rasterize(map, &needed);
+  buildPyramid();
+}
+
+namespace {
+
+/// The score of a point so far from a surface: `part` is 2 (distance / max_distance)^2, below 2.
+std::uint8_t scoreAt(double part) {
+  const double rounded = 0.5 + kMaxCellScore * std::exp(-2.0 * part);
+  return static_cast<std::uint8_t>(rounded);
+}
+
+/// scoreAt() by steps of `part`: where both ends of a step have the same score, all between do.
+class ScoreTable {
+ public:
+  ScoreTable() {
+    for (std::size_t i = 0; i <= kSteps; ++i) ends_[i] = scoreAt(static_cast<double>(i) / kPerPart);
+  }
+  std::uint8_t at(double part) const {
+    const auto i = static_cast<std::size_t>(part * kPerPart);
+    return ends_[i] == ends_[i + 1] ? ends_[i] : scoreAt(part);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 8192;
+  static constexpr double kPerPart = kSteps / 2.0;
+  std::array<std::uint8_t, kSteps + 1> ends_{};
+};
+
+}  // namespace
+
+void CorrelativeMatcher::rasterize(const SurfaceMap& map, const Surroundings* needed) {
+  static const ScoreTable scores;
   const double r = params_.resolution;
   double x1 = map.points()[0].x, y1 = map.points()[0].y;
   x0_ = x1;
@@ -233,8 +314,19 @@ void CorrelativeMatcher::rasterize(const SurfaceMap& map) {
   }
   x0_ -= params_.max_distance + r;
   y0_ -= params_.max_distance + r;
-  const double columns = (x1 - x0_ + params_.max_distance) / r + 2.0;
-  const double rows = (y1 - y0_ + params_.max_distance) / r + 2.0;
+  double columns = (x1 - x0_ + params_.max_distance) / r + 2.0;
+  double rows = (y1 - y0_ + params_.max_distance) / r + 2.0;
+  if (needed != nullptr) {  // whole cells are left out at each side
+    const auto cut = [&](double from, double middle, int* first, double* count) {
+      const double low = std::floor((middle - needed->reach - from) / r);
+      const double high = std::floor((middle + needed->reach - from) / r);
+      const double begin = std::clamp(low, 0.0, *count - 1.0);
+      *count = std::clamp(high, begin, *count - 1.0) - begin + 1.0;
+      *first = static_cast<int>(begin);
+    };
+    cut(x0_, needed->x, &left_, &columns);
+    cut(y0_, needed->y, &low_, &rows);
+  }
   if (columns * rows > static_cast<double>(kMaxCells)) {
     throw ParameterError("resolution", r, "coarser: the map has too many cells");
   }
@@ -244,19 +336,18 @@ void CorrelativeMatcher::rasterize(const SurfaceMap& map) {
   base.cells.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
   const int reach = static_cast<int>(std::ceil(params_.max_distance / r));
   for (const SurfacePoint& p : map.points()) {
-    const int cx = static_cast<int>((p.x - x0_) / r), cy = static_cast<int>((p.y - y0_) / r);
+    const int cx = static_cast<int>((p.x - x0_) / r) - left_,
+              cy = static_cast<int>((p.y - y0_) / r) - low_;
     for (int y = std::max(0, cy - reach); y <= std::min(height_ - 1, cy + reach); ++y) {
       for (int x = std::max(0, cx - reach); x <= std::min(width_ - 1, cx + reach); ++x) {
-        const double dx = x0_ + (x + 0.5) * r - p.x, dy = y0_ + (y + 0.5) * r - p.y;
+        const double dx = x0_ + (x + left_ + 0.5) * r - p.x, dy = y0_ + (y + low_ + 0.5) * r - p.y;
         const double part =
             2.0 * (dx * dx + dy * dy) / (params_.max_distance * params_.max_distance);
         if (part >= 2.0) continue;
-        const double rounded = 0.5 + kMaxCellScore * std::exp(-2.0 * part);
-        const auto value = static_cast<std::uint8_t>(rounded);
         std::uint8_t& cell =
             base.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                        static_cast<std::size_t>(x)];
-        cell = std::max(cell, value);
+        cell = std::max(cell, scores.at(part));
       }
     }
   }

@@ -69,11 +69,11 @@ ScanOdometry::ScanOdometry(const ScanOdometryParams& params)
 
 void ScanOdometry::reset() {
   started_ = false;
-  keyframes_.clear();
 }
 
 void ScanOdometry::begin(const SurfacePoints& points) {
-  keyframes_.clear();
+  keyframes_ = 0;
+  local_map_ = SurfaceMap(params_.local_map_resolution);
   weak_ = 0;
   searched_in_vain_.reset();
   matched_pose_ = pose_;
@@ -82,12 +82,12 @@ void ScanOdometry::begin(const SurfacePoints& points) {
 }
 
 void ScanOdometry::addKeyframe(const SurfacePoints& points) {
-  keyframes_.push_back({pose_, points});
-  if (keyframes_.size() > static_cast<std::size_t>(params_.local_map_keyframes)) {
-    keyframes_.pop_front();
+  keyframe_pose_ = pose_;
+  local_map_.insert(pose_, points);
+  if (++keyframes_ > params_.local_map_keyframes) {
+    local_map_.dropOldest();
+    --keyframes_;
   }
-  local_map_ = SurfaceMap(params_.local_map_resolution);
-  for (const Keyframe& k : keyframes_) local_map_.insert(k.pose, k.points);
   local_map_.finish();
 }
 
@@ -126,7 +126,7 @@ ScanOdometry::Step ScanOdometry::add(const hyselam::LaserScan& scan, const Pose2
   if (weak_ >= params_.max_weak_matches) {
     step.broken = true;
     begin(points);
-  } else if (!isWithin(between(keyframes_.back().pose, pose_), params_.keyframe_step,
+  } else if (!isWithin(between(keyframe_pose_, pose_), params_.keyframe_step,
                        params_.keyframe_turn)) {
     addKeyframe(points);
   }
@@ -151,7 +151,8 @@ IcpResult ScanOdometry::match(const SurfacePoints& points, const Pose2& motion) 
   search.linear_window = params_.search_window;
   search.angular_window = params_.search_angle;
   search.min_score = params_.search_min_score;
-  if (const auto found = CorrelativeMatcher(local_map_, search).match(points, pose_)) {
+  if (const auto found =
+          CorrelativeMatcher(local_map_, search, points, pose_).match(points, pose_)) {
     const IcpResult better = alignIcp(points, local_map_, found->pose,
                                       kSearchedOdometryScale * information, params_.refine);
     if (better.matched > best.matched + params_.search_min_gain) {

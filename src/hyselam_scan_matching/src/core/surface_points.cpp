@@ -43,6 +43,15 @@ void setNormal(const SurfacePoints& all, std::size_t first, std::size_t last, do
   p->ny = ny;
 }
 
+/// Whether hypot(x, y) <= reach, which is slow to ask where squares tell.
+bool isWithin(double x, double y, double reach) {
+  constexpr double kRounding = 1e-12;
+  const double squared = x * x + y * y, limit = reach * reach;
+  if (squared < limit * (1.0 - kRounding)) return true;
+  if (squared > limit * (1.0 + kRounding)) return false;
+  return std::hypot(x, y) <= reach;
+}
+
 }  // namespace
 
 void SurfacePointParams::describe(hyselam::ParameterVisitor& visit) {
@@ -65,20 +74,21 @@ SurfacePoints surfacePoints(const hyselam::LaserScan& scan, const SurfacePointPa
   std::vector<double> reach;
   all.reserve(scan.ranges.size());
   const double limit = std::min(scan.range_max, params.max_range);
+  const hyselam::Pose2& laser = scan.laser_in_base;
+  const double c = std::cos(laser.theta), s = std::sin(laser.theta);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const auto r = static_cast<double>(scan.ranges[i]);
     if (!(r >= scan.range_min && r < limit)) continue;
     const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
-    const hyselam::Point2 p =
-        scan.laser_in_base * hyselam::Point2{r * std::cos(bearing), r * std::sin(bearing)};
-    all.push_back({p.x, p.y, 0.0, 0.0});
+    const double x = r * std::cos(bearing), y = r * std::sin(bearing);
+    all.push_back({laser.x + c * x - s * y, laser.y + s * x + c * y, 0.0, 0.0});
     reach.push_back(std::max(params.normal_radius, params.normal_radius_per_meter * r));
   }
   SurfacePoints kept;
   kept.reserve(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto near = [&](std::size_t j) {
-      return std::hypot(all[i].x - all[j].x, all[i].y - all[j].y) <= reach[i];
+      return isWithin(all[i].x - all[j].x, all[i].y - all[j].y, reach[i]);
     };
     SurfacePoint p = all[i];
     if (!kept.empty() && std::hypot(p.x - kept.back().x, p.y - kept.back().y) < params.min_spacing)
