@@ -17,6 +17,8 @@ class GridRayCaster {
   /// first occupied cell [m]; 0 if it starts in one; `max_range` if there is none nearer or the ray
   /// leaves the map first.
   double range(double x, double y, double direction, double max_range) const;
+  /// The same in the direction of (dx, dy), a unit vector.
+  double rangeAlong(double x, double y, double dx, double dy, double max_range) const;
 
  private:
   int width_;

@@ -55,15 +55,22 @@ class PlaceSearch {
   std::size_t bytes() const;
 
  private:
-  double distanceAt(double x, double y) const;
-  double endScore(const std::vector<hyselam::Point2>& points, const hyselam::Pose2& base,
-                  const std::vector<float>& by_distance) const;
+  class EndScores;
+  /// [cm] at a position [m].
+  std::uint8_t distanceAt(double x, double y) const;
+  /// Of a position [cells] in distance_; off the map, its last element, which is far.
+  std::size_t indexAt(double x, double y) const {
+    if (!(x >= 0.0 && y >= 0.0 && x < geometry_.width && y < geometry_.height)) {
+      return distance_.size() - 1;
+    }
+    return geometry_.index({static_cast<int>(x), static_cast<int>(y)});
+  }
   double seenScore(const Submap& submap, const hyselam::Pose2& base, bool sharply) const;
   /// Hill climbing from `guess`; not `sharply`: until it is near enough to be compared.
   Place climb(const Submap& submap, const hyselam::Pose2& guess, bool sharply) const;
 
   hyselam::GridGeometry geometry_;
-  std::vector<std::uint8_t> distance_;  // [cm], at most 255, of each cell of the map
+  std::vector<std::uint8_t> distance_;  // [cm], at most 255, of each cell of the map, and 255
   GridRayCaster rays_;
   std::unique_ptr<const ScoreLattice> lattice_;
 };

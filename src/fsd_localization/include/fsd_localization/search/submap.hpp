@@ -42,15 +42,17 @@ class SubmapBuilder {
   struct Kept {
     hyselam::Pose2 base;
     double travelled, turned;
-    hyselam::Point2 laser;  // in the base frame, as the ends
-    std::vector<hyselam::Point2> ends;
+    hyselam::Point2 laser;              // in the base frame, as the ends
+    std::vector<hyselam::Point2> ends;  // none of the newest, if that is not a step
   };
   /// The number of the first scan no farther back than that.
   std::size_t firstWithin(double length, double turn_as_travel) const;
-  static Kept kept(const hyselam::LaserScan& scan, const hyselam::Pose2& base);
+  static std::vector<hyselam::Point2> endsOf(const hyselam::LaserScan& scan);
 
   std::deque<Kept> scans_;  // the newest scan always last, the others a step apart
   bool last_is_step_ = true;
+  hyselam::LaserScan
+      last_scan_;  // the newest, if it is not: most are replaced before they are used
   double travelled_ = 0.0, turned_ = 0.0;
 };
 

@@ -30,8 +30,11 @@ GridRayCaster::GridRayCaster(const hyselam::OccupancyGrid& map,
 }
 
 double GridRayCaster::range(double x, double y, double direction, double max_range) const {
+  return rangeAlong(x, y, std::cos(direction), std::sin(direction), max_range);
+}
+
+double GridRayCaster::rangeAlong(double x, double y, double dx, double dy, double max_range) const {
   const double px = x / resolution_, py = y / resolution_, limit = max_range / resolution_;
-  const double dx = std::cos(direction), dy = std::sin(direction);
   const double inv_x = 1.0 / dx, inv_y = 1.0 / dy;
   if (!(px >= 0.0 && py >= 0.0 && px < width_ && py < height_)) return max_range;
   int cx = static_cast<int>(px), cy = static_cast<int>(py);

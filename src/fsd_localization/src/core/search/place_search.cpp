@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace fsd_localization {
 
@@ -65,6 +66,7 @@ PlaceSearch::PlaceSearch(const hyselam::OccupancyGrid& map, const OccupancyThres
         static_cast<std::uint8_t>(std::min(255.0F, std::round(field.to_occupied[i] * 100.0F)));
   }
   lattice_ = std::make_unique<const ScoreLattice>(map, distance_, thresholds);
+  distance_.push_back(255);  // what lies off the map
 }
 
 std::size_t PlaceSearch::bytes() const {
@@ -142,37 +144,28 @@ std::vector<Place> PlaceSearch::search(const Submap& submap, const std::optional
   return distinct(std::move(refined));
 }
 
-double PlaceSearch::distanceAt(double x, double y) const {
-  const double cx = x / geometry_.resolution, cy = y / geometry_.resolution;
-  if (!(cx >= 0.0 && cy >= 0.0 && cx < geometry_.width && cy < geometry_.height)) return 255;
-  return distance_[geometry_.index({static_cast<int>(cx), static_cast<int>(cy)})];
-}
-
-double PlaceSearch::endScore(const std::vector<Point2>& points, const Pose2& base,
-                             const std::vector<float>& by_distance) const {
-  const double c = std::cos(base.theta), s = std::sin(base.theta);
-  double sum = 0.0;
-  for (const Point2& p : points) {
-    sum += by_distance[static_cast<std::size_t>(
-        distanceAt(base.x + c * p.x - s * p.y, base.y + s * p.x + c * p.y))];
-  }
-  return points.empty() ? 0.0 : sum / static_cast<double>(points.size());
+std::uint8_t PlaceSearch::distanceAt(double x, double y) const {
+  return distance_[indexAt(x / geometry_.resolution, y / geometry_.resolution)];
 }
 
 double PlaceSearch::seenScore(const Submap& submap, const Pose2& base, bool sharply) const {
   const std::vector<float>& table = sharply ? sharpTable() : wideTable();
+  const double c = std::cos(base.theta), s = std::sin(base.theta);
+  const auto inGrid = [&](const Point2& p) {
+    return Point2{base.x + c * p.x - s * p.y, base.y + s * p.x + c * p.y};
+  };
   double sum = 0.0;
   std::size_t count = 0;
   for (const Submap::View& view : submap.views) {
-    const Point2 laser = base * view.laser;
+    const Point2 laser = inGrid(view.laser);
     count += view.ends.size();
     for (const Point2& in_submap : view.ends) {
-      const Point2 end = base * in_submap;
-      const float hit = table[static_cast<std::size_t>(distanceAt(end.x, end.y))];
+      const Point2 end = inGrid(in_submap);
+      const float hit = table[distanceAt(end.x, end.y)];
       if (hit < 0.01F) continue;
-      const double range = std::hypot(end.x - laser.x, end.y - laser.y);
+      const double dx = end.x - laser.x, dy = end.y - laser.y, range = std::hypot(dx, dy);
       const double open =
-          rays_.range(laser.x, laser.y, std::atan2(end.y - laser.y, end.x - laser.x), range);
+          range > 0.0 ? rays_.rangeAlong(laser.x, laser.y, dx / range, dy / range, range) : 0.0;
       if (open >= range - kInTheWay && (open > 0.0 || range <= kInTheWay)) sum += hit;
     }
   }
@@ -183,8 +176,52 @@ Place PlaceSearch::refine(const Submap& submap, const Pose2& guess) const {
   return climb(submap, guess, true);
 }
 
+/// How well points lie on obstacles, for poses of one heading.
+class PlaceSearch::EndScores {
+ public:
+  EndScores(const PlaceSearch& search, const std::vector<Point2>& points)
+      : search_(search), points_(points), x_(points.size()), y_(points.size()) {
+    for (auto& part : parts_) part.resize(points.size());
+  }
+
+  /// The mean score of the points, seen from `base`.
+  double at(const Pose2& base, const std::vector<float>& by_distance) {
+    turnTo(base.theta);
+    const double resolution = search_.geometry_.resolution;
+    const std::size_t n = points_.size();
+    for (std::size_t i = 0; i < n; ++i) x_[i] = (base.x + parts_[0][i] - parts_[1][i]) / resolution;
+    for (std::size_t i = 0; i < n; ++i) y_[i] = (base.y + parts_[2][i] + parts_[3][i]) / resolution;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      sum += by_distance[search_.distance_[search_.indexAt(x_[i], y_[i])]];
+    }
+    return n == 0 ? 0.0 : sum / static_cast<double>(n);
+  }
+
+ private:
+  void turnTo(double theta) {
+    if (theta == theta_) return;
+    theta_ = theta;
+    const double c = std::cos(theta), s = std::sin(theta);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Point2& p = points_[i];
+      parts_[0][i] = c * p.x;
+      parts_[1][i] = s * p.y;
+      parts_[2][i] = s * p.x;
+      parts_[3][i] = c * p.y;
+    }
+  }
+
+  const PlaceSearch& search_;
+  const std::vector<Point2>& points_;
+  double theta_ = std::numeric_limits<double>::quiet_NaN();
+  std::array<std::vector<double>, 4> parts_;  // of the points' positions, turned
+  std::vector<double> x_, y_;                 // [cells]
+};
+
 Place PlaceSearch::climb(const Submap& submap, const Pose2& guess, bool sharply) const {
   const std::vector<Point2> points = evenly(submap.points, kRefinePoints);
+  EndScores scores(*this, points);
   Place place;
   place.base = guess;
   // Hill climbing, each time with smaller steps.
@@ -197,7 +234,7 @@ Place PlaceSearch::climb(const Submap& submap, const Pose2& guess, bool sharply)
                          Round{sharpTable(), 0.05, hyselam::radians(0.75)},
                          Round{sharpTable(), 0.02, hyselam::radians(0.3)}}) {
     if (!sharply && &r.table == &sharpTable()) break;
-    place.ends = endScore(points, place.base, r.table);
+    place.ends = scores.at(place.base, r.table);
     for (int climb = 0; climb < 8; ++climb) {
       Pose2 best = place.base;
       double best_score = place.ends;
@@ -207,7 +244,7 @@ Place PlaceSearch::climb(const Submap& submap, const Pose2& guess, bool sharply)
       for (const Pose2& m : moves) {
         const Pose2 moved{place.base.x + m.x, place.base.y + m.y,
                           hyselam::normalizeAngle(place.base.theta + m.theta)};
-        const double score = endScore(points, moved, r.table);
+        const double score = scores.at(moved, r.table);
         if (score > best_score) {
           best = moved;
           best_score = score;

@@ -22,18 +22,19 @@ void SubmapBuilder::reset() {
   *this = SubmapBuilder();
 }
 
-SubmapBuilder::Kept SubmapBuilder::kept(const hyselam::LaserScan& scan, const Pose2& base) {
-  Kept k;
-  k.base = base;
-  k.laser = {scan.laser_in_base.x, scan.laser_in_base.y};
+std::vector<Point2> SubmapBuilder::endsOf(const hyselam::LaserScan& scan) {
+  std::vector<Point2> ends;
+  const Pose2& laser = scan.laser_in_base;
+  const double c = std::cos(laser.theta), s = std::sin(laser.theta);
   const double limit = std::min(scan.range_max, kMaxRange);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const auto r = static_cast<double>(scan.ranges[i]);
     if (!(r >= scan.range_min && r < limit)) continue;
     const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
-    k.ends.push_back(scan.laser_in_base * Point2{r * std::cos(bearing), r * std::sin(bearing)});
+    const double x = r * std::cos(bearing), y = r * std::sin(bearing);
+    ends.push_back({laser.x + c * x - s * y, laser.y + s * x + c * y});
   }
-  return k;
+  return ends;
 }
 
 void SubmapBuilder::add(const hyselam::LaserScan& scan, const Pose2& base) {
@@ -43,12 +44,14 @@ void SubmapBuilder::add(const hyselam::LaserScan& scan, const Pose2& base) {
     turned_ += std::abs(step.theta);
     if (!last_is_step_) scans_.pop_back();
   }
-  Kept now = kept(scan, base);
-  now.travelled = travelled_;
-  now.turned = turned_;
   last_is_step_ = scans_.empty() || travelled_ - scans_.back().travelled >= kStep ||
                   turned_ - scans_.back().turned >= kTurn;
-  scans_.push_back(std::move(now));
+  scans_.push_back({base, travelled_, turned_, {scan.laser_in_base.x, scan.laser_in_base.y}, {}});
+  if (last_is_step_) {
+    scans_.back().ends = endsOf(scan);
+  } else {
+    last_scan_ = scan;
+  }
   while (travelled_ - scans_.front().travelled > kMaxLength) scans_.pop_front();
 }
 
@@ -65,7 +68,10 @@ std::size_t SubmapBuilder::firstWithin(double length, double turn_as_travel) con
 void SubmapBuilder::keepLast(double length, double turn_as_travel) {
   const std::size_t first = firstWithin(length, turn_as_travel);
   scans_.erase(scans_.begin(), scans_.begin() + static_cast<std::ptrdiff_t>(first));
-  if (scans_.size() == 1) last_is_step_ = true;
+  if (scans_.size() == 1 && !last_is_step_) {
+    last_is_step_ = true;
+    scans_.back().ends = endsOf(last_scan_);
+  }
 }
 
 Submap SubmapBuilder::build(double length, double turn_as_travel) const {
@@ -82,9 +88,9 @@ Submap SubmapBuilder::build(double length, double turn_as_travel) const {
   for (std::size_t i = 0; i < count; ++i) {
     const Kept& k = scans_[scans_.size() - 1 - i];  // the newest first: its points are the surest
     const Pose2 here = to_newest * k.base;
-    std::vector<Point2> ends;
-    ends.reserve(k.ends.size());
-    for (const Point2& e : k.ends) ends.push_back(here * e);
+    std::vector<Point2> ends = i == 0 && !last_is_step_ ? endsOf(last_scan_) : k.ends;
+    const double c = std::cos(here.theta), s = std::sin(here.theta);
+    for (Point2& e : ends) e = {here.x + c * e.x - s * e.y, here.y + s * e.x + c * e.y};
     for (const Point2& e : ends) {
       if (taken
               .insert({static_cast<int>(std::floor(e.x / kPointSpacing)),
