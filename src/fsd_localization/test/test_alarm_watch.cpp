@@ -214,3 +214,33 @@ TEST(Localizer, whatWasAskedBeforeAnAlarmDoesNotConfirmIt) {
     EXPECT_TRUE(stamp < leap || stamp > leap + kLatency) << "an answer about the room before";
   }
 }
+
+TEST(Localizer, aLocalMapThatNobodyAsksForChangesNoPoseAndBeginsAnewWhenAsked) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  Localizer kept(map, LocalizerParams{}), not_kept(map, LocalizerParams{});
+  const auto known = [](const Localizer& l) {
+    const auto cells = l.localMap().toGrid().cells;
+    return std::count_if(cells.begin(), cells.end(), [](std::int8_t v) { return v >= 0; });
+  };
+  for (Localizer* l : {&kept, &not_kept}) l->setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
+  not_kept.keepLocalMap(false);
+  Pose2 at{2.0, 2.0, 0.0};
+  int updates = 0;
+  for (int i = 0; i < 120; ++i) {
+    at = at * Pose2{0.02, 0.0, 0.02};
+    const hyselam::LaserScan scan = look(rays, at, 0.1 * i);
+    const auto a = kept.update(scan, at), b = not_kept.update(scan, at);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    ++updates;
+    EXPECT_EQ(a->base_in_map.x, b->base_in_map.x);
+    EXPECT_EQ(a->base_in_map.theta, b->base_in_map.theta);
+  }
+  EXPECT_GT(updates, 15);
+  EXPECT_GT(known(kept), 0);
+  EXPECT_EQ(known(not_kept), 0);
+  not_kept.keepLocalMap(true);
+  not_kept.update(look(rays, at, 100.0), at);
+  EXPECT_GT(known(not_kept), 0);
+}

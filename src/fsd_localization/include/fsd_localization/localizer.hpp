@@ -140,6 +140,10 @@ class Localizer {
     return search_.background && search_.background->isLate(stamp);
   }
 
+  /// Whether localMap() is kept while no densities are read too (the default). What is not asked
+  /// for costs time; a map that is asked for again begins anew. Poses do not depend on it.
+  void keepLocalMap(bool keep) { keeps_local_map_ = keep; }
+
   const LocalizerParams& params() const { return params_; }
   const FsdMap& map() const { return *map_; }
   const LocalMap& localMap() const { return sensor_.localMap(); }
@@ -193,6 +197,8 @@ class Localizer {
   std::unique_ptr<ObservationModel> model_;  // of the search; in single-model modes, the only one
   std::unique_ptr<LikelihoodFieldModel> likelihood_model_;  // hybrid only, after the search
   FsdSensor sensor_;
+  bool keeps_local_map_ = true;
+  bool local_map_is_old_ = false;  // scans were left out
   ParticleFilter filter_;
   Observation observation_;
   LocalizerState state_ = LocalizerState::kGlobalSearch;

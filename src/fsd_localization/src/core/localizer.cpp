@@ -310,7 +310,13 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
       search_.signs.broken = search_.signs.broken || !step.matched;  // the odometry jumped
     }
   }
-  sensor_.integrate(scan, smooth);
+  if (keeps_local_map_ || usesFsd()) {
+    if (local_map_is_old_) sensor_.reset();
+    sensor_.integrate(scan, smooth);
+    local_map_is_old_ = false;
+  } else {
+    local_map_is_old_ = true;
+  }
   if (search_.background) search_.submap.add(scan, smooth);
   return smooth;
 }

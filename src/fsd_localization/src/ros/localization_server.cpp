@@ -300,6 +300,7 @@ bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& bas
     return false;
   }
   const ros::WallTime begin = ros::WallTime::now();
+  localizer_->keepLocalMap(publisher_.showsLocalMap());
   const auto result = localizer_->update(scan, base_in_odom, force_update_);
   if (result) {
     updates_.last_ms = 1e3 * (ros::WallTime::now() - begin).toSec();

@@ -193,6 +193,7 @@ nlohmann::json run(const Options& o) {
 
   if (o.kidnaps > 0) log = withKidnaps(log, truth, o.kidnaps);
   const auto localizer = makeLocalizer(map, params, o);
+  localizer->keepLocalMap(false);
   if (o.start_known) {
     const double begin = log.scans.front().stamp + o.start;
     const auto scan = std::find_if(log.scans.begin(), log.scans.end(),

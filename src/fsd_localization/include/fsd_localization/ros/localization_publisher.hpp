@@ -23,6 +23,8 @@ class LocalizationPublisher {
   /// `fsd_markers` only while someone listens, and not more often than gui_publish_rate.
   void publishUpdate(const Localizer& localizer, const LocalizationResult& result, double update_ms,
                      const ros::Time& stamp);
+  /// Whether somebody listens to `local_map`.
+  bool showsLocalMap() const { return local_map_.getNumSubscribers() > 0; }
   /// `localization_status` without an update: not localized, with the reason.
   void publishUnknown(const std::string& text, std::size_t particles);
   /// tf global frame -> odom, valid from `stamp` + transform_tolerance.
