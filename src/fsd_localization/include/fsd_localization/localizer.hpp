@@ -143,6 +143,7 @@ class Localizer {
   /// Whether localMap() is kept while no densities are read too (the default). What is not asked
   /// for costs time; a map that is asked for again begins anew. Poses do not depend on it.
   void keepLocalMap(bool keep) { keeps_local_map_ = keep; }
+  bool keepsLocalMap() const { return keeps_local_map_; }
 
   const LocalizerParams& params() const { return params_; }
   const FsdMap& map() const { return *map_; }

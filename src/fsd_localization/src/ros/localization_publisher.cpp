@@ -58,7 +58,7 @@ void LocalizationPublisher::show(const Localizer& localizer, const std_msgs::Hea
                          static_cast<std::size_t>(params_.max_cloud_particles),
                          localizer.map().geometry().origin, in_map));
   }
-  if (local_map_.getNumSubscribers() > 0) {
+  if (showsLocalMap() && localizer.keepsLocalMap()) {  // of who has just come, from the next on
     local_map_.publish(
         hyselam::toMsg(localizer.localMap().toGrid(), in_odom.frame_id, in_odom.stamp));
   }
