@@ -13,8 +13,8 @@ import rostest
 import tf2_ros
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseArray, PoseWithCovarianceStamped, TransformStamped
-from hyselam_msgs.msg import AugmentedTopologicalMap, PlaceState, Wall
-from hyselam_msgs.srv import (AddGlassWall, AddVirtualPlace, NamePlace, StatePath, TellRobot, WhereAmI, WordToPose)
+from hyselam_msgs.msg import AugmentedTopologicalMap, PlaceState, Wall, WallArray
+from hyselam_msgs.srv import (AddGlassWall, AddVirtualPlace, NamePlace, StatePath, TellRobot, UseLanguage, WhereAmI, WordToPose)
 from nav_msgs.msg import OccupancyGrid, Path
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 from std_msgs.msg import String
@@ -288,6 +288,14 @@ class ConversationTest(unittest.TestCase):
         self.assertTrue(wall("map", robot_point(5.0, -0.1), robot_point(6.35, -0.1), False).success)
         self.assertFalse(wall("map", robot_point(5.0, 0.0), robot_point(5.0, 0.0), False).success)
         self.assertFalse(wall("odom", robot_point(5.0, 0.0), robot_point(6.0, 0.0), False).success)
+        told = rospy.wait_for_message(f"/{robot.name}/told_walls", WallArray, WAIT)
+        self.assertEqual([(w.kind, round(w.length, 2)) for w in told.walls], [(Wall.GLASS, 1.35)])
+        remove = robot.service("remove_wall", AddGlassWall)
+        self.assertFalse(remove("map", robot_point(5.0, -0.1), robot_point(6.35, -0.1), True).success)
+        self.assertTrue(robot.service("use_language", UseLanguage)("en").success)
+        self.assertFalse(robot.service("use_language", UseLanguage)("xx").success)
+        self.assertEqual(remove("map", robot_point(5.0, -0.1), robot_point(6.35, -0.1), False).message, "I have forgotten the glass wall.")
+        self.assertEqual(rospy.wait_for_message(f"/{robot.name}/told_walls", WallArray, WAIT).walls, [])
         place = robot.service("add_virtual_place", AddVirtualPlace)
         self.assertTrue(place(PointStamped(), 1.0, ["charging station"]).success)
         self.assertFalse(place(PointStamped(), -1.0, []).success)

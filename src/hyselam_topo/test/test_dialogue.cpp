@@ -417,6 +417,45 @@ TEST(Dialogue, VirtualPlacesAreAddedAndNamed) {
   EXPECT_TRUE(v.say("Go to the charging station.").has(DialogueAction::Kind::kGo));
 }
 
+TEST(Dialogue, AShutDoorIsToldWhereItIsInTheWayAndOpenedAgain) {
+  Visit v;
+  describe(&v);
+  v.at(12.0, -3.0, 0.0);
+  v.say("Yes.");
+  const Id room = v.dialogue.robot().place;
+  v.at(1.0, 1.2, 0.0);
+  const std::string go = "Go to " + hyselam_topo::codeOf(*v.dialogue.map().findPlace(room)) + ".";
+  ASSERT_TRUE(v.say(go).has(DialogueAction::Kind::kGo));
+  std::vector<hyselam_topo::DescribedWall> shut;
+  for (const hyselam_topo::Edge& edge : v.dialogue.map().edges) {
+    if (edge.a != room && edge.b != room) continue;
+    for (const hyselam_topo::Door& door : edge.doors) {
+      const double half = 0.5 * door.width + 0.1;
+      const hyselam::Point2 along{-half * door.normal.y, half * door.normal.x};
+      shut.push_back({{{door.position.x - along.x, door.position.y - along.y},
+                       {door.position.x + along.x, door.position.y + along.y}},
+                      hyselam_topo::WallKind::kVirtual});
+    }
+  }
+  ASSERT_FALSE(shut.empty());
+  for (const auto& wall : shut) {
+    EXPECT_EQ(v.dialogue.addWall(wall).text(), "I treat the door as shut.");
+  }
+  const Reply none = v.say(go);
+  EXPECT_FALSE(none.has(DialogueAction::Kind::kGo));
+  EXPECT_TRUE(has(none, "I find no way")) << none.text();
+  EXPECT_TRUE(has(none, "I treat the door between")) << none.text();
+  EXPECT_EQ(v.say("Undo that.").text(), "I treat the door as open again.");
+  v.dialogue.addWall(shut.back());
+  EXPECT_TRUE(v.dialogue.useLanguage("pt"));
+  EXPECT_FALSE(v.dialogue.useLanguage("fr"));
+  for (const auto& wall : shut) {
+    EXPECT_EQ(v.dialogue.removeWall(wall).text(), "Volto a tratar a porta como aberta.");
+    EXPECT_TRUE(v.dialogue.removeWall(wall).actions.empty());
+  }
+  EXPECT_TRUE(v.say(go).has(DialogueAction::Kind::kGo));
+}
+
 TEST(Dialogue, ContinuesAfterARestart) {
   hyselam::testing::TemporaryDirectory directory;
   const std::string path = directory / "state";

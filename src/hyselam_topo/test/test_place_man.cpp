@@ -132,6 +132,30 @@ TEST(PlaceMan, NamesAndWallsSurviveANewSegmentation) {
   EXPECT_EQ(man.walls().size(), 1u);
 }
 
+TEST(PlaceMan, AVirtualWallAcrossADoorShutsItAndLeavesThePlacesAsTheyAre) {
+  PlaceMan man = twoRooms();
+  const hyselam::OccupancyGrid grid(man.map().grid->geometry, hyselam::OccupancyGrid::kFree);
+  const hyselam_topo::DescribedWall shut{{{4.05, 0.95}, {4.05, 2.05}}, WallKind::kVirtual};
+  man.addWall(shut);
+  EXPECT_EQ(man.shutDoors(), Ids{1});
+  EXPECT_EQ(man.withWalls(grid).cells, grid.cells);
+  EXPECT_FALSE(man.removeWall({shut.line, WallKind::kGlass}));
+  EXPECT_TRUE(man.removeWall(shut));
+  EXPECT_FALSE(man.removeWall(shut));
+  EXPECT_TRUE(man.shutDoors().empty());
+  // Of glass, elsewhere, across the way, or as long as the room: these shut no door.
+  for (const hyselam_topo::DescribedWall& other :
+       {hyselam_topo::DescribedWall{shut.line, WallKind::kGlass},
+        hyselam_topo::DescribedWall{{{3.0, 0.95}, {3.0, 2.05}}, WallKind::kVirtual},
+        hyselam_topo::DescribedWall{{{3.5, 1.5}, {4.6, 1.5}}, WallKind::kVirtual},
+        hyselam_topo::DescribedWall{{{4.05, 0.0}, {4.05, 3.0}}, WallKind::kVirtual}}) {
+    man.addWall(other);
+    EXPECT_TRUE(man.shutDoors().empty());
+    EXPECT_NE(man.withWalls(grid).cells, grid.cells);
+    EXPECT_TRUE(man.removeWall(other));
+  }
+}
+
 TEST(PlaceMan, WallsAreDrawnIntoACopy) {
   PlaceMan man = twoRooms();
   man.addWall({{{1.0, 0.1}, {1.0, 2.9}}, WallKind::kVirtual});

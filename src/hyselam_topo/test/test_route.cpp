@@ -50,6 +50,16 @@ TEST(Route, ToTheNearestOfSeveral) {
   EXPECT_EQ(leg->places.back(), 2u);
 }
 
+TEST(Route, LeadsThroughNoShutDoor) {
+  auto map = two_rooms::map();
+  EXPECT_FALSE(planRoute(map, {1.0, 2.5, 0.0}, {2}, {}, {1}));
+  map.edges[0].doors.push_back(hyselam_topo::doorBetween({4.05, 1.9}, {4.05, 1.5}));
+  map.edges[0].doors.back().id = 2;
+  const auto leg = planRoute(map, {1.0, 2.5, 0.0}, {2}, {}, {1});
+  ASSERT_TRUE(leg);
+  EXPECT_EQ(leg->doors, std::vector<Id>{2});
+}
+
 TEST(Route, TakesAClosedDoorOnlyWithoutAnother) {
   auto map = two_rooms::map();
   map.edges[0].doors[0].state = hyselam_topo::DoorState::kClosed;

@@ -93,7 +93,7 @@ class FakeRobot:
         self.answer = lambda name, fields, role: {}
         self.todo = []  # called within the server's loop
         self.building = office()
-        self.names = {}
+        self.names, self.told, self.stop_language = {}, [], ""
         self.world.set("reach", {"master": True})
         self.world.set("can", {"save": True})
         if with_map:
@@ -114,6 +114,19 @@ class FakeRobot:
         self.world.set_table("places", sights.places(self.building))
         self.world.set_table("doors", sights.doors(self.building))
 
+    def tell_wall(self, name, fields):
+        if name == "wall":
+            wall = {end: round(fields[end], 2) for end in ("ax", "ay", "bx", "by")}
+        else:
+            door = self.world.item("doors", fields["door"])
+            dx, dy = -door["ny"] * (door["w"] / 2 + 0.1), door["nx"] * (door["w"] / 2 + 0.1)
+            wall = {"ax": sights.cm(door["x"] - dx), "ay": sights.cm(door["y"] - dy), "bx": sights.cm(door["x"] + dx), "by": sights.cm(door["y"] + dy)}
+        self.told.append(dict(wall, v=name == "shut"))
+        self.show_walls()
+
+    def show_walls(self):
+        self.world.set_table("told", {str(i + 1): wall for i, wall in enumerate(self.told)})
+
     def say(self, who, text):
         self.world.append("talk", {"i": self.world.version + 1, "w": who, "s": text, "t": int(time.time())})
         self.world.set("asked", sights.question(text, 11) if who == "robot" else None)
@@ -131,8 +144,9 @@ class FakeRobot:
     def now(self):
         return self.time
 
-    def stop(self, say=True):
+    def stop(self, say=True, language=""):
         self.stops += say
+        self.stop_language = language
         self.cancels += 1
         return self.hearers
 
@@ -149,6 +163,11 @@ class FakeRobot:
             self.show_places()
         if name == "try":
             return {"understood": "xyzzy" not in fields["text"]}
+        if name in ("wall", "shut"):
+            self.tell_wall(name, fields)
+        if name == "unwall":
+            self.told = [wall for wall in self.told if wall["v"] != fields["virtual"] or any(abs(wall[end] - fields[end]) > 0.3 for end in ("ax", "ay", "bx", "by"))]
+            self.show_walls()
         if name == "learn":
             self.world.set("learning", fields["on"])
         return self.answer(name, fields, role)

@@ -46,7 +46,8 @@ class PageCase(unittest.TestCase):
         tab.key("Enter")
 
     def asked(self, what):
-        return [fields for name, fields, _ in self.robot.asked if name == what]
+        """But for the language of the page, which comes with all but a way."""
+        return [{key: value for key, value in fields.items() if key != "language" or what == "go"} for name, fields, _ in self.robot.asked if name == what]
 
     def shot(self, tab, name):
         if SHOTS:

@@ -146,7 +146,7 @@ void Dialogue::answerYes(const Question& asked, Turn& turn) {
       break;
     case Kind::kWall:
       places_.addWall(asked.wall);
-      out.sentences.push_back(p.say("wall_added", {{"wall", p.wall(asked.wall.kind)}}));
+      out.sentences.push_back(sayWall(asked.wall, true));
       out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
       out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
       break;

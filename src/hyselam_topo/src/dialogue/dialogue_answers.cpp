@@ -24,19 +24,21 @@ std::vector<Id> neighborsOf(const AugmentedTopologicalMap& map, const std::vecto
   return {all.begin(), all.end()};
 }
 
-/// What has a door to them, and what lies behind their walls.
-std::vector<Id> placesBeside(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
-  std::vector<Id> all = neighborsOf(map, places);
+/// What lies behind their walls, without a door to them.
+std::vector<Id> placesBehind(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
+  const std::vector<Id> neighbors = neighborsOf(map, places);
+  std::vector<Id> behind;
   const auto isIn = [](const std::vector<Id>& list, Id id) {
     return std::find(list.begin(), list.end(), id) != list.end();
   };
   for (const SharedWall& wall : sharedWalls(map)) {
     const Id a = map.places[wall.a].id, b = map.places[wall.b].id;
     for (const auto& [here, there] : {std::pair(a, b), std::pair(b, a)}) {
-      if (isIn(places, here) && !isIn(places, there) && !isIn(all, there)) all.push_back(there);
+      if (!isIn(places, here) || isIn(places, there) || isIn(neighbors, there)) continue;
+      if (!isIn(behind, there)) behind.push_back(there);
     }
   }
-  return all;
+  return behind;
 }
 
 bool hasClosedDoor(const AugmentedTopologicalMap& map, const RouteLeg& leg) {
@@ -187,9 +189,10 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
   std::vector<std::string> told;
   bool closed = false;
   for (const auto& [name, places] : goals) {
-    const auto leg = planRoute(places_.map(), from, places, params_.route);
+    const auto leg = route(from, places);
     if (!leg) {
       out.sentences.push_back(p.say("no_way", {{"place", name}}));
+      tellWallInTheWay(from, places, out);
       return;
     }
     from = leg->waypoints.back();
@@ -249,8 +252,7 @@ void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
     if (guessed) askConfirm(here, out);
     return;
   }
-  const auto leg = robot().has_pose ? planRoute(places_.map(), robot().pose, found, params_.route)
-                                    : std::optional<RouteLeg>();
+  const auto leg = robot().has_pose ? route(robot().pose, found) : std::optional<RouteLeg>();
   const Id nearest = leg ? leg->places.back() : found.front();
   const std::string code = codeOf(*places_.map().findPlace(nearest));
   if (leg) {
@@ -258,6 +260,7 @@ void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
         p.say("where_is", {{"name", name}, {"code", code}, {"length", p.number(leg->length, 0)}}));
   } else {
     out.sentences.push_back(p.say("where_is_no_way", {{"name", name}, {"code", code}}));
+    if (robot().has_pose) tellWallInTheWay(robot().pose, found, out);
   }
 }
 
@@ -274,11 +277,11 @@ void Dialogue::answerRouteTo(const Utterance& u, Turn& turn) {
     const auto pose = placePose(places_.map(), starts.front());
     from = pose ? std::optional<hyselam::Pose2>(pose->pose) : std::nullopt;
   }
-  const auto leg =
-      from ? planRoute(places_.map(), *from, goals, params_.route) : std::optional<RouteLeg>();
+  const auto leg = from ? route(*from, goals) : std::optional<RouteLeg>();
   const std::string place = shortName(goals.front());
   if (!leg) {
     out.sentences.push_back(p.say("no_way", {{"place", place}}));
+    if (from) tellWallInTheWay(*from, goals, out);
     return;
   }
   out.sentences.push_back(p.say("way", {{"place", place},
@@ -292,13 +295,19 @@ void Dialogue::answerNextTo(const Utterance& u, Turn& turn) {
   const Phrases& p = phrases();
   const std::vector<Id> found = resolve(u, "place", out);
   if (found.empty()) return;
-  const std::vector<Id> neighbors = placesBeside(places_.map(), found);
+  const std::vector<Id> neighbors = neighborsOf(places_.map(), found);
+  const std::vector<Id> behind = placesBehind(places_.map(), found);
   const std::string place = shortName(found.front());
-  if (neighbors.empty()) {
-    out.sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
-  } else {
+  if (!neighbors.empty()) {
     out.sentences.push_back(
         p.say("next_to", {{"place", place}, {"places", p.list(labels(neighbors))}}));
+  }
+  if (!behind.empty()) {
+    out.sentences.push_back(p.say(neighbors.empty() ? "next_to_behind" : "next_behind",
+                                  {{"place", place}, {"places", p.list(labels(behind))}}));
+  }
+  if (neighbors.empty() && behind.empty()) {
+    out.sentences.push_back(p.say("next_to_nothing", {{"place", place}}));
   }
 }
 

@@ -218,8 +218,7 @@ void Dialogue::answerNearest(const Utterance& u, Turn& turn) {
     turn.reply.unknown_name = true;
     return;
   }
-  const auto leg = robot().has_pose ? planRoute(places_.map(), robot().pose, found, params_.route)
-                                    : std::optional<RouteLeg>();
+  const auto leg = robot().has_pose ? route(robot().pose, found) : std::optional<RouteLeg>();
   const Id nearest = leg ? leg->places.back() : found.front();
   Utterance where = u;
   where.slots.front().name = "place";

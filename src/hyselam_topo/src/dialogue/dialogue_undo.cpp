@@ -171,12 +171,12 @@ void Dialogue::restoreKnown(const KnownBefore& before, Reply& out) {
     const DescribedWall wall = places_.walls()[i];
     if (isIn(before.walls, wall)) continue;
     places_.removeWall(i);
-    told.push_back(p.say("wall_forgotten", {{"wall", p.wall(wall.kind)}}));
+    told.push_back(sayWall(wall, false));
   }
   for (const DescribedWall& wall : before.walls) {
     if (isIn(places_.walls(), wall)) continue;
     places_.addWall(wall);
-    told.push_back(p.say("wall_added", {{"wall", p.wall(wall.kind)}}));
+    told.push_back(sayWall(wall, true));
   }
   if (told.size() > before_walls) {
     out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});

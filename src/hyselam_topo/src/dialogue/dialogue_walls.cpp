@@ -1,10 +1,13 @@
 // Walls that no laser sees, and places that no segmentation finds (section 7.2).
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {
@@ -90,9 +93,9 @@ void Dialogue::forgetWall(const Utterance& u, Turn& turn) {
     return;
   }
   const Change change(this);
-  const WallKind kind = walls[chosen].kind;
+  const DescribedWall gone = walls[chosen];
   places_.removeWall(chosen);
-  out.sentences.push_back(p.say("wall_forgotten", {{"wall", p.wall(kind)}}));
+  out.sentences.push_back(sayWall(gone, false));
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
@@ -147,14 +150,119 @@ Reply Dialogue::addVirtualPlace(hyselam::Point2 centre, double radius,
   return out;
 }
 
+std::string Dialogue::sayWall(const DescribedWall& wall, bool is_there) const {
+  const Phrases& p = phrases();
+  if (places_.doorShutBy(wall) != nullptr) return p.say(is_there ? "door_shut" : "door_open");
+  return p.say(is_there ? "wall_added" : "wall_forgotten", {{"wall", p.wall(wall.kind)}});
+}
+
 Reply Dialogue::addWall(const DescribedWall& wall) {
   Reply out = reply();
   const Change change(this);
   places_.addWall(wall);
-  out.sentences.push_back(phrases().say("wall_added", {{"wall", phrases().wall(wall.kind)}}));
+  out.sentences.push_back(sayWall(wall, true));
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;
+}
+
+Reply Dialogue::removeWall(const DescribedWall& wall) {
+  Reply out = reply();
+  const Change change(this);
+  if (!places_.removeWall(wall)) {
+    out.sentences.push_back(phrases().say("no_wall"));
+    return out;
+  }
+  out.sentences.push_back(sayWall(wall, false));
+  out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+  return out;
+}
+
+std::optional<RouteLeg> Dialogue::route(const hyselam::Pose2& from,
+                                        const std::vector<Id>& goals) const {
+  return planRoute(places_.map(), from, goals, params_.route, places_.shutDoors());
+}
+
+std::pair<Id, Id> Dialogue::sidesOf(const DescribedWall& wall) const {
+  const GlassWall& line = wall.line;
+  const double length = line.length();
+  const hyselam::Point2 across{(line.a.y - line.b.y) / length, (line.b.x - line.a.x) / length};
+  const auto beside = [&](double sign) -> Id {
+    // Beyond the wall itself, and what is drawn of it.
+    for (const double far : {0.3, 0.5, 0.8}) {
+      const auto at = placeAt(places_.map(), {0.5 * (line.a.x + line.b.x) + sign * far * across.x,
+                                              0.5 * (line.a.y + line.b.y) + sign * far * across.y});
+      if (at) return at->place;
+    }
+    return 0;
+  };
+  return {beside(1.0), beside(-1.0)};
+}
+
+void Dialogue::tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
+                                Reply& out) const {
+  const auto start = placeAt(places_.map(), {from.x, from.y}, 0.5);
+  if (!start) return;
+  const std::vector<Id> shut = places_.shutDoors();
+  const auto isShut = [&](const Door& door) {
+    return std::find(shut.begin(), shut.end(), door.id) != shut.end();
+  };
+  struct Step {
+    Id a, b;
+    const DescribedWall* wall;  // in the way; nullptr: none
+  };
+  std::vector<Step> steps;
+  for (const Edge& edge : places_.map().edges) {
+    if (edge.doors.empty() || !std::all_of(edge.doors.begin(), edge.doors.end(), isShut)) {
+      steps.push_back({edge.a, edge.b, nullptr});
+    }
+  }
+  // Shut doors first: of those in the way a person can open them again.
+  for (const bool door : {true, false}) {
+    for (const DescribedWall& wall : places_.walls()) {
+      const auto [a, b] = sidesOf(wall);
+      const bool is_door = places_.doorShutBy(wall) != nullptr;
+      if (a != 0 && b != 0 && a != b && is_door == door) steps.push_back({a, b, &wall});
+    }
+  }
+  // By as few walls as possible: how many, and the first of them.
+  std::map<Id, std::pair<std::size_t, const Step*>> reached{{start->place, {0, nullptr}}};
+  for (bool again = true; again;) {
+    again = false;
+    for (const Step& step : steps) {
+      for (const bool turned : {false, true}) {
+        const auto before = reached.find(turned ? step.b : step.a);
+        if (before == reached.end()) continue;
+        auto next = before->second;
+        if (step.wall != nullptr && next.first++ == 0) next.second = &step;
+        const auto [after, is_new] = reached.emplace(turned ? step.a : step.b, next);
+        if (!is_new && after->second.first <= next.first) continue;
+        after->second = next;
+        again = true;
+      }
+    }
+  }
+  const Step* first = nullptr;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const Id goal : goals) {
+    const auto found = reached.find(goal);
+    if (found == reached.end() || found->second.first >= least) continue;
+    least = found->second.first;
+    first = found->second.second;
+  }
+  if (first == nullptr) return;
+  const Phrases& p = phrases();
+  const bool is_door = places_.doorShutBy(*first->wall) != nullptr;
+  out.sentences.push_back(p.say(is_door ? "shut_in_the_way" : "wall_in_the_way",
+                                {{"wall", p.wall(first->wall->kind)},
+                                 {"places", p.list({shortName(first->a), shortName(first->b)})}}));
+}
+
+bool Dialogue::useLanguage(const std::string& language) {
+  if (phrases_.count(language) == 0) return false;
+  language_ = language;
+  return true;
 }
 
 }  // namespace hyselam_topo

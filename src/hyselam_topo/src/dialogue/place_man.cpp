@@ -18,6 +18,8 @@ using hyselam::InputError;
 using hyselam::Point2;
 
 constexpr double kMaxRadius = 100.0;  // of a virtual place [m]
+constexpr double kOnDoor = 0.3;       // from the middle of a wall to that of the door it shuts [m]
+constexpr double kMaxTurned = 0.5;    // sine of the angle between them
 
 bool isFinite(Point2 p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
@@ -402,10 +404,46 @@ bool PlaceMan::removeWall(std::size_t index) {
   return true;
 }
 
+bool PlaceMan::removeWall(const DescribedWall& wall) {
+  const auto found = std::find_if(
+      state_.walls.begin(), state_.walls.end(),
+      [&](const DescribedWall& w) { return w.kind == wall.kind && sameWall(w.line, wall.line); });
+  return removeWall(static_cast<std::size_t>(found - state_.walls.begin()));
+}
+
+const Door* PlaceMan::doorShutBy(const DescribedWall& wall) const {
+  if (wall.kind != WallKind::kVirtual) return nullptr;
+  const GlassWall& line = wall.line;
+  const double length = line.length();
+  const Point2 middle{0.5 * (line.a.x + line.b.x), 0.5 * (line.a.y + line.b.y)};
+  for (const Edge& edge : state_.map.edges) {
+    for (const Door& door : edge.doors) {
+      const double across =
+          std::abs((line.b.x - line.a.x) * door.normal.x + (line.b.y - line.a.y) * door.normal.y);
+      const bool lies_along = across <= kMaxTurned * length;
+      const double off = distanceBetween(middle, {door.position.x, door.position.y});
+      const bool is_as_wide =
+          length >= door.width - kOnDoor && length <= door.width + 2.0 * kOnDoor;
+      if (door.real && lies_along && is_as_wide && off <= kOnDoor) return &door;
+    }
+  }
+  return nullptr;
+}
+
+std::vector<Id> PlaceMan::shutDoors() const {
+  std::vector<Id> shut;
+  for (const DescribedWall& wall : state_.walls) {
+    if (const Door* door = doorShutBy(wall)) shut.push_back(door->id);
+  }
+  return shut;
+}
+
 hyselam::OccupancyGrid PlaceMan::withWalls(const hyselam::OccupancyGrid& grid) const {
   hyselam::OccupancyGrid copy = grid;
   std::vector<GlassWall> lines;
-  for (const DescribedWall& wall : state_.walls) lines.push_back(wall.line);
+  for (const DescribedWall& wall : state_.walls) {
+    if (doorShutBy(wall) == nullptr) lines.push_back(wall.line);
+  }
   drawGlassWalls(lines, &copy);
   return copy;
 }

@@ -53,11 +53,12 @@ std::optional<Point2> contact(const PlaceGrid& grid, Id a, Id b) {
   });
 }
 
-std::vector<Passage> passagesOf(const AugmentedTopologicalMap& map) {
+std::vector<Passage> passagesOf(const AugmentedTopologicalMap& map, const std::vector<Id>& shut) {
   std::vector<Passage> all;
   for (const Edge& edge : map.edges) {
     std::vector<Passage> here;
     for (const Door& door : edge.doors) {
+      if (std::find(shut.begin(), shut.end(), door.id) != shut.end()) continue;
       here.push_back({edge.a, edge.b, door.id, ends(door), door.state == DoorState::kClosed});
     }
     if (edge.doors.empty()) {
@@ -319,13 +320,14 @@ void headAlongPath(RouteLeg& leg) {
 }  // namespace
 
 std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const Pose2& from,
-                                  const std::vector<Id>& goals, const RouteParams& params) {
+                                  const std::vector<Id>& goals, const RouteParams& params,
+                                  const std::vector<Id>& shut) {
   params.validate();
   if (!map.grid) return std::nullopt;
   const Point2 start{from.x, from.y};
   const auto here = placeAt(map, start, kReach);
   if (!here) return std::nullopt;
-  const std::vector<Passage> passages = passagesOf(map);
+  const std::vector<Passage> passages = passagesOf(map, shut);
   const GraphSearch search(passages, here->place, start, params);
   const NearestGoal goal = nearestGoal(map, here->place, goals, passages, search);
   if (goal.place == 0) return std::nullopt;

@@ -6,6 +6,7 @@
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_topo/ros/dialogue_markers.hpp"
 #include "hyselam_topo/ros/topo_engine_server.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "hyselam_topological_map/ros/conversions.hpp"
 
 namespace hyselam_topo {
@@ -135,6 +136,16 @@ void TopoEngineServer::publishMap() {
 void TopoEngineServer::publishWalls() {
   const auto grid = dialogue_.gridWithWalls();
   if (grid) publishers_.grid.publish(hyselam::toMsg(*grid, grid_frame_, grid_stamp_));
+  hyselam_msgs::WallArray told;
+  told.header.frame_id = frame();
+  told.header.stamp = ros::Time::now();
+  for (const DescribedWall& described : dialogue_.places().walls()) {
+    Wall wall = straightWall(described.line.a, described.line.b);
+    wall.kind = described.kind;
+    wall.id = static_cast<Id>(told.walls.size() + 1);
+    told.walls.push_back(toMsg(wall));
+  }
+  publishers_.told_walls.publish(told);
 }
 
 void TopoEngineServer::publishQuestion() {

@@ -57,6 +57,7 @@ void TopoEngineServer::advertise(ros::NodeHandle& nh) {
   publishers_.markers = nh.advertise<visualization_msgs::MarkerArray>("named_markers", 1, true);
   publishers_.question = nh.advertise<visualization_msgs::MarkerArray>("question_markers", 1, true);
   publishers_.grid = nh.advertise<nav_msgs::OccupancyGrid>("map_with_glass", 1, true);
+  publishers_.told_walls = nh.advertise<hyselam_msgs::WallArray>("told_walls", 1, true);
   publishers_.path = nh.advertise<nav_msgs::Path>("goal_path", 1, true);
   publishers_.poses = nh.advertise<geometry_msgs::PoseArray>("goal_poses", 1, true);
   publishers_.initial_pose =
@@ -77,6 +78,8 @@ void TopoEngineServer::offerServices(ros::NodeHandle& nh) {
                nh.advertiseService("set_initial_place", &Self::onInitialPlace, this),
                nh.advertiseService("add_virtual_place", &Self::onVirtualPlace, this),
                nh.advertiseService("add_glass_wall", &Self::onGlassWall, this),
+               nh.advertiseService("remove_wall", &Self::onNoWall, this),
+               nh.advertiseService("use_language", &Self::onLanguage, this),
                nh.advertiseService("save_dialogue", &Self::onSave, this),
                nh.advertiseService("load_dialogue", &Self::onLoad, this)};
 }

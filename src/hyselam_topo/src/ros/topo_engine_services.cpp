@@ -136,7 +136,23 @@ bool TopoEngineServer::onVirtualPlace(hyselam_msgs::AddVirtualPlace::Request& re
   return true;
 }
 
+bool TopoEngineServer::onLanguage(hyselam_msgs::UseLanguage::Request& request,
+                                  hyselam_msgs::UseLanguage::Response& response) {
+  response.success = dialogue_.useLanguage(request.language);
+  return true;
+}
+
 bool TopoEngineServer::onGlassWall(hyselam_msgs::AddGlassWall::Request& request,
+                                   hyselam_msgs::AddGlassWall::Response& response) {
+  return changeWalls(false, request, response);
+}
+
+bool TopoEngineServer::onNoWall(hyselam_msgs::AddGlassWall::Request& request,
+                                hyselam_msgs::AddGlassWall::Response& response) {
+  return changeWalls(true, request, response);
+}
+
+bool TopoEngineServer::changeWalls(bool removes, const hyselam_msgs::AddGlassWall::Request& request,
                                    hyselam_msgs::AddGlassWall::Response& response) {
   try {
     const std::string given = withoutSlash(request.frame_id);
@@ -147,9 +163,9 @@ bool TopoEngineServer::onGlassWall(hyselam_msgs::AddGlassWall::Request& request,
     DescribedWall wall;
     wall.line = {{request.a.x, request.a.y}, {request.b.x, request.b.y}};
     wall.kind = request.is_virtual ? WallKind::kVirtual : WallKind::kGlass;
-    const Reply reply = dialogue_.addWall(wall);
+    const Reply reply = removes ? dialogue_.removeWall(wall) : dialogue_.addWall(wall);
     act(reply);
-    response.success = 1;
+    response.success = !reply.actions.empty();
     response.message = reply.text();
   } catch (const std::exception& e) {
     response.message = e.what();

@@ -75,6 +75,8 @@ hyselam_msgs::Appearance toMsg(const Appearance& appearance) {
   return msg;
 }
 
+}  // namespace
+
 hyselam_msgs::Wall toMsg(const Wall& wall) {
   hyselam_msgs::Wall msg;
   msg.id = wall.id;
@@ -91,6 +93,8 @@ hyselam_msgs::Wall toMsg(const Wall& wall) {
   msg.extras = toMsg(wall.extras);
   return msg;
 }
+
+namespace {
 
 hyselam_msgs::VisualSignature toMsg(const VisualSignature& signature) {
   hyselam_msgs::VisualSignature msg;

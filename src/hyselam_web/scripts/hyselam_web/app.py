@@ -164,9 +164,9 @@ class Server:
         response.del_cookie(COOKIE)
         return response
 
-    async def on_stop(self, _):
+    async def on_stop(self, request):
         """For everybody who reaches the server, logged in or not."""
-        return web.json_response({"done": True, "heard": self.stop()})
+        return web.json_response({"done": True, "heard": self.stop(requests.checked("language", request.query.get("language")) or "")})
 
     def _only_for(self, request, role):
         if not accesses.may(self._role(request), role):
@@ -239,7 +239,7 @@ class Server:
             name, fields, number = requests.parse(text)
             role, bucket, _ = requests.REQUESTS[name]
             if name == "stop":
-                await self._tell(page, {"n": number, "done": "stop", "result": {"heard": self.stop()}})
+                await self._tell(page, {"n": number, "done": "stop", "result": {"heard": self.stop(fields.get("language", ""))}})
                 return
             if not accesses.may(page.role, role):
                 raise requests.Refused("not_allowed", f"this needs the role {role}")
@@ -319,13 +319,13 @@ class Server:
         except (ConnectionError, RuntimeError, asyncio.CancelledError):
             pass  # it has gone; on_socket ends, too
 
-    def stop(self):
-        """At once; of a flood of them a few in a second are said, the last one for certain: something may have begun in between. Returns
+    def stop(self, language=""):
+        """At once, and answered in that language; of a flood of them a few in a second are said, the last one for certain: something may have begun in between. Returns
         how many hear it."""
         self._stop_again = self.clock() - self._stopped < STOP_PERIOD
         if not self._stop_again:
             self._stopped = self.clock()
-        return self.robot.stop(not self._stop_again)
+        return self.robot.stop(not self._stop_again, language)
 
     # ---- Time ----
 

@@ -5,18 +5,21 @@ import unicodedata
 
 from . import limits
 
+LINE = {"ax": "coordinate", "ay": "coordinate", "bx": "coordinate", "by": "coordinate"}  # from one end to the other
+
 # name: (role, bucket, {field: kind}); a kind that ends with ? may be missing.
 REQUESTS = {
-    "stop": ("", "message", {}),
+    "stop": ("", "message", {"language": "language?"}),
     "hide": ("look", "message", {"on": "flag"}),
     "say": ("talk", "say", {"text": "text"}),
     "try": ("talk", "try", {"text": "short"}),
-    "name": ("talk", "act", {"place": "id", "names": "names"}),
+    "name": ("talk", "act", {"place": "id", "names": "names", "language": "language?"}),
     "go": ("drive", "act", {"place": "id", "language": "language"}),
     "here": ("drive", "act", {"place": "id"}),
     "pose": ("drive", "act", {"x": "coordinate", "y": "coordinate", "yaw": "coordinate"}),
-    "wall": ("drive", "act", {"ax": "coordinate", "ay": "coordinate", "bx": "coordinate", "by": "coordinate"}),
-    "shut": ("drive", "act", {"door": "id"}),
+    "wall": ("drive", "act", dict(LINE, language="language?")),
+    "unwall": ("drive", "act", dict(LINE, virtual="flag", language="language?")),
+    "shut": ("drive", "act", {"door": "id", "language": "language?"}),
     "learn": ("drive", "slow", {"on": "flag"}),
     "save": ("drive", "slow", {}),
     "doctor": ("look", "slow", {}),
@@ -78,6 +81,9 @@ def parse(text):
         raise Refused("unknown", "there is no such request", number)
     kinds, fields = REQUESTS[name][2], {}
     for field, kind in kinds.items():
+        if kind.endswith("?") and field not in message:
+            continue
+        kind = kind.rstrip("?")
         value = checked(kind, message.pop(field, None))
         if value is None:
             raise Refused("invalid", f"'{field}' is missing, or no {kind}, or too long", number)

@@ -16,8 +16,8 @@ import rospy
 from actionlib_msgs.msg import GoalID
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
-from hyselam_msgs.msg import AugmentedTopologicalMap, LocalizationStatus, ObjectMap, PlaceState, VisualPlace
-from hyselam_msgs.srv import AddGlassWall, AddGlassWallRequest, NamePlace, NamePlaceRequest, TellRobot, WordToPose
+from hyselam_msgs.msg import AugmentedTopologicalMap, LocalizationStatus, ObjectMap, PlaceState, VisualPlace, WallArray
+from hyselam_msgs.srv import AddGlassWall, AddGlassWallRequest, NamePlace, NamePlaceRequest, TellRobot, UseLanguage, WordToPose
 from nav_msgs.msg import OccupancyGrid, Path
 from rospy.impl.registration import Registration, get_registration_listeners, get_topic_manager
 from sensor_msgs.msg import LaserScan
@@ -97,7 +97,8 @@ class Robot:
             ("map", OccupancyGrid, True), ("scan", LaserScan, False), ("particlecloud", PoseArray, False), ("amcl_pose", PoseWithCovarianceStamped, False),
             ("localization_status", LocalizationStatus, False), ("named_map", AugmentedTopologicalMap, True), ("place", PlaceState, False),
             ("goal_path", Path, False), ("object_map", ObjectMap, False), ("visual_place", VisualPlace, False), ("known_names", String, False),
-            ("name_candidates", String, False), ("open_question", String, False))}
+            ("name_candidates", String, False), ("open_question", String, False),
+            ("told_walls", WallArray, False))}
         rospy.Subscriber("/tf", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("/tf_static", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("conversation", String, self._on_talk, queue_size=200)
@@ -236,6 +237,9 @@ class Robot:
             self.world.set_table("places", sights.places(named))
             self.world.set_table("doors", sights.doors(named))
             self.world.set_table("walls", sights.walls(named))
+        walls = self.topics["told_walls"].message()
+        if walls is not None:
+            self.world.set_table("told", sights.told_walls(walls))
         objects = self.topics["object_map"].message()
         if objects is not None:
             self.world.set_table("objects", sights.objects(objects))
@@ -313,16 +317,16 @@ class Robot:
 
     # ---- What pages ask for ----
 
-    def stop(self, say=True):
+    def stop(self, say=True, language=""):
         """At once: what waits to be said is not said any more. Returns how many hear it."""
         self._sentences.stopped()
-        return self._publish_stop(say)
+        return self._publish_stop(say, language)
 
-    def _publish_stop(self, say=True):
+    def _publish_stop(self, say=True, language=""):
         """Said to the dialogue, which ends the way, and to a move_base, should nobody else tell it."""
         self._cancel.publish(GoalID())
         if say:
-            self._human.publish(String(data="Stop."))
+            self._human.publish(String(data=sentences.stop(language)))
         return self._human.get_num_connections() + self._cancel.get_num_connections()
 
     async def act(self, name, fields, role):
@@ -382,8 +386,14 @@ class Robot:
         answer = await self._call("understands", TellRobot, fields["text"])
         return {"understood": not answer.answers}
 
+    async def _answer_in(self, language):
+        """What is done by tapping is answered in the language of the page."""
+        if language:
+            await self._call("use_language", UseLanguage, language)
+
     async def _do_name(self, fields, _):
         self._place(fields["place"])
+        await self._answer_in(fields.get("language"))
         answer = await self._call("name_place", NamePlace, NamePlaceRequest(place=fields["place"], names=fields["names"]))
         return self._checked(answer)
 
@@ -412,15 +422,23 @@ class Robot:
         self._initial.publish(msg)
         return {}
 
-    async def _add_wall(self, a, b, is_virtual):
+    async def _change_wall(self, service, a, b, is_virtual, language):
         if not 0.2 <= math.dist(a, b) <= 50:
             raise Refused("invalid", "a wall has between 0.2 and 50 m")
         request = AddGlassWallRequest(is_virtual=is_virtual)
         request.a.x, request.a.y, request.b.x, request.b.y = *a, *b
-        return self._checked(await self._call("add_glass_wall", AddGlassWall, request))
+        await self._answer_in(language)
+        return self._checked(await self._call(service, AddGlassWall, request))
 
     async def _do_wall(self, fields, _):
-        return await self._add_wall((fields["ax"], fields["ay"]), (fields["bx"], fields["by"]), False)
+        return await self._change_wall("add_glass_wall", *self._ends(fields), False, fields.get("language"))
+
+    async def _do_unwall(self, fields, _):
+        return await self._change_wall("remove_wall", *self._ends(fields), fields["virtual"], fields.get("language"))
+
+    @staticmethod
+    def _ends(fields):
+        return (fields["ax"], fields["ay"]), (fields["bx"], fields["by"])
 
     async def _do_shut(self, fields, _):
         door = self.world.item("doors", fields["door"])
@@ -428,7 +446,8 @@ class Robot:
             raise Refused("unknown", f"there is no door {fields['door']}")
         half = door["w"] / 2 + 0.1
         along = (-door["ny"] * half, door["nx"] * half)
-        return await self._add_wall((door["x"] - along[0], door["y"] - along[1]), (door["x"] + along[0], door["y"] + along[1]), True)
+        ends = (door["x"] - along[0], door["y"] - along[1]), (door["x"] + along[0], door["y"] + along[1])
+        return await self._change_wall("add_glass_wall", *ends, True, fields.get("language"))
 
     async def _do_learn(self, fields, _):
         answer = await self._call("semantic_localization/" + ("start_learning" if fields["on"] else "stop_learning"), Trigger)

@@ -16,6 +16,11 @@ def go_to(place, language):
     return ("Vá para {}." if language == "pt" else "Go to {}.").format(place["e"])
 
 
+def stop(language):
+    """In words of one language only, where it shall be answered in that."""
+    return {"en": "Stop moving.", "pt": "Pare."}.get(language, "Stop.")
+
+
 class Sentences:
     """tell(text, check): a future of the answers, which calls check() right before the robot is told; stop(): stops the robot; ways(): how
     often it was set going; forwarded(): how often a sentence went to who answers later, within patience() seconds."""

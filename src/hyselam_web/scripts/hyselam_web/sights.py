@@ -125,6 +125,17 @@ def walls(msg):
     return found
 
 
+def told_walls(msg):
+    """Those that people told of, from one end to the other."""
+    found = {}
+    for wall in msg.walls[:MAX_ITEMS]:
+        if finite(wall.position.x, wall.position.y, wall.normal.x, wall.normal.y, wall.length):
+            dx, dy = -wall.normal.y * wall.length / 2, wall.normal.x * wall.length / 2
+            found[str(wall.id)] = {"ax": cm(wall.position.x - dx), "ay": cm(wall.position.y - dy), "bx": cm(wall.position.x + dx), "by": cm(wall.position.y + dy),
+                                   "v": wall.kind == VIRTUAL}
+    return found
+
+
 def objects(msg):
     at = {}
     for relation in msg.relations:

@@ -1,4 +1,6 @@
 // The server: what it tells goes into the model, what the page asks for goes there. A lost connection is shown and made again.
+import {currentLanguage} from "./i18n.js";
+
 const QUIET = 13000; // [ms] without a word, though the server speaks every five seconds
 const ANSWER = 45000; // [ms] for what was asked for
 const SLOWEST = 8000; // [ms] between two tries
@@ -143,7 +145,7 @@ export class Connection {
   // By the open connection; where that does not answer at once, by a request of its own. "sent", "unheard", or "failed".
   async stop() {
     try {
-      const {heard} = await this.ask("stop", {}, 700);
+      const {heard} = await this.ask("stop", {language: currentLanguage()}, 700);
       return heard === 0 ? "unheard" : "sent";
     } catch {
       return postStop();
@@ -154,7 +156,7 @@ export class Connection {
 // Needs neither a login nor an open connection.
 export async function postStop() {
   try {
-    const answer = await fetch("stop", {method: "POST", keepalive: true, signal: AbortSignal.timeout(4000)});
+    const answer = await fetch(`stop?language=${currentLanguage()}`, {method: "POST", keepalive: true, signal: AbortSignal.timeout(4000)});
     if (!answer.ok) return "failed";
     return (await answer.json()).heard === 0 ? "unheard" : "sent";
   } catch {

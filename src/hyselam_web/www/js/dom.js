@@ -21,13 +21,18 @@ export function button(text, onclick, properties = {}) {
 }
 
 let toastTimer = 0;
-export function toast(text, bad = false) {
+// With [word, what it does], a button to take back what was done.
+export function toast(text, bad = false, action = null) {
   const box = byId("toast");
-  box.textContent = text;
+  const hide = () => { box.hidden = true; };
+  box.replaceChildren(text, ...(action ? [button(action[0], () => {
+    hide();
+    action[1]();
+  })] : []));
   box.classList.toggle("bad", bad);
   box.hidden = false;
   clearTimeout(toastTimer);
-  toastTimer = setTimeout(() => { box.hidden = true; }, bad ? 7000 : 3500);
+  toastTimer = setTimeout(hide, bad || action ? 7000 : 3500);
 }
 
 // What was chosen before, on this device; private windows may forbid it.

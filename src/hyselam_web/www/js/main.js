@@ -60,6 +60,7 @@ class Page {
       openTalk: () => this.openTab("talk"),
       pick: (name) => this.pick(name, []),
       give: (id, name) => this.next.give(id, name),
+      unwall: (wall, done) => this.unwall(wall, done),
       selected: (id) => {
         this.map.selected = id;
         this.map.invalidate();
@@ -87,14 +88,18 @@ class Page {
     byId("login-form").onsubmit = (event) => this.login(event);
     for (const name of TABS) byId(`tab-${name}`).onclick = () => this.openTab(name, true);
     byId("tabs").addEventListener("keydown", (event) => this.moveTab(event));
+    // Cards stand above the foot of the page, however high that is.
+    new ResizeObserver(([{target}]) => document.body.style.setProperty("--foot", `${target.offsetHeight}px`)).observe(document.querySelector("footer"));
     const empty = () => { byId("map-empty").hidden = Boolean(model.values.map) || Object.keys(model.tables.places).length > 0; };
     model.on(["map", "places"], empty);
     model.on(["reach"], () => this.showLost());
     model.on(["way", "arrived"], () => {
       const {way, arrived} = model.values;
-      if (arrived && this.going && !way?.length) {
+      if (arrived && this.going && !way?.length && !this.replay) {
         const place = model.placeAt(...arrived);
-        toast(t("arrived_at", {name: place === null ? "" : model.titleOf(place)}));
+        const values = {name: place === null ? "" : model.titleOf(place)};
+        toast(t("arrived_at", values));
+        this.talk.note("arrived_at", values);
       }
       this.going = Boolean(way?.length);
     });
@@ -154,7 +159,7 @@ class Page {
 
   async stop() {
     const sent = await this.source.stop();
-    toast(t(`stop_${sent}`), sent !== "sent");
+    toast(t(this.replay && sent === "sent" ? "stop_real" : `stop_${sent}`), sent !== "sent");
   }
 
   // ---- Map ----
@@ -202,10 +207,25 @@ class Page {
   async onLine(from, to) {
     const {kind} = this.map.tool;
     try {
-      if (kind === "pose") await this.source.ask("pose", {x: from[0], y: from[1], yaw: Math.atan2(to[1] - from[1], to[0] - from[0])});
-      else await this.source.ask("wall", {ax: from[0], ay: from[1], bx: to[0], by: to[1]});
-      toast(t(kind === "pose" ? "pose_sent" : "wall_sent"));
+      if (kind === "pose") {
+        await this.source.ask("pose", {x: from[0], y: from[1], yaw: Math.atan2(to[1] - from[1], to[0] - from[0])});
+        toast(t("pose_sent"));
+      } else {
+        const wall = {ax: from[0], ay: from[1], bx: to[0], by: to[1]};
+        await this.source.ask("wall", {...wall, language: currentLanguage()});
+        toast(t("wall_sent"), false, [t("undo"), () => this.unwall({...wall, v: false}, t("unwalled"))]);
+      }
       this.setTool(null);
+    } catch (error) {
+      toast(reasonOf(error), true);
+    }
+  }
+
+  // A wall that somebody told of, or a shut door, is there no more.
+  async unwall({ax, ay, bx, by, v}, done) {
+    try {
+      await this.source.ask("unwall", {ax, ay, bx, by, virtual: v, language: currentLanguage()});
+      toast(done);
     } catch (error) {
       toast(reasonOf(error), true);
     }
@@ -216,6 +236,8 @@ class Page {
   openTab(name, may_fold = false) {
     if (may_fold && (this.map.tool || this.picking)) this.setTool(null);
     const was_open = byId(`tab-${name}`).getAttribute("aria-selected") === "true";
+    if (may_fold && !was_open) this.places.close(); // it would lie on what was asked for
+    if (!was_open) this.places.clearSearch();
     // Once more on the open tab of a phone: the whole screen for the map.
     document.body.classList.toggle("folded", may_fold && was_open && innerWidth < 900 && !document.body.classList.contains("folded"));
     for (const each of TABS) {
@@ -243,6 +265,8 @@ class Page {
   async startReplay(recorded) {
     document.body.classList.add("replay");
     byId("stop").hidden = Boolean(recorded); // a file has no robot behind it; the server that plays its day has
+    byId("stop").dataset.t = "stop_robot";
+    byId("stop").textContent = t("stop_robot");
     byId("player").hidden = false;
     let entries = recorded;
     if (!entries) {
@@ -253,7 +277,7 @@ class Page {
       toast(t("no_recording"), true);
       return;
     }
-    const replay = new Replay(this.model, entries, () => this.map.tilesChanged());
+    const replay = new Replay(this.model, entries, () => this.map.tilesChanged(), (time) => this.robot.showTime(time));
     this.replayer = replay;
     replay.showButton();
     this.source.live = !recorded;

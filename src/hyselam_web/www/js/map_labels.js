@@ -1,21 +1,30 @@
 // The names of the places on the map. Where there is no room for a name there is a number, or a dot: no place stays unseen.
+import {inside} from "./model.js";
+
 const NEAR = 22; // [pixels] from a number or a dot to the finger that means it
 const EXACT = 12; // [pixels] within which it is meant, also in another place
 const DOT = 4.5; // [pixels], radius
 const SPARE = 6; // [pixels] around the middle of each place that names of others leave free for its dot
 
-// A name in up to three lines.
-export function wrapped(text) {
-  if (text.length <= 11) return [text];
+// A name in lines of so many letters, up to three.
+export function wrapped(text, most = 11) {
   const lines = [""];
   for (const word of text.split(" ")) {
     const last = lines[lines.length - 1];
-    if (last && last.length + 1 + word.length > 11) lines.push(word);
+    if (last && last.length + 1 + word.length > most) lines.push(word);
     else lines[lines.length - 1] = last ? `${last} ${word}` : word;
   }
   const cut = lines.slice(0, 3).map((line) => (line.length > 18 ? line.slice(0, 17) + "…" : line));
   if (lines.length > 3) cut[2] = cut[2].slice(0, 16) + "…";
   return cut;
+}
+
+// The ways to write a name, the shortest ones first: in one line, in two as long as each other, in one for each word.
+function waysToWrite(text) {
+  const longest = Math.max(...text.split(" ").map((word) => word.length));
+  const ways = [18, 11, Math.ceil(text.length / 2) + 1, longest].map((most) => wrapped(text, Math.max(most, longest)));
+  const different = new Map(ways.map((lines) => [lines.join("\n"), lines]));
+  return [...different.values()].sort((a, b) => a.length - b.length);
 }
 
 export function haloed(c, text, x, y, color, halo) {
@@ -35,6 +44,8 @@ export class MapLabels {
   constructor(view) {
     this.view = view;
     this.shown = new Map(); // id: {kind: "name", "number" or "dot", x, y, box}
+    this.widths = new Map(); // of lines, by their fonts
+    this.kept = new Map(); // id: how its name was written last; it stays so where it can
   }
 
   // What is to be named, the most important first: what is asked about or pointed at, confirmed names, guesses, the rest.
@@ -64,7 +75,9 @@ export class MapLabels {
     const {view} = this;
     const wanted = this.wanted();
     const middles = wanted.map(({id, x, y}) => [id, [x - SPARE, y - SPARE, x + SPARE, y + SPARE]]);
-    const taken = [];
+    const taken = this.robotBox();
+    const kept = this.kept;
+    this.kept = new Map();
     this.shown = new Map();
     c.textAlign = "center";
     c.textBaseline = "middle";
@@ -72,32 +85,92 @@ export class MapLabels {
       const others = middles.filter(([id]) => id !== each.id && !this.shown.has(id)).map(([, box]) => box);
       const fits = (box) => ![...taken, ...others].some((other) => meets(box, other));
       const size = (each.small ? 11 : 14) - (view.scale < 12 ? 2 : 0);
-      // What is pointed at is named in any case.
-      const done = this.name(c, each, size, fits) ?? (each.small ? null : this.name(c, each, size - 3, fits)) ?? (each.rank < 2 ? this.name(c, each, size, () => true) : null) ?? this.dot(c, each);
+      const done = this.name(c, each, size, fits, kept.get(each.id)) ?? this.dot(c, each);
       taken.push(done.box);
       this.shown.set(each.id, done);
     }
   }
 
-  // A little higher or lower in its place, where another name is in the way; null: there is no room.
-  name(c, {place, x, y, text, small, weight, color}, size, fits) {
-    const {view} = this;
-    c.font = `${weight}${size}px system-ui, "Liberation Sans", sans-serif`;
-    const lines = wrapped(text);
-    const wide = Math.max(...lines.map((line) => c.measureText(line).width)) + 6;
-    const high = lines.length * (size + 2) + 2;
-    const width = view.canvas.clientWidth;
-    if (x >= 0 && x <= width) x = Math.max(wide / 2, Math.min(width - wide / 2, x)); // not cut off by the edge
-    const ys = (place.o ?? []).filter((_, i) => i % 2);
-    const room = ys.length ? Math.max(0, (Math.max(...ys) - Math.min(...ys)) * view.scale * 0.5 - high / 2) : 0;
-    for (const share of [0, 0.5, -0.5, 1, -1]) {
-      const at = y + share * Math.min(room, 1.6 * high);
-      const box = [x - wide / 2, at - high / 2, x + wide / 2, at + high / 2];
-      if (!fits(box)) continue;
-      lines.forEach((line, i) => haloed(c, line, x, at + (i - (lines.length - 1) / 2) * (size + 2), color, view.colors.halo));
-      return {kind: small ? "number" : "name", x, y: at, box};
+  // What the robot's picture covers.
+  robotBox() {
+    const pose = this.view.shown;
+    if (!pose) return [];
+    const [x, y] = this.view.toScreen(pose.x, pose.y);
+    const r = 1.3 * Math.max(10, 0.25 * this.view.scale);
+    return [[x - r, y - r, x + r, y + r]];
+  }
+
+  fontOf({weight}, size) {
+    return `${weight}${size}px system-ui, "Liberation Sans", sans-serif`;
+  }
+
+  widthOf(c, font, line) {
+    const key = `${font} ${line}`;
+    if (!this.widths.has(key)) {
+      if (this.widths.size > 2000) this.widths.clear();
+      c.font = font;
+      this.widths.set(key, c.measureText(line).width);
     }
-    return null;
+    return this.widths.get(key);
+  }
+
+  // The box of some lines, so far from the middle of their place [pixels]; not cut off by the edge of the screen.
+  boxOf(c, each, {lines, size, dx, dy}) {
+    const wide = Math.max(...lines.map((line) => this.widthOf(c, this.fontOf(each, size), line))) + 6;
+    const high = lines.length * (size + 2) + 2;
+    const width = this.view.canvas.clientWidth;
+    const x = each.x >= 0 && each.x <= width ? Math.max(wide / 2, Math.min(width - wide / 2, each.x + dx)) : each.x + dx;
+    const y = each.y + dy;
+    return [x - wide / 2, y - high / 2, x + wide / 2, y + high / 2];
+  }
+
+  isWithin({place}, [left, top, right, bottom]) {
+    if (!place.o) return false;
+    const rim = 3; // of which the letters have no need
+    const [l, m, r] = [left + rim, (left + right) / 2, right - rim];
+    return [[l, top + rim], [m, top + rim], [r, top + rim], [l, bottom - rim], [m, bottom - rim], [r, bottom - rim]]
+      .every(([x, y]) => inside(place.o, ...this.view.toMap(x, y)));
+  }
+
+  // Written as before where that has room; else within its place, on more lines or smaller; else across its walls, a little higher or
+  // lower. What is pointed at is named in any case. null: there is no room.
+  name(c, each, size, fits, before) {
+    const {view} = this;
+    const {id, place, text, small, rank} = each;
+    const sizes = small ? [size] : [size, size - 2, Math.max(10, size - 4)];
+    const room = (first) => {
+      const all = (place.o ?? []).filter((_, i) => i % 2 === first).map((at) => at * view.scale);
+      return all.length ? Math.max(...all) - Math.min(...all) : 0;
+    };
+    const [wide, high] = [room(0), room(1)];
+    const steps = [0, 0.15, -0.15, 0.3, -0.3, 0.42, -0.42];
+    const tried = (ways, dys, dxs, is_good, of_sizes = sizes) => {
+      for (const own of of_sizes) {
+        for (const lines of ways) {
+          for (const dx of dxs) {
+            for (const dy of dys(lines, own)) {
+              const how = {lines, size: own, dx, dy};
+              const box = this.boxOf(c, each, how);
+              if (is_good(box)) return {how, box};
+            }
+          }
+        }
+      }
+      return null;
+    };
+    const same = before && before.text === text && before.scale === view.scale && sizes.includes(before.how.size) ? {how: before.how, box: this.boxOf(c, each, before.how)} : null;
+    const ways = small ? [[text]] : waysToWrite(text);
+    const done = (same && fits(same.box) ? same : null)
+      ?? (small ? null : tried(ways, () => steps.map((share) => share * high), steps.map((share) => share * wide), (box) => this.isWithin(each, box) && fits(box)))
+      ?? tried([small ? [text] : wrapped(text)], (lines, own) => [0, 0.5, -0.5, 1, -1].map((share) => share * Math.min(high / 2, 1.6 * lines.length * (own + 2))), [0], fits, sizes.slice(-2))
+      ?? (rank < 2 ? tried([wrapped(text)], () => [0], [0], () => true) : null);
+    if (!done) return null;
+    this.kept.set(id, {text, scale: view.scale, how: done.how});
+    const {box, how: {lines, size: own}} = done;
+    const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+    c.font = this.fontOf(each, own);
+    lines.forEach((line, i) => haloed(c, line, x, y + (i - (lines.length - 1) / 2) * (own + 2), each.color, view.colors.halo));
+    return {kind: small ? "number" : "name", x, y, box};
   }
 
   dot(c, {x, y, color}) {

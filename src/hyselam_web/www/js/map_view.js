@@ -2,8 +2,11 @@
 import {unpack} from "./model.js";
 import {TilePictures} from "./tiles.js";
 import {MapLabels, haloed} from "./map_labels.js";
+import {plainWalls, shutBy, spotsOfTold} from "./building.js";
 
 const TAP = 9; // [pixels] that a finger may move within a tap
+const THINGS = 14; // pixels a metre from which things are drawn
+const THING_NAMES = 24; // and their names
 const GLIDE = 250; // [ms] in which the robot's picture follows its pose
 
 export class MapView {
@@ -29,7 +32,7 @@ export class MapView {
     const dark = matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", () => this.themeChanged());
     this.themeChanged();
-    model.on(["map", "places", "doors", "walls", "objects", "pose", "spread", "scan", "particles", "way", "here", "asked", "status", "camera", "marked"], (names) => {
+    model.on(["map", "places", "doors", "walls", "told", "objects", "pose", "spread", "scan", "particles", "way", "here", "asked", "status", "camera", "marked"], (names) => {
       if (names.includes("scan")) this.scanPoints = null;
       if (names.includes("particles")) this.particlePoints = null;
       if (names.includes("map") && !this.fitted) this.fit();
@@ -102,7 +105,12 @@ export class MapView {
     return xs.length ? [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)] : null;
   }
 
+  // All of it: the robot is not followed any more.
   fit() {
+    if (this.follows) {
+      this.follows = false;
+      this.events.onUserMove();
+    }
     const box = this.bounds();
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
     if (!box || !width || !height) return;
@@ -262,11 +270,9 @@ export class MapView {
     const [x, y] = this.toMap(px, py);
     let object = null;
     let nearest = 22;
-    for (const [id, each] of Object.entries(this.model.tables.objects)) {
-      if (!each.c) continue;
-      const [ox, oy] = this.toScreen(...each.c);
+    for (const {id, x: ox, y: oy} of this.things()) {
       const distance = Math.hypot(ox - px, oy - py);
-      if (this.scale > 14 && distance < nearest) [nearest, object] = [distance, id];
+      if (distance < nearest) [nearest, object] = [distance, id];
     }
     this.events.onTap(x, y, this.names.placeAt(px, py), object);
   }
@@ -401,6 +407,10 @@ export class MapView {
   drawWalls(c) {
     for (const door of Object.values(this.model.tables.doors)) {
       if (!door.r) continue;
+      if (shutBy(this.model, door)) {
+        this.drawShut(c, door);
+        continue;
+      }
       c.lineWidth = (door.st === 2 ? 4 : 2.5) / this.scale;
       c.strokeStyle = door.st === 2 ? this.colors.shut : this.colors.door;
       c.setLineDash(door.st === 2 || this.scale < 25 ? [] : [3 / this.scale, 3 / this.scale]);
@@ -408,14 +418,39 @@ export class MapView {
     }
     c.setLineDash([]);
     for (const wall of Object.values(this.model.tables.walls)) {
-      if (wall.k !== 1) continue;
-      c.lineWidth = 7 / this.scale;
-      c.strokeStyle = this.colors.halo;
-      this.segment(c, wall.x, wall.y, wall.nx, wall.ny, wall.l);
-      c.lineWidth = 4 / this.scale;
-      c.strokeStyle = this.colors.glass;
-      this.segment(c, wall.x, wall.y, wall.nx, wall.ny, wall.l);
+      if (wall.k === 1) this.bar(c, this.colors.glass, () => this.segment(c, wall.x, wall.y, wall.nx, wall.ny, wall.l));
     }
+    for (const wall of plainWalls(this.model)) {
+      this.bar(c, wall.v ? this.colors.shut : this.colors.glass, () => {
+        c.beginPath();
+        c.moveTo(wall.ax, wall.ay);
+        c.lineTo(wall.bx, wall.by);
+        c.stroke();
+      });
+    }
+  }
+
+  bar(c, color, stroke) {
+    c.lineWidth = 7 / this.scale;
+    c.strokeStyle = this.colors.halo;
+    stroke();
+    c.lineWidth = 4 / this.scale;
+    c.strokeStyle = color;
+    stroke();
+  }
+
+  // A door that somebody has shut: a bar with a cross.
+  drawShut(c, door) {
+    this.bar(c, this.colors.shut, () => this.segment(c, door.x, door.y, door.nx, door.ny, door.w));
+    const arm = 6 / this.scale;
+    this.bar(c, this.colors.shut, () => {
+      c.beginPath();
+      for (const sign of [1, -1]) {
+        c.moveTo(door.x - arm, door.y - sign * arm);
+        c.lineTo(door.x + arm, door.y + sign * arm);
+      }
+      c.stroke();
+    });
   }
 
   drawWay(c) {
@@ -466,22 +501,33 @@ export class MapView {
     }
   }
 
+  // Things that have room on the screen: {id, each, x, y [pixels], told}; those that were only told of, in their places below the names.
+  things() {
+    const found = [];
+    if (this.scale < THINGS) return found;
+    const told = this.scale < THING_NAMES ? new Map() : spotsOfTold(this.model);
+    for (const [id, each] of Object.entries(this.model.tables.objects)) {
+      const spot = told.get(id);
+      if (!each.c && !spot) continue;
+      const [x, y] = this.toScreen(...(each.c ?? spot));
+      found.push(each.c ? {id, each, x, y} : {id, each, told: true, x: x - 30, y: y + 12 + 19 * spot[2]});
+    }
+    return found;
+  }
+
   drawObjects(c) {
-    if (this.scale < 14) return;
     c.font = "12px system-ui, sans-serif";
     c.textAlign = "left";
     c.textBaseline = "middle";
-    for (const each of Object.values(this.model.tables.objects)) {
-      if (!each.c) continue;
-      const [x, y] = this.toScreen(...each.c);
-      c.fillStyle = this.colors.object;
-      c.strokeStyle = this.colors.halo;
+    for (const {each, x, y, told} of this.things()) {
+      c.fillStyle = told ? this.colors.halo : this.colors.object;
+      c.strokeStyle = told ? this.colors.object : this.colors.halo;
       c.lineWidth = 2;
       c.beginPath();
       c.rect(x - 5, y - 5, 10, 10);
       c.stroke();
       c.fill();
-      if (this.scale > 28 && !["thing", "furniture"].includes(each.k)) haloed(c, each.k, x + 9, y, this.colors.object, this.colors.halo);
+      if (this.scale >= THING_NAMES && !["thing", "furniture"].includes(each.k)) haloed(c, each.k.length > 24 ? each.k.slice(0, 23) + "…" : each.k, x + 9, y, this.colors.object, this.colors.halo);
     }
   }
 

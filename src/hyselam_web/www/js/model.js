@@ -12,7 +12,7 @@ export class Model {
   clear() {
     this.version = 0;
     this.values = {};
-    this.tables = {places: {}, doors: {}, walls: {}, objects: {}, layers: {}};
+    this.tables = {places: {}, doors: {}, walls: {}, told: {}, objects: {}, layers: {}};
     this.talk = [];
   }
 
@@ -91,6 +91,13 @@ export class Model {
 
   confirmedNames(id) {
     return (this.place(id)?.n ?? []).filter((word) => word[1]).map((word) => word[0]);
+  }
+
+  // The place where a person has confirmed a name, but for one, and for those beside that, which may share it; null: none.
+  holderOf(name, but) {
+    const wanted = name.trim().toLowerCase();
+    const beside = [String(but), ...this.neighbours(but).map(String)];
+    return Object.keys(this.tables.places).find((id) => !beside.includes(id) && this.confirmedNames(id).some((each) => each.toLowerCase() === wanted)) ?? null;
   }
 
   neighbours(id) {

@@ -1,6 +1,6 @@
 // What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
 import {byId, make, button, toast} from "./dom.js";
-import {t, onLanguage} from "./i18n.js";
+import {t, onLanguage, currentLanguage} from "./i18n.js";
 import {called, corrected, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
@@ -126,7 +126,7 @@ export class NextStep {
   async give(id, name) {
     const names = [...this.model.confirmedNames(id).filter((each) => each !== name), name];
     try {
-      await this.connection.ask("name", {place: Number(id), names});
+      await this.connection.ask("name", {place: Number(id), names, language: currentLanguage()});
       if (this.denied?.name === name) this.denied = null;
     } catch (error) {
       toast(reasonOf(error), true);

@@ -3,6 +3,9 @@ import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
 import {reasonOf} from "./talk.js";
 import {called, meant, plain} from "./wording.js";
+import {behind, plainWalls, shutBy, sidesOf} from "./building.js";
+
+const ONE_THING = /^[\p{L}\p{N}' -]{1,60}$/u; // a name that can be put into a sentence without becoming another one
 
 export class Places {
   // actions: showOnMap(id), say(text), openTalk()
@@ -12,8 +15,9 @@ export class Places {
     this.list = byId("panel-places");
     this.open = null; // {kind: "place" or "object", id}
     this.naming = false;
+    this.sure = null; // what was asked for and is asked about: {key, text, act}
     this.filter = "";
-    model.on(["places", "doors", "objects", "here", "asked", "marked"], () => {
+    model.on(["places", "doors", "told", "objects", "here", "asked", "marked"], () => {
       this.showList();
       if (this.open && !this.naming) this.showCard();
     });
@@ -32,6 +36,7 @@ export class Places {
   show(kind, id, focus = false) {
     this.open = {kind, id: String(id)};
     this.naming = false;
+    this.sure = null;
     this.showCard();
     if (focus) this.card.querySelector("button:not(.close)")?.focus();
   }
@@ -40,6 +45,7 @@ export class Places {
     const was_inside = this.card.contains(document.activeElement);
     this.open = null;
     this.naming = false;
+    this.sure = null;
     this.card.hidden = true;
     this.actions.selected(null);
     if (was_inside) byId("map").focus();
@@ -47,7 +53,7 @@ export class Places {
 
   showCard() {
     const {kind, id} = this.open;
-    const content = kind === "place" ? this.placeCard(id) : this.objectCard(id);
+    const content = this.sure ? this.surely(id) : kind === "place" ? this.placeCard(id) : this.objectCard(id);
     if (!content) {
       this.close();
       return;
@@ -73,8 +79,10 @@ export class Places {
     parts.push(t(name.none ? "unnamed" : name.sure ? "named_sure" : "named_guess"));
     if (place.s) parts.push(t("about", {kind: t(`kind_${place.k}`), area: Math.round(place.s)}));
     if (place.n.length > 1) parts.push(place.n.slice(1).map((word) => word[0]).join(", ") + ".");
-    const beside = model.neighbours(id).map((each) => model.labelOf(each));
-    if (beside.length) parts.push(t("beside", {names: beside.slice(0, 5).join(", ") + (beside.length > 5 ? "…" : "")}));
+    for (const [key, ids] of [["beside", model.neighbours(id)], ["behind", behind(model, id)]]) {
+      const names = ids.map((each) => model.labelOf(each));
+      if (names.length) parts.push(t(key, {names: names.slice(0, 5).join(", ") + (names.length > 5 ? "…" : "")}));
+    }
     const things = Object.values(model.tables.objects).filter((each) => each.c && model.placeAt(...each.c) === String(id)).map((each) => each.k);
     if (things.length) parts.push(t("things", {names: [...new Set(things)].slice(0, 6).join(", ")}));
     if (model.values.here?.place === Number(id)) parts.push(t("robot_is_here"));
@@ -113,22 +121,50 @@ export class Places {
       // Never by a name that somebody gave: it could hold another sentence.
       this.actions.say(t("what_next", {name: place.e})); // shown as "place 5"
     });
-    if (this.may("drive")) add("here_you_are", () => this.ask("here", {place: Number(id)}, t("pose_sent")));
+    if (this.may("drive")) add("here_you_are", () => this.askSurely(t("here_sure", {name: model.titleOf(id)}), "here_yes", () => this.ask("here", {place: Number(id)}, t("pose_sent"))));
     return [title, make("p", {}, this.describe(id)), row, this.doorsOf(id)];
   }
 
+  // Asks before something is done that is not easily taken back.
+  askSurely(text, yes, act) {
+    this.sure = {text, yes, act};
+    this.showCard();
+    this.card.querySelector("button")?.focus();
+  }
+
+  surely(id) {
+    if (!this.model.place(id)) return null;
+    const {text, yes, act} = this.sure;
+    const end = () => {
+      this.sure = null;
+      if (this.open) this.showCard();
+    };
+    return [make("h2", {id: "card-title"}, this.model.titleOf(id)), make("p", {}, text), make("div", {class: "row"}, button(t(yes), () => {
+      end();
+      act();
+    }, {class: "primary", "data-key": "sure"}), button(t("cancel"), end, {"data-key": "unsure"}))];
+  }
+
   doorsOf(id) {
+    const {model} = this;
+    const walls = plainWalls(model).filter((wall) => sidesOf(model, wall).includes(String(id)));
     const doors = Object.entries(this.model.tables.doors).filter(([, door]) => door.r && (door.a === Number(id) || door.b === Number(id)));
-    if (!doors.length || !this.may("drive")) return null;
+    if (!(doors.length || walls.length) || !this.may("drive")) return null;
     const was_open = this.card.querySelector("details")?.open && this.doorsOpenFor === id;
-    const details = make("details", {}, make("summary", {}, t("doors")));
+    const details = make("details", {}, make("summary", {}, t(walls.length ? "doors_and_walls" : "doors")));
     details.open = Boolean(was_open);
     details.addEventListener("toggle", () => { this.doorsOpenFor = id; });
     const list = make("ul", {class: "list"});
     for (const [number, door] of doors) {
       const other = door.a === Number(id) ? door.b : door.a;
-      list.append(make("li", {}, make("span", {class: "rest"}, t("door_to", {name: this.model.labelOf(other)}), door.st === 2 ? make("span", {class: "sub"}, t("door_closed")) : null),
-        button(t("shut"), () => this.ask("shut", {door: Number(number)}, t("shut_done")), {"data-key": "shut" + number})));
+      const wall = shutBy(model, door);
+      const state = wall ? t("door_shut") : door.st === 2 ? t("door_closed") : "";
+      list.append(make("li", {}, make("span", {class: "rest"}, t("door_to", {name: model.labelOf(other)}), state ? make("span", {class: `sub${wall ? " error" : ""}`}, state) : null),
+        wall ? button(t("unshut"), () => this.actions.unwall(wall, t("unshut_done")), {"data-key": "open" + number})
+          : button(t("shut"), () => this.ask("shut", {door: Number(number)}, t("shut_done")), {"data-key": "shut" + number})));
+    }
+    for (const wall of walls) {
+      list.append(make("li", {}, make("span", {class: "rest"}, t(wall.v ? "virtual_wall" : "glass_wall")), button(t("unwall"), () => this.actions.unwall(wall, t("unwalled")), {"data-key": `wall${wall.ax}`})));
     }
     details.append(list);
     return details;
@@ -139,7 +175,13 @@ export class Places {
     if (!each) return null;
     const place = each.c ? this.model.placeAt(...each.c) : null;
     const where = place ? this.model.labelOf(place) : each.at ? plain(each.at.join(" ")) : "";
-    return [make("h2", {id: "card-title"}, each.k), make("p", {}, [where, ...each.p].filter(Boolean).join(" · "))];
+    const about = [where, ...each.p, t(each.c ? "thing_seen" : "thing_told")].filter(Boolean).join(" · ");
+    const forget = this.may("talk") && ONE_THING.test(each.k) ? button(t("forget_thing"), () => {
+      this.close();
+      this.actions.openTalk(); // the answer comes there
+      this.actions.say(t("forget_this", {name: each.k}));
+    }, {"data-key": "forget_thing"}) : null;
+    return [make("h2", {id: "card-title"}, each.k), make("p", {}, about), forget ? make("div", {class: "row"}, forget) : null];
   }
 
   // ---- Names ----
@@ -155,20 +197,19 @@ export class Places {
     const input = make("input", {type: "text", maxlength: 80, id: "new-name", "data-key": "new-name", placeholder: t("examples"), autocomplete: "off", autocapitalize: "off", enterkeyhint: "done"});
     input.value = this.typed ?? (name.sure ? name.text : "");
     input.addEventListener("input", () => { this.typed = input.value; });
-    const hint = make("p", {class: "hint", hidden: true});
+    const hint = make("p", {class: "hint"}); // its room is there before it is: nothing moves under the finger
     const hints = () => {
       const right = input.value.replace(/\p{L}+/gu, (word) => meant(word, this.model.values.names ?? []) || word);
-      hint.hidden = right === input.value;
-      hint.replaceChildren(t("did_you_mean") + " ", button(right, () => {
+      hint.replaceChildren(...(right === input.value ? [] : [t("did_you_mean") + " ", button(right, () => {
         input.value = this.typed = right;
         hints();
         input.focus();
-      }));
+      })]));
     };
     input.addEventListener("input", hints);
     const form = make("form", {class: "row", onsubmit: (event) => {
       event.preventDefault();
-      if (input.value.trim()) this.name(id, [input.value.trim()]);
+      if (input.value.trim()) this.rename(id, input.value.trim());
     }}, make("label", {for: "new-name", class: "unseen"}, t("name_label")), input, make("button", {type: "submit", class: "primary"}, t("save_name")),
     name.none ? null : button(t("forget_name"), () => this.name(id, [])),
     name.none || name.sure ? null : button(t("show_where", {name: name.text}), () => this.actions.pick(name.text)),
@@ -180,6 +221,14 @@ export class Places {
     return make("div", {}, form, hint);
   }
 
+  // A name in use elsewhere would be gone there: that is asked about.
+  rename(id, name) {
+    const holder = this.model.holderOf(name, id);
+    this.naming = false;
+    if (holder === null) this.name(id, [name]);
+    else this.askSurely(t("name_taken", {name, place: t("place_number", {n: holder})}), "move_name", () => this.name(id, [name]));
+  }
+
   async name(id, names) {
     this.naming = false;
     await this.ask("name", {place: Number(id), names}, ""); // the card and the talk show it
@@ -188,7 +237,7 @@ export class Places {
 
   async ask(what, fields, done = undefined) {
     try {
-      const result = await this.connection.ask(what, fields);
+      const result = await this.connection.ask(what, what === "here" ? fields : {language: currentLanguage(), ...fields});
       const answer = done ?? plain(result.message || "");
       if (answer) toast(answer);
     } catch (error) {
@@ -197,6 +246,13 @@ export class Places {
   }
 
   // ---- The list ----
+
+  // What was looked for is over when another panel is opened.
+  clearSearch() {
+    if (!this.filter) return;
+    this.filter = "";
+    this.buildList();
+  }
 
   buildList() {
     this.places = make("ul", {class: "list"});
@@ -219,18 +275,18 @@ export class Places {
     };
     const ids = Object.keys(model.tables.places).filter((id) => !wanted || model.nameOf(id).text.toLowerCase().includes(wanted))
       .sort((a, b) => order(a)[0] - order(b)[0] || order(a)[1].localeCompare(order(b)[1], undefined, {numeric: true}));
-    const key = JSON.stringify([ids.map((id) => [id, model.labelOf(id), model.place(id).s, model.values.here?.place === Number(id)]), Object.entries(model.tables.objects), document.documentElement.lang]);
+    const objects = Object.entries(model.tables.objects).filter(([, each]) => !wanted || [each.k, ...(each.at ?? [])].some((word) => word.toLowerCase().includes(wanted)));
+    const key = JSON.stringify([wanted, ids.map((id) => [id, model.labelOf(id), model.place(id).s, model.values.here?.place === Number(id)]), objects, document.documentElement.lang]);
     if (key === this.listKey && this.places.children.length) return;
     this.listKey = key;
     this.places.replaceChildren(...ids.map((id) => this.placeLine(id)));
-    if (!ids.length) this.places.append(make("li", {class: "note"}, t("no_places")));
-    const objects = Object.entries(model.tables.objects);
+    if (!ids.length) this.places.append(make("li", {class: "note"}, t(wanted ? "no_match" : "no_places")));
     this.objects.replaceChildren(...objects.map(([id, each]) => make("li", {}, button("", () => {
       if (each.c) this.actions.showOnMap(...each.c);
       this.show("object", id, true);
     }, {}), make("span", {class: "sub"}, t(each.c ? "seen" : "told")))));
     objects.forEach(([, each], i) => this.objects.children[i].firstChild.append(each.k, make("span", {class: "sub"}, plain([...(each.at ?? []), ...each.p].join(" ")))));
-    if (!objects.length) this.objects.append(make("li", {class: "note"}, t("no_objects")));
+    if (!objects.length) this.objects.append(make("li", {class: "note"}, t(wanted ? "no_match" : "no_objects")));
   }
 
   placeLine(id) {

@@ -5,8 +5,9 @@ import {t, onLanguage} from "./i18n.js";
 const KEEP = 200; // entries between two states that are kept, to go back quickly
 
 export class Replay {
-  constructor(model, entries, onTiles) {
-    Object.assign(this, {model, entries, onTiles});
+  // onTime(text): the time of the day that is shown has changed.
+  constructor(model, entries, onTiles, onTime) {
+    Object.assign(this, {model, entries, onTiles, onTime});
     this.replays = true;
     this.at = -1;
     this.playing = false;
@@ -84,6 +85,7 @@ export class Replay {
     this.slider.value = String(seconds);
     byId("clock").textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
     this.slider.setAttribute("aria-valuetext", byId("clock").textContent);
+    this.onTime(byId("clock").textContent);
   }
 
   snapshot() {

@@ -6,6 +6,7 @@ import {canSpeak, setAloud, speaksAloud} from "./speech.js";
 
 const FINDINGS = ["tf", "scan", "laser", "clock", "map", "odometry", "nodes", "camera", "topics", "diagnostics"];
 const LAYERS = ["slam", "localization", "fsd", "words", "gr2to", "topo_engine", "semantic_localization", "object_engine", "map_server"];
+const TECHNICAL = /[_/]|:=/; // words that only technicians know
 const SIGNS = {ok: "✓", warn: "!", error: "✗", stale: "…", WRONG: "✗", note: "!"};
 
 export class RobotPanel {
@@ -55,6 +56,7 @@ export class RobotPanel {
 
   showWhere() {
     const {here, status, way, arrived, following} = this.model.values;
+    const {replays} = this.connection;
     const known = here?.place ? this.model.nameOf(here.place) : null;
     const name = known ? this.model.labelOf(here.place) : "";
     const parts = [here?.place ? t(here.door ? "in_doorway" : "in_place", {name}) : this.model.values.pose ? t("nowhere") : t("title")];
@@ -62,11 +64,27 @@ export class RobotPanel {
     if (following) parts.push(t("following"));
     else if (way?.length) parts.push(t("going"));
     else if (arrived) parts.push(t("arrived"));
+    const trouble = !replays && this.hasTrouble();
+    if (trouble) parts.push(t("trouble"));
+    if (replays) parts.unshift(t("replay_at", {time: this.time ?? ""}));
     const text = parts.join(" · ");
+    // What is played is not how it is: no colour.
+    const kind = replays ? "" : trouble ? "lost" : status?.phase ?? (here?.place ? "sure" : "");
     const box = byId("where");
-    if (box.dataset.text === text + status?.phase) return;
-    box.dataset.text = text + status?.phase;
-    box.replaceChildren(make("span", {class: `dot ${status?.phase ?? (here?.place ? "sure" : "")}`, "aria-hidden": "true"}), text);
+    if (box.dataset.text === text + kind) return;
+    box.dataset.text = text + kind;
+    box.replaceChildren(make("span", {class: `dot ${kind}`, "aria-hidden": "true"}), make("span", {class: "text"}, text));
+  }
+
+  // Of the day that is played.
+  showTime(text) {
+    this.time = text;
+    this.showWhere();
+  }
+
+  // A part does not work, or the last look found something wrong.
+  hasTrouble() {
+    return this.foundWrong || Object.values(this.model.tables.layers).some((each) => each.level === "error");
   }
 
   showState() {
@@ -106,8 +124,9 @@ export class RobotPanel {
   layer(name, each) {
     const title = [LAYERS.includes(name) ? t(`layer_${name}`) : name.replaceAll("_", " "), make("span", {class: "sub"}, t(`level_${each.level}`))];
     if (each.level === "ok" || !each.text) return make("span", {}, ...title);
+    const said = TECHNICAL.test(each.text) ? t("see_technical") : each.text;
     this.opened ??= new Set();
-    const details = make("details", {"data-layer": name, class: "rest"}, make("summary", {}, make("span", {}, ...title)), make("p", {class: "note"}, each.text));
+    const details = make("details", {"data-layer": name, class: "rest"}, make("summary", {}, make("span", {}, ...title)), make("p", {class: "note"}, said));
     details.open = this.opened.has(`layer ${name}`);
     details.addEventListener("toggle", () => (details.open ? this.opened.add(`layer ${name}`) : this.opened.delete(`layer ${name}`)));
     return details;
@@ -139,11 +158,14 @@ export class RobotPanel {
     return this.busy(element, t("checking"), async () => {
       const {findings} = await this.connection.ask("doctor", {}, 70000);
       const bad = findings.filter((each) => each.level !== "ok");
+      this.foundWrong = bad.some((each) => each.level === "WRONG");
+      this.showWhere();
       const lines = [];
       for (const {level, name} of bad) {
         const text = t(`found_${level === "note" ? "note" : "WRONG"}`, {what: t(`about_${FINDINGS.includes(name) ? name : "other"}`)});
         if (lines.some((line) => line.dataset.text === text)) continue;
-        lines.push(make("li", {"data-text": text}, make("span", {class: `level ${level === "note" ? "note-level" : level}`, "aria-hidden": "true"}, SIGNS[level]), make("span", {}, text)));
+        const advice = t(`advice_${FINDINGS.includes(name) ? name : "other"}`);
+        lines.push(make("li", {"data-text": text}, make("span", {class: `level ${level === "note" ? "note-level" : level}`, "aria-hidden": "true"}, SIGNS[level]), make("span", {}, text, make("span", {class: "sub"}, advice))));
       }
       if (!lines.length) lines.push(make("li", {}, make("span", {class: "level ok", "aria-hidden": "true"}, "✓"), t("all_right")));
       else lines.push(make("li", {}, this.details("findings", bad.map((each) => `${each.name}: ${each.text}${each.hint ? ` → ${each.hint}` : ""}`))));

@@ -16,14 +16,25 @@ export function canListen() {
   return Boolean(Recognition) && isSecureContext;
 }
 
-// events: onText(text, final), onEnd()
+// What the browser says of its refusals, in the page's words.
+const REFUSALS = {"not-allowed": "mic_refused", "service-not-allowed": "mic_service", network: "mic_service", "language-not-supported": "mic_service", "audio-capture": "mic_missing", "no-speech": "mic_nothing"};
+
+// events: onText(text, final), onEnd(), onRefused(key of why). Returns how to end it.
 export function listen(events) {
+  if (!canListen()) {
+    events.onRefused(Recognition ? "mic_insecure" : "mic_service");
+    events.onEnd();
+    return () => {};
+  }
   const recognition = new Recognition();
   recognition.lang = region();
   recognition.interimResults = true;
   recognition.onresult = (event) => {
     const result = event.results[event.results.length - 1];
     events.onText(result[0].transcript, result.isFinal);
+  };
+  recognition.onerror = (event) => {
+    if (event.error !== "aborted") events.onRefused(REFUSALS[event.error] ?? "mic_service");
   };
   recognition.onend = () => events.onEnd();
   recognition.start();

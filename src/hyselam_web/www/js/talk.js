@@ -2,11 +2,12 @@
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage} from "./i18n.js";
 import {corrected, plain, told} from "./wording.js";
-import {canListen, listen, speak} from "./speech.js";
+import {listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
-const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|a place)|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Anotei|Desfiz|Então .* volta a ser|Tenho (um )?lugar)/;
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|a place)|I treat the door as|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então .* volta a ser|Tenho (um )?lugar)/;
 const MAX_CHIPS = 8;
+const STOPS = ["Stop.", "Stop moving.", "Pare."]; // as the server says them for the button
 
 export function reasonOf(error) {
   if (error.code === "not_connected") return t("not_connected");
@@ -54,6 +55,8 @@ export class Talk {
     }).observe(byId("say"));
     this.line = byId("say");
     this.pending = []; // said, and not yet come back from the robot
+    this.typed = new Map(); // what the robot was told: as it was typed here
+    this.notes = []; // {after, number, key, values}: what happened behind an entry of the talk
     this.said = [];
     this.recalled = 0;
     this.shownTo = 0;
@@ -67,7 +70,6 @@ export class Talk {
     byId("yes").onclick = () => this.say(t("yes") + ".");
     byId("no").onclick = () => this.say(t("no") + ".");
     this.listenButton = byId("listen");
-    this.listenButton.hidden = !canListen();
     this.listenButton.onclick = () => this.toggleListening();
     model.on(["talk"], () => this.showTalk());
     model.on(["asked", "talk"], () => this.showAsked());
@@ -86,6 +88,7 @@ export class Talk {
       return;
     }
     const text = told(typed, this.model);
+    if (text !== typed) this.typed.set(text, typed);
     this.heard(text);
     byId("answers").hidden = true;
     const entry = {text, failed: "", number: (this.sayings = (this.sayings ?? 0) + 1)};
@@ -107,6 +110,19 @@ export class Talk {
       this.fitLine();
     }
     this.showTalk(true);
+  }
+
+  // Something that happened, in a line of its own behind what was said.
+  note(key, values) {
+    const {talk} = this.model;
+    this.notes.push({after: talk.length ? talk[talk.length - 1].i : 0, number: (this.noted = (this.noted ?? 0) + 1), key, values});
+    this.notes.splice(0, this.notes.length - 50);
+    this.showTalk(this.atEnd);
+  }
+
+  // What a person said: as it was typed, where that was here.
+  shownText(text) {
+    return STOPS.includes(text) ? t("stop_said") : this.typed.get(text) ?? plain(text);
   }
 
   forget(entry) {
@@ -225,15 +241,23 @@ export class Talk {
     let last_human = -1;
     talk.forEach((entry, i) => { if (entry.w === "human") last_human = i; });
     let undo = false;
+    const noteAfter = (from, to) => {
+      for (const each of this.notes) {
+        if (each.after >= from && each.after < to) lines.push([`note ${each.number} ${language}`, () => make("p", {class: "happened"}, t(each.key, each.values))]);
+      }
+    };
+    noteAfter(0, talk.length ? talk[0].i : Infinity);
     talk.forEach((entry, i) => {
-      lines.push([`${entry.i} ${entry.t} ${entry.s === "Stop." ? language : ""}`, () => make("div", {class: `said ${entry.w}${entry.w === "robot" && entry.s.endsWith("?") ? " asks" : ""}`}, entry.w === "human" && entry.s === "Stop." ? t("stop_said") : plain(entry.s))]);
+      const is_own = entry.w === "human";
+      lines.push([`${entry.i} ${entry.t} ${is_own && STOPS.includes(entry.s) ? language : ""}`, () => make("div", {class: `said ${entry.w}${!is_own && entry.s.endsWith("?") ? " asks" : ""}`}, is_own ? this.shownText(entry.s) : plain(entry.s))]);
+      noteAfter(entry.i, talk[i + 1]?.i ?? Infinity);
       undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
     });
     if (undo && this.may("talk") && !this.connection.replays) {
       lines.push([`undo ${language}`, () => button(t("undo"), () => this.say(t("undo_sentence")), {class: "undo"})]);
     }
     for (const each of this.pending) {
-      lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, plain(each.text), each.failed ? make("span", {class: "why"}, each.failed) : null)]);
+      lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, this.shownText(each.text), each.failed ? make("span", {class: "why"}, each.failed) : null)]);
     }
     return lines;
   }
@@ -243,20 +267,25 @@ export class Talk {
       this.stopListening();
       return;
     }
-    const placeholder = this.line.placeholder;
-    this.line.placeholder = t("listening");
-    this.listenButton.setAttribute("aria-pressed", "true");
-    this.stopListening = listen({
+    this.showListening(true);
+    const stop = listen({
       onText: (text, final) => {
         this.line.value = text;
         this.fitLine();
         if (final) this.say(text.trim());
       },
+      onRefused: (key) => toast(t(key), true),
       onEnd: () => {
         this.stopListening = null;
-        this.line.placeholder = placeholder;
-        this.listenButton.setAttribute("aria-pressed", "false");
+        this.showListening(false);
       },
     });
+    if (this.isListening) this.stopListening = stop;
+  }
+
+  showListening(on) {
+    this.isListening = on;
+    this.listenButton.setAttribute("aria-pressed", String(on));
+    byId("hearing").hidden = !on;
   }
 }

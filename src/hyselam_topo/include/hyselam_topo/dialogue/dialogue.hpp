@@ -182,6 +182,10 @@ class Dialogue {
   Reply addVirtualPlace(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names);
   Reply addWall(const DescribedWall& wall);
+  /// The wall of this kind between these ends is there no more. Without actions: there was none.
+  Reply removeWall(const DescribedWall& wall);
+  /// The talk goes on in that language. False if the robot does not speak it.
+  bool useLanguage(const std::string& language);
   /// Asks about the robot's place now, as on entering it with AskPolicy::kAlways. Nothing where its
   /// name is confirmed, the place is not known, or another question is open.
   Reply askHere();
@@ -226,6 +230,15 @@ class Dialogue {
   ParsedText parsed(const std::string& text) const;
   /// The same; the talk goes on in its language.
   ParsedText parse(const std::string& text);
+  /// As planRoute(), through no shut door.
+  std::optional<RouteLeg> route(const hyselam::Pose2& from, const std::vector<Id>& goals) const;
+  /// Why there is no way, where one would lead through a shut door or a described wall.
+  void tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
+                        Reply& reply) const;
+  /// The places on both sides of a described wall, 0 where there is none.
+  std::pair<Id, Id> sidesOf(const DescribedWall& wall) const;
+  /// That it is there now, or no more; of one that shuts a door, what becomes of the door.
+  std::string sayWall(const DescribedWall& wall, bool is_there) const;
   /// Whether the parser has a grammar of it.
   bool knowsLanguage(const std::string& language) const;
   /// What remains after stop and cancel.

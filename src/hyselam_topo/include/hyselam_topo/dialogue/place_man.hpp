@@ -110,7 +110,15 @@ class PlaceMan {
   /// The wall of that number in walls(). False if there is none.
   bool removeWall(std::size_t index);
   const std::vector<DescribedWall>& walls() const { return state_.walls; }
-  /// A copy of the grid map with all walls of glass and virtual walls drawn into it.
+  /// Takes the wall of this kind between these ends away, see sameWall(). False if there is none.
+  bool removeWall(const DescribedWall& wall);
+  /// The doors that a virtual wall lies across: the places on both sides stay as they are, but no
+  /// way leads through.
+  std::vector<Id> shutDoors() const;
+  /// The door that a wall shuts; nullptr: none of the map.
+  const Door* doorShutBy(const DescribedWall& wall) const;
+  /// A copy of the grid map with all walls of glass and virtual walls drawn into it, but those that
+  /// shut a door.
   hyselam::OccupancyGrid withWalls(const hyselam::OccupancyGrid& grid) const;
 
  private:

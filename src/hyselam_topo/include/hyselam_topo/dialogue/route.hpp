@@ -32,8 +32,10 @@ struct RouteLeg {
 
 /// The cheapest route from a pose to the pose of the nearest of `goals` (several places may have
 /// one name). Nothing if the map has no grid, the start lies on no place (or farther than 0.5 m
-/// from the next one), or no route exists. A robot in one of the goals goes to its middle.
+/// from the next one), or no route exists. A robot in one of the goals goes to its middle. No route
+/// leads through a door of `shut`.
 std::optional<RouteLeg> planRoute(const AugmentedTopologicalMap& map, const hyselam::Pose2& from,
-                                  const std::vector<Id>& goals, const RouteParams& params = {});
+                                  const std::vector<Id>& goals, const RouteParams& params = {},
+                                  const std::vector<Id>& shut = {});
 
 }  // namespace hyselam_topo

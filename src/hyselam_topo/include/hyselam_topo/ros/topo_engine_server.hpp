@@ -9,6 +9,8 @@
 #include <hyselam_msgs/PlaceState.h>
 #include <hyselam_msgs/StatePath.h>
 #include <hyselam_msgs/TellRobot.h>
+#include <hyselam_msgs/UseLanguage.h>
+#include <hyselam_msgs/WallArray.h>
 #include <hyselam_msgs/WhereAmI.h>
 #include <hyselam_msgs/WordToPose.h>
 #include <nav_msgs/OccupancyGrid.h>
@@ -100,6 +102,12 @@ class TopoEngineServer {
                       hyselam_msgs::AddVirtualPlace::Response& response);
   bool onGlassWall(hyselam_msgs::AddGlassWall::Request& request,
                    hyselam_msgs::AddGlassWall::Response& response);
+  bool onNoWall(hyselam_msgs::AddGlassWall::Request& request,
+                hyselam_msgs::AddGlassWall::Response& response);
+  bool changeWalls(bool removes, const hyselam_msgs::AddGlassWall::Request& request,
+                   hyselam_msgs::AddGlassWall::Response& response);
+  bool onLanguage(hyselam_msgs::UseLanguage::Request& request,
+                  hyselam_msgs::UseLanguage::Response& response);
   bool onSave(hyselam_msgs::StatePath::Request& request,
               hyselam_msgs::StatePath::Response& response);
   bool onLoad(hyselam_msgs::StatePath::Request& request,
@@ -131,7 +139,7 @@ class TopoEngineServer {
   GoalDriver driver_;
   std::optional<SentenceForwarder> forwarder_;
   struct Publishers {
-    ros::Publisher text, conversation, place, map, markers, question, grid, path, poses,
+    ros::Publisher text, conversation, place, map, markers, question, grid, told_walls, path, poses,
         initial_pose, follow, names, candidates, open_question;
   } publishers_;
   std::vector<ros::Subscriber> subscribers_;

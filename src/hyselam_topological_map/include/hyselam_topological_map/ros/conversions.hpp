@@ -13,6 +13,8 @@ namespace hyselam_topo {
 /// hyselam::InputError for a stamp that messages cannot hold.
 hyselam_msgs::AugmentedTopologicalMap toMsg(const AugmentedTopologicalMap& map);
 
+hyselam_msgs::Wall toMsg(const Wall& wall);
+
 /// @throws hyselam::InputError, beginning with `source`, for constants that do not exist, arrays
 /// that do not fit together, and maps that checkMap() refuses.
 AugmentedTopologicalMap fromMsg(const hyselam_msgs::AugmentedTopologicalMap& msg,
