@@ -138,6 +138,11 @@ class RequestsTest(unittest.TestCase):
 
     def test_good_requests_come_through(self):
         self.assertEqual(requests.parse('{"do":"say","n":4,"text":" Hi  there "}'), ("say", {"text": "Hi there"}, 4))
+        self.assertEqual(requests.parse('{"do":"stop","language":"pt","n":1}'), ("stop", {"language": "pt"}, 1))
+        self.assertEqual(requests.parse('{"do":"shut","door":4}'), ("shut", {"door": 4}, None))
+        for wrong in ('"xx"', "null", "1"):
+            with self.assertRaises(requests.Refused):
+                requests.parse('{"do":"shut","door":4,"language":%s}' % wrong)
         self.assertEqual(requests.parse('{"do":"name","place":4,"names":[]}'), ("name", {"place": 4, "names": []}, None))
         self.assertEqual(requests.parse('{"do":"pose","x":1,"y":-2.5,"yaw":0}'), ("pose", {"x": 1.0, "y": -2.5, "yaw": 0.0}, None))
 
