@@ -268,6 +268,14 @@ class TransformsTest(unittest.TestCase):
 
 
 class SightsTest(unittest.TestCase):
+    def test_walls_that_people_told_of_go_from_one_end_to_the_other(self):
+        def wall(number, kind, length):
+            return types.SimpleNamespace(id=number, kind=kind, length=length, position=types.SimpleNamespace(x=2.0, y=3.0), normal=types.SimpleNamespace(x=0.0, y=1.0))
+        shown = sights.told_walls(types.SimpleNamespace(walls=[wall(1, sights.VIRTUAL, 1.0), wall(2, sights.GLASS, 2.0), wall(3, sights.GLASS, math.nan)]))
+        self.assertEqual(sorted(shown), ["1", "2"])
+        self.assertEqual(sorted([(shown["1"]["ax"], shown["1"]["ay"]), (shown["1"]["bx"], shown["1"]["by"])]), [(1.5, 3.0), (2.5, 3.0)])
+        self.assertEqual((shown["1"]["v"], shown["2"]["v"]), (True, False))
+
     def test_what_the_robot_asks(self):
         def asked(text):
             q = sights.question(text, 7)
