@@ -208,11 +208,11 @@ class TapsTest(PageCase):
         self.robot.world.set_table("objects", {"1": {"k": "pen", "p": [], "c": [2.0, 2.0]}, "2": {"k": "ladder", "p": [], "at": ["in", "library"]},
                                                "3": {"k": "pen. Follow me", "p": [], "at": ["in", "SS05"]}})
         tab = self.open_map(PHONE)
-        self.assertEqual(tab.eval("hyselam.map.things().length"), 0)  # no room
+        self.assertEqual(tab.eval("hyselam.thingsOn(hyselam.map).length"), 0)  # no room
         tab.eval("(([x, y]) => { hyselam.map.center = [x, y]; hyselam.map.scale = 40; hyselam.map.touched(); })(hyselam.model.place(5).c)")
-        tab.wait("hyselam.map.things().length === 3", "the things")
+        tab.wait("hyselam.thingsOn(hyselam.map).length === 3", "the things")
         self.shot(tab, "taps_things")
-        x, y = tab.eval("(({x, y}) => { const b = hyselam.map.canvas.getBoundingClientRect(); return [x + b.x, y + b.y]; })(hyselam.map.things().find((each) => each.id === '2'))")
+        x, y = tab.eval("(({x, y}) => { const b = hyselam.map.canvas.getBoundingClientRect(); return [x + b.x, y + b.y]; })(hyselam.thingsOn(hyselam.map).find((each) => each.id === '2'))")
         tab.press(x, y)
         tab.wait("document.querySelector('#card-title')?.textContent === 'ladder'", "its card")
         self.shot(tab, "taps_thing")

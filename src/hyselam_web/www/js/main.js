@@ -9,6 +9,7 @@ import {Places} from "./places.js";
 import {NextStep} from "./next_step.js";
 import {RobotPanel} from "./robot_panel.js";
 import {LookBack} from "./look_back.js";
+import {thingsOn} from "./map_things.js";
 import {told} from "./wording.js";
 import {Replay, entriesOf} from "./replay.js";
 
@@ -288,4 +289,5 @@ class Page {
 
 globalThis.hyselam = new Page();
 globalThis.hyselam.missingTexts = missingTexts;
+globalThis.hyselam.thingsOn = thingsOn;
 globalThis.hyselam.told = (text) => told(text, globalThis.hyselam.model);

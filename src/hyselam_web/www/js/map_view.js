@@ -1,12 +1,11 @@
 // The map on a canvas: what the robot knows, in metres, moved and zoomed by fingers, mouse and keys.
 import {unpack} from "./model.js";
 import {TilePictures} from "./tiles.js";
-import {MapLabels, haloed} from "./map_labels.js";
-import {plainWalls, shutBy, spotsOfTold} from "./building.js";
+import {MapLabels} from "./map_labels.js";
+import {drawThings, thingsOn} from "./map_things.js";
+import {plainWalls, shutBy} from "./building.js";
 
 const TAP = 9; // [pixels] that a finger may move within a tap
-const THINGS = 14; // pixels a metre from which things are drawn
-const THING_NAMES = 24; // and their names
 const GLIDE = 250; // [ms] in which the robot's picture follows its pose
 
 export class MapView {
@@ -270,7 +269,7 @@ export class MapView {
     const [x, y] = this.toMap(px, py);
     let object = null;
     let nearest = 22;
-    for (const {id, x: ox, y: oy} of this.things()) {
+    for (const {id, x: ox, y: oy} of thingsOn(this)) {
       const distance = Math.hypot(ox - px, oy - py);
       if (distance < nearest) [nearest, object] = [distance, id];
     }
@@ -362,7 +361,7 @@ export class MapView {
     this.drawWay(c);
     this.drawSenses(c);
     c.restore();
-    this.drawObjects(c);
+    drawThings(c, this);
     this.names.draw(c);
     this.drawRobot(c);
     this.drawTool(c);
@@ -498,36 +497,6 @@ export class MapView {
       c.rotate(values.scan.a);
       this.dots(c, this.scanPoints, this.colors.scan, 3 / this.scale);
       c.restore();
-    }
-  }
-
-  // Things that have room on the screen: {id, each, x, y [pixels], told}; those that were only told of, in their places below the names.
-  things() {
-    const found = [];
-    if (this.scale < THINGS) return found;
-    const told = this.scale < THING_NAMES ? new Map() : spotsOfTold(this.model);
-    for (const [id, each] of Object.entries(this.model.tables.objects)) {
-      const spot = told.get(id);
-      if (!each.c && !spot) continue;
-      const [x, y] = this.toScreen(...(each.c ?? spot));
-      found.push(each.c ? {id, each, x, y} : {id, each, told: true, x: x - 30, y: y + 12 + 19 * spot[2]});
-    }
-    return found;
-  }
-
-  drawObjects(c) {
-    c.font = "12px system-ui, sans-serif";
-    c.textAlign = "left";
-    c.textBaseline = "middle";
-    for (const {each, x, y, told} of this.things()) {
-      c.fillStyle = told ? this.colors.halo : this.colors.object;
-      c.strokeStyle = told ? this.colors.object : this.colors.halo;
-      c.lineWidth = 2;
-      c.beginPath();
-      c.rect(x - 5, y - 5, 10, 10);
-      c.stroke();
-      c.fill();
-      if (this.scale >= THING_NAMES && !["thing", "furniture"].includes(each.k)) haloed(c, each.k.length > 24 ? each.k.slice(0, 23) + "…" : each.k, x + 9, y, this.colors.object, this.colors.halo);
     }
   }
 
