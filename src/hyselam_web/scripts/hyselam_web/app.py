@@ -2,7 +2,7 @@
     world, tiles                  what pages are shown
     collect()                     takes over what the robot said since the last time
     now()                         its clock [s]
-    stop(say)                     at once; says it to the dialogue, too, if say; returns how many hear it
+    stop(say, language)           at once; says it to the dialogue, too, if say; returns how many hear it
     async act(name, fields, role) does what a page asks for; returns what to show it, or raises requests.Refused
 All runs in one event loop."""
 import asyncio
