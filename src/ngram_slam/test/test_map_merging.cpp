@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_sim/data.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/map_merging.hpp"
 #include "ngram_slam/slam/map_ties.hpp"
@@ -103,6 +104,52 @@ TEST(MapMerging, EachMapIsComparedWithEachOther) {
   ASSERT_EQ(m.maps.size(), 1U);
   ASSERT_EQ(m.meetings.size(), 3U);
   for (const MapMeeting& one : m.meetings) EXPECT_GE(one.near_loops, 5) << one.a << " " << one.b;
+}
+
+/// What SLAM has of a log when the robot has driven so far [m], once each.
+std::vector<SlamState> stages(const hyselam::RobotLog& log, double from,
+                              const std::vector<double>& lengths) {
+  std::vector<SlamState> states;
+  SlamEngine engine;
+  const auto n = static_cast<double>(log.scans.size());
+  for (auto i = static_cast<std::size_t>(from * n); states.size() < lengths.size(); ++i) {
+    engine.add(log.scans.at(i), *hyselam::poseAt(log.odometry, log.scans.at(i).stamp, 1.0));
+    while (const auto job = engine.takeJob()) engine.apply(runJob(*job));
+    if (engine.keyframes().back().path_length >= lengths[states.size()]) {
+      states.push_back(engine.state());
+    }
+  }
+  return states;
+}
+
+hyselam::RobotLog drawn(const std::string& name, std::uint64_t seed) {
+  using namespace hyselam_sim;
+  return simulate(loadFloorPlan(planFile(name)), loadRoute(routeFile(name)), seed).log;
+}
+
+// Robots that have begun know little: what looks the same for as far as one segment reaches is no
+// tie, in one building or in two.
+TEST(MapMerging, TiesNothingWhileTooLittleIsKnown) {
+  const std::vector<double> lengths{5.0, 10.0, 50.0};
+  const auto first = stages(visits().first, 0.0, lengths);
+  const auto second = stages(visits().second, 0.3, lengths);
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const MergedMaps m = mergeMaps({{"first", first[i]}, {"second", second[i]}});
+    // They met after 40 m.
+    EXPECT_EQ(m.maps.size(), lengths[i] < 40.0 ? 2U : 1U) << lengths[i];
+  }
+}
+
+TEST(MapMerging, NeverJoinsTwoBuildingsOfAlikeCorridors) {
+  const auto a = stages(drawn("mcl_a", 2), 0.0, {4, 6, 8, 12, 22});
+  const auto b = stages(drawn("mcl_b", 3), 0.0, {22, 24, 26, 30});
+  const std::vector<std::pair<std::size_t, std::size_t>> told{
+      {0, 0}, {4, 0}, {1, 1}, {2, 2}, {3, 3}};
+  for (const auto& [i, k] : told) {
+    const MergedMaps m = mergeMaps({{"a", a[i]}, {"b", b[k]}});
+    EXPECT_EQ(m.maps.size(), 2U) << i << " " << k;
+    EXPECT_GT(m.counters.verified, 2) << "nothing looked alike";
+  }
 }
 
 TEST(MapMerging, LeavesAnotherBuildingApart) {

@@ -31,11 +31,10 @@ struct MapMergingParams {
   /// Two maps are not tied if there is another tie with more than this part of the support of the
   /// best one, 0..1: see bestTie().
   double max_rival = 0.5;
-  /// A tie is borne out if at least this part of the near loops beside it that are tried fit, 0..1.
-  /// Right ties of intel, aces and mit-killian had 0.60 to 0.91, two wrong ones
-  /// 0.26 and 0.48.
+  /// A tie is borne out if at least this part of the near loops that are tried along both paths,
+  /// farther from its first loop than the segments that verified that one, fit, 0..1.
   double min_near_ratio = 0.55;
-  /// ... of at least so many, >= 1; of fewer nothing is said.
+  /// ... of at least so many, >= 1; of fewer nothing can be said, and the maps are not tied.
   int min_near_tried = 12;
   /// Of two sessions that share more than this part of the keyframes of the smaller one, 0..1, that
   /// one is left out: both hold the same recording.
@@ -87,7 +86,7 @@ struct MapMergingCounters {
   int verified = 0;   ///< of them
   int near_tried = 0, near_verified = 0;
   int ties = 0;            ///< of maps, made
-  int ties_withdrawn = 0;  ///< of them
+  int ties_withdrawn = 0;  ///< of them: wrong, or not borne out
 };
 
 struct MergedMaps {

@@ -161,7 +161,12 @@ void MapMerger::settle() {
     const std::uint32_t run = keyframe(tie->loops.front().newer).run;
     join(*tie);
     closeNear(run);
-    if (!isBorneOut(before.map_of_run)) withdraw(before, *tie);
+    const TieEvidence evidence = evidenceFor(*tie, before.map_of_run);
+    if (evidence == TieEvidence::kBorneOut) {
+      undecided_.clear();
+    } else {
+      withdraw(before, *tie, evidence == TieEvidence::kAgainst);
+    }
   }
   // What the maps know of each other now may make more of it believable.
   while (believeWithinMaps()) {
@@ -181,7 +186,10 @@ std::optional<MapTie> MapMerger::bestTieOfAll() const {
   std::optional<MapTie> best;
   for (const auto& [maps, loops] : by_maps) {
     auto tie = bestTie(loops, state_.keyframes, connections_, params_.slam.loop, params_.max_rival);
-    if (tie && (!best || tie->support > best->support)) best = std::move(tie);
+    if (!tie) continue;
+    const auto tried = undecided_.find(maps);
+    if (tried != undecided_.end() && tie->support <= tried->second) continue;
+    if (!best || tie->support > best->support) best = std::move(tie);
   }
   return best;
 }
@@ -209,7 +217,7 @@ void MapMerger::join(const MapTie& tie) {
                                    [&](const SlamLoop& p) { return isSamePair(p, l); });
     if (same != pending_.end()) pending_.erase(same);
   }
-  near_tried_ = near_verified_ = 0;
+  near_tries_.clear();
   near_asked_since_.clear();
   // There are new maps to compare them with.
   for (std::size_t k = 0; k < is_near_asked_.size(); ++k) {
@@ -218,15 +226,30 @@ void MapMerger::join(const MapTie& tie) {
   optimize(std::min(a, b));
 }
 
-bool MapMerger::isBorneOut(const std::vector<std::uint32_t>& maps_before) {
+/// What the near loops along the common path say of a tie. Those beside its first loop do not
+/// count: the segments by which that one was verified, and found among all others, say the same.
+MapMerger::TieEvidence MapMerger::evidenceFor(const MapTie& tie,
+                                              const std::vector<std::uint32_t>& maps_before) const {
   std::size_t maps = 0, maps_now = 0;
   for (std::uint32_t run = 0; run < runs(); ++run) {
     maps += maps_before[run] == run ? 1 : 0;
     maps_now += mapOf(run) == run ? 1 : 0;
   }
-  if (maps_now >= maps) return false;  // the graph itself gave up its loops
-  return near_tried_ < params_.min_near_tried ||
-         near_verified_ >= params_.min_near_ratio * near_tried_;
+  if (maps_now >= maps) return TieEvidence::kAgainst;  // the graph itself gave up its loops
+  const auto isBeside = [&](int k, int of_loop) {
+    const SlamKeyframe &here = keyframe(k), &there = keyframe(of_loop);
+    return here.run == there.run && std::abs(here.path_length - there.path_length) <=
+                                        params_.slam.loop.far_new_segment_half_length;
+  };
+  const SlamLoop& first = tie.loops.front();
+  int tried = 0, fit = 0;
+  for (const NearTry& t : near_tries_) {
+    if (isBeside(t.newer, first.newer) || isBeside(t.older, first.older)) continue;
+    ++tried;
+    fit += t.fits ? 1 : 0;
+  }
+  if (tried < params_.min_near_tried) return TieEvidence::kTooLittle;
+  return fit >= params_.min_near_ratio * tried ? TieEvidence::kBorneOut : TieEvidence::kAgainst;
 }
 
 MapMerger::Untied MapMerger::untied() const {
@@ -237,18 +260,25 @@ MapMerger::Untied MapMerger::untied() const {
   return all;
 }
 
-/// The maps are as they were before the tie, of which none is made of its loops again.
-void MapMerger::withdraw(const Untied& before, const MapTie& tie) {
+/// The maps are as they were before the tie. If it is wrong, none is made of its loops again; else
+/// its loops wait for more.
+void MapMerger::withdraw(const Untied& before, const MapTie& tie, bool is_wrong) {
   ++counters_.ties_withdrawn;
   for (std::size_t i = 0; i < before.poses.size(); ++i) state_.keyframes[i].pose = before.poses[i];
   state_.loops = before.loops;
-  withdrawn_.insert(withdrawn_.end(), tie.loops.begin(), tie.loops.end());
+  std::vector<SlamLoop>& back = is_wrong ? withdrawn_ : pending_;
+  back.insert(back.end(), tie.loops.begin(), tie.loops.end());
   for (const auto& asked : near_asked_since_) {
     near_asked_.erase(asked);
     is_near_asked_[static_cast<std::size_t>(asked.first)] = false;
   }
   connections_ = RunConnections(state_.keyframes, state_.loops);
   rebuildPathLengths();
+  if (!is_wrong) {
+    const SlamLoop& first = tie.loops.front();
+    const std::uint32_t a = mapOfKeyframe(first.older), b = mapOfKeyframe(first.newer);
+    undecided_[{std::min(a, b), std::max(a, b)}] = tie.support;
+  }
 }
 
 /// Whether the graph knows the pose of one end well enough to say that a loop is wrong.
@@ -354,13 +384,12 @@ void MapMerger::closeNear(std::uint32_t run) {
     bool added = false;
     for (const LoopVerification& v : verified(tasks)) {
       ++counters_.near_tried;
-      ++near_tried_;
-      if (!v.verified || distance(between(keyframe(v.loop.older).pose, keyframe(v.loop.newer).pose),
-                                  v.loop.measured) > p.near_max_uncertainty + p.visibility_margin) {
-        continue;
-      }
+      const bool fits =
+          v.verified && distance(between(keyframe(v.loop.older).pose, keyframe(v.loop.newer).pose),
+                                 v.loop.measured) <= p.near_max_uncertainty + p.visibility_margin;
+      near_tries_.push_back({v.loop.older, v.loop.newer, fits});
+      if (!fits) continue;
       ++counters_.near_verified;
-      ++near_verified_;
       addLoop(v.loop);
       added = true;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -63,7 +64,8 @@ class MapMerger {
   void settle();
   std::optional<MapTie> bestTieOfAll() const;
   void join(const MapTie& tie);
-  bool isBorneOut(const std::vector<std::uint32_t>& maps_before);
+  enum class TieEvidence { kTooLittle, kBorneOut, kAgainst };
+  TieEvidence evidenceFor(const MapTie& tie, const std::vector<std::uint32_t>& maps_before) const;
   /// What a tie changes.
   struct Untied {
     std::vector<std::uint32_t> map_of_run;
@@ -71,7 +73,7 @@ class MapMerger {
     std::vector<SlamLoop> loops;
   };
   Untied untied() const;
-  void withdraw(const Untied& before, const MapTie& tie);
+  void withdraw(const Untied& before, const MapTie& tie, bool is_wrong);
   void addLoop(const SlamLoop& loop);
   bool believeWithinMaps();
   bool excludes(const SlamLoop& loop) const;
@@ -93,8 +95,14 @@ class MapMerger {
   std::vector<bool> is_near_asked_;  // by keyframe: since its map was tied to another one
   MapMergingCounters counters_;
   std::vector<std::pair<int, std::uint32_t>> near_asked_since_;  // the last tie
-  int near_tried_ = 0, near_verified_ = 0;                       // since the last tie
-  int lengths_of_ = -1;                                          // keyframe of isOpen()
+  struct NearTry {
+    int older, newer;
+    bool fits;
+  };
+  std::vector<NearTry> near_tries_;  // since the last tie
+  /// Ties of two maps of which too little is known yet: their support.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> undecided_;
+  int lengths_of_ = -1;  // keyframe of isOpen()
   std::vector<double> lengths_;
 };
 

@@ -157,9 +157,9 @@ void MapMergingParams::describe(hyselam::ParameterVisitor& visit) {
         "of path around a verified loop between untied maps on which each place is asked for");
   visit("max_rival", max_rival, ratio, "", "support of another tie, against that of the best");
   visit("min_near_ratio", min_near_ratio, ratio, "",
-        "part of the near loops beside a tie that must fit");
+        "part of the near loops farther along both paths that must fit");
   visit("min_near_tried", min_near_tried, Range::between(1, 1e6), "",
-        "near loops from which that is asked");
+        "near loops that must have been tried there");
   visit("max_shared_keyframes", max_shared_keyframes, ratio, "",
         "part of the keyframes of a session that another one may hold too");
 }
