@@ -183,16 +183,20 @@ class TwoRobotsTest(unittest.TestCase):
         true = compose(inverse(a.truth()), b.truth())
         self.assertLess(math.hypot(seen[0] - true[0], seen[1] - true[1]), 0.4)
 
+    def mergings(self):
+        """By the newest diagnostics; -1 while there are none."""
+        return int(self.values("shared_map: shared map").get("mergings", -1))
+
     def await_merging(self):
-        """One that knows all that was told, from its begin."""
-        count = int(self.values("shared_map: shared map").get("mergings", 0))
-        await_long(lambda: int(self.values("shared_map: shared map").get("mergings", 0)) >= count + 2 or
-                   not self.values("shared_map: shared map") or self.idle(), lambda: self.status().text)
+        """One that knows all that was told, from its begin; or nothing is new any more."""
+        await_long(lambda: self.mergings() >= 0, lambda: "no diagnostics")
+        count = self.mergings()
+        await_long(lambda: self.mergings() >= count + 2 or self.idle(), lambda: self.status().text)
 
     def idle(self):
-        seen = self.values("shared_map: shared map")
+        seen = self.mergings()
         time.sleep(3.0)
-        return self.values("shared_map: shared map").get("mergings") == seen.get("mergings")
+        return self.mergings() == seen >= 0
 
     def test_two_robots(self):
         if self.one_building:
@@ -202,7 +206,7 @@ class TwoRobotsTest(unittest.TestCase):
 
     def two_maps(self):
         self.drive(self.robots)
-        await_long(lambda: int(self.values("shared_map: shared map").get("mergings", 0)) > 0, lambda: self.status().text)
+        await_long(lambda: self.mergings() > 0, lambda: self.status().text)
         self.await_merging()
         # That of the robot which had one first, for ever.
         one, other = ("a", "b") if self.transform("map", "a/map") else ("b", "a")

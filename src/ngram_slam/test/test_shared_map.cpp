@@ -382,6 +382,94 @@ TEST(SharedMap, IsOfOneRobotWhileTheOtherIsSilent) {
   EXPECT_FALSE(shared.takeWork());  // one map needs no merging
 }
 
+TEST(SharedMap, OfOneRobotIsAsItsSlamHasIt) {
+  SharedMap shared({"a", "b"});
+  SlamEngine engine;
+  drive(logs().first, 0.0, 0.2, &engine);
+  tell(engine, "a1", 0, &shared);
+  const auto revision = engine.revision();
+  drive(logs().first, 0.2, 1.0, &engine);
+  ASSERT_GT(engine.revision(), revision);  // what was told at first lies elsewhere now
+  tell(engine, "a1", 0, &shared);
+  const SharedMapState state = shared.state();
+  ASSERT_EQ(state.state.keyframes.size(), engine.keyframes().size());
+  for (std::size_t k = 0; k < engine.keyframes().size(); ++k) {
+    EXPECT_LT(distance(state.state.keyframes[k].pose, engine.keyframes()[k].pose), 1e-9) << k;
+  }
+  // So does one beside a robot in another building, after they were merged.
+  const Robots& r = robots();
+  SharedMap apart({"a", "c"});
+  SlamEngine again;
+  drive(logs().first, 0.0, 0.2, &again);
+  tell(again, "a1", 0, &apart);
+  tell(r.other, "c1", 1, &apart);
+  merge(&apart);
+  drive(logs().first, 0.2, 1.0, &again);
+  tell(again, "a1", 0, &apart);
+  const SharedMapState alone = apart.state();
+  ASSERT_EQ(alone.state.keyframes.size(), again.keyframes().size());
+  for (std::size_t k = 0; k < again.keyframes().size(); ++k) {
+    EXPECT_LT(distance(alone.state.keyframes[k].pose, again.keyframes()[k].pose), 1e-9) << k;
+  }
+}
+
+TEST(SharedMap, WhatWasSeenLastComesLast) {
+  const Robots& r = robots();
+  SharedMap shared = r.merged;
+  SlamEngine again;  // begins anew, in the place of b, after all others
+  hyselam::RobotLog later = visit(5, 6, {-3.0, 1.0, -1.0});
+  for (hyselam::LaserScan& scan : later.scans) scan.stamp += 1000.0;
+  for (hyselam::StampedPose2& p : later.odometry) p.stamp += 1000.0;
+  drive(later, 0.2, 0.6, &again);
+  tell(again, "a2", 0, &shared);
+  merge(&shared);
+  ASSERT_TRUE(shared.robots()[0].map_in_shared);
+  const SharedMapState state = shared.state();
+  double newest = 0.0;
+  for (std::size_t k = 0; k < state.state.keyframes.size(); ++k) {
+    const SlamKeyframe& here = state.state.keyframes[k];
+    if (k + 1 < state.state.keyframes.size() && state.state.keyframes[k + 1].run == here.run) {
+      continue;
+    }
+    EXPECT_GT(here.stamp, newest) << "run " << here.run << " ended earlier than the one before";
+    newest = here.stamp;
+  }
+  EXPECT_EQ(state.robot_of_run.back(), 0U);
+  EXPECT_EQ(state.state.error(), nullptr);
+}
+
+TEST(SharedMap, CountsNoTiesOfMapsThatAreGone) {
+  SharedMapParams params;
+  params.max_former_maps = 0;
+  const Robots& r = robots();
+  SharedMap shared({"a", "b"}, params);
+  tell(r.first, "a1", 0, &shared);
+  tell(r.second, "b1", 1, &shared);
+  merge(&shared);
+  ASSERT_GT(shared.robots()[0].ties, 0);
+  SlamEngine again;
+  drive(logs().other, 0.0, 0.1, &again);
+  tell(again, "b2", 1, &shared);
+  EXPECT_EQ(shared.formerMapsGivenUp(), 1);
+  EXPECT_EQ(shared.robots()[0].ties, 0);
+}
+
+TEST(SharedMap, AMergingThatIsBrokenOffIsDoneAgain) {
+  struct Enough {};
+  SharedMap shared = robots().apart;
+  auto work = shared.takeWork();
+  ASSERT_TRUE(work);
+  int told = 0;
+  const auto stop = [&](const std::string&, std::size_t, std::size_t) {
+    if (++told == 3) throw Enough{};
+  };
+  EXPECT_THROW(SharedMap::merge(&*work, shared.params().merging, stop), Enough);
+  EXPECT_FALSE(shared.takeWork());
+  shared.giveBack();
+  merge(&shared);
+  EXPECT_EQ(textOf(shared), "a and b are in one map; c is not recognized in it; c does not answer");
+}
+
 TEST(SharedMap, MarkersTellTheRobotsApart) {
   const Robots& r = robots();
   SharedMap shared = r.merged;

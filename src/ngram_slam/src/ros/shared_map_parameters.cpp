@@ -28,12 +28,14 @@ void SharedMapServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("global_frame_id", global_frame_id, "frame of the shared map");
   visit("poll_period", poll_period, Range::between(0.05, 3600.0), "s",
         "of wall time between questions to a robot");
+  visit("answer_timeout", answer_timeout, Range::between(0.1, 3600.0), "s",
+        "of wall time after which a robot that was asked is told not to answer");
   visit("map_update_interval", map_update_interval, Range::between(0.1, 3600.0), "s",
         "of wall time between maps, if something is new");
   visit("merge_interval", merge_interval, Range::between(0.0, 3600.0), "s",
         "of wall time from the end of a search for ties to the next one, at least");
   visit("max_load", max_load, Range::aboveUpTo(0.0, 1.0), "",
-        "part of a core that the searches take on average");
+        "part of a core that the searches take on average, and drawing besides");
   visit("transform_publish_period", transform_publish_period, Range::between(0.01, 10.0), "s",
         "of wall time between transforms");
   visit("diagnostic_period", diagnostic_period, Range::between(0.05, 60.0), "s",

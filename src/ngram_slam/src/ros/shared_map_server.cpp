@@ -24,6 +24,14 @@ namespace {
 constexpr std::uint32_t kKeyframesAtOnce = 200;  // some hundred kB
 const char* const kNoAnswer = "its SLAM does not answer";
 
+/// Ends a merging of which nobody waits for the result.
+struct Ending {};
+
+bool isSame(const geometry_msgs::Transform& a, const geometry_msgs::Transform& b) {
+  return a.translation.x == b.translation.x && a.translation.y == b.translation.y &&
+         a.rotation.z == b.rotation.z && a.rotation.w == b.rotation.w;
+}
+
 }  // namespace
 
 SharedMapServer::SharedMapServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
@@ -33,6 +41,7 @@ SharedMapServer::SharedMapServer(ros::NodeHandle nh, const ros::NodeHandle& priv
       shared_(names_, params_.shared),
       nh_(nh) {
   for (const std::string& name : names_) answers_.push_back({name, "", kNoAnswer});
+  asked_since_.resize(names_.size());
   advertise(nh, private_nh);
   for (std::size_t robot = 0; robot < names_.size(); ++robot) {
     threads_.emplace_back([this, robot] { poll(robot); });
@@ -107,6 +116,7 @@ bool SharedMapServer::ask(std::size_t robot, ros::ServiceClient* client) {
   {
     const Lock lock(mutex_);
     if (ending_) return false;
+    asked_since_[robot] = ros::WallTime::now();
     toMsg(shared_.question(robot, kKeyframesAtOnce), &srv.request);
   }
   const bool answered = client->exists() && client->call(srv);
@@ -121,6 +131,7 @@ bool SharedMapServer::ask(std::size_t robot, ros::ServiceClient* client) {
     }
   }
   const Lock lock(mutex_);
+  asked_since_[robot].reset();
   if (answers_[robot].reason != reason) {
     if (reason.empty()) {
       ROS_INFO_STREAM(log_name_ << ' ' << names_[robot] << " answers");
@@ -169,13 +180,21 @@ void SharedMapServer::runMerging() {
     const ros::WallTime begin = ros::WallTime::now();
     std::string error;
     try {
-      const MergedMaps merged = SharedMap::merge(&*work, shared_.params().merging);
+      const MergedMaps merged = SharedMap::merge(&*work, shared_.params().merging,
+                                                 [&](const std::string&, std::size_t, std::size_t) {
+                                                   const Lock lock(mutex_);
+                                                   if (ending_) throw Ending{};
+                                                 });
       const Lock lock(mutex_);
       shared_.apply(*work, merged);
       drawn_ = false;
+    } catch (const Ending&) {
+      return;
     } catch (const std::exception& e) {
       error = e.what();
       ROS_ERROR_STREAM(log_name_ << " the maps are not merged: " << error);
+      const Lock lock(mutex_);
+      shared_.giveBack();
     }
     const double seconds = (ros::WallTime::now() - begin).toSec();
     {
@@ -191,7 +210,9 @@ void SharedMapServer::runMerging() {
 // ---- what is shown
 
 void SharedMapServer::runDrawing() {
-  while (waitFor(params_.map_update_interval)) {
+  double pause = params_.map_update_interval;
+  while (waitFor(pause)) {
+    pause = params_.map_update_interval;
     {
       const Lock lock(mutex_);
       if (drawn_) continue;
@@ -208,6 +229,7 @@ void SharedMapServer::runDrawing() {
     const Lock lock(mutex_);
     times_.map_error = error;
     times_.map_ms = millisecondsSince(begin);
+    pause = std::max(pause, 1e-3 * times_.map_ms * (1.0 / params_.max_load - 1.0));
   }
 }
 
@@ -244,14 +266,28 @@ void SharedMapServer::broadcast() {
     for (std::size_t i = 0; i < robots.size(); ++i) {
       if (!robots[i].map_in_shared) continue;
       geometry_msgs::TransformStamped t;
-      t.header.stamp = now + ros::Duration(params_.transform_publish_period);
       t.header.frame_id = params_.global_frame_id;
       t.child_frame_id = answers_[i].frame;
       t.transform = hyselam::toTransformMsg(*robots[i].map_in_shared);
       transforms.push_back(t);
     }
   }
-  if (!transforms.empty()) tf_.sendTransform(transforms);
+  if (transforms.empty()) return;
+  ros::Time stamp = now + ros::Duration(params_.transform_publish_period);
+  // Nobody takes a second transform of one stamp: while the clock stands, what is new is sent with
+  // the next one, and nothing else.
+  if (now == sent_at_) {
+    const auto same = [](const auto& a, const auto& b) {
+      return a.child_frame_id == b.child_frame_id && isSame(a.transform, b.transform);
+    };
+    if (std::equal(transforms.begin(), transforms.end(), sent_.begin(), sent_.end(), same)) return;
+    stamp = sent_stamp_ + ros::Duration(0, 1);
+  }
+  for (geometry_msgs::TransformStamped& t : transforms) t.header.stamp = stamp;
+  tf_.sendTransform(transforms);
+  sent_at_ = now;
+  sent_stamp_ = stamp;
+  sent_ = std::move(transforms);
 }
 
 bool SharedMapServer::onMap(nav_msgs::GetMap::Response& out) {
@@ -286,12 +322,20 @@ bool SharedMapServer::onSave(hyselam_msgs::StatePath::Request& request,
 void SharedMapServer::report(DiagnosticStatus& status) {
   const Lock lock(mutex_);
   const std::vector<RobotInSharedMap> robots = shared_.robots();
-  const hyselam_msgs::SharedMapStatus msg = sharedMapStatusMsg(answers_, robots, header());
+  std::vector<RobotAnswers> answers = answers_;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    // A call over a lost connection comes back late, or never.
+    if (answers[i].reason.empty() && asked_since_[i] &&
+        (ros::WallTime::now() - *asked_since_[i]).toSec() > params_.answer_timeout) {
+      answers[i].reason = kNoAnswer;
+    }
+  }
+  const hyselam_msgs::SharedMapStatus msg = sharedMapStatusMsg(answers, robots, header());
   publish_.status.publish(msg);
   if (msg.text != told_) ROS_INFO_STREAM(log_name_ << ' ' << msg.text);
   told_ = msg.text;
   addRemark(status, DiagnosticStatus::OK, msg.text);
-  for (const RobotAnswers& a : answers_) {
+  for (const RobotAnswers& a : answers) {
     if (!a.reason.empty()) addRemark(status, DiagnosticStatus::WARN, a.name + ": " + a.reason);
   }
   const auto addError = [&](const char* what, const std::string& error) {

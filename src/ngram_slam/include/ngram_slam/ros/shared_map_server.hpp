@@ -1,6 +1,7 @@
 // One map of several robots under one master.
 #pragma once
 
+#include <geometry_msgs/TransformStamped.h>
 #include <hyselam_msgs/SlamGraph.h>
 #include <hyselam_msgs/StatePath.h>
 #include <nav_msgs/GetMap.h>
@@ -77,7 +78,8 @@ class SharedMapServer {
   bool ending_ = false;
   SharedMap shared_;
   std::vector<RobotAnswers> answers_;
-  bool drawn_ = true;  // nothing is new since
+  std::vector<std::optional<ros::WallTime>> asked_since_;  // what is not answered yet, by robot
+  bool drawn_ = true;                                      // nothing is new since
   std::optional<nav_msgs::OccupancyGrid> newest_map_;
   std::string told_;  // status
   Times times_;
@@ -87,6 +89,8 @@ class SharedMapServer {
   tf2_ros::TransformBroadcaster tf_;
   ros::NodeHandle nh_;
   ros::WallTimer tf_timer_;
+  std::vector<geometry_msgs::TransformStamped> sent_;  // last, by its callback
+  ros::Time sent_at_, sent_stamp_;
   std::unique_ptr<hyselam::Diagnostics> diagnostics_;
   std::vector<std::thread> threads_;
 };

@@ -97,7 +97,7 @@ struct MergedMaps {
   MapMergingCounters counters;
 };
 
-/// Told now and then: what is done, how much of it.
+/// Told now and then: what is done, how much of it. What it throws ends the merging.
 using MergingProgress =
     std::function<void(const std::string& step, std::size_t done, std::size_t total)>;
 

@@ -28,7 +28,7 @@ struct RobotInSharedMap {
   std::size_t keyframes = 0;  ///< with those of its former maps
   /// The frame of its map in the shared one, by its newest keyframe; nothing if it is not in it.
   std::optional<hyselam::Pose2> map_in_shared;
-  int ties = 0;  ///< loops to the other robots
+  int ties = 0;  ///< loops to the other robots, of maps that are known still
 };
 
 /// Of the shared map at one time, ready to be drawn and saved.
@@ -42,8 +42,9 @@ struct SharedMapState {
 /// since lie where the last ones of their run that were merged say.
 ///
 /// The shared map is the merged map of most robots, among equals the one that it was, else that of
-/// the first robot; until anything is merged, that of the first robot which has one. A robot that begins another map leaves its
-/// former one, unless the new one goes on with it. Not thread-safe; deterministic.
+/// the first robot; until anything is merged, that of the first robot which has one. While it is of
+/// one robot's map alone, its poses are those of that robot's SLAM. A robot that begins another map
+/// leaves its former one, unless the new one goes on with it. Not thread-safe; deterministic.
 class SharedMap {
  public:
   /// @throws hyselam::ParameterError
@@ -61,6 +62,7 @@ class SharedMap {
     std::size_t robot = 0;
     std::string map;
     bool operator==(const Key& o) const { return robot == o.robot && map == o.map; }
+    bool operator!=(const Key& o) const { return !(*this == o); }
   };
   struct Work {
     std::vector<Key> keys;  // of the sessions
@@ -69,8 +71,12 @@ class SharedMap {
   };
   /// What is to be merged: nothing if there is nothing new since, or less than two maps.
   std::optional<Work> takeWork();
-  /// Slow, and needs nothing of a SharedMap but its parameters. Takes the sessions' states.
-  static MergedMaps merge(Work* work, const MapMergingParams& params);
+  /// Slow, and needs nothing of a SharedMap but its parameters. Takes the sessions' states. What
+  /// `progress` throws ends it.
+  static MergedMaps merge(Work* work, const MapMergingParams& params,
+                          const MergingProgress& progress = {});
+  /// What was taken was not merged: there is work again.
+  void giveBack() { changed_ = true; }
   void apply(const Work& work, const MergedMaps& merged);
 
   SharedMapState state() const;
@@ -88,6 +94,7 @@ class SharedMap {
     SlamState state;
     /// Where its first keyframes lie in the shared map; by keyframe, nothing if it is not in it.
     std::vector<std::optional<hyselam::Pose2>> placed;
+    bool isPlaced() const;
   };
   struct Tie {
     Key older, newer;
@@ -104,7 +111,9 @@ class SharedMap {
   void giveUpFormerMaps();
   static Corrections correctionsOf(const Session& session);
   static void placeAlone(Session* session);
-  bool isAnyPlaced() const;
+  bool isAnyPlacedBut(const Session* one) const;
+  std::vector<std::size_t> sessionsByTime() const;
+  std::optional<std::size_t> sessionOf(const Key& key, int keyframe) const;
   hyselam::Pose2 correctionOf(const MergedMap& map, const Keyframes& keyframes, const Work& work);
 
   std::vector<std::string> names_;

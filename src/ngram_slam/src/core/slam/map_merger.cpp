@@ -380,6 +380,8 @@ std::vector<LoopTask> MapMerger::nearTasks() {
 void MapMerger::closeNear(std::uint32_t run) {
   const LoopParams& p = params_.slam.loop;
   for (int round = 0; round < kMostNearRounds; ++round) {
+    if (progress_)
+      progress_("comparing common paths", static_cast<std::size_t>(round), kMostNearRounds);
     const std::vector<LoopTask> tasks = nearTasks();
     bool added = false;
     for (const LoopVerification& v : verified(tasks)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -69,19 +70,30 @@ const SharedMap::Session* SharedMap::presentOf(std::size_t robot) const {
   return found == sessions_.end() ? nullptr : &*found;
 }
 
-bool SharedMap::isAnyPlaced() const {
-  return std::any_of(sessions_.begin(), sessions_.end(), [](const Session& s) {
-    return std::any_of(s.placed.begin(), s.placed.end(), [](const auto& p) { return bool(p); });
-  });
+bool SharedMap::Session::isPlaced() const {
+  return std::any_of(placed.begin(), placed.end(), [](const auto& p) { return bool(p); });
 }
 
-/// In its own frame: the map of its newest run.
+bool SharedMap::isAnyPlacedBut(const Session* one) const {
+  return std::any_of(sessions_.begin(), sessions_.end(),
+                     [&](const Session& s) { return &s != one && s.isPlaced(); });
+}
+
+/// As its robot has it: the map of its newest run. What was placed first stays where it was.
 void SharedMap::placeAlone(Session* session) {
   const std::vector<SlamKeyframe>& all = session->state.keyframes;
+  Pose2 correction;
+  for (std::size_t k = 0; k < std::min(session->placed.size(), all.size()); ++k) {
+    if (!session->placed[k]) continue;
+    correction = *session->placed[k] * all[k].pose.inverse();
+    break;
+  }
   const RunConnections connections(all, session->state.loops);
   session->placed.assign(all.size(), std::nullopt);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (connections.connected(all[k].run, all.back().run)) session->placed[k] = all[k].pose;
+    if (connections.connected(all[k].run, all.back().run)) {
+      session->placed[k] = correction * all[k].pose;
+    }
   }
 }
 
@@ -135,23 +147,23 @@ void SharedMap::update(std::size_t robot) {
   } else {
     session->state = state;
   }
-  if (!isAnyPlaced()) {
+  session = find(key);
+  if (!isAnyPlacedBut(nullptr)) {
     placeAlone(&sessions_.front());
     anchor_ = sessions_.front().key;
+  } else if (session != nullptr && session->isPlaced() && !isAnyPlacedBut(session)) {
+    placeAlone(session);
   }
 }
 
 /// Of too many that one of fewest keyframes which lies nowhere, if there is one.
 void SharedMap::giveUpFormerMaps() {
-  const auto is_placed = [](const Session& s) {
-    return std::any_of(s.placed.begin(), s.placed.end(), [](const auto& p) { return bool(p); });
-  };
   const auto former = [](const Session& s) { return !s.present; };
   while (std::count_if(sessions_.begin(), sessions_.end(), former) > params_.max_former_maps) {
     const auto least =
         std::min_element(sessions_.begin(), sessions_.end(), [&](const auto& a, const auto& b) {
-          return std::make_tuple(a.present, is_placed(a), a.state.keyframes.size()) <
-                 std::make_tuple(b.present, is_placed(b), b.state.keyframes.size());
+          return std::make_tuple(a.present, a.isPlaced(), a.state.keyframes.size()) <
+                 std::make_tuple(b.present, b.isPlaced(), b.state.keyframes.size());
         });
     sessions_.erase(least);
     ++given_up_;
@@ -170,8 +182,9 @@ std::optional<SharedMap::Work> SharedMap::takeWork() {
   return work;
 }
 
-MergedMaps SharedMap::merge(Work* work, const MapMergingParams& params) {
-  return mergeMaps(std::move(work->sessions), params);
+MergedMaps SharedMap::merge(Work* work, const MapMergingParams& params,
+                            const MergingProgress& progress) {
+  return mergeMaps(std::move(work->sessions), params, progress);
 }
 
 namespace {
@@ -281,27 +294,49 @@ SharedMap::Corrections SharedMap::correctionsOf(const Session& session) {
     if (session.placed[k]) corrections[all[k].run] = *session.placed[k] * all[k].pose.inverse();
   }
   const RunConnections connections(all, session.state.loops);
-  const Corrections placed = corrections;
+  std::map<std::uint32_t, Pose2> of_map;  // of its last run that was
   for (std::uint32_t run = 0; run < runs; ++run) {
-    if (judged[run]) continue;
-    for (std::uint32_t other = 0; other < runs; ++other) {
-      if (placed[other] && connections.connected(run, other)) corrections[run] = placed[other];
-    }
+    if (corrections[run]) of_map[connections.mapOf(run)] = *corrections[run];
+  }
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    const auto found = of_map.find(connections.mapOf(run));
+    if (!judged[run] && found != of_map.end()) corrections[run] = found->second;
   }
   return corrections;
+}
+
+/// Those that ended first come first: what was seen last is drawn over it.
+std::vector<std::size_t> SharedMap::sessionsByTime() const {
+  std::vector<std::size_t> order(sessions_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return sessions_[a].state.keyframes.back().stamp < sessions_[b].state.keyframes.back().stamp;
+  });
+  return order;
+}
+
+/// Nothing for a keyframe that is not there any more.
+std::optional<std::size_t> SharedMap::sessionOf(const Key& key, int keyframe) const {
+  for (std::size_t s = 0; s < sessions_.size(); ++s) {
+    if (sessions_[s].key != key) continue;
+    if (static_cast<std::size_t>(keyframe) < sessions_[s].state.keyframes.size()) return s;
+  }
+  return std::nullopt;
 }
 
 SharedMapState SharedMap::state() const {
   SharedMapState out;
   std::vector<SlamState> states;
-  std::vector<bool> taken;                // runs
-  std::vector<std::vector<int>> numbers;  // by session and keyframe, in the result
+  std::vector<bool> taken;                                      // runs
+  std::vector<std::vector<int>> all_numbers(sessions_.size());  // of keyframes, in the result
   int next = 0;
-  for (const Session& s : sessions_) {
+  for (const std::size_t index : sessionsByTime()) {
+    const Session& s = sessions_[index];
+    std::vector<int>& numbers = all_numbers[index];
     SlamState state = s.state;
     const Corrections corrections = correctionsOf(s);
     const std::vector<std::uint32_t> runs = runsWithoutGaps(state.keyframes);
-    numbers.emplace_back(state.keyframes.size(), -1);
+    numbers.assign(state.keyframes.size(), -1);
     for (std::size_t k = 0; k < state.keyframes.size(); ++k) {
       SlamKeyframe& here = state.keyframes[k];
       const auto& correction = corrections[here.run];
@@ -311,18 +346,14 @@ SharedMapState SharedMap::state() const {
       }
       if (!correction) continue;
       here.pose = k < s.placed.size() && s.placed[k] ? *s.placed[k] : *correction * here.pose;
-      numbers.back()[k] = next++;
+      numbers[k] = next++;
     }
     states.push_back(std::move(state));
   }
   out.state = partOfState(joinedStates(states), taken);
   const auto numberOf = [&](const Key& key, int k) {
-    for (std::size_t s = 0; s < sessions_.size(); ++s) {
-      if (sessions_[s].key == key && static_cast<std::size_t>(k) < numbers[s].size()) {
-        return numbers[s][static_cast<std::size_t>(k)];
-      }
-    }
-    return -1;  // it is not there any more
+    const auto session = sessionOf(key, k);
+    return session ? all_numbers[*session][static_cast<std::size_t>(k)] : -1;
   };
   for (const Tie& tie : ties_) {
     SlamLoop loop = tie.loop;
@@ -342,7 +373,10 @@ std::vector<RobotInSharedMap> SharedMap::robots() const {
     out[robot].map_in_shared = correctionsOf(*session)[session->state.keyframes.back().run];
   }
   for (const Tie& t : ties_) {
-    if (t.older.robot == t.newer.robot) continue;
+    if (t.older.robot == t.newer.robot || !sessionOf(t.older, t.loop.older) ||
+        !sessionOf(t.newer, t.loop.newer)) {
+      continue;
+    }
     ++out[t.older.robot].ties;
     ++out[t.newer.robot].ties;
   }
