@@ -211,7 +211,7 @@ class ConversationTest(unittest.TestCase):
         for name in MIDDLE:
             words = [w.text.lower() for w in robot.place_at(name).words]
             self.assertTrue(any(name in w for w in words), (name, words))
-        self.assertRegex(robot.say("Robot, where are you?"), r"^I am at [SC][SC]\d\d, corridor\.$")
+        self.assertRegex(robot.say("Robot, where are you?"), r"^I am at [SC][SC]\d\d, the corridor\.$")
 
         robot.stand(*MIDDLE["i-109"])
         asked = robot.say("Robot, Stop. Robot, where are you?")
@@ -249,7 +249,7 @@ class ConversationTest(unittest.TestCase):
         again = self.robot(None, state_file=state)
         wait_until(lambda: again.maps.messages, "no kept map")
         again.stand(*MIDDLE["i-109"])
-        self.assertRegex(again.say("Where are you?"), r"^I am at SS\d\d, room i-109 and mobile robotics room\.$")
+        self.assertRegex(again.say("Where are you?"), r"^I am at SS\d\d, room i-109 and the mobile robotics room\.$")
 
     def test_services(self):
         robot = self.robot(self.grid)

@@ -52,6 +52,21 @@ TEST(Conversation, WhatAQuestionDoesWithoutIsNamed) {
   EXPECT_TRUE(contains(thing.replyText(), "to the door")) << thing.replyText();
 }
 
+TEST(Conversation, WhatIsLeftOutIsToldOnce) {
+  for (const char* said :
+       {"The wrench is in the bottom drawer of the red toolbox, not the black one.",
+        "The lab, as everybody knows, is on the left. The bar, as everybody knows, is on the "
+        "right."}) {
+    ExampleTalk example;
+    const std::string reply = example.talk.say(said).replyText();
+    const std::string words =
+        contains(said, "black") ? "'not the black one'" : "'as everybody knows'";
+    const std::size_t first = reply.find(words);
+    ASSERT_NE(first, std::string::npos) << reply;
+    EXPECT_EQ(reply.find(words, first + 1), std::string::npos) << reply;
+  }
+}
+
 /// "No, wait, ..." corrects what was said right before, also of a thing; alone it stops the robot.
 TEST(Conversation, NoWaitCorrectsWhatWasSaid) {
   for (const char* said : {"No, wait, it's on the table.", "No, hang on, it's on the table.",

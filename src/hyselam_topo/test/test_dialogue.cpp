@@ -154,7 +154,7 @@ TEST(Dialogue, TheConversationOfSection731) {
   EXPECT_EQ(told.sentences.at(0).rfind("Noted: This is the corridor. ", 0), 0u) << told.text();
   EXPECT_EQ(told.sentences.at(1), "I have a place for 7 of 7 names, confirmed: 1.");
   EXPECT_TRUE(told.has(DialogueAction::Kind::kMap));
-  EXPECT_EQ(v.say("Robot, where are you?").text(), "I am at " + code + ", corridor.");
+  EXPECT_EQ(v.say("Robot, where are you?").text(), "I am at " + code + ", the corridor.");
   for (const std::string name : {"i-108", "i-109", "i-110", "i-111", "stairs", "hall"}) {
     const Id place = v.truth(name);
     ASSERT_NE(place, 0u) << name;
@@ -232,7 +232,7 @@ TEST(Dialogue, AnswersQuestions) {
   describe(&v);
   EXPECT_TRUE(has(v.say("What is next to the stairs?"), "corridor"));
   EXPECT_TRUE(has(v.say("Where is I-111?"), "meters from here"));
-  EXPECT_TRUE(has(v.say("Is this I-111?"), "perhaps i-111 is"));
+  EXPECT_TRUE(has(v.say("Is this I-111?"), "Perhaps i-111 is"));
   EXPECT_TRUE(has(v.say("Are we in the stairs?"), "meters from here"));
   EXPECT_TRUE(has(v.say("How do I get to the hall?"), "corridor"));
   EXPECT_TRUE(has(v.say("What is on your left?"), "i-109"));

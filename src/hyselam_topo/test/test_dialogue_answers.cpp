@@ -129,7 +129,7 @@ TEST(DialogueAnswer, YesWithAnotherNameIsAskedAbout) {
 TEST(DialogueAnswer, YesWithTheSameNameConfirmsOnce) {
   Talk talk;
   talk.askAboutKitchen();
-  EXPECT_EQ(talk.say("Yes, it's the kitchen."), "Thank you. SS01 is kitchen.");
+  EXPECT_EQ(talk.say("Yes, it's the kitchen."), "Thank you. SS01 is the kitchen.");
 }
 
 TEST(DialogueAnswer, WhatIsNoNameOfAPlaceIsAskedAbout) {
@@ -271,7 +271,7 @@ TEST(DialogueGo, ThereAndBackAreTwoWays) {
 TEST(DialogueKnowledge, WhatIsOppositeIsNotWhatIsBeside) {
   Talk talk;
   talk.say("This is the kitchen.");
-  EXPECT_TRUE(has(talk.say("What is opposite the kitchen?"), "what is opposite kitchen"));
+  EXPECT_TRUE(has(talk.say("What is opposite the kitchen?"), "what is opposite the kitchen"));
 }
 
 TEST(DialogueLanguage, OthersAreToldWhatItSpeaks) {
@@ -371,7 +371,7 @@ TEST(DialogueName, ItIsNamesThePlaceWhereTheRobotIs) {
   for (const char* said : {"It's the toilet.", "It is the toilet.", "That's the toilet.",
                            "We're now in the toilet.", "You are in the toilet."}) {
     Talk talk;
-    EXPECT_EQ(talk.say(said), "Thank you. SS01 is toilet.") << said;
+    EXPECT_EQ(talk.say(said), "Thank you. SS01 is the toilet.") << said;
     EXPECT_EQ(talk.names(1), Names{"toilet"}) << said;
     ASSERT_TRUE(talk.dialogue.description().robot_place) << said;
   }

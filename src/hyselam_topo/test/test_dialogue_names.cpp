@@ -27,7 +27,7 @@ TEST(DialogueNames, ANameThatIsTypedForAPlaceReplacesItsOldOne) {
   talk.say("The pantry is next to the coridor.");
   ASSERT_TRUE(has(allSaid(&talk), "coridor"));
   const std::string reply = talk.dialogue.name(1, {"corridor"}).text();
-  EXPECT_EQ(reply, "Thank you. SS01 is corridor.");
+  EXPECT_EQ(reply, "Thank you. SS01 is the corridor.");
   EXPECT_EQ(talk.names(1), Names{"corridor"});
   EXPECT_FALSE(has(allSaid(&talk), "coridor")) << allSaid(&talk);
   EXPECT_EQ(talk.say("Is the pantry next to the corridor?"), "Yes.");
@@ -85,7 +85,7 @@ TEST(DialogueNames, APlaceOfTheMapIsNamedByItsNumber) {
     const std::string reply = talk.say(sentence);
     ASSERT_EQ(talk.names(2).size(), 1u) << sentence << ": " << reply;
     EXPECT_TRUE(talk.isConfirmed(2)) << sentence;
-    EXPECT_TRUE(has(reply, "SS02 is library") || has(reply, "SS02 é biblioteca")) << reply;
+    EXPECT_TRUE(has(reply, "SS02 is the library") || has(reply, "SS02 é a biblioteca")) << reply;
     EXPECT_FALSE(has(allSaid(&talk), "also known as library")) << allSaid(&talk);
   }
 }
@@ -93,7 +93,7 @@ TEST(DialogueNames, APlaceOfTheMapIsNamedByItsNumber) {
 TEST(DialogueNames, APlaceOfTheMapIsNamedTheOtherWayRoundAfterAYes) {
   Talk talk;
   ASSERT_TRUE(has(talk.say("The library is SS02."), "?"));
-  EXPECT_EQ(talk.say("Yes."), "Thank you. SS02 is library.");
+  EXPECT_EQ(talk.say("Yes."), "Thank you. SS02 is the library.");
   EXPECT_TRUE(talk.isConfirmed(2));
 }
 
@@ -101,7 +101,7 @@ TEST(DialogueNames, APlaceWithANameIsAskedForBeforeItsNumberGetsAnother) {
   Talk talk;
   talk.dialogue.name(2, {"kitchen"});
   const std::string reply = talk.say("SS02 is the library.");
-  EXPECT_TRUE(has(reply, "Until now SS02 is kitchen. Is it also known as library?")) << reply;
+  EXPECT_TRUE(has(reply, "Until now SS02 is the kitchen. Is it also known as library?")) << reply;
   EXPECT_EQ(talk.names(2), Names{"kitchen"});
   talk.say("Rename SS02 to library.");
   EXPECT_EQ(talk.names(2), Names{"library"});
@@ -116,7 +116,7 @@ TEST(DialogueNames, ManyChangesAreTakenBackOneByOne) {
   ASSERT_TRUE(talk.names(1).empty());
   EXPECT_FALSE(has(allSaid(&talk), "canteen"));
 
-  EXPECT_EQ(talk.say("Undo that."), "So SS01 is canteen again.");
+  EXPECT_EQ(talk.say("Undo that."), "So SS01 is the canteen again.");
   EXPECT_EQ(talk.names(1), Names{"canteen"});
   EXPECT_EQ(talk.say("Is the pantry next to the canteen?"), "Yes.");
 
@@ -124,7 +124,7 @@ TEST(DialogueNames, ManyChangesAreTakenBackOneByOne) {
   EXPECT_FALSE(has(allSaid(&talk), "pantry")) << allSaid(&talk);
   EXPECT_EQ(talk.names(1), Names{"canteen"});
 
-  EXPECT_EQ(talk.say("Undo that."), "So SS01 is kitchen again.");
+  EXPECT_EQ(talk.say("Undo that."), "So SS01 is the kitchen again.");
   EXPECT_EQ(talk.names(1), Names{"kitchen"});
   EXPECT_FALSE(has(allSaid(&talk), "canteen"));
 
@@ -212,6 +212,38 @@ TEST(DialogueNames, ASlipInANameToForgetIsAskedAbout) {
   EXPECT_EQ(talk.names(1), Names{"Narnia"});
   talk.say("Yes.");
   EXPECT_TRUE(talk.names(1).empty());
+}
+
+// ---- Articles ----
+
+TEST(DialogueNames, KindsOfPlacesAreSaidWithTheirArticle) {
+  Talk talk;
+  EXPECT_EQ(talk.say("This is the kitchen."), "Thank you. SS01 is the kitchen.");
+  talk.dialogue.name(2, {"toilets"});
+  EXPECT_EQ(talk.say("Where are you?"), "I am at SS01, the kitchen.");
+  EXPECT_EQ(talk.say("Where is the kitchen?"), "The kitchen is SS01. I am there.");
+  EXPECT_EQ(talk.say("What is next to the kitchen?"), "Next to the kitchen: the toilets (SS02).");
+  EXPECT_EQ(talk.say("Go to the toilets."), "I am going to the toilets (SS02).");
+  for (const char* proper : {"Ana's office", "room 5", "I-109", "Main Hall", "cozinha"}) {
+    talk.dialogue.name(2, {proper});
+    EXPECT_EQ(talk.say("Go to SS02."), std::string("I am going to ") + proper + " (SS02).");
+  }
+}
+
+TEST(DialogueNames, ArticlesOfPortugueseNamesGrowTogetherWithPrepositions) {
+  Talk talk;
+  EXPECT_EQ(talk.say("Isto é a cozinha."), "Obrigado. SS01 é a cozinha.");
+  EXPECT_EQ(talk.say("Onde fica a cozinha?"), "A cozinha é SS01. Estou lá.");
+  talk.dialogue.name(2, {"gabinete do Rui"});
+  EXPECT_EQ(talk.say("O que fica ao lado da cozinha?"),
+            "Ao lado da cozinha: o gabinete do Rui (SS02).");
+  EXPECT_EQ(talk.say("O que fica em frente à cozinha?"),
+            "Ninguém me disse o que fica em frente à cozinha.");
+  EXPECT_EQ(talk.say("Vá para o gabinete do Rui."), "Vou para o gabinete do Rui (SS02).");
+  talk.dialogue.name(2, {"receção"});
+  EXPECT_EQ(talk.say("Vá para a receção."), "Vou para a receção (SS02).");
+  talk.dialogue.name(2, {"kitchen"});
+  EXPECT_EQ(talk.say("Vá para SS02."), "Vou para kitchen (SS02).") << "of another language";
 }
 
 // ---- Names of two languages ----

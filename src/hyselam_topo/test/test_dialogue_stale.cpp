@@ -71,7 +71,7 @@ TEST(DialogueStale, ANameOfSeveralToldPlacesIsTakenForTheRoomAlone) {
   const std::string before = talk.robotPlace();
   ASSERT_EQ(talk.dialogue.askHere().text(), "What is the name of this place?");
   const std::string reply = talk.say("The toilet.");
-  EXPECT_TRUE(has(reply, "SS02 is toilet")) << reply;
+  EXPECT_TRUE(has(reply, "SS02 is the toilet")) << reply;
   EXPECT_EQ(talk.names(2), Names{"toilet"});
   EXPECT_EQ(talk.robotPlace(), before);
   EXPECT_EQ(talk.asked(), Question::Kind::kNone);
@@ -141,7 +141,7 @@ TEST(DialogueStale, WhatWasSaidAndDoneBeforeAnotherStateIsOver) {
   talk.say("The lab is next to the library.");
   talk.dialogue.restore(state);
   talk.at(2.0);
-  EXPECT_EQ(talk.say("It is also called the toilet."), "Thank you. SS01 is toilet.")
+  EXPECT_EQ(talk.say("It is also called the toilet."), "Thank you. SS01 is the toilet.")
       << "'it' is where the robot is";
 }
 
@@ -235,7 +235,7 @@ TEST(DialogueStale, MovedNamesAreAskedForInWords) {
   const TalkOfMoves talk;
   ASSERT_EQ(talk.asked(), Question::Kind::kMoved) << talk.asked_in_words;
   EXPECT_TRUE(has(talk.asked_in_words,
-                  "That moves corridor from SS02 to SS01 and lab from SS01 to SS02; right?"))
+                  "That moves the corridor from SS02 to SS01 and the lab from SS01 to SS02; right?"))
       << talk.asked_in_words;
 }
 

@@ -9,6 +9,7 @@
 #include "grammar/word_lists.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "hyselam_language/building/article.hpp"
 #include "name_words.hpp"
 
 namespace hyselam_topo {
@@ -106,7 +107,28 @@ bool takesArticle(const std::string& name, const language::CompiledGrammar& gram
   });
 }
 
+/// The key of the article, in the section `say`; "" without one. `another`: of a second one.
+std::string articleKey(const std::string& name, const Grammar& grammar, bool another,
+                       bool* plural) {
+  const auto* type = grammar.compiled().nameType("place");
+  const std::string head = type == nullptr ? "" : headWord(name, *type);
+  if (head.empty() || !takesArticle(name, grammar.compiled(), *type)) return "";
+  *plural = head.size() > 2 && head.back() == 's' && head[head.size() - 2] != 's';
+  const std::string singular = *plural ? head.substr(0, head.size() - 1) : head;
+  const bool feminine = type->feminine.count(head) != 0 || type->feminine.count(singular) != 0;
+  std::string article = feminine ? "feminine_" : "";
+  if (*plural && !another) article += "plural_";
+  return article + (another ? "another" : "article");
+}
+
 }  // namespace
+
+std::string withArticle(const std::string& name, const Grammar& grammar, bool* plural) {
+  bool several = false;
+  const std::string key = articleKey(name, grammar, false, &several);
+  if (plural != nullptr) *plural = several;
+  return key.empty() || !grammar.has(key) ? name : grammar.say(key) + name;
+}
 
 std::string SentenceWriter::filled(const std::string& key, const std::vector<SaidValue>& values,
                                    bool* begins_with_name) const {
@@ -166,15 +188,8 @@ SaidValue SentenceWriter::named(const std::string& key, const std::string& name,
                                 bool another) const {
   SaidValue value{key, quoted(name), false, true};
   if (value.text != name) return value;
-  const auto* type = grammar_.compiled().nameType("place");
-  const std::string head = type == nullptr ? "" : headWord(name, *type);
-  if (head.empty() || !takesArticle(name, grammar_.compiled(), *type)) return value;
-  value.plural = head.size() > 2 && head.back() == 's' && head[head.size() - 2] != 's';
-  const std::string singular = value.plural ? head.substr(0, head.size() - 1) : head;
-  const bool feminine = type->feminine.count(head) != 0 || type->feminine.count(singular) != 0;
-  std::string article = feminine ? "feminine_" : "";
-  if (value.plural && !another) article += "plural_";
-  article += another ? "another" : "article";
+  const std::string article = articleKey(name, grammar_, another, &value.plural);
+  if (article.empty()) return value;
   value.text.insert(0, grammar_.say(article));
   value.is_name = false;
   return value;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <set>
 
 namespace hyselam_objects {
 
@@ -66,11 +67,13 @@ std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>&
     each.text = phraseText("done", {{"what", all}});
   }
   std::string left_out;
+  std::set<std::string> told_of;  // one sentence may tell several things
   for (const ObjectStatement& each : statements) {
     // Of a refused one, what the question does without.
     const bool asked = each.kind == UtteranceKind::kNotUnderstood && each.suggests_meaning;
     if (each.kind != UtteranceKind::kStatement && !asked) continue;
     for (const std::string& words : each.left_out) {
+      if (!told_of.insert(words).second) continue;
       left_out += (left_out.empty() ? "" : "', '") + words;
     }
   }

@@ -6,6 +6,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_language/building/article.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -277,11 +278,26 @@ std::vector<std::string> Dialogue::labels(const std::vector<Id>& ids) const {
       all.push_back(code);
       continue;
     }
-    std::string label = shortName(id);
+    std::string label = said(shortName(id));
     if (state == NameState::kUnconfirmed) label = phrases().say("perhaps", {{"name", label}});
     all.push_back(label.append(" (").append(code).append(")"));
   }
   return all;
+}
+
+std::string Dialogue::said(const std::string& name) const {
+  return knowsLanguage(language_) ? withArticle(name, grammar()) : name;
+}
+
+std::string Dialogue::subject(const std::string& name) const {
+  bool plural = false;
+  const std::string text = knowsLanguage(language_) ? withArticle(name, grammar(), &plural) : name;
+  return text == name || plural ? name : capital(text);
+}
+
+std::vector<std::string> Dialogue::said(std::vector<std::string> names) const {
+  for (std::string& name : names) name = said(name);
+  return names;
 }
 
 bool Dialogue::areOfOtherNames(const std::string& name, const std::vector<Id>& places) const {

@@ -185,7 +185,7 @@ void Dialogue::answerNo(const Question& asked, Reply& out) {
       // What was described from here is told of the place that it is.
       if (builder_.building().robot_place) tellRobotPlace(place.id, names);
       out.sentences.push_back(
-          p.say("at_named", {{"code", codeOf(place)}, {"names", p.list(names)}}));
+          p.say("at_named", {{"code", codeOf(place)}, {"names", p.list(said(names))}}));
       break;
     }
     case Question::Kind::kMoved: {

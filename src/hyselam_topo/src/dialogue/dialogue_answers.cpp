@@ -172,7 +172,7 @@ void Dialogue::startGoal(Turn& turn) {
   question.kind = Question::Kind::kGo;
   question.goals = goals;
   ask(std::move(question),
-      p.say("ask_go", {{"names", p.list(unsure)}, {"places", p.list(labels(perhaps))}}),
+      p.say("ask_go", {{"names", p.list(said(unsure))}, {"places", p.list(labels(perhaps))}}),
       turn.reply);
 }
 
@@ -191,7 +191,7 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
   for (const auto& [name, places] : goals) {
     const auto leg = route(from, places);
     if (!leg) {
-      out.sentences.push_back(p.say("no_way", {{"place", name}}));
+      out.sentences.push_back(p.say("no_way", {{"place", said(name)}}));
       tellWallInTheWay(from, places, out);
       return;
     }
@@ -224,7 +224,8 @@ void Dialogue::answerWhereAreYou(const Utterance&, Turn& turn) {
   const Place& place = *places_.map().findPlace(here);
   const std::string code = codeOf(place);
   if (nameStateOf(place) == NameState::kConfirmed) {
-    out.sentences.push_back(p.say("at_named", {{"code", code}, {"names", p.list(namesOf(place))}}));
+    out.sentences.push_back(
+        p.say("at_named", {{"code", code}, {"names", p.list(said(namesOf(place)))}}));
   } else {
     out.sentences.push_back(p.say("at_code", {{"code", code}}));
   }
@@ -245,7 +246,12 @@ void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
   if (u.intent == "is_here" && here != 0 && !guessed) {
     out.sentences.push_back(p.say(at ? "yes" : "no"));
   }
-  if (guessed) name = p.say("perhaps", {{"name", name}});
+  if (guessed) {
+    const std::string bare = subject(name) == name ? name : said(name);
+    name = capital(p.say("perhaps", {{"name", bare}}));
+  } else {
+    name = subject(name);
+  }
   if (at) {
     const Place& place = asked_for;
     out.sentences.push_back(p.say("where_is_here", {{"name", name}, {"code", codeOf(place)}}));
@@ -278,7 +284,7 @@ void Dialogue::answerRouteTo(const Utterance& u, Turn& turn) {
     from = pose ? std::optional<hyselam::Pose2>(pose->pose) : std::nullopt;
   }
   const auto leg = from ? route(*from, goals) : std::optional<RouteLeg>();
-  const std::string place = shortName(goals.front());
+  const std::string place = said(shortName(goals.front()));
   if (!leg) {
     out.sentences.push_back(p.say("no_way", {{"place", place}}));
     if (from) tellWallInTheWay(*from, goals, out);
@@ -297,7 +303,7 @@ void Dialogue::answerNextTo(const Utterance& u, Turn& turn) {
   if (found.empty()) return;
   const std::vector<Id> neighbors = neighborsOf(places_.map(), found);
   const std::vector<Id> behind = placesBehind(places_.map(), found);
-  const std::string place = shortName(found.front());
+  const std::string place = said(shortName(found.front()));
   if (!neighbors.empty()) {
     out.sentences.push_back(
         p.say("next_to", {{"place", place}, {"places", p.list(labels(neighbors))}}));
@@ -327,11 +333,12 @@ void Dialogue::answerOpposite(const Utterance& u, Turn& turn) {
       }
     }
   }
-  const std::string place = names.empty() ? "" : names.front();
+  const std::string place = names.empty() ? "" : said(names.front());
   if (described.empty()) {
     out.sentences.push_back(p.say("opposite_unknown", {{"place", place}}));
   } else {
-    out.sentences.push_back(p.say("opposite", {{"place", place}, {"places", p.list(described)}}));
+    out.sentences.push_back(
+        p.say("opposite", {{"place", place}, {"places", p.list(said(described))}}));
   }
 }
 
@@ -383,7 +390,8 @@ void Dialogue::answerOnSide(const Utterance& u, Turn& turn) {
         std::find_first_of(known.begin(), known.end(), places.begin(), places.end()) != known.end();
     if (place != nullptr && !isCode(place->name) && !seen_there) told.push_back(place->name);
   }
-  if (!told.empty()) out.sentences.push_back(p.say("found_there", {{"places", p.list(told)}}));
+  if (!told.empty())
+    out.sentences.push_back(p.say("found_there", {{"places", p.list(said(told))}}));
   if (places.empty() && told.empty()) {
     out.sentences.push_back(p.say("nothing_on_side", {{"side", p.side(*side)}}));
   } else if (!places.empty()) {
@@ -401,9 +409,10 @@ void Dialogue::answerSize(const Utterance& u, Turn& turn) {
   for (const Id id : found) area += places_.map().findPlace(id)->area;
   const std::string place = shortName(found.front());
   if (area > 0.0) {
-    out.sentences.push_back(p.say("size", {{"place", place}, {"area", p.number(area, 1)}}));
+    out.sentences.push_back(
+        p.say("size", {{"place", subject(place)}, {"area", p.number(area, 1)}}));
   } else {
-    out.sentences.push_back(p.say("size_unknown", {{"place", place}}));
+    out.sentences.push_back(p.say("size_unknown", {{"place", said(place)}}));
   }
 }
 

@@ -30,12 +30,6 @@ bool isSeenFromRobot(const Utterance& u) {
   });
 }
 
-/// As a sentence begins.
-std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
-  return text;
-}
-
 }  // namespace
 
 void Dialogue::addStatement(const Utterance& u, Turn& turn) {
@@ -316,19 +310,20 @@ void Dialogue::reportMatch(Reply& out) const {
   out.sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
-  if (!missing.empty()) out.sentences.push_back(p.say("not_found", {{"names", p.list(missing)}}));
+  if (!missing.empty())
+    out.sentences.push_back(p.say("not_found", {{"names", p.list(said(missing))}}));
   if (talk_.unsure.names.empty()) return;
   const std::vector<std::string> names(talk_.unsure.names.begin(), talk_.unsure.names.end());
   if (talk_.unsure.answers < 2) {
-    out.sentences.push_back(p.say("unsure", {{"names", p.list(names)}}));
+    out.sentences.push_back(p.say("unsure", {{"names", p.list(said(names))}}));
     return;
   }
   if (talk_.unsure.more) {
-    out.sentences.push_back(p.say("many_fit", {{"names", p.list(names)}}));
+    out.sentences.push_back(p.say("many_fit", {{"names", p.list(said(names))}}));
     return;
   }
   const std::string number = std::to_string(talk_.unsure.answers);
-  out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(names)}}));
+  out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(said(names))}}));
 }
 
 }  // namespace hyselam_topo

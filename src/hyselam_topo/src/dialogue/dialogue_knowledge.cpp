@@ -177,8 +177,8 @@ void Dialogue::answerIsLarger(const Utterance& u, Turn& turn) {
 void Dialogue::answerWhatIsLocated(const Utterance& u, Turn& turn) {
   const Phrases& p = phrases();
   const std::vector<std::string> found = placesWhere(builder_, u);
-  turn.reply.sentences.push_back(found.empty() ? p.say("not_known")
-                                               : p.say("found_there", {{"places", p.list(found)}}));
+  turn.reply.sentences.push_back(
+      found.empty() ? p.say("not_known") : p.say("found_there", {{"places", p.list(said(found))}}));
 }
 
 std::vector<Id> Dialogue::placesOfKind(const std::string& name) const {
@@ -202,7 +202,7 @@ void Dialogue::answerIsKnown(const Utterance& u, Turn& turn) {
   if (!found.empty()) {
     turn.reply.sentences.push_back(p.say("known_place", {{"places", p.list(labels(found))}}));
   } else if (!builder_.find(said.front().text).empty()) {
-    turn.reply.sentences.push_back(p.say("told_only", {{"name", said.front().text}}));
+    turn.reply.sentences.push_back(p.say("told_only", {{"name", this->said(said.front().text)}}));
   } else {
     turn.reply.sentences.push_back(p.say("unknown_place", {{"name", said.front().text}}));
     turn.reply.unknown_name = true;
@@ -255,10 +255,10 @@ void Dialogue::answerLargest(const Utterance& u, Turn& turn) {
       best = &place;
     }
   }
-  turn.reply.sentences.push_back(best == nullptr
-                                     ? p.say("not_known")
-                                     : p.say("size", {{"place", p.list(labels({best->id}))},
-                                                      {"area", p.number(best->area, 1)}}));
+  turn.reply.sentences.push_back(
+      best == nullptr ? p.say("not_known")
+                      : p.say("size", {{"place", capital(labels({best->id}).front())},
+                                       {"area", p.number(best->area, 1)}}));
 }
 
 void Dialogue::answerWhoAmI(const Utterance&, Turn& turn) {
@@ -284,7 +284,8 @@ void Dialogue::refuseCarrying(const Utterance& u, Turn& turn) {
     say("cannot_carry", turn);
     return;
   }
-  turn.reply.sentences.push_back(phrases().say("cannot_carry_there", {{"place", to.front().text}}));
+  turn.reply.sentences.push_back(
+      phrases().say("cannot_carry_there", {{"place", said(to.front().text)}}));
 }
 
 }  // namespace hyselam_topo

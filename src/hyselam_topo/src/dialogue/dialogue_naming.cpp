@@ -38,7 +38,7 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Rep
       instead ? places_.rename(place, names) : places_.confirm(place, names);
   dropTold(place, old);
   out.sentences.push_back(
-      p.say("named", {{"code", codeOf(named)}, {"names", p.list(namesOf(named))}}));
+      p.say("named", {{"code", codeOf(named)}, {"names", p.list(said(namesOf(named)))}}));
   for (const Id loser : losers) {
     out.sentences.push_back(
         p.say("moved_name", {{"code", codeOf(*places_.map().findPlace(loser))}}));

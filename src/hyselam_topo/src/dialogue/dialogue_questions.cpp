@@ -41,10 +41,11 @@ void Dialogue::askAlso(Id place, const std::vector<std::string>& names, Reply& o
   const std::vector<std::string> known = namesOf(*places_.map().findPlace(place));
   ask(std::move(question),
       place == robot().place
-          ? p.say("ask_also",
-                  {{"known", p.list(known)}, {"names", p.list(names)}, {"name", names.front()}})
+          ? p.say(
+                "ask_also",
+                {{"known", p.list(said(known))}, {"names", p.list(names)}, {"name", names.front()}})
           : p.say("ask_also_there", {{"code", codeOf(*places_.map().findPlace(place))},
-                                     {"known", p.list(known)},
+                                     {"known", p.list(said(known))},
                                      {"names", p.list(names)},
                                      {"name", names.front()}}),
       out);
@@ -88,10 +89,10 @@ void Dialogue::tellMoved(std::vector<MovedName> moved, bool asks, Reply& out) {
     }
     told.push_back(
         p.say("moved_item",
-              {{"name", each.name}, {"from", codesOf(each.from)}, {"to", codesOf(each.to)}}));
+              {{"name", said(each.name)}, {"from", codesOf(each.from)}, {"to", codesOf(each.to)}}));
     elsewhere.push_back(std::move(each));
   }
-  if (!lost.empty()) out.sentences.push_back(p.say("lost_names", {{"names", p.list(lost)}}));
+  if (!lost.empty()) out.sentences.push_back(p.say("lost_names", {{"names", p.list(said(lost))}}));
   if (elsewhere.empty()) return;
   // One question at a time; what was told to be unsure moves without one.
   const bool any_sure = std::any_of(elsewhere.begin(), elsewhere.end(), [&](const MovedName& each) {
@@ -123,7 +124,7 @@ void Dialogue::askFromAfar(Id id, Reply& out) {
   question.place = place.id;
   question.kind = guessed ? Question::Kind::kConfirmName : Question::Kind::kName;
   if (guessed) question.names = namesOf(place);
-  const std::string names = phrases().list(question.names);
+  const std::string names = phrases().list(said(question.names));
   ask(std::move(question),
       guessed ? phrases().say("ask_confirm_there", {{"code", codeOf(place)}, {"names", names}})
               : phrases().say("ask_name_there", {{"code", codeOf(place)}}),

@@ -67,6 +67,12 @@ void Dialogue::attempt(Reply& out, Act&& act) {
   }
 }
 
+/// As a sentence begins.
+inline std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
+  return text;
+}
+
 /// The texts of names that are no references.
 inline std::vector<std::string> textsOf(const std::vector<SaidName>& names) {
   std::vector<std::string> texts;

@@ -199,7 +199,8 @@ void Dialogue::tellNamesAgain(const PlaceMan::Names& since, Reply& out) const {
     if (names.empty()) {
       nameless.push_back(code);
     } else {
-      out.sentences.push_back(p.say("names_again", {{"code", code}, {"names", p.list(names)}}));
+      out.sentences.push_back(
+          p.say("names_again", {{"code", code}, {"names", p.list(said(names))}}));
     }
   }
   if (!nameless.empty()) {

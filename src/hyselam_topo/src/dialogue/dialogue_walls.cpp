@@ -254,9 +254,10 @@ void Dialogue::tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id
   if (first == nullptr) return;
   const Phrases& p = phrases();
   const bool is_door = places_.doorShutBy(*first->wall) != nullptr;
-  out.sentences.push_back(p.say(is_door ? "shut_in_the_way" : "wall_in_the_way",
-                                {{"wall", p.wall(first->wall->kind)},
-                                 {"places", p.list({shortName(first->a), shortName(first->b)})}}));
+  out.sentences.push_back(
+      p.say(is_door ? "shut_in_the_way" : "wall_in_the_way",
+            {{"wall", p.wall(first->wall->kind)},
+             {"places", p.list({said(shortName(first->a)), said(shortName(first->b))})}}));
 }
 
 bool Dialogue::useLanguage(const std::string& language) {

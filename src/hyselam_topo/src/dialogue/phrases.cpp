@@ -195,6 +195,20 @@ class Reader {
     return all;
   }
 
+  /// All texts of a map, whatever their keys; none if it is missing.
+  std::map<std::string, std::string> anyTexts(const std::string& key) const {
+    std::map<std::string, std::string> all;
+    const YAML::Node node = root_[key];
+    if (!node) return all;
+    if (!node.IsMap()) fail(key, "it must be a map");
+    for (const auto& entry : node) {
+      const auto name = entry.first.as<std::string>("");
+      if (name.find(' ') == std::string::npos) fail(key + "/" + name, "it must be two words");
+      all[name] = text(node, name);
+    }
+    return all;
+  }
+
   void onlyKnows(const std::set<std::string>& keys) const {
     for (const auto& entry : root_) {
       const auto name = entry.first.as<std::string>("");
@@ -216,7 +230,7 @@ class Reader {
 Phrases Phrases::fromYaml(const std::string& source, const std::string& yaml) {
   const Reader reader(source, yaml);
   reader.onlyKnows({"format", "version", "language", "decimal_point", "comma", "and", "sides",
-                    "walls", "phrases"});
+                    "walls", "contractions", "phrases"});
   if (reader.text("format") != "hyselam_phrases")
     reader.fail("format", "it is not hyselam_phrases");
   if (reader.text("version") != "1") reader.fail("version", "only version 1 can be read");
@@ -228,6 +242,7 @@ Phrases Phrases::fromYaml(const std::string& source, const std::string& yaml) {
   result.and_ = reader.text("and");
   result.sides_ = reader.texts("sides", {"front", "left", "back", "right"});
   result.walls_ = reader.texts("walls", {"glass", "virtual"});
+  result.contractions_ = reader.anyTexts("contractions");
   std::set<std::string> keys;
   for (const auto& [key, slots] : knownPhrases()) keys.insert(key);
   result.phrases_ = reader.texts("phrases", keys);
@@ -274,10 +289,25 @@ std::string Phrases::say(const std::string& key, const Values& values) const {
     const std::string slot = text.substr(open + 1, close - open - 1);
     const auto value =
         std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == slot; });
-    if (value != values.end()) out += value->second;
+    if (value != values.end()) append(value->second, &out);
     at = close + 1;
   }
   return out + text.substr(std::min(at, text.size()));
+}
+
+void Phrases::append(const std::string& value, std::string* out) const {
+  const std::size_t space = value.find(' ');
+  const bool behind_word = out->size() > 1 && out->back() == ' ';
+  if (!contractions_.empty() && space != std::string::npos && behind_word) {
+    const std::size_t before = out->rfind(' ', out->size() - 2);
+    const std::size_t word = before == std::string::npos ? 0 : before + 1;
+    const auto found = contractions_.find(out->substr(word) + value.substr(0, space));
+    if (found != contractions_.end()) {
+      *out = out->substr(0, word) + found->second + value.substr(space);
+      return;
+    }
+  }
+  *out += value;
 }
 
 std::string Phrases::list(const std::vector<std::string>& items) const {

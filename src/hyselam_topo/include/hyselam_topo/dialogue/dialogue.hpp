@@ -445,6 +445,11 @@ class Dialogue {
   /// Name, else generated id: "corridor"; "kitchen"; "SS03".
   std::string shortName(Id place) const;
   std::vector<std::string> labels(const std::vector<Id>& places) const;
+  /// A name with its article in the language of the talk: "the kitchen", but "room 5".
+  std::string said(const std::string& name) const;
+  std::vector<std::string> said(std::vector<std::string> names) const;
+  /// As said(), where a sentence begins that speaks of one: "The kitchen", but "stairs".
+  std::string subject(const std::string& name) const;
 
   DialogueParams params_;
   TopoParser parser_;

@@ -25,7 +25,8 @@ class Phrases {
 
   const std::string& language() const { return language_; }
 
-  /// The text with its words in braces filled in. Throws std::out_of_range for an unknown key.
+  /// The text with its words in braces filled in; a preposition before one grows together with its
+  /// article ("de" and "a cozinha"). Throws std::out_of_range for an unknown key.
   std::string say(const std::string& key, const Values& values = {}) const;
   /// "A", "A and B", "A, B and C".
   std::string list(const std::vector<std::string>& items) const;
@@ -37,9 +38,12 @@ class Phrases {
  private:
   Phrases() = default;
 
+  void append(const std::string& value, std::string* out) const;
+
   std::string language_;
   std::string decimal_point_, comma_, and_;
   std::map<std::string, std::string> sides_, walls_, phrases_;
+  std::map<std::string, std::string> contractions_;  ///< "de a": "da"
 };
 
 }  // namespace hyselam_topo
