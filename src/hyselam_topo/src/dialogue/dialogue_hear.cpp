@@ -305,23 +305,7 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     return;
   }
   if (isAnswer(u)) {
-    // "No, on the hook.", of the coat that was spoken of.
-    // The sentence before may have its mark with it.
-    const std::size_t mark = std::min(turn.end - std::min<std::size_t>(turn.end, 1), u.range.begin);
-    const bool new_sentence =
-        turn.text.substr(mark, u.range.begin - mark).find_first_of(".!?;\n") != std::string::npos;
-    const bool of_object = (behind_forwarded && u.intent == "no" && new_sentence) ||
-                           (options.objects_spoken_of && !turn.says_more);
-    if (!u.left_out.empty() && !turn.answered && of_object && options.forward_unknown) {
-      ForwardedSentence whole;
-      const std::size_t from = std::min(turn.end == 0 ? 0 : u.range.begin, turn.until);
-      whole.text = turn.text.substr(from, turn.until - from);
-      turn.reply.forwarded.push_back(std::move(whole));
-      turn.answered = turn.forwarded_last = true;
-      return;
-    }
-    if (turn.says_more) return;
-    meetAnswer(u, turn);
+    if (!correctsObject(u, behind_forwarded, turn) && !turn.says_more) meetAnswer(u, turn);
     return;
   }
   if (u.intent == "undo" && !turn.described && takeBack(turn)) {
@@ -360,6 +344,25 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (u.intent != "go_to") startGoal(turn);
     handleCommand(u, turn);
   }
+}
+
+/// "No, on the hook.", of the coat that was spoken of.
+bool Dialogue::correctsObject(const Utterance& u, bool behind_forwarded, Turn& turn) {
+  const HearOptions& options = turn.options;
+  if (u.left_out.empty() || turn.answered || !options.forward_unknown) return false;
+  // The sentence before may have its mark with it.
+  const std::size_t mark = std::min(turn.end - std::min<std::size_t>(turn.end, 1), u.range.begin);
+  const bool new_sentence =
+      turn.text.substr(mark, u.range.begin - mark).find_first_of(".!?;\n") != std::string::npos;
+  const bool of_object = (behind_forwarded && u.intent == "no" && new_sentence) ||
+                         (options.objects_spoken_of && !turn.says_more);
+  if (!of_object) return false;
+  ForwardedSentence whole;
+  const std::size_t from = std::min(turn.end == 0 ? 0 : u.range.begin, turn.until);
+  whole.text = turn.text.substr(from, turn.until - from);
+  turn.reply.forwarded.push_back(std::move(whole));
+  turn.answered = turn.forwarded_last = true;
+  return true;
 }
 
 bool Dialogue::forgetsKnown(const Utterance& u, Turn& turn) {

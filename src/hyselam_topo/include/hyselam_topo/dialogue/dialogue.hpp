@@ -264,6 +264,8 @@ class Dialogue {
   /// Puts the open question again, or drops it if the text was about something else.
   void settleQuestion(Turn& turn);
   void handleUtterance(const Utterance& u, Turn& turn);
+  /// Passes a "no" with more behind it on; `behind_forwarded`: so was what stands before it.
+  bool correctsObject(const Utterance& u, bool behind_forwarded, Turn& turn);
   void handleCommand(const Utterance& heard, Turn& turn);
   /// Asks who speaks if "my office" cannot be told otherwise.
   bool askWhose(const Utterance& u, Turn& turn);
