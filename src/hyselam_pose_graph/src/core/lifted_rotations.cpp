@@ -1,8 +1,11 @@
 #include "lifted_rotations.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <utility>
 
 #include "hyselam_common/rng.hpp"
 
@@ -13,27 +16,60 @@ namespace {
 using Vector4 = Eigen::Matrix<double, 4, 1>;
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
 
-/// 7 unknowns per pose: 3 for the direction of its rotation on the sphere, 4 for its position.
+constexpr int kSize = 7;
+
+/// 7 unknowns per pose: 3 for the direction of its rotation on the sphere, 4 for its position. An
+/// eighth row of zeros makes columns that the processor takes in pairs: all is done by columns.
 struct Block7 {
-  using Vector = Eigen::Matrix<double, 7, 1>;
-  using Matrix = Eigen::Matrix<double, 7, 7>;
+  using Vector = Eigen::Matrix<double, kSize + 1, 1>;
+  using Matrix = Eigen::Matrix<double, kSize + 1, kSize>;
   Matrix m;
 
   static Block7 zero() { return {Matrix::Zero()}; }
-  void subtractProduct(const Block7& a, const Block7& b) { m.noalias() -= a.m * b.m.transpose(); }
+  void subtractProduct(const Block7& a, const Block7& b) {
+    for (int j = 0; j < kSize; ++j) {
+      Vector column = m.col(j);
+      for (int k = 0; k < kSize; ++k) column -= b.m(j, k) * a.m.col(k);
+      m.col(j) = column;
+    }
+  }
+  /// Of the lower triangle.
   bool factor() {
-    const Eigen::LLT<Matrix> llt(m);
-    if (llt.info() != Eigen::Success) return false;
-    m = llt.matrixL();
+    for (int j = 0; j < kSize; ++j) {
+      if (!(m(j, j) > 0.0)) return false;
+      m.col(j) /= std::sqrt(m(j, j));
+      m.col(j).head(j).setZero();
+      for (int k = j + 1; k < kSize; ++k) m.col(k) -= m(k, j) * m.col(j);
+    }
     return m.allFinite();
   }
   void solveRight(const Block7& l) {
-    l.m.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(m);
+    for (int j = 0; j < kSize; ++j) {
+      Vector column = m.col(j);
+      for (int k = 0; k < j; ++k) column -= l.m(j, k) * m.col(k);
+      m.col(j) = column / l.m(j, j);
+    }
   }
-  void solveLower(Vector& v) const { m.triangularView<Eigen::Lower>().solveInPlace(v); }
-  void solveUpper(Vector& v) const { m.triangularView<Eigen::Lower>().transpose().solveInPlace(v); }
-  void subtractTimes(const Vector& x, Vector& y) const { y.noalias() -= m * x; }
-  void subtractAdjointTimes(const Vector& x, Vector& y) const { y.noalias() -= m.transpose() * x; }
+  void solveLower(Vector& v) const {
+    for (int j = 0; j < kSize; ++j) {
+      const double x = v[j] / m(j, j);
+      v -= x * m.col(j);
+      v[j] = x;
+    }
+  }
+  void solveUpper(Vector& v) const {
+    for (int j = kSize - 1; j >= 0; --j) {
+      double x = v[j];
+      for (int k = j + 1; k < kSize; ++k) x -= m(k, j) * v[k];
+      v[j] = x / m(j, j);
+    }
+  }
+  void subtractTimes(const Vector& x, Vector& y) const {
+    for (int k = 0; k < kSize; ++k) y -= x[k] * m.col(k);
+  }
+  void subtractAdjointTimes(const Vector& x, Vector& y) const {
+    for (int k = 0; k < kSize; ++k) y[k] -= m.col(k).dot(x);
+  }
 };
 
 /// (re, im, re, im) of two complex numbers times c + i s.
@@ -95,7 +131,7 @@ class LiftedProblem {
       const int row = system_.row(static_cast<int>(i));
       if (row < 0) continue;
       Block7& d = h->entry(system_.pattern().diagonal(row));
-      const Block7::Vector scale = d.m.diagonal();
+      const Eigen::Matrix<double, kSize, 1> scale = d.m.diagonal();
       d.m.topLeftCorner<3, 3>().diagonal().array() -= multipliers[i];
       d.m.diagonal() += damping * scale;
     }
@@ -112,7 +148,7 @@ class LiftedProblem {
       if (row < 0) continue;
       const Block7::Vector& d = x[static_cast<std::size_t>(row)];
       result[i].rotation = (v[i].rotation + tangent(v[i].rotation) * d.head<3>()).normalized();
-      result[i].position += d.tail<4>();
+      result[i].position += d.segment<4>(3);
     }
     return result;
   }
@@ -142,29 +178,30 @@ class LiftedProblem {
     if (row_i >= 0) {
       Block7& d = h->entry(system_.pattern().diagonal(row_i));
       d.m.topLeftCorner<3, 3>() += e.kappa * zb.transpose() * zb + e.tau * yb.transpose() * yb;
-      d.m.topRightCorner<3, 4>() += e.tau * yb.transpose();
-      d.m.bottomLeftCorner<4, 3>() += e.tau * yb;
-      d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
+      d.m.block<3, 4>(0, 3) += e.tau * yb.transpose();
+      d.m.block<4, 3>(3, 0) += e.tau * yb;
+      d.m.block<4, 4>(3, 3) += e.tau * Matrix4::Identity();
       (*x)[static_cast<std::size_t>(row_i)].head<3>() -= bi.transpose() * ri;
-      (*x)[static_cast<std::size_t>(row_i)].tail<4>() += tj;
+      (*x)[static_cast<std::size_t>(row_i)].segment<4>(3) += tj;
     }
     if (row_j >= 0) {
       Block7& d = h->entry(system_.pattern().diagonal(row_j));
       d.m.topLeftCorner<3, 3>() += e.kappa * Eigen::Matrix3d::Identity();
-      d.m.bottomRightCorner<4, 4>() += e.tau * Matrix4::Identity();
+      d.m.block<4, 4>(3, 3) += e.tau * Matrix4::Identity();
       (*x)[static_cast<std::size_t>(row_j)].head<3>() -= bj.transpose() * rj;
-      (*x)[static_cast<std::size_t>(row_j)].tail<4>() -= tj;
+      (*x)[static_cast<std::size_t>(row_j)].segment<4>(3) -= tj;
     }
     if (row_i < 0 || row_j < 0) return;
-    Block7::Matrix o = Block7::Matrix::Zero();  // H(i, j)
+    Eigen::Matrix<double, kSize, kSize> o;  // H(i, j)
+    o.setZero();
     o.topLeftCorner<3, 3>() = -e.kappa * zb.transpose() * bj;
     o.topRightCorner<3, 4>() = -e.tau * yb.transpose();
     o.bottomRightCorner<4, 4>() = -e.tau * Matrix4::Identity();
     const CholeskyPattern::Slot slot = system_.pattern().slot(row_i, row_j);
     if (slot.transposed) {
-      h->entry(slot.entry).m += o.transpose();
+      h->entry(slot.entry).m.topRows<kSize>() += o.transpose();
     } else {
-      h->entry(slot.entry).m += o;
+      h->entry(slot.entry).m.topRows<kSize>() += o;
     }
   }
 
@@ -193,40 +230,61 @@ Eigen::Vector2cd dominantDirection(const std::vector<Lifted>& v) {
 
 }  // namespace
 
-std::vector<SystemPose> solveLifted(const PoseSystem& system, std::vector<SystemPose> poses,
-                                    int max_iterations) {
-  const LiftedProblem problem(system);
+struct LiftedRotations::State {
+  explicit State(const PoseSystem& s) : system(s), problem(s), h(s.pattern()) {}
+
+  const PoseSystem& system;
+  LiftedProblem problem;
+  BlockCholesky<Block7> h;
+  std::vector<Block7::Vector> x;
+  std::vector<Lifted> v;
+  std::vector<SystemPose> poses;  // at the start
+  double cost = 0.0, damping = 1e-2;
+  int iterations = 0;
+};
+
+LiftedRotations::LiftedRotations(const PoseSystem& system, std::vector<SystemPose> poses)
+    : state_(std::make_unique<State>(system)) {
   // A random perturbation into the second dimension leads away from the local minimum of the first.
   hyselam::Rng rng(1);
-  std::vector<Lifted> v;
-  v.reserve(poses.size());
+  state_->v.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const SystemPose& p = poses[i];
     const double perturbation = system.row(static_cast<int>(i)) < 0 ? 0.0 : 0.3;
     const double a = perturbation * (2.0 * rng.uniform() - 1.0),
                  b = perturbation * (2.0 * rng.uniform() - 1.0);
-    v.push_back({Vector4(p.c, p.s, a, b).normalized(), Vector4(p.x, p.y, 0.0, 0.0)});
+    state_->v.push_back({Vector4(p.c, p.s, a, b).normalized(), Vector4(p.x, p.y, 0.0, 0.0)});
   }
-  BlockCholesky<Block7> h(system.pattern());
-  std::vector<Block7::Vector> x;
-  double cost = problem.cost(v), damping = 1e-2;
-  for (int i = 0; i < max_iterations && damping < 1e9; ++i) {
-    if (!problem.step(v, damping, &h, &x)) {
-      damping *= 4.0;
+  state_->poses = std::move(poses);
+  state_->cost = state_->problem.cost(state_->v);
+}
+LiftedRotations::~LiftedRotations() = default;
+
+void LiftedRotations::descend(double tolerance, int max_iterations) {
+  State& s = *state_;
+  for (; s.iterations < max_iterations && s.damping < 1e9; ++s.iterations) {
+    if (!s.problem.step(s.v, s.damping, &s.h, &s.x)) {
+      s.damping *= 4.0;
       continue;
     }
-    std::vector<Lifted> next = problem.moved(v, x);
-    const double next_cost = problem.cost(next);
-    if (!(next_cost < cost)) {
-      damping *= 4.0;
+    std::vector<Lifted> next = s.problem.moved(s.v, s.x);
+    const double next_cost = s.problem.cost(next);
+    if (!(next_cost < s.cost)) {
+      s.damping *= 4.0;
       continue;
     }
-    const double gain = cost - next_cost;
-    v = std::move(next);
-    cost = next_cost;
-    damping = std::max(damping / 4.0, 1e-9);
-    if (gain < 1e-8 * cost) break;
+    const double gain = s.cost - next_cost;
+    s.v = std::move(next);
+    s.cost = next_cost;
+    s.damping = std::max(s.damping / 4.0, 1e-9);
+    if (gain < tolerance * s.cost) break;
   }
+}
+
+std::vector<SystemPose> LiftedRotations::poses() const {
+  const PoseSystem& system = state_->system;
+  std::vector<SystemPose> poses = state_->poses;
+  const std::vector<Lifted>& v = state_->v;
   const Eigen::Vector2cd direction = dominantDirection(v);
   // Fixed poses keep their rotation: each component is rotated back by that of its first pose,
   // which precedes the others.
