@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <iostream>
 
@@ -103,6 +104,28 @@ Score score(const std::string& file, const std::string& language) {
 }
 
 }  // namespace
+
+TEST(ObjectText, AThingIsWhereTheRobotStandsNotWhereTheTalkWasBefore) {
+  for (const auto& [language, before, now] :
+       {std::array<std::string, 3>{"en", "There is a cup on the desk in the reception.",
+                                   "There is a note on the desk."},
+        {"pt", "Há um copo em cima da mesa na receção.", "Há um livro em cima da mesa."}}) {
+    const ObjectParser parser = ObjectParser::shipped(language);
+    ObjectMap map;
+    FillMap fill(parser, map);
+    fill.setRobotPlace("lab");
+    fill.process(before);
+    fill.process(now);  // it has not moved: on that desk
+    fill.setRobotPlace("office");
+    fill.process(now);
+    std::vector<std::string> places;
+    for (const auto& object : map.objects) {
+      if (const auto* place = map.findPlace(map.placeOf(object.id))) places.push_back(place->name);
+    }
+    EXPECT_EQ(std::count(places.begin(), places.end(), "office"), 2) << language;
+    EXPECT_EQ(std::count(places.begin(), places.end(), "lab"), 0) << language;
+  }
+}
 
 TEST(ObjectText, UnderstandsEnglishCorpus) {
   const Score of = score("objects_en.yaml", "en");

@@ -341,6 +341,11 @@ ObjectReply FillMap::setProperties(const ObjectStatement& statement, const std::
   return out;
 }
 
+void FillMap::setRobotPlace(const std::string& name) {
+  if (name != robot_place_) last_place_ = 0;
+  robot_place_ = name;
+}
+
 void FillMap::resetContext() {
   last_objects_.clear();
   landmarks_told_.clear();

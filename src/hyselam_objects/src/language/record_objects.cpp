@@ -59,6 +59,13 @@ FillMap::Question FillMap::interpretLandmark(const ObjectStatement& statement,
         map_.placeOf(found.front()) != 0 && map_.placeOf(found.front()) != place) {
       found.clear();  // "on the table in the kitchen": not that in the office
     }
+    const bool is_elsewhere = found.size() == 1 && map_.placeOf(found.front()) != 0 &&
+                              map_.placeOf(found.front()) != findPlace(robot_place_);
+    const bool just_came = last_place_ == 0 && !robot_place_.empty();
+    if (!stated && just_came && is_elsewhere && landmark.reference.empty() &&
+        landmark.chosen.empty()) {
+      found.clear();  // "on the table", said in the kitchen: not that in the office
+    }
     if (found.size() > 1) return askWhich(statement, landmark, found, true);
     if (found.empty() && !landmark.reference.empty()) {
       return reply(ReplyKind::kQuestion, "no_antecedent", {{"what", landmark.text}});

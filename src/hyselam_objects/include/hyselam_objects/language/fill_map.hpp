@@ -60,8 +60,10 @@ class FillMap {
   FillMap(const ObjectParser& parser, ObjectMap& map);
   FillMap(ObjectParser&& parser, ObjectMap& map) = delete;
 
-  /// Where the robot is, for "here" and for statements without a place; "": not known.
-  void setRobotPlace(const std::string& name) { robot_place_ = name; }
+  /// Where the robot is, for "here" and for statements without a place; "": not known. Where it
+  /// enters another place, what was said of others before is not meant any more: "There is a note
+  /// on the desk" is here.
+  void setRobotPlace(const std::string& name);
   /// Stamp of the statements from now on [s].
   void setTime(double stamp) { stamp_ = stamp; }
 
