@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "../bench/segmentation_score.hpp"
+#include "../src/train/segmentation_score.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"

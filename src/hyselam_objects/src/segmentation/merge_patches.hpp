@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "patches.hpp"
+#include "relation_model.hpp"
 
 namespace hyselam_objects {
 
 /// The object of each pixel, numbered from 0 by distance from the camera; Patches::kNone for none.
 std::vector<int> mergePatches(const SurfaceGrid& grid, const Patches& patches,
-                              const SegmentParams& params);
+                              const SegmentParams& params,
+                              const RelationModel& model = RelationModel::shipped());
 
 }  // namespace hyselam_objects

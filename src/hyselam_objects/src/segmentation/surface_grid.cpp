@@ -6,6 +6,18 @@
 #include <limits>
 
 namespace hyselam_objects {
+namespace {
+
+/// As SurfaceGrid::color().
+Point opponentColor(std::uint32_t rgb) {
+  const auto channel = [rgb](int shift) {
+    return static_cast<float>(rgb >> shift & 255u) / 255.0f;
+  };
+  const float r = channel(16), g = channel(8), b = channel(0);
+  return {(r + g + b) / 3.0f, 0.5f * (r - g), 0.25f * (r + g - 2.0f * b)};
+}
+
+}  // namespace
 
 SurfaceGrid::SurfaceGrid(const OrganizedCloud& cloud, const SegmentParams& params)
     : width_((cloud.width + params.downsampling - 1) / params.downsampling),
@@ -26,10 +38,11 @@ void SurfaceGrid::downsample(const OrganizedCloud& cloud, const SegmentParams& p
   points_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
                  Point::Zero());
   sigma_.assign(points_.size(), 0.0f);
+  if (!cloud.colors.empty()) colors_.assign(points_.size(), Point::Zero());
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       // The mean of what lies on the nearest surface.
-      std::array<const Point*, 64> seen{};
+      std::array<std::size_t, 64> seen{};
       std::size_t count = 0;
       float nearest = std::numeric_limits<float>::infinity();
       for (int v = y * params.downsampling;
@@ -39,19 +52,21 @@ void SurfaceGrid::downsample(const OrganizedCloud& cloud, const SegmentParams& p
           const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) +
                          static_cast<std::size_t>(u);
           if (!cloud.isValid(i) || cloud.points[i].z() <= 0.0f) continue;
-          seen[count++] = &cloud.points[i];
+          seen[count++] = i;
           nearest = std::min(nearest, cloud.points[i].z());
         }
       }
       if (count == 0) continue;
-      Point sum = Point::Zero();
+      Point sum = Point::Zero(), color = Point::Zero();
       float n = 0.0f;
       for (std::size_t k = 0; k < count; ++k) {
-        if (seen[k]->z() > nearest * 1.02f) continue;
-        sum += *seen[k];
+        if (cloud.points[seen[k]].z() > nearest * 1.02f) continue;
+        sum += cloud.points[seen[k]];
+        if (hasColors()) color += opponentColor(cloud.colors[seen[k]]);
         n += 1.0f;
       }
       points_[index(x, y)] = sum / n;
+      if (hasColors()) colors_[index(x, y)] = color / n;
       const float far = std::max(0.0f, nearest - 0.4f);
       sigma_[index(x, y)] =
           std::max(1e-6f, static_cast<float>(params.noise_floor +

@@ -48,6 +48,10 @@ class SurfaceGrid {
   /// Surface variation (Pauly et al. 2002): share of the smallest eigenvalue of the neighborhood's
   /// covariance, 0 (plane) .. 1/3.
   float variation(std::size_t i) const { return variation_[i]; }
+  bool hasColors() const { return !colors_.empty(); }
+  /// Lightness (R + G + B) / 3, (R - G) / 2 and (R + G - 2 B) / 4, of a white of 1; zero if colors
+  /// are not known.
+  Point color(std::size_t i) const { return hasColors() ? colors_[i] : Point::Zero(); }
   /// Whether two neighbors lie on one surface: no jump in depth.
   bool areConnected(std::size_t i, std::size_t j) const;
 
@@ -59,6 +63,7 @@ class SurfaceGrid {
   int height_ = 0;
   std::vector<Point> points_;
   std::vector<float> sigma_;
+  std::vector<Point> colors_;  // of each pixel, or none
   std::vector<Point> normals_;
   std::vector<float> variation_;
 };

@@ -19,6 +19,13 @@ struct SegmentationScore {
   int objects = 0;
   int over = 0;   ///< segments beyond the first whose largest overlap is with the same object
   int under = 0;  ///< objects beyond the first that are best covered by the same segment
+  SegmentationScore& operator+=(const SegmentationScore& other) {
+    iou_sum += other.iou_sum;
+    objects += other.objects;
+    over += other.over;
+    under += other.under;
+    return *this;
+  }
   double meanIou() const { return objects > 0 ? iou_sum / objects : 0.0; }
 };
 

@@ -1,0 +1,42 @@
+// Rows and columns for points that have none, and the right way up for images that have not.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hyselam_objects/segmentation/organized_cloud.hpp"
+
+namespace hyselam_objects {
+
+/// Of a pinhole camera: a point is in column `focal_x * x / z + center_x`, in row
+/// `focal_y * y / z + center_y` [pixel].
+struct Intrinsics {
+  double focal_x = 525.0, focal_y = 525.0, center_x = 319.5, center_y = 239.5;
+  int width = 640, height = 480;
+};
+
+/// How the image of a cloud was turned; nothing of it is true of a camera's own cloud.
+struct ImageTurn {
+  bool behind = false;       ///< depth was negative: the points lay behind the camera
+  bool mirrored = false;     ///< rows or columns ran against y or x, but not both
+  bool upside_down = false;  ///< up was down in the image
+};
+
+/// A cloud with rows and columns that run with y and x, and where each point of the original is.
+struct OrganizedView {
+  OrganizedCloud cloud;
+  std::vector<std::int32_t> pixel_of;  ///< of each point of the original; -1: in none
+  ImageTurn turn;
+};
+
+/// Points without rows, as one view from the origin: by the intrinsics given or, where the points
+/// still lie in columns and rows of a camera, by those; else by as many pixels as there are points.
+/// Of the points in a pixel the nearest is kept; others have it too if they are as near.
+/// Nothing if the points were not seen from the origin (many hide others), or are fewer than 100.
+/// @throws hyselam::InputError for intrinsics that are not finite, not positive, or of an image
+///         larger than 50 million pixels.
+std::optional<OrganizedView> organizeCloud(const OrganizedCloud& cloud,
+                                           const std::optional<Intrinsics>& intrinsics = {});
+
+}  // namespace hyselam_objects
