@@ -3,6 +3,8 @@
 #include <string>
 
 #include "../src/language/object_words.hpp"
+#include "../src/segmentation/relation_model.hpp"
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_objects/language/fill_map.hpp"
@@ -106,6 +108,28 @@ void objectCloud(const std::uint8_t* data, std::size_t size) {
           same.cloud.width == file.cloud.width && same.cloud.height == file.cloud.height);
 }
 
+/// The file of the odds of patches: refused, or weights whose text is the same again, with which
+/// the odds of any relation are found. The checksum is made right first, or nearly all would end
+/// there.
+void patchRelations(const std::uint8_t* data, std::size_t size) {
+  std::string text = textOf(data, size);
+  const std::size_t last = text.rfind("checksum ");
+  if (last != std::string::npos) {
+    text.resize(last);
+    text += "checksum " + hyselam::crc32Text(text) + "\n";
+  }
+  try {
+    const RelationModel model = RelationModel::fromText(text, "fuzz");
+    const std::string written = model.toText();
+    require(RelationModel::fromText(written, "written").toText() == written);
+    PatchRelation relation;
+    relation.convex = relation.hidden = 5;
+    require(std::abs(model.oddsOfOneObject(relation, true)) <= 16.0);
+  } catch (const hyselam::InputError&) {
+    return;
+  }
+}
+
 }  // namespace
 }  // namespace hyselam_objects
 
@@ -115,5 +139,6 @@ std::vector<hyselam::testing::FuzzTarget> hyselam::testing::fuzzTargets() {
           {"objectMapXml", objectMapXml},
           {"objectDictionaryXml", objectDictionaryXml},
           {"objectWords", objectWords},
-          {"objectCloud", objectCloud}};
+          {"objectCloud", objectCloud},
+          {"patchRelations", patchRelations}};
 }

@@ -3,12 +3,15 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "../src/train/segmentation_score.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/segment_unorganized.hpp"
@@ -172,6 +175,161 @@ TEST(SegmentCloud, RefusesInvalidSizesAndParameters) {
   refused([](SegmentParams& p) { p.max_object_height = -1.0; });
 }
 
+/// Three things, two of them in contact.
+CloudFile pile() {
+  return table({thing("lower", kBox, {2.0, 3.0, 0.3}, 0.5, {0.3, 0.3, 0.12}),
+                thing("upper", kBox, {2.03, 3.02, 0.9}, 0.62, {0.14, 0.14, 0.14}),
+                thing("aside", kBox, {1.9, 2.5, 0.3}, 0.5, {0.1, 0.12, 0.2})});
+}
+
+SegmentationScore scoreOf(const CloudFile& file, const CloudSegmentation& found) {
+  SegmentationScore score;
+  addScore(found.labels, file.labels, score);
+  return score;
+}
+
+/// Every point of `file` multiplied by signs, in the order of pixels that `from` gives.
+CloudFile turned(const CloudFile& file, const Eigen::Array3f& signs,
+                 const std::function<std::size_t(std::size_t)>& from) {
+  CloudFile out = file;
+  for (std::size_t i = 0; i < file.cloud.size(); ++i) {
+    out.cloud.points[i] = (file.cloud.points[from(i)].array() * signs).matrix();
+    out.labels[i] = file.labels[from(i)];
+  }
+  return out;
+}
+
+TEST(SegmentCloud, ReadsCloudsOfOneRowAsTheImageThatTheyWere) {
+  CloudFile file = pile(), row;
+  for (std::size_t i = 0; i < file.cloud.size(); ++i) {  // without what was not measured
+    if (!file.cloud.isValid(i)) continue;
+    row.cloud.points.push_back(file.cloud.points[i]);
+    row.labels.push_back(file.labels[i]);
+  }
+  row.cloud.width = static_cast<int>(row.cloud.points.size());
+  row.cloud.height = 1;
+  const CloudSegmentation image = segmentCloud(file.cloud), found = segmentCloud(row.cloud);
+  EXPECT_EQ(found.objects, image.objects);
+  // Equal but for a border: the image ends with the points now.
+  EXPECT_NEAR(scoreOf(row, found).meanIou(), scoreOf(file, image).meanIou(), 0.01);
+  const std::optional<OrganizedView> view = organizeCloud(row.cloud);
+  ASSERT_TRUE(view);
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < view->cloud.size(); ++i) pixels += view->cloud.isValid(i);
+  EXPECT_EQ(pixels, row.cloud.size());  // no two in one pixel
+  // In any order.
+  std::vector<std::size_t> order(row.cloud.size());
+  std::iota(order.begin(), order.end(), 0);
+  hyselam::Rng rng(7);
+  for (std::size_t k = order.size() - 1; k > 0; --k) {
+    std::swap(order[k], order[rng.below(static_cast<std::uint32_t>(k + 1))]);
+  }
+  const CloudFile shuffled =
+      turned(row, Eigen::Array3f::Ones(), [&](std::size_t i) { return order[i]; });
+  const CloudSegmentation again = segmentCloud(shuffled.cloud);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    ASSERT_EQ(again.labels[i], found.labels[order[i]]);
+  }
+}
+
+TEST(SegmentCloud, ReadsThinnedCloudsOfOneRow) {
+  const CloudFile file = pile();
+  CloudFile row;
+  hyselam::Rng rng(5);
+  for (std::size_t i = 0; i < file.cloud.size(); ++i) {  // a third, off the raster
+    if (!file.cloud.isValid(i) || rng.below(3) != 0) continue;
+    const auto off = [&rng] { return 1.0f + 0.002f * static_cast<float>(rng.uniform() - 0.5); };
+    const Point& p = file.cloud.points[i];
+    row.cloud.points.emplace_back(p.x() * off(), p.y() * off(), p.z());
+    row.labels.push_back(file.labels[i]);
+  }
+  row.cloud.width = 1;
+  row.cloud.height = static_cast<int>(row.cloud.points.size());
+  const SegmentationScore score = scoreOf(row, segmentCloud(row.cloud));
+  EXPECT_EQ(score.under, 0);
+  EXPECT_GT(score.meanIou(), 0.8);
+}
+
+TEST(SegmentCloud, RefusesOneRowOfMergedViews) {
+  OrganizedCloud cloud;
+  hyselam::Rng rng(1);
+  for (int i = 0; i < 5000; ++i) {  // a block full of points: most lie behind others
+    const auto side = [&rng] { return static_cast<float>(rng.uniform()); };
+    cloud.points.emplace_back(side() - 0.5f, side() - 0.5f, 0.5f + side());
+  }
+  cloud.width = 5000;
+  cloud.height = 1;
+  EXPECT_FALSE(organizeCloud(cloud));
+  EXPECT_THROW(segmentCloud(cloud), hyselam::InputError);
+  Intrinsics camera;
+  camera.focal_x = std::nan("");
+  EXPECT_THROW(organizeCloud(cloud, camera), hyselam::InputError);
+  camera = {};
+  camera.width = 0;
+  EXPECT_THROW(organizeCloud(cloud, camera), hyselam::InputError);
+}
+
+TEST(SegmentCloud, TellsAndTurnsImages) {
+  const CloudFile file = pile();
+  const CloudSegmentation plain = segmentCloud(file.cloud);
+  EXPECT_FALSE(plain.turn.behind || plain.turn.mirrored || plain.turn.upside_down);
+  ASSERT_TRUE(plain.support);
+  const std::size_t last = file.cloud.size() - 1, w = static_cast<std::size_t>(file.cloud.width);
+  const auto same = [](std::size_t i) { return i; };
+  const auto expect = [&](const CloudFile& other, bool behind, bool mirrored, bool upside_down,
+                          const std::string& what) {
+    const CloudSegmentation found = segmentCloud(other.cloud);
+    EXPECT_EQ(found.turn.behind, behind) << what;
+    EXPECT_EQ(found.turn.mirrored, mirrored) << what;
+    EXPECT_EQ(found.turn.upside_down, upside_down) << what;
+    EXPECT_EQ(found.objects, plain.objects) << what;
+    EXPECT_GT(scoreOf(other, found).meanIou(), scoreOf(file, plain).meanIou() - 0.03) << what;
+    ASSERT_TRUE(found.support) << what;
+    for (std::size_t i = 0; i < other.cloud.size(); ++i) {  // in the frame of the cloud
+      if (other.labels[i] != 1 || found.labels[i] != 1) continue;
+      ASSERT_LT(std::abs(found.support->heightOf(other.cloud.points[i])), 0.05f) << what;
+    }
+  };
+  // A camera that hangs upside down; its driver that looks along -z with y up (a turn about x).
+  expect(turned(file, {-1, -1, 1}, [&](std::size_t i) { return last - i; }), false, false, true,
+         "upside down");
+  expect(turned(file, {1, -1, -1}, same), true, false, false, "behind");
+  expect(turned(file, {-1, 1, 1}, same), false, true, false, "x against the columns");
+  expect(turned(file, {1, 1, -1}, same), true, true, false, "behind and mirrored");
+  expect(turned(file, Eigen::Array3f::Ones(),
+                [&](std::size_t i) { return i - i % w + (w - 1 - i % w); }),
+         false, true, false, "columns backwards");
+}
+
+TEST(SegmentCloud, TakesNoWallForTheSupport) {
+  // The table is small, the wall behind it fills most of the image.
+  OrganizedCloud cloud;
+  cloud.width = 160;
+  cloud.height = 120;
+  const float f = 140.0f, nan = std::numeric_limits<float>::quiet_NaN();
+  for (int v = 0; v < cloud.height; ++v) {
+    for (int u = 0; u < cloud.width; ++u) {
+      const float x = (static_cast<float>(u) - 79.5f) / f, y = (static_cast<float>(v) - 59.5f) / f;
+      const float floor = y > 0.0f ? 0.35f / y : 9.0f;  // a table 0.35 m below the camera
+      const float z = std::min(1.4f, floor);
+      cloud.points.push_back(z > 0.3f ? Point(x * z, y * z, z) : Point(nan, nan, nan));
+    }
+  }
+  const CloudSegmentation guessed = segmentCloud(cloud);
+  ASSERT_TRUE(guessed.support);
+  EXPECT_LT(guessed.support->normal.y(), -0.9f);
+  const CloudSegmentation known = segmentCloud(cloud, {}, Eigen::Vector3f(0.0f, -2.0f, 0.0f));
+  ASSERT_TRUE(known.support);
+  EXPECT_LT(known.support->normal.y(), -0.9f);
+  for (Point& p : cloud.points) p = p.z() < 1.39f ? Point(nan, nan, nan) : p;  // the wall alone
+  const CloudSegmentation wall = segmentCloud(cloud, {}, Eigen::Vector3f(0.0f, -1.0f, 0.0f));
+  EXPECT_FALSE(wall.support);
+  EXPECT_EQ(wall.objects, 0u);
+  for (const float bad : {0.0f, nan}) {
+    EXPECT_THROW(segmentCloud(cloud, {}, Eigen::Vector3f(0.0f, bad, 0.0f)), hyselam::InputError);
+  }
+}
+
 TEST(SegmentUnorganized, FindsSeparateObjects) {
   CloudFile file = table({thing("a", kBox, {1.9, 2.7, 0.5}, 0.5, {0.2, 0.1, 0.25}),
                           thing("b", kCylinder, {2.0, 3.3, 0.0}, 0.5, {0.1, 0.1, 0.15})});
@@ -263,17 +421,22 @@ TEST(SegmentCloudTool, ReportsErrorsInOneLine) {
   EXPECT_FALSE(std::filesystem::exists(directory / "o.pcd"));
 }
 
+// The shipped model has seen these clouds; left out they score as much less as docs/results.md has.
 TEST(SegmentCloud, AgreesWithHumanLabelsOnRealTables) {
   HYSELAM_NEED_DATA(data);
-  SegmentationScore score;
-  for (const auto& entry : std::filesystem::directory_iterator(data + "/objects/mosd")) {
-    if (entry.path().extension() != ".pcd") continue;
-    const CloudFile file = readPcd(entry.path().string());
-    addScore(segmentCloud(file.cloud).labels, file.labels, score);
+  SegmentationScore all, piles;
+  for (const char* folder : {"/objects/mosd", "/objects/mosd_piles"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(data + folder)) {
+      if (entry.path().extension() != ".pcd") continue;
+      const CloudFile file = readPcd(entry.path().string());
+      const SegmentationScore score = scoreOf(file, segmentCloud(file.cloud));
+      all += score;
+      if (score.objects >= 8) piles += score;
+    }
   }
-  EXPECT_EQ(score.objects, 23);
-  EXPECT_GT(score.meanIou(), 0.94);
-  EXPECT_EQ(score.under, 0);
+  EXPECT_EQ(all.objects, 165);
+  EXPECT_GT(all.meanIou(), 0.92);
+  EXPECT_GT(piles.meanIou(), 0.9);
 }
 
 }  // namespace

@@ -85,36 +85,52 @@ double focalByDensity(const OrganizedCloud& cloud, double left, double right, do
   return std::sqrt(static_cast<double>(points) / static_cast<double>(seen.size())) / cell;
 }
 
+struct Interval {
+  double low, high;
+};
+
+/// From the least to the largest direction of all points in front.
+Interval wholeRange(const OrganizedCloud& cloud, int axis) {
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (const Point& p : cloud.points) {
+    if (!isInFront(p)) continue;
+    low = std::min(low, slope(p, axis));
+    high = std::max(high, slope(p, axis));
+  }
+  return {static_cast<double>(low), static_cast<double>(high)};
+}
+
+/// The same without the outermost: a single stray point would make the image huge.
+Interval usualRange(const std::vector<float>& slopes) {
+  const std::size_t cut = slopes.size() / 2000;
+  return {static_cast<double>(slopes[cut]), static_cast<double>(slopes[slopes.size() - 1 - cut])};
+}
+
 Intrinsics estimateIntrinsics(const OrganizedCloud& cloud) {
   const std::vector<float> xs = sampleSlopes(cloud, 0), ys = sampleSlopes(cloud, 1);
-  // Without the outermost: a single stray point would make the image huge.
-  const std::size_t cut = xs.size() / 2000;
-  const double left = static_cast<double>(xs[cut]),
-               right = static_cast<double>(*(xs.rbegin() + static_cast<std::ptrdiff_t>(cut)));
-  const double top = static_cast<double>(ys[cut]),
-               bottom = static_cast<double>(*(ys.rbegin() + static_cast<std::ptrdiff_t>(cut)));
+  Interval across = usualRange(xs), down = usualRange(ys);
   const std::optional<Axis> columns = findLattice(xs), rows = findLattice(ys);
   Intrinsics out;
   if (columns && rows) {
+    across = wholeRange(cloud, 0);
+    down = wholeRange(cloud, 1);
     out.focal_x = columns->focal;
     out.center_x = columns->center;
     out.focal_y = rows->focal;
     out.center_y = rows->center;
   } else {
-    out.focal_x = out.focal_y = focalByDensity(cloud, left, right, top, bottom);
-    out.center_x = -left * out.focal_x;
-    out.center_y = -top * out.focal_y;
+    out.focal_x = out.focal_y = focalByDensity(cloud, across.low, across.high, down.low, down.high);
+    out.center_x = -across.low * out.focal_x;
+    out.center_y = -down.low * out.focal_y;
   }
   // The image ends with the points.
-  const double first_column = std::floor(left * out.focal_x + out.center_x);
-  const double first_row = std::floor(top * out.focal_y + out.center_y);
-  out.center_x -= first_column;
-  out.center_y -= first_row;
+  out.center_x -= std::round(across.low * out.focal_x + out.center_x);
+  out.center_y -= std::round(down.low * out.focal_y + out.center_y);
   const auto size = [](double last) {
-    return static_cast<int>(std::clamp(std::ceil(last) + 1.0, 1.0, std::sqrt(kMostPixels)));
+    return static_cast<int>(std::clamp(std::round(last) + 1.0, 1.0, std::sqrt(kMostPixels)));
   };
-  out.width = size(right * out.focal_x + out.center_x);
-  out.height = size(bottom * out.focal_y + out.center_y);
+  out.width = size(across.high * out.focal_x + out.center_x);
+  out.height = size(down.high * out.focal_y + out.center_y);
   return out;
 }
 
