@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "assign.hpp"
 #include "hyselam_common/rng.hpp"
+#include "mapping/assign.hpp"
 
 using hyselam_objects::assignRows;
 

@@ -155,6 +155,7 @@ std::optional<OrganizedView> organizeCloud(const OrganizedCloud& cloud,
   if (in_front < 100) return std::nullopt;
   const Intrinsics camera = intrinsics ? *intrinsics : estimateIntrinsics(cloud);
   OrganizedView out;
+  out.camera = camera;
   out.cloud.width = camera.width;
   out.cloud.height = camera.height;
   const std::size_t size =

@@ -26,8 +26,8 @@ struct ImageTurn {
 /// A cloud with rows and columns that run with y and x, and where each point of the original is.
 struct OrganizedView {
   OrganizedCloud cloud;
+  Intrinsics camera;                   ///< given or estimated
   std::vector<std::int32_t> pixel_of;  ///< of each point of the original; -1: in none
-  ImageTurn turn;
 };
 
 /// Points without rows, as one view from the origin: by the intrinsics given or, where the points
