@@ -108,7 +108,8 @@ class Detector {
   /// The objects that the marked pixels show.
   std::vector<DetectedObject> split(const std::vector<bool>& marked) const {
     const Patches patches(frame_.grid(), marked, params_.segmentation);
-    const std::vector<int> objects = mergePatches(frame_.grid(), patches, params_.segmentation);
+    const std::vector<int> objects =
+        mergePatchesByRules(frame_.grid(), patches, params_.segmentation);
     std::vector<std::vector<std::size_t>> pixels;
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (objects[i] == Patches::kNone) continue;

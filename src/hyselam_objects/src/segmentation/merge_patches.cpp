@@ -7,6 +7,7 @@
 
 #include "hyselam_common/union_find.hpp"
 #include "partition.hpp"
+#include "patch_rules.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -20,7 +21,14 @@ class PatchMerger {
   PatchMerger(const SurfaceGrid& grid, const Patches& patches, const SegmentParams& params)
       : grid_(grid), patches_(patches), params_(params) {}
 
-  std::vector<int> run(const std::vector<PatchRelation>& relations, const RelationModel& model) {
+  std::vector<int> byRules() const {
+    hyselam::UnionFind sets(patches_.count());
+    joinByRules(grid_, patches_, params_, sets);
+    return objects(sets);
+  }
+
+  std::vector<int> byOdds(const std::vector<PatchRelation>& relations,
+                          const RelationModel& model) const {
     std::vector<PairOdds> pairs;
     for (const PatchRelation& relation : relations) {
       pairs.push_back({relation.first, relation.second,
@@ -118,7 +126,12 @@ class PatchMerger {
 
 std::vector<int> mergePatches(const SurfaceGrid& grid, const Patches& patches,
                               const SegmentParams& params, const RelationModel& model) {
-  return PatchMerger(grid, patches, params).run(relatePatches(grid, patches, params), model);
+  return PatchMerger(grid, patches, params).byOdds(relatePatches(grid, patches, params), model);
+}
+
+std::vector<int> mergePatchesByRules(const SurfaceGrid& grid, const Patches& patches,
+                                     const SegmentParams& params) {
+  return PatchMerger(grid, patches, params).byRules();
 }
 
 }  // namespace hyselam_objects

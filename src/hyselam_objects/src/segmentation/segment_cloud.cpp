@@ -36,6 +36,12 @@ void SegmentParams::describe(hyselam::ParameterVisitor& visit) {
         "of the support plane, where up is known");
   visit("join_bias", join_bias, Range::between(-10.0, 10.0), "",
         "log-odds added for each pair of patches: more joins more");
+  visit("min_convex_ratio", min_convex_ratio, share, "",
+        "share of the contact of two patches that must be convex, in rooms");
+  visit("min_contact_ratio", min_contact_ratio, share, "",
+        "share of the border of two patches that must be in contact, in rooms");
+  visit("min_border_ratio", min_border_ratio, share, "",
+        "length of the convex contact over the root of the smaller patch's size, in rooms");
   visit("concavity_tolerance", concavity_tolerance, angle, "rad",
         "a smaller concave angle counts as flat");
   visit("max_step", max_step, length, "m", "surfaces in contact miss each other by less");

@@ -1,5 +1,7 @@
 // A model, given as a cloud, found in a scene: SHOT descriptors, correspondences that agree on a
-// pose (Chen and Bhanu 2007, as in PCL), refined by ICP, and how much of the model is there.
+// pose (Chen and Bhanu 2007, as in PCL), refined by ICP, and judged by what the camera could see:
+// how much of the visible part is covered, what it looks through, and whether the scene goes on
+// beyond the outline.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,13 +13,15 @@
 namespace hyselam_objects {
 
 struct FindModelParams {
+  double surface_sampling = 0.004;     ///< distance of points that are looked at [m], > 0
   double model_sampling = 0.01;        ///< distance of keypoints in the model [m], > 0
   double scene_sampling = 0.02;        ///< ... and in the scene [m], > 0
   double descriptor_radius = 0.03;     ///< [m], > 0
   double consistency_distance = 0.01;  ///< by which lengths of two correspondences may differ [m]
   int min_correspondences = 5;         ///< of a pose, >= 3
-  int max_hypotheses = 3;              ///< poses with most correspondences that are refined, >= 1
+  int max_hypotheses = 8;              ///< poses with most correspondences that are refined, >= 1
   double inlier_distance = 0.01;       ///< of a point of the model to the scene [m], > 0
+  double min_probability = 0.5;        ///< of a pose that is told, 0 .. 1
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
@@ -27,10 +31,16 @@ struct FindModelParams {
 struct FoundModel {
   Eigen::Isometry3d model_in_scene = Eigen::Isometry3d::Identity();
   std::size_t correspondences = 0;
-  double coverage = 0.0;  ///< share of the model's points that lie on the scene, 0 .. 1
+  double coverage = 0.0;     ///< share of the model's visible points that lie on the scene, 0 .. 1;
+                             ///< the camera looks through the others
+  double visible = 0.0;      ///< share of the points on its near side that nothing hides, 0 .. 1
+  double probability = 0.0;  ///< that it is there, 0 .. 1
+  double flush = 0.0;        ///< share of its outline at which the scene goes on as it does, 0 .. 1
 };
 
-/// The refined poses, sorted by coverage, the best first.
+/// The likely poses, the best first; none where the model is not there, one for each part of the
+/// scene that it explains. A scene that is not one view from its origin tells nothing of free
+/// space.
 /// @throws hyselam::InputError for clouds with fewer than 100 usable points;
 ///         hyselam::ParameterError.
 std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,

@@ -2,8 +2,8 @@
 // the floor, in one frame of a color and depth camera whose pose is known.
 //
 // Horizontal surfaces above the floor are furniture; what stands on them or on the floor is split
-// as in segment_cloud.hpp. What is taller than `max_object_height` and has no horizontal top is
-// taken for a wall.
+// into the patches of segment_cloud.hpp, which are joined by fixed rules. What is taller than
+// `max_object_height` and has no horizontal top is taken for a wall.
 #pragma once
 
 #include <Eigen/Geometry>

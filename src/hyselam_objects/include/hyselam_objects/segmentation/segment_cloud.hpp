@@ -33,6 +33,10 @@ struct SegmentParams {
   double join_bias = 0.0;             ///< log-odds added for each pair: > 0 joins more, -10 .. 10
   double concavity_tolerance = 0.17;  ///< a smaller concave angle counts as flat [rad]
   double max_step = 0.007;            ///< surfaces in contact miss each other by less [m]
+  // In rooms (detect_objects.hpp) two patches are joined across a common border by rule, if
+  double min_convex_ratio = 0.55;  ///< this share of their contact is convex,
+  double min_contact_ratio = 0.2;  ///< this share of the border is in contact,
+  double min_border_ratio = 0.35;  ///< and it is this long over the root of the smaller size
   // The inside of a hollow object such as a cup:
   double min_hollow_angle = 0.05;  ///< concave turn of the normals over some pixels [rad]
   double min_hollow_ratio = 0.5;   ///< share of its lower edge that the outside hides
