@@ -18,6 +18,29 @@ float toleranceAt(float depth, double tolerance) {
   return static_cast<float>(tolerance) + kDepthTolerance * depth * depth;
 }
 
+/// Least depth of the model in cells of the image: what of it hides the rest.
+class NearSide {
+ public:
+  void add(const Cell& cell, float depth) {
+    const auto [at, is_new] = nearest_.insert({cell, depth});
+    if (!is_new) at->second = std::min(at->second, depth);
+  }
+  /// In a cell and those around; infinite without any.
+  float depthAround(const Cell& cell) const {
+    float out = std::numeric_limits<float>::infinity();
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const auto at = nearest_.find({cell.first + dx, cell.second + dy});
+        if (at != nearest_.end()) out = std::min(out, at->second);
+      }
+    }
+    return out;
+  }
+
+ private:
+  std::map<Cell, float> nearest_;
+};
+
 }  // namespace
 
 SceneView::SceneView(const OrganizedCloud& scene) {
@@ -63,40 +86,44 @@ float SceneView::depthNear(const Pixel& at, float depth) const {
   return best;
 }
 
+/// Side of a cell at a depth [pixel].
+float SceneView::cellSize(float depth) const {
+  return std::max(2.0f, kCell * static_cast<float>(view_->camera.focal_x) / depth);
+}
+
+/// Whether the scene goes on straight from `at`, where its depth is `seen`, by (u, v) pixels;
+/// nothing if it is not seen as far back.
+std::optional<bool> SceneView::goesOn(const Pixel& at, float seen, float u, float v,
+                                      float tolerance) const {
+  const float inner = depthNear({at.u - u, at.v - v}, seen);
+  if (std::isnan(inner)) return std::nullopt;
+  // Along a line in a plane the inverse of depth grows evenly.
+  const float straight = 1.0f / (2.0f / seen - 1.0f / inner);
+  return std::abs(depthNear({at.u + u, at.v + v}, straight) - straight) < tolerance;
+}
+
 ModelEvidence SceneView::judge(const std::vector<Point>& points, double tolerance) const {
-  ModelEvidence out;
-  // What of the model hides the rest of it.
-  std::map<Cell, float> nearest;
+  constexpr float kThickness = 0.015f;  // of the model's near side [m]
+  constexpr float kNearest = 0.05f;     // of a camera's depths [m]
+  constexpr int kBeyond = 3;            // cells from a point to beyond the outline
   const auto cellOf = [&](const Point& p) {
     const Pixel at = project(p);
-    const float size = std::max(2.0f, kCell * static_cast<float>(view_->camera.focal_x) / p.z());
+    const float size = cellSize(p.z());
     return Cell{static_cast<int>(std::floor(at.u / size)),
                 static_cast<int>(std::floor(at.v / size))};
   };
+  NearSide model;
   std::vector<Point> placed;
-  for (const Point& p : points) placed.push_back(sign_ * p);
-  for (const Point& p : placed) {
-    if (!(p.z() > 0.05f)) continue;
-    const auto [at, is_new] = nearest.insert({cellOf(p), p.z()});
-    if (!is_new) at->second = std::min(at->second, p.z());
+  for (const Point& p : points) {
+    if (!(sign_ * p.z() > kNearest)) continue;
+    placed.push_back(sign_ * p);
+    model.add(cellOf(placed.back()), placed.back().z());
   }
-  const auto nearestAround = [&](const Cell& cell) {
-    float out_depth = std::numeric_limits<float>::infinity();
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        const auto at = nearest.find({cell.first + dx, cell.second + dy});
-        if (at != nearest.end()) out_depth = std::min(out_depth, at->second);
-      }
-    }
-    return out_depth;
-  };
-  constexpr float kThickness = 0.015f;  // of the model's near side [m]
+  ModelEvidence out;
   int near_side = 0, covered = 0, violated = 0, outline = 0, flush = 0;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const Point& p = placed[i];
-    if (!(p.z() > 0.05f)) continue;
+  for (const Point& p : placed) {
     const Cell cell = cellOf(p);
-    if (p.z() > nearestAround(cell) + kThickness) continue;
+    if (p.z() > model.depthAround(cell) + kThickness) continue;
     ++near_side;
     const Pixel at = project(p);
     const float limit = toleranceAt(p.z(), tolerance);
@@ -109,17 +136,14 @@ ModelEvidence SceneView::judge(const std::vector<Point>& points, double toleranc
     ++covered;
     out.pixels.push_back(static_cast<std::int32_t>(std::lround(at.v)) * view_->cloud.width +
                          static_cast<std::int32_t>(std::lround(at.u)));
-    // Where the model ends, some cells on there is nothing of it: does the scene go on straight?
-    const float size = std::max(2.0f, kCell * static_cast<float>(view_->camera.focal_x) / p.z());
-    for (const auto& [dx, dy] : {Cell{3, 0}, Cell{-3, 0}, Cell{0, 3}, Cell{0, -3}}) {
-      if (std::isfinite(nearestAround({cell.first + dx, cell.second + dy}))) continue;
-      const float u = size * static_cast<float>(dx), v = size * static_cast<float>(dy);
-      const float inner = depthNear({at.u - u, at.v - v}, seen);
-      if (std::isnan(inner)) continue;
-      ++outline;
-      // Along a line in a plane the inverse of depth grows evenly.
-      const float straight = 1.0f / (2.0f / seen - 1.0f / inner);
-      flush += std::abs(depthNear({at.u + u, at.v + v}, straight) - straight) < 0.5f * limit;
+    const float size = cellSize(p.z());
+    for (const auto& [dx, dy] :
+         {Cell{kBeyond, 0}, Cell{-kBeyond, 0}, Cell{0, kBeyond}, Cell{0, -kBeyond}}) {
+      if (std::isfinite(model.depthAround({cell.first + dx, cell.second + dy}))) continue;
+      const auto on = goesOn(at, seen, size * static_cast<float>(dx), size * static_cast<float>(dy),
+                             0.5f * limit);
+      outline += on.has_value();
+      flush += on.value_or(false);
     }
   }
   std::sort(out.pixels.begin(), out.pixels.end());

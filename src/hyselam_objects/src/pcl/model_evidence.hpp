@@ -37,6 +37,8 @@ class SceneView {
   };
   Pixel project(const Point& p) const;
   float depthNear(const Pixel& at, float depth) const;
+  float cellSize(float depth) const;
+  std::optional<bool> goesOn(const Pixel& at, float seen, float u, float v, float tolerance) const;
 
   float sign_ = 1.0f;  ///< -1: depth is negative in this scene
   std::optional<OrganizedView> view_;
