@@ -22,6 +22,7 @@
 #include "fsd_localization/models/likelihood_field_model.hpp"
 #include "fsd_localization/search/alarm_watch.hpp"
 #include "fsd_localization/search/place_judge.hpp"
+#include "fsd_localization/search/short_term_layer.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
 
@@ -37,6 +38,9 @@ struct LocalizerParams {
   /// Hybrid: the scans of the last metres are searched on the whole map, and what is found decides
   /// what is believed.
   bool submap_search = true;
+  /// With that: while tracking, what the last scans saw again and again where the map has nothing
+  /// does not count.
+  bool short_term_layer = true;
   double search_latency = 0.5;      ///< an answer counts so long after its question [s]
   double found_probability = 0.98;  ///< a place is believed from this probability on
   double lost_probability = 0.95;   ///< another one says from this on that the robot is lost
@@ -148,6 +152,8 @@ class Localizer {
   const LocalizerParams& params() const { return params_; }
   const FsdMap& map() const { return *map_; }
   const LocalMap& localMap() const { return sensor_.localMap(); }
+  /// What only the present has, of the last 20 m: points in the map frame, if the base is there.
+  std::vector<hyselam::Point2> shortTermPoints(const hyselam::Pose2& base_in_map) const;
   const Particles& particles() const { return filter_.particles(); }
   /// Densities of the last update; empty before the first update and while FSD is not used.
   const FsdObservation& lastObservation() const { return observation_.fsd; }
@@ -180,6 +186,7 @@ class Localizer {
   void trackAt(const hyselam::Pose2& base_in_grid, LocalizationResult& result);
   void followPlaces(const std::vector<Place>& places, const hyselam::Pose2& motion);
   void forgetSearch();
+  void learnShortTerm(const hyselam::Pose2& base_in_grid);
 
   // Transitions between the states of the hybrid model.
   void startHypotheses(Particles particles);
@@ -219,6 +226,7 @@ class Localizer {
   /// The search by submaps; hybrid only.
   struct Search {
     SubmapBuilder submap;
+    ShortTermLayer short_term;
     std::unique_ptr<BackgroundSearch> background;
     double way = 0.0;                // [m] of motion, turns counted
     std::optional<double> asked_at;  // on that way

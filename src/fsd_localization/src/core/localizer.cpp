@@ -64,6 +64,9 @@ void LocalizerParams::describe(hyselam::ParameterVisitor& visit) {
         "hybrid: odometry is refined by matching scans with what was seen last");
   visit("submap_search", submap_search,
         "hybrid: the scans of the last metres are searched on the whole map");
+  visit("short_term_layer", short_term_layer,
+        "with submap_search: what the last scans saw where the map has nothing does not count in "
+        "tracking");
   visit("search_latency", search_latency, Range::between(0.0, 60.0), "s",
         "an answer of the search counts so long after its question, so that equal runs are equal");
   const Range probability = Range::inside(0.0, 1.0);
@@ -306,6 +309,7 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
     }
     if (step.broken && search_.background) {  // what was seen before lies nobody knows where
       search_.submap.reset();
+      search_.short_term.clear();
       search_.background->drop();
       search_.signs.broken = search_.signs.broken || !step.matched;  // the odometry jumped
     }
@@ -346,8 +350,12 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   observation_.fsd = usesFsd() ? sensor_.observe() : FsdObservation{};
   const bool is_sure = refinesOdometry() && !by_wheels_ && !isSearching(state_);
   by_wheels_ = false;
+  if (state_ == LocalizerState::kTracking && !search_.short_term.empty()) {
+    observation_.scan = search_.short_term.without(scan, smooth);
+  }
   const FilterStep step =
       filter_.step(delta, activeModel(), observation_, is_sure ? kMatchedNoise : 1.0);
+  observation_.scan = scan;
   const PoseEstimate estimate = estimatePose(filter_.particles());
 
   LocalizationResult result = resultOf(estimate, step.effective_size);
@@ -359,6 +367,7 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
     if (search_.background) {
       search_.way += moved + kTurnAsTravel * std::abs(delta.theta);
       updateBySearch(estimate, motion, result);
+      learnShortTerm(estimate.mean);
     } else {
       updateState(estimate, motion, result);
     }

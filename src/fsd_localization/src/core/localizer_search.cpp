@@ -37,6 +37,7 @@ constexpr std::uint64_t kPlaceStream = 0x91ace5;
 
 void Localizer::forgetSearch() {
   search_.submap.reset();
+  search_.short_term.clear();
   if (search_.background) search_.background->drop();
   search_.asked_at.reset();
   search_.verdict.reset();
@@ -47,6 +48,26 @@ void Localizer::forgetSearch() {
   search_.fits_worse = false;
   search_.rival.reset();
   search_.guided = false;
+}
+
+/// What a tracked pose sees beside the map; nothing of where the robot may have been carried.
+void Localizer::learnShortTerm(const Pose2& base_in_grid) {
+  if (!params_.short_term_layer || state_ != LocalizerState::kTracking) return;
+  if (search_.alarm.looksCarried() || search_.rival) return;
+  const double range = params_.likelihood.max_range;
+  search_.short_term.add(
+      ShortTermLayer::endsOf(observation_.scan, *updated_odom_, range),
+      likelihood_model_->areInliers(ShortTermLayer::endsOf(observation_.scan, base_in_grid, range),
+                                    params_.inlier_distance),
+      search_.way);
+}
+
+std::vector<hyselam::Point2> Localizer::shortTermPoints(const Pose2& base_in_map) const {
+  std::vector<hyselam::Point2> points = search_.short_term.points();
+  if (!updated_odom_) return {};
+  const Pose2 odom_in_map = base_in_map * updated_odom_->inverse();
+  for (hyselam::Point2& p : points) p = odom_in_map * p;
+  return points;
 }
 
 /// Now and then: whether the pose explains the last metres worse than usual. In a corridor that
@@ -201,6 +222,7 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     result.converged = false;
     if (!isContradicted(answer, verdict)) return;
     state_ = LocalizerState::kLostSearch;
+    search_.short_term.clear();
     search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
     followPlaces(verdict.hypotheses, motion);
     search_.asked_at.reset();  // at once again, with another scan
@@ -258,6 +280,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.usual_score.reset();
   search_.fits_worse = false;
   search_.rival.reset();
+  search_.short_term.clear();
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),

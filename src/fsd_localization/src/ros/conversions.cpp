@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "hyselam_common/ros/conversions.hpp"
+#include "hyselam_common/ros/markers.hpp"
 
 namespace fsd_localization {
 
@@ -212,6 +213,19 @@ visualization_msgs::MarkerArray kernelMarkers(const FsdObservation& observation,
     array.markers.push_back(label);
   }
   return array;
+}
+
+visualization_msgs::Marker shortTermMarker(const std::vector<hyselam::Point2>& points,
+                                           const std_msgs::Header& header) {
+  using visualization_msgs::Marker;
+  Marker m = hyselam::marker(header.frame_id, "short_term", 0, Marker::CUBE_LIST);
+  m.header = header;
+  if (points.empty()) m.action = Marker::DELETE;
+  m.scale.x = m.scale.y = ShortTermLayer::kCell;
+  m.scale.z = 0.05;
+  m.color = hyselam::color(1.0, 0.5, 0.0, 0.9);
+  for (const hyselam::Point2& p : points) m.points.push_back(hyselam::at(p.x, p.y, 0.02));
+  return m;
 }
 
 }  // namespace fsd_localization

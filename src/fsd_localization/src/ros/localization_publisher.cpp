@@ -15,7 +15,8 @@ LocalizationPublisher::LocalizationPublisher(ros::NodeHandle nh,
       status_(nh.advertise<hyselam_msgs::LocalizationStatus>("localization_status", 10, true)),
       cloud_(nh.advertise<geometry_msgs::PoseArray>("particlecloud", 2)),
       local_map_(nh.advertise<nav_msgs::OccupancyGrid>("local_map", 1)),
-      markers_(nh.advertise<visualization_msgs::MarkerArray>("fsd_markers", 1)) {
+      markers_(nh.advertise<visualization_msgs::MarkerArray>("fsd_markers", 1)),
+      short_term_(nh.advertise<visualization_msgs::Marker>("short_term_markers", 1)) {
   if (params_.density_field_kernel >= 0) {
     density_field_ = nh.advertise<nav_msgs::OccupancyGrid>("density_field", 1, true);
   }
@@ -48,10 +49,11 @@ void LocalizationPublisher::publishUpdate(const Localizer& localizer,
   const std_msgs::Header in_map = header(stamp, params_.global_frame_id);
   pose_.publish(toMsg(result, localizer, in_map));
   status_.publish(toStatusMsg(result, update_ms, in_map));
-  if (gui_rate_.pass(stamp)) show(localizer, in_map);
+  if (gui_rate_.pass(stamp)) show(localizer, result, in_map);
 }
 
-void LocalizationPublisher::show(const Localizer& localizer, const std_msgs::Header& in_map) {
+void LocalizationPublisher::show(const Localizer& localizer, const LocalizationResult& result,
+                                 const std_msgs::Header& in_map) {
   const std_msgs::Header in_odom = header(in_map.stamp, params_.input.odom_frame_id);
   if (cloud_.getNumSubscribers() > 0) {
     cloud_.publish(toMsg(localizer.particles(),
@@ -61,6 +63,9 @@ void LocalizationPublisher::show(const Localizer& localizer, const std_msgs::Hea
   if (showsLocalMap() && localizer.keepsLocalMap()) {  // of who has just come, from the next on
     local_map_.publish(
         hyselam::toMsg(localizer.localMap().toGrid(), in_odom.frame_id, in_odom.stamp));
+  }
+  if (short_term_.getNumSubscribers() > 0) {
+    short_term_.publish(shortTermMarker(localizer.shortTermPoints(result.base_in_map), in_map));
   }
   const FsdObservation& seen = localizer.lastObservation();
   // Once is enough to take the discs away where the model of the moment reads no densities.

@@ -31,7 +31,7 @@ struct Options {
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
   std::size_t kidnaps = 0;
   bool cache = false, start_known = false, raw_odometry = false, without_search = false,
-       search_alone = false;
+       without_short_term = false, search_alone = false;
   hyselam::BagOptions bag_options;
 };
 
@@ -41,6 +41,7 @@ fsd_localization::LocalizerParams localizerParams(const Options& o) {
   p.seed = o.seed;
   p.refine_odometry = !o.raw_odometry;
   p.submap_search = !o.without_search;
+  p.short_term_layer = !o.without_short_term;
   if (!o.place_odds.empty()) {
     p.place_odds = {o.place_odds[0], o.place_odds[1], o.place_odds[2], o.place_odds[3]};
   }
@@ -266,12 +267,14 @@ int main(int argc, char** argv) {
   app.add_flag("--start-known", o.start_known, "the first pose is told, to 0.5 m and 15 degrees");
   app.add_flag("--raw-odometry", o.raw_odometry, "odometry is not refined by scans");
   app.add_flag("--without-search", o.without_search, "the filter alone, without search by submaps");
+  app.add_flag("--without-short-term", o.without_short_term,
+               "what only the present has counts in tracking");
   app.add_flag("--cache", o.cache, "keep the density fields beside the map (MAP.yaml.fsd)");
   auto* alone =
       app.add_flag("--search-alone", o.search_alone, "the search by submaps alone, without filter");
   for (const char* without_effect :
        {"--model", "--particles", "--seed", "--kernel", "--bandwidths", "--start-known",
-        "--raw-odometry", "--without-search", "--cache"}) {
+        "--raw-odometry", "--without-search", "--without-short-term", "--cache"}) {
     alone->excludes(without_effect);
   }
   app.add_option("--reference", o.reference,

@@ -46,8 +46,12 @@ class LikelihoodFieldModel final : public ObservationModel {
   std::optional<double> inlierRatio(const hyselam::LaserScan& scan,
                                     const hyselam::Pose2& base_in_grid,
                                     double inlier_distance) const;
+  /// Whether each point lies within `inlier_distance` [m] of an obstacle of the map.
+  std::vector<bool> areInliers(const std::vector<hyselam::Point2>& in_grid,
+                               double inlier_distance) const;
 
  private:
+  double largestCost(double inlier_distance) const;
   /// Ends of the beams in the base frame [fine cells], and the cells they fall on for one pose.
   struct Ends {
     std::vector<float> x, y;

@@ -45,4 +45,8 @@ visualization_msgs::MarkerArray kernelMarkers(const FsdObservation& observation,
                                               const std::vector<KernelSpec>& kernels,
                                               const std_msgs::Header& header);
 
+/// What only the present has, as a cube each; taken away where there is nothing.
+visualization_msgs::Marker shortTermMarker(const std::vector<hyselam::Point2>& points,
+                                           const std_msgs::Header& header);
+
 }  // namespace fsd_localization

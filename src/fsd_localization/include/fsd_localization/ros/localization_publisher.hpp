@@ -19,8 +19,9 @@ class LocalizationPublisher {
   void setParams(const LocalizationServerParams& params);
   /// `density_field`, latched, when a map is ready.
   void publishMap(const Localizer& localizer);
-  /// `amcl_pose` and `localization_status` at each update; `particlecloud`, `local_map` and
-  /// `fsd_markers` only while someone listens, and not more often than gui_publish_rate.
+  /// `amcl_pose` and `localization_status` at each update; `particlecloud`, `local_map`,
+  /// `fsd_markers` and `short_term_markers` only while someone listens, and not more often than
+  /// gui_publish_rate.
   void publishUpdate(const Localizer& localizer, const LocalizationResult& result, double update_ms,
                      const ros::Time& stamp);
   /// Whether somebody listens to `local_map`.
@@ -31,13 +32,14 @@ class LocalizationPublisher {
   void broadcast(const hyselam::Pose2& odom_in_map, const ros::Time& stamp);
 
  private:
-  void show(const Localizer& localizer, const std_msgs::Header& in_map);
+  void show(const Localizer& localizer, const LocalizationResult& result,
+            const std_msgs::Header& in_map);
   std_msgs::Header header(const ros::Time& stamp, const std::string& frame) const;
 
   LocalizationServerParams params_;
   hyselam::RateLimit gui_rate_;
   bool markers_shown_ = false;
-  ros::Publisher pose_, status_, cloud_, density_field_, local_map_, markers_;
+  ros::Publisher pose_, status_, cloud_, density_field_, local_map_, markers_, short_term_;
   tf2_ros::TransformBroadcaster tf_;
 };
 

@@ -145,6 +145,29 @@ std::optional<double> LikelihoodFieldModel::weigh(const Observation& observation
   return likelihoodPerFactor(before, totalWeight(p), factors);
 }
 
+/// The cost grows with the distance, so the distance of inliers is a limit on the cost.
+double LikelihoodFieldModel::largestCost(double inlier_distance) const {
+  const double hit =
+      std::exp(-0.5 * inlier_distance * inlier_distance / (params_.sigma_hit * params_.sigma_hit));
+  // The largest cost means only "far away": never an inlier.
+  return std::min(254.0, (best_ - std::log(params_.z_hit * hit + params_.z_rand)) / step_);
+}
+
+std::vector<bool> LikelihoodFieldModel::areInliers(const std::vector<hyselam::Point2>& in_grid,
+                                                   double inlier_distance) const {
+  const double limit = largestCost(inlier_distance);
+  std::vector<bool> inliers;
+  inliers.reserve(in_grid.size());
+  for (const hyselam::Point2& p : in_grid) {
+    const double x = std::clamp(p.x / fine_resolution_ + 1.0, 0.0, fine_width_ - 1.0);
+    const double y = std::clamp(p.y / fine_resolution_ + 1.0, 0.0, fine_height_ - 1.0);
+    const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(fine_width_) +
+                      static_cast<std::size_t>(x);
+    inliers.push_back(cost_[cell] <= limit);
+  }
+  return inliers;
+}
+
 std::optional<double> LikelihoodFieldModel::inlierRatio(const hyselam::LaserScan& scan,
                                                         const hyselam::Pose2& base_in_grid,
                                                         double inlier_distance) const {
@@ -153,12 +176,7 @@ std::optional<double> LikelihoodFieldModel::inlierRatio(const hyselam::LaserScan
   if (ends.x.empty()) return std::nullopt;
   lookUp(static_cast<float>(base_in_grid.x), static_cast<float>(base_in_grid.y),
          toBinaryAngle(base_in_grid.theta), ends);
-  // The cost grows with the distance, so the distance of inliers is a limit on the cost.
-  const double hit =
-      std::exp(-0.5 * inlier_distance * inlier_distance / (params_.sigma_hit * params_.sigma_hit));
-  // The largest cost means only "far away": never an inlier.
-  const double limit =
-      std::min(254.0, (best_ - std::log(params_.z_hit * hit + params_.z_rand)) / step_);
+  const double limit = largestCost(inlier_distance);
   std::size_t inliers = 0;
   for (const std::int32_t cell : ends.cell) {
     inliers += cost_[static_cast<std::size_t>(cell)] <= limit ? 1 : 0;
