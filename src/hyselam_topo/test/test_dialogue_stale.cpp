@@ -234,8 +234,9 @@ TEST(DialogueStale, AQuestionForAnotherNameIsOverWithTheNames) {
 TEST(DialogueStale, MovedNamesAreAskedForInWords) {
   const TalkOfMoves talk;
   ASSERT_EQ(talk.asked(), Question::Kind::kMoved) << talk.asked_in_words;
-  EXPECT_TRUE(has(talk.asked_in_words,
-                  "That moves the corridor from SS02 to SS01 and the lab from SS01 to SS02; right?"))
+  EXPECT_TRUE(
+      has(talk.asked_in_words,
+          "That moves the corridor from SS02 to SS01 and the lab from SS01 to SS02; right?"))
       << talk.asked_in_words;
 }
 

@@ -307,9 +307,8 @@ TEST(Descriptors, BagOfFeaturesLearnsADictionaryAndRestoresIt) {
 
 TEST(Descriptors, GrayAndUnsuitableImagesAreRefusedWithTheDescriptorsName) {
   const cv::Mat gray(40, 40, CV_8UC1, cv::Scalar(9)), deep(40, 40, CV_16UC3, cv::Scalar(9));
-  for (const std::string name :
-       {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP", "GLANCE",
-        "FUSION", "HSV-HIST", "LOGCHROMA", "RANKS"}) {
+  for (const std::string name : {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP",
+                                 "GLANCE", "FUSION", "HSV-HIST", "LOGCHROMA", "RANKS"}) {
     const auto d = makeDescriptor(name);
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(gray); }).find("grey"),
               std::string::npos)
@@ -317,7 +316,8 @@ TEST(Descriptors, GrayAndUnsuitableImagesAreRefusedWithTheDescriptorsName) {
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(deep); }), "") << name;
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(cv::Mat()); }), "") << name;
   }
-  for (const std::string name : {"LBP8,1", "SLBP", "CENTRIST", "LGOP", "GRAY"}) {  // these need no colour
+  for (const std::string name :
+       {"LBP8,1", "SLBP", "CENTRIST", "LGOP", "GRAY"}) {  // these need no colour
     EXPECT_NO_THROW(makeDescriptor(name)->compute(gray)) << name;
   }
 }
@@ -364,9 +364,8 @@ TEST(Descriptors, BlackAndTinyImagesGiveFiniteSignatures) {
 TEST(Descriptors, OneObjectTakesImagesOfChangingSize) {
   hyselam::Rng rng(16);
   const cv::Mat a = randomImage(rng, 60, 80), b = randomImage(rng, 33, 121);
-  for (const std::string name :
-       {"LBPbyHSV-U8S", "LBPbyHSV-U8N-IRIS", "SLBP", "HSV-LBP", "GLANCE", "HSV-GIST", "GRAY",
-        "FUSION"}) {
+  for (const std::string name : {"LBPbyHSV-U8S", "LBPbyHSV-U8N-IRIS", "SLBP", "HSV-LBP", "GLANCE",
+                                 "HSV-GIST", "GRAY", "FUSION"}) {
     const auto d = makeDescriptor(name);
     const auto first = d->compute(a);
     EXPECT_EQ(d->compute(b), makeDescriptor(name)->compute(b)) << name;

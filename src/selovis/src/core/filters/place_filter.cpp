@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kMinLikelihood = 1e-6;  // of the Bayes filter: no frame rules a place out
 
-constexpr PlaceFilterKind kKinds[] = {PlaceFilterKind::kNone, PlaceFilterKind::kLowPass,
+constexpr PlaceFilterKind kKinds[] = {PlaceFilterKind::kNone,   PlaceFilterKind::kLowPass,
                                       PlaceFilterKind::kMarkov, PlaceFilterKind::kBayes,
-                                      PlaceFilterKind::kPoses, PlaceFilterKind::kAuto};
+                                      PlaceFilterKind::kPoses,  PlaceFilterKind::kAuto};
 
 }  // namespace
 
