@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -169,6 +170,7 @@ void SharedMapServer::take(std::size_t robot, const hyselam_msgs::SlamGraph::Res
 
 void SharedMapServer::runMerging() {
   double pause = params_.poll_period;
+  int failures = 0;  // without a success since
   while (waitFor(pause)) {
     pause = params_.poll_period;
     std::optional<SharedMap::Work> work;
@@ -192,8 +194,10 @@ void SharedMapServer::runMerging() {
       return;
     } catch (const std::exception& e) {
       error = e.what();
-      ROS_ERROR_STREAM(log_name_ << " the maps are not merged: " << error);
       const Lock lock(mutex_);
+      if (error != times_.merge_error) {
+        ROS_ERROR_STREAM(log_name_ << " the maps are not merged: " << error);
+      }
       shared_.giveBack();
     }
     const double seconds = (ros::WallTime::now() - begin).toSec();
@@ -202,8 +206,11 @@ void SharedMapServer::runMerging() {
       times_.merge_s = seconds;
       times_.merge_error = error;
     }
+    failures = error.empty() ? 0 : std::min(failures + 1, 6);
     const int threads = shared_.params().merging.threads;
-    pause = std::max(params_.merge_interval, seconds * (threads / params_.max_load - 1.0));
+    // What failed by its own is tried again, less and less often.
+    pause = std::max(std::ldexp(params_.merge_interval, failures),
+                     seconds * (threads / params_.max_load - 1.0));
   }
 }
 

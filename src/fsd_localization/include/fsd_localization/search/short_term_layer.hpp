@@ -16,7 +16,7 @@ class ShortTermLayer {
  public:
   static constexpr double kCell = 0.1;   ///< [m]
   static constexpr int kSeen = 3;        ///< returns from which on a thing is known
-  static constexpr double kKept = 20.0;  ///< [m] of way that a thing is remembered
+  static constexpr double kKept = 20.0;  ///< [m] of way that a thing is remembered, up to 5 m more
 
   /// The returns of a scan in the frame of `base`'s parent, up to `max_range` [m].
   static std::vector<hyselam::Point2> endsOf(const hyselam::LaserScan& scan,

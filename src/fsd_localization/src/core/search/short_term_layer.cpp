@@ -11,14 +11,17 @@ using hyselam::Point2;
 using hyselam::Pose2;
 
 namespace {
-constexpr double kPruneStep = 5.0;  // [m] between looks at what is old
+constexpr double kPruneStep = 5.0;  // [m] of way between looks at what is old
 
 /// Of two numbers of 32 bits.
 std::uint64_t keyOf(std::int32_t x, std::int32_t y) {
   return std::uint64_t{static_cast<std::uint32_t>(x)} << 32U | static_cast<std::uint32_t>(y);
 }
+/// Of what is farther than any map is large: the last cell but one.
 std::int32_t cellOf(double metres) {
-  return static_cast<std::int32_t>(std::floor(metres / ShortTermLayer::kCell));
+  constexpr double kFarthest = std::numeric_limits<std::int32_t>::max() - 1;
+  return static_cast<std::int32_t>(
+      std::clamp(std::floor(metres / ShortTermLayer::kCell), -kFarthest, kFarthest));
 }
 bool isReturn(const hyselam::LaserScan& scan, double r, double max_range) {
   return r >= scan.range_min && r < std::min(scan.range_max, max_range);
