@@ -76,6 +76,27 @@ TEST(DialogueStop, NoStopsARobotThatIsUnderWay) {
   EXPECT_FALSE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
 }
 
+TEST(DialogueStop, ARobotThatStandsWhereItWasSentIsNotUnderWay) {
+  Talk talk;
+  talk.at(6.0);
+  talk.say("This is the kitchen.");
+  talk.at(2.0);
+  ASSERT_TRUE(talk.dialogue.hear("Go to the kitchen.").has(DialogueAction::Kind::kGo));
+  talk.at(2.0);  // not yet on its way: it stands for ten seconds
+  talk.at(6.0);
+  EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));  // it has just come
+  talk.at(2.0);
+  ASSERT_TRUE(talk.dialogue.hear("Go to the kitchen.").has(DialogueAction::Kind::kGo));
+  talk.at(6.0);
+  talk.at(6.0);
+  EXPECT_FALSE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
+  talk.say("Turn left.");
+  EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
+  talk.say("Follow me.");
+  talk.dialogue.restore(talk.dialogue.state());
+  EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));  // it follows on
+}
+
 // ---- One utterance, one answer ----
 
 TEST(DialogueAnswer, TwoNoesAreOne) {

@@ -94,6 +94,17 @@ TEST(PlaceMan, ANameMovesUnlessThePlacesLieSideBySide) {
   EXPECT_EQ(other.find("kitchen"), Ids{2});
 }
 
+TEST(PlaceMan, ANameTakesNoneOfAnotherLanguageFromOtherPlaces) {
+  PlaceMan man = twoRooms();
+  man.confirm(1, {"toilet"});
+  EXPECT_EQ(man.find("casa de banho"), Ids{1});
+  EXPECT_TRUE(man.confirm(2, {"casa de banho"}).empty());
+  EXPECT_EQ(hyselam_topo::namesOf(*man.map().findPlace(1)), Names{"toilet"});
+  EXPECT_EQ(man.forgetName("casa de banho"), Ids{2});
+  EXPECT_EQ(hyselam_topo::namesOf(*man.map().findPlace(1)), Names{"toilet"});
+  EXPECT_EQ(man.forgetName("casa de banho"), Ids{1}) << "the only one of this kind";
+}
+
 TEST(PlaceMan, NamesAndWallsSurviveANewSegmentation) {
   PlaceMan man = twoRooms();
   man.confirm(1, {"kitchen"});

@@ -344,6 +344,9 @@ ObjectReply FillMap::setProperties(const ObjectStatement& statement, const std::
 void FillMap::setRobotPlace(const std::string& name) {
   if (name != robot_place_) last_place_ = 0;
   robot_place_ = name;
+  if (name.empty()) return;  // a doorway, or a place without a name
+  if (name != last_named_place_) just_came_ = !last_named_place_.empty();
+  last_named_place_ = name;
 }
 
 void FillMap::resetContext() {
@@ -351,6 +354,7 @@ void FillMap::resetContext() {
   landmarks_told_.clear();
   last_added_.clear();
   last_landmark_ = last_place_ = 0;
+  just_came_ = false;
   last_kind_.clear();
   last_statement_.reset();
   last_question_.reset();

@@ -61,8 +61,7 @@ FillMap::Question FillMap::interpretLandmark(const ObjectStatement& statement,
     }
     const bool is_elsewhere = found.size() == 1 && map_.placeOf(found.front()) != 0 &&
                               map_.placeOf(found.front()) != findPlace(robot_place_);
-    const bool just_came = last_place_ == 0 && !robot_place_.empty();
-    if (!stated && just_came && is_elsewhere && landmark.reference.empty() &&
+    if (!stated && just_came_ && last_place_ == 0 && is_elsewhere && landmark.reference.empty() &&
         landmark.chosen.empty()) {
       found.clear();  // "on the table", said in the kitchen: not that in the office
     }
@@ -277,6 +276,7 @@ ObjectReply FillMap::applyMeaning(const ObjectStatement& statement, StatementMea
   if (!meaning.room_name.empty() && target.room == 0) {
     target.room = map_.addPlace(meaning.room_name);
   }
+  just_came_ = false;
   const std::vector<Id> objects_before = last_objects_;
   last_objects_.clear();
   std::vector<Id> told[2];  // indefinite, definite

@@ -11,6 +11,9 @@
 namespace hyselam_topo {
 namespace {
 
+/// A robot that has not moved for so long stands [s].
+constexpr double kStands = 3.0;
+
 std::vector<Phrases> shippedPhrases() {
   std::vector<Phrases> all;
   for (const std::string& language : Phrases::shippedLanguages()) {
@@ -118,7 +121,12 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   Reply out = reply();
   const bool first = !places_.hasMap();
   const KnownBefore known = knownNow();
+  const std::vector<bool> doors_before = places_.wallsOnDoors();
   const CarryOverReport report = places_.setMap(fresh);
+  if (places_.wallsOnDoors() != doors_before) {
+    // What stood in a door that is no longer found is drawn as a wall again.
+    out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
+  }
   topo_state_.mapChanged(places_.map());
   forgetLost(report.lost, known);
   // What there is to ask of the place is asked with the next pose: the names may change now.
@@ -146,6 +154,7 @@ void Dialogue::setGrid(hyselam::OccupancyGrid grid) {
 Reply Dialogue::setPose(double stamp, const hyselam::Pose2& pose) {
   Reply out = reply();
   if (topo_state_.update(places_.map(), stamp, pose)) talk_.entered = true;
+  seeWhetherArrived();
   if (!talk_.entered) return out;
   talk_.entered = false;
   enterPlace(out);
@@ -155,6 +164,18 @@ Reply Dialogue::setPose(double stamp, const hyselam::Pose2& pose) {
 Reply Dialogue::losePose(double stamp) {
   topo_state_.lost(stamp);
   return reply();
+}
+
+void Dialogue::seeWhetherArrived() {
+  const hyselam::Pose2& pose = robot().pose;
+  const bool moved = std::hypot(pose.x - talk_.stood_at.x, pose.y - talk_.stood_at.y) > 0.05 ||
+                     std::abs(hyselam::normalizeAngle(pose.theta - talk_.stood_at.theta)) > 0.05;
+  if (moved || robot().stamp < talk_.stands_since) {
+    talk_.stood_at = pose;
+    talk_.stands_since = robot().stamp;
+  }
+  const bool there = talk_.under_way && *talk_.under_way != 0 && *talk_.under_way == robot().place;
+  if (there && robot().stamp - talk_.stands_since >= kStands) talk_.under_way.reset();
 }
 
 void Dialogue::enterPlace(Reply& out) {
@@ -245,7 +266,9 @@ void Dialogue::restore(DialogueState state) {
   heading_ = state.heading;
   position_ = state.position;
   told_at_ = places_.map().findPlace(state.told_at) == nullptr ? 0 : state.told_at;
+  const std::optional<Id> under_way = talk_.under_way;  // it drives on
   talk_ = {};
+  talk_.under_way = under_way;
   topo_state_.mapChanged(places_.map());
 }
 

@@ -147,6 +147,7 @@ void Dialogue::answerYes(const Question& asked, Turn& turn) {
     case Kind::kWall:
       places_.addWall(asked.wall);
       out.sentences.push_back(sayWall(asked.wall, true));
+      haltAtDoor(asked.wall, out);
       out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
       out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
       break;

@@ -109,6 +109,7 @@ void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
                        : *side == Side::kRight ? -0.5 * hyselam::kPi
                                                : hyselam::kPi;
   turn.reply.actions.push_back({DialogueAction::Kind::kTurn, {}, angle});
+  talk_.under_way = robot().place;
   turn.reply.sentences.push_back(phrases().say("turning", {{"side", phrases().side(*side)}}));
 }
 

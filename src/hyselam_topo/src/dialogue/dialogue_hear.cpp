@@ -372,7 +372,9 @@ bool Dialogue::forgetsKnown(const Utterance& u, Turn& turn) {
   std::set<std::string> same, near;
   for (const std::string& name : knownNames()) {
     if (places_.sameName(name, word)) same.insert(name);
-    if (folded.size() >= kMinSlip && hyselam::isOneEditApart(folded, hyselam::utf8Fold(name))) {
+    // Where others listen it may be a thing: "forget ball" is not of the hall.
+    if (!turn.options.forward_unknown && folded.size() >= kMinSlip &&
+        hyselam::isOneEditApart(folded, hyselam::utf8Fold(name))) {
       near.insert(name);
     }
   }

@@ -177,6 +177,7 @@ void Dialogue::restoreKnown(const KnownBefore& before, Reply& out) {
     if (isIn(places_.walls(), wall)) continue;
     places_.addWall(wall);
     told.push_back(sayWall(wall, true));
+    haltAtDoor(wall, out);
   }
   if (told.size() > before_walls) {
     out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});

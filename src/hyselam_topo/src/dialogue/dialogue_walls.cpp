@@ -156,11 +156,18 @@ std::string Dialogue::sayWall(const DescribedWall& wall, bool is_there) const {
   return p.say(is_there ? "wall_added" : "wall_forgotten", {{"wall", p.wall(wall.kind)}});
 }
 
+void Dialogue::haltAtDoor(const DescribedWall& wall, Reply& out) {
+  if (!talk_.under_way || places_.doorShutBy(wall) == nullptr) return;
+  halt(out);
+  out.sentences.push_back(phrases().say("stopped"));
+}
+
 Reply Dialogue::addWall(const DescribedWall& wall) {
   Reply out = reply();
   const Change change(this);
   places_.addWall(wall);
   out.sentences.push_back(sayWall(wall, true));
+  haltAtDoor(wall, out);
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;

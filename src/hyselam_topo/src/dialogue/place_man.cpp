@@ -114,11 +114,12 @@ CarryOverReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
 
 // ---- Names ----
 
-void PlaceMan::dropWord(Place* place, const std::string& name) {
+void PlaceMan::dropWord(Place* place, const std::string& name, bool of_kind) {
   auto& words = place->words;
-  words.erase(std::remove_if(words.begin(), words.end(),
-                             [&](const PlaceTerm& word) { return sameName(word.text, name); }),
-              words.end());
+  const auto is_meant = [&](const PlaceTerm& word) {
+    return of_kind ? sameName(word.text, name) : sameSpelling(word.text, name);
+  };
+  words.erase(std::remove_if(words.begin(), words.end(), is_meant), words.end());
 }
 
 std::vector<Id> PlaceMan::confirm(Id id, const std::vector<std::string>& names) {
@@ -132,10 +133,10 @@ std::vector<Id> PlaceMan::confirm(Id id, const std::vector<std::string>& names) 
     for (const std::string& name : names) {
       const bool had = std::any_of(
           other.words.begin(), other.words.end(),
-          [&](const PlaceTerm& word) { return word.confirmed && sameName(word.text, name); });
+          [&](const PlaceTerm& word) { return word.confirmed && sameSpelling(word.text, name); });
       if (had && beside) continue;
       if (had) losers.push_back(other.id);
-      dropWord(&other, name);
+      dropWord(&other, name, false);
     }
   }
   auto& words = place.words;
@@ -171,7 +172,7 @@ bool PlaceMan::confirmGuesses(Id id) {
 void PlaceMan::reject(Id id, const std::vector<std::string>& names) {
   Place& place = at(id);
   for (const std::string& name : names) {
-    dropWord(&place, name);
+    dropWord(&place, name, true);
     if (!isRejected(id, name)) state_.rejected.emplace_back(id, name);
   }
 }
@@ -223,10 +224,17 @@ bool PlaceMan::forget(Id id) {
 }
 
 std::vector<Id> PlaceMan::forgetName(const std::string& name) {
+  // "Forget the bathroom" means the one that is called so, and where none is, a "casa de banho".
+  const auto hasSpelling = [&](const Place& place) {
+    return std::any_of(place.words.begin(), place.words.end(),
+                       [&](const PlaceTerm& word) { return sameSpelling(word.text, name); });
+  };
+  const auto& all = state_.map.places;
+  const bool of_kind = std::none_of(all.begin(), all.end(), hasSpelling);
   std::vector<Id> had;
   for (Place& place : state_.map.places) {
     const std::size_t before = place.words.size();
-    dropWord(&place, name);
+    dropWord(&place, name, of_kind);
     if (place.words.size() != before) had.push_back(place.id);
   }
   return had;
@@ -270,6 +278,13 @@ std::vector<Id> PlaceMan::find(const std::string& name) const {
     if (!found.empty()) return found;
   }
   return {};
+}
+
+bool PlaceMan::sameSpelling(const std::string& a, const std::string& b) const {
+  NameKey first = names_.key(a), second = names_.key(b);
+  first.kind.clear();
+  second.kind.clear();
+  return a == b || compare(first, second) != SameName::kNo;
 }
 
 bool PlaceMan::sameName(const std::string& a, const std::string& b) const {
@@ -428,6 +443,12 @@ const Door* PlaceMan::doorShutBy(const DescribedWall& wall) const {
     }
   }
   return nullptr;
+}
+
+std::vector<bool> PlaceMan::wallsOnDoors() const {
+  std::vector<bool> on_doors;
+  for (const DescribedWall& wall : state_.walls) on_doors.push_back(doorShutBy(wall) != nullptr);
+  return on_doors;
 }
 
 std::vector<Id> PlaceMan::shutDoors() const {

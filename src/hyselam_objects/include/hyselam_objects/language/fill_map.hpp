@@ -230,6 +230,8 @@ class FillMap {
   ObjectMap& map_;
   std::string language_;  ///< of the last sentence
   std::string robot_place_;
+  std::string last_named_place_;  ///< of the robot
+  bool just_came_ = false;        ///< it has entered another place, and nothing was told since
   double stamp_ = 0.0;
   std::vector<Id> last_objects_;    ///< mentioned last
   std::vector<Id> landmarks_told_;  ///< of the same sentence: "it" does not mean them

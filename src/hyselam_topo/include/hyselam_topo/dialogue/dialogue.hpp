@@ -493,7 +493,11 @@ class Dialogue {
   std::string barrierToUndo() const;
   /// The map as it was before, without what statements have told.
   void restoreKnown(const KnownBefore& before, Reply& reply);
-  /// What is in no DialogueState: nothing of it outlives restore().
+  /// A robot that stands in the place it was sent to is not under way any more.
+  void seeWhetherArrived();
+  /// A robot that drives stops when a door is shut, which may be on its way.
+  void haltAtDoor(const DescribedWall& wall, Reply& out);
+  /// What is in no DialogueState: nothing of it outlives restore(), but that it drives.
   struct Talk {
     bool entered = false;  ///< the robot's place or the map has changed; not processed yet
     Id asked = 0;          ///< the place for which a question was considered since entering it
@@ -501,6 +505,8 @@ class Dialogue {
     Uncertainty unsure;  ///< of match
     QuestionKeeper questions;
     std::optional<Id> under_way;         ///< the place that it drives to; 0: it follows a person
+    hyselam::Pose2 stood_at;             ///< where it was when it moved last
+    double stands_since = 0.0;           ///< [s]
     std::set<std::string> accepted;      ///< names that a person has agreed to (NameKey::full)
     std::vector<std::string> last_said;  ///< for "what?"
     bool described_last = false;         ///< the last utterance told of places: "it" is one of them

@@ -115,6 +115,8 @@ class PlaceMan {
   /// The doors that a virtual wall lies across: the places on both sides stay as they are, but no
   /// way leads through.
   std::vector<Id> shutDoors() const;
+  /// Of each of walls() whether it shuts a door.
+  std::vector<bool> wallsOnDoors() const;
   /// The door that a wall shuts; nullptr: none of the map.
   const Door* doorShutBy(const DescribedWall& wall) const;
   /// A copy of the grid map with all walls of glass and virtual walls drawn into it, but those that
@@ -125,7 +127,9 @@ class PlaceMan {
   Place& at(Id place);
   void drawVirtualPlaces();
   void putWalls();
-  void dropWord(Place* place, const std::string& name);
+  /// sameName() without the kinds of places in two languages: what takes a name from a place.
+  bool sameSpelling(const std::string& a, const std::string& b) const;
+  void dropWord(Place* place, const std::string& name, bool of_kind);
 
   PlaceNames names_;
   State state_;
