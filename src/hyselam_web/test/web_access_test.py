@@ -146,6 +146,11 @@ class RequestsTest(unittest.TestCase):
         self.assertEqual(requests.parse('{"do":"name","place":4,"names":[]}'), ("name", {"place": 4, "names": []}, None))
         self.assertEqual(requests.parse('{"do":"pose","x":1,"y":-2.5,"yaw":0}'), ("pose", {"x": 1.0, "y": -2.5, "yaw": 0.0}, None))
 
+    def test_nothing_that_comes_with_a_stop_keeps_it_from_stopping(self):
+        for more in ('"language":"xx"', '"language":"fr"', '"language":null', '"language":1', '"language":["pt"]', '"speed":0', '"language":"xx","speed":null'):
+            self.assertEqual(requests.parse('{"do":"stop","n":3,%s}' % more), ("stop", {}, 3), more)
+        self.assertEqual(requests.parse('{"do":"stop","language":"pt","speed":0}'), ("stop", {"language": "pt"}, None))
+
     def test_a_refusal_carries_the_number_of_its_request(self):
         for text, number in (('{"do":"say","n":4}', 4), ('{"do":"dance","n":5}', 5), ('{"n":6}', 6), ('{"do":"say","n":7,"text":"hi","path":"/"}', 7),
                              ('{"do":"dance","n":"8"}', None), ('{"do":"dance","n":true}', None), ('{"do":"dance","n":%d}' % 2 ** 60, None), ("[9]", None)):

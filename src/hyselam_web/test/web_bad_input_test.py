@@ -73,6 +73,12 @@ class FramesTest(Case):
         wait_until(lambda: page.answers.get(None), "a refusal")
         self.assertEqual((page.answers[None][0]["error"], self.robot.stops), ("malformed", 0))
 
+    def test_a_stop_with_fields_that_do_not_fit_stops(self):
+        page = self.open()
+        for count, more in enumerate(({"language": "xx"}, {"language": None}, {"language": 1}, {"path": "/"}), 1):
+            self.assertEqual(page.ask("stop", **more)["done"], "stop", more)
+            self.assertEqual((self.robot.cancels, self.robot.stop_language), (count, ""), more)
+
     def test_a_huge_message_ends_its_page_only(self):
         page = self.open()
         page.send(json.dumps({"do": "say", "text": "x" * (limits.MAX_MESSAGE_BYTES + 1000)}))

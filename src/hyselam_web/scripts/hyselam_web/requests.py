@@ -80,14 +80,17 @@ def parse(text):
     if name not in REQUESTS:
         raise Refused("unknown", "there is no such request", number)
     kinds, fields = REQUESTS[name][2], {}
+    is_stop = name == "stop"  # nothing that comes with it keeps the robot from stopping: what does not fit is left out
     for field, kind in kinds.items():
         if kind.endswith("?") and field not in message:
             continue
         kind = kind.rstrip("?")
         value = checked(kind, message.pop(field, None))
+        if value is None and is_stop:
+            continue
         if value is None:
             raise Refused("invalid", f"'{field}' is missing, or no {kind}, or too long", number)
         fields[field] = value
-    if message:
+    if message and not is_stop:
         raise Refused("invalid", "there are fields that do not belong to it", number)
     return name, fields, number
