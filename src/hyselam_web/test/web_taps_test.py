@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """What is done by tapping can be taken back by tapping, is asked about where it takes something away, and is answered in the language of the
 page; what is shown says whether it is now; names lie in their rooms."""
+import asyncio
 import os
 import sys
 import tempfile
+import types
 
 sys.dont_write_bytecode = True
 from devtools import DESKTOP, PHONE
 from fake_robot import wait_until
 from hyselam_web import recording, sights
+from hyselam_web.requests import Refused
+from hyselam_web.robot import Robot
 from page_case import PageCase
 
 # A browser whose microphone says what the test wants.
@@ -79,6 +83,66 @@ class TapsTest(PageCase):
             self.toast(tab, "The wall is there no more.")
         self.assertEqual(tab.errors, [])
 
+    def test_a_wall_across_a_door_shuts_it_where_the_robot_says_so(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        number, width = next((n, d["w"]) for n, d in self.robot.world.table("doors").items() if d["r"])
+        shuts = f"""((length) => import("/js/building.js").then(({{shutBy}}) => {{
+            const door = hyselam.model.tables.doors[{number}], [dx, dy] = [-door.ny * length / 2, door.nx * length / 2];
+            hyselam.model.tables.told = {{1: {{ax: door.x - dx, ay: door.y - dy, bx: door.x + dx, by: door.y + dy, v: true}}}};
+            return shutBy(hyselam.model, door) !== null; }}))"""
+        for more, expected in ((-0.5, False), (-0.32, False), (-0.28, True), (0.0, True), (0.58, True), (0.62, False)):
+            self.assertEqual(tab.eval(f"{shuts}({width + more})"), expected, more)
+
+    def test_the_sides_of_a_wall_are_looked_for_as_far_as_the_robot_does(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        left, low, right, _ = tab.eval("(({o}) => { const x = o.filter((_, i) => i % 2 === 0), y = o.filter((_, i) => i % 2); "
+                                       "return [Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)]; })(hyselam.model.place(1))")
+        x = (left + right) / 2
+        for off, expected in ((0.4, ["1"]), (0.7, ["1"]), (0.9, [])):  # outside of the building, along its wall
+            sides = tab.eval(f'import("/js/building.js").then(({{sidesOf}}) => sidesOf(hyselam.model, {{ax: {x - 0.5}, ay: {low - off}, bx: {x + 0.5}, by: {low - off}}}))')
+            self.assertEqual(sides, expected, off)
+
+    def test_a_wall_of_any_length_can_be_taken_away(self):
+        robot, called = Robot.__new__(Robot), []  # nothing of ROS begins
+
+        async def call(service, *_):
+            called.append(service)
+            return types.SimpleNamespace(success=True, message="")
+        robot._call = call
+        loop = asyncio.new_event_loop()
+        self.addCleanup(loop.close)
+        for length in (0.1, 60.0):
+            wall = {"ax": 1.0, "ay": 2.0, "bx": 1.0 + length, "by": 2.0}
+            with self.assertRaises(Refused):
+                loop.run_until_complete(robot.act("wall", wall, "drive"))
+            self.assertEqual(called, [])
+            loop.run_until_complete(robot.act("unwall", dict(wall, virtual=False), "drive"))
+            self.assertEqual(called, ["remove_wall"])
+            called.clear()
+
+    def test_names_and_walls_are_told_with_the_language_of_the_page(self):
+        self.serve()
+        for language in ("pt-PT", "en-US"):
+            tab = self.open_map(PHONE, language=language)
+            self.card_of(tab, 1)
+            tab.click("#card [data-key=name_it], #card [data-key=rename_it]")
+            tab.wait("document.querySelector('#new-name')", "the form")
+            tab.eval("document.querySelector('#new-name').select()")
+            tab.type("arquivo" if language == "pt-PT" else "archive")
+            tab.key("Enter")
+            wait_until(lambda: self.asked("name"), "the name")
+            tab.click("#tab-robot")
+            tab.click("#do-draw_wall")
+            tab.wait("hyselam.map.tool?.kind === 'wall'", "the tool")
+            x, y = tab.eval("hyselam.model.place(1).c")
+            tab.drag(self.at(tab, x - 1.5, y + 1), self.at(tab, x + 1.5, y + 1))
+            wait_until(lambda: self.asked("wall"), "the wall")
+            said = [(name, fields.get("language")) for name, fields, _ in self.robot.asked if name in ("name", "wall")]
+            self.assertEqual(said, [("name", language[:2]), ("wall", language[:2])])
+            self.robot.asked.clear()
+
     def test_next_to_tells_doors_from_walls(self):
         self.serve()
         tab = self.open_map(PHONE)
@@ -118,6 +182,19 @@ class TapsTest(PageCase):
         tab.click("#card [data-key=sure]")
         wait_until(lambda: self.asked("name") == [{"place": 1, "names": ["Library"]}], "the name")
         self.assertEqual(tab.errors, [])
+
+    def test_a_name_in_use_is_noticed_with_articles_accents_and_the_word_room(self):
+        self.serve()
+        self.robot.names[12] = [("kitchen", True), ("o escritório", True), ("room 5", True), ("A", True)]
+        self.robot.show_places()
+        tab = self.open_map(PHONE)
+        for name in ("Kitchen", "the kitchen", "escritorio", "Escritório", "os escritório", "5", "sala 5", "the room 5", "room A", "a"):
+            self.assertEqual(tab.eval(f"hyselam.model.holderOf({name!r}, 1)"), "12", name)
+        for name in ("kitchenette", "cozinha", "room 55", "lab 5", "o 5", "room", "the", "kitchen 5"):
+            self.assertIsNone(tab.eval(f"hyselam.model.holderOf({name!r}, 1)"), name)
+        self.robot.names[12] = [("cozinha", True)]
+        self.robot.later(self.robot.show_places)
+        tab.wait("hyselam.model.holderOf('a cozinha', 1) === '12'", "the article of Portuguese")
 
     def test_the_robot_is_moved_on_the_map_only_after_a_yes(self):
         self.serve()
@@ -183,6 +260,7 @@ class TapsTest(PageCase):
         for size, name in ((PHONE, "phone"), (DESKTOP, "desktop")):
             tab = self.open_map(size)
             tab.eval("hyselam.map.zoom(1.6)")
+            tab.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")  # where they lie is of this zoom
             tab.wait("[...hyselam.map.names.shown.values()].filter((s) => s.kind === 'name').length > 4", "names")
             self.shot(tab, f"taps_names_{name}")
             across = tab.eval("""[...hyselam.map.names.shown].filter(([id, s]) => s.kind === 'name' && !hyselam.map.names.isWithin({place: hyselam.model.place(id)}, s.box)
@@ -221,6 +299,23 @@ class TapsTest(PageCase):
         tab.eval("hyselam.places.show('object', '3')")  # a name that would be another sentence is never said
         tab.wait("document.querySelector('#card-title')?.textContent.startsWith('pen. ')", "its card")
         self.assertFalse(tab.eval("Boolean(document.querySelector('#card [data-key=forget_thing]'))"))
+
+    def test_a_thing_is_forgotten_by_its_kind_only_where_that_is_one_thing_and_one_sentence(self):
+        self.serve()
+        kinds = {"1": "ladder", "2": "pen", "3": "Pen", "4": "cup and follow me", "5": "copo e siga-me", "6": "cup then stop", "7": "copo ou prato",
+                 "8": "copo depois pare", "9": "cup, follow me", "10": "big old red metal box", "11": "sand box", "12": "first aid kit box", "13": "cup-and-go", "14": "cup or plate", "15": "copo então pare"}
+        self.robot.world.set_table("objects", {number: {"k": kind, "p": [], "at": ["in", "SS05"]} for number, kind in kinds.items()})
+        tab = self.open_map(PHONE)
+
+        def may_be_forgotten(number):
+            tab.eval(f"hyselam.places.show('object', '{number}')")
+            tab.wait(f"document.querySelector('#card-title')?.textContent === {kinds[number]!r}", "its card")
+            return tab.eval("Boolean(document.querySelector('#card [data-key=forget_thing]'))")
+        self.assertEqual([kinds[number] for number in kinds if may_be_forgotten(number)], ["ladder", "sand box", "first aid kit box"])
+        # The other pen has gone: the card that is open says so.
+        self.assertFalse(may_be_forgotten("2"))
+        self.robot.later(lambda: self.robot.world.set_table("objects", {"2": {"k": "pen", "p": [], "at": ["in", "SS05"]}}))
+        tab.wait("document.querySelector('#card [data-key=forget_thing]')", "the button")
 
     def test_findings_come_with_what_to_do_and_the_dot_shows_them(self):
         self.serve()

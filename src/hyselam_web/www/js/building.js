@@ -2,6 +2,7 @@
 import {inside} from "./model.js";
 
 const ON_DOOR = 0.3; // [m] from the middle of a wall to that of the door it shuts
+const BESIDE = [0.3, 0.5, 0.8]; // [m] from the middle of a wall: beyond the wall itself, and what is drawn of it
 const THICKEST = 0.45; // [m] of a wall between two places
 const SHARED = 0.75; // [m] of it that both share, at least
 const STEP = 0.25; // [m] between two looks along an outline
@@ -20,7 +21,7 @@ export function shutBy(model, door) {
     const [x, y] = middleOf(wall);
     const length = lengthOf(wall);
     const across = Math.abs((wall.bx - wall.ax) * door.nx + (wall.by - wall.ay) * door.ny);
-    return wall.v && door.r && Math.hypot(x - door.x, y - door.y) <= ON_DOOR && across <= 0.5 * length && Math.abs(length - door.w) <= 2 * ON_DOOR;
+    return wall.v && door.r && Math.hypot(x - door.x, y - door.y) <= ON_DOOR && across <= 0.5 * length && length >= door.w - ON_DOOR && length <= door.w + 2 * ON_DOOR;
   };
   return Object.values(model.tables.told).find(shuts) ?? null;
 }
@@ -36,8 +37,8 @@ export function sidesOf(model, wall) {
   const [x, y] = middleOf(wall);
   const length = Math.max(lengthOf(wall), 0.01);
   const [nx, ny] = [(wall.ay - wall.by) / length, (wall.bx - wall.ax) / length];
-  const beside = (far) => model.placeAt(x + far * nx, y + far * ny);
-  return [1, -1].map((sign) => beside(0.3 * sign) ?? beside(0.6 * sign)).filter((id) => id !== null);
+  const beside = (sign) => BESIDE.map((far) => model.placeAt(x + sign * far * nx, y + sign * far * ny)).find((id) => id !== null);
+  return [1, -1].map(beside).filter((id) => id !== undefined);
 }
 
 function distanceTo(outline, x, y) {

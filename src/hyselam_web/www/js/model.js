@@ -1,5 +1,14 @@
 // What the page knows, as the server tells it: values, tables, the talk, and the tiles of the map.
 import {t} from "./i18n.js";
+import {folded} from "./wording.js";
+
+const ARTICLE = /^(?:(?:the|os|as) |[oa] (?=\p{L}{3}))/u; // "A 5" is a number of a room
+const ROOM = /^(?:room|sala) (?=\S*\d|\S{1,2}$)/u; // before its number or letter
+
+// A name without what some say or write and others do not: "the kitchen", "room 5", accents.
+function bare(name) {
+  return folded(name).trim().replace(/\s+/g, " ").replace(ARTICLE, "").replace(ROOM, "");
+}
 
 export class Model {
   constructor() {
@@ -95,9 +104,9 @@ export class Model {
 
   // The place where a person has confirmed a name, but for one, and for those beside that, which may share it; null: none.
   holderOf(name, but) {
-    const wanted = name.trim().toLowerCase();
+    const wanted = bare(name);
     const beside = [String(but), ...this.neighbours(but).map(String)];
-    return Object.keys(this.tables.places).find((id) => !beside.includes(id) && this.confirmedNames(id).some((each) => each.toLowerCase() === wanted)) ?? null;
+    return Object.keys(this.tables.places).find((id) => !beside.includes(id) && this.confirmedNames(id).some((each) => bare(each) === wanted)) ?? null;
   }
 
   neighbours(id) {

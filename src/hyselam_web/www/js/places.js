@@ -2,10 +2,18 @@
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
 import {reasonOf} from "./talk.js";
-import {called, meant, plain} from "./wording.js";
+import {called, folded, meant, plain} from "./wording.js";
 import {behind, plainWalls, shutBy, sidesOf} from "./building.js";
 
-const ONE_THING = /^[\p{L}\p{N}' -]{1,60}$/u; // a name that can be put into a sentence without becoming another one
+const ONE_THING = /^[\p{L}\p{N}' -]{1,60}$/u; // a name that can be put into a sentence without becoming another one,
+const JOINING = ["and", "then", "or", "but", "also", "plus", "e", "depois", "ou", "mas", "entao", "tambem", "nem"]; // unless it has one of these,
+const MAX_WORDS = 4; // or more words
+
+// "pen", but neither "pen. Follow me" nor "pen and follow me".
+function isOneThing(name) {
+  const words = folded(name).split(/[\s-]+/).filter(Boolean);
+  return ONE_THING.test(name) && words.length > 0 && words.length <= MAX_WORDS && !words.some((word) => JOINING.includes(word));
+}
 
 export class Places {
   // actions: showOnMap(id), say(text), openTalk()
@@ -176,7 +184,9 @@ export class Places {
     const place = each.c ? this.model.placeAt(...each.c) : null;
     const where = place ? this.model.labelOf(place) : each.at ? plain(each.at.join(" ")) : "";
     const about = [where, ...each.p, t(each.c ? "thing_seen" : "thing_told")].filter(Boolean).join(" · ");
-    const forget = this.may("talk") && ONE_THING.test(each.k) ? button(t("forget_thing"), () => {
+    // The robot finds it by the talk, and could take another one of the kind.
+    const alike = Object.values(this.model.tables.objects).filter((other) => folded(other.k) === folded(each.k));
+    const forget = this.may("talk") && isOneThing(each.k) && alike.length === 1 ? button(t("forget_thing"), () => {
       this.close();
       this.actions.openTalk(); // the answer comes there
       this.actions.say(t("forget_this", {name: each.k}));

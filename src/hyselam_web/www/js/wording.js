@@ -54,7 +54,7 @@ export function told(sentence, model) {
   });
 }
 
-function folded(word) {
+export function folded(word) {
   return word.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 }
 
