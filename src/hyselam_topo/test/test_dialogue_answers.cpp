@@ -92,9 +92,6 @@ TEST(DialogueStop, ARobotThatStandsWhereItWasSentIsNotUnderWay) {
   EXPECT_FALSE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
   talk.say("Turn left.");
   EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
-  talk.say("Follow me.");
-  talk.dialogue.restore(talk.dialogue.state());
-  EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));  // it follows on
 }
 
 // ---- One utterance, one answer ----

@@ -266,9 +266,7 @@ void Dialogue::restore(DialogueState state) {
   heading_ = state.heading;
   position_ = state.position;
   told_at_ = places_.map().findPlace(state.told_at) == nullptr ? 0 : state.told_at;
-  const std::optional<Id> under_way = talk_.under_way;  // it drives on
   talk_ = {};
-  talk_.under_way = under_way;
   topo_state_.mapChanged(places_.map());
 }
 

@@ -497,7 +497,7 @@ class Dialogue {
   void seeWhetherArrived();
   /// A robot that drives stops when a door is shut, which may be on its way.
   void haltAtDoor(const DescribedWall& wall, Reply& out);
-  /// What is in no DialogueState: nothing of it outlives restore(), but that it drives.
+  /// What is in no DialogueState: nothing of it outlives restore().
   struct Talk {
     bool entered = false;  ///< the robot's place or the map has changed; not processed yet
     Id asked = 0;          ///< the place for which a question was considered since entering it
