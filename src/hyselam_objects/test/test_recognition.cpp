@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../bench/model_scenes.hpp"
+#include "../src/pcl/model_evidence.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
@@ -83,6 +84,43 @@ TEST(ObjectRecognition, RefusesViewsThatCannotBeLearned) {
   EXPECT_TRUE(describeView({}, {}).empty());
   EXPECT_FALSE(recognizeObject({}, twoBoxes()));
   EXPECT_FALSE(recognizeObject(view({0.2f, 0.1f, 0.3f}, 0, 0.0, 1), {}));
+}
+
+// Of a closed box the camera sees the front; its own back is hidden by it, and tells nothing.
+TEST(ObjectRecognition, HidesTheBackOfAModelByItsFront) {
+  constexpr float kFocal = 525.0f, kFront = 0.8f, kBack = 0.95f, kHalf = 0.1f, kWall = 1.5f;
+  OrganizedCloud scene;
+  scene.width = 640;
+  scene.height = 480;
+  for (int v = 0; v < 480; ++v) {
+    for (int u = 0; u < 640; ++u) {
+      const float x = (static_cast<float>(u) - 319.5f) / kFocal;
+      const float y = (static_cast<float>(v) - 239.5f) / kFocal;
+      const bool on_box = std::abs(x) * kFront < kHalf && std::abs(y) * kFront < kHalf;
+      const float z = on_box ? kFront : kWall;
+      scene.points.emplace_back(x * z, y * z, z);
+    }
+  }
+  std::vector<Point> box;
+  constexpr int kSteps = 50;  // of 4 mm
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int k = 0; k <= kSteps; ++k) {
+      const auto at = [](int n) { return kHalf * (2.0f * static_cast<float>(n) / kSteps - 1.0f); };
+      const float depth = kFront + (kBack - kFront) * static_cast<float>(k) / kSteps;
+      box.emplace_back(at(i), at(k), kFront);
+      box.emplace_back(at(i), at(k), kBack);
+      for (const float side : {-kHalf, kHalf}) {
+        box.emplace_back(side, at(i), depth);
+        box.emplace_back(at(i), side, depth);
+      }
+    }
+  }
+  const SceneView view(scene);
+  ASSERT_TRUE(view.isOne());
+  const ModelEvidence evidence = view.judge(box, 0.01);
+  EXPECT_GT(evidence.visible, 0.85);  // of a side the first 1.5 cm are taken for its front
+  EXPECT_GT(evidence.coverage, 0.95);
+  EXPECT_LT(evidence.flush, 0.05);
 }
 
 TEST(ObjectRecognition, FindsTheMilkCartonInTheScene) {

@@ -232,6 +232,43 @@ TEST(SegmentCloud, ReadsCloudsOfOneRowAsTheImageThatTheyWere) {
   }
 }
 
+/// An image of 640x480 of a wavy wall; a part was not measured.
+OrganizedCloud kinectImage() {
+  OrganizedCloud cloud;
+  cloud.width = 640;
+  cloud.height = 480;
+  for (int v = 0; v < cloud.height; ++v) {
+    for (int u = 0; u < cloud.width; ++u) {
+      float z = 1.5f + 0.2f * std::sin(0.02f * static_cast<float>(u + 2 * v));
+      if ((u / 40 + v / 40) % 5 == 0) z = std::numeric_limits<float>::quiet_NaN();
+      cloud.points.emplace_back((static_cast<float>(u) - 310.5f) * z / 520.0f,
+                                (static_cast<float>(v) - 242.25f) * z / 530.0f, z);
+    }
+  }
+  return cloud;
+}
+
+TEST(OrganizeCloud, FindsTheCameraOfAnImage) {
+  OrganizedCloud cloud = kinectImage();
+  for (const bool with_rows : {true, false}) {
+    if (!with_rows) {  // 307200 points: ten times 30720, of columns that are 640
+      cloud.width = static_cast<int>(cloud.size());
+      cloud.height = 1;
+    }
+    const std::optional<OrganizedView> view = organizeCloud(cloud);
+    ASSERT_TRUE(view) << with_rows;
+    EXPECT_NEAR(view->camera.focal_x, 520.0, 0.5);
+    EXPECT_NEAR(view->camera.focal_y, 530.0, 0.5);
+    EXPECT_NEAR(view->camera.center_x, 310.5, 0.3);
+    EXPECT_NEAR(view->camera.center_y, 242.25, 0.3);
+    EXPECT_EQ(view->camera.width, 640);
+    EXPECT_EQ(view->camera.height, 480);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      ASSERT_EQ(view->pixel_of[i], cloud.isValid(i) ? static_cast<std::int32_t>(i) : -1);
+    }
+  }
+}
+
 TEST(SegmentCloud, ReadsThinnedCloudsOfOneRow) {
   const CloudFile file = pile();
   CloudFile row;

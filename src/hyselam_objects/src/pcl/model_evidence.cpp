@@ -91,6 +91,18 @@ float SceneView::cellSize(float depth) const {
   return std::max(2.0f, kCell * static_cast<float>(view_->camera.focal_x) / depth);
 }
 
+/// The pixels of a cell around `at`: what a point of the model covers, not one pixel of it.
+void SceneView::addPixels(const Pixel& at, float size, std::vector<std::int32_t>& to) const {
+  const int width = view_->cloud.width, height = view_->cloud.height;
+  const int u = static_cast<int>(std::lround(at.u)), v = static_cast<int>(std::lround(at.v));
+  const int half = static_cast<int>(0.5f * std::min(size, 100.0f));
+  for (int y = std::max(0, v - half); y <= std::min(height - 1, v + half); ++y) {
+    for (int x = std::max(0, u - half); x <= std::min(width - 1, u + half); ++x) {
+      to.push_back(static_cast<std::int32_t>(y * width + x));
+    }
+  }
+}
+
 /// Whether the scene goes on straight from `at`, where its depth is `seen`, by (u, v) pixels;
 /// nothing if it is not seen as far back.
 std::optional<bool> SceneView::goesOn(const Pixel& at, float seen, float u, float v,
@@ -106,19 +118,28 @@ ModelEvidence SceneView::judge(const std::vector<Point>& points, double toleranc
   constexpr float kThickness = 0.015f;  // of the model's near side [m]
   constexpr float kNearest = 0.05f;     // of a camera's depths [m]
   constexpr int kBeyond = 3;            // cells from a point to beyond the outline
+  constexpr float kWidest = 1e5f;       // pixels from the center that are looked at
+  std::vector<Point> placed;
+  std::vector<float> depths;
+  for (const Point& p : points) {
+    if (!(sign_ * p.z() > kNearest)) continue;
+    const Pixel at = project(sign_ * p);
+    if (!(std::abs(at.u) < kWidest && std::abs(at.v) < kWidest)) continue;
+    placed.push_back(sign_ * p);
+    depths.push_back(placed.back().z());
+  }
+  if (placed.empty()) return {};
+  // One raster for all: with a size for each depth, near and far of one ray would be far apart.
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  const float size = cellSize(*middle);
   const auto cellOf = [&](const Point& p) {
     const Pixel at = project(p);
-    const float size = cellSize(p.z());
     return Cell{static_cast<int>(std::floor(at.u / size)),
                 static_cast<int>(std::floor(at.v / size))};
   };
   NearSide model;
-  std::vector<Point> placed;
-  for (const Point& p : points) {
-    if (!(sign_ * p.z() > kNearest)) continue;
-    placed.push_back(sign_ * p);
-    model.add(cellOf(placed.back()), placed.back().z());
-  }
+  for (const Point& p : placed) model.add(cellOf(p), p.z());
   ModelEvidence out;
   int near_side = 0, covered = 0, violated = 0, outline = 0, flush = 0;
   for (const Point& p : placed) {
@@ -134,9 +155,7 @@ ModelEvidence SceneView::judge(const std::vector<Point>& points, double toleranc
       continue;
     }
     ++covered;
-    out.pixels.push_back(static_cast<std::int32_t>(std::lround(at.v)) * view_->cloud.width +
-                         static_cast<std::int32_t>(std::lround(at.u)));
-    const float size = cellSize(p.z());
+    addPixels(at, size, out.pixels);
     for (const auto& [dx, dy] :
          {Cell{kBeyond, 0}, Cell{-kBeyond, 0}, Cell{0, kBeyond}, Cell{0, -kBeyond}}) {
       if (std::isfinite(model.depthAround({cell.first + dx, cell.second + dy}))) continue;

@@ -38,6 +38,7 @@ class SceneView {
   Pixel project(const Point& p) const;
   float depthNear(const Pixel& at, float depth) const;
   float cellSize(float depth) const;
+  void addPixels(const Pixel& at, float size, std::vector<std::int32_t>& to) const;
   std::optional<bool> goesOn(const Pixel& at, float seen, float u, float v, float tolerance) const;
 
   float sign_ = 1.0f;  ///< -1: depth is negative in this scene

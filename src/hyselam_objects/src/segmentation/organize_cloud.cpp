@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -17,17 +18,25 @@ float slope(const Point& p, int axis) {
   return p[axis] / p.z();
 }
 
-bool isInFront(const Point& p) {
-  return p.allFinite() && p.z() > 0.0f;
+bool isDirection(const Point& p) {
+  return p.allFinite() && !p.isZero(0.0f);
 }
 
-/// Every so many-th direction of the points in front, sorted.
-std::vector<float> sampleSlopes(const OrganizedCloud& cloud, int axis) {
-  constexpr std::size_t kMost = 30000;
+/// And less than 87 degrees from where the camera looks: nearer to its plane a direction is no
+/// place in an image.
+bool isInFront(const Point& p) {
+  constexpr float kMostSlope = 20.0f;
+  return p.allFinite() && p.z() > 0.0f && std::abs(p.x()) < kMostSlope * p.z() &&
+         std::abs(p.y()) < kMostSlope * p.z() && std::isfinite(slope(p, 0)) &&
+         std::isfinite(slope(p, 1));
+}
+
+/// The directions of all points in front, sorted. Every tenth would be every tenth column only,
+/// where the points are still in the order of an image.
+std::vector<float> sortedSlopes(const OrganizedCloud& cloud, int axis) {
   std::vector<float> out;
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kMost);
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    if (isInFront(cloud.points[i])) out.push_back(slope(cloud.points[i], axis));
+  for (const Point& p : cloud.points) {
+    if (isInFront(p)) out.push_back(slope(p, axis));
   }
   std::sort(out.begin(), out.end());
   return out;
@@ -69,6 +78,40 @@ std::optional<Axis> findLattice(const std::vector<float>& slopes) {
   return Axis{1.0 / pitch, -columns.front() / pitch};
 }
 
+/// Columns (or rows) of a cloud that has them: the straight line through directions over places;
+/// nothing if a tenth of the points are off it by half a pixel or more.
+std::optional<Axis> axisOfRows(const OrganizedCloud& cloud, int axis) {
+  const auto width = static_cast<std::size_t>(cloud.width);
+  const auto placeOf = [&](std::size_t i) {
+    return static_cast<double>(axis == 0 ? i % width : i / width);
+  };
+  double n = 0.0, place = 0.0, direction = 0.0;  // means
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!isInFront(cloud.points[i])) continue;
+    n += 1.0;
+    place += (placeOf(i) - place) / n;
+    direction += (static_cast<double>(slope(cloud.points[i], axis)) - direction) / n;
+  }
+  double spread = 0.0, both = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!isInFront(cloud.points[i])) continue;
+    const double off = placeOf(i) - place;
+    spread += off * off;
+    both += off * (static_cast<double>(slope(cloud.points[i], axis)) - direction);
+  }
+  const double pitch = both / spread;
+  if (!(pitch > 1e-6)) return std::nullopt;  // also if all are in one column
+  const Axis out{1.0 / pitch, place - direction / pitch};
+  double off = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!isInFront(cloud.points[i])) continue;
+    const double at = out.focal * static_cast<double>(slope(cloud.points[i], axis)) + out.center;
+    off += !(std::abs(at - placeOf(i)) < 0.5);
+  }
+  if (10.0 * off >= n) return std::nullopt;
+  return out;
+}
+
 /// So that about one point falls into a pixel.
 double focalByDensity(const OrganizedCloud& cloud, double left, double right, double top,
                       double bottom) {
@@ -78,42 +121,59 @@ double focalByDensity(const OrganizedCloud& cloud, double left, double right, do
   std::size_t points = 0;
   for (const Point& p : cloud.points) {
     if (!isInFront(p)) continue;
+    const auto x = static_cast<double>(slope(p, 0)), y = static_cast<double>(slope(p, 1));
+    if (x < left || x > right || y < top || y > bottom) continue;
     ++points;
-    seen.insert({static_cast<int>((static_cast<double>(slope(p, 0)) - left) / cell),
-                 static_cast<int>((static_cast<double>(slope(p, 1)) - top) / cell)});
+    seen.insert({static_cast<int>((x - left) / cell), static_cast<int>((y - top) / cell)});
   }
-  return std::sqrt(static_cast<double>(points) / static_cast<double>(seen.size())) / cell;
+  const auto cells = static_cast<double>(std::max<std::size_t>(1, seen.size()));
+  return std::sqrt(static_cast<double>(std::max<std::size_t>(1, points)) / cells) / cell;
 }
 
 struct Interval {
   double low, high;
 };
 
-/// From the least to the largest direction of all points in front.
-Interval wholeRange(const OrganizedCloud& cloud, int axis) {
-  float low = std::numeric_limits<float>::infinity(), high = -low;
-  for (const Point& p : cloud.points) {
-    if (!isInFront(p)) continue;
-    low = std::min(low, slope(p, axis));
-    high = std::max(high, slope(p, axis));
-  }
-  return {static_cast<double>(low), static_cast<double>(high)};
-}
-
-/// The same without the outermost: a single stray point would make the image huge.
+/// Of the directions without the outermost: a single stray point would make the image huge.
 Interval usualRange(const std::vector<float>& slopes) {
   const std::size_t cut = slopes.size() / 2000;
   return {static_cast<double>(slopes[cut]), static_cast<double>(slopes[slopes.size() - 1 - cut])};
 }
 
+/// All directions but those far beyond the usual.
+Interval rangeOfLattice(const std::vector<float>& slopes) {
+  const Interval usual = usualRange(slopes);
+  const double margin = 0.1 * (usual.high - usual.low);
+  const auto first = std::lower_bound(slopes.begin(), slopes.end(), usual.low - margin);
+  const auto end = std::upper_bound(first, slopes.end(), usual.high + margin);
+  return {static_cast<double>(*first), static_cast<double>(*std::prev(end))};
+}
+
+/// Whether there are enough points for an image of these columns and rows.
+bool isFilled(const std::vector<float>& xs, const Axis& columns, const std::vector<float>& ys,
+              const Axis& rows) {
+  constexpr double kMostPixelsOfAPoint = 1000.0;
+  const Interval across = rangeOfLattice(xs), down = rangeOfLattice(ys);
+  const double pixels = (columns.focal * (across.high - across.low) + 1.0) *
+                        (rows.focal * (down.high - down.low) + 1.0);
+  return pixels < kMostPixelsOfAPoint * static_cast<double>(xs.size());
+}
+
 Intrinsics estimateIntrinsics(const OrganizedCloud& cloud) {
-  const std::vector<float> xs = sampleSlopes(cloud, 0), ys = sampleSlopes(cloud, 1);
+  if (cloud.width > 1 && cloud.height > 1) {
+    const std::optional<Axis> columns = axisOfRows(cloud, 0), rows = axisOfRows(cloud, 1);
+    if (columns && rows) {
+      return {columns->focal, rows->focal, columns->center,
+              rows->center,   cloud.width, cloud.height};
+    }
+  }
+  const std::vector<float> xs = sortedSlopes(cloud, 0), ys = sortedSlopes(cloud, 1);
   Interval across = usualRange(xs), down = usualRange(ys);
   const std::optional<Axis> columns = findLattice(xs), rows = findLattice(ys);
   Intrinsics out;
-  if (columns && rows) {
-    across = wholeRange(cloud, 0);
-    down = wholeRange(cloud, 1);
+  if (columns && rows && isFilled(xs, *columns, ys, *rows)) {
+    across = rangeOfLattice(xs);
+    down = rangeOfLattice(ys);
     out.focal_x = columns->focal;
     out.center_x = columns->center;
     out.focal_y = rows->focal;
@@ -150,8 +210,11 @@ std::optional<OrganizedView> organizeCloud(const OrganizedCloud& cloud,
                                            const std::optional<Intrinsics>& intrinsics) {
   constexpr float kNear = 1.02f;  // of a depth: points of one surface
   if (intrinsics) checkIntrinsics(*intrinsics);
-  std::size_t in_front = 0;
-  for (const Point& p : cloud.points) in_front += isInFront(p);
+  std::size_t in_front = 0, directions = 0;
+  for (const Point& p : cloud.points) {
+    in_front += isInFront(p);
+    directions += isDirection(p);
+  }
   if (in_front < 100) return std::nullopt;
   const Intrinsics camera = intrinsics ? *intrinsics : estimateIntrinsics(cloud);
   OrganizedView out;
@@ -185,7 +248,7 @@ std::optional<OrganizedView> organizeCloud(const OrganizedCloud& cloud,
     seen = p;
     if (!cloud.colors.empty()) out.cloud.colors[pixel] = cloud.colors[i];
   }
-  if (2 * inside < in_front || 20 * hiding > inside) return std::nullopt;
+  if (2 * inside < directions || 20 * hiding > inside) return std::nullopt;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     std::int32_t& pixel = out.pixel_of[i];
     if (pixel >= 0 &&

@@ -30,8 +30,9 @@ struct OrganizedView {
   std::vector<std::int32_t> pixel_of;  ///< of each point of the original; -1: in none
 };
 
-/// Points without rows, as one view from the origin: by the intrinsics given or, where the points
-/// still lie in columns and rows of a camera, by those; else by as many pixels as there are points.
+/// Points as one view from the origin: by the intrinsics given, by the columns and rows that the
+/// cloud has or, where the points of one row still lie in those of a camera, by those; else by as
+/// many pixels as there are points.
 /// Of the points in a pixel the nearest is kept; others have it too if they are as near.
 /// Nothing if the points were not seen from the origin (many hide others), or are fewer than 100.
 /// @throws hyselam::InputError for intrinsics that are not finite, not positive, or of an image
