@@ -12,6 +12,7 @@
 #include "hyselam_objects/mapping/object_relations.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/recognition/object_dictionary.hpp"
+#include "hyselam_objects/segmentation/organize_cloud.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -83,8 +84,8 @@ void objectWords(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-/// The PCD file of a cloud: refused, or points that are numbers or all none, and written and read
-/// as the same.
+/// The PCD file of a cloud: refused, or points that are numbers or all none, made an image if they
+/// are one, and written and read as the same.
 void objectCloud(const std::uint8_t* data, std::size_t size) {
   static const hyselam::testing::FuzzFolder folder;
   CloudFile file;
@@ -99,6 +100,12 @@ void objectCloud(const std::uint8_t* data, std::size_t size) {
   require(file.labels.empty() || file.labels.size() == points);
   for (const Point& p : file.cloud.points) {
     require(p.allFinite() || (std::isnan(p.x()) && std::isnan(p.y()) && std::isnan(p.z())));
+  }
+  if (const auto view = organizeCloud(file.cloud)) {
+    require(view->pixel_of.size() == points);
+    for (const std::int32_t pixel : view->pixel_of) {
+      require(pixel < static_cast<std::int64_t>(view->cloud.size()));
+    }
   }
   file.labels.resize(points);
   const std::string again = folder.path("again.pcd");

@@ -287,6 +287,42 @@ TEST(SegmentCloud, ReadsThinnedCloudsOfOneRow) {
   EXPECT_GT(score.meanIou(), 0.8);
 }
 
+TEST(OrganizeCloud, TakesNoPointsBesideOrBehindTheCameraForAnImage) {
+  OrganizedCloud cloud = kinectImage();
+  cloud.width = static_cast<int>(cloud.size());
+  cloud.height = 1;
+  const Intrinsics before = organizeCloud(cloud).value().camera;
+  // Some stray ones change nothing, whatever their direction.
+  for (const float z : {1e-38f, 1e-30f, 1e-3f, 0.0f}) {
+    cloud.points.emplace_back(1.0f, -2.0f, z);
+    cloud.points.emplace_back(-3e38f, 3e38f, z);
+  }
+  cloud.width = static_cast<int>(cloud.size());
+  const std::optional<OrganizedView> view = organizeCloud(cloud);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->camera.width, before.width);
+  EXPECT_EQ(view->camera.height, before.height);
+  EXPECT_NEAR(view->camera.focal_x, before.focal_x, 1e-6);
+  // As many behind as in front: seen from here in no one image.
+  for (std::size_t i = 0, n = cloud.size(); i < n; ++i) {
+    cloud.points.emplace_back(cloud.points[i].x(), 1.0f, -1.5f);
+    cloud.points.emplace_back(1.0f, cloud.points[i].x(), -2.5f);
+  }
+  cloud.width = static_cast<int>(cloud.size());
+  EXPECT_FALSE(organizeCloud(cloud));
+}
+
+TEST(SegmentCloud, FindsNothingInOneRowOfFewPoints) {
+  OrganizedCloud cloud;
+  for (int i = 0; i < 99; ++i) cloud.points.emplace_back(0.01f * static_cast<float>(i), 0.1f, 1.0f);
+  cloud.width = 99;
+  cloud.height = 1;
+  const CloudSegmentation found = segmentCloud(cloud);
+  EXPECT_FALSE(found.support);
+  EXPECT_EQ(found.objects, 0u);
+  EXPECT_EQ(found.labels, std::vector<std::uint32_t>(99, 1));
+}
+
 TEST(SegmentCloud, RefusesOneRowOfMergedViews) {
   OrganizedCloud cloud;
   hyselam::Rng rng(1);
@@ -448,6 +484,36 @@ TEST(SegmentCloudTool, WritesLabelsAndJson) {
   EXPECT_GE(json["seconds"], 0.0);
 }
 
+TEST(SegmentCloudTool, TurnsCloudsOfOneRowWithNegativeDepth) {
+  const TemporaryDirectory directory;
+  CloudFile row = pile();
+  row.cloud.width = static_cast<int>(row.cloud.size());
+  row.cloud.height = 1;
+  const std::vector<std::uint32_t> expected = segmentCloud(row.cloud).labels;
+  row = turned(row, {1.0f, -1.0f, -1.0f}, [](std::size_t i) { return i; });
+  writePcd(directory / "in.pcd", row.cloud, row.labels);
+  ASSERT_EQ(shell((directory / "in.pcd") + " --labels " + (directory / "out.pcd") + " --json " +
+                      (directory / "j.json"),
+                  directory),
+            0)
+      << fileBytes(directory / "stderr");
+  EXPECT_EQ(readPcd(directory / "out.pcd").labels, expected);
+  const auto json = nlohmann::json::parse(fileBytes(directory / "j.json"));
+  EXPECT_EQ(json["rows_made"], true);
+  EXPECT_EQ(json["behind"], true);
+}
+
+TEST(SegmentCloudTool, TellsOfOptionsWithoutEffect) {
+  const TemporaryDirectory directory;
+  const CloudFile file = table({thing("a", kBox, {1.9, 3.0, 0.5}, 0.5, {0.2, 0.1, 0.25})});
+  writePcd(directory / "in.pcd", file.cloud, file.labels);
+  ASSERT_EQ(shell((directory / "in.pcd") + " --labels " + (directory / "out.pcd") +
+                      " --camera 525 525 319.5 239.5 640 480",
+                  directory),
+            0);
+  EXPECT_NE(fileBytes(directory / "stdout").find("(--camera had no effect)"), std::string::npos);
+}
+
 TEST(SegmentCloudTool, ReportsErrorsInOneLine) {
   const TemporaryDirectory directory;
   writeFile(directory / "bad.pcd", "nothing");
@@ -458,7 +524,8 @@ TEST(SegmentCloudTool, ReportsErrorsInOneLine) {
   EXPECT_FALSE(std::filesystem::exists(directory / "o.pcd"));
 }
 
-// The shipped model has seen these clouds; left out they score as much less as docs/results.md has.
+// The shipped model has seen these clouds; left out they score as much less as
+// docs/algorithms/objects.md has.
 TEST(SegmentCloud, AgreesWithHumanLabelsOnRealTables) {
   HYSELAM_NEED_DATA(data);
   SegmentationScore all, piles;

@@ -44,12 +44,7 @@ class NearSide {
 }  // namespace
 
 SceneView::SceneView(const OrganizedCloud& scene) {
-  std::size_t before = 0, behind = 0;
-  for (const Point& p : scene.points) {
-    before += p.z() > 0.0f;
-    behind += p.z() < 0.0f;
-  }
-  if (behind <= before) {
+  if (!liesBehind(scene)) {
     view_ = organizeCloud(scene);
     return;
   }

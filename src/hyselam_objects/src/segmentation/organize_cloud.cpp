@@ -206,16 +206,32 @@ void checkIntrinsics(const Intrinsics& given) {
 
 }  // namespace
 
+bool liesBehind(const OrganizedCloud& cloud) {
+  std::size_t before = 0, behind = 0;
+  for (const Point& p : cloud.points) {
+    if (!p.allFinite()) continue;
+    before += p.z() > 0.0f;
+    behind += p.z() < 0.0f;
+  }
+  return behind > before;
+}
+
+void turnToFront(OrganizedCloud& cloud) {
+  for (Point& p : cloud.points) p = Point(p.x(), -p.y(), -p.z());
+}
+
+std::size_t usablePoints(const OrganizedCloud& cloud) {
+  return static_cast<std::size_t>(
+      std::count_if(cloud.points.begin(), cloud.points.end(), isDirection));
+}
+
 std::optional<OrganizedView> organizeCloud(const OrganizedCloud& cloud,
                                            const std::optional<Intrinsics>& intrinsics) {
   constexpr float kNear = 1.02f;  // of a depth: points of one surface
   if (intrinsics) checkIntrinsics(*intrinsics);
-  std::size_t in_front = 0, directions = 0;
-  for (const Point& p : cloud.points) {
-    in_front += isInFront(p);
-    directions += isDirection(p);
-  }
-  if (in_front < 100) return std::nullopt;
+  std::size_t in_front = 0;
+  for (const Point& p : cloud.points) in_front += isInFront(p);
+  if (in_front < kLeastPoints) return std::nullopt;
   const Intrinsics camera = intrinsics ? *intrinsics : estimateIntrinsics(cloud);
   OrganizedView out;
   out.camera = camera;
@@ -248,7 +264,7 @@ std::optional<OrganizedView> organizeCloud(const OrganizedCloud& cloud,
     seen = p;
     if (!cloud.colors.empty()) out.cloud.colors[pixel] = cloud.colors[i];
   }
-  if (2 * inside < directions || 20 * hiding > inside) return std::nullopt;
+  if (2 * inside < usablePoints(cloud) || 20 * hiding > inside) return std::nullopt;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     std::int32_t& pixel = out.pixel_of[i];
     if (pixel >= 0 &&

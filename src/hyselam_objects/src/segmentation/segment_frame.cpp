@@ -93,6 +93,12 @@ OrganizedCloud& UprightFrame::ownCloud() {
 
 void UprightFrame::organize(const OrganizedCloud& cloud) {
   std::optional<OrganizedView> view = organizeCloud(cloud);
+  if (!view && usablePoints(cloud) < kLeastPoints) {  // as a frame in which little was measured
+    pixel_of_.assign(cloud.size(), -1);
+    own_ = {};
+    cloud_ = &own_;
+    return;
+  }
   if (!view) {
     throw hyselam::InputError("cloud", "",
                               "has no rows, and its points were not seen from its origin");
@@ -104,23 +110,19 @@ void UprightFrame::organize(const OrganizedCloud& cloud) {
 
 // Depth forward, x and y along columns and rows. Which point is in which pixel stays.
 void UprightFrame::alignAxes() {
-  std::size_t before = 0, behind = 0;
-  for (std::size_t i = 0; i < cloud_->size(); ++i) {
-    if (!cloud_->isValid(i)) continue;
-    before += cloud_->points[i].z() > 0.0f;
-    behind += cloud_->points[i].z() < 0.0f;
-  }
-  turn_.behind = behind > before;
+  turn_.behind = liesBehind(*cloud_);
   const bool has_rows = cloud_->width > 1 && cloud_->height > 1;
   if (turn_.behind) sign_.z() = -1.0f;
-  if (has_rows) {
-    for (const int axis : {0, 1}) {
-      if (runsBackwards(*cloud_, axis)) sign_[axis] = -1.0f;
-    }
-    turn_.mirrored = sign_.prod() < 0.0f;
-  } else if (turn_.behind) {
-    sign_.y() = -1.0f;  // turned about x: a camera that looks along -z has y up
+  if (!has_rows) {
+    if (!turn_.behind) return;
+    sign_.y() = -1.0f;
+    turnToFront(ownCloud());
+    return;
   }
+  for (const int axis : {0, 1}) {
+    if (runsBackwards(*cloud_, axis)) sign_[axis] = -1.0f;
+  }
+  turn_.mirrored = sign_.prod() < 0.0f;
   if (sign_.minCoeff() > 0.0f) return;
   for (Point& p : ownCloud().points) p = (p.array() * sign_).matrix();
 }

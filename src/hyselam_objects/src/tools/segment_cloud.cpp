@@ -19,7 +19,13 @@ struct Outcome {
   CloudSegmentation found;
   bool organized = true;  ///< segmented as an image
   bool rows_made = false;
+  std::string without_effect;  ///< options
 };
+
+/// Half a turn about x.
+Eigen::Vector3f halfTurned(const Eigen::Vector3f& v) {
+  return {v.x(), -v.y(), -v.z()};
+}
 
 Outcome segment(const OrganizedCloud& cloud, const SegmentParams& params,
                 const UnorganizedParams& loose, const std::optional<Intrinsics>& camera,
@@ -27,16 +33,28 @@ Outcome segment(const OrganizedCloud& cloud, const SegmentParams& params,
   Outcome out;
   if (cloud.width > 1 && cloud.height > 1) {
     out.found = segmentCloud(cloud, params, up);
+    if (camera) out.without_effect = "--camera";
     return out;
   }
-  const std::optional<OrganizedView> view = organizeCloud(cloud, camera);
+  const bool behind = liesBehind(cloud);
+  OrganizedCloud front = cloud;
+  if (behind) turnToFront(front);
+  const std::optional<OrganizedView> view = organizeCloud(front, camera);
   if (!view) {
     out.organized = false;
     out.found = segmentUnorganized(cloud, {0.0f, 0.0f, 0.0f}, loose);
+    if (up) out.without_effect = "--up";
+    if (camera) out.without_effect += up ? " and --camera" : "--camera";
     return out;
   }
   out.rows_made = true;
-  out.found = segmentCloud(view->cloud, params, up);
+  std::optional<Eigen::Vector3f> up_in_front = up;
+  if (up && behind) up_in_front = halfTurned(*up);
+  out.found = segmentCloud(view->cloud, params, up_in_front);
+  out.found.turn.behind = behind;
+  if (behind && out.found.support) {
+    out.found.support->normal = halfTurned(out.found.support->normal);
+  }
   std::vector<std::uint32_t> labels(cloud.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (!cloud.isValid(i)) continue;
@@ -52,6 +70,7 @@ std::string remarks(const Outcome& outcome) {
   if (!outcome.found.support) out += " (no supporting plane found)";
   if (!outcome.organized) out += " (by gaps only: no view from one point)";
   if (outcome.rows_made) out += " (rows were made by projection)";
+  if (!outcome.without_effect.empty()) out += " (" + outcome.without_effect + " had no effect)";
   if (outcome.found.turn.behind) out += " (depth is negative: taken for its absolute value)";
   if (outcome.found.turn.mirrored) out += " (the image is mirrored)";
   if (outcome.found.turn.upside_down) out += " (the image is upside down)";

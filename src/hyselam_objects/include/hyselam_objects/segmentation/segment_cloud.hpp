@@ -76,7 +76,8 @@ void checkCloud(const OrganizedCloud& cloud);
 
 /// Segments one frame. `up`: against gravity, in the frame of the cloud, of any length; without it
 /// the largest plane is the support, walls counting less. A cloud of one row gets rows as by
-/// organizeCloud(). The same arguments give the same labels.
+/// organizeCloud(); one with fewer than kLeastPoints usable points has neither support nor objects.
+/// The same arguments give the same labels.
 /// @throws hyselam::InputError as checkCloud(), for an `up` that is no direction, and for a cloud
 ///         of one row that was not seen from its origin; hyselam::ParameterError.
 CloudSegmentation segmentCloud(const OrganizedCloud& cloud, const SegmentParams& params = {},
