@@ -142,10 +142,12 @@ std::vector<LabelledCloud> readLabelledClouds(const std::vector<std::string>& fo
   std::vector<fs::path> paths;
   for (const std::string& folder : folders) {
     const std::size_t before = paths.size();
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder, none)) {
-      if (entry.path().extension() == ".pcd") paths.push_back(entry.path());
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+      if (entry->path().extension() == ".pcd") paths.push_back(entry->path());
     }
+    if (error) throw hyselam::InputError(folder, "", "cannot be listed: " + error.message());
     if (paths.size() == before) throw hyselam::InputError(folder, "", "holds no .pcd file");
   }
   std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) {

@@ -1,4 +1,5 @@
 // train_segmentation FOLDER ... --model FILE: learns which patches of a cloud belong to one object.
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <map>
@@ -40,6 +41,16 @@ nlohmann::json print(const std::string& title, const Groups& groups) {
                   {"under", score.under}};
   }
   return out;
+}
+
+/// Of a folder, without where it is, in one line.
+std::string nameOf(const std::string& folder) {
+  const std::filesystem::path path(folder);
+  std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) <= ' ') c = '_';
+  }
+  return name;
 }
 
 std::string textOf(const Groups& groups) {
@@ -93,7 +104,9 @@ int main(int argc, char** argv) {
     if (!model_file.empty()) {
       std::string data = std::to_string(clouds.size()) + " clouds of mOSD:";
       for (const LabelledCloud& cloud : clouds) data += " " + cloud.name;
-      model.origin = {"train_segmentation FOLDER", data, textOf(in_sample), textOf(left_out)};
+      std::string command = "train_segmentation";
+      for (const std::string& folder : folders) command += " " + nameOf(folder);
+      model.origin = {command, data, textOf(in_sample), textOf(left_out)};
       hyselam::writeFileAtomically(model_file, [&](std::ostream& out) { out << model.toText(); });
       std::cout << "-> " << model_file << "\n";
     }
