@@ -49,9 +49,11 @@ void BM_FindModel(benchmark::State& state) {
   std::vector<fs::path> paths;
   std::error_code none;
   for (const char* set : {"mosd", "mosd_piles"}) {
-    for (const auto& entry : fs::directory_iterator(folder + set, none)) {
-      const bool is_learn = entry.path().filename().string().compare(0, 5, "learn") == 0;
-      if (entry.path().extension() == ".pcd" && is_learn == learn) paths.push_back(entry.path());
+    for (fs::directory_iterator entry(folder + set, none), end; !none && entry != end;
+         entry.increment(none)) {
+      const fs::path path = entry->path();
+      const bool is_learn = path.filename().string().compare(0, 5, "learn") == 0;
+      if (path.extension() == ".pcd" && is_learn == learn) paths.push_back(path);
     }
   }
   if (paths.empty()) {

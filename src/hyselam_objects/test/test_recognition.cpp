@@ -123,6 +123,17 @@ TEST(ObjectRecognition, HidesTheBackOfAModelByItsFront) {
   EXPECT_LT(evidence.flush, 0.05);
 }
 
+TEST(ObjectRecognition, RefusesModelsThatAreOnePlace) {
+  OrganizedCloud cloud;
+  for (int i = 0; i < 200; ++i) cloud.points.emplace_back(0.001f, 0.001f, 0.801f);
+  cloud.width = 200;
+  cloud.height = 1;
+  EXPECT_THROW(findModel(cloud, cloud), hyselam::InputError);
+  // Nor if one of them is so far away that no 32 bits number the cubes between.
+  cloud.points.back() = Point(1e6f, 1e6f, 1e6f);
+  EXPECT_THROW(findModel(cloud, cloud), hyselam::InputError);
+}
+
 TEST(ObjectRecognition, FindsTheMilkCartonInTheScene) {
   HYSELAM_NEED_DATA(data);
   const std::string folder = data + "/objects/pcl_tutorials/";

@@ -4,13 +4,14 @@
 #include <pcl/features/normal_3d.h>
 #include <pcl/features/shot.h>
 #include <pcl/filters/uniform_sampling.h>
-#include <pcl/filters/voxel_grid.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/recognition/cg/geometric_consistency.h>
 #include <pcl/registration/icp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 
@@ -33,14 +34,33 @@ Cloud::Ptr toPcl(const OrganizedCloud& cloud, const char* name) {
   return out;
 }
 
-/// One point (the mean) in each cube of space.
-Cloud::Ptr thinned(const Cloud::Ptr& cloud, double side) {
+/// One point (the mean) in each cube of space, however far apart they are: PCL's grid numbers its
+/// cubes by 32 bits and gives back its input where these do not do.
+Cloud::Ptr thinned(const Cloud::Ptr& cloud, double side, const char* name) {
+  using Cube = std::array<std::int64_t, 3>;  // z, y, x
+  constexpr double kMostCubes = 1e18;        // from the origin; farther ones are one
+  std::vector<std::pair<Cube, std::size_t>> places;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    const auto cubeOf = [&](float x) {
+      const double cube = std::floor(static_cast<double>(x) / side);
+      return static_cast<std::int64_t>(std::clamp(cube, -kMostCubes, kMostCubes));
+    };
+    const pcl::PointXYZ& p = (*cloud)[i];
+    places.push_back({{cubeOf(p.z), cubeOf(p.y), cubeOf(p.x)}, i});
+  }
+  std::sort(places.begin(), places.end());
   Cloud::Ptr out(new Cloud);
-  pcl::VoxelGrid<pcl::PointXYZ> grid;
-  grid.setInputCloud(cloud);
-  const auto leaf = static_cast<float>(side);
-  grid.setLeafSize(leaf, leaf, leaf);
-  grid.filter(*out);
+  for (std::size_t i = 0, end = 0; i < places.size(); i = end) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (; end < places.size() && places[end].first == places[i].first; ++end) {
+      sum += (*cloud)[places[end].second].getVector3fMap().cast<double>();
+    }
+    const Eigen::Vector3f mean = (sum / static_cast<double>(end - i)).cast<float>();
+    out->push_back({mean.x(), mean.y(), mean.z()});
+  }
+  if (out->size() < kLeastPoints) {
+    throw hyselam::InputError(name, "", "has fewer than 100 usable points in different places");
+  }
   return out;
 }
 
@@ -53,7 +73,7 @@ struct KeypointCloud {
 KeypointCloud describeKeypoints(const OrganizedCloud& cloud, const char* name, double surface,
                                 double sampling, double radius) {
   KeypointCloud out;
-  out.all = thinned(toPcl(cloud, name), surface);
+  out.all = thinned(toPcl(cloud, name), surface, name);
   out.normals.reset(new Normals);
   pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimate;
   estimate.setKSearch(10);
