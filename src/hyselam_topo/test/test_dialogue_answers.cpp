@@ -91,6 +91,7 @@ TEST(DialogueStop, ARobotThatStandsWhereItWasSentIsNotUnderWay) {
   talk.at(6.0);
   EXPECT_FALSE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
   talk.say("Turn left.");
+  talk.dialogue.setPose(talk.time += 0.1, {6.0, 1.5, 0.0});  // it has not begun to turn
   EXPECT_TRUE(talk.dialogue.hear("No!").has(DialogueAction::Kind::kStop));
 }
 

@@ -166,6 +166,12 @@ Reply Dialogue::losePose(double stamp) {
   return reply();
 }
 
+void Dialogue::setOut(Id to) {
+  talk_.under_way = to;
+  talk_.stood_at = robot().pose;
+  talk_.stands_since = robot().stamp;
+}
+
 void Dialogue::seeWhetherArrived() {
   const hyselam::Pose2& pose = robot().pose;
   const bool moved = std::hypot(pose.x - talk_.stood_at.x, pose.y - talk_.stood_at.y) > 0.05 ||

@@ -95,7 +95,7 @@ void Dialogue::goToPreviousPlace(const Utterance&, Turn& turn) {
 
 void Dialogue::followPerson(const Utterance&, Turn& turn) {
   turn.reply.actions.push_back({DialogueAction::Kind::kFollow, {}, 0.0});
-  talk_.under_way = Id{0};
+  setOut(0);
   say("following", turn);
 }
 
@@ -109,7 +109,7 @@ void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
                        : *side == Side::kRight ? -0.5 * hyselam::kPi
                                                : hyselam::kPi;
   turn.reply.actions.push_back({DialogueAction::Kind::kTurn, {}, angle});
-  talk_.under_way = robot().place;
+  setOut(robot().place);
   turn.reply.sentences.push_back(phrases().say("turning", {{"side", phrases().side(*side)}}));
 }
 
@@ -208,7 +208,7 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
   out.sentences.push_back(p.say("going", {{"places", p.list(told)}}));
   if (closed) out.sentences.push_back(p.say("door_closed"));
   out.actions.push_back(std::move(action));
-  talk_.under_way = stops.back();
+  setOut(stops.back());
 }
 
 // ---- Questions ----

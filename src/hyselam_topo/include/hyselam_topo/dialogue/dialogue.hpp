@@ -493,6 +493,9 @@ class Dialogue {
   std::string barrierToUndo() const;
   /// The map as it was before, without what statements have told.
   void restoreKnown(const KnownBefore& before, Reply& reply);
+  /// It is under way from now on, to that place or, for 0, behind a person; how long it has stood
+  /// before is no sign that it has arrived.
+  void setOut(Id to);
   /// A robot that stands in the place it was sent to is not under way any more.
   void seeWhetherArrived();
   /// A robot that drives stops when a door is shut, which may be on its way.
