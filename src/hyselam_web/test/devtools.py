@@ -12,11 +12,17 @@ import time
 
 import aiohttp
 
-WAIT = float(os.environ.get("HYSELAM_SLOWNESS", "1")) * 30.0  # [s] never reached when all is well
+WAIT = float(os.environ.get("HYSELAM_SLOWNESS", "1")) * 90.0  # [s] never reached when all is well
+REACHES = WAIT / 15  # [s] that a press may take until the page has it
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update",
          "--disable-sync", "--disable-quic", "--disable-extensions", "--disable-default-apps", "--disable-dev-shm-usage", "--hide-scrollbars",
          "--mute-audio", "--remote-debugging-port=0", "--remote-allow-origins=*"]
 PHONE, DESKTOP = (360, 740, True), (1280, 800, False)
+# What a function finds, once it is the same in three pictures that follow each other; null: not yet. A page that draws nothing goes on, too.
+STILL = """(async (found) => { const next = () => new Promise((done) => { requestAnimationFrame(done); setTimeout(done, 1000); });
+    const first = found(); if (first === null) return null;
+    for (const _ of [1, 2]) { await next(); if (JSON.stringify(found()) !== JSON.stringify(first)) return null; }
+    return first; })(%s)"""
 
 
 def program():
@@ -83,6 +89,12 @@ class Browser:
 
     def send(self, method, session=None, **params):
         return self.run(self._send(method, params, session))
+
+    def send_all(self, session, *messages):
+        """One after the other, without waiting for the answers in between."""
+        async def together():
+            await asyncio.gather(*(self._send(method, params, session) for method, params in messages))
+        self.run(together())
 
     def tab(self, size=DESKTOP, dark=False, language="en-US", ratio=1):
         """A page with cookies of its own."""
@@ -156,41 +168,63 @@ class Tab:
             if value:
                 return value
             if time.monotonic() > deadline:
-                raise AssertionError(f"not within {seconds:.0f} s: {what} ({condition}: {last}; errors: {self.errors[-3:]})")
+                raise AssertionError(f"not within {seconds:.0f} s: {what() if callable(what) else what} ({condition}: {last}; errors: {self.errors[-3:]})")
             time.sleep(0.05)
 
     def middle(self, selector):
-        """Where an element is, scrolled into view; it must be there, seen and not covered."""
+        """Where an element is, scrolled into view; it must be there, seen, not covered, and lie still."""
         found = json.dumps(selector)
-        at = self.wait(f"""(() => {{ const e = document.querySelector({found}); if (!e || e.disabled) return null;
+        at = self.wait(STILL % f"""() => {{ const e = document.querySelector({found}); if (!e || e.disabled) return null;
             e.scrollIntoView({{block: 'nearest', inline: 'nearest'}}); const b = e.getBoundingClientRect(); if (!b.width || !b.height) return null;
             const x = b.x + b.width / 2, y = b.y + b.height / 2, top = document.elementFromPoint(x, y);
-            return top && (e === top || e.contains(top) || top.contains(e)) ? [x, y] : null; }})()""", f"{selector} to be seen")
+            return top && e.contains(top) ? [x, y] : null; }}""", f"{selector} to be seen and to lie still")
         return at
 
     def press(self, x, y):
+        """Both ends at once: nothing moves away in between because this machine is slow."""
         if self.touch:
-            self.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
-            self.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+            self.browser.send_all(self.session, *(("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+                                                  for kind, points in (("touchStart", [{"x": x, "y": y}]), ("touchEnd", []))))
         else:
-            for kind in ("mousePressed", "mouseReleased"):
-                self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+            self.browser.send_all(self.session, *(("Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1})
+                                                  for kind in ("mousePressed", "mouseReleased")))
 
     def click(self, selector):
-        self.press(*self.middle(selector))
+        """Until the element has it: what has moved away under the finger is pressed again, as by a person."""
+        found, beside = json.dumps(selector), []
+        for _ in range(3):
+            at = self.middle(selector)
+            self.eval(f"""(() => {{ const e = document.querySelector({found}); globalThis.pressed = e ? '' : 'nothing: it has gone';
+                globalThis.addEventListener('click', ({{target}}) => {{ pressed = !e || e.contains(target) ? 'it' : target.outerHTML.slice(0, 100); }}, {{capture: true, once: true}}); }})()""")
+            self.press(*at)
+            deadline = time.monotonic() + REACHES
+            while True:
+                hit = self.pressed()
+                if hit == "it":
+                    return
+                if hit or time.monotonic() > deadline:
+                    break
+                time.sleep(0.02)
+            beside.append(hit)
+            print(f"a press of {selector} at {at} has reached {hit or 'nothing'}", flush=True)
+        raise AssertionError(f"no press of {selector} has reached it: {beside}")
+
+    def pressed(self):
+        """What the press has reached; where the page was left since, that what leads away."""
+        try:
+            return self.eval("globalThis.pressed ?? 'it'")
+        except AssertionError:
+            return ""  # it is being left
 
     def drag(self, a, b):
+        way = [(a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])) for share in (0.3, 0.7, 1.0)]
         if self.touch:
-            self.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": a[0], "y": a[1]}])
-            for share in (0.3, 0.7, 1.0):
-                point = {"x": a[0] + share * (b[0] - a[0]), "y": a[1] + share * (b[1] - a[1])}
-                self.send("Input.dispatchTouchEvent", type="touchMove", touchPoints=[point])
-            self.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+            steps = [("touchStart", [a]), *(("touchMove", [point]) for point in way), ("touchEnd", [])]
+            self.browser.send_all(self.session, *(("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]}) for kind, points in steps))
         else:
-            self.send("Input.dispatchMouseEvent", type="mousePressed", x=a[0], y=a[1], button="left", clickCount=1)
-            for share in (0.3, 0.7, 1.0):
-                self.send("Input.dispatchMouseEvent", type="mouseMoved", x=a[0] + share * (b[0] - a[0]), y=a[1] + share * (b[1] - a[1]), button="left", buttons=1)
-            self.send("Input.dispatchMouseEvent", type="mouseReleased", x=b[0], y=b[1], button="left", clickCount=1)
+            steps = [("mousePressed", a), *(("mouseMoved", point) for point in way), ("mouseReleased", b)]
+            self.browser.send_all(self.session, *(("Input.dispatchMouseEvent", dict({"type": kind, "x": x, "y": y, "button": "left"}, **({"buttons": 1} if kind == "mouseMoved" else {"clickCount": 1})))
+                                                  for kind, (x, y) in steps))
 
     def type(self, text):
         self.send("Input.insertText", text=text)

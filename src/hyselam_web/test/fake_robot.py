@@ -3,6 +3,8 @@ for; and a server in a thread. No test; others import it."""
 import asyncio
 import os
 import pathlib
+import random
+import socket
 import sys
 import threading
 import time
@@ -21,7 +23,7 @@ from hyselam_web.requests import Refused  # noqa: E402
 
 OFFICE = PACKAGE.parent / "hyselam_conversation/maps/office.xml"
 X = "{urn:hyselam:topological_map:1}"
-WAIT = 20.0 * float(os.environ.get("HYSELAM_SLOWNESS", "1"))
+WAIT = 90.0 * float(os.environ.get("HYSELAM_SLOWNESS", "1"))
 RESOLUTION = 0.05
 
 
@@ -31,6 +33,37 @@ def wait_until(condition, what):
         if time.monotonic() > deadline:
             raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
         time.sleep(0.01)
+
+
+def free_port():
+    """One that the system gives to nobody who does not ask for it: a server can be started there again."""
+    while True:
+        with socket.socket() as s:
+            port = random.randrange(20000, 32768)
+            try:
+                s.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return port
+
+
+class SharedWorld(world.World):
+    """Of the server's thread and of the test's."""
+
+    def __init__(self):
+        super().__init__()
+        self.lock = threading.RLock()
+
+
+def locked(name):
+    def call(self, *args, **kwargs):
+        with self.lock:
+            return getattr(world.World, name)(self, *args, **kwargs)
+    return call
+
+
+for each in ("next_version", "set", "get", "set_table", "table", "item", "append", "log", "delta"):
+    setattr(SharedWorld, each, locked(each))
 
 
 def office():
@@ -88,7 +121,7 @@ def office_grid(building):
 
 class FakeRobot:
     def __init__(self, with_map=True):
-        self.world, self.tiles = world.World(), tiles.MapTiles()
+        self.world, self.tiles = SharedWorld(), tiles.MapTiles()
         self.asked, self.stops, self.cancels, self.hearers, self.time = [], 0, 0, 1, 0.0
         self.answer = lambda name, fields, role: {}
         self.todo = []  # called within the server's loop

@@ -116,7 +116,13 @@ class Case(unittest.TestCase):
     def cookie(self, role):
         return self.served.server.access.cookie(role, time.time())
 
-    def raw(self, data, wait=1.0):
+    def stand_still(self):
+        """No bucket fills and no second stop is said but when the test says so."""
+        at = [self.served.server.clock()]
+        self.served.server.clock = lambda: at[0]
+        return at
+
+    def raw(self, data, wait=WAIT):
         """Bytes to the server; what comes back until it closes or nothing more comes."""
         with socket.create_connection(("127.0.0.1", self.served.port), timeout=WAIT) as s:
             s.sendall(data)

@@ -74,6 +74,7 @@ class FramesTest(Case):
         self.assertEqual((page.answers[None][0]["error"], self.robot.stops), ("malformed", 0))
 
     def test_a_stop_with_fields_that_do_not_fit_stops(self):
+        self.stand_still()
         page = self.open()
         for count, more in enumerate(({"language": "xx"}, {"language": None}, {"language": 1}, {"path": "/"}), 1):
             self.assertEqual(page.ask("stop", **more)["done"], "stop", more)

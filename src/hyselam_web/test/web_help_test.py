@@ -51,6 +51,7 @@ class HelpTest(PageCase):
         for closer in (1.0, 0.6, 2.0):
             if closer != 1.0:
                 tab.eval(f"(hyselam.map.fit(), hyselam.map.zoom({closer}))")
+            self.drawn(tab)
             if closer <= 1.0:
                 tab.wait(f"hyselam.map.names.shown.size === {count}", "all places")
             # No name lies on the middle of a place that has only a dot.
@@ -59,10 +60,10 @@ class HelpTest(PageCase):
             self.assertEqual(hidden, 0, closer)
             self.shot(tab, f"phone_tight_{closer}")
         tab.eval("hyselam.map.fit()")
+        self.drawn(tab)
         tab.wait("[...hyselam.map.names.shown.values()].some((s) => s.kind === 'dot') && hyselam.map.names.shown.size === %d" % count, "dots")
         for place in tab.eval("[...hyselam.map.names.shown].filter(([, s]) => s.kind === 'dot').map(([id]) => id)"):
-            at = tab.eval(f"(() => {{ const s = hyselam.map.toScreen(...hyselam.model.place({place}).c), b = hyselam.map.canvas.getBoundingClientRect(); return [s[0] + b.x, s[1] + b.y]; }})()")
-            tab.press(*at)
+            self.tap_place(tab, place)
             title = self.robot.names[int(place)][0][0] + "?"
             tab.wait(f"document.querySelector('#card-title')?.textContent === {title!r} && hyselam.map.selected === '{place}'", f"the card of place {place}")
             tab.wait(f"hyselam.map.names.shown.get('{place}').kind === 'name'", f"its name on the map: {title}")
@@ -75,6 +76,7 @@ class HelpTest(PageCase):
         self.guess_all()
         tab = self.open_map(DESKTOP)
         tab.eval("hyselam.map.zoom(0.35)")
+        self.drawn(tab)
         tab.wait("[...hyselam.map.names.shown.values()].some((s) => s.kind === 'dot')", "dots")
         place, x, y = tab.eval("""(() => { const [id, s] = [...hyselam.map.names.shown].find(([, s]) => s.kind === 'dot'), b = hyselam.map.canvas.getBoundingClientRect();
             return [id, s.x + b.x, s.y + b.y]; })()""")
@@ -117,7 +119,7 @@ class HelpTest(PageCase):
         tab = self.open_map(PHONE)
         self.say(tab, "There is a kitchen.")
         self.next(tab, "Where is the kitchen?")
-        tab.press(*self.at(tab, *tab.eval("hyselam.model.place(7).c")))
+        self.tap_place(tab, 7)
         tab.click("#card [data-key=this_is]")
         wait_until(lambda: self.asked("name") == [{"place": 7, "names": ["kitchen"]}], "the name")
         tab.wait("document.querySelector('#card-title').textContent === 'kitchen'", "the confirmed name")
@@ -132,7 +134,7 @@ class HelpTest(PageCase):
         tab.click("#next .pick")
         tab.wait("document.querySelector('#tool-bar').textContent.includes('Tap the place of archive')", "what to do")
         self.shot(tab, "phone_pick")
-        tab.press(*self.at(tab, *tab.eval("hyselam.model.place(5).c")))
+        self.tap_place(tab, 5)
         wait_until(lambda: len(self.asked("name")) == 2, "the name")
         self.assertEqual(self.asked("name")[1], {"place": 5, "names": ["library", "archive"]})
         tab.wait("document.querySelector('#tool-bar').hidden && document.querySelector('#card').hidden", "the end of it")
@@ -168,7 +170,7 @@ class HelpTest(PageCase):
             self.shot(tab, f"phone_no_{language}")
             tab.click("#next .pick")
             tab.wait("!document.querySelector('#tool-bar').hidden", "what to do")
-            tab.press(*self.at(tab, *tab.eval("hyselam.model.place(8).c")))
+            self.tap_place(tab, 8)
             wait_until(lambda n=name: {"place": 8, "names": [n]} == (self.asked("name") or [None])[-1], "the name")
             tab.wait("document.querySelector('#next').hidden", "that nothing is open")
             self.robot.names.pop(8)
@@ -177,7 +179,7 @@ class HelpTest(PageCase):
     def test_a_card_that_stays_the_same_is_not_made_anew_under_the_finger(self):
         self.serve()
         tab = self.open_map(PHONE)
-        tab.press(*self.at(tab, *tab.eval("hyselam.model.place(5).c")))
+        self.tap_place(tab, 5)
         tab.wait("!document.querySelector('#card').hidden", "the card")
         tab.eval("window.pressed = document.querySelector('#card [data-key=name_it]')")
         self.robot.names[9] = [("library", True)]
@@ -232,7 +234,7 @@ class HelpTest(PageCase):
         tab.wait("[...document.querySelectorAll('#chips button')].some((b) => b.textContent === 'kitchen')", "the word that was meant")
         tab.click("#chips button")
         self.assertEqual(tab.eval("document.querySelector('#say').value"), "Where is the kitchen")
-        tab.press(*self.at(tab, *tab.eval("hyselam.model.place(7).c")))
+        self.tap_place(tab, 7)
         tab.click("#card [data-key=name_it]")
         tab.type("libary")
         tab.click("#card .hint button")
@@ -251,7 +253,7 @@ class HelpTest(PageCase):
             tab = self.open_map(PHONE, language=language)
             for sentence in ("I am at SS05.", "Shall I go to perhaps library (SS03)?", "Next to SS05: corridor (CC11), SS04 and SS06.", "Estou em SS05.", "SS05 é biblioteca?"):
                 self.robot.later(lambda s=sentence: self.robot.say("robot", s))
-            tab.press(*self.at(tab, *tab.eval("hyselam.model.place(5).c")))
+            self.tap_place(tab, 5)
             tab.wait("!document.querySelector('#card').hidden", "the card")
             self.assertIsNone(CODE.search(tab.eval(OPEN_LABELS)))
             tab.click("#card [data-key=ask_about]")
@@ -260,10 +262,9 @@ class HelpTest(PageCase):
                 tab.click(f"#tab-{name}")
                 tab.wait(f"!document.querySelector('#panel-{name}').hidden", name)
                 self.assertIsNone(CODE.search(tab.eval(OPEN_LABELS)), name)
-            lines = tab.eval("[...document.querySelectorAll('.said.robot')].map((e) => e.textContent)")
             for expected in ("I am at place 5.", "Shall I go to perhaps library (place 3)?", "Next to place 5: corridor (place 11), place 4 and place 6.",
                              "Estou em lugar 5.", "Lugar 5 é biblioteca?"):
-                self.assertIn(expected, lines)
+                tab.wait(f"[...document.querySelectorAll('.said.robot')].some((e) => e.textContent === {expected!r})", expected)
             self.assertEqual(tab.errors, [])
 
     def test_the_robot_is_told_of_places_by_their_numbers(self):

@@ -5,7 +5,7 @@ import sys
 import aiohttp
 
 sys.dont_write_bytecode = True
-from fake_robot import ServedRobot, wait_until
+from fake_robot import ServedRobot, free_port, wait_until
 from hyselam_web import app, limits
 from pages import Case, TOKENS
 
@@ -41,12 +41,15 @@ class AccessTest(Case):
         self.assertEqual(self.login('{"token":"%s"}' % ("x" * 100000))[0], 413)
 
     def test_guessing_is_slowed_down(self):
+        self.stand_still()
         statuses = [self.login('{"token":"guess%d"}' % n)[0] for n in range(12)]
         self.assertEqual(statuses[:5], [403] * 5)
         self.assertEqual(statuses[-1], 429)
         self.assertEqual(self.login('{"token":"driveme11"}')[0], 429)  # not by this address, now
 
     def test_strangers_do_not_keep_out_who_knows_the_token(self):
+        self.stand_still()
+
         async def guess(address):
             async with aiohttp.ClientSession(connector=aiohttp.TCPConnector(local_addr=(address, 0))) as session:
                 for _ in range(8):
@@ -130,7 +133,10 @@ class AccessTest(Case):
         self.assertEqual(self.pages.request("GET", self.served.address + "/", headers={"Host": "robot.test"})[0], 200)
 
     def test_a_restarted_server_knows_its_cookies_and_pages_go_on(self):
-        cookie, port = self.cookie("drive"), self.served.port
+        self.served.close()
+        port = free_port()
+        self.served = ServedRobot(self.robot, TOKENS, port)
+        cookie = self.cookie("drive")
         page = self.open(cookie=cookie)
         wait_until(lambda: page.state, "the map")
         self.served.close()

@@ -11,7 +11,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 from devtools import DESKTOP, PHONE
-from fake_robot import PACKAGE, RESOLUTION, ServedRobot, wait_until
+from fake_robot import PACKAGE, RESOLUTION, ServedRobot, free_port, wait_until
 from hyselam_web import recording, sights
 from page_case import PageCase
 
@@ -47,8 +47,7 @@ class PageTest(PageCase):
         # Undo takes back what was said.
         tab.click("#talk-log .undo")
         wait_until(lambda: {"text": "Undo that."} in self.asked("say"), "undo")
-        tab.click("#stop")
-        wait_until(lambda: self.robot.stops == 1, "stop")
+        self.stop(tab)
         tab.wait("document.querySelector('#toast').textContent === 'Stop was sent.'", "that it was sent")
         self.robot.hearers = 0
         tab.click("#stop")
@@ -60,7 +59,7 @@ class PageTest(PageCase):
         tab = self.open_map(PHONE)
         for line in range(12):
             self.robot.say("robot", f"I have said {line} things.")
-        for i, name in enumerate(("talk", "places", "robot", "back")):
+        for name in ("talk", "places", "robot", "back"):
             tab.click(f"#tab-{name}")
             if not tab.eval("document.body.classList.contains('folded')"):
                 tab.click(f"#tab-{name}")
@@ -69,8 +68,7 @@ class PageTest(PageCase):
                 wanted.contains(document.elementFromPoint(box.x + box.width / 2, box.y + share * box.height))); })(document.querySelector('%s'))"""
             for button in ("#stop", "#tab-talk", "#tab-places", "#tab-robot", "#tab-back"):
                 self.assertTrue(tab.eval(on_top % button), f"{button} under the folded panel of {name}")
-            tab.click("#stop")
-            wait_until(lambda: self.robot.stops == i + 1, f"stop beside the folded panel of {name}")
+            self.stop(tab)
         self.assertEqual(tab.errors, [])
 
     def test_the_newest_line_stays_in_sight_while_places_are_tapped(self):
@@ -158,6 +156,7 @@ class PageTest(PageCase):
         tab = self.open_map(DESKTOP)
         tab.eval("document.querySelector('#map').focus()")
         tab.key("r")
+        self.drawn(tab)
         tab.key("Enter")
         tab.wait("document.querySelector('#card-title')?.textContent === 'Place 11'", "the card of the place in the middle")
         self.assertTrue(tab.eval("document.querySelector('#card').contains(document.activeElement)"))
@@ -166,7 +165,7 @@ class PageTest(PageCase):
         tab.eval("document.querySelector('#tab-talk').focus()")
         tab.key("ArrowRight")
         tab.wait("!document.querySelector('#panel-places').hidden", "the list of places")
-        self.assertEqual(tab.eval("document.querySelectorAll('#panel-places ul.list:first-of-type li button').length"), 21)
+        tab.wait("document.querySelectorAll('#panel-places ul.list:first-of-type li button').length === 21", "all places")
         tab.eval("document.querySelector('#panel-places li button').focus()")
         tab.key("Enter")
         tab.wait("!document.querySelector('#card').hidden", "the card")
@@ -176,6 +175,7 @@ class PageTest(PageCase):
         for dark in (False, True):
             tab = self.open_map(PHONE, dark=dark)
             self.robot.later(lambda: self.robot.say("robot", "Is SS12 John's office?"))
+            tab.wait("!document.querySelector('#answers').hidden", "yes and no")
             tab.press(*self.at(tab, 2.4, 3.3))
             tab.wait("!document.querySelector('#card').hidden", "the card")
             nameless = tab.eval("[...document.querySelectorAll('button, input, select, [role=tab], canvas')].filter(e => !(e.getAttribute('aria-label') || "
@@ -247,8 +247,7 @@ class PageTest(PageCase):
         self.serve(tokens="look=lookatme1 drive=driveme11")
         tab = self.open(PHONE)
         tab.wait("!document.querySelector('#login').hidden", "the login")
-        tab.click("#stop")
-        wait_until(lambda: self.robot.stops == 1, "stop")
+        self.stop(tab)
         tab.click("#token")
         tab.type("something")
         tab.key("Enter")
@@ -266,9 +265,9 @@ class PageTest(PageCase):
         self.assertEqual([e for e in tab.errors if "403" not in e], [])
 
     def test_a_lost_server_is_shown_and_found_again_and_nothing_is_lost(self):
-        self.serve()
+        port = free_port()
+        self.serve(port=port)
         tab = self.open_map(PHONE)
-        port = self.served.port
         self.served.close()
         tab.wait("!document.querySelector('#lost').hidden", "that the connection is lost")
         self.shot(tab, "phone_lost")
@@ -389,8 +388,7 @@ class PageTest(PageCase):
                 self.assertEqual(tab.errors, [])
                 self.assertEqual(tab.eval("getComputedStyle(document.querySelector('#say-form')).display"), "none")
             self.assertFalse(static.eval("document.querySelector('#stop').checkVisibility()"))
-            live.click("#stop")
-            wait_until(lambda: robot.stops == 1, "stop while a day is played")
+            self.stop(live)
             live.wait("document.querySelector('#toast').textContent.startsWith('Stop was sent to the real robot.')", "that it was sent")
             self.shot(live, "phone_replay")
 

@@ -5,7 +5,7 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-import fake_robot  # noqa: E402, F401 (finds the package)
+from fake_robot import WAIT  # noqa: E402 (finds the package, too)
 from hyselam_web import requests, sentences  # noqa: E402
 
 
@@ -25,6 +25,11 @@ class TalkedTo:
 
     def stop(self):
         self.stops += 1
+
+    async def stopped(self):
+        """Until the robot was stopped."""
+        while not self.stops:
+            await asyncio.sleep(0.001)
 
     def say(self, text, may_drive=True):
         return asyncio.ensure_future(self.sentences.say(text, may_drive))
@@ -50,7 +55,7 @@ class SentencesTest(unittest.TestCase):
     @staticmethod
     def run_it(story):
         async def within():
-            return await asyncio.wait_for(story(TalkedTo()), 20)
+            return await asyncio.wait_for(story(TalkedTo()), WAIT)
         return asyncio.run(within())
 
     def refused(self, code, future):
@@ -92,7 +97,7 @@ class SentencesTest(unittest.TestCase):
             self.assertEqual(robot.stops, 0)
             await robot.answer("Go to SS05.")
             await said
-            await asyncio.sleep(0.01)
+            await robot.stopped()
             self.assertEqual(robot.stops, 1)
         self.run_it(story)
 
@@ -128,6 +133,7 @@ class SentencesTest(unittest.TestCase):
             self.assertFalse(said.done())
             robot.ways += 1
             await robot.turn(0.5)
+            await asyncio.wait([said])
             self.refused("not_allowed", said)
             self.assertEqual(robot.stops, 1)
         self.run_it(story)
@@ -159,6 +165,7 @@ class SentencesTest(unittest.TestCase):
             await robot.answer("Go to SS05.")
             robot.ways += 1
             await robot.turn(0.2)
+            await robot.stopped()
             self.assertEqual((robot.stops, robot.told), (1, ["Go to SS05."]))
         self.run_it(story)
 
@@ -167,6 +174,7 @@ class SentencesTest(unittest.TestCase):
             said = robot.say("Where are you?", may_drive=False)
             await robot.answer("Where are you?")
             await robot.turn(1.0)
+            await asyncio.wait([said])
             self.assertEqual((said.result(), robot.stops), (["All right."], 0))
         self.run_it(story)
 

@@ -5,7 +5,6 @@ import asyncio
 import os
 import sys
 import tempfile
-import time
 import types
 
 sys.dont_write_bytecode = True
@@ -26,19 +25,8 @@ BOXES = "Object.fromEntries([...hyselam.map.names.shown].map(([id, s]) => [id, s
 class TapsTest(PageCase):
     def card_of(self, tab, place):
         """Taps the place and waits for its card."""
-        tab.press(*self.at(tab, *tab.eval(f"hyselam.model.place({place}).c")))
+        self.tap_place(tab, place)
         tab.wait(f"document.querySelector('#card [data-of], #card h2') && hyselam.map.selected === '{place}'", f"the card of place {place}")
-
-    def toast(self, tab, text):
-        tab.wait(f"!document.querySelector('#toast').hidden && document.querySelector('#toast').textContent.includes({text!r})", text)
-
-    def press_toast(self, tab):
-        """Again where the touch did not reach the button, as a person would."""
-        for _ in range(3):
-            tab.click("#toast button")
-            time.sleep(0.5)
-            if tab.eval("document.querySelector('#toast button') === null || document.querySelector('#toast').hidden"):
-                return
 
     # ---- Doors and walls ----
 
@@ -62,7 +50,7 @@ class TapsTest(PageCase):
             tab.click("#card summary")
             tab.click(f"#card [data-key=open{door}]")
             wait_until(lambda: self.asked("unwall"), "the way back")
-            self.toast(tab, opened)
+            self.notice(tab, opened)
             tab.wait(f"document.querySelector('#card [data-key=shut{door}]')", "the open door")
             self.assertEqual(self.robot.told, [])
             said = [fields["language"] for name, fields, _ in self.robot.asked if name in ("shut", "unwall")]
@@ -80,16 +68,16 @@ class TapsTest(PageCase):
             x, y = tab.eval("hyselam.model.place(1).c")
             tab.drag(self.at(tab, x - 1.5, y + 1), self.at(tab, x + 1.5, y + 1))
             tab.wait("Object.keys(hyselam.model.tables.told).length === 1", "the wall")
-            self.toast(tab, "The glass wall is on the map.")
+            self.notice(tab, "The glass wall is on the map.")
             self.shot(tab, "taps_glass")
             if by_card:
                 self.card_of(tab, 1)
                 tab.click("#card summary")
                 tab.click("#card [data-key^=wall]")
             else:
-                self.press_toast(tab)
+                tab.click("#toast button")
             tab.wait("Object.keys(hyselam.model.tables.told).length === 0", "that it is gone")
-            self.toast(tab, "The wall is there no more.")
+            self.notice(tab, "The wall is there no more.")
         self.assertEqual(tab.errors, [])
 
     def test_a_wall_across_a_door_shuts_it_where_the_robot_says_so(self):
@@ -217,10 +205,9 @@ class TapsTest(PageCase):
 
     def test_stop_is_told_in_the_language_of_the_page(self):
         self.serve()
-        for count, language in enumerate(("pt-PT", "en-US"), 1):
+        for language in ("pt-PT", "en-US"):
             tab = self.open_map(PHONE, language=language)
-            tab.click("#stop")
-            wait_until(lambda n=count: self.robot.stops == n, "stop")
+            self.stop(tab)
             self.assertEqual(self.robot.stop_language, language[:2])
 
     # ---- The talk ----
@@ -240,24 +227,21 @@ class TapsTest(PageCase):
 
     def test_the_microphone_says_what_it_does(self):
         self.serve()
-        tab = self.browser.tab(PHONE)
-        self.addCleanup(tab.close)
-        tab.send("Page.addScriptToEvaluateOnNewDocument", source=MICROPHONE)
-        tab.goto(self.served.address)
+        tab = self.open(PHONE, script=MICROPHONE)
         tab.wait("window.hyselam && hyselam.map.labels > 3", "the map")
         for why, text in (("not-allowed", "The microphone was refused."), ("no-speech", "Nothing was heard."), ("network", "does not recognise speech")):
             tab.click("#listen")
             tab.wait("!document.querySelector('#hearing').hidden", "that it listens")
             self.shot(tab, "taps_listening")
             tab.eval(f"refuse('{why}')")
-            self.toast(tab, text)
+            self.notice(tab, text)
             self.assertTrue(tab.eval("document.querySelector('#hearing').hidden"))
         tab.click("#listen")
         tab.eval("hear('Where are you?')")
         wait_until(lambda: self.asked("say") == [{"text": "Where are you?"}], "what was heard")
         tab.eval("Object.defineProperty(globalThis, 'isSecureContext', {value: false}), true")
         tab.click("#listen")
-        self.toast(tab, "only to pages of https")
+        self.notice(tab, "only to pages of https")
 
     # ---- What is seen ----
 
@@ -269,7 +253,7 @@ class TapsTest(PageCase):
         for size, name in ((PHONE, "phone"), (DESKTOP, "desktop")):
             tab = self.open_map(size)
             tab.eval("hyselam.map.zoom(1.6)")
-            tab.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")  # where they lie is of this zoom
+            self.drawn(tab)  # where they lie is of this zoom
             tab.wait("[...hyselam.map.names.shown.values()].filter((s) => s.kind === 'name').length > 4", "names")
             self.shot(tab, f"taps_names_{name}")
             across = tab.eval("""[...hyselam.map.names.shown].filter(([id, s]) => s.kind === 'name' && !hyselam.map.names.isWithin({place: hyselam.model.place(id)}, s.box)
@@ -284,7 +268,7 @@ class TapsTest(PageCase):
             tab.eval(f"hyselam.map.selected = '{place}'; hyselam.map.invalidate()")
             self.robot.later(lambda: self.robot.world.set("pose", sights.pose(10.02, 8.01, 0.3)))
             tab.wait("hyselam.model.values.pose.x === 10.02", "the next pose")
-            tab.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            self.drawn(tab)
             self.assertEqual(tab.eval(BOXES), before)
             self.robot.world.set("pose", sights.pose(10.0, 8.0, 0.3))
 
@@ -298,6 +282,7 @@ class TapsTest(PageCase):
         self.assertEqual(tab.eval("hyselam.thingsOn(hyselam.map).length"), 0)  # no room
         tab.eval("(([x, y]) => { hyselam.map.center = [x, y]; hyselam.map.scale = 40; hyselam.map.touched(); })(hyselam.model.place(5).c)")
         tab.wait("hyselam.thingsOn(hyselam.map).length === 3", "the things")
+        self.drawn(tab)
         self.shot(tab, "taps_things")
         x, y = tab.eval("(({x, y}) => { const b = hyselam.map.canvas.getBoundingClientRect(); return [x + b.x, y + b.y]; })(hyselam.thingsOn(hyselam.map).find((each) => each.id === '2'))")
         tab.press(x, y)
@@ -405,9 +390,8 @@ class TapsTest(PageCase):
             self.assertLessEqual(card, foot)
             self.shot(tab, "taps_replay")
             self.assertEqual(tab.eval("document.querySelector('#stop').textContent"), "STOP the real robot")
-            tab.click("#stop")
-            wait_until(lambda: robot.stops == 1, "stop")
-            self.toast(tab, "Stop was sent to the real robot.")
+            self.stop(tab)
+            self.notice(tab, "Stop was sent to the real robot.")
 
 
 if __name__ == "__main__":

@@ -79,7 +79,7 @@ class Server:
         self.run = secrets.token_hex(6)
         self.pages = set()
         self.buckets = limits.Buckets()
-        self._stopped, self._stop_again = -1e9, False
+        self._stopped, self._stop_again, self._stop_language = -1e9, False, ""
         self._texts = {}  # {since: text} of the newest version
         self._texts_of = -1
         self._seen = {}  # connection: since when it has asked for nothing
@@ -322,7 +322,7 @@ class Server:
     def stop(self, language=""):
         """At once, and answered in that language; of a flood of them a few in a second are said, the last one for certain: something may have begun in between. Returns
         how many hear it."""
-        self._stop_again = self.clock() - self._stopped < STOP_PERIOD
+        self._stop_again, self._stop_language = self.clock() - self._stopped < STOP_PERIOD, language
         if not self._stop_again:
             self._stopped = self.clock()
         return self.robot.stop(not self._stop_again, language)
@@ -335,7 +335,7 @@ class Server:
 
     def tick(self):
         if self._stop_again and self.clock() - self._stopped >= STOP_PERIOD:
-            self.stop()
+            self.stop(self._stop_language)
         # Neither keeps pages from what the other has.
         for part in (self.robot.collect, self._record):
             try:
