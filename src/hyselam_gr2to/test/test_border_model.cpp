@@ -42,7 +42,7 @@ TEST(BorderModel, ShippedIsTheFileOfThePackage) {
 }
 
 TEST(BorderModel, ShippedTellsWhereItComesFrom) {
-  const BorderModelOrigin& origin = BorderModel::shipped().origin();
+  const hyselam::ModelOrigin& origin = BorderModel::shipped().origin();
   EXPECT_EQ("train_borders GRIDMAPS", origin.command);
   EXPECT_NE(std::string::npos, origin.data.find("28 maps")) << origin.data;
   EXPECT_NE(std::string::npos, origin.data.find("24 generated floors")) << origin.data;

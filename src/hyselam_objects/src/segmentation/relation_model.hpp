@@ -6,17 +6,10 @@
 #include <array>
 #include <string>
 
+#include "hyselam_common/model_text.hpp"
 #include "patch_relations.hpp"
 
 namespace hyselam_objects {
-
-/// Where a model comes from, as stands in its file; a line each.
-struct RelationModelOrigin {
-  std::string command;    ///< that trained it
-  std::string data;       ///< what it was trained on
-  std::string in_sample;  ///< scores on the clouds that it was trained on
-  std::string left_out;   ///< scores on clouds that were left out of the training
-};
 
 /// Weights of features.
 struct RelationWeights {
@@ -26,7 +19,7 @@ struct RelationWeights {
 
 struct RelationModel {
   RelationWeights with_colors, without_colors;
-  RelationModelOrigin origin;
+  hyselam::ModelOrigin origin;
 
   /// Log-odds that both are parts of one object: what their contact and what their bridge says.
   double oddsOfOneObject(const PatchRelation& relation, bool has_colors) const;

@@ -5,23 +5,16 @@
 
 #include <string>
 
+#include "hyselam_common/model_text.hpp"
 #include "hyselam_gr2to/segmentation/boosted_trees.hpp"
 #include "hyselam_gr2to/segmentation/border_features.hpp"
 
 namespace hyselam_topo {
 
-/// Where a model comes from, as stands in its file; a line each.
-struct BorderModelOrigin {
-  std::string command;    ///< that trained it
-  std::string data;       ///< what it was trained on, with checksums
-  std::string in_sample;  ///< scores on the maps that it was trained on
-  std::string left_out;   ///< scores on maps whose building was left out of the training
-};
-
 class BorderModel {
  public:
   /// The trees' features are BorderFeature.
-  BorderModel(BoostedTrees trees, BorderModelOrigin origin);
+  BorderModel(BoostedTrees trees, hyselam::ModelOrigin origin);
 
   /// Reads a file as toText() gives it.
   /// @throws hyselam::InputError with the line: another format or version, features that are not
@@ -42,11 +35,11 @@ class BorderModel {
   double oddsOfOnePlace(const BorderFeatures& border) const;
 
   const BoostedTrees& trees() const { return trees_; }
-  const BorderModelOrigin& origin() const { return origin_; }
+  const hyselam::ModelOrigin& origin() const { return origin_; }
 
  private:
   BoostedTrees trees_;
-  BorderModelOrigin origin_;
+  hyselam::ModelOrigin origin_;
 };
 
 }  // namespace hyselam_topo
