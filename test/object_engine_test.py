@@ -167,7 +167,7 @@ class ObjectEngineTest(unittest.TestCase):
         text.publish("There is a cup on the table. It is red.")
         wait_until(lambda: self.replies.messages)
         self.assertIn("cup", self.replies.messages[0].data)
-        self.assertIn("show me one", self.replies.messages[0].data)
+        self.assertIn("before my camera", self.replies.messages[0].data)
         ask = rospy.ServiceProxy(self.name + "/query_objects", QueryObjects)
         answer = ask("Where is the red cup?")
         self.assertTrue(answer.understood)

@@ -345,7 +345,9 @@ TEST(ObjectText, AsksToBeShownUnknownKinds) {
   const auto told = fill.process("There is a pen on the table in the lab.");
   EXPECT_EQ(fill.kindToShow(dictionary, told), "pen");
   EXPECT_EQ(fill.kindToShow(dictionary, told), "") << "once at most, and no furniture";
-  EXPECT_EQ(fill.showRequest("pen"), "I do not know what a pen looks like: show me one.");
+  EXPECT_EQ(
+      fill.showRequest("pen"),
+      "I do not know what a pen looks like. Hold one before my camera and say 'This is a pen.'");
 }
 
 TEST(ObjectText, SurvivesAnyBytes) {

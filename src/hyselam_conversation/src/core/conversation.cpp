@@ -204,6 +204,11 @@ void Conversation::perform(const DialogueAction& action, Exchange& out) {
       motion_ = Motion::kFollowing;
       ahead_.clear();
       break;
+    case DialogueAction::Kind::kPose:
+      motion_ = Motion::kStanding;
+      ahead_.clear();
+      if (action.pose) moveTo(action.pose->pose, kSettled, out);
+      break;
     case DialogueAction::Kind::kTurn: {
       motion_ = Motion::kStanding;
       ahead_.clear();

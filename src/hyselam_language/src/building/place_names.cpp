@@ -95,8 +95,12 @@ NameKey PlaceNames::key(const std::string& name) const {
     if (const NameType* type = grammar.compiled().nameType(type_)) types.push_back(type);
   }
   const auto anyType = [&](auto&& holds) { return std::any_of(types.begin(), types.end(), holds); };
-  const bool article = words.size() > 1 && words[0].size() > 1 &&
-                       anyType([&](const NameType* type) { return type->isArticle(words[0]); });
+  // "A cozinha", but "A wing": an article of one letter stands before a noun of its language.
+  const bool article =
+      words.size() > 1 && anyType([&](const NameType* type) {
+        if (!type->isArticle(words[0])) return false;
+        return words[0].size() > 1 || (type->head_first && type->nouns.count(words[1]) != 0);
+      });
   if (article) words.erase(words.begin());
   std::string whole;
   for (const std::string& word : words) whole += (whole.empty() ? "" : " ") + word;

@@ -80,6 +80,17 @@ std::string headWord(const std::string& name, const language::NameType& type) {
   return "";
 }
 
+/// A word of another language for a kind of place, in this one: "corredor" of "corridor"; "": none.
+std::string inOwnLanguage(const std::string& name, const language::NameType& type) {
+  std::string kind = hyselam::utf8Fold(name);
+  std::replace(kind.begin(), kind.end(), ' ', '_');
+  std::string first;
+  for (const auto& [noun, its_kind] : type.kinds) {
+    if (its_kind == kind && (first.empty() || noun < first)) first = noun;
+  }
+  return first;
+}
+
 /// "Paul's": no "girls'", "secretary's".
 bool isOwnersName(const std::string& word, const language::NameType& type) {
   const std::size_t apostrophe = word.find('\'');
@@ -111,7 +122,8 @@ bool takesArticle(const std::string& name, const language::CompiledGrammar& gram
 std::string articleKey(const std::string& name, const Grammar& grammar, bool another,
                        bool* plural) {
   const auto* type = grammar.compiled().nameType("place");
-  const std::string head = type == nullptr ? "" : headWord(name, *type);
+  std::string head = type == nullptr ? "" : headWord(name, *type);
+  if (type != nullptr && head.empty()) head = headWord(inOwnLanguage(name, *type), *type);
   if (head.empty() || !takesArticle(name, grammar.compiled(), *type)) return "";
   *plural = head.size() > 2 && head.back() == 's' && head[head.size() - 2] != 's';
   const std::string singular = *plural ? head.substr(0, head.size() - 1) : head;

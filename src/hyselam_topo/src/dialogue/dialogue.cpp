@@ -7,6 +7,7 @@
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_language/building/article.hpp"
+#include "told_facts.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -148,13 +149,19 @@ void Dialogue::forgetLost(const std::vector<Id>& lost, const KnownBefore& known)
 }
 
 void Dialogue::setGrid(hyselam::OccupancyGrid grid) {
-  grid_ = std::move(grid);
+  grid_ = std::make_shared<const hyselam::OccupancyGrid>(std::move(grid));
 }
 
 Reply Dialogue::setPose(double stamp, const hyselam::Pose2& pose) {
   Reply out = reply();
   if (topo_state_.update(places_.map(), stamp, pose)) talk_.entered = true;
   seeWhetherArrived();
+  const auto isAt = [&](const NamedGoal& goal) {
+    return std::find(goal.second.begin(), goal.second.end(), robot().place) != goal.second.end();
+  };
+  if (talk_.under_way && talk_.way.size() > 1 && isAt(talk_.way.front())) {
+    talk_.way.erase(talk_.way.begin());  // there it has been
+  }
   if (!talk_.entered) return out;
   talk_.entered = false;
   enterPlace(out);
@@ -168,6 +175,7 @@ Reply Dialogue::losePose(double stamp) {
 
 void Dialogue::setOut(Id to) {
   talk_.under_way = to;
+  talk_.halted = false;
   talk_.stood_at = robot().pose;
   talk_.stands_since = robot().stamp;
 }
@@ -341,6 +349,22 @@ bool Dialogue::areOfOtherNames(const std::string& name, const std::vector<Id>& p
   return others.size() > 1;
 }
 
+bool Dialogue::tellOnlyTold(const std::string& name, Reply& out) {
+  const std::vector<Id> told = builder_.find(name);
+  if (told.empty()) return false;
+  out.sentences.push_back(phrases().say("told_only", {{"name", said(name)}}));
+  std::string facts;
+  for (const std::string& fact : factsOf(builder_.building(), told.front(), grammar())) {
+    facts += (facts.empty() ? "" : " ") + fact;
+  }
+  if (!facts.empty()) out.sentences.push_back(phrases().say("told", {{"text", facts}}));
+  if (places_.hasMap() && !isOfOtherFloor(name)) {
+    askWhere(out);
+    wonder({builder_.building().findPlace(told.front())->name});
+  }
+  return true;
+}
+
 std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
   std::vector<Id> found;
   if (name.reference == "here") {
@@ -355,6 +379,7 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
     }
   } else {
     found = places_.find(name.text);
+    if (found.empty() && tellOnlyTold(name.text, out)) return {};
     if (areOfOtherNames(name.text, found)) {
       out.sentences.push_back(
           phrases().say("which_place", {{"places", phrases().list(labels(found))}}));

@@ -27,7 +27,7 @@ bool Dialogue::isPlaceName(const SaidName& name) const {
 }
 
 void Dialogue::takeAnswer(const ParsedText& text, Turn& turn) {
-  if (!talk_.questions.isOpen()) return;
+  if (takeWhere(text, turn) || !talk_.questions.isOpen()) return;
   SaidAnswer said = answerIn(text, question(), robot().place, [this](const auto& a, const auto& b) {
     return places_.sameName(a, b);
   });
@@ -157,6 +157,13 @@ void Dialogue::answerYes(const Question& asked, Turn& turn) {
     case Kind::kGo:
       drive(asked.goals, out);
       break;
+    case Kind::kOpenDoor:
+      openDoor(asked.wall, out);
+      if (!asked.goals.empty()) drive(asked.goals, out);
+      break;
+    case Kind::kPose:
+      startFrom(asked, turn);
+      break;
     case Kind::kForgetAll:
       forgetEverything(out);
       break;
@@ -208,6 +215,12 @@ void Dialogue::answerNo(const Question& asked, Reply& out) {
     case Question::Kind::kNewName:
       out.sentences.push_back(p.say("say_otherwise"));
       return;
+    case Question::Kind::kPose:
+      // Then what was said is the name of the place where it is.
+      talk_.is_here = true;
+      out.append(understand(asked.sentence, {}));
+      talk_.is_here = false;
+      return;
     default:
       break;
   }
@@ -240,6 +253,8 @@ void Dialogue::meetAnswer(const Utterance& u, Turn& turn) {
   } else if (u.intent == "no" && talk_.under_way) {
     halt(out);
     out.sentences.push_back(phrases().say("stopped"));
+  } else if (u.intent == "yes" && askWondered(out)) {
+    return;
   } else if (u.intent == "yes" || u.intent == "no" || u.intent == "unknown_answer" ||
              u.intent == "repeat") {
     out.sentences.push_back(phrases().say("cancelled"));

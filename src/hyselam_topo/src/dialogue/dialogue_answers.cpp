@@ -95,6 +95,7 @@ void Dialogue::goToPreviousPlace(const Utterance&, Turn& turn) {
 
 void Dialogue::followPerson(const Utterance&, Turn& turn) {
   turn.reply.actions.push_back({DialogueAction::Kind::kFollow, {}, 0.0});
+  talk_.way.clear();
   setOut(0);
   say("following", turn);
 }
@@ -109,8 +110,17 @@ void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
                        : *side == Side::kRight ? -0.5 * hyselam::kPi
                                                : hyselam::kPi;
   turn.reply.actions.push_back({DialogueAction::Kind::kTurn, {}, angle});
+  talk_.way.clear();
   setOut(robot().place);
   turn.reply.sentences.push_back(phrases().say("turning", {{"side", phrases().side(*side)}}));
+}
+
+void Dialogue::carryOn(const Utterance&, Turn& turn) {
+  if (talk_.halted && !talk_.way.empty() && !talk_.under_way) {
+    drive(std::vector<NamedGoal>(talk_.way), turn.reply);
+  } else {
+    say("nowhere_to_go_on", turn);
+  }
 }
 
 void Dialogue::stop(const Utterance&, Turn& turn) {
@@ -124,6 +134,7 @@ void Dialogue::cancel(const Utterance&, Turn& turn) {
   talk_.questions.drop();
   turn.goals.clear();
   halt(turn.reply);
+  talk_.halted = false;  // nothing to go on with
   say("cancelled", turn);
 }
 
@@ -193,7 +204,7 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
     const auto leg = route(from, places);
     if (!leg) {
       out.sentences.push_back(p.say("no_way", {{"place", said(name)}}));
-      tellWallInTheWay(from, places, out);
+      tellWallInTheWay(from, places, goals, out);
       return;
     }
     from = leg->waypoints.back();
@@ -208,6 +219,7 @@ void Dialogue::drive(const std::vector<NamedGoal>& goals, Reply& out) {
   out.sentences.push_back(p.say("going", {{"places", p.list(told)}}));
   if (closed) out.sentences.push_back(p.say("door_closed"));
   out.actions.push_back(std::move(action));
+  talk_.way = goals;
   setOut(stops.back());
 }
 
@@ -267,7 +279,7 @@ void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
         p.say("where_is", {{"name", name}, {"code", code}, {"length", p.number(leg->length, 0)}}));
   } else {
     out.sentences.push_back(p.say("where_is_no_way", {{"name", name}, {"code", code}}));
-    if (robot().has_pose) tellWallInTheWay(robot().pose, found, out);
+    if (robot().has_pose) tellWallInTheWay(robot().pose, found, {}, out);
   }
 }
 
@@ -288,7 +300,7 @@ void Dialogue::answerRouteTo(const Utterance& u, Turn& turn) {
   const std::string place = said(shortName(goals.front()));
   if (!leg) {
     out.sentences.push_back(p.say("no_way", {{"place", place}}));
-    if (from) tellWallInTheWay(*from, goals, out);
+    if (from) tellWallInTheWay(*from, goals, {}, out);
     return;
   }
   out.sentences.push_back(p.say("way", {{"place", place},

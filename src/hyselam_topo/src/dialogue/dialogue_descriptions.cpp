@@ -1,5 +1,6 @@
 // Descriptions of the building: recorded, matched with the map, the result reported.
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "dialogue_turn.hpp"
@@ -47,7 +48,14 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
     turn.broken_off = true;
     return;
   }
-  const auto issues = builder_.add(u);
+  if (u.intent == "robot_in" && askPose(u, turn)) return;
+  const DescribedBuilding known = builder_.building();
+  const std::size_t statements = builder_.statementCount();
+  auto issues = builder_.add(u);
+  const auto denied = deniedByMap(known);
+  if (denied && builder_.statementCount() > statements && builder_.undo()) {
+    issues.push_back({IssueKind::kContradiction, *denied, u.text, u.range, ""});
+  }
   // "... Undo that." behind a statement may go further back.
   turn.known_before.statements = std::min(turn.known_before.statements, builder_.statementCount());
   turn.issues.insert(turn.issues.end(), issues.begin(), issues.end());
@@ -168,6 +176,7 @@ void Dialogue::recordStatements(Turn& turn) {
   const bool named_otherwise =
       !here.empty() && robot().place != 0 && isNamedOtherwise(robot().place, here);
   const bool changed = !(before == builder_.building());
+  nameAsTold(before);
   readBack(before, !here.empty() && !beyond_here && places_.hasMap(), out);
   reportIssues(turn);
   const std::optional<DescriptionIssue> to_ask = std::move(turn.to_ask);
@@ -242,6 +251,7 @@ void Dialogue::askAboutIssue(const DescriptionIssue& issue, bool asks_speaker, R
 }
 
 void Dialogue::matchDescription(Reply& out, bool report) {
+  if (talk_.is_trial) return;
   talk_.match.reset();
   talk_.unsure = {};
   const DescribedBuilding& building = builder_.building();
@@ -269,6 +279,13 @@ void Dialogue::matchDescription(Reply& out, bool report) {
       }
       places_.guess(guesses);
       talk_.unsure = uncertaintyOf(*talk_.match, problem, params_.match, building);
+      // What people have confirmed is sure, whatever else they say of it.
+      auto& unsure = talk_.unsure.names;
+      for (auto name = unsure.begin(); name != unsure.end();) {
+        const bool sure = !confirmedPlaces(*name).empty();
+        if (sure) talk_.unsure.places.erase(*name);
+        name = sure ? unsure.erase(name) : std::next(name);
+      }
     }
   } catch (const hyselam::InputError& e) {
     talk_.match.reset();
@@ -280,7 +297,7 @@ void Dialogue::matchDescription(Reply& out, bool report) {
   if (problem_to_ask) askMostInformativeQuestion(*problem_to_ask, out);
 }
 
-void Dialogue::reportMatch(Reply& out) const {
+void Dialogue::reportMatch(Reply& out) {
   const Phrases& p = phrases();
   const DescribedBuilding& building = builder_.building();
   std::vector<std::string> missing;
@@ -310,10 +327,20 @@ void Dialogue::reportMatch(Reply& out) const {
   out.sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
+  const std::vector<std::string> names(talk_.unsure.names.begin(), talk_.unsure.names.end());
+  std::vector<std::string> without = missing;
+  without.erase(std::remove_if(without.begin(), without.end(),
+                               [&](const std::string& name) { return isOfOtherFloor(name); }),
+                without.end());
+  const bool asks = !without.empty() && names.empty();
+  std::copy_if(names.begin(), names.end(), std::back_inserter(without), [&](const auto& name) {
+    return std::find(missing.begin(), missing.end(), name) == missing.end();
+  });
   if (!missing.empty())
     out.sentences.push_back(p.say("not_found", {{"names", p.list(said(missing))}}));
-  if (talk_.unsure.names.empty()) return;
-  const std::vector<std::string> names(talk_.unsure.names.begin(), talk_.unsure.names.end());
+  if (asks) askWhere(out);
+  wonder(std::move(without));
+  if (names.empty()) return;
   if (talk_.unsure.answers < 2) {
     out.sentences.push_back(p.say("unsure", {{"names", p.list(said(names))}}));
     return;

@@ -9,7 +9,6 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
-#include "other_languages.hpp"
 #include "said_answer.hpp"
 
 namespace hyselam_topo {
@@ -85,13 +84,6 @@ void joinCorrections(const std::string& text, std::vector<Utterance>* all) {
   }
 }
 
-std::vector<std::string> proposalsOf(const std::string& first,
-                                     const std::vector<std::string>& others) {
-  std::vector<std::string> all{first};
-  all.insert(all.end(), others.begin(), others.end());
-  return all;
-}
-
 }  // namespace
 
 Dialogue::Handler Dialogue::handlerOf(const Utterance& u) {
@@ -107,6 +99,8 @@ Dialogue::Handler Dialogue::handlerOf(const Utterance& u) {
       {"virtual_place", &Dialogue::addVirtualPlace},
       {"go_to", &Dialogue::goTo},
       {"go_back", &Dialogue::goToPreviousPlace},
+      {"carry_on", &Dialogue::carryOn},
+      {"open_door", &Dialogue::openDoor},
       {"follow_me", &Dialogue::followPerson},
       {"stop", &Dialogue::stop},
       {"turn", &Dialogue::turnRobot},
@@ -205,8 +199,16 @@ ParsedText Dialogue::parsed(const std::string& text) const {
   const bool asks_for_name =
       question().isAboutName() || question().kind == Question::Kind::kSpeaker;
   if (asks_for_name) options.expected = {"name_answer", "denied_name"};
+  if (isWondering()) options.expected = {"where_answer"};
   options.preferred = language_;
   ParsedText parsed = parser_.parse(text, options);
+  const auto& all = parsed.utterances;
+  if (isWondering() && std::any_of(all.begin(), all.end(), [&](const Utterance& u) {
+        return u.intent == "where_answer" && !placeIn(u);
+      })) {  // "The kitchen."
+    options.expected.clear();
+    parsed = parser_.parse(text, options);
+  }
   // A word or two that nobody understands is of no other language than the talk.
   const bool nothing = parsed.misunderstood() == parsed.utterances.size();
   const bool short_text = std::count(text.begin(), text.end(), ' ') < 2;
@@ -235,6 +237,7 @@ std::vector<std::string> Dialogue::notUnderstood(const std::string& text) const 
 
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   talk_.questions.beginUtterance();
+  talk_.wonders_anew = false;
   dropStaleQuestion();
   const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
   Reply out = urgent.urgency == Urgency::kNone ? understand(text, options) : obey(urgent);
@@ -281,6 +284,7 @@ void Dialogue::finish(Turn& turn) {
   propose(turn);
   settleQuestion(turn);
   talk_.described_last = turn.told;
+  if (turn.about_else && !talk_.wonders_anew) talk_.wondered.clear();
   if (!turn.again.empty()) turn.reply.append(understand(turn.again, {}));
 }
 
@@ -398,95 +402,6 @@ bool Dialogue::forgetsKnown(const Utterance& u, Turn& turn) {
   forget.range = u.range;
   handleUtterance(forget, turn);
   return true;
-}
-
-bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
-                                   Turn& turn) {
-  if (parsed.utterances.empty() || parsed.misunderstood() < parsed.utterances.size()) return false;
-  std::set<std::string> spoken;
-  for (const Grammar& each : parser_.grammars()) spoken.insert(each.language());
-  if (OtherLanguages::shipped().find(turn.text, spoken).empty()) return false;
-  builder_.sentenceRefused();
-  // The parser's guess among its own is none.
-  language_ = turn.reply.language = language_before;
-  const std::string refusal = phrases().say("only_languages");
-  turn.reply.refusals.push_back({turn.text, refusal, false, ""});
-  turn.not_understood.push_back(refusal);
-  turn.reply.sentences.push_back(refusal);
-  settleQuestion(turn);
-  return true;
-}
-
-void Dialogue::tellLeftOut(Turn& turn) {
-  std::string all;
-  std::set<std::string> told;
-  for (const std::string& words : turn.left_out) {
-    if (told.insert(words).second) all += (all.empty() ? "" : "', '") + words;
-  }
-  if (!all.empty()) turn.not_understood.push_back(phrases().say("left_out", {{"text", all}}));
-}
-
-void Dialogue::refuse(const Utterance& u, Turn& turn) {
-  const Phrases& p = phrases();
-  const bool helps = !u.suggestion.empty();
-  const std::string refusal =
-      helps ? p.say("not_understood_say",
-                    {{"text", u.text}, {"reason", u.reason}, {"suggestion", u.suggestion}})
-            : p.say("not_understood", {{"text", u.text}, {"reason", u.reason}});
-  const bool proposes = helps && u.suggests_meaning;
-  std::string rest;  // what the proposal does without
-  for (const std::string& words : proposes ? u.left_out : std::vector<std::string>{}) {
-    rest += (rest.empty() ? "" : " ") + p.say("not_understood_part", {{"text", words}});
-  }
-  if (turn.options.forward_unknown) {
-    forward(u, refusal, turn);
-    ForwardedSentence& forwarded = turn.reply.forwarded.back();
-    forwarded.reason = u.reason;
-    forwarded.suggestion = u.suggestion;
-    forwarded.suggests_meaning = proposes;
-    forwarded.alternatives = u.alternatives;
-    forwarded.rest = rest;
-    return;
-  }
-  turn.reply.refusals.push_back({u.text, u.reason, false, u.suggestion});
-  if (proposes && turn.proposals.empty()) {
-    turn.proposals = proposalsOf(u.suggestion, u.alternatives);
-    turn.refusal_of_proposal = refusal;
-    if (!rest.empty()) turn.not_understood.push_back(rest);
-  } else {
-    turn.not_understood.push_back(refusal);
-  }
-}
-
-void Dialogue::propose(Turn& turn) {
-  if (!turn.to_confirm.empty()) {
-    // What was understood first; what else may have been meant belongs to it.
-    const bool both = !turn.proposals.empty();
-    turn.proposals = {turn.to_confirm + (both ? " " + turn.proposals.front() : "")};
-    if (both) turn.proposals.push_back(turn.to_confirm);
-    turn.refusal_of_proposal =
-        phrases().say("not_taken_down_say", {{"suggestion", turn.proposals.front()}});
-  }
-  if (turn.proposals.empty()) return;
-  auto& sentences = turn.reply.sentences;
-  if (talk_.questions.isOpen() && talk_.questions.isNew()) {  // one question at a time
-    sentences.insert(sentences.end() - 1, turn.refusal_of_proposal);
-    return;
-  }
-  askProposal(turn.proposals, turn.reply);
-}
-
-Reply Dialogue::refuse(const ForwardedSentence& sentence) {
-  Reply out = reply();
-  if (sentence.suggests_meaning && !(talk_.questions.isOpen() && talk_.questions.isNew())) {
-    if (!sentence.rest.empty()) out.sentences.push_back(sentence.rest);
-    askProposal(proposalsOf(sentence.suggestion, sentence.alternatives), out);
-  } else {
-    out.sentences.push_back(sentence.refusal);
-  }
-  out.refusals.push_back({sentence.text, sentence.reason, false, sentence.suggestion});
-  talk_.last_said = out.sentences;
-  return out;
 }
 
 bool Dialogue::askWhose(const Utterance& u, Turn& turn) {

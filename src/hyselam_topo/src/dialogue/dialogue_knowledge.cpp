@@ -201,9 +201,7 @@ void Dialogue::answerIsKnown(const Utterance& u, Turn& turn) {
   const std::vector<Id> found = placesOfKind(said.front().text);
   if (!found.empty()) {
     turn.reply.sentences.push_back(p.say("known_place", {{"places", p.list(labels(found))}}));
-  } else if (!builder_.find(said.front().text).empty()) {
-    turn.reply.sentences.push_back(p.say("told_only", {{"name", this->said(said.front().text)}}));
-  } else {
+  } else if (!tellOnlyTold(said.front().text, turn.reply)) {
     turn.reply.sentences.push_back(p.say("unknown_place", {{"name", said.front().text}}));
     turn.reply.unknown_name = true;
   }

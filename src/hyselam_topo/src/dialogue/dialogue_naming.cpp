@@ -200,10 +200,33 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
 
 void Dialogue::rename(const Utterance& u, Turn& turn) {
   const Change change(this);
-  const std::vector<Id> found = resolve(u, "place", turn.reply);
   const auto names = textsOf(u.names("name"));
   if (names.empty()) return;
-  for (const Id id : found) confirmNames(id, {names.front()}, turn.reply, true);
+  const std::vector<SaidName> old = u.names("place");
+  const bool by_name = !old.empty() && old.front().reference.empty();
+  if (by_name && !isCode(old.front().text) && confirmedPlaces(old.front().text).empty() &&
+      builder_.find(old.front().text).size() == 1) {  // known from descriptions only
+    const DescribedBuilding before = builder_.building();
+    builder_.rename(before.findPlace(builder_.find(old.front().text).front())->name, names.front());
+    readBack(before, false, turn.reply);
+    matchDescription(turn.reply, true);
+    turn.reply.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+    return;
+  }
+  const std::vector<Id> found = resolve(u, "place", turn.reply);
+  for (const Id id : found) {
+    const Place& place = *places_.map().findPlace(id);
+    std::vector<std::string> gone;
+    if (nameStateOf(place) == NameState::kConfirmed) gone = namesOf(place);
+    confirmNames(id, {names.front()}, turn.reply, true);
+    gone.erase(std::remove_if(
+                   gone.begin(), gone.end(),
+                   [&](const std::string& name) { return places_.sameName(name, names.front()); }),
+               gone.end());
+    if (gone.empty()) continue;
+    turn.reply.sentences.push_back(
+        phrases().say("not_so_any_more", {{"names", phrases().list(gone)}}));
+  }
 }
 
 void Dialogue::dropTold(Id id, const std::vector<std::string>& names) {

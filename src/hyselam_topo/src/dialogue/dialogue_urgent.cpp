@@ -17,6 +17,7 @@ bool isMotion(const Utterance& u) {
 }  // namespace
 
 void Dialogue::halt(Reply& out) {
+  talk_.halted = talk_.halted || (talk_.under_way && !talk_.way.empty());
   talk_.under_way.reset();
   out.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
 }
@@ -34,6 +35,7 @@ Reply Dialogue::obey(const UrgentWords& urgent) {
   turn.reply.stopped = true;
   turn.reply.ends_other_question = true;
   const bool stop = urgent.urgency == Urgency::kStop;
+  if (!stop) talk_.halted = false;  // nothing to go on with
   turn.reply.sentences.push_back(phrases().say(stop ? "stopped" : "cancelled"));
   for (const UrgentRest& rest : urgent.rest) {
     // Behind what waits for an answer, in words that would not be heard again.

@@ -207,8 +207,49 @@ std::pair<Id, Id> Dialogue::sidesOf(const DescribedWall& wall) const {
   return {beside(1.0), beside(-1.0)};
 }
 
+void Dialogue::openDoor(const DescribedWall& wall, Reply& out) {
+  out.sentences.push_back(sayWall(wall, false));
+  places_.removeWall(wall);
+  out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+}
+
+void Dialogue::openDoor(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
+  std::vector<std::vector<Id>> sides;
+  for (const char* slot : {"place", "other"}) {
+    const std::vector<SaidName> names = u.names(slot);
+    if (names.empty()) continue;
+    sides.push_back(resolve(names.front(), out));
+    if (sides.back().empty()) return;
+  }
+  const auto leadsTo = [&](const Edge& edge, const std::vector<Id>& places) {
+    return std::any_of(places.begin(), places.end(),
+                       [&](Id id) { return id == edge.a || id == edge.b; });
+  };
+  std::vector<DescribedWall> meant;
+  for (const DescribedWall& wall : places_.walls()) {
+    const Door* door = places_.doorShutBy(wall);
+    if (door == nullptr) continue;
+    for (const Edge& edge : places_.map().edges) {
+      const bool is_of_edge = std::any_of(edge.doors.begin(), edge.doors.end(),
+                                          [&](const Door& each) { return &each == door; });
+      if (is_of_edge && std::all_of(sides.begin(), sides.end(),
+                                    [&](const auto& places) { return leadsTo(edge, places); })) {
+        meant.push_back(wall);
+      }
+    }
+  }
+  if (meant.empty()) {
+    say("no_shut_door", turn);
+    return;
+  }
+  const Change change(this);
+  for (const DescribedWall& wall : meant) openDoor(wall, out);
+}
+
 void Dialogue::tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
-                                Reply& out) const {
+                                const std::vector<NamedGoal>& goals_then, Reply& out) {
   const auto start = placeAt(places_.map(), {from.x, from.y}, 0.5);
   if (!start) return;
   const std::vector<Id> shut = places_.shutDoors();
@@ -261,10 +302,19 @@ void Dialogue::tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id
   if (first == nullptr) return;
   const Phrases& p = phrases();
   const bool is_door = places_.doorShutBy(*first->wall) != nullptr;
-  out.sentences.push_back(
+  const std::string sentence =
       p.say(is_door ? "shut_in_the_way" : "wall_in_the_way",
             {{"wall", p.wall(first->wall->kind)},
-             {"places", p.list({said(shortName(first->a)), said(shortName(first->b))})}}));
+             {"places", p.list({said(shortName(first->a)), said(shortName(first->b))})}});
+  if (!is_door) {
+    out.sentences.push_back(sentence);
+    return;
+  }
+  Question question;
+  question.kind = Question::Kind::kOpenDoor;
+  question.wall = *first->wall;
+  question.goals = goals_then;
+  ask(std::move(question), sentence + " " + p.say("ask_open"), out);
 }
 
 bool Dialogue::useLanguage(const std::string& language) {

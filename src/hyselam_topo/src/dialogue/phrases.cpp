@@ -137,6 +137,16 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"only_languages", ""},
     {"nothing_asked", ""},
     {"nobody_answers", ""},
+    {"ask_where", "code"},
+    {"ask_pose", "names code here"},
+    {"starts_from", "code names"},
+    {"far_apart", "a code_a b code_b distance"},
+    {"is_elsewhere", "a code_a b code_b"},
+    {"ask_open", ""},
+    {"no_shut_door", ""},
+    {"not_so_any_more", "names"},
+    {"not_taken_down", ""},
+    {"nowhere_to_go_on", ""},
     {"cannot_do", ""}};
 
 const std::map<std::string, std::set<std::string>>& knownPhrases() {

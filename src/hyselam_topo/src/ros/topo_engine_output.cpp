@@ -54,6 +54,9 @@ void TopoEngineServer::act(const Reply& reply) {
       case Kind::kTurn:
         turn(action.angle);
         break;
+      case Kind::kPose:
+        if (action.pose) publishers_.initial_pose.publish(poseMsg(*action.pose));
+        break;
     }
   }
   if (map) publishMap();
@@ -109,6 +112,21 @@ void TopoEngineServer::turn(double angle) {
   go({leg});
 }
 
+geometry_msgs::PoseWithCovarianceStamped TopoEngineServer::poseMsg(const PlacePose& at) const {
+  geometry_msgs::PoseWithCovarianceStamped msg;
+  msg.header.frame_id = frame();
+  msg.header.stamp = ros::Time::now();
+  msg.pose.pose = hyselam::toPoseMsg(at.pose);
+  // Rows and columns x, y, yaw of (x, y, z, roll, pitch, yaw).
+  constexpr std::size_t kRows[] = {0, 1, 5};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      msg.pose.covariance[6 * kRows[i] + kRows[j]] = at.covariance[3 * i + j];
+    }
+  }
+  return msg;
+}
+
 void TopoEngineServer::publishMap() {
   if (!dialogue_.places().hasMap()) return;
   try {
@@ -122,7 +140,7 @@ void TopoEngineServer::publishMap() {
   for (const std::string& name : dialogue_.knownNames()) names.data += name + "\n";
   publishers_.names.publish(names);
   std_msgs::String candidates;
-  for (const auto& [name, places] : dialogue_.unsure().places) {
+  for (const auto& [name, places] : dialogue_.whereMayBe()) {
     candidates.data += name;
     for (const Id id : places) {
       const Place* place = dialogue_.map().findPlace(id);

@@ -100,16 +100,7 @@ bool TopoEngineServer::onPose(hyselam_msgs::WordToPose::Request& request,
   }
   response.found = true;
   response.place = found->first;
-  response.pose.header.frame_id = frame();
-  response.pose.header.stamp = ros::Time::now();
-  response.pose.pose.pose = hyselam::toPoseMsg(found->second.pose);
-  // Rows and columns x, y, yaw of (x, y, z, roll, pitch, yaw).
-  constexpr std::size_t kRows[] = {0, 1, 5};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      response.pose.pose.covariance[6 * kRows[i] + kRows[j]] = found->second.covariance[3 * i + j];
-    }
-  }
+  response.pose = poseMsg(found->second);
   return true;
 }
 

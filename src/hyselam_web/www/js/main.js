@@ -46,7 +46,7 @@ class Page {
       onUserMove: () => byId("follow").setAttribute("aria-pressed", "false"),
       onEscape: () => (this.map.tool || this.picking ? this.setTool(null) : this.places.close()),
     });
-    this.talk = new Talk(model, source, may, (text) => this.next.heard(text));
+    this.talk = new Talk(model, source, may, (text) => this.next.heard(text), (text) => this.next.answer(text));
     this.next = new NextStep(model, source, may, {
       say: (text) => this.talk.say(text),
       pick: (name, ids) => this.pick(name, ids),

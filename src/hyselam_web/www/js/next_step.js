@@ -1,10 +1,11 @@
 // What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
-import {called, corrected, told} from "./wording.js";
+import {called, corrected, placeOnly, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
-const UNSURE = /not sure where|places fit|answers fit|certeza onde|respostas servem|servem muitos lugares/i;
+const UNSURE = /not sure where|places fit|answers fit|have not found|certeza onde|respostas servem|servem muitos lugares|não encontrei/i;
+const NOT_UNDERSTOOD = /^(I did not understand|I have not taken|Did you mean|I know of no|Não compreendi|Não anotei|Queria dizer|Não sei nada)/;
 const TAKEN_DOWN = /^(Noted:|Anotado:)/;
 const NO = /^(no|não|nao)\b/i;
 const MAX_BUTTONS = 5;
@@ -45,6 +46,15 @@ export class NextStep {
     return this.tried.get(sentence);
   }
 
+  // What the robot is told where a place is all that is said to "Where is the kitchen?": that this is the kitchen.
+  answer(text) {
+    const name = this.shown?.name;
+    const place = name && !/["“”«»]/.test(name) ? placeOnly(text, this.model) : null;
+    if (!place) return text;
+    const portuguese = /[ãõçêôáíóúéà]|\b(lugar|fica|na|no|numero)\b/i.test(text) || (currentLanguage() === "pt" && !/\b(it|is|the|in|at)\b/i.test(text));
+    return `${place.e} ${portuguese ? "é" : "is"} "${name}".`;
+  }
+
   newest() {
     const {talk} = this.model;
     return talk.length ? talk[talk.length - 1].i : 0;
@@ -67,8 +77,8 @@ export class NextStep {
   step() {
     if (!this.may("talk") || this.connection.replays) return null;
     const {talk} = this.model;
-    const last = talk.map((entry) => entry.w).lastIndexOf("human");
-    const answers = talk.slice(last + 1).filter((entry) => entry.w === "robot");
+    let last = talk.map((entry) => entry.w).lastIndexOf("human");
+    let answers = talk.slice(last + 1).filter((entry) => entry.w === "robot");
     const at = this.newest();
     // With the answer, so that nothing moves under the finger once it is there.
     const denies = this.denied && last >= 0 && talk[last].i > this.denied.after && NO.test(talk[last].s);
@@ -81,8 +91,15 @@ export class NextStep {
       const right = corrected(talk[last].s, this.model.values.names ?? [], doubted);
       if (right && this.isUnderstood(right)) return {kind: "meant", at: talk[last].i, right, ids: []};
     }
+    // An answer that is not understood leaves open what was.
+    while (answers.length && answers.every((entry) => NOT_UNDERSTOOD.test(entry.s)) && !answers.some((entry) => UNSURE.test(entry.s))) {
+      const before = talk.slice(0, last).map((entry) => entry.w).lastIndexOf("human");
+      if (before < 0) break;
+      answers = talk.slice(before + 1, last).filter((entry) => entry.w === "robot");
+      last = before;
+    }
     if (this.model.values.asked?.yes || !answers.some((entry) => UNSURE.test(entry.s))) return null; // one question at a time
-    const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 1 && !this.isPlaced(each));
+    const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 0 && !this.isPlaced(each));
     return name ? {kind: "unsure", at: talk[last].i, name, ids: this.places(name)} : null;
   }
 

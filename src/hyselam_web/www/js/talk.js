@@ -5,7 +5,7 @@ import {corrected, plain, told} from "./wording.js";
 import {listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
-const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|a place)|I treat the door as|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então .* volta a ser|Tenho (um )?lugar)/;
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então .* volta a ser|Encontrei \d)/;
 const MAX_CHIPS = 8;
 const STOPS = ["Stop.", "Stop moving.", "Pare."]; // as the server says them for the button
 
@@ -38,9 +38,9 @@ export function suggestions(line, names, sentences) {
 }
 
 export class Talk {
-  // heard(text): before a sentence is said.
-  constructor(model, connection, may, heard) {
-    Object.assign(this, {model, connection, may, heard});
+  // heard(text): before a sentence is said; answer(text): what is meant by it where something is open.
+  constructor(model, connection, may, heard, answer) {
+    Object.assign(this, {model, connection, may, heard, answer});
     this.log = byId("talk-log");
     // The newest line stays in sight, also when the panel was out of it, unless somebody reads further up.
     this.atEnd = true;
@@ -87,7 +87,7 @@ export class Talk {
       toast(t("error_not_allowed"), true);
       return;
     }
-    const text = told(typed, this.model);
+    const text = told(this.answer(typed), this.model);
     if (text !== typed) this.typed.set(text, typed);
     this.heard(text);
     byId("answers").hidden = true;

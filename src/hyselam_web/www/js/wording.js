@@ -54,6 +54,17 @@ export function told(sentence, model) {
   });
 }
 
+// Words around the place in "It's the first one, place 6", "Acho que é no lugar 7".
+const AROUND = new RegExp("^(it|its|that|thats|this|here|is|s|in|at|the|a|o|as|so|i|think|guess|believe|one|place|number|no|door|room|on|left|right|side|yes|ok|well|e|que|isso|ali|aqui|acho|penso|creio|" +
+  "fica|esta|na|em|lugar|numero|porta|sala|sim|bem|do|da|lado|esquerda|esquerdo|direita|direito|first|second|third|fourth|fifth|sixth|last|primeir[ao]|segund[ao]|terceir[ao]|quart[ao]|quint[ao]|sext[ao]|ultim[ao])$");
+
+// The place that is all that a sentence names, and only by its number; null: there is none, or more is said.
+export function placeOnly(sentence, model) {
+  const words = folded(sentence).replace(/\b(ss|cc|vv)0*(\d+)\b/g, "$2").match(/[\p{L}\p{N}]+/gu) ?? [];
+  const numbers = words.filter((word) => /^\d+$/.test(word));
+  return numbers.length === 1 && words.every((word) => word === numbers[0] || AROUND.test(word)) ? model.place(Number(numbers[0])) ?? null : null;
+}
+
 export function folded(word) {
   return word.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 }

@@ -62,11 +62,13 @@ struct DialogueAction {
     kGo,      ///< drive `legs`, one after another
     kStop,    ///< stop driving
     kFollow,  ///< follow the person
-    kTurn     ///< turn by `angle`
+    kTurn,    ///< turn by `angle`
+    kPose     ///< a person says that the robot is at `pose`: its localisation starts from there
   };
   Kind kind = Kind::kMap;
   std::vector<RouteLeg> legs;
   double angle = 0.0;  ///< [rad], left > 0
+  std::optional<PlacePose> pose = std::nullopt;
 };
 
 /// A sentence for another node, which handles other topics (objects).
@@ -206,6 +208,9 @@ class Dialogue {
   const std::optional<PlaceAssignment>& match() const { return talk_.match; }
   /// Names of it whose places are not sure, and where they may be.
   const Uncertainty& unsure() const { return talk_.unsure; }
+  /// Of the names whose place is not sure, where they may be; of those that are nowhere yet, the
+  /// places without a name.
+  std::map<std::string, std::vector<Id>> whereMayBe() const;
   /// The grid map with all described walls in it; nothing without a grid map.
   std::optional<hyselam::OccupancyGrid> gridWithWalls() const;
   /// All place names, confirmed, guessed or only described, sorted.
@@ -232,9 +237,10 @@ class Dialogue {
   ParsedText parse(const std::string& text);
   /// As planRoute(), through no shut door.
   std::optional<RouteLeg> route(const hyselam::Pose2& from, const std::vector<Id>& goals) const;
-  /// Why there is no way, where one would lead through a shut door or a described wall.
+  /// Why there is no way, where one would lead through a shut door or a described wall. Of a door
+  /// that is treated as shut it asks whether that is open again; then it drives to `goals_then`.
   void tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
-                        Reply& reply) const;
+                        const std::vector<NamedGoal>& goals_then, Reply& reply);
   /// The places on both sides of a described wall, 0 where there is none.
   std::pair<Id, Id> sidesOf(const DescribedWall& wall) const;
   /// That it is there now, or no more; of one that shuts a door, what becomes of the door.
@@ -305,9 +311,12 @@ class Dialogue {
   /// Reads the statements back that `before` did not have.
   void readBack(const DescribedBuilding& before, bool here_told, Reply& reply);
   void matchDescription(Reply& reply, bool report);
-  void reportMatch(Reply& reply) const;
+  void reportMatch(Reply& reply);
 
   // names
+  /// What was told since `before` of the names of places that have confirmed ones holds for the
+  /// map, too: "the library is also called Atlantis".
+  void nameAsTold(const DescribedBuilding& before);
   void nameThisPlace(const Utterance& u, Turn& turn);
   void namePlace(Id place, const Utterance& u, Turn& turn);
   /// "SS05 is the library", also the other way round, in `named`: as if said there.
@@ -347,7 +356,6 @@ class Dialogue {
   void askName(Id place, Reply& reply);
   /// Asks whether a place with other names has these as well.
   void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
-  /// DialogueParams::ask_from_afar.
   /// For the name of a place where the robot may not be, by its generated id.
   void askFromAfar(Id place, Reply& reply);
   void askMostInformativeQuestion(const MatchProblem& problem, Reply& reply);
@@ -373,10 +381,42 @@ class Dialogue {
   /// Whether a name sounds like one of a place, or is known as one.
   bool isPlaceName(const SaidName& name) const;
 
+  // where names belong that have no sure place
+  /// From now on until something else is spoken of, "it is SS03", "in place 3" tells where the
+  /// first of these names belongs that is not said.
+  void wonder(std::vector<std::string> names);
+  bool isWondering() const { return !talk_.wondered.empty() && !talk_.questions.isOpen(); }
+  /// The place of a "where" that was answered: "SS03", "number 3"; nothing for another text.
+  std::optional<Id> placeIn(const Utterance& u) const;
+  bool takeWhere(const ParsedText& text, Turn& turn);
+  /// "Yes", where names were wondered about: asks whether the place that was guessed is right.
+  /// False if there is none.
+  bool askWondered(Reply& reply);
+  bool isOfOtherFloor(const std::string& name) const;
+  /// How to tell where a name belongs that has no place on the map.
+  void askWhere(Reply& reply);
+
+  // what people say against what they have confirmed
+  /// Why two places cannot lie as told since `before`: both are confirmed, and far apart.
+  std::optional<std::string> deniedByMap(const DescribedBuilding& before) const;
+  /// "You are in the canteen", which is known elsewhere: asks whether the robot is lost. False
+  /// where it may be there.
+  bool askPose(const Utterance& u, Turn& turn);
+  void startFrom(const Question& asked, Turn& turn);
+  /// Whether a sentence that is proposed would be taken as it stands.
+  bool isAcceptable(const std::string& sentence) const;
+  std::vector<std::string> acceptableOf(std::vector<std::string> proposals) const;
+  /// One cause and one advice; `advice`: "" for that of the reason.
+  std::string sayNotUnderstood(const std::string& text, const std::string& reason,
+                               const std::string& advice) const;
+
   // walls and virtual places
   void addWall(const Utterance& u, Turn& turn);
   void askWall(const std::optional<GlassWall>& found, Question question, Reply& reply);
   void forgetWall(const Utterance& u, Turn& turn);
+  void openDoor(const Utterance& u, Turn& turn);
+  /// The wall that shuts it is gone.
+  void openDoor(const DescribedWall& wall, Reply& reply);
   void addVirtualPlace(const Utterance& u, Turn& turn);
   void addVirtualAndAsk(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names, Reply& reply);
@@ -386,6 +426,8 @@ class Dialogue {
   void goToPreviousPlace(const Utterance& u, Turn& turn);
   void followPerson(const Utterance& u, Turn& turn);
   void turnRobot(const Utterance& u, Turn& turn);
+  /// "Carry on": where it was going when it was stopped.
+  void carryOn(const Utterance& u, Turn& turn);
   void stop(const Utterance& u, Turn& turn);
   void cancel(const Utterance& u, Turn& turn);
   void startGoal(Turn& turn);
@@ -439,6 +481,9 @@ class Dialogue {
   /// Whether a name of another language may mean several names: "casa de banho" the toilet and the
   /// bathroom.
   bool areOfOtherNames(const std::string& name, const std::vector<Id>& places) const;
+  /// What was told of a place that is not on the map, and how to tell where it is; false if nothing
+  /// was told.
+  bool tellOnlyTold(const std::string& name, Reply& reply);
   /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
   std::vector<Id> resolve(const SaidName& name, Reply& reply);
   std::vector<Id> resolve(const Utterance& u, const std::string& slot, Reply& reply);
@@ -461,7 +506,7 @@ class Dialogue {
   PlaceMan places_;
   DescriptionBuilder builder_;
   TopoState topo_state_;
-  std::optional<hyselam::OccupancyGrid> grid_;
+  std::shared_ptr<const hyselam::OccupancyGrid> grid_;
   std::optional<double> heading_;            // DialogueState::heading
   std::optional<hyselam::Point2> position_;  ///< then
   Id told_at_ = 0;                           ///< DialogueState::told_at
@@ -508,6 +553,12 @@ class Dialogue {
     Uncertainty unsure;  ///< of match
     QuestionKeeper questions;
     std::optional<Id> under_way;         ///< the place that it drives to; 0: it follows a person
+    std::vector<NamedGoal> way;          ///< where it was sent last, what is left of it ...
+    bool halted = false;                 ///< ... and it was stopped on the way
+    std::vector<std::string> wondered;   ///< names whose place was said not to be sure
+    bool wonders_anew = false;           ///< ... in this turn
+    bool is_here = false;                ///< it was asked about where it is told to be
+    bool is_trial = false;               ///< only to see whether a sentence would be taken
     hyselam::Pose2 stood_at;             ///< where it was when it moved last
     double stands_since = 0.0;           ///< [s]
     std::set<std::string> accepted;      ///< names that a person has agreed to (NameKey::full)

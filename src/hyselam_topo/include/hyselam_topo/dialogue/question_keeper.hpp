@@ -36,7 +36,9 @@ struct Question {
     kMoved,        ///< is it right that names move (`moved`)?
     kGo,           ///< drive to `goals`, though it is not sure that they are called so?
     kForgetAll,    ///< forget all names and all that was told?
-    kSpeaker       ///< what is the name of the person who speaks? Then `sentence` is heard again
+    kSpeaker,      ///< what is the name of the person who speaks? Then `sentence` is heard again
+    kPose,         ///< does the robot stand in `place`, whose names were told of where it is?
+    kOpenDoor      ///< is the door that `wall` shuts open again? Then drive to `goals`
   };
   Kind kind = Kind::kNone;
   Id place = 0;

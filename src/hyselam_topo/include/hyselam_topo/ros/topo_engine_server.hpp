@@ -2,6 +2,7 @@
 // out.
 #pragma once
 
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hyselam_msgs/AddGlassWall.h>
 #include <hyselam_msgs/AddVirtualPlace.h>
 #include <hyselam_msgs/AugmentedTopologicalMap.h>
@@ -64,6 +65,8 @@ class TopoEngineServer {
   void publishHumanText(const std::string& text);
   void go(const std::vector<RouteLeg>& legs);
   void turn(double angle);
+  /// In the frame of the map, now.
+  geometry_msgs::PoseWithCovarianceStamped poseMsg(const PlacePose& at) const;
   void halt();
   void publishMap();
   void publishWalls();

@@ -1,0 +1,154 @@
+// What was not understood: why, and what may have been meant.
+#include <algorithm>
+#include <set>
+
+#include "dialogue_turn.hpp"
+#include "hyselam_topo/dialogue/dialogue.hpp"
+#include "other_languages.hpp"
+
+namespace hyselam_topo {
+namespace {
+
+std::vector<std::string> proposalsOf(const std::string& first,
+                                     const std::vector<std::string>& others) {
+  std::vector<std::string> all{first};
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
+}  // namespace
+
+bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
+                                   Turn& turn) {
+  if (parsed.utterances.empty() || parsed.misunderstood() < parsed.utterances.size()) return false;
+  std::set<std::string> spoken;
+  for (const Grammar& each : parser_.grammars()) spoken.insert(each.language());
+  if (OtherLanguages::shipped().find(turn.text, spoken).empty()) return false;
+  builder_.sentenceRefused();
+  // The parser's guess among its own is none.
+  language_ = turn.reply.language = language_before;
+  const std::string refusal = phrases().say("only_languages");
+  turn.reply.refusals.push_back({turn.text, refusal, false, ""});
+  turn.not_understood.push_back(refusal);
+  turn.reply.sentences.push_back(refusal);
+  settleQuestion(turn);
+  return true;
+}
+
+void Dialogue::tellLeftOut(Turn& turn) {
+  std::string all;
+  std::set<std::string> told;
+  for (const std::string& words : turn.left_out) {
+    if (told.insert(words).second) all += (all.empty() ? "" : "', '") + words;
+  }
+  if (!all.empty()) turn.not_understood.push_back(phrases().say("left_out", {{"text", all}}));
+}
+
+void Dialogue::refuse(const Utterance& u, Turn& turn) {
+  const Phrases& p = phrases();
+  std::vector<std::string> meant;
+  if (u.suggests_meaning && !u.suggestion.empty()) {
+    meant = acceptableOf(proposalsOf(u.suggestion, u.alternatives));
+  }
+  const bool proposes = !meant.empty();
+  // What may have been meant, but cannot be taken, is no advice either.
+  const std::string advice = proposes ? meant.front() : u.suggests_meaning ? "" : u.suggestion;
+  const std::string refusal = sayNotUnderstood(u.text, u.reason, advice);
+  std::string rest;  // what the proposal does without
+  for (const std::string& words : proposes ? u.left_out : std::vector<std::string>{}) {
+    rest += (rest.empty() ? "" : " ") + p.say("not_understood_part", {{"text", words}});
+  }
+  if (turn.options.forward_unknown) {
+    forward(u, refusal, turn);
+    ForwardedSentence& forwarded = turn.reply.forwarded.back();
+    forwarded.reason = u.reason;
+    forwarded.suggestion = advice;
+    forwarded.suggests_meaning = proposes;
+    if (proposes) forwarded.alternatives.assign(meant.begin() + 1, meant.end());
+    forwarded.rest = rest;
+    return;
+  }
+  turn.reply.refusals.push_back({u.text, u.reason, false, advice});
+  if (proposes && turn.proposals.empty()) {
+    turn.proposals = meant;
+    turn.refusal_of_proposal = refusal;
+    if (!rest.empty()) turn.not_understood.push_back(rest);
+  } else {
+    turn.not_understood.push_back(refusal);
+  }
+}
+
+void Dialogue::propose(Turn& turn) {
+  if (!turn.to_confirm.empty()) {
+    // What was understood first; what else may have been meant belongs to it.
+    const bool both = !turn.proposals.empty();
+    turn.proposals = {turn.to_confirm + (both ? " " + turn.proposals.front() : "")};
+    if (both) turn.proposals.push_back(turn.to_confirm);
+    turn.refusal_of_proposal =
+        phrases().say("not_taken_down_say", {{"suggestion", turn.proposals.front()}});
+  }
+  if (!turn.to_confirm.empty()) {
+    turn.proposals = acceptableOf(turn.proposals);
+    if (turn.proposals.empty()) {
+      turn.reply.sentences.push_back(phrases().say("not_taken_down"));
+      turn.reply.refusals.push_back({turn.to_confirm, phrases().say("not_taken_down"), false, ""});
+    }
+  }
+  if (turn.proposals.empty()) return;
+  auto& sentences = turn.reply.sentences;
+  if (talk_.questions.isOpen() && talk_.questions.isNew()) {  // one question at a time
+    sentences.insert(sentences.end() - 1, turn.refusal_of_proposal);
+    return;
+  }
+  askProposal(turn.proposals, turn.reply);
+}
+
+Reply Dialogue::refuse(const ForwardedSentence& sentence) {
+  Reply out = reply();
+  std::vector<std::string> meant;
+  if (sentence.suggests_meaning && !(talk_.questions.isOpen() && talk_.questions.isNew())) {
+    meant = acceptableOf(proposalsOf(sentence.suggestion, sentence.alternatives));
+  }
+  if (!meant.empty()) {
+    if (!sentence.rest.empty()) out.sentences.push_back(sentence.rest);
+    askProposal(meant, out);
+  } else {
+    out.sentences.push_back(sentence.refusal);
+  }
+  out.refusals.push_back({sentence.text, sentence.reason, false, sentence.suggestion});
+  talk_.last_said = out.sentences;
+  return out;
+}
+
+std::string Dialogue::sayNotUnderstood(const std::string& text, const std::string& reason,
+                                       const std::string& advice) const {
+  const Phrases& p = phrases();
+  if (advice.empty()) return p.say("not_understood", {{"text", text}, {"reason", reason}});
+  // The reason's own advice, behind its cause, would be a second one.
+  return p.say(
+      "not_understood_say",
+      {{"text", text}, {"reason", reason.substr(0, reason.find("; "))}, {"suggestion", advice}});
+}
+
+std::vector<std::string> Dialogue::acceptableOf(std::vector<std::string> proposals) const {
+  if (talk_.is_trial) return proposals;
+  proposals.erase(std::remove_if(proposals.begin(), proposals.end(),
+                                 [&](const std::string& each) { return !isAcceptable(each); }),
+                  proposals.end());
+  return proposals;
+}
+
+bool Dialogue::isAcceptable(const std::string& sentence) const {
+  Dialogue trial(*this);
+  trial.talk_.is_trial = true;
+  trial.talk_.questions.drop();
+  const Reply reply = trial.hear(sentence);
+  const bool whole =
+      std::all_of(reply.utterances.begin(), reply.utterances.end(), [](const Utterance& u) {
+        return u.understood() && u.left_out.empty() && u.to_confirm.empty();
+      });
+  return whole && reply.refusals.empty() && !reply.unknown_name &&
+         trial.question().kind != Question::Kind::kProposal;
+}
+
+}  // namespace hyselam_topo
