@@ -277,6 +277,15 @@ TEST(OpenEnds, ARefusalHasOneAdvice) {
   }
 }
 
+TEST(OpenEnds, WhatCannotBeTakenIsNotProposed) {
+  Talk t;
+  t.talk.confirmNames("SS02", {"computer room"});
+  const std::string reply =
+      t.say("The science lab is after the computer room, on the same side of the corridor.");
+  EXPECT_TRUE(contains(reply, "Noted: The science lab comes right after")) << reply;
+  EXPECT_NE(t.asked(), Question::Kind::kProposal) << "no side was told before";
+}
+
 /// What is proposed is taken when it is said: of all texts that people have said in the batches.
 TEST(OpenEnds, WhatIsProposedIsTaken) {
   std::size_t proposals = 0;
@@ -294,8 +303,36 @@ TEST(OpenEnds, WhatIsProposedIsTaken) {
       ++proposals;
       const std::string proposed = example.talk.question();
       const Exchange taken = example.talk.say("Yes.");
-      EXPECT_TRUE(taken.refusals.empty()) << text << "\n" << proposed << "\n" << taken.replyText();
+      // Or it asks what only the person can tell: "Shall I call a place 'Narnia'?"
+      const Question::Kind asks = example.talk.dialogue().question().kind;
+      EXPECT_TRUE(taken.refusals.empty() || asks == Question::Kind::kNewName ||
+                  asks == Question::Kind::kSpeaker)
+          << text << "\n"
+          << proposed << "\n"
+          << taken.replyText();
     }
   }
   EXPECT_GE(proposals, 50u);
+}
+
+TEST(OpenEnds, ADenialBesideWhatIsSaidSpoilsNothing) {
+  for (const char* said : {"We don't call it the library any more, it is the archive now.",
+                           "We no longer call the library that, it is the archive.",
+                           "Já não lhe chamamos library, agora é archive.",
+                           "Já não se chama library, chama-se archive."}) {
+    Talk t;
+    t.talk.confirmNames("SS03", {"library"});
+    const std::string reply = t.say(said);
+    EXPECT_EQ(t.names(3), Names{"archive"}) << said << ": " << reply;
+  }
+  for (const auto& [name, said] :
+       {std::pair("library", "The library is not needed, forget that name."),
+        std::pair("library", "Forget the library, there is no such thing."),
+        std::pair("library", "Forget the library, it does not exist."),
+        std::pair("biblioteca", "Esquece a biblioteca, não há tal coisa.")}) {
+    Talk t;
+    t.talk.confirmNames("SS03", {name});
+    const std::string reply = t.say(said);
+    EXPECT_TRUE(t.names(3).empty()) << said << ": " << reply;
+  }
 }

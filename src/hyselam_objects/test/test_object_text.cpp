@@ -347,7 +347,7 @@ TEST(ObjectText, AsksToBeShownUnknownKinds) {
   EXPECT_EQ(fill.kindToShow(dictionary, told), "") << "once at most, and no furniture";
   EXPECT_EQ(
       fill.showRequest("pen"),
-      "I do not know what a pen looks like. Hold one before my camera and say 'This is a pen.'");
+      "I do not know what a pen looks like. To show me, hold one before my camera and say what it is.");
 }
 
 TEST(ObjectText, SurvivesAnyBytes) {

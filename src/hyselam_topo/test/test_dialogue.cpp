@@ -152,7 +152,7 @@ TEST(Dialogue, TheConversationOfSection731) {
   EXPECT_EQ(v.say("Robot, where are you?").text(), "I am at " + code + ".");
   const Reply told = v.say(kDescription);
   EXPECT_EQ(told.sentences.at(0).rfind("Noted: This is the corridor. ", 0), 0u) << told.text();
-  EXPECT_EQ(told.sentences.at(1), "I have a place for 7 of 7 names, confirmed: 1.");
+  EXPECT_EQ(told.sentences.at(1), "I have found 7 of 7 on my map, 1 for sure.");
   EXPECT_TRUE(told.has(DialogueAction::Kind::kMap));
   EXPECT_EQ(v.say("Robot, where are you?").text(), "I am at " + code + ", the corridor.");
   for (const std::string name : {"i-108", "i-109", "i-110", "i-111", "stairs", "hall"}) {

@@ -243,7 +243,7 @@ TEST(DialogueNames, ArticlesOfPortugueseNamesGrowTogetherWithPrepositions) {
   talk.dialogue.name(2, {"receção"});
   EXPECT_EQ(talk.say("Vá para a receção."), "Vou para a receção (SS02).");
   talk.dialogue.name(2, {"kitchen"});
-  EXPECT_EQ(talk.say("Vá para SS02."), "Vou para kitchen (SS02).") << "of another language";
+  EXPECT_EQ(talk.say("Vá para SS02."), "Vou para a kitchen (SS02).") << "of another language";
 }
 
 // ---- Names of two languages ----
@@ -286,7 +286,7 @@ TEST(DialogueNames, WhatWasForgottenAsAWholeComesBack) {
   talk.say("Forget all names.");
   talk.say("Yes.");
   ASSERT_TRUE(talk.dialogue.knownNames().empty());
-  EXPECT_EQ(talk.say("Desfaz isso."), "Então SS01 volta a ser kitchen.");
+  EXPECT_EQ(talk.say("Desfaz isso."), "Então SS01 volta a ser a kitchen.");
   EXPECT_EQ(talk.say("Is the pantry next to the kitchen?"), "Yes.");
 }
 

@@ -111,6 +111,41 @@ class HelpTest(PageCase):
         tab.wait("document.querySelector('#next').hidden && !hyselam.model.marked", "that nothing is open")
         self.assertEqual(tab.errors, [])
 
+    def test_a_place_that_is_typed_answers_where_it_is(self):
+        self.serve()
+        self.robot.world.set("candidates", {"kitchen": [3, 5]})
+        tab = self.open_map(PHONE)
+        self.answers("I am not sure where kitchen may be.")
+        self.say(tab, "There is a kitchen.")
+        self.next(tab, "Where is the kitchen?")
+        # An answer that is not understood leaves the question.
+        self.answers("I did not understand 'Over yonder.': 'yonder' is no place.")
+        self.say(tab, "Over yonder.")
+        tab.wait("[...document.querySelectorAll('.said.robot')].pop().textContent.startsWith('I did not')", "the answer")
+        self.next(tab, "Where is the kitchen?")
+        for typed, told in (("It's place 5.", 'SS05 is "kitchen".'), ("It's number 5", 'SS05 is "kitchen".'), ("the first one, place 5", 'SS05 is "kitchen".'),
+                            ("SS05", 'SS05 is "kitchen".'), ("No lugar 5.", 'SS05 é "kitchen".'), ("Acho que é o lugar 5", 'SS05 é "kitchen".'), ("Go to place 5", "Go to place 5"),
+                            ("place 77", "place 77"), ("place 5 or 6", "place 5 or 6")):
+            self.assertEqual(tab.eval(f'hyselam.next.answer("{typed}")'), told)
+        self.answers("Thank you. SS05 is kitchen.")
+        self.say(tab, "É a primeira, o lugar 5.")
+        wait_until(lambda: self.asked("say")[-1] == {"text": 'SS05 é "kitchen".'}, lambda: self.asked("say")[-1])
+        tab.wait("[...document.querySelectorAll('.said.human')].pop().textContent === 'É a primeira, o lugar 5.'", "what was typed")
+        tab.wait("document.querySelector('#next').hidden", "that nothing is open")
+        self.assertEqual(tab.eval("hyselam.next.answer('It is place 5')"), "It is place 5")  # nothing is asked
+        self.assertEqual(tab.errors, [])
+
+    def test_a_name_that_was_not_found_is_asked_about(self):
+        self.serve()
+        self.robot.world.set("candidates", {"lab": [4]})
+        tab = self.open_map(PHONE)
+        for language, answer in (("en", "I have not found the lab."), ("en", "I was told of the lab, but I have not found it on my map."), ("pt", "Não encontrei o lab.")):
+            self.answers(answer)
+            self.say(tab, "Where is the lab?")
+            self.next(tab, "Where is the lab?")
+            tab.click("#next .close")
+            tab.wait("document.querySelector('#next').hidden", f"that it is put aside ({language})")
+
     def test_a_place_that_fits_can_be_tapped_on_the_map(self):
         self.serve()
         self.answers("I am not sure where kitchen may be.")

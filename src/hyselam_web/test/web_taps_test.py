@@ -290,6 +290,11 @@ class TapsTest(PageCase):
         self.shot(tab, "taps_thing")
         tab.click("#card [data-key=forget_thing]")
         wait_until(lambda: self.asked("say") == [{"text": "Forget the ladder."}], "what it is told")
+        # What takes it back puts it there again: "undo that" would be of places.
+        self.robot.later(lambda: self.robot.say("robot", "Noted: the ladder is no longer in the library."))
+        tab.wait("document.querySelector('.undo')", "undo")
+        tab.click(".undo")
+        wait_until(lambda: self.asked("say")[1:] == [{"text": 'The ladder is in "library".'}], "what takes it back")
         tab.eval("hyselam.places.show('object', '3')")  # a name that would be another sentence is never said
         tab.wait("document.querySelector('#card-title')?.textContent.startsWith('pen. ')", "its card")
         self.assertFalse(tab.eval("Boolean(document.querySelector('#card [data-key=forget_thing]'))"))

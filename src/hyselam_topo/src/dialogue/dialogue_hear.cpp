@@ -188,7 +188,11 @@ bool Dialogue::isOfNumberedPlace(const Utterance& u, Utterance* named) const {
 }
 
 bool Dialogue::isOnlyOnMap(const Utterance& u) const {
-  const std::vector<std::string> names = textsOf(u.names("place"));
+  static const std::map<std::string, const char*> kSlots{{"forget_place", "place"},
+                                                         {"gone", "places"}};
+  const auto slot = kSlots.find(u.intent);
+  if (slot == kSlots.end() || u.slots.size() != 1) return false;
+  const std::vector<std::string> names = textsOf(u.names(slot->second));
   return !names.empty() && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return builder_.find(name).empty() && !places_.find(name).empty();
   });
@@ -326,10 +330,12 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
       recordStatements(turn);
       namePlace(places_.find(numbered.slots.front().names.front().text).front(), numbered, turn);
     });
-  } else if (u.intent == "forget_place" && isOnlyOnMap(u)) {
+  } else if (isOnlyOnMap(u)) {
     attempt(turn.reply, [&] {
       recordStatements(turn);
-      forgetNames(u, turn);
+      Utterance forget = u;
+      forget.slots.front().name = "place";
+      forgetNames(forget, turn);
     });
   } else if (isOfThisPlace(u, turn)) {
     attempt(turn.reply, [&] { recordStatements(turn); });

@@ -147,8 +147,10 @@ bool Dialogue::isAcceptable(const std::string& sentence) const {
       std::all_of(reply.utterances.begin(), reply.utterances.end(), [](const Utterance& u) {
         return u.understood() && u.left_out.empty() && u.to_confirm.empty();
       });
-  return whole && reply.refusals.empty() && !reply.unknown_name &&
-         trial.question().kind != Question::Kind::kProposal;
+  // What only the person can tell is asked then: may a place be called so? Who is speaking?
+  const Question::Kind asked = trial.question().kind;
+  const bool asks = asked == Question::Kind::kNewName || asked == Question::Kind::kSpeaker;
+  return whole && (reply.refusals.empty() || asks) && asked != Question::Kind::kProposal;
 }
 
 }  // namespace hyselam_topo

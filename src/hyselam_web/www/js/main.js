@@ -48,7 +48,7 @@ class Page {
     });
     this.talk = new Talk(model, source, may, (text) => this.next.heard(text), (text) => this.next.answer(text));
     this.next = new NextStep(model, source, may, {
-      say: (text) => this.talk.say(text),
+      say: (text, undo) => this.talk.say(text, undo),
       pick: (name, ids) => this.pick(name, ids),
       marked: (marked) => {
         model.marked = marked;
@@ -57,7 +57,7 @@ class Page {
     });
     this.places = new Places(model, source, may, {
       showOnMap: (x, y) => this.map.show(x, y),
-      say: (text) => this.talk.say(text),
+      say: (text, undo) => this.talk.say(text, undo),
       openTalk: () => this.openTab("talk"),
       pick: (name) => this.pick(name, []),
       give: (id, name) => this.next.give(id, name),

@@ -189,7 +189,8 @@ export class Places {
     const forget = this.may("talk") && isOneThing(each.k) && alike.length === 1 ? button(t("forget_thing"), () => {
       this.close();
       this.actions.openTalk(); // the answer comes there
-      this.actions.say(t("forget_this", {name: each.k}));
+      const at = place ? this.model.labelOf(place) : each.at?.[1];
+      this.actions.say(t("forget_this", {name: each.k}), at && isOneThing(at) ? t("there_again", {name: each.k, place: at}) : "");
     }, {"data-key": "forget_thing"}) : null;
     return [make("h2", {id: "card-title"}, each.k), make("p", {}, about), forget ? make("div", {class: "row"}, forget) : null];
   }

@@ -56,6 +56,7 @@ export class Talk {
     this.line = byId("say");
     this.pending = []; // said, and not yet come back from the robot
     this.typed = new Map(); // what the robot was told: as it was typed here
+    this.undoes = new Map(); // what the robot was told: what takes that back
     this.notes = []; // {after, number, key, values}: what happened behind an entry of the talk
     this.said = [];
     this.recalled = 0;
@@ -81,7 +82,8 @@ export class Talk {
     });
   }
 
-  async say(typed) {
+  // undo: what takes it back, where that is not "undo that"; "": nothing does.
+  async say(typed, undo = undefined) {
     if (!typed) return;
     if (!this.may("talk")) {
       toast(t("error_not_allowed"), true);
@@ -89,6 +91,8 @@ export class Talk {
     }
     const text = told(this.answer(typed), this.model);
     if (text !== typed) this.typed.set(text, typed);
+    if (undo !== undefined) this.undoes.set(text, undo);
+    else this.undoes.delete(text);
     this.heard(text);
     byId("answers").hidden = true;
     const entry = {text, failed: "", number: (this.sayings = (this.sayings ?? 0) + 1)};
@@ -253,8 +257,9 @@ export class Talk {
       noteAfter(entry.i, talk[i + 1]?.i ?? Infinity);
       undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
     });
-    if (undo && this.may("talk") && !this.connection.replays) {
-      lines.push([`undo ${language}`, () => button(t("undo"), () => this.say(t("undo_sentence")), {class: "undo"})]);
+    const takes_back = last_human >= 0 ? this.undoes.get(talk[last_human].s) ?? t("undo_sentence") : "";
+    if (undo && takes_back && this.may("talk") && !this.connection.replays) {
+      lines.push([`undo ${language} ${takes_back}`, () => button(t("undo"), () => this.say(takes_back), {class: "undo"})]);
     }
     for (const each of this.pending) {
       lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, this.shownText(each.text), each.failed ? make("span", {class: "why"}, each.failed) : null)]);
