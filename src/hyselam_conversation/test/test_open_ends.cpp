@@ -102,6 +102,15 @@ TEST(OpenEnds, ANameThatWasOnlyToldIsRenamedWhereItIs) {
   }
 }
 
+TEST(OpenEnds, ANewNameOfWhatNobodyToldOfIsToldWithTheOldOne) {
+  for (const char* said :
+       {"The library is now called archive.", "A library agora chama-se archive."}) {
+    Talk t;
+    t.say(said);
+    EXPECT_EQ(t.talk.dialogue().knownNames(), (Names{"archive", "library"})) << said;
+  }
+}
+
 TEST(OpenEnds, ThePlaceOfAnUnsureNameIsTold) {
   for (const char* answer :
        {"It's SS07.", "It is SS07.", "In SS07.", "SS07.", "It's number 7", "Place 7.", "in place 7",

@@ -199,11 +199,22 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
 }
 
 void Dialogue::rename(const Utterance& u, Turn& turn) {
-  const Change change(this);
   const auto names = textsOf(u.names("name"));
   if (names.empty()) return;
   const std::vector<SaidName> old = u.names("place");
   const bool by_name = !old.empty() && old.front().reference.empty();
+  if (by_name && places_.find(old.front().text).empty() &&
+      builder_.find(old.front().text).empty()) {  // whom it was told of before may use either
+    Utterance both = u;
+    both.kind = UtteranceKind::kStatement;
+    both.intent = "alias";
+    for (Slot& slot : both.slots) {
+      if (slot.name == "name") slot.name = "aliases";
+    }
+    addStatement(both, turn);
+    return;
+  }
+  const Change change(this);
   if (by_name && !isCode(old.front().text) && confirmedPlaces(old.front().text).empty() &&
       builder_.find(old.front().text).size() == 1) {  // known from descriptions only
     const DescribedBuilding before = builder_.building();
