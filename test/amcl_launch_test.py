@@ -2,7 +2,6 @@
 """amcl's own launch file with the node's type changed: what a robot with amcl does goes on to work. Cases run in the
 order of their names, on one node: it is told its pose, drives, is reconfigured, and looks for itself."""
 import math
-import time
 import unittest
 
 import rospy
@@ -49,9 +48,11 @@ class AmclLaunchTest(unittest.TestCase):
             before = cls.run_.scans[cls.next - 1].header.stamp if cls.next else rospy.Time(0)
             cls.tf.publish(TFMessage([t for t in cls.run_.transforms if before < t.header.stamp <= stamp]))
             cls.clock.publish(Clock(stamp))
+            told = len(cls.told.messages)
             cls.scan.publish(scan)
             cls.next += 1
-            time.sleep(0.03)
+            wait_until(lambda: any(t.header.frame_id == "map" and 0.0 < (t.header.stamp - stamp).to_sec() < 1.0
+                                   for m in cls.told.messages[told:] for t in m.transforms), "no transform for a scan")
 
     def transforms(self):
         return [t for m in self.told.messages for t in m.transforms
@@ -82,7 +83,6 @@ class AmclLaunchTest(unittest.TestCase):
         wait_until(lambda: self.said("initial pose x"), "the initial pose was not taken")
         self.drive(len(self.run_.scans) // 3)
         wait_until(lambda: len(self.poses.messages) > 5 and self.transforms() and self.clouds.messages, "no pose, tf or cloud")
-        time.sleep(0.5)
         self.assert_right()
         self.assertTrue(self.clouds.messages[-1].poses)
 
@@ -118,7 +118,6 @@ class AmclLaunchTest(unittest.TestCase):
         poses = len(self.poses.messages)
         self.drive(len(self.run_.scans) // 4)
         wait_until(lambda: len(self.poses.messages) > poses + 3, "no poses after the change")
-        time.sleep(0.5)
         self.assert_right()
         # What is not here, or only at the start, or makes no sense: refused, and said.
         self.assertEqual(client.update_configuration({"laser_model_type": "beam"})["laser_model_type"], "likelihood_field")
@@ -141,8 +140,9 @@ class AmclLaunchTest(unittest.TestCase):
         wait_until(lambda: len(self.poses.messages) > poses, "no update without motion")
         stamp = self.run_.scans[self.next - 1].header.stamp.to_sec()
         self.assertTrue(rospy.ServiceProxy("/set_map", SetMap)(self.run_.map, self.run_.truth_pose(stamp)).success)
+        poses = len(self.poses.messages)
         self.drive(len(self.run_.scans) // 8)
-        time.sleep(0.5)
+        wait_until(lambda: len(self.poses.messages) > poses + 1, "no poses after the map was set")
         self.assert_right()
         rospy.ServiceProxy("/global_localization", Empty)()
         wait_until(lambda: self.said("searching the whole map"), "global_localization")

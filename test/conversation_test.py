@@ -27,6 +27,7 @@ GLASS = [("right", (5.0, 6.35), -0.1, 5.6), ("right", (8.0, 9.35), -0.1, 8.6), (
          ("right", (16.0, 17.47), -0.1, 16.7)]
 MIDDLE = {"corridor": (1.0, 1.2), "i-109": (3.0, 6.0), "i-110": (9.0, 6.0), "i-111": (16.0, 6.0), "i-108": (11.0, -3.0),
           "stairs": (-2.0, 1.0), "hall": (24.0, 1.0)}
+QUIET = 12  # diagnoses, 20 a second where the machine has time
 DESCRIPTION = (
     "Robot, you are in the corridor. On your left you have room i-109, then i-110 and i-111. You are in the corridor. "
     "On your right you have room i-108. You are in the corridor. Behind you are the stairs. You are in the corridor. "
@@ -138,9 +139,15 @@ class Robot:
         self.human.publish(String(data=text))
         expected = self.status_value("texts")
         wait_until(lambda: len(self.answers.messages) > before, lambda: f"no answer to '{text}' ({expected})")
-        end = rospy.Time.now() + rospy.Duration(0.3)  # the sentences of one answer follow each other
-        while rospy.Time.now() < end:
-            rospy.sleep(0.02)
+        # The sentences of one answer follow each other: no more comes while the engine tells of itself so often.
+        count, told = len(self.answers.messages), len(self.diagnostics.messages)
+
+        def is_all():
+            nonlocal count, told
+            if len(self.answers.messages) > count:
+                count, told = len(self.answers.messages), len(self.diagnostics.messages)
+            return len(self.diagnostics.messages) >= told + QUIET
+        wait_until(is_all, "no diagnostics")
         return " ".join(m.data for m in self.answers.messages[before:])
 
     def status(self):

@@ -23,7 +23,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from geometry_msgs.msg import TransformStamped
 
-from localization_rig import Recording, SLOWNESS, free_port, wait_until, WAIT
+from localization_rig import Recording, free_port, wait_until, WAIT
 
 ENOUGH_TO_SEE_THE_MOUNT = 250  # scans: the robot has gone some metres and turned
 
@@ -42,6 +42,25 @@ def upside_down(scan):
     scan.angle_min, scan.angle_max = -scan.angle_max, -scan.angle_min
     scan.ranges = scan.ranges[::-1]
     return scan
+
+
+def wait_at_rest(process):
+    """Until it has heard and thought of all that it was sent: for half a second none of its threads has anything to do."""
+    def runs():
+        for task in os.listdir(f"/proc/{process.pid}/task"):
+            try:
+                with open(f"/proc/{process.pid}/task/{task}/stat") as file:
+                    if file.read().rpartition(")")[2].split()[0] in "RD":
+                        return True
+            except OSError:
+                pass  # it has ended
+        return False
+    quiet = [0]
+
+    def rests():
+        quiet[0] = 0 if process.poll() is None and runs() else quiet[0] + 1
+        return quiet[0] > 50
+    wait_until(rests, "the doctor is still busy")
 
 
 def later(recording, seconds):
@@ -75,7 +94,7 @@ class DoctorTest(unittest.TestCase):
         try:
             if play:
                 play(doctor)
-            self.said, _ = doctor.communicate(timeout=60)
+            self.said, _ = doctor.communicate(timeout=WAIT)
         finally:
             doctor.kill()  # one that is left would be taken for that of the next case
             doctor.wait()
@@ -109,7 +128,7 @@ class DoctorTest(unittest.TestCase):
                 # /diagnostics is what it subscribes to last.
                 wait_until(lambda: all(publish[n].get_num_connections() > 0 for n in ("tf", "static", "said")) or
                            doctor.poll() is not None, "the doctor does not listen")
-                time.sleep(0.2)
+                wait_at_rest(doctor)
                 moving = self.recording.scans[:scans]
                 transforms = iter(self.recording.transforms)
                 next_tf = next(transforms)
@@ -129,7 +148,7 @@ class DoctorTest(unittest.TestCase):
                         publish["tf"].publish(TFMessage([transform("map", odom, stamp)]))
                     publish["scan"].publish(scan_of(scan))
                     time.sleep(0.01)
-                time.sleep(0.5 * SLOWNESS)
+                wait_at_rest(doctor)
                 doctor.send_signal(signal.SIGINT)
                 doctor.wait(WAIT)
             finally:

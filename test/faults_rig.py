@@ -31,7 +31,7 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
-from localization_rig import Listener, Recording, compose, inverse, planar, wait_until
+from localization_rig import WAIT, Listener, Recording, compose, inverse, planar, wait_until
 
 KNOWN, NEW = "known", "new"  # the robots: one with a map and a camera, one that makes its map
 
@@ -49,7 +49,7 @@ def program(package, name):
 def run(*command, **environment):
     """A tool of the stack: its exit status and all that it said."""
     done = subprocess.run(list(command), env=dict(os.environ, **environment), stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=120)
+                          stderr=subprocess.STDOUT, text=True, timeout=300)
     return done.returncode, done.stdout
 
 
@@ -107,7 +107,7 @@ class Stack:
         self.managers[robot] = subprocess.Popen(
             [program("nodelet", "nodelet"), "manager", "__name:=hyselam_manager", f"__ns:=/{robot}"],
             preexec_fn=quiet, restore_signals=False)
-        rospy.wait_for_service(f"/{robot}/hyselam_manager/load_nodelet", 30.0)
+        rospy.wait_for_service(f"/{robot}/hyselam_manager/load_nodelet", WAIT)
 
     def load(self, robot, name):
         node = self.nodes[robot, name]
@@ -152,7 +152,7 @@ class Stack:
             manager.terminate()
         for manager in self.managers.values():
             try:
-                manager.wait(15)
+                manager.wait(30)
             except subprocess.TimeoutExpired:
                 manager.kill()
                 manager.wait()
@@ -316,7 +316,7 @@ class LaunchedStack(Stack):
                 rospy.set_param(f"/{robot}/{node.name}/diagnostic_period", 0.1)
         self.managers[robot] = subprocess.Popen(["roslaunch", *command], env=dict(os.environ, ROS_NAMESPACE=robot))
         # One robot after the other, and no test of how fast: many programs start at once.
-        rospy.wait_for_service(f"/{robot}/hyselam_manager/list", 60.0)
+        rospy.wait_for_service(f"/{robot}/hyselam_manager/list", WAIT)
         for name in self.layers(robot):
             wait_until(lambda: f"/{robot}/{name}" in self.loaded(robot), f"{robot}: {name} is not loaded")
 
@@ -367,7 +367,7 @@ class TwoRobots(unittest.TestCase):
 
     def call(self, robot, service, kind, *args):
         name = f"/{robot}/{service}"
-        rospy.wait_for_service(name, 20.0)
+        rospy.wait_for_service(name, WAIT)
         return rospy.ServiceProxy(name, kind)(*args)
 
     def name(self, word):
@@ -409,9 +409,9 @@ class TwoRobots(unittest.TestCase):
             self.assertGreater(len(self.call(robot, "static_map", GetMap).map.data), 0)
         elif layer == "gr2to":
             self.robots.says(robot, "gr2to", "places", while_doing=lambda: self.robots.feed(2))
-            self.assertGreater(len(rospy.wait_for_message(f"/{robot}/topological_map", AugmentedTopologicalMap, 20).places), 0)
+            self.assertGreater(len(rospy.wait_for_message(f"/{robot}/topological_map", AugmentedTopologicalMap, WAIT).places), 0)
         elif layer == "topo_engine":
-            map = rospy.wait_for_message(f"/{robot}/named_map", AugmentedTopologicalMap, 20)
+            map = rospy.wait_for_message(f"/{robot}/named_map", AugmentedTopologicalMap, WAIT)
             if robot == KNOWN:
                 wait_until(lambda: "Kitchen" in self.words(), lambda: f"the name; there are {self.words()}")
             self.assertGreater(len(map.places), 0)

@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
 from faults_rig import KNOWN, NEW, TwoRobots, program, run
-from localization_rig import Listener, wait_until
+from localization_rig import WAIT, Listener, wait_until
 
 SAVE = {"slam/save": (NEW, StatePath, "slam.state"), "words/save": (KNOWN, CorpusPath, "words.corpus"),
         "save_topological_map": (KNOWN, TopologicalMapPath, "topo.xml"), "save_dialogue": (KNOWN, StatePath, "d.state"),
@@ -218,7 +218,7 @@ class FaultsTest(TwoRobots):
                 self.assertTrue(child.startswith(NEW + "/"), (parent, child))
             if child.startswith(KNOWN + "/"):
                 self.assertIn(parent, ("map", KNOWN + "/odom", KNOWN + "/base_link"))
-        other = rospy.wait_for_message(f"/{NEW}/named_map", AugmentedTopologicalMap, 20)
+        other = rospy.wait_for_message(f"/{NEW}/named_map", AugmentedTopologicalMap, WAIT)
         self.assertNotIn("Kitchen", {w.text for p in other.places for w in p.words})
         code, text = self.knowledge("save", self.path("saved_new"), NEW)
         self.assertEqual(code, 0, text)

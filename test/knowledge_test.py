@@ -139,7 +139,7 @@ class KnowledgeTest(unittest.TestCase):
 
     def run_tool(self, command, path=None, **environment):
         done = subprocess.run([self.program, command, path or self.path], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, timeout=60, env=dict(os.environ, **environment))
+                              stderr=subprocess.PIPE, text=True, timeout=WAIT, env=dict(os.environ, **environment))
         self.out, self.err = done.stdout, done.stderr
         return done.returncode
 

@@ -100,12 +100,12 @@ class LaunchFilesTest(unittest.TestCase):
     def test_a_pose_that_there_is_not_is_refused_in_words(self):
         for name in ("hyselam.launch", "demo.launch"):
             done = subprocess.run(["roslaunch", os.path.join(self.folder, name), *ARGUMENTS[:len(ARGUMENTS) * (name == "demo.launch")],
-                                   "pose:=amcl"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+                                   "pose:=amcl"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=180)
             self.assertNotEqual(done.returncode, 0, name)
             self.assertIn("pose is slam, localization or other, not amcl", done.stdout, name)
             self.assertNotIn("started", done.stdout, name)
         told = subprocess.run(["roslaunch", "--ros-args", os.path.join(self.folder, "hyselam.launch")], stdout=subprocess.PIPE,
-                              text=True, timeout=60).stdout
+                              text=True, timeout=180).stdout
         self.assertIn("pose (default", told)
         self.assertNotIn("pose_number", told)
 

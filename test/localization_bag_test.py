@@ -17,7 +17,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, Listener, Recording, angle_between, planar, wait_until
+from localization_rig import SLOWNESS, Listener, Recording, angle_between, planar, play_bag, wait_until
 
 RATE = 8 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 
@@ -37,9 +37,7 @@ class LocalizationBagTest(unittest.TestCase):
             publisher.publish(cls.run_.map)
         for ns in ("nodelet", "node"):
             cls.heard[ns, "density_field"].wait()
-        # /scan goes to four listeners; wait for them as rosbag's own --wait-for-subscribers counts one only.
-        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", "--queue", "100000", cls.run_.bag,
-                        "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
+        play_bag(cls.run_.bag, RATE, ["/scan", "/tf", "/tf_static"])
         for ns in ("nodelet", "node"):
             wait_until(lambda: cls.value(f"{ns}/localization", "scans waiting") == "0"
                        and all(int(cls.value(f"{ns}/{name}", "scans used")) >= len(cls.run_.scans)

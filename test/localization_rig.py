@@ -4,25 +4,30 @@ import copy
 import math
 import os
 import random
+import select
 import socket
 import subprocess
 import tempfile
 import time
+import xmlrpc.client
 
 import rosbag
 import rosgraph
+import rosnode
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from hyselam_msgs.msg import FsdObservation, LocalizationStatus
 from nav_msgs.msg import OccupancyGrid
-from nodelet.srv import NodeletLoad, NodeletUnload
+from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock, Log
 from sensor_msgs.msg import LaserScan
+from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
 
 SLOWNESS = float(os.environ.get("HYSELAM_SLOWNESS", "1"))  # of an instrumented build: bags are played so much slower
-WAIT = 20.0 * SLOWNESS  # [s] of wall time; never reached when all is well
+WAIT = 90.0 * SLOWNESS  # [s] of wall time; never reached when all is well
 
 
 def planar(pose):
@@ -49,6 +54,43 @@ def wait_until(condition, what):
         if time.monotonic() > deadline or rospy.is_shutdown():
             raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
         time.sleep(0.01)
+
+
+def delivered(manager="/manager"):
+    """Returns when what was published before has come to the nodelets of that manager, and goes before what is published
+    now: requests come to the process through the same thread as messages."""
+    time.sleep(0.05)  # rospy hands messages to threads of their own
+    for _ in range(5):
+        rospy.ServiceProxy(f"{manager}/list", NodeletList)()
+
+
+def forget_dead(node):
+    """Of a node that was killed: when the next one of its name registers, the master would say "shutdown" to whoever has its
+    port by then, another test's process for one."""
+    rosnode.cleanup_master_blacklist(rosgraph.Master(rospy.get_name()), [node])
+
+
+def play_bag(path, rate, topics):
+    """Plays it with its clock, from when everybody whom the master knows to listen is connected."""
+    name = f"/player_{random.randrange(1 << 30)}"
+    player = subprocess.Popen([find_node("rosbag", "play")[0], "--clock", "--quiet", "--pause", "--rate", str(rate), "--queue", "100000", path,
+                               "--topics", *topics, f"__name:={name[1:]}"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    try:
+        master = rosgraph.Master(rospy.get_name())
+
+        def connected():
+            subscribers = dict(master.getSystemState()[1])
+            told = xmlrpc.client.ServerProxy(master.lookupNode(name)).getBusInfo(rospy.get_name())[2]
+            return all(len({each[1] for each in told if each[2] == "o" and each[4] == topic}) >= len(set(subscribers.get(topic, [])) - {name})
+                       for topic in ["/clock", *topics])
+        rospy.wait_for_service(name + "/pause_playback", WAIT)
+        wait_until(connected, "not everybody hears the bag")
+        rospy.ServiceProxy(name + "/pause_playback", SetBool)(False)
+        if player.wait() != 0:
+            raise AssertionError(f"rosbag play ended with {player.returncode}")
+    finally:
+        player.kill()
+        player.wait()
 
 
 def free_port():
@@ -134,8 +176,26 @@ class Listener:
                    lambda: f"{count} messages on {self.subscriber.name}, {len(self.messages)} came")
         return self.messages[-1]
 
+    def is_unread(self):
+        """Something has come that is not among the messages yet."""
+        sockets = [each.socket for each in self.subscriber.impl.connections if getattr(each, "socket", None) is not None]
+        try:
+            return bool(select.select(sockets, [], [], 0.0)[0])
+        except (OSError, ValueError):
+            return False  # one of them was closed
+
     def close(self):
         self.subscriber.unregister()
+
+
+def take_in(listeners):
+    """Returns when what has come to this process is among the messages: each topic has a connection and a thread of its own."""
+    quiet = [0]
+
+    def taken():
+        quiet[0] = 0 if any(listener.is_unread() for listener in listeners) else quiet[0] + 1
+        return quiet[0] > 2
+    wait_until(taken, "messages are not taken in")
 
 
 class Rig:
@@ -283,6 +343,7 @@ class Rig:
                 self.set_clock(Rig.now + tick)
             return False
         wait_until(settled, lambda: f"sent {self.sent}, " + str(self.values()))
+        take_in([self.poses, self.status, self.observations, self.fields, self.tf_seen])
 
     # What comes out.
 

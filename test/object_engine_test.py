@@ -22,7 +22,7 @@ from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
-from localization_rig import Listener, WAIT
+from localization_rig import Listener, WAIT, delivered, forget_dead
 from localization_rig import wait_until as wait_for
 
 WIDTH, HEIGHT, FOCAL, CAMERA = 320, 240, 230.0, 1.2  # the camera looks along x, 1.2 m above the floor
@@ -163,7 +163,7 @@ class ObjectEngineTest(unittest.TestCase):
         text = self.publisher("object_text", String)
         place = self.publisher("place", PlaceState)
         place.publish(PlaceState(name="kitchen"))
-        rospy.sleep(0.3)
+        delivered()
         text.publish("There is a cup on the table. It is red.")
         wait_until(lambda: self.replies.messages)
         self.assertIn("cup", self.replies.messages[0].data)
@@ -280,12 +280,20 @@ class ObjectEngineTest(unittest.TestCase):
             wait_until(lambda: self.number(key) >= number, lambda: str(self.status()))
         # Three connections: without what camera_info tells, the first pair would be left out.
         silent = types.SimpleNamespace(publish=lambda msg: None)
-        self.show((camera[0], silent, silent), 6999.5)
+        self.show((camera[0], silent, silent), 6899.5)
         wait_until(lambda: self.status().name and "camera_info" not in self.status().message, lambda: str(self.status()))
-        self.show(camera, 7000)
-        counts("frames used", 1)
-        self.show(camera, 6999.9)
-        rospy.sleep(0.5)
+        stamp = [6900]
+
+        def used():
+            """One frame after the other, until the pose of the camera is known, too."""
+            stamp[0] += 1
+            self.show(camera, stamp[0])
+            wait_until(lambda: self.number("frames used") + self.number("frames without a pose") == stamp[0] - 6900, lambda: str(self.status()))
+            return self.number("frames used") > 0
+        wait_until(used, lambda: str(self.status()))
+        self.assertEqual(self.number("frames used"), 1)
+        self.show(camera, stamp[0] - 0.1)
+        delivered()
         self.show(camera, 7001, encoding="8UC1")
         counts("frames refused", 1)
         self.assertEqual(self.number("frames used"), 1)
@@ -394,12 +402,12 @@ class ObjectEngineTest(unittest.TestCase):
                             ("Where is the pen?", "know of no")):
             engine = subprocess.Popen(command)
             try:
-                # The last one's service is still known to the master.
                 wait_until(lambda: self.answers(text), "an answer")
                 self.assertIn(reply, self.answer)
             finally:
                 engine.kill()
                 engine.wait()
+                forget_dead(self.name + "/object_engine")
         self.assertEqual(os.listdir(self.folder.name), ["objects.xml"])
 
     def answers(self, text):
@@ -447,8 +455,9 @@ class ObjectEngineTest(unittest.TestCase):
         folder = os.path.join(self.folder.name, "later")
         self.diagnostics = Listener(self.name + "/diagnostics", DiagnosticArray)
         self.addCleanup(self.diagnostics.close)
-        log = Listener("/rosout", Log)
+        log = Listener("/rosout_agg", Log)
         self.addCleanup(log.close)
+        wait_until(lambda: log.subscriber.get_num_connections() > 0)
         self.assertTrue(self.start(map_file=os.path.join(folder, "objects.xml"), autosave_period=0.1, diagnostic_period=0.05))
         ask = self.asking()
         ask("There is a pen in the kitchen.")
@@ -461,6 +470,7 @@ class ObjectEngineTest(unittest.TestCase):
         # Though nobody tells anything more.
         wait_until(lambda: self.status().level != DiagnosticStatus.ERROR, lambda: str(self.status()))
         self.assertIn("objects.xml", os.listdir(folder))
+        wait_until(lambda: any(m.name == "/manager" and "not saved" in m.msg and folder in m.msg for m in log.messages), "the log")
         self.assertEqual(len([m for m in log.messages if m.name == "/manager" and "not saved" in m.msg and folder in m.msg]), 1)
 
     def test_bad_parameters_and_files_do_not_load(self):

@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+import time
 import unittest
 
 import rospy
@@ -17,7 +18,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, Listener, Recording, planar, wait_until
+from localization_rig import SLOWNESS, WAIT, Listener, Recording, planar, play_bag, wait_until
 
 RATE = 12 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 
@@ -41,15 +42,15 @@ class SlamBagTest(unittest.TestCase):
                  "slam_markers": MarkerArray, "map_certainty": OccupancyGrid, "map_changes": MapChangeArray,
                  "map_change_markers": MarkerArray, "tf": TFMessage, "diagnostics": DiagnosticArray}
         cls.heard = {topic: Listener("/" + topic, kind) for topic, kind in kinds.items()}
-        rospy.wait_for_service("/slam/save", 30)
+        rospy.wait_for_service("/slam/save", WAIT)
         wait_until(lambda: all(h.subscriber.get_num_connections() > 0 for t, h in cls.heard.items() if t != "tf"),
                    "not connected")
-        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", "--queue", "100000", cls.run_.bag,
-                        "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
+        play_bag(cls.run_.bag, RATE, ["/scan", "/tf", "/tf_static"])
         wait_until(lambda: int(cls.values().get("scans used", 0)) >= len(cls.run_.scans), lambda: str(cls.values()))
         last = cls.run_.scans[-1].header.stamp.to_sec()
         wait_until(lambda: cls.heard["path"].messages and
                    cls.heard["path"].messages[-1].header.stamp.to_sec() > last - 5.0, "the path is old")
+        wait_until(cls.rests, lambda: f"loops are still looked for: {cls.values()}")
         out = os.path.join(cls.run_.folder.name, "offline")
         subprocess.run(["rosrun", "ngram_slam", "slam_offline", "--bag", cls.run_.bag, "--out", out], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -64,6 +65,15 @@ class SlamBagTest(unittest.TestCase):
                 if status.name == "slam: SLAM":
                     return {v.key: v.value for v in status.values}
         return {}
+
+    @classmethod
+    def rests(cls):
+        """What it found, and the way that it published, are the same after a while."""
+        def found():
+            return [cls.values().get(key) for key in ("loops", "optimizations", "regions")], cls.heard["path"].messages[-1].header.stamp
+        before = found()
+        time.sleep(2.0 * SLOWNESS)
+        return found() == before
 
     def test_way_is_as_good_as_offline(self):
         path = self.heard["path"].messages[-1]

@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 
 sys.dont_write_bytecode = True
-from localization_rig import WAIT, Listener, Recording, Rig, angle_between, compose, inverse, wait_until
+from localization_rig import WAIT, Listener, Recording, Rig, angle_between, compose, forget_dead, inverse, wait_until
 
 
 class SlamRig(Rig):
@@ -54,6 +54,7 @@ class SlamRig(Rig):
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
         wait_until(lambda: self.scan.get_num_connections() == 0, "the dead node is still connected")
+        forget_dead(self.node)
         self.sent = 0
 
     def close(self):

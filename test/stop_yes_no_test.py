@@ -4,6 +4,7 @@ cancel while the robot drives. All are obeyed, none becomes a name, none reaches
 import math
 import os
 import tempfile
+import threading
 import unittest
 
 import rospy
@@ -37,7 +38,7 @@ class StopYesNoTest(unittest.TestCase):
         cls.load = cls.robot.service("load_dialogue", StatePath)
         cls.robot.stand(*MIDDLE["corridor"])
         cls.say("You are in the corridor. On your left you have room 109.")
-        cls.way, cls.driven = [], 0
+        cls.way, cls.driven, cls.lock = [], 0, threading.Lock()
         cls.drive_timer = rospy.Timer(rospy.Duration(STEP), lambda _: cls.drive())
         cls.goals = rospy.Subscriber("/ways/goal_path", Path, cls.take_way)
         # Where room 109 was guessed, the robot asks about it when it is asked where it is.
@@ -57,22 +58,24 @@ class StopYesNoTest(unittest.TestCase):
 
     @classmethod
     def take_way(cls, msg):
-        cls.way = [(p.pose.position.x, p.pose.position.y) for p in msg.poses]
+        with cls.lock:
+            cls.way = [(p.pose.position.x, p.pose.position.y) for p in msg.poses]
 
     @classmethod
     def drive(cls):
         """Along the way, as long as there is one."""
-        if not cls.way:
-            return
-        x, y, _ = cls.robot.pose
-        (gx, gy), left = cls.way[0], SPEED * STEP
-        distance = math.hypot(gx - x, gy - y)
-        if distance <= left:
-            cls.robot.pose = (gx, gy, 0.0)
-            cls.way = cls.way[1:]
-        else:
-            cls.robot.pose = (x + left * (gx - x) / distance, y + left * (gy - y) / distance, 0.0)
-        cls.driven += 1
+        with cls.lock:
+            if not cls.way:
+                return
+            x, y, _ = cls.robot.pose
+            (gx, gy), left = cls.way[0], SPEED * STEP
+            distance = math.hypot(gx - x, gy - y)
+            if distance <= left:
+                cls.robot.pose = (gx, gy, 0.0)
+                cls.way = cls.way[1:]
+            else:
+                cls.robot.pose = (x + left * (gx - x) / distance, y + left * (gy - y) / distance, 0.0)
+            cls.driven += 1
 
     # ---- What is said ----
 
@@ -82,7 +85,8 @@ class StopYesNoTest(unittest.TestCase):
 
     def again(self, place):
         """As it was in the beginning; nothing is asked."""
-        type(self).way = []
+        with self.lock:
+            type(self).way = []
         self.assertTrue(self.load(self.saved).success)
         self.robot.stand(*MIDDLE[place])
 
@@ -124,7 +128,8 @@ class StopYesNoTest(unittest.TestCase):
             wait_until(lambda: self.driven > driven and self.way, f"it does not drive before '{text}'")
             said = self.say(text)
             wait_until(lambda: not self.way, f"'{text}' does not stop it: {said}")
-            driven = self.driven
+            with self.lock:
+                driven = self.driven
             self.assertRegex(said, r"^(I have stopped|All right|Parei|Está bem)", text)
             self.assertFalse(said.endswith("?"), (text, said))
             rospy.sleep(2 * STEP)

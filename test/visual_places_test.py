@@ -22,7 +22,7 @@ from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from localization_rig import Listener, wait_until, WAIT
+from localization_rig import Listener, delivered, wait_until, WAIT
 
 COLOR = "/camera/color/image_raw"
 ROOMS = {"left room": (1, 2.0), "right room": (2, 6.0)}  # id, x of the middle; the wall is at x = 4
@@ -223,6 +223,7 @@ class VisualPlacesTest(unittest.TestCase):
         return rig
 
     def assert_same(self, rig, expected):
+        rig.seen.wait(len(expected))
         self.assertEqual(len(rig.seen.messages), len(expected))
         for got, want in zip(rig.seen.messages, expected):
             self.assertEqual(got.name, want["predicted"])
@@ -258,6 +259,7 @@ class VisualPlacesTest(unittest.TestCase):
             rig.give(image)
             rig.wait_used()
         expected = self.film.predictions(self.film.model, self.film.jpeg_list, "poses")
+        rig.seen.wait(len(expected))
         self.assertEqual(len(rig.seen.messages), len(expected))
         # Angles go through a quaternion: a particle may fall the other way.
         same = sum(got.name == want["predicted"] for got, want in zip(rig.seen.messages, expected))
@@ -495,14 +497,15 @@ class VisualPlacesTest(unittest.TestCase):
             tested = rig.number("frames tested")
             frame = copy.deepcopy(image)
             frame.header.stamp = clock[0]
-            rospy.sleep(0.02)  # tf has a thread of its own
+            delivered()
             rig.give(frame)
             rig.wait_used()
             return rig.number("frames tested") > tested
         self.assertTrue(any([show(here, 1.5) for _ in range(10)]))
         self.assertEqual([m.data for m in rig.kidnapped.messages], [False])
-        for frames in range(1, 15):
-            show(there, 1.5)  # the pose still says left
+        frames = 0
+        for _ in range(40):
+            frames += show(there, 1.5)  # the pose still says left; one whose pose comes late is not tested
             if rig.kidnapped.messages[-1].data:
                 break
         wait_until(lambda: rig.kidnapped.messages[-1].data, "the alarm")
@@ -540,11 +543,11 @@ class VisualPlacesTest(unittest.TestCase):
 
         # It searches from the start on: no place is forced upon it.
         report(LocalizationStatus.GLOBAL)
-        rospy.sleep(0.3)
+        delivered()
         show(20)
         self.assertFalse(rig.kidnapped.messages[-1].data or rig.initialpose.messages)
         report(LocalizationStatus.LOST)
-        rospy.sleep(0.3)
+        delivered()
         show(10)
         guess = rig.initialpose.wait()
         self.assertGreater(guess.pose.pose.position.x, 4.0)
@@ -552,17 +555,17 @@ class VisualPlacesTest(unittest.TestCase):
         show(10)  # the last status still says lost: that was before the pose was set
         self.assertEqual(len(rig.initialpose.messages), 1)
         report(LocalizationStatus.LOST)  # the pose that was set did not do
-        rospy.sleep(0.3)
+        delivered()
         show(10)
         wait_until(lambda: len(rig.initialpose.messages) == 2, "the place is set again")
         # It finds itself before the place is known: nothing is set any more.
         show(10)
         report(LocalizationStatus.LOST)
-        rospy.sleep(0.3)
+        delivered()
         show(1)
         wait_until(lambda: rig.kidnapped.messages[-1].data, "lost")
         report(LocalizationStatus.TRACKING)
-        rospy.sleep(0.3)
+        delivered()
         show(1)
         wait_until(lambda: not rig.kidnapped.messages[-1].data, "it has found itself")
         self.assertEqual(len(rig.initialpose.messages), 2)

@@ -15,7 +15,7 @@ from std_msgs.msg import String
 
 sys.dont_write_bytecode = True
 from conversation_test import Robot, building
-from localization_rig import Listener, wait_until
+from localization_rig import WAIT, Listener, wait_until
 
 NEEDED = ("espeak-ng", "pocketsphinx_continuous")
 MODEL = "/usr/share/pocketsphinx/model/en-us/en-us"
@@ -50,7 +50,7 @@ class VoiceTest(unittest.TestCase):
         for bridge in cls.bridges:
             bridge.terminate()
         for bridge in cls.bridges:
-            bridge.wait(20)
+            bridge.wait(WAIT)
         cls.heard.close()
         cls.robot.close()
 

@@ -25,9 +25,9 @@ from std_msgs.msg import String
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(rospkg.RosPack().get_path("hyselam_web"), "test"))
 from conversation_test import Robot, building
-from devtools import Browser, DESKTOP, PHONE, program as browser_program
+from devtools import Browser, DESKTOP, PHONE, STILL, program as browser_program
 from faults_rig import program, run
-from localization_rig import free_port, wait_until
+from localization_rig import WAIT, free_port, wait_until
 from pages import Pages, Socket
 
 SHOTS = os.environ.get("HYSELAM_SHOTS", "")
@@ -57,7 +57,7 @@ class Server:
 
     def close(self):
         self.process.terminate()
-        self.process.wait(30)
+        self.process.wait(WAIT)
         if rospy.has_param(f"/{self.namespace}/web/bound_port"):
             rospy.delete_param(f"/{self.namespace}/web/bound_port")
 
@@ -228,11 +228,11 @@ class WebStackTest(unittest.TestCase):
         self.assertEqual(tab.errors, [])
 
     def tap(self, tab, place, card=True):
-        x, y = tab.eval(f"(() => {{ const c = hyselam.model.place({place}).c, p = hyselam.map.toScreen(...c), b = hyselam.map.canvas.getBoundingClientRect(); "
-                        "return [p[0] + b.x, p[1] + b.y]; })()")
+        x, y = tab.wait(STILL % f"() => {{ const c = hyselam.model.place({place}).c, p = hyselam.map.toScreen(...c), b = hyselam.map.canvas.getBoundingClientRect(); "
+                        "return [p[0] + b.x, p[1] + b.y]; }", "that the map lies still")
         tab.press(x, y)
         if card:
-            tab.wait("!document.querySelector('#card').hidden", "the card")
+            tab.wait(f"!document.querySelector('#card').hidden && hyselam.map.selected === '{place}'", f"the card of place {place}")
 
     def shot(self, tab, name):
         if SHOTS:
@@ -265,7 +265,7 @@ class WebStackTest(unittest.TestCase):
             doors = [d for e in self.robot.maps.messages[-1].edges for d in e.doors if d.real]
             near = min(doors, key=lambda d: abs(d.position.x - door.position.x) + abs(d.position.y - door.position.y))
             answers.append(page.ask("shut", door=near.id))
-            return answers[-1].get("error") != "unknown"
+            return answers[-1].get("error") not in ("unknown", "too_often")
 
         answers = []
         wait_until(shut, lambda: answers)
@@ -340,7 +340,7 @@ class WebStackTest(unittest.TestCase):
 
         def tell(request):
             told.append(request.text)
-            go_on.wait(30)
+            go_on.wait(WAIT)
             return TellRobotResponse(language="en", answers=["In the kitchen."])
         service = rospy.Service("/slow/tell_robot", TellRobot, tell)
         self.addCleanup(service.shutdown)

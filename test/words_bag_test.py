@@ -15,7 +15,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, Listener, Recording, wait_until
+from localization_rig import SLOWNESS, WAIT, Listener, Recording, play_bag, wait_until
 
 RATE = 8 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 PLACES = ("fsd", "scan", "node")
@@ -30,10 +30,9 @@ class WordsBagTest(unittest.TestCase):
         cls.heard = {(ns, topic): Listener(f"/{ns}/{topic}", kind) for ns in PLACES for topic, kind in kinds.items()}
         cls.diagnostics = Listener("/diagnostics", DiagnosticArray)
         for ns in PLACES:
-            rospy.wait_for_service(f"/{ns}/words/start_run", 30)
+            rospy.wait_for_service(f"/{ns}/words/start_run", WAIT)
         wait_until(lambda: all(l.subscriber.get_num_connections() > 0 for l in cls.heard.values()), "not connected")
-        subprocess.run(["rosbag", "play", "--clock", "--quiet", "--rate", str(RATE), "--delay", "2", "--queue", "100000", cls.run_.bag,
-                        "--topics", "/scan", "/tf", "/tf_static"], check=True, stdout=subprocess.DEVNULL)
+        play_bag(cls.run_.bag, RATE, ["/scan", "/tf", "/tf_static"])
         for ns, name, key in (("fsd", "words_fsd", "scans used"), ("fsd", "words", "observations used"),
                               ("scan", "words", "scans used"), ("node", "words", "scans used")):
             wait_until(lambda: int(cls.values(f"{ns}/{name}").get(key, 0)) >= len(cls.run_.scans),

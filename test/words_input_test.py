@@ -18,7 +18,7 @@ from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 
 sys.dont_write_bytecode = True
-from localization_rig import WAIT, Listener, wait_until
+from localization_rig import WAIT, Listener, take_in, wait_until
 
 NAN = float("nan")
 # Density, length [0.1 m] and turn of the stretches of a circuit.
@@ -107,6 +107,7 @@ class Rig:
             self.sent += 1
         wait_until(lambda: self.value("observations received") == str(self.sent),
                    lambda: f"sent {self.sent}, {self.values()}")
+        take_in([self.words, self.matches, self.regions])
 
     def values(self):
         for array in reversed(self.diagnostics.messages):

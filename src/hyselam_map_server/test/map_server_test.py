@@ -14,12 +14,12 @@ CELLS = [-1, 0, 100, 100, 0, 0]
 
 class MapServerTest(unittest.TestCase):
     def service(self, name, kind):
-        rospy.wait_for_service(name, 20)
+        rospy.wait_for_service(name, 90)
         return rospy.ServiceProxy(name, kind)
 
     def test_topics_and_service_agree(self):
-        grid = rospy.wait_for_message("map", OccupancyGrid, 20)
-        info = rospy.wait_for_message("map_metadata", MapMetaData, 20)
+        grid = rospy.wait_for_message("map", OccupancyGrid, 90)
+        info = rospy.wait_for_message("map_metadata", MapMetaData, 90)
         served = self.service("static_map", GetMap)().map
         self.assertEqual(list(grid.data), CELLS)
         self.assertEqual((grid.info.width, grid.info.height, grid.header.frame_id), (3, 2, "map"))
@@ -49,7 +49,7 @@ class MapServerTest(unittest.TestCase):
         self.assertFalse(loads("/unset"), "no file is given")
         self.assertEqual(list(self.service("manager/list", NodeletList)().nodelets), [])
         self.assertTrue(loads("/good"))
-        grid = rospy.wait_for_message("floor_map", OccupancyGrid, 20)
+        grid = rospy.wait_for_message("floor_map", OccupancyGrid, 90)
         self.assertEqual((list(grid.data), grid.header.frame_id), (CELLS, "floor"))
 
 

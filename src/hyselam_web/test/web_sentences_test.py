@@ -173,7 +173,7 @@ class SentencesTest(unittest.TestCase):
         async def story(robot):
             said = robot.say("Where are you?", may_drive=False)
             await robot.answer("Where are you?")
-            await robot.turn(1.0)
+            await robot.turn(sentences.VETO_WAIT + 0.5)
             await asyncio.wait([said])
             self.assertEqual((said.result(), robot.stops), (["All right."], 0))
         self.run_it(story)

@@ -7,7 +7,7 @@ from .requests import Refused
 
 OLDEST = 10.0  # [s] that a sentence may wait for those before it
 ANSWER_WAIT = 30.0  # [s] for the answer
-VETO_WAIT = 0.4  # [s] within which a sentence sets the robot going
+VETO_WAIT = 1.0  # [s] within which a sentence sets the robot going, also where the machine is busy
 STEP = 0.05  # [s] between two looks
 
 
