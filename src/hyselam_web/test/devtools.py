@@ -192,10 +192,14 @@ class Tab:
     def click(self, selector):
         """Until the element has it: what has moved away under the finger is pressed again, as by a person."""
         found, beside = json.dumps(selector), []
-        for _ in range(3):
+        for _ in range(5):
             at = self.middle(selector)
-            self.eval(f"""(() => {{ const e = document.querySelector({found}); globalThis.pressed = e ? '' : 'nothing: it has gone';
-                globalThis.addEventListener('click', ({{target}}) => {{ pressed = !e || e.contains(target) ? 'it' : target.outerHTML.slice(0, 100); }}, {{capture: true, once: true}}); }})()""")
+            is_there = self.eval(f"""(() => {{ const e = document.querySelector({found}); globalThis.pressed = '';
+                if (e) globalThis.addEventListener('click', ({{target}}) => {{
+                    pressed = e.contains(target) || (!e.isConnected && target.closest({found})) ? 'it' : target.outerHTML.slice(0, 100); }}, {{capture: true, once: true}});
+                return Boolean(e); }})()""")
+            if not is_there:
+                continue  # it has gone, and may come back
             self.press(*at)
             deadline = time.monotonic() + REACHES
             while True:
