@@ -345,9 +345,9 @@ TEST(ObjectText, AsksToBeShownUnknownKinds) {
   const auto told = fill.process("There is a pen on the table in the lab.");
   EXPECT_EQ(fill.kindToShow(dictionary, told), "pen");
   EXPECT_EQ(fill.kindToShow(dictionary, told), "") << "once at most, and no furniture";
-  EXPECT_EQ(
-      fill.showRequest("pen"),
-      "I do not know what a pen looks like. To show me, hold one before my camera and say what it is.");
+  EXPECT_EQ(fill.showRequest("pen"),
+            "I do not know what a pen looks like. To show me, hold one before my camera and say "
+            "what it is.");
 }
 
 TEST(ObjectText, SurvivesAnyBytes) {
