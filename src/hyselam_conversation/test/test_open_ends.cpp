@@ -295,6 +295,21 @@ TEST(OpenEnds, WhatCannotBeTakenIsNotProposed) {
   EXPECT_NE(t.asked(), Question::Kind::kProposal) << "no side was told before";
 }
 
+/// What can be said is told of names that are known here, those of the sentence first.
+TEST(OpenEnds, AnAdviceIsOfKnownNames) {
+  for (const auto& [name, said, advice] :
+       {std::tuple("archive", "What is the weather like tomorrow?", "'Where is the archive?'"),
+        std::tuple("storage room", "The storage room is never blorping wildly with us.",
+                   "storage room"),
+        std::tuple("biblioteca", "Qual é o tempo amanhã?", "'Onde fica a biblioteca?'")}) {
+    Talk t;
+    t.talk.confirmNames("SS03", {name});
+    const std::string reply = t.say(said);
+    EXPECT_TRUE(contains(reply, advice)) << reply;
+    EXPECT_FALSE(contains(reply, "kitchen") || contains(reply, "cozinha")) << reply;
+  }
+}
+
 /// What is proposed is taken when it is said: of all texts that people have said in the batches.
 TEST(OpenEnds, WhatIsProposedIsTaken) {
   std::size_t proposals = 0;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "dialogue_turn.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "other_languages.hpp"
 
@@ -52,7 +53,9 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
   }
   const bool proposes = !meant.empty();
   // What may have been meant, but cannot be taken, is no advice either.
-  const std::string advice = proposes ? meant.front() : u.suggests_meaning ? "" : u.suggestion;
+  const std::string advice = proposes             ? meant.front()
+                             : u.suggests_meaning ? ""
+                                                  : withKnownNames(u.suggestion, u.text);
   const std::string refusal = sayNotUnderstood(u.text, u.reason, advice);
   std::string rest;  // what the proposal does without
   for (const std::string& words : proposes ? u.left_out : std::vector<std::string>{}) {
@@ -118,6 +121,49 @@ Reply Dialogue::refuse(const ForwardedSentence& sentence) {
   out.refusals.push_back({sentence.text, sentence.reason, false, sentence.suggestion});
   talk_.last_said = out.sentences;
   return out;
+}
+
+std::string Dialogue::withKnownNames(const std::string& advice,
+                                     const std::string& said_text) const {
+  // Those that the person has just said, first.
+  std::vector<std::string> known;
+  for (const Place& place : places_.map().places) {
+    if (nameStateOf(place) == NameState::kConfirmed) known.push_back(namesOf(place).front());
+  }
+  const std::string text = hyselam::utf8Fold(said_text);
+  std::stable_partition(known.begin(), known.end(), [&](const std::string& name) {
+    return text.find(hyselam::utf8Fold(name)) != std::string::npos;
+  });
+  ParseOptions options;
+  options.language = grammar().language();
+  const ParsedText before = parser_.parse(advice, options);
+  if (before.utterances.size() != 1 || !before.utterances.front().understood()) return advice;
+  std::vector<SaidName> names;
+  for (const Slot& slot : before.utterances.front().slots) {
+    for (const SaidName& name : slot.names) {
+      if (name.reference.empty() && confirmedPlaces(name.text).empty()) names.push_back(name);
+    }
+  }
+  // Words that grow together with an article go with another one of the same gender.
+  const auto articleOf = [&](const std::string& name) {
+    const std::string with = said(name);
+    return with.substr(0, with.size() - name.size());
+  };
+  std::string better = advice;
+  for (const SaidName& name : names) {
+    const auto fits = std::find_if(known.begin(), known.end(), [&](const std::string& each) {
+      return articleOf(each) == articleOf(name.text) && advice.find(each) == std::string::npos;
+    });
+    if (fits == known.end() || articleOf(name.text).empty()) return advice;
+    const std::size_t at = better.find(name.text);
+    if (at == std::string::npos) return advice;
+    better.replace(at, name.text.size(), *fits);
+    known.erase(fits);
+  }
+  const ParsedText after = parser_.parse(better, options);
+  const bool same = after.utterances.size() == 1 && after.utterances.front().understood() &&
+                    after.utterances.front().intent == before.utterances.front().intent;
+  return same ? better : advice;
 }
 
 std::string Dialogue::sayNotUnderstood(const std::string& text, const std::string& reason,

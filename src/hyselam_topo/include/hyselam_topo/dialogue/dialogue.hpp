@@ -406,6 +406,8 @@ class Dialogue {
   /// Whether a sentence that is proposed would be taken as it stands.
   bool isAcceptable(const std::string& sentence) const;
   std::vector<std::string> acceptableOf(std::vector<std::string> proposals) const;
+  /// A sentence as it can be said, of names that are known here.
+  std::string withKnownNames(const std::string& advice, const std::string& said_text) const;
   /// One cause and one advice; `advice`: "" for that of the reason.
   std::string sayNotUnderstood(const std::string& text, const std::string& reason,
                                const std::string& advice) const;
