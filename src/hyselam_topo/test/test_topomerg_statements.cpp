@@ -259,6 +259,43 @@ TEST(TopoMergRelations, AfterAndBehind) {
   EXPECT_GT(d.value({1, 9, 12}), d.value({1, 9, 7}));
 }
 
+/// "On the way from the corridor" of a robot in it: from where it stands, not from the middle.
+TEST(TopoMergRelations, AfterIsSeenFromWhereTheRobotStoodInAPlace) {
+  Corridor c;
+  c.map.places[0].outline = {{0.0, -1.0}, {20.0, -1.0}, {20.0, 1.0}, {0.0, 1.0}};
+  c.add(2, Side::kLeft).rank = 1;
+  c.add(3, Side::kLeft).order = 1;
+  for (const Id from : {Id{0}, kCorridor}) {
+    c.building.relations = {{RelationKind::kAfter, 3, 2, from}};
+    c.observer.position = hyselam::Point2{0.5, 0.0};
+    EXPECT_EQ(2u, c.placeOf(2));
+    EXPECT_EQ(3u, c.placeOf(3));
+  }
+  // Beside the robot: what comes after it lies where the robot looks, or looked.
+  for (const bool looks_back : {false, true}) {
+    for (DescribedConnection& each : c.building.connections) {
+      each = {kCorridor, each.to, looks_back ? Side::kRight : Side::kLeft};
+    }
+    c.building.relations = {{RelationKind::kAfter, 3, 2, kCorridor}};
+    c.building.relations[0].seen_from = hyselam::Pose2{10.0, 0.0, looks_back ? kPi : 0.0};
+    c.observer.heading = looks_back ? kPi : 0.0;
+    EXPECT_GT(c.value({1, 4, looks_back ? Id{3} : Id{5}}),
+              c.value({1, 4, looks_back ? Id{5} : Id{3}}));
+  }
+}
+
+/// "Here on the left": the door that is nearest to the robot, be it a little behind it.
+TEST(TopoMergNumbers, HereIsTheNearestDoor) {
+  Corridor c;
+  c.add(2, Side::kLeft).distance = 0.0;
+  for (const auto& [x, nearest] : {std::pair{1.0, Id{2}}, {7.0, Id{3}}, {11.0, Id{4}}}) {
+    c.observer.position = hyselam::Point2{x, 0.0};
+    EXPECT_EQ(nearest, c.placeOf(2)) << "at " << x;
+  }
+  c.observer.position.reset();
+  EXPECT_TRUE(c.problem().numbers.empty()) << "here is nowhere";
+}
+
 TEST(TopoMergRelations, SizesCompared) {
   Corridor c;
   c.map.places[3].area = 30.0;

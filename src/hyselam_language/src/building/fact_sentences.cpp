@@ -92,6 +92,10 @@ std::string FactSentences::ofConnection(const DescribedConnection& connection) c
     return writer_.sentence("connected", {writer_.place("from", building_, connection.from), to});
   }
   std::vector<SaidValue> values{to, where(connection.from, connection.side)};
+  const bool sided = connection.side == Side::kLeft || connection.side == Side::kRight;
+  if (!connection.rank && sided && connection.distance == 0.0) {
+    return writer_.sentence("right_here", values);
+  }
   std::string key = plain ? "at_place" : "";
   if (connection.rank) {
     key = "ranked";

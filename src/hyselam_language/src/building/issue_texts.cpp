@@ -9,6 +9,8 @@ const std::map<std::string, std::string>& english() {
   static const std::map<std::string, std::string> kTexts{
       {"count", "{count} were announced, {named} named"},
       {"no_side", "no side was told before"},
+      {"same_side_left_out",
+       "on which side that place lies was not told: I have not taken down 'same side'"},
       {"no_robot", "where the robot is was not told: say 'you are in ...'"},
       {"elsewhere",
        "sides are told as the robot sees them, and it is in '{robot}', not in '{from}'; say for "

@@ -204,6 +204,10 @@ void recordConnection(Statement& s, const Placement& placement) {
     // Seen from elsewhere it may well be on another side, and another number.
     const bool seen_anew = p.side != Side::kUnknown && known.side != Side::kUnknown &&
                            known.from == p.from && !areSameView(known.seen_from, p.seen_from);
+    // "On the left" of the third on the left, said from farther on, tells nothing new.
+    const bool said_again = seen_anew && !p.rank && !p.distance && p.behind == 0 &&
+                            known.side == p.side && lookAlike(known.seen_from, p.seen_from);
+    if (said_again) return;
     if (seen_anew) {
       s.setCorrected();
     } else {

@@ -38,8 +38,34 @@ bool haveOneName(Statement& s, const std::vector<Id>& ids) {
   s.fail(IssueKind::kAmbiguous, "may_mean", {{"name", name.text}, {"names", listed(s, ids)}});
 }
 
+/// Of several places told as a row, the last one: what comes "then" comes behind it; 0: no row.
+Id lastOfRow(Statement& s) {
+  const std::vector<Id>& all = s.context().subjects;
+  const DescribedBuilding& building = s.building();
+  const auto comesAfter = [&](Id place, Id last) {
+    const auto& relations = building.relations;
+    return std::any_of(relations.begin(), relations.end(), [&](const DescribedRelation& each) {
+      return !each.denied && each.kind == RelationKind::kAfter && each.a == place && each.b == last;
+    });
+  };
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (comesAfter(all[i], all[i - 1])) continue;
+    const DescribedConnection* last = nullptr;
+    const DescribedConnection* here = nullptr;
+    for (const DescribedConnection& each : building.connections) {
+      if (each.side == Side::kUnknown) continue;
+      if (each.to == all[i - 1]) last = &each;
+      if (each.to == all[i]) here = &each;
+    }
+    const bool in_row = last != nullptr && here != nullptr && last->from == here->from &&
+                        last->side == here->side && last->order < here->order;
+    if (!in_row) return 0;
+  }
+  return all.size() > 1 ? all.back() : 0;
+}
+
 /// What a word that stands for places means; fails if that was not told.
-std::vector<Id> referred(Statement& s, const SaidName& name) {
+std::vector<Id> referred(Statement& s, const SaidName& name, const std::string& slot = "") {
   const DescriptionContext& context = s.context();
   const auto nothing = [&] {
     // A subject that was left out ("fica à direita") has no word to point at.
@@ -65,7 +91,16 @@ std::vector<Id> referred(Statement& s, const SaidName& name) {
   }
   if (name.reference == "it") {
     if (context.subjects.empty()) nothing();
+    // "Then the lab": behind a room, not behind the corridor where the robot is.
+    const bool unsaid = name.range.begin == name.range.end;
+    const Id front = context.subjects.front();
+    if (slot == "after" && unsaid && front == s.building().robot_place &&
+        s.at(front).kind == PlaceKind::kCorridor) {
+      nothing();
+    }
     if (context.subjects.size() > 1) {
+      const Id last = slot == "after" ? lastOfRow(s) : 0;
+      if (last != 0) return {last};
       s.fail(IssueKind::kAmbiguous, "it_several",
              {{"name", name.text}, {"names", listed(s, context.subjects)}});
     }
@@ -116,10 +151,51 @@ std::string saidText(const Statement& s, const SaidName& name) {
                 : name.text;
 }
 
-/// "The men's": a noun of places by itself.
-bool isPlaceNoun(const Statement& s, const SaidName& name) {
+/// "The men's", "the ladies'": a noun of places by itself.
+bool isPlaceNoun(const Statement& s, const std::string& name) {
   const auto* type = s.listener().grammar.compiled().nameType("place");
-  return type != nullptr && type->nouns.count(hyselam::utf8Fold(name.text)) != 0;
+  if (type == nullptr) return false;
+  const std::string folded = hyselam::utf8Fold(name);
+  const std::string bare = folded.substr(0, folded.find_first_of("'\xe2"));
+  const bool plural = folded.size() > bare.size() && !bare.empty() && bare.back() == 's';
+  return type->nouns.count(folded) != 0 || (plural && type->nouns.count(bare) != 0);
+}
+
+/// "The women's" after "the men's changing room": of that kind; not after "Paul's office".
+bool isOfPair(Statement& s, const std::string& kind) {
+  const std::string end = " " + kind;
+  const auto& places = s.building().places;
+  return std::any_of(places.begin(), places.end(), [&](const DescribedPlace& place) {
+    const std::string& name = place.name;
+    return name.size() > end.size() &&
+           name.compare(name.size() - end.size(), end.size(), end) == 0 &&
+           isPlaceNoun(s, name.substr(0, name.size() - end.size()));
+  });
+}
+
+/// The one known place that is somebody's: "curator's office" for "the curator's"; "" without one.
+std::string knownOf(Statement& s, const SaidName& name) {
+  const auto* type = s.listener().grammar.compiled().nameType("place");
+  if (type == nullptr || name.speaker || type->head_first) return "";
+  if (name.text.find('\'') == std::string::npos &&
+      name.text.find("\xe2\x80\x99") == std::string::npos)
+    return "";
+  const std::string owner = hyselam::utf8Fold(name.text) + " ";
+  std::string found;
+  for (const DescribedPlace& place : s.building().places) {
+    for (const std::string& each : allNamesOf(place)) {
+      if (hyselam::utf8Fold(each).compare(0, owner.size(), owner) != 0) continue;
+      if (!found.empty()) return "";
+      found = each;
+    }
+  }
+  return found;
+}
+
+/// "John's" after "the waiting room" is no waiting room of his: what people have is an office.
+bool isOwnedKind(const Statement& s, const std::string& kind) {
+  const auto* type = s.listener().grammar.compiled().nameType("place");
+  return type != nullptr && type->titles.count(hyselam::utf8Fold(kind)) != 0;
 }
 
 /// What "the chemistry one", "Mary's" and "the big one" leave out.
@@ -128,16 +204,19 @@ std::string kindLeftOut(Statement& s, const SaidName& name) {
   const auto* type = s.listener().grammar.compiled().nameType("place");
   const bool owned = name.speaker || name.text.find('\'') != std::string::npos ||
                      name.text.find("\xe2\x80\x99") != std::string::npos;
+  const bool pair = owned && isPlaceNoun(s, name.text);
+  if (pair && (context.owned_kind.empty() || !isOfPair(s, context.owned_kind))) return "";
   if (owned && !context.owned_kind.empty()) return context.owned_kind;
   // "You are in the corridor. The last door is Joe's": nobody's corridor.
   if (owned && s.listener().names.kindOf(context.kind_word) == PlaceKind::kCorridor) {
     // "The chapel's ower there": of no person, so that is asked.
     const std::string owner = name.text.substr(0, name.text.find_first_of("'\xe2"));
-    const bool is_place = isPlaceNoun(s, name) || !s.listener().names.headOf(owner).empty();
+    const bool is_place = isPlaceNoun(s, name.text) || !s.listener().names.headOf(owner).empty();
     return is_place ? "" : s.listener().grammar.say("office");
   }
   const std::string& kind =
       owned || context.described_kind.empty() ? context.kind_word : context.described_kind;
+  if (owned && !isOwnedKind(s, kind)) return "";
   const bool adjective =
       type != nullptr && type->elliptic_adjectives.count(hyselam::utf8Fold(name.text)) != 0;
   if (owned || adjective || type == nullptr || type->head_first) return kind;
@@ -246,12 +325,13 @@ std::string fullName(Statement& s, const SaidName& name) {
     return writer.phrase("owned", {{"owner", speaker, false, true}, {"kind", kind, false, true}});
   }
   if (!name.elliptic) return name.text;
+  if (const std::string known = knownOf(s, name); !known.empty()) return known;
   const std::string kind = kindLeftOut(s, name);
   const auto full = [&](const std::string& word) {
     return writer.phrase("elliptic",
                          {{"owner", name.text, false, true}, {"kind", word, false, true}});
   };
-  if (kind.empty() && isPlaceNoun(s, name)) return name.text;  // "the men's"
+  if (kind.empty() && isPlaceNoun(s, name.text)) return name.text;  // "the men's"
   if (kind.empty()) {
     s.fail(IssueKind::kAsk, "what_of",
            {{"name", saidText(s, name)}, {"example", full(grammar.say("office"))}});
@@ -304,7 +384,7 @@ std::vector<Id> placesOf(Statement& s, const std::string& slot) {
   for (const SaidName& name : s.said().names(slot)) {
     // "The fire exit, that's at the end": the one just named.
     if (name.reference == "it" && all.size() == 1) continue;
-    std::vector<Id> ids = name.reference.empty() ? severalOf(s, name) : referred(s, name);
+    std::vector<Id> ids = name.reference.empty() ? severalOf(s, name) : referred(s, name, slot);
     if (ids.empty()) ids = {placeOf(s, name)};
     for (const Id id : ids) {
       if (std::find(all.begin(), all.end(), id) == all.end()) all.push_back(id);

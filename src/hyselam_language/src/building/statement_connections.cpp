@@ -98,17 +98,70 @@ Id observer(Statement& s) {
   return from;
 }
 
-Side sideOf(Statement& s) {
+namespace {
+
+/// On which side of the robot's place a place was told to lie, seen as now.
+std::optional<Side> sideToldOf(Statement& s, Id place) {
+  const auto robot = s.building().robot_place;
+  const DescribedConnection* found = robot ? findConnection(s.building(), *robot, place) : nullptr;
+  const bool sided = found != nullptr && found->from == *robot && found->side != Side::kUnknown &&
+                     lookAlike(found->seen_from, s.listener().viewpoint);
+  return sided ? std::optional(found->side) : std::nullopt;
+}
+
+/// "The same side": that of the place it is told with ("after the bar, on the same side"), else of
+/// what was spoken of last, else the side told last.
+std::optional<Side> sameSide(Statement& s) {
+  for (const char* slot : {"after", "before", "next_to"}) {
+    if (s.said().find(slot) == nullptr) continue;
+    const std::vector<Id> ids = placesOf(s, slot);
+    return ids.size() == 1 ? sideToldOf(s, ids.front()) : std::nullopt;
+  }
+  std::optional<Side> side;
+  for (const Id id : s.context().subjects) {
+    const std::optional<Side> each = sideToldOf(s, id);
+    if (each && side && *each != *side) return std::nullopt;
+    if (each) side = each;
+  }
+  return side ? side : s.context().side;
+}
+
+}  // namespace
+
+bool takeSide(Statement& s, Side* side) {
   std::optional<Side>& last = s.context().side;
   const std::string word = s.said().word("side");
-  if (word == "same" && !last) s.fail(IssueKind::kNoContext, "no_side");
-  const Side side = word == "same" ? *last : hyselam_topo::sideOf(word).value_or(Side::kUnknown);
-  if (side == Side::kUnknown) {
-    last.reset();
-  } else {
-    last = side;
+  if (word == "same") {
+    last = sameSide(s);
+    const bool with_place = s.said().find("after") != nullptr ||
+                            s.said().find("before") != nullptr ||
+                            s.said().find("next_to") != nullptr;
+    if (!last && !with_place) s.fail(IssueKind::kNoContext, "no_side");
+    if (!last) s.report(IssueKind::kNotice, "same_side_left_out");
+    if (last) *side = *last;
+    return last.has_value();
   }
+  *side = hyselam_topo::sideOf(word).value_or(Side::kUnknown);
+  last = *side == Side::kUnknown ? std::nullopt : std::optional(*side);
+  return true;
+}
+
+Side sideOf(Statement& s) {
+  Side side = Side::kUnknown;
+  if (!takeSide(s, &side)) s.fail(IssueKind::kNoContext, "no_side");
   return side;
+}
+
+void takeHere(Statement& s, Placement* placement) {
+  const bool across = placement->side == Side::kLeft || placement->side == Side::kRight;
+  const bool first = !placement->rank || *placement->rank == 1;
+  const auto names = s.said().names(s.said().find("places") != nullptr ? "places" : "place");
+  const bool one = names.size() == 1 || (names.size() > 1 && names[1].follows);
+  const bool pointed =
+      s.listener().viewpoint && across && first && one && !placement->distance && !s.isDenial();
+  if (s.said().word("here").empty() || !pointed) return;
+  placement->rank.reset();
+  placement->distance = 0.0;
 }
 
 std::optional<int> rankOf(Statement& s) {
@@ -139,6 +192,7 @@ void neighbours(Statement& s) {
     placement.to = id;
     placement.side = side;
     placement.rank = rank;
+    if (id == ids.front()) takeHere(s, &placement);
     recordConnection(s, placement);
   }
   if (ids.size() == 1 && s.said().number("length")) takeSizes(s, ids.front());
@@ -231,6 +285,7 @@ void relation(Statement& s) {
     if (told.kind == RelationKind::kAtEndOf) recordConnection(s, Placement(told.b, told.a));
   }
   s.setSubjects({told.a});
+  if (told.kind == RelationKind::kOpposite) s.context().side.reset();
   s.context().pair =
       told.c == 0 ? std::vector<Id>{told.a, told.b} : std::vector<Id>{told.b, told.c};
 }

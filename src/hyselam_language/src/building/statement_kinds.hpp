@@ -6,6 +6,9 @@
 #include "statement.hpp"
 
 namespace hyselam_topo {
+
+struct Placement;
+
 namespace statements {
 
 // What places are called (statement_names.cpp).
@@ -47,8 +50,13 @@ void takeDoors(Statement& s, Id id);
 void addAlias(Statement& s, Id id, const SaidName& name);
 /// The place from which sides are seen: slot `from`, or where the robot is.
 Id observer(Statement& s);
-/// The side told, also "the same side"; remembers it.
+/// The side told, also "the same side"; remembers it. Fails if it is not known.
 Side sideOf(Statement& s);
+/// The same; false, and told as left out, where the side of the place that is named with it
+/// ("after the bar, on the same side") is not known.
+bool takeSide(Statement& s, Side* side);
+/// "Here on your left": the nearest on that side, in no row of others.
+void takeHere(Statement& s, Placement* placement);
 /// Number, counted from the end if negative; nothing if not told.
 std::optional<int> rankOf(Statement& s);
 /// Fails: such a thing is not denied.

@@ -50,6 +50,23 @@ Side sideOfRow(Statement& s, Id from, int rank) {
   return in_row ? last->side : Side::kUnknown;
 }
 
+/// "Then comes the lab": on the side of the place behind which it comes, if that is in a row of
+/// where the robot is, seen as now; nothing otherwise.
+void continueRow(Statement& s, Location* location) {
+  const auto after = s.said().names("after");
+  const auto robot = s.building().robot_place;
+  if (after.size() != 1 || after[0].reference != "it" || !robot) return;
+  const Id last = placesOf(s, "after").front();
+  const DescribedConnection* found = findConnection(s.building(), *robot, last);
+  const bool in_row = found != nullptr && found->from == *robot && found->side != Side::kUnknown &&
+                      lookAlike(found->seen_from, s.listener().viewpoint);
+  if (!in_row) return;
+  location->in_row = true;
+  location->row.from = *robot;
+  location->row.side = found->side;
+  s.context().side = found->side;
+}
+
 /// Side, number and distance.
 void readRow(Statement& s, Location* location) {
   const Utterance& u = s.said();
@@ -59,8 +76,10 @@ void readRow(Statement& s, Location* location) {
   const bool sided = u.find("side") != nullptr;
   location->in_row = within || sided || row.rank;
   row.distance = distanceOf(s);
+  if (!location->in_row) return continueRow(s, location);
+  if (sided && !takeSide(s, &row.side)) location->in_row = within || row.rank;
   if (!location->in_row) return;
-  if (sided) row.side = sideOf(s);
+  takeHere(s, &row);
   // "The second door in the corridor" needs no robot there.
   if (within) row.from = placeOf(s, "within");
   const auto robot = s.building().robot_place;
@@ -84,6 +103,20 @@ void readRelations(Statement& s, Location* location) {
   add("part_of", RelationKind::kInside);
   for (const Id other : placesOf(s, "before")) {
     location->relations.push_back(relationOf(RelationKind::kAfter, other, kItself));
+  }
+  // "In front, on the right": opposite what was spoken of last, if that lies on the other side.
+  const std::vector<Id>& last = s.context().subjects;
+  if (s.said().find("across") != nullptr && last.size() == 1 && location->in_row) {
+    const DescribedConnection* found =
+        findConnection(s.building(), location->row.from, last.front());
+    const Side side = location->row.side;
+    const bool other = found != nullptr && found->from == location->row.from &&
+                       lookAlike(found->seen_from, s.listener().viewpoint) &&
+                       ((found->side == Side::kLeft && side == Side::kRight) ||
+                        (found->side == Side::kRight && side == Side::kLeft));
+    if (other) {
+      location->relations.push_back(relationOf(RelationKind::kOpposite, kItself, last.front()));
+    }
   }
   if (s.said().find("between") != nullptr) {
     const std::vector<Id> both = placesBetween(s);
@@ -118,7 +151,7 @@ Location locationOf(Statement& s) {
 /// The relation of a place; what comes after what is seen from where the robot is.
 DescribedRelation placed(Statement& s, DescribedRelation relation, Id id, bool with_from) {
   (relation.a == kItself ? relation.a : relation.b) = id;
-  if (relation.kind == RelationKind::kAfter) {
+  if (relation.kind == RelationKind::kAfter && relation.c == 0) {
     const Id from = with_from ? placeOf(s, "from") : s.building().robot_place.value_or(0);
     if (from != relation.a && from != relation.b) relation.c = from;
   }
@@ -246,13 +279,36 @@ void forgetLocation(Statement& s, const Location& location, Id id) {
   }
 }
 
-/// Where the next place of a row lies: "after the bar come the lab and the store".
-Location behindTheLast(Location location, Id last) {
+/// Where the next place of a row lies: "after the bar come the lab and the store". With `ordered`
+/// ("next to the bar is the lab, then the store") it lies where the first one does in no other way
+/// than side and floor, but behind the last one.
+Location behindTheLast(Location location, Id last, bool ordered) {
   location.row.rank.reset();
+  location.row.distance.reset();
   for (DescribedRelation& each : location.relations) {
     if (each.kind == RelationKind::kAfter && each.a == kItself) each.b = last;
   }
+  if (!ordered) return location;
+  auto& all = location.relations;
+  Id from = 0;
+  bool on = false;
+  for (const DescribedRelation& each : all) {
+    if (each.kind == RelationKind::kNextTo) from = each.a == kItself ? each.b : each.a;
+    on = on || (each.kind == RelationKind::kAfter && each.a == kItself);
+  }
+  const auto isOfFirst = [](const DescribedRelation& each) {
+    return each.kind == RelationKind::kNextTo || each.kind == RelationKind::kOpposite ||
+           each.kind == RelationKind::kAtEndOf || each.kind == RelationKind::kBehind;
+  };
+  const bool any = std::any_of(all.begin(), all.end(), isOfFirst);
+  all.erase(std::remove_if(all.begin(), all.end(), isOfFirst), all.end());
+  if (any && !on) all.push_back(relationOf(RelationKind::kAfter, kItself, last, from));
   return location;
+}
+
+/// Whether the places were told as a row: "A, then B".
+bool areOrdered(const std::vector<SaidName>& names) {
+  return std::any_of(names.begin(), names.end(), [](const SaidName& each) { return each.follows; });
 }
 
 /// "The library has moved, it is now next to the bar": nothing of where it was holds.
@@ -282,7 +338,9 @@ void located(Statement& s) {
     s.fail(IssueKind::kMeaningless, "nothing_said");
   }
   // "The first on the left is the bar, then the lab": the others stand behind it.
-  const bool first_of_row = location.row.rank == 1 && !s.isDenial();
+  const bool ordered = areOrdered(u.names("places"));
+  const int rank = location.row.rank.value_or(0);
+  const bool first_of_row = (rank == 1 || (rank > 0 && ordered)) && !s.isDenial();
   if (location.row.rank && ids.size() != 1 && !first_of_row) {
     s.fail(IssueKind::kMeaningless, "one_rank");
   }
@@ -294,12 +352,15 @@ void located(Statement& s) {
     }
     if (!u.word("moved").empty()) forgetWhereItWas(s, id);
     if (!u.word("instead").empty()) forgetLocation(s, location, id);
-    record(s, i == 0 ? location : behindTheLast(location, ids[i - 1]), id);
+    record(s, i == 0 ? location : behindTheLast(location, ids[i - 1], ordered), id);
     takeSizeWord(s, id);
     if (u.number("doors")) takeDoors(s, id);
     if (sized) takeSizes(s, id);
   }
   s.setSubjects(ids);
+  // What lies opposite lies on another side than what was spoken of before.
+  const bool faces = s.said().find("opposite") != nullptr && !location.in_row;
+  if (faces) s.context().side.reset();
   if (ids.size() != 1 || location.relations.size() != 1 || location.in_row) return;
   const DescribedRelation& only = location.relations.front();
   if (only.c == 0) s.context().pair = {ids.front(), only.a == kItself ? only.b : only.a};

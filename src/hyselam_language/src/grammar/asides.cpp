@@ -7,7 +7,10 @@ namespace language {
 namespace {
 
 /// Whether the token may carry what people mean to tell.
-bool mayTell(const Token& token, bool is_first, const CompiledGrammar& grammar) {
+bool mayTell(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar) {
+  const Token& token = tokens[at];
+  const bool is_first = at == 0;
+  if (isReflexive(tokens, at, grammar)) return false;
   if (token.kind != TokenKind::kWord) return true;
   if (token.starts_upper && !is_first && token.text.size() > 1) return true;
   if (grammar.telling_words.count(token.folded) != 0) return true;
@@ -59,6 +62,8 @@ bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::s
   if (!past && !idle) return false;
   return std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
                       tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
+                        const auto at = static_cast<std::size_t>(&token - tokens.data());
+                        if (isReflexive(tokens, at, grammar)) return false;
                         if (idle && grammar.isNounOrTitle(token.folded)) return true;
                         const auto code = grammar.refusing_words.find(token.folded);
                         if (code == grammar.refusing_words.end()) return false;
@@ -114,7 +119,7 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
     std::size_t end = begin;
     bool tells = false;
     for (; end < tokens.size() && !isComma(tokens[end]); ++end) {
-      tells = tells || mayTell(tokens[end], end == 0, grammar);
+      tells = tells || mayTell(tokens, end, grammar);
     }
     ++parts;
     if (tells) {
@@ -126,6 +131,19 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
   }
   if (asides.size() == parts && !all) asides.clear();
   return asides;
+}
+
+bool isReflexive(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar) {
+  if (at == 0 || at + 1 >= tokens.size() || grammar.reflexive.count(tokens[at].folded) == 0) {
+    return false;
+  }
+  // "For", "fores", "virem" belong to conditions, "guarda", "vê", "encontram" do not.
+  const std::string& verb = tokens[at + 1].folded;
+  const auto endsWith = [&](const std::string& end) {
+    return verb.size() > end.size() && verb.compare(verb.size() - end.size(), end.size(), end) == 0;
+  };
+  const bool told = endsWith("a") || endsWith("e") || endsWith("am") || endsWith("em");
+  return grammar.reflexive_after.count(tokens[at - 1].folded) != 0 && told && !endsWith("rem");
 }
 
 std::size_t fillerEnd(const std::vector<Token>& tokens, std::size_t at,

@@ -27,6 +27,10 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
 std::size_t fillerEnd(const std::vector<Token>& tokens, std::size_t at,
                       const CompiledGrammar& grammar);
 
+/// "Onde se guarda a roupa": a word that refuses elsewhere, and here is a pronoun of the verb
+/// behind it. Never before the verb of a condition ("que, se for à esquerda").
+bool isReflexive(const std::vector<Token>& tokens, std::size_t at, const CompiledGrammar& grammar);
+
 /// What may be left out of a correction, each time less likely: "No, I measured it again, four by
 /// seven", "six, no, hang on, I counted them, seven". Never what has a name, a kind of place, a
 /// number or doubt.

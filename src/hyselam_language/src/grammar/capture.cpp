@@ -31,6 +31,10 @@ class Capture {
           if (name.end != step.to) continue;
           auto& names = slotOf(edge, step.from, step.to).names;
           names.push_back(name.name);
+          std::size_t& end = name_ends_[edge.a];
+          names.back().follows = end > 0 && tellsOrder(end, step.from);
+          contradicts_ = contradicts_ || (end > 0 && endsList(end, step.from));
+          end = step.to;
           names.insert(names.end(), name.more.begin(), name.more.end());
         }
         break;
@@ -106,6 +110,20 @@ class Capture {
     return slot;
   }
 
+  /// "A, then B": whether words between two names put the second behind the first.
+  bool tellsOrder(std::size_t from, std::size_t to) const {
+    for (std::size_t at = from; at < to; ++at) {
+      if (words_.grammar.order_words.count(words_.tokens[at].folded) != 0) return true;
+    }
+    return false;
+  }
+
+  /// "X, logo a seguir à copa": no list of X and the copa; in an order, "depois à copa" is one.
+  bool endsList(std::size_t from, std::size_t to) const {
+    if (clause_.intent->kind != UtteranceKind::kStatement || !tellsOrder(from, to)) return false;
+    return to > from && words_.grammar.list_ends.count(words_.tokens[to - 1].lower) != 0;
+  }
+
   void setNumber(const Edge& edge, const Step& step, double value) {
     Slot& slot = slotOf(edge, step.from, step.to);
     contradicts_ = contradicts_ || (slot.number && *slot.number != value);
@@ -156,7 +174,8 @@ class Capture {
   const Automaton& pattern_;
   SentenceWords& words_;
   Clause& clause_;
-  std::map<int, std::size_t> begins_;  ///< of slots of word classes: their first token
+  std::map<int, std::size_t> begins_;     ///< of slots of word classes: their first token
+  std::map<int, std::size_t> name_ends_;  ///< of slots of names: behind the last one
   std::vector<OpenMeasure> open_;
   bool contradicts_ = false;
 };

@@ -118,6 +118,14 @@ struct CompiledGrammar {
   std::set<std::string> known_words;  ///< folded words that are never misspelt keywords
   std::vector<Phrase> fillers_before, fillers_after, corrections, clause_separators;
   std::set<int> fillers_inner;
+  /// Folded words of list separators that tell an order: "then".
+  std::set<std::string> order_words;
+  /// As said: behind these no list of a statement goes on ("logo a seguir à copa" is a relation).
+  std::set<std::string> list_ends;
+  /// Folded: "se" is no condition behind one of the second, as in "onde se guarda a roupa".
+  std::set<std::string> reflexive, reflexive_after;
+  /// Folded: "here"; "this", where one of the third stands behind it: "door".
+  std::set<std::string> here_words, pointing_words, pointed_words;
   /// Those before and after that have two words or more, by their first word.
   std::unordered_map<std::string, std::vector<Phrase>> long_fillers;
   /// Around a statement that ends with a question mark: "can you note that", "ok"; the longest

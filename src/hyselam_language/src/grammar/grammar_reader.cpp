@@ -81,6 +81,16 @@ class Reader {
         {"corrections", phrases(&g.corrections)},
         {"clause_separators", phrases(&g.clause_separators)},
         {"list_separators", [&](const GrammarNode& node) { readListSeparators(node); }},
+        {"reflexive", [&](const GrammarNode& node) { addFolded(node, &g.reflexive); }},
+        {"reflexive_after", [&](const GrammarNode& node) { addFolded(node, &g.reflexive_after); }},
+        {"here_words", [&](const GrammarNode& node) { addFolded(node, &g.here_words); }},
+        {"pointing_words", [&](const GrammarNode& node) { addFolded(node, &g.pointing_words); }},
+        {"pointed_words", [&](const GrammarNode& node) { addFolded(node, &g.pointed_words); }},
+        {"list_ends",
+         [&](const GrammarNode& node) {
+           for (const std::string& word : node.texts()) g.list_ends.insert(word);
+         }},
+        {"order_words", [&](const GrammarNode& node) { addFolded(node, &g.order_words); }},
         {"abbreviations", [&](const GrammarNode& node) { readAbbreviations(node); }},
         {"acronyms",
          [&](const GrammarNode& node) {

@@ -18,6 +18,7 @@ std::optional<Utterance> refusingWord(const SentenceWords& words) {
     // "If you please" is no condition.
     at = fillerEnd(words.tokens, at, words.grammar);
     if (at == words.tokens.size()) break;
+    if (isReflexive(words.tokens, at, words.grammar)) continue;
     const Token& token = words.tokens[at];
     const auto code = known.find(token.folded);
     if (token.kind == TokenKind::kWord && code != known.end()) {

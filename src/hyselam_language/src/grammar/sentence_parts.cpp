@@ -54,6 +54,7 @@ bool mayChangeOthers(const Part& part, const std::vector<Token>& tokens,
   for (std::size_t at = part.begin; at < part.end; ++at) {
     at = fillerEnd(tokens, at, grammar);
     if (at >= part.end) break;
+    if (isReflexive(tokens, at, grammar)) continue;
     const auto code = grammar.refusing_words.find(tokens[at].folded);
     const bool doubts =
         code != grammar.refusing_words.end() &&

@@ -7,6 +7,7 @@
 #include "capture.hpp"
 #include "clause.hpp"
 #include "clause_borders.hpp"
+#include "here_words.hpp"
 #include "idle_words.hpp"
 #include "matching_costs.hpp"
 #include "pattern_run.hpp"
@@ -169,6 +170,7 @@ class SentenceReader {
             refusal(words_, "ambiguous", range, examplesOf(*clause.intent, *other.intent, range))};
       }
       utterances.push_back(utteranceOf(clause, range));
+      addHere(clause, reading->from_end, &utterances.back());
       leaveOut(idleWordsOf(clause, &words_, &pattern_run_), &utterances.back());
       ranges.push_back({clause.begin, clause.end});
       if (reading->begin == 0) break;
@@ -179,6 +181,19 @@ class SentenceReader {
       utterances.front().left_out.push_back(textOf(idle));
     }
     return utterances;
+  }
+
+  /// Slot `here` of a statement: "here on your left".
+  void addHere(const Clause& clause, std::size_t from, Utterance* utterance) const {
+    if (utterance->kind != UtteranceKind::kStatement || utterance->find("here") != nullptr ||
+        !isToldHere(clause, from, words_)) {
+      return;
+    }
+    Slot here;
+    here.name = here.type = "here";
+    here.word = "yes";
+    here.range = utterance->find("side")->range;
+    utterance->slots.push_back(std::move(here));
   }
 
   std::string textOf(const IdleWords& idle) const {

@@ -174,6 +174,7 @@ double FitnessTerms::unseenNumberValue(const Clause& clause, const VertexSet& fr
 double FitnessTerms::distanceValue(const Clause& clause, const VertexSet& to,
                                    const VertexSet& from) const {
   if (!clause.position) return 0.0;
+  if (clause.value == 0.0 && clause.turn) return nearestValue(clause, to, from);
   const double error = kDistanceShare * clause.value + kDistanceError;
   double best = 0.0;
   forEachDoor(from.members, to.members, [&](const Passage& p) {
@@ -184,6 +185,27 @@ double FitnessTerms::distanceValue(const Clause& clause, const VertexSet& to,
       way = on.x * dx + on.y * dy;
     }
     best = std::max(best, within(2.0 - std::abs(way - clause.value) / error));
+  });
+  return best;
+}
+
+double FitnessTerms::nearestValue(const Clause& clause, const VertexSet& to,
+                                  const VertexSet& from) const {
+  double best = 0.0;
+  forEachDoor(from.members, to.members, [&](const Passage& own) {
+    const hyselam::Point2 on = turned(own, *clause.turn);
+    const auto way = [&](const Passage& p) {
+      return std::abs(on.x * (p.x - clause.position->x) + on.y * (p.y - clause.position->y));
+    };
+    int nearer = 0;
+    from.members.forEach([&](std::size_t v) {
+      for (const Passage& p : problem.passages[v]) {
+        const bool other = !from.members.contains(p.to) && !to.members.contains(p.to);
+        const bool same_side = p.dx * own.dx + p.dy * own.dy >= kParallel;
+        nearer += other && same_side && way(p) < way(own) - kBeside;
+      }
+    });
+    best = std::max(best, nearer == 0 ? 1.0 : nearer == 1 ? kNextNumber : 0.0);
   });
   return best;
 }
@@ -269,8 +291,16 @@ double FitnessTerms::afterValue(const Clause& clause, const VertexSet& a, const 
                                 const VertexSet* c) const {
   const double near = nearValue(a, b);
   if (c == nullptr && !clause.position) return near;
-  const double dx = b.x() - (c != nullptr ? c->x() : clause.position->x);
-  const double dy = b.y() - (c != nullptr ? c->y() : clause.position->y);
+  double dx = b.x() - (c != nullptr ? c->x() : clause.position->x);
+  double dy = b.y() - (c != nullptr ? c->y() : clause.position->y);
+  if (c == nullptr && clause.looked) {
+    // Beside the robot it goes on to where it looks.
+    const double ahead_x = std::cos(*clause.looked), ahead_y = std::sin(*clause.looked);
+    if (std::abs(ahead_x * dx + ahead_y * dy) < kClearlyFarther) {
+      dx = ahead_x;
+      dy = ahead_y;
+    }
+  }
   const double way = std::hypot(dx, dy);
   if (way < kBeside) return near;
   const double on = (dx * (a.x() - b.x()) + dy * (a.y() - b.y())) / way;

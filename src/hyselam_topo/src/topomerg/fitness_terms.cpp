@@ -54,8 +54,17 @@ FitnessTerms::FitnessTerms(const MatchProblem& problem_in, const FitnessParams& 
 void FitnessTerms::listClauses(const FitnessParams& params) {
   using What = Clause::What;
   for (const MatchProblem::Relation& r : problem.relations)
-    clauses.push_back(
-        {What::kRelation, r.kind, r.a, r.b, r.c, r.denied, {}, 0.0, r.side_angle, r.position});
+    clauses.push_back({What::kRelation,
+                       r.kind,
+                       r.a,
+                       r.b,
+                       r.c,
+                       r.denied,
+                       {},
+                       0.0,
+                       r.side_angle,
+                       r.position,
+                       r.looked});
   if (by_doors && params.orders > 0.0)
     for (const MatchProblem::DescribedOrder& o : problem.orders)
       clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0, 0.0, {}});

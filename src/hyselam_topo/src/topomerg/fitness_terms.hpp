@@ -82,6 +82,7 @@ class FitnessTerms {
     double side_angle = 0.0;     ///< of a number and of a denied side
     /// Where the robot stood when a number, distance or relation was told; nothing: not known.
     std::optional<hyselam::Point2> position;
+    std::optional<double> looked = std::nullopt;  ///< of kAfter: where it looked then
   };
 
   FitnessTerms(const MatchProblem& problem, const FitnessParams& params);
@@ -281,6 +282,8 @@ class FitnessTerms {
   double numberAt(const Clause& clause, const MatchProblem::Passage& own, const VertexSet& from,
                   const PlaceSet& to) const;
   double distanceValue(const Clause& clause, const VertexSet& to, const VertexSet& from) const;
+  /// Of "here on the left": no door of that side is nearer to where the robot stood.
+  double nearestValue(const Clause& clause, const VertexSet& to, const VertexSet& from) const;
   double relationValue(const Clause& clause, const VertexSet& a, const VertexSet& b,
                        const VertexSet* c) const;
   double nearValue(const VertexSet& a, const VertexSet& b) const;

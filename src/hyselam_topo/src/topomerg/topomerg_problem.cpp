@@ -10,6 +10,7 @@
 #include "angles.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/topomerg/shared_walls.hpp"
+#include "hyselam_topological_map/map_geometry.hpp"
 #include "map_gaps.hpp"
 
 namespace hyselam_topo {
@@ -153,27 +154,42 @@ void addSides(const std::vector<DescribedConnection>& connections, const Numbers
     if (c.rank && *c.rank != 0 && sided)
       out->numbers.push_back({from, to, *c.rank, 0.0, turn, side_angle, stand});
     const bool along = c.side == Side::kLeft || c.side == Side::kRight;
-    if (c.distance && *c.distance > 0.0 && stand)
+    if (c.distance && (*c.distance > 0.0 || along) && stand)
       out->numbers.push_back(
           {from, to, 0, *c.distance, along ? turn : std::nullopt, side_angle, stand});
   }
 }
 
+/// Whether the robot stood in the place of the map that has this name for certain.
+bool stoodWithin(Id name, const hyselam::Point2& stand, const AugmentedTopologicalMap& map,
+                 const std::vector<std::pair<Id, Id>>& confirmed) {
+  constexpr double kNear = 0.5;  // [m]
+  const auto at = placeAt(map, stand, kNear);
+  return at && std::find(confirmed.begin(), confirmed.end(), std::make_pair(at->place, name)) !=
+                   confirmed.end();
+}
+
 void addRelations(const DescribedBuilding& building, const std::set<Id>& elsewhere,
-                  const Numbers& name, const std::optional<hyselam::Point2>& position,
-                  MatchProblem* out) {
+                  const Numbers& name, const MatchObserver& observer,
+                  const AugmentedTopologicalMap& map,
+                  const std::vector<std::pair<Id, Id>>& confirmed, MatchProblem* out) {
   for (const DescribedRelation& r : building.relations) {
     if (elsewhere.count(r.a) + elsewhere.count(r.b) > 0 || (r.c != 0 && elsewhere.count(r.c) > 0))
       continue;
     const bool at_side = r.kind == RelationKind::kAtSide;
     if (at_side && (!out->heading || r.side == Side::kUnknown)) continue;
-    const bool third =
-        r.kind == RelationKind::kBetween || (r.kind == RelationKind::kAfter && r.c != 0);
+    const bool after = r.kind == RelationKind::kAfter;
+    const std::optional<hyselam::Point2> stand = standOf(r.seen_from, observer.position);
+    // "On the way from the corridor" of somebody who stands in it is from where he stands.
+    const bool from_stand = after && r.c != 0 && stand && stoodWithin(r.c, *stand, map, confirmed);
+    const bool third = r.kind == RelationKind::kBetween || (after && r.c != 0 && !from_stand);
+    std::optional<double> looked;
+    if (after && stand) looked = r.seen_from ? std::optional(r.seen_from->theta) : observer.heading;
     out->relations.push_back(
         {r.kind, name(r.a, "description"), name(r.b, "description"),
          third ? name(r.c, "description") : -1, r.denied,
          at_side ? hyselam::normalizeAngle(angleOf(r.side) + viewAngle(r.seen_from, *out)) : 0.0,
-         standOf(r.seen_from, position)});
+         stand, looked});
   }
 }
 
@@ -294,8 +310,9 @@ std::set<Id> takeOutOtherFloors(const DescribedBuilding& building,
 
 /// Which names are joined, on which side and in which order they lie, and their relations.
 void addStatements(const DescribedBuilding& building, const std::set<Id>& elsewhere,
-                   const Numbers& name, const std::optional<hyselam::Point2>& position,
-                   MatchProblem* out) {
+                   const Numbers& name, const MatchObserver& observer,
+                   const AugmentedTopologicalMap& map,
+                   const std::vector<std::pair<Id, Id>>& confirmed, MatchProblem* out) {
   const std::size_t n = out->nameCount();
   std::vector<DescribedConnection> connections;
   for (const DescribedConnection& c : building.connections)
@@ -306,8 +323,8 @@ void addStatements(const DescribedBuilding& building, const std::set<Id>& elsewh
     const auto b = static_cast<std::size_t>(name(c.to, "description"));
     out->described_edges[a * n + b] = out->described_edges[b * n + a] = 1;
   }
-  addSides(connections, name, position, out);
-  addRelations(building, elsewhere, name, position, out);
+  addSides(connections, name, observer.position, out);
+  addRelations(building, elsewhere, name, observer, map, confirmed, out);
 }
 
 }  // namespace
@@ -350,7 +367,7 @@ MatchProblem compileMatch(const DescribedBuilding& building, const AugmentedTopo
     if (building.robot_place) all.confirmed.emplace_back(*observer.place, *building.robot_place);
   }
   const std::set<Id> elsewhere = takeOutOtherFloors(building, all, &out);
-  addStatements(building, elsewhere, name, observer.position, &out);
+  addStatements(building, elsewhere, name, observer, map, all.confirmed, &out);
   addConstraints(all, name, vertex, &out);
   for (std::size_t i = 0; i < n; ++i)
     if (out.attributes[i].elsewhere) out.allowed[i] = {};

@@ -76,7 +76,8 @@ struct DescribedConnection {
   /// nearest to where the robot stood first; "the last" is -1, counted from the far end. Nothing:
   /// not told; `order` then tells only what comes before what.
   std::optional<int> rank = std::nullopt;
-  /// "Ten metres ahead on your left": from where the robot stood, along its way [m].
+  /// "Ten metres ahead on your left": from where the robot stood, along its way [m]. 0: "here on
+  /// your left", the nearest of that side, be it a little ahead or behind.
   std::optional<double> distance = std::nullopt;
   /// Where the robot stood and looked when side, number or distance were told, in the frame of the
   /// map; nothing: not known.

@@ -33,6 +33,8 @@ struct SaidName {
   bool speaker = false;
   /// "Mary's", "o da Teresa": what kind of place it is was said before; `text` lacks that word.
   bool elliptic = false;
+  /// Of a list: told to come behind the name before it ("then", "followed by").
+  bool follows = false;
   TextRange range;
 };
 

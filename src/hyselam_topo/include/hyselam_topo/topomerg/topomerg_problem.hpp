@@ -56,7 +56,7 @@ struct MatchProblem {
     int from = 0;  ///< numbers of the names
     int to = 0;
     int rank = 0;           ///< from 1, or from -1 at the far end; 0: not told
-    double distance = 0.0;  ///< from where the robot stood, if rank is 0 [m]
+    double distance = 0.0;  ///< from where the robot stood, if rank is 0 [m]; 0: the nearest
     /// From the direction through the door to that in which it is counted; nothing for a distance
     /// without a side.
     std::optional<double> turn;
@@ -85,6 +85,7 @@ struct MatchProblem {
     bool denied = false;
     double side_angle = 0.0;                  ///< only for kAtSide, as in DescribedSide
     std::optional<hyselam::Point2> position;  ///< only for kAfter and kBehind: where it stood then
+    std::optional<double> looked = std::nullopt;  ///< only for kAfter: where it looked then
   };
   struct NameAttributes {
     double area = 0.0;  ///< [m^2], 0: not described
