@@ -24,6 +24,9 @@ bool isToldHere(const Clause& clause, std::size_t from, const SentenceWords& wor
   const auto isIn = [&](std::size_t at, const std::set<std::string>& all) {
     return all.count(tokens[at].folded) != 0;
   };
+  for (std::size_t at = begin; at < end; ++at) {
+    if (isIn(at, words.grammar.here_words)) return true;  // left out before the side's own words
+  }
   // What stands before it, up to a name.
   bool door = false;
   for (std::size_t at = begin; at > from && at + kNear > begin;) {
