@@ -93,8 +93,9 @@ std::string FactSentences::ofConnection(const DescribedConnection& connection) c
   }
   std::vector<SaidValue> values{to, where(connection.from, connection.side)};
   const bool sided = connection.side == Side::kLeft || connection.side == Side::kRight;
-  if (!connection.rank && sided && connection.distance == 0.0) {
-    return writer_.sentence("right_here", values);
+  if (sided && connection.distance == 0.0) {
+    if (connection.rank) values.push_back(which(*connection.rank));
+    return writer_.sentence(connection.rank ? "ranked_here" : "right_here", values);
   }
   std::string key = plain ? "at_place" : "";
   if (connection.rank) {

@@ -142,8 +142,13 @@ void mergeInto(Statement& s, const DescribedConnection& known, Placement* p) {
                                   {"distance", shown(*p->distance)}});
   }
   const bool same_side = known.side == p->side || known.side == Side::kUnknown;
-  if (!p->rank && same_side) p->rank = known.rank;
-  if (!p->distance) p->distance = known.distance;
+  // "Here" is where the robot stands now, the third door was counted from elsewhere; the last is so
+  // from everywhere.
+  const bool here = p->distance == 0.0, was_here = known.distance == 0.0;
+  const bool counted = known.rank.value_or(-1) > 0;
+  if (!p->rank && same_side && !(here && counted)) p->rank = known.rank;
+  const bool counts = p->rank.value_or(-1) > 0;
+  if (!p->distance && !(was_here && counts)) p->distance = known.distance;
 }
 
 /// Whether nothing is left to do: seen from the other place, or contradicted.
