@@ -40,7 +40,13 @@ bool isToldHere(const Clause& clause, std::size_t from, const SentenceWords& wor
     if (door && isIn(at, words.grammar.pointing_words)) return true;
     door = door || isIn(at, words.grammar.pointed_words);
   }
-  return end < tokens.size() && isIn(end, words.grammar.here_words);
+  // "On the left, right here": what stands behind it, over commas and one word.
+  std::size_t passed = 0;
+  for (; end < tokens.size() && passed < 2; ++end) {
+    if (isIn(end, words.grammar.here_words)) return end < clause.end || passed == 0;
+    passed += words.isComma(end) ? 0 : 1;
+  }
+  return false;
 }
 
 }  // namespace language
