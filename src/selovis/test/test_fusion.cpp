@@ -129,6 +129,28 @@ TEST(Fusion, OneTourIsCalibratedByStretchesAndTooFewFramesByNothing) {
       << "without evidence colors are trusted less";
 }
 
+TEST(Fusion, StrangerIsNovelAlsoWhereTooLittleWasLearnedToLeaveAnythingOut) {
+  World world(10, true), elsewhere(11, true);
+  const Samples samples = world.learn(1, 1, 3);
+  FusionClassifier few(samples, kPlaces, fusion());
+  ASSERT_EQ(few.calibration().left_out, "nothing");
+  std::vector<double> p(kPlaces);
+  const auto noveltyOf = [&](std::vector<float> look) {
+    few.predict(look.data(), p.data());
+    return few.novelty();
+  };
+  for (int place = 0; place < kPlaces; ++place) {
+    const double known = noveltyOf(world.look(place));
+    EXPECT_GT(known, 0.5);
+    EXPECT_LT(known, 1.5) << "the unit is what learned frames are apart";
+    EXPECT_GT(noveltyOf(elsewhere.look(place)), 1.2 * known);
+  }
+  FusionClassifier again(samples, kPlaces, fusion(), few.state());
+  const auto look = world.look(1);
+  again.predict(look.data(), p.data());
+  EXPECT_EQ(again.novelty(), noveltyOf(look)) << "it is saved with the model";
+}
+
 TEST(Fusion, ProbabilitiesAreCalibratedOnFramesThatWereNotLearned) {
   World world(4, false);
   FusionClassifier fused(world.learn(3), kPlaces, fusion());

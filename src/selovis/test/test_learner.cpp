@@ -99,6 +99,48 @@ TEST(Learner, RecognizesWhatWasLearnedWhileDriving) {
   EXPECT_FALSE(trained.transitions.connected(1, 2));
 }
 
+/// The number of frames of each tour, as a fusion tells tours apart.
+std::vector<std::size_t> sizesOfTours(const Samples& samples) {
+  std::vector<std::size_t> sizes{0};
+  int last = samples.frames.front();
+  for (const int frame : samples.frames) {
+    if (frame - last >= kTourGap) sizes.push_back(0);
+    sizes.back() += frame != last || sizes.back() == 0;
+    last = frame;
+  }
+  return sizes;
+}
+
+TEST(Learner, PausesAndTrainingsOnTheWayAreNoNewTours) {
+  const auto model = untrained();
+  const auto learner = drive(model);
+  const std::vector<LearnedFrame>& all = learner->frames();
+  const auto half = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2 + 2);
+  PlaceModel trained = learnFrames(*model, {all.begin(), half});
+  trained = learnFrames(trained, {half, all.end()});
+  EXPECT_EQ(sizesOfTours(trained.samples), std::vector<std::size_t>{all.size()}) << "trained twice";
+  EXPECT_EQ(trained.samples.frames.back(), static_cast<int>(all.size()) - 1);
+  // It stands for a minute, then drives on: not consecutive, but the same tour.
+  const auto later = [&](double seconds) {
+    std::vector<LearnedFrame> frames = all;
+    for (LearnedFrame& f : frames) f.stamp += seconds;
+    return frames;
+  };
+  trained = learnFrames(trained, later(60.0));
+  EXPECT_EQ(sizesOfTours(trained.samples), std::vector<std::size_t>{2 * all.size()});
+  EXPECT_GE(trained.samples.frames.back(), static_cast<int>(2 * all.size()) + kPauseGap - 2);
+  // In the afternoon, and after the clock was set back.
+  trained = learnFrames(trained, later(20000.0));
+  trained = learnFrames(trained, later(0.0));
+  EXPECT_EQ(sizesOfTours(trained.samples),
+            (std::vector<std::size_t>{2 * all.size(), all.size(), all.size()}));
+  // A model that was loaded does not know when it was learned.
+  TemporaryDirectory folder;
+  savePlaceModel(trained, folder / "m");
+  trained = learnFrames(loadPlaceModel(folder / "m"), later(10.0));
+  EXPECT_EQ(sizesOfTours(trained.samples).size(), 4u);
+}
+
 TEST(Learner, SignaturesSurviveTheTopologicalMap) {
   const auto model = untrained();
   const auto learner = drive(model);

@@ -13,6 +13,7 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "selovis/descriptors/descriptive_filter.hpp"
+#include "selovis/learning/learner.hpp"
 #include "selovis/recognition/image_recognizer.hpp"
 
 namespace selovis {
@@ -303,6 +304,24 @@ TEST(PlaceModel, FormerFormatIsReadAndWrittenAsTheNewOne) {
   EXPECT_EQ(again.samples.poses[1].x, 0.5);
 }
 
+TEST(PlaceModel, WithoutTrainingIsNotSaved) {
+  TemporaryDirectory folder;
+  for (const SvmKernel kernel : {SvmKernel::kFusion, SvmKernel::kExemplar, SvmKernel::kLinear}) {
+    TrainingOptions options;
+    options.descriptor = "LGOP";
+    options.classifier.kernel = kernel;
+    PlaceModel model = untrainedPlaceModel(options);
+    EXPECT_NE(messageOf<InputError>([&] { savePlaceModel(model, folder / "m"); }).find("learned"),
+              std::string::npos);
+    if (kernel == SvmKernel::kExemplar) continue;
+    const std::vector<float> signature(model.samples.size, 0.5f);
+    model.samples.add(signature.data(), 0, 0);
+    EXPECT_NE(messageOf<InputError>([&] { savePlaceModel(model, folder / "m"); }).find("trained"),
+              std::string::npos);
+  }
+  EXPECT_FALSE(holdsPlaceModel(folder / "m"));
+}
+
 /// With a right checksum, so that the parser itself must refuse.
 TEST(PlaceModel, RandomDamageIsRefusedWithoutACrash) {
   TemporaryDirectory folder;
@@ -370,6 +389,23 @@ TEST(ImageRecognizer, PlaceRemovedFromTheMapKeepsItsClassWithoutTransitions) {
   for (int i = 0; i < 20; ++i) r.update(frameOf(2, i).image);
   EXPECT_EQ(r.update(frameOf(2, 1).image).estimate.place, 2);
   EXPECT_THROW(ImageRecognizer(model, left, {}), InputError);
+}
+
+TEST(ImageRecognizer, PosesThatAreNotOfOneMapAreToldAndLeftToTheFilterOverPlaces) {
+  PlaceModel model = smallModel(SvmKernel::kExemplar);
+  for (std::size_t i = 0; i < model.samples.count(); ++i) {
+    model.samples.poses[i] = {i % 2 == 0 ? 0.0 : 6000.0, 0.0, 0.0};
+  }
+  ImageRecognizer automatic(model, model.transitions, {});
+  EXPECT_NE(automatic.posesProblem().find("5 km"), std::string::npos);
+  SensorReadings readings;
+  readings.odometry = hyselam::Pose2{};
+  EXPECT_GE(automatic.update(frameOf(0, 1).image, readings).estimate.place, 0);
+  ImageRecognizerParams poses;
+  poses.filter.kind = PlaceFilterKind::kPoses;
+  EXPECT_THROW(ImageRecognizer(model, model.transitions, poses), InputError);
+  for (auto& pose : model.samples.poses) pose.x *= 0.5;
+  EXPECT_EQ(ImageRecognizer(model, model.transitions, {}).posesProblem(), "");
 }
 
 TEST(ImageRecognizer, TimeThatGoesBackResetsThePoseFilter) {

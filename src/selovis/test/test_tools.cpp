@@ -84,6 +84,28 @@ TEST(Tools, TrainAndEvaluateWriteTheirFiles) {
   }
 }
 
+TEST(Tools, EvaluateWarnsWherePosesCannotBeUsed) {
+  TemporaryDirectory f;
+  makeTour(f);
+  const auto evaluate = [&](const std::string& step, const std::string& filter) {
+    std::string list = "image_path,place,stamp,x,y,theta,odom_x,odom_y,odom_theta\n";
+    for (int i = 0; i < 20; ++i) {
+      const std::string n = std::to_string(i);
+      list += n + ".png," + (i < 10 ? "hall," : "kitchen,") + n + "," + n + step + ",0,0,,,\n";
+    }
+    writeFile(f / "posed.csv", list);
+    const std::string m = f / "m", labels = " --labels " + (f / "posed.csv");
+    EXPECT_EQ(run(f, "train --descriptor LGOP --kernel exemplar --out " + m + labels).status, 0);
+    const Result r = run(f, "evaluate " + m + labels + " --filter " + filter);
+    EXPECT_EQ(r.status, 0) << r.error;
+    return r.error;
+  };
+  EXPECT_NE(evaluate("", "poses").find("warning: the filter poses has no odometry"),
+            std::string::npos);
+  EXPECT_EQ(evaluate("", "auto").find("warning"), std::string::npos);
+  EXPECT_NE(evaluate("000", "auto").find("5 km apart"), std::string::npos);
+}
+
 TEST(Tools, TwoTrainingsWriteTheSameBytes) {
   TemporaryDirectory f;
   makeTour(f);

@@ -10,6 +10,12 @@
 
 namespace selovis {
 
+namespace {
+
+constexpr int kManyWithoutOdometry = 10;  // frames on end
+
+}  // namespace
+
 SemanticLocalizationServer::SemanticLocalizationServer(const ros::NodeHandle& nh,
                                                        const ros::NodeHandle& private_nh)
     : log_name_(hyselam::logName(private_nh)),
@@ -56,6 +62,7 @@ void SemanticLocalizationServer::onImage(const cv::Mat& image, const SensorReadi
                                          const std_msgs::Header& header) {
   if (recognizer_) {
     const ros::WallTime begin = ros::WallTime::now();
+    without_odometry_ = readings.odometry ? 0 : without_odometry_ + 1;
     const Recognition recognition = recognizer_->update(image, readings);
     frame_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
     if (map_ && recognition.descriptive && !recognition.novel) {
@@ -114,6 +121,10 @@ void SemanticLocalizationServer::updateRecognizer(const PlaceModel& model, bool 
     return;
   }
   recognizer_ = std::make_unique<ImageRecognizer>(model, transitions, params_.recognizer);
+  if (!recognizer_->posesProblem().empty()) {
+    ROS_WARN_STREAM(log_name_ << " frames are filtered by places alone: the learned frames "
+                              << recognizer_->posesProblem());
+  }
   transitions_ = std::move(transitions);
   supervision_.setTransitions(transitions_);
 }
@@ -132,6 +143,11 @@ void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& statu
   if (!unmapped_places_.empty()) {
     addRemark(status, DiagnosticStatus::WARN,
               std::to_string(unmapped_places_.size()) + " places are not on the map");
+  }
+  if (params_.recognizer.filter.kind == PlaceFilterKind::kPoses &&
+      without_odometry_ >= kManyWithoutOdometry) {
+    addRemark(status, DiagnosticStatus::WARN,
+              "the filter poses has no odometry: 'auto' or 'bayes' does better without");
   }
   learning_->report(status);
   addValue(status, "places of the map", map_ ? map_->places.size() : 0);

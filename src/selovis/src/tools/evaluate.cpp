@@ -83,7 +83,19 @@ struct Evaluation {
   std::vector<double> descriptor_ms, frame_ms;
   std::vector<std::string> unknown_places;  // of the tour, not in the model
   nlohmann::json accuracy_by_filter;
+  std::string warning;
 };
+
+/// What keeps poses from being used although the filter is for them; empty: nothing.
+std::string warningOf(const ImageRecognizer& recognizer, PlaceFilterKind filter, bool odometry) {
+  if (!recognizer.posesProblem().empty()) {
+    return "filtered by places alone: the learned frames " + recognizer.posesProblem();
+  }
+  return filter == PlaceFilterKind::kPoses && !odometry
+             ? "the filter poses has no odometry (odom_x, odom_y, odom_theta): without it auto and "
+               "bayes do better"
+             : "";
+}
 
 Evaluation evaluateTour(const PlaceModel& model, const PlaceTransitions& transitions,
                         const Options& o, const Tours& tours) {
@@ -93,11 +105,13 @@ Evaluation evaluateTour(const PlaceModel& model, const PlaceTransitions& transit
   std::vector<float> signature(static_cast<std::size_t>(descriptor->size()));
   Evaluation result;
   const std::size_t frames = tours.sizes().front();
+  bool odometry = false;
   hyselam::Progress progress("frames", frames);
   for (std::size_t i = 0; i < frames; ++i) {
     progress.update(i);
     const TrainingFrame frame = tours.load(0, i);
     const int truth = model.transitions.indexOf(frame.place);
+    odometry = odometry || frame.readings.odometry;
     withSource(tours.frame(0, i).image, [&] {
       const double start = cpuMilliseconds();
       descriptor->compute(frame.image, frame.readings, signature.data());
@@ -114,6 +128,7 @@ Evaluation evaluateTour(const PlaceModel& model, const PlaceTransitions& transit
     }
   }
   result.accuracy_by_filter = filters.accuracies(static_cast<double>(frames));
+  result.warning = warningOf(recognizer, o.recognizer.filter.kind, odometry);
   return result;
 }
 
@@ -239,6 +254,7 @@ nlohmann::json run(Options& o) {
   names.emplace_back(kUnknown);
   nlohmann::json result = summaryOf(model, o, evaluation);
   result["places_not_on_map"] = not_on_map;
+  if (!evaluation.warning.empty()) std::cerr << "warning: " << evaluation.warning << '\n';
   addConfusion(confusion, names, result);
   if (!o.predictions.empty()) writePredictions(o.predictions, tours, evaluation.rows, places);
   if (!o.plots.empty()) writePlotTables(o.plots, tours, evaluation, model, confusion, names);

@@ -22,6 +22,11 @@ struct SignaturePart {
   bool absolute_color = false;
 };
 
+/// Frame numbers of two tours are at least so far apart, ...
+constexpr int kTourGap = 100;
+/// ... those before and after a pause on one tour so far: they are not consecutive.
+constexpr int kPauseGap = 20;
+
 struct Samples {
   std::size_t size = 0;       ///< length of one signature
   std::vector<float> values;  ///< one signature after the other

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hyselam_common/parameters.hpp"
@@ -63,6 +64,9 @@ class PoseFilter {
   /// Back to the uniform distribution.
   void reset();
 
+  /// Why these samples cannot be filtered by their poses; empty if they can.
+  static std::string whyNot(const Samples& samples);
+
   /// Of each place, of sum 1.
   const std::vector<double>& probabilities() const { return state_; }
 
@@ -90,8 +94,13 @@ class PoseFilter {
     int place;  // of the nearest training pose; -1: none within the radius
   };
 
+  struct Extent {
+    hyselam::Point2 low, high;
+  };
+
+  static Extent extentOf(const Samples& samples);
   void addTrainingPoses(const Samples& samples);
-  void buildGrid();
+  void buildGrid(const Extent& extent);
   /// Writes the similarities of the views; returns their sum.
   double updateSimilarity(const std::vector<float>& distances);
   /// A pose near a view drawn by similarity.

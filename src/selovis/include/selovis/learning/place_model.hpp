@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
@@ -27,6 +28,8 @@ struct PlaceModel {
   double horizontal_fov = kDefaultFov;  ///< of the camera [rad]
   std::vector<float> dictionary;        ///< of the descriptor, if it has one
   Samples samples;
+  /// Stamp [s] of the last frame that learnFrames() added; NaN: not known. It is not saved.
+  double learned_until = std::numeric_limits<double>::quiet_NaN();
   std::string svm;  ///< the state of a trained SVM, or of a fusion (TrainedClassifier)
 
   /// The descriptor with its dictionary. @throws hyselam::InputError, hyselam::ParameterError.
@@ -89,7 +92,8 @@ cv::Mat shifted(const cv::Mat& image, double shift);
 /// parameters, places, what a fusion learned of its parts, and the data files with their size and
 /// CRC-32. The data files
 /// (binary, little-endian) have their checksum in their name and are written first, so that the
-/// directory holds a complete model, old or new, at every moment. @throws hyselam::InputError.
+/// directory holds a complete model, old or new, at every moment. @throws hyselam::InputError, also
+/// for a model that was not trained.
 void savePlaceModel(const PlaceModel& model, const std::string& directory);
 
 /// Whether a model was saved there, usable or not.

@@ -15,7 +15,8 @@ namespace selovis {
 struct ImageRecognizerParams {
   DescriptiveFilterParams descriptive;
   /// Of the kind kPoses: a PoseFilter takes its place. kAuto: both run; the PoseFilter, where the
-  /// model has exemplars with poses, answers frames with odometry, the Bayes filter all others.
+  /// model has exemplars with poses that it can use (posesProblem()), answers frames with odometry,
+  /// the Bayes filter all others.
   PlaceFilterParams filter;
   /// A frame of a higher novelty (Classifier::novelty) shows an unknown place; 0: never.
   double max_novelty = 0.0;
@@ -63,6 +64,9 @@ class ImageRecognizer {
   /// Its colors lie outside of what was learned, what is independent of light does not: the frame
   /// was taken in a light that was not learned.
   bool lightIsUnlearned() const;
+  /// Why the filter kAuto does not use the poses that the model has; empty if it does, if there are
+  /// none, or with another filter.
+  const std::string& posesProblem() const { return poses_problem_; }
   const std::vector<float>& signature() const { return signature_; }
 
  private:
@@ -79,8 +83,9 @@ class ImageRecognizer {
   PlaceTransitions transitions_;
   PlaceFilter filter_;
   std::unique_ptr<PoseFilter> poses_;  // null with all other filters
-  bool by_poses_ = false;              // the last frame
-  double last_stamp_;                  // NaN: not known
+  std::string poses_problem_;
+  bool by_poses_ = false;  // the last frame
+  double last_stamp_;      // NaN: not known
   std::vector<float> signature_;
   std::vector<double> frame_;
 };

@@ -45,6 +45,7 @@ class SemanticLocalizationServer {
   std::vector<std::string> unmapped_places_;
   std::unique_ptr<ImageRecognizer> recognizer_;  // null as long as nothing was learned
   double frame_ms_ = 0.0;
+  int without_odometry_ = 0;  // the last frames
   CameraPoses poses_;
   PoseSupervision supervision_;
   PlacePublisher publisher_;

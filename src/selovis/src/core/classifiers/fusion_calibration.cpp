@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "hyselam_common/errors.hpp"
 
@@ -14,9 +15,8 @@ using nlohmann::json;
 constexpr double kFloor = 1e-3;  // probability of each place that a part leaves
 constexpr double kMinSquaredDistance = 1e-6;
 
-// Frames of one tour that are so many numbers apart are taken to be independent; numbers of tours
-// are farther apart than kTourGap.
-constexpr int kStretch = 20, kTourGap = 100;
+// Frames of one tour that are so many numbers apart are taken to be independent.
+constexpr int kStretch = kPauseGap;
 constexpr std::size_t kMaxFrames = 400;   // asked for, evenly chosen
 constexpr std::size_t kLeastFrames = 50;  // with fewer the weights are not learned
 constexpr double kLeastShare = 0.3;  // of the frames, whose place is left when their tour is not
@@ -212,6 +212,30 @@ void learnRanges(const std::vector<Question>& questions, FusionCalibration& c) {
   }
 }
 
+/// Too few frames to leave tours or stretches out: the distance of each frame to its neighbors
+/// still is the unit of novelty. No range is known.
+void learnTypicalDistances(const Samples& samples, int places, double beta,
+                           const FrameIndex& frames, std::vector<PartExemplars>& exemplars,
+                           FusionCalibration& c) {
+  std::vector<std::vector<double>> nearest(c.parts.size());
+  std::vector<char> blocked(frames.count(), 0);
+  std::vector<std::size_t> all(frames.count());
+  std::iota(all.begin(), all.end(), 0);
+  for (const std::size_t f : thinned(all, kMaxFrames)) {
+    blocked[f] = 1;
+    const Question q = ask(samples, places, beta, frames, f, blocked, exemplars);
+    blocked[f] = 0;
+    for (std::size_t p = 0; p < nearest.size(); ++p) {
+      if (std::isfinite(q.nearest[p])) nearest[p].push_back(q.nearest[p]);
+    }
+  }
+  for (std::size_t p = 0; p < nearest.size(); ++p) {
+    if (!nearest[p].empty()) {
+      c.parts[p].median = std::max(kMinSquaredDistance, quantile(nearest[p], 0.5));
+    }
+  }
+}
+
 /// The temperature of the sum as it is made: with the parts that are out of range left out.
 void learnTemperature(Objective& objective, const std::vector<Question>& questions,
                       const std::vector<SignaturePart>& parts, FusionCalibration& c) {
@@ -292,7 +316,10 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
     tours = false;
     asked = leaving.askable(false);
   }
-  if (asked.size() < kLeastFrames) return c;
+  if (asked.size() < kLeastFrames) {
+    learnTypicalDistances(samples, places, beta, frames, exemplars, c);
+    return c;
+  }
   c.left_out = tours ? "tours" : "stretches";
   asked = thinned(asked, kMaxFrames);
   c.frames = asked.size();

@@ -66,8 +66,10 @@ void PoseFilterParams::validate() const {
 PoseFilter::PoseFilter(const Samples& samples, int places, const PoseFilterParams& params)
     : params_(params), rng_(params.seed) {
   params.validate();
+  const std::string problem = whyNot(samples);
+  if (!problem.empty()) throw hyselam::InputError("training samples", "", problem);
   addTrainingPoses(samples);
-  buildGrid();
+  buildGrid(extentOf(samples));
   const auto n = static_cast<std::size_t>(params.particles);
   particles_.resize(n);
   next_.resize(n);
@@ -77,10 +79,26 @@ PoseFilter::PoseFilter(const Samples& samples, int places, const PoseFilterParam
   reset();
 }
 
-void PoseFilter::addTrainingPoses(const Samples& samples) {
-  if (samples.poses.size() != samples.count()) {
-    throw hyselam::InputError("training samples", "", "have not one pose each");
+PoseFilter::Extent PoseFilter::extentOf(const Samples& samples) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Extent e{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (const hyselam::Pose2& p : samples.poses) {
+    if (!p.isFinite()) continue;
+    e.low = {std::min(e.low.x, p.x), std::min(e.low.y, p.y)};
+    e.high = {std::max(e.high.x, p.x), std::max(e.high.y, p.y)};
   }
+  return e;
+}
+
+std::string PoseFilter::whyNot(const Samples& samples) {
+  if (samples.poses.size() != samples.count()) return "have not one pose each";
+  const Extent e = extentOf(samples);
+  if (e.high.x < e.low.x) return "no frame has a pose";
+  const bool near = e.high.x - e.low.x <= kMaxExtent && e.high.y - e.low.y <= kMaxExtent;
+  return near ? "" : "have poses more than 5 km apart";
+}
+
+void PoseFilter::addTrainingPoses(const Samples& samples) {
   int frame = -1;
   for (std::size_t i = 0; i < samples.count(); ++i) {
     const hyselam::Pose2& pose = samples.poses[i];
@@ -93,9 +111,6 @@ void PoseFilter::addTrainingPoses(const Samples& samples) {
     views_.push_back({pose.theta, static_cast<std::uint32_t>(i)});
     training_poses_.back().end = static_cast<std::uint32_t>(views_.size());
   }
-  if (training_poses_.empty()) {
-    throw hyselam::InputError("training samples", "", "no frame has a pose");
-  }
 }
 
 std::size_t PoseFilter::Grid::cellOf(const hyselam::Point2& p) const {
@@ -103,18 +118,9 @@ std::size_t PoseFilter::Grid::cellOf(const hyselam::Point2& p) const {
          static_cast<std::size_t>((p.x - origin.x) / cell);
 }
 
-void PoseFilter::buildGrid() {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  hyselam::Point2 low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
-  // All views of a frame share its position.
-  for (const TrainingPose& t : training_poses_) {
-    low = {std::min(low.x, t.position.x), std::min(low.y, t.position.y)};
-    high = {std::max(high.x, t.position.x), std::max(high.y, t.position.y)};
-  }
-  const double width = high.x - low.x, height = high.y - low.y;
-  if (!(width <= kMaxExtent && height <= kMaxExtent)) {
-    throw hyselam::InputError("training samples", "", "have poses more than 5 km apart");
-  }
+void PoseFilter::buildGrid(const Extent& extent) {
+  const hyselam::Point2& low = extent.low;
+  const double width = extent.high.x - low.x, height = extent.high.y - low.y;
   grid_.origin = low;
   grid_.cell = std::max(params_.kernel_radius, (width + height) / kMaxCells);
   grid_.columns = static_cast<int>(width / grid_.cell) + 1;

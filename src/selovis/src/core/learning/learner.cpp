@@ -12,8 +12,9 @@ using hyselam::InputError;
 
 namespace {
 
-constexpr int kRunGap = 100;       // frame numbers between runs, which are not consecutive
-constexpr double kMaxPause = 5.0;  // [s] between two frames of one run
+constexpr double kMaxPause = 5.0;  // [s] between two frames that are consecutive
+// A robot that has collected nothing for so long [s] begins another tour: the light may be another.
+constexpr double kTourPause = 600.0;
 
 hyselam_topo::Place* findPlace(hyselam_topo::AugmentedTopologicalMap& map,
                                const std::string& name) {
@@ -74,9 +75,8 @@ PlaceModel untrainedPlaceModel(const TrainingOptions& options) {
 
 PlaceModel learnFrames(PlaceModel model, const std::vector<LearnedFrame>& frames) {
   PlaceTransitions& transitions = model.transitions;
-  int number = model.samples.frames.empty() ? 0 : model.samples.frames.back() + kRunGap;
-  const LearnedFrame* last = nullptr;
-  int last_place = -1;
+  int number = model.samples.frames.empty() ? 0 : model.samples.frames.back() + 1;
+  int last_place = model.samples.places.empty() ? -1 : model.samples.places.back();
   for (const LearnedFrame& frame : frames) {
     if (frame.place.empty()) throw InputError("learned frame", "", "has no place");
     int place = transitions.indexOf(frame.place);
@@ -84,16 +84,20 @@ PlaceModel learnFrames(PlaceModel model, const std::vector<LearnedFrame>& frames
       place = static_cast<int>(transitions.places.size());
       transitions.places.push_back(frame.place);
     }
-    const double elapsed = last == nullptr ? 0.0 : frame.stamp - last->stamp;
-    if (elapsed < 0.0 || elapsed > kMaxPause) {
-      number += kRunGap;
-    } else if (last != nullptr && place != last_place &&
-               !transitions.connected(place, last_place)) {
+    // Not known (NaN) after a model was loaded: what is learned now is another tour.
+    const double elapsed = frame.stamp - model.learned_until;
+    if (last_place < 0) {
+      // The first frame.
+    } else if (!(elapsed >= 0.0 && elapsed <= kTourPause)) {
+      number += kTourGap;
+    } else if (elapsed > kMaxPause) {
+      number += kPauseGap;
+    } else if (place != last_place && !transitions.connected(place, last_place)) {
       transitions.pairs.emplace_back(std::min(place, last_place), std::max(place, last_place));
     }
     addSamples(model, frame, place, number);
     ++number;
-    last = &frame;
+    model.learned_until = frame.stamp;
     last_place = place;
   }
   model.svm =

@@ -272,6 +272,10 @@ void removeOtherData(const std::string& directory, const json& manifest) {
 }  // namespace
 
 void savePlaceModel(const PlaceModel& model, const std::string& directory) {
+  if (model.samples.count() == 0) throw InputError(directory, "", "nothing has been learned");
+  if (model.classifier.kernel != SvmKernel::kExemplar && model.svm.empty()) {
+    throw InputError(directory, "", "the model has signatures, but has not been trained with them");
+  }
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw InputError(directory, "", "cannot be created: " + error.message());

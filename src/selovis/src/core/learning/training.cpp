@@ -12,9 +12,6 @@ using hyselam::InputError;
 
 namespace {
 
-// Between tours and between trainings: numbers of frames that are not consecutive.
-constexpr int kRunGap = 100;
-
 int classOf(PlaceModel& model, const std::string& place) {
   const int known = model.transitions.indexOf(place);
   if (known >= 0) return known;
@@ -49,9 +46,9 @@ void addSignatures(PlaceModel& model, Descriptor& descriptor, const std::vector<
                    const LoadFrame& load, const TrainingOptions& options) {
   const std::size_t all = sum(tours);
   std::vector<float> signature(static_cast<std::size_t>(descriptor.size()));
-  int frame = model.samples.frames.empty() ? 0 : model.samples.frames.back() + kRunGap;
+  int frame = model.samples.frames.empty() ? 0 : model.samples.frames.back() + kTourGap;
   std::size_t done = 0;
-  for (std::size_t t = 0; t < tours.size(); ++t, frame += kRunGap) {
+  for (std::size_t t = 0; t < tours.size(); ++t, frame += kTourGap) {
     std::vector<int> tour;
     for (std::size_t i = 0; i < tours[t]; ++i, ++frame) {
       if (options.progress) options.progress("signatures", done++, all);
@@ -156,6 +153,7 @@ PlaceModel trainPlaceModel(const std::vector<std::size_t>& frames_of_tours, cons
 PlaceModel extendPlaceModel(PlaceModel model, const std::vector<std::size_t>& frames_of_tours,
                             const LoadFrame& load, const TrainingOptions& options) {
   addSignatures(model, *model.makeDescriptor(), frames_of_tours, load, options);
+  model.learned_until = std::numeric_limits<double>::quiet_NaN();
   fitClassifier(model, options);
   return model;
 }

@@ -54,7 +54,9 @@ ImageRecognizer::ImageRecognizer(const PlaceModel& model, const PlaceTransitions
   const bool has_poses =
       comparesExemplars(model.classifier.kernel) &&
       std::any_of(learned.begin(), learned.end(), [](const auto& p) { return p.isFinite(); });
-  if (by_poses_ || (params.filter.kind == PlaceFilterKind::kAuto && has_poses)) {
+  const bool automatic = params.filter.kind == PlaceFilterKind::kAuto && has_poses;
+  if (automatic) poses_problem_ = PoseFilter::whyNot(model.samples);
+  if (by_poses_ || (automatic && poses_problem_.empty())) {
     poses_ =
         std::make_unique<PoseFilter>(model.samples, static_cast<int>(places_.size()), params.poses);
   }
