@@ -13,6 +13,7 @@
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/simulation.hpp"
+#include "ngram_slam/slam/loop_tasks.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
@@ -118,6 +119,102 @@ TEST(SlamEngine, searchesWhatHopelessOdometryLeavesOpen) {
     EXPECT_LT(searched, 0.06) << seed;
     EXPECT_LT(1.5 * searched, errorWithoutLoops(log, 0.0)) << seed;
   }
+}
+
+/// The engine where the scans have just been asked for a step again.
+struct AskedAgain {
+  SlamEngine engine;
+  SlamJobResult result;
+};
+
+AskedAgain askedAgain(double path_behind) {
+  SlamParams params;
+  params.loops = LoopClosureMode::kNone;
+  params.step_check.path_behind = path_behind;
+  AskedAgain asked{SlamEngine(params), {}};
+  const hyselam::RobotLog log = sparseLogOfABadRobot(1);
+  for (std::size_t i = 0; i < 60; ++i) {
+    asked.engine.add(log.scans[i], log.odometry[i].pose);
+    while (const auto job = asked.engine.takeJob()) {
+      asked.result = runJob(*job);
+      if (i > 30 && !job->tasks.empty() && job->tasks[0].step) return asked;
+      asked.engine.apply(asked.result);
+    }
+  }
+  asked.result = {};
+  return asked;
+}
+
+TEST(SlamEngine, changesAStepThatBothSidesContradict) {
+  AskedAgain asked = askedAgain(SlamParams().step_check.path_behind);
+  ASSERT_EQ(asked.result.tasks.size(), 1U);
+  const auto older = static_cast<std::size_t>(asked.result.tasks[0].older);
+  const std::vector<SlamKeyframe> before = asked.engine.keyframes();
+  const auto step = [&](const std::vector<SlamKeyframe>& k, std::size_t i) {
+    return between(k[i].pose, k[i + 1].pose);
+  };
+  ASSERT_GT(before.size(), older + 4);
+  const Pose2 true_step = step(before, older) * Pose2{0.2, 0.1, 0.3};
+  LoopVerification& answer = asked.result.verifications[0];
+  answer.verified = true;
+  answer.loop.measured = true_step;
+  answer.loop.information = Eigen::Vector3d(1e6, 1e6, 1e7).asDiagonal();
+  const Pose2 robot = between(before.back().pose, asked.engine.pose());
+  const int revision = asked.engine.revision();
+  asked.engine.apply(asked.result);
+  EXPECT_GT(asked.engine.revision(), revision);
+  EXPECT_EQ(asked.engine.roughRoad().steps_mended, 1U);
+  const std::vector<SlamKeyframe>& now = asked.engine.keyframes();
+  EXPECT_LT(distance(step(now, older), true_step), 1e-3);
+  EXPECT_NEAR(hyselam::normalizeAngle(step(now, older).theta - true_step.theta), 0.0, 1e-3);
+  EXPECT_LT(distance(asked.engine.odometry()[older].measured, true_step), 1e-3);
+  for (std::size_t i = 0; i + 1 < now.size(); ++i) {
+    if (i == older) continue;
+    EXPECT_LT(distance(step(now, i), step(before, i)), 1e-9) << i;
+  }
+  EXPECT_LT(distance(between(now.back().pose, asked.engine.pose()), robot), 1e-9);
+}
+
+TEST(SlamEngine, leavesAStepOfWhichTheScansKnowNothing) {
+  AskedAgain asked = askedAgain(SlamParams().step_check.path_behind);
+  ASSERT_EQ(asked.result.tasks.size(), 1U);
+  const auto older = static_cast<std::size_t>(asked.result.tasks[0].older);
+  const Pose2 was = asked.engine.odometry()[older].measured;
+  LoopVerification& answer = asked.result.verifications[0];
+  answer.verified = true;
+  answer.loop.measured = was * Pose2{0.5, 0.0, 0.0};
+  answer.loop.information = Eigen::Vector3d(1.0, 1e6, 1e7).asDiagonal();  // along a corridor
+  asked.engine.apply(asked.result);
+  EXPECT_EQ(asked.engine.roughRoad().steps_mended, 0U);
+  EXPECT_EQ(distance(asked.engine.odometry()[older].measured, was), 0.0);
+}
+
+TEST(SlamEngine, asksNoStepAgainWhereNoneIsWanted) {
+  const AskedAgain asked = askedAgain(0.0);
+  EXPECT_TRUE(asked.result.tasks.empty());
+  EXPECT_EQ(asked.engine.roughRoad().steps_checked, 0U);
+}
+
+TEST(StepTask, isAnsweredByThePathOnBothSides) {
+  const SlamEngine engine = mapped(LoopClosureMode::kNone, 900);
+  const auto& keyframes = engine.keyframes();
+  const SlamParams params;
+  int asked = 0, answered = 0;
+  for (std::size_t k = 40; k + 40 < keyframes.size(); k += 10, ++asked) {
+    LoopTask task = stepTask(keyframes, static_cast<int>(k), params.step_check);
+    EXPECT_EQ(task.new_segment.front().pose.theta, 0.0);
+    const Pose2 step = between(keyframes[k - 1].pose, keyframes[k].pose);
+    task.initial_guess = step * Pose2{0.3, -0.3, 0.35};
+    const LoopVerification answer = verifyStep(task, params);
+    if (!answer.verified) continue;
+    ++answered;
+    // Along a corridor the answer says by its information that it does not know.
+    const Pose2 error = between(step, answer.loop.measured);
+    EXPECT_LT(std::abs(error.theta), 0.03) << k;
+    EXPECT_LT(std::min(std::abs(error.x), std::abs(error.y)), 0.1) << k;
+  }
+  EXPECT_GT(asked, 5);
+  EXPECT_GT(2 * answered, asked);
 }
 
 TEST(SlamEngine, acceptsNoFalseLoop) {

@@ -289,6 +289,8 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
                      {"path_unseen_m", road.path_unseen},
                      {"turn_unseen_deg", hyselam::degrees(road.turn_unseen)},
                      {"odometry_overruled", road.odometry_overruled},
+                     {"steps_checked", road.steps_checked},
+                     {"steps_mended", road.steps_mended},
                      {"wide_searches", road.wide_searches},
                      {"gaps", road.gaps},
                      {"lost", road.lost},

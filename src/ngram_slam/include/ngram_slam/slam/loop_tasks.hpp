@@ -19,4 +19,8 @@ LoopTask farLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int 
 LoopTask nearLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int newer,
                       double uncertainty, const LoopParams& params);
 
+/// The task to ask the path before keyframe `k` and the path behind it for the step between the
+/// keyframe before it, which is of the same run, and itself.
+LoopTask stepTask(const std::vector<SlamKeyframe>& keyframes, int k, const StepCheckParams& params);
+
 }  // namespace ngram_slam

@@ -23,6 +23,7 @@ struct LoopTask {
   int older = 0, newer = 0;  ///< keyframes
   LoopSource source = LoopSource::kProximity;
   bool far = false;              ///< see LoopParams
+  bool step = false;             ///< `newer` follows `older`: see StepCheckParams
   std::int64_t match = -1;       ///< of SlamState::matches, for LoopSource::kNgram
   hyselam::Pose2 initial_guess;  ///< newer in older
   double window = 1.0;           ///< search window around it, +- along each axis [m]
@@ -47,5 +48,8 @@ struct LoopVerification {
 /// refines it, and judges it by inliers and by what both segments observed. `information` is scaled
 /// by `scan_information_scale` as odometry's is.
 LoopVerification verifyLoop(const LoopTask& task, const SlamParams& params);
+/// The same of a step of the path, by StepCheckParams: both parts have only some of their
+/// surroundings in common.
+LoopVerification verifyStep(const LoopTask& task, const SlamParams& params);
 
 }  // namespace ngram_slam

@@ -53,6 +53,8 @@ struct RoughRoad {
   std::uint64_t odometry_overruled = 0;  ///< motions that the scans tell otherwise than odometry
   std::uint64_t wide_searches = 0;       ///< for scans that did not fit where odometry has them
   std::uint64_t gaps = 0;                ///< of OdometryDoubtParams::gap or more without a scan
+  std::uint64_t steps_checked = 0;       ///< see StepCheckParams
+  std::uint64_t steps_mended = 0;        ///< of them, those that the scans told otherwise
   std::uint64_t lost = 0;                ///< motions that neither odometry nor scans know ...
   std::uint64_t runs_split = 0;          ///< ... at which the run was split
 };

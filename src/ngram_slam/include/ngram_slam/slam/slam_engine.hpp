@@ -7,6 +7,7 @@
 // path.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -194,6 +195,8 @@ class SlamEngine {
     std::optional<double> unfit_since;  // [s]: scans that do not fit are awaited to
     bool since_keyframe = false;        // odometry was overruled since the last keyframe
     double stamp_of_keyframe = 0.0;     // [s]
+    bool searched = false;              // a scan, as odometry left much open, since the keyframe
+    std::deque<int> steps;              // keyframes whose step is to be asked again
     RoughRoad road;
   };
   struct RunStart {
@@ -269,6 +272,10 @@ class SlamEngine {
   bool splitsRuns() const;
   void splitRun(const hyselam::LaserScan& scan, const hyselam::Pose2& by_odometry);
   void noteMatched(const hyselam::LaserScan& scan);
+  // Steps of the path that are asked again, in slam_steps.cpp.
+  void noteStep(const Motion& motion);
+  std::optional<LoopTask> stepToCheck();
+  void applyStep(const LoopTask& task, const LoopVerification& answer);
 
   bool needsKeyframe(const Motion& motion) const;
   hyselam_pose_graph::PoseEdge odometryEdge(const Motion& motion,

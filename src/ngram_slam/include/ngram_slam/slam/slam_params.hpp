@@ -60,6 +60,21 @@ struct RelocalizationParams {
   void describe(hyselam::ParameterVisitor& visit);
 };
 
+/// A step between two keyframes whose scan had to be searched, as odometry left too much open, is
+/// asked again when more is known: the scans of the path behind it are laid on those before it.
+/// One scan may fit beside its place; a stretch of path hardly does.
+struct StepCheckParams {
+  double path_before = 8.0;   ///< path before the step [m], > 0
+  double path_behind = 5.0;   ///< path behind it [m], >= 0; 0: no step is asked again
+  double window = 0.8;        ///< search window around the step, +- along each axis [m], > 0
+  double angle = 0.45;        ///< search window of headings, +- [rad], 0..pi
+  double min_score = 0.15;    ///< minimum score of the search, and fraction of inliers, 0..1
+  double min_overlap = 0.2;   ///< minimum fraction of the points in space that the other part saw
+  double min_deviations = 3;  ///< of the scans, from what they say to what was believed, >= 0
+
+  void describe(hyselam::ParameterVisitor& visit);
+};
+
 /// Where a run begins in a known map.
 ///
 /// A pose that is known (RunTrust::kKnown: the robot was switched to another mode meanwhile) is
@@ -236,6 +251,7 @@ struct SlamParams {
   double odometry_information_scale = 0.5;
 
   RelocalizationParams relocalization;
+  StepCheckParams step_check;
   RunStartParams run_start;
   LoopClosureMode loops = LoopClosureMode::kAll;
   LoopParams loop;

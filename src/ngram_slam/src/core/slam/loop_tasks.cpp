@@ -55,4 +55,29 @@ LoopTask nearLoopTask(const std::vector<SlamKeyframe>& keyframes, int older, int
   return task;
 }
 
+LoopTask stepTask(const std::vector<SlamKeyframe>& keyframes, int k,
+                  const StepCheckParams& params) {
+  const auto at = [&](int i) -> const SlamKeyframe& {
+    return keyframes[static_cast<std::size_t>(i)];
+  };
+  const SlamKeyframe &before = at(k - 1), &behind = at(k);
+  LoopTask task;
+  task.older = k - 1;
+  task.newer = k;
+  task.far = task.step = true;
+  task.initial_guess = between(before.pose, behind.pose);
+  task.window = params.window;
+  task.angle = std::min(params.angle, hyselam::kPi);
+  task.old_segment = segmentAround(keyframes, k - 1, params.path_before, before.path_length);
+  const auto end = static_cast<int>(keyframes.size());
+  for (int i = k; i < end && at(i).run == behind.run &&
+                  at(i).path_length - behind.path_length <= params.path_behind;
+       ++i) {
+    task.new_segment.push_back({between(behind.pose, at(i).pose),
+                                at(i).points,
+                                {at(i).scan->laser_in_base.x, at(i).scan->laser_in_base.y}});
+  }
+  return task;
+}
+
 }  // namespace ngram_slam

@@ -179,4 +179,12 @@ LoopVerification verifyLoop(const LoopTask& task, const SlamParams& params) {
   return best;
 }
 
+LoopVerification verifyStep(const LoopTask& task, const SlamParams& params) {
+  SlamParams of_step = params;
+  LoopParams& p = of_step.loop;
+  p.far_min_score = p.far_min_inlier_ratio = params.step_check.min_score;
+  p.min_overlap = params.step_check.min_overlap;
+  return verifyLoop(task, of_step);
+}
+
 }  // namespace ngram_slam

@@ -1,5 +1,6 @@
 // Scans of the engine: odometry, local map, keyframes. See slam_runs.cpp for the start of a run,
-// slam_loops.cpp for loops, slam_jobs.cpp for work on another thread.
+// slam_steps.cpp for steps that are asked again, slam_loops.cpp for loops, slam_jobs.cpp for work
+// on another thread.
 #include "ngram_slam/slam/slam_engine.hpp"
 
 #include <algorithm>
@@ -143,6 +144,7 @@ SlamUpdate SlamEngine::add(const hyselam::LaserScan& scan, const Pose2& odometry
   if (needsKeyframe(motion)) {
     if (!update.weak_match && !doubt_.since_keyframe) learnOdometryNoise(motion, scan_information);
     const PoseEdge edge = odometryEdge(motion, scan_information);
+    noteStep(motion);
     addKeyframe(scan, points, &edge);
     searchLoopClosures();
     update.keyframe = true;
@@ -201,10 +203,12 @@ IcpResult SlamEngine::matchLocalMap(const SurfacePoints& points, const Motion& m
   const RelocalizationParams& p = params_.relocalization;
   IcpResult best = alignIcp(points, local_map_, pose_, motion.information, params_.refine);
   if (points.size() > static_cast<std::size_t>(p.min_points) && !local_map_.empty()) {
-    const auto better =
-        isBeyondRefinement(points, motion)        ? searchByLikelihood(points, motion, best)
-        : best.matched < params_.min_inlier_ratio ? searchByInliers(points, motion, best)
-                                                  : std::nullopt;
+    const bool beyond = isBeyondRefinement(points, motion);
+    doubt_.searched = doubt_.searched || beyond;
+    const auto better = beyond ? searchByLikelihood(points, motion, best)
+                        : best.matched < params_.min_inlier_ratio
+                            ? searchByInliers(points, motion, best)
+                            : std::nullopt;
     if (better) {
       best = *better;
       ++state_.counters.relocalized;
@@ -335,8 +339,9 @@ void SlamEngine::addKeyframe(const hyselam::LaserScan& scan, Points points, cons
   k.points = std::move(points);
   state_.keyframes.push_back(std::move(k));
   state_.scans.push_back({scan.stamp, lastKeyframe(), {}});
-  doubt_.since_keyframe = false;
+  doubt_.since_keyframe = doubt_.searched = false;
   doubt_.stamp_of_keyframe = scan.stamp;
+  if (edge == nullptr) doubt_.steps.clear();
   if (edge != nullptr) {
     state_.odometry.push_back(*edge);
     path_lengths_.addEdge(edge->from, edge->to, std::hypot(edge->measured.x, edge->measured.y));

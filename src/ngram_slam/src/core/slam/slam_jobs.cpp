@@ -26,7 +26,10 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
   SlamJob job;
   const auto n = static_cast<int>(state_.keyframes.size());
   const bool due = final || optimize_now_ || n - optimized_keyframes_ >= params_.optimize_interval;
-  if (!tasks_.empty()) {
+  if (auto step = stepToCheck()) {
+    // One at a time: what it changes, the next one sees. What is built on the path comes later.
+    job.tasks.push_back(*std::move(step));
+  } else if (!tasks_.empty()) {
     job.tasks.swap(tasks_);
   } else if (keyframes_to_sign_.size() >= kKeyframesToSign || run_to_end_ ||
              (final && !keyframes_to_sign_.empty())) {
@@ -54,7 +57,8 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
 SlamJobResult runJob(const SlamJob& job) {
   SlamJobResult result;
   for (const LoopTask& task : job.tasks) {
-    result.verifications.push_back(verifyLoop(task, job.params));
+    result.verifications.push_back(task.step ? verifyStep(task, job.params)
+                                             : verifyLoop(task, job.params));
     LoopTask done = task;
     done.old_segment.clear();
     done.new_segment.clear();

@@ -264,6 +264,10 @@ void SlamEngine::requestVerification(const LoopGuess& guess) {
 }
 
 void SlamEngine::applyVerification(const LoopTask& task, const LoopVerification& answer) {
+  if (task.step) {
+    applyStep(task, answer);
+    return;
+  }
   SlamCounters::Loops& count = counterOf(task.source, task.far);
   if (!answer.verified) return;
   ++count.verified;

@@ -62,6 +62,20 @@ void RelocalizationParams::describe(ParameterVisitor& visit) {
         "of that search");
 }
 
+void StepCheckParams::describe(ParameterVisitor& visit) {
+  visit("path_before", path_before, kPositive, "m",
+        "path before a step between keyframes that was searched, on whose surfaces the path behind "
+        "it is laid once more");
+  visit("path_behind", path_behind, kNotNegative, "m", "path behind it; 0: no step is asked again");
+  visit("window", window, kPositive, "m", "positions searched around the step, each axis");
+  visit("angle", angle, kAngle, "rad", "headings searched around it");
+  visit("min_score", min_score, kRatio, "", "of the search, and share of points on surfaces");
+  visit("min_overlap", min_overlap, kRatio, "",
+        "share of the points in space that the other part observed");
+  visit("min_deviations", min_deviations, kNotNegative, "",
+        "standard deviations of the scans from the step as it was, for it to be changed");
+}
+
 void RunStartParams::describe(ParameterVisitor& visit) {
   visit("map_radius", map_radius, kNotNegative, "m",
         "keyframes this far beyond the window make the map that is searched");
@@ -245,6 +259,7 @@ void SlamParams::describe(ParameterVisitor& visit) {
   visit("odometry_information_scale", odometry_information_scale, kRatio, "",
         "part of the information of odometry that counts beside a scan match");
   visit.group("relocalization/", relocalization);
+  visit.group("step_check/", step_check);
   visit.group("run_start/", run_start);
   visit.group("loop/", loop);
   visit.group("signatures/", signatures);
