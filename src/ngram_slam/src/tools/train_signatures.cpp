@@ -1,4 +1,5 @@
 // train_signatures: learns the signatures of places from recorded runs and simulated buildings.
+#include <filesystem>
 #include <iostream>
 
 #include "hyselam_common/checksum.hpp"
@@ -34,6 +35,14 @@ nlohmann::json train(const Options& o) {
   }
   if (!o.out_without_each.empty() && o.logs.logs.size() < 2) {
     throw hyselam::ParameterError("--out-without-each", o.logs.logs.size(), "two logs or more");
+  }
+  if (!o.out_without_each.empty()) {
+    // Before the work is done.
+    std::error_code error;
+    std::filesystem::create_directories(o.out_without_each, error);
+    if (error) {
+      throw hyselam::InputError(o.out_without_each, "", "cannot be made: " + error.message());
+    }
   }
   std::vector<std::vector<SignatureExample>> ways;
   SignatureOrigin origin;
@@ -90,8 +99,10 @@ int main(int argc, char** argv) {
   Options o;
   o.logs.addTo(app);
   app.add_option("--out", o.out, "file for the model");
-  app.add_option("--out-without-each", o.out_without_each,
-                 "folder for a model for each log, without-LOG.txt, learnt from all but it");
+  app.add_option(
+      "--out-without-each", o.out_without_each,
+      "folder, made if it is not there, for a model for each log, without-LOG.txt, learnt from "
+      "all but it");
   app.add_option("--buildings", o.buildings, "simulated ones to learn from as well");
   app.add_option("--seed", o.seed, "of the buildings and of all noise");
   app.add_option("--ridge", o.training.ridge, "part of each variance between visits added to it");
