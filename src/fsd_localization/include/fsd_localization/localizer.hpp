@@ -176,6 +176,7 @@ class Localizer {
   void watchForAlarms(const PoseEstimate& estimate, LocalizationResult& result);
   bool fitsWorse(const PoseEstimate& estimate);
   void askSearch(const PoseEstimate& estimate);
+  std::optional<double> sinceRival() const;
   bool wantsSearch();
   double lengthOfAlarm() const;
   void takeAnswer(LocalizationResult& result);

@@ -150,8 +150,18 @@ double Localizer::lengthOfAlarm() const {
   return std::min(kAlarmLength, search_.alarm.length(search_.way).value_or(kAlarmLength));
 }
 
-/// While tracking: an alarm, or a place found lately.
+/// [m] A place that was better than the tracked one must be so again by what was seen since it was
+/// told: scans that are joined wrongly, in a quick turn, would speak for it twice. Nothing if there
+/// is none, or the robot looks carried off.
+std::optional<double> Localizer::sinceRival() const {
+  if (!search_.rival || search_.alarm.looksCarried()) return std::nullopt;
+  return search_.way - search_.rival->way;
+}
+
+/// While tracking: an alarm, a place that was better, or a place found lately.
 bool Localizer::wantsSearch() {
+  const std::optional<double> since_rival = sinceRival();
+  if (since_rival && *since_rival < kMapEvidence) return false;
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
   const bool again = search_.rival ||
@@ -171,6 +181,10 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
     length = kCheckLength;
     if (search_.alarm.isOpen()) {
       length = lengthOfAlarm();
+      turn_as_travel = kTurnAsTravel;
+    }
+    if (const auto since = sinceRival()) {
+      length = std::min(length, *since);
       turn_as_travel = kTurnAsTravel;
     }
     believed = estimate.mean;
@@ -257,7 +271,7 @@ void Localizer::confirmPose(const Verdict& verdict) {
 
 /// Whether the pose is given up for a better place. Scans that fit neither each other nor the map
 /// say that the robot was carried off, one answer is enough. Where they fit each other it is rather
-/// the map that is wrong: the same place must be better again, half a metre on.
+/// the map that is wrong: the same place must be better again, by other scans.
 bool Localizer::isContradicted(const SearchAnswer& answer, const Verdict& verdict) {
   if (search_.alarm.looksCarried()) return true;
   const std::optional<Rival> before = search_.rival;
