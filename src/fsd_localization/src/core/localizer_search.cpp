@@ -150,11 +150,11 @@ double Localizer::lengthOfAlarm() const {
   return std::min(kAlarmLength, search_.alarm.length(search_.way).value_or(kAlarmLength));
 }
 
-/// [m] A place that was better than the tracked one must be so again by what was seen since it was
-/// told: scans that are joined wrongly, in a quick turn, would speak for it twice. Nothing if there
-/// is none, or the robot looks carried off.
+/// [m] Where each scan fits the map, only how they are joined speaks for a place that was better
+/// than the tracked one: it must be so again by what was seen since it was told. Nothing if there
+/// is none, or the scans speak against the tracked pose themselves.
 std::optional<double> Localizer::sinceRival() const {
-  if (!search_.rival || search_.alarm.looksCarried()) return std::nullopt;
+  if (!search_.rival || search_.alarm.looksCarried() || search_.alarm.isSharp()) return {};
   return search_.way - search_.rival->way;
 }
 
@@ -271,7 +271,7 @@ void Localizer::confirmPose(const Verdict& verdict) {
 
 /// Whether the pose is given up for a better place. Scans that fit neither each other nor the map
 /// say that the robot was carried off, one answer is enough. Where they fit each other it is rather
-/// the map that is wrong: the same place must be better again, by other scans.
+/// the map that is wrong: the same place must be better again, half a metre on.
 bool Localizer::isContradicted(const SearchAnswer& answer, const Verdict& verdict) {
   if (search_.alarm.looksCarried()) return true;
   const std::optional<Rival> before = search_.rival;
