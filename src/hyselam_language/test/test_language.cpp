@@ -11,6 +11,7 @@
 #include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/building/description_xml.hpp"
+#include "hyselam_language/grammar/words_left_out.hpp"
 #include "hyselam_language/testing/language_outlines.hpp"
 #include "random_buildings.hpp"
 #ifdef HYSELAM_HAVE_RAPIDCHECK
@@ -49,6 +50,32 @@ std::string errorWith(const std::string& from, const std::string& to) {
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
   return messageOf<hyselam::InputError>([&] { Grammar::fromYaml({{"g.yaml", text}}); });
+}
+
+TEST(WordsLeftOut, AreThoseThatTellSomething) {
+  const auto left = [](const std::string& language, const std::string& said,
+                       const std::string& proposed) {
+    for (const Grammar& grammar : parser().grammars()) {
+      if (grammar.language() == language) return wordsLeftOut(said, proposed, grammar);
+    }
+    ADD_FAILURE() << language;
+    return std::vector<std::string>{};
+  };
+  using Runs = std::vector<std::string>;
+  EXPECT_EQ(left("en", "The broom's in the Kitchen, behind Anna's fridge.",
+                 "The broom is in the kitchen."),
+            Runs{"behind Anna's fridge"});
+  EXPECT_EQ(
+      left("en", "The mop by the 3 sinks is next to the stove.", "The mop is next to the stove."),
+      Runs{"by the 3 sinks"});
+  EXPECT_EQ(left("en", "The mop is by the stove.", "The mop is next to the stove."), Runs{});
+  EXPECT_EQ(left("en", "So, the mop is here.", "The mop is here."), Runs{});
+  EXPECT_EQ(left("en", "The mop is here.", ""), Runs{"The mop is here"});
+  EXPECT_EQ(left("en", "The attic is on the left.", "The attic is here."), Runs{"on the left"});
+  EXPECT_EQ(left("en", "", "The mop is here."), Runs{});
+  EXPECT_EQ(left("pt", "A vassoura da Rita está na cozinha, atrás do fogão velho.",
+                 "A vassoura está na cozinha."),
+            (Runs{"da Rita", "atrás do fogão velho"}));
 }
 
 TEST(Grammar, AnyLanguageMayBeGiven) {

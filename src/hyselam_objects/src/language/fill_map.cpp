@@ -5,6 +5,8 @@
 #include <iterator>
 #include <set>
 
+#include "hyselam_language/grammar/words_left_out.hpp"
+
 namespace hyselam_objects {
 
 using hyselam_topo::UtteranceKind;
@@ -69,9 +71,7 @@ std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>&
   std::string left_out;
   std::set<std::string> told_of;  // one sentence may tell several things
   for (const ObjectStatement& each : statements) {
-    // Of a refused one, what the question does without.
-    const bool asked = each.kind == UtteranceKind::kNotUnderstood && each.suggests_meaning;
-    if (each.kind != UtteranceKind::kStatement && !asked) continue;
+    if (each.kind != UtteranceKind::kStatement) continue;
     for (const std::string& words : each.left_out) {
       if (!told_of.insert(words).second) continue;
       left_out += (left_out.empty() ? "" : "', '") + words;
@@ -133,7 +133,16 @@ std::optional<ObjectReply> FillMap::proposed(const ObjectStatement& statement, s
     ObjectStatement asked = statement;
     asked.suggestion = all[i];
     asked.alternatives.assign(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, all.end());
-    return askBack(asked, "proposal", {{"suggestion", all[i]}}, Asked::kProposal);
+    ObjectReply question = askBack(asked, "proposal", {{"suggestion", all[i]}}, Asked::kProposal);
+    std::string left_out;  // who says yes must know what the proposal does without
+    for (const std::string& words :
+         hyselam_topo::wordsLeftOut(statement.text, all[i], parser_.grammar(language_))) {
+      left_out += (left_out.empty() ? "" : "', '") + words;
+    }
+    if (!left_out.empty()) {
+      question.text = phraseText("left_out", {{"text", left_out}}) + " " + question.text;
+    }
+    return question;
   }
   return std::nullopt;
 }

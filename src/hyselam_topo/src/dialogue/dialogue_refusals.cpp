@@ -4,6 +4,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "hyselam_language/grammar/words_left_out.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "other_languages.hpp"
 
@@ -58,8 +59,11 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
                                                   : withKnownNames(u.suggestion, u.text);
   const std::string refusal = sayNotUnderstood(u.text, u.reason, advice);
   std::string rest;  // what the proposal does without
-  for (const std::string& words : proposes ? u.left_out : std::vector<std::string>{}) {
-    rest += (rest.empty() ? "" : " ") + p.say("not_understood_part", {{"text", words}});
+  if (proposes) {
+    for (const std::string& words : wordsLeftOut(u.text, meant.front(), grammar())) {
+      rest += (rest.empty() ? "" : "', '") + words;
+    }
+    if (!rest.empty()) rest = p.say("not_understood_part", {{"text", rest}});
   }
   if (turn.options.forward_unknown) {
     forward(u, refusal, turn);

@@ -1,0 +1,17 @@
+// What a proposal ("Did you mean: ...?") does without, to be told with it: who says yes must know.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hyselam_language/grammar/grammar.hpp"
+
+namespace hyselam_topo {
+
+/// The runs of words of what was said that have no counterpart in the proposal (longest common
+/// sequence of words, without case and accents), in their order, as they were said. Runs without a
+/// word that tells something (articles, "so", "you know") are none.
+std::vector<std::string> wordsLeftOut(const std::string& said, const std::string& proposed,
+                                      const Grammar& grammar);
+
+}  // namespace hyselam_topo
