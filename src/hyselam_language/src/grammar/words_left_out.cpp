@@ -1,6 +1,7 @@
 #include "hyselam_language/grammar/words_left_out.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 #include "compiled_grammar.hpp"
@@ -98,6 +99,15 @@ std::vector<std::string> wordsLeftOut(const std::string& said, const std::string
     at = end;
   }
   return runs;
+}
+
+std::string quotedInARow(const std::vector<std::string>& runs) {
+  std::string row;
+  std::set<std::string> told;
+  for (const std::string& run : runs) {
+    if (told.insert(run).second) row += (row.empty() ? "" : "', '") + run;
+  }
+  return row;
 }
 
 }  // namespace hyselam_topo

@@ -68,15 +68,13 @@ std::vector<ObjectReply> FillMap::processAll(const std::vector<ObjectStatement>&
     for (const std::string& fact : each.facts) all += (all.empty() ? "" : "; ") + fact;
     each.text = phraseText("done", {{"what", all}});
   }
-  std::string left_out;
-  std::set<std::string> told_of;  // one sentence may tell several things
+  std::vector<std::string> all_left_out;
   for (const ObjectStatement& each : statements) {
     if (each.kind != UtteranceKind::kStatement) continue;
-    for (const std::string& words : each.left_out) {
-      if (!told_of.insert(words).second) continue;
-      left_out += (left_out.empty() ? "" : "', '") + words;
-    }
+    all_left_out.insert(all_left_out.end(), each.left_out.begin(), each.left_out.end());
   }
+  // Each once: one sentence may tell several things.
+  const std::string left_out = hyselam_topo::quotedInARow(all_left_out);
   if (!left_out.empty() && !replies.empty()) {
     const std::string told = phraseText("left_out", {{"text", left_out}});
     std::string& text = replies.back().text;
@@ -134,11 +132,9 @@ std::optional<ObjectReply> FillMap::proposed(const ObjectStatement& statement, s
     asked.suggestion = all[i];
     asked.alternatives.assign(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, all.end());
     ObjectReply question = askBack(asked, "proposal", {{"suggestion", all[i]}}, Asked::kProposal);
-    std::string left_out;  // who says yes must know what the proposal does without
-    for (const std::string& words :
-         hyselam_topo::wordsLeftOut(statement.text, all[i], parser_.grammar(language_))) {
-      left_out += (left_out.empty() ? "" : "', '") + words;
-    }
+    // Who says yes must know what the proposal does without.
+    const std::string left_out = hyselam_topo::quotedInARow(
+        hyselam_topo::wordsLeftOut(statement.text, all[i], parser_.grammar(language_)));
     if (!left_out.empty()) {
       question.text = phraseText("left_out", {{"text", left_out}}) + " " + question.text;
     }

@@ -38,11 +38,7 @@ bool Dialogue::refuseOtherLanguage(const ParsedText& parsed, const std::string& 
 }
 
 void Dialogue::tellLeftOut(Turn& turn) {
-  std::string all;
-  std::set<std::string> told;
-  for (const std::string& words : turn.left_out) {
-    if (told.insert(words).second) all += (all.empty() ? "" : "', '") + words;
-  }
+  const std::string all = quotedInARow(turn.left_out);
   if (!all.empty()) turn.not_understood.push_back(phrases().say("left_out", {{"text", all}}));
 }
 
@@ -60,9 +56,7 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
   const std::string refusal = sayNotUnderstood(u.text, u.reason, advice);
   std::string rest;  // what the proposal does without
   if (proposes) {
-    for (const std::string& words : wordsLeftOut(u.text, meant.front(), grammar())) {
-      rest += (rest.empty() ? "" : "', '") + words;
-    }
+    rest = quotedInARow(wordsLeftOut(u.text, meant.front(), grammar()));
     if (!rest.empty()) rest = p.say("not_understood_part", {{"text", rest}});
   }
   if (turn.options.forward_unknown) {

@@ -14,4 +14,7 @@ namespace hyselam_topo {
 std::vector<std::string> wordsLeftOut(const std::string& said, const std::string& proposed,
                                       const Grammar& grammar);
 
+/// Each once, in order, as stands between the quotation marks of a phrase: "a', 'b".
+std::string quotedInARow(const std::vector<std::string>& runs);
+
 }  // namespace hyselam_topo
