@@ -13,7 +13,7 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
-from localization_rig import WAIT, Listener, Recording, angle_between, compose, planar, wait_until
+from localization_rig import WAIT, Listener, Recording, angle_between, compose, make_map, planar, wait_until
 
 
 class AmclLaunchTest(unittest.TestCase):
@@ -58,9 +58,9 @@ class AmclLaunchTest(unittest.TestCase):
         return [t for m in self.told.messages for t in m.transforms
                 if (t.header.frame_id, t.child_frame_id) == ("map", "odom")]
 
-    def assert_right(self, meters=0.3, degrees=6.0):
-        """By amcl_pose, and by tf."""
-        pose = self.poses.messages[-1]
+    def assert_right(self, pose=None, meters=0.3, degrees=6.0):
+        """By amcl_pose, the last one if none is given, and by tf."""
+        pose = pose or self.poses.messages[-1]
         stamp = pose.header.stamp.to_sec()
         truth = self.run_.truth_at(stamp)
         x, y, theta = planar(pose.pose.pose)
@@ -104,7 +104,7 @@ class AmclLaunchTest(unittest.TestCase):
         self.assertEqual((now["max_particles"], now["odom_alpha3"], now["update_min_d"]), (5000, 0.8, 0.2))
         # At once, without another localiser.
         self.assertEqual(client.update_configuration({"transform_tolerance": 0.5})["transform_tolerance"], 0.5)
-        self.assertEqual(sum(m.name == "/amcl" and "map ready" in m.msg for m in self.log.messages), 1)
+        self.assertEqual(self.maps_ready(), 1)
         told = len(self.transforms())
         self.drive(3)
         wait_until(lambda: len(self.transforms()) > told, "no transform")
@@ -114,7 +114,7 @@ class AmclLaunchTest(unittest.TestCase):
         client.update_configuration({"transform_tolerance": 0.1})
         # A new localiser, that goes on where the other one was.
         self.assertEqual(client.update_configuration({"update_min_d": 0.1})["update_min_d"], 0.1)
-        wait_until(lambda: sum(m.name == "/amcl" and "map ready" in m.msg for m in self.log.messages) == 2, "no new localiser")
+        wait_until(lambda: self.maps_ready() == 2, "no new localiser")
         poses = len(self.poses.messages)
         self.drive(len(self.run_.scans) // 4)
         wait_until(lambda: len(self.poses.messages) > poses + 3, "no poses after the change")
@@ -133,7 +133,35 @@ class AmclLaunchTest(unittest.TestCase):
         self.assertTrue(rospy.has_param("/amcl/odom_alpha5"))
         client.close()
 
-    def test_4_services(self):
+    def maps_ready(self):
+        return sum(m.name == "/amcl" and "map ready" in m.msg for m in self.log.messages)
+
+    def test_4_pose_of_a_map_that_takes_its_time_moves_with_the_robot(self):
+        map_, side = self.run_.map, 2500
+        info = map_.info
+        # A hall beside the building, which gives the preparation work.
+        rows = [list(map_.data[r * info.width:(r + 1) * info.width]) + [0] * side for r in range(info.height)]
+        rows += [[-1] * info.width + [0] * side for _ in range(side - info.height)]
+        large = make_map([v for row in rows for v in row], info.width + side, len(rows), info.resolution,
+                         info.origin.position.x, info.origin.position.y)
+        ready = self.maps_ready()
+        stamp = self.run_.scans[self.next - 1].header.stamp.to_sec()
+        self.assertTrue(rospy.ServiceProxy("/set_map", SetMap)(large, self.run_.truth_pose(stamp)).success)
+        start = self.run_.truth_at(stamp)
+        while self.moved(start) < 0.6:
+            self.drive(1)
+        self.assertEqual(self.maps_ready(), ready, "the map was ready too soon for this test")
+        wait_until(lambda: self.maps_ready() > ready, "the large map is never ready")
+        poses = len(self.poses.messages)
+        while len(self.poses.messages) <= poses:
+            self.drive(1)
+        self.assert_right(self.poses.messages[poses])
+
+    def moved(self, start):
+        x, y, _ = self.run_.truth_at(self.run_.scans[self.next - 1].header.stamp.to_sec())
+        return math.hypot(x - start[0], y - start[1])
+
+    def test_5_services(self):
         poses = len(self.poses.messages)
         rospy.ServiceProxy("/request_nomotion_update", Empty)()
         self.drive(1)

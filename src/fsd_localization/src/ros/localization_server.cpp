@@ -100,7 +100,6 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
       publisher_(nh, params_),
       map_service_(mapService(nh, params_, log_name_, map_seen_)),
       preparation_(params_.localizer, params_.cache_dir),
-      pending_initial_(params_.initial_pose.pose()),
       input_(
           nh, params_.input, log_name_,
           [this](const hyselam::LaserScan& scan, const Pose2& base_in_odom,
@@ -110,9 +109,10 @@ LocalizationServer::LocalizationServer(ros::NodeHandle nh, const ros::NodeHandle
                    params_.diagnostic_period,
                    [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); }),
       map_timer_(nh.createWallTimer(
-          ros::WallDuration(kTakeOverPeriod), [this](const ros::WallTimerEvent&) { takeOverMap(); },
-          false, false)) {
+          ros::WallDuration(kTakeOverPeriod),
+          [this](const ros::WallTimerEvent&) { takeOverMap({}); }, false, false)) {
   using Empty = std_srvs::Empty;
+  if (const auto pose = params_.initial_pose.pose()) waiting_pose_ = WaitingPose{*pose, {}};
   if (params_.use_map_topic) {
     map_subscriber_ = nh.subscribe("map", 1, &LocalizationServer::onMap, this);
   } else {
@@ -165,7 +165,7 @@ bool LocalizationServer::prepare(const nav_msgs::OccupancyGrid& msg, const std::
   ROS_INFO_STREAM(log_name_ << " preparing a map of " << map.geometry.width << " x "
                             << map.geometry.height << " cells of " << map.geometry.resolution
                             << " m");
-  if (localizer_) pending_initial_.reset();  // it was for a map that is not wanted any more
+  if (localizer_) waiting_pose_.reset();  // it was for a map that is not wanted any more
   startPreparation([map = std::move(map)](const std::function<bool()>&) { return map; });
   return true;
 }
@@ -219,7 +219,7 @@ void LocalizationServer::refuseMap(const std::string& why) {
   map_error_ = why;
 }
 
-void LocalizationServer::takeOverMap() {
+void LocalizationServer::takeOverMap(const std::optional<Pose2>& base_in_odom) {
   std::optional<MapPreparation::Outcome> outcome = preparation_.take();
   if (!preparation_.busy()) map_timer_.stop();
   if (!outcome) return;
@@ -228,21 +228,29 @@ void LocalizationServer::takeOverMap() {
     refuseMap(outcome->error);
     map_seen_ = localizer_ != nullptr;
     if (localizer_) {
-      pending_initial_.reset();  // it came with this map
+      waiting_pose_.reset();  // it came with this map
     } else if (!params_.use_map_topic) {
       requestMap(kRetryPeriod);  // the map server may have a better one by then
     }
     return;
   }
   // A corrected map of the same place shall not make a robot lost that knows where it is.
-  std::optional<InitialPose> start = pending_initial_;
-  if (!start && last_result_ && (last_result_->converged || guided_)) {
+  const std::optional<Pose2> odometry = base_in_odom ? base_in_odom : input_.baseInOdom();
+  std::optional<InitialPose> start;
+  if (waiting_pose_) {
+    start = waiting_pose_->pose;
+    if (odometry && waiting_pose_->base_in_odom) {
+      start->base_in_map = start->base_in_map * between(*waiting_pose_->base_in_odom, *odometry);
+    }
+  } else if (last_result_ && (last_result_->converged || guided_)) {
     const auto deviation = [&](int i) {
       return std::max(0.25, std::sqrt(last_result_->covariance(i, i)));
     };
-    start = InitialPose{last_result_->base_in_map, {deviation(0), deviation(1), deviation(2)}};
+    start = InitialPose{
+        odometry && odom_in_map_ ? *odom_in_map_ * *odometry : last_result_->base_in_map,
+        {deviation(0), deviation(1), deviation(2)}};
   }
-  pending_initial_.reset();
+  waiting_pose_.reset();
   localizer_ = std::move(outcome->localizer);
   localizer_->waitForSearch(false);  // a callback waits for nothing; the scans do
   map_error_.clear();
@@ -289,7 +297,7 @@ bool LocalizationServer::isHeldUp(const ros::Time& stamp) {
 
 bool LocalizationServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odom,
                                 const ros::Time& stamp) {
-  takeOverMap();
+  takeOverMap(base_in_odom);
   if (!localizer_) {
     if (!map_seen_) {
       input_.drops().drop("no map", "none has come yet");
@@ -335,6 +343,7 @@ void LocalizationServer::noteResult(const LocalizationResult& result, const Pose
 
 void LocalizationServer::onTimeJump() {
   odom_in_map_.reset();  // the odometry may have begun again elsewhere
+  if (waiting_pose_) waiting_pose_->base_in_odom.reset();
   if (localizer_) localizer_->restartClock();
 }
 
@@ -383,7 +392,8 @@ bool LocalizationServer::startAt(const InitialPose& pose) {
                             << pose.base_in_map.y << " m, "
                             << hyselam::degrees(pose.base_in_map.theta) << " deg"
                             << (localizer_ ? "" : ", kept for when a map is ready"));
-  if (!localizer_ || pending_initial_) pending_initial_ = pose;  // the newest guess counts
+  // The newest guess counts.
+  if (!localizer_ || preparation_.busy()) waiting_pose_ = WaitingPose{pose, input_.baseInOdom()};
   if (!localizer_) return true;
   try {
     localizer_->setInitialPose(pose.base_in_map, pose.stddev);
@@ -399,7 +409,7 @@ bool LocalizationServer::startAt(const InitialPose& pose) {
 
 void LocalizationServer::forgetPose(const std::string& why) {
   ROS_INFO_STREAM(log_name_ << " searching the whole map: " << why);
-  pending_initial_.reset();
+  waiting_pose_.reset();
   odom_in_map_.reset();
   last_result_.reset();
   guided_ = false;
@@ -420,7 +430,7 @@ bool LocalizationServer::onSetMap(nav_msgs::SetMap::Request& request,
   }
   if (!prepare(request.map, "service set_map: map")) return true;
   if (preparation_.busy()) {
-    pending_initial_ = pose;
+    waiting_pose_ = WaitingPose{pose, input_.baseInOdom()};
     response.success = true;
   } else {
     response.success = startAt(pose);  // it was the same map

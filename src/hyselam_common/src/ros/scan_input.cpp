@@ -152,17 +152,21 @@ void ScanInput::logGeometry(const sensor_msgs::LaserScan& scan) {
   geometry_ = text.str();
 }
 
-std::optional<Pose2> ScanInput::motionSince(const ros::Time& from) const {
+std::optional<Pose2> ScanInput::baseInOdom(const ros::Time& at) const {
   try {
-    const auto at = [&](const ros::Time& time) {
-      return fromMsg(
-          tf_.lookupTransform(params_.odom_frame_id, params_.base_frame_id, time).transform, "tf");
-    };
-    return between(at(from), at(ros::Time(0)));
+    return fromMsg(tf_.lookupTransform(params_.odom_frame_id, params_.base_frame_id, at).transform,
+                   "tf");
   } catch (const tf2::TransformException&) {
   } catch (const InputError&) {
   }
   return std::nullopt;
+}
+
+std::optional<Pose2> ScanInput::motionSince(const ros::Time& from) const {
+  const std::optional<Pose2> then = baseInOdom(from);
+  const std::optional<Pose2> now = baseInOdom();
+  if (!then || !now) return std::nullopt;
+  return between(*then, *now);
 }
 
 void ScanInput::report(diagnostic_msgs::DiagnosticStatus& status) {

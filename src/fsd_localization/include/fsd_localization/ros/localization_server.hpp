@@ -41,7 +41,8 @@ class LocalizationServer {
   bool prepare(const nav_msgs::OccupancyGrid& msg, const std::string& source);
   void requestMap(double pause);
   void startPreparation(MapPreparation::Source source);
-  void takeOverMap();
+  /// @param base_in_odom at the scan that is being handled; none: the newest that tf knows.
+  void takeOverMap(const std::optional<hyselam::Pose2>& base_in_odom);
   void refuseMap(const std::string& why);
 
   // Scans.
@@ -72,7 +73,12 @@ class LocalizationServer {
   std::unique_ptr<Localizer> localizer_;
   std::uint64_t fingerprint_ = 0;  // of the newest map that came by topic or set_map
   std::string map_error_;          // of the newest map; empty: it is good
-  std::optional<hyselam::InitialPose> pending_initial_;  // for the map that is being prepared
+  /// A pose for the map that is being prepared. The robot goes on while it waits.
+  struct WaitingPose {
+    hyselam::InitialPose pose;
+    std::optional<hyselam::Pose2> base_in_odom;  // at that pose; none: tf did not know
+  };
+  std::optional<WaitingPose> waiting_pose_;
   std::optional<LocalizationResult> last_result_;
   std::optional<hyselam::Pose2> odom_in_map_;  // as published on tf
   bool guided_ = false;  // an initial pose was given, and nothing has converged since

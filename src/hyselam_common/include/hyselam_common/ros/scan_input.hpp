@@ -43,6 +43,8 @@ class ScanInput {
 
   /// Whether the clock was set back; the servers call it when no scan comes.
   void checkClock();
+  /// The base in odom at a time, or the newest known (ros::Time(0)); empty if tf does not know.
+  std::optional<Pose2> baseInOdom(const ros::Time& at = ros::Time(0)) const;
   /// The motion of the base in odom from `from` to the newest known; empty if tf does not know.
   std::optional<Pose2> motionSince(const ros::Time& from) const;
 
