@@ -16,14 +16,16 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "ngram_slam/matching/match_evaluation.hpp"
+#include "ngram_slam/matching/shared_matches.hpp"
 #include "recognition_options.hpp"
 #include "reference_poses.hpp"
 #include "similarity_matrix.hpp"
 
 namespace ngram_slam {
 
-constexpr int kParts = 40;    // rows of precision and recall over time
-constexpr int kPoints = 200;  // of a curve
+constexpr int kParts = 40;           // rows of precision and recall over time
+constexpr int kPoints = 200;         // of a curve
+constexpr int kSharedPoints = 1000;  // of the curve of shared matches, which is steep
 
 struct WordRecognitionOptions {
   RecognitionOptions recognition;
@@ -33,6 +35,7 @@ struct WordRecognitionOptions {
   std::string n;                         // to sweep
   std::vector<double> sizes;             // to sweep
   std::string table, curve, similarity;  // files
+  bool shared = false;
 
   void addTo(CLI::App& app) {
     recognition.addTo(app);
@@ -49,6 +52,10 @@ struct WordRecognitionOptions {
     app.add_option("--curve", curve,
                    "precision and recall as CSV while ever shorter (with --max-chance: likelier by "
                    "chance; with --probability: less probable) matches are taken in");
+    app.add_flag("--shared-matches", shared,
+                 "also precision and recall of what the run recognized by the matches that "
+                 "observations share, while ever less similar ones are taken in; with "
+                 "--probability or --improved, and a small --min-probability");
     app.add_option("--similarity", similarity,
                    "similarity matrix to write (JSON): what is true, and what was recognized; for "
                    "scripts/plot_similarity");
@@ -82,11 +89,9 @@ inline Truth truthOf(const WordRecognitionOptions& o, const ObservationStore& ob
   return std::make_shared<const RecognitionTruth>(std::move(poses), std::move(runs), params);
 }
 
-inline nlohmann::json summary(const MatchEvaluation& evaluation) {
-  const RecognitionFigures f = evaluation.score().figures();
-  return {{"matches", evaluation.matches()},
-          {"match_precision", evaluation.matchPrecision()},
-          {"pairs", f.pairs},
+inline nlohmann::json figures(const RecognitionScore& score) {
+  const RecognitionFigures f = score.figures();
+  return {{"pairs", f.pairs},
           {"precision", f.precision()},
           {"revisits", f.revisits},
           {"recall", f.recall()},
@@ -94,6 +99,13 @@ inline nlohmann::json summary(const MatchEvaluation& evaluation) {
           {"revisits_any_direction", f.revisits_any},
           {"recall_any_direction", f.recallAnyDirection()},
           {"pass_recall_any_direction", f.passRecallAnyDirection()}};
+}
+
+inline nlohmann::json summary(const MatchEvaluation& evaluation) {
+  nlohmann::json j = figures(evaluation.score());
+  j["matches"] = evaluation.matches();
+  j["match_precision"] = evaluation.matchPrecision();
+  return j;
 }
 
 /// "1..20", "7,10,13", "5" as a list. @throws hyselam::ParameterError
@@ -225,10 +237,44 @@ inline nlohmann::json curve(const WordRecognitionOptions& o, const NgramRecogniz
   return points;
 }
 
+/// Precision and recall while observations that share ever fewer of their matches are taken in.
+inline nlohmann::json sharedCurve(const NgramRecognizer& recognizer,
+                                  const std::vector<NgramMatch>& matches, const Truth& truth) {
+  std::vector<SimilarObservations> pairs = SharedMatches(recognizer).of(matches);
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const SimilarObservations& a, const SimilarObservations& b) {
+                     return a.similarity > b.similarity;
+                   });
+  nlohmann::json points = nlohmann::json::array();
+  RecognitionScore score(truth);
+  std::size_t told = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const SimilarObservations& p = pairs[i];
+    for (std::uint32_t k = 0; k < p.count; ++k) {
+      score.add(p.newer + k, p.direction == Direction::kSame ? p.older + k : p.older - k,
+                p.direction);
+    }
+    const bool last = i + 1 == pairs.size();
+    if (!last && (p.similarity == pairs[i + 1].similarity ||
+                  (i + 1) * kSharedPoints < told * pairs.size())) {
+      continue;
+    }
+    told = (i + 1) * kSharedPoints / pairs.size() + 1;
+    nlohmann::json point = figures(score);
+    point["matches"] = i + 1;
+    point["threshold"] = p.similarity;
+    points.push_back(point);
+  }
+  return points;
+}
+
 inline nlohmann::json recognizeByWords(const WordRecognitionOptions& o) {
   o.references.check(o.recognition.logs.size());
   if (!o.n.empty()) listOf("--n", o.n);  // before the densities are computed
   NgramRecognizer recognizer(o.recognition.params());
+  if (o.shared && !recognizer.params().with_probability) {
+    throw hyselam::ParameterError("--shared-matches", "given", "used with --probability");
+  }
   const std::vector<Run> runs = readRuns(o.recognition);
   const std::clock_t begin = std::clock();
   const std::vector<NgramMatch> matches = recognise(recognizer, runs);
@@ -246,6 +292,11 @@ inline nlohmann::json recognizeByWords(const WordRecognitionOptions& o) {
   if (!o.similarity.empty()) writeSimilarityMatrix(o.similarity, evaluation.score());
   if (!o.table.empty() || !o.n.empty() || !o.sizes.empty()) j["sweep"] = sweep(o, runs, truth);
   if (!o.curve.empty()) j["curve"] = curve(o, recognizer, matches, truth);
+  if (o.shared) {
+    const std::clock_t start = std::clock();
+    j["shared_matches"] = sharedCurve(recognizer, matches, truth);
+    j["shared_matches_s"] = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  }
   return j;
 }
 
