@@ -17,6 +17,7 @@ REACHES = WAIT / 15  # [s] that a press may take until the page has it
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update",
          "--disable-sync", "--disable-quic", "--disable-extensions", "--disable-default-apps", "--disable-dev-shm-usage", "--hide-scrollbars",
          "--mute-audio", "--remote-debugging-port=0", "--remote-allow-origins=*"]
+TWICE = (44, 0.8)  # [pixels, s] within which a second tap is one by mistake
 PHONE, DESKTOP = (360, 740, True), (1280, 800, False)
 # What a function finds, once it is the same in three pictures that follow each other; null: not yet. A page that draws nothing goes on, too.
 STILL = """(async (found) => { const next = () => new Promise((done) => { requestAnimationFrame(done); setTimeout(done, 1000); });
@@ -176,12 +177,17 @@ class Tab:
         found = json.dumps(selector)
         at = self.wait(STILL % f"""() => {{ const e = document.querySelector({found}); if (!e || e.disabled) return null;
             e.scrollIntoView({{block: 'nearest', inline: 'nearest'}}); const b = e.getBoundingClientRect(); if (!b.width || !b.height) return null;
+            if (e.closest('.settling')) return null;
             const x = b.x + b.width / 2, y = b.y + b.height / 2, top = document.elementFromPoint(x, y);
             return top && e.contains(top) ? [x, y] : null; }}""", f"{selector} to be seen and to lie still")
         return at
 
-    def press(self, x, y):
-        """Both ends at once: nothing moves away in between because this machine is slow."""
+    def press(self, x, y, double=False):
+        """Both ends at once: nothing moves away in between because this machine is slow. Not twice on a spot at once, which people do by mistake."""
+        last, self.last_press = getattr(self, "last_press", None), (x, y)
+        if last and not double and abs(last[0] - x) < TWICE[0] and abs(last[1] - y) < TWICE[0]:
+            time.sleep(max(0.0, self.pressed_at + TWICE[1] - time.monotonic()))
+        self.pressed_at = time.monotonic()
         if self.touch:
             self.browser.send_all(self.session, *(("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
                                                   for kind, points in (("touchStart", [{"x": x, "y": y}]), ("touchEnd", []))))

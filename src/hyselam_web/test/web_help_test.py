@@ -157,8 +157,6 @@ class HelpTest(PageCase):
         self.tap_place(tab, 7)
         tab.click("#card [data-key=this_is]")
         wait_until(lambda: self.asked("name") == [{"place": 7, "names": ["kitchen"]}], "the name")
-        tab.wait("document.querySelector('#card-title').textContent === 'kitchen'", "the confirmed name")
-        tab.click("#card .close")
         tab.wait("document.querySelector('#card').hidden", "no card")
         # What somebody has placed is not asked about, though the robot thinks that there may be another.
         self.robot.later(lambda: self.robot.world.set("candidates", {"kitchen": [3, 9], "archive": [3, 9]}))
@@ -240,10 +238,14 @@ class HelpTest(PageCase):
             self.answers(answer)
             tab = self.open_map(PHONE, language=language)
             self.say(tab, wrong)
-            self.assertEqual(self.next(tab, row), [right])
+            button = "#chips .offered" if answer.startswith(("Shall", "Devo")) else "#next .row button"  # below a yes and a no
+            if button == "#next .row button":
+                self.assertEqual(self.next(tab, row), [right])
+            else:
+                tab.wait(f"document.querySelector('#chips .offered')?.textContent === {row + ' ' + right!r}", "the sentence that was meant")
             self.answers("All right.")
             self.shot(tab, "phone_slip")
-            tab.click("#next .row button")
+            tab.click(button)
             wait_until(lambda r=right: {"text": r} in self.asked("say"), right)
             tab.wait("document.querySelector('#next').hidden", "that nothing is open")
             self.served.close()

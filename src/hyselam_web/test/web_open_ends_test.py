@@ -58,9 +58,9 @@ class OpenEndsTest(PageCase):
         self.hears(("human", "You are in the coridor."), ("robot", asked))
         tab.wait(VISIBLE + f" === {asked!r}", "the question")
         tab.wait("document.querySelector('#question').offsetHeight <= 1", "that it is said once: it is the last line")
-        # "Did you mean" has its own button, below; it comes when the robot has told that it would understand that.
-        tab.wait("!document.querySelector('#next').hidden && document.querySelectorAll('#next .row button').length === 1", "the sentence that was meant")
-        self.assertTrue(tab.eval(ABOVE % ("#answers", "#next")))
+        # "Did you mean" has its own button, below; it comes when the robot has told that it would understand that, and moves nothing.
+        tab.wait("document.querySelectorAll('#chips .offered').length === 1", "the sentence that was meant")
+        self.assertTrue(tab.eval(ABOVE % ("#answers", "#chips .offered")))
         self.shot(tab, "phone_asked")
         # Something else is said: the question is put once more above its buttons.
         self.hears(("human", "There is a kitchen."), ("robot", "I am not sure where kitchen may be."))

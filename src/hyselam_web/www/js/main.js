@@ -11,6 +11,7 @@ import {RobotPanel} from "./robot_panel.js";
 import {LookBack} from "./look_back.js";
 import {thingsOn} from "./map_things.js";
 import {told} from "./wording.js";
+import {Fingers} from "./fingers.js";
 import {Replay, entriesOf} from "./replay.js";
 
 const ROLES = ["look", "talk", "drive"];
@@ -22,6 +23,7 @@ class Page {
     if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
     this.session = {role: "", login: false, language: "en", recording: false};
     this.model = new Model();
+    this.fingers = new Fingers();
     const recorded = globalThis.HYSELAM_RECORDING;
     this.replay = Boolean(recorded) || new URLSearchParams(location.search).has("replay");
     setLanguage(firstLanguage("en"));
@@ -98,7 +100,7 @@ class Page {
       const {way, arrived} = model.values;
       if (arrived && this.going && !way?.length && !this.replay) {
         const place = model.placeAt(...arrived);
-        const values = {name: place === null ? "" : model.titleOf(place)};
+        const values = {name: place === null ? "" : model.nameOf(place).sure || model.nameOf(place).none ? model.titleOf(place) : `${t("place_of", {n: place})} (${model.labelOf(place)})`};
         toast(t("arrived_at", values));
         this.talk.note("arrived_at", values);
       }

@@ -105,7 +105,14 @@ export class NextStep {
 
   show() {
     const step = this.step();
-    const shown = step && step.at > this.dismissed ? step : null;
+    const wanted = step && step.at > this.dismissed ? step : null;
+    // Where a yes or a no is asked for, it is among what can be said instead.
+    const offered = wanted?.kind === "meant" && this.model.values.asked?.yes ? wanted.right : null;
+    const shown = offered ? null : wanted;
+    if (offered !== (this.model.offered ?? null)) {
+      this.model.offered = offered;
+      this.model.tell(["offered"]);
+    }
     const key = JSON.stringify([shown, shown?.ids.map((id) => this.model.labelOf(id)), document.documentElement.lang]);
     if (key === this.key) return;
     this.key = key;
@@ -119,7 +126,7 @@ export class NextStep {
     const row = make("div", {class: "row"});
     const close = button("×", () => this.dismiss(step.at), {class: "close", "aria-label": t("not_now"), title: t("not_now")});
     if (step.kind === "meant") {
-      row.append(button(step.right, () => this.actions.say(step.right), {class: "primary"}));
+      row.append(button(step.right, () => this.actions.say(step.right), {class: "primary", "data-settles": `say ${step.right}`}));
       return [make("p", {}, t("did_you_mean")), row, close];
     }
     for (const id of step.ids.slice(0, MAX_BUTTONS)) row.append(button(this.titleOf(id, step.name), () => this.give(id, step.name), {"data-place": id}));

@@ -46,7 +46,7 @@ export class Places {
     this.naming = false;
     this.sure = null;
     this.showCard();
-    if (focus) this.card.querySelector("button:not(.close)")?.focus();
+    if (focus) (this.card.querySelector(".foot button") ?? this.card.querySelector("button"))?.focus();
   }
 
   close() {
@@ -103,34 +103,42 @@ export class Places {
     if (!place) return null;
     const name = model.nameOf(id);
     const title = make("h2", {id: "card-title"}, model.titleOf(id));
-    if (this.naming) return [title, this.nameForm(id, name)];
-    const row = make("div", {class: "row"});
-    const add = (key, action, properties = {}) => row.append(button(t(key), action, {"data-key": key, ...properties}));
+    if (this.naming) return [title, this.nameForm(id, name), this.driveRow()];
+    const [row, drives] = [make("div", {class: "row"}), this.driveRow()];
+    const add = (to, key, action, properties = {}) => to.append(button(t(key), action, {"data-key": key, ...properties}));
     const guess = !name.none && !name.sure;
     const {marked} = model;
     if (this.may("talk") && marked?.ids.includes(Number(id)) && marked.name !== name.text) {
-      row.append(button(t("this_is", {name: called(marked.name)}), () => this.actions.give(id, marked.name), {"data-key": "this_is", class: "primary"}));
+      row.append(button(t("this_is", {name: called(marked.name)}), () => {
+        this.close();
+        this.actions.give(id, marked.name);
+      }, {"data-key": "this_is", class: "primary"}));
     }
     if (this.may("talk") && guess) {
-      add("right_name", () => this.name(id, [name.text]), {class: "primary"});
-      add("wrong_name", () => this.startNaming());
+      add(row, "right_name", () => this.name(id, [name.text]), {class: "primary"});
+      add(row, "wrong_name", () => this.startNaming());
     }
-    const rename = () => add(name.none ? "name_it" : "rename_it", () => this.startNaming(), name.none ? {class: "primary"} : {});
-    if (this.may("talk") && name.none) rename();
-    if (this.may("drive")) add("go_there", () => {
-      this.close();
-      this.actions.openTalk(); // the answer comes there
-      this.ask("go", {place: Number(id), language: currentLanguage()}, null);
-    }, guess || name.none ? {} : {class: "primary"});
-    if (this.may("talk") && name.sure) rename();
-    if (this.may("talk")) add("ask_about", () => {
+    if (this.may("talk") && !guess) add(row, name.none ? "name_it" : "rename_it", () => this.startNaming(), name.none ? {class: "primary"} : {});
+    if (this.may("talk")) add(row, "ask_about", () => {
       this.close();
       this.actions.openTalk();
       // Never by a name that somebody gave: it could hold another sentence.
       this.actions.say(t("what_next", {name: place.e})); // shown as "place 5"
     });
-    if (this.may("drive")) add("here_you_are", () => this.askSurely(t("here_sure", {name: model.titleOf(id)}), "here_yes", () => this.ask("here", {place: Number(id)}, t("pose_sent"))));
-    return [title, make("p", {}, this.describe(id)), row, this.doorsOf(id)];
+    if (this.may("drive")) {
+      add(drives, "go_there", () => {
+        this.close();
+        this.actions.openTalk(); // the answer comes there
+        this.ask("go", {place: Number(id), language: currentLanguage()}, null);
+      }, {"data-settles": `go ${id}`, class: name.sure ? "primary" : ""});
+      add(drives, "here_you_are", () => this.askSurely(t("here_sure", {name: model.titleOf(id)}), "here_yes", () => this.ask("here", {place: Number(id)}, t("pose_sent"))));
+    }
+    return [title, make("p", {}, this.describe(id)), this.doorsOf(id), make("div", {class: "foot"}, row, drives)];
+  }
+
+  // The lowest row of each card of a place, at the same spot of the screen: what sets the robot going is there, and nothing else ever is.
+  driveRow() {
+    return this.may("drive") ? make("div", {class: "row drives"}) : null;
   }
 
   // Asks before something is done that is not easily taken back.
@@ -150,7 +158,7 @@ export class Places {
     return [make("h2", {id: "card-title"}, this.model.titleOf(id)), make("p", {}, text), make("div", {class: "row"}, button(t(yes), () => {
       end();
       act();
-    }, {class: "primary", "data-key": "sure"}), button(t("cancel"), end, {"data-key": "unsure"}))];
+    }, {class: "primary", "data-key": "sure"}), button(t("cancel"), end, {"data-key": "unsure"})), this.driveRow()];
   }
 
   doorsOf(id) {
@@ -240,10 +248,10 @@ export class Places {
     else this.askSurely(t("name_taken", {name, place: t("place_number", {n: holder})}), "move_name", () => this.name(id, [name]));
   }
 
+  // The map and the talk show it: the card is done with.
   async name(id, names) {
-    this.naming = false;
-    await this.ask("name", {place: Number(id), names}, ""); // the card and the talk show it
-    if (this.open) this.showCard();
+    this.close();
+    await this.ask("name", {place: Number(id), names}, "");
   }
 
   async ask(what, fields, done = undefined) {
@@ -251,8 +259,10 @@ export class Places {
       const result = await this.connection.ask(what, what === "here" ? fields : {language: currentLanguage(), ...fields});
       const answer = done ?? plain(result.message || "");
       if (answer) toast(answer);
+      return true;
     } catch (error) {
       toast(reasonOf(error), true);
+      return false;
     }
   }
 

@@ -74,7 +74,7 @@ export class Talk {
     this.listenButton.onclick = () => this.toggleListening();
     model.on(["talk"], () => this.showTalk());
     model.on(["asked", "talk"], () => this.showAsked());
-    model.on(["names"], () => this.showChips());
+    model.on(["names", "offered"], () => this.showChips());
     onLanguage(() => {
       this.showTalk();
       this.showChips();
@@ -179,13 +179,17 @@ export class Talk {
   showChips() {
     this.fitLine();
     const sentences = ["start_in", "start_left", "start_right", "start_this", "start_where", "start_go", "start_told", "start_help"].map((key) => t(key));
-    this.chips = this.model.values.asked && !this.line.value ? [] : suggestions(this.line.value, this.model.values.names ?? [], sentences);
+    const {asked} = this.model.values;
+    this.chips = asked && !this.line.value ? [] : suggestions(this.line.value, this.model.values.names ?? [], sentences);
     byId("chips").replaceChildren(...this.chips.map((text) => {
       const whole = /[?!.]$/.test(text) || text === t("start_help");
       const from = this.line.value.lastIndexOf(" ") + 1;
       const shown = this.line.value && text.startsWith(this.line.value.slice(0, from)) ? text.slice(from).trim() || text : text.trim() + (whole ? "" : "…");
       return button(shown, () => (whole && !this.line.value ? this.say(text) : this.complete(text)));
     }));
+    // Below yes and no, in the room that is kept there: it comes later than they do, and moves nothing.
+    const {offered} = this.model;
+    if (asked?.yes && offered && !this.line.value) byId("chips").append(button(`${t("did_you_mean")} ${offered}`, () => this.say(offered), {class: "offered", "data-settles": `say ${offered}`}));
   }
 
   showAsked() {
@@ -194,6 +198,7 @@ export class Talk {
     // Yes and no stand under their question: the last line of the talk, or once more here.
     const last = this.model.talk[this.model.talk.length - 1];
     byId("question").textContent = asked ? plain(asked.text) : "";
+    for (const answer of ["yes", "no"]) byId(answer).dataset.settles = `${answer} ${asked?.text ?? ""}`; // a yes may set the robot going
     byId("question").classList.toggle("said-last", Boolean(asked) && !this.pending.length && last?.w === "robot" && last.s === asked.text);
     this.line.placeholder = t(asked && !asked.yes ? "answer_placeholder" : "say_placeholder");
     this.showChips();
