@@ -87,3 +87,35 @@ TEST(DialogueDoors, ADoorThatIsNotShutIsNotOpened) {
   talk.dialogue.name(2, {"library"});
   EXPECT_TRUE(has(talk.dialogue.hear("The door to the library is open again."), "no such door"));
 }
+
+TEST(DialogueDoors, ADoorIsShutAndOpenedByWhatPeopleSay) {
+  for (const auto& [shut, open] :
+       {std::pair("The door between the kitchen and the library is closed.",
+                  "The library door is open again."),
+        std::pair("The library door is locked.", "The door to the library is open."),
+        std::pair("The door to the kitchen is shut.", "The kitchen door is open again."),
+        std::pair("A porta entre a kitchen e a library está fechada.",
+                  "A porta da library está aberta outra vez.")}) {
+    ShutDoor talk;
+    talk.say("The door is open again.");
+    ASSERT_TRUE(talk.isOpen());
+    const Reply reply = talk.dialogue.hear(shut);
+    EXPECT_FALSE(talk.isOpen()) << shut << ": " << reply.text();
+    EXPECT_TRUE(reply.has(Kind::kWalls)) << reply.text();
+    EXPECT_FALSE(talk.dialogue.hear("Go to the library.").has(Kind::kGo));
+    talk.say("No.");
+    talk.say(open);
+    EXPECT_TRUE(talk.isOpen()) << open;
+    talk.say(shut);
+    EXPECT_FALSE(talk.isOpen());
+    talk.say("Undo that.");
+    EXPECT_TRUE(talk.isOpen()) << "undo of: " << shut;
+  }
+}
+
+TEST(DialogueDoors, ADoorThatIsNotThereIsNotShut) {
+  Talk talk;
+  talk.dialogue.name(1, {"kitchen"});
+  EXPECT_TRUE(has(talk.dialogue.hear("The door to the attic is closed."), "attic"));
+  EXPECT_TRUE(talk.dialogue.places().shutDoors().empty());
+}

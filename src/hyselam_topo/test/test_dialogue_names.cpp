@@ -331,3 +331,85 @@ TEST(DialogueGo, APlaceThatIsNamedByItsNumberIsNotDoubted) {
   EXPECT_TRUE(reply.has(hyselam_topo::DialogueAction::Kind::kGo)) << reply.text();
   EXPECT_EQ(reply.text(), "I am going to SS02.");
 }
+
+TEST(DialogueNames, AnotherNameThatWasToldBeforeIsOfThePlaceThatIsConfirmed) {
+  for (const bool by_tap : {false, true}) {
+    Talk talk;
+    talk.say("The workshop is next to the kitchen.");
+    talk.say("The workshop is also called the garage.");
+    if (by_tap) {
+      talk.dialogue.name(2, {"workshop"});
+    } else {
+      talk.say("SS02 is the workshop.");
+    }
+    EXPECT_EQ(talk.names(2), (Names{"workshop", "garage"})) << by_tap;
+    const auto reply = talk.dialogue.hear("Go to the garage.");
+    ASSERT_FALSE(reply.actions.empty()) << reply.text();
+    ASSERT_FALSE(reply.actions.back().legs.empty()) << reply.text();
+    EXPECT_EQ(reply.actions.back().legs.back().places.back(), 2u);
+  }
+  Talk talk;
+  talk.say("A oficina fica ao lado da cozinha. A oficina também se chama garagem.");
+  talk.say("O SS02 é a oficina.");
+  EXPECT_TRUE(has(talk.say("Onde fica a garagem?"), "SS02"));
+}
+
+TEST(DialogueNames, AnotherNameThatAnotherPlaceHasStaysThere) {
+  Talk talk;
+  talk.say("The workshop is also called the garage.");
+  talk.dialogue.name(1, {"garage"});
+  talk.dialogue.name(2, {"workshop"});
+  EXPECT_EQ(talk.names(2), Names{"workshop"});
+  EXPECT_TRUE(has(talk.say("Where is the garage?"), "SS01"));
+}
+
+TEST(DialogueNames, WhatAPlaceIsNotIsTakenFromItAndWhatItIsInsteadIsItsName) {
+  for (const char* sentence : {"No, that's wrong: SS02 is not the music room, it is the staff room.",
+                               "SS02 is not the music room but the staff room.",
+                               "SS02 is the staff room, not the music room."}) {
+    for (const bool confirmed : {true, false}) {
+      Talk talk;
+      hyselam_topo::DialogueState state = talk.dialogue.state();
+      state.places.map.findPlace(2)->words = {{"music room", confirmed}};
+      talk.dialogue.restore(state);
+      const std::string reply = talk.say(sentence);
+      EXPECT_EQ(talk.names(2), Names{"staff room"}) << sentence << ": " << reply;
+      EXPECT_TRUE(talk.isConfirmed(2)) << sentence;
+      talk.say("Undo that.");
+      EXPECT_EQ(talk.names(2), Names{"music room"}) << sentence;
+    }
+  }
+  Talk talk;
+  talk.dialogue.name(2, {"sala de música"});
+  talk.say("Não, o SS02 não é a sala de música, é a sala dos professores.");
+  EXPECT_EQ(talk.names(2), Names{"sala dos professores"});
+}
+
+TEST(DialogueNames, WhatAPlaceIsNotIsNoMoreItsName) {
+  for (const char* sentence : {"SS02 is not the kitchen.", "O SS02 não é a cozinha."}) {
+    Talk talk;
+    talk.dialogue.name(2, {sentence[0] == 'S' ? "kitchen" : "cozinha"});
+    const std::string reply = talk.say(sentence);
+    EXPECT_TRUE(has(reply, "So SS02 is not") || has(reply, "Então SS02 não é")) << reply;
+    EXPECT_TRUE(talk.names(2).empty()) << sentence;
+  }
+}
+
+TEST(DialogueNames, AllGuessesAreConfirmedAtOnce) {
+  for (const char* sentence :
+       {"All the names on the map are right.", "The names are all correct.", "They are all right.",
+        "Everything on the map is correct.", "Todos os nomes estão certos.",
+        "Os nomes no mapa estão todos certos."}) {
+    Talk talk;
+    hyselam_topo::DialogueState state = talk.dialogue.state();
+    state.places.map.findPlace(1)->words = {{"kitchen", false}};
+    state.places.map.findPlace(2)->words = {{"library", false}};
+    talk.dialogue.restore(state);
+    const std::string reply = talk.say(sentence);
+    EXPECT_TRUE(talk.isConfirmed(1) && talk.isConfirmed(2)) << sentence << ": " << reply;
+    EXPECT_TRUE(has(reply, "kitchen") && has(reply, "library")) << reply;
+    EXPECT_FALSE(has(talk.say(sentence), "kitchen")) << "nothing more to confirm";
+    talk.say("Undo that.");
+    EXPECT_FALSE(talk.isConfirmed(1) || talk.isConfirmed(2)) << sentence;
+  }
+}

@@ -2,6 +2,7 @@
 time. No test; others import it."""
 import asyncio
 import base64
+import glob
 import json
 import os
 import shutil
@@ -17,6 +18,7 @@ REACHES = WAIT / 15  # [s] that a press may take until the page has it
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update",
          "--disable-sync", "--disable-quic", "--disable-extensions", "--disable-default-apps", "--disable-dev-shm-usage", "--hide-scrollbars",
          "--mute-audio", "--remote-debugging-port=0", "--remote-allow-origins=*"]
+FOLDERS = "hyselam_browser_"
 TWICE = (44, 0.8)  # [pixels, s] within which a second tap is one by mistake
 PHONE, DESKTOP = (360, 740, True), (1280, 800, False)
 # What a function finds, once it is the same in three pictures that follow each other; null: not yet. A page that draws nothing goes on, too.
@@ -30,11 +32,21 @@ def program():
     return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
+def clear_dead():
+    """Removes the profiles of tests that were killed: each is named by the process that made it."""
+    for path in glob.glob(os.path.join(tempfile.gettempdir(), FOLDERS + "*_*")):
+        maker = os.path.basename(path)[len(FOLDERS):].split("_")[0]
+        if maker.isdigit() and not os.path.exists(f"/proc/{maker}"):
+            shutil.rmtree(path, ignore_errors=True)
+
+
 class Browser:
     def __init__(self):
-        self.folder = tempfile.mkdtemp(prefix="hyselam_browser_")
+        clear_dead()
+        self.folder = tempfile.mkdtemp(prefix=f"{FOLDERS}{os.getpid()}_")
+        # What Chromium leaves in the folder of temporary files goes with its profile.
         self.process = subprocess.Popen([program(), *FLAGS, f"--user-data-dir={self.folder}", "about:blank"], stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, TMPDIR=self.folder))
         self.loop = asyncio.new_event_loop()
         threading.Thread(target=self.loop.run_forever, daemon=True).start()
         self.number, self.waiting, self.tabs = 0, {}, {}

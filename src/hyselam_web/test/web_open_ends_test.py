@@ -107,6 +107,10 @@ class OpenEndsTest(PageCase):
                            ("number 1 is the kitchen and number 5 the library", "SS01 is the kitchen. SS05 is the library"),
                            ("number 1 is the kitchen and number 5 is Ana's office", "SS01 is the kitchen. SS05 is Ana's office"),
                            ("room 5 is the second door on the left", "room 5 is the second door on the left"), ("place 999 is the lab", "place 999 is the lab"),
+                           ("The kitchen is place 7", 'SS07 is "kitchen".'), ("the staff room is in number 7.", 'SS07 is "staff room".'), ("A cozinha é o lugar 7", 'SS07 é "cozinha".'),
+                           ("a cozinha é o lugar sete", 'SS07 é "cozinha".'), ("The kitchen is place seven.", 'SS07 is "kitchen".'), ("A cozinha fica no número 7.", 'SS07 é "cozinha".'),
+                           ("The kitchen is not place 7", "The kitchen is not SS07"), ("The kitchen is room 9", "The kitchen is room 9"), ("Where is place 7", "Where is SS07"), ("It is place 7", "It is SS07"),
+                           ("Go to place seven.", "Go to SS07."), ("I have seven rooms", "I have seven rooms"),
                            ("There are 3 rooms and 2 the corridor", "There are 3 rooms and 2 the corridor"), ("Go to place 5.", "Go to SS05.")):
             self.assertEqual(tab.eval(f"hyselam.told({said!r})"), told)
 

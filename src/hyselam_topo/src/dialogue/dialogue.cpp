@@ -379,6 +379,10 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
     }
   } else {
     found = places_.find(name.text);
+    // "The garage", which was told to be another name of the workshop.
+    for (const std::string& other : withTold({name.text})) {
+      if (found.empty()) found = places_.find(other);
+    }
     if (found.empty() && tellOnlyTold(name.text, out)) return {};
     if (areOfOtherNames(name.text, found)) {
       out.sentences.push_back(

@@ -101,6 +101,8 @@ Dialogue::Handler Dialogue::handlerOf(const Utterance& u) {
       {"go_back", &Dialogue::goToPreviousPlace},
       {"carry_on", &Dialogue::carryOn},
       {"open_door", &Dialogue::openDoor},
+      {"shut_door", &Dialogue::shutDoor},
+      {"confirm_all", &Dialogue::confirmAll},
       {"follow_me", &Dialogue::followPerson},
       {"stop", &Dialogue::stop},
       {"turn", &Dialogue::turnRobot},
@@ -171,7 +173,8 @@ bool Dialogue::isOfThisPlace(const Utterance& u, const Turn& turn) const {
 
 bool Dialogue::isOfNumberedPlace(const Utterance& u, Utterance* named) const {
   static const std::set<std::string> kKinds{"alias", "this_is"};
-  if (kKinds.count(u.intent) == 0 || u.slots.size() != 2) return false;
+  const std::size_t more = u.find("was") != nullptr || !u.word("denied").empty() ? 1 : 0;
+  if (kKinds.count(u.intent) == 0 || u.slots.size() != 2 + more) return false;
   const std::vector<SaidName> place = u.names("place"), aliases = u.names("aliases");
   if (place.size() != 1 || aliases.empty()) return false;
   const auto isNumber = [&](const SaidName& name) {
@@ -328,7 +331,12 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   if (isOfNumberedPlace(u, &numbered)) {
     attempt(turn.reply, [&] {
       recordStatements(turn);
-      namePlace(places_.find(numbered.slots.front().names.front().text).front(), numbered, turn);
+      const Id place = places_.find(numbered.slots.front().names.front().text).front();
+      if (u.word("denied").empty() && u.find("was") == nullptr) {
+        namePlace(place, numbered, turn);
+      } else {
+        correctName(place, u, turn);
+      }
     });
   } else if (isOnlyOnMap(u)) {
     attempt(turn.reply, [&] {

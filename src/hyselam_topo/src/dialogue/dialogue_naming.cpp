@@ -26,9 +26,37 @@ bool Dialogue::isNamedOtherwise(Id place, const std::vector<std::string>& names)
   return true;
 }
 
-void Dialogue::confirmNames(Id place, const std::vector<std::string>& names, Reply& out,
+std::vector<std::string> Dialogue::withTold(const std::vector<std::string>& names) const {
+  std::vector<std::string> all = names;
+  for (const std::string& name : names) {
+    const std::vector<Id> told = builder_.find(name);
+    if (told.size() != 1) continue;
+    for (const std::string& other : allNamesOf(*builder_.building().findPlace(told.front()))) {
+      const bool known = std::any_of(all.begin(), all.end(), [&](const std::string& each) {
+        return places_.sameName(each, other);
+      });
+      if (!known && !isCode(other)) all.push_back(other);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> Dialogue::ownNames(Id place, const std::vector<std::string>& names) const {
+  std::vector<std::string> all = withTold(names);
+  // What is known elsewhere stays there.
+  all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(names.size()), all.end(),
+                           [&](const std::string& name) {
+                             const std::vector<Id> at = confirmedPlaces(name);
+                             return !at.empty() && at != std::vector<Id>{place};
+                           }),
+            all.end());
+  return all;
+}
+
+void Dialogue::confirmNames(Id place, const std::vector<std::string>& asked, Reply& out,
                             bool instead) {
   const Phrases& p = phrases();
+  const std::vector<std::string> names = ownNames(place, asked);
   const Change change(this);
   const Place& named = *places_.map().findPlace(place);
   std::vector<std::string> old;
@@ -133,6 +161,55 @@ void Dialogue::namePlace(Id place, const Utterance& u, Turn& turn) {
   } else {
     confirmNames(place, names, out);
   }
+}
+
+void Dialogue::correctName(Id place, const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
+  const bool instead = u.find("was") != nullptr;
+  const std::vector<std::string> wrong = textsOf(u.names(instead ? "was" : "aliases"));
+  const Change change(this);
+  const std::vector<std::string> had = namesOf(*places_.map().findPlace(place));
+  places_.reject(place, wrong);
+  dropTold(place, had);
+  if (question().place == place) talk_.questions.drop();
+  if (!instead) {
+    out.sentences.push_back(
+        phrases().say("not_so", {{"code", codeOf(*places_.map().findPlace(place))},
+                                 {"names", phrases().list(said(wrong))}}));
+    matchDescription(out, false);
+    out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+    return;
+  }
+  Utterance named = u;
+  named.slots = {*u.find("place"), *u.find("aliases")};
+  namePlace(place, named, turn);
+}
+
+void Dialogue::confirmAll(const Utterance&, Turn& turn) {
+  Reply& out = turn.reply;
+  const Phrases& p = phrases();
+  if (!places_.hasMap()) {
+    out.sentences.push_back(p.say("no_map"));
+    return;
+  }
+  const Change change(this);
+  std::vector<std::string> confirmed;
+  for (const Place& place : std::vector<Place>(places_.map().places)) {
+    if (nameStateOf(place) != NameState::kUnconfirmed) continue;
+    const std::vector<std::string> names = ownNames(place.id, {namesOf(place).front()});
+    places_.confirm(place.id, names);
+    giveNames(place.id);
+    if (place.id == robot().place) tellRobotPlace(place.id, names);
+    confirmed.push_back(said(names.front()));
+  }
+  if (confirmed.empty()) {
+    out.sentences.push_back(p.say("nothing_to_confirm"));
+    return;
+  }
+  talk_.questions.drop();
+  matchDescription(out, false);
+  out.sentences.push_back(p.say("confirmed_all", {{"places", p.list(confirmed)}}));
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
 
 void Dialogue::askForgetEverything(const Utterance&, Turn& turn) {

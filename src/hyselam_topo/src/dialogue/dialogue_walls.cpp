@@ -11,6 +11,19 @@
 #include "plane.hpp"
 
 namespace hyselam_topo {
+namespace {
+
+constexpr double kBeyondDoor = 0.1;  // of a wall that shuts a door, on both sides of it [m]
+
+/// One of each group of places is on one of its sides.
+bool leadsToAll(const Edge& edge, const std::vector<std::vector<Id>>& sides) {
+  return std::all_of(sides.begin(), sides.end(), [&](const std::vector<Id>& places) {
+    return std::any_of(places.begin(), places.end(),
+                       [&](Id id) { return id == edge.a || id == edge.b; });
+  });
+}
+
+}  // namespace
 
 void Dialogue::addWall(const Utterance& u, Turn& turn) {
   Reply& out = turn.reply;
@@ -214,19 +227,85 @@ void Dialogue::openDoor(const DescribedWall& wall, Reply& out) {
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
 }
 
-void Dialogue::openDoor(const Utterance& u, Turn& turn) {
-  Reply& out = turn.reply;
+std::optional<std::vector<std::vector<Id>>> Dialogue::sidesOfDoor(const Utterance& u, Reply& out) {
   std::vector<std::vector<Id>> sides;
   for (const char* slot : {"place", "other"}) {
     const std::vector<SaidName> names = u.names(slot);
     if (names.empty()) continue;
     sides.push_back(resolve(names.front(), out));
-    if (sides.back().empty()) return;
+    if (sides.back().empty()) return std::nullopt;
   }
-  const auto leadsTo = [&](const Edge& edge, const std::vector<Id>& places) {
-    return std::any_of(places.begin(), places.end(),
-                       [&](Id id) { return id == edge.a || id == edge.b; });
-  };
+  return sides;
+}
+
+void Dialogue::shutDoor(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
+  const auto sides = sidesOfDoor(u, out);
+  if (!sides) return;
+  const Id here = robot().place;
+  const std::vector<Id> shut = places_.shutDoors();
+  std::vector<const Edge*> edges;
+  std::vector<const Door*> doors;
+  bool is_shut = false;
+  for (const Edge& edge : places_.map().edges) {
+    if (!leadsToAll(edge, *sides)) continue;
+    for (const Door& door : edge.doors) {
+      if (!door.real) continue;
+      if (std::find(shut.begin(), shut.end(), door.id) != shut.end()) {
+        is_shut = true;
+        continue;
+      }
+      doors.push_back(&door);
+      edges.push_back(&edge);
+    }
+  }
+  // "The kitchen door", which has more than one: that of the place where the robot and the speaker
+  // are.
+  std::vector<const Door*> near;
+  for (std::size_t i = 0; i < doors.size(); ++i) {
+    if (edges[i]->a == here || edges[i]->b == here) near.push_back(doors[i]);
+  }
+  if (doors.size() > 1 && sides->size() < 2 && near.size() == 1) doors = near;
+  const std::vector<SaidName> names = u.names("place");
+  const Phrases& p = phrases();
+  if (doors.empty()) {
+    const std::string place =
+        names.empty() ? codeOf(*places_.map().findPlace(here)) : said(names.front().text);
+    out.sentences.push_back(is_shut ? p.say("door_shut") : p.say("no_door", {{"place", place}}));
+    return;
+  }
+  if (doors.size() > 1 && sides->size() < 2) {
+    std::vector<Id> behind;
+    for (std::size_t i = 0; i < doors.size(); ++i) {
+      const bool a = std::find(sides->front().begin(), sides->front().end(), edges[i]->a) !=
+                     sides->front().end();
+      behind.push_back(a ? edges[i]->b : edges[i]->a);
+    }
+    out.sentences.push_back(p.say("which_door", {{"places", p.list(labels(behind))}}));
+    return;
+  }
+  const Change change(this);
+  for (const Door* door : doors) {
+    DescribedWall wall;
+    wall.kind = WallKind::kVirtual;
+    const double half = 0.5 * door->width + kBeyondDoor;
+    wall.line.a = {door->position.x - half * door->normal.y,
+                   door->position.y + half * door->normal.x};
+    wall.line.b = {door->position.x + half * door->normal.y,
+                   door->position.y - half * door->normal.x};
+    const std::string sentence = sayWall(wall, true);
+    places_.addWall(wall);
+    if (door == doors.front()) out.sentences.push_back(sentence);
+    haltAtDoor(wall, out);
+  }
+  out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
+  out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+}
+
+void Dialogue::openDoor(const Utterance& u, Turn& turn) {
+  Reply& out = turn.reply;
+  const auto sides = sidesOfDoor(u, out);
+  if (!sides) return;
   std::vector<DescribedWall> meant;
   for (const DescribedWall& wall : places_.walls()) {
     const Door* door = places_.doorShutBy(wall);
@@ -234,10 +313,7 @@ void Dialogue::openDoor(const Utterance& u, Turn& turn) {
     for (const Edge& edge : places_.map().edges) {
       const bool is_of_edge = std::any_of(edge.doors.begin(), edge.doors.end(),
                                           [&](const Door& each) { return &each == door; });
-      if (is_of_edge && std::all_of(sides.begin(), sides.end(),
-                                    [&](const auto& places) { return leadsTo(edge, places); })) {
-        meant.push_back(wall);
-      }
+      if (is_of_edge && leadsToAll(edge, *sides)) meant.push_back(wall);
     }
   }
   if (meant.empty()) {

@@ -36,10 +36,21 @@ export function plain(text) {
   });
 }
 
+// "place seven", as it is heard; behind such a word only.
+const NUMBERS = {en: "one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen twenty".split(" "),
+  pt: "um dois três quatro cinco seis sete oito nove dez onze doze treze catorze quinze dezasseis dezassete dezoito dezanove vinte".split(" ")};
+const SPELT = new RegExp(`\\b(place|number|lugar|n[uú]mero) (${[...NUMBERS.en, ...NUMBERS.pt].join("|")})(?![\\p{L}])`, "giu");
+// "The kitchen is place 7", "a cozinha fica no lugar 7": all that the sentence says.
+const AT_NUMBER = /^\s*((?:the|my|our|a|o|as|os)\s+)?([^.!?;:,"“”«»\d]{2,60}?)\s+(is|são|é|fica|está)\s+(?:(?:in|at|em|o|a|no|na|the)\s+)?((?:place|room|number|lugar|sala|n[uú]mero)(?:\s+(?:number|n[uú]mero))?\s+0*(\d{1,6}))\s*[.!]?\s*$/iu;
+const NO_NAME = /^(?:it|this|that|here|there|where|what|isto|isso|aqui|ali|onde|qual|ela|ele)\b|\b(?:not|não|nao|and|e|or|ou|between|entre|next|opposite)\b/iu;
+
 // A sentence as the robot is told it: its map knows no "place 5", but SS05.
 export function told(sentence, model) {
   const names = (model.values.names ?? []).map((name) => name.toLowerCase());
   let named = false; // one before it
+  sentence = sentence.replace(SPELT, (_, before, word) => `${before} ${1 + Math.max(NUMBERS.en.indexOf(word.toLowerCase()), NUMBERS.pt.indexOf(word.toLowerCase()))}`);
+  const [, , name, verb, whole, at] = sentence.match(AT_NUMBER) ?? [];
+  if (name && model.place(Number(at)) && !NO_NAME.test(name) && !names.includes(whole.toLowerCase())) return `${model.place(Number(at)).e} ${verb.toLowerCase() === "is" ? "is" : "é"} "${name.trim()}".`;
   const text = sentence.replace(NAMED, (whole, before, what, number, verb) => {
     const [said, place] = [whole.slice(before.length, whole.length - verb.length).trim().toLowerCase(), model.place(Number(number))];
     const is_and = /^(and|e)\s/i.test(before.trim() + " ");
@@ -56,7 +67,7 @@ export function told(sentence, model) {
 
 // Words around the place in "It's the first one, place 6", "Acho que é no lugar 7".
 const AROUND = new RegExp("^(it|its|that|thats|this|here|is|s|in|at|the|a|o|as|so|i|think|guess|believe|one|place|number|no|door|room|on|left|right|side|yes|ok|well|e|que|isso|ali|aqui|acho|penso|creio|" +
-  "fica|esta|na|em|lugar|numero|porta|sala|sim|bem|do|da|lado|esquerda|esquerdo|direita|direito|first|second|third|fourth|fifth|sixth|last|primeir[ao]|segund[ao]|terceir[ao]|quart[ao]|quint[ao]|sext[ao]|ultim[ao])$");
+  "fica|esta|na|em|lugar|numero|porta|sala|sim|bem|do|da|lado|big|bigger|biggest|large|larger|largest|small|smaller|smallest|long|narrow|wide|middle|other|next|grande|maior|pequeno|pequena|menor|comprid[oa]|estreit[oa]|larg[oa]|meio|outr[oa]|seguinte|esquerda|esquerdo|direita|direito|first|second|third|fourth|fifth|sixth|last|primeir[ao]|segund[ao]|terceir[ao]|quart[ao]|quint[ao]|sext[ao]|ultim[ao])$");
 
 // The place that is all that a sentence names, and only by its number; null: there is none, or more is said.
 export function placeOnly(sentence, model) {

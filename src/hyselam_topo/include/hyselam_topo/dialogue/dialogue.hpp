@@ -319,6 +319,14 @@ class Dialogue {
   void nameAsTold(const DescribedBuilding& before);
   void nameThisPlace(const Utterance& u, Turn& turn);
   void namePlace(Id place, const Utterance& u, Turn& turn);
+  /// "SS05 is not the library", and what it is instead, if that is said.
+  void correctName(Id place, const Utterance& u, Turn& turn);
+  /// "All the names are right": the places that have only guesses keep them.
+  void confirmAll(const Utterance& u, Turn& turn);
+  /// Names, with the others that people have told of the place that is called so.
+  std::vector<std::string> withTold(const std::vector<std::string>& names) const;
+  /// ... but for those that another place has.
+  std::vector<std::string> ownNames(Id place, const std::vector<std::string>& names) const;
   /// "SS05 is the library", also the other way round, in `named`: as if said there.
   bool isOfNumberedPlace(const Utterance& u, Utterance* named) const;
   /// "Forget the kitchen", which is a name of the map that nobody has told anything of.
@@ -416,6 +424,10 @@ class Dialogue {
   void addWall(const Utterance& u, Turn& turn);
   void askWall(const std::optional<GlassWall>& found, Question question, Reply& reply);
   void forgetWall(const Utterance& u, Turn& turn);
+  /// The places of each name that tells which door is meant; nothing if one is not known.
+  std::optional<std::vector<std::vector<Id>>> sidesOfDoor(const Utterance& u, Reply& reply);
+  /// A door that people tell to be closed is shut by a virtual wall.
+  void shutDoor(const Utterance& u, Turn& turn);
   void openDoor(const Utterance& u, Turn& turn);
   /// The wall that shuts it is gone.
   void openDoor(const DescribedWall& wall, Reply& reply);
