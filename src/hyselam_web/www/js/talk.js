@@ -5,7 +5,7 @@ import {corrected, plain, told} from "./wording.js";
 import {listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
-const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então .* volta a ser|Encontrei \d)/;
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|So (SS|CC|VV)\d+ is not |Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então (.* volta a ser|\S+ não é )|Encontrei \d)/;
 const MAX_CHIPS = 8;
 const STOPS = ["Stop.", "Stop moving.", "Pare."]; // as the server says them for the button
 
