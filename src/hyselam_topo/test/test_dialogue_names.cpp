@@ -364,9 +364,10 @@ TEST(DialogueNames, AnotherNameThatAnotherPlaceHasStaysThere) {
 }
 
 TEST(DialogueNames, WhatAPlaceIsNotIsTakenFromItAndWhatItIsInsteadIsItsName) {
-  for (const char* sentence : {"No, that's wrong: SS02 is not the music room, it is the staff room.",
-                               "SS02 is not the music room but the staff room.",
-                               "SS02 is the staff room, not the music room."}) {
+  for (const char* sentence :
+       {"No, that's wrong: SS02 is not the music room, it is the staff room.",
+        "SS02 is not the music room but the staff room.",
+        "SS02 is the staff room, not the music room."}) {
     for (const bool confirmed : {true, false}) {
       Talk talk;
       hyselam_topo::DialogueState state = talk.dialogue.state();
