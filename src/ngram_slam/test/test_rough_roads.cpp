@@ -103,7 +103,7 @@ TEST(RoughRoads, standingOdometryIsToldByItsPartOfTheMotion) {
   road.path_unseen = 2.2;  // as intel has of 509 m
   road.turn_unseen = 2.4;
   EXPECT_FALSE(odometryStands(road, keyframes, 0));
-  EXPECT_TRUE(odometryStands(road, keyframes, 1900));  // of the 25 m of this session
+  EXPECT_TRUE(odometryStands(road, keyframes, 1900));  // of the 25 m of the newest session
   road.path_unseen = 25.0;
   EXPECT_TRUE(odometryStands(road, keyframes, 0));
   EXPECT_TRUE(odometryStands(road, {}, 0));

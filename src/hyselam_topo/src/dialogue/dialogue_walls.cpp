@@ -23,6 +23,16 @@ bool leadsToAll(const Edge& edge, const std::vector<std::vector<Id>>& sides) {
   });
 }
 
+/// Shuts a door.
+DescribedWall wallAcross(const Door& door) {
+  const double half = 0.5 * door.width + kBeyondDoor;
+  DescribedWall wall;
+  wall.kind = WallKind::kVirtual;
+  wall.line.a = {door.position.x - half * door.normal.y, door.position.y + half * door.normal.x};
+  wall.line.b = {door.position.x + half * door.normal.y, door.position.y - half * door.normal.x};
+  return wall;
+}
+
 }  // namespace
 
 void Dialogue::addWall(const Utterance& u, Turn& turn) {
@@ -242,10 +252,12 @@ void Dialogue::shutDoor(const Utterance& u, Turn& turn) {
   Reply& out = turn.reply;
   const auto sides = sidesOfDoor(u, out);
   if (!sides) return;
-  const Id here = robot().place;
+  struct Found {
+    const Edge* edge;
+    const Door* door;
+  };
   const std::vector<Id> shut = places_.shutDoors();
-  std::vector<const Edge*> edges;
-  std::vector<const Door*> doors;
+  std::vector<Found> open, here;  // "here": of the place where the robot and the speaker are
   bool is_shut = false;
   for (const Edge& edge : places_.map().edges) {
     if (!leadsToAll(edge, *sides)) continue;
@@ -255,47 +267,37 @@ void Dialogue::shutDoor(const Utterance& u, Turn& turn) {
         is_shut = true;
         continue;
       }
-      doors.push_back(&door);
-      edges.push_back(&edge);
+      open.push_back({&edge, &door});
+      if (edge.a == robot().place || edge.b == robot().place) here.push_back(open.back());
     }
   }
-  // "The kitchen door", which has more than one: that of the place where the robot and the speaker
-  // are.
-  std::vector<const Door*> near;
-  for (std::size_t i = 0; i < doors.size(); ++i) {
-    if (edges[i]->a == here || edges[i]->b == here) near.push_back(doors[i]);
-  }
-  if (doors.size() > 1 && sides->size() < 2 && near.size() == 1) doors = near;
-  const std::vector<SaidName> names = u.names("place");
   const Phrases& p = phrases();
-  if (doors.empty()) {
-    const std::string place =
-        names.empty() ? codeOf(*places_.map().findPlace(here)) : said(names.front().text);
-    out.sentences.push_back(is_shut ? p.say("door_shut") : p.say("no_door", {{"place", place}}));
+  if (open.empty()) {
+    out.sentences.push_back(
+        is_shut ? p.say("door_shut")
+                : p.say("no_door", {{"place", said(u.names("place").front().text)}}));
     return;
   }
-  if (doors.size() > 1 && sides->size() < 2) {
-    std::vector<Id> behind;
-    for (std::size_t i = 0; i < doors.size(); ++i) {
-      const bool a = std::find(sides->front().begin(), sides->front().end(), edges[i]->a) !=
-                     sides->front().end();
-      behind.push_back(a ? edges[i]->b : edges[i]->a);
+  // "The kitchen door", which has more than one.
+  if (open.size() > 1 && sides->size() < 2) {
+    if (here.size() != 1) {
+      const std::vector<Id>& meant = sides->front();
+      std::vector<Id> behind;
+      for (const Found& each : open) {
+        const bool from_a = std::find(meant.begin(), meant.end(), each.edge->a) != meant.end();
+        behind.push_back(from_a ? each.edge->b : each.edge->a);
+      }
+      out.sentences.push_back(p.say("which_door", {{"places", p.list(labels(behind))}}));
+      return;
     }
-    out.sentences.push_back(p.say("which_door", {{"places", p.list(labels(behind))}}));
-    return;
+    open = here;
   }
   const Change change(this);
-  for (const Door* door : doors) {
-    DescribedWall wall;
-    wall.kind = WallKind::kVirtual;
-    const double half = 0.5 * door->width + kBeyondDoor;
-    wall.line.a = {door->position.x - half * door->normal.y,
-                   door->position.y + half * door->normal.x};
-    wall.line.b = {door->position.x + half * door->normal.y,
-                   door->position.y - half * door->normal.x};
+  for (const Found& each : open) {
+    const DescribedWall wall = wallAcross(*each.door);
     const std::string sentence = sayWall(wall, true);
     places_.addWall(wall);
-    if (door == doors.front()) out.sentences.push_back(sentence);
+    if (each.door == open.front().door) out.sentences.push_back(sentence);
     haltAtDoor(wall, out);
   }
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});

@@ -249,9 +249,9 @@ export class Places {
   }
 
   // The map and the talk show it: the card is done with.
-  async name(id, names) {
+  name(id, names) {
     this.close();
-    await this.ask("name", {place: Number(id), names}, "");
+    this.ask("name", {place: Number(id), names}, "");
   }
 
   async ask(what, fields, done = undefined) {
@@ -259,10 +259,8 @@ export class Places {
       const result = await this.connection.ask(what, what === "here" ? fields : {language: currentLanguage(), ...fields});
       const answer = done ?? plain(result.message || "");
       if (answer) toast(answer);
-      return true;
     } catch (error) {
       toast(reasonOf(error), true);
-      return false;
     }
   }
 

@@ -198,6 +198,22 @@ inline nlohmann::json sweep(const WordRecognitionOptions& o, const std::vector<R
   return rows;
 }
 
+/// Which of the items that are taken in one by one are points of the curve of all.
+class CurvePoints {
+ public:
+  CurvePoints(std::size_t items, std::size_t points) : items_(items), points_(points) {}
+  bool isLast(std::size_t item) const { return item + 1 == items_; }
+  /// @param same_as_next items of one value are one point.
+  bool isPoint(std::size_t item, bool same_as_next) {
+    if (!isLast(item) && (same_as_next || (item + 1) * points_ < told_ * items_)) return false;
+    told_ = (item + 1) * points_ / items_ + 1;
+    return true;
+  }
+
+ private:
+  std::size_t items_, points_, told_ = 0;
+};
+
 /// Precision and recall while ever less sure matches are taken in.
 inline nlohmann::json curve(const WordRecognitionOptions& o, const NgramRecognizer& recognizer,
                             std::vector<NgramMatch> matches, const Truth& truth) {
@@ -210,15 +226,12 @@ inline nlohmann::json curve(const WordRecognitionOptions& o, const NgramRecogniz
                    [&](const NgramMatch& a, const NgramMatch& b) { return key(a) > key(b); });
   nlohmann::json points = nlohmann::json::array();
   MatchEvaluation evaluation(recognizer, truth);
-  std::size_t told = 0;
+  CurvePoints of_curve(matches.size(), kPoints);
   for (std::size_t i = 0; i < matches.size(); ++i) {
     evaluation.add(matches[i]);
-    const bool last = i + 1 == matches.size();
-    if (!last &&
-        (key(matches[i]) == key(matches[i + 1]) || (i + 1) * kPoints < told * matches.size())) {
+    if (!of_curve.isPoint(i, !of_curve.isLast(i) && key(matches[i]) == key(matches[i + 1]))) {
       continue;
     }
-    told = (i + 1) * kPoints / matches.size() + 1;
     nlohmann::json point = summary(evaluation);
     point["threshold"] = std::abs(key(matches[i]));
     points.push_back(point);
@@ -247,19 +260,16 @@ inline nlohmann::json sharedCurve(const NgramRecognizer& recognizer,
                    });
   nlohmann::json points = nlohmann::json::array();
   RecognitionScore score(truth);
-  std::size_t told = 0;
+  CurvePoints of_curve(pairs.size(), kSharedPoints);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const SimilarObservations& p = pairs[i];
     for (std::uint32_t k = 0; k < p.count; ++k) {
       score.add(p.newer + k, p.direction == Direction::kSame ? p.older + k : p.older - k,
                 p.direction);
     }
-    const bool last = i + 1 == pairs.size();
-    if (!last && (p.similarity == pairs[i + 1].similarity ||
-                  (i + 1) * kSharedPoints < told * pairs.size())) {
+    if (!of_curve.isPoint(i, !of_curve.isLast(i) && p.similarity == pairs[i + 1].similarity)) {
       continue;
     }
-    told = (i + 1) * kSharedPoints / pairs.size() + 1;
     nlohmann::json point = figures(score);
     point["matches"] = i + 1;
     point["threshold"] = p.similarity;

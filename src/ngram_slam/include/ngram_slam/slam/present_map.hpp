@@ -84,7 +84,7 @@ class PresentMap {
     float log_odds = 0.0F;
     std::uint16_t visits = 0, changes = 0;
     std::uint16_t observations = 0;
-    bool now = false;  ///< seen in this session
+    bool now = false;  ///< seen in the newest session
   };
   /// Of all cells that were observed, in the same order each time: use(x, y, belief), as
   /// OccupancyMapper::forEachObserved().

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -28,6 +29,11 @@ constexpr std::array kDirections{Direction::kSame, Direction::kReverse};
 std::uint64_t keyOf(std::uint32_t newer, std::uint32_t older) {
   return static_cast<std::uint64_t>(newer) << 32 | older;
 }
+/// Of matches or links.
+constexpr auto kSurestFirst = [](const auto& a, const auto& b) {
+  return std::tie(b.probability, a.newer, a.older, a.direction) <
+         std::tie(a.probability, b.newer, b.older, b.direction);
+};
 /// At most 6.9, for a link that is sure.
 float weightOf(float probability) {
   return -std::log(1.001f - probability);
@@ -102,13 +108,10 @@ double SharedMatches::fit(Cell newer, Cell older, Direction direction) const {
 
 /// What matches lay over each other, with the probability of the surest one.
 SharedMatches::Links SharedMatches::linksOf(std::vector<NgramMatch> matches) const {
-  std::sort(matches.begin(), matches.end(), [](const NgramMatch& a, const NgramMatch& b) {
-    return std::tie(b.probability, a.newer, a.older, a.direction) <
-           std::tie(a.probability, b.newer, b.older, b.direction);
-  });
+  std::sort(matches.begin(), matches.end(), kSurestFirst);
   AlignmentParams alignment;
   alignment.density = recognizer_.params().word_density;
-  std::array<std::unordered_map<std::uint64_t, char>, 2> done;
+  std::array<std::unordered_set<std::uint64_t>, 2> done;  // pairs of words
   Links links;
   for (const NgramMatch& match : matches) {
     if (match.probability < params_.min_probability) break;
@@ -116,7 +119,7 @@ SharedMatches::Links SharedMatches::linksOf(std::vector<NgramMatch> matches) con
     for (const WordPair& words :
          longestNgram(recognizer_.text(), recognizer_.params().matcher.tolerance,
                       {match.newer, match.older}, match.levels, kMaxWords, match.direction)) {
-      if (!done[d].emplace(keyOf(words.newer, words.older), 1).second) continue;
+      if (!done[d].insert(keyOf(words.newer, words.older)).second) continue;
       for (const ObservationPair& pair :
            alignedObservations(recognizer_.text(), recognizer_.observations(), {words}, 1,
                                alignment, match.direction)) {
@@ -180,10 +183,7 @@ SharedMatches::Links SharedMatches::extended(const Links& links) const {
           {static_cast<Cell>(key >> 32), static_cast<Cell>(key), direction, probability});
     }
   }
-  std::sort(seeds.begin(), seeds.end(), [](const Link& a, const Link& b) {
-    return std::tie(b.probability, a.newer, a.older, a.direction) <
-           std::tie(a.probability, b.newer, b.older, b.direction);
-  });
+  std::sort(seeds.begin(), seeds.end(), kSurestFirst);
   Links out;
   for (const Link& seed : seeds) {
     const std::uint64_t key = keyOf(seed.newer, seed.older);
