@@ -52,6 +52,50 @@ TEST(Conversation, WhatAQuestionDoesWithoutIsNamed) {
   EXPECT_TRUE(contains(thing.replyText(), "to the door")) << thing.replyText();
 }
 
+/// "That is X" behind a sentence about another place does not name the place of the robot.
+TEST(Conversation, WhatPointsBackNamesNoPlaceOfTheRobots) {
+  for (const char* said :
+       {"entre a cozinha e a casa de banho há uma portinha, isso é só a despensa",
+        "See the door at the end with the frosted glass? That's the registry.",
+        "That little room tucked in between the gift shop and the library is where we hang our "
+        "coats; we simply call it the cloakroom."}) {
+    ExampleTalk example;
+    const Exchange exchange = example.talk.say(said);
+    EXPECT_TRUE(exchange.names.empty()) << said << ": " << exchange.replyText();
+  }
+  ExampleTalk example;
+  example.talk.standAt("SS04");
+  const Exchange here =
+      example.talk.say("Right, see this wee room we're in? That's the medical room.");
+  ASSERT_EQ(here.names.size(), 1u) << here.replyText();
+  EXPECT_EQ(here.names.front().after, "medical room");
+}
+
+/// "My cabin" of somebody unknown is taken for the cabin, and that is told.
+TEST(Conversation, WhoseItIsIsNotLostSilently) {
+  for (const auto& [said, mine] :
+       {std::pair("Behind the kitchen is my cabin.", "I have left out 'my'"),
+        std::pair("A minha cabine fica atrás da cozinha.", "Deixei de fora 'minha'")}) {
+    ExampleTalk example;
+    const std::string reply = example.talk.say(said).replyText();
+    EXPECT_TRUE(contains(reply, mine)) << reply;
+  }
+  ExampleTalk example;
+  EXPECT_FALSE(
+      contains(example.talk.say("Behind the kitchen is our garden.").replyText(), "'our'"));
+}
+
+/// Gender tells of which noun a colour is.
+TEST(Conversation, TheColourBelongsToTheNounThatItFits) {
+  ExampleTalk example;
+  const std::string reply =
+      example.talk.say("A caixa de massinha está na prateleira do armário amarelo.").replyText();
+  EXPECT_TRUE(contains(reply, "armário amarelo")) << reply;
+  const std::string shelf =
+      example.talk.say("A caneta está na prateleira amarela do armário.").replyText();
+  EXPECT_FALSE(contains(shelf, "armário amarelo")) << shelf;
+}
+
 TEST(Conversation, WhatIsLeftOutIsToldOnce) {
   for (const char* said :
        {"The wrench is in the bottom drawer of the red toolbox, not the black one.",

@@ -364,7 +364,9 @@ TEST(PartReading, AsksFromTwentyEightPercentOn) {
   of.reading.facts.front().probability = 0.27;
   EXPECT_TRUE(of.part().asked.empty());
   EXPECT_EQ(of.part().example, "The lab is next to the store.");
-  of.reading.facts.front().probability = 0.14;
+  of.reading.facts.front().probability = 0.06;
+  EXPECT_EQ(of.part().example, "The lab is next to the store.") << "an example may be unlikely";
+  of.reading.facts.front().probability = 0.04;
   EXPECT_EQ(of.part().example, "");
 }
 
@@ -378,6 +380,40 @@ TEST(PartReading, AsksTwiceAtMostAfterANoAndNeverTheSame) {
   EXPECT_EQ(of.part().asked,
             (Facts{"The lab is next to the store.", "The lab is opposite the store.",
                    "The lab is on the left of the store."}));
+}
+
+/// Instead of where reading came to an end: what was heard, what was not, and an example of it.
+TEST(SecondReading, RefusalsTellWhatWasHeardAndShowItsOwnNames) {
+  struct Refused {
+    const char* said;
+    const char* heard;
+    const char* not_heard;
+  };
+  for (const Refused& each :
+       {Refused{"Courtroom Two's bang opposite.", "'courtroom Two'", "'bang opposite'"},
+        Refused{"e essa porta azul na sua frente é a salinha do Maternal Um",
+                "'salinha do Maternal'", "'e essa porta azul na sua frente é'"}}) {
+    const ParsedText parsed = parser().parse(each.said);
+    ASSERT_EQ(parsed.utterances.size(), 1u) << each.said;
+    const Utterance& refused = parsed.utterances.front();
+    EXPECT_FALSE(refused.understood());
+    EXPECT_NE(refused.reason.find(each.heard), std::string::npos) << refused.reason;
+    EXPECT_NE(refused.reason.find(each.not_heard), std::string::npos) << refused.reason;
+    EXPECT_TRUE(refused.suggests_own_words) << refused.suggestion;
+    const ParsedText again = parser().parse(refused.suggestion);
+    EXPECT_EQ(again.misunderstood(), 0u) << refused.suggestion;
+  }
+}
+
+/// "the linen cupboard" ends with a thing, and tells which place.
+TEST(SecondReading, ProposesPlacesNamedAfterThings) {
+  const ParsedText parsed = parser().parse(
+      "Sluice room's in between the linen cupboard and the assisted bathroom, the one wi' no "
+      "window.");
+  ASSERT_EQ(parsed.utterances.size(), 1u);
+  EXPECT_TRUE(parsed.utterances.front().suggests_meaning);
+  EXPECT_EQ(parsed.utterances.front().suggestion,
+            "The sluice room is between the linen cupboard and the assisted bathroom.");
 }
 
 /// What is too long to be read again is refused, and other nodes hear of it; it is no mere talk.

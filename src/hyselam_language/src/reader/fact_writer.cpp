@@ -22,16 +22,32 @@ std::string keyOf(const ReadFact& fact) {
          fact.relation + asked + "_" + std::to_string(names);
 }
 
+/// "the scrap bins", "as chaves": by the article where it tells, else by the head's last letter.
+bool isPlural(const Grammar& grammar, const std::string& name, const std::string& article) {
+  const language::NameType* type = grammar.compiled().nameType("place");
+  if (type != nullptr && type->head_first) return !article.empty() && article.back() == 's';
+  const std::size_t size = name.size();
+  return size > 3 && name[size - 1] == 's' && name[size - 2] != 's' && name[size - 2] != '\'' &&
+         name[size - 2] != 'u';
+}
+
+bool isThing(const language::NameType* type, const std::string& word) {
+  if (type == nullptr) return false;
+  const auto found = type->forbidden.find(word);
+  return found != type->forbidden.end() && found->second == "object";
+}
+
 /// "the little one", "the second": which place that is was said elsewhere.
 bool endsWithKeyword(const Grammar& grammar, const std::string& name) {
   const language::CompiledGrammar& compiled = grammar.compiled();
   const std::string last = hyselam::utf8Fold(name.substr(name.rfind(' ') + 1));
   const language::NameType* type = compiled.nameType("place");
   const bool generic = type != nullptr && type->generic.count(last) != 0;
-  const bool keyword =
-      compiled.known_words.count(last) != 0 && compiled.number_words.count(last) == 0;
+  const bool keyword = compiled.known_words.count(last) != 0 &&
+                       compiled.number_words.count(last) == 0 &&
+                       !isThing(type, last);  // "the linen cupboard" tells which
   return name.find(' ') != std::string::npos && (keyword || generic) &&
-         !compiled.isNounOrTitle(last);
+         !compiled.isNounOrTitle(last) && !compiled.isNounOrTitle(hyselam::utf8Fold(name));
 }
 
 }  // namespace
@@ -52,6 +68,7 @@ SaidValue FactWriter::valueOf(const std::string& key, const FactArgument& argume
   if (value.text != name) return value;
   // A noun that the grammar does not know keeps the article that it had; "uma copa" is "a copa".
   const std::string& article = argument.article;
+  value.plural = value.plural || isPlural(grammar_, name, article);
   const bool definite =
       anyType([&](const auto& type) { return type.definite.count(article) != 0; });
   if (article.empty() || !grammar_.has("article")) return value;

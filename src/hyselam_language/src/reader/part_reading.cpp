@@ -1,6 +1,7 @@
 #include "part_reading.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "fact_writer.hpp"
 #include "grammar/compiled_grammar.hpp"
 #include "grammar/sentence_matcher.hpp"
+#include "heard_names.hpp"
 #include "hyselam_common/utf8.hpp"
 
 namespace hyselam_topo {
@@ -20,7 +22,8 @@ using language::CompiledGrammar;
 constexpr double kWorthAsking = 0.28;
 /// Of a fact that the reader takes for told in a text that denies something.
 constexpr double kSureBesideDenial = 0.8;
-constexpr double kWorthShowing = 0.15;     // as an example of what would be understood
+constexpr double kWorthReading = 0.15;     // beside what is asked
+constexpr double kWorthShowing = 0.05;     // as an example of what would be understood
 constexpr std::size_t kMostFacts = 4;      // nobody says "yes" to more
 constexpr std::size_t kMostQuestions = 2;  // after a "no"
 
@@ -183,17 +186,102 @@ bool takesAway(const ReadFact& fact) {
   return fact.relation == "gone" || fact.relation == "forget" || fact.relation == "rename";
 }
 
+/// Of names that tell which: no "mine", no "the first".
+bool isOfHeardNames(const ReadFact& fact, const CompiledGrammar& grammar) {
+  return std::all_of(fact.arguments.begin(), fact.arguments.end(), [&](const FactArgument& each) {
+    return each.isReference() || isHeardName(each.text, grammar);
+  });
+}
+
+/// What may be told of one name, two or three: the relations by whose words an example is chosen.
+struct Tellable {
+  const char* relation;
+  std::size_t names;
+};
+constexpr std::array<Tellable, 19> kTellable{{{"between", 3},
+                                              {"opposite", 2},
+                                              {"after", 2},
+                                              {"before", 2},
+                                              {"behind", 2},
+                                              {"end", 2},
+                                              {"under", 2},
+                                              {"over", 2},
+                                              {"joined", 2},
+                                              {"next", 2},
+                                              {"left", 2},
+                                              {"right", 2},
+                                              {"on", 2},
+                                              {"in", 2},
+                                              {"left", 1},
+                                              {"right", 1},
+                                              {"ahead", 1},
+                                              {"upstairs", 1},
+                                              {"downstairs", 1}}};
+
+/// A sentence of the names that were heard: with a relation of which a word was said, else the
+/// plainest. "" where none is understood.
+std::string exampleOf(const std::vector<FactArgument>& names, const Utterance& part,
+                      bool is_question, const FactWriter& writer, const Grammar& grammar) {
+  if (names.empty()) return "";
+  const CompiledGrammar& compiled = grammar.compiled();
+  const auto wordsOf = [&](const std::string& text) {
+    std::set<std::string> words;
+    for (const auto& token : language::tokenize(text, {0, text.size()}, compiled.tokenRules())) {
+      words.insert(token.folded);
+    }
+    return words;
+  };
+  const std::set<std::string> said = wordsOf(part.text);
+  std::vector<Tellable> order;
+  if (is_question) order.push_back({"ask_where", 1});
+  for (const Tellable& each : kTellable) {
+    const std::string key = "fact_" + std::string(each.relation) + "_" + std::to_string(each.names);
+    if (!grammar.has(key)) continue;
+    const std::set<std::string> words = wordsOf(grammar.say(key));
+    if (std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+          return said.count(word) != 0 && compiled.placing_words.count(word) != 0;
+        })) {
+      order.push_back(each);
+    }
+  }
+  for (const Tellable& plain : {Tellable{"next", 2}, Tellable{"left", 1}, Tellable{"example", 1}}) {
+    order.push_back(plain);
+  }
+  for (const Tellable& each : order) {
+    // "Next to A and B": of the first ones of which it can be said.
+    for (std::size_t first = 0; first + each.names <= names.size(); ++first) {
+      ReadFact fact;
+      fact.relation = each.relation;
+      if (!grammar.has("fact_" + fact.relation + "_" + std::to_string(each.names))) break;
+      const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
+      fact.arguments.assign(begin, begin + static_cast<std::ptrdiff_t>(each.names));
+      for (FactArgument& argument : fact.arguments) {
+        // "tool crib" alone is clipped speech, an example is none.
+        const bool gendered = grammar.has("feminine_article");
+        if (argument.article.empty() && !gendered && argument.text[0] >= 'a' &&
+            argument.text[0] <= 'z') {
+          argument.article = grammar.say("article");
+          argument.article.erase(argument.article.find_last_not_of(' ') + 1);
+        }
+      }
+      if (fact.relation == "example" && fact.arguments.front().article.empty()) continue;
+      if (fact.arguments.size() > 1 && fact.arguments[0].text == fact.arguments[1].text) continue;
+      if (const auto in_words = inWords(writer, grammar, fact)) return in_words->sentence;
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar& grammar) {
   const Reading& reading = of.reading;
   const double least = of.is_turned ? kLikelierThanNot : kWorthAsking;
   const FactWriter writer(grammar);
-  const auto inPart = [&](const std::vector<ReadFact>& facts) {
+  const auto inPart = [&](const std::vector<ReadFact>& facts, double worth = kWorthReading) {
     std::vector<SaidFact> all;
     for (const ReadFact& fact : facts) {
-      if (fact.probability < kWorthShowing || isRuledOut(fact, utterance, of, grammar.compiled()))
-        continue;
+      if (fact.probability < worth || isRuledOut(fact, utterance, of, grammar.compiled())) continue;
       if (!belongsTo(utterance.range, of.is_whole, fact)) continue;
       if (auto said = inWords(writer, grammar, fact)) all.push_back(std::move(*said));
     }
@@ -219,10 +307,20 @@ PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar
     left -= each.fact->probability;
   }
   if (part.asked.size() > 1 + kMostQuestions) part.asked.resize(1 + kMostQuestions);
-  const auto best = std::max_element(
-      likely.begin(), likely.end(),
-      [](const auto& a, const auto& b) { return a.fact->probability < b.fact->probability; });
-  if (best != likely.end()) part.example = best->sentence;
+  std::vector<SaidFact> shown = inPart(reading.facts, kWorthShowing);
+  for (SaidFact& each : inPart(reading.others, kWorthShowing)) shown.push_back(std::move(each));
+  shown.erase(std::remove_if(shown.begin(), shown.end(),
+                             [&](const SaidFact& each) {
+                               return takesAway(*each.fact) ||
+                                      !isOfHeardNames(*each.fact, grammar.compiled());
+                             }),
+              shown.end());
+  const auto best = std::max_element(shown.begin(), shown.end(), [](const auto& a, const auto& b) {
+    return a.fact->probability < b.fact->probability;
+  });
+  part.example = best != shown.end() ? best->sentence
+                                     : exampleOf(heardNames(utterance, reading, grammar.compiled()),
+                                                 utterance, of.is_question, writer, grammar);
   return part;
 }
 

@@ -18,7 +18,7 @@ inline constexpr double kLikelierThanNot = 0.5;
 struct PartReading {
   std::vector<std::string> asked;  ///< readings, each one or several sentences, best first
   double probability = 0.0;        ///< of the best reading to ask for
-  std::string example;             ///< the likeliest of what is too unlikely to ask for
+  std::string example;             ///< of the names in it: the likeliest, or how it is said
 };
 
 /// Where a part stands.

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "grammar/compiled_grammar.hpp"
+#include "heard_names.hpp"
+#include "hyselam_language/grammar/words_left_out.hpp"
 #include "part_reading.hpp"
 
 namespace hyselam_topo {
@@ -95,7 +97,10 @@ bool includes(const std::string& proposal, const std::string& denied,
 /// in its way, goes before unlikely ones.
 void propose(const PartReading& part, const CompiledGrammar& grammar, Utterance* utterance) {
   if (part.asked.empty()) {
-    if (!utterance->suggests_meaning && !part.example.empty()) utterance->suggestion = part.example;
+    if (!utterance->suggests_meaning && !part.example.empty()) {
+      utterance->suggestion = part.example;
+      utterance->suggests_own_words = true;
+    }
     return;
   }
   utterance->alternatives = part.asked;
@@ -112,6 +117,33 @@ void propose(const PartReading& part, const CompiledGrammar& grammar, Utterance*
                             }),
              next.end());
   utterance->suggests_meaning = true;
+}
+
+/// Reasons that only tell where reading came to an end, and not why.
+const std::set<std::string> kGuesses{"no_pattern",       "no_name", "misspelt",
+                                     "not_a_known_kind", "bare",    "quantity"};
+
+void replaceAll(const std::string& what, const std::string& by, std::string* text) {
+  for (std::size_t at = text->find(what); at != std::string::npos;
+       at = text->find(what, at + by.size())) {
+    text->replace(at, what.size(), by);
+  }
+}
+
+/// Instead of a guess: what was heard, and what was not understood beside it.
+void tellHeard(const Reading& reading, const CompiledGrammar& grammar, Utterance* utterance) {
+  if (kGuesses.count(utterance->reason_code) == 0) return;
+  const std::vector<FactArgument> names = heardNames(*utterance, reading, grammar);
+  const std::string beside = wordsBeside(names, *utterance, grammar);
+  const std::string key = names.empty() ? "nothing_heard" : "heard";
+  const auto template_text = grammar.reasons.find(key);
+  if (template_text == grammar.reasons.end() || (beside.empty() && !names.empty())) return;
+  std::vector<std::string> texts;
+  texts.reserve(names.size());
+  for (const FactArgument& name : names) texts.push_back(name.text);
+  utterance->reason = template_text->second;
+  replaceAll("{names}", quotedInARow(texts), &utterance->reason);
+  replaceAll("{word}", beside, &utterance->reason);
 }
 
 /// The refused parts without matter become words left out of the statement before them.
@@ -143,10 +175,10 @@ void readAgain(const FactReader& reader, const Grammar& grammar, const std::stri
                std::vector<Utterance>* utterances) {
   const auto isRefused = [](const Utterance& u) { return !u.understood(); };
   if (std::none_of(utterances->begin(), utterances->end(), isRefused)) return;
-  if (isDoubted(text, grammar.compiled())) return;
   const std::optional<Reading> read = reader.read(text);
   if (!read) return;  // not known to state or name nothing
   const Reading& reading = *read;
+  const bool doubted = isDoubted(text, grammar.compiled());
   const bool is_whole = utterances->size() == 1;
   const bool is_turned =
       hasWordOf(text, {"denial", "not_now", "condition", "comparison"}, grammar.compiled());
@@ -156,8 +188,12 @@ void readAgain(const FactReader& reader, const Grammar& grammar, const std::stri
     const bool is_question = !utterance.text.empty() && utterance.text.back() == '?';
     const bool is_denied = hasWordOf(utterance.text, {"denial"}, grammar.compiled());
     const PartOf of{reading, is_whole, is_turned || has_reason, is_question, is_denied};
-    propose(readPart(utterance, of, grammar), grammar.compiled(), &utterance);
+    PartReading part = readPart(utterance, of, grammar);
+    if (doubted) part.asked.clear();
+    propose(part, grammar.compiled(), &utterance);
+    if (!utterance.suggests_meaning) tellHeard(reading, grammar.compiled(), &utterance);
   }
+  if (doubted) return;
   dropTalk(reading, grammar.compiled(), utterances);
 }
 

@@ -163,7 +163,7 @@ ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   }
   ObjectReply out = reply(ReplyKind::kNotUnderstood, "not_understood", values);
   out.reason = statement.reason;
-  if (grammar.has(own)) {
+  if (grammar.has(own) && !statement.suggests_own_words) {
     out.text += " " + phraseText("instead", {{"suggestion", phraseText(own)}});
   } else if (!statement.suggestion.empty()) {
     out.text += " " + phraseText("instead", values);

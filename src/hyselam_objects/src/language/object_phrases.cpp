@@ -102,9 +102,28 @@ class PhraseReader {
         continue;
       }
       property = words_.properties.find(lowerCase(rest_.back()));
-      if (property == words_.properties.end()) return;
+      if (property == words_.properties.end() || isOfInnerNoun(property->second.second)) return;
       out_.properties[property->second.first] = property->second.second;
     }
+  }
+
+  /// "prateleira do armário amarelo": by its gender the last word tells of the cupboard alone.
+  bool isOfInnerNoun(const std::string& property) const {
+    constexpr std::size_t kForms = 4;  // masculine and feminine, then both in the plural
+    const auto forms = words_.property_words.find(property);
+    if (forms == words_.property_words.end() || forms->second.size() != kForms) return false;
+    const auto form =
+        std::find(forms->second.begin(), forms->second.end(), lowerCase(rest_.back()));
+    if (form == forms->second.end()) return false;
+    const bool feminine = (form - forms->second.begin()) % 2 == 1;
+    for (std::size_t i = rest_.size() - 1; i-- > 1;) {
+      if (words_.of.count(lower(i)) == 0 || i + 2 >= rest_.size()) continue;
+      const auto isFeminine = [&](std::size_t begin, std::size_t end) {
+        return words_.formOf(words_.kindOf(joined(begin, end)).kind) == "f";
+      };
+      return isFeminine(0, i) != feminine && isFeminine(i + 1, rest_.size() - 1) == feminine;
+    }
+    return false;
   }
 
   void setOwner(const std::string& owner) {

@@ -70,6 +70,7 @@ class StatementReader {
     out.reason_code = u_.reason_code;
     out.suggestion = u_.suggestion;
     out.suggests_meaning = u_.suggests_meaning;
+    out.suggests_own_words = u_.suggests_own_words;
     out.alternatives = u_.alternatives;
     out.left_out = u_.left_out;
     for (const Slot& slot : u_.slots) {

@@ -5,6 +5,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/utf8.hpp"
 #include "hyselam_language/building/describe_change.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "match_constraints.hpp"
@@ -19,6 +20,22 @@ bool saysMy(const Utterance& u) {
     return std::any_of(slot.names.begin(), slot.names.end(),
                        [](const SaidName& name) { return name.speaker; });
   });
+}
+
+/// The words before what is the speaker's: "my".
+std::vector<std::string> wordsForMine(const Utterance& u) {
+  std::vector<std::string> words;
+  for (const Slot& slot : u.slots) {
+    for (const SaidName& name : slot.names) {
+      if (!name.speaker || name.elliptic || name.range.begin < u.range.begin + 2) continue;
+      const std::size_t end = name.range.begin - u.range.begin;
+      if (end > u.text.size() || u.text[end - 1] != ' ') continue;
+      const std::size_t space = u.text.rfind(' ', end - 2);
+      const std::size_t begin = space == std::string::npos ? 0 : space + 1;
+      words.push_back(u.text.substr(begin, end - 1 - begin));
+    }
+  }
+  return words;
 }
 
 /// "On your left", "the second door", "here": means something only where the robot is.
@@ -80,6 +97,17 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   }
   turn.beyond_here = true;
   turn.told = true;
+  if (issues.empty() && builder_.speaker().empty()) {
+    // "My cabin" is taken for the cabin, of which there is one: whose it is is not known.
+    for (const std::string& my : wordsForMine(u)) {
+      // Nobody misses whose it is in "our kitchen".
+      const std::string of_one =
+          grammar().has("of_one_speaker") ? grammar().say("of_one_speaker") : "";
+      if ((" " + of_one + " ").find(" " + hyselam::utf8Fold(my) + " ") != std::string::npos) {
+        turn.left_out.push_back(my);
+      }
+    }
+  }
   turn.asks_speaker = turn.asks_speaker || (builder_.speaker().empty() && saysMy(u));
   if (!u.word("side").empty()) turn.sides = true;
   if (u.intent == "forget_place") {

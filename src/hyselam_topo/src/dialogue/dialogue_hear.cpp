@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "dialogue_turn.hpp"
@@ -82,6 +83,26 @@ void joinCorrections(const std::string& text, std::vector<Utterance>* all) {
     no.range.end = wait.range.end;
     all->erase(all->begin() + static_cast<std::ptrdiff_t>(i) + 1);
   }
+}
+
+/// Whether one of the words of a key of the grammar stands in the text.
+bool hasWordOf(const std::string& key, const std::string& text, const Grammar& grammar) {
+  if (!grammar.has(key)) return false;
+  std::string words = " ";
+  for (const char c : hyselam::utf8Fold(text)) {
+    const bool ends = std::string(" ,.;:!?").find(c) != std::string::npos;
+    words += ends ? ' ' : c;
+  }
+  std::istringstream all(grammar.say(key));
+  for (std::string word; all >> word;) {
+    if ((words + " ").find(" " + word + " ") != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// "See this room we're in?": of where the robot stands.
+bool saysHere(const std::string& text, const Grammar& grammar) {
+  return hasWordOf("says_here", text, grammar);
 }
 
 }  // namespace
@@ -166,9 +187,17 @@ bool Dialogue::knowsLanguage(const std::string& language) const {
 }
 
 bool Dialogue::isOfThisPlace(const Utterance& u, const Turn& turn) const {
-  if (u.intent != "alias" || turn.described || talk_.described_last) return false;
+  if (u.intent != "alias" || turn.described || talk_.described_last || turn.lost) return false;
   const std::vector<SaidName> place = u.names("place");
   return place.size() == 1 && !place.front().reference.empty() && u.find("aliases") != nullptr;
+}
+
+bool Dialogue::pointsBack(const Utterance& u, const Turn& turn) const {
+  if (u.intent != "this_is" || !(turn.told || turn.lost) || !grammar().has("points_back") ||
+      u.slots.size() != 1 || u.slots.front().name != "place") {
+    return false;
+  }
+  return hasWordOf("points_back", u.text.substr(0, u.text.find(' ')), grammar());
 }
 
 bool Dialogue::isOfNumberedPlace(const Utterance& u, Utterance* named) const {
@@ -301,6 +330,7 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (forgetsKnown(u, turn)) return;
     builder_.sentenceRefused();
     refuse(u, turn);
+    turn.lost = turn.lost || !saysHere(u.text, grammar());
     return;
   }
   // "Somebody moved the trolley, it's in the hall now": of what others were told right before.
@@ -328,7 +358,20 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   turn.left_out.insert(turn.left_out.end(), u.left_out.begin(), u.left_out.end());
   static const std::set<std::string> kOwn{"this_is", "forget_everything", "speaker"};
   Utterance numbered;
-  if (isOfNumberedPlace(u, &numbered)) {
+  if (pointsBack(u, turn)) {
+    // "... há uma portinha, isso é a despensa": the place that was spoken of, not where it stands.
+    Utterance named = u;
+    named.intent = "alias";
+    Slot& place = named.slots.front();
+    place.name = "aliases";
+    Slot spoken_of = place;
+    spoken_of.name = "place";
+    spoken_of.names.resize(1);
+    spoken_of.names.front().text = u.text.substr(0, u.text.find(' '));
+    spoken_of.names.front().reference = "it";
+    named.slots.insert(named.slots.begin(), spoken_of);
+    addStatement(named, turn);
+  } else if (isOfNumberedPlace(u, &numbered)) {
     attempt(turn.reply, [&] {
       recordStatements(turn);
       const Id place = places_.find(numbered.slots.front().names.front().text).front();
@@ -354,6 +397,7 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     handleCommand(named, turn);
   } else if (!u.to_confirm.empty() && DescriptionBuilder::handles(u.intent)) {
     builder_.sentenceRefused();
+    turn.lost = true;
     turn.to_confirm += (turn.to_confirm.empty() ? "" : " ") + u.to_confirm;
   } else if (kOwn.count(u.intent) == 0 && DescriptionBuilder::handles(u.intent)) {
     addStatement(u, turn);

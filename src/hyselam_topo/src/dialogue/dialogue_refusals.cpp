@@ -50,9 +50,10 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
   }
   const bool proposes = !meant.empty();
   // What may have been meant, but cannot be taken, is no advice either.
-  const std::string advice = proposes             ? meant.front()
-                             : u.suggests_meaning ? ""
-                                                  : withKnownNames(u.suggestion, u.text);
+  const std::string advice = proposes               ? meant.front()
+                             : u.suggests_meaning   ? ""
+                             : u.suggests_own_words ? u.suggestion
+                                                    : withKnownNames(u.suggestion, u.text);
   const std::string refusal = sayNotUnderstood(u.text, u.reason, advice);
   std::string rest;  // what the proposal does without
   if (proposes) {

@@ -74,6 +74,8 @@ struct Utterance {
   /// Whether the suggestion is what was said without some of its words, which the person should
   /// confirm; otherwise it is an example of how such things are said.
   bool suggests_meaning = false;
+  /// Whether an example is of what the person named.
+  bool suggests_own_words = false;
   /// What else may have been meant if it is not that, likeliest first.
   std::vector<std::string> alternatives;
   /// Understood: words left out, as an aside between commas ("which is far too small"); refused:

@@ -72,6 +72,7 @@ struct ObjectStatement {
   std::string reason_code;  ///< of Utterance, or "bare", "two_places"
   std::string suggestion;   ///< not understood: see Utterance
   bool suggests_meaning = false;
+  bool suggests_own_words = false;
   std::vector<std::string> alternatives;
   std::vector<std::string> left_out;  ///< words of asides
 };

@@ -288,6 +288,8 @@ class Dialogue {
   bool isAboutObject(const Utterance& u) const;
   /// Whether "it is X" names the place where the robot is: nothing else was spoken of.
   bool isOfThisPlace(const Utterance& u, const Turn& turn) const;
+  /// Whether "that is X" is of a place that was spoken of right before in the same text.
+  bool pointsBack(const Utterance& u, const Turn& turn) const;
 
   // descriptions
   /// Sides are told from where the robot is, also where it has been driven since that was told.
