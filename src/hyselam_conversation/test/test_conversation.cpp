@@ -88,6 +88,7 @@ TEST(Conversation, WhoseItIsIsNotLostSilently) {
 /// Gender tells of which noun a colour is.
 TEST(Conversation, TheColourBelongsToTheNounThatItFits) {
   ExampleTalk example;
+  example.talk.say("Estás no corredor.");
   const std::string reply =
       example.talk.say("A caixa de massinha está na prateleira do armário amarelo.").replyText();
   EXPECT_TRUE(contains(reply, "armário amarelo")) << reply;

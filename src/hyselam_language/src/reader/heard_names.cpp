@@ -28,17 +28,20 @@ bool isKind(const CompiledGrammar& grammar, const std::string& folded) {
   const std::size_t size = folded.size();
   const bool cut = size > 2 && folded.compare(size - 2, 2, "'s") == 0;
   const std::string word = cut ? folded.substr(0, size - 2) : folded;
-  return std::any_of(
-      grammar.name_types.begin(), grammar.name_types.end(), [&](const NameType& type) {
-        const bool tells_nothing = type.name == "property" || type.generic.count(word) != 0 ||
-                                   type.elliptic_nouns.count(word) != 0 ||
-                                   grammar.number_words.count(word) != 0;
-        if (tells_nothing) return false;
-        const auto found = type.forbidden.find(word);
-        return (found != type.forbidden.end() && found->second == "object") ||
-               type.nouns.count(word) != 0 || type.titles.count(word) != 0 ||
-               type.plurals.count(word) != 0;
+  const bool tells_nothing =
+      grammar.number_words.count(word) != 0 ||
+      std::any_of(grammar.name_types.begin(), grammar.name_types.end(), [&](const NameType& type) {
+        return type.generic.count(word) != 0 || type.elliptic_nouns.count(word) != 0;
       });
+  if (tells_nothing) return false;
+  return std::any_of(grammar.name_types.begin(), grammar.name_types.end(),
+                     [&](const NameType& type) {
+                       if (type.name == "property") return false;
+                       const auto found = type.forbidden.find(word);
+                       return (found != type.forbidden.end() && found->second == "object") ||
+                              type.nouns.count(word) != 0 || type.titles.count(word) != 0 ||
+                              type.plurals.count(word) != 0;
+                     });
 }
 
 class NamesOf {
