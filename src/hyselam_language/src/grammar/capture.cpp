@@ -186,7 +186,7 @@ bool capture(const Automaton& pattern, const std::vector<Step>& path, SentenceWo
              Clause* clause) {
   Capture captured(pattern, words, clause);
   for (const Step& step : path) {
-    if (step.edge != nullptr) captured.take(step);
+    if (step.edge) captured.take(step);
   }
   return !captured.contradicts() && captured.resolveUnits();
 }

@@ -19,8 +19,9 @@ int fillerCost(const Phrase& phrase, std::size_t at, const SentenceWords& words)
 /// Follows phrases, each of them at a cost, as far as they go from a token.
 class PhraseWalk {
  public:
-  PhraseWalk(const SentenceWords& words, const std::vector<Phrase>& phrases, int each)
-      : words_(words), phrases_(phrases), each_(each) {}
+  PhraseWalk(const SentenceWords& words, const std::vector<Phrase>& phrases,
+             const PhraseStarts& starts, int each)
+      : words_(words), phrases_(phrases), starts_(starts), each_(each) {}
 
   /// Calls f(position, cost) for each place on the way.
   template <typename F>
@@ -32,7 +33,8 @@ class PhraseWalk {
       follow(at + 1, cost + kCommaCost, f, depth + 1);
       return;
     }
-    for (const Phrase& phrase : phrases_) {
+    for (const std::size_t number : starts_.beginningWith(words_.matches[at])) {
+      const Phrase& phrase = phrases_[number];
       const int more = fillerCost(phrase, at, words_);
       if (more >= 0) follow(at + phrase.size(), cost + each_ + more, f, depth + 1);
     }
@@ -41,6 +43,7 @@ class PhraseWalk {
  private:
   const SentenceWords& words_;
   const std::vector<Phrase>& phrases_;
+  const PhraseStarts& starts_;
   int each_;
 };
 
@@ -65,12 +68,16 @@ std::vector<Entry> entriesAt(const SentenceWords& words, std::size_t at) {
     const auto [entry, is_new] = cheapest.emplace(std::make_pair(to, correction), cost);
     if (!is_new) entry->second = std::min(entry->second, cost);
   };
-  const PhraseWalk fillers(words, words.grammar.fillers_before, kFillerCost);
+  const PhraseWalk fillers(words, words.grammar.fillers_before, words.grammar.before_starts,
+                           kFillerCost);
   // "no, wait, sorry, ..."
   constexpr int kMaxCorrections = 3;
   const auto correct = [&](auto&& self, std::size_t to, int cost, int depth) -> void {
     if (depth == kMaxCorrections) return;
-    for (const Phrase& phrase : words.grammar.corrections) {
+    if (to >= words.tokens.size()) return;
+    for (const std::size_t number :
+         words.grammar.correction_starts.beginningWith(words.matches[to])) {
+      const Phrase& phrase = words.grammar.corrections[number];
       const int more = fillerCost(phrase, to, words);
       const std::size_t behind = to + phrase.size();
       if (more < 0 || deniesWhatFollows(words, to, behind)) continue;
@@ -92,7 +99,8 @@ std::vector<Entry> entriesAt(const SentenceWords& words, std::size_t at) {
 
 Exits exitsAt(const SentenceWords& words, std::size_t at) {
   Exits exits;
-  const PhraseWalk fillers(words, words.grammar.fillers_after, kFillerCost);
+  const PhraseWalk fillers(words, words.grammar.fillers_after, words.grammar.after_starts,
+                           kFillerCost);
   fillers.follow(at, 0, [&](std::size_t to, int cost) {
     if (to == at || to == words.tokens.size() || !words.isComma(to - 1)) {
       exits.emplace_back(to, cost);
@@ -103,7 +111,8 @@ Exits exitsAt(const SentenceWords& words, std::size_t at) {
 
 Exits separatorsAt(const SentenceWords& words, std::size_t at) {
   Exits found;
-  const PhraseWalk separators(words, words.grammar.clause_separators, kSeparatorCost);
+  const PhraseWalk separators(words, words.grammar.clause_separators,
+                              words.grammar.separator_starts, kSeparatorCost);
   separators.follow(at, 0, [&](std::size_t to, int cost) {
     if (to > at && to < words.tokens.size()) found.emplace_back(to, cost);
   });

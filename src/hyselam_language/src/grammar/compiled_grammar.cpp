@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "hyselam_common/edit_distance.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "matching_costs.hpp"
 
@@ -14,7 +13,9 @@ int Vocabulary::add(const std::string& word) {
   const auto [at, is_new] = by_lower_.emplace(lower, static_cast<int>(entries_.size()));
   if (is_new) {
     entries_.push_back({lower, hyselam::utf8Fold(word)});
-    by_folded_.emplace(entries_.back().folded, at->second);
+    const std::string& folded = entries_.back().folded;
+    by_folded_.emplace(folded, at->second);
+    if (folded.size() >= kShortestMisspelt) slips_.add(folded, at->second);
   }
   return at->second;
 }
@@ -33,12 +34,28 @@ std::vector<Vocabulary::Match> Vocabulary::matches(const Token& token, bool may_
   if (!found.empty() || !may_be_misspelt || token.folded.size() < kShortestMisspelt - 1) {
     return found;
   }
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const std::string& word = entries_[i].folded;
-    if (word.size() >= kShortestMisspelt && hyselam::isOneEditApart(token.folded, word)) {
-      found.push_back({static_cast<int>(i), kSlipCost});
-    }
+  for (const int word : slips_.near(token.folded)) found.push_back({word, kSlipCost});
+  return found;
+}
+
+PhraseStarts::PhraseStarts(const std::vector<Phrase>& phrases) {
+  for (std::size_t i = 0; i < phrases.size(); ++i) {
+    const auto word = static_cast<std::size_t>(phrases[i].front());
+    if (of_word_.size() <= word) of_word_.resize(word + 1);
+    of_word_[word].push_back(i);
   }
+}
+
+std::vector<std::size_t> PhraseStarts::beginningWith(
+    const std::vector<Vocabulary::Match>& words) const {
+  std::vector<std::size_t> found;
+  for (const Vocabulary::Match& match : words) {
+    const auto word = static_cast<std::size_t>(match.word);
+    if (word >= of_word_.size()) continue;
+    found.insert(found.end(), of_word_[word].begin(), of_word_[word].end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "example_sentences.hpp"
 #include "hyselam_language/grammar/utterance.hpp"
 #include "pattern_index.hpp"
+#include "slip_index.hpp"
 #include "tokens.hpp"
 #include "urgent_phrases.hpp"
 
@@ -20,6 +22,9 @@ namespace hyselam_topo {
 namespace language {
 
 using Words = std::vector<std::string>;
+/// Words that are looked up for every token.
+using WordSet = std::unordered_set<std::string>;
+using WordMeanings = std::unordered_map<std::string, std::string>;
 /// Numbers of words of the vocabulary, one after another.
 using Phrase = std::vector<int>;
 
@@ -45,37 +50,52 @@ class Vocabulary {
   std::vector<Entry> entries_;
   std::unordered_map<std::string, int> by_lower_;
   std::unordered_multimap<std::string, int> by_folded_;
+  SlipIndex slips_;  ///< of those that may be misspelt
+};
+
+/// The phrases of a list by their first words.
+class PhraseStarts {
+ public:
+  PhraseStarts() = default;
+  explicit PhraseStarts(const std::vector<Phrase>& phrases);
+  /// The numbers of those that begin with one of the words, ascending.
+  std::vector<std::size_t> beginningWith(const std::vector<Vocabulary::Match>& words) const;
+
+ private:
+  std::vector<std::vector<std::size_t>> of_word_;
 };
 
 /// What may be a name (of places, of objects, ...). Sets hold folded words.
 struct NameType {
   std::string name;
-  std::set<std::string> definite;
-  std::set<std::string> indefinite;
-  std::set<std::string> joiners;                 ///< behind them an article may stand: "of the"
-  std::set<std::string> stop;                    ///< never within a name
-  bool of_speaker = false;                       ///< all are the speaker's, without a word for it
-  std::set<std::string> speaker;                 ///< before what is the speaker's: "my"
-  std::set<std::string> elliptic_suffix;         ///< "Mary's": the noun was said before
-  std::set<std::string> elliptic_prefix;         ///< "o da Teresa": the same
-  std::set<std::string> elliptic_after;          ///< what may stand before it: "ao", or an article
-  std::set<std::string> elliptic_nouns;          ///< "the big one": the noun was said before
-  std::set<std::string> elliptic_adjectives;     ///< may stand for a name with the noun of before
-  std::set<std::string> speaker_alone;           ///< "mine": the speaker's of what was said before
-  std::set<std::string> range_words;             ///< "rooms 101 to 106"
-  std::set<std::string> generic;                 ///< no name on their own: "room"
-  std::set<std::string> heads;                   ///< kinds of places, no name alone: "area"
-  std::set<std::string> quantities;              ///< no name begins so: "several"
-  std::map<std::string, std::string> forbidden;  ///< word -> code of the reason
-  std::map<std::string, std::string> nouns;      ///< phrase -> kind: "dining hall" -> "room"
-  std::map<std::string, std::string> titles;     ///< "lab" -> "lab", "laboratory" -> "lab"
-  std::map<std::string, std::string> kinds;      ///< name -> what all languages call alike
-  std::map<std::string, std::string> plurals;    ///< "rooms 1 and 2" are "room 1" and "room 2"
-  std::set<std::string> between;                 ///< words between the codes of such a row: "and"
-  std::set<std::string> parts;                   ///< "door": a door of a place is no place
-  std::set<std::string> part_joiners;            ///< "of": what a part and its place stand around
-  std::set<std::string> feminine;                ///< nouns with the second article when generating
-  bool head_first = false;                       ///< the first noun tells the kind, not the last
+  WordSet definite;
+  WordSet indefinite;
+  WordSet joiners;              ///< behind them an article may stand: "of the"
+  WordSet stop;                 ///< never within a name
+  bool of_speaker = false;      ///< all are the speaker's, without a word for it
+  WordSet speaker;              ///< before what is the speaker's: "my"
+  WordSet elliptic_suffix;      ///< "Mary's": the noun was said before
+  WordSet elliptic_prefix;      ///< "o da Teresa": the same
+  WordSet elliptic_after;       ///< what may stand before it: "ao", or an article
+  WordSet elliptic_nouns;       ///< "the big one": the noun was said before
+  WordSet elliptic_adjectives;  ///< may stand for a name with the noun of before
+  WordSet speaker_alone;        ///< "mine": the speaker's of what was said before
+  WordSet range_words;          ///< "rooms 101 to 106"
+  WordSet generic;              ///< no name on their own: "room"
+  WordSet heads;                ///< kinds of places, no name alone: "area"
+  WordSet quantities;           ///< no name begins so: "several"
+  WordMeanings forbidden;       ///< word -> code of the reason
+  WordMeanings nouns;           ///< phrase -> kind: "dining hall" -> "room"
+  WordMeanings titles;          ///< "lab" -> "lab", "laboratory" -> "lab"
+  WordMeanings kinds;           ///< name -> what all languages call alike
+  WordMeanings plurals;         ///< "rooms 1 and 2" are "room 1" and "room 2"
+  WordSet between;              ///< words between the codes of such a row: "and"
+  WordSet parts;                ///< "door": a door of a place is no place
+  WordSet part_joiners;         ///< "of": what a part and its place stand around
+  WordSet feminine;             ///< nouns with the second article when generating
+  SlipIndex stop_slips;         ///< of the words of `stop`
+  WordSet noun_beginnings;      ///< the first words of the nouns
+  bool head_first = false;      ///< the first noun tells the kind, not the last
   bool needs_noun = false;
   bool only_elliptic = false;  ///< "Joe's", "da Ana": an owner's, without the noun
   bool silent = false;         ///< that words are no such name is no reason for a refusal
@@ -115,17 +135,18 @@ struct CompiledGrammar {
   std::string language;
   std::string title;
   Vocabulary vocabulary;
-  std::set<std::string> known_words;  ///< folded words that are never misspelt keywords
+  WordSet known_words;  ///< folded words that are never misspelt keywords
   std::vector<Phrase> fillers_before, fillers_after, corrections, clause_separators;
+  PhraseStarts before_starts, after_starts, correction_starts, separator_starts;  ///< of these
   std::set<int> fillers_inner;
   /// Folded words of list separators that tell an order: "then".
-  std::set<std::string> order_words;
+  WordSet order_words;
   /// As said: behind these no list of a statement goes on ("logo a seguir à copa" is a relation).
-  std::set<std::string> list_ends;
+  WordSet list_ends;
   /// Folded: "se" is no condition behind one of the second, as in "onde se guarda a roupa".
-  std::set<std::string> reflexive, reflexive_after;
+  WordSet reflexive, reflexive_after;
   /// Folded: "here"; "this", where one of the third stands behind it: "door".
-  std::set<std::string> here_words, pointing_words, pointed_words;
+  WordSet here_words, pointing_words, pointed_words;
   /// Those before and after that have two words or more, by their first word.
   std::unordered_map<std::string, std::vector<Phrase>> long_fillers;
   /// Around a statement that ends with a question mark: "can you note that", "ok"; the longest
@@ -135,16 +156,17 @@ struct CompiledGrammar {
   std::vector<Words> past_asides;
   /// ... and those that begin so change nothing told, though they deny: "you can't miss it".
   std::vector<Words> idle_asides;
-  std::set<std::string> abbreviations;
+  WordSet abbreviations;
   /// Words that mean something else in small letters, as they are written: "IT".
-  std::set<std::string> acronyms;
+  WordSet acronyms;
   /// Ends of nouns of places that may be a verb: "'s" in "the library's on the left" is "is".
   std::map<std::string, std::string> contracted_verbs;
-  std::map<std::string, Words> contractions;
-  std::map<std::string, std::pair<double, bool>> number_words;  ///< value, is a multiple of ten
-  std::set<std::string> number_joiners;
+  std::unordered_map<std::string, Words> contractions;
+  std::unordered_map<std::string, std::pair<double, bool>>
+      number_words;  ///< value, is a multiple of ten
+  WordSet number_joiners;
   std::vector<Phrase> halves;
-  std::set<std::string> unit_words;
+  WordSet unit_words;
   std::vector<Quantity> quantities;
   std::vector<NameType> name_types;
   std::vector<IntentInfo> intents;
@@ -152,9 +174,9 @@ struct CompiledGrammar {
   ExampleSentences examples;        ///< of all intents
   std::vector<std::string> values;  ///< entries of word classes
   UrgentPhrases urgent;
-  std::map<std::string, std::string> refusing_words;
-  std::set<std::string> placing_words;  ///< folded: tell where something is, or how large
-  std::set<std::string> telling_words;  ///< folded: a part of a sentence with one is no aside
+  WordMeanings refusing_words;
+  WordSet placing_words;  ///< folded: tell where something is, or how large
+  WordSet telling_words;  ///< folded: a part of a sentence with one is no aside
   std::map<std::string, std::string> reasons;
   std::map<std::string, std::string> say;
 

@@ -34,12 +34,17 @@ class Reader {
     checkSeparators(roots.front());
     for (const auto& [name, node] : intents_) readIntent(name, node, context_, grammar_.get());
     for (IntentInfo& intent : grammar_->intents) {
-      for (Automaton& pattern : intent.patterns) grammar_->index.add(&pattern);
+      for (Automaton& pattern : intent.patterns) {
+        grammar_->index.add(&pattern);
+        pattern.pack();
+      }
     }
     if (grammar_->intents.empty()) roots.front().fail("there are no intents");
     grammar_->telling_words.insert(grammar_->unit_words.begin(), grammar_->unit_words.end());
     addLightWords();
     finishKnownWords();
+    for (NameType& type : grammar_->name_types) indexWords(&type);
+    indexPhrases();
     for (const auto* phrases : {&grammar_->fillers_before, &grammar_->fillers_after}) {
       for (const Phrase& phrase : *phrases) {
         // A single word may stand for a name.
@@ -265,6 +270,24 @@ class Reader {
     }
     for (const auto& [word, code] : g.refusing_words) known.insert(word);
     for (const std::string& word : g.abbreviations) known.insert(hyselam::utf8Fold(word));
+  }
+
+  void indexPhrases() {
+    CompiledGrammar& g = *grammar_;
+    g.before_starts = PhraseStarts(g.fillers_before);
+    g.after_starts = PhraseStarts(g.fillers_after);
+    g.correction_starts = PhraseStarts(g.corrections);
+    g.separator_starts = PhraseStarts(g.clause_separators);
+  }
+
+  static void indexWords(NameType* type) {
+    constexpr std::size_t kShortest = 2;
+    for (const std::string& word : type->stop) {
+      if (word.size() >= kShortest) type->stop_slips.add(word, 0);
+    }
+    for (const auto& [noun, kind] : type->nouns) {
+      type->noun_beginnings.insert(noun.substr(0, noun.find(' ')));
+    }
   }
 
   std::shared_ptr<CompiledGrammar> grammar_ = std::make_shared<CompiledGrammar>();

@@ -21,7 +21,7 @@ bool isToldHere(const Clause& clause, std::size_t from, const SentenceWords& wor
   std::size_t begin = clause.begin, end = clause.end;
   while (begin < clause.end && tokens[begin].range.begin < side->range.begin) ++begin;
   while (end > begin && tokens[end - 1].range.end > side->range.end) --end;
-  const auto isIn = [&](std::size_t at, const std::set<std::string>& all) {
+  const auto isIn = [&](std::size_t at, const WordSet& all) {
     return all.count(tokens[at].folded) != 0;
   };
   for (std::size_t at = begin; at < end; ++at) {

@@ -75,7 +75,7 @@ std::vector<bool> freeTokens(const Clause& clause, std::size_t size,
     for (std::size_t at = from; at < to; ++at) is_free[at] = false;
   };
   for (const PatternRun::Step& step : path) {
-    if (step.edge == nullptr) continue;
+    if (!step.edge) continue;
     switch (step.edge->kind) {
       case EdgeKind::kName:
       case EdgeKind::kCount:

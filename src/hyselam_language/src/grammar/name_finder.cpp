@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "hyselam_common/edit_distance.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "matching_costs.hpp"
 
@@ -490,9 +489,7 @@ bool NameFinder::mayBeMisspelt(std::size_t at, const NameType& type) const {
   if (!plain || token.folded.size() < 2 || grammar_.known_words.count(token.folded) != 0) {
     return false;
   }
-  return std::any_of(type.stop.begin(), type.stop.end(), [&](const std::string& stop) {
-    return stop.size() >= 2 && hyselam::isOneEditApart(stop, token.folded);
-  });
+  return type.stop_slips.hasNear(token.folded);
 }
 
 std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool indefinite,
@@ -558,13 +555,10 @@ std::string NameFinder::whatIsWrong(std::size_t begin, std::size_t end, bool ind
 }
 
 bool NameFinder::isCommonNoun(const std::string& word) const {
-  return std::any_of(
-      grammar_.name_types.begin(), grammar_.name_types.end(), [&](const NameType& type) {
-        if (type.titles.count(word) != 0) return true;
-        const auto noun = type.nouns.lower_bound(word);
-        return noun != type.nouns.end() &&
-               (noun->first == word || noun->first.compare(0, word.size() + 1, word + " ") == 0);
-      });
+  return std::any_of(grammar_.name_types.begin(), grammar_.name_types.end(),
+                     [&](const NameType& type) {
+                       return type.titles.count(word) != 0 || type.noun_beginnings.count(word) != 0;
+                     });
 }
 
 SaidName NameFinder::nameOf(std::size_t begin, std::size_t end) const {

@@ -12,8 +12,8 @@ namespace language {
 namespace {
 
 /// Keys of plain lists of words.
-const std::map<std::string, std::set<std::string> NameType::*>& wordKeys() {
-  static const std::map<std::string, std::set<std::string> NameType::*> kKeys{
+const std::map<std::string, WordSet NameType::*>& wordKeys() {
+  static const std::map<std::string, WordSet NameType::*> kKeys{
       {"definite", &NameType::definite},
       {"indefinite", &NameType::indefinite},
       {"joiners", &NameType::joiners},
@@ -36,8 +36,8 @@ const std::map<std::string, std::set<std::string> NameType::*>& wordKeys() {
 }
 
 /// Keys of words with a meaning.
-const std::map<std::string, std::map<std::string, std::string> NameType::*>& meaningKeys() {
-  static const std::map<std::string, std::map<std::string, std::string> NameType::*> kKeys{
+const std::map<std::string, WordMeanings NameType::*>& meaningKeys() {
+  static const std::map<std::string, WordMeanings NameType::*> kKeys{
       {"forbidden", &NameType::forbidden},
       {"nouns", &NameType::nouns},
       {"titles", &NameType::titles},
@@ -47,7 +47,7 @@ const std::map<std::string, std::map<std::string, std::string> NameType::*>& mea
 }
 
 /// Without accents, long words mean the same ("tambem"), short ones do not: "dá", "da".
-void addStops(const std::vector<std::string>& words, std::set<std::string>* set) {
+void addStops(const std::vector<std::string>& words, WordSet* set) {
   constexpr std::size_t kLong = 4;
   for (const std::string& word : words) {
     set->insert(hyselam::utf8Lower(word));

@@ -58,13 +58,13 @@ std::optional<std::vector<PatternRun::Step>> PatternRun::path(std::size_t end) {
     const Cell* found = reached(at, state);
     if (found == nullptr || found->from_state < 0) break;
     const Cell& c = *found;
-    steps.push_back({c.edge < 0 ? nullptr : &edgeOf(c), c.from_at, at});
+    steps.push_back({c.edge < 0 ? std::nullopt : std::optional<Edge>(edgeOf(c)), c.from_at, at});
     state = c.from_state;
     at = c.from_at;
   }
   const auto last = std::find_if(steps.begin(), steps.end(),
                                  [](const Step& step) { return step.from != step.to; });
-  if (last != steps.end() && last->edge == nullptr) return std::nullopt;
+  if (last != steps.end() && !last->edge) return std::nullopt;
   std::reverse(steps.begin(), steps.end());
   return steps;
 }
@@ -103,9 +103,8 @@ void PatternRun::growTable() {
   }
 }
 
-const Edge& PatternRun::edgeOf(const Cell& way) const {
-  return pattern_
-      ->states[static_cast<std::size_t>(way.from_state)][static_cast<std::size_t>(way.edge)];
+Edge PatternRun::edgeOf(const Cell& way) const {
+  return pattern_->packed.edge(way.from_state, way.edge);
 }
 
 bool PatternRun::isName(const Cell& way) const {
@@ -147,23 +146,24 @@ void PatternRun::leave(std::size_t at, int state, bool is_first) {
   if (!is_first && at < leave_out_.size() && leave_out_[at] < kNever) {
     reach(at + 1, state, {0, generation_, cost + leave_out_[at], state, -1, at, tied});
   }
-  const auto& edges = pattern_->states[static_cast<std::size_t>(state)];
-  const auto go = [&](std::size_t e) {
-    follow(edges[e], at, {0, generation_, cost, state, static_cast<int>(e), at, tied});
+  const auto words = pattern_->packed.wordsOf(state);
+  const auto go = [&](const Edge& edge, std::size_t number) {
+    follow(edge, at, {0, generation_, cost, state, static_cast<int>(number), at, tied});
   };
-  // Edges for words come first, sorted: only those of the word that stands here are looked at.
-  const auto words_end = std::partition_point(
-      edges.begin(), edges.end(), [](const Edge& edge) { return edge.kind == EdgeKind::kWord; });
-  if (at < words_.tokens.size() && words_end != edges.begin()) {
+  // Sorted: only those of the word that stands here are looked at.
+  if (at < words_.tokens.size() && words.size() != 0) {
     for (const auto& match : words_.matches[at]) {
-      const auto first = std::lower_bound(edges.begin(), words_end, match.word,
-                                          [](const Edge& edge, int word) { return edge.a < word; });
-      for (auto each = first; each != words_end && each->a == match.word; ++each) {
-        go(static_cast<std::size_t>(each - edges.begin()));
+      const auto* each = std::lower_bound(
+          words.begin(), words.end(), match.word,
+          [](const PackedStates::WordEdge& edge, int word) { return edge.word < word; });
+      for (; each != words.end() && each->word == match.word; ++each) {
+        go({EdgeKind::kWord, each->to, each->word, -1},
+           static_cast<std::size_t>(each - words.begin()));
       }
     }
   }
-  for (auto e = static_cast<std::size_t>(words_end - edges.begin()); e < edges.size(); ++e) go(e);
+  std::size_t number = words.size();
+  for (const Edge& edge : pattern_->packed.othersOf(state)) go(edge, number++);
 }
 
 int PatternRun::skipCost(std::size_t at) const {

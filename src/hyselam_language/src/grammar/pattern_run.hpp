@@ -40,7 +40,7 @@ class PatternRun {
 
   /// An edge that consumed the tokens [from, to).
   struct Step {
-    const Edge* edge = nullptr;  ///< none: something skipped
+    std::optional<Edge> edge;  ///< none: something skipped
     std::size_t from = 0;
     std::size_t to = 0;
   };
@@ -64,7 +64,7 @@ class PatternRun {
   };
 
   std::uint64_t keyOf(std::size_t at, int state) const {
-    return at * pattern_->states.size() + static_cast<std::size_t>(state);
+    return at * pattern_->packed.size() + static_cast<std::size_t>(state);
   }
   /// Where the cell of a key is, or the free one where it shall be.
   std::size_t placeOf(std::uint64_t key) const;
@@ -73,7 +73,7 @@ class PatternRun {
   /// Nothing for a state that is not reached.
   const Cell* reached(std::size_t at, int state) const;
   void growTable();
-  const Edge& edgeOf(const Cell& way) const;
+  Edge edgeOf(const Cell& way) const;
   bool isName(const Cell& way) const;
   std::size_t nameBegin(const Cell& way, std::size_t end);
   void reach(std::size_t at, int state, const Cell& from);

@@ -203,6 +203,19 @@ std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::s
   return said;
 }
 
+std::optional<Utterance> readPlainly(const CompiledGrammar& grammar, const std::string& text) {
+  static const std::set<std::string> kNothing;
+  const TokenRules rules = grammar.tokenRules();
+  const std::vector<Sentence> sentences = splitSentences(text, rules);
+  if (sentences.size() != 1) return std::nullopt;
+  const Sentence& sentence = sentences.front();
+  std::vector<Utterance> said =
+      readClauses(grammar, text, sentence,
+                  withMeanings(tokenize(text, sentence.range, rules), grammar), kNothing);
+  const bool plain = said.size() == 1 && said.front().understood() && said.front().left_out.empty();
+  return plain ? std::optional<Utterance>(std::move(said.front())) : std::nullopt;
+}
+
 std::string asSentenceOf(const CompiledGrammar& grammar, const Utterance& utterance) {
   std::string sentence = asSentence(utterance.text);
   return saysTheSame(grammar, sentence, utterance) ? sentence : "";

@@ -2,6 +2,7 @@
 // grammar.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@ namespace language {
 std::vector<Utterance> readSentence(const CompiledGrammar& grammar, const std::string& text,
                                     const Sentence& sentence,
                                     const std::set<std::string>& expected);
+
+/// What a text says that is one sentence and fits one pattern, with nothing left out; nothing for
+/// others, whose reasons are not looked for.
+std::optional<Utterance> readPlainly(const CompiledGrammar& grammar, const std::string& text);
 
 /// A sentence that says just what an utterance does, in its own words; "" if they do not alone.
 std::string asSentenceOf(const CompiledGrammar& grammar, const Utterance& utterance);

@@ -102,10 +102,10 @@ class Shortening {
   bool cutsName(const std::vector<PatternRun::Step>& path) const {
     std::vector<bool> kept(words_.tokens.size(), false);
     for (const PatternRun::Step& step : path) {
-      for (std::size_t at = step.from; step.edge != nullptr && at < step.to; ++at) kept[at] = true;
+      for (std::size_t at = step.from; step.edge && at < step.to; ++at) kept[at] = true;
     }
     return std::any_of(path.begin(), path.end(), [&](const PatternRun::Step& step) {
-      if (step.edge == nullptr || step.edge->kind != EdgeKind::kName) return false;
+      if (!step.edge || step.edge->kind != EdgeKind::kName) return false;
       const NameType& type = words_.grammar.name_types[static_cast<std::size_t>(step.edge->b)];
       const bool without_article = step.from > 0 && !kept[step.from - 1] &&
                                    type.isArticle(words_.tokens[step.from - 1].folded);
@@ -123,7 +123,7 @@ class Shortening {
     kept_.assign(words_.tokens.size(), false);
     names_.clear();
     for (const PatternRun::Step& step : path) {
-      if (step.edge == nullptr) continue;
+      if (!step.edge) continue;
       for (std::size_t at = step.from; at < step.to; ++at) kept_[at] = true;
       if (step.edge->kind != EdgeKind::kName) continue;
       for (const FoundName& name : words_.namesAt(step.from, step.edge->b)) {

@@ -56,11 +56,11 @@ void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phr
   }
 }
 
-void addFolded(const GrammarNode& node, std::set<std::string>* words) {
+void addFolded(const GrammarNode& node, WordSet* words) {
   for (const std::string& word : node.texts()) words->insert(hyselam::utf8Fold(word));
 }
 
-void addMeanings(const GrammarNode& node, std::map<std::string, std::string>* meanings) {
+void addMeanings(const GrammarNode& node, WordMeanings* meanings) {
   node.each([&](const std::string& meaning, const GrammarNode& words) {
     for (const std::string& word : words.texts()) (*meanings)[hyselam::utf8Fold(word)] = meaning;
   });

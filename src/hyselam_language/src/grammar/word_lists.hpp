@@ -1,8 +1,6 @@
 // Lists of words and phrases in grammar files.
 #pragma once
 
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -24,10 +22,10 @@ Phrase phraseOf(const std::string& text, Vocabulary* vocabulary);
 void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phrase>* phrases);
 
 /// Adds the words of a list without their accents.
-void addFolded(const GrammarNode& node, std::set<std::string>* words);
+void addFolded(const GrammarNode& node, WordSet* words);
 
 /// Of lists of words by their meaning: folded word -> meaning.
-void addMeanings(const GrammarNode& node, std::map<std::string, std::string>* meanings);
+void addMeanings(const GrammarNode& node, WordMeanings* meanings);
 
 }  // namespace language
 }  // namespace hyselam_topo

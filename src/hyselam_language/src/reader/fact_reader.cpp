@@ -159,7 +159,8 @@ std::optional<Reading> FactReader::read(const std::string& said) const {
   if (text.tokens().size() > kLongest) return std::nullopt;
   Reading reading;
   if (text.tokens().empty()) return reading;
-  const std::vector<Mention> mentions = findMentions(learnt.tagger, text);
+  const FoundMentions found = findMentions(learnt.tagger, text);
+  const std::vector<Mention>& mentions = found.mentions;
   const MentionContext context(learnt.lexicon, text, mentions);
   double log_p = 0.0;  // that all decisions are right, were they independent
   const auto count = [&](double p) {
@@ -170,7 +171,7 @@ std::optional<Reading> FactReader::read(const std::string& said) const {
   }
 
   for (std::size_t at = 0; at < text.tokens().size(); ++at) {
-    if (nameProbability(learnt.tagger, text, at) < kMayName) continue;
+    if (found.name_probabilities[at] < kMayName) continue;
     reading.mentions.push_back(text.tokens()[at].range);
   }
 

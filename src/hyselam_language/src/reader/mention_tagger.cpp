@@ -42,6 +42,14 @@ std::string shapeOf(const HeardText& text, std::ptrdiff_t at) {
   return token.kind == TokenKind::kWord ? shape : token.kind == TokenKind::kNumber ? "0" : "-";
 }
 
+/// That it is inside or at the beginning of a name.
+double nameProbability(const std::vector<std::string>& tags, const std::vector<double>& scores) {
+  const std::vector<double> all = LinearClassifier::probabilitiesOf(scores);
+  double p = 0.0;
+  for (std::size_t tag = 0; tag < tags.size(); ++tag) p += tags[tag] == "O" ? 0.0 : all[tag];
+  return p;
+}
+
 /// A noun, a keyword, or unknown.
 std::string kindOf(const HeardText& text, std::ptrdiff_t at) {
   return text.isNoun(at) ? "n" : text.isKeyword(at) ? "k" : "u";
@@ -117,16 +125,7 @@ void checkTags(const std::string& source, const LinearClassifier& tagger) {
   }
 }
 
-double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at) {
-  if (text.endsSentence(at)) return 0.0;
-  const auto& tags = tagger.classes();
-  const std::vector<double> all = tagger.probabilities(tokenFeatures(text, at));
-  double p = 0.0;
-  for (std::size_t tag = 0; tag < tags.size(); ++tag) p += tags[tag] == "O" ? 0.0 : all[tag];
-  return p;
-}
-
-std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardText& text) {
+FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text) {
   const auto& tags = tagger.classes();
   const std::size_t count = text.tokens().size(), kinds = tags.size();
   constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -137,9 +136,11 @@ std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardTex
     double own = 0.0;  // its probability behind the best tag before it
     std::size_t before = 0;
   };
+  FoundMentions found;
   std::vector<std::vector<Cell>> cells(count, std::vector<Cell>(kinds));
   for (std::size_t at = 0; at < count; ++at) {
     const std::vector<double> own = tagger.scores(tokenFeatures(text, at));
+    found.name_probabilities.push_back(text.endsSentence(at) ? 0.0 : nameProbability(tags, own));
     for (std::size_t before = 0; before < kinds; ++before) {
       const double so_far =
           at == 0 ? (before == outside ? 0.0 : kNever) : cells[at - 1][before].best;
@@ -167,7 +168,7 @@ std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardTex
                   std::max_element(cells[at].begin(), cells[at].end(), better) - cells[at].begin())
             : cells[at + 1][path[at + 1]].before;
   }
-  std::vector<Mention> mentions;
+  std::vector<Mention>& mentions = found.mentions;
   for (std::size_t at = 0; at < count; ++at) {
     const std::string& tag = tags[path[at]];
     const double likely = cells[at][path[at]].own;
@@ -184,7 +185,7 @@ std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardTex
       mentions.back().probability = std::min(mentions.back().probability, likely);
     }
   }
-  return mentions;
+  return found;
 }
 
 }  // namespace language

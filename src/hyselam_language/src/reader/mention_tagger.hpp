@@ -24,11 +24,13 @@ Features tokenFeatures(const HeardText& text, std::size_t at);
 void addTagBefore(const HeardText& text, std::size_t at, const std::string& tag,
                   Features* features);
 
-/// That the word belongs to a mention.
-double nameProbability(const LinearClassifier& tagger, const HeardText& text, std::size_t at);
-
-/// Their probability is that of the least likely tag within and at the end.
-std::vector<Mention> findMentions(const LinearClassifier& tagger, const HeardText& text);
+struct FoundMentions {
+  /// Their probability is that of the least likely tag within and at the end.
+  std::vector<Mention> mentions;
+  /// That each word, seen without the tag before it, belongs to a mention.
+  std::vector<double> name_probabilities;
+};
+FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text);
 
 }  // namespace language
 }  // namespace hyselam_topo

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -45,20 +46,15 @@ bool hasName(const Utterance& utterance, const std::string& name) {
 /// The fact in words, if the grammar takes them as a whole and with the very names of the fact.
 std::optional<SaidFact> inWords(const FactWriter& writer, const Grammar& grammar,
                                 const ReadFact& fact) {
-  const CompiledGrammar& compiled = grammar.compiled();
   SaidFact in_words{&fact, writer.sentence(fact)};
   if (in_words.sentence.empty()) return std::nullopt;
-  std::vector<Utterance> said;
-  for (const auto& each : language::splitSentences(in_words.sentence, compiled.tokenRules())) {
-    for (Utterance& u : language::readSentence(compiled, in_words.sentence, each, {})) {
-      said.push_back(std::move(u));
-    }
-  }
-  if (said.size() != 1 || !said.front().understood()) return std::nullopt;
+  const std::optional<Utterance> said =
+      language::readPlainly(grammar.compiled(), in_words.sentence);
+  if (!said) return std::nullopt;
   // Owners are named by themselves, values by their numbers.
   const auto& arguments = fact.arguments;
   const bool named = arguments.empty() || arguments.front().isReference() ||
-                     hasName(said.front(), arguments.front().text);
+                     hasName(*said, arguments.front().text);
   if (!named) return std::nullopt;
   return in_words;
 }
@@ -272,55 +268,98 @@ std::string exampleOf(const std::vector<FactArgument>& names, const Utterance& p
   return "";
 }
 
+/// The facts of a reading that a part may tell, each put into words at most once.
+class FactsOfPart {
+ public:
+  FactsOfPart(const Utterance& part, const PartOf& of, const Grammar& grammar)
+      : part_(part), of_(of), grammar_(grammar), writer_(grammar) {}
+
+  const FactWriter& writer() const { return writer_; }
+
+  /// nullptr for what the part does not tell, what it rules out, and what there is no sentence for.
+  const SaidFact* said(const ReadFact& fact) {
+    const auto known = said_.find(&fact);
+    if (known != said_.end()) return known->second ? &*known->second : nullptr;
+    std::optional<SaidFact> in_words;
+    if (belongsTo(part_.range, of_.is_whole, fact) &&
+        !isRuledOut(fact, part_, of_, grammar_.compiled())) {
+      in_words = inWords(writer_, grammar_, fact);
+    }
+    const auto& kept = said_[&fact] = std::move(in_words);
+    return kept ? &*kept : nullptr;
+  }
+
+ private:
+  const Utterance& part_;
+  const PartOf& of_;
+  const Grammar& grammar_;
+  const FactWriter writer_;
+  std::map<const ReadFact*, std::optional<SaidFact>> said_;
+};
+
+/// The likeliest fact of the own names, for an example; nullptr without one.
+const SaidFact* likeliestToShow(const Reading& reading, const CompiledGrammar& grammar,
+                                FactsOfPart* facts) {
+  std::vector<const ReadFact*> all;
+  for (const auto* each : {&reading.facts, &reading.others}) {
+    for (const ReadFact& fact : *each) {
+      const bool shown =
+          fact.probability >= kWorthShowing && !takesAway(fact) && isOfHeardNames(fact, grammar);
+      if (shown) all.push_back(&fact);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const ReadFact* a, const ReadFact* b) {
+    return a->probability > b->probability;
+  });
+  for (const ReadFact* fact : all) {
+    if (const SaidFact* said = facts->said(*fact)) return said;
+  }
+  return nullptr;
+}
+
+/// What the part probably tells, and what a "no" to that makes likely.
+void ask(const PartOf& of, FactsOfPart* facts, PartReading* part) {
+  const Reading& reading = of.reading;
+  const double least = of.is_turned ? kLikelierThanNot : kWorthAsking;
+  std::vector<SaidFact> likely;
+  for (const ReadFact& fact : reading.facts) {
+    if (fact.probability < kWorthReading) continue;
+    if (const SaidFact* said = facts->said(fact)) likely.push_back(*said);
+  }
+  std::vector<const ReadFact*> denied;  // each alone, by a "no" to what is asked before
+  if (const ReadFact* alone = askTogether(likely, least, part)) denied.push_back(alone);
+  // What a "no" to the best reading makes likely.
+  double left = 1.0 - part->probability;
+  for (const ReadFact& fact : reading.others) {  // the likeliest first
+    if (fact.probability < std::max(kWorthReading, least * left)) break;
+    const SaidFact* said = facts->said(fact);
+    if (said == nullptr || takesAway(fact)) continue;
+    if (std::count(part->asked.begin(), part->asked.end(), said->sentence) != 0 ||
+        std::any_of(denied.begin(), denied.end(),
+                    [&](const ReadFact* before) { return saySame(*before, fact); })) {
+      continue;
+    }
+    if (part->asked.empty()) part->probability = fact.probability;
+    part->asked.push_back(said->sentence);
+    denied.push_back(&fact);
+    left -= fact.probability;
+  }
+  if (part->asked.size() > 1 + kMostQuestions) part->asked.resize(1 + kMostQuestions);
+}
+
 }  // namespace
 
 PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar& grammar) {
   const Reading& reading = of.reading;
-  const double least = of.is_turned ? kLikelierThanNot : kWorthAsking;
-  const FactWriter writer(grammar);
-  const auto inPart = [&](const std::vector<ReadFact>& facts, double worth = kWorthReading) {
-    std::vector<SaidFact> all;
-    for (const ReadFact& fact : facts) {
-      if (fact.probability < worth || isRuledOut(fact, utterance, of, grammar.compiled())) continue;
-      if (!belongsTo(utterance.range, of.is_whole, fact)) continue;
-      if (auto said = inWords(writer, grammar, fact)) all.push_back(std::move(*said));
-    }
-    return all;
-  };
+  const CompiledGrammar& compiled = grammar.compiled();
+  FactsOfPart facts(utterance, of, grammar);
   PartReading part;
-  const std::vector<SaidFact> likely = inPart(reading.facts);
-  std::vector<const ReadFact*> denied;  // each alone, by a "no" to what is asked before
-  if (const ReadFact* alone = askTogether(likely, least, &part)) denied.push_back(alone);
-  // What a "no" to the best reading makes likely.
-  double left = 1.0 - part.probability;
-  for (const SaidFact& each : inPart(reading.others)) {
-    if (each.fact->probability < least * left) break;
-    if (takesAway(*each.fact)) continue;
-    if (std::count(part.asked.begin(), part.asked.end(), each.sentence) != 0 ||
-        std::any_of(denied.begin(), denied.end(),
-                    [&](const ReadFact* before) { return saySame(*before, *each.fact); })) {
-      continue;
-    }
-    if (part.asked.empty()) part.probability = each.fact->probability;
-    part.asked.push_back(each.sentence);
-    denied.push_back(each.fact);
-    left -= each.fact->probability;
-  }
-  if (part.asked.size() > 1 + kMostQuestions) part.asked.resize(1 + kMostQuestions);
-  std::vector<SaidFact> shown = inPart(reading.facts, kWorthShowing);
-  for (SaidFact& each : inPart(reading.others, kWorthShowing)) shown.push_back(std::move(each));
-  shown.erase(std::remove_if(shown.begin(), shown.end(),
-                             [&](const SaidFact& each) {
-                               return takesAway(*each.fact) ||
-                                      !isOfHeardNames(*each.fact, grammar.compiled());
-                             }),
-              shown.end());
-  const auto best = std::max_element(shown.begin(), shown.end(), [](const auto& a, const auto& b) {
-    return a.fact->probability < b.fact->probability;
-  });
-  part.example = best != shown.end() ? best->sentence
-                                     : exampleOf(heardNames(utterance, reading, grammar.compiled()),
-                                                 utterance, of.is_question, writer, grammar);
+  if (!of.is_doubted) ask(of, &facts, &part);
+  if (!part.asked.empty() || utterance.suggests_meaning) return part;  // no example is shown
+  const SaidFact* best = likeliestToShow(reading, compiled, &facts);
+  part.example = best != nullptr ? best->sentence
+                                 : exampleOf(heardNames(utterance, reading, compiled), utterance,
+                                             of.is_question, facts.writer(), grammar);
   return part;
 }
 

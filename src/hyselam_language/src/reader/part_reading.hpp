@@ -29,6 +29,7 @@ struct PartOf {
   /// asked.
   bool is_turned = false;
   bool is_question = false;  ///< it ends with a question mark: it states nothing
+  bool is_doubted = false;   ///< something in the text is doubted or left open: nothing is asked
   bool is_denied = false;    ///< it has a word of denial: "don't go", "nowhere near"
 };
 

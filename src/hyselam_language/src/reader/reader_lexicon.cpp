@@ -1,6 +1,7 @@
 #include "reader_lexicon.hpp"
 
 #include <array>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -10,7 +11,7 @@ namespace hyselam_topo {
 namespace language {
 namespace {
 
-constexpr std::array<std::pair<const char*, std::set<std::string> ReaderLexicon::*>, 3> kKinds{
+constexpr std::array<std::pair<const char*, WordSet ReaderLexicon::*>, 3> kKinds{
     {{"noun", &ReaderLexicon::nouns},
      {"keyword", &ReaderLexicon::keywords},
      {"row", &ReaderLexicon::row_words}}};
@@ -63,7 +64,8 @@ ReaderLexicon ReaderLexicon::fromText(const std::string& source, const std::stri
 std::string ReaderLexicon::toText() const {
   std::string text;
   for (const auto& [name, words] : kKinds) {
-    for (const std::string& word : this->*words) text += std::string(name) + " " + word + "\n";
+    const std::set<std::string> sorted((this->*words).begin(), (this->*words).end());
+    for (const std::string& word : sorted) text += std::string(name) + " " + word + "\n";
   }
   return text;
 }

@@ -1,7 +1,6 @@
 // What the second reader knows of words besides their looks.
 #pragma once
 
-#include <set>
 #include <string>
 
 #include "grammar/compiled_grammar.hpp"
@@ -11,9 +10,9 @@ namespace language {
 
 /// Folded words.
 struct ReaderLexicon {
-  std::set<std::string> nouns;      ///< of places and things, and titles before their codes
-  std::set<std::string> keywords;   ///< of the grammar
-  std::set<std::string> row_words;  ///< that may stand between two names of a row: "and", articles
+  WordSet nouns;      ///< of places and things, and titles before their codes
+  WordSet keywords;   ///< of the grammar
+  WordSet row_words;  ///< that may stand between two names of a row: "and", articles
 
   /// All that a grammar knows.
   static ReaderLexicon of(const CompiledGrammar& grammar);

@@ -30,7 +30,7 @@ std::vector<std::string> wordsOf(const std::string& text, const CompiledGrammar&
   return words;
 }
 
-bool hasAny(const std::vector<std::string>& words, const std::set<std::string>& of) {
+bool hasAny(const std::vector<std::string>& words, const language::WordSet& of) {
   return std::any_of(words.begin(), words.end(),
                      [&](const auto& word) { return of.count(word) != 0; });
 }
@@ -187,9 +187,8 @@ void readAgain(const FactReader& reader, const Grammar& grammar, const std::stri
     const bool has_reason = kWithoutReason.count(utterance.reason_code) == 0;
     const bool is_question = !utterance.text.empty() && utterance.text.back() == '?';
     const bool is_denied = hasWordOf(utterance.text, {"denial"}, grammar.compiled());
-    const PartOf of{reading, is_whole, is_turned || has_reason, is_question, is_denied};
-    PartReading part = readPart(utterance, of, grammar);
-    if (doubted) part.asked.clear();
+    const PartOf of{reading, is_whole, is_turned || has_reason, is_question, doubted, is_denied};
+    const PartReading part = readPart(utterance, of, grammar);
     propose(part, grammar.compiled(), &utterance);
     if (!utterance.suggests_meaning) tellHeard(reading, grammar.compiled(), &utterance);
   }

@@ -142,7 +142,7 @@ ReaderEvaluation evaluateReader(const Grammar& grammar, const ReaderLexicon& lex
       ReaderScore& score = result.by_layer[each->layer];
       const HeardText text(grammar.compiled(), lexicon, each->text);
       const auto named = alignedWith(text, *each).mentions;
-      const auto found = findMentions(model.tagger, text);
+      const auto found = findMentions(model.tagger, text).mentions;
       score.mentions += named.size();
       score.mentions_found += found.size();
       score.mentions_right += static_cast<std::size_t>(
