@@ -1,6 +1,7 @@
 // What an answer leaves open, and what ordinary people said then.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -123,6 +124,40 @@ TEST(OpenEnds, ThePlaceOfAnUnsureNameIsTold) {
     EXPECT_EQ(t.names(7), Names{"kitchen"}) << answer << ": " << reply;
     EXPECT_TRUE(t.isConfirmed(7)) << answer << ": " << reply;
   }
+}
+
+TEST(OpenEnds, WhereANameRatherIsIsToldOnce) {
+  for (const auto& [here, sentence, told, other] :
+       {std::tuple("You are in the corridor.", "The third door on the right is the gents.",
+                   "I think the gents is SS03.", "The first door on the right is the kitchen."),
+        std::tuple("Estás no corredor.", "A terceira porta à direita é a cozinha.",
+                   "Acho que a cozinha é SS03.", "A primeira porta à direita é a biblioteca.")}) {
+    Talk t;
+    t.say(here);
+    EXPECT_TRUE(contains(t.say(sentence), told)) << sentence;
+    const std::string reply = t.say(other);
+    EXPECT_TRUE(contains(reply, "SS01.")) << reply;
+    EXPECT_FALSE(contains(reply, "SS03")) << reply;
+  }
+}
+
+TEST(OpenEnds, WhatWasToldOfBothNamesOfAPlaceIsOfThatPlace) {
+  Talk t;
+  t.say("You are in the corridor.");
+  t.say("The waiting room is opposite the front desk.");
+  t.talk.standAt("SS01");
+  t.say("This is the front desk room.");
+  ASSERT_TRUE(contains(t.say("This is the front desk."), "Is it also known as front desk?"));
+  t.say("Yes.");
+  EXPECT_EQ(t.names(1), (Names{"front desk room", "front desk"}));
+  for (const hyselam_topo::Place& place : t.talk.dialogue().map().places) {
+    const Names names = namesOf(place);
+    const bool is_here = std::find(names.begin(), names.end(), "front desk") != names.end();
+    EXPECT_EQ(is_here, place.id == 1) << place.id;
+  }
+  EXPECT_EQ(t.names(12), Names{"waiting room"});
+  t.say("Undo that.");
+  EXPECT_EQ(t.names(1), Names{"front desk room"});
 }
 
 TEST(OpenEnds, WhichOfTwoUnsureNamesIsMeantIsAsked) {

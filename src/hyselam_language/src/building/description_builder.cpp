@@ -320,6 +320,20 @@ void DescriptionBuilder::giveName(const std::string& made_up, const std::string&
   state_.context.variants.erase(from.front());
 }
 
+void DescriptionBuilder::unite(const std::string& name, const std::string& other) {
+  const Id stays = called(name), gone = called(other);
+  if (stays == 0 || gone == 0 || stays == gone) return;
+  DescribedBuilding& building = state_.building;
+  const std::vector<std::string> names = allNamesOf(*building.findPlace(gone));
+  joinPlaces(gone, stays, &building);
+  auto& aliases = building.findPlace(stays)->aliases;
+  aliases.insert(aliases.end(), names.begin(), names.end());
+  for (Id& subject : state_.context.subjects) {
+    if (subject == gone) subject = stays;
+  }
+  state_.context.variants.erase(gone);
+}
+
 Id DescriptionBuilder::called(const std::string& name) const {
   const auto& places = state_.building.places;
   const auto exact = std::find_if(places.begin(), places.end(), [&](const DescribedPlace& place) {

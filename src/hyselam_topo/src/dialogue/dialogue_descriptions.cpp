@@ -281,6 +281,7 @@ void Dialogue::askAboutIssue(const DescriptionIssue& issue, bool asks_speaker, R
 void Dialogue::matchDescription(Reply& out, bool report) {
   if (talk_.is_trial) return;
   talk_.match.reset();
+  const std::map<std::string, Id> told_before = std::move(talk_.unsure.likely);
   talk_.unsure = {};
   const DescribedBuilding& building = builder_.building();
   if (!places_.hasMap() || building.places.empty()) return;
@@ -314,18 +315,41 @@ void Dialogue::matchDescription(Reply& out, bool report) {
         if (sure) talk_.unsure.places.erase(*name);
         name = sure ? unsure.erase(name) : std::next(name);
       }
+      auto& likely = talk_.unsure.likely;
+      for (auto name = likely.begin(); name != likely.end();) {
+        name = confirmedPlaces(name->first).empty() ? std::next(name) : likely.erase(name);
+      }
     }
   } catch (const hyselam::InputError& e) {
     talk_.match.reset();
     if (report) out.sentences.push_back(phrases().say("cannot_match", {{"reason", e.what()}}));
     return;
   }
-  if (report) reportMatch(out);
-  tellMoved(movedNames(guessed_before, places_, building), report, out);
+  const std::vector<MovedName> moved = movedNames(guessed_before, places_, building);
+  if (report) reportMatch(told_before, moved, out);
+  tellMoved(moved, report, out);
   if (problem_to_ask) askMostInformativeQuestion(*problem_to_ask, out);
 }
 
-void Dialogue::reportMatch(Reply& out) {
+void Dialogue::tellLikely(const std::map<std::string, Id>& told_before,
+                          const std::vector<MovedName>& moved, Reply& out) {
+  const Phrases& p = phrases();
+  std::vector<std::string> items;
+  for (const auto& [name, id] : talk_.unsure.likely) {
+    const auto before = told_before.find(name);
+    const bool is_told = before != told_before.end() && before->second == id;
+    const bool is_moved =
+        std::any_of(moved.begin(), moved.end(),
+                    [&known = name](const auto& each) { return each.name == known; });
+    const Place* place = places_.map().findPlace(id);
+    if (is_told || is_moved || place == nullptr || isCode(name)) continue;
+    items.push_back(p.say("likely_item", {{"name", said(name)}, {"code", codeOf(*place)}}));
+  }
+  if (!items.empty()) out.sentences.push_back(p.say("likely", {{"items", p.list(items)}}));
+}
+
+void Dialogue::reportMatch(const std::map<std::string, Id>& told_before,
+                           const std::vector<MovedName>& moved, Reply& out) {
   const Phrases& p = phrases();
   const DescribedBuilding& building = builder_.building();
   std::vector<std::string> missing;
@@ -355,6 +379,7 @@ void Dialogue::reportMatch(Reply& out) {
   out.sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
+  tellLikely(told_before, moved, out);
   const std::vector<std::string> names(talk_.unsure.names.begin(), talk_.unsure.names.end());
   std::vector<std::string> without = missing;
   without.erase(std::remove_if(without.begin(), without.end(),
@@ -368,17 +393,19 @@ void Dialogue::reportMatch(Reply& out) {
     out.sentences.push_back(p.say("not_found", {{"names", p.list(said(missing))}}));
   if (asks) askWhere(out);
   wonder(std::move(without));
-  if (names.empty()) return;
+  std::vector<std::string> anywhere;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(anywhere),
+               [&](const auto& name) { return talk_.unsure.likely.count(name) == 0; });
+  if (anywhere.empty()) return;
+  const std::string list = p.list(said(anywhere));
   if (talk_.unsure.answers < 2) {
-    out.sentences.push_back(p.say("unsure", {{"names", p.list(said(names))}}));
-    return;
+    out.sentences.push_back(p.say("unsure", {{"names", list}}));
+  } else if (talk_.unsure.more) {
+    out.sentences.push_back(p.say("many_fit", {{"names", list}}));
+  } else {
+    const std::string number = std::to_string(talk_.unsure.answers);
+    out.sentences.push_back(p.say("several", {{"number", number}, {"names", list}}));
   }
-  if (talk_.unsure.more) {
-    out.sentences.push_back(p.say("many_fit", {{"names", p.list(said(names))}}));
-    return;
-  }
-  const std::string number = std::to_string(talk_.unsure.answers);
-  out.sentences.push_back(p.say("several", {{"number", number}, {"names", p.list(said(names))}}));
 }
 
 }  // namespace hyselam_topo

@@ -75,6 +75,7 @@ void Dialogue::confirmNames(Id place, const std::vector<std::string>& asked, Rep
   talk_.subject = place;
   // Sides are told from here.
   giveNames(place);
+  for (const std::string& name : namesOf(named)) builder_.unite(namesOf(named).front(), name);
   if (place == robot().place) tellRobotPlace(place, namesOf(named));
   matchDescription(out, false);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});

@@ -130,8 +130,13 @@ Uncertainty uncertaintyOf(const PlaceAssignment& match, const MatchProblem& prob
     unsure.more = match.more;
     for (const int name : equal.unsure) add(problem.names.at(static_cast<std::size_t>(name)));
   }
+  const std::set<std::string> elsewhere = unsure.names;
   for (const NameUncertainty& each : nameUncertainties(problem, params, match)) {
-    if (each.place != 0 && each.unsure()) add(each.name);
+    if (each.place == 0) continue;
+    if (each.unsure()) add(each.name);
+    const DescribedPlace* place = building.findPlace(each.name);
+    if (place == nullptr || elsewhere.count(place->name) != 0) continue;
+    if (each.probability >= kLikelyProbability) unsure.likely[place->name] = each.place;
   }
   for (std::size_t n = 0; n < problem.nameCount(); ++n) {
     const DescribedPlace* place = building.findPlace(problem.names[n]);

@@ -65,6 +65,8 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"not_found", "names"},
     {"several", "number names"},
     {"many_fit", "names"},
+    {"likely", "items"},
+    {"likely_item", "name code"},
     {"unsure", "names"},
     {"no_map", ""},
     {"cannot_match", "reason"},

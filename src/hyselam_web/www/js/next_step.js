@@ -4,7 +4,7 @@ import {t, onLanguage, currentLanguage} from "./i18n.js";
 import {called, corrected, placeOnly, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
-const UNSURE = /not sure where|places fit|answers fit|have not found|certeza onde|respostas servem|servem muitos lugares|não encontrei/i;
+const UNSURE = /^I think |^Acho que |not sure where|places fit|answers fit|have not found|certeza onde|respostas servem|servem muitos lugares|não encontrei/i;
 const NOT_UNDERSTOOD = /^(I did not understand|I have not taken|Did you mean|I know of no|Não compreendi|Não anotei|Queria dizer|Não sei nada)/;
 const TAKEN_DOWN = /^(Noted:|Anotado:)/;
 const NO = /^(no|não|nao)\b/i;

@@ -118,6 +118,8 @@ class DescriptionBuilder {
   /// A place that was told of under a name that nobody gave it, as the map's own for it, has this
   /// one from now on. Where another place has it already, all that was told is of that one.
   void giveName(const std::string& made_up, const std::string& name);
+  /// Both are names of one place: what was told of two is of that one.
+  void unite(const std::string& name, const std::string& other);
   /// A place is not called `old` any more, but `name`; as giveName() otherwise.
   void rename(const std::string& old, const std::string& name);
   /// Nothing is called so any more: a place that has no other name is gone with all that was told

@@ -313,7 +313,12 @@ class Dialogue {
   /// Reads the statements back that `before` did not have.
   void readBack(const DescribedBuilding& before, bool here_told, Reply& reply);
   void matchDescription(Reply& reply, bool report);
-  void reportMatch(Reply& reply);
+  /// `told_before`: the likely places that people know of; `moved` is told by tellMoved().
+  void reportMatch(const std::map<std::string, Id>& told_before,
+                   const std::vector<MovedName>& moved, Reply& reply);
+  /// Where the names are that have come to a likely place.
+  void tellLikely(const std::map<std::string, Id>& told_before, const std::vector<MovedName>& moved,
+                  Reply& reply);
 
   // names
   /// What was told since `before` of the names of places that have confirmed ones holds for the

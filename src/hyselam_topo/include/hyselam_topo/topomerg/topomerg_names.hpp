@@ -11,6 +11,8 @@ namespace hyselam_topo {
 
 /// A name whose place is right with less probability than this is told as unsure.
 constexpr double kSureProbability = 0.97;
+/// A name whose place is right with this probability is rather there than anywhere else.
+constexpr double kLikelyProbability = 0.5;
 
 struct NameUncertainty {
   Id name = 0;
