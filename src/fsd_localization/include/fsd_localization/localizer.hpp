@@ -22,6 +22,7 @@
 #include "fsd_localization/models/likelihood_field_model.hpp"
 #include "fsd_localization/search/alarm_watch.hpp"
 #include "fsd_localization/search/place_judge.hpp"
+#include "fsd_localization/search/rival_watch.hpp"
 #include "fsd_localization/search/short_term_layer.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
@@ -176,7 +177,7 @@ class Localizer {
   void watchForAlarms(const PoseEstimate& estimate, LocalizationResult& result);
   bool fitsWorse(const PoseEstimate& estimate);
   void askSearch(const PoseEstimate& estimate);
-  std::optional<double> sinceRival() const;
+  bool needsOwnScans() const;
   bool wantsSearch();
   double lengthOfAlarm() const;
   void takeAnswer(LocalizationResult& result);
@@ -219,11 +220,6 @@ class Localizer {
   double travelled_ = 0.0;
   InlierMonitor inliers_;  // since the likelihood field became active
 
-  /// A place that was better than the tracked one.
-  struct Rival {
-    hyselam::Pose2 place, base_in_odom;
-    double way;  // [m] when it was told
-  };
   /// The search by submaps; hybrid only.
   struct Search {
     SubmapBuilder submap;
@@ -238,7 +234,7 @@ class Localizer {
     double score_at = 0.0;              // on that way, when it was told last
     bool fits_worse = false;            // then it was far below the average
     double alarm_step = 0.0;            // [m] before it is asked about again
-    std::optional<Rival> rival;
+    RivalWatch rivals;                  // what was better than the tracked pose
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

@@ -46,14 +46,14 @@ void Localizer::forgetSearch() {
   search_.usual_match.reset();
   search_.usual_score.reset();
   search_.fits_worse = false;
-  search_.rival.reset();
+  search_.rivals.reset();
   search_.guided = false;
 }
 
 /// What a tracked pose sees beside the map; nothing of where the robot may have been carried.
 void Localizer::learnShortTerm(const Pose2& base_in_grid) {
   if (!params_.short_term_layer || state_ != LocalizerState::kTracking) return;
-  if (search_.alarm.looksCarried() || search_.rival) return;
+  if (search_.alarm.looksCarried() || search_.rivals.hasRival()) return;
   const double range = params_.likelihood.max_range;
   search_.short_term.add(
       ShortTermLayer::endsOf(observation_.scan, *updated_odom_, range),
@@ -105,7 +105,7 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   }
   // Meanwhile nobody should rely on the pose; but the robot is not lost before another place is
   // better.
-  if (search_.alarm.isDoubtful() || search_.rival) {
+  if (search_.alarm.isDoubtful() || search_.rivals.hasRival()) {
     result.converged = false;
   }
 }
@@ -150,21 +150,18 @@ double Localizer::lengthOfAlarm() const {
   return std::min(kAlarmLength, search_.alarm.length(search_.way).value_or(kAlarmLength));
 }
 
-/// [m] Where each scan fits the map, only how they are joined speaks for a place that was better
-/// than the tracked one: it must be so again by what was seen since it was told. Nothing if there
-/// is none, or the scans speak against the tracked pose themselves.
-std::optional<double> Localizer::sinceRival() const {
-  if (!search_.rival || search_.alarm.looksCarried() || search_.alarm.isSharp()) return {};
-  return search_.way - search_.rival->way;
+/// Whether a place that was better than the tracked one must be so again by what was seen since it
+/// was told: where each scan fits the map, only how they are joined speaks for it.
+bool Localizer::needsOwnScans() const {
+  return !search_.alarm.looksCarried() && !search_.alarm.isSharp();
 }
 
 /// While tracking: an alarm, a place that was better, or a place found lately.
 bool Localizer::wantsSearch() {
-  const std::optional<double> since_rival = sinceRival();
-  if (since_rival && *since_rival < kMapEvidence) return false;
+  if (needsOwnScans() && search_.rivals.isTooEarly(search_.way)) return false;
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
-  const bool again = search_.rival ||
+  const bool again = search_.rivals.hasRival() ||
                      (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm_step));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;
@@ -183,8 +180,8 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
       length = lengthOfAlarm();
       turn_as_travel = kTurnAsTravel;
     }
-    if (const auto since = sinceRival()) {
-      length = std::min(length, *since);
+    if (search_.rivals.hasRival() && needsOwnScans()) {
+      length = search_.rivals.ownScans(search_.way, length);
       turn_as_travel = kTurnAsTravel;
     }
     believed = estimate.mean;
@@ -258,7 +255,7 @@ void Localizer::confirmPose(const Verdict& verdict) {
       std::clamp(2.0 * search_.alarm_step, kAskStep,
                  search_.alarm.isDoubtful() ? kLargestDoubtStep : kLargestAlarmStep);
   if (verdict.is_believed || verdict.believed > 1.0 - params_.lost_probability) {
-    search_.rival.reset();
+    search_.rivals.reset();
   }
   if (!verdict.is_believed) return;
   // Where the map explains nothing, or other places together are likelier, nothing is confirmed.
@@ -273,14 +270,8 @@ void Localizer::confirmPose(const Verdict& verdict) {
 /// say that the robot was carried off, one answer is enough. Where they fit each other it is rather
 /// the map that is wrong: the same place must be better again, half a metre on.
 bool Localizer::isContradicted(const SearchAnswer& answer, const Verdict& verdict) {
-  if (search_.alarm.looksCarried()) return true;
-  const std::optional<Rival> before = search_.rival;
-  if (before && search_.way - before->way < kAskStep) return false;
-  const bool same =
-      before && isSamePlace(before->place * between(before->base_in_odom, answer.base_in_odom),
-                            verdict.best.base);
-  search_.rival = Rival{verdict.best.base, answer.base_in_odom, search_.way};
-  return same;
+  return search_.alarm.looksCarried() ||
+         search_.rivals.isBetterAgain(verdict.best.base, answer.base_in_odom, search_.way);
 }
 
 void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
@@ -293,7 +284,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.signs = {};
   search_.usual_score.reset();
   search_.fits_worse = false;
-  search_.rival.reset();
+  search_.rivals.reset();
   search_.short_term.clear();
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
