@@ -46,6 +46,25 @@ TEST(DialogueStop, IsObeyedBeforeOtherNodesHearOfIt) {
   }
 }
 
+TEST(DialogueStop, GoOnGoesOnWhereAWayWasStoppedAndNothingIsAsked) {
+  Talk talk;
+  talk.dialogue.name(2, {"kitchen"});
+  EXPECT_EQ(talk.dialogue.haltedGoal(), "");
+  ASSERT_TRUE(talk.dialogue.hear("Go to the kitchen.").has(DialogueAction::Kind::kGo));
+  EXPECT_EQ(talk.dialogue.haltedGoal(), "") << "it is on its way";
+  talk.say("Stop.");
+  EXPECT_EQ(talk.dialogue.haltedGoal(), "the kitchen");
+  for (const char* said : {"go on", "Go on.", "carry on", "Continue."}) {
+    const Reply reply = talk.dialogue.hear(said);
+    EXPECT_TRUE(reply.has(DialogueAction::Kind::kGo)) << said << ": " << reply.text();
+    EXPECT_EQ(talk.dialogue.haltedGoal(), "") << said;
+    talk.say("Stop.");
+  }
+  talk.say("Cancel.");
+  EXPECT_EQ(talk.dialogue.haltedGoal(), "");
+  EXPECT_FALSE(talk.dialogue.hear("Go on.").has(DialogueAction::Kind::kGo));
+}
+
 TEST(DialogueStop, WhatElseWasSaidIsDoneOrTold) {
   Talk talk;
   talk.say("This is the kitchen.");

@@ -1,6 +1,7 @@
 // Names: given to places by number, replaced, forgotten, taken back.
 #include <gtest/gtest.h>
 
+#include "hyselam_topo/dialogue/shared_dialogue.hpp"
 #include "talk.hpp"
 
 namespace {
@@ -131,6 +132,69 @@ TEST(DialogueNames, ManyChangesAreTakenBackOneByOne) {
   EXPECT_EQ(talk.say("Undo that."), "I have forgotten the names of SS01.");
   EXPECT_TRUE(talk.names(1).empty());
   EXPECT_TRUE(has(talk.say("Undo that."), "nothing was told"));
+}
+
+TEST(DialogueNames, WhatIsTakenBackNextIsKnownBefore) {
+  Talk talk;
+  EXPECT_EQ(talk.dialogue.nextUndo(), "");
+  talk.say("This is the kitchen.");
+  EXPECT_EQ(talk.dialogue.nextUndo(), "kitchen");
+  talk.dialogue.name(1, {"canteen"});
+  EXPECT_EQ(talk.dialogue.nextUndo(), "canteen");
+  talk.say("The pantry is next to the canteen.");
+  EXPECT_EQ(talk.dialogue.nextUndo(), "The pantry is next to the canteen");
+  talk.dialogue.forget(1);
+  EXPECT_EQ(talk.dialogue.nextUndo(), "canteen");
+  for (const char* next : {"The pantry is next to the canteen", "canteen", "kitchen", ""}) {
+    talk.say("Undo that.");
+    EXPECT_EQ(talk.dialogue.nextUndo(), next);
+  }
+}
+
+TEST(DialogueNames, WhatWasSaidOfThingsIsAStepOnTheWayBack) {
+  Talk talk;
+  hyselam_topo::SharedDialogue shared(talk.dialogue);
+  const auto told = [&](bool is_question) {
+    hyselam_topo::OtherAnswer answer;
+    answer.understood = true;
+    answer.is_question = is_question;
+    answer.reply = "Noted: a pen is in SS01.";
+    hyselam_topo::ForwardedSentence sentence;
+    sentence.text = "There is a pen";
+    shared.answered(sentence, &answer);
+  };
+  told(false);
+  EXPECT_TRUE(has(talk.say("Undo that."), "about things"));
+  talk.say("This is the kitchen.");
+  told(true);  // nothing was told yet
+  EXPECT_EQ(talk.dialogue.nextUndo(), "kitchen");
+  told(false);
+  EXPECT_EQ(talk.dialogue.nextUndo(), "");
+  const std::string reply = talk.say("Undo that.");
+  EXPECT_TRUE(has(reply, "about things") && has(reply, "once more: kitchen")) << reply;
+  EXPECT_EQ(talk.names(1), Names{"kitchen"});
+  talk.say("Undo that.");
+  EXPECT_TRUE(talk.names(1).empty());
+  talk.say("This is the kitchen.");
+  told(false);
+  talk.say("Rename this place to canteen.");
+  talk.say("Undo that.");
+  EXPECT_EQ(talk.names(1), Names{"kitchen"}) << "the last change, behind the thing";
+}
+
+TEST(DialogueNames, ANameThatIsAGuessAgainIsNotForgotten) {
+  Talk talk;
+  talk.say("The library is next to the kitchen.");
+  const auto& places = talk.dialogue.map().places;
+  const auto guessed = std::find_if(places.begin(), places.end(), [](const auto& place) {
+    return hyselam_topo::nameStateOf(place) == hyselam_topo::NameState::kUnconfirmed;
+  });
+  ASSERT_NE(guessed, places.end()) << "nothing was guessed";
+  const hyselam_topo::Id id = guessed->id;
+  const std::string code = hyselam_topo::codeOf(*guessed), name = talk.names(id).front();
+  talk.dialogue.name(id, {name});
+  EXPECT_EQ(talk.say("Undo that."), code + " is no longer confirmed as the " + name + ".");
+  EXPECT_EQ(talk.names(id), Names{name});
 }
 
 TEST(DialogueNames, ACorrectionIsTakenBackToWhatWasSaidBefore) {

@@ -187,6 +187,7 @@ class FakeRobot:
         self.asked.append((name, fields, role))
         if name == "say":
             self.say("human", fields["text"])
+            self.world.set("undo", "" if fields["text"] == "Undo that." else fields["text"])
             self.say("robot", "Noted: " + fields["text"])
             return {"answers": ["Noted: " + fields["text"]]}
         if name == "name":

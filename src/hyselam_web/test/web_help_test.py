@@ -59,7 +59,7 @@ class HelpTest(PageCase):
                 n.kind === 'name' && d.x > n.box[0] && d.x < n.box[2] && d.y > n.box[1] && d.y < n.box[3])).length; })()""")
             self.assertEqual(hidden, 0, closer)
             self.shot(tab, f"phone_tight_{closer}")
-        tab.eval("hyselam.map.fit()")
+        tab.eval("(hyselam.map.fit(), hyselam.map.zoom(0.5))")
         self.drawn(tab)
         tab.wait("[...hyselam.map.names.shown.values()].some((s) => s.kind === 'dot') && hyselam.map.names.shown.size === %d" % count, "dots")
         for place in tab.eval("[...hyselam.map.names.shown].filter(([, s]) => s.kind === 'dot').map(([id]) => id)"):

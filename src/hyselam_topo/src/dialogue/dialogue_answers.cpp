@@ -115,8 +115,13 @@ void Dialogue::turnRobot(const Utterance& u, Turn& turn) {
   turn.reply.sentences.push_back(phrases().say("turning", {{"side", phrases().side(*side)}}));
 }
 
+std::string Dialogue::haltedGoal() const {
+  if (!talk_.halted || talk_.way.empty() || talk_.under_way) return "";
+  return said(talk_.way.back().first);
+}
+
 void Dialogue::carryOn(const Utterance&, Turn& turn) {
-  if (talk_.halted && !talk_.way.empty() && !talk_.under_way) {
+  if (!haltedGoal().empty()) {
     drive(std::vector<NamedGoal>(talk_.way), turn.reply);
   } else {
     say("nowhere_to_go_on", turn);

@@ -236,6 +236,9 @@ ParsedText Dialogue::parsed(const std::string& text) const {
       question().isAboutName() || question().kind == Question::Kind::kSpeaker;
   if (asks_for_name) options.expected = {"name_answer", "denied_name"};
   if (isWondering()) options.expected = {"where_answer"};
+  // "Go on." may be a "yes", too, where something is asked.
+  const bool nothing_asked = question().kind == Question::Kind::kNone && !talk_.others_asked;
+  if (nothing_asked && !haltedGoal().empty()) options.expected = {"carry_on"};
   options.preferred = language_;
   ParsedText parsed = parser_.parse(text, options);
   const auto& all = parsed.utterances;
@@ -274,6 +277,7 @@ std::vector<std::string> Dialogue::notUnderstood(const std::string& text) const 
 Reply Dialogue::hear(const std::string& text, const HearOptions& options) {
   talk_.questions.beginUtterance();
   talk_.wonders_anew = false;
+  talk_.others_asked = options.others_asked_last;
   dropStaleQuestion();
   const UrgentWords urgent = findUrgentWords(text, parser_.grammars());
   Reply out = urgent.urgency == Urgency::kNone ? understand(text, options) : obey(urgent);

@@ -95,6 +95,7 @@ Dialogue::Change::~Change() {
 }
 
 void Dialogue::remember(KnownBefore before) {
+  talk_.things_since = false;
   before.after = builder_.statementCount();
   talk_.changes.push_back(std::move(before));
   if (talk_.changes.size() > kLongest) bar(1, KnownBefore::Barrier::kTooLongAgo);
@@ -137,6 +138,53 @@ void Dialogue::barChangesOf(const std::vector<Id>& lost, const KnownBefore& know
   }
 }
 
+std::string Dialogue::lastChange() const {
+  if (!barrierToUndo().empty()) return "";
+  const KnownBefore* last = talk_.changes.empty() ? nullptr : &talk_.changes.back();
+  const Utterance* said = builder_.lastStatement();
+  const std::string statement = said != nullptr ? said->text : "";
+  const std::size_t statements = builder_.statementCount();
+  if (last == nullptr || statements > (last->told ? last->after : last->statements)) {
+    return statement;
+  }
+  std::vector<std::string> changed;
+  const auto namesAt = [](const PlaceMan::Names& names, Id id) {
+    const auto found = names.words.find(id);
+    return found == names.words.end() ? std::vector<std::string>{} : confirmedOf(found->second);
+  };
+  const auto tellMissing = [&](const std::vector<std::string>& all,
+                               const std::vector<std::string>& others) {
+    for (const std::string& name : all) {
+      if (std::find(others.begin(), others.end(), name) == others.end()) changed.push_back(name);
+    }
+  };
+  const PlaceMan::Names now = places_.names();
+  for (const Place& place : places_.map().places) {
+    tellMissing(namesAt(now, place.id), namesAt(last->names, place.id));
+  }
+  if (changed.empty()) {  // some were taken away
+    for (const Place& place : places_.map().places) {
+      tellMissing(namesAt(last->names, place.id), namesAt(now, place.id));
+    }
+  }
+  for (const Id id : virtualPlacesOf(places_.map())) {
+    if (!has(last->virtual_places, id)) changed.push_back(codeOf(*places_.map().findPlace(id)));
+  }
+  const auto& walls = places_.walls();
+  if (changed.empty() && !(walls == last->walls)) {
+    const DescribedWall& wall =
+        walls.size() > last->walls.size() ? walls.back() : last->walls.back();
+    changed.push_back(phrases().wall(wall.kind));
+  }
+  return changed.empty() ? statement : phrases().list(changed);
+}
+
+std::string Dialogue::nextUndo() const {
+  const Question::Kind asked = question().kind;
+  const bool told_last = asked == Question::Kind::kAlsoName || asked == Question::Kind::kNewName;
+  return talk_.things_since || told_last ? "" : lastChange();
+}
+
 std::string Dialogue::barrierToUndo() const {
   if (talk_.changes.empty()) return "";
   const KnownBefore& last = talk_.changes.back();
@@ -149,7 +197,6 @@ std::string Dialogue::barrierToUndo() const {
 
 void Dialogue::restoreKnown(const KnownBefore& before, Reply& out) {
   const Phrases& p = phrases();
-  const PlaceMan::Names since = places_.names();
   bool moved = false;
   std::vector<std::string> told;
   for (const Id id : virtualPlacesOf(places_.map())) {
@@ -184,7 +231,6 @@ void Dialogue::restoreKnown(const KnownBefore& before, Reply& out) {
   }
   places_.restoreNames(before.names);
   told_at_ = before.told_at;
-  tellNamesAgain(since, out);
   out.sentences.insert(out.sentences.end(), told.begin(), told.end());
 }
 
@@ -195,9 +241,16 @@ void Dialogue::tellNamesAgain(const PlaceMan::Names& since, Reply& out) const {
     const auto found = since.words.find(place.id);
     if (found == since.words.end()) continue;
     const std::vector<std::string> names = confirmedOf(place.words);
-    if (names == confirmedOf(found->second)) continue;
+    const std::vector<std::string> before = confirmedOf(found->second);
+    if (names == before) continue;
     const std::string code = codeOf(place);
-    if (names.empty()) {
+    const bool guessed = std::any_of(place.words.begin(), place.words.end(), [&](const auto& word) {
+      return std::find(before.begin(), before.end(), word.text) != before.end();
+    });
+    if (names.empty() && guessed) {
+      out.sentences.push_back(
+          p.say("no_longer_sure", {{"code", code}, {"names", p.list(said(before))}}));
+    } else if (names.empty()) {
       nameless.push_back(code);
     } else {
       out.sentences.push_back(
@@ -221,17 +274,26 @@ bool Dialogue::takeBack(Turn& turn) {
     say("cancelled", turn);
     return true;
   }
+  if (std::exchange(talk_.things_since, false)) {
+    const std::string before = lastChange();
+    if (before.empty()) {
+      say("undo_of_things", turn);
+    } else {
+      out.sentences.push_back(phrases().say("undo_behind_things", {{"text", before}}));
+    }
+    return true;
+  }
   if (!barrier.empty()) {
     say(barrier.c_str(), turn);
     return true;
   }
   KnownBefore* last = talk_.changes.empty() ? nullptr : &talk_.changes.back();
+  const PlaceMan::Names since = places_.names();
   const std::size_t statements = builder_.statementCount();
   if (last != nullptr && statements <= (last->told ? last->after : last->statements)) {
     if (last->told) builder_.restore(std::move(*last->told));
     restoreKnown(*last, out);
     talk_.changes.pop_back();
-    if (out.sentences.empty()) say("taken_back", turn);
   } else {
     const Utterance* said = builder_.lastStatement();
     if (said == nullptr) return false;
@@ -245,7 +307,11 @@ bool Dialogue::takeBack(Turn& turn) {
     }
   }
   talk_.questions.drop();
-  matchDescription(out, false);
+  Reply matched = reply();  // what names are guesses again is known then
+  matchDescription(matched, false);
+  tellNamesAgain(since, out);
+  if (out.sentences.empty()) say("taken_back", turn);
+  out.append(std::move(matched));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return true;
 }

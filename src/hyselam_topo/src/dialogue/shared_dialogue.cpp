@@ -46,6 +46,7 @@ Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAns
 Reply SharedDialogue::carryOut(const OtherAnswer& answer) {
   objects_spoken_of_ = true;
   object_asked_last_ = answer.is_question;
+  if (!answer.is_question && !answer.go_to_place) dialogue_.thingsSpokenOf();
   Reply reply = dialogue_.reply();
   reply.sentences.push_back(answer.reply);
   if (!answer.go_to_place) return reply;

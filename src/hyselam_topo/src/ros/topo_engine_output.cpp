@@ -64,7 +64,7 @@ void TopoEngineServer::act(const Reply& reply) {
     changed_ = true;
     publishQuestion();
   }
-  publishOpenQuestion();
+  publishOpen();
   for (const std::string& sentence : reply.sentences) say(sentence);
 }
 
@@ -170,12 +170,18 @@ void TopoEngineServer::publishQuestion() {
   publishers_.question.publish(questionMarkers(dialogue_.question(), frame()));
 }
 
-void TopoEngineServer::publishOpenQuestion() {
-  std_msgs::String msg;
-  if (dialogue_.question().kind != Question::Kind::kNone) msg.data = dialogue_.openQuestion();
-  if (open_question_ && *open_question_ == msg.data) return;
-  open_question_ = msg.data;
-  publishers_.open_question.publish(msg);
+void TopoEngineServer::publishOpen() {
+  const bool asks = dialogue_.question().kind != Question::Kind::kNone;
+  const auto publish = [](const std::string& text, Told& told) {
+    if (told.text && *told.text == text) return;
+    told.text = text;
+    std_msgs::String msg;
+    msg.data = text;
+    told.publisher.publish(msg);
+  };
+  publish(asks ? dialogue_.openQuestion() : "", publishers_.open_question);
+  publish(dialogue_.nextUndo(), publishers_.next_undo);
+  publish(dialogue_.haltedGoal(), publishers_.halted_goal);
 }
 
 void TopoEngineServer::publishPlace() {

@@ -65,7 +65,9 @@ void TopoEngineServer::advertise(ros::NodeHandle& nh) {
   publishers_.follow = nh.advertise<std_msgs::Bool>("follow_person", 1, true);
   publishers_.names = nh.advertise<std_msgs::String>("known_names", 1, true);
   publishers_.candidates = nh.advertise<std_msgs::String>("name_candidates", 1, true);
-  publishers_.open_question = nh.advertise<std_msgs::String>("open_question", 1, true);
+  publishers_.open_question.publisher = nh.advertise<std_msgs::String>("open_question", 1, true);
+  publishers_.next_undo.publisher = nh.advertise<std_msgs::String>("next_undo", 1, true);
+  publishers_.halted_goal.publisher = nh.advertise<std_msgs::String>("halted_goal", 1, true);
 }
 
 void TopoEngineServer::offerServices(ros::NodeHandle& nh) {

@@ -49,7 +49,7 @@ void TopoEngineServer::load(const std::string& path) {
   publishMap();
   publishWalls();
   publishQuestion();
-  publishOpenQuestion();
+  publishOpen();
   publishPlace();
   ROS_INFO_STREAM(who_ << " goes on with " << dialogue_.map().places.size() << " places of "
                        << path);

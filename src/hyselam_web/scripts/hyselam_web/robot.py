@@ -97,7 +97,7 @@ class Robot:
             ("map", OccupancyGrid, True), ("scan", LaserScan, False), ("particlecloud", PoseArray, False), ("amcl_pose", PoseWithCovarianceStamped, False),
             ("localization_status", LocalizationStatus, False), ("named_map", AugmentedTopologicalMap, True), ("place", PlaceState, False),
             ("goal_path", Path, False), ("object_map", ObjectMap, False), ("visual_place", VisualPlace, False), ("known_names", String, False),
-            ("name_candidates", String, False), ("open_question", String, False),
+            ("name_candidates", String, False), ("open_question", String, False), ("next_undo", String, False), ("halted_goal", String, False),
             ("told_walls", WallArray, False))}
         rospy.Subscriber("/tf", rospy.AnyMsg, self._on_tf, queue_size=200)
         rospy.Subscriber("/tf_static", rospy.AnyMsg, self._on_tf, queue_size=200)
@@ -182,6 +182,10 @@ class Robot:
         status = self.topics["localization_status"].message()
         if status is not None:
             world.set("status", sights.status(status))
+        for topic, name in (("next_undo", "undo"), ("halted_goal", "halted")):
+            text = self.topics[topic].message()
+            if text is not None:
+                world.set(name, text.data[:500])
         self._collect_talk()
         if self._preparing is None and self.topics["map"].is_new():
             data = self.topics["map"].bytes()

@@ -121,6 +121,7 @@ export class Connection {
 
   // A promise of the answer; it fails with {code, reason}.
   ask(what, fields = {}, patience = ANSWER) {
+    if (what !== "try") this.asked = performance.now(); // by a person, here
     return new Promise((resolve, reject) => {
       if (!this.connected || this.socket.readyState !== WebSocket.OPEN) {
         reject({code: "not_connected", reason: ""});

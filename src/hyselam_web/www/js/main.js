@@ -15,6 +15,7 @@ import {Fingers} from "./fingers.js";
 import {Replay, entriesOf} from "./replay.js";
 
 const ROLES = ["look", "talk", "drive"];
+const LIT = 8000; // [ms] that a place stays marked
 const TABS = ["talk", "places", "robot", "back"];
 
 class Page {
@@ -48,7 +49,7 @@ class Page {
       onUserMove: () => byId("follow").setAttribute("aria-pressed", "false"),
       onEscape: () => (this.map.tool || this.picking ? this.setTool(null) : this.places.close()),
     });
-    this.talk = new Talk(model, source, may, (text) => this.next.heard(text), (text) => this.next.answer(text));
+    this.talk = new Talk(model, source, may, (text) => this.next.heard(text), (text) => this.next.answer(text), (id, brings) => this.light(id, brings));
     this.next = new NextStep(model, source, may, {
       say: (text, undo) => this.talk.say(text, undo),
       pick: (name, ids) => this.pick(name, ids),
@@ -177,6 +178,24 @@ class Page {
     else if (place !== null) {
       this.places.show("place", place, this.map.keys);
     } else this.places.close();
+  }
+
+  // A place that was told of is marked for a moment.
+  light(id, brings) {
+    const {model} = this;
+    const of = model.place(id);
+    if (!of) return;
+    if (brings) {
+      document.body.classList.remove("folded");
+      if (of.c) this.map.show(...of.c);
+    }
+    model.lit = Number(id);
+    model.tell(["marked"]);
+    clearTimeout(this.lightTimer);
+    this.lightTimer = setTimeout(() => {
+      model.lit = null;
+      model.tell(["marked"]);
+    }, LIT);
   }
 
   // The next place that is tapped gets the name.

@@ -1,10 +1,17 @@
-// The names of the places on the map. Where there is no room for a name there is a number, or a dot: no place stays unseen.
+// The names of the places on the map, each within its place: on one line or more, smaller, or cut. Where not even that has room there is a
+// dot: no place stays unseen.
 import {inside} from "./model.js";
 
 const NEAR = 22; // [pixels] from a number or a dot to the finger that means it
 const EXACT = 12; // [pixels] within which it is meant, also in another place
 const DOT = 4.5; // [pixels], radius
 const SPARE = 6; // [pixels] around the middle of each place that names of others leave free for its dot
+const SMALLEST = 9; // [pixels], letters
+const CUTS = [0.8, 0.65, 0.5, 0.35]; // shares of a name that are left where all of it has no room,
+const FEW = [6, 5, 4, 3]; // and letters, where not even these have
+const RIM = 1; // [pixels] of a name's box that may lie on the walls of its place
+const STEPS = [0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.44, -0.44]; // of the room's width and height, where a name may stand
+const DOOR = 3; // [pixels] on both sides of a door
 
 // A name in lines of so many letters, up to three.
 export function wrapped(text, most = 11) {
@@ -45,7 +52,8 @@ export class MapLabels {
     this.view = view;
     this.shown = new Map(); // id: {kind: "name", "number" or "dot", x, y, box}
     this.widths = new Map(); // of lines, by their fonts
-    this.kept = new Map(); // id: how its name was written last; it stays so where it can
+    this.kept = new Map(); // id: how its name was written last; it stays so where it can, until the best spot is free
+    this.best = new Map(); // id: where its name would be if nothing moved: {key, how}
   }
 
   // What is to be named, the most important first: what is asked about or pointed at, confirmed names, guesses, the rest.
@@ -60,7 +68,7 @@ export class MapLabels {
       if (x < -80 || y < -40 || x > width + 80 || y > height + 40) continue;
       const name = model.nameOf(id);
       const asked = Number(id) === model.values.asked?.place;
-      const pointed = [view.selected, view.hovered].some((each) => String(each) === id);
+      const pointed = [view.selected, view.hovered, model.lit].some((each) => String(each) === id);
       const marked = model.marked?.ids.includes(Number(id)) ?? false;
       const rank = asked ? 0 : pointed ? 1 : marked ? 2 : name.sure ? 3 : name.none ? 5 : 4;
       const number = !pointed && !asked && (name.none || marked); // as on the buttons
@@ -75,7 +83,7 @@ export class MapLabels {
     const {view} = this;
     const wanted = this.wanted();
     const middles = wanted.map(({id, x, y}) => [id, [x - SPARE, y - SPARE, x + SPARE, y + SPARE]]);
-    const taken = this.robotBox();
+    const [taken, robot] = [[], this.robotBox()];
     const kept = this.kept;
     this.kept = new Map();
     this.shown = new Map();
@@ -83,9 +91,9 @@ export class MapLabels {
     c.textBaseline = "middle";
     for (const each of wanted) {
       const others = middles.filter(([id]) => id !== each.id && !this.shown.has(id)).map(([, box]) => box);
-      const fits = (box) => ![...taken, ...others].some((other) => meets(box, other));
+      const free = (box, without = []) => ![...taken, ...without, ...others].some((other) => meets(box, other));
       const size = (each.small ? 11 : 14) - (view.scale < 12 ? 2 : 0);
-      const done = this.name(c, each, size, fits, kept.get(each.id)) ?? this.dot(c, each);
+      const done = this.name(c, each, size, free, robot, kept.get(each.id)) ?? this.dot(c, each);
       taken.push(done.box);
       this.shown.set(each.id, done);
     }
@@ -124,53 +132,97 @@ export class MapLabels {
     return [x - wide / 2, y - high / 2, x + wide / 2, y + high / 2];
   }
 
-  isWithin({place}, [left, top, right, bottom]) {
+  // Inside its place, and in no door.
+  isWithin({id, place}, [left, top, right, bottom]) {
     if (!place.o) return false;
-    const rim = 3; // of which the letters have no need
-    const [l, m, r] = [left + rim, (left + right) / 2, right - rim];
-    return [[l, top + rim], [m, top + rim], [r, top + rim], [l, bottom - rim], [m, bottom - rim], [r, bottom - rim]]
-      .every(([x, y]) => inside(place.o, ...this.view.toMap(x, y)));
+    const [l, r, t, b] = [left + RIM, right - RIM, top + RIM, bottom - RIM];
+    const along = (from, to, n) => Array.from({length: n + 1}, (_, i) => from + ((to - from) * i) / n);
+    return along(l, r, 4).every((x) => along(t, b, 2).every((y) => inside(place.o, ...this.view.toMap(x, y))))
+      && !this.doorBoxes(id).some((door) => meets([left, top, right, bottom], door));
   }
 
-  // Written as before where that has room; else within its place, on more lines or smaller; else across its walls, a little higher or
-  // lower. What is pointed at is named in any case. null: there is no room.
-  name(c, each, size, fits, before) {
+  doorBoxes(id) {
+    const doors = Object.values(this.view.model.tables.doors).filter((door) => door.r && (door.a === Number(id) || door.b === Number(id)));
+    return doors.map((door) => {
+      const [x, y] = this.view.toScreen(door.x, door.y);
+      const half = (door.w / 2) * this.view.scale;
+      const [dx, dy] = [Math.abs(door.ny) * half + DOOR, Math.abs(door.nx) * half + DOOR];
+      return [x - dx, y - dy, x + dx, y + dy];
+    });
+  }
+
+  // How a name is written, the best way first: whole, the larger the better; then cut.
+  *ways(text, small, size) {
+    if (small) {
+      yield {lines: [text], size};
+      return;
+    }
+    const sizes = [...new Set([size, size - 2, size - 4, SMALLEST].map((each) => Math.max(SMALLEST, each)))];
+    const all = waysToWrite(text);
+    const isWhole = (lines) => !lines.some((line) => line.endsWith("…"));
+    for (const own of sizes) for (const lines of all) if (isWhole(lines)) yield {lines, size: own};
+    for (const own of sizes) for (const lines of all) if (!isWhole(lines)) yield {lines, size: own};
+    const letters = [...text];
+    for (const many of [...CUTS.map((share) => Math.round(share * letters.length)).filter((many) => many > FEW[0]), ...FEW.filter((many) => many < letters.length)]) {
+      for (const lines of waysToWrite(letters.slice(0, many).join("").trimEnd() + "…")) yield {lines, size: SMALLEST};
+    }
+  }
+
+  // The first way and spot within its place that is good; null: there is none.
+  find(c, each, size, is_good) {
     const {view} = this;
-    const {id, place, text, small, rank} = each;
-    const sizes = small ? [size] : [size, size - 2, Math.max(10, size - 4)];
-    const room = (first) => {
-      const all = (place.o ?? []).filter((_, i) => i % 2 === first).map((at) => at * view.scale);
+    const [wide, high] = [0, 1].map((first) => {
+      const all = (each.place.o ?? []).filter((_, i) => i % 2 === first).map((at) => at * view.scale);
       return all.length ? Math.max(...all) - Math.min(...all) : 0;
-    };
-    const [wide, high] = [room(0), room(1)];
-    const steps = [0, 0.15, -0.15, 0.3, -0.3, 0.42, -0.42];
-    const tried = (ways, dys, dxs, is_good, of_sizes = sizes) => {
-      for (const own of of_sizes) {
-        for (const lines of ways) {
-          for (const dx of dxs) {
-            for (const dy of dys(lines, own)) {
-              const how = {lines, size: own, dx, dy};
-              const box = this.boxOf(c, each, how);
-              if (is_good(box)) return {how, box};
-            }
-          }
+    });
+    for (const way of this.ways(each.text, each.small, size)) {
+      const [left, top, right, bottom] = this.boxOf(c, each, {...way, dx: 0, dy: 0});
+      if (right - left > wide + 2 * RIM || bottom - top > high + 2 * RIM) continue;
+      for (const across of STEPS) {
+        for (const up of STEPS) {
+          const how = {...way, dx: across * wide, dy: up * high};
+          const box = this.boxOf(c, each, how);
+          if (is_good(box)) return how;
         }
       }
-      return null;
-    };
-    const same = before && before.text === text && before.scale === view.scale && sizes.includes(before.how.size) ? {how: before.how, box: this.boxOf(c, each, before.how)} : null;
-    const ways = small ? [[text]] : waysToWrite(text);
-    const done = (same && fits(same.box) ? same : null)
-      ?? (small ? null : tried(ways, () => steps.map((share) => share * high), steps.map((share) => share * wide), (box) => this.isWithin(each, box) && fits(box)))
-      ?? tried([small ? [text] : wrapped(text)], (lines, own) => [0, 0.5, -0.5, 1, -1].map((share) => share * Math.min(high / 2, 1.6 * lines.length * (own + 2))), [0], fits, sizes.slice(-2))
-      ?? (rank < 2 ? tried([wrapped(text)], () => [0], [0], () => true) : null);
-    if (!done) return null;
-    this.kept.set(id, {text, scale: view.scale, how: done.how});
-    const {box, how: {lines, size: own}} = done;
+    }
+    return null;
+  }
+
+  // Where it would be if nothing moved.
+  bestOf(c, each, size) {
+    const {view} = this;
+    const middle = Math.abs(each.x - view.canvas.clientWidth / 2) < view.canvas.clientWidth / 2;
+    const key = JSON.stringify([each.text, each.small, each.weight, size, view.scale, each.place.o, middle ? 0 : each.x, Object.values(view.model.tables.doors).length]);
+    const known = this.best.get(each.id);
+    if (known?.key === key && (!known.how || this.isWithin(each, this.boxOf(c, each, known.how)))) return known.how;
+    const how = this.find(c, each, size, (box) => this.isWithin(each, box));
+    this.best.set(each.id, {key, how});
+    return how;
+  }
+
+  // At its best spot where nothing is in the way; else as before; else elsewhere in its place; below the robot before nowhere. What is pointed
+  // at or asked about is there in any case. null: there is no room.
+  name(c, each, size, free, robot, before) {
+    const {id, text, small, rank, place} = each;
+    const best = this.bestOf(c, each, size);
+    const fits = (how) => how && free(this.boxOf(c, each, how), robot);
+    const same = before && before.text === text && before.scale === this.view.scale && before.how.size <= size && this.isWithin(each, this.boxOf(c, each, before.how)) ? before.how : null;
+    const anyhow = {lines: small ? [text] : wrapped(text), size: small ? size : Math.max(SMALLEST, size - 4), dx: 0, dy: 0};
+    const how = (fits(best) ? best : null)
+      ?? (fits(same) ? same : null)
+      ?? this.find(c, each, size, (box) => this.isWithin(each, box) && free(box, robot))
+      ?? (best && free(this.boxOf(c, each, best)) ? best : null)
+      ?? ((small || !place.o) && fits(anyhow) ? anyhow : null)
+      ?? (rank < (small ? 3 : 2) ? anyhow : null);
+    if (!how) return null;
+    this.kept.set(id, {text, scale: this.view.scale, how});
+    const box = this.boxOf(c, each, how);
+    const {lines, size: own} = how;
     const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
     c.font = this.fontOf(each, own);
-    lines.forEach((line, i) => haloed(c, line, x, y + (i - (lines.length - 1) / 2) * (own + 2), each.color, view.colors.halo));
-    return {kind: small ? "number" : "name", x, y, box};
+    lines.forEach((line, i) => haloed(c, line, x, y + (i - (lines.length - 1) / 2) * (own + 2), each.color, this.view.colors.halo));
+    return {kind: small ? "number" : "name", x, y, box, lines};
   }
 
   dot(c, {x, y, color}) {

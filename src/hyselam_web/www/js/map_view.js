@@ -47,8 +47,8 @@ export class MapView {
     const theme = document.documentElement.dataset.theme;
     this.dark = theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
     this.colors = this.dark
-      ? {text: "#f2f5f7", halo: "#10161b", soft: "#b4c0ca", way: "#58d68d", robot: "#7db4ff", edge: "#0b1a2b", scan: "#ff8f7a", particle: "#ff7bb0", glass: "#66d9ff", asked: "#ffab5e", door: "#e0a85c", shut: "#ff8080", object: "#d9a6ff", line: "#98a6b2"}
-      : {text: "#10202c", halo: "#ffffff", soft: "#52616e", way: "#15803d", robot: "#1459b3", edge: "#ffffff", scan: "#d4351c", particle: "#c2185b", glass: "#0797c4", asked: "#c25700", door: "#9a6200", shut: "#c4101b", object: "#7b2fbf", line: "#6d7a86"};
+      ? {text: "#f2f5f7", halo: "#10161b", soft: "#b4c0ca", way: "#58d68d", robot: "#7db4ff", edge: "#0b1a2b", scan: "#ff8f7a", particle: "#ff7bb0", glass: "#66d9ff", asked: "#ffab5e", lit: "rgba(125, 180, 255, .45)", door: "#e0a85c", shut: "#ff8080", object: "#d9a6ff", line: "#98a6b2"}
+      : {text: "#10202c", halo: "#ffffff", soft: "#52616e", way: "#15803d", robot: "#1459b3", edge: "#ffffff", scan: "#d4351c", particle: "#c2185b", glass: "#0797c4", asked: "#c25700", lit: "rgba(20, 89, 179, .35)", door: "#9a6200", shut: "#c4101b", object: "#7b2fbf", line: "#6d7a86"};
     this.tiles.update(this.dark);
     this.invalidate();
   }
@@ -386,8 +386,13 @@ export class MapView {
       c.fillStyle = `hsla(${Math.round(id * 222.492) % 360}, 70%, ${this.dark ? 60 : 50}%, ${this.dark ? 0.2 : 0.16})`;
       c.fill();
       const open = Number(id) === asked || (this.model.marked?.ids.includes(Number(id)) ?? false);
-      if (String(id) === String(this.selected) || open) {
-        c.lineWidth = 3 / this.scale;
+      const lit = Number(id) === this.model.lit;
+      if (lit) {
+        c.fillStyle = this.colors.lit;
+        c.fill();
+      }
+      if (String(id) === String(this.selected) || open || lit) {
+        c.lineWidth = (lit ? 5 : 3) / this.scale;
         c.strokeStyle = open ? this.colors.asked : this.colors.robot;
         c.setLineDash(open ? [8 / this.scale, 5 / this.scale] : []);
         c.stroke();

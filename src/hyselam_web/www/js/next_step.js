@@ -1,11 +1,12 @@
 // What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
-import {called, corrected, placeOnly, told} from "./wording.js";
+import {called, corrected, isMany, placeOnly, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
 const UNSURE = /^I think |^Acho que |not sure where|places fit|answers fit|have not found|certeza onde|respostas servem|servem muitos lugares|não encontrei/i;
 const NOT_UNDERSTOOD = /^(I did not understand|I have not taken|Did you mean|I know of no|Não compreendi|Não anotei|Queria dizer|Não sei nada)/;
+const NAMED = /^(Thank you\. |Obrigad[oa]\. )/; // a name was settled
 const TAKEN_DOWN = /^(Noted:|Anotado:)/;
 const NO = /^(no|não|nao)\b/i;
 const MAX_BUTTONS = 5;
@@ -18,6 +19,7 @@ export class NextStep {
     this.box = byId("next");
     this.denied = null; // {name, place, at}: "no, that is not the kitchen", said in that entry of the talk
     this.dismissed = 0; // the entry of the talk whose next step nobody wants
+    this.leftOpen = new Set(); // guesses, "name place", about which nobody wants to be asked
     this.key = "";
     this.tried = new Map(); // sentence: whether it would be understood
     model.on(["talk", "candidates", "places", "names", "asked"], () => this.show());
@@ -98,9 +100,20 @@ export class NextStep {
       answers = talk.slice(before + 1, last).filter((entry) => entry.w === "robot");
       last = before;
     }
-    if (this.model.values.asked?.yes || !answers.some((entry) => UNSURE.test(entry.s))) return null; // one question at a time
-    const name = Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 0 && !this.isPlaced(each));
-    return name ? {kind: "unsure", at: talk[last].i, name, ids: this.places(name)} : null;
+    if (this.model.values.asked?.yes) return null; // one question at a time
+    const unsure = answers.some((entry) => UNSURE.test(entry.s));
+    const name = unsure && Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 0 && !this.isPlaced(each));
+    if (name) return {kind: "unsure", at: talk[last].i, name, ids: this.places(name)};
+    return unsure || answers.some((entry) => NAMED.test(entry.s)) ? this.guess(talk[last].i) : null;
+  }
+
+  // A name that is still a guess on the map when another one was settled.
+  guess(at) {
+    for (const id of Object.keys(this.model.tables.places).map(Number)) {
+      const {text, sure, none} = this.model.nameOf(id);
+      if (!sure && !none && !this.isPlaced(text) && !this.leftOpen.has(`${text} ${id}`)) return {kind: "guess", at, name: text, ids: [id]};
+    }
+    return null;
   }
 
   show() {
@@ -129,9 +142,12 @@ export class NextStep {
       row.append(button(step.right, () => this.actions.say(step.right), {class: "primary", "data-settles": `say ${step.right}`}));
       return [make("p", {}, t("did_you_mean")), row, close];
     }
-    for (const id of step.ids.slice(0, MAX_BUTTONS)) row.append(button(this.titleOf(id, step.name), () => this.give(id, step.name), {"data-place": id}));
+    const titleOf = (id) => (step.kind === "guess" ? t("right_place", {place: t("place_number", {n: id})}) : this.titleOf(id, step.name));
+    for (const id of step.ids.slice(0, MAX_BUTTONS)) row.append(button(titleOf(id), () => this.give(id, step.name), {"data-place": id}));
     row.append(button(t(step.ids.length ? "other_place" : "tap_place"), () => this.actions.pick(step.name, step.ids), {class: "pick"}));
-    return [make("p", {}, t(step.kind === "denied" ? "where_then" : "where_is_it", {name: called(step.name)})), row, close];
+    const key = step.kind === "denied" ? (isMany(step.name) ? "where_are_then" : "where_then") : isMany(step.name) ? "where_are_they" : "where_is_it";
+    if (step.kind === "guess") return [make("p", {}, t("is_it", {place: t("place_of", {n: step.ids[0]}), name: called(step.name)})), row, close];
+    return [make("p", {}, t(key, {name: called(step.name)})), row, close];
   }
 
   // By its number, as on the map; what else it may be, too.
@@ -141,6 +157,7 @@ export class NextStep {
   }
 
   dismiss(at) {
+    if (this.shown?.kind === "guess") this.leftOpen.add(`${this.shown.name} ${this.shown.ids[0]}`);
     this.dismissed = Math.max(at, this.newest());
     this.denied = null;
     this.show();

@@ -94,7 +94,7 @@ export class Places {
     const things = Object.values(model.tables.objects).filter((each) => each.c && model.placeAt(...each.c) === String(id)).map((each) => each.k);
     if (things.length) parts.push(t("things", {names: [...new Set(things)].slice(0, 6).join(", ")}));
     if (model.values.here?.place === Number(id)) parts.push(t("robot_is_here"));
-    return parts.join(" ");
+    return parts.join(" ").replace(/([?…])\.(?= |$)/g, "$1"); // "library?", not "library?."
   }
 
   placeCard(id) {

@@ -4,6 +4,7 @@ import {t, onLanguage} from "./i18n.js";
 import {reasonOf} from "./talk.js";
 import {canSpeak, setAloud, speaksAloud} from "./speech.js";
 
+const FADES = 20000; // [ms]
 const FINDINGS = ["tf", "scan", "laser", "clock", "map", "odometry", "nodes", "camera", "topics", "diagnostics"];
 const LAYERS = ["slam", "localization", "fsd", "words", "gr2to", "topo_engine", "semantic_localization", "object_engine", "map_server"];
 const TECHNICAL = /[_/]|:=/; // words that only technicians know
@@ -61,9 +62,10 @@ export class RobotPanel {
     const name = known ? this.model.labelOf(here.place) : "";
     const parts = [here?.place ? t(here.door ? "in_doorway" : "in_place", {name}) : this.model.values.pose ? t("nowhere") : t("title")];
     if (status && status.phase !== "sure") parts.push(t(`phase_${status.phase}`));
+    if (!arrived) this.arrivedAt = null; // there once more is news again
     if (following) parts.push(t("following"));
     else if (way?.length) parts.push(t("going"));
-    else if (arrived) parts.push(t("arrived"));
+    else if (arrived && this.isNews(arrived)) parts.push(t("arrived"));
     const trouble = !replays && this.hasTrouble();
     if (trouble) parts.push(t("trouble"));
     if (replays) parts.unshift(t("replay_at", {time: this.time ?? ""}));
@@ -74,6 +76,16 @@ export class RobotPanel {
     if (box.dataset.text === text + kind) return;
     box.dataset.text = text + kind;
     box.replaceChildren(make("span", {class: `dot ${kind}`, "aria-hidden": "true"}), make("span", {class: "text"}, text));
+  }
+
+  // That it has arrived is told for a while.
+  isNews(arrived) {
+    const key = JSON.stringify(arrived);
+    if (this.arrivedAt?.key !== key) {
+      this.arrivedAt = {key, since: performance.now()};
+      setTimeout(() => this.showWhere(), FADES + 50);
+    }
+    return performance.now() - this.arrivedAt.since < FADES;
   }
 
   // Of the day that is played.

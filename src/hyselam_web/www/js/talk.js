@@ -6,6 +6,11 @@ import {listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
 const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|So (SS|CC|VV)\d+ is not |Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então (.* volta a ser|\S+ não é )|Encontrei \d)/;
+const TAKES_BACK = /^(Undo that|Desfaça isso)\b/; // as the button says it
+const ASKS_WHERE = /^\s*(where|onde)\b/i;
+const CODE = /\b(?:SS|CC|VV)0*(\d+)\b/g;
+const LONGEST = 60; // letters on a button
+const OWN = 15000; // [ms] in which an answer belongs to what was said or tapped here
 const MAX_CHIPS = 8;
 const STOPS = ["Stop.", "Stop moving.", "Pare."]; // as the server says them for the button
 
@@ -38,14 +43,20 @@ export function suggestions(line, names, sentences) {
 }
 
 export class Talk {
-  // heard(text): before a sentence is said; answer(text): what is meant by it where something is open.
-  constructor(model, connection, may, heard, answer) {
-    Object.assign(this, {model, connection, may, heard, answer});
+  // heard(text): before a sentence is said; answer(text): what is meant by it where something is open; light(id, brings): shows a place on the
+  // map for a moment, and brings it into view.
+  constructor(model, connection, may, heard, answer, light) {
+    Object.assign(this, {model, connection, may, heard, answer, light});
     this.log = byId("talk-log");
     // The newest line stays in sight, also when the panel was out of it, unless somebody reads further up.
     this.atEnd = true;
     this.log.addEventListener("scroll", () => {
-      if (this.log.clientHeight) this.atEnd = this.log.scrollHeight - this.log.scrollTop - this.log.clientHeight < 60;
+      const {clientHeight, scrollHeight, scrollTop} = this.log;
+      const size = `${clientHeight} ${scrollHeight}`;
+      // What has become higher or lower has moved the lines, and nobody's finger.
+      if (clientHeight && size === this.size) this.atEnd = scrollHeight - scrollTop - clientHeight < 60;
+      else if (this.atEnd) this.showNewest();
+      this.size = size;
     });
     new ResizeObserver(() => this.atEnd && this.showNewest()).observe(this.log);
     let width = 0;
@@ -72,7 +83,7 @@ export class Talk {
     byId("no").onclick = () => this.say(t("no") + ".");
     this.listenButton = byId("listen");
     this.listenButton.onclick = () => this.toggleListening();
-    model.on(["talk"], () => this.showTalk());
+    model.on(["talk", "undo", "halted"], () => this.showTalk());
     model.on(["asked", "talk"], () => this.showAsked());
     model.on(["names", "offered"], () => this.showChips());
     onLanguage(() => {
@@ -212,20 +223,62 @@ export class Talk {
         const at = this.pending.findIndex((each) => each.text === entry.s && !each.failed);
         if (at >= 0) this.pending.splice(at, 1);
       }
-      if (entry.w === "robot" && entry.i > this.shownTo && !this.first && !this.connection.replays) speak(plain(entry.s));
+      if (entry.w === "robot" && entry.i > this.shownTo && !this.first) {
+        own ||= performance.now() - (this.connection.asked ?? -Infinity) < OWN;
+        if (!this.connection.replays) speak(plain(entry.s));
+      }
     }
-    if (newest !== this.shownTo || own || !this.log.children.length || this.drawnLanguage !== document.documentElement.lang || this.pending.length || this.hadPending) {
+    if (newest !== this.shownTo || own || !this.log.children.length || this.drawnLanguage !== document.documentElement.lang || this.pending.length || this.hadPending || this.drawnOpen !== this.open()) {
       this.showLines();
       this.drawnLanguage = document.documentElement.lang;
+      this.drawnOpen = this.open();
     }
+    const where = this.whereTold();
+    if (where && where.i > this.shownTo && !this.first) this.light(where.place, false);
     this.hadPending = this.pending.length > 0;
     if (this.atEnd || own || this.first) this.showNewest();
     if (talk.length) this.first = false;
     this.shownTo = newest;
   }
 
+  // What is offered behind the talk and may change without it.
+  open() {
+    const {undo, halted} = this.model.values;
+    return `${undo} ${halted}`;
+  }
+
+  // The place that the answer to "Where is ...?" told: {i of the answer, place}; null: that was not asked last.
+  whereTold() {
+    const {talk} = this.model;
+    const last = talk.map((entry) => entry.w).lastIndexOf("human");
+    if (last < 0 || !ASKS_WHERE.test(talk[last].s)) return null;
+    const places = (entry) => [...new Set([...entry.s.matchAll(CODE)].map((found) => found[1]))];
+    const answer = talk.slice(last + 1).find((entry) => entry.w === "robot" && places(entry).length === 1);
+    const [place] = answer ? places(answer) : [];
+    return place && this.model.place(place) ? {i: answer.i, place} : null;
+  }
+
+  // What can be taken back: {text, what}, or null. Only what the last answer has told of; behind an undo, what else the same sentence has told.
+  undoable() {
+    const {talk} = this.model;
+    let last = talk.map((entry) => entry.w).lastIndexOf("human");
+    if (last < 0 || !this.may("talk") || this.connection.replays) return null;
+    const said = talk[last].s;
+    const answers = talk.slice(last + 1).filter((entry) => entry.w === "robot");
+    const taken = answers.some((entry) => TAKEN.test(entry.s));
+    const next = this.model.values.undo ?? "";
+    if (TAKES_BACK.test(said)) {
+      while (last >= 0 && (talk[last].w !== "human" || TAKES_BACK.test(talk[last].s))) --last;
+      return taken && next && talk[last]?.s.includes(next) ? {text: t("undo_sentence"), what: plain(next)} : null;
+    }
+    const own = this.undoes.get(said);
+    if (!taken || own === "") return null;
+    return own ? {text: own, what: this.shownText(said)} : next ? {text: t("undo_sentence"), what: plain(next)} : null;
+  }
+
   showNewest() {
     this.log.scrollTop = this.log.scrollHeight;
+    this.size = `${this.log.clientHeight} ${this.log.scrollHeight}`;
   }
 
   // What is there stays: a screen reader reads only what is new.
@@ -247,9 +300,6 @@ export class Talk {
     const language = document.documentElement.lang;
     const lines = [];
     if (!talk.length && !this.pending.length) lines.push([`welcome ${language}`, () => make("p", {class: "welcome"}, t("welcome"))]);
-    let last_human = -1;
-    talk.forEach((entry, i) => { if (entry.w === "human") last_human = i; });
-    let undo = false;
     const noteAfter = (from, to) => {
       for (const each of this.notes) {
         if (each.after >= from && each.after < to) lines.push([`note ${each.number} ${language}`, () => make("p", {class: "happened"}, t(each.key, each.values))]);
@@ -260,11 +310,19 @@ export class Talk {
       const is_own = entry.w === "human";
       lines.push([`${entry.i} ${entry.t} ${is_own && STOPS.includes(entry.s) ? language : ""}`, () => make("div", {class: `said ${entry.w}${!is_own && entry.s.endsWith("?") ? " asks" : ""}`}, is_own ? this.shownText(entry.s) : plain(entry.s))]);
       noteAfter(entry.i, talk[i + 1]?.i ?? Infinity);
-      undo ||= i > last_human && last_human >= 0 && entry.w === "robot" && TAKEN.test(entry.s);
     });
-    const takes_back = last_human >= 0 ? this.undoes.get(talk[last_human].s) ?? t("undo_sentence") : "";
-    if (undo && takes_back && this.may("talk") && !this.connection.replays) {
-      lines.push([`undo ${language} ${takes_back}`, () => button(t("undo"), () => this.say(takes_back), {class: "undo"})]);
+    // Below the last answer, what can be done with it.
+    const where = this.whereTold();
+    if (where) lines.push([`show ${language} ${where.i}`, () => button(t("show_place", {n: where.place}), () => this.light(where.place, true), {class: "after show"})]);
+    const undoable = this.undoable();
+    if (undoable) {
+      const {text, what} = undoable;
+      const short = what.length > LONGEST ? what.slice(0, LONGEST - 1).trimEnd() + "…" : what.replace(/\.$/, "");
+      lines.push([`undo ${language} ${text} ${what}`, () => button(t("undo_what", {what: short}), () => this.say(text), {class: "after undo", "data-settles": `undo ${what}`})]);
+    }
+    const {halted} = this.model.values;
+    if (halted && this.may("drive") && !this.pending.length) {
+      lines.push([`halted ${language} ${halted}`, () => button(t("carry_on_to", {name: plain(halted)}), () => this.say(t("carry_on")), {class: "after carry-on", "data-settles": `carry on ${halted}`})]);
     }
     for (const each of this.pending) {
       lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, this.shownText(each.text), each.failed ? make("span", {class: "why"}, each.failed) : null)]);

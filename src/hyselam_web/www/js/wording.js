@@ -27,6 +27,12 @@ export function called(name) {
   return currentLanguage() === "en" && /^\p{Ll}[\p{Ll} -]*$/u.test(name) && !/^(the|my|our) /.test(name) ? `the ${name}` : name;
 }
 
+// "Toilets", "as casas de banho"; not "class", "campus", "Ana's".
+export function isMany(name) {
+  const word = name.trim().split(" ")[currentLanguage() === "en" ? name.trim().split(" ").length - 1 : 0];
+  return /^\p{Ll}{3,}$/u.test(word) && /[^isu]s$/.test(word);
+}
+
 // A sentence as it is shown: "Go to place 5."
 export function plain(text) {
   const language = languageOf(text);

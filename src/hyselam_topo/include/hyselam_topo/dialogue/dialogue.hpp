@@ -161,6 +161,13 @@ class Dialogue {
   /// Any text. Never throws, whatever the content. Stop and cancel are obeyed first, wherever they
   /// stand in it (urgent_words.hpp).
   Reply hear(const std::string& text, const HearOptions& options = {});
+  /// Another node has understood what was said, of things: "undo that" does not go behind it
+  /// unasked.
+  void thingsSpokenOf() { talk_.things_since = true; }
+  /// What "undo that" would take back now, for people: a statement, or names; "": nothing.
+  std::string nextUndo() const;
+  /// Where "carry on" would drive to, after a stop on the way; "": nowhere.
+  std::string haltedGoal() const;
   /// Obeys stop and cancel in a text of any length, and nothing else of it; nothing without them.
   std::optional<Reply> obeyUrgent(const std::string& text);
   /// What hear() would not understand of a text, part by part, as an answer to the open question,
@@ -557,6 +564,8 @@ class Dialogue {
   void barChangesOf(const std::vector<Id>& lost, const KnownBefore& known);
   /// Why "undo that" can take nothing back, as a phrase; "" where it can.
   std::string barrierToUndo() const;
+  /// As nextUndo(), whether things were spoken of since or not.
+  std::string lastChange() const;
   /// The map as it was before, without what statements have told.
   void restoreKnown(const KnownBefore& before, Reply& reply);
   /// It is under way from now on, to that place or, for 0, behind a person; how long it has stood
@@ -587,6 +596,8 @@ class Dialogue {
     bool described_last = false;         ///< the last utterance told of places: "it" is one of them
     std::vector<KnownBefore> changes;    ///< the last one last
     bool changing = false;               ///< within a Change
+    bool things_since = false;           ///< things were spoken of since the last change
+    bool others_asked = false;           ///< the last question was another node's
     Id subject = 0;                      ///< antecedent of "it"
   };
   Talk talk_;

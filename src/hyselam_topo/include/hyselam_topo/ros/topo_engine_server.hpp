@@ -73,7 +73,7 @@ class TopoEngineServer {
   void publishPlace();
   void publishQuestion();
   /// Where it has changed.
-  void publishOpenQuestion();
+  void publishOpen();
 
   void advertise(ros::NodeHandle& nh);
   void offerServices(ros::NodeHandle& nh);
@@ -135,15 +135,20 @@ class TopoEngineServer {
   ros::WallTime started_ = ros::WallTime::now();
   ros::WallTime place_published_, saved_;
   hyselam_msgs::PlaceState last_place_;
-  std::optional<std::string> open_question_;  ///< as published
 
   tf2_ros::Buffer tf_;
   tf2_ros::TransformListener tf_listener_;
   GoalDriver driver_;
   std::optional<SentenceForwarder> forwarder_;
+  /// Published when it changes.
+  struct Told {
+    ros::Publisher publisher;
+    std::optional<std::string> text;
+  };
   struct Publishers {
     ros::Publisher text, conversation, place, map, markers, question, grid, told_walls, path, poses,
-        initial_pose, follow, names, candidates, open_question;
+        initial_pose, follow, names, candidates;
+    Told open_question, next_undo, halted_goal;
   } publishers_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
