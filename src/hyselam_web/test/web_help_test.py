@@ -75,7 +75,7 @@ class HelpTest(PageCase):
         self.serve()
         self.guess_all()
         tab = self.open_map(DESKTOP)
-        tab.eval("hyselam.map.zoom(0.35)")
+        tab.eval("hyselam.map.zoom(0.12)")
         self.drawn(tab)
         tab.wait("[...hyselam.map.names.shown.values()].some((s) => s.kind === 'dot')", "dots")
         place, x, y = tab.eval("""(() => { const [id, s] = [...hyselam.map.names.shown].find(([, s]) => s.kind === 'dot'), b = hyselam.map.canvas.getBoundingClientRect();

@@ -1,5 +1,5 @@
-// The names of the places on the map, each within its place: on one line or more, smaller, or cut. Where not even that has room there is a
-// dot: no place stays unseen.
+// The names of the places on the map, each within its place: on one line or more, smaller, or cut. Where not even that has room there is its
+// number, or a dot: no place stays unseen.
 import {inside} from "./model.js";
 
 const NEAR = 22; // [pixels] from a number or a dot to the finger that means it
@@ -8,7 +8,7 @@ const DOT = 4.5; // [pixels], radius
 const SPARE = 6; // [pixels] around the middle of each place that names of others leave free for its dot
 const SMALLEST = 9; // [pixels], letters
 const CUTS = [0.8, 0.65, 0.5, 0.35]; // shares of a name that are left where all of it has no room,
-const FEW = [6, 5, 4, 3]; // and letters, where not even these have
+const FEW = [6, 5, 4, 3, 2]; // and letters, where not even these have
 const RIM = 1; // [pixels] of a name's box that may lie on the walls of its place
 const STEPS = [0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.44, -0.44]; // of the room's width and height, where a name may stand
 const DOOR = 3; // [pixels] on both sides of a door
@@ -53,7 +53,7 @@ export class MapLabels {
     this.shown = new Map(); // id: {kind: "name", "number" or "dot", x, y, box}
     this.widths = new Map(); // of lines, by their fonts
     this.kept = new Map(); // id: how its name was written last; it stays so where it can, until the best spot is free
-    this.best = new Map(); // id: where its name would be if nothing moved: {key, how}
+    this.best = new Map(); // "id small": where its name, or its number, would be if nothing moved: {key, how}
   }
 
   // What is to be named, the most important first: what is asked about or pointed at, confirmed names, guesses, the rest.
@@ -93,7 +93,7 @@ export class MapLabels {
       const others = middles.filter(([id]) => id !== each.id && !this.shown.has(id)).map(([, box]) => box);
       const free = (box, without = []) => ![...taken, ...without, ...others].some((other) => meets(box, other));
       const size = (each.small ? 11 : 14) - (view.scale < 12 ? 2 : 0);
-      const done = this.name(c, each, size, free, robot, kept.get(each.id)) ?? this.dot(c, each);
+      const done = this.name(c, each, size, free, robot, kept.get(each.id)) ?? this.number(c, each, free, robot) ?? this.dot(c, each);
       taken.push(done.box);
       this.shown.set(each.id, done);
     }
@@ -124,7 +124,7 @@ export class MapLabels {
 
   // The box of some lines, so far from the middle of their place [pixels]; not cut off by the edge of the screen.
   boxOf(c, each, {lines, size, dx, dy}) {
-    const wide = Math.max(...lines.map((line) => this.widthOf(c, this.fontOf(each, size), line))) + 6;
+    const wide = Math.max(...lines.map((line) => this.widthOf(c, this.fontOf(each, size), line))) + 4;
     const high = lines.length * (size + 2) + 2;
     const width = this.view.canvas.clientWidth;
     const x = each.x >= 0 && each.x <= width ? Math.max(wide / 2, Math.min(width - wide / 2, each.x + dx)) : each.x + dx;
@@ -194,10 +194,11 @@ export class MapLabels {
     const {view} = this;
     const middle = Math.abs(each.x - view.canvas.clientWidth / 2) < view.canvas.clientWidth / 2;
     const key = JSON.stringify([each.text, each.small, each.weight, size, view.scale, each.place.o, middle ? 0 : each.x, Object.values(view.model.tables.doors).length]);
-    const known = this.best.get(each.id);
+    const slot = `${each.id} ${each.small}`;
+    const known = this.best.get(slot);
     if (known?.key === key && (!known.how || this.isWithin(each, this.boxOf(c, each, known.how)))) return known.how;
     const how = this.find(c, each, size, (box) => this.isWithin(each, box));
-    this.best.set(each.id, {key, how});
+    this.best.set(slot, {key, how});
     return how;
   }
 
@@ -223,6 +224,11 @@ export class MapLabels {
     c.font = this.fontOf(each, own);
     lines.forEach((line, i) => haloed(c, line, x, y + (i - (lines.length - 1) / 2) * (own + 2), each.color, this.view.colors.halo));
     return {kind: small ? "number" : "name", x, y, box, lines};
+  }
+
+  // Instead of a name that has no room.
+  number(c, each, free, robot) {
+    return each.small ? null : this.name(c, {...each, text: each.id, small: true, rank: 9}, SMALLEST, free, robot, null);
   }
 
   dot(c, {x, y, color}) {

@@ -146,7 +146,7 @@ export class NextStep {
     for (const id of step.ids.slice(0, MAX_BUTTONS)) row.append(button(titleOf(id), () => this.give(id, step.name), {"data-place": id}));
     row.append(button(t(step.ids.length ? "other_place" : "tap_place"), () => this.actions.pick(step.name, step.ids), {class: "pick"}));
     const key = step.kind === "denied" ? (isMany(step.name) ? "where_are_then" : "where_then") : isMany(step.name) ? "where_are_they" : "where_is_it";
-    if (step.kind === "guess") return [make("p", {}, t("is_it", {place: t("place_of", {n: step.ids[0]}), name: called(step.name)})), row, close];
+    if (step.kind === "guess") return [make("p", {}, t("is_it", {n: step.ids[0], name: called(step.name)})), row, close];
     return [make("p", {}, t(key, {name: called(step.name)})), row, close];
   }
 

@@ -237,7 +237,7 @@ export class Talk {
     if (where && where.i > this.shownTo && !this.first) this.light(where.place, false);
     this.hadPending = this.pending.length > 0;
     if (this.atEnd || own || this.first) this.showNewest();
-    if (talk.length) this.first = false;
+    if (this.model.version) this.first = false;
     this.shownTo = newest;
   }
 
