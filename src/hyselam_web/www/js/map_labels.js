@@ -8,10 +8,10 @@ const DOT = 4.5; // [pixels], radius
 const SPARE = 6; // [pixels] around the middle of each place that names of others leave free for its dot
 const SMALLEST = 9; // [pixels], letters
 const CUTS = [0.8, 0.65, 0.5, 0.35]; // shares of a name that are left where all of it has no room,
-const FEW = [6, 5, 4, 3, 2]; // and letters, where not even these have
+const FEW_LETTERS = [6, 5, 4, 3, 2]; // and letters, where not even these have
 const RIM = 1; // [pixels] of a name's box that may lie on the walls of its place
-const STEPS = [0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.44, -0.44]; // of the room's width and height, where a name may stand
-const DOOR = 3; // [pixels] on both sides of a door
+const SPOTS = [0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.44, -0.44]; // of the room's width and height, where a name may stand
+const DOOR_RIM = 3; // [pixels] on both sides of a door
 
 // A name in lines of so many letters, up to three.
 export function wrapped(text, most = 11) {
@@ -53,7 +53,7 @@ export class MapLabels {
     this.shown = new Map(); // id: {kind: "name", "number" or "dot", x, y, box}
     this.widths = new Map(); // of lines, by their fonts
     this.kept = new Map(); // id: how its name was written last; it stays so where it can, until the best spot is free
-    this.best = new Map(); // "id small": where its name, or its number, would be if nothing moved: {key, how}
+    this.best = new Map(); // "id small": where its name, or its number, would be if nothing moved: {key, place, how}
   }
 
   // What is to be named, the most important first: what is asked about or pointed at, confirmed names, guesses, the rest.
@@ -84,6 +84,7 @@ export class MapLabels {
     const wanted = this.wanted();
     const middles = wanted.map(({id, x, y}) => [id, [x - SPARE, y - SPARE, x + SPARE, y + SPARE]]);
     const [taken, robot] = [[], this.robotBox()];
+    this.doors = this.doorBoxes();
     const kept = this.kept;
     this.kept = new Map();
     this.shown = new Map();
@@ -138,17 +139,20 @@ export class MapLabels {
     const [l, r, t, b] = [left + RIM, right - RIM, top + RIM, bottom - RIM];
     const along = (from, to, n) => Array.from({length: n + 1}, (_, i) => from + ((to - from) * i) / n);
     return along(l, r, 4).every((x) => along(t, b, 2).every((y) => inside(place.o, ...this.view.toMap(x, y))))
-      && !this.doorBoxes(id).some((door) => meets([left, top, right, bottom], door));
+      && !(this.doors.get(id) ?? []).some((door) => meets([left, top, right, bottom], door));
   }
 
-  doorBoxes(id) {
-    const doors = Object.values(this.view.model.tables.doors).filter((door) => door.r && (door.a === Number(id) || door.b === Number(id)));
-    return doors.map((door) => {
+  // Of all places, on the screen as it is drawn now.
+  doorBoxes() {
+    const boxes = new Map();
+    for (const door of Object.values(this.view.model.tables.doors)) {
+      if (!door.r) continue;
       const [x, y] = this.view.toScreen(door.x, door.y);
       const half = (door.w / 2) * this.view.scale;
-      const [dx, dy] = [Math.abs(door.ny) * half + DOOR, Math.abs(door.nx) * half + DOOR];
-      return [x - dx, y - dy, x + dx, y + dy];
-    });
+      const [dx, dy] = [Math.abs(door.ny) * half + DOOR_RIM, Math.abs(door.nx) * half + DOOR_RIM];
+      for (const id of [door.a, door.b]) boxes.set(String(id), [...(boxes.get(String(id)) ?? []), [x - dx, y - dy, x + dx, y + dy]]);
+    }
+    return boxes;
   }
 
   // How a name is written, the best way first: whole, the larger the better; then cut.
@@ -163,7 +167,7 @@ export class MapLabels {
     for (const own of sizes) for (const lines of all) if (isWhole(lines)) yield {lines, size: own};
     for (const own of sizes) for (const lines of all) if (!isWhole(lines)) yield {lines, size: own};
     const letters = [...text];
-    for (const many of [...CUTS.map((share) => Math.round(share * letters.length)).filter((many) => many > FEW[0]), ...FEW.filter((many) => many < letters.length)]) {
+    for (const many of [...CUTS.map((share) => Math.round(share * letters.length)).filter((many) => many > FEW_LETTERS[0]), ...FEW_LETTERS.filter((many) => many < letters.length)]) {
       for (const lines of waysToWrite(letters.slice(0, many).join("").trimEnd() + "…")) yield {lines, size: SMALLEST};
     }
   }
@@ -178,8 +182,8 @@ export class MapLabels {
     for (const way of this.ways(each.text, each.small, size)) {
       const [left, top, right, bottom] = this.boxOf(c, each, {...way, dx: 0, dy: 0});
       if (right - left > wide + 2 * RIM || bottom - top > high + 2 * RIM) continue;
-      for (const across of STEPS) {
-        for (const up of STEPS) {
+      for (const across of SPOTS) {
+        for (const up of SPOTS) {
           const how = {...way, dx: across * wide, dy: up * high};
           const box = this.boxOf(c, each, how);
           if (is_good(box)) return how;
@@ -193,12 +197,12 @@ export class MapLabels {
   bestOf(c, each, size) {
     const {view} = this;
     const middle = Math.abs(each.x - view.canvas.clientWidth / 2) < view.canvas.clientWidth / 2;
-    const key = JSON.stringify([each.text, each.small, each.weight, size, view.scale, each.place.o, middle ? 0 : each.x, Object.values(view.model.tables.doors).length]);
+    const key = JSON.stringify([each.text, each.weight, size, view.scale, middle ? 0 : each.x, this.doors.get(each.id)?.length]);
     const slot = `${each.id} ${each.small}`;
     const known = this.best.get(slot);
-    if (known?.key === key && (!known.how || this.isWithin(each, this.boxOf(c, each, known.how)))) return known.how;
+    if (known?.key === key && known.place === each.place && (!known.how || this.isWithin(each, this.boxOf(c, each, known.how)))) return known.how;
     const how = this.find(c, each, size, (box) => this.isWithin(each, box));
-    this.best.set(slot, {key, how});
+    this.best.set(slot, {key, place: each.place, how});
     return how;
   }
 
@@ -212,7 +216,7 @@ export class MapLabels {
     const anyhow = {lines: small ? [text] : wrapped(text), size: small ? size : Math.max(SMALLEST, size - 4), dx: 0, dy: 0};
     const how = (fits(best) ? best : null)
       ?? (fits(same) ? same : null)
-      ?? this.find(c, each, size, (box) => this.isWithin(each, box) && free(box, robot))
+      ?? (best ? this.find(c, each, size, (box) => this.isWithin(each, box) && free(box, robot)) : null)
       ?? (best && free(this.boxOf(c, each, best)) ? best : null)
       ?? ((small || !place.o) && fits(anyhow) ? anyhow : null)
       ?? (rank < (small ? 3 : 2) ? anyhow : null);

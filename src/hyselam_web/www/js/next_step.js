@@ -6,7 +6,7 @@ import {reasonOf} from "./talk.js";
 
 const UNSURE = /^I think |^Acho que |not sure where|places fit|answers fit|have not found|certeza onde|respostas servem|servem muitos lugares|não encontrei/i;
 const NOT_UNDERSTOOD = /^(I did not understand|I have not taken|Did you mean|I know of no|Não compreendi|Não anotei|Queria dizer|Não sei nada)/;
-const NAMED = /^(Thank you\. |Obrigad[oa]\. )/; // a name was settled
+const NAME_SETTLED = /^(Thank you\. |Obrigad[oa]\. )/; // a name was settled
 const TAKEN_DOWN = /^(Noted:|Anotado:)/;
 const NO = /^(no|não|nao)\b/i;
 const MAX_BUTTONS = 5;
@@ -104,7 +104,7 @@ export class NextStep {
     const unsure = answers.some((entry) => UNSURE.test(entry.s));
     const name = unsure && Object.keys(this.model.values.candidates ?? {}).find((each) => this.places(each).length > 0 && !this.isPlaced(each));
     if (name) return {kind: "unsure", at: talk[last].i, name, ids: this.places(name)};
-    return unsure || answers.some((entry) => NAMED.test(entry.s)) ? this.guess(talk[last].i) : null;
+    return unsure || answers.some((entry) => NAME_SETTLED.test(entry.s)) ? this.guess(talk[last].i) : null;
   }
 
   // A name that is still a guess on the map when another one was settled.

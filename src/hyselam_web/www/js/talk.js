@@ -8,9 +8,9 @@ import {listen, speak} from "./speech.js";
 const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|So (SS|CC|VV)\d+ is not |Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então (.* volta a ser|\S+ não é )|Encontrei \d)/;
 const TAKES_BACK = /^(Undo that|Desfaça isso)\b/; // as the button says it
 const ASKS_WHERE = /^\s*(where|onde)\b/i;
-const CODE = /\b(?:SS|CC|VV)0*(\d+)\b/g;
-const LONGEST = 60; // letters on a button
-const OWN = 15000; // [ms] in which an answer belongs to what was said or tapped here
+const PLACE_CODE = /\b(?:SS|CC|VV)0*(\d+)\b/g;
+const LONGEST_LABEL = 60; // letters on a button
+const OWN_FOR = 15000; // [ms] in which an answer belongs to what was said or tapped here
 const MAX_CHIPS = 8;
 const STOPS = ["Stop.", "Stop moving.", "Pare."]; // as the server says them for the button
 
@@ -224,7 +224,7 @@ export class Talk {
         if (at >= 0) this.pending.splice(at, 1);
       }
       if (entry.w === "robot" && entry.i > this.shownTo && !this.first) {
-        own ||= performance.now() - (this.connection.asked ?? -Infinity) < OWN;
+        own ||= performance.now() - (this.connection.asked ?? -Infinity) < OWN_FOR;
         if (!this.connection.replays) speak(plain(entry.s));
       }
     }
@@ -252,7 +252,7 @@ export class Talk {
     const {talk} = this.model;
     const last = talk.map((entry) => entry.w).lastIndexOf("human");
     if (last < 0 || !ASKS_WHERE.test(talk[last].s)) return null;
-    const places = (entry) => [...new Set([...entry.s.matchAll(CODE)].map((found) => found[1]))];
+    const places = (entry) => [...new Set([...entry.s.matchAll(PLACE_CODE)].map((found) => found[1]))];
     const answer = talk.slice(last + 1).find((entry) => entry.w === "robot" && places(entry).length === 1);
     const [place] = answer ? places(answer) : [];
     return place && this.model.place(place) ? {i: answer.i, place} : null;
@@ -317,7 +317,7 @@ export class Talk {
     const undoable = this.undoable();
     if (undoable) {
       const {text, what} = undoable;
-      const short = what.length > LONGEST ? what.slice(0, LONGEST - 1).trimEnd() + "…" : what.replace(/\.$/, "");
+      const short = what.length > LONGEST_LABEL ? what.slice(0, LONGEST_LABEL - 1).trimEnd() + "…" : what.replace(/\.$/, "");
       lines.push([`undo ${language} ${text} ${what}`, () => button(t("undo_what", {what: short}), () => this.say(text), {class: "after undo", "data-settles": `undo ${what}`})]);
     }
     const {halted} = this.model.values;
