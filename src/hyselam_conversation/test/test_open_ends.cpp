@@ -316,8 +316,10 @@ TEST(OpenEnds, ARefusalHasOneAdvice) {
                            "The flurb wozzles greenly.", "What is the weather like tomorrow?"}) {
     const std::string reply = t.say(said);
     const std::size_t first = std::min(reply.find("You can say: "), reply.find("Pode dizer: "));
-    ASSERT_NE(first, std::string::npos) << reply;
-    EXPECT_EQ(reply.substr(0, first).find("; "), std::string::npos) << reply;
+    // The reason's own, or one of what was said.
+    EXPECT_NE(first == std::string::npos,
+              reply.find("; ") == std::string::npos || reply.find("; ") > first)
+        << reply;
   }
 }
 
@@ -334,7 +336,7 @@ TEST(OpenEnds, WhatCannotBeTakenIsNotProposed) {
 TEST(OpenEnds, AnAdviceIsOfKnownNames) {
   for (const auto& [name, said, advice] :
        {std::tuple("archive", "What is the weather like tomorrow?", "'Where is the archive?'"),
-        std::tuple("storage room", "The storage room is never blorping wildly with us.",
+        std::tuple("storage room", "The storage room is never next to us, blorping.",
                    "storage room"),
         std::tuple("biblioteca", "Qual é o tempo amanhã?", "'Onde fica a biblioteca?'")}) {
     Talk t;

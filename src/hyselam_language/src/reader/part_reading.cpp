@@ -214,60 +214,6 @@ constexpr std::array<Tellable, 19> kTellable{{{"between", 3},
                                               {"upstairs", 1},
                                               {"downstairs", 1}}};
 
-/// A sentence of the names that were heard: with a relation of which a word was said, else the
-/// plainest. "" where none is understood.
-std::string exampleOf(const std::vector<FactArgument>& names, const Utterance& part,
-                      bool is_question, const FactWriter& writer, const Grammar& grammar) {
-  if (names.empty()) return "";
-  const CompiledGrammar& compiled = grammar.compiled();
-  const auto wordsOf = [&](const std::string& text) {
-    std::set<std::string> words;
-    for (const auto& token : language::tokenize(text, {0, text.size()}, compiled.tokenRules())) {
-      words.insert(token.folded);
-    }
-    return words;
-  };
-  const std::set<std::string> said = wordsOf(part.text);
-  std::vector<Tellable> order;
-  if (is_question) order.push_back({"ask_where", 1});
-  for (const Tellable& each : kTellable) {
-    const std::string key = "fact_" + std::string(each.relation) + "_" + std::to_string(each.names);
-    if (!grammar.has(key)) continue;
-    const std::set<std::string> words = wordsOf(grammar.say(key));
-    if (std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-          return said.count(word) != 0 && compiled.placing_words.count(word) != 0;
-        })) {
-      order.push_back(each);
-    }
-  }
-  for (const Tellable& plain : {Tellable{"next", 2}, Tellable{"left", 1}, Tellable{"example", 1}}) {
-    order.push_back(plain);
-  }
-  for (const Tellable& each : order) {
-    // "Next to A and B": of the first ones of which it can be said.
-    for (std::size_t first = 0; first + each.names <= names.size(); ++first) {
-      ReadFact fact;
-      fact.relation = each.relation;
-      if (!grammar.has("fact_" + fact.relation + "_" + std::to_string(each.names))) break;
-      const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
-      fact.arguments.assign(begin, begin + static_cast<std::ptrdiff_t>(each.names));
-      for (FactArgument& argument : fact.arguments) {
-        // "tool crib" alone is clipped speech, an example is none.
-        const bool gendered = grammar.has("feminine_article");
-        if (argument.article.empty() && !gendered && argument.text[0] >= 'a' &&
-            argument.text[0] <= 'z') {
-          argument.article = grammar.say("article");
-          argument.article.erase(argument.article.find_last_not_of(' ') + 1);
-        }
-      }
-      if (fact.relation == "example" && fact.arguments.front().article.empty()) continue;
-      if (fact.arguments.size() > 1 && fact.arguments[0].text == fact.arguments[1].text) continue;
-      if (const auto in_words = inWords(writer, grammar, fact)) return in_words->sentence;
-    }
-  }
-  return "";
-}
-
 /// The facts of a reading that a part may tell, each put into words at most once.
 class FactsOfPart {
  public:
@@ -297,9 +243,33 @@ class FactsOfPart {
   std::map<const ReadFact*, std::optional<SaidFact>> said_;
 };
 
+/// Whether all words by which a sentence places what it names were said, too; without such words
+/// only the reader knows what it is about.
+enum class Placing { kSaid, kNotSaid, kNone };
+Placing placingOf(const std::string& sentence, const ReadFact& fact, const Utterance& part,
+                  const CompiledGrammar& grammar) {
+  const auto& placing =
+      grammar.placing_words.empty() ? grammar.telling_words : grammar.placing_words;
+  const auto wordsOf = [&](const std::string& text) {
+    std::set<std::string> words;
+    for (const auto& token : language::tokenize(text, {0, text.size()}, grammar.tokenRules())) {
+      if (placing.count(token.folded) != 0) words.insert(token.folded);
+    }
+    return words;
+  };
+  std::set<std::string> words = wordsOf(sentence);
+  for (const FactArgument& name : fact.arguments) {
+    for (const std::string& word : wordsOf(name.text)) words.erase(word);
+  }
+  if (words.empty()) return Placing::kNone;
+  const std::set<std::string> said = wordsOf(part.text);
+  return std::includes(said.begin(), said.end(), words.begin(), words.end()) ? Placing::kSaid
+                                                                             : Placing::kNotSaid;
+}
+
 /// The likeliest fact of the own names, for an example; nullptr without one.
-const SaidFact* likeliestToShow(const Reading& reading, const CompiledGrammar& grammar,
-                                FactsOfPart* facts) {
+const SaidFact* likeliestToShow(const Utterance& part, const Reading& reading,
+                                const CompiledGrammar& grammar, FactsOfPart* facts) {
   std::vector<const ReadFact*> all;
   for (const auto* each : {&reading.facts, &reading.others}) {
     for (const ReadFact& fact : *each) {
@@ -312,9 +282,51 @@ const SaidFact* likeliestToShow(const Reading& reading, const CompiledGrammar& g
     return a->probability > b->probability;
   });
   for (const ReadFact* fact : all) {
-    if (const SaidFact* said = facts->said(*fact)) return said;
+    const SaidFact* said = facts->said(*fact);
+    if (said == nullptr) continue;
+    const Placing placing = placingOf(said->sentence, *fact, part, grammar);
+    const bool may = placing == Placing::kSaid ||
+                     (placing == Placing::kNone && fact->probability >= kWorthReading);
+    if (may) return said;
   }
   return nullptr;
+}
+
+/// A sentence of the names that were heard, with a relation of which all words were said. "" where
+/// none is understood.
+std::string exampleOf(const std::vector<FactArgument>& names, const Utterance& part,
+                      bool is_question, const FactWriter& writer, const Grammar& grammar) {
+  if (names.empty()) return "";
+  const CompiledGrammar& compiled = grammar.compiled();
+  std::vector<Tellable> order;
+  if (is_question) order.push_back({"ask_where", 1});
+  for (const Tellable& each : kTellable) {
+    const std::string key = "fact_" + std::string(each.relation) + "_" + std::to_string(each.names);
+    if (!grammar.has(key)) continue;
+    if (placingOf(grammar.say(key), {}, part, compiled) == Placing::kSaid) order.push_back(each);
+  }
+  for (const Tellable& each : order) {
+    // "Next to A and B": of the first ones of which it can be said.
+    for (std::size_t first = 0; first + each.names <= names.size(); ++first) {
+      ReadFact fact;
+      fact.relation = each.relation;
+      if (!grammar.has("fact_" + fact.relation + "_" + std::to_string(each.names))) break;
+      const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
+      fact.arguments.assign(begin, begin + static_cast<std::ptrdiff_t>(each.names));
+      for (FactArgument& argument : fact.arguments) {
+        // "tool crib" alone is clipped speech, an example is none.
+        const bool gendered = grammar.has("feminine_article");
+        if (argument.article.empty() && !gendered && argument.text[0] >= 'a' &&
+            argument.text[0] <= 'z') {
+          argument.article = grammar.say("article");
+          argument.article.erase(argument.article.find_last_not_of(' ') + 1);
+        }
+      }
+      if (fact.arguments.size() > 1 && fact.arguments[0].text == fact.arguments[1].text) continue;
+      if (const auto in_words = inWords(writer, grammar, fact)) return in_words->sentence;
+    }
+  }
+  return "";
 }
 
 /// What the part probably tells, and what a "no" to that makes likely.
@@ -356,7 +368,7 @@ PartReading readPart(const Utterance& utterance, const PartOf& of, const Grammar
   PartReading part;
   if (!of.is_doubted) ask(of, &facts, &part);
   if (!part.asked.empty() || utterance.suggests_meaning) return part;  // no example is shown
-  const SaidFact* best = likeliestToShow(reading, compiled, &facts);
+  const SaidFact* best = likeliestToShow(utterance, reading, compiled, &facts);
   part.example = best != nullptr ? best->sentence
                                  : exampleOf(heardNames(utterance, reading, compiled), utterance,
                                              of.is_question, facts.writer(), grammar);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <set>
 
+#include "hyselam_language/grammar/near_example.hpp"
 #include "hyselam_language/grammar/words_left_out.hpp"
 
 namespace hyselam_objects {
@@ -165,7 +166,9 @@ ObjectReply FillMap::refuse(const ObjectStatement& statement) {
   out.reason = statement.reason;
   if (grammar.has(own) && !statement.suggests_own_words) {
     out.text += " " + phraseText("instead", {{"suggestion", phraseText(own)}});
-  } else if (!statement.suggestion.empty()) {
+  } else if (!statement.suggestion.empty() &&
+             (statement.suggests_own_words || statement.suggests_meaning ||
+              hyselam_topo::isNearExample(statement.text, statement.suggestion, grammar))) {
     out.text += " " + phraseText("instead", values);
   }
   return out;

@@ -4,6 +4,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "hyselam_language/grammar/near_example.hpp"
 #include "hyselam_language/grammar/words_left_out.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 #include "other_languages.hpp"
@@ -49,9 +50,14 @@ void Dialogue::refuse(const Utterance& u, Turn& turn) {
     meant = acceptableOf(proposalsOf(u.suggestion, u.alternatives));
   }
   const bool proposes = !meant.empty();
-  // What may have been meant, but cannot be taken, is no advice either.
+  // What may have been meant, but cannot be taken, is no advice, nor what has nothing to do with
+  // it.
+  const bool asks =
+      !u.text.empty() && u.text.back() == '?';  // another question tells nothing wrong
+  const bool is_near = !u.suggests_meaning && (asks || u.suggests_own_words ||
+                                               isNearExample(u.text, u.suggestion, grammar()));
   const std::string advice = proposes               ? meant.front()
-                             : u.suggests_meaning   ? ""
+                             : !is_near             ? ""
                              : u.suggests_own_words ? u.suggestion
                                                     : withKnownNames(u.suggestion, u.text);
   const std::string refusal = sayNotUnderstood(u.text, u.reason, advice);
