@@ -17,6 +17,9 @@ SlamServerParams::SlamServerParams() {
 void SlamServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("global_frame_id", global_frame_id, "frame of the map");
   visit.group("", slam);
+  visit("loop_wait", loop_wait, Range::between(0.0, 3600.0), "s",
+        "wall time that scans wait for loops and optimizations that count (loop_latency); what "
+        "takes longer counts when it is done");
   visit("resolution", map.resolution, Range::between(0.01, 1.0), "m/cell", "of the map");
   visit("usable_range", map.usable_range, Range::above(0.0), "m",
         "farther returns clear the beam up to here only");

@@ -51,6 +51,7 @@ Pose2 placeByOdometry(const std::vector<SlamKeyframe>& keyframes, const Pose2& o
 SlamServer::Mapping::Mapping(const SlamServerParams& params, SlamState state)
     : name(ros::this_node::getName() + '@' + std::to_string(ros::WallTime::now().toNSec())),
       engine(params.slam, std::move(state)),
+      jobs(params.slam.loop_latency),
       segmenter(params.semantic) {
   segmentNew();
   published_words = engine.recognizer().text().words();
@@ -100,6 +101,7 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
         return onScan(scan, base_in_odom, stamp);
       },
       [this] { onTimeJump(); });
+  input_->holdWhile([this](const ros::Time& stamp) { return isHeldUp(stamp); });
   initial_pose_subscriber_ = nh.subscribe("initialpose", 2, &SlamServer::onInitialPose, this);
   if (params_.tf_broadcast && params_.transform_publish_period > 0.0) {
     broadcaster_.timer = nh.createWallTimer(ros::WallDuration(params_.transform_publish_period),
@@ -130,6 +132,7 @@ SlamServer::~SlamServer() {
   work_.notify_all();
   job_thread_.join();
   map_thread_.join();
+  takeInNow();
   saveIfChanged("at the end");
 }
 
@@ -144,7 +147,10 @@ bool SlamServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odo
       ++status_.paused_scans;
       return false;
     }
+    last_scan_came_ = begin;
+    takeIn(scan.stamp);
     addScan(scan, base_in_odom);
+    mapping_->jobs.noteScan(scan.stamp, &mapping_->engine);
     last_scan_ = {stamp, base_in_odom};
     publishStatus();
     publishNewWords();

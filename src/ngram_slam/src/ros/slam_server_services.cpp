@@ -206,6 +206,8 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "matches of words", engine.matches().size());
     addValue(status, "regions", mapping_->regions.size());
     addValue(status, "optimizations", c.optimizations);
+    addValue(status, "looking for loops", mapping_->jobs.isOut());
+    addValue(status, "loops and optimizations late", status_.late_results);
     addValue(status, "scans that hardly matched", status_.weak_matches);
     addValue(status, "odometry jumps", c.odometry_jumps);
     reportRoughRoad(status, engine);

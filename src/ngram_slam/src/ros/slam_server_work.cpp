@@ -13,17 +13,78 @@ using Lock = std::unique_lock<std::mutex>;
 namespace {
 
 constexpr double kSaveCheckPeriod = 0.1;  // [s] of wall time: how often a saving may become due
+constexpr double kIdleCheckPeriod = 0.1;  // [s] of wall time: how often scans may have ended
 
 }  // namespace
 
 // ---- loops and optimization
 
+/// Applies the results that count before a scan of this stamp. False: one is not there. With mutex_
+/// held.
+bool SlamServer::takeIn(double stamp) {
+  try {
+    return mapping_->jobs.takeIn(stamp, &mapping_->engine);
+  } catch (const std::exception& e) {
+    noteJobError(e.what());
+    return true;
+  }
+}
+
+/// With mutex_ held.
+bool SlamServer::takeInNow() {
+  try {
+    return mapping_->jobs.takeInNow(&mapping_->engine);
+  } catch (const std::exception& e) {
+    noteJobError(e.what());
+    return false;
+  }
+}
+
+/// With mutex_ held.
+void SlamServer::noteJobError(const std::string& error) {
+  status_.job_error = error;
+  ROS_ERROR_STREAM(log_name_ << " loops are not added: " << error);
+}
+
+/// A scan at which a result counts that is not there waits, so that maps do not depend on how busy
+/// the machine is; but not for ever.
+bool SlamServer::isHeldUp(const ros::Time& stamp) {
+  const Lock lock(mutex_);
+  if (paused_) return false;
+  const ros::WallTime now = ros::WallTime::now();
+  last_scan_came_ = now;
+  const bool there = takeIn(stamp.toSec());
+  work_.notify_all();
+  if (there) {
+    result_wait_ = {};
+    return false;
+  }
+  if (result_wait_.over) return false;
+  if (!result_wait_.since) result_wait_.since = now;
+  if ((now - *result_wait_.since).toSec() < params_.loop_wait) return true;
+  result_wait_.over = true;
+  ++status_.late_results;
+  ROS_WARN_STREAM_THROTTLE(
+      30.0, log_name_ << " loops or an optimization have taken longer than loop_latency, "
+                      << params_.slam.loop_latency << " s, and loop_wait, " << params_.loop_wait
+                      << " s: the machine is too slow, or the map too large. They count when they"
+                      << " are done; the same scans may give another map");
+  return false;
+}
+
+/// Nothing comes that results would have to wait for. With mutex_ held.
+bool SlamServer::isIdle() const {
+  return paused_ || last_scan_came_.isZero() ||
+         (ros::WallTime::now() - last_scan_came_).toSec() >= BackgroundJobs::kPause;
+}
+
 void SlamServer::runJobs() {
   Lock lock(mutex_);
   while (!ending_) {
-    const auto job = mapping_->engine.takeJob();
+    if (isIdle() && takeInNow()) map_due_ = map_due_ || (drawsMaps() && mapping_->localized);
+    const auto job = mapping_->jobs.begin();
     if (!job) {
-      work_.wait(lock);
+      work_.wait_for(lock, std::chrono::duration<double>(kIdleCheckPeriod));
       continue;
     }
     const long epoch = epoch_;
@@ -35,17 +96,12 @@ void SlamServer::runJobs() {
       result = runJob(*job);
     } catch (const std::exception& e) {
       error = e.what();
-      ROS_ERROR_STREAM(log_name_ << " loops are not added: " << error);
     }
     lock.lock();
     if (epoch != epoch_) continue;
-    try {
-      mapping_->engine.apply(result);
-    } catch (const std::exception& e) {
-      error = e.what();
-      ROS_ERROR_STREAM(log_name_ << " loops are not added: " << error);
-    }
-    status_.job_error = error;
+    mapping_->jobs.finish(std::move(result));
+    status_.job_error.clear();
+    if (!error.empty()) noteJobError(error);
     status_.job_ms = millisecondsSince(begin);
   }
 }

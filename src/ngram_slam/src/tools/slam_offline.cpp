@@ -18,6 +18,7 @@
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
+#include "ngram_slam/slam/background_jobs.hpp"
 #include "ngram_slam/slam/laser_mount.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
@@ -40,7 +41,7 @@ struct Options {
   std::string bag, carmen, out, reference, loops = "all", state, save_state, start;
   int levels = 3;
   std::uint64_t seed = 1;
-  double noise = 0.0, resolution = 0.05;
+  double noise = 0.0, resolution = 0.05, loop_latency = SlamParams{}.loop_latency;
   bool side_by_side = false, raw_odometry = false, keep_all = false, correct_laser = false;
   Degradation degradation;
   hyselam::BagOptions bag_options;
@@ -133,6 +134,7 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
   run.saved_scans = run.engine->trajectory().size();
   run.saved_keyframes = run.engine->keyframes().size();
   run.saved_counts = run.engine->counters().scans;
+  BackgroundJobs jobs(run.engine->params().loop_latency);
   hyselam::Progress progress(label, log.scans.size());
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     progress.update(i + 1);
@@ -141,13 +143,16 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
       ++run.without_odometry;
       continue;
     }
+    const double stamp = log.scans[i].stamp;
+    while (!jobs.takeIn(stamp, run.engine.get())) jobs.runHere();
     try {
       run.engine->add(log.scans[i], *odometry);
+      jobs.noteScan(stamp, run.engine.get());
     } catch (const hyselam::InputError&) {
       ++run.refused;
     }
-    while (const auto job = run.engine->takeJob()) run.engine->apply(runJob(*job));
   }
+  jobs.runAll(run.engine.get());
   run.engine->endRun();
   while (const auto job = run.engine->takeFinalJob()) run.engine->apply(runJob(*job));
   run.cpu = cpuSeconds() - begin;
@@ -376,6 +381,7 @@ SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
                                       params.words.matcher.min_n.front());
   }
   params.loops = loops;
+  params.loop_latency = o.loop_latency;
   params.refine_odometry = !o.raw_odometry;
   params.consolidation.enabled = !o.keep_all;
   params.validate();
@@ -490,6 +496,9 @@ int main(int argc, char** argv) {
       "--loops", o.loops,
       "none, proximity, ngrams (far places by words only), signatures (far places by their "
       "signatures only), all, or thesis (words accepted without verification)");
+  app.add_option("--loop-latency", o.loop_latency,
+                 "loops and optimizations count at the first scan taken this long after the one at "
+                 "which they were begun [s], as in the nodelet; 0: before the next scan");
   app.add_option(
       "--reference", o.reference,
       "poses to compare with: TUM, a table with one pose for each scan, or a corrected log");

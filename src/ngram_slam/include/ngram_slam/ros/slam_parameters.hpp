@@ -21,6 +21,7 @@ struct SlamServerParams {
   SlamParams slam;
   SemanticParams semantic;
   hyselam::OccupancyMapperParams map;
+  double loop_wait = 1.0;  ///< a scan waits at most this long for loops that count [s], >= 0
   double map_update_interval = 2.0;  ///< between maps [s] of the data; 0: no map is drawn
   bool tf_broadcast = true;
   double transform_publish_period = 0.05;  ///< of map -> odom [s] of wall time; 0: at scans only

@@ -23,6 +23,7 @@
 #include "hyselam_common/ros/scan_input.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
 #include "ngram_slam/ros/slam_publisher.hpp"
+#include "ngram_slam/slam/background_jobs.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -36,7 +37,8 @@ namespace ngram_slam {
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
 /// poses optimized on one thread, maps drawn and saved on another, services answered on a third:
-/// none of them delays a scan by more than it takes to copy what it needs.
+/// none of them delays a scan by more than it takes to copy what it needs, but where a loop that
+/// counts is not there yet (SlamServerParams::loop_wait).
 class SlamServer {
  public:
   /// Reads and checks the parameters of `private_nh` and the state, before anything is subscribed.
@@ -56,6 +58,7 @@ class SlamServer {
 
     const std::string name;  // another one for each, of all processes
     SlamEngine engine;
+    BackgroundJobs jobs;
     SemanticSegmenter segmenter;
     std::vector<SemanticRegion> regions;
     std::uint32_t segmented = 0;  // observations
@@ -68,7 +71,7 @@ class SlamServer {
   struct Status {
     std::string job_error, map_error, save_error;
     double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
-    std::size_t paused_scans = 0, weak_matches = 0;
+    std::size_t paused_scans = 0, weak_matches = 0, late_results = 0;
     std::string changes = "nothing changed";  // since the last session
   };
   /// What a map is drawn from, copied from the engine.
@@ -103,10 +106,20 @@ class SlamServer {
     ros::Time stamp;
     hyselam::Pose2 odometry;
   };
+  /// Scans wait for a result that counts, but not for ever.
+  struct ResultWait {
+    std::optional<ros::WallTime> since;
+    bool over = false;
+  };
   enum class NextScan { kGoesOn, kAfterPause, kAfterJump };
 
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
               const ros::Time& stamp);
+  bool isHeldUp(const ros::Time& stamp);
+  bool takeIn(double stamp);
+  bool takeInNow();
+  void noteJobError(const std::string& error);
+  bool isIdle() const;
   void addScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom);
   RunStart runStart(const hyselam::Pose2& base_in_odom) const;
   void startRun(const hyselam::Pose2& base_in_odom);
@@ -141,6 +154,8 @@ class SlamServer {
   long epoch_ = 0;  // counts mappings: results for an earlier one are void
   bool ending_ = false, map_due_ = false, paused_ = false;
   LastScan last_scan_;
+  ros::WallTime last_scan_came_;  // 0: none did
+  ResultWait result_wait_;
   NextScan next_scan_ = NextScan::kGoesOn;
   std::optional<hyselam::InitialPose> initial_pose_;  // not yet used
   Status status_;

@@ -86,7 +86,8 @@ const char* toString(RunPlace place);
 ///   while (auto job = engine.takeJob()) engine.apply(runJob(*job));
 ///
 /// or with a second thread, which takes a job, runs it without holding any lock, and applies the
-/// result: both calls are cheap. At most one job is pending at a time.
+/// result: both calls are cheap. At most one job is pending at a time. BackgroundJobs says when, so
+/// that the map does not depend on the threads.
 class SlamEngine {
  public:
   static constexpr double kMaxStartWindow = 50.0;     ///< limit of startRun() [m]

@@ -259,6 +259,9 @@ struct SlamParams {
   SignaturePlacesParams signatures;      ///< signatures of places and their candidates
   NgramRecognizerParams words;           ///< segmentation into words and their n-gram matches
 
+  /// Loops and optimizations count at the first scan taken this long after the one at which they
+  /// were begun [s], >= 0; see BackgroundJobs.
+  double loop_latency = 1.0;
   int optimize_interval = 20;  ///< keyframes between optimizations when there are new loops, >= 1
   double dcs_phi = 20.0;       ///< squared error above which loops lose weight, > 0
   ConsolidationParams consolidation;  ///< of a saved map, before another run begins

@@ -263,6 +263,9 @@ void SlamParams::describe(ParameterVisitor& visit) {
   visit.group("run_start/", run_start);
   visit.group("loop/", loop);
   visit.group("signatures/", signatures);
+  visit("loop_latency", loop_latency, Range::between(0.0, 60.0), "s",
+        "loops and optimizations count at the first scan so long after they were begun, by the "
+        "stamps: equal scans give equal maps");
   visit.renamed("optimise_every", "optimize_interval");
   visit("optimize_interval", optimize_interval, kCount, "keyframes",
         "between optimizations when there are new loops");
