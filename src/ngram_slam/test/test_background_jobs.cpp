@@ -167,6 +167,22 @@ TEST(BackgroundJobs, countAtOnceAfterAPauseAndWhereTimeGoesBack) {
   }
 }
 
+TEST(BackgroundJobs, areOneForAllKindsOfWork) {
+  // Verifications come up at every turn: whatever waited behind them would wait for ever.
+  SlamEngine engine(params());
+  for (std::size_t i = 0; i < round().scans.size() / 2; ++i) add(i, &engine);
+  const auto job = engine.takeAllWork();
+  ASSERT_TRUE(job);
+  EXPECT_FALSE(engine.takeAllWork()) << "one at a time";
+  EXPECT_GT(job->tasks.size(), 0U);
+  EXPECT_GE(job->keyframes.size() + 1, engine.keyframes().size());
+  engine.apply(runJob(*job));
+  EXPECT_GT(engine.loops().size(), 0U);
+  const auto next = engine.takeAllWork();
+  ASSERT_TRUE(next);
+  EXPECT_TRUE(next->graph) << "of the loops that the first one found";
+}
+
 TEST(BackgroundJobs, areAllDoneWithoutScansOnRequest) {
   Busy busy;
   EXPECT_FALSE(busy.jobs.takeInNow(&busy.engine)) << "it has not been run";

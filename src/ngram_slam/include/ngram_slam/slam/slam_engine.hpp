@@ -128,6 +128,9 @@ class SlamEngine {
   std::optional<SlamJob> takeJob();
   /// As takeJob(), but optimization is due as soon as there is a loop not optimized yet.
   std::optional<SlamJob> takeFinalJob();
+  /// All that takeJob() would give one after the other, at once, as far as it is known now: for
+  /// results that count later, so that none waits behind the others.
+  std::optional<SlamJob> takeAllWork();
   void apply(const SlamJobResult& result);
 
   const SlamParams& params() const { return params_; }
@@ -330,7 +333,14 @@ class SlamEngine {
   void rebuildPathLengths();
   int keyframeAt(double stamp) const;
 
+  // Work for another thread, in slam_jobs.cpp.
   std::optional<SlamJob> makeJob(bool final);
+  bool mustSign(bool final) const;
+  void addKeyframesTo(SlamJob* job);
+  bool mustOptimize(bool final) const;
+  void addGraphTo(SlamJob* job, bool final);
+  std::optional<SlamJob> sendOut(SlamJob job);
+  void applyOptimized(const hyselam_pose_graph::OptimizeResult& optimized);
 
   SlamParams params_;
   SlamState state_;

@@ -14,7 +14,8 @@ void BackgroundJobs::applyResult(SlamEngine* engine) {
 }
 
 void BackgroundJobs::makeJob(double stamp, SlamEngine* engine) {
-  waiting_ = engine->takeJob();
+  // With a latency each job costs as much, whatever is in it.
+  waiting_ = latency_ > 0.0 ? engine->takeAllWork() : engine->takeJob();
   made_ = stamp;
 }
 

@@ -1,4 +1,6 @@
 // Work of the engine that may run on another thread: making it, running it, applying the result.
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -24,31 +26,61 @@ std::optional<SlamJob> SlamEngine::takeFinalJob() {
 std::optional<SlamJob> SlamEngine::makeJob(bool final) {
   if (job_pending_) return std::nullopt;
   SlamJob job;
-  const auto n = static_cast<int>(state_.keyframes.size());
-  const bool due = final || optimize_now_ || n - optimized_keyframes_ >= params_.optimize_interval;
   if (auto step = stepToCheck()) {
     // One at a time: what it changes, the next one sees. What is built on the path comes later.
     job.tasks.push_back(*std::move(step));
   } else if (!tasks_.empty()) {
     job.tasks.swap(tasks_);
-  } else if (keyframes_to_sign_.size() >= kKeyframesToSign || run_to_end_ ||
-             (final && !keyframes_to_sign_.empty())) {
-    job.keyframes.swap(keyframes_to_sign_);
-    job.ends_run = run_to_end_;
-    job.signatures = signatures_;
-    job.ask_each = isUntied();
-    run_to_end_ = false;
-  } else if (loops_changed_ && due) {
-    // A map that is known stays where it is while a run goes on in it, unless far loops move it.
-    const bool in_known_map =
-        run_open_ && !final && !optimize_now_ && params_.loops != LoopClosureMode::kThesis;
-    job_graph_ = runGraph(state_, in_known_map ? first_of_run_ : 0);
-    job.graph = std::move(job_graph_.graph);
-    loops_changed_ = optimize_now_ = false;
-    optimized_keyframes_ = n;
-  } else {
-    return std::nullopt;
+  } else if (mustSign(final)) {
+    addKeyframesTo(&job);
+  } else if (mustOptimize(final)) {
+    addGraphTo(&job, final);
   }
+  return sendOut(std::move(job));
+}
+
+std::optional<SlamJob> SlamEngine::takeAllWork() {
+  if (job_pending_) return std::nullopt;
+  SlamJob job;
+  while (auto step = stepToCheck()) job.tasks.push_back(*std::move(step));
+  std::move(tasks_.begin(), tasks_.end(), std::back_inserter(job.tasks));
+  tasks_.clear();
+  if (mustSign(false)) addKeyframesTo(&job);
+  if (mustOptimize(false)) addGraphTo(&job, false);
+  return sendOut(std::move(job));
+}
+
+bool SlamEngine::mustSign(bool final) const {
+  return keyframes_to_sign_.size() >= kKeyframesToSign || run_to_end_ ||
+         (final && !keyframes_to_sign_.empty());
+}
+
+void SlamEngine::addKeyframesTo(SlamJob* job) {
+  job->keyframes.swap(keyframes_to_sign_);
+  job->ends_run = run_to_end_;
+  job->signatures = signatures_;
+  job->ask_each = isUntied();
+  run_to_end_ = false;
+}
+
+bool SlamEngine::mustOptimize(bool final) const {
+  const int fresh = static_cast<int>(state_.keyframes.size()) - optimized_keyframes_;
+  return loops_changed_ && (final || optimize_now_ || fresh >= params_.optimize_interval);
+}
+
+void SlamEngine::addGraphTo(SlamJob* job, bool final) {
+  // A map that is known stays where it is while a run goes on in it, unless far loops move it.
+  const bool in_known_map =
+      run_open_ && !final && !optimize_now_ && params_.loops != LoopClosureMode::kThesis;
+  job_graph_ = runGraph(state_, in_known_map ? first_of_run_ : 0);
+  job->graph = std::move(job_graph_.graph);
+  loops_changed_ = optimize_now_ = false;
+  optimized_keyframes_ = static_cast<int>(state_.keyframes.size());
+}
+
+/// Nothing, if there is nothing in it.
+std::optional<SlamJob> SlamEngine::sendOut(SlamJob job) {
+  if (job.tasks.empty() && !job.graph && job.signatures == nullptr) return std::nullopt;
   job.params = params_;
   job_pending_ = true;
   return job;
@@ -77,12 +109,15 @@ SlamJobResult runJob(const SlamJob& job) {
 
 void SlamEngine::apply(const SlamJobResult& result) {
   job_pending_ = false;
+  // First, as its graph is the one that the job was made of.
+  if (result.optimized && !result.optimized->poses.empty()) applyOptimized(*result.optimized);
   for (std::size_t i = 0; i < result.tasks.size() && i < result.verifications.size(); ++i) {
     applyVerification(result.tasks[i], result.verifications[i]);
   }
   searchSignatureLoops(result.candidates);
-  if (!result.optimized || result.optimized->poses.empty()) return;
-  const auto& optimized = *result.optimized;
+}
+
+void SlamEngine::applyOptimized(const hyselam_pose_graph::OptimizeResult& optimized) {
   const auto first = static_cast<std::size_t>(job_graph_.first);
   const std::size_t n = first + optimized.poses.size() - job_graph_.offset;
   // What came since moves along with the last pose that was optimized.
