@@ -170,7 +170,7 @@ TEST(BackgroundJobs, countAtOnceAfterAPauseAndWhereTimeGoesBack) {
 TEST(BackgroundJobs, areOneForAllKindsOfWork) {
   // Verifications come up at every turn: whatever waited behind them would wait for ever.
   SlamEngine engine(params());
-  for (std::size_t i = 0; i < round().scans.size() / 2; ++i) add(i, &engine);
+  for (std::size_t i = 0; i < round().scans.size(); ++i) add(i, &engine);
   const auto job = engine.takeAllWork();
   ASSERT_TRUE(job);
   EXPECT_FALSE(engine.takeAllWork()) << "one at a time";
