@@ -123,6 +123,7 @@ class WebStackTest(unittest.TestCase):
             self.tap(tab, right, card=False)
         wait_until(lambda: name in self.confirmed(), f"{name} is not confirmed")
         tab.wait(f"hyselam.model.marked?.name !== {name!r} && hyselam.model.confirmedNames({right}).includes({name!r})", "that it is no longer asked")
+        tab.wait(f"document.querySelector('.undo')?.textContent === {'Undo: ' + name!r}", "what undo takes back")
         # A guess is confirmed by tapping its place.
         kitchen = tab.eval("Object.keys(hyselam.model.tables.places).find(id => hyselam.model.nameOf(id).text === 'kitchen')")
         if not tab.eval(f"hyselam.model.nameOf({kitchen}).sure"):
@@ -142,6 +143,7 @@ class WebStackTest(unittest.TestCase):
         tab.click("#stop")
         wait_until(lambda: not self.robot.paths.messages[-1].poses, "it has not stopped")
         tab.wait("(hyselam.model.values.way ?? []).length === 0", "the end of the way")
+        tab.wait("document.querySelector('.carry-on')?.textContent === 'Carry on to the kitchen'", "the way that goes on")
         # Driven into a room with a guessed name it asks; the person answers with a button.
         there = next(p for p in self.places() if any(w.text == "library" for w in p.words))
         self.robot.stand(there.centre.x, there.centre.y)

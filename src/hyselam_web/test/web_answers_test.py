@@ -83,6 +83,17 @@ class AnswersTest(PageCase):
             self.assertFalse(tab.eval("Boolean(document.querySelector('.carry-on'))"), "it was not on its way")
             self.hears(halted="the staff room")
             tab.wait(f"document.querySelector('.carry-on')?.textContent === {label!r}", label)
+            # Sent there by its number, it is called by its name.
+            self.hears(halted="SS04")
+            tab.wait("document.querySelector('.carry-on')?.textContent.endsWith(' %s')" % ("place 4" if language == "en-US" else "lugar 4"), "its number")
+            self.robot.names[4] = [("kitchen", True)]
+            self.robot.later(self.robot.show_places)
+            tab.wait("hyselam.model.nameOf(4).text === 'kitchen'", "the name")
+            self.hears(halted="")
+            self.hears(halted="SS04")
+            tab.wait("document.querySelector('.carry-on')?.textContent.endsWith(' %s')" % ("the kitchen" if language == "en-US" else "kitchen"), "its name")
+            self.hears(halted="the staff room")
+            tab.wait(f"document.querySelector('.carry-on')?.textContent === {label!r}", label)
             tab.wait(SETTLED % ".carry-on", "that it is meant when it is pressed")
             self.shot(tab, f"phone_carry_on_{language}")
             tab.click(".carry-on")

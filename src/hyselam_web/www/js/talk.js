@@ -1,7 +1,7 @@
 // The talk: what was said, what the robot answered, undo, yes and no, suggestions.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage} from "./i18n.js";
-import {corrected, plain, told} from "./wording.js";
+import {called, corrected, plain, told} from "./wording.js";
 import {listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
@@ -241,10 +241,17 @@ export class Talk {
     this.shownTo = newest;
   }
 
+  // A place that it was sent to by its number is known by its name, where it has one.
+  goalOf(halted) {
+    const [id] = [...halted.matchAll(PLACE_CODE)].filter(([code]) => code === halted).map((found) => found[1]);
+    if (!id) return plain(halted);
+    return !this.model.place(id) || this.model.nameOf(id).none ? t("place_number", {n: id}) : called(this.model.labelOf(id));
+  }
+
   // What is offered behind the talk and may change without it.
   open() {
     const {undo, halted} = this.model.values;
-    return `${undo} ${halted}`;
+    return `${undo} ${halted && this.goalOf(halted)}`;
   }
 
   // The place that the answer to "Where is ...?" told: {i of the answer, place}; null: that was not asked last.
@@ -322,7 +329,7 @@ export class Talk {
     }
     const {halted} = this.model.values;
     if (halted && this.may("drive") && !this.pending.length) {
-      lines.push([`halted ${language} ${halted}`, () => button(t("carry_on_to", {name: plain(halted)}), () => this.say(t("carry_on")), {class: "after carry-on", "data-settles": `carry on ${halted}`})]);
+      lines.push([`halted ${language} ${this.goalOf(halted)}`, () => button(t("carry_on_to", {name: this.goalOf(halted)}), () => this.say(t("carry_on")), {class: "after carry-on", "data-settles": `carry on ${halted}`})]);
     }
     for (const each of this.pending) {
       lines.push([`pending ${each.number} ${each.failed}`, () => make("div", {class: `said human ${each.failed ? "failed" : "waits"}`}, this.shownText(each.text), each.failed ? make("span", {class: "why"}, each.failed) : null)]);
