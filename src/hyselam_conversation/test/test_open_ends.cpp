@@ -141,10 +141,31 @@ TEST(OpenEnds, WhereANameRatherIsIsToldOnce) {
   }
 }
 
+TEST(OpenEnds, WhereANameRatherIsIsToldWhenItIsSaidNext) {
+  Talk t;
+  t.say("You are in the corridor.");
+  t.say("The third door on the right is the gents.");
+  EXPECT_FALSE(contains(t.say("The gents is opposite the kitchen."), "gents is SS03"));
+  // What came to a likely place while nothing was said of it is told with the next description.
+  t.talk.setMap(exampleMap());
+  EXPECT_FALSE(contains(t.say("The first door on the right is the library."), "gents is SS03"));
+}
+
+TEST(OpenEnds, WhereAPlaceIsIsAnsweredWhileAWayIsHalted) {
+  Talk t(false);
+  t.talk.confirmNames("SS10", {"reception"});
+  t.say("Go to the reception.");
+  t.say("Stop.");
+  ASSERT_TRUE(contains(t.say("There is a kitchen."), "not sure where"));
+  t.say("It's SS07.");
+  EXPECT_EQ(t.names(7), Names{"kitchen"});
+}
+
 TEST(OpenEnds, WhatWasToldOfBothNamesOfAPlaceIsOfThatPlace) {
   Talk t;
   t.say("You are in the corridor.");
   t.say("The waiting room is opposite the front desk.");
+  t.say("The front desk is 4 by 6 meters.");
   t.talk.standAt("SS01");
   t.say("This is the front desk room.");
   ASSERT_TRUE(contains(t.say("This is the front desk."), "Is it also known as front desk?"));
@@ -156,6 +177,11 @@ TEST(OpenEnds, WhatWasToldOfBothNamesOfAPlaceIsOfThatPlace) {
     EXPECT_EQ(is_here, place.id == 1) << place.id;
   }
   EXPECT_EQ(t.names(12), Names{"waiting room"});
+  const auto& described = t.talk.dialogue().description().places;
+  const auto desk = std::find_if(described.begin(), described.end(),
+                                 [](const auto& place) { return place.name == "front desk room"; });
+  ASSERT_NE(desk, described.end());
+  EXPECT_EQ(desk->length, 4.0);
   t.say("Undo that.");
   EXPECT_EQ(t.names(1), Names{"front desk room"});
 }

@@ -167,6 +167,17 @@ TEST(BackgroundJobs, countAtOnceAfterAPauseAndWhereTimeGoesBack) {
   }
 }
 
+TEST(BackgroundJobs, thatAreLateWhereTimeGoesBackCountSoonAfter) {
+  Busy busy;
+  const double back = busy.stamp() - 500.0;
+  EXPECT_FALSE(busy.jobs.takeIn(back, &busy.engine));
+  busy.jobs.noteScan(back, &busy.engine);  // without it
+  EXPECT_TRUE(busy.jobs.takeIn(back + 0.9, &busy.engine));
+  EXPECT_FALSE(busy.jobs.takeIn(back + 1.0, &busy.engine)) << "not when time is there again";
+  busy.jobs.runHere();
+  EXPECT_TRUE(busy.jobs.takeIn(back + 1.0, &busy.engine));
+}
+
 TEST(BackgroundJobs, areOneForAllKindsOfWork) {
   // Verifications come up at every turn: whatever waited behind them would wait for ever.
   SlamEngine engine(params());

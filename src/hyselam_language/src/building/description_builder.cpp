@@ -321,9 +321,19 @@ void DescriptionBuilder::giveName(const std::string& made_up, const std::string&
 }
 
 void DescriptionBuilder::unite(const std::string& name, const std::string& other) {
-  const Id stays = called(name), gone = called(other);
-  if (stays == 0 || gone == 0 || stays == gone) return;
   DescribedBuilding& building = state_.building;
+  // Of these very names: what only may be the same place stays another.
+  const auto calledSo = [&](const std::string& wanted) -> Id {
+    const std::string key = hyselam::utf8Lower(wanted);
+    for (const DescribedPlace& place : building.places) {
+      for (const std::string& each : allNamesOf(place)) {
+        if (hyselam::utf8Lower(each) == key) return place.id;
+      }
+    }
+    return 0;
+  };
+  const Id stays = calledSo(name), gone = calledSo(other);
+  if (stays == 0 || gone == 0 || stays == gone) return;
   const std::vector<std::string> names = allNamesOf(*building.findPlace(gone));
   joinPlaces(gone, stays, &building);
   auto& aliases = building.findPlace(stays)->aliases;

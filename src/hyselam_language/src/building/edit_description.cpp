@@ -13,6 +13,23 @@ void eraseIf(List* list, Goes goes) {
   list->erase(std::remove_if(list->begin(), list->end(), goes), list->end());
 }
 
+template <typename T>
+void takeOver(const std::optional<T>& told, std::optional<T>* known) {
+  if (!*known) *known = told;
+}
+
+/// What was told of the one alone.
+void takeOverTold(const DescribedPlace& of, DescribedPlace* to) {
+  takeOver(of.kind, &to->kind);
+  takeOver(of.length, &to->length);
+  takeOver(of.width, &to->width);
+  takeOver(of.area, &to->area);
+  takeOver(of.parts, &to->parts);
+  takeOver(of.size_word, &to->size_word);
+  takeOver(of.doors, &to->doors);
+  takeOver(of.floor, &to->floor);
+}
+
 }  // namespace
 
 Id addPlace(const std::string& name, const std::optional<PlaceKind>& kind,
@@ -57,6 +74,7 @@ void removePlace(Id place, DescribedBuilding* building) {
 }
 
 void joinPlaces(Id gone, Id stays, DescribedBuilding* building) {
+  takeOverTold(*building->findPlace(gone), building->findPlace(stays));
   std::vector<DescribedConnection> told = building->connections;
   std::stable_sort(told.begin(), told.end(),
                    [](const auto& a, const auto& b) { return a.order < b.order; });

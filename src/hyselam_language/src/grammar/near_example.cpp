@@ -14,8 +14,8 @@ constexpr std::size_t kMoreThanIn = 4;  // letters: "in", "on", "em" place anyth
 
 bool isNearExample(const std::string& said, const std::string& example, const Grammar& grammar) {
   const language::CompiledGrammar& compiled = grammar.compiled();
-  const auto& placing =
-      compiled.placing_words.empty() ? compiled.telling_words : compiled.placing_words;
+  const bool has_placing = !compiled.placing_words.empty();
+  const auto& placing = has_placing ? compiled.placing_words : compiled.telling_words;
   const auto placingIn = [&](const std::string& text) {
     std::set<std::string> words;
     for (const auto& token : language::tokenize(text, {0, text.size()}, compiled.tokenRules())) {
@@ -26,7 +26,7 @@ bool isNearExample(const std::string& said, const std::string& example, const Gr
   const std::set<std::string> of_example = placingIn(example), of_said = placingIn(said);
   return std::includes(of_said.begin(), of_said.end(), of_example.begin(), of_example.end()) &&
          std::any_of(of_example.begin(), of_example.end(),
-                     [](const std::string& word) { return word.size() >= kMoreThanIn; });
+                     [&](const auto& word) { return has_placing || word.size() >= kMoreThanIn; });
 }
 
 }  // namespace hyselam_topo

@@ -123,11 +123,21 @@ void propose(const PartReading& part, const CompiledGrammar& grammar, Utterance*
 const std::set<std::string> kGuesses{"no_pattern",       "no_name", "misspelt",
                                      "not_a_known_kind", "bare",    "quantity"};
 
-void replaceAll(const std::string& what, const std::string& by, std::string* text) {
-  for (std::size_t at = text->find(what); at != std::string::npos;
-       at = text->find(what, at + by.size())) {
-    text->replace(at, what.size(), by);
+/// The text with {names} and {word} filled in; what people said is left as it is.
+std::string filled(const std::string& text, const std::string& names, const std::string& word) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    if (text.compare(at, 7, "{names}") == 0) {
+      result += names;
+      at += 7;
+    } else if (text.compare(at, 6, "{word}") == 0) {
+      result += word;
+      at += 6;
+    } else {
+      result += text[at++];
+    }
   }
+  return result;
 }
 
 /// Instead of a guess: what was heard, and what was not understood beside it.
@@ -141,9 +151,7 @@ void tellHeard(const Reading& reading, const CompiledGrammar& grammar, Utterance
   std::vector<std::string> texts;
   texts.reserve(names.size());
   for (const FactArgument& name : names) texts.push_back(name.text);
-  utterance->reason = template_text->second;
-  replaceAll("{names}", quotedInARow(texts), &utterance->reason);
-  replaceAll("{word}", beside, &utterance->reason);
+  utterance->reason = filled(template_text->second, quotedInARow(texts), beside);
 }
 
 /// The refused parts without matter become words left out of the statement before them.

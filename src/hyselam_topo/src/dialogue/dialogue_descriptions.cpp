@@ -98,14 +98,13 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   turn.beyond_here = true;
   turn.told = true;
   if (issues.empty() && builder_.speaker().empty()) {
-    // "My cabin" is taken for the cabin, of which there is one: whose it is is not known.
+    // "My cabin" is taken for the cabin, of which there is one: whose it is is not known. Nobody
+    // misses whose it is in "our kitchen".
+    const std::string of_one =
+        grammar().has("of_one_speaker") ? " " + grammar().say("of_one_speaker") + " " : "";
     for (const std::string& my : wordsForMine(u)) {
-      // Nobody misses whose it is in "our kitchen".
-      const std::string of_one =
-          grammar().has("of_one_speaker") ? grammar().say("of_one_speaker") : "";
-      if ((" " + of_one + " ").find(" " + hyselam::utf8Fold(my) + " ") != std::string::npos) {
-        turn.left_out.push_back(my);
-      }
+      if (of_one.find(" " + hyselam::utf8Fold(my) + " ") == std::string::npos) continue;
+      turn.left_out.push_back(my);
     }
   }
   turn.asks_speaker = turn.asks_speaker || (builder_.speaker().empty() && saysMy(u));
@@ -281,7 +280,6 @@ void Dialogue::askAboutIssue(const DescriptionIssue& issue, bool asks_speaker, R
 void Dialogue::matchDescription(Reply& out, bool report) {
   if (talk_.is_trial) return;
   talk_.match.reset();
-  const std::map<std::string, Id> told_before = std::move(talk_.unsure.likely);
   talk_.unsure = {};
   const DescribedBuilding& building = builder_.building();
   if (!places_.hasMap() || building.places.empty()) return;
@@ -326,30 +324,32 @@ void Dialogue::matchDescription(Reply& out, bool report) {
     return;
   }
   const std::vector<MovedName> moved = movedNames(guessed_before, places_, building);
-  if (report) reportMatch(told_before, moved, out);
+  if (report) reportMatch(moved, out);
   tellMoved(moved, report, out);
   if (problem_to_ask) askMostInformativeQuestion(*problem_to_ask, out);
 }
 
-void Dialogue::tellLikely(const std::map<std::string, Id>& told_before,
-                          const std::vector<MovedName>& moved, Reply& out) {
+void Dialogue::tellLikely(const std::vector<MovedName>& moved, Reply& out) {
   const Phrases& p = phrases();
   std::vector<std::string> items;
+  std::map<std::string, Id> told;
   for (const auto& [name, id] : talk_.unsure.likely) {
-    const auto before = told_before.find(name);
-    const bool is_told = before != told_before.end() && before->second == id;
+    const Place* place = places_.map().findPlace(id);
+    if (place == nullptr || isCode(name)) continue;
+    const auto before = talk_.told_likely.find(name);
+    const bool is_told = before != talk_.told_likely.end() && before->second == id;
     const bool is_moved =
         std::any_of(moved.begin(), moved.end(),
                     [&known = name](const auto& each) { return each.name == known; });
-    const Place* place = places_.map().findPlace(id);
-    if (is_told || is_moved || place == nullptr || isCode(name)) continue;
+    told[name] = id;
+    if (is_told || is_moved) continue;
     items.push_back(p.say("likely_item", {{"name", said(name)}, {"code", codeOf(*place)}}));
   }
+  talk_.told_likely = std::move(told);
   if (!items.empty()) out.sentences.push_back(p.say("likely", {{"items", p.list(items)}}));
 }
 
-void Dialogue::reportMatch(const std::map<std::string, Id>& told_before,
-                           const std::vector<MovedName>& moved, Reply& out) {
+void Dialogue::reportMatch(const std::vector<MovedName>& moved, Reply& out) {
   const Phrases& p = phrases();
   const DescribedBuilding& building = builder_.building();
   std::vector<std::string> missing;
@@ -379,7 +379,7 @@ void Dialogue::reportMatch(const std::map<std::string, Id>& told_before,
   out.sentences.push_back(p.say("found", {{"found", std::to_string(all - missing.size())},
                                           {"told", std::to_string(all)},
                                           {"confirmed", std::to_string(confirmed)}}));
-  tellLikely(told_before, moved, out);
+  tellLikely(moved, out);
   const std::vector<std::string> names(talk_.unsure.names.begin(), talk_.unsure.names.end());
   std::vector<std::string> without = missing;
   without.erase(std::remove_if(without.begin(), without.end(),

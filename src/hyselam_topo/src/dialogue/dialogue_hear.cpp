@@ -238,7 +238,7 @@ ParsedText Dialogue::parsed(const std::string& text) const {
   if (isWondering()) options.expected = {"where_answer"};
   // "Go on." may be a "yes", too, where something is asked.
   const bool nothing_asked = question().kind == Question::Kind::kNone && !talk_.others_asked;
-  if (nothing_asked && !haltedGoal().empty()) options.expected = {"carry_on"};
+  if (nothing_asked && !haltedGoal().empty()) options.expected.insert("carry_on");
   options.preferred = language_;
   ParsedText parsed = parser_.parse(text, options);
   const auto& all = parsed.utterances;

@@ -5,7 +5,7 @@ import {called, corrected, plain, told} from "./wording.js";
 import {listen, speak} from "./speech.js";
 
 // Answers after which there is something to take back.
-const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|So (SS|CC|VV)\d+ is not |Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então (.* volta a ser|\S+ não é )|Encontrei \d)/;
+const TAKEN = /^(Noted:|Thank you\. |That moves|I have (forgotten|added|found \d)|I treat the door as|I have taken|So \S+ is .* again\.|So (SS|CC|VV)\d+ is not |(SS|CC|VV)\d+ (is no longer confirmed|já não está confirmado)|Anotado:|Obrigad[oa]\. |Isso muda|Esqueci|Acrescentei|Trato a porta como|Volto a tratar a porta como|Anotei|Desfiz|Então (.* volta a ser|\S+ não é )|Encontrei \d)/;
 const TAKES_BACK = /^(Undo that|Desfaça isso)\b/; // as the button says it
 const ASKS_WHERE = /^\s*(where|onde)\b/i;
 const PLACE_CODE = /\b(?:SS|CC|VV)0*(\d+)\b/g;

@@ -132,7 +132,11 @@ SlamServer::~SlamServer() {
   work_.notify_all();
   job_thread_.join();
   map_thread_.join();
-  takeInNow();
+  broadcaster_.timer.stop();
+  {
+    const Lock lock(mutex_);
+    takeInNow();
+  }
   saveIfChanged("at the end");
 }
 
@@ -236,6 +240,7 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
 void SlamServer::onTimeJump() {
   const Lock lock(mutex_);
   mapping_->engine.endRun();
+  result_wait_ = {};
   next_scan_ = NextScan::kAfterJump;
   broadcaster_.last = ros::Time();
 }

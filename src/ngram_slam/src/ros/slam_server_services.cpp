@@ -109,6 +109,7 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
       ++epoch_;
       next_scan_ = NextScan::kAfterPause;
       initial_pose_.reset();
+      result_wait_ = {};
       map_due_ = drawsMaps();
     }
     work_.notify_all();

@@ -164,7 +164,8 @@ class Dialogue {
   /// Another node has understood what was said, of things: "undo that" does not go behind it
   /// unasked.
   void thingsSpokenOf() { talk_.things_since = true; }
-  /// What "undo that" would take back now, for people: a statement, or names; "": nothing.
+  /// What "undo that" would take back now, for people: a statement, or names; "": nothing, or it
+  /// would have to be asked for twice, or another question is open.
   std::string nextUndo() const;
   /// Where "carry on" would drive to, after a stop on the way; "": nowhere.
   std::string haltedGoal() const;
@@ -320,12 +321,10 @@ class Dialogue {
   /// Reads the statements back that `before` did not have.
   void readBack(const DescribedBuilding& before, bool here_told, Reply& reply);
   void matchDescription(Reply& reply, bool report);
-  /// `told_before`: the likely places that people know of; `moved` is told by tellMoved().
-  void reportMatch(const std::map<std::string, Id>& told_before,
-                   const std::vector<MovedName>& moved, Reply& reply);
-  /// Where the names are that have come to a likely place.
-  void tellLikely(const std::map<std::string, Id>& told_before, const std::vector<MovedName>& moved,
-                  Reply& reply);
+  /// `moved` is told by tellMoved().
+  void reportMatch(const std::vector<MovedName>& moved, Reply& reply);
+  /// Where the names are that have come to a likely place since people were told.
+  void tellLikely(const std::vector<MovedName>& moved, Reply& reply);
 
   // names
   /// What was told since `before` of the names of places that have confirmed ones holds for the
@@ -580,7 +579,8 @@ class Dialogue {
     bool entered = false;  ///< the robot's place or the map has changed; not processed yet
     Id asked = 0;          ///< the place for which a question was considered since entering it
     std::optional<PlaceAssignment> match;
-    Uncertainty unsure;  ///< of match
+    Uncertainty unsure;                     ///< of match
+    std::map<std::string, Id> told_likely;  ///< Uncertainty::likely as people know it
     QuestionKeeper questions;
     std::optional<Id> under_way;         ///< the place that it drives to; 0: it follows a person
     std::vector<NamedGoal> way;          ///< where it was sent last, what is left of it ...

@@ -129,7 +129,8 @@ class SlamEngine {
   /// As takeJob(), but optimization is due as soon as there is a loop not optimized yet.
   std::optional<SlamJob> takeFinalJob();
   /// All that takeJob() would give one after the other, at once, as far as it is known now: for
-  /// results that count later, so that none waits behind the others.
+  /// results that count later, so that none waits behind the others. Its steps are checked against
+  /// the path as it is now: none sees what another one changes.
   std::optional<SlamJob> takeAllWork();
   void apply(const SlamJobResult& result);
 

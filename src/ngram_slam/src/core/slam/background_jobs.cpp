@@ -1,5 +1,7 @@
 #include "ngram_slam/slam/background_jobs.hpp"
 
+#include <algorithm>
+
 namespace ngram_slam {
 
 bool BackgroundJobs::counts(double stamp) const {
@@ -31,7 +33,11 @@ bool BackgroundJobs::takeIn(double stamp, SlamEngine* engine) {
 
 void BackgroundJobs::noteScan(double stamp, SlamEngine* engine) {
   last_scan_ = stamp;
-  if (!isOut()) makeJob(stamp, engine);
+  if (isOut()) {
+    made_ = std::min(made_, stamp);  // time has gone back: it does not wait until it was made again
+  } else {
+    makeJob(stamp, engine);
+  }
 }
 
 bool BackgroundJobs::takeInNow(SlamEngine* engine) {
