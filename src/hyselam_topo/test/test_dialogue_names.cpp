@@ -20,6 +20,14 @@ std::string allSaid(Talk* talk) {
   return all;
 }
 
+const hyselam_topo::Place* firstGuessed(const Talk& talk) {
+  const auto& places = talk.dialogue.map().places;
+  const auto guessed = std::find_if(places.begin(), places.end(), [](const auto& place) {
+    return hyselam_topo::nameStateOf(place) == hyselam_topo::NameState::kUnconfirmed;
+  });
+  return guessed == places.end() ? nullptr : &*guessed;
+}
+
 }  // namespace
 
 TEST(DialogueNames, ANameThatIsTypedForAPlaceReplacesItsOldOne) {
@@ -47,17 +55,16 @@ TEST(DialogueNames, AWrongGuessThatIsForgottenTellsNothingOfThePlace) {
   for (const bool spoken : {false, true}) {
     Talk talk;
     talk.say("The library is next to the kitchen.");
-    const auto& places = talk.dialogue.map().places;
-    const auto guessed = std::find_if(places.begin(), places.end(), [](const auto& place) {
-      return hyselam_topo::nameStateOf(place) == hyselam_topo::NameState::kUnconfirmed;
-    });
-    ASSERT_NE(guessed, places.end()) << "nothing was guessed";
+    const hyselam_topo::Place* guessed = firstGuessed(talk);
+    ASSERT_NE(guessed, nullptr) << "nothing was guessed";
     const hyselam_topo::Id id = guessed->id;
     const std::string code = hyselam_topo::codeOf(*guessed), name = talk.names(id).front();
     const std::string reply =
         spoken ? talk.say("Forget the name of " + code + ".") : talk.dialogue.forget(id).text();
     EXPECT_TRUE(has(reply, "forgotten")) << reply;
-    for (const auto& place : places) EXPECT_NE(talk.names(place.id), Names{name}) << reply;
+    for (const auto& place : talk.dialogue.map().places) {
+      EXPECT_NE(talk.names(place.id), Names{name}) << reply;
+    }
     EXPECT_FALSE(has(allSaid(&talk), code + " is next to")) << allSaid(&talk);
   }
 }
@@ -185,11 +192,8 @@ TEST(DialogueNames, WhatWasSaidOfThingsIsAStepOnTheWayBack) {
 TEST(DialogueNames, ANameThatIsAGuessAgainIsNotForgotten) {
   Talk talk;
   talk.say("The library is next to the kitchen.");
-  const auto& places = talk.dialogue.map().places;
-  const auto guessed = std::find_if(places.begin(), places.end(), [](const auto& place) {
-    return hyselam_topo::nameStateOf(place) == hyselam_topo::NameState::kUnconfirmed;
-  });
-  ASSERT_NE(guessed, places.end()) << "nothing was guessed";
+  const hyselam_topo::Place* guessed = firstGuessed(talk);
+  ASSERT_NE(guessed, nullptr) << "nothing was guessed";
   const hyselam_topo::Id id = guessed->id;
   const std::string code = hyselam_topo::codeOf(*guessed), name = talk.names(id).front();
   talk.dialogue.name(id, {name});

@@ -39,6 +39,14 @@ std::vector<SaidName*> namesIn(Utterance* u) {
   return names;
 }
 
+/// All that was told of `gone` is of `stays`, and so is what is told of "it".
+void join(Id gone, Id stays, DescriptionState* state) {
+  joinPlaces(gone, stays, &state->building);
+  for (Id& subject : state->context.subjects) {
+    if (subject == gone) subject = stays;
+  }
+}
+
 }  // namespace
 
 const char* toString(IssueKind kind) {
@@ -312,10 +320,7 @@ void DescriptionBuilder::giveName(const std::string& made_up, const std::string&
     place.name = name;
     if (!place.kind) place.kind = names_.kindOf(name);
   } else {
-    joinPlaces(from.front(), to.front(), &building);
-    for (Id& subject : state_.context.subjects) {
-      if (subject == from.front()) subject = to.front();
-    }
+    join(from.front(), to.front(), &state_);
   }
   state_.context.variants.erase(from.front());
 }
@@ -335,12 +340,9 @@ void DescriptionBuilder::unite(const std::string& name, const std::string& other
   const Id stays = calledSo(name), gone = calledSo(other);
   if (stays == 0 || gone == 0 || stays == gone) return;
   const std::vector<std::string> names = allNamesOf(*building.findPlace(gone));
-  joinPlaces(gone, stays, &building);
+  join(gone, stays, &state_);
   auto& aliases = building.findPlace(stays)->aliases;
   aliases.insert(aliases.end(), names.begin(), names.end());
-  for (Id& subject : state_.context.subjects) {
-    if (subject == gone) subject = stays;
-  }
   state_.context.variants.erase(gone);
 }
 
@@ -360,10 +362,7 @@ void DescriptionBuilder::rename(const std::string& old, const std::string& name)
   if (id == 0) return;
   const Id other = called(name);
   if (other != 0 && other != id) {
-    joinPlaces(id, other, &state_.building);
-    for (Id& subject : state_.context.subjects) {
-      if (subject == id) subject = other;
-    }
+    join(id, other, &state_);
   } else {
     DescribedPlace& place = *state_.building.findPlace(id);
     place.name = name;
