@@ -11,6 +11,7 @@
 #include "hyselam_common/ros/drop_counter.hpp"
 #include "hyselam_common/ros/initial_pose.hpp"
 #include "hyselam_common/ros/rate_limit.hpp"
+#include "hyselam_common/ros/result_wait.hpp"
 #include "hyselam_common/ros/scan_input_params.hpp"
 #include "hyselam_common/ros/wait_for_transform.hpp"
 #include "hyselam_common/testing/files.hpp"
@@ -176,6 +177,30 @@ TEST(DropCounter, CountsByReasonAndRemembersTheLast) {
                                                 {"dropped: no transform", "2"},
                                                 {"dropped: queue full", "1"},
                                                 {"last dropped", "no transform: odom -> camera"}}));
+}
+
+TEST(ResultWait, MessagesWaitForAResultThatIsLateButNotForEver) {
+  using Verdict = ResultWait::Verdict;
+  ResultWait wait(2.0);
+  const auto ask = [&](bool is_there, double now) {
+    return wait.ask(is_there, ros::WallTime(now));
+  };
+  EXPECT_EQ(ask(true, 10.0), Verdict::kGo);
+  EXPECT_EQ(ask(false, 11.0), Verdict::kWait);
+  EXPECT_EQ(ask(false, 12.9), Verdict::kWait);
+  EXPECT_EQ(ask(true, 12.95), Verdict::kGo) << "it came while it was waited for";
+  EXPECT_EQ(ask(false, 20.0), Verdict::kWait) << "the next one has the whole time again";
+  EXPECT_EQ(ask(false, 22.0), Verdict::kGivenUp);
+  EXPECT_EQ(ask(false, 22.1), Verdict::kGo) << "said once, and not waited for again";
+  EXPECT_EQ(wait.givenUp(), 1u);
+  wait.forget();
+  EXPECT_EQ(ask(false, 30.0), Verdict::kWait) << "another map";
+  EXPECT_EQ(wait.givenUp(), 1u);
+}
+
+TEST(ResultWait, NothingIsWaitedForWhereTheLimitIsZero) {
+  ResultWait wait(0.0);
+  EXPECT_EQ(wait.ask(false, ros::WallTime(5.0)), ResultWait::Verdict::kGivenUp);
 }
 
 TEST(RateLimit, LetsPassInTheTimeOfTheData) {

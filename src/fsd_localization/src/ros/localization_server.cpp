@@ -272,21 +272,12 @@ void LocalizationServer::takeOverMap(const std::optional<Pose2>& base_in_odom) {
 
 // ---- scans
 
-/// An answer of the search counts at a certain scan. If it is not there when that scan comes, the
-/// scan waits, so that results do not depend on how busy the machine is; but not for ever.
+/// The scan at which an answer of the search counts waits for it.
 bool LocalizationServer::isHeldUp(const ros::Time& stamp) {
-  if (!localizer_ || !localizer_->isSearchLate(stamp.toSec())) {
-    search_wait_.since.reset();
-    search_wait_.over = false;
-    return false;
-  }
-  if (search_wait_.over) return false;
-  const ros::WallTime now = ros::WallTime::now();
-  if (!search_wait_.since) search_wait_.since = now;
-  const double waited = (now - *search_wait_.since).toSec();
-  if (waited < params_.search_wait) return true;
-  search_wait_.over = true;
-  ++search_wait_.late;
+  using Wait = hyselam::ResultWait;
+  const bool is_there = !localizer_ || !localizer_->isSearchLate(stamp.toSec());
+  const auto verdict = search_wait_.ask(is_there, ros::WallTime::now());
+  if (verdict != Wait::Verdict::kGivenUp) return verdict == Wait::Verdict::kWait;
   ROS_WARN_STREAM_THROTTLE(
       30.0, log_name_ << " a search of the map has taken longer than search_latency, "
                       << params_.localizer.search_latency << " s, and search_wait, "
@@ -474,7 +465,7 @@ void LocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {
   addValue(status, "model", toString(params_.localizer.model));
   addValue(status, "updates", updates_.count);
   addValue(status, "last update [ms]", updates_.last_ms);
-  addValue(status, "searches late", search_wait_.late);
+  addValue(status, "searches late", search_wait_.givenUp());
   if (last_result_) {
     const Eigen::Matrix3d& c = last_result_->covariance;
     addValue(status, "phase", toString(last_result_->phase));

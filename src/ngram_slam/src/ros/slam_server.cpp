@@ -240,7 +240,7 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
 void SlamServer::onTimeJump() {
   const Lock lock(mutex_);
   mapping_->engine.endRun();
-  result_wait_ = {};
+  result_wait_.forget();
   next_scan_ = NextScan::kAfterJump;
   broadcaster_.last = ros::Time();
 }

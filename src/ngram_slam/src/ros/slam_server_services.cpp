@@ -109,7 +109,7 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
       ++epoch_;
       next_scan_ = NextScan::kAfterPause;
       initial_pose_.reset();
-      result_wait_ = {};
+      result_wait_.forget();
       map_due_ = drawsMaps();
     }
     work_.notify_all();
@@ -208,7 +208,7 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "regions", mapping_->regions.size());
     addValue(status, "optimizations", c.optimizations);
     addValue(status, "looking for loops", mapping_->jobs.isOut());
-    addValue(status, "loops and optimizations late", status_.late_results);
+    addValue(status, "loops and optimizations late", result_wait_.givenUp());
     addValue(status, "scans that hardly matched", status_.weak_matches);
     addValue(status, "odometry jumps", c.odometry_jumps);
     reportRoughRoad(status, engine);

@@ -46,8 +46,7 @@ void SlamServer::noteJobError(const std::string& error) {
   ROS_ERROR_STREAM(log_name_ << " loops are not added: " << error);
 }
 
-/// A scan at which a result counts that is not there waits, so that maps do not depend on how busy
-/// the machine is; but not for ever.
+/// The scan at which results count waits for them.
 bool SlamServer::isHeldUp(const ros::Time& stamp) {
   const Lock lock(mutex_);
   if (paused_) return false;
@@ -55,15 +54,9 @@ bool SlamServer::isHeldUp(const ros::Time& stamp) {
   last_scan_came_ = now;
   const bool there = takeIn(stamp.toSec());
   work_.notify_all();
-  if (there) {
-    result_wait_ = {};
-    return false;
-  }
-  if (result_wait_.over) return false;
-  if (!result_wait_.since) result_wait_.since = now;
-  if ((now - *result_wait_.since).toSec() < params_.loop_wait) return true;
-  result_wait_.over = true;
-  ++status_.late_results;
+  using Wait = hyselam::ResultWait;
+  const auto verdict = result_wait_.ask(there, now);
+  if (verdict != Wait::Verdict::kGivenUp) return verdict == Wait::Verdict::kWait;
   ROS_WARN_STREAM_THROTTLE(
       30.0, log_name_ << " loops or an optimization have taken longer than loop_latency, "
                       << params_.slam.loop_latency << " s, and loop_wait, " << params_.loop_wait

@@ -17,6 +17,7 @@
 #include "fsd_localization/ros/map_preparation.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/initial_pose.hpp"
+#include "hyselam_common/ros/result_wait.hpp"
 #include "hyselam_common/ros/scan_input.hpp"
 
 namespace fsd_localization {
@@ -88,11 +89,7 @@ class LocalizationServer {
     std::size_t count = 0;
   } updates_;
   ros::WallTime saved_;
-  struct SearchWait {
-    std::optional<ros::WallTime> since;  // a scan has waited for the answer that is due
-    bool over = false;                   // and did so long enough
-    std::size_t late = 0;                // answers that were not waited for to the end
-  } search_wait_;
+  hyselam::ResultWait search_wait_{params_.search_wait};
 
   hyselam::ScanInput input_;
   ros::WallTime reminded_of_map_ = ros::WallTime::now();

@@ -20,6 +20,7 @@
 
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_common/ros/rate_limit.hpp"
+#include "hyselam_common/ros/result_wait.hpp"
 #include "hyselam_common/ros/scan_input.hpp"
 #include "ngram_slam/ros/slam_parameters.hpp"
 #include "ngram_slam/ros/slam_publisher.hpp"
@@ -71,7 +72,7 @@ class SlamServer {
   struct Status {
     std::string job_error, map_error, save_error;
     double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
-    std::size_t paused_scans = 0, weak_matches = 0, late_results = 0;
+    std::size_t paused_scans = 0, weak_matches = 0;
     std::string changes = "nothing changed";  // since the last session
   };
   /// What a map is drawn from, copied from the engine.
@@ -105,11 +106,6 @@ class SlamServer {
   struct LastScan {
     ros::Time stamp;
     hyselam::Pose2 odometry;
-  };
-  /// Scans wait for a result that counts, but not for ever.
-  struct ResultWait {
-    std::optional<ros::WallTime> since;
-    bool over = false;
   };
   enum class NextScan { kGoesOn, kAfterPause, kAfterJump };
 
@@ -155,7 +151,7 @@ class SlamServer {
   bool ending_ = false, map_due_ = false, paused_ = false;
   LastScan last_scan_;
   ros::WallTime last_scan_came_;  // 0: none did
-  ResultWait result_wait_;
+  hyselam::ResultWait result_wait_{params_.loop_wait};
   NextScan next_scan_ = NextScan::kGoesOn;
   std::optional<hyselam::InitialPose> initial_pose_;  // not yet used
   Status status_;
