@@ -285,6 +285,15 @@ TEST(Grammar, ErrorsNameFileLineAndKey) {
   expectParts(errorWith("kind: statement", "refuse: never"), {"no reason 'never'"});
   expectParts(errorWith("0.001: [g]", "-1: [g]"), {"factor > 0"});
   expectParts(errorWith("stop: [is", "stip: [is"), {"names.thing.stip"});
+  std::string row = "well", nested = "well";
+  for (int k = 0; k < 40; ++k) {
+    row += " (then|now)";
+    nested = "(" + nested + ") [now]";
+  }
+  for (const std::string& text : {row, nested}) {
+    expectParts(errorWith("macros:", "fillers: {before: [\"" + text + "\"]}\nmacros:"),
+                {"fillers", "more than 10000 phrases"});
+  }
   expectParts(errorWith("intents:", "intents: ["), {"g.yaml", "is not YAML"});
   expectParts(messageOf<hyselam::InputError>([] { Grammar::shipped("tlh"); }), {"'tlh'", "en, pt"});
   EXPECT_THROW(Grammar::load({"/nowhere/g.yaml"}), hyselam::InputError);

@@ -485,6 +485,16 @@ TEST(DialogueStop, StatementsBesideItAreWhatItMeansNext) {
 
 // ---- A name taken back ----
 
+TEST(DialogueNames, WhatIsTakenBackInSeveralWordsIsTakenBackOnce) {
+  Talk talk;
+  talk.say("The kitchen is next to the library.");
+  talk.say("The canteen is next to the lab.");
+  const std::string reply = talk.say("Oh no, that was wrong. Forget what I just said.");
+  EXPECT_TRUE(has(reply, "The canteen is next to the lab")) << reply;
+  EXPECT_FALSE(has(reply, "kitchen")) << reply;
+  EXPECT_TRUE(has(talk.say("Undo that."), "The kitchen is next to the library"));
+}
+
 TEST(DialogueNames, UndoRightAfterTakesTheNameBack) {
   Talk talk;
   talk.say("This is the kitchen.");

@@ -5,6 +5,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from devtools import DESKTOP, PHONE
+from fake_robot import wait_until
 from page_case import PageCase
 
 UNDO = "document.querySelector('.undo')?.textContent"
@@ -176,6 +177,22 @@ class AnswersTest(PageCase):
         tab.click("#next [data-place='6']")
         tab.wait("hyselam.model.nameOf(6).sure && document.querySelector('#next').hidden", "the name")
         self.assertEqual(self.asked("name"), [{"place": 6, "names": ["toilets"]}])
+        self.assertEqual(tab.errors, [])
+
+    def test_what_is_typed_to_a_guess_is_an_answer(self):
+        self.serve()
+        self.robot.names[3] = [("science lab", False)]
+        self.robot.show_places()
+        tab = self.open_map(PHONE)
+        lab = 'SS03 is "science lab".'
+        for typed, heard in [("yes", lab), ("Yeah, that's right.", lab), ("sim, é isso", 'SS03 é "science lab".'), ("place 5", 'SS05 is "science lab".'),
+                             ("it is place 5, between the gym and the library", 'SS05 is "science lab". SS05 is between the gym and the library.'),
+                             ("é o lugar 5, em frente à escada", 'SS05 é "science lab". SS05 fica em frente à escada.'), ("yes, the toilet is number 2", 'SS02 is "toilet".'),
+                             ("yes, but the gym is shut", "yes, but the gym is shut"), ("no", "no")]:
+            self.hears(("human", "Hello."), ("robot", "Thank you. SS04 is the music room."))
+            tab.wait("document.querySelector('#next p')?.textContent === 'Is place 3 the science lab?'", "the question")
+            self.say(tab, typed)
+            wait_until(lambda h=heard: {"text": h} in self.asked("say"), lambda: (typed, self.asked("say")))
         self.assertEqual(tab.errors, [])
 
     # ---- Words ----

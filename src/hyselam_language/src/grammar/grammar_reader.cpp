@@ -174,7 +174,7 @@ class Reader {
 
   static void addWords(const GrammarNode& node, std::vector<Words>* all) {
     for (const std::string& text : node.texts()) {
-      for (const std::string& phrase : expanded(text)) all->push_back(splitWords(phrase));
+      for (const std::string& phrase : expanded(node, text)) all->push_back(splitWords(phrase));
     }
   }
 

@@ -60,9 +60,7 @@ void readUrgent(const GrammarNode& node, UrgentPhrases* phrases) {
     const auto kind = kinds.find(key);
     if (kind == kinds.end()) list.fail("this key is not known");
     for (const std::string& text : list.texts()) {
-      const std::vector<std::string> each_way = expanded(text);
-      if (each_way.empty()) list.fail("'" + text + "': a bracket is not closed");
-      for (const std::string& phrase : each_way) {
+      for (const std::string& phrase : expanded(list, text)) {
         if (urgentTokens(phrase).empty()) list.fail("there is an empty entry");
         phrases->add(kind->second, phrase);
       }

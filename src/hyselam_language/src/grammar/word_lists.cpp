@@ -1,5 +1,7 @@
 #include "word_lists.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "hyselam_common/numbers.hpp"
@@ -14,6 +16,12 @@ Words splitWords(const std::string& text) {
   return {fields.begin(), fields.end()};
 }
 
+namespace {
+
+constexpr std::size_t kMostExpanded = 10000;  // phrases of one text; brackets multiply
+
+}  // namespace
+
 std::vector<std::string> expanded(const std::string& text) {
   const std::size_t open = text.find_first_of("([");
   if (open == std::string::npos) return {text};
@@ -26,15 +34,26 @@ std::vector<std::string> expanded(const std::string& text) {
     if (c == '(' || c == '[') ++depth;
     if (c == ')' || c == ']') --depth;
     if (depth == 0 || (depth == 1 && c == '|')) {
-      for (std::string& each : expanded(text.substr(begin, at - begin))) {
-        inside.push_back(std::move(each));
-      }
+      std::vector<std::string> choice = expanded(text.substr(begin, at - begin));
+      if (choice.empty() || inside.size() + choice.size() > kMostExpanded) return {};
+      std::move(choice.begin(), choice.end(), std::back_inserter(inside));
       begin = at + 1;
     }
   }
+  const std::vector<std::string> rests = expanded(text.substr(at));
+  if (inside.size() * rests.size() > kMostExpanded) return {};
   std::vector<std::string> all;
-  for (const std::string& rest : expanded(text.substr(at))) {
+  for (const std::string& rest : rests) {
     for (const std::string& each : inside) all.push_back(text.substr(0, open) + each + rest);
+  }
+  return all;
+}
+
+std::vector<std::string> expanded(const GrammarNode& node, const std::string& text) {
+  std::vector<std::string> all = expanded(text);
+  if (all.empty()) {
+    node.fail("'" + text + "' has a bracket that is not closed, or stands for more than " +
+              std::to_string(kMostExpanded) + " phrases");
   }
   return all;
 }
@@ -47,9 +66,7 @@ Phrase phraseOf(const std::string& text, Vocabulary* vocabulary) {
 
 void addPhrases(const GrammarNode& node, Vocabulary* vocabulary, std::vector<Phrase>* phrases) {
   for (const std::string& text : node.texts()) {
-    const std::vector<std::string> all = expanded(text);
-    if (all.empty()) node.fail("'" + text + "' has a bracket that is not closed");
-    for (const std::string& each : all) {
+    for (const std::string& each : expanded(node, text)) {
       phrases->push_back(phraseOf(each, vocabulary));
       if (phrases->back().empty()) node.fail("there is an empty entry");
     }

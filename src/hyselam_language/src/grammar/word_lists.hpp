@@ -13,8 +13,10 @@ namespace language {
 Words splitWords(const std::string& text);
 
 /// "go (on|off) [now]" is "go on", "go off", "go on now" and "go off now". Nothing for brackets
-/// that are not closed.
+/// that are not closed, and for more than 10,000 phrases.
 std::vector<std::string> expanded(const std::string& text);
+/// The same for the text of a node, which fails where there is nothing.
+std::vector<std::string> expanded(const GrammarNode& node, const std::string& text);
 
 Phrase phraseOf(const std::string& text, Vocabulary* vocabulary);
 

@@ -353,6 +353,9 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (!correctsObject(u, behind_forwarded, turn) && !turn.says_more) meetAnswer(u, turn);
     return;
   }
+  // "That was wrong. Forget what I just said": said twice in one breath, meant once.
+  const bool took_back_last = std::exchange(turn.took_back_last, u.intent == "undo");
+  if (u.intent == "undo" && took_back_last) return;
   if (u.intent == "undo" && !turn.described && takeBack(turn)) {
     turn.about_else = true;
     return;

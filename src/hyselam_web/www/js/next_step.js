@@ -1,7 +1,7 @@
 // What can be pressed next after an answer that leaves something open: a word that was meant, where a name belongs.
 import {byId, make, button, toast} from "./dom.js";
 import {t, onLanguage, currentLanguage} from "./i18n.js";
-import {called, corrected, isMany, placeOnly, told} from "./wording.js";
+import {besides, called, corrected, isMany, isYes, placeOnly, told} from "./wording.js";
 import {reasonOf} from "./talk.js";
 
 const UNSURE = /^I think |^Acho que |not sure where|places fit|answers fit|have not found|certeza onde|respostas servem|servem muitos lugares|não encontrei/i;
@@ -48,13 +48,20 @@ export class NextStep {
     return this.tried.get(sentence);
   }
 
-  // What the robot is told where a place is all that is said to "Where is the kitchen?": that this is the kitchen.
+  // What the robot is told where a place, or a yes, is all that is said to what is asked here: that this is the kitchen.
   answer(text) {
-    const name = this.shown?.name;
-    const place = name && !/["“”«»]/.test(name) ? placeOnly(text, this.model) : null;
-    if (!place) return text;
-    const portuguese = /[ãõçêôáíóúéà]|\b(lugar|fica|na|no|numero)\b/i.test(text) || (currentLanguage() === "pt" && !/\b(it|is|the|in|at)\b/i.test(text));
-    return `${place.e} ${portuguese ? "é" : "is"} "${name}".`;
+    const {kind, name, ids} = this.shown ?? {};
+    if (!name || /["“”«»]/.test(name)) return text;
+    const more = besides(text);
+    const place = kind === "guess" && isYes(text) ? this.model.place(ids[0]) : placeOnly(more?.first ?? text, this.model);
+    if (!place) {
+      // "Yes, the toilet is number 2": the robot did not ask for a yes.
+      const bare = text.replace(/^\s*(yes|yeah|sim)\b[\s,.!]*/i, "");
+      return told(bare, this.model) === bare ? text : bare;
+    }
+    const portuguese = /[ãõçêôáíóúéà]|\b(lugar|fica|na|no|numero|sim)\b/i.test(text) || (currentLanguage() === "pt" && !/\b(it|is|the|in|at|yes)\b/i.test(text));
+    const settled = `${place.e} ${portuguese ? "é" : "is"} "${name}".`;
+    return more ? `${settled} ${place.e} ${portuguese ? "fica" : "is"} ${more.rest}.` : settled;
   }
 
   newest() {
