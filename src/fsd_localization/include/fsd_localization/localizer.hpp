@@ -21,6 +21,7 @@
 #include "fsd_localization/models/fsd_observation_model.hpp"
 #include "fsd_localization/models/likelihood_field_model.hpp"
 #include "fsd_localization/search/alarm_watch.hpp"
+#include "fsd_localization/search/followed_places.hpp"
 #include "fsd_localization/search/place_judge.hpp"
 #include "fsd_localization/search/rival_watch.hpp"
 #include "fsd_localization/search/short_term_layer.hpp"
@@ -180,13 +181,16 @@ class Localizer {
   bool needsOwnScans() const;
   bool wantsSearch();
   double lengthOfAlarm() const;
-  void takeAnswer(LocalizationResult& result);
-  void decide(const SearchAnswer& answer, const Verdict& verdict, LocalizationResult& result);
+  void takeAnswer(const PoseEstimate& estimate, LocalizationResult& result);
+  void decide(const SearchAnswer& answer, const Verdict& verdict, const PoseEstimate& estimate,
+              LocalizationResult& result);
+  bool isAgreed(const Verdict& verdict, const PoseEstimate& estimate) const;
   void confirmPose(const Verdict& verdict);
   bool isBeaten(const SearchAnswer& answer, const Verdict& verdict) const;
   bool isContradicted(const SearchAnswer& answer, const Verdict& verdict);
   void trackAt(const hyselam::Pose2& base_in_grid, LocalizationResult& result);
-  void followPlaces(const std::vector<Place>& places, const hyselam::Pose2& motion);
+  void followPlaces(const std::vector<Place>& places, const hyselam::Pose2& motion,
+                    const PoseEstimate& estimate);
   void forgetSearch();
   void learnShortTerm(const hyselam::Pose2& base_in_grid);
 
@@ -235,6 +239,7 @@ class Localizer {
     bool fits_worse = false;            // then it was far below the average
     double alarm_step = 0.0;            // [m] before it is asked about again
     RivalWatch rivals;                  // what was better than the tracked pose
+    FollowedPlaces followed;            // while the robot is not found
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

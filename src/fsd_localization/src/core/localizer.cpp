@@ -310,6 +310,7 @@ Pose2 Localizer::addScan(const hyselam::LaserScan& scan, const Pose2& base_in_od
     if (step.broken && search_.background) {  // what was seen before lies nobody knows where
       search_.submap.reset();
       search_.short_term.clear();
+      search_.followed.reset();
       search_.background->drop();
       search_.signs.broken = search_.signs.broken || !step.matched;  // the odometry jumped
     }

@@ -29,7 +29,9 @@ constexpr double kFits = 0.3;       // a place with a lower score does not expla
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
 constexpr double kImpossible = 1e-6;
-constexpr double kMapEvidence = 1.5;  // [m] of scans
+constexpr double kMapEvidence = 1.5;    // [m] of scans
+constexpr double kAgreedWay = 2.0;      // [m] that filter and search agree before both are believed
+constexpr double kDoubtPerMetre = 2.5;  // of it: times that of a found place, what may be left
 constexpr Pose2 kPlaceStddev{0.1, 0.1, hyselam::radians(3.0)};
 constexpr std::uint64_t kPlaceStream = 0x91ace5;
 
@@ -47,6 +49,7 @@ void Localizer::forgetSearch() {
   search_.usual_score.reset();
   search_.fits_worse = false;
   search_.rivals.reset();
+  search_.followed.reset();
   search_.guided = false;
 }
 
@@ -129,7 +132,7 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
   } else {
     result.converged = false;
   }
-  takeAnswer(result);
+  takeAnswer(estimate, result);
   // A place that is only supposed, the only one that fits, does not look certain.
   if (!result.converged && state_ != LocalizerState::kTracking) {
     result.covariance(0, 0) = std::max(result.covariance(0, 0), kSupposedVariance);
@@ -193,11 +196,11 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
                           search_.submap.build(length, turn_as_travel), believed);
 }
 
-void Localizer::takeAnswer(LocalizationResult& result) {
+void Localizer::takeAnswer(const PoseEstimate& estimate, LocalizationResult& result) {
   const auto answer = search_.background->take(observation_.scan.stamp, wait_for_search_);
   if (!answer) return;
   search_.verdict = judge(*answer, params_.place_odds);
-  if (search_.verdict) decide(*answer, *search_.verdict, result);
+  if (search_.verdict) decide(*answer, *search_.verdict, estimate, result);
 }
 
 /// Whether another place is so much better that the tracked pose is as good as lost; where the
@@ -216,7 +219,7 @@ bool Localizer::isBeaten(const SearchAnswer& answer, const Verdict& verdict) con
 }
 
 void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
-                       LocalizationResult& result) {
+                       const PoseEstimate& estimate, LocalizationResult& result) {
   const Pose2 motion = between(answer.base_in_odom, *updated_odom_);
   const bool is_beaten = answer.believed && !verdict.is_believed && isBeaten(answer, verdict);
   if (state_ == LocalizerState::kTracking) {
@@ -235,18 +238,32 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     state_ = LocalizerState::kLostSearch;
     search_.short_term.clear();
     search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
-    followPlaces(verdict.hypotheses, motion);
+    followPlaces(verdict.hypotheses, motion, estimate);
     search_.asked_at.reset();  // at once again, with another scan
     return;
   }
   if (search_.guided && answer.believed && !is_beaten)
     return;  // the filter goes on with what was told
   search_.guided = false;
-  if (verdict.probability >= params_.found_probability && verdict.best.seen >= kFits) {
-    trackAt(verdict.best.base * motion, result);
-  } else if (verdict.best.seen >= kFits) {
-    followPlaces(verdict.hypotheses, motion);
+  if (verdict.best.seen < kFits) return;
+  const Pose2 best = verdict.best.base * motion;
+  const bool agree = !isSearching(state_) && isSamePlace(best, estimate.mean);
+  search_.followed.agree(agree, search_.way);
+  if (verdict.probability >= params_.found_probability || isAgreed(verdict, estimate)) {
+    trackAt(best, result);
+  } else {
+    followPlaces(verdict.hypotheses, motion, estimate);
   }
+}
+
+/// Whether the place that the search finds best, though not sure, has outlived all others in the
+/// filter: it also knows what was seen before the scans of a search.
+bool Localizer::isAgreed(const Verdict& verdict, const PoseEstimate& estimate) const {
+  const double agreed = search_.followed.agreedFor(search_.way).value_or(0.0);
+  const double doubt = kDoubtPerMetre * agreed * (1.0 - params_.found_probability);
+  return agreed >= kAgreedWay && estimate.cluster_weight >= params_.found_probability &&
+         verdict.probability >= std::max(kLikely, 1.0 - doubt) &&
+         inliers_.average() >= params_.found_inlier_ratio;
 }
 
 /// A search has found no place that is better than the tracked one.
@@ -286,6 +303,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.fits_worse = false;
   search_.rivals.reset();
   search_.short_term.clear();
+  search_.followed.reset();
   state_ = LocalizerState::kTracking;
   startLikelihoodFilter(
       gaussianParticles(base_in_grid, kPlaceStddev, params_.tracking_particles, stream),
@@ -297,20 +315,38 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   result = found;
 }
 
-/// Particles on all places, more on the better ones.
-void Localizer::followPlaces(const std::vector<Place>& places, const Pose2& motion) {
+/// Particles on all places, more on the better ones. If the filter's own place is among them, it
+/// keeps what it has gathered, and only places are added that it has not followed.
+void Localizer::followPlaces(const std::vector<Place>& places, const Pose2& motion,
+                             const PoseEstimate& estimate) {
   constexpr double kPerScore = 20.0;  // log odds
+  std::vector<Pose2> bases;
+  for (const Place& p : places) bases.push_back(p.base * motion);
+  const auto own = std::find_if(bases.begin(), bases.end(), [&](const Pose2& base) {
+    return isSamePlace(base, estimate.mean) && search_.followed.has(base, *updated_odom_);
+  });
+  const bool keep = own != bases.end();
+  if (!keep) search_.followed.reset();
+  const std::vector<std::size_t> added = search_.followed.follow(bases, *updated_odom_);
+  if (added.empty()) return;
+
+  const std::size_t each = std::max<std::size_t>(1, params_.hypothesis_particles / places.size());
   Particles all;
-  const std::size_t each = std::max<std::size_t>(
-      1, params_.hypothesis_particles / std::max<std::size_t>(1, places.size()));
-  all.resize(each * places.size());
-  for (std::size_t p = 0; p < places.size(); ++p) {
+  double score = places.front().seen, weight = 1.0;  // of one that others are compared with
+  if (keep) {
+    all = filter_.resampledCopy(each * (places.size() - added.size()), {});
+    score = places[static_cast<std::size_t>(own - bases.begin())].seen;
+    weight = estimate.cluster_weight * static_cast<double>(all.size()) / static_cast<double>(each);
+  }
+  const std::size_t kept = all.size();
+  all.resize(kept + each * added.size());
+  for (std::size_t a = 0; a < added.size(); ++a) {
+    const std::size_t p = added[a];
     const std::uint64_t stream = hyselam::mix(
         params_.seed, kPlaceStream + p + static_cast<std::uint64_t>(observation_.scan.stamp * 1e3));
-    const Particles some = gaussianParticles(places[p].base * motion, kPlaceStddev, each, stream);
-    const auto weight =
-        static_cast<float>(std::exp(kPerScore * (places[p].seen - places.front().seen)));
-    for (std::size_t i = 0; i < each; ++i) all.set(p * each + i, some.pose(i), weight);
+    const Particles some = gaussianParticles(bases[p], kPlaceStddev, each, stream);
+    const auto w = static_cast<float>(weight * std::exp(kPerScore * (places[p].seen - score)));
+    for (std::size_t i = 0; i < each; ++i) all.set(kept + a * each + i, some.pose(i), w);
   }
   startHypotheses(std::move(all));
 }

@@ -1,0 +1,91 @@
+// What the filter has gathered about places that look alike outlives the answers of the search,
+// which knows the last metres only.
+#include <gtest/gtest.h>
+
+#include "drawn_room.hpp"
+#include "fsd_localization/localizer.hpp"
+#include "fsd_localization/search/followed_places.hpp"
+
+using namespace fsd_localization;  // NOLINT: a test, not a header
+using hyselam::Pose2;
+using Numbers = std::vector<std::size_t>;
+
+TEST(FollowedPlaces, onlyPlacesThatWereNotFollowedAreAdded) {
+  FollowedPlaces followed;
+  EXPECT_FALSE(followed.has({10, 0, 0}, {2, 0, 0}));
+  EXPECT_EQ(followed.follow({{10, 0, 0}, {30, 0, 1}}, {2, 0, 0}), (Numbers{0, 1}));
+  // A metre on, in each place in its own direction.
+  const Pose2 metre{1, 0, 0}, odom{3, 0, 0};
+  EXPECT_EQ(followed.follow({Pose2{30, 0, 1} * metre, {50, 0, 0}, {11, 0, 0}}, odom), (Numbers{1}));
+  EXPECT_TRUE(followed.has({50, 0, 0}, odom));
+  EXPECT_TRUE(followed.has(Pose2{30, 0, 1} * metre, odom));
+  EXPECT_FALSE(followed.has({30, 0, 1}, {13, 0, 0})) << "it would be 10 m farther by now";
+  followed.reset();
+  EXPECT_FALSE(followed.has({50, 0, 0}, odom));
+}
+
+TEST(FollowedPlaces, goWithThePlaceWhereOdometryDrifts) {
+  FollowedPlaces followed;
+  followed.follow({{0, 0, 0}}, {0, 0, 0});
+  for (int i = 1; i <= 10; ++i) {
+    const Pose2 there{1.0 * i, 0.5 * i, 0.0}, odom{1.0 * i, 0.0, 0.0};
+    EXPECT_TRUE(followed.follow({there}, odom).empty()) << "after " << i << " m";
+  }
+}
+
+TEST(FollowedPlaces, agreementIsCountedWithoutBreaks) {
+  FollowedPlaces followed;
+  EXPECT_FALSE(followed.agreedFor(5.0));
+  followed.agree(true, 5.0);
+  followed.agree(true, 6.0);
+  EXPECT_DOUBLE_EQ(*followed.agreedFor(7.5), 2.5);
+  followed.agree(false, 8.0);
+  EXPECT_FALSE(followed.agreedFor(8.0));
+  followed.agree(true, 9.0);
+  EXPECT_DOUBLE_EQ(*followed.agreedFor(9.5), 0.5);
+}
+
+namespace {
+
+/// Two rooms as room(), side by side; in the right one a part of the left wall is 10 cm thicker.
+hyselam::OccupancyGrid twinRooms() {
+  const hyselam::OccupancyGrid one = room();
+  hyselam::GridGeometry g = one.geometry;
+  g.width *= 2;
+  hyselam::OccupancyGrid both(g);
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) both.at({x, y}) = one.at({x % one.geometry.width, y});
+  }
+  for (int y = 20; y < 60; ++y) both.at({one.geometry.width + 3, y}) = 100;
+  return both;
+}
+
+}  // namespace
+
+// A search is never sure: the wall is little of what it compares. The filter sees it again and
+// again.
+TEST(Localizer, aTwinIsOutlivedThatTheSearchCannotTellApart) {
+  const auto map = twinRooms();
+  const GridRayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  Pose2 at{0.5 * map.geometry.width * map.geometry.resolution + 2.0, 2.0, 0.0}, wheels{};
+  std::optional<LocalizationResult> last;
+  double surest = 0.0, first_sure = 0.0;
+  for (int i = 0; i < 320; ++i) {
+    at = at * Pose2{0.02, 0.0, 0.02};  // a circle of 1 m
+    wheels = wheels * Pose2{0.02, 0.0, 0.02};
+    const auto r = localizer.update(look(rays, at, 0.1 * i), wheels);
+    if (!r) continue;
+    surest = std::max(surest, r->place_probability.value_or(0.0));
+    if (r->converged) {
+      EXPECT_LT(distance(r->base_in_map, at), 0.3) << "after " << r->travelled << " m";
+      if (first_sure == 0.0) first_sure = r->travelled;
+    }
+    last = r;
+  }
+  EXPECT_LT(surest, 0.98) << "the search alone is not sure";
+  EXPECT_TRUE(last->converged);
+  EXPECT_GT(first_sure, 1.0)
+      << "nor is the filter at once: search and filter agreed for 2 m, turns counted";
+  EXPECT_LT(first_sure, 4.0);
+}
