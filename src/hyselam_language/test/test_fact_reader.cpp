@@ -434,8 +434,8 @@ TEST(NearExample, PlacesThingsAsTheyWereSaid) {
 /// "the linen cupboard" ends with a thing, and tells which place.
 TEST(SecondReading, ProposesPlacesNamedAfterThings) {
   const ParsedText parsed = parser().parse(
-      "Sluice room's in between the linen cupboard and the assisted bathroom, the one wi' no "
-      "window.");
+      "Sluice room's in between the linen cupboard and the assisted bathroom, the one wi' the "
+      "broken window.");
   ASSERT_EQ(parsed.utterances.size(), 1u);
   EXPECT_TRUE(parsed.utterances.front().suggests_meaning);
   EXPECT_EQ(parsed.utterances.front().suggestion,

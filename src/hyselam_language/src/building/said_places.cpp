@@ -64,6 +64,15 @@ Id lastOfRow(Statement& s) {
   return all.size() > 1 ? all.back() : 0;
 }
 
+/// "Anna's office", "gabinete da Ana": not "sala de estar".
+bool tellsOwner(const std::string& name) {
+  for (const char* sign :
+       {"' ", "'s ", "\xe2\x80\x99 ", "\xe2\x80\x99s ", " do ", " da ", " dos ", " das "}) {
+    if (name.find(sign) != std::string::npos) return true;
+  }
+  return false;
+}
+
 /// What a word that stands for places means; fails if that was not told.
 std::vector<Id> referred(Statement& s, const SaidName& name, const std::string& slot = "") {
   const DescriptionContext& context = s.context();
@@ -106,6 +115,12 @@ std::vector<Id> referred(Statement& s, const SaidName& name, const std::string& 
     }
     return context.subjects;
   }
+  // "Across from her": from the room of the person named last.
+  if (name.reference == "whose") {
+    const auto& all = context.subjects;
+    if (all.size() != 1 || !tellsOwner(s.at(all.front()).name)) nothing();
+    return all;
+  }
   if (context.group.empty()) nothing();
   if (name.reference == "first") return {context.group.front()};
   if (name.reference == "last") return {context.group.back()};
@@ -117,15 +132,6 @@ std::vector<Id> referred(Statement& s, const SaidName& name, const std::string& 
   if (name.reference == "one" && !left.empty()) return {left.front()};
   if (name.reference == "other" && left.size() == 1) return left;
   s.fail(IssueKind::kNoContext, "it_what", {{"name", name.text}});
-}
-
-/// "Anna's office", "gabinete da Ana": not "sala de estar".
-bool tellsOwner(const std::string& name) {
-  for (const char* sign :
-       {"' ", "'s ", "\xe2\x80\x99 ", "\xe2\x80\x99s ", " do ", " da ", " dos ", " das "}) {
-    if (name.find(sign) != std::string::npos) return true;
-  }
-  return false;
 }
 
 /// The words of a name that are the folded ones: "vestiário" for "vestiario".

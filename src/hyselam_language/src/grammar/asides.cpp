@@ -24,13 +24,6 @@ bool mayTell(const std::vector<Token>& tokens, std::size_t at, const CompiledGra
                      [&](const auto& type) { return type.plurals.count(token.folded) != 0; });
 }
 
-bool beginsWithAny(const std::vector<Words>& phrases, const std::vector<Token>& tokens,
-                   std::size_t begin, std::size_t end) {
-  return std::any_of(phrases.begin(), phrases.end(), [&](const Words& phrase) {
-    return begin + phrase.size() <= end && standsAt(phrase, tokens, begin);
-  });
-}
-
 /// Whether a phrase of several stands at a token, word by word.
 bool standsAt(const Phrase& phrase, const std::vector<Token>& tokens, std::size_t at,
               const CompiledGrammar& grammar) {
@@ -50,25 +43,6 @@ std::size_t behindSeparator(const std::vector<Token>& tokens, std::size_t begin,
                     return phrase.size() == 1 && standsAt(phrase, tokens, begin, grammar);
                   });
   return separated && begin + 1 < end ? begin + 1 : begin;
-}
-
-/// "Which used to be a bedroom", "nobody ever goes there": of another time, or a denial that
-/// nothing told is changed by; never with doubt.
-bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::size_t end,
-                      const CompiledGrammar& grammar) {
-  const std::size_t begin = behindSeparator(tokens, part, end, grammar);
-  const bool past = beginsWithAny(grammar.past_asides, tokens, begin, end);
-  const bool idle = !past && beginsWithAny(grammar.idle_asides, tokens, begin, end);
-  if (!past && !idle) return false;
-  return std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
-                      tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
-                        const auto at = static_cast<std::size_t>(&token - tokens.data());
-                        if (isReflexive(tokens, at, grammar)) return false;
-                        if (idle && grammar.isNounOrTitle(token.folded)) return true;
-                        const auto code = grammar.refusing_words.find(token.folded);
-                        if (code == grammar.refusing_words.end()) return false;
-                        return code->second != "not_now" && !(idle && code->second == "denial");
-                      });
 }
 
 /// Whether tokens [begin, end) are words of correction and nothing else.
@@ -107,6 +81,36 @@ bool mayBeReason(const Aside& part, const std::vector<Token>& tokens,
 
 }  // namespace
 
+bool doubts(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+            const CompiledGrammar& grammar) {
+  bool denies = false, doubtful = false;
+  for (std::size_t at = begin; at < end; ++at) {
+    const auto code = grammar.refusing_words.find(tokens[at].folded);
+    denies = denies || (code != grammar.refusing_words.end() && code->second == "denial");
+    const bool asks = at + 1 < end && grammar.asking_words.count(tokens[at + 1].folded) != 0;
+    doubtful = doubtful || (!asks && grammar.doubt_words.count(tokens[at].folded) != 0);
+  }
+  return denies && doubtful;
+}
+
+bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::size_t end,
+                      const CompiledGrammar& grammar, bool with_nouns) {
+  const std::size_t begin = behindSeparator(tokens, part, end, grammar);
+  const bool past = grammar.past_asides.standAt(tokens, begin, end);
+  const bool idle = !past && grammar.idle_asides.standAt(tokens, begin, end);
+  if ((!past && !idle) || doubts(tokens, begin, end, grammar)) return false;
+  return std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
+                      tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
+                        const auto at = static_cast<std::size_t>(&token - tokens.data());
+                        if (isReflexive(tokens, at, grammar)) return false;
+                        if (idle && !with_nouns && grammar.isNounOrTitle(token.folded)) return true;
+                        const auto code = grammar.refusing_words.find(token.folded);
+                        if (code == grammar.refusing_words.end()) return false;
+                        return code->second != "not_now" && code->second != "past" &&
+                               !(idle && code->second == "denial");
+                      });
+}
+
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
                             bool all) {
   std::vector<Aside> asides;
@@ -123,7 +127,7 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
     }
     ++parts;
     if (tells) {
-      tells = !saysNothingOfNow(tokens, begin, end, grammar) &&
+      tells = !saysNothingOfNow(tokens, begin, end, grammar, false) &&
               fillerEnd(tokens, begin, grammar) != end;
     }
     if (!tells) asides.push_back({begin, end});

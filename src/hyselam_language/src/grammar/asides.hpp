@@ -22,6 +22,16 @@ struct Aside {
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
                             bool all = false);
 
+/// Whether tokens [begin, end) are of another time, or deny nothing that is told beside them
+/// ("which used to be a bedroom", "nobody goes in there"), without doubt; `with_nouns`: even if
+/// they name something.
+bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+                      const CompiledGrammar& grammar, bool with_nouns);
+
+/// "I am not sure", "não dá para ter a certeza": doubts what is told beside it.
+bool doubts(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+            const CompiledGrammar& grammar);
+
 /// Where the longest phrase ends that begins at a token, has two words or more, and that the
 /// grammar leaves out beside a statement, as "if you do not mind"; `at` without one.
 std::size_t fillerEnd(const std::vector<Token>& tokens, std::size_t at,

@@ -103,6 +103,14 @@ std::string CompiledGrammar::reason(const std::string& code, const std::string& 
   return text;
 }
 
+bool WordPhrases::standAt(const std::vector<Token>& tokens, std::size_t at, std::size_t end) const {
+  const auto with = of_first_.find(tokens[at].lower);
+  return with != of_first_.end() &&
+         std::any_of(with->second.begin(), with->second.end(), [&](const Words& phrase) {
+           return at + phrase.size() <= end && standsAt(phrase, tokens, at);
+         });
+}
+
 bool standsAt(const Words& phrase, const std::vector<Token>& tokens, std::size_t at) {
   return at + phrase.size() <= tokens.size() &&
          std::equal(

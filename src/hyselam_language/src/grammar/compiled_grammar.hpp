@@ -65,6 +65,17 @@ class PhraseStarts {
   std::vector<std::vector<std::size_t>> of_word_;
 };
 
+/// Phrases in small letters by their first words.
+class WordPhrases {
+ public:
+  void add(const Words& phrase) { of_first_[phrase.front()].push_back(phrase); }
+  /// Whether one of them stands at a token, before `end`.
+  bool standAt(const std::vector<Token>& tokens, std::size_t at, std::size_t end) const;
+
+ private:
+  std::unordered_map<std::string, std::vector<Words>> of_first_;
+};
+
 /// What may be a name (of places, of objects, ...). Sets hold folded words.
 struct NameType {
   std::string name;
@@ -153,14 +164,29 @@ struct CompiledGrammar {
   /// first.
   std::vector<Words> told_before, told_after;
   /// Parts between commas that begin so say nothing of now: "which used to be".
-  std::vector<Words> past_asides;
+  WordPhrases past_asides;
   /// ... and those that begin so change nothing told, though they deny: "you can't miss it".
-  std::vector<Words> idle_asides;
+  WordPhrases idle_asides;
+  /// A clause may begin so where nothing separates it from the one before ("its", "there is"), not
+  /// behind one of the second ("that", "because").
+  WordPhrases clause_starts;
+  WordSet no_clause_after;
+  /// Folded: asides that begin so stand behind commas only ("with a door").
+  WordSet only_behind_comma;
+  /// Folded: what is denied of these is what follows them: "nobody says", "it is not true".
+  WordSet saying_words;
+  /// Folded: with a denial what is told is doubted, unless one of the second follows.
+  WordSet doubt_words, asking_words;
   WordSet abbreviations;
   /// Words that mean something else in small letters, as they are written: "IT".
   WordSet acronyms;
   /// Ends of nouns of places that may be a verb: "'s" in "the library's on the left" is "is".
   std::map<std::string, std::string> contracted_verbs;
+  /// Written without an apostrophe: "its" is "it is" before one of the second.
+  std::map<std::string, Words> loose_contractions;
+  WordPhrases loose_before;
+  /// Phrases that are read as others: "last but one" as "penultimate".
+  std::vector<std::pair<Words, Words>> same_words;
   std::unordered_map<std::string, Words> contractions;
   std::unordered_map<std::string, std::pair<double, bool>>
       number_words;  ///< value, is a multiple of ten

@@ -83,6 +83,13 @@ class Reader {
         {"told_anyway", [&](const GrammarNode& node) { readToldAnyway(node); }},
         {"past_asides", [&](const GrammarNode& node) { addWords(node, &g.past_asides); }},
         {"idle_asides", [&](const GrammarNode& node) { addWords(node, &g.idle_asides); }},
+        {"clause_starts", [&](const GrammarNode& node) { addWords(node, &g.clause_starts); }},
+        {"no_clause_after", [&](const GrammarNode& node) { addFolded(node, &g.no_clause_after); }},
+        {"only_behind_comma",
+         [&](const GrammarNode& node) { addFolded(node, &g.only_behind_comma); }},
+        {"saying_words", [&](const GrammarNode& node) { addFolded(node, &g.saying_words); }},
+        {"doubt_words", [&](const GrammarNode& node) { addFolded(node, &g.doubt_words); }},
+        {"asking_words", [&](const GrammarNode& node) { addFolded(node, &g.asking_words); }},
         {"corrections", phrases(&g.corrections)},
         {"clause_separators", phrases(&g.clause_separators)},
         {"list_separators", [&](const GrammarNode& node) { readListSeparators(node); }},
@@ -102,6 +109,23 @@ class Reader {
            for (const std::string& word : node.texts()) g.acronyms.insert(word);
          }},
         {"contracted_verbs", texts(&g.contracted_verbs)},
+        {"loose_contractions",
+         [&](const GrammarNode& node) {
+           node.each([&](const std::string& word, const GrammarNode& meaning) {
+             g.loose_contractions[word] = splitWords(meaning.text());
+           });
+         }},
+        {"same_words",
+         [&](const GrammarNode& node) {
+           node.each([&](const std::string& meaning, const GrammarNode& said) {
+             for (const std::string& text : said.texts()) {
+               for (const std::string& each : expanded(text)) {
+                 g.same_words.emplace_back(splitWords(each), splitWords(meaning));
+               }
+             }
+           });
+         }},
+        {"loose_before", [&](const GrammarNode& node) { addWords(node, &g.loose_before); }},
         {"contractions", [&](const GrammarNode& node) { readContractions(node); }},
         {"known_words", [&](const GrammarNode& node) { addFolded(node, &g.known_words); }},
         {"numbers", [&](const GrammarNode& node) { readNumbers(node, &g); }},
@@ -170,6 +194,16 @@ class Reader {
       std::stable_sort(all.begin(), all.end(),
                        [](const Words& a, const Words& b) { return a.size() > b.size(); });
     });
+  }
+
+  static void addWords(const GrammarNode& node, WordPhrases* all) {
+    for (const std::string& text : node.texts()) {
+      for (const std::string& phrase : expanded(text)) {
+        const Words words = splitWords(phrase);
+        if (words.empty()) node.fail("'" + text + "' may be nothing, or has an open bracket");
+        all->add(words);
+      }
+    }
   }
 
   static void addWords(const GrammarNode& node, std::vector<Words>* all) {

@@ -48,13 +48,14 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
                                   const Sentence& sentence, const std::vector<Token>& tokens,
                                   const std::set<std::string>& expected) {
   const auto read = [&](std::vector<Token> of, bool run_on) {
-    return readClauses(grammar, text, sentence, std::move(of), expected, {run_on, false, nullptr});
+    return readClauses(grammar, text, sentence, std::move(of), expected,
+                       {run_on, false, nullptr, nullptr});
   };
   const auto explain = [&](const Sentence& of, Utterance* refused) {
     std::vector<Beginning> beginnings;
     if (refused->reason_code.empty()) {
       *refused = readClauses(grammar, text, of, tokensWithin(tokens, of.range), expected,
-                             {false, true, &beginnings})
+                             {false, true, &beginnings, nullptr})
                      .front();
     }
     propose(SentenceWords(grammar, text, of, tokensWithin(tokens, of.range)), beginnings, refused);
@@ -86,10 +87,13 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
     if (isUnderstood(clauses)) return clauses;
   }
   if (tokens.size() <= kLongestRunOn && !sentence.is_question) {
-    std::vector<Utterance> parts = readParts(tokens, text, grammar, [&](std::vector<Token> of) {
+    const auto beginnings = [&](std::vector<Token> of, const std::vector<std::size_t>& ends) {
+      std::vector<Beginning> found;
       const Sentence part{{of.front().range.begin, of.back().range.end}, false};
-      return readClauses(grammar, text, part, std::move(of), expected);
-    });
+      readClauses(grammar, text, part, std::move(of), expected, {false, false, &found, &ends});
+      return found;
+    };
+    std::vector<Utterance> parts = readParts(tokens, text, grammar, beginnings);
     refuseStrayPlaces(grammar, &parts);
     for (Utterance& part : parts) {
       if (part.understood()) continue;
@@ -146,9 +150,11 @@ std::vector<Utterance> consistent(const CompiledGrammar& grammar, const std::str
                          std::any_of(said.begin(), at, [](const Utterance& u) {
                            return u.kind == UtteranceKind::kCommand && !u.slots.empty();
                          });
+    // "The lab is on the left, I do not know": nobody says so.
+    const bool doubted = at->intent == "unknown_answer" && std::any_of(said.begin(), at, states);
     const bool taken_back = denies(*at) && std::any_of(said.begin(), at, states) &&
                             std::none_of(at, said.end(), states);
-    if (!contrary && !taken_back && !put_off) continue;
+    if (!contrary && !taken_back && !put_off && !doubted) continue;
     Utterance refused;
     refused.range = sentence.range;
     refused.text = text.substr(sentence.range.begin, sentence.range.end - sentence.range.begin);

@@ -28,6 +28,7 @@ class SentenceReader {
         run_on_(options.run_on),
         explain_(options.explain),
         beginnings_(options.beginnings),
+        wanted_ends_(options.ends),
         words_(grammar, text, sentence, std::move(tokens)),
         pattern_run_(&words_, {}, options.explain) {}
 
@@ -35,6 +36,12 @@ class SentenceReader {
     if (words_.isTooLong()) return {refusal(words_, "too_long", words_.sentence.range, "")};
     findClauses();
     const std::size_t n = words_.tokens.size();
+    if (wanted_ends_ != nullptr) {
+      for (const std::size_t end : *wanted_ends_) {
+        if (end <= n && ends_[end].cost < kNever) beginnings_->push_back({end, assemble(end)});
+      }
+      return {};
+    }
     if (beginnings_ != nullptr && n > 0 && ends_[n].cost >= kNever) {
       for (std::size_t end = n; end-- > 1;) {
         if (ends_[end].cost < kNever) beginnings_->push_back({end, assemble(end)});
@@ -246,6 +253,7 @@ class SentenceReader {
   const bool run_on_;
   const bool explain_;
   std::vector<Beginning>* const beginnings_;
+  const std::vector<std::size_t>* const wanted_ends_;
   SentenceWords words_;
   PatternRun pattern_run_;
   std::vector<Reading> ends_;  ///< at each token

@@ -28,6 +28,8 @@ struct ClauseOptions {
   /// Of a sentence that is not understood: the beginnings that a row of clauses covers, the longest
   /// first.
   std::vector<Beginning>* beginnings = nullptr;
+  /// Gives only the beginnings that end at one of these tokens, the whole sentence among them.
+  const std::vector<std::size_t>* ends = nullptr;
 };
 
 /// The cheapest row of clauses that covers the tokens, or one utterance that was not understood.

@@ -88,10 +88,52 @@ bool isOnlyVerb(const std::vector<Token>& tokens, std::size_t at, const Compiled
   return tokens[at + 1].kind == TokenKind::kWord;
 }
 
+/// "Its the kitchen": "it is", where its next word is never what somebody owns.
+std::vector<Token> withApostrophes(const std::vector<Token>& tokens,
+                                   const CompiledGrammar& grammar) {
+  std::vector<Token> all;
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    const auto loose = grammar.loose_contractions.find(tokens[at].lower);
+    const bool is_verb = loose != grammar.loose_contractions.end() && at + 1 < tokens.size() &&
+                         tokens[at].kind == TokenKind::kWord &&
+                         grammar.loose_before.standAt(tokens, at + 1, tokens.size());
+    if (!is_verb) {
+      all.push_back(tokens[at]);
+      continue;
+    }
+    for (const std::string& word : loose->second) {
+      all.push_back(wordToken(word, tokens[at].range));
+    }
+  }
+  return all;
+}
+
+/// "The last but one": "penultimate".
+std::vector<Token> withSameWords(const std::vector<Token>& tokens, const CompiledGrammar& grammar) {
+  std::vector<Token> all;
+  for (std::size_t at = 0; at < tokens.size();) {
+    const auto found =
+        std::find_if(grammar.same_words.begin(), grammar.same_words.end(),
+                     [&](const auto& each) { return standsAt(each.first, tokens, at); });
+    if (found == grammar.same_words.end()) {
+      all.push_back(tokens[at++]);
+      continue;
+    }
+    const std::size_t last = at + found->first.size() - 1;
+    for (const std::string& word : found->second) {
+      all.push_back(wordToken(word, {tokens[at].range.begin, tokens[last].range.end}));
+    }
+    at = last + 1;
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<Token> withMeanings(std::vector<Token> tokens, const CompiledGrammar& grammar) {
   markAcronyms(grammar, &tokens);
+  if (!grammar.loose_contractions.empty()) tokens = withApostrophes(tokens, grammar);
+  if (!grammar.same_words.empty()) tokens = withSameWords(tokens, grammar);
   std::vector<Token> all;
   for (std::size_t at = 0; at < tokens.size(); ++at) {
     const Token& token = tokens[at];

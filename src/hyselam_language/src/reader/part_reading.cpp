@@ -152,10 +152,7 @@ bool wasThere(const ReadFact& fact, const Utterance& part, const CompiledGrammar
   if (hasWordThere(fact, part, grammar, kPast, false)) return true;
   const auto tokens = clauseOf(fact, part, grammar);
   for (std::size_t at = 0; at < tokens.size(); ++at) {
-    if (std::any_of(grammar.past_asides.begin(), grammar.past_asides.end(),
-                    [&](const auto& phrase) { return standsAt(phrase, tokens, at); })) {
-      return true;
-    }
+    if (grammar.past_asides.standAt(tokens, at, tokens.size())) return true;
   }
   return false;
 }
@@ -166,6 +163,10 @@ bool isRuledOut(const ReadFact& fact, const Utterance& part, const PartOf& of,
                 const CompiledGrammar& grammar) {
   static const std::set<std::string> kOrders{"go", "follow_me", "come", "back"};
   const bool order = kOrders.count(fact.relation) != 0;
+  // "Three doors past the kitchen" is not right after it.
+  static const std::set<std::string> kCounted{"how_far", "doors_down"};
+  static const std::set<std::string> kBeside{"after", "before", "next"};
+  if (kCounted.count(part.reason_code) != 0 && kBeside.count(fact.relation) != 0) return true;
   static const std::set<std::string> kOfThePast{"alias", "rename", "gone"};
   if (!fact.denied && kOfThePast.count(fact.relation) == 0 && wasThere(fact, part, grammar)) {
     return true;
