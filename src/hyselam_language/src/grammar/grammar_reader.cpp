@@ -109,22 +109,8 @@ class Reader {
            for (const std::string& word : node.texts()) g.acronyms.insert(word);
          }},
         {"contracted_verbs", texts(&g.contracted_verbs)},
-        {"loose_contractions",
-         [&](const GrammarNode& node) {
-           node.each([&](const std::string& word, const GrammarNode& meaning) {
-             g.loose_contractions[word] = splitWords(meaning.text());
-           });
-         }},
-        {"same_words",
-         [&](const GrammarNode& node) {
-           node.each([&](const std::string& meaning, const GrammarNode& said) {
-             for (const std::string& text : said.texts()) {
-               for (const std::string& each : expanded(text)) {
-                 g.same_words.emplace_back(splitWords(each), splitWords(meaning));
-               }
-             }
-           });
-         }},
+        {"loose_contractions", [&](const GrammarNode& node) { readLooseContractions(node); }},
+        {"same_words", [&](const GrammarNode& node) { readSameWords(node); }},
         {"loose_before", [&](const GrammarNode& node) { addWords(node, &g.loose_before); }},
         {"contractions", [&](const GrammarNode& node) { readContractions(node); }},
         {"known_words", [&](const GrammarNode& node) { addFolded(node, &g.known_words); }},
@@ -198,9 +184,9 @@ class Reader {
 
   static void addWords(const GrammarNode& node, WordPhrases* all) {
     for (const std::string& text : node.texts()) {
-      for (const std::string& phrase : expanded(text)) {
+      for (const std::string& phrase : expanded(node, text)) {
         const Words words = splitWords(phrase);
-        if (words.empty()) node.fail("'" + text + "' may be nothing, or has an open bracket");
+        if (words.empty()) node.fail("'" + text + "' may be nothing");
         all->add(words);
       }
     }
@@ -225,6 +211,27 @@ class Reader {
   void readContractions(const GrammarNode& node) {
     node.each([&](const std::string& word, const GrammarNode& meaning) {
       grammar_->contractions[hyselam::utf8Lower(word)] = splitWords(meaning.text());
+    });
+  }
+
+  void readLooseContractions(const GrammarNode& node) {
+    node.each([&](const std::string& word, const GrammarNode& meaning) {
+      const Words words = splitWords(meaning.text());
+      if (words.empty()) meaning.fail("there is no word");
+      grammar_->loose_contractions[hyselam::utf8Lower(word)] = words;
+    });
+  }
+
+  void readSameWords(const GrammarNode& node) {
+    node.each([&](const std::string& meaning, const GrammarNode& said) {
+      const Words means = splitWords(meaning);
+      for (const std::string& text : said.texts()) {
+        for (const std::string& each : expanded(said, text)) {
+          const Words words = splitWords(each);
+          if (words.empty() || means.empty()) said.fail("'" + text + "' may be nothing");
+          grammar_->same_words.emplace_back(words, means);
+        }
+      }
     });
   }
 
