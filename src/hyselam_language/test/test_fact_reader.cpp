@@ -434,8 +434,7 @@ TEST(NearExample, PlacesThingsAsTheyWereSaid) {
 /// "the linen cupboard" ends with a thing, and tells which place.
 TEST(SecondReading, ProposesPlacesNamedAfterThings) {
   const ParsedText parsed = parser().parse(
-      "Sluice room's in between the linen cupboard and the assisted bathroom, the one wi' the "
-      "broken window.");
+      "The sluice room sits wedged in tight between the linen cupboard and the assisted bathroom.");
   ASSERT_EQ(parsed.utterances.size(), 1u);
   EXPECT_TRUE(parsed.utterances.front().suggests_meaning);
   EXPECT_EQ(parsed.utterances.front().suggestion,
