@@ -116,14 +116,22 @@ TEST(Clauses, WhereADenialMayReachFurtherNothingIsTaken) {
         "i do not know if the kitchen is on the left and the bar is on the right",
         "it is not true the lab is opposite the bar and the kitchen is on the left",
         "the kitchen is next to the bar i am not sure", "the lab is on the left, i do not know",
-        "the lab is on the left i would not swear to it"}) {
+        "the lab is on the left i would not swear to it",
+        "nobody thinks the kitchen is on the left and the bar is on the right",
+        "nobody believes that the kitchen is on the left and the bar is on the right",
+        "nobody reckons the lab is on the left, and the bar is on the right",
+        "nobody has confirmed the kitchen is on the left and the bar is on the right",
+        "nobody ever mentioned the kitchen is on the left and the bar is on the right"}) {
     EXPECT_EQ(hear(text, "en").clauses, "") << text;
     EXPECT_GT(hear(text, "en").refused, 0) << text;
   }
   for (const char* const text :
        {"não acho que a cozinha fique à esquerda e o arquivo fica à direita",
         "ninguém disse que a cozinha fica à esquerda e o bar fica à direita",
-        "A copa fica ao lado do arquivo, não tenho a certeza."}) {
+        "A copa fica ao lado do arquivo, não tenho a certeza.",
+        "ninguém acha que a cozinha fica à esquerda e o bar fica à direita",
+        "ninguém acredita que a cozinha fica à esquerda e o bar fica à direita",
+        "ninguém confirma que a cozinha fica à esquerda e o bar fica à direita"}) {
     EXPECT_EQ(hear(text, "pt").clauses, "") << text;
     EXPECT_GT(hear(text, "pt").refused, 0) << text;
   }

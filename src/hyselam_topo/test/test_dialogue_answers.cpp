@@ -493,6 +493,10 @@ TEST(DialogueNames, WhatIsTakenBackInSeveralWordsIsTakenBackOnce) {
   EXPECT_TRUE(has(reply, "The canteen is next to the lab")) << reply;
   EXPECT_FALSE(has(reply, "kitchen")) << reply;
   EXPECT_TRUE(has(talk.say("Undo that."), "The kitchen is next to the library"));
+  talk.say("The kitchen is next to the library.");
+  talk.say("The canteen is next to the lab.");
+  const std::string twice = talk.say("Undo that. Undo that.");
+  EXPECT_TRUE(has(twice, "canteen") && has(twice, "kitchen")) << twice;
 }
 
 TEST(DialogueNames, UndoRightAfterTakesTheNameBack) {

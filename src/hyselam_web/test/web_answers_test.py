@@ -185,7 +185,8 @@ class AnswersTest(PageCase):
         self.robot.show_places()
         tab = self.open_map(PHONE)
         lab = 'SS03 is "science lab".'
-        for typed, heard in [("yes", lab), ("Yeah, that's right.", lab), ("sim, é isso", 'SS03 é "science lab".'), ("place 5", 'SS05 is "science lab".'),
+        for typed, heard in [("yes", lab), ("Yeah, that's right.", lab), ("sim, é isso", 'SS03 é "science lab".'), ("isso mesmo", 'SS03 é "science lab".'),
+                             ("it is place 5, besides the door is open", "it is SS05, besides the door is open"), ("place 5", 'SS05 is "science lab".'),
                              ("it is place 5, between the gym and the library", 'SS05 is "science lab". SS05 is between the gym and the library.'),
                              ("é o lugar 5, em frente à escada", 'SS05 é "science lab". SS05 fica em frente à escada.'), ("yes, the toilet is number 2", 'SS02 is "toilet".'),
                              ("yes, but the gym is shut", "yes, but the gym is shut"), ("no", "no")]:

@@ -330,6 +330,13 @@ void Dialogue::finish(Turn& turn) {
 
 void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
   const HearOptions& options = turn.options;
+  // "That was wrong. Forget what I just said": in other words, but meant once.
+  const std::string took_back =
+      std::exchange(turn.took_back, u.intent == "undo" ? hyselam::utf8Fold(u.text) : "");
+  if (u.intent == "undo" && !took_back.empty() && took_back != turn.took_back) {
+    turn.left_out.insert(turn.left_out.end(), u.left_out.begin(), u.left_out.end());
+    return;
+  }
   if (!u.understood()) {
     if (forgetsKnown(u, turn)) return;
     builder_.sentenceRefused();
@@ -353,9 +360,6 @@ void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
     if (!correctsObject(u, behind_forwarded, turn) && !turn.says_more) meetAnswer(u, turn);
     return;
   }
-  // "That was wrong. Forget what I just said": said twice in one breath, meant once.
-  const bool took_back_last = std::exchange(turn.took_back_last, u.intent == "undo");
-  if (u.intent == "undo" && took_back_last) return;
   if (u.intent == "undo" && !turn.described && takeBack(turn)) {
     turn.about_else = true;
     return;

@@ -31,7 +31,7 @@ struct Dialogue::Turn {
   bool about_else = false;       ///< something was said that is no answer
   bool says_more = false;        ///< something was said that is understood and no answer
   bool forwarded_last = false;   ///< others hear the utterance before
-  bool took_back_last = false;   ///< the utterance before took something back
+  std::string took_back;         ///< the utterance before, where it was an "undo that"
   bool lost = false;             ///< something was said that was not understood
   bool broken_off = false;       ///< what follows waits for the answer to a question
   std::vector<std::string> proposals;      ///< what may have been meant, best first, ...

@@ -55,7 +55,8 @@ export class NextStep {
     const more = besides(text);
     const place = kind === "guess" && isYes(text) ? this.model.place(ids[0]) : placeOnly(more?.first ?? text, this.model);
     if (!place) {
-      // "Yes, the toilet is number 2": the robot did not ask for a yes.
+      // "Yes, the toilet is number 2": where the robot did not ask for a yes.
+      if (this.model.values.asked?.yes) return text;
       const bare = text.replace(/^\s*(yes|yeah|sim)\b[\s,.!]*/i, "");
       return told(bare, this.model) === bare ? text : bare;
     }

@@ -83,15 +83,15 @@ export function placeOnly(sentence, model) {
 }
 
 // "Yes", "yeah, that's right", "sim, é isso": a yes, and nothing else.
-const YES = /^(yes|yeah|yep|yup|sure|correct|exactly|right|sim|certo|claro|exato|exatamente|pois)$/;
-const WITH_YES = /^(that|thats|it|its|this|is|s|so|of|course|please|e|isso|mesmo|esta|ok|okay)$/;
+const YES = /^(yes|yeah|yep|yup|sure|correct|exactly|right|sim|certo|claro|exato|exatamente|pois|mesmo)$/;
+const WITH_YES = /^(that|thats|it|its|this|is|s|so|of|course|please|e|isso|esta|que|ok|okay)$/;
 export function isYes(sentence) {
   const words = folded(sentence).match(/[\p{L}\p{N}]+/gu) ?? [];
   return words.some((word) => YES.test(word)) && words.every((word) => YES.test(word) || WITH_YES.test(word));
 }
 
 // "It is place 7, between the lab and the office": what is told besides the number.
-const BESIDES = /^((?:[^,;.!?]|\.(?=\d))+)[,;.]\s*((?:between|next to|opposite|across from|beside|behind|entre|ao lado d|em frente|atrás d|junto a).+?)\s*[.!]?\s*$/iu;
+const BESIDES = /^((?:[^,;.!?]|\.(?=\d))+)[,;.]\s*((?:between|next to|opposite|across from|beside|behind|entre|ao lado d[aeo]|em frente|atrás d[aeo]|junto a[os]?)(?![\p{L}]).+?)\s*[.!]?\s*$/iu;
 export function besides(sentence) {
   const [, first, rest] = sentence.match(BESIDES) ?? [];
   return rest ? {first, rest} : null;

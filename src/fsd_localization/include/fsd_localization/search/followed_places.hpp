@@ -24,7 +24,7 @@ class FollowedPlaces {
 
   /// Tells whether search and filter think the same place the best one.
   void agree(bool do_agree, double way);
-  /// Way since when they have, without a break; nothing if they do not.
+  /// Way since when they have, in each answer told here; nothing if they do not.
   std::optional<double> agreedFor(double way) const;
 
  private:
