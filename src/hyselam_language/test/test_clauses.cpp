@@ -1,18 +1,12 @@
 // People put several things into one breath: clauses that deny, ask for discretion or tell of the
-// past are left out aloud, the others are read; never where a denial may reach further.
+// past are told as left out, the others are read; never where a denial may reach further.
 #include <gtest/gtest.h>
 
 #include "hyselam_language/building/description_builder.hpp"
+#include "shipped_parser.hpp"
 
 namespace hyselam_topo {
 namespace {
-
-const TopoParser& parser() {
-  static const std::string kFolder = HYSELAM_PACKAGE_DIR "/grammar/";
-  static const TopoParser kParser(
-      {Grammar::load({kFolder + "en.yaml"}), Grammar::load({kFolder + "pt.yaml"})});
-  return kParser;
-}
 
 struct Heard {
   std::string clauses;   ///< "intent place,place side; ..." of what is taken or asked
@@ -27,7 +21,7 @@ Heard hear(const std::string& text, const std::string& language) {
   const auto add = [](std::string* to, const std::string& what) {
     *to += (to->empty() ? "" : "; ") + what;
   };
-  for (const Utterance& each : parser().parse(text, options).utterances) {
+  for (const Utterance& each : testing::shippedParser().parse(text, options).utterances) {
     for (const std::string& words : each.left_out) {
       if (each.understood()) add(&heard.left_out, words);
     }
@@ -61,7 +55,7 @@ void expect(const std::vector<Said>& all, const std::string& language) {
   }
 }
 
-TEST(Clauses, WhatDeniesNothingToldIsLeftOutAloud) {
+TEST(Clauses, WhatDeniesNothingToldIsToldAsLeftOut) {
   expect(
       {{"the kitchen is on the left dont ask me why", "neighbours kitchen left", "dont ask me why"},
        {"the gents is third on your right dont go in there", "nth_neighbour gents 3 right",
@@ -159,8 +153,8 @@ std::vector<std::string> described(const std::string& text, const std::string& l
                                    std::string* problems) {
   ParseOptions options;
   options.language = language;
-  DescriptionBuilder builder(parser());
-  for (const DescriptionIssue& issue : builder.add(parser().parse(text, options))) {
+  DescriptionBuilder builder(testing::shippedParser());
+  for (const DescriptionIssue& issue : builder.add(testing::shippedParser().parse(text, options))) {
     *problems += issue.reason + "; ";
   }
   std::vector<std::string> all;
@@ -231,7 +225,8 @@ TEST(Positions, WhatIsOnlyAlmostSoIsRefused) {
 TEST(Positions, ThreeDoorsPastIsNotProposedAsRightAfter) {
   ParseOptions options;
   options.language = "en";
-  const ParsedText parsed = parser().parse("The lab is three doors past the kitchen.", options);
+  const ParsedText parsed =
+      testing::shippedParser().parse("The lab is three doors past the kitchen.", options);
   ASSERT_EQ(parsed.utterances.size(), 1u);
   EXPECT_FALSE(parsed.utterances.front().suggests_meaning);
 }

@@ -7,6 +7,7 @@
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/testing/language_outlines.hpp"
 #include "hyselam_language/testing/lost_words.hpp"
+#include "shipped_parser.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -57,13 +58,6 @@ std::vector<Item> corpus(const std::string& name) {
   return items;
 }
 
-const TopoParser& parser() {
-  static const std::string kFolder = HYSELAM_PACKAGE_DIR "/grammar/";
-  static const TopoParser kParser(
-      {Grammar::load({kFolder + "en.yaml"}), Grammar::load({kFolder + "pt.yaml"})});
-  return kParser;
-}
-
 std::string joined(const std::vector<std::string>& all) {
   std::string text;
   for (const std::string& each : all) text += (text.empty() ? "" : "; ") + each;
@@ -83,8 +77,8 @@ Score scoreOf(const std::vector<Item>& items) {
     ParseOptions options;
     options.language = item.language;
     options.expected = item.expected;
-    const ParsedText parsed = parser().parse(item.text, options);
-    DescriptionBuilder builder(parser());
+    const ParsedText parsed = testing::shippedParser().parse(item.text, options);
+    DescriptionBuilder builder(testing::shippedParser());
     const auto found_issues = builder.add(parsed);
     std::vector<std::string> says, issues, refused;
     for (const Utterance& utterance : parsed.utterances) {
@@ -175,7 +169,7 @@ TEST(LanguageCorpus, RefusalsTeach) {
     for (const Item& item : corpus(name)) {
       ParseOptions options;
       options.language = item.language;
-      const ParsedText said = parser().parse(item.text, options);
+      const ParsedText said = testing::shippedParser().parse(item.text, options);
       for (const Utterance& utterance : said.utterances) {
         const bool is_text =
             utterance.reason_code != "not_text" && utterance.reason_code != "too_long";
@@ -185,7 +179,7 @@ TEST(LanguageCorpus, RefusalsTeach) {
         EXPECT_FALSE(utterance.suggestion.empty()) << item.text;
         ParseOptions same;
         same.language = said.language;
-        const ParsedText again = parser().parse(utterance.suggestion, same);
+        const ParsedText again = testing::shippedParser().parse(utterance.suggestion, same);
         EXPECT_EQ(again.misunderstood(), 0u) << item.text << "\n  -> " << utterance.suggestion;
       }
     }
@@ -201,8 +195,9 @@ TEST(LanguageCorpus, NothingIsDroppedSilently) {
                            "ways_en", "ways_pt"}) {
     for (const Item& item : corpus(name)) {
       ++texts;
-      const std::string language = parser().parse(item.text, {}).language;
-      for (const std::string& lost : testing::lostWords(parser(), item.text, language)) {
+      const std::string language = testing::shippedParser().parse(item.text, {}).language;
+      for (const std::string& lost :
+           testing::lostWords(testing::shippedParser(), item.text, language)) {
         ADD_FAILURE() << name << ": " << lost;
       }
     }
@@ -212,14 +207,14 @@ TEST(LanguageCorpus, NothingIsDroppedSilently) {
 
 TEST(LanguageCorpus, WhatIsPassedOnTheWayIsToldAndAsked) {
   const Utterance right =
-      parser()
+      testing::shippedParser()
           .parse("The fuse room is on the right, immediately after the fire door.")
           .utterances[0];
   EXPECT_EQ(right.intent, "neighbours");
   EXPECT_EQ(right.left_out, std::vector<std::string>{"immediately after the fire door"});
   EXPECT_EQ(right.to_confirm, "The fuse room is on the right.");
   // What the robot stands in is no matter of words left out.
-  EXPECT_TRUE(parser()
+  EXPECT_TRUE(testing::shippedParser()
                   .parse("The kitchen is down the corridor on the left.")
                   .utterances[0]
                   .left_out.empty());
@@ -227,7 +222,8 @@ TEST(LanguageCorpus, WhatIsPassedOnTheWayIsToldAndAsked) {
 
 /// Where a part of a sentence was not understood that may say more of a place, the rest is asked.
 TEST(LanguageCorpus, PartsOfASentenceAreAsked) {
-  const ParsedText said = parser().parse("The archive is downstairs, right above the quarry deck.");
+  const ParsedText said =
+      testing::shippedParser().parse("The archive is downstairs, right above the quarry deck.");
   ASSERT_EQ(said.utterances.size(), 2u);
   ASSERT_TRUE(said.utterances[0].understood());
   EXPECT_EQ(said.utterances[0].to_confirm, "The archive is downstairs.");

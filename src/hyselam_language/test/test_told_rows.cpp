@@ -6,16 +6,10 @@
 #include <random>
 
 #include "hyselam_language/building/description_builder.hpp"
+#include "shipped_parser.hpp"
 
 namespace hyselam_topo {
 namespace {
-
-const TopoParser& parser() {
-  static const std::string kFolder = HYSELAM_PACKAGE_DIR "/grammar/";
-  static const TopoParser kParser(
-      {Grammar::load({kFolder + "en.yaml"}), Grammar::load({kFolder + "pt.yaml"})});
-  return kParser;
-}
 
 /// How a language tells a row; {} is a room.
 struct Telling {
@@ -83,8 +77,8 @@ struct Heard {
 Heard hear(const std::string& text, const std::string& language) {
   ParseOptions options;
   options.language = language;
-  const ParsedText parsed = parser().parse(text, options);
-  DescriptionBuilder builder(parser());
+  const ParsedText parsed = testing::shippedParser().parse(text, options);
+  DescriptionBuilder builder(testing::shippedParser());
   Heard heard;
   for (const DescriptionIssue& issue : builder.add(parsed)) heard.problems += issue.reason + "; ";
   for (const Utterance& each : parsed.utterances) {
@@ -188,10 +182,10 @@ DescribedConnection toldFrom(const std::string& text, const std::string& languag
                              const std::optional<hyselam::Pose2>& view) {
   ParseOptions options;
   options.language = language;
-  DescriptionBuilder builder(parser());
+  DescriptionBuilder builder(testing::shippedParser());
   builder.setRobotPlace(language == "pt" ? "corredor" : "corridor", PlaceKind::kCorridor);
   builder.setViewpoint(view);
-  builder.add(parser().parse(text, options));
+  builder.add(testing::shippedParser().parse(text, options));
   return builder.building().connections.empty() ? DescribedConnection{}
                                                 : builder.building().connections.front();
 }
@@ -232,16 +226,16 @@ TEST(ToldHere, IsTheNearestDoorOfThatSide) {
 
 /// From farther on, the same side is no news, and the number stays.
 TEST(ToldHere, TheSameSideSaidAgainKeepsTheNumber) {
-  DescriptionBuilder builder(parser());
+  DescriptionBuilder builder(testing::shippedParser());
   builder.setRobotPlace("corridor", PlaceKind::kCorridor);
   builder.setViewpoint(hyselam::Pose2{0.0, 0.0, 0.0});
-  builder.add(parser().parse("The third door on the right is the store."));
+  builder.add(testing::shippedParser().parse("The third door on the right is the store."));
   builder.setViewpoint(hyselam::Pose2{6.0, 0.0, 0.0});
-  builder.add(parser().parse("The store is on the right."));
+  builder.add(testing::shippedParser().parse("The store is on the right."));
   ASSERT_EQ(builder.building().connections.size(), 1u);
   EXPECT_EQ(builder.building().connections[0].rank, 3);
   builder.setViewpoint(hyselam::Pose2{6.0, 0.0, 3.14});
-  builder.add(parser().parse("The store is on the left."));
+  builder.add(testing::shippedParser().parse("The store is on the left."));
   EXPECT_EQ(builder.building().connections[0].side, Side::kLeft);
 }
 

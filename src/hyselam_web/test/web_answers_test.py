@@ -189,7 +189,7 @@ class AnswersTest(PageCase):
                              ("it is place 5, besides the door is open", "it is SS05, besides the door is open"), ("place 5", 'SS05 is "science lab".'),
                              ("it is place 5, between the gym and the library", 'SS05 is "science lab". SS05 is between the gym and the library.'),
                              ("é o lugar 5, em frente à escada", 'SS05 é "science lab". SS05 fica em frente à escada.'), ("yes, the toilet is number 2", 'SS02 is "toilet".'),
-                             ("yes, but the gym is shut", "yes, but the gym is shut"), ("no", "no")]:
+                             ("yes, but the gym is shut", "yes, but the gym is shut"), ("right?", "right?"), ("no", "no")]:
             self.hears(("human", "Hello."), ("robot", "Thank you. SS04 is the music room."))
             tab.wait("document.querySelector('#next p')?.textContent === 'Is place 3 the science lab?'", "the question")
             self.say(tab, typed)

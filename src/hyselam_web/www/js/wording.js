@@ -86,6 +86,7 @@ export function placeOnly(sentence, model) {
 const YES = /^(yes|yeah|yep|yup|sure|correct|exactly|right|sim|certo|claro|exato|exatamente|pois|mesmo)$/;
 const WITH_YES = /^(that|thats|it|its|this|is|s|so|of|course|please|e|isso|esta|que|ok|okay)$/;
 export function isYes(sentence) {
+  if (sentence.includes("?")) return false;
   const words = folded(sentence).match(/[\p{L}\p{N}]+/gu) ?? [];
   return words.some((word) => YES.test(word)) && words.every((word) => YES.test(word) || WITH_YES.test(word));
 }
