@@ -81,16 +81,23 @@ bool mayBeReason(const Aside& part, const std::vector<Token>& tokens,
 
 }  // namespace
 
+bool denies(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+            const CompiledGrammar& grammar) {
+  return std::any_of(tokens.begin() + static_cast<std::ptrdiff_t>(begin),
+                     tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
+                       const auto code = grammar.refusing_words.find(token.folded);
+                       return code != grammar.refusing_words.end() && code->second == "denial";
+                     });
+}
+
 bool doubts(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
             const CompiledGrammar& grammar) {
-  bool denies = false, doubtful = false;
+  if (!denies(tokens, begin, end, grammar)) return false;
   for (std::size_t at = begin; at < end; ++at) {
-    const auto code = grammar.refusing_words.find(tokens[at].folded);
-    denies = denies || (code != grammar.refusing_words.end() && code->second == "denial");
     const bool asks = at + 1 < end && grammar.asking_words.count(tokens[at + 1].folded) != 0;
-    doubtful = doubtful || (!asks && grammar.doubt_words.count(tokens[at].folded) != 0);
+    if (!asks && grammar.doubt_words.count(tokens[at].folded) != 0) return true;
   }
-  return denies && doubtful;
+  return false;
 }
 
 bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::size_t end,

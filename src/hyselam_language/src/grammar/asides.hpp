@@ -28,6 +28,10 @@ std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGram
 bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
                       const CompiledGrammar& grammar, bool with_nouns);
 
+/// Whether a word of tokens [begin, end) denies: "not", "nobody".
+bool denies(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
+            const CompiledGrammar& grammar);
+
 /// "I am not sure", "não dá para ter a certeza": doubts what is told beside it.
 bool doubts(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
             const CompiledGrammar& grammar);

@@ -69,13 +69,11 @@ std::vector<Part> partsOf(const std::vector<Token>& tokens, const CompiledGramma
 /// reaches cannot be told.
 bool deniesWhatIsSaid(const Part& part, const std::vector<Token>& tokens,
                       const CompiledGrammar& grammar) {
-  bool denies = false, says = false;
-  for (std::size_t at = part.begin; at < part.end; ++at) {
-    const auto code = grammar.refusing_words.find(tokens[at].folded);
-    denies = denies || (code != grammar.refusing_words.end() && code->second == "denial");
-    says = says || grammar.saying_words.count(tokens[at].folded) != 0;
-  }
-  return denies && says;
+  if (!denies(tokens, part.begin, part.end, grammar)) return false;
+  return std::any_of(
+      tokens.begin() + static_cast<std::ptrdiff_t>(part.begin),
+      tokens.begin() + static_cast<std::ptrdiff_t>(part.end),
+      [&](const Token& token) { return grammar.saying_words.count(token.folded) != 0; });
 }
 
 std::size_t behindSeparator(const Part& part, const std::vector<Token>& tokens,
