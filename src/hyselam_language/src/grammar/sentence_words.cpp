@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "matching_costs.hpp"
+#include "numbered_places.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -19,8 +20,11 @@ SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::strin
       text(text_of),
       sentence(sentence_of),
       tokens(std::move(tokens_of)),
-      names(grammar, text, tokens) {
+      names(grammar, text, tokens),
+      numbered_(std::make_unique<NumberedPlaces>(this)) {
   if (isTooLong()) return;
+  names.alsoFind(
+      [this](std::size_t at, const NameType& type) { return numbered_->find(at, type); });
   const bool accents = std::any_of(tokens.begin(), tokens.end(),
                                    [](const Token& token) { return token.has_accents; });
   for (const Token& token : tokens) {
@@ -41,6 +45,8 @@ SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::strin
                 found.end());
   }
 }
+
+SentenceWords::~SentenceWords() = default;
 
 bool SentenceWords::isTooLong() const {
   return tokens.size() > kMaxTokens;

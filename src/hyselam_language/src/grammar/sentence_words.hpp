@@ -1,6 +1,7 @@
 // A sentence as the matcher sees it: its tokens, and what each of them may stand for.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 namespace hyselam_topo {
 namespace language {
 
+class NumberedPlaces;
+
 /// All that is given must outlive this.
 class SentenceWords {
  public:
@@ -20,6 +23,7 @@ class SentenceWords {
                 std::vector<Token> tokens);
   SentenceWords(const SentenceWords&) = delete;  // `names` refers to the tokens
   SentenceWords& operator=(const SentenceWords&) = delete;
+  ~SentenceWords();
 
   /// Such a sentence is not read: `matches` is empty.
   bool isTooLong() const;
@@ -39,6 +43,9 @@ class SentenceWords {
   const std::vector<Token> tokens;
   TokenMatches matches;
   NameFinder names;
+
+ private:
+  std::unique_ptr<NumberedPlaces> numbered_;
 };
 
 }  // namespace language

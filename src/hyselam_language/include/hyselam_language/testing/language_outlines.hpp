@@ -109,8 +109,11 @@ inline std::string outline(const Utterance& utterance) {
     if (slot.number) text = shown(*slot.number);
     if (!slot.word.empty()) text = slot.word;
     for (const SaidName& name : slot.names) {
+      const std::string reference = name.reference == kNumbered
+                                        ? name.side + " " + std::to_string(name.number)
+                                        : name.reference;
       text += (text.empty() ? "" : ",") +
-              (name.reference.empty() ? name.text : "<" + name.reference + ">");
+              (reference.empty() ? name.text : "<" + reference + ">");
     }
   }
   std::string line = utterance.intent;
