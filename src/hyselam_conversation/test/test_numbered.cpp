@@ -48,18 +48,21 @@ TEST(Numbered, WhatIsCalledSoIsMeant) {
 TEST(Numbered, WhatIsToldOfItIsOfTheNameToldLater) {
   ExampleTalk example;
   example.talk.say("You are in the corridor.");
-  const Exchange fact = example.talk.say("The pantry is opposite the third door on the right.");
-  EXPECT_TRUE(has(fact.replyText(), "SS03")) << fact.replyText();
-  example.talk.say("The third door on the right is the archive.");
+  const Exchange fact = example.talk.say("The pantry is opposite the last door on the right.");
+  EXPECT_TRUE(has(fact.question, "SS09")) << fact.replyText();
+  example.talk.say("Yes.");
+  example.talk.say("The last door on the right is the archive.");
   const Exchange asked = example.talk.say("What is opposite the archive?");
   EXPECT_TRUE(has(asked.replyText(), "pantry")) << asked.replyText();
 }
 
 TEST(Numbered, OrdersAndQuestionsMeanThePlaceOfTheMap) {
   ExampleTalk example;
-  const Exchange going = example.talk.say("Go to the third door on the right.");
+  const Exchange asked = example.talk.say("Go to the last door on the right.");
+  EXPECT_FALSE(asked.goal.has_value()) << asked.replyText();
+  const Exchange going = example.talk.say("Yes.");
   ASSERT_TRUE(going.goal.has_value()) << going.replyText();
-  EXPECT_EQ(*going.goal, 3u);
+  EXPECT_EQ(*going.goal, 9u);
   ExampleTalk other;
   const Exchange size = other.talk.say("How big is the last room on the right?");
   EXPECT_TRUE(has(size.replyText(), "SS09")) << size.replyText();
@@ -68,16 +71,30 @@ TEST(Numbered, OrdersAndQuestionsMeanThePlaceOfTheMap) {
 TEST(Numbered, WhatIsNotSureIsNotTakenDown) {
   ExampleTalk example;
   example.talk.say("You are in the corridor.");
-  const Exchange fact = example.talk.say("The pantry is opposite the sixteenth door on the right.");
+  const Exchange fact = example.talk.say("The pantry is opposite the tenth door on the right.");
   EXPECT_TRUE(fact.understood.empty()) << fact.replyText();
-  EXPECT_TRUE(has(fact.replyText(), "sixteenth door on the right")) << fact.replyText();
-  const Exchange going = example.talk.say("Go to the sixteenth door on the right.");
+  EXPECT_TRUE(has(fact.replyText(), "tenth door on the right")) << fact.replyText();
+  const Exchange going = example.talk.say("Go to the tenth door on the right.");
   EXPECT_FALSE(going.goal.has_value()) << going.replyText();
-  // Told to be elsewhere, it sees other sides than it does.
+  // Led about in thought, it sees other sides than it does.
   ExampleTalk led;
-  led.talk.say("You are in the laundry. On your left is the bar.");
-  const Exchange there = led.talk.say("The pantry is opposite the third door on the right.");
-  EXPECT_FALSE(has(there.replyText(), "SS03")) << there.replyText();
+  const Exchange there = led.talk.say(
+      "You are in the corridor. On your left is the kitchen. Now you are in the kitchen. The pantry "
+      "is opposite the last door on the right.");
+  EXPECT_FALSE(has(there.replyText(), "SS09")) << there.replyText();
+}
+
+/// What it may be is asked, one after the other.
+TEST(Numbered, WhatMayBeSeveralIsAsked) {
+  ExampleTalk example;
+  example.talk.say("You are in the corridor.");
+  const Exchange asked = example.talk.say("The pantry is opposite the third door on the right.");
+  EXPECT_TRUE(has(asked.question, "The pantry is opposite SS03")) << asked.replyText();
+  EXPECT_TRUE(asked.understood.empty());
+  const Exchange other = example.talk.say("No.");
+  EXPECT_TRUE(has(other.question, "The pantry is opposite SS04")) << other.replyText();
+  const Exchange taken = example.talk.say("Yes.");
+  EXPECT_TRUE(has(taken.replyText(), "The pantry is opposite SS04.")) << taken.replyText();
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ bool Dialogue::isWhereTold() const {
   return here->kind == PlaceKind::kCorridor && told.kind == PlaceKind::kCorridor;
 }
 
-std::vector<Id> Dialogue::placesAtNumber(Side side, int number) const {
+Dialogue::AtNumber<Id> Dialogue::placesAtNumber(Side side, int number) const {
   if (!isWhereTold()) return {};
   const Place& here = *places_.map().findPlace(robot().place);
   // As if it were told that some place is there: the map answers both alike.
@@ -64,19 +64,23 @@ std::vector<Id> Dialogue::placesAtNumber(Side side, int number) const {
     const PlaceAssignment match = solveExact(problem, params_.match);
     if (!match.found()) return {};
     const Uncertainty unsure = uncertaintyOf(match, problem, params_.match, asked);
-    const auto places = unsure.places.find(asked.places[1].name);
-    if (places != unsure.places.end()) return places->second;
-    std::vector<Id> found;
+    AtNumber<Id> found;
     for (std::size_t v = 0; v < problem.vertexCount(); ++v) {
-      if (nameAt(match.best(), v) == 1) found.push_back(problem.vertices[v]);
+      if (nameAt(match.best(), v) == 1) found.all.push_back(problem.vertices[v]);
     }
+    const auto places = unsure.places.find(asked.places[1].name);
+    if (places != unsure.places.end()) found.all = places->second;
+    const auto likely = unsure.likely.find(asked.places[1].name);
+    found.is_first = found.all.size() == 1 ||
+                     (likely != unsure.likely.end() && !found.all.empty() &&
+                      likely->second == found.all.front());
     return found;
   } catch (const hyselam::InputError&) {
     return {};  // a map that nothing can be matched with
   }
 }
 
-std::vector<std::string> Dialogue::namesOfNumbered(const SaidName& place) const {
+Dialogue::AtNumber<std::string> Dialogue::namesOfNumbered(const SaidName& place) const {
   const auto side = sideOf(place.side);
   if (!side) return {};
   // What was told to be there, as it is seen from here.
@@ -85,12 +89,13 @@ std::vector<std::string> Dialogue::namesOfNumbered(const SaidName& place) const 
   for (const DescribedConnection& each : building.connections) {
     const bool told = building.robot_place == each.from && each.side == *side &&
                       each.rank == place.number && areSameView(each.seen_from, view);
-    if (told) return {building.findPlace(each.to)->name};
+    if (told) return {{building.findPlace(each.to)->name}, true};
   }
-  std::vector<std::string> names;
-  for (const Id id : placesAtNumber(*side, place.number)) {
+  const AtNumber<Id> found = placesAtNumber(*side, place.number);
+  AtNumber<std::string> names{{}, found.is_first};
+  for (const Id id : found.all) {
     const Place& known = *places_.map().findPlace(id);
-    names.push_back(nameStateOf(known) == NameState::kConfirmed ? namesOf(known).front()
+    names.all.push_back(nameStateOf(known) == NameState::kConfirmed ? namesOf(known).front()
                                                                 : codeOf(known));
   }
   return names;
@@ -110,7 +115,7 @@ std::optional<Utterance> Dialogue::withNumberedNamed(const Utterance& heard, Tur
   for (Slot& slot : u.slots) {
     for (SaidName& name : slot.names) {
       if (name.reference != kNumbered) continue;
-      const std::vector<std::string> meant = namesOfNumbered(name);
+      const std::vector<std::string> meant = namesOfNumbered(name).all;
       if (meant.size() != 1) {
         const std::string reason = sayNumberedUnknown(name, meant);
         turn.reply.refusals.push_back({u.text, reason, false, ""});
@@ -126,7 +131,7 @@ std::optional<Utterance> Dialogue::withNumberedNamed(const Utterance& heard, Tur
         }
         return std::nullopt;
       }
-      tellNumbered(name.text, meant.front(), turn.reply);
+      turn.reply.sentences.push_back(sayNumbered(name.text, meant));
       name.text = meant.front();
       name.reference.clear();
       name.side.clear();
@@ -136,9 +141,10 @@ std::optional<Utterance> Dialogue::withNumberedNamed(const Utterance& heard, Tur
   return u;
 }
 
-void Dialogue::tellNumbered(const std::string& said_as, const std::string& meant,
-                            Reply& out) const {
-  out.sentences.push_back(phrases().say("numbered", {{"text", said_as}, {"place", said(meant)}}));
+std::string Dialogue::sayNumbered(const std::string& said_as,
+                                  const std::vector<std::string>& meant) const {
+  const char* const key = meant.size() == 1 ? "numbered" : "numbered_likely";
+  return phrases().say(key, {{"text", said_as}, {"place", said(meant.front())}});
 }
 
 bool Dialogue::handleNumbered(const Utterance& u, Turn& turn) {
@@ -159,14 +165,12 @@ void Dialogue::nameNumberedForOthers(Turn& turn) {
     const std::vector<SaidName> all = numberedNamesIn(sentence.text, grammar());
     std::string unsure;
     for (auto name = all.rbegin(); name != all.rend(); ++name) {
-      const std::vector<std::string> meant = namesOfNumbered(*name);
-      if (meant.size() > 1) unsure = sayNumberedUnknown(*name, meant);
-      if (meant.size() != 1) continue;
-      sentence.for_others = withNameFor(sentence.for_others, name->range, meant.front(),
-                                         !isCode(meant.front()), grammar());
-      Reply told;
-      tellNumbered(name->text, meant.front(), told);
-      sentence.numbered.insert(sentence.numbered.begin(), told.sentences.front());
+      const AtNumber<std::string> meant = namesOfNumbered(*name);
+      if (!meant.is_first && !meant.all.empty()) unsure = sayNumberedUnknown(*name, meant.all);
+      if (!meant.is_first) continue;
+      sentence.for_others = withNameFor(sentence.for_others, name->range, meant.all.front(),
+                                         !isCode(meant.all.front()), grammar());
+      sentence.numbered.insert(sentence.numbered.begin(), sayNumbered(name->text, meant.all));
     }
     if (unsure.empty()) {
       known.push_back(std::move(sentence));
@@ -191,9 +195,9 @@ void Dialogue::giveNumberedName(const Utterance& u) {
   if (!side || !number || !one || !by_code) return;
   const std::vector<Id> told = builder_.find(places->names.front().text);
   if (told.size() != 1) return;
-  const std::vector<Id> found = placesAtNumber(*side, static_cast<int>(*number));
-  if (found.size() != 1) return;
-  const std::string code = codeOf(*places_.map().findPlace(found.front()));
+  const AtNumber<Id> found = placesAtNumber(*side, static_cast<int>(*number));
+  if (!found.is_first) return;
+  const std::string code = codeOf(*places_.map().findPlace(found.all.front()));
   if (builder_.find(code).size() != 1) return;
   builder_.giveName(code, builder_.building().findPlace(told.front())->name);
 }

@@ -62,6 +62,7 @@ constexpr std::pair<const char*, const char*> kPhrases[] = {
     {"not_taken", "text"},
     {"left_out", "text"},
     {"numbered", "text place"},
+    {"numbered_likely", "text place"},
     {"numbered_unknown", "text"},
     {"numbered_unsure", "text places"},
     {"not_taken_down_say", "suggestion"},

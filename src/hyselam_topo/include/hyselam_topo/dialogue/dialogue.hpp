@@ -345,17 +345,23 @@ class Dialogue {
   std::vector<std::string> ownNames(Id place, const std::vector<std::string>& names) const;
   /// Whether the robot stands, and sees its sides, where people last told that it is.
   bool isWhereTold() const;
-  /// "The third on the right", -1 the last: the places of the map that it may be, the likeliest
-  /// first; one where that is sure, none where it is not known.
-  std::vector<Id> placesAtNumber(Side side, int number) const;
-  /// The name of what was told to be there, or of what the map has there: likewise.
-  std::vector<std::string> namesOfNumbered(const SaidName& place) const;
+  /// What "the third on the right" may be, the likeliest first: one where that is sure, none where
+  /// it is not known.
+  template <typename T>
+  struct AtNumber {
+    std::vector<T> all;
+    bool is_first = false;  ///< the first rather than all others
+  };
+  /// Places of the map; -1: the last.
+  AtNumber<Id> placesAtNumber(Side side, int number) const;
+  /// The name of what was told to be there, or of what the map has there.
+  AtNumber<std::string> namesOfNumbered(const SaidName& place) const;
   std::string sayNumberedUnknown(const SaidName& place,
                                  const std::vector<std::string>& perhaps) const;
   /// The utterance with the names of places that were told by number and side, which are told;
   /// nothing, and that is asked or told, where it is not sure which are meant.
   std::optional<Utterance> withNumberedNamed(const Utterance& heard, Turn& turn);
-  void tellNumbered(const std::string& said_as, const std::string& meant, Reply& out) const;
+  std::string sayNumbered(const std::string& said_as, const std::vector<std::string>& meant) const;
   /// An utterance with such places; false for one without.
   bool handleNumbered(const Utterance& u, Turn& turn);
   /// What others are told has the names, or is not told to them.
