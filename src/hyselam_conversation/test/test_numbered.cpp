@@ -1,5 +1,5 @@
-// "The third door on the right" in things, owners, relations, orders and questions: the place of the
-// map that it means is told; where it is not sure, nothing is taken down.
+// "The third door on the right" in things, owners, relations, orders and questions: the place of
+// the map that it means is told; where it is not sure, nothing is taken down.
 #include <gtest/gtest.h>
 
 #include "example.hpp"
@@ -79,7 +79,8 @@ TEST(Numbered, WhatIsNotSureIsNotTakenDown) {
   // Led about in thought, it sees other sides than it does.
   ExampleTalk led;
   const Exchange there = led.talk.say(
-      "You are in the corridor. On your left is the kitchen. Now you are in the kitchen. The pantry "
+      "You are in the corridor. On your left is the kitchen. Now you are in the kitchen. The "
+      "pantry "
       "is opposite the last door on the right.");
   EXPECT_FALSE(has(there.replyText(), "SS09")) << there.replyText();
 }

@@ -44,10 +44,11 @@ TEST(NumberedPlaces, StandWhereANameMayStand) {
 }
 
 TEST(NumberedPlaces, NameNothing) {
-  for (const char* text : {"This is the third room on the left.", "You are in the last on the right.",
-                           "The kitchen is also known as the third door on the left.",
-                           "Rename the kitchen to the second on the left.",
-                           "Go to the kitchen, the second door on the left."}) {
+  for (const char* text :
+       {"This is the third room on the left.", "You are in the last on the right.",
+        "The kitchen is also known as the third door on the left.",
+        "Rename the kitchen to the second on the left.",
+        "Go to the kitchen, the second door on the left."}) {
     EXPECT_EQ(read(text, "en").find('<'), std::string::npos) << text << ": " << read(text, "en");
   }
   // One place, no list of two.
@@ -121,8 +122,9 @@ TEST(NumberedPlaces, TwoNumbersAreTwoPlaces) {
     }
     return all + (issues.empty() ? "" : "? " + issues.front().reason);
   };
-  EXPECT_EQ(rows("You are in the corridor. The second and third door on the left are meeting rooms."),
-            "meeting room left 2; meeting room left 3; ");
+  EXPECT_EQ(
+      rows("You are in the corridor. The second and third door on the left are meeting rooms."),
+      "meeting room left 2; meeting room left 3; ");
   EXPECT_EQ(rows("You are in the corridor. The last two on the right are changing rooms."),
             "changing room right -2; changing room right -1; ");
   EXPECT_EQ(rows("You are in the corridor. The first and the second on the left are the kitchen "
@@ -130,9 +132,10 @@ TEST(NumberedPlaces, TwoNumbersAreTwoPlaces) {
             "kitchen left 1; library left 2; ");
   EXPECT_EQ(rows("Estás no corredor. As duas primeiras portas à esquerda são laboratórios."),
             "laboratório left 1; laboratório left 2; ");
-  EXPECT_EQ(rows("You are in the corridor. The first two on the left are meeting rooms. The second is "
-                 "the bar."),
-            "meeting room left 1; meeting room left 2; ? number 2 on the left is 'meeting room'");
+  EXPECT_EQ(
+      rows("You are in the corridor. The first two on the left are meeting rooms. The second is "
+           "the bar."),
+      "meeting room left 1; meeting room left 2; ? number 2 on the left is 'meeting room'");
   EXPECT_EQ(rows("You are in the corridor. The second and third door on the left are the library."),
             "? 2 were announced, 1 named");
 }

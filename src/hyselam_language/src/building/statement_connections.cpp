@@ -178,7 +178,8 @@ std::optional<int> rankOf(Statement& s, const std::string& slot) {
 
 namespace {
 
-/// "The fourth and the fifth on the right are seminar rooms": two of one name, or one name for each.
+/// "The fourth and the fifth on the right are seminar rooms": two of one name, or one name for
+/// each.
 void neighboursAtTwo(Statement& s) {
   if (s.isDenial()) refuseDenial(s);
   const Side side = sideOf(s);

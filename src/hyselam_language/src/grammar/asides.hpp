@@ -22,8 +22,8 @@ struct Aside {
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
                             bool all = false);
 
-/// "In case anybody asks [for it]", "whatever the sign may say": what it doubts or demands is nothing
-/// that is told, and nothing else is told in it. An order may depend on it.
+/// "In case anybody asks [for it]", "whatever the sign may say": what it doubts or demands is
+/// nothing that is told, and nothing else is told in it. An order may depend on it.
 bool isHarmless(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
                 const CompiledGrammar& grammar);
 

@@ -137,12 +137,12 @@ struct Quantity {
 struct IntentInfo {
   std::string name;
   UtteranceKind kind = UtteranceKind::kStatement;
-  std::string refuse;            ///< code of the reason; "" for what is understood
-  bool only_expected = false;    ///< tried only when asked for
-  int cost = 0;                  ///< more than other intents, where two fit equally well
-  bool only_correction = false;  ///< tried only behind a word like "sorry": "..., on the right"
-  std::string as;                ///< the utterance gets this intent; "": its own name
-  bool corrects_next = false;    ///< "no.": the next statement is a correction
+  std::string refuse;              ///< code of the reason; "" for what is understood
+  bool only_expected = false;      ///< tried only when asked for
+  int cost = 0;                    ///< more than other intents, where two fit equally well
+  bool only_correction = false;    ///< tried only behind a word like "sorry": "..., on the right"
+  std::string as;                  ///< the utterance gets this intent; "": its own name
+  bool corrects_next = false;      ///< "no.": the next statement is a correction
   std::set<std::string> numbered;  ///< slots where a place may be told by number and side
   std::vector<std::string> examples;
   std::vector<Automaton> patterns;

@@ -50,7 +50,8 @@ std::string withNameFor(const std::string& text, TextRange range, const std::str
   std::size_t begin = range.begin;
   const std::size_t space = begin < 2 ? std::string::npos : text.rfind(' ', begin - 2);
   const std::size_t word = space == std::string::npos ? 0 : space + 1;
-  const bool article = type != nullptr && !type->head_first && begin > 0 && text[begin - 1] == ' ' &&
+  const bool article = type != nullptr && !type->head_first && begin > 0 &&
+                       text[begin - 1] == ' ' &&
                        type->isArticle(hyselam::utf8Lower(text.substr(word, begin - 1 - word)));
   if (article && !with_article) begin = word;
   return text.substr(0, begin) + name + text.substr(range.end);

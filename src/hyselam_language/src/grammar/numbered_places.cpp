@@ -33,8 +33,8 @@ std::vector<FoundName> NumberedPlaces::find(std::size_t at, const NameType& type
       }
       place.name.range = {tokens[begin].range.begin, tokens[end.at - 1].range.end};
       place.name.text = words_.textOf(place.name.range);
-      const bool again =
-          std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.end == place.end; });
+      const bool again = std::any_of(found.begin(), found.end(),
+                                     [&](const auto& f) { return f.end == place.end; });
       const bool side = place.name.side == "left" || place.name.side == "right";
       if (!again && side && place.name.number != 0) found.push_back(std::move(place));
     }

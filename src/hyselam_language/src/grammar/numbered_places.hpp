@@ -1,5 +1,5 @@
-// "The third room on the right", "second left": a place told by its number and its side stands where
-// a name of a place may stand.
+// "The third room on the right", "second left": a place told by its number and its side stands
+// where a name of a place may stand.
 #pragma once
 
 #include <optional>

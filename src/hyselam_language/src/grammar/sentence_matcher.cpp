@@ -75,9 +75,10 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
   if (!asides.empty()) {
     std::vector<Utterance> rest = readWithout(asides);
     // "If anybody asks, go to the kitchen": not now.
-    const bool depends = orders(rest) && std::any_of(asides.begin(), asides.end(), [&](const auto& each) {
-      return isHarmless(tokens, each.begin, each.end, grammar);
-    });
+    const bool depends =
+        orders(rest) && std::any_of(asides.begin(), asides.end(), [&](const auto& each) {
+          return isHarmless(tokens, each.begin, each.end, grammar);
+        });
     if (isUnderstood(rest) && !depends) return rest;
   }
   for (const std::vector<Aside>& reasons : asidesOfCorrections(tokens, grammar)) {

@@ -71,9 +71,9 @@ Dialogue::AtNumber<Id> Dialogue::placesAtNumber(Side side, int number) const {
     const auto places = unsure.places.find(asked.places[1].name);
     if (places != unsure.places.end()) found.all = places->second;
     const auto likely = unsure.likely.find(asked.places[1].name);
-    found.is_first = found.all.size() == 1 ||
-                     (likely != unsure.likely.end() && !found.all.empty() &&
-                      likely->second == found.all.front());
+    found.is_first =
+        found.all.size() == 1 || (likely != unsure.likely.end() && !found.all.empty() &&
+                                  likely->second == found.all.front());
     return found;
   } catch (const hyselam::InputError&) {
     return {};  // a map that nothing can be matched with
@@ -96,7 +96,7 @@ Dialogue::AtNumber<std::string> Dialogue::namesOfNumbered(const SaidName& place)
   for (const Id id : found.all) {
     const Place& known = *places_.map().findPlace(id);
     names.all.push_back(nameStateOf(known) == NameState::kConfirmed ? namesOf(known).front()
-                                                                : codeOf(known));
+                                                                    : codeOf(known));
   }
   return names;
 }
@@ -169,7 +169,7 @@ void Dialogue::nameNumberedForOthers(Turn& turn) {
       if (!meant.is_first && !meant.all.empty()) unsure = sayNumberedUnknown(*name, meant.all);
       if (!meant.is_first) continue;
       sentence.for_others = withNameFor(sentence.for_others, name->range, meant.all.front(),
-                                         !isCode(meant.all.front()), grammar());
+                                        !isCode(meant.all.front()), grammar());
       sentence.numbered.insert(sentence.numbered.begin(), sayNumbered(name->text, meant.all));
     }
     if (unsure.empty()) {

@@ -73,7 +73,7 @@ json slotOf(const Slot& slot) {
   if (!slot.names.empty()) {
     value["names"] = json::array();
     for (const auto& name : slot.names) {
-      if (name.reference == kNumbered) {
+      if (name.reference == hyselam_topo::kNumbered) {
         value["names"].push_back(
             {{"reference", name.reference}, {"side", name.side}, {"number", name.number}});
       } else if (!name.reference.empty()) {

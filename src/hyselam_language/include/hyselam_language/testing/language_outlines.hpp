@@ -112,8 +112,7 @@ inline std::string outline(const Utterance& utterance) {
       const std::string reference = name.reference == kNumbered
                                         ? name.side + " " + std::to_string(name.number)
                                         : name.reference;
-      text += (text.empty() ? "" : ",") +
-              (reference.empty() ? name.text : "<" + reference + ">");
+      text += (text.empty() ? "" : ",") + (reference.empty() ? name.text : "<" + reference + ">");
     }
   }
   std::string line = utterance.intent;
