@@ -36,6 +36,16 @@ TEST(Numbered, ThingsAreInThePlaceOfTheMap) {
   }
 }
 
+/// Things told to be in SS09 are in the archive once that is its name.
+TEST(Numbered, ThingsAreInThePlaceThatIsNamedLater) {
+  ExampleTalk example;
+  example.talk.say("You are in the corridor.");
+  example.talk.say("There is a bicycle in the last room on the right.");
+  ASSERT_EQ(placesOfThings(example.talk), "bicycle SS09; ");
+  const Exchange named = example.talk.say("SS09 is the archive.");
+  EXPECT_EQ(placesOfThings(example.talk), "bicycle archive; ") << named.replyText();
+}
+
 TEST(Numbered, WhatIsCalledSoIsMeant) {
   ExampleTalk example;
   example.talk.say("You are in the corridor. The third door on the right is the archive.");
