@@ -109,6 +109,32 @@ TEST(GraphOptimizer, NeedsNoGuess) {
   EXPECT_LT(worst(r.poses, good.poses), 1e-4);
 }
 
+TEST(GraphOptimizer, PosesThatFitAreTheStart) {
+  auto known = random_graphs::streets(400, 0.02, 3);
+  const OptimizeResult whole = GraphOptimizer(known.graph).optimize();
+  known.graph.poses = whole.poses;
+  known.graph.poses[17].x += 0.01;
+  const OptimizeResult again = GraphOptimizer(known.graph).optimize();
+  EXPECT_LT(again.iterations, whole.iterations);
+  EXPECT_NEAR(again.final_cost, whole.final_cost, 1e-6 * whole.final_cost);
+  EXPECT_LT(worst(again.poses, whole.poses), 1e-4);
+}
+
+TEST(GraphOptimizer, ConvergedIsAtTheMinimumByAFactorOfItsOwn) {
+  // The last steps use the factor of the one before: what is left to gain is within the tolerance.
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    auto known = random_graphs::streets(300, 0.05, seed);
+    const OptimizeResult r = GraphOptimizer(known.graph).optimize();
+    ASSERT_TRUE(r.converged) << seed;
+    OptimizeParams exact;
+    exact.start = GraphStart::kGiven;
+    exact.tolerance = 1e-13;
+    known.graph.poses = r.poses;
+    const double least = GraphOptimizer(known.graph).optimize(exact).final_cost;
+    EXPECT_LE(r.final_cost, least * (1.0 + 2.0 * OptimizeParams{}.tolerance)) << seed;
+  }
+}
+
 TEST(GraphOptimizer, GlobalRelaxationFindsWhatDescentMisses) {
   // Rotations so noisy that some of these graphs mislead the chordal start.
   int better = 0;

@@ -18,7 +18,9 @@ enum class GraphStart {
   kGiven,     ///< at the poses of the graph
   kComposed,  ///< edges chained from the first pose, odometry first (composedPoses())
   kChordal,   ///< rotations first, by one linear system, then positions by another
-  kBest       ///< kChordal, then the global relaxation if max_rotation_error is exceeded
+  /// kGiven if the edges fit there as they say, else kChordal; then the global relaxation if
+  /// max_rotation_error is exceeded.
+  kBest
 };
 
 /// Steps of the descent.
@@ -60,7 +62,7 @@ struct OptimizeParams {
   double gnc_inlier_threshold = 16.266;
   FollowLoops follow = FollowLoops::kBest;
   /// kBest: a larger rotation error of an edge at the minimum [rad], > 0, starts the global
-  /// relaxation, which takes some hundred times as long.
+  /// relaxation, which takes some twenty times as long.
   double max_rotation_error = 1.0;
 
   void describe(hyselam::ParameterVisitor& visit);

@@ -7,8 +7,12 @@
 namespace hyselam_pose_graph {
 
 namespace {
-constexpr int kFullSteps = 8;  // tried at once where a damped step does not descend
-}
+constexpr double kNearMinimum =
+    1e-2;  // of the cost, predicted for a step: the next one may be the last
+constexpr int kOldFactorSteps = 2;
+constexpr double kOldFactorTolerance = 1e-4;  // of that of other steps
+constexpr int kFullSteps = 8;                 // tried at once where a damped step does not descend
+}  // namespace
 
 bool Descent::solvePositions(Poses* poses) {
   Poses placed = *poses;
@@ -35,6 +39,12 @@ bool Descent::step(const Poses& poses, double damping, double* predicted) {
   system_.linearize(poses, weights, damping, &h_, &b_);
   ++iterations_;
   if (!factorPoses(&h_)) return false;
+  *predicted = solve();
+  return std::isfinite(*predicted);
+}
+
+/// The step of the gradient in b_ by the factor in h_, in b_, and the decrease that it predicts.
+double Descent::solve() {
   gradient_ = b_;
   h_.solve(&b_);
   double sum = 0.0;
@@ -42,8 +52,29 @@ bool Descent::step(const Poses& poses, double damping, double* predicted) {
     const PoseSystem::Vector p = b_[i] * gradient_[i];
     sum += p[0] + p[1] + p[2];
   }
-  *predicted = sum;
-  return std::isfinite(sum);
+  return sum;
+}
+
+/// Steps by the factor of the last one, where few will do: after a step by a factor of its own most
+/// often nothing is left to gain. An old factor leaves part of what there is, more in directions
+/// that the edges hardly determine: the tolerance is a smaller one. True when it was reached.
+bool Descent::finish(int steps, double* cost, Poses* poses) {
+  for (int done = 0; done < std::min(steps, kOldFactorSteps); ++done) {
+    system_.gradient(*poses, weights, &b_);
+    ++iterations_;
+    const double gain = solve();
+    const bool converged = gain <= kOldFactorTolerance * params_.tolerance * *cost;
+    if (!converged && (done + 1 == kOldFactorSteps || gain > params_.tolerance * *cost))
+      return false;
+    Poses next = system_.moved(*poses, b_);
+    const double next_cost = system_.cost(next, weights);
+    // Rounding may increase the cost slightly at the minimum.
+    if (!(next_cost <= *cost * (1.0 + (converged ? 1e-9 : 0.0)))) return false;
+    *poses = std::move(next);
+    *cost = next_cost;
+    if (converged) return true;
+  }
+  return false;
 }
 
 /// Undamped steps, even where they increase the cost: along a curved valley they climb before they
@@ -73,6 +104,9 @@ bool Descent::descend(Poses* poses, int steps) {
         *poses = std::move(next);
         cost = next_cost;
         if (converged && damping == 0.0) return true;
+        if (damping == 0.0 && predicted <= kNearMinimum * cost &&
+            finish(steps - done - 1, &cost, poses))
+          return true;
         damping = damping > 1e-6 ? damping / 10.0 : 0.0;
         continue;
       }

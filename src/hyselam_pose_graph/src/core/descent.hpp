@@ -39,6 +39,8 @@ class Descent {
  private:
   bool step(const Poses& poses, double damping, double* predicted);
   bool takeFullSteps(Poses* poses, int steps);
+  double solve();
+  bool finish(int steps, double* cost, Poses* poses);
 
   const PoseSystem& system_;
   const OptimizeParams& params_;

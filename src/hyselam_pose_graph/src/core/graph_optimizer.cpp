@@ -69,8 +69,8 @@ OptimizeResult GraphOptimizer::optimize(const OptimizeParams& params) const {
   } else {
     result = solveRobust(graph_, *system_, params);
   }
-  result.initial_cost = graphCost(graph_, graph_.poses);
-  result.final_cost = graphCost(graph_, result.poses);
+  result.initial_cost = system_->cost(PoseSystem::system(graph_.poses), {});
+  result.final_cost = system_->cost(PoseSystem::system(result.poses), {});
   return result;
 }
 

@@ -7,6 +7,11 @@ namespace hyselam_pose_graph {
 
 namespace {
 
+/// normalizeAngle(), without a division for angles that are normal: nearly all.
+double wrapped(double angle) {
+  return std::abs(angle) < hyselam::kPi ? angle : hyselam::normalizeAngle(angle);
+}
+
 struct Residual {
   double px, py;      // t_j in i
   double ex, ey, et;  // error
@@ -18,7 +23,7 @@ void setError(const SystemEdge& e, double x, double y, const SystemPose& i, cons
               Residual* r) {
   r->ex = x - e.x;
   r->ey = y - e.y;
-  r->et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
+  r->et = wrapped(j.theta - i.theta - e.theta);
   r->wx = e.w.xx * r->ex + e.w.xy * r->ey + e.w.xt * r->et;
   r->wy = e.w.xy * r->ex + e.w.yy * r->ey + e.w.yt * r->et;
   r->wt = e.w.xt * r->ex + e.w.yt * r->ey + e.w.tt * r->et;
@@ -47,8 +52,8 @@ Residual residualOfRotations(const SystemEdge& e, const SystemPose& i, bool i_fi
 }
 
 double rotationError(const SystemEdge& e, const std::vector<SystemPose>& poses) {
-  return hyselam::normalizeAngle(poses[static_cast<std::size_t>(e.to)].theta -
-                                 poses[static_cast<std::size_t>(e.from)].theta - e.theta);
+  return wrapped(poses[static_cast<std::size_t>(e.to)].theta -
+                 poses[static_cast<std::size_t>(e.from)].theta - e.theta);
 }
 
 /// What an edge adds to the normal equations. J_j = (R_i^T 0; 0 1), J_i = -(R_i^T q; 0 1) with
@@ -130,8 +135,10 @@ PoseSystem::PoseSystem(const PoseGraph& graph, const PoseSystem* earlier)
     e.x = edge.measured.x;
     e.y = edge.measured.y;
     e.theta = edge.measured.theta;
+    e.c = std::cos(e.theta);
+    e.s = std::sin(e.theta);
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-    rotation.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(edge.measured.theta).toRotationMatrix();
+    rotation.topLeftCorner<2, 2>() << e.c, -e.s, e.s, e.c;
     const Eigen::Matrix3d w = rotation * edge.information * rotation.transpose();
     e.w = {w(0, 0), w(0, 1), w(1, 1), w(0, 2), w(1, 2), w(2, 2)};
     edges_.push_back(e);
@@ -149,7 +156,7 @@ std::vector<SystemPose> PoseSystem::system(const std::vector<hyselam::Pose2>& po
 std::vector<hyselam::Pose2> PoseSystem::poses(const std::vector<SystemPose>& poses) {
   std::vector<hyselam::Pose2> result;
   result.reserve(poses.size());
-  for (const SystemPose& p : poses) result.push_back({p.x, p.y, hyselam::normalizeAngle(p.theta)});
+  for (const SystemPose& p : poses) result.push_back({p.x, p.y, wrapped(p.theta)});
   return result;
 }
 
@@ -241,6 +248,26 @@ void PoseSystem::fill(const std::vector<SystemPose>& poses, const std::vector<do
   }
 }
 
+void PoseSystem::gradient(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+                          std::vector<Vector>* b) const {
+  b->assign(static_cast<std::size_t>(rows()), Vector{});
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    const SystemEdge& e = edges_[k];
+    const double weight = weights.empty() ? 1.0 : weights[k];
+    if (weight == 0.0) continue;
+    const SystemPose& i = poses[static_cast<std::size_t>(e.from)];
+    const Residual r = residual(e, i, poses[static_cast<std::size_t>(e.to)]);
+    const double gx = weight * (i.c * r.wx - i.s * r.wy), gy = weight * (i.s * r.wx + i.c * r.wy);
+    const double gt = weight * r.wt;
+    const int ri = row(e.from), rj = row(e.to);
+    if (rj >= 0) (*b)[static_cast<std::size_t>(rj)] -= Vector{gx, gy, gt, 0.0};
+    if (ri >= 0) {
+      (*b)[static_cast<std::size_t>(ri)] +=
+          Vector{gx, gy, weight * (r.px * r.wy - r.py * r.wx) + gt, 0.0};
+    }
+  }
+}
+
 void PoseSystem::linearize(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
                            double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const {
   fill<false>(poses, weights, h, b);
@@ -282,7 +309,7 @@ bool PoseSystem::relaxRotations(const std::vector<double>& weights,
     const SystemEdge& e = edges_[k];
     const double kappa = (weights.empty() ? 1.0 : weights[k]) * e.w.tt;
     if (kappa == 0.0) continue;
-    const Complex z{std::cos(e.theta), std::sin(e.theta)};
+    const Complex z{e.c, e.s};
     const int ri = row(e.from), rj = row(e.to);
     if (ri >= 0) h.entry(diagonal_[static_cast<std::size_t>(ri)]).value += kappa;
     if (rj >= 0) h.entry(diagonal_[static_cast<std::size_t>(rj)]).value += kappa;

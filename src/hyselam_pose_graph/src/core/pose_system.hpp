@@ -23,6 +23,7 @@ struct SystemEdge {
   int block = -1;         ///< entry that couples the two; -1 if one of them is fixed
   bool from_row = false;  ///< that entry holds H(from, to), not H(to, from)
   double x, y, theta;     ///< as measured
+  double c, s;            ///< cosine and sine of theta
   PlanarInformation w;    ///< rotated
 };
 
@@ -68,7 +69,10 @@ class PoseSystem {
   /// H = J^T Omega J + damping diag(H), b = -J^T Omega e at `poses`.
   void linearize(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
                  double damping, BlockCholesky<Block3>* h, std::vector<Vector>* b) const;
-  /// The same with unknown positions, and rotations near those of `poses`; the positions of `poses`
+  /// That b alone.
+  void gradient(const std::vector<SystemPose>& poses, const std::vector<double>& weights,
+                std::vector<Vector>* b) const;
+  /// H and b with unknown positions, and rotations near those of `poses`; the positions of `poses`
   /// are used for fixed poses only.
   void linearizeFromRotations(const std::vector<SystemPose>& poses,
                               const std::vector<double>& weights, BlockCholesky<Block3>* h,

@@ -40,6 +40,12 @@ bool descendDcs(const PoseGraph& graph, const PoseSystem& system, const Optimize
   return false;
 }
 
+/// Whether poses are a start: all edges fit there as they say, three degrees of freedom each.
+bool fit(const Descent::Poses& poses, const PoseSystem& system, const OptimizeParams& params) {
+  return system.cost(poses, {}) <= 3.0 * static_cast<double>(system.edges().size()) &&
+         system.maxRotationError(poses) <= params.max_rotation_error;
+}
+
 }  // namespace
 
 OptimizeResult solveGraph(const PoseGraph& graph, const PoseSystem& system,
@@ -50,7 +56,9 @@ OptimizeResult solveGraph(const PoseGraph& graph, const PoseSystem& system,
   // False loops mislead the chordal relaxation: DCS starts with odometry.
   const bool composed = params.start == GraphStart::kComposed ||
                         (params.robust == GraphRobust::kDcs && params.start == GraphStart::kBest);
-  if (composed || (params.start != GraphStart::kGiven && !descent.initializeChordal(&poses)))
+  const bool stay = params.start == GraphStart::kGiven ||
+                    (params.start == GraphStart::kBest && !composed && fit(poses, system, params));
+  if (composed || (!stay && !descent.initializeChordal(&poses)))
     poses = PoseSystem::system(composedPoses(graph));
   if (params.robust == GraphRobust::kDcs) {
     result.converged = descendDcs(graph, system, params, &descent, &poses);

@@ -74,9 +74,11 @@ int main(int argc, char** argv) {
                                                    {"composed", GraphStart::kComposed},
                                                    {"chordal", GraphStart::kChordal},
                                                    {"best", GraphStart::kBest}};
-  app.add_option("--start", o.params.start,
-                 "given (the file's poses), composed (along the edges), chordal (rotations first), "
-                 "best (chordal, and the global relaxation where that is doubtful)")
+  app.add_option(
+         "--start", o.params.start,
+         "given (the file's poses), composed (along the edges), chordal (rotations first), "
+         "best (given where the edges fit, else chordal; and the global relaxation where that is "
+         "doubtful)")
       ->transform(CLI::CheckedTransformer(start))
       ->default_str("best");
   const std::map<std::string, GraphMethod> method = {
