@@ -3,6 +3,8 @@
 // baseline.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+
 #include "../test/random_worlds.hpp"
 #include "../test/transcription/himm.hpp"
 #include "buildings.hpp"

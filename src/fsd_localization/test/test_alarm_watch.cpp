@@ -2,6 +2,8 @@
 // out says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "drawn_room.hpp"
 #include "fsd_localization/filter/inlier_monitor.hpp"
 #include "fsd_localization/localizer.hpp"

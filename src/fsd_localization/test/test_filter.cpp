@@ -2,6 +2,8 @@
 // cases, noise by its statistics, weights by the equations, and a robot that finds itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "drawn_room.hpp"
 #include "fsd_localization/localizer.hpp"
 #include "hyselam_common/errors.hpp"

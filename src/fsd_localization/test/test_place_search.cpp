@@ -2,6 +2,7 @@
 // comparison.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <thread>
 

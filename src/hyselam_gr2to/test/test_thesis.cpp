@@ -1,6 +1,7 @@
 // The stages of the thesis' pipeline: against plain transcriptions, on drawn maps, and as a whole.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>

@@ -80,7 +80,8 @@ void BM_DescriptionIntoGraph(benchmark::State& state) {
   for (auto _ : state) {
     DescriptionBuilder builder(parser());
     builder.add(parser().parse(kDescription));
-    benchmark::DoNotOptimize(builder.building());
+    const auto* building = &builder.building();
+    benchmark::DoNotOptimize(building);
   }
 }
 BENCHMARK(BM_DescriptionIntoGraph)->Unit(benchmark::kMicrosecond);

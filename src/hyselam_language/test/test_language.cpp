@@ -1,6 +1,7 @@
 // Grammars, the engine, names, the builder and the way back to text.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 

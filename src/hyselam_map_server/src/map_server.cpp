@@ -53,7 +53,11 @@ MapServer::MapServer(ros::NodeHandle nh, const MapServerParams& params) : params
         response.map = map_;
         return true;
       });
+#ifdef HYSELAM_HAVE_LOAD_MAP
   change_map_service_ = nh.advertiseService("change_map", &MapServer::changeMap, this);
+#else
+  ROS_WARN("no service change_map: it needs nav_msgs 1.13.1 or newer, for LoadMap");
+#endif
 }
 
 void MapServer::use(const nav_msgs::OccupancyGrid& map) {
@@ -64,6 +68,7 @@ void MapServer::use(const nav_msgs::OccupancyGrid& map) {
                             << map_.info.resolution << " m in frame " << map_.header.frame_id);
 }
 
+#ifdef HYSELAM_HAVE_LOAD_MAP
 bool MapServer::changeMap(nav_msgs::LoadMap::Request& request,
                           nav_msgs::LoadMap::Response& response) {
   try {
@@ -78,5 +83,6 @@ bool MapServer::changeMap(nav_msgs::LoadMap::Request& request,
   }
   return true;
 }
+#endif
 
 }  // namespace hyselam_map_server

@@ -82,7 +82,12 @@ void BM_FindModel(benchmark::State& state) {
   state.counters["found_once"] = counts.found_once;
   state.counters["items"] = counts.scenes + counts.with;
 }
-BENCHMARK(BM_FindModel)->ArgName("learn")->Arg(1)->Arg(0)->Unit(benchmark::kSecond)->Iterations(1);
+BENCHMARK(BM_FindModel)
+    ->ArgName("learn")
+    ->Arg(1)
+    ->Arg(0)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 
 }  // namespace
 

@@ -41,13 +41,13 @@ void run(benchmark::State& state, const Furnished& furnished) {
 void BM_ObjectsOfAFlat(benchmark::State& state) {
   run(state, hyselam_objects::simulated::flatOf(HYSELAM_FLAT_PLAN));
 }
-BENCHMARK(BM_ObjectsOfAFlat)->Unit(benchmark::kSecond)->Iterations(1);
+BENCHMARK(BM_ObjectsOfAFlat)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 /// Flats that nothing was tuned on.
 void BM_ObjectsOfADrawnFlat(benchmark::State& state) {
   run(state, hyselam_objects::simulated::drawnFlat(HYSELAM_FLAT_PLAN,
                                                    static_cast<std::uint64_t>(state.range(0))));
 }
-BENCHMARK(BM_ObjectsOfADrawnFlat)->DenseRange(1, 5)->Unit(benchmark::kSecond)->Iterations(1);
+BENCHMARK(BM_ObjectsOfADrawnFlat)->DenseRange(1, 5)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace

@@ -1,6 +1,7 @@
 // CloudSegmentation of simulated tables, files, and clouds that cannot be used.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>

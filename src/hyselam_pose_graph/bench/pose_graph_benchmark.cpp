@@ -137,7 +137,7 @@ void runOurs(benchmark::State& state, const Published& graph) {
   addCounters(state, graph, cost, iterations);
   std::optional<std::string> baseline;
   double seconds = 0.0;
-  for (const char* peer : kPeers) {
+  for (const std::string peer : kPeers) {
     const PeerRun& run = peerOn(peer, graph);
     if (!reached(run, graph) || (baseline && run.seconds >= seconds)) continue;
     baseline = benchmarkName(graph, peer) + "/iterations:1/manual_time";

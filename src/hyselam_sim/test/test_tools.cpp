@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,8 @@
 // Names: given to places by number, replaced, forgotten, taken back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "hyselam_topo/dialogue/shared_dialogue.hpp"
 #include "talk.hpp"
 

@@ -3,6 +3,7 @@
 // sure the names are.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <thread>

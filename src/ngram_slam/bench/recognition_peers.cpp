@@ -1,4 +1,5 @@
 // recognition_peers: the same logs, the same truth, but single places compared instead of words.
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <iostream>

@@ -2,6 +2,7 @@
 // chance and probability of matches.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

@@ -1,6 +1,7 @@
 // Density classes: mean shift against its iteration written down plainly, stable ids, renewals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"

@@ -2,6 +2,7 @@
 // what is done with input that cannot be used.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 

@@ -2,6 +2,7 @@
 // against all sequences, the forest and its file.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,7 @@
 // kidnapped_robot: a robot that is teleported again and again in a simulated building. The camera
 // tests the pose of the laser's localization: how soon is a teleport noticed, how often are there
 // false alarms, and does the localization find the pose again?
+#include <algorithm>
 #include <iostream>
 
 #include "filmed_tour.hpp"

@@ -1,5 +1,6 @@
 // places_table: one descriptor's rows of a table of kernels and filters. The signatures are made
 // once; every kernel learns from them and is asked with them.
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <iostream>

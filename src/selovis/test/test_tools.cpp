@@ -1,6 +1,7 @@
 // train and evaluate as a user calls them, lists and images that cannot be used.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>

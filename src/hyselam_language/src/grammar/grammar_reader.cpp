@@ -1,5 +1,6 @@
 #include "grammar_reader.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <utility>

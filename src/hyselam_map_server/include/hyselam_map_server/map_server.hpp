@@ -2,8 +2,13 @@
 #pragma once
 
 #include <nav_msgs/GetMap.h>
-#include <nav_msgs/LoadMap.h>
 #include <ros/ros.h>
+
+// nav_msgs has LoadMap since 1.13.1, of January 2021. An older one leaves `change_map` out.
+#if __has_include(<nav_msgs/LoadMap.h>)
+#include <nav_msgs/LoadMap.h>
+#define HYSELAM_HAVE_LOAD_MAP
+#endif
 
 #include <string>
 
@@ -23,7 +28,8 @@ struct MapServerParams {
 MapServerParams loadParams(const ros::NodeHandle& private_nh,
                            const std::string& file_argument = "");
 
-/// Publishes `map` and `map_metadata` (latched) and serves `static_map` and `change_map`.
+/// Publishes `map` and `map_metadata` (latched) and serves `static_map` and, where nav_msgs has
+/// LoadMap, `change_map`.
 /// If `change_map` cannot load a map, the response says so and the present map stays.
 class MapServer {
  public:
@@ -35,7 +41,9 @@ class MapServer {
 
  private:
   void use(const nav_msgs::OccupancyGrid& map);
+#ifdef HYSELAM_HAVE_LOAD_MAP
   bool changeMap(nav_msgs::LoadMap::Request& request, nav_msgs::LoadMap::Response& response);
+#endif
 
   MapServerParams params_;
   nav_msgs::OccupancyGrid map_;

@@ -1,5 +1,6 @@
 #include "exact_search.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hyselam_topo::merging {

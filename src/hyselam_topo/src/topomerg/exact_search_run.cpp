@@ -1,5 +1,6 @@
 // The search from the first assignment to the proof: sector by sector of an unknown heading, step
 // by step towards worse assignments.
+#include <algorithm>
 #include <cmath>
 
 #include "angles.hpp"

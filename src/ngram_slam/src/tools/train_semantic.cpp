@@ -1,4 +1,5 @@
 // train_semantic: learns the classes of regions in simulated buildings.
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <sstream>

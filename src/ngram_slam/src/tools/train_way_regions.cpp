@@ -1,5 +1,6 @@
 // train_way_regions: learns the kinds of regions along ways from recorded runs with drawings and in
 // simulated buildings.
+#include <algorithm>
 #include <array>
 #include <iostream>
 

@@ -1,5 +1,6 @@
 #include "ngram_slam/matching/ngram_matcher.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ngram_slam {

@@ -1,5 +1,7 @@
 #include "ngram_slam/matching/ngram_search.hpp"
 
+#include <algorithm>
+
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {

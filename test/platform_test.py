@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""scripts/platform without a network and without another system: its arguments, what it reads in logs, the page of its records."""
+import importlib.machinery
+import importlib.util
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+import rostest
+
+SCRIPT = pathlib.Path(os.path.realpath(__file__)).parent.parent / "scripts/platform"
+
+
+def loaded():
+    sys.dont_write_bytecode = True
+    loader = importlib.machinery.SourceFileLoader("platform_script", str(SCRIPT))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("platform_script", loader))
+    loader.exec_module(module)
+    return module
+
+
+platform = loaded()
+RECORD = {"system": "debian-13", "compiler_asked": None, "compiler": "c++ (Debian 14.2.0-19) 14.2.0", "date": "2026-01-02", "commit": "0123abcd",
+          "complete": True, "build_passed": True, "build_minutes": 41.6, "build_continued": False, "test_minutes": 12.2,
+          "tests": {"passed": 7, "failed": 0, "skipped": 2}, "failures": [], "left_out": [], "versions": {"PCL": "1.15.0"}}
+OLD = {**RECORD, "system": "debian-11", "compiler_asked": "g++-9", "compiler": "g++-9 (Debian 9.3.0-22) 9.3.0", "ccache": {"hits": 3, "misses": 4},
+       "tests": {"passed": 5, "failed": 1, "skipped": 0}, "failures": ["a_package: Suite.case: too old"],
+       "left_out": ["no package librapidcheck-dev here: the tests of properties are left out"], "demo": {"passed": True, "minutes": 3.0, "acts": ["1", "2"]}}
+BROKEN = {**RECORD, "system": "debian-12", "complete": False, "build_passed": False}
+for key in ("tests", "test_minutes"):
+    del BROKEN[key]
+
+
+class FakeSystem(platform.System):
+    """Nothing is made, mounted or run: each step leaves a log and ends with a status."""
+    steps, statuses, logs_of = [], {}, {}
+
+    def make(self, fresh):
+        self.logs.mkdir(parents=True, exist_ok=True)
+
+    def copy_tree(self, commit, rebuild):
+        return False
+
+    def run(self, step, command, network=False, idle=False, environment=()):
+        FakeSystem.steps.append((step, command, network, dict(environment)))
+        (self.logs / f"{step}.log").write_text(self.logs_of.get(step, ""))
+        return self.statuses.get(step, 0), 60.0
+
+
+class PlatformTest(unittest.TestCase):
+    def refuses(self, *arguments):
+        run = subprocess.run([str(SCRIPT), *arguments], capture_output=True, text=True, check=False)
+        self.assertEqual((run.returncode, run.stdout), (2, ""), run.stderr)
+        return run.stderr
+
+    def test_arguments_that_make_no_sense_are_refused(self):
+        self.assertIn("debian-11", self.refuses("debian-9"))
+        self.assertIn("a SYSTEM or --table", self.refuses())
+        self.assertIn("a SYSTEM or --table", self.refuses("debian-11", "--table"))
+        self.assertIn("g++-9", self.refuses("debian-11", "--compiler", "tcc; true"))
+        self.assertIn("at least 1", self.refuses("debian-11", "--jobs", "0"))
+
+    def test_without_root_it_says_so(self):
+        with mock.patch("os.geteuid", return_value=1000), self.assertRaisesRegex(platform.PlatformError, "root is needed"):
+            platform.check_host()
+
+    def test_a_missing_tool_is_named_with_its_package(self):
+        with mock.patch("os.geteuid", return_value=0), mock.patch("shutil.which", side_effect=lambda tool: tool != "unshare"), \
+                self.assertRaisesRegex(platform.PlatformError, "unshare is missing: apt-get install util-linux"):
+            platform.check_host()
+
+    def test_the_mirror_is_the_one_of_either_format_of_sources(self):
+        self.assertEqual(platform.mirror_in(["# deb http://no/debian x", "deb [signed-by=/k] http://a.org/debian/ bookworm main"]), "http://a.org/debian")
+        self.assertEqual(platform.mirror_in(["Types: deb", "URIs: https://node.example/x", "URIs: http://b.org/debian"]), "http://b.org/debian")
+        self.assertIsNone(platform.mirror_in(["deb http://a.org/debian-security bookworm-security main", "deb http://a.org/ubuntu focal main"]))
+
+    def test_counts_are_of_the_last_summary(self):
+        self.assertEqual(platform.counts_of("1 passed, 2 failed\nx\n10 passed, 0 failed, 3 skipped\n"), {"passed": 10, "failed": 0, "skipped": 3})
+        self.assertEqual(platform.counts_of("4 passed, 1 failed\n"), {"passed": 4, "failed": 1, "skipped": 0})
+        self.assertIsNone(platform.counts_of("100% tests passed, 0 tests failed out of 5\n"))
+
+    def test_what_is_done_without_is_read_of_what_was_said(self):
+        deps = "deps: no package libcli11-dev here: the copy is used\ndeps: all 97 packages are installed\n"
+        configure = "-- a: no RapidCheck found, the tests of properties are left out in all packages\n-- Using Python nosetests\n"
+        self.assertEqual(platform.left_out_of(deps, configure + configure),
+                         ["no package libcli11-dev here: the copy is used", "a: no RapidCheck found, the tests of properties are left out in all packages"])
+
+    def test_versions_are_upstream_s(self):
+        for package, version in (("4.10.0+dfsg-5", "4.10.0"), ("1:1.13.1-2+b1", "1.13.1"), ("3.25.1-1", "3.25.1"), ("0~20200520.x-1", "0~20200520.x")):
+            self.assertEqual(platform.upstream(package), version)
+        self.assertIsNone(platform.upstream(None))
+
+    def test_hits_of_the_compiler_cache(self):
+        text = "cache_miss\t4\ndirect_cache_hit\t2\npreprocessed_cache_hit\t1\nstats_zeroed_timestamp\t0\n"
+        self.assertEqual(platform.hits_of(text), {"hits": 3, "misses": 4})
+
+    def test_the_page_of_the_records(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for record in (RECORD, OLD, BROKEN):
+                platform.write_record(folder / "records" / f"{platform.name_of(record['system'], record['compiler_asked'])}.json", record)
+            self.assertEqual(json.loads((folder / "records/debian-11-g++-9.json").read_text()), OLD)
+            platform.write_table(folder / "records", folder / "page.md")
+            page = (folder / "page.md").read_text()
+        rows = [line for line in page.splitlines() if line.startswith("| Debian")]
+        self.assertEqual(rows, [
+            "| Debian 11 | g++-9 9.3.0 | 2026-01-02 | 0123abcd | 42, 3 of 7 objects from a compiler cache | 12 | 5 | 1 | 0 | passed (2 acts) |",
+            "| Debian 12 | c++ 14.2.0 | 2026-01-02 | 0123abcd | **failed** |  |  |  |  | not run |",
+            "| Debian 13 | c++ 14.2.0 | 2026-01-02 | 0123abcd | 42 | 12 | 7 | 0 | 2 | not run |"])
+        self.assertIn("- failed: a_package: Suite.case: too old\n", page)
+        self.assertIn("- without: no package librapidcheck-dev here", page)
+        self.assertIn("| PCL | 1.15.0 | 1.15.0 | 1.15.0 |", page)
+        self.assertIn("| CLI11 | not packaged |", page)
+
+    def run_of(self, *arguments, statuses=None, logs=None):
+        """Exit status, record and page of a run on a fake system."""
+        FakeSystem.steps, FakeSystem.statuses, FakeSystem.logs_of = [], statuses or {}, {
+            "test": "12 passed, 0 failed, 1 skipped\n", "compiler": "g++-9 (Debian) 9.3.0\n", "versions": "cmake installed 3.18.4-2+deb11u1\n",
+            "build": "/x/a.cpp:3:1: warning: w\n/x/a.cpp:3:1: warning: w\n", "ccache": "cache_miss\t5\n",
+            "demo": "== 1. The robot\n== 2. It\n", "deps": "deps: no package librapidcheck-dev here: the tests of properties are left out\n", **(logs or {})}
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            with mock.patch.multiple(platform, System=FakeSystem, RECORDS=folder / "records", TABLE=folder / "page.md", check_host=lambda: None,
+                                     git=lambda *_: "0123abcd" + 32 * "0"), \
+                    mock.patch.object(sys, "argv", ["platform", "debian-11", "--folder", str(folder / "system"), *arguments]):
+                status = platform.main()
+            records = [json.loads(p.read_text()) for p in (folder / "records").glob("*.json")]
+            return status, (records or [None])[0], (folder / "page.md").read_text() if records else ""
+
+    def test_a_run_that_goes_well(self):
+        status, record, page = self.run_of("--compiler", "g++-9", "--demo", "--ccache")
+        self.assertEqual(status, 0)
+        self.assertEqual([step for step, *_ in FakeSystem.steps], ["packages", "deps", "ccache", "build", "ccache", "compiler", "versions", "test", "demo"])
+        self.assertEqual([network for _, _, network, _ in FakeSystem.steps], [True, True] + 7 * [False])
+        self.assertEqual((FakeSystem.steps[3][3]["CC"], FakeSystem.steps[3][3]["CXX"]), ("gcc-9", "g++-9"))
+        self.assertEqual(record["tests"], {"passed": 12, "failed": 0, "skipped": 1})
+        self.assertEqual((record["warnings"], record["ccache"], record["demo"]["acts"]), (1, {"hits": 0, "misses": 5}, ["1", "2"]))
+        self.assertEqual((record["versions"]["CMake"], record["versions"]["CLI11"]), ("3.18.4", None))
+        self.assertIn("| Debian 11 | g++-9 9.3.0 | ", page)
+        self.assertIn("- without: no package librapidcheck-dev here", page)
+
+    def test_failures_are_written_down_and_are_the_exit_status(self):
+        status, record, page = self.run_of(statuses={"test": 1}, logs={"test": "FAILED   p: A.b: no\n3 passed, 1 failed\n"})
+        self.assertEqual((status, record["complete"], record["failures"]), (1, True, ["p: A.b: no"]))
+        self.assertIn("- failed: p: A.b: no", page)
+        status, record, page = self.run_of("--demo", statuses={"build": 1})
+        self.assertEqual((status, record["build_passed"], "tests" in record, "demo" in record), (1, False, False, False))
+        self.assertIn("**failed**", page)
+        status, record, _ = self.run_of(logs={"test": "the runner died\n"}, statuses={"test": 137})
+        self.assertEqual((status, record["complete"], record["tests"]), (1, False, None))
+        status, record, page = self.run_of("--demo", statuses={"demo": 1})
+        self.assertEqual((status, record["demo"]["passed"]), (1, False))
+        self.assertEqual(self.run_of(statuses={"packages": 100}), (2, None, ""))
+
+    @unittest.skipUnless(shutil.which("git"), "git is not installed")
+    def test_the_committed_tree_is_copied_and_what_did_not_change_is_left_alone(self):
+        def git(*arguments):
+            subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@example.org", "-C", str(tree), *arguments], check=True, capture_output=True)
+
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            tree, copy = folder / "tree", folder / "system/root" / platform.TREE
+            tree.mkdir()
+            for name in ("stays", "changes", "goes"):
+                (tree / name).write_text("1")
+            git("init", "-q")
+            git("add", "-A")
+            git("commit", "-qm", "1")
+            (tree / "not committed").write_text("1")
+            system = platform.System(folder / "system", "suite", None, False)
+            with mock.patch.object(platform, "ROOT", tree):
+                self.assertFalse(system.copy_tree("HEAD", False))
+                self.assertEqual(sorted(p.name for p in copy.iterdir()), ["changes", "goes", "stays"])
+                (copy / "build").mkdir()
+                os.utime(copy / "stays", (1, 1))
+                (copy / "changes").unlink()  # an interrupted run
+                (tree / "goes").unlink()
+                (tree / "changes").write_text("2")
+                git("commit", "-qam", "2")
+                os.utime(copy / "stays", (1, 1))
+                self.assertTrue(system.copy_tree("HEAD", False))
+                self.assertEqual(sorted(p.name for p in copy.iterdir()), ["build", "changes", "stays"])
+                self.assertEqual((copy / "changes").read_text(), "2")
+                self.assertFalse(system.copy_tree("HEAD", True))
+                with self.assertRaisesRegex(platform.PlatformError, "git cannot copy"):
+                    system.copy_tree("nothing", False)
+            with mock.patch.object(platform, "ROOT", folder / "system"), self.assertRaisesRegex(platform.PlatformError, "no checkout of git"):
+                system.copy_tree("HEAD", False)
+
+    def test_no_records_are_told(self):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(platform.PlatformError, "no records"):
+            platform.write_table(pathlib.Path(folder), pathlib.Path(folder) / "page.md")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("hyselam_bringup", "platform_test", PlatformTest)
