@@ -3,8 +3,8 @@
 #include <iostream>
 #include <map>
 
-#include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/report_issues.hpp"
+#include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/tool.hpp"
 
 int main(int argc, char** argv) {
