@@ -53,6 +53,32 @@ TEST(ConverseTool, WritesOneRecordAText) {
   EXPECT_EQ(records[1]["place"], "SS03");
 }
 
+TEST(ConverseTool, AnErrorNamesItsLineAndKeepsWhatWasSaid) {
+  const std::string file = ::testing::TempDir() + "/converse_error.json";
+  const auto talk = [&](const std::string& lines) {
+    std::remove(file.c_str());
+    return run("printf '" + lines + "' | " + kConverse + " --json " + file);
+  };
+  const auto said = [&] { return json::parse(hyselam::readTextFile(file, 1u << 20)).size(); };
+  Done done = talk("Hello.\\n\\n@ kitchen\\nGoodbye.\\n");
+  EXPECT_EQ(done.status, 2);
+  EXPECT_NE(done.output.find("error: stdin: line 3: place: no place of the map is called kitchen"),
+            std::string::npos)
+      << done.output;
+  EXPECT_EQ(said(), 1u);
+  done = talk("There is a kitchen and a library.\\n@drive kitchen\\n");
+  EXPECT_EQ(done.status, 2);
+  EXPECT_NE(
+      done.output.find("line 2: place: there is no way to kitchen: no place has this name for "
+                       "sure, SS"),
+      std::string::npos)
+      << done.output;
+  EXPECT_EQ(said(), 1u);
+  done = talk("Hello.\\n> Goodbye\\n");
+  EXPECT_EQ(done.status, 1);
+  EXPECT_EQ(said(), 1u);
+}
+
 TEST(ConverseTool, AnswersLineByLine) {
   const Done done = run("printf 'Hello.\\n@fly\\n@ SS03\\n@ask\\n' | " + kConverse + " --lines");
   EXPECT_EQ(done.status, 0);

@@ -316,6 +316,28 @@ TEST(DialogueNames, ArticlesOfPortugueseNamesGrowTogetherWithPrepositions) {
   EXPECT_EQ(talk.say("Vá para SS02."), "Vou para a kitchen (SS02).") << "of another language";
 }
 
+TEST(DialogueNames, AGuessIsToldInASentenceOfTheLanguage) {
+  Talk talk;
+  hyselam_topo::DialogueState state = talk.dialogue.state();
+  state.places.map.findPlace(2)->words = {{"kitchen", false}};
+  talk.dialogue.restore(std::move(state));
+  EXPECT_TRUE(has(talk.say("Onde fica a cozinha?"), "Acho que a kitchen é SS02"));
+  EXPECT_TRUE(has(talk.say("Where is the kitchen?"), "Perhaps the kitchen is SS02"));
+}
+
+TEST(DialogueNames, TheNumberOfPlacesAndTheirListAgree) {
+  Talk talk;
+  EXPECT_EQ(talk.say("How many rooms do you know?"), "I know 2 places: SS01 and SS02.");
+  talk.dialogue.name(2, {"kitchen"});
+  EXPECT_EQ(talk.say("How many rooms do you know?"),
+            "I know 2 places, 1 of them by name: the kitchen (SS02).");
+  EXPECT_EQ(talk.say("Que lugares conhece?"),
+            "Conheço 2 lugares, 1 deles pelo nome: a kitchen (SS02).");
+  talk.dialogue.name(1, {"library"});
+  EXPECT_EQ(talk.say("How many rooms do you know?"),
+            "I know 2 places: the library (SS01) and the kitchen (SS02).");
+}
+
 // ---- Names of two languages ----
 
 TEST(DialogueNames, AKindOfPlaceIsFoundInTheOtherLanguage) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
@@ -13,6 +15,7 @@
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/simulation.hpp"
+#include "loop_table.hpp"
 
 using hyselam::testing::fileBytes;
 using hyselam::testing::TemporaryDirectory;
@@ -53,6 +56,22 @@ struct SlamOffline : testing::Test {
     EXPECT_EQ(errors.rfind("error: ", 0), 0u) << errors;
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
     EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  }
+  /// The recording as a CARMEN log.
+  static std::string carmenLog() {
+    const hyselam::RobotLog log = hyselam::readBag(*directory / "run.bag");
+    std::ostringstream out;
+    for (const hyselam::LaserScan& scan : log.scans) {
+      const auto odometry = hyselam::poseAt(log.odometry, scan.stamp, 1.0);
+      const std::string pose = std::to_string(odometry->x) + " " + std::to_string(odometry->y) +
+                               " " + std::to_string(odometry->theta);
+      const std::string stamp = std::to_string(scan.stamp);
+      out << "FLASER " << scan.ranges.size();
+      for (const float range : scan.ranges)
+        out << ' ' << (range > 0.0F && range < scan.range_max ? range : 81.83F);
+      out << ' ' << pose << ' ' << pose << ' ' << stamp << " robot " << stamp << '\n';
+    }
+    return out.str();
   }
   static std::size_t lines(const std::string& path) {
     const std::string text = fileBytes(path);
@@ -101,6 +120,176 @@ TEST_F(SlamOffline, writesTheFilesOfTheContract) {
   EXPECT_EQ(summary["errors"]["false_loops_near"], 0);
   EXPECT_EQ(summary["errors"]["false_loops_far"], 0);
   EXPECT_TRUE(summary.contains("side_by_side_none"));
+}
+
+ngram_slam::SlamLoop loopOf(ngram_slam::LoopSource source, bool far, double inliers,
+                            double weight) {
+  ngram_slam::SlamLoop loop;
+  loop.source = source;
+  loop.far = far;
+  loop.inlier_ratio = inliers;
+  loop.weight = weight;
+  return loop;
+}
+
+TEST(LoopCounts, AddUp) {
+  using ngram_slam::LoopSource;
+  std::vector<ngram_slam::SlamLoop> loops;
+  EXPECT_EQ(sentenceOf(ngram_slam::LoopCounts(loops)), "no place seen again");
+  loops = {loopOf(LoopSource::kProximity, false, 0.9, 1.0),
+           loopOf(LoopSource::kProximity, false, 0.9, 0.1),
+           loopOf(LoopSource::kNgram, false, 0.9, 1.0)};
+  EXPECT_EQ(sentenceOf(ngram_slam::LoopCounts(loops)),
+            "3 places seen again: 3 nearby, 0 after a longer way; 1 of them not believed");
+  for (const LoopSource source :
+       {LoopSource::kProximity, LoopSource::kSignature, LoopSource::kSignature, LoopSource::kNgram,
+        LoopSource::kNgram, LoopSource::kNgram}) {
+    loops.push_back(loopOf(source, true, 0.8, 1.0));
+  }
+  loops.push_back(loopOf(LoopSource::kNgram, false, 0.0, 0.2));
+  const ngram_slam::LoopCounts counts(loops);
+  EXPECT_EQ(counts.total, counts.near + counts.far + counts.unverified);
+  EXPECT_EQ(counts.near_by_words, 1U);
+  EXPECT_EQ(sentenceOf(counts),
+            "10 places seen again: 3 nearby, 6 after a longer way (3 found by words, 2 by "
+            "signatures, 1 by their outline), 1 by words that no scan verified; 2 of them not "
+            "believed");
+}
+
+/// Rows of a table by the names of their columns.
+std::vector<std::map<std::string, std::string>> rowsOf(const std::string& path) {
+  std::istringstream in(fileBytes(path));
+  std::vector<std::string> names;
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream fields(line);
+    std::map<std::string, std::string> row;
+    std::size_t i = 0;
+    for (std::string field; std::getline(fields, field, ','); ++i) {
+      if (rows.empty() && row.empty() && names.size() == i && line.rfind("stamp_a", 0) == 0) {
+        names.push_back(field);
+      } else {
+        row[names.at(i)] = field;
+      }
+    }
+    if (!row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST_F(SlamOffline, tellsWhichPlacesItHasRecognized) {
+  const std::string out = d / "loops";
+  // With errors, the robot does not know that it is close by when it comes again.
+  ASSERT_EQ(run("--bag " + d / "run.bag" + " --odometry-noise 15 --out " + out), 0) << errors;
+  const auto summary = nlohmann::json::parse(fileBytes(out + "/summary.json"));
+  const auto& counts = summary["loops_by_kind"];
+  const auto rows = rowsOf(out + "/loops.csv");
+  ASSERT_GT(rows.size(), 0U);
+  EXPECT_EQ(rows.size(), summary["loops"]);
+  std::map<std::string, std::size_t> kinds, found_by;
+  std::size_t believed = 0;
+  for (auto row : rows) {
+    ++kinds[row["kind"]];
+    ++found_by[row["kind"] + " " + row["found_by"]];
+    believed += row["believed"] == "1" ? 1 : 0;
+    EXPECT_EQ(row["believed"] == "1", std::stod(row["weight"]) >= ngram_slam::kMinLoopWeight);
+    EXPECT_GT(std::stod(row["stamp_a"]), std::stod(row["stamp_b"]));
+    EXPECT_GT(std::stoi(row["keyframe_a"]), std::stoi(row["keyframe_b"]));
+    EXPECT_GT(std::stod(row["path_a"]), std::stod(row["path_b"]));
+    EXPECT_GT(std::stod(row["inliers"]), 0.0);
+    const double probability = std::stod(row["probability"]);
+    if (row["kind"] == "far") {
+      EXPECT_GT(probability, 0.0);
+      EXPECT_LE(probability, 1.0);
+    } else {
+      EXPECT_EQ(probability, -1.0);
+    }
+  }
+  EXPECT_GT(kinds["near"], 0U);
+  EXPECT_GT(kinds["far"], 0U);
+  EXPECT_EQ(kinds["near"] + kinds["far"], rows.size());
+  EXPECT_EQ(kinds["near"], counts["near"]);
+  EXPECT_EQ(kinds["far"], counts["far"]);
+  EXPECT_EQ(found_by["far words"], counts["far_by_words"]);
+  EXPECT_EQ(found_by["far signatures"], counts["far_by_signatures"]);
+  EXPECT_EQ(found_by["far outline"], counts["far_by_outline"]);
+  EXPECT_EQ(rows.size() - believed, counts["not_believed"]);
+  const std::string sentence = summary["places_seen_again"];
+  EXPECT_EQ(sentence.rfind(std::to_string(rows.size()) + " places seen again: ", 0), 0U);
+  const std::string report = fileBytes(out + "/report.html");
+  EXPECT_NE(report.find(sentence + "</figcaption>"), std::string::npos);
+  for (const char* kind :
+       {"seen again nearby", "by the outline", "by signatures", "by words", "not believed"}) {
+    EXPECT_NE(report.find(kind), std::string::npos) << kind;
+  }
+}
+
+TEST_F(SlamOffline, takesTheParametersOfTheNode) {
+  const std::string some = "--bag " + d / "run.bag" + " --out ";
+  const std::string shipped = std::string(HYSELAM_PACKAGE_DIR) + "/config/slam.yaml";
+  ASSERT_EQ(run(some + d / "p0"), 0) << errors;
+  ASSERT_EQ(run(some + d / "p1 --parameters " + shipped), 0) << errors;
+  for (const char* name : {"trajectory.tum", "graph.g2o", "map.pgm", "words.csv", "loops.csv"}) {
+    EXPECT_EQ(fileBytes(d / "p0/" + name), fileBytes(d / "p1/" + name)) << name;
+  }
+  writeFile(d / "some.yaml", "keyframe_step: 2\nresolution: 0.2\nloops: none\n");
+  ASSERT_EQ(run(some + d / "p2 --parameters " + d / "some.yaml"), 0) << errors;
+  const auto usual = nlohmann::json::parse(fileBytes(d / "p0/summary.json"));
+  auto other = nlohmann::json::parse(fileBytes(d / "p2/summary.json"));
+  EXPECT_LT(other["keyframes"], usual["keyframes"]);
+  EXPECT_EQ(other["loops"], 0);
+  EXPECT_EQ(other["loops_mode"], "none");
+  EXPECT_DOUBLE_EQ(hyselam::loadMap(d / "p2/map.yaml").geometry.resolution, 0.2);
+  // What is given on the command line wins.
+  ASSERT_EQ(run(some + d / "p3 --resolution 0.1 --loops proximity --parameters " + d / "some.yaml"),
+            0)
+      << errors;
+  other = nlohmann::json::parse(fileBytes(d / "p3/summary.json"));
+  EXPECT_EQ(other["loops_mode"], "proximity");
+  EXPECT_DOUBLE_EQ(hyselam::loadMap(d / "p3/map.yaml").geometry.resolution, 0.1);
+
+  const auto refuse = [&](const std::string& text, const std::string& part) {
+    writeFile(d / "wrong.yaml", text);
+    expectRefused(some + d / "p4 --parameters " + d / "wrong.yaml", part);
+  };
+  refuse("keyframe_stop: 1\n", "'keyframe_step'?");
+  refuse("odometry_doubt:\n  nothing: 1\n", "odometry_doubt/nothing");
+  refuse("keyframe_step: -1\n", "keyframe_step' is -1");
+  refuse("keyframe_step: far\n", "keyframe_step' is 'far'");
+  refuse("- 1\n", "names of parameters");
+  expectRefused(some + d / "p4 --parameters " + d / "none.yaml", "none.yaml");
+}
+
+TEST_F(SlamOffline, tellsWhatItCouldNotReadOfALog) {
+  std::string text = carmenLog();
+  writeFile(d / "whole.log", text);
+  ASSERT_EQ(run("--carmen " + d / "whole.log --out " + d / "whole"), 0) << errors;
+  EXPECT_EQ(errors, "");
+  auto summary = nlohmann::json::parse(fileBytes(d / "whole/summary.json"));
+  EXPECT_EQ(summary["trouble"].dump().find("lines of the log"), std::string::npos);
+  EXPECT_FALSE(summary.contains("log_issues"));
+  text.resize(text.rfind("FLASER") + 300);
+  writeFile(d / "cut.log", text);
+  ASSERT_EQ(run("--carmen " + d / "cut.log --out " + d / "cut"), 0) << errors;
+  EXPECT_NE(errors.find("warning: " + d / "cut.log: line " + std::to_string(scans) + ": skipped"),
+            std::string::npos)
+      << errors;
+  summary = nlohmann::json::parse(fileBytes(d / "cut/summary.json"));
+  EXPECT_EQ(summary["scans"], scans - 1);
+  EXPECT_NE(summary["trouble"].dump().find("1 line of the log was skipped"), std::string::npos)
+      << summary["trouble"];
+  EXPECT_EQ(summary["log_issues"].size(), 1U);
+  EXPECT_EQ(summary["log_issues"][0]["line"], scans);
+}
+
+TEST_F(SlamOffline, tellsThatALogIsNoBag) {
+  writeFile(d / "some.log", carmenLog());
+  expectRefused("--bag " + d / "some.log --out " + d / "x", "try --carmen");
+  ASSERT_EQ(std::system(("gzip -k " + d / "some.log").c_str()), 0);
+  expectRefused("--bag " + d / "some.log.gz --out " + d / "x", "try --carmen");
+  writeFile(d / "neither", "neither of them");
+  expectRefused("--bag " + d / "neither --out " + d / "x", "neither");
+  EXPECT_EQ(errors.find("--carmen"), std::string::npos) << errors;
 }
 
 TEST_F(SlamOffline, givesTheSameBytesForTheSameLog) {

@@ -2,10 +2,18 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <functional>
 #include <nlohmann/json.hpp>
 
 namespace hyselam {
+
+/// Thrown by a body that has something to show in spite of an error: it is written as if there were
+/// none, and the error is told.
+struct PartialResult {
+  nlohmann::json result;
+  std::exception_ptr error;  ///< not null
+};
 
 /// Adds `--json FILE` to `app`, parses the command line, runs `body` and, if asked, writes what it
 /// returns to FILE (at once, indented).

@@ -34,10 +34,16 @@ int runTool(int argc, const char* const* argv, CLI::App& app,
     if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(e);
     return fail(kUnusable, e.what());
   }
+  const auto write = [&](const nlohmann::json& result) {
+    if (json_path.empty()) return;
+    writeFileAtomically(json_path, [&](std::ostream& out) { out << result.dump(2) << '\n'; });
+  };
   try {
-    const nlohmann::json result = body();
-    if (!json_path.empty()) {
-      writeFileAtomically(json_path, [&](std::ostream& out) { out << result.dump(2) << '\n'; });
+    try {
+      write(body());
+    } catch (const PartialResult& partial) {
+      write(partial.result);
+      std::rethrow_exception(partial.error);
     }
     return kDone;
   } catch (const InputError& e) {

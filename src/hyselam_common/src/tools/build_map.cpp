@@ -5,10 +5,10 @@
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/occupancy_mapper.hpp"
 #include "hyselam_common/progress.hpp"
+#include "hyselam_common/report_issues.hpp"
 #include "hyselam_common/ros/bag_tool.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "report_issues.hpp"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include <iostream>
 #include <map>
 
+#include "hyselam_common/report_issues.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/tool.hpp"
-#include "report_issues.hpp"
 
 int main(int argc, char** argv) {
   using hyselam::CarmenClock;

@@ -103,7 +103,8 @@ class Conversation {
   /// @throws hyselam::InputError if no place is called so.
   Exchange standAt(const std::string& place);
   /// The robot is sent there by somebody, and on its way until arrive().
-  /// @throws hyselam::InputError as standAt(), and if there is no way.
+  /// @throws hyselam::InputError as standAt(), and if it does not set out, with the reason: it is
+  /// there already, the name is only a guess, or there is no way.
   Exchange driveTo(const std::string& place);
   /// The robot is where it was sent, on the way through all places between.
   Exchange arrive();
@@ -135,6 +136,8 @@ class Conversation {
   void take(const hyselam_topo::Reply& reply, Layer layer, Exchange& out);
   void perform(const hyselam_topo::DialogueAction& action, Exchange& out);
   void drive(const std::vector<hyselam_topo::RouteLeg>& legs, Exchange& out);
+  /// Why the robot did not set out for a place.
+  std::string whyNot(const std::string& place, const Exchange& answer) const;
   void moveTo(const hyselam::Pose2& pose, double seconds, Exchange& out);
   void askObjects(const hyselam_topo::ForwardedSentence& sentence, Exchange& out);
   void finish(const Names& before, Exchange& out);

@@ -140,9 +140,21 @@ Exchange Conversation::driveTo(const std::string& place) {
   Exchange out;
   const Names before = namesNow();
   take(dialogue_.goTo(place, {find(place)}), Layer::kPlaces, out);
-  if (!out.goal) throw hyselam::InputError("place", "", "there is no way to " + place);
+  if (!out.goal) {
+    throw hyselam::InputError("place", "",
+                              "there is no way to " + place + ": " + whyNot(place, out));
+  }
   finish(before, out);
   return out;
+}
+
+std::string Conversation::whyNot(const std::string& place, const Exchange& answer) const {
+  if (dialogue_.question().kind == Question::Kind::kGo) {
+    const hyselam_topo::Place* guess = dialogue_.map().findPlace(find(place));
+    return "no place has this name for sure, " + codeOf(*guess) + " perhaps";
+  }
+  if (dialogue_.robot().place == find(place)) return "the robot is there already";
+  return "the robot says '" + answer.replyText() + "'";
 }
 
 Exchange Conversation::arrive() {

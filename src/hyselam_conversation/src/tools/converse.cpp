@@ -80,24 +80,40 @@ json serve(TranscriptPlayer& player) {
   return records;
 }
 
-json run(const Options& o) {
-  TranscriptPlayer player(beginningOf(o));
-  if (o.lines) return serve(player);
-  json records = json::array();
-  const std::string text = o.transcript.empty() || o.transcript == "-"
-                               ? std::string(std::istreambuf_iterator<char>(std::cin), {})
-                               : hyselam::readTextFile(o.transcript, std::size_t{1} << 24);
-  for (const Step& step :
-       hyselam_conversation::stepsOf(text, o.transcript.empty() ? "stdin" : o.transcript)) {
-    if (const auto record = player.play(step)) {
-      print(*record);
-      records.push_back(*record);
+/// Plays the steps of a transcript; `records` holds what was said, also if one cannot be done.
+/// @throws hyselam::InputError with the line, std::runtime_error for replies that are not expected
+void play(const std::vector<Step>& steps, const std::string& source, TranscriptPlayer& player,
+          json* records) {
+  for (const Step& step : steps) {
+    try {
+      if (const auto record = player.play(step)) {
+        print(*record);
+        records->push_back(*record);
+      }
+    } catch (const hyselam::InputError& e) {
+      throw hyselam::InputError(source, "line " + std::to_string(step.line), e.what());
     }
   }
   for (const std::string& failure : player.failures()) std::cerr << failure << '\n';
   if (!player.failures().empty()) {
     throw std::runtime_error(std::to_string(player.failures().size()) +
                              " replies are not as expected");
+  }
+}
+
+json run(const Options& o) {
+  TranscriptPlayer player(beginningOf(o));
+  if (o.lines) return serve(player);
+  json records = json::array();
+  const bool is_file = !o.transcript.empty() && o.transcript != "-";
+  const std::string text = is_file ? hyselam::readTextFile(o.transcript, std::size_t{1} << 24)
+                                   : std::string(std::istreambuf_iterator<char>(std::cin), {});
+  const std::string source = is_file ? o.transcript : "stdin";
+  const std::vector<Step> steps = hyselam_conversation::stepsOf(text, source);
+  try {
+    play(steps, source, player, &records);
+  } catch (const std::exception&) {
+    throw hyselam::PartialResult{records, std::current_exception()};
   }
   return records;
 }

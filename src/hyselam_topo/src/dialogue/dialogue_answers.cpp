@@ -266,7 +266,7 @@ void Dialogue::answerWhereIs(const Utterance& u, Turn& turn) {
   }
   if (guessed) {
     const std::string bare = subject(name) == name ? name : said(name);
-    name = capital(p.say("perhaps", {{"name", bare}}));
+    name = capital(p.say("perhaps_is", {{"name", bare}}));
   } else {
     name = subject(name);
   }
@@ -449,8 +449,11 @@ void Dialogue::answerWhichPlaces(const Utterance&, Turn& turn) {
   if (named.empty()) {
     for (const Place& place : places_.map().places) named.push_back(place.id);
   }
-  out.sentences.push_back(
-      p.say("places", {{"count", std::to_string(count)}, {"places", p.list(labels(named))}}));
+  // The number is that of the list, or the sentence tells both.
+  out.sentences.push_back(p.say(named.size() == count ? "places" : "places_named",
+                                {{"count", std::to_string(count)},
+                                 {"named", std::to_string(named.size())},
+                                 {"places", p.list(labels(named))}}));
 }
 
 }  // namespace hyselam_topo

@@ -12,11 +12,15 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
+#include "hyselam_common/report_issues.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/ros/bag_tool.hpp"
+#include "hyselam_common/ros/file_param_source.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_pose_graph/g2o_file.hpp"
+#include "loop_table.hpp"
+#include "ngram_slam/ros/slam_parameters.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "ngram_slam/slam/background_jobs.hpp"
 #include "ngram_slam/slam/laser_mount.hpp"
@@ -38,14 +42,40 @@ using hyselam::Pose2;
 constexpr double kGapsOfScans = 0.2;  // more of them are no gaps
 
 struct Options {
-  std::string bag, carmen, out, reference, loops = "all", state, save_state, start;
+  std::string bag, carmen, out, parameters, reference, loops = "all", state, save_state, start;
   int levels = 3;
   std::uint64_t seed = 1;
   double noise = 0.0, resolution = 0.05, loop_latency = SlamParams{}.loop_latency;
   bool side_by_side = false, raw_odometry = false, keep_all = false, correct_laser = false;
   Degradation degradation;
   hyselam::BagOptions bag_options;
+  /// Of the map that is written.
+  hyselam::OccupancyMapperParams map;
+  /// Without --parameters the defaults; else those of the file.
+  SlamParams slam;
 };
+
+/// The parameters of the node, from a file; options on the command line win over them.
+/// @throws hyselam::InputError, hyselam::ParameterError
+void loadParameters(const CLI::App& app, Options* o) {
+  if (o->parameters.empty()) return;
+  hyselam::ParamLoader loader(std::make_shared<hyselam::FileParamSource>(o->parameters));
+  const SlamServerParams p = loadSlamParams(loader);
+  hyselam::requireAllKnown(loader, o->parameters);
+  o->slam = p.slam;
+  o->map = p.map;
+  const auto take = [&](const std::string& option, auto& value, const auto& loaded) {
+    if (app.count(option) == 0) value = loaded;
+  };
+  take("--loops", o->loops, toString(p.slam.loops));
+  take("--levels", o->levels, p.slam.words.levels);
+  take("--loop-latency", o->loop_latency, p.slam.loop_latency);
+  take("--resolution", o->resolution, p.map.resolution);
+  take("--raw-odometry", o->raw_odometry, !p.slam.refine_odometry);
+  take("--keep-all", o->keep_all, !p.slam.consolidation.enabled);
+  take("--odom-frame", o->bag_options.odom_frame, p.input.odom_frame_id);
+  take("--base-frame", o->bag_options.base_frame, p.input.base_frame_id);
+}
 
 double peakMegabytes() {
   rusage use{};
@@ -53,10 +83,49 @@ double peakMegabytes() {
   return static_cast<double>(use.ru_maxrss) / 1024.0;
 }
 
-hyselam::RobotLog readLog(const Options& o) {
+/// Whether a file that is no bag can be read as a CARMEN log.
+bool isCarmenLog(const std::string& path) {
+  try {
+    hyselam::readCarmenLog(path);
+    return true;
+  } catch (const hyselam::InputError&) {
+    return false;
+  }
+}
+
+/// `issues`: lines of a CARMEN log that could not be taken as they stand.
+hyselam::RobotLog readLog(const Options& o, std::vector<hyselam::CarmenIssue>* issues) {
   if (o.bag.empty() == o.carmen.empty())
     throw hyselam::InputError("slam_offline", "", "needs either --bag or --carmen");
-  return o.bag.empty() ? hyselam::readCarmenLog(o.carmen) : hyselam::readBag(o.bag, o.bag_options);
+  if (!o.carmen.empty()) return hyselam::readCarmenLog(o.carmen, {}, issues);
+  try {
+    return hyselam::readBag(o.bag, o.bag_options);
+  } catch (const hyselam::InputError&) {
+    if (!isCarmenLog(o.bag)) throw;
+    throw hyselam::InputError(o.bag, "", "is no bag but a CARMEN log: try --carmen " + o.bag);
+  }
+}
+
+/// What could not be taken of the log, in a sentence; empty if all could.
+std::string troubleOf(const std::vector<hyselam::CarmenIssue>& issues) {
+  const auto count = [&](hyselam::CarmenIssue::Kind kind) {
+    return std::count_if(issues.begin(), issues.end(),
+                         [&](const hyselam::CarmenIssue& i) { return i.kind == kind; });
+  };
+  const auto skipped = count(hyselam::CarmenIssue::Kind::kSkipped);
+  const auto retimed = count(hyselam::CarmenIssue::Kind::kRetimed);
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  const auto lines = [](std::ptrdiff_t n, const std::string& one, const std::string& several) {
+    return std::to_string(n) +
+           (n == 1 ? " line of the log " + one : " lines of the log " + several);
+  };
+  if (skipped > 0) add(lines(skipped, "was", "were") + " skipped (truncated or not understood)");
+  if (retimed > 0) add(lines(retimed, "has", "have") + " another time now: theirs is out of order");
+  for (const hyselam::CarmenIssue& i : issues) {
+    if (i.kind == hyselam::CarmenIssue::Kind::kLog) add(i.reason);
+  }
+  return text;
 }
 
 /// Adds errors to each motion: standard deviations of `factor` times 1 % of the distance in both
@@ -159,8 +228,14 @@ Run runSlam(const hyselam::RobotLog& log, std::unique_ptr<SlamEngine> engine,
   return run;
 }
 
-PresentMap mapOf(const SlamEngine& engine, double resolution) {
-  PresentMap map = emptyMap(resolution, engine.params().consolidation.present);
+hyselam::OccupancyMapperParams mapParamsOf(const Options& o) {
+  hyselam::OccupancyMapperParams p = o.map;
+  p.resolution = o.resolution;
+  return p;
+}
+
+PresentMap mapOf(const SlamEngine& engine, const Options& o) {
+  PresentMap map(mapParamsOf(o), engine.params().consolidation.present);
   map.update({engine.keyframes(), engine.settled(), engine.shownRuns(), engine.firstRunOfSession(),
               engine.revision()});
   return map;
@@ -242,9 +317,8 @@ nlohmann::json errorOf(const Run& run, const std::vector<hyselam::StampedPose2>&
   const SlamEngine& engine = *run.engine;
   const TrajectoryError e = trajectoryError(ownTrajectory(engine, run.saved_scans), reference);
   const FalseLoops false_loops = falseLoops(engine, reference);
-  const auto without_weight =
-      std::count_if(engine.loops().begin(), engine.loops().end(),
-                    [](const SlamLoop& l) { return l.weight < kMinLoopWeight; });
+  const auto without_weight = std::count_if(engine.loops().begin(), engine.loops().end(),
+                                            [](const SlamLoop& l) { return !isBelieved(l); });
   return {{"poses", e.poses},
           {"mean_m", e.mean},
           {"rms_m", e.rms},
@@ -285,6 +359,9 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
                       {"cpu_seconds", run.cpu},
                       {"times_real_time", run.cpu > 0.0 ? log_seconds / run.cpu : 0.0},
                       {"peak_memory_mb", peakMegabytes()}};
+  const LoopCounts places(e.loops());
+  j["places_seen_again"] = sentenceOf(places);
+  j["loops_by_kind"] = toJson(places);
   j["place"] = toString(e.runPlace());
   const auto tied = e.pathUntilTied();
   j["tied_after_m"] = tied ? nlohmann::json(*tied) : nlohmann::json();
@@ -372,10 +449,10 @@ SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
   if (o.levels < 1 || o.levels > WordLattice::kMaxLevels)
     throw hyselam::ParameterError("levels", o.levels,
                                   "from 1 to " + std::to_string(WordLattice::kMaxLevels));
-  SlamParams params;
-  if (loops == LoopClosureMode::kThesis) {
+  SlamParams params = o.slam;
+  if (loops == LoopClosureMode::kThesis && o.slam.loops != LoopClosureMode::kThesis) {
     params = SlamParams::thesis(o.levels);
-  } else {
+  } else if (o.levels != params.words.levels) {
     params.words.levels = o.levels;
     params.words.matcher.min_n.assign(static_cast<std::size_t>(o.levels),
                                       params.words.matcher.min_n.front());
@@ -417,6 +494,7 @@ void writeResults(const Options& o, const Run& run, const PresentMap& map,
   writeWords(o.out + "/words.csv", engine.recognizer());
   writeSemanticRegions(o.out + "/regions.csv", engine);
   writeMatches(o.out + "/matches.csv", engine.matches());
+  writeLoops(o.out + "/loops.csv", engine);
 }
 
 void writeJson(const std::string& path, const nlohmann::json& json, int indent) {
@@ -429,13 +507,15 @@ nlohmann::json run(const Options& o) {
   if (!o.start.empty() && o.state.empty())
     throw hyselam::InputError("--start", o.start, "is a place in a saved map: give --state too");
   if (!o.start.empty() && o.start != "unknown") parseStart(o.start);
-  emptyMap(o.resolution);  // refused before the work, not after it
-  hyselam::RobotLog log = readLog(o);
+  const PresentMap map_check(mapParamsOf(o), {});  // refused before the work, not after it
+  std::vector<hyselam::CarmenIssue> issues;
+  hyselam::RobotLog log = readLog(o, &issues);
   const std::string name = o.bag.empty() ? o.carmen : o.bag;
   degrade(o.degradation, &log);
   if (o.noise > 0.0) addOdometryNoise(o.noise, o.seed, &log.odometry);
   const std::vector<hyselam::StampedPose2> reference = referenceOf(o.reference, log);
   makeFolder(o.out);
+  const nlohmann::json log_issues = hyselam::reportIssues(name, issues);
 
   Run main_run = runSlam(log, makeEngine(o, params), "SLAM of " + name);
   checkMapped(main_run, name, log.scans.size());
@@ -451,8 +531,12 @@ nlohmann::json run(const Options& o) {
   summary["loops_mode"] = o.loops;
   summary["laser_mount"] = toJson(mount, corrected);
   summary["trouble"] = troubleOf(main_run, mount, corrected);
+  if (!issues.empty()) {
+    summary["trouble"].push_back(troubleOf(issues));
+    summary["log_issues"] = log_issues;
+  }
   if (!reference.empty()) summary["errors"] = errorOf(main_run, reference);
-  const PresentMap present = mapOf(engine, o.resolution);
+  const PresentMap present = mapOf(engine, o);
   const std::vector<MapChange> changes = present.changes();
   if (!o.state.empty()) summary["changes"] = summaryOf(changes);
   writeResults(o, main_run, present, log);
@@ -464,11 +548,13 @@ nlohmann::json run(const Options& o) {
     if (!o.side_by_side || other == params.loops) continue;
     const std::string mode = toString(other), label = "loops: " + mode, map = "map_" + mode;
     const Run r = runSlam(log, std::make_unique<SlamEngine>(paramsOf(o, other)), label);
-    nlohmann::json s = {{"loops", r.engine->loops().size()}, {"cpu_seconds", r.cpu}};
+    nlohmann::json s = {{"loops", r.engine->loops().size()},
+                        {"places_seen_again", sentenceOf(LoopCounts(r.engine->loops()))},
+                        {"cpu_seconds", r.cpu}};
     if (!reference.empty()) s.update(errorOf(r, reference));
     summary["side_by_side_" + mode] = s;
     hyselam::writeTum(o.out + "/trajectory_" + mode + ".tum", r.engine->trajectory());
-    hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o.resolution).grid());
+    hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o).grid());
     figures.push_back(figureJson(label, map + ".yaml", *r.engine));
   }
   writeJson(o.out + "/report.json",
@@ -489,6 +575,10 @@ int main(int argc, char** argv) {
   auto* carmen = app.add_option("--carmen", o.carmen, "CARMEN log, plain or gzip");
   bag->excludes(carmen);
   app.add_option("--out", o.out, "folder for what is written")->required();
+  app.add_option(
+      "--parameters", o.parameters,
+      "YAML file with parameters of the node, as in config/slam.yaml; options given here "
+      "win over it");
   hyselam::addBagOptions(app, &o.bag_options);
   app.add_option("--levels", o.levels, "levels of words");
   app.add_option("--seed", o.seed, "of the errors of --odometry-noise");
@@ -523,5 +613,8 @@ int main(int argc, char** argv) {
   app.add_flag("--raw-odometry", o.raw_odometry, "do not refine the odometry by scans");
   app.add_flag("--side-by-side", o.side_by_side,
                "the same without loops and in thesis mode too, for the report");
-  return hyselam::runTool(argc, argv, app, [&] { return run(o); });
+  return hyselam::runTool(argc, argv, app, [&] {
+    loadParameters(app, &o);
+    return run(o);
+  });
 }

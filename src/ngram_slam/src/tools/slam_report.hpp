@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "loop_table.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -16,28 +17,36 @@ inline double rounded(double meters) {
   return std::round(1e3 * meters) / 1e3;
 }
 
-/// One trajectory through a building, over the map in the file `map` beside the report.
+/// One trajectory through a building, over the map in the file `map` beside the report. Loops by
+/// what found them (foundBy()), those that are not believed apart.
 inline nlohmann::json figureJson(const std::string& title, const std::string& map,
                                  const SlamEngine& engine) {
   using nlohmann::json;
-  json trajectory = json::array(), proximity = json::array(), words = json::array(),
-       regions = json::array();
+  json trajectory = json::array(), regions = json::array();
+  json loops = {{"proximity", json::array()},
+                {"outline", json::array()},
+                {"words", json::array()},
+                {"signatures", json::array()},
+                {"not_believed", json::array()}};
   for (const hyselam::StampedPose2& p : engine.trajectory()) {
     trajectory.push_back({rounded(p.pose.x), rounded(p.pose.y)});
   }
   for (const SlamLoop& l : engine.loops()) {
     const hyselam::Pose2& a = engine.keyframes()[static_cast<std::size_t>(l.older)].pose;
     const hyselam::Pose2& b = engine.keyframes()[static_cast<std::size_t>(l.newer)].pose;
-    (l.source == LoopSource::kNgram ? words : proximity)
-        .push_back({rounded(a.x), rounded(a.y), rounded(b.x), rounded(b.y)});
+    loops[isBelieved(l) ? foundBy(l) : "not_believed"].push_back(
+        {rounded(a.x), rounded(a.y), rounded(b.x), rounded(b.y)});
   }
   for (const RegionNode& n : regionGraph(engine).nodes) {
     regions.push_back(
         json::array({rounded(n.pose.x), rounded(n.pose.y), toString(n.semantic_class)}));
   }
-  return {{"title", title},           {"map", map},
-          {"trajectory", trajectory}, {"proximity_loops", proximity},
-          {"word_loops", words},      {"regions", regions}};
+  return {{"title", title},
+          {"map", map},
+          {"trajectory", trajectory},
+          {"loops", loops},
+          {"places_seen_again", sentenceOf(LoopCounts(engine.loops()))},
+          {"regions", regions}};
 }
 
 /// What came and went, cell by cell: lower left corners.
