@@ -245,10 +245,11 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   if (search_.guided && answer.believed && !is_beaten)
     return;  // the filter goes on with what was told
   search_.guided = false;
-  if (verdict.best.seen < kFits) return;
   const Pose2 best = verdict.best.base * motion;
-  const bool agree = !isSearching(state_) && isSamePlace(best, estimate.mean);
-  search_.followed.agree(agree, search_.way);
+  const bool fits = verdict.best.seen >= kFits;
+  const bool agree = fits && !isSearching(state_) && isSamePlace(best, estimate.mean);
+  search_.followed.agree(agree, search_.way);  // what explains nothing agrees with nothing
+  if (!fits) return;
   if (verdict.probability >= params_.found_probability || isAgreed(verdict, estimate)) {
     trackAt(best, result);
   } else {
