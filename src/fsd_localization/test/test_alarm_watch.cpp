@@ -80,6 +80,29 @@ TEST(AlarmWatch, aConfirmedAlarmThatGoesOnRaisesNoDoubtAgain) {
   EXPECT_TRUE(watch.isDoubtful());
 }
 
+TEST(AlarmWatch, theSecondScanThatFitsNothingGoesOnWithTheAlarmOfTheFirst) {
+  AlarmWatch::Signs first, second;
+  first.unmatched = first.odd = true;
+  second.odd = second.unusual = true;
+  AlarmWatch watch;
+  EXPECT_TRUE(watch.add(10.0, first));
+  EXPECT_FALSE(watch.looksCarried()) << "one scan is no reason";
+  EXPECT_FALSE(watch.add(10.9, second)) << "the search that is under way is about the same place";
+  EXPECT_TRUE(watch.looksCarried());
+  EXPECT_TRUE(watch.isDoubtful());
+  EXPECT_NEAR(*watch.length(10.9), 0.9, 1e-9);
+}
+
+TEST(AlarmWatch, whatFitsNothingLaterThanTheAlarmIsAnother) {
+  AlarmWatch::Signs odd, jump;
+  odd.odd = true;
+  jump.unmatched = jump.odd = jump.unusual = true;
+  AlarmWatch watch;
+  EXPECT_TRUE(watch.add(10.0, odd));
+  EXPECT_TRUE(watch.add(10.9, jump)) << "what was asked about may be of the place before";
+  EXPECT_EQ(*watch.length(10.9), 0.0);
+}
+
 TEST(InlierMonitor, oneScanIsOddAndTwoAreUnusualHoweverFarApart) {
   InlierMonitor monitor;
   for (int i = 0; i < 30; ++i) monitor.add(0.95, 1.0);  // each scan a metre after the other

@@ -238,6 +238,10 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     state_ = LocalizerState::kLostSearch;
     search_.short_term.clear();
     search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
+    if (verdict.probability >= params_.found_probability) {  // it also says where the robot is
+      trackAt(verdict.best.base * motion, result);
+      return;
+    }
     followPlaces(verdict.hypotheses, motion, estimate);
     search_.asked_at.reset();  // at once again, with another scan
     return;
@@ -247,8 +251,9 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   search_.guided = false;
   const Pose2 best = verdict.best.base * motion;
   const bool fits = verdict.best.seen >= kFits;
-  const bool agree = fits && !isSearching(state_) && isSamePlace(best, estimate.mean);
-  search_.followed.agree(agree, search_.way);  // what explains nothing agrees with nothing
+  search_.followed.compare(fits ? std::optional<Pose2>(best) : std::nullopt,
+                           isSearching(state_) ? std::nullopt : std::optional(estimate.mean),
+                           search_.way);
   if (!fits) return;
   if (verdict.probability >= params_.found_probability || isAgreed(verdict, estimate)) {
     trackAt(best, result);
@@ -267,11 +272,15 @@ bool Localizer::isAgreed(const Verdict& verdict, const PoseEstimate& estimate) c
          inliers_.average() >= params_.found_inlier_ratio;
 }
 
-/// A search has found no place that is better than the tracked one.
+/// A search has found no place that is so much better than the tracked one that it counts.
 void Localizer::confirmPose(const Verdict& verdict) {
-  search_.alarm_step =
-      std::clamp(2.0 * search_.alarm_step, kAskStep,
-                 search_.alarm.isDoubtful() ? kLargestDoubtStep : kLargestAlarmStep);
+  // What speaks against the pose, by too few scans to count, is asked again as soon as before.
+  const bool is_against = !verdict.is_believed && verdict.probability >= params_.lost_probability;
+  if (!is_against) {
+    search_.alarm_step =
+        std::clamp(2.0 * search_.alarm_step, kAskStep,
+                   search_.alarm.isDoubtful() ? kLargestDoubtStep : kLargestAlarmStep);
+  }
   if (verdict.is_believed || verdict.believed > 1.0 - params_.lost_probability) {
     search_.rivals.reset();
   }

@@ -41,6 +41,7 @@ class AlarmWatch {
 
  private:
   std::optional<double> from_;      // [m] way at which the alarm began
+  double unmatched_at_ = -1.0;      // [m] when scans did not fit each other last
   double suspicious_until_ = -1.0;  // [m] so long the last scans fit each other badly
   double strange_until_ = -1.0;     // [m] so long what is strange is the same alarm
   bool confirmed_ = false, doubtful_ = false, carried_ = false, sharp_ = false;
