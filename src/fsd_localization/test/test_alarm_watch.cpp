@@ -103,6 +103,24 @@ TEST(AlarmWatch, whatFitsNothingLaterThanTheAlarmIsAnother) {
   EXPECT_EQ(*watch.length(10.9), 0.0);
 }
 
+TEST(AlarmWatch, isAskedAboutLessAndLessUnlessAnAnswerSpokeAgainstThePose) {
+  AlarmWatch watch;
+  AlarmWatch::Signs worse;
+  worse.worse = true;
+  watch.add(1.0, worse);
+  EXPECT_EQ(watch.step(), 0.5);
+  watch.answered(false);
+  EXPECT_EQ(watch.step(), 1.0);
+  watch.answered(true);
+  EXPECT_EQ(watch.step(), 1.0) << "two scans more may be enough to tell";
+  for (int i = 0; i < 10; ++i) watch.answered(false);
+  EXPECT_EQ(watch.step(), AlarmWatch::kLargestStep);
+  EXPECT_TRUE(watch.add(9.0, strangeSigns()));
+  EXPECT_EQ(watch.step(), 0.5) << "another alarm";
+  for (int i = 0; i < 10; ++i) watch.answered(false);
+  EXPECT_EQ(watch.step(), AlarmWatch::kLargestDoubtfulStep);
+}
+
 TEST(InlierMonitor, oneScanIsOddAndTwoAreUnusualHoweverFarApart) {
   InlierMonitor monitor;
   for (int i = 0; i < 30; ++i) monitor.add(0.95, 1.0);  // each scan a metre after the other
@@ -176,6 +194,31 @@ TEST(Localizer, aRobotThatIsCarriedOffAndOnlyTurnsIsFound) {
     if (const auto r = localizer.update(look(rays, at, 0.1 * i), wheels)) last = r;
   }
   ASSERT_TRUE(last);
+  EXPECT_TRUE(last->converged);
+  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+}
+
+// The answer that gives up the old pose is sure enough of another one: no update is lost between.
+TEST(Localizer, isFoundByTheAnswerThatSaysItWasCarriedOff) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
+  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  int lost = 0, wrong = 0;
+  std::optional<LocalizationResult> last;
+  for (int i = 0; i < 40; ++i) {  // half a metre between scans
+    const Pose2 step{0.5, 0.0, 0.5};
+    at = at * step;
+    wheels = wheels * step;
+    if (i == 25) at = {9.0, 5.0, -2.0};
+    last = localizer.update(look(rays, at, 1.0 * i), wheels);
+    ASSERT_TRUE(last);
+    lost += last->phase == Phase::kLost;
+    wrong += distance(last->base_in_map, at) > 0.5;
+  }
+  EXPECT_GT(wrong, 0) << "the jump was seen";
+  EXPECT_EQ(lost, 0);
   EXPECT_TRUE(last->converged);
   EXPECT_LT(distance(last->base_in_map, at), 0.2);
 }

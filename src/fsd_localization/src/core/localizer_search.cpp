@@ -14,8 +14,6 @@ namespace {
 // Where a number was chosen: docs/algorithms/localization.md, "Numbers of the alarms".
 constexpr double kSupposedVariance = 1.0;   // [m^2], along each axis, at least
 constexpr double kAskStep = 0.5;            // [m] between questions of a robot that is not found
-constexpr double kLargestDoubtStep = 4.0;   // [m] between those about a doubt, at most
-constexpr double kLargestAlarmStep = 16.0;  // [m] between those about another alarm
 constexpr double kAlarmLength = 2.0;        // [m] of scans at most that an alarm is about
 constexpr double kFirstCheck = 2.0;         // [m] after a place was found, and then twice as far
 constexpr double kCheckStep = 30.0;         // [m] at most between checks
@@ -98,7 +96,6 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   signs.low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
   signs.worse = fitsWorse(estimate);
   if (search_.alarm.add(search_.way, signs)) {
-    search_.alarm_step = kAskStep;
     search_.background->drop();  // what was asked before says nothing about it
     if (signs.odd || signs.low) {
       search_.asked_at.reset();  // at once
@@ -165,7 +162,7 @@ bool Localizer::wantsSearch() {
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
   const bool again = search_.rivals.hasRival() ||
-                     (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm_step));
+                     (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;
 }
@@ -274,13 +271,7 @@ bool Localizer::isAgreed(const Verdict& verdict, const PoseEstimate& estimate) c
 
 /// A search has found no place that is so much better than the tracked one that it counts.
 void Localizer::confirmPose(const Verdict& verdict) {
-  // What speaks against the pose, by too few scans to count, is asked again as soon as before.
-  const bool is_against = !verdict.is_believed && verdict.probability >= params_.lost_probability;
-  if (!is_against) {
-    search_.alarm_step =
-        std::clamp(2.0 * search_.alarm_step, kAskStep,
-                   search_.alarm.isDoubtful() ? kLargestDoubtStep : kLargestAlarmStep);
-  }
+  search_.alarm.answered(!verdict.is_believed && verdict.probability >= params_.lost_probability);
   if (verdict.is_believed || verdict.believed > 1.0 - params_.lost_probability) {
     search_.rivals.reset();
   }

@@ -27,6 +27,7 @@ bool AlarmWatch::add(double way, const Signs& signs) {
   const bool opened = begins || (reason && !from_);
   if (opened) {
     from_ = way;
+    step_ = kFirstStep;
     confirmed_ = carried_ = sharp_ = false;
   }
   if (confirmed_ && !reason) from_.reset();
@@ -39,6 +40,10 @@ bool AlarmWatch::add(double way, const Signs& signs) {
 void AlarmWatch::confirm() {
   confirmed_ = from_.has_value();
   doubtful_ = false;
+}
+
+void AlarmWatch::answered(bool is_against) {
+  if (!is_against) step_ = std::min(2.0 * step_, doubtful_ ? kLargestDoubtfulStep : kLargestStep);
 }
 
 std::optional<double> AlarmWatch::length(double way) const {
