@@ -12,17 +12,17 @@ using hyselam::Pose2;
 namespace {
 
 // Where a number was chosen: docs/algorithms/localization.md, "Numbers of the alarms".
-constexpr double kSupposedVariance = 1.0;   // [m^2], along each axis, at least
-constexpr double kAskStep = 0.5;            // [m] between questions of a robot that is not found
-constexpr double kAlarmLength = 2.0;        // [m] of scans at most that an alarm is about
-constexpr double kFirstCheck = 2.0;         // [m] after a place was found, and then twice as far
-constexpr double kCheckStep = 30.0;         // [m] at most between checks
-constexpr double kCheckLength = 5.0;        // [m] of scans of a check
-constexpr double kOneScan = 0.3;            // [m] a shorter submap is a scan: SubmapBuilder's step
-constexpr double kUsual = 0.75;             // of the usual share of inliers: less is unusual
-constexpr double kScoreStep = 1.0;          // [m] between looks at the score of the pose
-constexpr double kScoreMemory = 1.0 / 30;   // weight of a look in the usual score: 30 m
-constexpr double kWorse = 0.08;             // below the usual score: asked about
+constexpr double kSupposedVariance = 1.0;  // [m^2], along each axis, at least
+constexpr double kAskStep = 0.5;           // [m] between questions of a robot that is not found
+constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
+constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
+constexpr double kCheckStep = 30.0;        // [m] at most between checks
+constexpr double kCheckLength = 5.0;       // [m] of scans of a check
+constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan: SubmapBuilder's step
+constexpr double kUsual = 0.75;            // of the usual share of inliers: less is unusual
+constexpr double kScoreStep = 1.0;         // [m] between looks at the score of the pose
+constexpr double kScoreMemory = 1.0 / 30;  // weight of a look in the usual score: 30 m
+constexpr double kWorse = 0.08;            // below the usual score: asked about
 constexpr double kFits = 0.3;       // a place with a lower score does not explain what is seen
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
@@ -161,8 +161,9 @@ bool Localizer::wantsSearch() {
   if (needsOwnScans() && search_.rivals.isTooEarly(search_.way)) return false;
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
-  const bool again = search_.rivals.hasRival() ||
-                     (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
+  const bool again =
+      search_.rivals.hasRival() ||
+      (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;
 }

@@ -10,8 +10,8 @@ namespace fsd_localization {
 /// that of the robot [m], each radian turned counted as half a metre.
 class AlarmWatch {
  public:
-  static constexpr double kFirstStep = 0.5;           ///< [m] between questions
-  static constexpr double kLargestStep = 16.0;        ///< [m] at most
+  static constexpr double kFirstStep = 0.5;            ///< [m] between questions
+  static constexpr double kLargestStep = 16.0;         ///< [m] at most
   static constexpr double kLargestDoubtfulStep = 4.0;  ///< [m] at most about a doubtful pose
   /// What the last scans say.
   struct Signs {
