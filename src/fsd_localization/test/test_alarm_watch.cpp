@@ -82,6 +82,47 @@ TEST(AlarmWatch, aConfirmedAlarmThatGoesOnRaisesNoDoubtAgain) {
   EXPECT_TRUE(watch.isDoubtful());
 }
 
+TEST(AlarmWatch, theSecondScanThatFitsNothingGoesOnWithTheAlarmOfTheFirst) {
+  AlarmWatch::Signs first, second;
+  first.unmatched = first.odd = true;
+  second.odd = second.unusual = true;
+  AlarmWatch watch;
+  EXPECT_TRUE(watch.add(10.0, first));
+  EXPECT_FALSE(watch.looksCarried()) << "one scan is no reason";
+  EXPECT_FALSE(watch.add(10.9, second)) << "the search that is under way is about the same place";
+  EXPECT_TRUE(watch.looksCarried());
+  EXPECT_TRUE(watch.isDoubtful());
+  EXPECT_NEAR(*watch.length(10.9), 0.9, 1e-9);
+}
+
+TEST(AlarmWatch, whatFitsNothingLaterThanTheAlarmIsAnother) {
+  AlarmWatch::Signs odd, jump;
+  odd.odd = true;
+  jump.unmatched = jump.odd = jump.unusual = true;
+  AlarmWatch watch;
+  EXPECT_TRUE(watch.add(10.0, odd));
+  EXPECT_TRUE(watch.add(10.9, jump)) << "what was asked about may be of the place before";
+  EXPECT_EQ(*watch.length(10.9), 0.0);
+}
+
+TEST(AlarmWatch, isAskedAboutLessAndLessUnlessAnAnswerSpokeAgainstThePose) {
+  AlarmWatch watch;
+  AlarmWatch::Signs worse;
+  worse.worse = true;
+  watch.add(1.0, worse);
+  EXPECT_EQ(watch.step(), 0.5);
+  watch.answered(false);
+  EXPECT_EQ(watch.step(), 1.0);
+  watch.answered(true);
+  EXPECT_EQ(watch.step(), 1.0) << "two scans more may be enough to tell";
+  for (int i = 0; i < 10; ++i) watch.answered(false);
+  EXPECT_EQ(watch.step(), AlarmWatch::kLargestStep);
+  EXPECT_TRUE(watch.add(9.0, strangeSigns()));
+  EXPECT_EQ(watch.step(), 0.5) << "another alarm";
+  for (int i = 0; i < 10; ++i) watch.answered(false);
+  EXPECT_EQ(watch.step(), AlarmWatch::kLargestDoubtfulStep);
+}
+
 TEST(InlierMonitor, oneScanIsOddAndTwoAreUnusualHoweverFarApart) {
   InlierMonitor monitor;
   for (int i = 0; i < 30; ++i) monitor.add(0.95, 1.0);  // each scan a metre after the other
@@ -155,6 +196,31 @@ TEST(Localizer, aRobotThatIsCarriedOffAndOnlyTurnsIsFound) {
     if (const auto r = localizer.update(look(rays, at, 0.1 * i), wheels)) last = r;
   }
   ASSERT_TRUE(last);
+  EXPECT_TRUE(last->converged);
+  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+}
+
+// The answer that gives up the old pose is sure enough of another one: no update is lost between.
+TEST(Localizer, isFoundByTheAnswerThatSaysItWasCarriedOff) {
+  const auto map = room();
+  const GridRayCaster rays(map);
+  Localizer localizer(map, LocalizerParams{});
+  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
+  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  int lost = 0, wrong = 0;
+  std::optional<LocalizationResult> last;
+  for (int i = 0; i < 40; ++i) {  // half a metre between scans
+    const Pose2 step{0.5, 0.0, 0.5};
+    at = at * step;
+    wheels = wheels * step;
+    if (i == 25) at = {9.0, 5.0, -2.0};
+    last = localizer.update(look(rays, at, 1.0 * i), wheels);
+    ASSERT_TRUE(last);
+    lost += last->phase == Phase::kLost;
+    wrong += distance(last->base_in_map, at) > 0.5;
+  }
+  EXPECT_GT(wrong, 0) << "the jump was seen";
+  EXPECT_EQ(lost, 0);
   EXPECT_TRUE(last->converged);
   EXPECT_LT(distance(last->base_in_map, at), 0.2);
 }

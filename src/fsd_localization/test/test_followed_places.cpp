@@ -34,15 +34,28 @@ TEST(FollowedPlaces, goWithThePlaceWhereOdometryDrifts) {
 }
 
 TEST(FollowedPlaces, agreementIsCountedWithoutBreaks) {
+  const Pose2 here{10, 0, 0}, beside{10.4, 0.3, 0.2}, elsewhere{30, 0, 0};
   FollowedPlaces followed;
   EXPECT_FALSE(followed.agreedFor(5.0));
-  followed.agree(true, 5.0);
-  followed.agree(true, 6.0);
+  followed.compare(here, beside, 5.0);
+  followed.compare(beside, here, 6.0);
   EXPECT_DOUBLE_EQ(*followed.agreedFor(7.5), 2.5);
-  followed.agree(false, 8.0);
+  followed.compare(here, elsewhere, 8.0);
   EXPECT_FALSE(followed.agreedFor(8.0));
-  followed.agree(true, 9.0);
+  followed.compare(elsewhere, elsewhere, 9.0);
   EXPECT_DOUBLE_EQ(*followed.agreedFor(9.5), 0.5);
+}
+
+TEST(FollowedPlaces, whatExplainsNothingBreaksTheAgreement) {
+  const Pose2 here{10, 0, 0};
+  FollowedPlaces followed;
+  followed.compare(here, here, 5.0);
+  followed.compare({}, here, 6.0);  // a search that found nothing that fits
+  EXPECT_FALSE(followed.agreedFor(6.0));
+  followed.compare(here, here, 7.0);
+  EXPECT_DOUBLE_EQ(*followed.agreedFor(7.5), 0.5);
+  followed.compare(here, {}, 8.0);  // a filter that is still spread over the whole map
+  EXPECT_FALSE(followed.agreedFor(8.0));
 }
 
 namespace {

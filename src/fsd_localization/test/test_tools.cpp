@@ -13,6 +13,7 @@
 #include "hyselam_common/testing/drawn_grid.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
+#include "localization_score.hpp"
 
 namespace {
 
@@ -173,3 +174,23 @@ TEST_F(Tools, UnwritableOutputIsStatus2) {
 }
 
 }  // namespace
+
+// A robot that is tracked, and from the given update on, a decimetre each, 10 m aside.
+TEST(LocalizationScore, aPoseThatIsLeftForAnotherIsAnAlarmAndFalseIfItWasRight) {
+  for (const bool was_right : {true, false}) {
+    fsd_localization::LocalizationScore score({});
+    for (int i = 0; i < 40; ++i) {
+      fsd_localization::LocalizationResult r;
+      r.converged = true;
+      r.phase = fsd_localization::Phase::kTracking;
+      r.travelled = 0.1 * i;
+      const bool aside = i >= 20;
+      r.base_in_map = {0.1 * i, aside ? 10.0 : 0.0, 0.0};
+      score.add(r, {0.1 * i, was_right ? 0.0 : 10.0, 0.0});
+    }
+    const auto report = score.report();
+    ASSERT_EQ(report["alarms"].size(), 1U);
+    EXPECT_EQ(report["alarms"][0]["false"], was_right);
+    EXPECT_EQ(report["false_doubts"], was_right ? 1 : 0);
+  }
+}

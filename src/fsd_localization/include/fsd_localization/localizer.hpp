@@ -237,7 +237,6 @@ class Localizer {
     std::optional<double> usual_score;  // average score of the pose with the last metres
     double score_at = 0.0;              // on that way, when it was told last
     bool fits_worse = false;            // then it was far below the average
-    double alarm_step = 0.0;            // [m] before it is asked about again
     RivalWatch rivals;                  // what was better than the tracked pose
     FollowedPlaces followed;            // while the robot is not found
     double tracked_from = 0.0, next_check = 0.0;

@@ -17,6 +17,7 @@ namespace {
 constexpr Pose2 kHypothesisBlur{0.1, 0.1, hyselam::radians(4.0)};  // between particles of a search
 constexpr std::size_t kParticlesPerBin = 10;  // fewer: the bins are few because the particles are
 constexpr double kMatchedNoise = 0.3;   // of the wheels' noise, where scans confirm the motion
+constexpr double kQuickTurn = 0.3;      // [rad] in an update: its scans may be matched a little off
 constexpr double kFarthest = 1e6;       // [m] beyond it cell numbers would not fit an int
 constexpr double kWeakMatch = 0.4;      // a scan of which less lies on what was seen last
 constexpr double kSuddenMatch = 0.65;   // of the usual share of a scan on what was seen last
@@ -349,7 +350,8 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
 
   observation_.scan = scan;
   observation_.fsd = usesFsd() ? sensor_.observe() : FsdObservation{};
-  const bool is_sure = refinesOdometry() && !by_wheels_ && !isSearching(state_);
+  const bool is_sure = refinesOdometry() && !by_wheels_ && !isSearching(state_) &&
+                       std::abs(delta.theta) <= kQuickTurn;
   by_wheels_ = false;
   if (state_ == LocalizerState::kTracking && !search_.short_term.empty()) {
     observation_.scan = search_.short_term.without(scan, smooth);

@@ -12,19 +12,17 @@ using hyselam::Pose2;
 namespace {
 
 // Where a number was chosen: docs/algorithms/localization.md, "Numbers of the alarms".
-constexpr double kSupposedVariance = 1.0;   // [m^2], along each axis, at least
-constexpr double kAskStep = 0.5;            // [m] between questions of a robot that is not found
-constexpr double kLargestDoubtStep = 4.0;   // [m] between those about a doubt, at most
-constexpr double kLargestAlarmStep = 16.0;  // [m] between those about another alarm
-constexpr double kAlarmLength = 2.0;        // [m] of scans at most that an alarm is about
-constexpr double kFirstCheck = 2.0;         // [m] after a place was found, and then twice as far
-constexpr double kCheckStep = 30.0;         // [m] at most between checks
-constexpr double kCheckLength = 5.0;        // [m] of scans of a check
-constexpr double kOneScan = 0.3;            // [m] a shorter submap is a scan: SubmapBuilder's step
-constexpr double kUsual = 0.75;             // of the usual share of inliers: less is unusual
-constexpr double kScoreStep = 1.0;          // [m] between looks at the score of the pose
-constexpr double kScoreMemory = 1.0 / 30;   // weight of a look in the usual score: 30 m
-constexpr double kWorse = 0.08;             // below the usual score: asked about
+constexpr double kSupposedVariance = 1.0;  // [m^2], along each axis, at least
+constexpr double kAskStep = 0.5;           // [m] between questions of a robot that is not found
+constexpr double kAlarmLength = 2.0;       // [m] of scans at most that an alarm is about
+constexpr double kFirstCheck = 2.0;        // [m] after a place was found, and then twice as far
+constexpr double kCheckStep = 30.0;        // [m] at most between checks
+constexpr double kCheckLength = 5.0;       // [m] of scans of a check
+constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan: SubmapBuilder's step
+constexpr double kUsual = 0.75;            // of the usual share of inliers: less is unusual
+constexpr double kScoreStep = 1.0;         // [m] between looks at the score of the pose
+constexpr double kScoreMemory = 1.0 / 30;  // weight of a look in the usual score: 30 m
+constexpr double kWorse = 0.08;            // below the usual score: asked about
 constexpr double kFits = 0.3;       // a place with a lower score does not explain what is seen
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
@@ -98,7 +96,6 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   signs.low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
   signs.worse = fitsWorse(estimate);
   if (search_.alarm.add(search_.way, signs)) {
-    search_.alarm_step = kAskStep;
     search_.background->drop();  // what was asked before says nothing about it
     if (signs.odd || signs.low) {
       search_.asked_at.reset();  // at once
@@ -164,8 +161,9 @@ bool Localizer::wantsSearch() {
   if (needsOwnScans() && search_.rivals.isTooEarly(search_.way)) return false;
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
-  const bool again = search_.rivals.hasRival() ||
-                     (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm_step));
+  const bool again =
+      search_.rivals.hasRival() ||
+      (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;
 }
@@ -238,6 +236,10 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     state_ = LocalizerState::kLostSearch;
     search_.short_term.clear();
     search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
+    if (verdict.probability >= params_.found_probability) {  // it also says where the robot is
+      trackAt(verdict.best.base * motion, result);
+      return;
+    }
     followPlaces(verdict.hypotheses, motion, estimate);
     search_.asked_at.reset();  // at once again, with another scan
     return;
@@ -245,10 +247,12 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   if (search_.guided && answer.believed && !is_beaten)
     return;  // the filter goes on with what was told
   search_.guided = false;
-  if (verdict.best.seen < kFits) return;
   const Pose2 best = verdict.best.base * motion;
-  const bool agree = !isSearching(state_) && isSamePlace(best, estimate.mean);
-  search_.followed.agree(agree, search_.way);
+  const bool fits = verdict.best.seen >= kFits;
+  search_.followed.compare(fits ? std::optional<Pose2>(best) : std::nullopt,
+                           isSearching(state_) ? std::nullopt : std::optional(estimate.mean),
+                           search_.way);
+  if (!fits) return;
   if (verdict.probability >= params_.found_probability || isAgreed(verdict, estimate)) {
     trackAt(best, result);
   } else {
@@ -266,11 +270,9 @@ bool Localizer::isAgreed(const Verdict& verdict, const PoseEstimate& estimate) c
          inliers_.average() >= params_.found_inlier_ratio;
 }
 
-/// A search has found no place that is better than the tracked one.
+/// A search has found no place that is so much better than the tracked one that it counts.
 void Localizer::confirmPose(const Verdict& verdict) {
-  search_.alarm_step =
-      std::clamp(2.0 * search_.alarm_step, kAskStep,
-                 search_.alarm.isDoubtful() ? kLargestDoubtStep : kLargestAlarmStep);
+  search_.alarm.answered(!verdict.is_believed && verdict.probability >= params_.lost_probability);
   if (verdict.is_believed || verdict.believed > 1.0 - params_.lost_probability) {
     search_.rivals.reset();
   }

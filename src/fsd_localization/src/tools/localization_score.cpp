@@ -116,11 +116,21 @@ bool LocalizationScore::wasRight(std::size_t i) const {
   return right;
 }
 
+bool LocalizationScore::hasLeapt(std::size_t i) const {
+  const Entry &before = entries_[i - 1], &now = entries_[i];
+  return before.phase == Phase::kTracking && now.phase == Phase::kTracking &&
+         hyselam::distance(before.result.base_in_map, now.result.base_in_map) >
+             now.travelled - before.travelled + kJump;
+}
+
 nlohmann::json LocalizationScore::alarms() const {
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 1; i < entries_.size(); ++i) {
-    if (entries_[i].phase != Phase::kLost || entries_[i - 1].phase != Phase::kTracking) continue;
-    list.push_back({{"at_m", entries_[i].travelled}, {"false", wasRight(i)}});
+    const bool leapt = hasLeapt(i);
+    const bool lost =
+        entries_[i].phase == Phase::kLost && entries_[i - 1].phase == Phase::kTracking;
+    if (!lost && !leapt) continue;
+    list.push_back({{"at_m", entries_[i].travelled}, {"false", wasRight(leapt ? i - 1 : i)}});
   }
   return list;
 }
@@ -128,7 +138,8 @@ nlohmann::json LocalizationScore::alarms() const {
 std::size_t LocalizationScore::falseDoubts() const {
   std::size_t count = 0;
   for (std::size_t i = 1; i < entries_.size(); ++i) {
-    if (entries_[i - 1].converged && !entries_[i].converged && wasRight(i)) ++count;
+    if (!entries_[i - 1].converged) continue;
+    count += hasLeapt(i) ? wasRight(i - 1) : !entries_[i].converged && wasRight(i);
   }
   return count;
 }

@@ -42,9 +42,13 @@ class LocalizationScore {
   /// Whether the estimates of the last half metre up to an entry were all right: then it is wrong
   /// to say anything else.
   bool wasRight(std::size_t i) const;
+  /// Whether a tracked pose has gone elsewhere from one update to the next: found by the search
+  /// that gave up the old one.
+  bool hasLeapt(std::size_t i) const;
+  /// Times that a tracked pose is given up. It is false if the pose was right.
   nlohmann::json alarms() const;
-  /// Times that a right pose that was told as sure is told as not sure any more. Unlike alarms,
-  /// this can be asked of any localisation.
+  /// Times that a right pose that was told as sure is told as not sure any more, or left for
+  /// another. Unlike alarms, this can be asked of any localisation.
   std::size_t falseDoubts() const;
   nlohmann::json kidnaps() const;
   double median(std::size_t from, double Entry::*field) const;

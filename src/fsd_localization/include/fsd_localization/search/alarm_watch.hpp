@@ -10,6 +10,9 @@ namespace fsd_localization {
 /// that of the robot [m], each radian turned counted as half a metre.
 class AlarmWatch {
  public:
+  static constexpr double kFirstStep = 0.5;            ///< [m] between questions
+  static constexpr double kLargestStep = 16.0;         ///< [m] at most
+  static constexpr double kLargestDoubtfulStep = 4.0;  ///< [m] at most about a doubtful pose
   /// What the last scans say.
   struct Signs {
     bool broken = false;     ///< the motion between two scans is unknown
@@ -24,6 +27,9 @@ class AlarmWatch {
   bool add(double way, const Signs& signs);
   /// A search found no better place, with what was seen since the alarm began.
   void confirm();
+  /// An answer of a search that does not make the robot lost. The way to the next question doubles;
+  /// not if the answer spoke against the pose, by too few scans to count.
+  void answered(bool is_against);
   void reset() { *this = AlarmWatch(); }
 
   bool isOpen() const { return from_.has_value(); }
@@ -38,9 +44,13 @@ class AlarmWatch {
   bool isSharp() const { return sharp_; }
   /// Way since the alarm began; nothing if there is none.
   std::optional<double> length(double way) const;
+  /// [m] of way between two questions about the alarm.
+  double step() const { return step_; }
 
  private:
+  double step_ = kFirstStep;        // [m] to the next question
   std::optional<double> from_;      // [m] way at which the alarm began
+  double unmatched_at_ = -1.0;      // [m] when scans did not fit each other last
   double suspicious_until_ = -1.0;  // [m] so long the last scans fit each other badly
   double strange_until_ = -1.0;     // [m] so long what is strange is the same alarm
   bool confirmed_ = false, doubtful_ = false, carried_ = false, sharp_ = false;

@@ -22,9 +22,11 @@ class FollowedPlaces {
   /// Nothing is followed any more.
   void reset() { *this = FollowedPlaces(); }
 
-  /// Tells whether search and filter think the same place the best one.
-  void agree(bool do_agree, double way);
-  /// Way since when they have, in each answer told here; nothing if they do not.
+  /// Tells what search and filter each think the best place; nothing: nothing fits, or the filter
+  /// follows no place yet. That agrees with nothing.
+  void compare(const std::optional<hyselam::Pose2>& searched,
+               const std::optional<hyselam::Pose2>& filtered, double way);
+  /// Way since when they have agreed, in each answer told here; nothing if they do not.
   std::optional<double> agreedFor(double way) const;
 
  private:

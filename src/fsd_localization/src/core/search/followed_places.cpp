@@ -32,8 +32,9 @@ std::vector<std::size_t> FollowedPlaces::follow(const std::vector<Pose2>& places
   return added;
 }
 
-void FollowedPlaces::agree(bool do_agree, double way) {
-  if (!do_agree) {
+void FollowedPlaces::compare(const std::optional<Pose2>& searched,
+                             const std::optional<Pose2>& filtered, double way) {
+  if (!searched || !filtered || !isSamePlace(*searched, *filtered)) {
     agreed_from_.reset();
   } else if (!agreed_from_) {
     agreed_from_ = way;
