@@ -55,6 +55,7 @@ void Localizer::forgetSearch() {
 void Localizer::learnShortTerm(const Pose2& base_in_grid) {
   if (!params_.short_term_layer || state_ != LocalizerState::kTracking) return;
   if (search_.alarm.looksCarried() || search_.rivals.hasRival()) return;
+  if (search_.tracked_from == search_.way) return;  // found just now: the pose is that of before
   const double range = params_.likelihood.max_range;
   search_.short_term.add(
       ShortTermLayer::endsOf(observation_.scan, *updated_odom_, range),
@@ -220,6 +221,7 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
                        const PoseEstimate& estimate, LocalizationResult& result) {
   const Pose2 motion = between(answer.base_in_odom, *updated_odom_);
   const bool is_beaten = answer.believed && !verdict.is_believed && isBeaten(answer, verdict);
+  const bool fits = verdict.best.seen >= kFits;
   if (state_ == LocalizerState::kTracking) {
     if (!answer.believed) return;  // asked before
     if (!is_beaten) {
@@ -236,7 +238,7 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     state_ = LocalizerState::kLostSearch;
     search_.short_term.clear();
     search_.submap.keepLast(lengthOfAlarm(), kTurnAsTravel);
-    if (verdict.probability >= params_.found_probability) {  // it also says where the robot is
+    if (fits && verdict.probability >= params_.found_probability) {  // it also says where it is
       trackAt(verdict.best.base * motion, result);
       return;
     }
@@ -248,7 +250,6 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     return;  // the filter goes on with what was told
   search_.guided = false;
   const Pose2 best = verdict.best.base * motion;
-  const bool fits = verdict.best.seen >= kFits;
   search_.followed.compare(fits ? std::optional<Pose2>(best) : std::nullopt,
                            isSearching(state_) ? std::nullopt : std::optional(estimate.mean),
                            search_.way);

@@ -18,8 +18,8 @@ enum class GraphStart {
   kGiven,     ///< at the poses of the graph
   kComposed,  ///< edges chained from the first pose, odometry first (composedPoses())
   kChordal,   ///< rotations first, by one linear system, then positions by another
-  /// kGiven if the edges fit there as they say, else kChordal; then the global relaxation if
-  /// max_rotation_error is exceeded.
+  /// kGiven if the edges fit there on average as they say, else kChordal; then the global
+  /// relaxation if max_rotation_error is exceeded.
   kBest
 };
 

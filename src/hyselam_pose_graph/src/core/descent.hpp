@@ -26,7 +26,8 @@ class Descent {
   /// Rotations by the chordal relaxation, then positions by solvePositions(). False, and `poses`
   /// unchanged, if the edges do not determine them.
   bool initializeChordal(Poses* poses);
-  /// Descends at most `steps` steps. True when the tolerance was reached.
+  /// Descends at most `steps` steps, each followed near the minimum by up to two by the factor
+  /// before. True when the tolerance was reached.
   bool descend(Poses* poses, int steps);
 
   /// Factorizes the information at `poses` for innovation(). False if the edges do not determine

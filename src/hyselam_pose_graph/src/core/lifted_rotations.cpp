@@ -345,9 +345,9 @@ LiftedRotations::LiftedRotations(const PoseSystem& system, std::vector<SystemPos
 }
 LiftedRotations::~LiftedRotations() = default;
 
-void LiftedRotations::descend(double tolerance, int max_iterations) {
+bool LiftedRotations::descend(double tolerance, int max_iterations) {
   State& s = *state_;
-  if (!s.problem.determined()) return;
+  if (!s.problem.determined()) return false;
   for (; s.iterations < max_iterations; ++s.iterations) {
     const double promised = s.findStep();
     LiftedPoses next = moved(s.v, s.step);
@@ -364,6 +364,7 @@ void LiftedRotations::descend(double tolerance, int max_iterations) {
     s.cost = next_cost;
     if (gain < tolerance * s.cost) break;
   }
+  return true;
 }
 
 std::vector<SystemPose> LiftedRotations::poses() const {

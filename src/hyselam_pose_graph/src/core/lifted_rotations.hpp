@@ -18,8 +18,8 @@ class LiftedRotations {
   LiftedRotations(const PoseSystem& system, std::vector<SystemPose> poses);
   ~LiftedRotations();
   /// Goes on until a step gains less than this part of the cost, or that many steps were made in
-  /// all.
-  void descend(double tolerance, int max_iterations = 300);
+  /// all. @returns false, and nothing is done, if the edges do not determine all poses
+  [[nodiscard]] bool descend(double tolerance, int max_iterations = 300);
   /// Those of the start with the rotations of where it is now.
   std::vector<SystemPose> poses() const;
 

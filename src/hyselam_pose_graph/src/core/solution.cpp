@@ -40,7 +40,8 @@ bool descendDcs(const PoseGraph& graph, const PoseSystem& system, const Optimize
   return false;
 }
 
-/// Whether poses are a start: all edges fit there as they say, three degrees of freedom each.
+/// Whether poses are a start: on average the edges fit there as they say, with three degrees of
+/// freedom each, and none is turned too far.
 bool fit(const Descent::Poses& poses, const PoseSystem& system, const OptimizeParams& params) {
   return system.cost(poses, {}) <= 3.0 * static_cast<double>(system.edges().size()) &&
          system.maxRotationError(poses) <= params.max_rotation_error;
@@ -70,7 +71,7 @@ OptimizeResult solveGraph(const PoseGraph& graph, const PoseSystem& system,
     if (system.maxRotationError(poses) > params.max_rotation_error) {
       LiftedRotations lifted(system, poses);
       for (const double tolerance : kLiftedTolerances) {
-        lifted.descend(tolerance);
+        if (!lifted.descend(tolerance)) break;
         Poses other = lifted.poses();
         if (!descent.solvePositions(&other)) continue;
         const bool converged = descent.descend(&other, params.max_iterations);
