@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""scripts/platform without a network and without another system: its arguments, what it reads in logs, the page of its records."""
+"""scripts/platform without a network and without another system: its arguments, what it reads in logs, the page of its records, which folders
+it leaves alone."""
 import importlib.machinery
 import importlib.util
 import json
@@ -53,6 +54,19 @@ class FakeSystem(platform.System):
         return self.statuses.get(step, 0), 60.0
 
 
+class UnmadeSystem(platform.System):
+    """Of debootstrap only what it leaves behind, or that it was broken off."""
+    breaks_off = False
+
+    def logged(self, step, command, check=True):
+        self.asked = (step, command)
+        for folder in ("etc/apt/apt.conf.d", "usr/sbin"):
+            (self.root / folder).mkdir(parents=True)
+        if self.breaks_off:
+            raise platform.PlatformError("broken off")
+        return 0
+
+
 class PlatformTest(unittest.TestCase):
     def refuses(self, *arguments):
         run = subprocess.run([str(SCRIPT), *arguments], capture_output=True, text=True, check=False)
@@ -86,10 +100,12 @@ class PlatformTest(unittest.TestCase):
         self.assertIsNone(platform.counts_of("100% tests passed, 0 tests failed out of 5\n"))
 
     def test_what_is_done_without_is_read_of_what_was_said(self):
-        deps = "deps: no package libcli11-dev here: the copy is used\ndeps: all 97 packages are installed\n"
-        configure = "-- a: no RapidCheck found, the tests of properties are left out in all packages\n-- Using Python nosetests\n"
+        deps = "deps: no package librapidcheck-dev here: the tests of properties are left out\ndeps: all 97 packages are installed\n"
+        configure = "-- a: no RapidCheck found, the tests of properties are left out in all packages\n-- Using Python nosetests\n" \
+                    "-- octomap_msgs: the official package in /usr is used\n"
         self.assertEqual(platform.left_out_of(deps, configure + configure),
-                         ["no package libcli11-dev here: the copy is used", "a: no RapidCheck found, the tests of properties are left out in all packages"])
+                         ["no package librapidcheck-dev here: the tests of properties are left out",
+                          "a: no RapidCheck found, the tests of properties are left out in all packages"])
 
     def test_versions_are_upstream_s(self):
         for package, version in (("4.10.0+dfsg-5", "4.10.0"), ("1:1.13.1-2+b1", "1.13.1"), ("3.25.1-1", "3.25.1"), ("0~20200520.x-1", "0~20200520.x")):
@@ -145,6 +161,20 @@ class PlatformTest(unittest.TestCase):
         self.assertIn("| Debian 11 | g++-9 9.3.0 | ", page)
         self.assertIn("- without: no package librapidcheck-dev here", page)
 
+    def test_the_compiler_cache_of_an_earlier_run_is_not_kept(self):
+        for arguments, cmake, folder in ((("--ccache",), "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache", "/var/cache/ccache"),
+                                         ((), "-UCMAKE_CXX_COMPILER_LAUNCHER -UCMAKE_C_COMPILER_LAUNCHER", None)):
+            self.run_of(*arguments)
+            environments = [environment for step, _, _, environment in FakeSystem.steps if step in ("build", "test")]
+            self.assertEqual([(e["CMAKE_ARGS"], e.get("CCACHE_DIR")) for e in environments], 2 * [(cmake, folder)])
+
+    def test_what_the_system_lacks_of_cli11_is_remarked(self):
+        _, record, page = self.run_of(logs={"packages": "Reading…\nplatform: CLI11 is not packaged, it is that of Debian 12\n"})
+        self.assertEqual(record["remarks"], ["CLI11 is not packaged, it is that of Debian 12"])
+        self.assertIn("- CLI11 is not packaged, it is that of Debian 12\n", page)
+        command = next(command for step, command, *_ in FakeSystem.steps if step == "packages")
+        self.assertLess(command.index("download libcli11-dev"), command.index("make deps"))
+
     def test_failures_are_written_down_and_are_the_exit_status(self):
         status, record, page = self.run_of(statuses={"test": 1}, logs={"test": "FAILED   p: A.b: no\n3 passed, 1 failed\n"})
         self.assertEqual((status, record["complete"], record["failures"]), (1, True, ["p: A.b: no"]))
@@ -157,6 +187,62 @@ class PlatformTest(unittest.TestCase):
         status, record, page = self.run_of("--demo", statuses={"demo": 1})
         self.assertEqual((status, record["demo"]["passed"]), (1, False))
         self.assertEqual(self.run_of(statuses={"packages": 100}), (2, None, ""))
+
+    def test_a_foreign_root_survives(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "root").mkdir()
+            (folder / "root/precious").write_text("1")
+            for fresh in (False, True):
+                with self.assertRaisesRegex(platform.PlatformError, "no system that this program began"):
+                    UnmadeSystem(folder, "suite", "http://a.org/debian", False).make(fresh)
+            self.assertEqual([p.relative_to(folder).as_posix() for p in sorted(folder.rglob("*"))], ["root", "root/precious"])
+
+    def test_without_a_mirror_nothing_is_removed(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(platform, "host_mirror", return_value=None):
+            folder = pathlib.Path(folder)
+            (folder / "root").mkdir()
+            (folder / "made").write_text("http://a.org/debian\n")
+            with self.assertRaisesRegex(platform.PlatformError, "--mirror"):
+                UnmadeSystem(folder, "suite", None, False).make(True)
+            self.assertTrue((folder / "root").exists() and (folder / "made").exists())
+
+    def test_a_system_of_its_own_is_made_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder) / "system"
+
+            def make(fresh, breaks_off=False):
+                system = UnmadeSystem(folder, "suite", "http://a.org/debian", False)
+                system.asked, system.breaks_off = None, breaks_off
+                try:
+                    system.make(fresh)
+                finally:
+                    system.held.close()
+                return system.asked
+
+            with self.assertRaisesRegex(platform.PlatformError, "broken off"):
+                make(False, breaks_off=True)
+            (folder / "root/half").touch()
+            step, command = make(False)
+            self.assertEqual((step, command[:len(platform.NAMESPACE)], command[-2:]),
+                             ("debootstrap", platform.NAMESPACE, [str(folder / "root"), "http://a.org/debian"]))
+            self.assertFalse((folder / "root/half").exists())
+            self.assertIsNone(make(False))
+            self.assertIsNotNone(make(True))
+
+    def test_a_folder_is_one_run_s_at_a_time(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            first = UnmadeSystem(folder, "suite", "http://a.org/debian", False)
+            first.make(False)
+            (folder / "root/built").touch()
+            for fresh in (False, True):
+                with self.assertRaisesRegex(platform.PlatformError, "is in use"):
+                    UnmadeSystem(folder, "suite", "http://a.org/debian", False).make(fresh)
+            self.assertTrue((folder / "root/built").exists())
+            first.held.close()
+            UnmadeSystem(folder, "suite", "http://a.org/debian", False).make(True)
+            self.assertFalse((folder / "root/built").exists())
 
     @unittest.skipUnless(shutil.which("git"), "git is not installed")
     def test_the_committed_tree_is_copied_and_what_did_not_change_is_left_alone(self):
