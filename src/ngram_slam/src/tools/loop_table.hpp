@@ -163,9 +163,10 @@ inline void writeLoops(const std::string& path, const SlamEngine& engine,
       out << std::setprecision(15) << a.stamp << ',' << b.stamp << std::setprecision(6) << ','
           << l.newer << ',' << l.older << ',' << a.run << ',' << b.run << ',' << a.path_length
           << ',' << b.path_length << ',' << l.measured.x << ',' << l.measured.y << ','
-          << l.measured.theta << ',' << toString(kindOf(l, saved_keyframes)) << ',' << foundBy(l, saved_keyframes) << ',' << l.weight
-          << ',' << (isBelieved(l) ? 1 : 0) << ',' << probabilityOf(l, far, engine).value_or(-1.0)
-          << ',' << l.inlier_ratio << ',' << l.fit << '\n';
+          << l.measured.theta << ',' << toString(kindOf(l, saved_keyframes)) << ','
+          << foundBy(l, saved_keyframes) << ',' << l.weight << ',' << (isBelieved(l) ? 1 : 0) << ','
+          << probabilityOf(l, far, engine).value_or(-1.0) << ',' << l.inlier_ratio << ',' << l.fit
+          << '\n';
     }
   });
 }

@@ -556,9 +556,10 @@ nlohmann::json run(const Options& o) {
     if (!o.side_by_side || other == params.loops) continue;
     const std::string mode = toString(other), label = "loops: " + mode, map = "map_" + mode;
     const Run r = runSlam(log, std::make_unique<SlamEngine>(paramsOf(o, other)), label);
-    nlohmann::json s = {{"loops", r.engine->loops().size()},
-                        {"places_seen_again", sentenceOf(LoopCounts(r.engine->loops(), r.saved_keyframes))},
-                        {"cpu_seconds", r.cpu}};
+    nlohmann::json s = {
+        {"loops", r.engine->loops().size()},
+        {"places_seen_again", sentenceOf(LoopCounts(r.engine->loops(), r.saved_keyframes))},
+        {"cpu_seconds", r.cpu}};
     if (!reference.empty()) s.update(errorOf(r, reference));
     summary["side_by_side_" + mode] = s;
     hyselam::writeTum(o.out + "/trajectory_" + mode + ".tum", r.engine->trajectory());

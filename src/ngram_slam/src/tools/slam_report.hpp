@@ -23,12 +23,9 @@ inline nlohmann::json figureJson(const std::string& title, const std::string& ma
                                  const SlamEngine& engine, std::size_t saved_keyframes) {
   using nlohmann::json;
   json trajectory = json::array(), regions = json::array();
-  json loops = {{"proximity", json::array()},
-                {"outline", json::array()},
-                {"words", json::array()},
-                {"signatures", json::array()},
-                {"start", json::array()},
-                {"saved", json::array()},
+  json loops = {{"proximity", json::array()},   {"outline", json::array()},
+                {"words", json::array()},       {"signatures", json::array()},
+                {"start", json::array()},       {"saved", json::array()},
                 {"not_believed", json::array()}};
   for (const hyselam::StampedPose2& p : engine.trajectory()) {
     trajectory.push_back({rounded(p.pose.x), rounded(p.pose.y)});
