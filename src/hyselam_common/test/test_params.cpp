@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "hyselam_common/errors.hpp"
+#include "hyselam_common/ros/file_param_source.hpp"
 #include "hyselam_common/ros/params.hpp"
 #include "hyselam_common/testing/files.hpp"
 
@@ -192,6 +194,58 @@ TEST(ParamLoader, FormerAndPresentNameTogetherAreRefused) {
   EXPECT_EQ(messageOf<ParameterError>([&] { engine.describe(p); }),
             "parameter 'map/leap' is 3, but must be left out: it is the former name of 'step', "
             "which is set too");
+}
+
+struct FileParams : ::testing::Test {
+  FileParamSource source(const std::string& text) {
+    testing::writeFile(d / "p.yaml", text);
+    return FileParamSource(d / "p.yaml");
+  }
+  void expectRefused(const std::string& text, const std::string& part) {
+    try {
+      source(text);
+      ADD_FAILURE() << "taken: " << text.substr(0, 60);
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+      EXPECT_LT(std::string(e.what()).size(), 400U);
+    }
+  }
+  testing::TemporaryDirectory d;
+};
+
+TEST_F(FileParams, GroupsAndListsHaveNames) {
+  const auto p = source("a: &x {b: 1, c: [1, 2.5]}\nd: *x\ne/f: '2'\n");
+  EXPECT_EQ(p.names(), (std::vector<std::string>{"a/b", "a/c", "d/b", "d/c", "e/f"}));
+  EXPECT_EQ(p.get("d/c")->size(), 2);
+  EXPECT_EQ(p.get("e/f")->getType(), XmlRpcValue::TypeString);
+}
+
+TEST_F(FileParams, AliasesWithoutEndAreRefused) {
+  expectRefused("a: &x {b: *x}\n", "nested too deep");
+  expectRefused("a: &x [*x]\n", "a list of more than values");
+  // Ten of ten of ten ...: a file of a few lines with a hundred million values.
+  std::string text = "a0: &a0 {x0: 1, x1: 1, x2: 1, x3: 1, x4: 1, x5: 1, x6: 1, x7: 1, x8: 1}\n";
+  for (int i = 1; i < 8; ++i) {
+    const std::string before = "*a" + std::to_string(i - 1), name = "a" + std::to_string(i);
+    text += name + ": &" + name + " {";
+    for (int k = 0; k < 10; ++k) {
+      text += (k > 0 ? ", y" : "y") + std::to_string(k) + ": " + before + " ";
+    }
+    text += "}\n";
+  }
+  expectRefused(text, "too many values");
+  // The same with groups that hold nothing, and in one list.
+  expectRefused(text.replace(text.find('{'), text.find('}') - text.find('{'), "{"),
+                "too many values");
+  std::string list = "a: [0";
+  for (int i = 0; i < 10001; ++i) list += ", 0";
+  expectRefused(list + "]\n", "too many values");
+}
+
+TEST_F(FileParams, ANameStandsOnce) {
+  expectRefused("a/b: 1\na: {b: 2}\n", "stands twice");
+  expectRefused("a/b: [1]\na: {b: [2]}\n", "stands twice");
+  expectRefused("a/b: [1]\na: {b: 2}\n", "stands twice");
 }
 
 }  // namespace

@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/tool.hpp"
 
 namespace hyselam {
 namespace {
@@ -165,6 +167,40 @@ TEST_F(Tools, PosesThatDoNotFitTheLogAreRefused) {
   EXPECT_TRUE(refused(run(d, build + "odometry --resolution 0"), "resolution"));
   EXPECT_TRUE(refused(run(d, "build_map " + d / "clean.log " + d / "o.pgm --poses odometry"),
                       "name of the image"));
+}
+
+/// A program that fails with `error` after a part of its work.
+Result runPartly(const std::string& json_path, const std::exception_ptr& error) {
+  CLI::App app;
+  const char* const arguments[] = {"partly", "--json", json_path.c_str()};
+  ::testing::internal::CaptureStderr();
+  Result r;
+  r.status = runTool(3, arguments, app, [&]() -> nlohmann::json {
+    throw PartialResult{{{"done", 1}}, error};
+  });
+  r.errors = ::testing::internal::GetCapturedStderr();
+  return r;
+}
+
+TEST_F(Tools, APartialResultIsWrittenAndItsErrorTold) {
+  const auto unusable = std::make_exception_ptr(InputError("talk.txt", "line 3", "is nothing"));
+  const Result r = runPartly(d / "part.json", unusable);
+  EXPECT_TRUE(refused(r, "line 3"));
+  EXPECT_EQ(r.errors.find("cannot be written"), std::string::npos) << r.errors;
+  EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "part.json")), nlohmann::json({{"done", 1}}));
+}
+
+TEST_F(Tools, BothErrorsOfAPartialResultAreTold) {
+  const auto unusable = std::make_exception_ptr(InputError("talk.txt", "line 3", "is nothing"));
+  const Result r = runPartly(d / "none/part.json", unusable);
+  EXPECT_TRUE(refused(r, "line 3"));
+  EXPECT_TRUE(refused(r, "cannot be written"));
+  EXPECT_TRUE(refused(r, "none/part.json"));
+  // The first error decides on the status.
+  const auto failed = std::make_exception_ptr(std::runtime_error("broken"));
+  const Result other = runPartly(d / "none/part.json", failed);
+  EXPECT_EQ(other.status, 1);
+  EXPECT_EQ(other.errors.rfind("error: broken; ", 0), 0U) << other.errors;
 }
 
 }  // namespace

@@ -135,11 +135,11 @@ ngram_slam::SlamLoop loopOf(ngram_slam::LoopSource source, bool far, double inli
 TEST(LoopCounts, AddUp) {
   using ngram_slam::LoopSource;
   std::vector<ngram_slam::SlamLoop> loops;
-  EXPECT_EQ(sentenceOf(ngram_slam::LoopCounts(loops)), "no place seen again");
+  EXPECT_EQ(sentenceOf(ngram_slam::LoopCounts(loops, 0)), "no place seen again");
   loops = {loopOf(LoopSource::kProximity, false, 0.9, 1.0),
            loopOf(LoopSource::kProximity, false, 0.9, 0.1),
            loopOf(LoopSource::kNgram, false, 0.9, 1.0)};
-  EXPECT_EQ(sentenceOf(ngram_slam::LoopCounts(loops)),
+  EXPECT_EQ(sentenceOf(ngram_slam::LoopCounts(loops, 0)),
             "3 places seen again: 3 nearby, 0 after a longer way; 1 of them not believed");
   for (const LoopSource source :
        {LoopSource::kProximity, LoopSource::kSignature, LoopSource::kSignature, LoopSource::kNgram,
@@ -147,13 +147,21 @@ TEST(LoopCounts, AddUp) {
     loops.push_back(loopOf(source, true, 0.8, 1.0));
   }
   loops.push_back(loopOf(LoopSource::kNgram, false, 0.0, 0.2));
-  const ngram_slam::LoopCounts counts(loops);
-  EXPECT_EQ(counts.total, counts.near + counts.far + counts.unverified);
+  loops.push_back(loopOf(LoopSource::kProximity, false, 0.0, 1.0));
+  const ngram_slam::LoopCounts counts(loops, 0);
+  EXPECT_EQ(counts.total, counts.near + counts.far + counts.unverified + counts.supposed);
   EXPECT_EQ(counts.near_by_words, 1U);
   EXPECT_EQ(sentenceOf(counts),
-            "10 places seen again: 3 nearby, 6 after a longer way (3 found by words, 2 by "
-            "signatures, 1 by their outline), 1 by words that no scan verified; 2 of them not "
-            "believed");
+            "11 places seen again: 3 nearby, 6 after a longer way (3 found by words, 2 by "
+            "signatures, 1 by their outline), 1 by words that no scan verified, 1 where it was "
+            "told to start; 2 of them not believed");
+  // All of a saved map of one more keyframe: what is near, or composed, or a start, is not told.
+  const ngram_slam::LoopCounts saved(loops, 1);
+  EXPECT_EQ(saved.saved, 3U);  // by proximity and not far
+  EXPECT_EQ(saved.near, 1U);   // by words
+  EXPECT_EQ(saved.far, 6U);
+  EXPECT_EQ(saved.unverified, 1U);
+  EXPECT_EQ(saved.supposed, 0U);
 }
 
 /// Rows of a table by the names of their columns.
@@ -218,10 +226,55 @@ TEST_F(SlamOffline, tellsWhichPlacesItHasRecognized) {
   EXPECT_EQ(sentence.rfind(std::to_string(rows.size()) + " places seen again: ", 0), 0U);
   const std::string report = fileBytes(out + "/report.html");
   EXPECT_NE(report.find(sentence + "</figcaption>"), std::string::npos);
-  for (const char* kind :
-       {"seen again nearby", "by the outline", "by signatures", "by words", "not believed"}) {
-    EXPECT_NE(report.find(kind), std::string::npos) << kind;
+  // What the figure draws is what the table tells.
+  std::map<std::string, std::size_t> told, drawn;
+  for (auto row : rows) ++told[row["believed"] == "1" ? row["found_by"] : "not_believed"];
+  const auto page = nlohmann::json::parse(fileBytes(out + "/report.json"));
+  for (const auto& [kind, loops] : page["figures"][0]["loops"].items()) {
+    if (!loops.empty()) drawn[kind] = loops.size();
   }
+  EXPECT_EQ(drawn, told);
+}
+
+TEST_F(SlamOffline, tellsStartsAndLoopsOfTheSavedMapApart) {
+  const std::string bag = "--bag " + d / "run.bag --out ";
+  ASSERT_EQ(run(bag + d / "first --save-state " + d / "first.state"), 0) << errors;
+  // Far beside the map: no scan fits there. Without loops the start is taken as it is told.
+  ASSERT_EQ(run(bag + d / "second --loops none --start 500,500,0 --state " + d / "first.state"), 0)
+      << errors;
+  const auto summary = nlohmann::json::parse(fileBytes(d / "second/summary.json"));
+  const auto& counts = summary["loops_by_kind"];
+  const auto rows = rowsOf(d / "second/loops.csv");
+  std::map<std::string, std::size_t> kinds;
+  for (auto row : rows) {
+    ++kinds[row["kind"]];
+    if (row["kind"] == "saved") {
+      EXPECT_EQ(row["found_by"], "saved");
+      EXPECT_EQ(row["run_a"], "0");
+    } else if (row["kind"] == "supposed") {
+      EXPECT_EQ(row["found_by"], "start");
+      EXPECT_EQ(row["run_a"], "1");
+      EXPECT_EQ(row["run_b"], "0");
+      EXPECT_EQ(row["inliers"], "0");
+    } else {
+      EXPECT_NE(row["found_by"], "proximity");  // of the saved map, which tells what found it
+    }
+  }
+  EXPECT_EQ(kinds["supposed"], 1U);
+  EXPECT_GT(kinds["saved"], 0U);
+  EXPECT_EQ(kinds["unverified"], 0U);
+  EXPECT_EQ(kinds["supposed"], counts["supposed"]);
+  EXPECT_EQ(kinds["saved"], counts["saved"]);
+  const std::string sentence = summary["places_seen_again"];
+  EXPECT_NE(sentence.find("1 where it was told to start"), std::string::npos) << sentence;
+  const auto page = nlohmann::json::parse(fileBytes(d / "second/report.json"));
+  EXPECT_EQ(page["figures"][0]["loops"]["start"].size(), 1U);
+  // Where it had begun: the scans fit, which is no supposition.
+  ASSERT_EQ(run(bag + d / "third --loops none --start 0,0,0 --state " + d / "first.state"), 0)
+      << errors;
+  const auto third = nlohmann::json::parse(fileBytes(d / "third/summary.json"));
+  EXPECT_EQ(third["loops_by_kind"]["supposed"], 0);
+  EXPECT_EQ(third["loops_by_kind"]["near"], kinds["near"] + 1);
 }
 
 TEST_F(SlamOffline, takesTheParametersOfTheNode) {
@@ -248,6 +301,11 @@ TEST_F(SlamOffline, takesTheParametersOfTheNode) {
   EXPECT_EQ(other["loops_mode"], "proximity");
   EXPECT_DOUBLE_EQ(hyselam::loadMap(d / "p3/map.yaml").geometry.resolution, 0.1);
 
+  writeFile(d / "former.yaml", "optimise_every: 5\n");
+  ASSERT_EQ(run(some + d / "p5 --parameters " + d / "former.yaml"), 0) << errors;
+  EXPECT_EQ(errors.rfind("warning: parameter '", 0), 0U) << errors;
+  EXPECT_NE(errors.find("is now called 'optimize_interval'"), std::string::npos) << errors;
+
   const auto refuse = [&](const std::string& text, const std::string& part) {
     writeFile(d / "wrong.yaml", text);
     expectRefused(some + d / "p4 --parameters " + d / "wrong.yaml", part);
@@ -258,6 +316,25 @@ TEST_F(SlamOffline, takesTheParametersOfTheNode) {
   refuse("keyframe_step: far\n", "keyframe_step' is 'far'");
   refuse("- 1\n", "names of parameters");
   expectRefused(some + d / "p4 --parameters " + d / "none.yaml", "none.yaml");
+}
+
+TEST_F(SlamOffline, takesOnlyTheWordsOfTheThesisWithAFile) {
+  const auto keyframes = [&](const std::string& name, const std::string& arguments) {
+    EXPECT_EQ(run("--bag " + d / "run.bag --out " + d / name + " " + arguments), 0) << errors;
+    const auto summary = nlohmann::json::parse(fileBytes(d / name + "/summary.json"));
+    EXPECT_EQ(summary["loops_mode"], "thesis");
+    return summary["keyframes"].get<int>();
+  };
+  writeFile(d / "step.yaml", "keyframe_step: 2\n");
+  writeFile(d / "node.yaml", "keyframe_step: 2\nloops: thesis\n");
+  const int usual = keyframes("t0", "--loops thesis");
+  const int sparse = keyframes("t1", "--loops thesis --parameters " + d / "step.yaml");
+  EXPECT_LT(sparse, usual);  // the file's step counts
+  // The mode of the file alone has the node's words, asked for by name those of the thesis.
+  EXPECT_EQ(keyframes("t2", "--parameters " + d / "node.yaml"), sparse);
+  EXPECT_NE(fileBytes(d / "t1/words.csv"), fileBytes(d / "t2/words.csv"));
+  EXPECT_EQ(keyframes("t3", "--loops thesis --parameters " + d / "node.yaml"), sparse);
+  EXPECT_EQ(fileBytes(d / "t1/words.csv"), fileBytes(d / "t3/words.csv"));
 }
 
 TEST_F(SlamOffline, tellsWhatItCouldNotReadOfALog) {

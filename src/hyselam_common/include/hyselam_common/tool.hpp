@@ -9,7 +9,7 @@
 namespace hyselam {
 
 /// Thrown by a body that has something to show in spite of an error: it is written as if there were
-/// none, and the error is told.
+/// none, and the error is told; if it cannot be written, that is told behind the error.
 struct PartialResult {
   nlohmann::json result;
   std::exception_ptr error;  ///< not null
@@ -20,7 +20,8 @@ struct PartialResult {
 ///
 /// Returns the exit status: 0 done (also after --help), 2 wrong usage or input that cannot be used
 /// (CLI::ParseError, InputError, ParameterError), 1 anything else. Errors are one line
-/// `error: ...` on stderr. If the JSON file cannot be written, the status is 2.
+/// `error: ...` on stderr. If the JSON file cannot be written, the status is 2, but for
+/// a PartialResult, whose error decides.
 int runTool(int argc, const char* const* argv, CLI::App& app,
             const std::function<nlohmann::json()>& body);
 

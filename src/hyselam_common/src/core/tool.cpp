@@ -38,22 +38,27 @@ int runTool(int argc, const char* const* argv, CLI::App& app,
     if (json_path.empty()) return;
     writeFileAtomically(json_path, [&](std::ostream& out) { out << result.dump(2) << '\n'; });
   };
+  std::string also;  // why a partial result is not written either
   try {
     try {
       write(body());
     } catch (const PartialResult& partial) {
-      write(partial.result);
+      try {
+        write(partial.result);
+      } catch (const std::exception& e) {
+        also = std::string("; and what there is cannot be written: ") + e.what();
+      }
       std::rethrow_exception(partial.error);
     }
     return kDone;
   } catch (const InputError& e) {
-    return fail(kUnusable, e.what());
+    return fail(kUnusable, e.what() + also);
   } catch (const ParameterError& e) {
-    return fail(kUnusable, e.what());
+    return fail(kUnusable, e.what() + also);
   } catch (const std::exception& e) {
-    return fail(kFailed, e.what());
+    return fail(kFailed, e.what() + also);
   } catch (...) {
-    return fail(kFailed, "unknown failure");
+    return fail(kFailed, "unknown failure" + also);
   }
 }
 

@@ -24,34 +24,61 @@ XmlRpc::XmlRpcValue scalarOf(const YAML::Node& node) {
   return XmlRpc::XmlRpcValue(node.Scalar());
 }
 
-void gather(const YAML::Node& node, const std::string& name, const std::string& path,
-            Values* values) {
-  if (node.IsMap()) {
-    for (const auto& entry : node) {
-      const std::string key = entry.first.Scalar();
-      gather(entry.second, name.empty() ? key : name + "/" + key, path, values);
+/// Collects the values below a node. An alias may lead back to what holds it, or a few of them to
+/// millions of values: depth and count are bounded.
+class Gatherer {
+ public:
+  explicit Gatherer(const std::string& path) : path_(path) {}
+
+  void gather(const YAML::Node& node, const std::string& name, int depth) {
+    count(name);
+    if (depth > kDeepest) throw InputError(path_, name.substr(0, 40), "nested too deep");
+    if (node.IsMap()) {
+      for (const auto& entry : node) {
+        const std::string key = entry.first.Scalar();
+        gather(entry.second, name.empty() ? key : name + "/" + key, depth + 1);
+      }
+    } else if (name.empty()) {
+      throw InputError(path_, "", "holds no names of parameters with their values");
+    } else if (node.IsSequence()) {
+      take(name, listOf(node, name));
+    } else if (node.IsScalar()) {
+      take(name, scalarOf(node));
+    } else {
+      throw InputError(path_, name, "has no value");
     }
-  } else if (name.empty()) {
-    throw InputError(path, "", "holds no names of parameters with their values");
-  } else if (node.IsSequence()) {
-    XmlRpc::XmlRpcValue list;
-    list.setSize(static_cast<int>(node.size()));
-    for (std::size_t i = 0; i < node.size(); ++i) {
-      if (!node[i].IsScalar()) throw InputError(path, name, "is a list of more than values");
-      list[static_cast<int>(i)] = scalarOf(node[i]);
-    }
-    (*values)[name] = list;
-  } else if (node.IsScalar()) {
-    if (!values->emplace(name, scalarOf(node)).second) throw InputError(path, name, "stands twice");
-  } else {
-    throw InputError(path, name, "has no value");
   }
-}
+  Values values;
+
+ private:
+  static constexpr int kDeepest = 16, kMost = 10000;
+
+  void count(const std::string& name) {
+    if (++count_ > kMost) throw InputError(path_, name, "too many values");
+  }
+  XmlRpc::XmlRpcValue listOf(const YAML::Node& node, const std::string& name) {
+    XmlRpc::XmlRpcValue list;
+    list.setSize(0);
+    for (const auto& element : node) {
+      count(name);
+      if (!element.IsScalar()) throw InputError(path_, name, "is a list of more than values");
+      const int at = list.size();
+      list[at] = scalarOf(element);
+    }
+    return list;
+  }
+  void take(const std::string& name, const XmlRpc::XmlRpcValue& value) {
+    if (!values.emplace(name, value).second) throw InputError(path_, name, "stands twice");
+  }
+
+  const std::string path_;
+  int count_ = 0;
+};
 
 Values valuesOf(const std::string& path) {
-  Values values;
-  gather(parseYaml(readTextFile(path, kLargestFile), path), "", path, &values);
-  return values;
+  Gatherer gatherer(path);
+  gatherer.gather(parseYaml(readTextFile(path, kLargestFile), path), "", 0);
+  return std::move(gatherer.values);
 }
 
 }  // namespace

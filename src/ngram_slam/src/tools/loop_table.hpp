@@ -16,24 +16,50 @@ namespace ngram_slam {
 
 /// How a loop came to be: each loop is of exactly one kind.
 enum class LoopKind {
-  kNear,  ///< the graph knew already that the robot was close by; the scans were compared there
+  kNear,  ///< the graph, or a start that was told, had the robot close by; the scans fit there
   kFar,   ///< the graph did not know: a wide search, accepted with others that agree
-  kUnverified  ///< words alone, without a comparison of scans (mode thesis)
+  kUnverified,  ///< words alone, without a comparison of scans (mode thesis)
+  kSupposed,    ///< a start in a saved map that was told, and that no scan fits
+  /// Between keyframes of the saved map that is gone on with, which does not tell more: near, a
+  /// start, or composed of loops of any kind when keyframes were dropped.
+  kSaved
 };
 
-inline LoopKind kindOf(const SlamLoop& loop) {
+/// `saved`: keyframes of the map that is gone on with, which are the first ones.
+inline LoopKind kindOf(const SlamLoop& loop, std::size_t saved) {
   if (loop.far) return LoopKind::kFar;
   // No loop whose scans were compared is accepted without points on known surfaces.
-  return loop.inlier_ratio > 0.0 ? LoopKind::kNear : LoopKind::kUnverified;
+  const bool compared = loop.inlier_ratio > 0.0;
+  if (loop.source != LoopSource::kProximity) {
+    return compared || loop.source != LoopSource::kNgram ? LoopKind::kNear : LoopKind::kUnverified;
+  }
+  if (static_cast<std::size_t>(loop.newer) < saved) return LoopKind::kSaved;
+  return compared ? LoopKind::kNear : LoopKind::kSupposed;
 }
 
 inline const char* toString(LoopKind kind) {
-  return kind == LoopKind::kNear ? "near" : kind == LoopKind::kFar ? "far" : "unverified";
+  switch (kind) {
+    case LoopKind::kNear:
+      return "near";
+    case LoopKind::kFar:
+      return "far";
+    case LoopKind::kUnverified:
+      return "unverified";
+    case LoopKind::kSupposed:
+      return "supposed";
+    case LoopKind::kSaved:
+      return "saved";
+  }
+  return "";
 }
 
 /// What proposed the place: proximity (by the poses of the graph), words, signatures, or outline (a
-/// far place at which what the robot sees was laid on the map by its shape alone).
-inline const char* foundBy(const SlamLoop& loop) {
+/// far place at which what the robot sees was laid on the map by its shape alone); start and saved
+/// for loops of these kinds.
+inline const char* foundBy(const SlamLoop& loop, std::size_t saved) {
+  const LoopKind kind = kindOf(loop, saved);
+  if (kind == LoopKind::kSupposed) return "start";
+  if (kind == LoopKind::kSaved) return "saved";
   switch (loop.source) {
     case LoopSource::kNgram:
       return "words";
@@ -50,17 +76,23 @@ inline bool isBelieved(const SlamLoop& loop) {
   return loop.weight >= kMinLoopWeight;
 }
 
-/// near + far + unverified == total, and far == far_by_words + far_by_signatures + far_by_outline.
+/// near + far + unverified + supposed + saved == total, and
+/// far == far_by_words + far_by_signatures + far_by_outline.
 struct LoopCounts {
-  std::size_t total = 0, near = 0, far = 0, unverified = 0;
+  std::size_t total = 0, near = 0, far = 0, unverified = 0, supposed = 0, saved = 0;
   std::size_t far_by_words = 0, far_by_signatures = 0, far_by_outline = 0;
   std::size_t near_by_words = 0;  ///< of the near ones
   std::size_t not_believed = 0;   ///< of all
 
-  explicit LoopCounts(const std::vector<SlamLoop>& loops) : total(loops.size()) {
+  LoopCounts(const std::vector<SlamLoop>& loops, std::size_t saved_keyframes)
+      : total(loops.size()) {
     for (const SlamLoop& l : loops) {
-      const LoopKind kind = kindOf(l);
-      ++(kind == LoopKind::kNear ? near : kind == LoopKind::kFar ? far : unverified);
+      const LoopKind kind = kindOf(l, saved_keyframes);
+      ++(kind == LoopKind::kNear         ? near
+         : kind == LoopKind::kFar        ? far
+         : kind == LoopKind::kUnverified ? unverified
+         : kind == LoopKind::kSupposed   ? supposed
+                                         : saved);
       if (kind == LoopKind::kFar) {
         ++(l.source == LoopSource::kNgram       ? far_by_words
            : l.source == LoopSource::kSignature ? far_by_signatures
@@ -81,6 +113,8 @@ inline nlohmann::json toJson(const LoopCounts& c) {
           {"far_by_signatures", c.far_by_signatures},
           {"far_by_outline", c.far_by_outline},
           {"unverified", c.unverified},
+          {"supposed", c.supposed},
+          {"saved", c.saved},
           {"not_believed", c.not_believed}};
 }
 
@@ -97,6 +131,8 @@ inline std::string sentenceOf(const LoopCounts& c) {
            " by signatures, " + text(c.far_by_outline) + " by their outline)";
   }
   if (c.unverified > 0) all += ", " + text(c.unverified) + " by words that no scan verified";
+  if (c.supposed > 0) all += ", " + text(c.supposed) + " where it was told to start";
+  if (c.saved > 0) all += ", " + text(c.saved) + " within the saved map";
   return all + "; " + (c.not_believed == 0 ? "none" : text(c.not_believed)) +
          " of them not believed";
 }
@@ -112,7 +148,8 @@ inline std::optional<double> probabilityOf(const SlamLoop& loop, const std::vect
 
 /// loops.csv: README.md names the columns. a is the newer end, as in matches.csv.
 /// @throws hyselam::InputError
-inline void writeLoops(const std::string& path, const SlamEngine& engine) {
+inline void writeLoops(const std::string& path, const SlamEngine& engine,
+                       std::size_t saved_keyframes) {
   std::vector<SlamLoop> far = engine.state().pending_loops;
   for (const SlamLoop& l : engine.loops()) {
     if (l.far) far.push_back(l);
@@ -126,9 +163,10 @@ inline void writeLoops(const std::string& path, const SlamEngine& engine) {
       out << std::setprecision(15) << a.stamp << ',' << b.stamp << std::setprecision(6) << ','
           << l.newer << ',' << l.older << ',' << a.run << ',' << b.run << ',' << a.path_length
           << ',' << b.path_length << ',' << l.measured.x << ',' << l.measured.y << ','
-          << l.measured.theta << ',' << toString(kindOf(l)) << ',' << foundBy(l) << ',' << l.weight
-          << ',' << (isBelieved(l) ? 1 : 0) << ',' << probabilityOf(l, far, engine).value_or(-1.0)
-          << ',' << l.inlier_ratio << ',' << l.fit << '\n';
+          << l.measured.theta << ',' << toString(kindOf(l, saved_keyframes)) << ','
+          << foundBy(l, saved_keyframes) << ',' << l.weight << ',' << (isBelieved(l) ? 1 : 0) << ','
+          << probabilityOf(l, far, engine).value_or(-1.0) << ',' << l.inlier_ratio << ',' << l.fit
+          << '\n';
     }
   });
 }

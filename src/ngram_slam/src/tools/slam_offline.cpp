@@ -46,6 +46,7 @@ struct Options {
   int levels = 3;
   std::uint64_t seed = 1;
   double noise = 0.0, resolution = 0.05, loop_latency = SlamParams{}.loop_latency;
+  bool loops_given = false;  ///< on the command line
   bool side_by_side = false, raw_odometry = false, keep_all = false, correct_laser = false;
   Degradation degradation;
   hyselam::BagOptions bag_options;
@@ -62,6 +63,9 @@ void loadParameters(const CLI::App& app, Options* o) {
   hyselam::ParamLoader loader(std::make_shared<hyselam::FileParamSource>(o->parameters));
   const SlamServerParams p = loadSlamParams(loader);
   hyselam::requireAllKnown(loader, o->parameters);
+  for (const std::string& renamed : loader.reportRenamed()) {
+    std::cerr << "warning: " << renamed << "\n";
+  }
   o->slam = p.slam;
   o->map = p.map;
   const auto take = [&](const std::string& option, auto& value, const auto& loaded) {
@@ -359,7 +363,7 @@ nlohmann::json summaryOf(const Run& run, double log_seconds) {
                       {"cpu_seconds", run.cpu},
                       {"times_real_time", run.cpu > 0.0 ? log_seconds / run.cpu : 0.0},
                       {"peak_memory_mb", peakMegabytes()}};
-  const LoopCounts places(e.loops());
+  const LoopCounts places(e.loops(), run.saved_keyframes);
   j["places_seen_again"] = sentenceOf(places);
   j["loops_by_kind"] = toJson(places);
   j["place"] = toString(e.runPlace());
@@ -450,8 +454,11 @@ SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
     throw hyselam::ParameterError("levels", o.levels,
                                   "from 1 to " + std::to_string(WordLattice::kMaxLevels));
   SlamParams params = o.slam;
-  if (loops == LoopClosureMode::kThesis && o.slam.loops != LoopClosureMode::kThesis) {
-    params = SlamParams::thesis(o.levels);
+  if (loops == LoopClosureMode::kThesis && (o.loops_given || o.slam.loops != loops)) {
+    // What makes the thesis' words; all else stays as the file has it.
+    const SlamParams thesis = SlamParams::thesis(o.levels);
+    params.observations.look_back = thesis.observations.look_back;
+    params.words = thesis.words;
   } else if (o.levels != params.words.levels) {
     params.words.levels = o.levels;
     params.words.matcher.min_n.assign(static_cast<std::size_t>(o.levels),
@@ -494,7 +501,7 @@ void writeResults(const Options& o, const Run& run, const PresentMap& map,
   writeWords(o.out + "/words.csv", engine.recognizer());
   writeSemanticRegions(o.out + "/regions.csv", engine);
   writeMatches(o.out + "/matches.csv", engine.matches());
-  writeLoops(o.out + "/loops.csv", engine);
+  writeLoops(o.out + "/loops.csv", engine, run.saved_keyframes);
 }
 
 void writeJson(const std::string& path, const nlohmann::json& json, int indent) {
@@ -542,20 +549,22 @@ nlohmann::json run(const Options& o) {
   writeResults(o, main_run, present, log);
   if (!o.save_state.empty()) summary["saved"] = saveMapState(o.save_state, engine);
 
-  nlohmann::json figures = {figureJson("loops: " + o.loops, "map.yaml", engine)};
+  nlohmann::json figures = {
+      figureJson("loops: " + o.loops, "map.yaml", engine, main_run.saved_keyframes)};
   figures[0]["changes"] = toJson(changes, o.resolution);
   for (const LoopClosureMode other : {LoopClosureMode::kNone, LoopClosureMode::kThesis}) {
     if (!o.side_by_side || other == params.loops) continue;
     const std::string mode = toString(other), label = "loops: " + mode, map = "map_" + mode;
     const Run r = runSlam(log, std::make_unique<SlamEngine>(paramsOf(o, other)), label);
-    nlohmann::json s = {{"loops", r.engine->loops().size()},
-                        {"places_seen_again", sentenceOf(LoopCounts(r.engine->loops()))},
-                        {"cpu_seconds", r.cpu}};
+    nlohmann::json s = {
+        {"loops", r.engine->loops().size()},
+        {"places_seen_again", sentenceOf(LoopCounts(r.engine->loops(), r.saved_keyframes))},
+        {"cpu_seconds", r.cpu}};
     if (!reference.empty()) s.update(errorOf(r, reference));
     summary["side_by_side_" + mode] = s;
     hyselam::writeTum(o.out + "/trajectory_" + mode + ".tum", r.engine->trajectory());
     hyselam::saveMap(o.out + "/" + map + ".yaml", mapOf(*r.engine, o).grid());
-    figures.push_back(figureJson(label, map + ".yaml", *r.engine));
+    figures.push_back(figureJson(label, map + ".yaml", *r.engine, r.saved_keyframes));
   }
   writeJson(o.out + "/report.json",
             reportJson(std::filesystem::path(name).filename().string(), engine, figures), -1);
@@ -614,6 +623,7 @@ int main(int argc, char** argv) {
   app.add_flag("--side-by-side", o.side_by_side,
                "the same without loops and in thesis mode too, for the report");
   return hyselam::runTool(argc, argv, app, [&] {
+    o.loops_given = app.count("--loops") > 0;
     loadParameters(app, &o);
     return run(o);
   });

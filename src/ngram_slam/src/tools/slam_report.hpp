@@ -18,15 +18,14 @@ inline double rounded(double meters) {
 }
 
 /// One trajectory through a building, over the map in the file `map` beside the report. Loops by
-/// what found them (foundBy()), those that are not believed apart.
+/// what found them (foundBy()), those that are not believed apart. `saved_keyframes`: kindOf().
 inline nlohmann::json figureJson(const std::string& title, const std::string& map,
-                                 const SlamEngine& engine) {
+                                 const SlamEngine& engine, std::size_t saved_keyframes) {
   using nlohmann::json;
   json trajectory = json::array(), regions = json::array();
-  json loops = {{"proximity", json::array()},
-                {"outline", json::array()},
-                {"words", json::array()},
-                {"signatures", json::array()},
+  json loops = {{"proximity", json::array()},   {"outline", json::array()},
+                {"words", json::array()},       {"signatures", json::array()},
+                {"start", json::array()},       {"saved", json::array()},
                 {"not_believed", json::array()}};
   for (const hyselam::StampedPose2& p : engine.trajectory()) {
     trajectory.push_back({rounded(p.pose.x), rounded(p.pose.y)});
@@ -34,7 +33,7 @@ inline nlohmann::json figureJson(const std::string& title, const std::string& ma
   for (const SlamLoop& l : engine.loops()) {
     const hyselam::Pose2& a = engine.keyframes()[static_cast<std::size_t>(l.older)].pose;
     const hyselam::Pose2& b = engine.keyframes()[static_cast<std::size_t>(l.newer)].pose;
-    loops[isBelieved(l) ? foundBy(l) : "not_believed"].push_back(
+    loops[isBelieved(l) ? foundBy(l, saved_keyframes) : "not_believed"].push_back(
         {rounded(a.x), rounded(a.y), rounded(b.x), rounded(b.y)});
   }
   for (const RegionNode& n : regionGraph(engine).nodes) {
@@ -45,7 +44,7 @@ inline nlohmann::json figureJson(const std::string& title, const std::string& ma
           {"map", map},
           {"trajectory", trajectory},
           {"loops", loops},
-          {"places_seen_again", sentenceOf(LoopCounts(engine.loops()))},
+          {"places_seen_again", sentenceOf(LoopCounts(engine.loops(), saved_keyframes))},
           {"regions", regions}};
 }
 

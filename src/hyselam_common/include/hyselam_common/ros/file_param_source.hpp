@@ -12,7 +12,8 @@ namespace hyselam {
 /// ("loop/near_min_score").
 class FileParamSource : public MapParamSource {
  public:
-  /// @throws InputError for a file that cannot be read, is no YAML or holds no names.
+  /// @throws InputError for a file that cannot be read, is no YAML, holds no names, a
+  /// name twice, groups nested more than 16 deep or more than 10000 values, aliases followed.
   explicit FileParamSource(const std::string& path);
   std::string where() const override { return path_; }
 
