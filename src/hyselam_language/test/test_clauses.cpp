@@ -88,40 +88,6 @@ TEST(Clauses, WhatDeniesNothingToldIsToldAsLeftOut) {
          "pt");
 }
 
-/// What is doubted, asked for or demanded in them is nothing told.
-TEST(Clauses, AsidesOfConditionDoubtOrDutyAreToldAsLeftOut) {
-  expect(
-      {{"The kitchen is on the left, if you really want to know.", "neighbours kitchen left",
-        "if you really want to know"},
-       {"If anyone wonders, the lab is opposite the bar.", "opposite lab bar", "If anyone wonders"},
-       {"The archive is next to the library, whatever the sign may say.", "next_to archive library",
-        "whatever the sign may say"},
-       {"The lab is next to the bar, and nobody may touch it.", "next_to lab bar",
-        "and nobody may touch it"},
-       {"The bar is on the right, and it must stay locked.", "neighbours bar right",
-        "and it must stay locked"}},
-      "en");
-  expect({{"A cozinha fica à esquerda, se quiseres mesmo saber.", "neighbours cozinha left",
-           "se quiseres mesmo saber"},
-          {"O arquivo fica ao lado da biblioteca, digam o que disserem.",
-           "next_to arquivo biblioteca", "digam o que disserem"}},
-         "pt");
-}
-
-/// Where the condition or doubt is of what is told, or the aside tells something, nothing is taken.
-TEST(Clauses, ConditionsAndDoubtsOfWhatIsToldAreNoAsides) {
-  for (const char* text : {"The kitchen is on the left, unless they have moved it.",
-                           "If the lift is on the right, the kitchen is on the left.",
-                           "The kitchen is on the left, if I remember right.",
-                           "The kitchen is on the left, if you believe the porter.",
-                           "The kitchen is on the left, but it may be on the right.",
-                           "If anyone asks, go to the kitchen.",
-                           "Go to the kitchen, should anyone ever ask for it."}) {
-    EXPECT_EQ(hear(text, "en").clauses, "") << text;
-  }
-  EXPECT_EQ(hear("Se o bar fica à direita, a cozinha fica à esquerda.", "pt").clauses, "");
-}
-
 TEST(Clauses, DeniedFactsWithoutApostrophesAndStops) {
   expect({{"this isnt the kitchen its the pantry", "this_is kitchen pantry", ""},
           {"this isnt a conference room but its the nursing room",

@@ -298,14 +298,14 @@ TEST(DescriptionBuilder, OwnersOfPlacesWithoutAName) {
 /// A slot that the builder does not read would be dropped without a word.
 TEST(DescriptionBuilder, ReadsAllSlotsOfTheGrammars) {
   const std::set<std::string> read{
-      "across",  "here",     "both",      "former",      "owned",     "room_kind", "speaker_too",
-      "unit",    "moved",    "a",         "after",       "aliases",   "area",      "b",
-      "before",  "behind",   "between",   "c",           "count",     "denied",    "distance",
-      "doors",   "end_of",   "floor",     "floors_down", "floors_up", "from",      "from_end",
-      "inside",  "instead",  "kind",      "length",      "name",      "named",     "next_to",
-      "nth",     "nth_b",    "opposite",  "owners",      "part_of",   "person",    "place",
-      "places",  "side",     "size_word", "steps",       "to",        "via",       "was",
-      "was_nth", "was_side", "width",     "within"};
+      "across",   "here",      "both",    "former",      "owned",     "room_kind", "speaker_too",
+      "unit",     "moved",     "a",       "after",       "aliases",   "area",      "b",
+      "before",   "behind",    "between", "c",           "count",     "denied",    "distance",
+      "doors",    "end_of",    "floor",   "floors_down", "floors_up", "from",      "from_end",
+      "inside",   "instead",   "kind",    "length",      "name",      "named",     "next_to",
+      "nth",      "opposite",  "owners",  "part_of",     "person",    "place",     "places",
+      "side",     "size_word", "steps",   "to",          "via",       "was",       "was_nth",
+      "was_side", "width",     "within"};
   for (const Grammar& grammar : parser().grammars()) {
     for (const language::IntentInfo& intent : grammar.compiled().intents) {
       if (!DescriptionBuilder::handles(intent.as.empty() ? intent.name : intent.as)) continue;

@@ -256,7 +256,7 @@ void Conversation::askObjects(const hyselam_topo::ForwardedSentence& sentence, E
       here == nullptr ? std::vector<std::string>() : namesOf(*here);
   fill_map_.setRobotPlace(names.empty() ? "" : names.front());
   const hyselam_objects::TextAnswer answer =
-      answerText(sentence.for_others, languages_->objects, objects_, dictionary_, fill_map_);
+      answerText(sentence.text, languages_->objects, objects_, dictionary_, fill_map_);
   hyselam_topo::OtherAnswer other;
   other.understood = answer.understood;
   other.about_things = answer.about_things;

@@ -66,7 +66,6 @@ const std::map<std::string, std::string>& english() {
       {"it_nothing", "what '{name}' means was not told: say the name"},
       {"it_unsaid", "which place this is about was not told: say its name"},
       {"it_several", "'{name}' may mean {names}"},
-      {"numbered", "what is '{name}' called? Tell me that first"},
       {"it_what", "'{name}' means no place told of: say the name"},
       {"may_mean", "'{name}' may mean {names}"},
       {"which", "which '{name}': {names}?"},

@@ -73,18 +73,6 @@ bool tellsOwner(const std::string& name) {
   return false;
 }
 
-/// "The third room on the right": what was told to be there, seen as now.
-Id numberedPlace(Statement& s, const SaidName& name) {
-  const auto side = sideOf(name.side);
-  for (const DescribedConnection& each : s.building().connections) {
-    const bool there = each.from == s.building().robot_place && side == each.side &&
-                       each.rank == name.number &&
-                       areSameView(each.seen_from, s.listener().viewpoint);
-    if (there) return each.to;
-  }
-  s.fail(IssueKind::kAsk, "numbered", {{"name", name.text}});
-}
-
 /// What a word that stands for places means; fails if that was not told.
 std::vector<Id> referred(Statement& s, const SaidName& name, const std::string& slot = "") {
   const DescriptionContext& context = s.context();
@@ -97,7 +85,6 @@ std::vector<Id> referred(Statement& s, const SaidName& name, const std::string& 
     if (!s.building().robot_place) s.fail(IssueKind::kNoContext, "no_robot");
     return {*s.building().robot_place};
   }
-  if (name.reference == kNumbered) return {numberedPlace(s, name)};
   if (name.reference == "self") s.fail(IssueKind::kMeaningless, "itself", {{"place", name.text}});
   if (name.reference == "two") {
     const auto& all = context.subjects.size() > 1 ? context.subjects : context.group;

@@ -164,11 +164,11 @@ void takeHere(Statement& s, Placement* placement) {
   placement->distance = 0.0;
 }
 
-std::optional<int> rankOf(Statement& s, const std::string& slot) {
+std::optional<int> rankOf(Statement& s) {
   const Utterance& u = s.said();
-  if (u.find(slot) == nullptr) return std::nullopt;
-  double nth = u.number(slot).value_or(0.0);
-  if (!u.word(slot).empty()) nth = hyselam::parseNumber(u.word(slot)).value_or(0.0);
+  if (u.find("nth") == nullptr) return std::nullopt;
+  double nth = u.number("nth").value_or(0.0);
+  if (!u.word("nth").empty()) nth = hyselam::parseNumber(u.word("nth")).value_or(0.0);
   if (!u.word("from_end").empty()) nth = -nth;
   if (nth == 0.0 || nth < -kMaxRank || nth > kMaxRank) {
     s.fail(IssueKind::kMeaningless, "out_of_range", {{"value", shown(nth)}});
@@ -176,41 +176,7 @@ std::optional<int> rankOf(Statement& s, const std::string& slot) {
   return static_cast<int>(nth);
 }
 
-namespace {
-
-/// "The fourth and the fifth on the right are seminar rooms": two of one name, or one name for
-/// each.
-void neighboursAtTwo(Statement& s) {
-  if (s.isDenial()) refuseDenial(s);
-  const Side side = sideOf(s);
-  const Id from = observer(s);
-  const auto names = s.said().names("places");
-  const std::optional<int> ranks[] = {rankOf(s), rankOf(s, "nth_b")};
-  std::vector<Id> ids;
-  if (names.size() == 1 && names[0].reference.empty()) {
-    const std::string full = fullName(s, names[0]);
-    const bool plural = s.listener().names.singular(full) != full;
-    if (plural) ids = placesOfOneName(s, names[0], 2.0);
-  } else {
-    ids = placesOf(s, "places");
-  }
-  if (ids.size() != 2) {
-    s.fail(IssueKind::kMeaningless, "count",
-           {{"count", "2"}, {"named", std::to_string(names.size())}});
-  }
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    Placement placement(from, ids[i]);
-    placement.side = side;
-    placement.rank = ranks[i];
-    recordConnection(s, placement);
-  }
-  s.setSubjects(ids);
-}
-
-}  // namespace
-
 void neighbours(Statement& s) {
-  if (s.said().find("nth_b") != nullptr) return neighboursAtTwo(s);
   const Side side = sideOf(s);
   const Id from = observer(s);
   const std::vector<Id> ids = countedPlaces(s);

@@ -58,7 +58,7 @@ bool takeSide(Statement& s, Side* side);
 /// "Here on your left": the nearest on that side, in no row of others.
 void takeHere(Statement& s, Placement* placement);
 /// Number, counted from the end if negative; nothing if not told.
-std::optional<int> rankOf(Statement& s, const std::string& slot = "nth");
+std::optional<int> rankOf(Statement& s);
 /// Fails: such a thing is not denied.
 [[noreturn]] void refuseDenial(Statement& s);
 

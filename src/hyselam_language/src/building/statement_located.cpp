@@ -5,7 +5,6 @@
 
 #include "edit_description.hpp"
 #include "hyselam_common/numbers.hpp"
-#include "issue_texts.hpp"
 #include "record_facts.hpp"
 #include "said_places.hpp"
 #include "statement_kinds.hpp"
@@ -44,19 +43,7 @@ std::optional<double> distanceOf(Statement& s) {
 /// "The first door on the right is the bar, the second is the lab": the side of the place that the
 /// last statement gave another number.
 Side sideOfRow(Statement& s, Id from, int rank) {
-  const std::vector<Id>& subjects = s.context().subjects;
-  for (const Id each : subjects) {
-    // "The first two are labs, the second is Ann's office": one of the two.
-    const DescribedConnection* found = findConnection(s.building(), from, each);
-    const bool taken = subjects.size() > 1 && found != nullptr && found->from == from &&
-                       found->rank == rank && areSameView(found->seen_from, s.listener().viewpoint);
-    if (!taken) continue;
-    s.fail(IssueKind::kContradiction, "rank_taken",
-           {{"rank", std::to_string(rank)},
-            {"side", issueText(s.listener().grammar, std::string("side_") + toString(found->side))},
-            {"place", s.nameOf(each)}});
-  }
-  if (subjects.size() != 1) return Side::kUnknown;
+  if (s.context().subjects.size() != 1) return Side::kUnknown;
   const DescribedConnection* last = findConnection(s.building(), from, s.context().subjects[0]);
   const bool in_row = last != nullptr && last->from == from && last->rank && *last->rank != rank &&
                       areSameView(last->seen_from, s.listener().viewpoint);

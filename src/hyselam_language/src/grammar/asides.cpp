@@ -100,28 +100,9 @@ bool doubts(const std::vector<Token>& tokens, std::size_t begin, std::size_t end
   return false;
 }
 
-bool isHarmless(const std::vector<Token>& tokens, std::size_t part, std::size_t end,
-                const CompiledGrammar& grammar) {
-  constexpr std::size_t kLongestRest = 4;  // words
-  const std::size_t begin = behindSeparator(tokens, part, end, grammar);
-  const std::size_t rest = grammar.harmless_asides.endAt(tokens, begin, end);
-  if (rest == begin || end - rest > kLongestRest) return false;
-  const WordSet& placing =
-      grammar.placing_words.empty() ? grammar.telling_words : grammar.placing_words;
-  return std::none_of(tokens.begin() + static_cast<std::ptrdiff_t>(rest),
-                      tokens.begin() + static_cast<std::ptrdiff_t>(end), [&](const Token& token) {
-                        return token.kind != TokenKind::kWord || token.starts_upper ||
-                               grammar.refusing_words.count(token.folded) != 0 ||
-                               placing.count(token.folded) != 0 ||
-                               grammar.number_words.count(token.folded) != 0 ||
-                               grammar.isNounOrTitle(token.folded);
-                      });
-}
-
 bool saysNothingOfNow(const std::vector<Token>& tokens, std::size_t part, std::size_t end,
                       const CompiledGrammar& grammar, bool with_nouns) {
   const std::size_t begin = behindSeparator(tokens, part, end, grammar);
-  if (isHarmless(tokens, begin, end, grammar)) return true;
   const bool past = grammar.past_asides.standAt(tokens, begin, end);
   const bool idle = !past && grammar.idle_asides.standAt(tokens, begin, end);
   if ((!past && !idle) || doubts(tokens, begin, end, grammar)) return false;

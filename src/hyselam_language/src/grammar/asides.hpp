@@ -22,11 +22,6 @@ struct Aside {
 std::vector<Aside> asidesOf(const std::vector<Token>& tokens, const CompiledGrammar& grammar,
                             bool all = false);
 
-/// "In case anybody asks [for it]", "whatever the sign may say": what it doubts or demands is
-/// nothing that is told, and nothing else is told in it. An order may depend on it.
-bool isHarmless(const std::vector<Token>& tokens, std::size_t begin, std::size_t end,
-                const CompiledGrammar& grammar);
-
 /// Whether tokens [begin, end) are of another time, or deny nothing that is told beside them
 /// ("which used to be a bedroom", "nobody goes in there"), without doubt; `with_nouns`: even if
 /// they name something.

@@ -33,8 +33,7 @@ class Capture {
           names.push_back(name.name);
           std::size_t& end = name_ends_[edge.a];
           names.back().follows = end > 0 && tellsOrder(end, step.from);
-          contradicts_ = contradicts_ || (end > 0 && endsList(end, step.from)) ||
-                         (names.size() > 1 && isApposition(names, end, step.from));
+          contradicts_ = contradicts_ || (end > 0 && endsList(end, step.from));
           end = step.to;
           names.insert(names.end(), name.more.begin(), name.more.end());
         }
@@ -119,14 +118,6 @@ class Capture {
     return false;
   }
 
-  /// "The kitchen, the second door on the left": one place, no list of two.
-  bool isApposition(const std::vector<SaidName>& names, std::size_t from, std::size_t to) const {
-    const auto numbered = [](const SaidName& name) { return name.reference == kNumbered; };
-    if (!numbered(names.back()) && !numbered(names[names.size() - 2])) return false;
-    while (from < to && words_.isComma(from)) ++from;
-    return from == to;
-  }
-
   /// "X, logo a seguir à copa": no list of X and the copa; in an order, "depois à copa" is one.
   bool endsList(std::size_t from, std::size_t to) const {
     if (clause_.intent->kind != UtteranceKind::kStatement || !tellsOrder(from, to)) return false;
@@ -189,16 +180,6 @@ class Capture {
   bool contradicts_ = false;
 };
 
-/// "The third room on the right" names nothing: only where the intent takes such a place.
-bool mayBeNumbered(const Clause& clause) {
-  if (clause.intent == nullptr) return true;
-  return std::all_of(clause.slots.begin(), clause.slots.end(), [&](const Slot& slot) {
-    return clause.intent->numbered.count(slot.name) != 0 ||
-           std::none_of(slot.names.begin(), slot.names.end(),
-                        [](const SaidName& name) { return name.reference == kNumbered; });
-  });
-}
-
 }  // namespace
 
 bool capture(const Automaton& pattern, const std::vector<Step>& path, SentenceWords* words,
@@ -207,7 +188,7 @@ bool capture(const Automaton& pattern, const std::vector<Step>& path, SentenceWo
   for (const Step& step : path) {
     if (step.edge) captured.take(step);
   }
-  return !captured.contradicts() && mayBeNumbered(*clause) && captured.resolveUnits();
+  return !captured.contradicts() && captured.resolveUnits();
 }
 
 }  // namespace language

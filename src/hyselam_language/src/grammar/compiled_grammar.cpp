@@ -104,19 +104,11 @@ std::string CompiledGrammar::reason(const std::string& code, const std::string& 
 }
 
 bool WordPhrases::standAt(const std::vector<Token>& tokens, std::size_t at, std::size_t end) const {
-  return endAt(tokens, at, end) > at;
-}
-
-std::size_t WordPhrases::endAt(const std::vector<Token>& tokens, std::size_t at,
-                               std::size_t end) const {
-  std::size_t behind = at;
-  const auto with = at < end ? of_first_.find(tokens[at].lower) : of_first_.end();
-  if (with == of_first_.end()) return behind;
-  for (const Words& phrase : with->second) {
-    const std::size_t next = at + phrase.size();
-    if (next > behind && next <= end && standsAt(phrase, tokens, at)) behind = next;
-  }
-  return behind;
+  const auto with = of_first_.find(tokens[at].lower);
+  return with != of_first_.end() &&
+         std::any_of(with->second.begin(), with->second.end(), [&](const Words& phrase) {
+           return at + phrase.size() <= end && standsAt(phrase, tokens, at);
+         });
 }
 
 bool standsAt(const Words& phrase, const std::vector<Token>& tokens, std::size_t at) {

@@ -71,8 +71,6 @@ class WordPhrases {
   void add(const Words& phrase) { of_first_[phrase.front()].push_back(phrase); }
   /// Whether one of them stands at a token, before `end`.
   bool standAt(const std::vector<Token>& tokens, std::size_t at, std::size_t end) const;
-  /// Behind the longest of them that does; `at` where none does.
-  std::size_t endAt(const std::vector<Token>& tokens, std::size_t at, std::size_t end) const;
 
  private:
   std::unordered_map<std::string, std::vector<Words>> of_first_;
@@ -114,9 +112,6 @@ struct NameType {
   bool silent = false;         ///< that words are no such name is no reason for a refusal
   bool indefinite_needs_noun = false;
   std::size_t max_words = 8;
-  /// "Third room on the right": stands for such a name, too; slots nth and side.
-  std::vector<Automaton> numbered;
-  WordSet numbered_after;  ///< words behind which it tells where something is: "in"
 
   bool isArticle(const std::string& word) const {
     return definite.count(word) != 0 || indefinite.count(word) != 0;
@@ -137,13 +132,12 @@ struct Quantity {
 struct IntentInfo {
   std::string name;
   UtteranceKind kind = UtteranceKind::kStatement;
-  std::string refuse;              ///< code of the reason; "" for what is understood
-  bool only_expected = false;      ///< tried only when asked for
-  int cost = 0;                    ///< more than other intents, where two fit equally well
-  bool only_correction = false;    ///< tried only behind a word like "sorry": "..., on the right"
-  std::string as;                  ///< the utterance gets this intent; "": its own name
-  bool corrects_next = false;      ///< "no.": the next statement is a correction
-  std::set<std::string> numbered;  ///< slots where a place may be told by number and side
+  std::string refuse;            ///< code of the reason; "" for what is understood
+  bool only_expected = false;    ///< tried only when asked for
+  int cost = 0;                  ///< more than other intents, where two fit equally well
+  bool only_correction = false;  ///< tried only behind a word like "sorry": "..., on the right"
+  std::string as;                ///< the utterance gets this intent; "": its own name
+  bool corrects_next = false;    ///< "no.": the next statement is a correction
   std::vector<std::string> examples;
   std::vector<Automaton> patterns;
 };
@@ -173,9 +167,6 @@ struct CompiledGrammar {
   WordPhrases past_asides;
   /// ... and those that begin so change nothing told, though they deny: "you can't miss it".
   WordPhrases idle_asides;
-  /// ... and those that begin so, though these very words are of a condition, doubt or duty: "in
-  /// case anybody asks".
-  WordPhrases harmless_asides;
   /// A clause may begin so where nothing separates it from the one before ("its", "there is"), not
   /// behind one of the second ("that", "because").
   WordPhrases clause_starts;

@@ -33,7 +33,6 @@ class Reader {
     // Patterns come last: they refer to everything else, of later sources too.
     for (const GrammarNode& root : roots) readAllButIntents(root);
     checkSeparators(roots.front());
-    readNumbered(roots.front());
     for (const auto& [name, node] : intents_) readIntent(name, node, context_, grammar_.get());
     for (IntentInfo& intent : grammar_->intents) {
       for (Automaton& pattern : intent.patterns) {
@@ -85,7 +84,6 @@ class Reader {
         {"told_anyway", [&](const GrammarNode& node) { readToldAnyway(node); }},
         {"past_asides", [&](const GrammarNode& node) { addWords(node, &g.past_asides); }},
         {"idle_asides", [&](const GrammarNode& node) { addWords(node, &g.idle_asides); }},
-        {"harmless_asides", [&](const GrammarNode& node) { addWords(node, &g.harmless_asides); }},
         {"clause_starts", [&](const GrammarNode& node) { addWords(node, &g.clause_starts); }},
         {"no_clause_after", [&](const GrammarNode& node) { addFolded(node, &g.no_clause_after); }},
         {"only_behind_comma",
@@ -248,20 +246,6 @@ class Reader {
     node.each([&](const std::string& name, const GrammarNode& type) {
       readNameType(name, type, grammar_.get(), &context_);
     });
-  }
-
-  /// Macros and word classes of all sources may stand in them.
-  void readNumbered(const GrammarNode& root) {
-    for (NameType& type : grammar_->name_types) {
-      for (const std::string& text : context_.numbered[type.name]) {
-        try {
-          type.numbered.push_back(compilePattern(text, context_, grammar_.get()));
-        } catch (const PatternError& e) {
-          root.fail("names, " + type.name + ", numbered, '" + text + "': " + e.what());
-        }
-        type.numbered.back().pack();
-      }
-    }
   }
 
   void readMacros(const GrammarNode& node) {

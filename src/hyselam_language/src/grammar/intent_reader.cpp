@@ -72,8 +72,6 @@ void readIntent(const std::string& name, const GrammarNode& node, const PatternC
       intent.as = value.text();
     } else if (key == "corrects_next") {
       intent.corrects_next = value.truth();
-    } else if (key == "numbered") {
-      for (const std::string& slot : value.texts()) intent.numbered.insert(slot);
     } else if (key == "examples") {
       const auto examples = value.texts();
       intent.examples.insert(intent.examples.end(), examples.begin(), examples.end());

@@ -64,23 +64,8 @@ const std::vector<FoundName>& NameFinder::namesAt(std::size_t at, std::size_t ty
   if (!cached.known) {
     cached.known = true;
     cached.names = find(at, grammar_.name_types[type]);
-    addFurther(at, grammar_.name_types[type], &cached.names);
   }
   return cached.names;
-}
-
-void NameFinder::addFurther(std::size_t at, const NameType& type,
-                            std::vector<FoundName>* found) const {
-  if (!further_ || type.numbered.empty()) return;
-  for (FoundName& each : further_(at, type)) {
-    const auto behind = std::find_if(found->begin(), found->end(),
-                                     [&](const FoundName& other) { return other.end >= each.end; });
-    if (behind != found->end() && behind->end == each.end) {
-      *behind = std::move(each);
-    } else {
-      found->insert(behind, std::move(each));
-    }
-  }
 }
 
 bool NameFinder::mayBeArticle(std::size_t at, const NameType& type) const {

@@ -2,10 +2,8 @@
 // or a quotation.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "compiled_grammar.hpp"
@@ -33,10 +31,6 @@ class NameFinder {
   NameFinder(const CompiledGrammar& grammar, const std::string& text,
              const std::vector<Token>& tokens);
 
-  /// What else stands for names of types that have such: "the third room on the right".
-  using Further = std::function<std::vector<FoundName>(std::size_t at, const NameType& type)>;
-  void alsoFind(Further further) { further_ = std::move(further); }
-
   /// All names of a type that begin at token `at`, the shortest first.
   const std::vector<FoundName>& namesAt(std::size_t at, std::size_t type);
   /// The reasons met so far.
@@ -48,7 +42,6 @@ class NameFinder {
     std::vector<FoundName> names;
   };
   std::vector<FoundName> find(std::size_t at, const NameType& type);
-  void addFurther(std::size_t at, const NameType& type, std::vector<FoundName>* found) const;
   /// "rooms 1, 2 and 3": the end of the code at a token, 0 for none.
   std::size_t codeEnd(std::size_t at) const;
   /// "room", if the code at a token belongs to such a row; "" otherwise.
@@ -103,7 +96,6 @@ class NameFinder {
   const std::vector<Token>& tokens_;
   std::vector<Cached> cache_;
   std::vector<NameFailure> failures_;
-  Further further_;
 };
 
 }  // namespace language

@@ -31,8 +31,7 @@ const std::map<std::string, WordSet NameType::*>& wordKeys() {
       {"feminine", &NameType::feminine},
       {"between", &NameType::between},
       {"parts", &NameType::parts},
-      {"part_joiners", &NameType::part_joiners},
-      {"numbered_after", &NameType::numbered_after}};
+      {"part_joiners", &NameType::part_joiners}};
   return kKeys;
 }
 
@@ -78,8 +77,6 @@ NameType newType(const std::string& name, const GrammarNode& node, const Compile
     type = *other;
     const auto references = context->references.find(value.text());
     if (references != context->references.end()) context->references[name] = references->second;
-    const auto numbered = context->numbered.find(value.text());
-    if (numbered != context->numbered.end()) context->numbered[name] = numbered->second;
   });
   type.name = name;
   return type;
@@ -110,8 +107,6 @@ void readNameType(const std::string& name, const GrammarNode& node, CompiledGram
       value.each([&](const std::string& word, const GrammarNode& texts) {
         context->references[name][word] = texts.texts();
       });
-    } else if (key == "numbered") {
-      context->numbered[name] = value.texts();
     } else if (key == "head") {
       type.head_first = isHeadFirst(value);
     } else if (key == "only_elliptic") {

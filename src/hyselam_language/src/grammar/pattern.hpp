@@ -31,8 +31,6 @@ struct PatternContext {
   std::vector<std::string> list_separators;
   /// Patterns for references of a name type: type -> word ("here") -> alternatives.
   std::map<std::string, std::map<std::string, std::vector<std::string>>> references;
-  /// Patterns for places told by number and side, of a name type.
-  std::map<std::string, std::vector<std::string>> numbered;
   /// Macros and word classes that were compiled already; nothing for what must be compiled in
   /// place. Holds for as long as nothing above changes.
   mutable std::map<std::string, std::optional<Automaton>> parts;

@@ -74,12 +74,7 @@ std::vector<Utterance> readTokens(const CompiledGrammar& grammar, const std::str
   const std::vector<Aside> asides = asidesOf(tokens, grammar);
   if (!asides.empty()) {
     std::vector<Utterance> rest = readWithout(asides);
-    // "If anybody asks, go to the kitchen": not now.
-    const bool depends =
-        orders(rest) && std::any_of(asides.begin(), asides.end(), [&](const auto& each) {
-          return isHarmless(tokens, each.begin, each.end, grammar);
-        });
-    if (isUnderstood(rest) && !depends) return rest;
+    if (isUnderstood(rest)) return rest;
   }
   for (const std::vector<Aside>& reasons : asidesOfCorrections(tokens, grammar)) {
     std::vector<Utterance> rest = readWithout(reasons);

@@ -209,7 +209,7 @@ class Parts {
     std::reverse(ends.begin(), ends.end());
     std::vector<Utterance> all;
     std::vector<TextRange> left_out;
-    bool understood = false, lost_before = false, denied = false, named = false, harmless = false;
+    bool understood = false, lost_before = false, denied = false, named = false;
     for (const std::size_t end : ends) {
       const Best& part = best_[end];
       if (!part.said.empty()) {
@@ -235,7 +235,6 @@ class Parts {
       const Part& lost = parts_[end - 1];
       const bool contrast = understood && isContrast(lost, tokens_, grammar_);
       const bool aside = contrast || isAside(end - 1);
-      harmless = harmless || isHarmless(tokens_, lost.begin, lost.end, grammar_);
       if (!aside && mayChangeOthers(lost, tokens_, grammar_)) return {};
       const bool told = !aside && tells(end - 1);
       named = named || (!told && !contrast && names(end - 1));
@@ -243,7 +242,7 @@ class Parts {
       lost_before = lost_before || told;
       note(end - 1, told, &all, &left_out);
     }
-    if (!understood || (harmless && orders(all))) return {};
+    if (!understood) return {};
     const auto first =
         std::find_if(all.begin(), all.end(), [](const Utterance& u) { return u.understood(); });
     for (const TextRange& range : left_out) {

@@ -273,11 +273,6 @@ bool isUnderstood(const std::vector<Utterance>& said) {
   return std::all_of(said.begin(), said.end(), [](const Utterance& u) { return u.understood(); });
 }
 
-bool orders(const std::vector<Utterance>& said) {
-  return std::any_of(said.begin(), said.end(),
-                     [](const Utterance& u) { return u.kind == UtteranceKind::kCommand; });
-}
-
 std::vector<std::string> namesIn(const std::vector<Utterance>& said) {
   std::vector<std::string> names;
   for (const Utterance& utterance : said) {

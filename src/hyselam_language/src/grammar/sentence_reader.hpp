@@ -40,8 +40,6 @@ std::vector<Utterance> readClauses(const CompiledGrammar& grammar, const std::st
 
 /// Whether all of it is.
 bool isUnderstood(const std::vector<Utterance>& said);
-/// Whether it has an order.
-bool orders(const std::vector<Utterance>& said);
 
 /// The names in it that are no references, in their order.
 std::vector<std::string> namesIn(const std::vector<Utterance>& said);

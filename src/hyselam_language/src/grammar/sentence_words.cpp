@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "matching_costs.hpp"
-#include "numbered_places.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -20,11 +19,8 @@ SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::strin
       text(text_of),
       sentence(sentence_of),
       tokens(std::move(tokens_of)),
-      names(grammar, text, tokens),
-      numbered_(std::make_unique<NumberedPlaces>(this)) {
+      names(grammar, text, tokens) {
   if (isTooLong()) return;
-  names.alsoFind(
-      [this](std::size_t at, const NameType& type) { return numbered_->find(at, type); });
   const bool accents = std::any_of(tokens.begin(), tokens.end(),
                                    [](const Token& token) { return token.has_accents; });
   for (const Token& token : tokens) {
@@ -45,8 +41,6 @@ SentenceWords::SentenceWords(const CompiledGrammar& grammar_of, const std::strin
                 found.end());
   }
 }
-
-SentenceWords::~SentenceWords() = default;
 
 bool SentenceWords::isTooLong() const {
   return tokens.size() > kMaxTokens;

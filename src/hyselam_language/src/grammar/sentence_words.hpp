@@ -1,7 +1,6 @@
 // A sentence as the matcher sees it: its tokens, and what each of them may stand for.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,8 +11,6 @@
 namespace hyselam_topo {
 namespace language {
 
-class NumberedPlaces;
-
 /// All that is given must outlive this.
 class SentenceWords {
  public:
@@ -23,7 +20,6 @@ class SentenceWords {
                 std::vector<Token> tokens);
   SentenceWords(const SentenceWords&) = delete;  // `names` refers to the tokens
   SentenceWords& operator=(const SentenceWords&) = delete;
-  ~SentenceWords();
 
   /// Such a sentence is not read: `matches` is empty.
   bool isTooLong() const;
@@ -43,9 +39,6 @@ class SentenceWords {
   const std::vector<Token> tokens;
   TokenMatches matches;
   NameFinder names;
-
- private:
-  std::unique_ptr<NumberedPlaces> numbered_;
 };
 
 }  // namespace language

@@ -39,7 +39,7 @@ bool operator==(const TextRange& a, const TextRange& b) {
 
 bool operator==(const SaidName& a, const SaidName& b) {
   const auto all = [](const SaidName& n) {
-    return std::tie(n.text, n.reference, n.number, n.side, n.quoted, n.speaker, n.elliptic);
+    return std::tie(n.text, n.reference, n.quoted, n.speaker, n.elliptic);
   };
   return all(a) == all(b);
 }

@@ -1,45 +1,8 @@
 #include "hyselam_objects/language/link_places.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "hyselam_language/grammar/topo_parser.hpp"
-#include "hyselam_topological_map/place_code.hpp"
 
 namespace hyselam_objects {
-namespace {
-
-/// What was told of "SS05", before it had a name, is of the name that it has now.
-void takeNames(ObjectMap& map, const hyselam_topo::AugmentedTopologicalMap& topology) {
-  for (ObjectPlace& place : map.places) {
-    const hyselam_topo::Place* known = topology.findPlace(place.topological);
-    const bool named = known != nullptr && place.name == codeOf(*known) &&
-                       std::any_of(known->words.begin(), known->words.end(),
-                                   [](const auto& word) { return word.confirmed; });
-    if (!named) continue;
-    const std::string name = nameOf(*known);
-    const auto other = std::find_if(map.places.begin(), map.places.end(),
-                                    [&](const ObjectPlace& each) { return each.name == name; });
-    if (other == map.places.end()) {
-      place.name = name;
-      continue;
-    }
-    std::vector<ObjectRelation> moved;
-    for (const ObjectRelation& each : map.relations) {
-      if (each.place == place.id) moved.push_back(each);
-    }
-    auto& all = map.relations;
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const ObjectRelation& each) { return each.place == place.id; }),
-              all.end());
-    for (ObjectRelation& each : moved) {
-      each.place = other->id;
-      map.relate(each);
-    }
-  }
-}
-
-}  // namespace
 
 hyselam_topo::PlaceNames shippedPlaceNames() {
   std::vector<hyselam_topo::Grammar> grammars;
@@ -56,7 +19,6 @@ std::size_t linkPlaces(ObjectMap& map, const hyselam_topo::AugmentedTopologicalM
     words.emplace_back();
     for (const hyselam_topo::PlaceTerm& word : place.words) words.back().push_back(word.text);
     if (words.back().empty()) words.back().push_back(nameOf(place));
-    words.back().push_back(codeOf(place));
   }
   std::size_t left = 0;
   for (ObjectPlace& place : map.places) {
@@ -65,7 +27,6 @@ std::size_t linkPlaces(ObjectMap& map, const hyselam_topo::AugmentedTopologicalM
     place.topological = found.size() == 1 ? topology.places[found.front()].id : 0;
     left += place.topological == 0;
   }
-  takeNames(map, topology);
   if (!topology.grid) return left;
   for (std::size_t i = 0; i < map.objects.size(); ++i) {
     const ObjectInstance& object = map.objects[i];

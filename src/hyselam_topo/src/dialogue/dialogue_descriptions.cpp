@@ -69,7 +69,6 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   const DescribedBuilding known = builder_.building();
   const std::size_t statements = builder_.statementCount();
   auto issues = builder_.add(u);
-  if (builder_.statementCount() > statements) giveNumberedName(u);
   const auto denied = deniedByMap(known);
   if (denied && builder_.statementCount() > statements && builder_.undo()) {
     issues.push_back({IssueKind::kContradiction, *denied, u.text, u.range, ""});

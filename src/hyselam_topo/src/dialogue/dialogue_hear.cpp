@@ -306,7 +306,6 @@ Reply Dialogue::understand(const std::string& text, const HearOptions& options) 
     turn.end = std::min(text.size(), u.range.end);
   }
   joinForwarded(text, parsed.utterances.size(), turn.reply.forwarded);
-  nameNumberedForOthers(turn);
   finish(turn);
   turn.reply.ends_other_question =
       options.others_asked_last && turn.about_else && turn.reply.forwarded.empty();
@@ -330,7 +329,6 @@ void Dialogue::finish(Turn& turn) {
 }
 
 void Dialogue::handleUtterance(const Utterance& u, Turn& turn) {
-  if (handleNumbered(u, turn)) return;
   const HearOptions& options = turn.options;
   // "That was wrong. Forget what I just said": in other words, but meant once.
   const std::string took_back =

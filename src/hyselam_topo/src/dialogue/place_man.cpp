@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -46,6 +47,15 @@ bool hasConfirmed(const Place& place) {
 }
 
 }  // namespace
+
+std::string codeOf(const Place& place) {
+  const char* kind = place.kind == PlaceKind::kCorridor  ? "CC"
+                     : place.kind == PlaceKind::kVirtual ? "VV"
+                                                         : "SS";
+  char text[24];
+  std::snprintf(text, sizeof text, "%s%02u", kind, static_cast<unsigned>(place.id));
+  return text;
+}
 
 NameState nameStateOf(const Place& place) {
   if (place.words.empty()) return NameState::kNone;

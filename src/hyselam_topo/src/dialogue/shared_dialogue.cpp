@@ -25,12 +25,7 @@ Reply SharedDialogue::hear(const std::string& text, bool others_listen) {
 }
 
 Reply SharedDialogue::answered(const ForwardedSentence& sentence, const OtherAnswer* answer) {
-  if (answer != nullptr && answer->understood) {
-    Reply done = carryOut(*answer);
-    done.sentences.insert(done.sentences.begin(), sentence.numbered.begin(),
-                          sentence.numbered.end());
-    return done;
-  }
+  if (answer != nullptr && answer->understood) return carryOut(*answer);
   Reply reply = dialogue_.reply();
   if (sentence.refusal.empty()) {
     reply.append(dialogue_.hear(sentence.text));

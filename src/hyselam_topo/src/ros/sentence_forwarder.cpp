@@ -18,7 +18,7 @@ SentenceForwarder::SentenceForwarder(ros::NodeHandle nh, double timeout, Answere
 void SentenceForwarder::forward(const ForwardedSentence& sentence) {
   hyselam_msgs::ObjectRequest msg;
   msg.id = next_id_++;
-  msg.text = sentence.for_others;
+  msg.text = sentence.text;
   pending_[msg.id] = {sentence, ros::WallTime::now()};
   publisher_.publish(msg);
 }

@@ -73,10 +73,7 @@ json slotOf(const Slot& slot) {
   if (!slot.names.empty()) {
     value["names"] = json::array();
     for (const auto& name : slot.names) {
-      if (name.reference == hyselam_topo::kNumbered) {
-        value["names"].push_back(
-            {{"reference", name.reference}, {"side", name.side}, {"number", name.number}});
-      } else if (!name.reference.empty()) {
+      if (!name.reference.empty()) {
         value["names"].push_back({{"reference", name.reference}});
       } else if (name.speaker) {
         value["names"].push_back({{"speaker", name.text}});

@@ -25,12 +25,9 @@ const char* toString(UtteranceKind kind);
 /// A name as it was said, without article and quotes, spaces made single: "room I-109".
 struct SaidName {
   std::string text;
-  /// Instead of a name: the word of the grammar for "this place" ("here") or "it" ("it"); kNumbered
-  /// for "the third room on the right"; "" for a name.
+  /// Instead of a name: the word of the grammar for "this place" ("here") or "it" ("it"); "" for a
+  /// name.
   std::string reference;
-  /// Of kNumbered: which one, from 1, -1 the last, -2 the one before it; otherwise 0 and "".
-  int number = 0;
-  std::string side;  ///< "left" or "right", as the robot stands
   bool quoted = false;
   /// "my office": the person's who speaks; `text` is without "my".
   bool speaker = false;
@@ -40,9 +37,6 @@ struct SaidName {
   bool follows = false;
   TextRange range;
 };
-
-/// SaidName::reference of a place that is told by its number and its side, without a name.
-inline constexpr char kNumbered[] = "numbered";
 
 /// One thing that a pattern of the grammar captures.
 struct Slot {

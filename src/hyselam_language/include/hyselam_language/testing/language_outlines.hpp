@@ -109,10 +109,8 @@ inline std::string outline(const Utterance& utterance) {
     if (slot.number) text = shown(*slot.number);
     if (!slot.word.empty()) text = slot.word;
     for (const SaidName& name : slot.names) {
-      const std::string reference = name.reference == kNumbered
-                                        ? name.side + " " + std::to_string(name.number)
-                                        : name.reference;
-      text += (text.empty() ? "" : ",") + (reference.empty() ? name.text : "<" + reference + ">");
+      text += (text.empty() ? "" : ",") +
+              (name.reference.empty() ? name.text : "<" + name.reference + ">");
     }
   }
   std::string line = utterance.intent;

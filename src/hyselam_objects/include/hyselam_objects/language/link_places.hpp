@@ -8,8 +8,7 @@ namespace hyselam_objects {
 
 /// Gives places without an id in the topological map that of the place with the same name, and puts
 /// objects that have a position but no place into the place whose cells they lie in. Names that
-/// match several places are left alone. What was told of a place under the map's own name for it
-/// (codeOf()) is of the name that a person has confirmed since.
+/// match several places are left alone.
 /// `names` decides which names are the same, e.g. shippedPlaceNames(), which takes long to make.
 /// @return number of places left without an id.
 std::size_t linkPlaces(ObjectMap& map, const hyselam_topo::AugmentedTopologicalMap& topology,

@@ -74,9 +74,6 @@ struct DialogueAction {
 /// A sentence for another node, which handles other topics (objects).
 struct ForwardedSentence {
   std::string text;
-  /// What the other node is told: the text, with the names of places told by number and side, ...
-  std::string for_others;
-  std::vector<std::string> numbered;  ///< ... and which they are, to tell if it understands that
   /// Reply if no other node understands it either; empty: the dialogue understands the sentence and
   /// processes it then, by hear() without forwarding.
   std::string refusal;
@@ -343,31 +340,6 @@ class Dialogue {
   std::vector<std::string> withTold(const std::vector<std::string>& names) const;
   /// ... but for those that another place has.
   std::vector<std::string> ownNames(Id place, const std::vector<std::string>& names) const;
-  /// Whether the robot stands, and sees its sides, where people last told that it is.
-  bool isWhereTold() const;
-  /// What "the third on the right" may be, the likeliest first: one where that is sure, none where
-  /// it is not known.
-  template <typename T>
-  struct AtNumber {
-    std::vector<T> all;
-    bool is_first = false;  ///< the first rather than all others
-  };
-  /// Places of the map; -1: the last.
-  AtNumber<Id> placesAtNumber(Side side, int number) const;
-  /// The name of what was told to be there, or of what the map has there.
-  AtNumber<std::string> namesOfNumbered(const SaidName& place) const;
-  std::string sayNumberedUnknown(const SaidName& place,
-                                 const std::vector<std::string>& perhaps) const;
-  /// The utterance with the names of places that were told by number and side, which are told;
-  /// nothing, and that is asked or told, where it is not sure which are meant.
-  std::optional<Utterance> withNumberedNamed(const Utterance& heard, Turn& turn);
-  std::string sayNumbered(const std::string& said_as, const std::vector<std::string>& meant) const;
-  /// An utterance with such places; false for one without.
-  bool handleNumbered(const Utterance& u, Turn& turn);
-  /// What others are told has the names, or is not told to them.
-  void nameNumberedForOthers(Turn& turn);
-  /// "The third on the right is the lab": what was told of that place before is of the lab.
-  void giveNumberedName(const Utterance& u);
   /// "SS05 is the library", also the other way round, in `named`: as if said there.
   bool isOfNumberedPlace(const Utterance& u, Utterance* named) const;
   /// "Forget the kitchen", which is a name of the map that nobody has told anything of.

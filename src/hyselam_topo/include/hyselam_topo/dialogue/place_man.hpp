@@ -12,10 +12,13 @@
 #include "hyselam_language/building/place_names.hpp"
 #include "hyselam_topo/dialogue/glass_wall.hpp"
 #include "hyselam_topological_map/carry_over.hpp"
-#include "hyselam_topological_map/place_code.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_topo {
+
+/// The generated id of a place that people read: "SS01" for rooms, "CC04" for corridors (Fig. 7.9),
+/// "VV05" for virtual places; the number is Place::id.
+std::string codeOf(const Place& place);
 
 /// Whether the name of a place is confirmed, with the colours of Fig. 7.10.
 enum class NameState {
