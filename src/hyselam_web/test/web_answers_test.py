@@ -99,6 +99,7 @@ class AnswersTest(PageCase):
             self.shot(tab, f"phone_carry_on_{language}")
             tab.click(".carry-on")
             tab.wait("[...document.querySelectorAll('.said.human')].pop().textContent === %r" % said, "what is said")
+            wait_until(lambda: self.asked("say"), "that it is said")  # the page shows it before the server has it
             self.assertEqual(self.asked("say"), [{"text": said}])
             self.hears(halted="")
             tab.wait("!document.querySelector('.carry-on')", "that it is on its way")
@@ -176,6 +177,7 @@ class AnswersTest(PageCase):
         tab.wait("document.querySelector('#next p')?.textContent === 'Is place 6 the toilets?'", "the next")
         tab.click("#next [data-place='6']")
         tab.wait("hyselam.model.nameOf(6).sure && document.querySelector('#next').hidden", "the name")
+        wait_until(lambda: self.asked("name"), "that it is named")
         self.assertEqual(self.asked("name"), [{"place": 6, "names": ["toilets"]}])
         self.assertEqual(tab.errors, [])
 

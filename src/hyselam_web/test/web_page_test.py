@@ -122,6 +122,7 @@ class PageTest(PageCase):
         tab.type("ary")
         tab.key("Enter")
         tab.wait("document.querySelector('#card').hidden && hyselam.model.labelOf(5) === 'library'", "the name")
+        wait_until(lambda: self.asked("name"), "that it is named")
         self.assertEqual(self.asked("name"), [{"place": 5, "names": ["library"]}])
 
     def test_what_was_said_before_is_not_made_anew_for_screen_readers(self):
