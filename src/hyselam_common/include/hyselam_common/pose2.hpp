@@ -17,6 +17,7 @@ constexpr double degrees(double radians) {
 
 /// The angle wrapped to (-pi, pi]. NaN and infinities give NaN.
 inline double normalizeAngle(double angle) {
+  if (std::abs(angle) < kPi) return angle;  // nearly all, without a division
   const double wrapped = std::remainder(angle, 2.0 * kPi);
   return wrapped <= -kPi ? kPi : wrapped;
 }

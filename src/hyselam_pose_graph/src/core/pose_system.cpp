@@ -7,11 +7,6 @@ namespace hyselam_pose_graph {
 
 namespace {
 
-/// normalizeAngle(), without a division for angles that are normal: nearly all.
-double wrapped(double angle) {
-  return std::abs(angle) < hyselam::kPi ? angle : hyselam::normalizeAngle(angle);
-}
-
 struct Residual {
   double px, py;      // t_j in i
   double ex, ey, et;  // error
@@ -23,7 +18,7 @@ void setError(const SystemEdge& e, double x, double y, const SystemPose& i, cons
               Residual* r) {
   r->ex = x - e.x;
   r->ey = y - e.y;
-  r->et = wrapped(j.theta - i.theta - e.theta);
+  r->et = hyselam::normalizeAngle(j.theta - i.theta - e.theta);
   r->wx = e.w.xx * r->ex + e.w.xy * r->ey + e.w.xt * r->et;
   r->wy = e.w.xy * r->ex + e.w.yy * r->ey + e.w.yt * r->et;
   r->wt = e.w.xt * r->ex + e.w.yt * r->ey + e.w.tt * r->et;
@@ -52,8 +47,8 @@ Residual residualOfRotations(const SystemEdge& e, const SystemPose& i, bool i_fi
 }
 
 double rotationError(const SystemEdge& e, const std::vector<SystemPose>& poses) {
-  return wrapped(poses[static_cast<std::size_t>(e.to)].theta -
-                 poses[static_cast<std::size_t>(e.from)].theta - e.theta);
+  return hyselam::normalizeAngle(poses[static_cast<std::size_t>(e.to)].theta -
+                                 poses[static_cast<std::size_t>(e.from)].theta - e.theta);
 }
 
 /// What an edge adds to the normal equations. J_j = (R_i^T 0; 0 1), J_i = -(R_i^T q; 0 1) with
@@ -156,7 +151,7 @@ std::vector<SystemPose> PoseSystem::system(const std::vector<hyselam::Pose2>& po
 std::vector<hyselam::Pose2> PoseSystem::poses(const std::vector<SystemPose>& poses) {
   std::vector<hyselam::Pose2> result;
   result.reserve(poses.size());
-  for (const SystemPose& p : poses) result.push_back({p.x, p.y, wrapped(p.theta)});
+  for (const SystemPose& p : poses) result.push_back({p.x, p.y, hyselam::normalizeAngle(p.theta)});
   return result;
 }
 
@@ -257,14 +252,10 @@ void PoseSystem::gradient(const std::vector<SystemPose>& poses, const std::vecto
     if (weight == 0.0) continue;
     const SystemPose& i = poses[static_cast<std::size_t>(e.from)];
     const Residual r = residual(e, i, poses[static_cast<std::size_t>(e.to)]);
-    const double gx = weight * (i.c * r.wx - i.s * r.wy), gy = weight * (i.s * r.wx + i.c * r.wy);
-    const double gt = weight * r.wt;
+    const EdgeTerms t = edgeTerms(e, i, r, weight);
     const int ri = row(e.from), rj = row(e.to);
-    if (rj >= 0) (*b)[static_cast<std::size_t>(rj)] -= Vector{gx, gy, gt, 0.0};
-    if (ri >= 0) {
-      (*b)[static_cast<std::size_t>(ri)] +=
-          Vector{gx, gy, weight * (r.px * r.wy - r.py * r.wx) + gt, 0.0};
-    }
+    if (rj >= 0) (*b)[static_cast<std::size_t>(rj)] -= Vector{t.gx, t.gy, t.gt_to, 0.0};
+    if (ri >= 0) (*b)[static_cast<std::size_t>(ri)] += Vector{t.gx, t.gy, t.gt_from, 0.0};
   }
 }
 
