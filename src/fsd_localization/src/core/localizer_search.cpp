@@ -164,8 +164,7 @@ bool Localizer::wantsSearch() {
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
   const bool again =
-      search_.rivals.hasRival() ||
-      (search_.probation.isOpen() && since >= Probation::kStep) ||
+      search_.rivals.hasRival() || (search_.probation.isOpen() && since >= Probation::kStep) ||
       (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;

@@ -25,8 +25,8 @@ void PlaceOdds::describe(hyselam::ParameterVisitor& visit) {
 double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds) {
   const double margin = std::min(score - rival, kLargestMargin);
   const double left = std::log(std::max(1.0 - score, kLeastLeft));
-  const double log_odds = odds.bias + odds.margin * margin + odds.unexplained * left +
-                          odds.length * std::log1p(length);
+  const double log_odds =
+      odds.bias + odds.margin * margin + odds.unexplained * left + odds.length * std::log1p(length);
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
