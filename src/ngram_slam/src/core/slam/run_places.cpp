@@ -195,6 +195,10 @@ void SlamEngine::addPlacedLoop(const SlamLoop& loop, double place_probability) {
       continue;
     }
     run_.placed.clear();
+    std::vector<SlamLoop>& waiting = state_.pending_loops;
+    waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
+                                 [&](const SlamLoop& l) { return isSamePair(l, other); }),
+                  waiting.end());
     acceptFarLoop(loop);
     acceptFarLoop(other);
     return;
