@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <thread>
 
@@ -243,6 +244,9 @@ TEST(PlaceJudge, comparesPlacesAndKeepsWhatIsBelieved) {
   EXPECT_LT(probabilityOfPlace(0.9, 0.89, 0.0), 0.9);
   EXPECT_LT(probabilityOfPlace(0.8, 0.75, 1.0), probabilityOfPlace(0.8, 0.65, 1.0));
   EXPECT_LE(probabilityOfPlace(0.8, 0.75, 1.0), probabilityOfPlace(0.8, 0.75, 10.0));
+  // On no map any place leaves much unexplained, however far the next one is behind.
+  EXPECT_LT(probabilityOfPlace(0.5, 0.45, 5.0), probabilityOfPlace(0.9, 0.85, 5.0));
+  EXPECT_TRUE(std::isfinite(probabilityOfPlace(1.0, 1.0, 0.0))) << "nothing is left unexplained";
 
   SearchAnswer answer;
   EXPECT_FALSE(judge(answer));

@@ -23,6 +23,7 @@
 #include "fsd_localization/search/alarm_watch.hpp"
 #include "fsd_localization/search/followed_places.hpp"
 #include "fsd_localization/search/place_judge.hpp"
+#include "fsd_localization/search/probation.hpp"
 #include "fsd_localization/search/rival_watch.hpp"
 #include "fsd_localization/search/short_term_layer.hpp"
 #include "hyselam_common/parameters.hpp"
@@ -239,6 +240,7 @@ class Localizer {
     bool fits_worse = false;            // then it was far below the average
     RivalWatch rivals;                  // what was better than the tracked pose
     FollowedPlaces followed;            // while the robot is not found
+    Probation probation;                // of a place found lately
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one

@@ -48,6 +48,7 @@ void Localizer::forgetSearch() {
   search_.fits_worse = false;
   search_.rivals.reset();
   search_.followed.reset();
+  search_.probation.reset();
   search_.guided = false;
 }
 
@@ -106,7 +107,7 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   }
   // Meanwhile nobody should rely on the pose; but the robot is not lost before another place is
   // better.
-  if (search_.alarm.isDoubtful() || search_.rivals.hasRival()) {
+  if (search_.alarm.isDoubtful() || search_.rivals.hasRival() || search_.probation.isDoubtful()) {
     result.converged = false;
   }
 }
@@ -163,7 +164,7 @@ bool Localizer::wantsSearch() {
   const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
   const bool again =
-      search_.rivals.hasRival() ||
+      search_.rivals.hasRival() || (search_.probation.isOpen() && since >= Probation::kStep) ||
       (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;
@@ -224,6 +225,8 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   const bool fits = verdict.best.seen >= kFits;
   if (state_ == LocalizerState::kTracking) {
     if (!answer.believed) return;  // asked before
+    search_.probation.answered(search_.way, fits ? verdict.believed : 0.0,
+                               params_.found_probability);
     if (!is_beaten) {
       confirmPose(verdict);
       return;
@@ -300,6 +303,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   inliers_.reset();
   search_.tracked_from = search_.way;
   search_.next_check = kFirstCheck;
+  search_.probation.begin(search_.way);
   search_.alarm.reset();
   search_.signs = {};
   search_.usual_score.reset();

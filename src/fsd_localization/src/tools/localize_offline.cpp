@@ -283,7 +283,7 @@ int main(int argc, char** argv) {
   app.add_option("--updates", o.updates,
                  "table to write (CSV), one line per update with a true pose");
   app.add_option("--place-odds", o.place_odds,
-                 "bias, margin, score and length of the judge of places (bench/place_judge)")
+                 "bias, margin, unexplained and length of the judge of places (bench/place_judge)")
       ->delimiter(',')
       ->expected(4);
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });

@@ -8,13 +8,14 @@
 namespace fsd_localization {
 
 /// Log odds that the best place is right: bias + margin * min(margin to the best other place, 0.3)
-/// + score * Place::seen + length * log(1 + metres of the submap, turns counted). Fitted by
-/// bench/place_judge.
+/// + unexplained * log(max(1 - Place::seen, 0.01)) + length * log(1 + metres of the submap, turns
+/// counted). Fitted by bench/place_judge, to searches where the place is on no map as well: there a
+/// place leaves much unexplained, however far the others are behind.
 struct PlaceOdds {
-  double bias = -6.139;
-  double margin = 34.652;
-  double score = 6.720;
-  double length = 0.574;
+  double bias = -4.335;
+  double margin = 44.186;
+  double unexplained = -1.396;
+  double length = 0.441;
 
   void describe(hyselam::ParameterVisitor& visit);
 };

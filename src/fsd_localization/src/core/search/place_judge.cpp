@@ -9,21 +9,24 @@ namespace {
 constexpr double kHypothesisMargin = 0.15;  // of the score, from the best
 constexpr std::size_t kMaxHypotheses = 20;
 constexpr double kLargestMargin = 0.3;  // beyond it is as sure as it gets
+constexpr double kLeastLeft = 0.01;     // of the score: a place never explains everything
 }  // namespace
 
 void PlaceOdds::describe(hyselam::ParameterVisitor& visit) {
   const auto range = hyselam::Range::between(-1000.0, 1000.0);
   visit("bias", bias, range, "", "log odds that the best place of a search is right: without more");
   visit("margin", margin, range, "", "by its margin in score to the best other place, 0.3 at most");
-  visit("score", score, range, "", "by its score");
+  visit("unexplained", unexplained, range, "",
+        "by the logarithm of what its score leaves to 1, 0.01 at least");
   visit("length", length, range, "",
         "by log(1 + metres of scans), each radian turned counted as half a metre");
 }
 
 double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds) {
   const double margin = std::min(score - rival, kLargestMargin);
+  const double left = std::log(std::max(1.0 - score, kLeastLeft));
   const double log_odds =
-      odds.bias + odds.margin * margin + odds.score * score + odds.length * std::log1p(length);
+      odds.bias + odds.margin * margin + odds.unexplained * left + odds.length * std::log1p(length);
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
