@@ -152,8 +152,19 @@ TEST(ReferenceTable, IsReadAndToldFromTum) {
   ASSERT_EQ(file.poses.size(), 2U);
   EXPECT_EQ(file.poses[1].stamp, 0.2);
   EXPECT_NEAR(file.poses[1].pose.theta, 7 - 2 * kPi, 1e-12);
+  EXPECT_TRUE(file.estimated.empty());
   writeFile(d / "t.tum", "0 0 0 0 0 0 0 1\n");
   EXPECT_FALSE(readPoses(d / "t.tum").one_per_scan);
+}
+
+TEST(ReferenceTable, TellsWhichPosesWereEstimated) {
+  TemporaryDirectory d;
+  const std::string header =
+      "# scan_index ipc_timestamp monotone_timestamp x y theta is_rbpf_update stamp_exact\n";
+  writeFile(d / "r.txt", header + "0 9 0.0 1 2 0.5 1 0\n1 9 0.2 3 4 0.6 0 1\n");
+  EXPECT_EQ(readPoses(d / "r.txt").estimated, (std::vector<bool>{true, false}));
+  writeFile(d / "short.txt", header + "0 9 0.0 1 2 0.5\n");
+  EXPECT_TRUE(mentions(messageOf<InputError>([&] { readPoses(d / "short.txt"); }), "columns"));
 }
 
 TEST(ReferenceTable, GapInTheIndexIsAnError) {

@@ -6,6 +6,7 @@
 #include "hyselam_common/robot_log.hpp"
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/simulation.hpp"
+#include "ngram_slam/slam/known_maps.hpp"
 #include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
@@ -119,6 +120,95 @@ TEST(Restart, anywhereIsFound) {
   driveUntilTied(&engine, &scan);
   ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
   EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), scan - 1))), 0.5);
+}
+
+/// The known map, and beside it, as a map of its own, the same again.
+SlamState knownMapTwice() {
+  SlamState state = knownMap();
+  const auto n = static_cast<int>(state.keyframes.size());
+  const double path = state.keyframes.back().path_length;
+  for (int k = 0; k < n; ++k) {
+    SlamKeyframe copy = state.keyframes[static_cast<std::size_t>(k)];
+    copy.run = 1;
+    copy.path_length += path;
+    state.keyframes.push_back(copy);
+  }
+  const auto edges = state.odometry;
+  for (auto e : edges) {
+    e.from += n;
+    e.to += n;
+    state.odometry.push_back(e);
+  }
+  const auto loops = state.loops;
+  for (SlamLoop l : loops) {
+    l.older += n;
+    l.newer += n;
+    state.loops.push_back(l);
+  }
+  return state;
+}
+
+/// Ten metres of the second visit, the newest scan at `end`.
+std::vector<SubmapScan> lastMetresAt(std::size_t end) {
+  std::vector<SubmapScan> scans;
+  for (std::size_t i = end;
+       i > 0 && distance(truthAt(secondVisit(), i), truthAt(secondVisit(), end)) < 10.0; --i) {
+    scans.insert(scans.begin(),
+                 {truthAt(secondVisit(), i),
+                  std::make_shared<const hyselam::LaserScan>(secondVisit().scans[i])});
+  }
+  return scans;
+}
+
+TEST(KnownMaps, tellWhereTheLastMetresFitBest) {
+  KnownMaps maps(knownMap(), static_cast<int>(knownMap().keyframes.size()), {}, 1, {});
+  const std::size_t end = kFirstScan + 300;
+  const auto place = maps.find(lastMetresAt(end));
+  ASSERT_TRUE(place);
+  const Pose2 found = knownMap().keyframes[static_cast<std::size_t>(place->keyframe)].pose *
+                      place->base_in_keyframe;
+  const Pose2 right = inMap(truthAt(secondVisit(), end));
+  EXPECT_LT(distance(found, right), 0.2);
+  EXPECT_LT(std::abs(hyselam::normalizeAngle(found.theta - right.theta)), 0.05);
+  EXPECT_GT(place->probability, 0.95);
+}
+
+TEST(KnownMaps, doubtAPlaceThatAnotherMapHasToo) {
+  const SlamState twice = knownMapTwice();
+  KnownMaps maps(twice, static_cast<int>(twice.keyframes.size()), {}, 2, {});
+  const auto place = maps.find(lastMetresAt(kFirstScan + 300));
+  ASSERT_TRUE(place);
+  EXPECT_LT(place->probability, 0.9);
+}
+
+TEST(KnownMaps, doNotSearchTheMapOfTheRunItself) {
+  KnownMaps maps(knownMap(), static_cast<int>(knownMap().keyframes.size()), {}, 0, {});
+  EXPECT_FALSE(maps.find(lastMetresAt(kFirstScan + 300)));
+}
+
+/// Nothing is found but on the drawn maps.
+SlamParams placesOnly() {
+  SlamParams params;
+  params.loops = LoopClosureMode::kProximity;
+  params.run_start.search_interval = params.run_start.whole_map_interval = 1e6;
+  return params;
+}
+
+TEST(Restart, isTiedByAPlaceThatNoOtherRivals) {
+  SlamEngine engine(placesOnly(), knownMap());
+  engine.startRunAnywhere();
+  std::size_t scan = kFirstScan;
+  driveUntilTied(&engine, &scan);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), scan - 1))), 0.5);
+}
+
+TEST(Restart, waitsWhereTwoPlacesAreAlike) {
+  SlamEngine engine(placesOnly(), knownMapTwice());
+  engine.startRunAnywhere();
+  std::size_t scan = kFirstScan;
+  driveUntilTied(&engine, &scan);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kOwnMap);
 }
 
 TEST(Restart, inAnotherBuildingIsAMapOfItsOwn) {

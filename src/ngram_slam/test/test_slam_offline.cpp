@@ -16,6 +16,7 @@
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/simulation.hpp"
 #include "loop_table.hpp"
+#include "reference_poses.hpp"
 
 using hyselam::testing::fileBytes;
 using hyselam::testing::TemporaryDirectory;
@@ -416,6 +417,30 @@ TEST_F(SlamOffline, refusesUnusableInput) {
   writeFile(d / "file", "");
   expectRefused("--bag " + d / "run.bag" + " --out " + d / "file/x", "file/x");
   EXPECT_NE(run("--bag a --carmen b --out " + d / "x"), 0);
+}
+
+// The robot turns by a radian in five scans; odometry, which the table has between its estimates,
+// tells half of that.
+TEST(ReferencePoses, haveTheTurnsOfSlamBetweenEstimates) {
+  ngram_slam::Reference table;
+  std::vector<hyselam::StampedPose2> path;
+  for (int i = 0; i <= 5; ++i) {
+    const bool estimated = i == 0 || i == 5;
+    const double turned = 0.2 * i;
+    table.poses.push_back({0.1 * i, {1.0 * i, 0.0, estimated ? turned : 0.5 * turned}});
+    table.estimated.push_back(estimated);
+    path.push_back({0.1 * i, {7.0, 8.0, turned + 0.3}});  // in another frame
+  }
+  const auto poses = ngram_slam::withTurnsOf(path, table);
+  ASSERT_EQ(poses.size(), table.poses.size());
+  for (int i = 0; i <= 5; ++i) {
+    EXPECT_NEAR(poses[static_cast<std::size_t>(i)].pose.theta, 0.2 * i, 1e-12);
+    EXPECT_EQ(poses[static_cast<std::size_t>(i)].pose.x, 1.0 * i);
+  }
+  // Where SLAM tells nothing, and where all was estimated, headings stay.
+  EXPECT_EQ(ngram_slam::withTurnsOf({}, table)[2].pose.theta, table.poses[2].pose.theta);
+  table.estimated.clear();
+  EXPECT_EQ(ngram_slam::withTurnsOf(path, table)[2].pose.theta, table.poses[2].pose.theta);
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ std::vector<StampedPose2> readReferenceTable(const std::string& path);
 struct PoseFile {
   std::vector<StampedPose2> poses;
   bool one_per_scan = false;  ///< a reference table: pose i belongs to scan i
+  /// By pose, of a table with the column `is_rbpf_update`: whether it was estimated. Between these
+  /// lie poses of raw odometry, whose headings may be off by tens of degrees. Empty: all were.
+  std::vector<bool> estimated;
 };
 PoseFile readPoses(const std::string& path);
 

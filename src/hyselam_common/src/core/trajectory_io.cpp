@@ -12,7 +12,8 @@ namespace hyselam {
 namespace {
 
 constexpr std::size_t kTumColumns = 8;
-constexpr std::size_t kReferenceColumns = 6;  // further ones are not needed
+constexpr std::size_t kReferenceColumns = 6;  // further ones are not needed, but for this one
+constexpr std::string_view kEstimatedColumn = "is_rbpf_update";
 
 std::string lineText(std::size_t line) {
   return "line " + std::to_string(line);
@@ -45,6 +46,19 @@ void forEachRow(const std::string& text, const std::string& path, std::size_t co
   });
 }
 
+/// Whether the seventh column of a reference table tells which poses were estimated.
+bool tellsEstimates(const std::string& text) {
+  bool tells = false;
+  std::vector<std::string_view> fields;
+  forEachLine(text, [&](std::size_t, std::string_view content) {
+    splitFields(content, &fields);
+    if (fields.size() < 2 || fields[0] != "#" || fields[1] != "scan_index") return;
+    tells =
+        fields.size() > kReferenceColumns + 1 && fields[kReferenceColumns + 1] == kEstimatedColumn;
+  });
+  return tells;
+}
+
 std::vector<StampedPose2> parseTum(const std::string& text, const std::string& path) {
   std::vector<StampedPose2> trajectory;
   forEachRow(text, path, kTumColumns, false, [&](std::size_t line, const auto& v) {
@@ -61,18 +75,22 @@ std::vector<StampedPose2> parseTum(const std::string& text, const std::string& p
   return trajectory;
 }
 
-std::vector<StampedPose2> parseReference(const std::string& text, const std::string& path) {
-  std::vector<StampedPose2> poses;
-  forEachRow(text, path, kReferenceColumns, true, [&](std::size_t line, const auto& v) {
-    if (v[0] != static_cast<double>(poses.size())) {
-      throw InputError(
-          path, lineText(line),
-          "scan_index is " + formatNumber(v[0]) + " instead of " + std::to_string(poses.size()));
+PoseFile parseReference(const std::string& text, const std::string& path) {
+  PoseFile file;
+  file.one_per_scan = true;
+  const bool tells = tellsEstimates(text);
+  const std::size_t columns = tells ? kReferenceColumns + 1 : kReferenceColumns;
+  forEachRow(text, path, columns, true, [&](std::size_t line, const auto& v) {
+    if (v[0] != static_cast<double>(file.poses.size())) {
+      throw InputError(path, lineText(line),
+                       "scan_index is " + formatNumber(v[0]) + " instead of " +
+                           std::to_string(file.poses.size()));
     }
-    poses.push_back({v[2], {v[3], v[4], normalizeAngle(v[5])}});
+    file.poses.push_back({v[2], {v[3], v[4], normalizeAngle(v[5])}});
+    if (tells) file.estimated.push_back(v[kReferenceColumns] != 0.0);
   });
-  if (poses.empty()) throw InputError(path, "", "holds no pose");
-  return poses;
+  if (file.poses.empty()) throw InputError(path, "", "holds no pose");
+  return file;
 }
 
 /// The header comment names the columns of a reference table; a TUM file has no such line.
@@ -99,13 +117,13 @@ std::vector<StampedPose2> readTum(const std::string& path) {
 }
 
 std::vector<StampedPose2> readReferenceTable(const std::string& path) {
-  return parseReference(readTextFile(path), path);
+  return parseReference(readTextFile(path), path).poses;
 }
 
 PoseFile readPoses(const std::string& path) {
   const std::string text = readTextFile(path);
-  if (isReferenceTable(text)) return {parseReference(text, path), true};
-  return {parseTum(text, path), false};
+  if (isReferenceTable(text)) return parseReference(text, path);
+  return {parseTum(text, path), false, {}};
 }
 
 void writeTum(const std::string& path, const std::vector<StampedPose2>& trajectory) {

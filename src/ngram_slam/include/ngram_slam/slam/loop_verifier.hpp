@@ -31,6 +31,8 @@ struct LoopTask {
   /// The heading of the guess is not known: those are searched at which what is around both
   /// segments fits best, the second where the first is refused.
   bool any_heading = false;
+  /// That the guess is right, by a search of all other maps (KnownMaps); 0: none was made.
+  double place_probability = 0.0;
   Segment old_segment;  ///< in the frame of `older`
   Segment new_segment;  ///< in the frame of `newer`; one scan when near
 };

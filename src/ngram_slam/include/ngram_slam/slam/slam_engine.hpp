@@ -17,6 +17,7 @@
 #include "hyselam_pose_graph/graph_optimizer.hpp"
 #include "hyselam_scan_matching/icp.hpp"
 #include "hyselam_scan_matching/surface_map.hpp"
+#include "ngram_slam/slam/known_maps.hpp"
 #include "ngram_slam/slam/loop_candidates.hpp"
 #include "ngram_slam/slam/loop_verifier.hpp"
 #include "ngram_slam/slam/odometry_doubt.hpp"
@@ -30,6 +31,18 @@
 
 namespace ngram_slam {
 
+/// Where in the other maps the last metres of a run fit best.
+struct PlaceQuestion {
+  int keyframe = 0;               ///< the newest of the scans
+  int middle = 0;                 ///< that a loop is made for, of the same run
+  std::vector<SubmapScan> scans;  ///< the newest last
+  std::shared_ptr<KnownMaps> maps;
+};
+struct PlaceAnswer {
+  int keyframe = 0, middle = 0;  ///< of the question
+  std::optional<KnownPlace> place;
+};
+
 /// Work that does not access the engine: loops to verify, a graph to optimize, keyframes to be
 /// recognized by their signatures. To be run once.
 struct SlamJob {
@@ -40,12 +53,14 @@ struct SlamJob {
   bool ends_run = false;                        ///< with the last of them
   std::shared_ptr<SignaturePlaces> signatures;  ///< what keyframes are added to; null: none are
   bool ask_each = false;  ///< asks for each of their places: the run is not tied to the map
+  std::optional<PlaceQuestion> place;
 };
 struct SlamJobResult {
   std::vector<LoopTask> tasks;  ///< of the job, without the scans of their path segments
   std::vector<LoopVerification> verifications;
   std::optional<hyselam_pose_graph::OptimizeResult> optimized;
   std::vector<SignatureCandidate> candidates;
+  std::optional<PlaceAnswer> place;
 };
 /// Deterministic and thread-safe.
 SlamJobResult runJob(const SlamJob& job);
@@ -214,10 +229,13 @@ class SlamEngine {
   struct Run {
     double begin = 0.0;
     double searched = 0.0, searched_map = 0.0;  // last, for a place in another map
+    double drawn = 0.0;                         // last, for the drawn other maps
     std::optional<double> tied;
-    bool known = false;             // RunTrust::kKnown
-    bool anywhere = false;          // nothing is supposed of where it begins
-    std::uint32_t supposed_in = 0;  // map
+    bool known = false;                     // RunTrust::kKnown
+    bool anywhere = false;                  // nothing is supposed of where it begins
+    std::uint32_t supposed_in = 0;          // map
+    std::shared_ptr<KnownMaps> other_maps;  // used by jobs only
+    std::vector<SlamLoop> placed;           // verified loops to the places found in them
   };
   /// A keyframe and a pose of another one relative to it, with the window to search.
   struct LoopGuess {
@@ -228,6 +246,7 @@ class SlamEngine {
     double window, angle;
     std::int64_t match;  // of SlamState::matches, or kNoMatch
     bool any_heading = false;
+    double place_probability = 0.0;
   };
   static constexpr std::int64_t kNoMatch = -1;
   /// The loop verifications requested for one new word.
@@ -307,6 +326,9 @@ class SlamEngine {
   std::uint32_t largestMapBut(std::uint32_t run) const;
   std::vector<int> placesOfOtherMaps(int keyframe) const;
   void searchOtherMaps();
+  void askForPlace();
+  void applyPlace(const PlaceAnswer& answer);
+  void addPlacedLoop(const SlamLoop& loop, double place_probability);
   void placeRun(const SlamLoop& tie);
   void doubtTies(const SlamLoop& loop);
   void refreshConnections();
@@ -354,6 +376,7 @@ class SlamEngine {
   RunConnections connections_;  // by the loops
   hyselam_scan_matching::SurfaceMap local_map_;
   std::vector<LoopTask> tasks_;
+  std::optional<PlaceQuestion> place_question_;  // for the next job
   bool run_open_ = false, job_pending_ = false;
   int first_of_run_ = 0;                            // keyframe
   double last_stamp_ = 0.0;                         // of the run

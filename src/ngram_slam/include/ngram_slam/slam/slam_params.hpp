@@ -98,6 +98,17 @@ struct RunStartParams {
   double search_radius = 5.0;       ///< of what is searched around it, at any heading [m], > 0
   double whole_map_interval = 5.0;  ///< path between searches of the whole map [m], > 0
   double place_spacing = 4.0;       ///< between places that are searched [m], > 0
+  /// Path between searches of the drawn maps for the last metres of the run [m], > 0.
+  double place_interval = 1.0;
+  /// The scans are asked at a place found so if it is right with this probability beside all
+  /// others, 0..1 ...
+  double min_place_probability = 0.5;
+  /// ... and a verified loop there ties the run if it has this one, 0..1, ...
+  double sure_place_probability = 0.9;
+  /// ... together with what the scans say this one, 0..1, ...
+  double min_tie_probability = 0.995;
+  /// ... and if another loop so much path beside it says the same [m], >= 0.
+  double place_min_span = 1.0;
   /// A run that is not tied after this much path is shown as a map of its own; one that is tied
   /// listens to loops that contradict its ties for as long [m], >= 0.
   double own_map_path = 60.0;

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "ngram_slam/slam/far_loops.hpp"
+#include "ngram_slam/slam/loop_confidence.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
@@ -14,6 +15,14 @@ using hyselam::Pose2;
 namespace {
 
 constexpr double kOtherView = hyselam::kPi / 2.0;  // a laser may see only what is ahead
+constexpr double kSubmapPath = 10.0;               // [m]; over more, even refined odometry bends
+// Around a place that was found on a drawn map.
+constexpr double kPlaceWindow = 0.5, kPlaceAngle = 0.15;  // [m], [rad]
+
+double logOdds(double probability) {
+  const double p = std::clamp(probability, 1e-6, 1.0 - 1e-6);
+  return std::log(p / (1.0 - p));
+}
 
 double sumOfInliers(const std::vector<SlamLoop>& loops) {
   double sum = 0.0;
@@ -117,6 +126,85 @@ void SlamEngine::searchOtherMaps() {
   }
 }
 
+/// While the run is not tied: asks where in the other maps its last metres fit best.
+void SlamEngine::askForPlace() {
+  const RunStartParams& p = params_.run_start;
+  if (!isUntied() || runPlace() == RunPlace::kOwnMap) return;
+  if (path_length_ - run_.drawn < p.place_interval) return;
+  run_.drawn = path_length_;
+  if (!run_.other_maps) {
+    run_.other_maps = std::make_shared<KnownMaps>(state_, first_of_run_, connections_, currentRun(),
+                                                  params_.consolidation);
+  }
+  PlaceQuestion question;
+  question.keyframe = lastKeyframe();
+  question.middle = middleOfNewSegment();
+  question.maps = run_.other_maps;
+  int first = lastKeyframe();
+  while (first > first_of_run_ && path_length_ - keyframe(first - 1).path_length <= kSubmapPath) {
+    --first;
+  }
+  for (int k = first; k <= lastKeyframe(); ++k) {
+    question.scans.push_back({keyframe(k).pose, keyframe(k).scan});
+  }
+  place_question_ = std::move(question);
+}
+
+/// A place that no other one rivals is looked at by the scans themselves.
+void SlamEngine::applyPlace(const PlaceAnswer& answer) {
+  if (!isUntied() || answer.middle < first_of_run_ || !answer.place ||
+      answer.place->probability < params_.run_start.min_place_probability) {
+    return;
+  }
+  LoopGuess guess{answer.place->keyframe,
+                  answer.middle,
+                  true,
+                  LoopSource::kProximity,
+                  answer.place->base_in_keyframe *
+                      between(keyframe(answer.keyframe).pose, keyframe(answer.middle).pose),
+                  kPlaceWindow,
+                  kPlaceAngle,
+                  kNoMatch};
+  guess.place_probability = answer.place->probability;
+  requestVerification(guess);
+}
+
+/// A loop at the place of the other maps that explains the last metres best. It ties the run if
+/// that no other place does and what the scans say of this one together leave no doubt, and if
+/// another loop along the run says the same.
+void SlamEngine::addPlacedLoop(const SlamLoop& loop, double place_probability) {
+  if (!isUntied() || loop.newer < first_of_run_) return;
+  const LoopParams& p = params_.loop;
+  std::vector<SlamLoop> others = state_.pending_loops;
+  others.insert(others.end(), run_.placed.begin(), run_.placed.end());
+  run_.placed.push_back(loop);
+  const LoopCompany all = companyOf(loop, others, state_.keyframes, connections_, p);
+  // Along a corridor the search finds the same again, right or wrong: it does not support itself.
+  LoopCompany found_otherwise =
+      companyOf(loop, state_.pending_loops, state_.keyframes, connections_, p);
+  found_otherwise.contradiction = all.contradiction;
+  if (!all.isTrusted(p) || place_probability < params_.run_start.sure_place_probability ||
+      logOdds(place_probability) + logOdds(loopProbability(loop, found_otherwise)) <
+          logOdds(params_.run_start.min_tie_probability)) {
+    return;
+  }
+  for (const std::size_t i : consistentLoops(loop, others, state_.keyframes, connections_, p)) {
+    const SlamLoop other = others[i];
+    if (std::abs(keyframe(loop.newer).path_length - keyframe(other.newer).path_length) <
+        params_.run_start.place_min_span) {
+      continue;
+    }
+    run_.placed.clear();
+    std::vector<SlamLoop>& waiting = state_.pending_loops;
+    waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
+                                 [&](const SlamLoop& l) { return isSamePair(l, other); }),
+                  waiting.end());
+    acceptFarLoop(loop);
+    acceptFarLoop(other);
+    return;
+  }
+}
+
 /// Moves the later one of two maps to where a loop between them says that it lies.
 void SlamEngine::placeRun(const SlamLoop& tie) {
   const SlamKeyframe &older = keyframe(tie.older), &newer = keyframe(tie.newer);
@@ -134,6 +222,7 @@ void SlamEngine::placeRun(const SlamLoop& tie) {
     run_.tied = path_length_;
   }
   connections_.connect(a, b);
+  run_.other_maps.reset();
   rebuildLocalMap();
   ++revision_;
 }
@@ -174,7 +263,8 @@ void SlamEngine::refreshConnections() {
   connections_ = RunConnections(state_.keyframes, state_.loops);
   if (isUntied()) {
     run_.tied.reset();
-    run_.searched = run_.searched_map = path_length_;
+    run_.searched = run_.searched_map = run_.drawn = path_length_;
+    run_.placed.clear();
   }
 }
 

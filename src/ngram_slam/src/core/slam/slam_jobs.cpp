@@ -31,6 +31,8 @@ std::optional<SlamJob> SlamEngine::makeJob(bool final) {
     job.tasks.push_back(*std::move(step));
   } else if (!tasks_.empty()) {
     job.tasks.swap(tasks_);
+  } else if (place_question_) {
+    job.place = std::exchange(place_question_, std::nullopt);
   } else if (mustSign(final)) {
     addKeyframesTo(&job);
   } else if (mustOptimize(final)) {
@@ -45,6 +47,7 @@ std::optional<SlamJob> SlamEngine::takeAllWork() {
   while (auto step = stepToCheck()) job.tasks.push_back(*std::move(step));
   std::move(tasks_.begin(), tasks_.end(), std::back_inserter(job.tasks));
   tasks_.clear();
+  job.place = std::exchange(place_question_, std::nullopt);
   if (mustSign(false)) addKeyframesTo(&job);
   if (mustOptimize(false)) addGraphTo(&job, false);
   return sendOut(std::move(job));
@@ -80,7 +83,9 @@ void SlamEngine::addGraphTo(SlamJob* job, bool final) {
 
 /// Nothing, if there is nothing in it.
 std::optional<SlamJob> SlamEngine::sendOut(SlamJob job) {
-  if (job.tasks.empty() && !job.graph && job.signatures == nullptr) return std::nullopt;
+  if (job.tasks.empty() && !job.graph && job.signatures == nullptr && !job.place) {
+    return std::nullopt;
+  }
   job.params = params_;
   job_pending_ = true;
   return job;
@@ -97,6 +102,10 @@ SlamJobResult runJob(const SlamJob& job) {
     result.tasks.push_back(std::move(done));
   }
   if (job.graph) result.optimized = optimizedGraph(*job.graph, job.params);
+  if (job.place) {
+    result.place = PlaceAnswer{job.place->keyframe, job.place->middle,
+                               job.place->maps->find(job.place->scans)};
+  }
   if (job.signatures == nullptr) return result;
   const auto take = [&](const std::vector<SignatureCandidate>& candidates) {
     result.candidates.insert(result.candidates.end(), candidates.begin(), candidates.end());
@@ -115,6 +124,7 @@ void SlamEngine::apply(const SlamJobResult& result) {
     applyVerification(result.tasks[i], result.verifications[i]);
   }
   searchSignatureLoops(result.candidates);
+  if (result.place) applyPlace(*result.place);
 }
 
 void SlamEngine::applyOptimized(const hyselam_pose_graph::OptimizeResult& optimized) {

@@ -42,6 +42,7 @@ void SlamEngine::searchLoopClosures() {
   if (params_.loops == LoopClosureMode::kNone || params_.loops == LoopClosureMode::kThesis) return;
   const LoopParams& p = params_.loop;
   searchOtherMaps();
+  askForPlace();
   if (lastKeyframe() % p.near_search_interval == 0) searchNearLoops();
   // Far ones by words only, or by signatures only.
   if (params_.loops == LoopClosureMode::kNgrams || params_.loops == LoopClosureMode::kSignatures) {
@@ -258,6 +259,7 @@ void SlamEngine::requestVerification(const LoopGuess& guess) {
   task.angle = std::min(guess.angle, hyselam::kPi);
   task.match = guess.match;
   task.any_heading = guess.source == LoopSource::kSignature || guess.any_heading;
+  task.place_probability = guess.place_probability;
   if (guess.match != kNoMatch) state_.matches[static_cast<std::size_t>(guess.match)].tried = true;
   ++counterOf(guess.source, guess.far).tried;
   tasks_.push_back(std::move(task));
@@ -283,6 +285,10 @@ void SlamEngine::applyVerification(const LoopTask& task, const LoopVerification&
   if (match != nullptr) {
     match->verified = true;
     match->measured = answer.loop.measured;
+  }
+  if (task.place_probability > 0.0) {
+    addPlacedLoop(answer.loop, task.place_probability);
+    return;
   }
   if (task.far) {
     addFarLoop(answer.loop);

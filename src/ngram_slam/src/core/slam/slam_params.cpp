@@ -91,6 +91,16 @@ void RunStartParams::describe(ParameterVisitor& visit) {
   visit("whole_map_interval", whole_map_interval, kPositive, "m",
         "path between searches of the whole map, until the run is tied to it");
   visit("place_spacing", place_spacing, kPositive, "m", "between the places that are searched");
+  visit("place_interval", place_interval, kPositive, "m",
+        "path between searches of the drawn maps for the last metres of the run, until it is tied");
+  visit("min_place_probability", min_place_probability, kRatio, "",
+        "of a place found so, beside all others: at less probable ones the scans are not asked");
+  visit("sure_place_probability", sure_place_probability, kRatio, "",
+        "of a place found so, beside all others, to tie the run");
+  visit("min_tie_probability", min_tie_probability, kRatio, "",
+        "of a place and of the loop there that the scans verified, together, to tie the run");
+  visit("place_min_span", place_min_span, kNotNegative, "m",
+        "path of the run between that loop and another one that says the same");
   visit("own_map_path", own_map_path, kNotNegative, "m",
         "path after which a run that is not tied is a map of its own, and one that is keeps its "
         "ties");

@@ -47,7 +47,8 @@ void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry)
   smooth_pose_ = odometry;
   first_of_run_ = static_cast<int>(state_.keyframes.size());
   run_ = Run{};
-  run_.begin = run_.searched = run_.searched_map = path_length_;
+  run_.begin = run_.searched = run_.searched_map = run_.drawn = path_length_;
+  place_question_.reset();
   doubts_.clear();
   const RunStart start = start_.value_or(
       RunStart{pose_, kDefaultStartWindow, kDefaultStartAngle, RunTrust::kSupposed, false});
