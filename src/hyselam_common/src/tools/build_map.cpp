@@ -16,10 +16,10 @@ constexpr double kPoseTolerance = 0.05;  // a scan this much outside of the traj
 
 hyselam::PoseFile findPoses(const std::string& source, const std::string& in,
                             const hyselam::RobotLog& log) {
-  if (source == "odometry") return {log.odometry, false};
+  if (source == "odometry") return {log.odometry, false, {}};
   if (source == "ground_truth") {
     if (log.ground_truth.empty()) throw hyselam::InputError(in, "", "holds no ground truth");
-    return {log.ground_truth, false};
+    return {log.ground_truth, false, {}};
   }
   hyselam::PoseFile poses = hyselam::readPoses(source);
   if (poses.one_per_scan && poses.poses.size() != log.scans.size()) {
