@@ -17,15 +17,14 @@ bool areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b,
   if (a.kind != b.kind) return false;
   const GenericObject* kind = dictionary.find(a.kind);
   if (kind == nullptr || !(kind->shape.size[0] > 0.0)) return false;
-  ObjectPose both = *a.pose;
-  unite(both, *b.pose);
-  const double length = std::max(both.size[0], both.size[1]);
-  if (length > kind->shape.size[0] + kDeviations * kind->shape.spread[0] + sigma ||
-      both.size[2] > kind->shape.size[2] + kDeviations * kind->shape.spread[2] + sigma) {
-    return false;
-  }
-  return both.size[0] < a.pose->size[0] + b.pose->size[0] + kGap &&
-         both.size[1] < a.pose->size[1] + b.pose->size[1] + kGap;
+  ObjectInstance both = a;
+  unite(both, b);
+  const auto& size = both.pose->size;
+  const auto fits = [&](double value, std::size_t axis) {
+    return value <= kind->shape.size[axis] + kDeviations * kind->shape.spread[axis] + sigma;
+  };
+  return fits(std::max(size[0], size[1]), 0) && fits(std::min(size[0], size[1]), 1) &&
+         fits(size[2], 2) && gapBetween(groundOf(*a.pose), groundOf(*b.pose)) < kGap;
 }
 
 /// Adds what is known of the second one to the first one.
@@ -33,6 +32,7 @@ void merge(ObjectInstance& a, const ObjectInstance& b) {
   constexpr double kTaller = 1.4;  // the first one was only a part
   if (b.pose->size[2] > kTaller * a.pose->size[2] || b.detections > 2 * a.detections) {
     a.pose = b.pose;
+    a.outline = b.outline;
     a.descriptor = b.descriptor;
     if (b.kind != kUnknownKind) a.kind = b.kind;
   }
@@ -59,8 +59,9 @@ void mergeDuplicates(ObjectMap& map, const ObjectDictionary& dictionary,
         continue;
       }
       if (faces) {
-        unite(*a.pose, *b.pose);
+        unite(a, b);
         b.pose = a.pose;
+        b.outline = a.outline;
       }
       merge(a, b);
       keepDescribedRelations(map, b.id, a.id);

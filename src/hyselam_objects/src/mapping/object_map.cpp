@@ -11,6 +11,8 @@
 namespace hyselam_objects {
 namespace {
 
+static_assert(kOutlineDirections == 72, "as told in files and errors");
+
 constexpr std::array<const char*, kRelationWords> kWords{
     "at",    "inside", "in",   "on",     "over",  "under",   "left",
     "right", "top",    "near", "behind", "front", "against", "between"};
@@ -101,6 +103,11 @@ class Checker {
     const auto& d = object.descriptor;
     require(std::all_of(d.begin(), d.end(), [](float v) { return std::isfinite(v); }), where,
             "its descriptor is not finite");
+    const Outline& outline = object.outline;
+    require(outline.empty() || outline.size() == kOutlineDirections, where,
+            "its outline has not 72 directions");
+    require(std::all_of(outline.begin(), outline.end(), [](double v) { return std::isfinite(v); }),
+            where, "its outline is not finite");
     for (const ObjectStay& stay : object.history) {
       require(isFinite(stay.position) && std::isfinite(stay.from) && stay.until >= stay.from, where,
               "a stay of its history is none");
@@ -226,7 +233,7 @@ bool operator==(const ObjectPlace& a, const ObjectPlace& b) {
 
 bool operator==(const ObjectInstance& a, const ObjectInstance& b) {
   const auto tied = [](const ObjectInstance& o) {
-    return std::tie(o.id, o.kind, o.properties, o.described, o.descriptor, o.detections,
+    return std::tie(o.id, o.kind, o.properties, o.described, o.outline, o.descriptor, o.detections,
                     o.missed_detections, o.last_seen, o.existence);
   };
   return tied(a) == tied(b) && same(a.pose, b.pose) &&

@@ -94,7 +94,10 @@ void ObjectMapper::resetMergedInstances(const std::vector<DetectedObject>& detec
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(instances[e])];
       const bool two = object.pose && contains(*object.pose, detections[d].center()) &&
                        contains(*object.pose, detections[e].center());
-      if (two && !detections[e].partial) object.pose.reset();
+      if (two && !detections[e].partial) {
+        object.pose.reset();
+        object.outline.clear();
+      }
     }
   }
 }

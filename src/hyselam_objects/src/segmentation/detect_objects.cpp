@@ -159,6 +159,13 @@ void DetectParams::validate() const {
   segmentation.validate();
 }
 
+Eigen::Vector3d DetectedObject::size() const {
+  const double height = high.z - low.z;
+  if (outline.empty()) return {high.x - low.x, high.y - low.y, height};
+  const GroundBox box = boxAround(outline);
+  return {box.length, box.width, height};
+}
+
 std::vector<DetectedObject> detectObjects(const OrganizedCloud& cloud,
                                           const Eigen::Isometry3d& camera_in_map,
                                           const DetectParams& params) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_objects/mapping/outline.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_objects {
@@ -81,6 +82,7 @@ struct ObjectInstance {
   std::map<std::string, std::string> properties;
   bool described = false;          ///< people have described it
   std::optional<ObjectPose> pose;  ///< nothing: never seen
+  Outline outline;                 ///< of all views; empty: that of its box
   std::vector<float> descriptor;   ///< mean of its views; empty: never seen
   int detections = 0;              ///< number of views
   int missed_detections = 0;       ///< number of frames that show its place free
