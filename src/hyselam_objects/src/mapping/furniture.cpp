@@ -48,6 +48,16 @@ bool isPartOfFurniture(const ObjectMap& map, const Point3& p) {
   });
 }
 
+bool reachesIntoFurniture(const ObjectMap& map, const ObjectPose& box) {
+  constexpr double kDepth = 0.1, kShare = 0.4;  // below the top [m]; of its footprint
+  return std::any_of(map.objects.begin(), map.objects.end(), [&](const ObjectInstance& o) {
+    if (!o.pose || !isFurniture(o)) return false;
+    const double top = o.pose->position.z + 0.5 * o.pose->size[2];
+    return box.position.z - 0.5 * box.size[2] < top - kDepth &&
+           commonArea(groundOf(box), groundOf(*o.pose)) > kShare * box.size[0] * box.size[1];
+  });
+}
+
 bool isOnFurniture(const ObjectMap& map, const ObjectPose& top, Id except) {
   return std::any_of(map.objects.begin(), map.objects.end(), [&](const auto& o) {
     return o.id != except && o.pose && isFurniture(o) && isTopOfObjects(top, *o.pose);

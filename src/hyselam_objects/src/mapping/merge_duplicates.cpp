@@ -10,21 +10,27 @@
 namespace hyselam_objects {
 namespace {
 
-/// Whether two objects of one kind touch and are together no larger than one of that kind.
+/// Whether a box is no larger than objects of a kind are. Not known: it may be of any size.
+bool fits(const ObjectPose& box, const GenericObject* kind, double sigma) {
+  constexpr double kDeviations = 3.0, kMaxMargin = 0.06;  // [m]
+  if (kind == nullptr || !(kind->shape.size[0] > 0.0)) return true;
+  const std::array<double, 3> size{std::max(box.size[0], box.size[1]),
+                                   std::min(box.size[0], box.size[1]), box.size[2]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double margin = std::min(kMaxMargin, kDeviations * kind->shape.spread[k]) + sigma;
+    if (size[k] > kind->shape.size[k] + margin) return false;
+  }
+  return true;
+}
+
+/// Whether two objects of one kind are together no larger than one of that kind.
 bool areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b,
                    const ObjectDictionary& dictionary, double sigma) {
-  constexpr double kGap = 0.03, kDeviations = 3.0;
-  if (a.kind != b.kind) return false;
   const GenericObject* kind = dictionary.find(a.kind);
-  if (kind == nullptr || !(kind->shape.size[0] > 0.0)) return false;
+  if (a.kind != b.kind || kind == nullptr || !(kind->shape.size[0] > 0.0)) return false;
   ObjectInstance both = a;
   unite(both, b);
-  const auto& size = both.pose->size;
-  const auto fits = [&](double value, std::size_t axis) {
-    return value <= kind->shape.size[axis] + kDeviations * kind->shape.spread[axis] + sigma;
-  };
-  return fits(std::max(size[0], size[1]), 0) && fits(std::min(size[0], size[1]), 1) &&
-         fits(size[2], 2) && gapBetween(groundOf(*a.pose), groundOf(*b.pose)) < kGap;
+  return fits(*both.pose, kind, sigma);
 }
 
 /// Adds what is known of the second one to the first one.
@@ -38,6 +44,7 @@ void merge(ObjectInstance& a, const ObjectInstance& b) {
   }
   if (a.kind == kUnknownKind) a.kind = b.kind;
   a.detections += b.detections;
+  a.overlooked = std::min(a.overlooked, b.overlooked);
   a.last_seen = std::max(a.last_seen, b.last_seen);
   a.existence = std::max(a.existence, b.existence);
   a.described = a.described || b.described;
@@ -71,20 +78,27 @@ void mergeDuplicates(ObjectMap& map, const ObjectDictionary& dictionary,
   }
 }
 
-bool isSpurious(const ObjectMap& map, const ObjectInstance& object) {
-  constexpr double kMargin = 0.03, kContained = 0.8;
+bool isSpurious(const ObjectMap& map, const ObjectInstance& object,
+                const ObjectDictionary& dictionary, const MapperParams& params) {
+  constexpr double kMargin = 0.03, kContained = 0.8, kShared = 0.5;
+  if (isFurniture(object)) return false;
+  const bool is_too_large =
+      !fits(*object.pose, dictionary.find(object.kind), params.position_sigma);
   int within = 0;
   for (const ObjectInstance& other : map.objects) {
-    if (other.id == object.id || !other.pose || isFurniture(other) || isFurniture(object)) continue;
+    if (other.id == object.id || !other.pose || isFurniture(other)) continue;
     if (other.existence < 0.5) continue;
     // Two objects do not share a place: of the same kind, one is a face of the other.
     const bool alike = object.kind == other.kind || object.kind == kUnknownKind;
-    if (alike && object.detections <= other.detections &&
-        containedFraction(*object.pose, *other.pose) > kContained &&
-        containedFraction(*other.pose, *object.pose) < kContained) {
+    const double of_other = containedFraction(*other.pose, *object.pose);
+    if (alike && object.detections <= other.detections && of_other < kContained &&
+        containedFraction(*object.pose, *other.pose) > kContained) {
       return true;
     }
-    if (2 * object.detections > other.detections) continue;
+    // What holds most of another one is both, seen as one.
+    const bool is_rare = 2 * object.detections <= other.detections;
+    if (of_other > kShared && (is_rare || (is_too_large && other.detections >= params.min_views))) return true;
+    if (!is_rare) continue;
     const double away = std::abs(object.pose->position.z - other.pose->position.z);
     if (isWithinFootprint(*other.pose, object.pose->position) &&
         away < 0.5 * other.pose->size[2] + kMargin) {

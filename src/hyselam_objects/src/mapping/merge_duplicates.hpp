@@ -10,6 +10,7 @@ void mergeDuplicates(ObjectMap& map, const ObjectDictionary& dictionary,
                      const MapperParams& params);
 
 /// Whether it is a part of an object, or several objects in one, that was detected now and then.
-bool isSpurious(const ObjectMap& map, const ObjectInstance& object);
+bool isSpurious(const ObjectMap& map, const ObjectInstance& object,
+                const ObjectDictionary& dictionary, const MapperParams& params);
 
 }  // namespace hyselam_objects

@@ -78,9 +78,9 @@ void ObjectMapper::update(const OrganizedCloud& cloud, const PinholeCamera& came
   for (ObjectInstance& object : map_.objects) {
     if (!object.pose || isFurniture(object)) continue;
     if (std::find(seen_now.begin(), seen_now.end(), object.id) != seen_now.end()) continue;
-    if (showsFreeSpace(cloud, camera, *object.pose, params_)) {
-      addMissedDetection(object, stamp, params_);
-    }
+    const PlaceEvidence evidence = evidenceOf(cloud, camera, *object.pose, params_);
+    if (evidence == PlaceEvidence::kFree) addMissedDetection(object, stamp, params_);
+    object.overlooked += evidence == PlaceEvidence::kOverlooked;
   }
   map_.stamp = std::max(map_.stamp, stamp);
 }
@@ -163,15 +163,37 @@ void ObjectMapper::consolidate(double unconfirmed_before) {
   }
 }
 
+bool ObjectMapper::isUnconfirmed(const ObjectInstance& object, double before) const {
+  return object.detections < params_.min_views && object.last_seen < before;
+}
+
+// By views that show its place free, or something else there.
+bool ObjectMapper::isDenied(const ObjectInstance& object) const {
+  constexpr double kGone = 0.45;        // below: it was there, and may be elsewhere now
+  constexpr double kBelieved = 0.95;    // between: views contradict each other
+  constexpr double kOverlooked = 1.5;   // times as often as it is detected
+  if (isFurniture(object)) return false;
+  const bool missed = object.missed_detections > object.detections && object.existence < 0.5;
+  const bool contradicted = object.missed_detections >= object.detections &&
+                            object.existence > kGone && object.existence < kBelieved;
+  return missed || contradicted || object.overlooked > kOverlooked * object.detections;
+}
+
+// It is a part of something, or several things in one.
+bool ObjectMapper::isNoObject(const ObjectInstance& object) const {
+  if (isFurniture(object)) return false;
+  return isPartOfFurniture(map_, object.pose->position) ||
+         reachesIntoFurniture(map_, *object.pose) ||
+         isSpurious(map_, object, dictionary_, params_);
+}
+
 void ObjectMapper::removeUnconfirmed(double unconfirmed_before) {
   std::vector<Id> removed;
   for (const ObjectInstance& object : map_.objects) {
     if (!object.pose || object.described) continue;
-    const bool unconfirmed =
-        object.detections < params_.min_views && object.last_seen < unconfirmed_before;
-    const bool part = !isFurniture(object) && isPartOfFurniture(map_, object.pose->position);
-    const bool doubtful = object.missed_detections > object.detections && object.existence < 0.5;
-    if (unconfirmed || part || doubtful || isSpurious(map_, object)) removed.push_back(object.id);
+    if (isUnconfirmed(object, unconfirmed_before) || isDenied(object) || isNoObject(object)) {
+      removed.push_back(object.id);
+    }
   }
   for (const Id id : removed) map_.remove(id);
 }

@@ -121,6 +121,7 @@ class Writer {
     attribute("told", object.described);
     attribute("seen", object.detections);
     attribute("missed", object.missed_detections);
+    attribute("overlooked", object.overlooked);
     attribute("last_seen", object.last_seen);
     attribute("existence", object.existence);
     for (const auto& [name, value] : object.properties) {
@@ -262,6 +263,7 @@ ObjectInstance readInstance(XmlElement& e) {
   object.described = e.truth("told");
   object.detections = e.integer("seen");
   object.missed_detections = e.integer("missed");
+  if (e.has("overlooked")) object.overlooked = e.integer("overlooked");
   object.last_seen = e.number("last_seen");
   object.existence = e.number("existence");
   hyselam::Once<ObjectPose> pose;

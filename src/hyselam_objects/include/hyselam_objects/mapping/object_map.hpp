@@ -86,6 +86,7 @@ struct ObjectInstance {
   std::vector<float> descriptor;   ///< mean of its views; empty: never seen
   int detections = 0;              ///< number of views
   int missed_detections = 0;       ///< number of frames that show its place free
+  int overlooked = 0;              ///< number of frames that show something else there
   double last_seen = 0.0;
   double existence = 0.5;           ///< probability that it is where the map says
   std::vector<ObjectStay> history;  ///< oldest first; the last one is the present

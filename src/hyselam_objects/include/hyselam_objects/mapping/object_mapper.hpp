@@ -88,6 +88,9 @@ class ObjectMapper {
   /// the same place as the detection; 0: none.
   Id findDescribed(const DetectedObject& seen, const std::string& kind) const;
   void assignPlace(Id object);
+  bool isUnconfirmed(const ObjectInstance& object, double before) const;
+  bool isDenied(const ObjectInstance& object) const;
+  bool isNoObject(const ObjectInstance& object) const;
   void removeUnconfirmed(double unconfirmed_before);
 
   ObjectMap& map_;
