@@ -401,6 +401,7 @@ class Flat {
       const Id id = map.addObject(kind);
       ObjectInstance& object = *map.find(id);
       object.existence = 1.0;
+      object.detections = 100;
       object.pose = ObjectPose{{x, y, z + 0.5 * lz}, {lx, ly, lz}, yaw, {}};
       names->push_back(name);
       const auto here = placeAt(x, y);

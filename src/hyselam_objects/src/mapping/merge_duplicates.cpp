@@ -10,19 +10,6 @@
 namespace hyselam_objects {
 namespace {
 
-/// Whether a box is no larger than objects of a kind are. Not known: it may be of any size.
-bool fits(const ObjectPose& box, const GenericObject* kind, double sigma) {
-  constexpr double kDeviations = 3.0, kMaxMargin = 0.06;  // [m]
-  if (kind == nullptr || !(kind->shape.size[0] > 0.0)) return true;
-  const std::array<double, 3> size{std::max(box.size[0], box.size[1]),
-                                   std::min(box.size[0], box.size[1]), box.size[2]};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double margin = std::min(kMaxMargin, kDeviations * kind->shape.spread[k]) + sigma;
-    if (size[k] > kind->shape.size[k] + margin) return false;
-  }
-  return true;
-}
-
 /// Whether two objects of one kind are together no larger than one of that kind.
 bool areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b,
                    const ObjectDictionary& dictionary, double sigma) {
@@ -30,7 +17,7 @@ bool areFacesOfOne(const ObjectInstance& a, const ObjectInstance& b,
   if (a.kind != b.kind || kind == nullptr || !(kind->shape.size[0] > 0.0)) return false;
   ObjectInstance both = a;
   unite(both, b);
-  return fits(*both.pose, kind, sigma);
+  return fitsKind(*both.pose, kind, sigma);
 }
 
 /// Adds what is known of the second one to the first one.
@@ -51,6 +38,18 @@ void merge(ObjectInstance& a, const ObjectInstance& b) {
 }
 
 }  // namespace
+
+bool fitsKind(const ObjectPose& box, const GenericObject* kind, double sigma) {
+  constexpr double kDeviations = 3.0, kMaxMargin = 0.06;  // [m]
+  if (kind == nullptr || !(kind->shape.size[0] > 0.0)) return true;
+  const std::array<double, 3> size{std::max(box.size[0], box.size[1]),
+                                   std::min(box.size[0], box.size[1]), box.size[2]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double margin = std::min(kMaxMargin, kDeviations * kind->shape.spread[k]) + sigma;
+    if (size[k] > kind->shape.size[k] + margin) return false;
+  }
+  return true;
+}
 
 void mergeDuplicates(ObjectMap& map, const ObjectDictionary& dictionary,
                      const MapperParams& params) {
@@ -82,14 +81,18 @@ bool isSpurious(const ObjectMap& map, const ObjectInstance& object,
                 const ObjectDictionary& dictionary, const MapperParams& params) {
   constexpr double kMargin = 0.03, kContained = 0.8, kShared = 0.5;
   if (isFurniture(object)) return false;
-  const bool is_too_large =
-      !fits(*object.pose, dictionary.find(object.kind), params.position_sigma);
+  const auto isTooLarge = [&](const ObjectInstance& each) {
+    return !fitsKind(*each.pose, dictionary.find(each.kind), params.position_sigma);
+  };
+  const bool is_too_large = isTooLarge(object);
   int within = 0;
   for (const ObjectInstance& other : map.objects) {
     if (other.id == object.id || !other.pose || isFurniture(other)) continue;
     if (other.existence < 0.5) continue;
     // Two objects do not share a place: of the same kind, one is a face of the other.
-    const bool alike = object.kind == other.kind || object.kind == kUnknownKind;
+    // One that is too large to be what it is taken for proves nothing.
+    const bool alike =
+        (object.kind == other.kind || object.kind == kUnknownKind) && !isTooLarge(other);
     const double of_other = containedFraction(*other.pose, *object.pose);
     if (alike && object.detections <= other.detections && of_other < kContained &&
         containedFraction(*object.pose, *other.pose) > kContained) {
@@ -98,7 +101,7 @@ bool isSpurious(const ObjectMap& map, const ObjectInstance& object,
     // What holds most of another one is both, seen as one.
     const bool is_rare = 2 * object.detections <= other.detections;
     if (of_other > kShared && (is_rare || (is_too_large && other.detections >= params.min_views))) return true;
-    if (!is_rare) continue;
+    if (!is_rare || isTooLarge(other)) continue;
     const double away = std::abs(object.pose->position.z - other.pose->position.z);
     if (isWithinFootprint(*other.pose, object.pose->position) &&
         away < 0.5 * other.pose->size[2] + kMargin) {

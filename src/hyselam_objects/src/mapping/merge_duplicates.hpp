@@ -5,6 +5,10 @@
 
 namespace hyselam_objects {
 
+/// Whether a box is no larger than objects of a kind are; nullptr and kinds whose size is not known:
+/// it may be of any size.
+bool fitsKind(const ObjectPose& box, const GenericObject* kind, double sigma);
+
 /// Merges instances at one spot, and faces of one object of a known kind.
 void mergeDuplicates(ObjectMap& map, const ObjectDictionary& dictionary,
                      const MapperParams& params);

@@ -71,7 +71,8 @@ void ObjectMapper::update(const OrganizedCloud& cloud, const PinholeCamera& came
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(instances[d])];
       seen_now.push_back(object.id);
       if (whole) addDetection(object, seen, kind, stamp, params_);
-    } else if (whole && (seen.furniture || !isPartOfFurniture(map_, seen.center()))) {
+    } else if (whole && (seen.furniture || !(isPartOfFurniture(map_, seen.center()) ||
+                                             isPartOfKnown(seen, kind)))) {
       seen_now.push_back(addInstance(seen, kind, stamp));
     }
   }
@@ -93,13 +94,27 @@ void ObjectMapper::resetMergedInstances(const std::vector<DetectedObject>& detec
       if (instances[e] < 0 || detections[d].furniture || detections[e].furniture) continue;
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(instances[e])];
       const bool two = object.pose && contains(*object.pose, detections[d].center()) &&
-                       contains(*object.pose, detections[e].center());
+                       contains(*object.pose, detections[e].center()) && !isWholeKind(object);
       if (two && !detections[e].partial) {
         object.pose.reset();
         object.outline.clear();
       }
     }
   }
+}
+
+bool ObjectMapper::isWholeKind(const ObjectInstance& object) const {
+  const GenericObject* kind = dictionary_.find(object.kind);
+  return object.pose && kind != nullptr && kind->shape.size[0] > 0.0 &&
+         fitsKind(*object.pose, kind, params_.position_sigma);
+}
+
+bool ObjectMapper::isPartOfKnown(const DetectedObject& seen, const std::string& kind) const {
+  return std::any_of(map_.objects.begin(), map_.objects.end(), [&](const ObjectInstance& object) {
+    return isWholeKind(object) && object.detections >= params_.min_views &&
+           object.existence > 0.5 && (kind.empty() || kind == object.kind) &&
+           contains(*object.pose, boxOf(seen).position);
+  });
 }
 
 Id ObjectMapper::addInstance(const DetectedObject& seen, const std::string& kind, double stamp) {
@@ -172,8 +187,10 @@ bool ObjectMapper::isDenied(const ObjectInstance& object) const {
   constexpr double kGone = 0.45;        // below: it was there, and may be elsewhere now
   constexpr double kBelieved = 0.95;    // between: views contradict each other
   constexpr double kOverlooked = 1.5;   // times as often as it is detected
+  constexpr int kKept = 6;  // views after which one that is gone is kept: it may be found elsewhere
   if (isFurniture(object)) return false;
-  const bool missed = object.missed_detections > object.detections && object.existence < 0.5;
+  const bool missed = object.missed_detections > object.detections && object.existence < 0.5 &&
+                      object.detections < kKept;
   const bool contradicted = object.missed_detections >= object.detections &&
                             object.existence > kGone && object.existence < kBelieved;
   return missed || contradicted || object.overlooked > kOverlooked * object.detections;

@@ -35,7 +35,8 @@ class RelationBuilder {
  public:
   RelationBuilder(ObjectMap& map, const RelationParams& params) : map_(map), params_(params) {
     for (const ObjectInstance& object : map_.objects) {
-      if (object.pose && object.existence > 0.5) extents_.push_back({object.id, *object.pose});
+      const bool believed = object.existence > 0.5 && object.detections >= params_.min_views;
+      if (object.pose && believed) extents_.push_back({object.id, *object.pose});
     }
   }
 
@@ -134,6 +135,7 @@ void RelationParams::describe(hyselam::ParameterVisitor& visit) {
         "between the boxes of two objects that are near each other");
   visit("max_level_difference", max_level_difference, Range::atLeast(0.0), "m",
         "of the undersides of objects side by side");
+  visit("min_views", min_views, Range::atLeast(0), "", "number of views of each of the two");
 }
 
 void RelationParams::validate() const {

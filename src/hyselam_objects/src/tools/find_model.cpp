@@ -7,6 +7,7 @@
 #include <iostream>
 #include <string>
 
+#include "hyselam_common/pose2.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 
