@@ -1,12 +1,13 @@
-// The descriptor of views beside VFH (Rusu et al. 2010) and ESF (Wohlkinger and Vincze 2011) of PCL:
-// nine kinds of things, learnt in a show room (20 views each), recognized by the nearest view (L1).
-// Pixels of a thing are the true ones, points are those of every second row and column.
+// The descriptor of views beside VFH (Rusu et al. 2010) and ESF (Wohlkinger and Vincze 2011) of
+// PCL: nine kinds of things, learnt in a show room (20 views each), recognized by the nearest view
+// (L1). Pixels of a thing are the true ones, points are those of every second row and column.
 //
 // Counters: views of a kind and share recognized as the right kind: `view_out`, each view of the
 // show room by the others; `flats`, views in drawn flats, among other things and partly hidden.
 // With the acceptance that is learnt (1.6 times the largest gap between the learnt views):
-// `accepted`, share of the views in the flats that are told as the right kind; `object_out`, share of
-// those whose kind was left out of the dictionary that are told as no kind. Time: of one description.
+// `accepted`, share of the views in the flats that are told as the right kind; `object_out`, share
+// of those whose kind was left out of the dictionary that are told as no kind. Time: of one
+// description.
 #include <benchmark/benchmark.h>
 #include <pcl/features/esf.h>
 #include <pcl/features/normal_3d.h>

@@ -1,9 +1,10 @@
-// findModel on scenes that do not show the carton of PCL's tutorial, and on the same with the carton
-// put onto the table: clouds of mOSD, learn* (on which the probability was fitted) and test* apart,
-// and drawn tables. Counters: scenes without it and with it, poses found without it, scenes with it
-// in which it was found at the right place (3 cm) and nothing else was. And whether the probability
-// is one, over all poses that were judged: its mean squared error (Brier) beside that of their share
-// that is right, and by bins of it, how many there are, its mean, and the share that is right.
+// findModel on scenes that do not show the carton of PCL's tutorial, and on the same with the
+// carton put onto the table: clouds of mOSD, learn* (on which the probability was fitted) and test*
+// apart, and drawn tables. Counters: scenes without it and with it, poses found without it, scenes
+// with it in which it was found at the right place (3 cm) and nothing else was. And whether the
+// probability is one, over all poses that were judged: its mean squared error (Brier) beside that
+// of their share that is right, and by bins of it, how many there are, its mean, and the share that
+// is right.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

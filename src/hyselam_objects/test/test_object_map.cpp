@@ -150,7 +150,8 @@ TEST(ObjectMap, RefusesHostileFiles) {
   for (int i = 0; i < 200; ++i) deep += "<a>";
   for (const std::string& text :
        {std::string(), std::string("no XML"), good.substr(0, good.size() / 2), deep,
-        replaced("version=\"2\"", "version=\"3\""), replaced("<outline>", "<outline>1 "), replaced("object_map:1", "object_map:9"),
+        replaced("version=\"2\"", "version=\"3\""), replaced("<outline>", "<outline>1 "),
+        replaced("object_map:1", "object_map:9"),
         replaced("<place", "<!DOCTYPE x [<!ENTITY a \"b\">]><place"),
         replaced("told=\"false\"", "told=\"perhaps\""), replaced("seen=\"0\"", "seen=\"-1\""),
         replaced("word=\"at\"", "word=\"beneath\""), replaced("id=\"1\"", "id=\"1e99\""),

@@ -193,8 +193,8 @@ ObjectReply FillMap::propertyAnswer(const ObjectStatement& question,
       const ObjectInstance& object = *map_.find(id);
       const auto colour = object.properties.find("colour");
       if (colour == object.properties.end()) continue;
-      const std::string word = parser_.propertyWord(language_, colour->second,
-                                                    parser_.kindIn(language_, object.kind));
+      const std::string word =
+          parser_.propertyWord(language_, colour->second, parser_.kindIn(language_, object.kind));
       if (std::find(items.begin(), items.end(), word) == items.end()) items.push_back(word);
     }
     if (items.empty()) return reply(ReplyKind::kAnswer, "unknown_colour");

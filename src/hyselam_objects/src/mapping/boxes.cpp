@@ -57,8 +57,7 @@ Outline outlineOf(const DetectedObject& seen) {
 }
 
 Outline outlineOf(const ObjectInstance& object) {
-  return object.outline.empty() && object.pose ? outlineOf(groundOf(*object.pose))
-                                               : object.outline;
+  return object.outline.empty() && object.pose ? outlineOf(groundOf(*object.pose)) : object.outline;
 }
 
 void unite(ObjectInstance& a, const ObjectInstance& b) {

@@ -41,7 +41,7 @@ PlaceEvidence evidenceOf(const OrganizedCloud& cloud, const PinholeCamera& camer
       const double v = low_v + (row + 0.5) / kRays * (high_v - low_v);
       const Eigen::Vector3d direction =
           camera_in_box * Eigen::Vector3d((u - camera.cx) / camera.focal_length,
-                                                   (v - camera.cy) / camera.focal_length, 1.0);
+                                          (v - camera.cy) / camera.focal_length, 1.0);
       double enter = 0.0, leave = 1e9;  // depths
       for (int k = 0; k < 3; ++k) {
         const double rate = std::abs(direction[k]) > 1e-9 ? direction[k] : 1e-9;

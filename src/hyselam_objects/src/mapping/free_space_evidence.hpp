@@ -17,6 +17,6 @@ enum class PlaceEvidence {
 /// of them end behind it. A low object hides little of what is behind it, so it is enough that a
 /// ray ends beyond the box by more than the noise.
 PlaceEvidence evidenceOf(const OrganizedCloud& cloud, const PinholeCamera& camera,
-                    const ObjectPose& pose, const MapperParams& params);
+                         const ObjectPose& pose, const MapperParams& params);
 
 }  // namespace hyselam_objects

@@ -100,7 +100,8 @@ bool isSpurious(const ObjectMap& map, const ObjectInstance& object,
     }
     // What holds most of another one is both, seen as one.
     const bool is_rare = 2 * object.detections <= other.detections;
-    if (of_other > kShared && (is_rare || (is_too_large && other.detections >= params.min_views))) return true;
+    if (of_other > kShared && (is_rare || (is_too_large && other.detections >= params.min_views)))
+      return true;
     if (!is_rare || isTooLarge(other)) continue;
     const double away = std::abs(object.pose->position.z - other.pose->position.z);
     if (isWithinFootprint(*other.pose, object.pose->position) &&

@@ -5,8 +5,8 @@
 
 namespace hyselam_objects {
 
-/// Whether a box is no larger than objects of a kind are; nullptr and kinds whose size is not known:
-/// it may be of any size.
+/// Whether a box is no larger than objects of a kind are; nullptr and kinds whose size is not
+/// known: it may be of any size.
 bool fitsKind(const ObjectPose& box, const GenericObject* kind, double sigma);
 
 /// Merges instances at one spot, and faces of one object of a known kind.

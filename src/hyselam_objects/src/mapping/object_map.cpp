@@ -98,7 +98,8 @@ class Checker {
       require(isWord(name) && isWord(value), where, "a property is no word");
     }
     require(isShare(object.existence), where, "its existence is not in 0 .. 1");
-    require(object.detections >= 0 && object.missed_detections >= 0 && object.overlooked >= 0, where, "a count is negative");
+    require(object.detections >= 0 && object.missed_detections >= 0 && object.overlooked >= 0,
+            where, "a count is negative");
     require(std::isfinite(object.last_seen), where, "the time it was last seen is not finite");
     const auto& d = object.descriptor;
     require(std::all_of(d.begin(), d.end(), [](float v) { return std::isfinite(v); }), where,

@@ -71,8 +71,8 @@ void ObjectMapper::update(const OrganizedCloud& cloud, const PinholeCamera& came
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(instances[d])];
       seen_now.push_back(object.id);
       if (whole) addDetection(object, seen, kind, stamp, params_);
-    } else if (whole && (seen.furniture || !(isPartOfFurniture(map_, seen.center()) ||
-                                             isPartOfKnown(seen, kind)))) {
+    } else if (whole && (seen.furniture ||
+                         !(isPartOfFurniture(map_, seen.center()) || isPartOfKnown(seen, kind)))) {
       seen_now.push_back(addInstance(seen, kind, stamp));
     }
   }
@@ -184,9 +184,9 @@ bool ObjectMapper::isUnconfirmed(const ObjectInstance& object, double before) co
 
 // By views that show its place free, or something else there.
 bool ObjectMapper::isDenied(const ObjectInstance& object) const {
-  constexpr double kGone = 0.45;        // below: it was there, and may be elsewhere now
-  constexpr double kBelieved = 0.95;    // between: views contradict each other
-  constexpr double kOverlooked = 1.5;   // times as often as it is detected
+  constexpr double kGone = 0.45;       // below: it was there, and may be elsewhere now
+  constexpr double kBelieved = 0.95;   // between: views contradict each other
+  constexpr double kOverlooked = 1.5;  // times as often as it is detected
   constexpr int kKept = 6;  // views after which one that is gone is kept: it may be found elsewhere
   if (isFurniture(object)) return false;
   const bool missed = object.missed_detections > object.detections && object.existence < 0.5 &&
@@ -200,8 +200,7 @@ bool ObjectMapper::isDenied(const ObjectInstance& object) const {
 bool ObjectMapper::isNoObject(const ObjectInstance& object) const {
   if (isFurniture(object)) return false;
   return isPartOfFurniture(map_, object.pose->position) ||
-         reachesIntoFurniture(map_, *object.pose) ||
-         isSpurious(map_, object, dictionary_, params_);
+         reachesIntoFurniture(map_, *object.pose) || isSpurious(map_, object, dictionary_, params_);
 }
 
 void ObjectMapper::removeUnconfirmed(double unconfirmed_before) {

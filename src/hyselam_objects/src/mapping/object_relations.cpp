@@ -111,8 +111,7 @@ class RelationBuilder {
     if (length < kMinViewDistance) return;
     // Seen from the center of the place: along and across the line of sight.
     const double vx = at->vector->x / length, vy = at->vector->y / length;
-    const double dx = a.box.position.x - b.box.position.x,
-                 dy = a.box.position.y - b.box.position.y;
+    const double dx = a.box.position.x - b.box.position.x, dy = a.box.position.y - b.box.position.y;
     const double aside = vx * dy - vy * dx, along = vx * dx + vy * dy;
     if (std::abs(aside) < 2.0 * std::abs(along)) return;
     relate(a, aside > 0.0 ? RelationWord::kLeft : RelationWord::kRight, b);

@@ -110,10 +110,10 @@ GroundBox boxAround(const Outline& outline) {
   box.length = length(first);
   box.width = length(second);
   box.yaw = std::atan2(direction(first).y(), direction(first).x());
-  const double along = outline[first] - 0.5 * (outline[first] +
-                                               outline[(first + kHalf) % kOutlineDirections]);
-  const double across = outline[second] - 0.5 * (outline[second] +
-                                                 outline[(second + kHalf) % kOutlineDirections]);
+  const double along =
+      outline[first] - 0.5 * (outline[first] + outline[(first + kHalf) % kOutlineDirections]);
+  const double across =
+      outline[second] - 0.5 * (outline[second] + outline[(second + kHalf) % kOutlineDirections]);
   const Eigen::Vector2d middle = along * direction(first) + across * direction(second);
   box.x = middle.x();
   box.y = middle.y();
@@ -122,8 +122,10 @@ GroundBox boxAround(const Outline& outline) {
 
 std::array<Eigen::Vector2d, 4> cornersOf(const GroundBox& box) {
   const Eigen::Vector2d middle(box.x, box.y);
-  const Eigen::Vector2d u = 0.5 * box.length * Eigen::Vector2d(std::cos(box.yaw), std::sin(box.yaw));
-  const Eigen::Vector2d v = 0.5 * box.width * Eigen::Vector2d(-std::sin(box.yaw), std::cos(box.yaw));
+  const Eigen::Vector2d u =
+      0.5 * box.length * Eigen::Vector2d(std::cos(box.yaw), std::sin(box.yaw));
+  const Eigen::Vector2d v =
+      0.5 * box.width * Eigen::Vector2d(-std::sin(box.yaw), std::cos(box.yaw));
   return {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
 }
 

@@ -56,8 +56,7 @@ int main(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.add_option("MODEL", model_file, "PCD file of the object, from one view or several [m]")
       ->required();
-  app.add_option("SCENE", scene_file,
-                 "PCD file; z forward, x right, y down as cameras have it [m]")
+  app.add_option("SCENE", scene_file, "PCD file; z forward, x right, y down as cameras have it [m]")
       ->required();
   app.add_option("--min-probability", params.min_probability,
                  "of a pose that is told, 0 .. 1; 0: all that were looked at");
@@ -65,7 +64,8 @@ int main(int argc, char** argv) {
                  "distance of the points that both clouds are thinned to [m]");
   app.add_option("--model-sampling", params.model_sampling, "distance of keypoints, model [m]");
   app.add_option("--scene-sampling", params.scene_sampling, "distance of keypoints, scene [m]");
-  app.add_option("--descriptor-radius", params.descriptor_radius, "of a keypoint's surroundings [m]");
+  app.add_option("--descriptor-radius", params.descriptor_radius,
+                 "of a keypoint's surroundings [m]");
 
   return hyselam::runTool(argc, argv, app, [&] {
     const OrganizedCloud model = readPcd(model_file).cloud, scene = readPcd(scene_file).cloud;

@@ -43,8 +43,7 @@ Eigen::Isometry3d poseOf(const tf2::BufferCore& transforms, const std::string& m
       transforms.lookupTransform(map_frame, header.frame_id, header.stamp).transform;
   const auto& t = pose.translation;
   const auto& q = pose.rotation;
-  return Eigen::Translation3d(t.x, t.y, t.z) *
-         Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  return Eigen::Translation3d(t.x, t.y, t.z) * Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
 }
 
 class BagMapper {
@@ -67,7 +66,8 @@ class BagMapper {
                                           options_.camera + "/color/image_raw"};
     for (const rosbag::MessageInstance& m : rosbag::View(bag, rosbag::TopicQuery(topics))) {
       if (m.getTopic() == topics[0]) {
-        if (const auto info = m.instantiate<sensor_msgs::CameraInfo>()) camera_ = cameraFromInfo(*info);
+        if (const auto info = m.instantiate<sensor_msgs::CameraInfo>())
+          camera_ = cameraFromInfo(*info);
       } else if (m.getTopic() == topics[1]) {
         depth_ = m.instantiate<sensor_msgs::Image>();
       } else {
@@ -82,9 +82,12 @@ class BagMapper {
                                 "has no depth and color images of equal stamps with a known pose");
     }
     mapper_.consolidate(mapper_.time() - options_.unconfirmed_for);
-    told = {{"frames", frames_},       {"without_pose", without_pose_},
-            {"held_back", held_back_}, {"detections", detections_},
-            {"objects", map_.objects.size()}, {"relations", map_.relations.size()}};
+    told = {{"frames", frames_},
+            {"without_pose", without_pose_},
+            {"held_back", held_back_},
+            {"detections", detections_},
+            {"objects", map_.objects.size()},
+            {"relations", map_.relations.size()}};
     return map_;
   }
 
@@ -142,7 +145,8 @@ int main(int argc, char** argv) {
   app.add_option("--dictionary", options.dictionary_file, "object dictionary (XML)");
   app.add_option("--frame", options.map_frame, "frame of the map");
   app.add_option("--camera", options.camera, "namespace of the camera's topics");
-  app.add_option("--frame-period", options.frame_period, "frames that come sooner are left out [s]");
+  app.add_option("--frame-period", options.frame_period,
+                 "frames that come sooner are left out [s]");
 
   return hyselam::runTool(argc, argv, app, [&] {
     ObjectDictionary dictionary;
