@@ -62,20 +62,26 @@ class ObjectBagTest(unittest.TestCase):
                  CAMERA + "/depth/image_raw": Image, CAMERA + "/color/image_raw": Image}
         publishers = {topic: rospy.Publisher(topic, kind, queue_size=1000, latch=topic == "/tf_static") for topic, kind in kinds.items()}
         wait_until(lambda: all(each.get_num_connections() > 0 for each in publishers.values()), "nobody hears the bag")
+        poses, stamps, held = [], {}, {}
         with rosbag.Bag(cls.film) as film:
             for topic, msg, _ in film.read_messages(["/tf", "/tf_static"]):
-                publishers[topic].publish(msg)
-            stamps, held = {}, {}
+                if topic == "/tf_static":
+                    publishers[topic].publish(msg)
+                else:
+                    poses.append(msg)
             for topic, msg, _ in film.read_messages([t for t in kinds if not t.startswith("/tf")]):
                 if topic.endswith("camera_info"):
                     held[topic] = msg
                     continue
                 stamps.setdefault(msg.header.stamp, {})[topic] = msg
         cls.frames = 0
+        first, last = (poses[i].transforms[0].header.stamp for i in (0, -1))
         info = CAMERA + "/depth/camera_info"
         for stamp in sorted(stamps):
-            if len(stamps[stamp]) < 2:
+            if len(stamps[stamp]) < 2 or not first <= stamp <= last:
                 continue
+            while poses and poses[0].transforms[0].header.stamp <= stamp + rospy.Duration(1.0):
+                publishers["/tf"].publish(poses.pop(0))  # the listener keeps 10 s
             publishers[info].publish(held[info])
             if cls.frames == 0:
                 wait_until(lambda: "camera_info" not in cls.status().message and cls.status().name, lambda: str(cls.status()))
