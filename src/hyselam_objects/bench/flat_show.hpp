@@ -26,8 +26,10 @@ struct FlatScores {
   std::vector<std::string> faults;
 };
 
-/// Things shown one by one in the middle of an empty room, from all around.
-inline ObjectDictionary learnKinds() {
+/// Things shown one by one in the middle of an empty room, on a table and on the floor, from all
+/// around: ten frames each.
+inline void showKinds(const std::function<void(const std::string& kind, const Flat& room,
+                                               const Frame& frame)>& look) {
   const char* plan = R"(
 plan: show
 description: an empty room with a table
@@ -41,12 +43,9 @@ furniture:
 places:
   - {name: room, at: [1.0, 1.0], polygon: [[0.1, 0.1], [5.9, 0.1], [5.9, 5.9], [0.1, 5.9]]}
 )";
-  ObjectDictionary dictionary;
   std::uint64_t seed = 100;
   for (const char* kind :
        {"cup", "bottle", "cereal box", "book", "PC", "lamp", "plant pot", "bin", "bowl"}) {
-    std::vector<std::vector<float>> views;
-    std::vector<Eigen::Vector3d> sizes;
     for (const bool low : {false, true}) {
       hyselam_sim::FloorPlan room = hyselam_sim::parseFloorPlan(plan, "show");
       if (low) room.furniture.clear();
@@ -55,17 +54,29 @@ places:
         const double angle = 0.3 + i * hyselam::kPi / 5.0, away = (low ? 2.5 : 1.5) + 0.2 * (i % 4);
         const hyselam::Pose2 base{3.0 - away * std::cos(angle), 3.0 - away * std::sin(angle),
                                   angle};
-        const Frame frame = flat.take(base, 0.0, ++seed);
-        for (const DetectedObject& seen : detectObjects(frame.cloud, frame.camera.in_map)) {
-          const Point3 c = seen.center();
-          if (seen.furniture || seen.partial || std::hypot(c.x - 3.0, c.y - 3.0) > 0.25) continue;
-          views.push_back(seen.descriptor);
-          sizes.emplace_back(seen.high.x - seen.low.x, seen.high.y - seen.low.y,
-                             seen.high.z - seen.low.z);
-        }
+        look(kind, flat, flat.take(base, 0.0, ++seed));
       }
     }
-    if (!views.empty()) dictionary.put(learnObject(kind, views, sizes));
+  }
+}
+
+inline ObjectDictionary learnKinds() {
+  struct Shown {
+    std::vector<std::vector<float>> views;
+    std::vector<Eigen::Vector3d> sizes;
+  };
+  std::map<std::string, Shown> kinds;
+  showKinds([&](const std::string& kind, const Flat&, const Frame& frame) {
+    for (const DetectedObject& seen : detectObjects(frame.cloud, frame.camera.in_map)) {
+      const Point3 c = seen.center();
+      if (seen.furniture || seen.partial || std::hypot(c.x - 3.0, c.y - 3.0) > 0.25) continue;
+      kinds[kind].views.push_back(seen.descriptor);
+      kinds[kind].sizes.push_back(seen.size());
+    }
+  });
+  ObjectDictionary dictionary;
+  for (const auto& [kind, shown] : kinds) {
+    dictionary.put(learnObject(kind, shown.views, shown.sizes));
   }
   return dictionary;
 }

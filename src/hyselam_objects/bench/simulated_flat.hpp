@@ -263,6 +263,7 @@ struct Frame {
   PinholeCamera camera;
   double stamp = 0.0;
   std::map<std::string, int> pixels;  ///< of each thing and piece of furniture in it
+  std::vector<std::int32_t> owners;   ///< of each pixel, see Flat::ownerName()
 };
 
 class Flat {
@@ -348,7 +349,10 @@ class Flat {
     cloud.height = camera.height;
     std::map<std::int32_t, int> owners;
     for (int i = 0; i < picture.owner.rows; ++i) {
-      for (int j = 0; j < picture.owner.cols; ++j) ++owners[picture.owner.at<std::int32_t>(i, j)];
+      for (int j = 0; j < picture.owner.cols; ++j) {
+        frame.owners.push_back(picture.owner.at<std::int32_t>(i, j));
+        ++owners[frame.owners.back()];
+      }
     }
     for (const auto& [owner, pixels] : owners) {
       frame.pixels[scene_.ownerName(static_cast<std::uint32_t>(owner))] = pixels;
@@ -371,6 +375,11 @@ class Flat {
     return frame;
   }
 
+  /// Of the thing or piece of furniture that a pixel shows.
+  std::string ownerName(std::int32_t owner) const {
+    return scene_.ownerName(static_cast<std::uint32_t>(owner));
+  }
+
   std::optional<std::pair<std::string, Point3>> placeAt(double x, double y) const {
     for (const auto& place : plan_.places) {
       if (!hyselam_sim::contains(place.outline, {x, y})) continue;
@@ -388,11 +397,12 @@ class Flat {
   ObjectMap truth(std::vector<std::string>* names) const {
     ObjectMap map;
     const auto add = [&](const std::string& name, const std::string& kind, double x, double y,
-                         double z, double lx, double ly, double lz) {
+                         double z, double lx, double ly, double lz, double yaw = 0.0) {
       const Id id = map.addObject(kind);
       ObjectInstance& object = *map.find(id);
       object.existence = 1.0;
-      object.pose = ObjectPose{{x, y, z + 0.5 * lz}, {lx, ly, lz}, 0.0, {}};
+      object.detections = 100;
+      object.pose = ObjectPose{{x, y, z + 0.5 * lz}, {lx, ly, lz}, yaw, {}};
       names->push_back(name);
       const auto here = placeAt(x, y);
       if (!here) return;
@@ -415,11 +425,9 @@ class Flat {
           piece.height);
     }
     for (const Thing& t : things_) {
-      const double c = std::abs(std::cos(t.pose.theta)), s = std::abs(std::sin(t.pose.theta));
       const bool round = t.shape == Thing::Shape::kCylinder;
-      const double lx = round ? t.size[0] : c * t.size[0] + s * t.size[1];
-      const double ly = round ? t.size[0] : s * t.size[0] + c * t.size[1];
-      add(t.name, t.kind, t.pose.x, t.pose.y, t.z, lx, ly, t.size[2]);
+      add(t.name, t.kind, t.pose.x, t.pose.y, t.z, t.size[0], t.size[round ? 0 : 1], t.size[2],
+          round ? 0.0 : t.pose.theta);
     }
     updateRelations(map);
     return map;

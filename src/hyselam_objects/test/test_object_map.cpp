@@ -29,6 +29,7 @@ ObjectMap sample() {
   object.properties = {{"colour", "red <&\"> \xc3\xa4"}};
   object.pose =
       ObjectPose{{1.0, 2.0, 0.8}, {0.1, 0.1, 0.12}, 0.3, {1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-4}};
+  object.outline = outlineOf(GroundBox{1.0, 2.0, 0.1, 0.1, 0.3});
   object.descriptor = {0.1f, 0.2f};
   object.detections = 4;
   object.last_seen = 1700000000.25;
@@ -76,6 +77,17 @@ TEST(ObjectMap, ReadsBackWhatItWrites) {
   EXPECT_TRUE(dictionaryFromXml(toXml(dictionary)) == dictionary);
 }
 
+// As files of version 1 are: without outlines.
+TEST(ObjectMap, ReadsOlderFiles) {
+  ObjectMap map = sample();
+  for (ObjectInstance& object : map.objects) object.outline.clear();
+  std::string text = toXml(map);
+  const std::size_t at = text.find("version=\"2\"");
+  ASSERT_NE(at, std::string::npos);
+  text[at + 9] = '1';
+  EXPECT_TRUE(objectMapFromXml(text) == map);
+}
+
 TEST(ObjectMap, FollowsItsSchema) {
   if (std::system("xmllint --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no xmllint here";
   TemporaryDirectory directory;
@@ -116,6 +128,8 @@ TEST(ObjectMap, RefusesInvalidMaps) {
   refused([](ObjectMap& m) { m.objects[1].pose->position.x = INFINITY; }, "not finite");
   refused([](ObjectMap& m) { m.objects[1].pose->size[1] = -1.0; }, "size");
   refused([](ObjectMap& m) { m.objects[1].pose->covariance[4] = -1.0; }, "covariance");
+  refused([](ObjectMap& m) { m.objects[1].outline.pop_back(); }, "72 directions");
+  refused([](ObjectMap& m) { m.objects[1].outline[3] = NAN; }, "not finite");
   refused([](ObjectMap& m) { m.objects[1].history[0].until = 0.0; }, "stay");
   refused([](ObjectMap& m) { m.relations[0].object = 9; }, "no such object");
   refused([](ObjectMap& m) { m.relations.back().other = 2; }, "is itself");
@@ -136,7 +150,8 @@ TEST(ObjectMap, RefusesHostileFiles) {
   for (int i = 0; i < 200; ++i) deep += "<a>";
   for (const std::string& text :
        {std::string(), std::string("no XML"), good.substr(0, good.size() / 2), deep,
-        replaced("version=\"1\"", "version=\"2\""), replaced("object_map:1", "object_map:9"),
+        replaced("version=\"2\"", "version=\"3\""), replaced("<outline>", "<outline>1 "),
+        replaced("object_map:1", "object_map:9"),
         replaced("<place", "<!DOCTYPE x [<!ENTITY a \"b\">]><place"),
         replaced("told=\"false\"", "told=\"perhaps\""), replaced("seen=\"0\"", "seen=\"-1\""),
         replaced("word=\"at\"", "word=\"beneath\""), replaced("id=\"1\"", "id=\"1e99\""),

@@ -1,6 +1,7 @@
 // Detections become a map: association, evidence, moved things, relations, movability.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -253,6 +254,104 @@ TEST_F(ObjectMapperInRoom, DescribedObjectIsDetectedAtItsPlace) {
   EXPECT_EQ(map_.objects.size(), 2u);
   ASSERT_TRUE(map_.find(told)->pose);
   EXPECT_EQ(map_.find(told)->kind, "cup");
+}
+
+// A box of 40 x 18 x 38 cm, as a PC is, that lies across the line of sight, and its two faces.
+class ObjectMapperWithPc : public ObjectMapperInRoom {
+ protected:
+  ObjectMapperWithPc() {
+    const std::array<double, 3> whole{0.18, 0.4, 0.38};
+    ObjectDictionary dictionary;
+    dictionary.put(learnObject("PC",
+                               {pc(2.0, 0.0, whole).descriptor, pc(2.0, 0.0, kFront).descriptor,
+                                pc(2.0, 0.0, kSide).descriptor},
+                               {{0.4, 0.18, 0.38}, {0.4, 0.18, 0.38}, {0.4, 0.18, 0.38}}));
+    mapper_.setDictionary(dictionary);
+  }
+  static DetectedObject pc(double x, double y, std::array<double, 3> size) {
+    return seen(x, y, 0.75, size, 0x101010);
+  }
+  int countPcs() const {
+    return static_cast<int>(std::count_if(map_.objects.begin(), map_.objects.end(),
+                                          [](const auto& o) { return o.kind == "PC"; }));
+  }
+
+  static constexpr std::array<double, 3> kFront{0.02, 0.38, 0.38}, kSide{0.17, 0.02, 0.38};
+};
+
+TEST_F(ObjectMapperWithPc, TwoEqualOnesSideBySideStayTwo) {
+  const std::array<double, 3> whole{0.18, 0.4, 0.38};
+  look({table_, pc(2.0, -0.25, whole), pc(2.0, 0.2, whole)}, 1.0);
+  mapper_.consolidate();
+  EXPECT_EQ(countPcs(), 2);
+}
+
+TEST_F(ObjectMapperWithPc, FacesOfOneBecomeOneAndStartNoOther) {
+  look({table_, pc(1.92, 0.0, kFront), pc(2.0, 0.18, kSide)}, 1.0);
+  EXPECT_EQ(countPcs(), 2);
+  mapper_.consolidate();
+  ASSERT_EQ(countPcs(), 1);
+  const ObjectPose& pose = *map_.objects.back().pose;
+  EXPECT_NEAR(pose.size[0], 0.18, 0.03);
+  EXPECT_NEAR(pose.size[1], 0.38, 0.03);
+  look({table_, pc(1.92, 0.0, kFront), pc(2.0, 0.18, kSide)}, 10.0);
+  EXPECT_EQ(countPcs(), 1) << "a face within the box of a whole one";
+}
+
+TEST_F(ObjectMapperWithPc, OneThatIsLargerThanItsKindAndHoldsAnotherIsNoObject) {
+  const std::array<double, 3> whole{0.18, 0.4, 0.38}, both{0.18, 0.95, 0.38};
+  look({table_, pc(2.0, 0.0, both)}, 1.0, 5);
+  look({table_, pc(2.0, -0.25, whole), pc(2.0, 0.25, whole)}, 10.0);
+  mapper_.consolidate();
+  EXPECT_EQ(countPcs(), 2);
+  for (const ObjectInstance& object : map_.objects) {
+    if (object.kind == "PC") EXPECT_LT(object.pose->size[1], 0.5);
+  }
+}
+
+TEST_F(ObjectMapperInRoom, WhatIsOverlookedTooOftenIsNoObject) {
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed)}, 1.0, 2);
+  look({table_, seen(1.9, -0.1, 0.75, kCup, kBlue)}, 5.0, 6);
+  cloud_.points.assign(cloud_.points.size(), Point(0.0f, 0.0f, 1.9f));  // something is there
+  look({table_}, 20.0);
+  EXPECT_EQ(find("red")->overlooked, 4 + 0);
+  mapper_.consolidate();
+  EXPECT_EQ(find("red"), nullptr) << "seen twice, overlooked four times";
+  EXPECT_NE(find("blue"), nullptr) << "seen six times, overlooked four times";
+}
+
+TEST_F(ObjectMapperInRoom, AViewOfATableAndAThingOnItIsNoObject) {
+  look({table_, seen(2.3, 0.3, 0.2, {0.2, 0.2, 1.2}, kRed)}, 1.0);
+  mapper_.consolidate();
+  EXPECT_EQ(find("red"), nullptr);
+}
+
+// Places are looked at again and again before a thing is found elsewhere.
+TEST_F(ObjectMapperInRoom, WhatIsGoneIsKeptToBeFoundAgain) {
+  look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 1.0, 8);
+  mapper_.consolidate();
+  const Id cup = find("red")->id;
+  for (int i = 0; i < 5; ++i) {
+    look({table_}, 1000.0 + 10.0 * i);
+    mapper_.consolidate();
+  }
+  ASSERT_NE(find("red"), nullptr);
+  EXPECT_LT(find("red")->existence, 0.1);
+  look({table_, seen(2.3, -0.3, 0.75, kCup, kRed)}, 1100.0);
+  mapper_.consolidate();
+  EXPECT_EQ(find("red")->id, cup);
+  EXPECT_NEAR(find("red")->pose->position.y, -0.3, 0.02);
+}
+
+TEST_F(ObjectMapperInRoom, RelationsNeedBothEndsSeen) {
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed)}, 1.0);
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed), seen(2.1, -0.1, 0.75, kBook, kBlue)}, 8.0, 1);
+  mapper_.consolidate(0.0);  // what was seen once is kept for now
+  ASSERT_NE(find("blue"), nullptr);
+  EXPECT_FALSE(isSaid(find("red")->id, RelationWord::kNear, find("blue")->id));
+  look({table_, seen(1.9, 0.1, 0.75, kCup, kRed), seen(2.1, -0.1, 0.75, kBook, kBlue)}, 9.0, 1);
+  mapper_.consolidate(0.0);
+  EXPECT_TRUE(isSaid(find("red")->id, RelationWord::kNear, find("blue")->id));
 }
 
 TEST_F(ObjectMapperInRoom, RefusesBadInput) {

@@ -149,7 +149,44 @@ TEST(ObjectText, DetectsTheLanguage) {
             "Anotado: um copo vermelho está na cozinha.");
   EXPECT_EQ(fill.process("There is a red pen in the office.").front().text,
             "Noted: a red pen is in the office.");
-  EXPECT_EQ(fill.process("Onde está a caneta?").front().text, "Não sei nada de 'caneta'.");
+  EXPECT_EQ(fill.process("Onde está a cadeira?").front().text, "Não sei nada de 'cadeira'.");
+}
+
+TEST(ObjectText, KnowsInOneLanguageWhatWasNamedInTheOther) {
+  const ObjectParser parser = ObjectParser::shipped();
+  ObjectMap map;
+  FillMap fill(parser, map);
+  fill.process("There is a red pen on the table in room 3.");
+  fill.process("Há uma garrafa na mesa da sala 5.");
+  const auto contains = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text << " has no " << part;
+  };
+  contains(fill.process("Onde está a caneta?").front().text, "caneta vermelha");
+  contains(fill.process("Where is the bottle?").front().text, "bottle");
+  EXPECT_EQ(std::count_if(map.objects.begin(), map.objects.end(),
+                          [](const auto& o) { return o.kind == "pen" || o.kind == "caneta"; }),
+            1);
+  EXPECT_TRUE(parser.isSameKind("garrafa", "bottle"));
+  EXPECT_FALSE(parser.isSameKind("garrafa", "pen"));
+  EXPECT_EQ(parser.kindIn("pt", "bottle"), "garrafa");
+  EXPECT_EQ(parser.kindIn("en", "garrafa"), "bottle");
+  EXPECT_EQ(parser.kindIn("pt", "gizmo"), "gizmo");
+}
+
+// A word that means different things in the two languages would join them.
+TEST(ObjectText, KindsOfOneLanguageAreNoOthersOfTheOther) {
+  const std::string folder = std::string(HYSELAM_OBJECTS_SOURCE_DIR) + "/grammar/";
+  const YAML::Node pt = YAML::LoadFile(folder + "words_pt.yaml");
+  const ObjectParser english = ObjectParser::shipped("en");
+  std::set<std::string> nouns;
+  for (const YAML::Node& noun : YAML::LoadFile(folder + "words_en.yaml")["nouns"]) {
+    nouns.insert(noun.Scalar());
+  }
+  EXPECT_GE(pt["english"].size(), 100u);
+  for (const auto& pair : pt["english"]) {
+    EXPECT_EQ(nouns.count(pair.first.Scalar()), 0u) << pair.first.Scalar();
+    EXPECT_EQ(english.kindOf(pair.second.Scalar()).kind, pair.second.Scalar());
+  }
 }
 
 TEST(ObjectText, UnderstandsHeldOutSentences) {

@@ -277,7 +277,8 @@ bool FillMap::resolveOnes(ObjectStatement* statement) const {
     if (!phrase.one) return true;
     if (kind.empty()) return false;
     // "a vermelha" is no cup
-    if (!phrase.form.empty() && !parser_.mayHaveForm(language_, kind, phrase.form)) return false;
+    const std::string here = parser_.kindIn(language_, kind);
+    if (!phrase.form.empty() && !parser_.mayHaveForm(language_, here, phrase.form)) return false;
     phrase.kind = kind;
     return true;
   };

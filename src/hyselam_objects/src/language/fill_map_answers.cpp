@@ -180,7 +180,7 @@ bool FillMap::startsWithMany(const std::vector<Id>& objects) const {
   const ObjectInstance& first = *map_.find(objects.front());
   return std::count_if(objects.begin(), objects.end(), [&](Id id) {
            const ObjectInstance& each = *map_.find(id);
-           return each.kind == first.kind && each.properties == first.properties;
+           return parser_.isSameKind(each.kind, first.kind) && each.properties == first.properties;
          }) > 1;
 }
 
@@ -193,7 +193,8 @@ ObjectReply FillMap::propertyAnswer(const ObjectStatement& question,
       const ObjectInstance& object = *map_.find(id);
       const auto colour = object.properties.find("colour");
       if (colour == object.properties.end()) continue;
-      const std::string word = parser_.propertyWord(language_, colour->second, object.kind);
+      const std::string word =
+          parser_.propertyWord(language_, colour->second, parser_.kindIn(language_, object.kind));
       if (std::find(items.begin(), items.end(), word) == items.end()) items.push_back(word);
     }
     if (items.empty()) return reply(ReplyKind::kAnswer, "unknown_colour");

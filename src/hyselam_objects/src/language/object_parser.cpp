@@ -158,6 +158,27 @@ std::string ObjectParser::numberWord(const std::string& language, int number,
   return std::to_string(number);
 }
 
+std::string ObjectParser::englishOf(const std::string& kind) const {
+  for (const auto& words : words_) {
+    const auto found = words->english.find(kind);
+    if (found != words->english.end()) return found->second;
+  }
+  return kind;
+}
+
+bool ObjectParser::isSameKind(const std::string& a, const std::string& b) const {
+  return a == b || englishOf(a) == englishOf(b);
+}
+
+std::string ObjectParser::kindIn(const std::string& language, const std::string& kind) const {
+  const ObjectWords& words = *words_[indexOf(language)];
+  if (words.english.count(kind) != 0) return kind;
+  const std::string english = englishOf(kind);
+  const auto found = words.of_english.find(english);
+  if (found != words.of_english.end()) return found->second;
+  return words.isNoun(english) ? english : kind;
+}
+
 bool ObjectParser::isUncounted(const std::string& language, const std::string& kind) const {
   return words_[indexOf(language)]->mass.count(lowerCase(kind)) != 0 ||
          isAlwaysPlural(language, kind);

@@ -93,11 +93,12 @@ std::string FillMap::bareName(Id object, bool plural) const {
   constexpr std::array<const char*, 5> kOrder{"material", "colour", "age", "size", "position"};
   const ObjectInstance* found = map_.find(object);
   if (found == nullptr) return "";
-  std::string text = plural ? parser_.pluralOf(language_, found->kind) : found->kind;
+  const std::string kind = parser_.kindIn(language_, found->kind);
+  std::string text = plural ? parser_.pluralOf(language_, kind) : kind;
   for (const char* const key : kOrder) {
     const auto property = found->properties.find(key);
     if (property == found->properties.end()) continue;
-    const std::string word = parser_.propertyWord(language_, property->second, found->kind, plural);
+    const std::string word = parser_.propertyWord(language_, property->second, kind, plural);
     // "segunda gaveta da secretária", but "gaveta de baixo"
     const bool before = std::string(key) == "position" &&
                         parser_.grammar(language_).has("ordinal") &&
@@ -110,13 +111,14 @@ std::string FillMap::bareName(Id object, bool plural) const {
 std::string FillMap::countedName(const std::vector<Id>& objects, bool definite) const {
   const ObjectInstance* found = map_.find(objects.front());
   if (found == nullptr) return "";
+  const std::string kind = parser_.kindIn(language_, found->kind);
   const bool plural = objects.size() > 1;
   const std::string name = bareName(found->id, plural);
   const auto owner = found->properties.find("owner");
-  const std::string head = parser_.propertiesAfter(language_) ? found->kind : name;
+  const std::string head = parser_.propertiesAfter(language_) ? kind : name;
   const auto number = [&] {
     return parser_.numberWord(language_, static_cast<int>(objects.size()),
-                              parser_.formOf(language_, found->kind));
+                              parser_.formOf(language_, kind));
   };
   if (owner != found->properties.end()) {
     const std::string counted = plural ? number() + " " + name : name;
@@ -129,7 +131,7 @@ std::string FillMap::countedName(const std::vector<Id>& objects, bool definite) 
                   {{"property", named ? whose : formed("owner", whose, {{"what", whose}})},
                    {"what", counted}});
   }
-  const bool uncounted = parser_.isUncounted(language_, found->kind);
+  const bool uncounted = parser_.isUncounted(language_, kind);
   if (uncounted && !plural) return definite ? formed("the", head, {{"what", name}}) : name;
   if (plural && !definite) return number() + " " + name;
   if (plural) return formed("the_many", head, {{"what", number() + " " + name}});
@@ -145,7 +147,7 @@ std::string FillMap::countedNames(const std::vector<Id>& objects, bool definite)
   for (const Id id : objects) {
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
       const ObjectInstance &a = *map_.find(group.front()), &b = *map_.find(id);
-      return a.kind == b.kind && a.properties == b.properties;
+      return parser_.isSameKind(a.kind, b.kind) && a.properties == b.properties;
     });
     if (same == groups.end()) {
       groups.push_back({id});

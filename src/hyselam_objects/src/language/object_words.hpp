@@ -33,6 +33,9 @@ struct ObjectWords {
   std::map<std::string, std::string> plurals;
   std::vector<std::pair<std::string, std::string>> plural_endings;  ///< the first that matches
   std::map<std::string, std::string> synonyms;  ///< word to the one that is kept
+  /// Kind to the one of the English list that is the same: "garrafa" to "bottle".
+  std::map<std::string, std::string> english;
+  std::map<std::string, std::string> of_english;  ///< and back; of several the first
   std::vector<std::string> nouns;
   std::set<std::string> things;  ///< words of nouns, plurals and synonyms
   std::set<std::string> where;   ///< words before the place of a thing: "in"

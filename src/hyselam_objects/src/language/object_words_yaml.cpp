@@ -65,6 +65,10 @@ void addNouns(const YAML::Node& root, ObjectWords* words) {
     }
     words->synonyms[lowerCase(each.first.Scalar())] = each.first.Scalar();
   }
+  for (const auto& each : root["english"]) {
+    words->english[each.first.Scalar()] = each.second.Scalar();
+    words->of_english.emplace(each.second.Scalar(), each.first.Scalar());
+  }
   for (const auto& each : root["nouns"]) words->nouns.push_back(each.Scalar());
   for (const auto& each : root["mass"]) words->nouns.push_back(each.Scalar());
   for (const auto& reason : root["no_things"]) {

@@ -34,7 +34,7 @@ Id FillMap::findPlace(const std::string& name) const {
 }
 
 bool FillMap::matchesPhrase(const ObjectInstance& object, const ObjectPhrase& phrase) const {
-  if (object.kind != phrase.kind) return false;
+  if (!parser_.isSameKind(object.kind, phrase.kind)) return false;
   const auto& wanted = phrase.properties;
   return std::all_of(wanted.begin(), wanted.end(), [&](const auto& property) {
     const auto found = object.properties.find(property.first);

@@ -27,7 +27,7 @@ double gateOf(const ObjectPose& pose, const MapperParams& params) {
 
 double costOfFurniture(const ObjectPose& pose, const DetectedObject& seen) {
   const double height = pose.position.z + 0.5 * pose.size[2];
-  const double overlap = footprintOverlap(pose, seen);
+  const double overlap = footprintOverlap(pose, boxOf(seen));
   if (std::abs(height - seen.high.z) > kMaxHeightDifference || overlap < kMinOverlap) {
     return kImpossible;
   }
@@ -36,7 +36,7 @@ double costOfFurniture(const ObjectPose& pose, const DetectedObject& seen) {
 
 double costOfObject(const ObjectInstance& object, const DetectedObject& seen, double stamp,
                     const MapperParams& params) {
-  const double away = distance(object.pose->position, seen.center());
+  const double away = distance(object.pose->position, boxOf(seen).position);
   const double appearance = descriptorDistance(object.descriptor, seen.descriptor);
   // Two objects are not at one spot; a part of an object may appearance different.
   const bool same_visit = std::abs(stamp - object.last_seen) < kMaxAbsence;

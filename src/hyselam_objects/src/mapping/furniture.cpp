@@ -12,8 +12,7 @@ namespace {
 
 bool isPartOf(const ObjectPose& furniture, const Point3& p) {
   constexpr double kMargin = 0.08, kBelowTop = 0.03;
-  return std::abs(p.x - furniture.position.x) < 0.5 * furniture.size[0] + kMargin &&
-         std::abs(p.y - furniture.position.y) < 0.5 * furniture.size[1] + kMargin &&
+  return isWithinFootprint(furniture, p, kMargin) &&
          p.z < furniture.position.z + 0.5 * furniture.size[2] - kBelowTop;
 }
 
@@ -21,9 +20,7 @@ bool isPartOf(const ObjectPose& furniture, const Point3& p) {
 bool isOneTop(const ObjectPose& a, const ObjectPose& b) {
   constexpr double kStep = 0.04, kGap = 0.15;
   const double height = a.position.z + 0.5 * a.size[2] - b.position.z - 0.5 * b.size[2];
-  return std::abs(height) < kStep &&
-         std::abs(a.position.x - b.position.x) < 0.5 * (a.size[0] + b.size[0]) + kGap &&
-         std::abs(a.position.y - b.position.y) < 0.5 * (a.size[1] + b.size[1]) + kGap;
+  return std::abs(height) < kStep && gapBetween(groundOf(a), groundOf(b)) < kGap;
 }
 
 /// Whether a horizontal surface is that of objects on a piece of furniture, not of another piece.
@@ -48,6 +45,16 @@ bool isTopOfObjects(const ObjectPose& top, const ObjectPose& furniture) {
 bool isPartOfFurniture(const ObjectMap& map, const Point3& p) {
   return std::any_of(map.objects.begin(), map.objects.end(), [&](const auto& o) {
     return o.pose && isFurniture(o) && isPartOf(*o.pose, p);
+  });
+}
+
+bool reachesIntoFurniture(const ObjectMap& map, const ObjectPose& box) {
+  constexpr double kDepth = 0.1, kShare = 0.4;  // below the top [m]; of its footprint
+  return std::any_of(map.objects.begin(), map.objects.end(), [&](const ObjectInstance& o) {
+    if (!o.pose || !isFurniture(o)) return false;
+    const double top = o.pose->position.z + 0.5 * o.pose->size[2];
+    return box.position.z - 0.5 * box.size[2] < top - kDepth &&
+           commonArea(groundOf(box), groundOf(*o.pose)) > kShare * box.size[0] * box.size[1];
   });
 }
 
@@ -77,7 +84,7 @@ void mergeFurniture(ObjectMap& map) {
         ++j;
         continue;
       }
-      unite(*a.pose, *b.pose);
+      unite(a, b);
       a.detections += b.detections;
       a.described = a.described || b.described;
       keepDescribedRelations(map, b.id, a.id);

@@ -8,6 +8,10 @@ namespace hyselam_objects {
 /// Whether a point lies in the body of a piece of furniture: what is there is a part of it.
 bool isPartOfFurniture(const ObjectMap& map, const Point3& p);
 
+/// Whether a box reaches from above into the body of a piece of furniture: it is no object that
+/// stands on it or beside it, but a view of both.
+bool reachesIntoFurniture(const ObjectMap& map, const ObjectPose& box);
+
 /// Whether a horizontal surface is that of objects on a piece of furniture other than `except`.
 bool isOnFurniture(const ObjectMap& map, const ObjectPose& top, Id except = 0);
 

@@ -122,10 +122,13 @@ std::vector<ComparedObject> comparableObjects(const ObjectMap& map,
           descriptorDistance(known->descriptor, each.descriptor) > params.appearance_threshold) {
         continue;
       }
-      object.candidates.push_back(
-          {{pose.position.x - 0.5 * pose.size[0], pose.position.y - 0.5 * pose.size[1]},
-           {pose.position.x + 0.5 * pose.size[0], pose.position.y + 0.5 * pose.size[1]},
-           {pose.position.x, pose.position.y}});
+      // Of a box that is turned the one around it.
+      const double along = std::abs(std::cos(pose.yaw)), across = std::abs(std::sin(pose.yaw));
+      const double x = 0.5 * (along * pose.size[0] + across * pose.size[1]),
+                   y = 0.5 * (across * pose.size[0] + along * pose.size[1]);
+      object.candidates.push_back({{pose.position.x - x, pose.position.y - y},
+                                   {pose.position.x + x, pose.position.y + y},
+                                   {pose.position.x, pose.position.y}});
     }
     if (!object.candidates.empty()) objects.push_back(std::move(object));
   }

@@ -11,6 +11,8 @@
 namespace hyselam_objects {
 namespace {
 
+static_assert(kOutlineDirections == 72, "as told in files and errors");
+
 constexpr std::array<const char*, kRelationWords> kWords{
     "at",    "inside", "in",   "on",     "over",  "under",   "left",
     "right", "top",    "near", "behind", "front", "against", "between"};
@@ -96,11 +98,17 @@ class Checker {
       require(isWord(name) && isWord(value), where, "a property is no word");
     }
     require(isShare(object.existence), where, "its existence is not in 0 .. 1");
-    require(object.detections >= 0 && object.missed_detections >= 0, where, "a count is negative");
+    require(object.detections >= 0 && object.missed_detections >= 0 && object.overlooked >= 0,
+            where, "a count is negative");
     require(std::isfinite(object.last_seen), where, "the time it was last seen is not finite");
     const auto& d = object.descriptor;
     require(std::all_of(d.begin(), d.end(), [](float v) { return std::isfinite(v); }), where,
             "its descriptor is not finite");
+    const Outline& outline = object.outline;
+    require(outline.empty() || outline.size() == kOutlineDirections, where,
+            "its outline has not 72 directions");
+    require(std::all_of(outline.begin(), outline.end(), [](double v) { return std::isfinite(v); }),
+            where, "its outline is not finite");
     for (const ObjectStay& stay : object.history) {
       require(isFinite(stay.position) && std::isfinite(stay.from) && stay.until >= stay.from, where,
               "a stay of its history is none");
@@ -226,8 +234,8 @@ bool operator==(const ObjectPlace& a, const ObjectPlace& b) {
 
 bool operator==(const ObjectInstance& a, const ObjectInstance& b) {
   const auto tied = [](const ObjectInstance& o) {
-    return std::tie(o.id, o.kind, o.properties, o.described, o.descriptor, o.detections,
-                    o.missed_detections, o.last_seen, o.existence);
+    return std::tie(o.id, o.kind, o.properties, o.described, o.outline, o.descriptor, o.detections,
+                    o.missed_detections, o.overlooked, o.last_seen, o.existence);
   };
   return tied(a) == tied(b) && same(a.pose, b.pose) &&
          std::equal(a.history.begin(), a.history.end(), b.history.begin(), b.history.end(),

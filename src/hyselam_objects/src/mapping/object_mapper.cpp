@@ -71,16 +71,17 @@ void ObjectMapper::update(const OrganizedCloud& cloud, const PinholeCamera& came
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(instances[d])];
       seen_now.push_back(object.id);
       if (whole) addDetection(object, seen, kind, stamp, params_);
-    } else if (whole && (seen.furniture || !isPartOfFurniture(map_, seen.center()))) {
+    } else if (whole && (seen.furniture ||
+                         !(isPartOfFurniture(map_, seen.center()) || isPartOfKnown(seen, kind)))) {
       seen_now.push_back(addInstance(seen, kind, stamp));
     }
   }
   for (ObjectInstance& object : map_.objects) {
     if (!object.pose || isFurniture(object)) continue;
     if (std::find(seen_now.begin(), seen_now.end(), object.id) != seen_now.end()) continue;
-    if (showsFreeSpace(cloud, camera, *object.pose, params_)) {
-      addMissedDetection(object, stamp, params_);
-    }
+    const PlaceEvidence evidence = evidenceOf(cloud, camera, *object.pose, params_);
+    if (evidence == PlaceEvidence::kFree) addMissedDetection(object, stamp, params_);
+    object.overlooked += evidence == PlaceEvidence::kOverlooked;
   }
   map_.stamp = std::max(map_.stamp, stamp);
 }
@@ -93,10 +94,27 @@ void ObjectMapper::resetMergedInstances(const std::vector<DetectedObject>& detec
       if (instances[e] < 0 || detections[d].furniture || detections[e].furniture) continue;
       ObjectInstance& object = map_.objects[static_cast<std::size_t>(instances[e])];
       const bool two = object.pose && contains(*object.pose, detections[d].center()) &&
-                       contains(*object.pose, detections[e].center());
-      if (two && !detections[e].partial) object.pose.reset();
+                       contains(*object.pose, detections[e].center()) && !isWholeKind(object);
+      if (two && !detections[e].partial) {
+        object.pose.reset();
+        object.outline.clear();
+      }
     }
   }
+}
+
+bool ObjectMapper::isWholeKind(const ObjectInstance& object) const {
+  const GenericObject* kind = dictionary_.find(object.kind);
+  return object.pose && kind != nullptr && kind->shape.size[0] > 0.0 &&
+         fitsKind(*object.pose, kind, params_.position_sigma);
+}
+
+bool ObjectMapper::isPartOfKnown(const DetectedObject& seen, const std::string& kind) const {
+  return std::any_of(map_.objects.begin(), map_.objects.end(), [&](const ObjectInstance& object) {
+    return isWholeKind(object) && object.detections >= params_.min_views &&
+           object.existence > 0.5 && (kind.empty() || kind == object.kind) &&
+           contains(*object.pose, boxOf(seen).position);
+  });
 }
 
 Id ObjectMapper::addInstance(const DetectedObject& seen, const std::string& kind, double stamp) {
@@ -160,15 +178,38 @@ void ObjectMapper::consolidate(double unconfirmed_before) {
   }
 }
 
+bool ObjectMapper::isUnconfirmed(const ObjectInstance& object, double before) const {
+  return object.detections < params_.min_views && object.last_seen < before;
+}
+
+// By views that show its place free, or something else there.
+bool ObjectMapper::isDenied(const ObjectInstance& object) const {
+  constexpr double kGone = 0.45;       // below: it was there, and may be elsewhere now
+  constexpr double kBelieved = 0.95;   // between: views contradict each other
+  constexpr double kOverlooked = 1.5;  // times as often as it is detected
+  constexpr int kKept = 6;  // views after which one that is gone is kept: it may be found elsewhere
+  if (isFurniture(object)) return false;
+  const bool missed = object.missed_detections > object.detections && object.existence < 0.5 &&
+                      object.detections < kKept;
+  const bool contradicted = object.missed_detections >= object.detections &&
+                            object.existence > kGone && object.existence < kBelieved;
+  return missed || contradicted || object.overlooked > kOverlooked * object.detections;
+}
+
+// It is a part of something, or several things in one.
+bool ObjectMapper::isNoObject(const ObjectInstance& object) const {
+  if (isFurniture(object)) return false;
+  return isPartOfFurniture(map_, object.pose->position) ||
+         reachesIntoFurniture(map_, *object.pose) || isSpurious(map_, object, dictionary_, params_);
+}
+
 void ObjectMapper::removeUnconfirmed(double unconfirmed_before) {
   std::vector<Id> removed;
   for (const ObjectInstance& object : map_.objects) {
     if (!object.pose || object.described) continue;
-    const bool unconfirmed =
-        object.detections < params_.min_views && object.last_seen < unconfirmed_before;
-    const bool part = !isFurniture(object) && isPartOfFurniture(map_, object.pose->position);
-    const bool doubtful = object.missed_detections > object.detections && object.existence < 0.5;
-    if (unconfirmed || part || doubtful || isSpurious(map_, object)) removed.push_back(object.id);
+    if (isUnconfirmed(object, unconfirmed_before) || isDenied(object) || isNoObject(object)) {
+      removed.push_back(object.id);
+    }
   }
   for (const Id id : removed) map_.remove(id);
 }

@@ -3,46 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boxes.hpp"
+
 namespace hyselam_objects {
 namespace {
 
 struct Extent {
   Id id = 0;
-  std::array<double, 3> low{}, high{}, middle{};
+  ObjectPose box;
+
+  double low() const { return box.position.z - 0.5 * box.size[2]; }
+  double high() const { return box.position.z + 0.5 * box.size[2]; }
 };
 
-Extent extentOf(const ObjectInstance& object) {
-  const ObjectPose& pose = *object.pose;
-  Extent box;
-  box.id = object.id;
-  box.middle = {pose.position.x, pose.position.y, pose.position.z};
-  // Around a box that is turned.
-  const double c = std::abs(std::cos(pose.yaw)), s = std::abs(std::sin(pose.yaw));
-  const std::array<double, 3> size{c * pose.size[0] + s * pose.size[1],
-                                   s * pose.size[0] + c * pose.size[1], pose.size[2]};
-  for (std::size_t k = 0; k < 3; ++k) {
-    box.low[k] = box.middle[k] - 0.5 * size[k];
-    box.high[k] = box.middle[k] + 0.5 * size[k];
-  }
-  return box;
-}
-
 bool isOver(const Extent& a, const Extent& b, double overhang) {
-  return a.middle[0] > b.low[0] - overhang && a.middle[0] < b.high[0] + overhang &&
-         a.middle[1] > b.low[1] - overhang && a.middle[1] < b.high[1] + overhang;
-}
-
-double gap(const Extent& a, const Extent& b) {
-  const double x = std::max({0.0, a.low[0] - b.high[0], b.low[0] - a.high[0]});
-  const double y = std::max({0.0, a.low[1] - b.high[1], b.low[1] - a.high[1]});
-  return std::hypot(x, y);
+  return isWithinFootprint(b.box, a.box.position, overhang);
 }
 
 bool contains(const Extent& b, const Extent& a) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (a.low[k] < b.low[k] || a.high[k] > b.high[k]) return false;
-  }
-  return true;
+  const auto corners = cornersOf(groundOf(a.box));
+  return a.low() >= b.low() && a.high() <= b.high() &&
+         std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& p) {
+           return isWithinFootprint(b.box, {p.x(), p.y(), 0.0}, 0.0);
+         });
 }
 
 // Left and right need a viewer at least this far away [m].
@@ -52,7 +35,8 @@ class RelationBuilder {
  public:
   RelationBuilder(ObjectMap& map, const RelationParams& params) : map_(map), params_(params) {
     for (const ObjectInstance& object : map_.objects) {
-      if (object.pose && object.existence > 0.5) extents_.push_back(extentOf(object));
+      const bool believed = object.existence > 0.5 && object.detections >= params_.min_views;
+      if (object.pose && believed) extents_.push_back({object.id, *object.pose});
     }
   }
 
@@ -105,16 +89,16 @@ class RelationBuilder {
         return;
       }
       const bool stands =
-          std::abs(a.low[2] - b.high[2]) < params_.max_contact_gap && a.middle[2] > b.high[2];
-      if (stands && (on == nullptr || b.high[2] > on->high[2])) on = &b;
-      if (b.low[2] > a.high[2] + params_.max_contact_gap) relate(a, RelationWord::kUnder, b);
+          std::abs(a.low() - b.high()) < params_.max_contact_gap && a.box.position.z > b.high();
+      if (stands && (on == nullptr || b.high() > on->high())) on = &b;
+      if (b.low() > a.high() + params_.max_contact_gap) relate(a, RelationWord::kUnder, b);
     }
     if (on != nullptr) relate(a, RelationWord::kOn, *on);
   }
 
   void relateBeside(const Extent& a, const Extent& b) {
-    if (std::abs(a.low[2] - b.low[2]) > params_.max_level_difference ||
-        gap(a, b) > params_.max_near_gap) {
+    if (std::abs(a.low() - b.low()) > params_.max_level_difference ||
+        gapBetween(groundOf(a.box), groundOf(b.box)) > params_.max_near_gap) {
       return;
     }
     relate(a, RelationWord::kNear, b);
@@ -127,7 +111,7 @@ class RelationBuilder {
     if (length < kMinViewDistance) return;
     // Seen from the center of the place: along and across the line of sight.
     const double vx = at->vector->x / length, vy = at->vector->y / length;
-    const double dx = a.middle[0] - b.middle[0], dy = a.middle[1] - b.middle[1];
+    const double dx = a.box.position.x - b.box.position.x, dy = a.box.position.y - b.box.position.y;
     const double aside = vx * dy - vy * dx, along = vx * dx + vy * dy;
     if (std::abs(aside) < 2.0 * std::abs(along)) return;
     relate(a, aside > 0.0 ? RelationWord::kLeft : RelationWord::kRight, b);
@@ -150,6 +134,7 @@ void RelationParams::describe(hyselam::ParameterVisitor& visit) {
         "between the boxes of two objects that are near each other");
   visit("max_level_difference", max_level_difference, Range::atLeast(0.0), "m",
         "of the undersides of objects side by side");
+  visit("min_views", min_views, Range::atLeast(0), "", "number of views of each of the two");
 }
 
 void RelationParams::validate() const {

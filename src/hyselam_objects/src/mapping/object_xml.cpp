@@ -14,6 +14,8 @@ namespace {
 using hyselam::XmlElement;
 
 constexpr char kVersion[] = "1";
+// Of maps; since 2 objects have an outline. Those of version 1 are read, too.
+constexpr char kMapVersion[] = "2";
 constexpr char kDictionaryNamespace[] = "urn:hyselam:object_dictionary:1";
 constexpr char kMapNamespace[] = "urn:hyselam:object_map:1";
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
@@ -27,14 +29,14 @@ hyselam::XmlLimits limits() {
 class Writer {
  public:
   std::string write(const ObjectDictionary& dictionary) {
-    begin("object_dictionary", kDictionaryNamespace);
+    begin("object_dictionary", kDictionaryNamespace, kVersion);
     for (const GenericObject& object : dictionary.objects) write(object);
     out_.CloseElement();
     return out_.CStr();
   }
 
   std::string write(const ObjectMap& map) {
-    begin("object_map", kMapNamespace);
+    begin("object_map", kMapNamespace, kMapVersion);
     attribute("frame_id", map.frame_id);
     attribute("stamp", map.stamp);
     attribute("next_place_id", map.next_place_id);
@@ -53,11 +55,11 @@ class Writer {
   }
 
  private:
-  void begin(const char* name, const char* xml_namespace) {
+  void begin(const char* name, const char* xml_namespace, const char* version) {
     out_.PushHeader(false, true);
     out_.OpenElement(name);
     attribute("xmlns", std::string(xml_namespace));
-    attribute("version", std::string(kVersion));
+    attribute("version", std::string(version));
   }
   void attribute(const char* name, const std::string& value) {
     out_.PushAttribute(name, value.c_str());
@@ -119,6 +121,7 @@ class Writer {
     attribute("told", object.described);
     attribute("seen", object.detections);
     attribute("missed", object.missed_detections);
+    attribute("overlooked", object.overlooked);
     attribute("last_seen", object.last_seen);
     attribute("existence", object.existence);
     for (const auto& [name, value] : object.properties) {
@@ -135,6 +138,7 @@ class Writer {
       numbers("covariance", object.pose->covariance);
       out_.CloseElement();
     }
+    if (!object.outline.empty()) numbers("outline", object.outline);
     if (!object.descriptor.empty()) numbers("descriptor", object.descriptor);
     for (const ObjectStay& stay : object.history) {
       out_.OpenElement("stay");
@@ -184,12 +188,15 @@ std::array<double, N> readArray(XmlElement& e) {
   return out;
 }
 
-void checkRoot(XmlElement& e, const std::string& name, const std::string& xml_namespace) {
+void checkRoot(XmlElement& e, const std::string& name, const std::string& xml_namespace,
+               const std::string& newest) {
   if (e.name() != name || !e.has("xmlns") || e.text("xmlns") != xml_namespace) {
     e.fail("the first element must be <" + name + " xmlns=\"" + xml_namespace + "\">");
   }
-  if (e.text("version") != kVersion) {
-    e.fail("version '" + e.text("version") + "' is not known, only " + kVersion);
+  const std::string version = e.text("version");
+  if (version != kVersion && version != newest) {
+    const std::string known = newest == kVersion ? newest : kVersion + (" and " + newest);
+    e.fail("version '" + version + "' is not known, only " + known);
   }
 }
 
@@ -256,6 +263,7 @@ ObjectInstance readInstance(XmlElement& e) {
   object.described = e.truth("told");
   object.detections = e.integer("seen");
   object.missed_detections = e.integer("missed");
+  if (e.has("overlooked")) object.overlooked = e.integer("overlooked");
   object.last_seen = e.number("last_seen");
   object.existence = e.number("existence");
   hyselam::Once<ObjectPose> pose;
@@ -265,6 +273,8 @@ ObjectInstance readInstance(XmlElement& e) {
       child.finish();
     } else if (child.name() == "pose") {
       pose.set(child, readPose(child));
+    } else if (child.name() == "outline") {
+      object.outline = child.numbers();
     } else if (child.name() == "descriptor") {
       object.descriptor = readFloats(child);
     } else if (child.name() == "stay") {
@@ -301,7 +311,7 @@ ObjectRelation readRelation(XmlElement& e) {
 }
 
 ObjectMap readMap(XmlElement& e) {
-  checkRoot(e, "object_map", kMapNamespace);
+  checkRoot(e, "object_map", kMapNamespace, kMapVersion);
   ObjectMap map;
   map.frame_id = e.text("frame_id");
   map.stamp = e.number("stamp");
@@ -348,7 +358,7 @@ std::string toXml(const ObjectMap& map, const std::string& source) {
 ObjectDictionary dictionaryFromXml(const std::string& text, const std::string& source) {
   ObjectDictionary dictionary;
   hyselam::readXmlDocument(text, source, limits(), [&](XmlElement& root) {
-    checkRoot(root, "object_dictionary", kDictionaryNamespace);
+    checkRoot(root, "object_dictionary", kDictionaryNamespace, kVersion);
     root.children([&](XmlElement& child) {
       if (child.name() != "object") return false;
       dictionary.objects.push_back(readGeneric(child));

@@ -26,7 +26,12 @@ double costOfMove(const ObjectInstance& old, const ObjectInstance& found, double
   const bool other_kind =
       old.kind != found.kind && old.kind != kUnknownKind && found.kind != kUnknownKind;
   const double appearance = descriptorDistance(old.descriptor, found.descriptor);
-  if (!later || other_kind || appearance >= params.reidentification_threshold) {
+  // Recognized as one kind, they need be no more alike than the views of one object.
+  const bool same_kind = old.kind == found.kind && old.kind != kUnknownKind;
+  const double threshold =
+      same_kind ? std::max(params.reidentification_threshold, params.appearance_threshold)
+                : params.reidentification_threshold;
+  if (!later || other_kind || appearance >= threshold) {
     return std::numeric_limits<double>::infinity();
   }
   return appearance + kCostPerMeter * distance(old.pose->position, found.pose->position);
@@ -70,8 +75,8 @@ void reassociateMoved(ObjectMap& map, double now, const MapperParams& params) {
       cost.back().push_back(costOfMove(*map.find(id), *map.find(other), now, params));
     }
   }
-  const double unassigned_cost =
-      2.0 * params.reidentification_threshold;  // above all possible pairs
+  const double unassigned_cost =  // above all possible pairs
+      2.0 * std::max(params.reidentification_threshold, params.appearance_threshold);
   const std::vector<int> assigned = assignRows(cost, unassigned_cost);
   for (std::size_t i = 0; i < gone.size(); ++i) {
     if (assigned[i] >= 0) merge(map, gone[i], found[static_cast<std::size_t>(assigned[i])]);

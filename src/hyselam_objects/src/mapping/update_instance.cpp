@@ -21,18 +21,18 @@ void setVariance(ObjectPose& pose, double variance) {
   for (const std::size_t i : {0u, 4u, 8u}) pose.covariance[i] = variance;
 }
 
-/// One step of a Kalman filter for the box and the descriptor.
+/// One step of a Kalman filter for the box and the descriptor; the outline is that of all views.
 void filterBox(ObjectInstance& object, const DetectedObject& seen, double variance) {
   constexpr double kTaller = 1.4;  // what was known was only a part
   ObjectPose& pose = *object.pose;
-  const std::array<double, 3> size = boxOf(seen).size;
-  if (size[2] > kTaller * pose.size[2]) setVariance(pose, 100.0 * variance);
+  const ObjectPose box = boxOf(seen);
+  if (box.size[2] > kTaller * pose.size[2]) setVariance(pose, 100.0 * variance);
   const double gain = pose.covariance[0] / (pose.covariance[0] + variance);
-  const Point3 c = seen.center();
-  pose.position.x += gain * (c.x - pose.position.x);
-  pose.position.y += gain * (c.y - pose.position.y);
-  pose.position.z += gain * (c.z - pose.position.z);
-  for (std::size_t k = 0; k < 3; ++k) pose.size[k] += gain * (size[k] - pose.size[k]);
+  object.outline = outlineOf(object);
+  addView(object.outline, outlineOf(seen), gain);
+  setGround(pose, boxAround(object.outline));
+  pose.position.z += gain * (box.position.z - pose.position.z);
+  pose.size[2] += gain * (box.size[2] - pose.size[2]);
   // Views are not independent: the standard deviation stays above a third of that of one view.
   for (const std::size_t i : {0u, 4u, 8u}) {
     pose.covariance[i] = std::max((1.0 - gain) * pose.covariance[i], variance / 9.0);
@@ -63,11 +63,12 @@ void addDetection(ObjectInstance& object, const DetectedObject& seen, const std:
   const double variance = params.position_sigma * params.position_sigma;
   if (!object.pose) {
     object.pose = box;
+    object.outline = seen.outline;
     setVariance(*object.pose, variance);
     object.descriptor = seen.descriptor;
   } else if (seen.furniture) {
     // Each view shows a part of it.
-    unite(*object.pose, box);
+    unite(object, seen);
   } else if (box.size[2] > kWhole * object.pose->size[2]) {  // otherwise a part was seen
     filterBox(object, seen, variance);
   }

@@ -40,8 +40,7 @@ std::optional<GenericObject> DemonstratedObject::addView(
   const DetectedObject* shown = nearestToCenter(detections, camera);
   if (shown == nullptr) return std::nullopt;
   views_.push_back(shown->descriptor);
-  sizes_.emplace_back(shown->high.x - shown->low.x, shown->high.y - shown->low.y,
-                      shown->high.z - shown->low.z);
+  sizes_.push_back(shown->size());
   if (views_.size() < views_to_learn_) return std::nullopt;
   GenericObject learned = learnObject(kind_, views_, sizes_);
   kind_.clear();

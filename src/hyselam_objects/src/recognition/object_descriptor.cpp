@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
@@ -50,6 +52,19 @@ void add(float* histogram, std::size_t bins, float at, bool around, float weight
   };
   histogram[bin(low)] += weight * (1.0f - share);
   histogram[bin(low + 1.0f)] += weight * share;
+}
+
+/// Length of a whole object and its standard deviation from those of single views, some of which
+/// show a part: of the larger half the middle.
+std::pair<double, double> wholeLength(std::vector<double> lengths) {
+  std::sort(lengths.begin(), lengths.end());
+  const std::size_t half = lengths.size() / 2;
+  const double whole = lengths[half + (lengths.size() - half) / 2];
+  double squares = 0.0;
+  for (std::size_t i = half; i < lengths.size(); ++i) {
+    squares += (lengths[i] - whole) * (lengths[i] - whole);
+  }
+  return {whole, std::sqrt(squares / static_cast<double>(lengths.size() - half))};
 }
 
 }  // namespace
@@ -204,17 +219,14 @@ GenericObject learnObject(const std::string& name, const std::vector<std::vector
     }
   }
   if (sizes.empty()) return object;
-  const auto count = static_cast<double>(sizes.size());
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), squares = mean;
-  for (Eigen::Vector3d size : sizes) {
-    if (size.y() > size.x()) std::swap(size.x(), size.y());
-    mean += size / count;
-    squares += size.cwiseProduct(size) / count;
-  }
-  for (int k = 0; k < 3; ++k) {
-    object.shape.size[static_cast<std::size_t>(k)] = mean[k];
-    object.shape.spread[static_cast<std::size_t>(k)] =
-        std::sqrt(std::max(0.0, squares[k] - mean[k] * mean[k]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<double> along;
+    for (const Eigen::Vector3d& size : sizes) {
+      along.push_back(k == 0   ? std::max(size.x(), size.y())
+                      : k == 1 ? std::min(size.x(), size.y())
+                               : size.z());
+    }
+    std::tie(object.shape.size[k], object.shape.spread[k]) = wholeLength(std::move(along));
   }
   return object;
 }

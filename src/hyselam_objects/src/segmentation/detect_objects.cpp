@@ -121,9 +121,12 @@ class Detector {
     for (const auto& each : pixels) {
       if (each.size() < static_cast<std::size_t>(params_.min_points)) continue;
       DetectedObject object = frame_.objectOf(each, 0.02);
-      // Edges of what is behind: thin strips without a body.
-      const double wide = std::max(object.high.x - object.low.x, object.high.y - object.low.y);
-      if (wide >= 0.02 && wide <= 1.5) found.push_back(std::move(object));
+      // Edges of what is behind, as of a window sill: thin strips without a body.
+      constexpr double kThin = 0.02, kLow = 0.05, kWidest = 1.5;  // [m]
+      const Eigen::Vector3d size = object.size();
+      const double wide = std::max(size.x(), size.y()), deep = std::min(size.x(), size.y());
+      if (wide < kThin || wide > kWidest || (deep < kThin && size.z() < kLow)) continue;
+      found.push_back(std::move(object));
     }
     return found;
   }
@@ -157,6 +160,13 @@ void DetectParams::describe(hyselam::ParameterVisitor& visit) {
 void DetectParams::validate() const {
   hyselam::checkParameters(*this);
   segmentation.validate();
+}
+
+Eigen::Vector3d DetectedObject::size() const {
+  const double height = high.z - low.z;
+  if (outline.empty()) return {high.x - low.x, high.y - low.y, height};
+  const GroundBox box = boxAround(outline);
+  return {box.length, box.width, height};
 }
 
 std::vector<DetectedObject> detectObjects(const OrganizedCloud& cloud,

@@ -52,6 +52,10 @@ DetectedObject MappedFrame::objectOf(const std::vector<std::size_t>& pixels, dou
   }
   object.low = {low[0], low[1], low[2]};
   object.high = {high[0], high[1], high[2]};
+  std::vector<Eigen::Vector2f> ground;
+  ground.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) ground.push_back(p.head<2>());
+  object.outline = outlineOf(ground, trim);
   object.descriptor = describeView(points, colors);
   object.color = colorName(colors);
   return object;

@@ -124,6 +124,11 @@ class ObjectParser {
   std::string pluralOf(const std::string& language, const std::string& kind) const;
   /// The word for a small number: "two", "duas"; digits for others.
   std::string numberWord(const std::string& language, int number, const std::string& form) const;
+  /// Whether two kinds are one, in whichever language each was said: "bottle" and "garrafa".
+  bool isSameKind(const std::string& a, const std::string& b) const;
+  /// What a kind is called in a language: "garrafa" for "bottle"; as it was said if no word is
+  /// known.
+  std::string kindIn(const std::string& language, const std::string& kind) const;
   /// "milk", "scissors": no article and number stand before it.
   bool isUncounted(const std::string& language, const std::string& kind) const;
   bool isAlwaysPlural(const std::string& language, const std::string& kind) const;
@@ -141,6 +146,7 @@ class ObjectParser {
   /// `shipped`: kinds of places are those of the shipped grammars of places as well.
   ObjectParser(const std::vector<ObjectLanguage>& languages, bool shipped);
   std::size_t indexOf(const std::string& language) const;
+  std::string englishOf(const std::string& kind) const;
 
   std::vector<std::unique_ptr<const Words>> words_;  ///< in the order of the grammars
   std::unique_ptr<const hyselam_topo::TopoParser> parser_;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_objects/mapping/outline.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
 namespace hyselam_objects {
@@ -81,9 +82,11 @@ struct ObjectInstance {
   std::map<std::string, std::string> properties;
   bool described = false;          ///< people have described it
   std::optional<ObjectPose> pose;  ///< nothing: never seen
+  Outline outline;                 ///< of all views; empty: that of its box
   std::vector<float> descriptor;   ///< mean of its views; empty: never seen
   int detections = 0;              ///< number of views
   int missed_detections = 0;       ///< number of frames that show its place free
+  int overlooked = 0;              ///< number of frames that show something else there
   double last_seen = 0.0;
   double existence = 0.5;           ///< probability that it is where the map says
   std::vector<ObjectStay> history;  ///< oldest first; the last one is the present

@@ -83,11 +83,19 @@ class ObjectMapper {
   /// resets its pose. instances[i]: index of the instance of detections[i] in the map, -1: none.
   void resetMergedInstances(const std::vector<DetectedObject>& detections,
                             const std::vector<int>& instances);
+  /// Whether it is of a known kind, and no larger than such are.
+  bool isWholeKind(const ObjectInstance& object) const;
+  /// Whether a detection that belongs to no instance is a face of a known object. `kind`: as which
+  /// it was recognized; "": not recognized.
+  bool isPartOfKnown(const DetectedObject& seen, const std::string& kind) const;
   Id addInstance(const DetectedObject& seen, const std::string& kind, double stamp);
   /// An object that a person has described but that has not been seen yet, of the same kind and in
   /// the same place as the detection; 0: none.
   Id findDescribed(const DetectedObject& seen, const std::string& kind) const;
   void assignPlace(Id object);
+  bool isUnconfirmed(const ObjectInstance& object, double before) const;
+  bool isDenied(const ObjectInstance& object) const;
+  bool isNoObject(const ObjectInstance& object) const;
   void removeUnconfirmed(double unconfirmed_before);
 
   ObjectMap& map_;

@@ -11,6 +11,7 @@ struct RelationParams {
   double max_overhang = 0.02;         ///< ... and of a's center beyond the border of b's box [m]
   double max_near_gap = 0.3;          ///< between two boxes in the plane [m]
   double max_level_difference = 0.1;  ///< of the undersides of objects side by side [m]
+  int min_views = 2;                  ///< of each of the two objects, >= 0
 
   void describe(hyselam::ParameterVisitor& visit);
   /// @throws hyselam::ParameterError
@@ -19,7 +20,7 @@ struct RelationParams {
 
 /// Updates the measured relations between objects: on, inside, under, near, left, right. Described
 /// ones stay, and replace measured ones of the same two objects and the same sort. Only objects
-/// with a pose that probably exist (> 0.5) take part.
+/// with a pose that probably exist (> 0.5) and were seen at least `min_views` times take part.
 ///
 /// - on: contact and overhang as above; of several candidates the highest.
 /// - inside: a's box lies in b's; under: b's box lies over a's without touching it.

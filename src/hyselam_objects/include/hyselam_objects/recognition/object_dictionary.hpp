@@ -11,7 +11,7 @@
 
 namespace hyselam_objects {
 
-/// O_S: the box around such objects, and its variation.
+/// O_S: the box around such objects as a whole (single views may show a part), and its variation.
 struct GenericShape {
   std::array<double, 3> size{0.0, 0.0, 0.0};    ///< length >= width, height; 0: not known
   std::array<double, 3> spread{0.0, 0.0, 0.0};  ///< standard deviations

@@ -31,13 +31,15 @@ struct DetectParams {
   void validate() const;
 };
 
-/// One object in one frame. Boxes are aligned with the axes of the map.
+/// One object in one frame.
 struct DetectedObject {
   bool furniture = false;  ///< it has a horizontal top
   /// Cut by the border of the frame, or its lower part is hidden (nothing seen carries it): it may
   /// be larger.
   bool partial = false;
-  Point3 low, high;               ///< lower and upper corner of the box around it, map frame [m]
+  /// Lower and upper corner of the box around it that is aligned with the axes of the map [m].
+  Point3 low, high;
+  Outline outline;                ///< empty: that of this box
   std::vector<float> descriptor;  ///< as describeView()
   std::string color;              ///< as colorName()
   std::size_t points = 0;         ///< number of points
@@ -45,6 +47,8 @@ struct DetectedObject {
   Point3 center() const {
     return {0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)};
   }
+  /// Of the box around it, turned as it is [m].
+  Eigen::Vector3d size() const;
 };
 
 /// @throws hyselam::InputError as checkCloud(), and for a pose that is not finite;

@@ -1,0 +1,84 @@
+// find_model MODEL.pcd SCENE.pcd: where in a scene an object is of which a cloud is given, or that
+// it is not there.
+#include "hyselam_objects/pcl/find_model.hpp"
+
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <string>
+
+#include "hyselam_common/pose2.hpp"
+#include "hyselam_common/tool.hpp"
+#include "hyselam_objects/pcl/cloud_io.hpp"
+
+namespace {
+
+using namespace hyselam_objects;  // NOLINT: a program, not a header
+
+std::string lineOf(const FoundModel& found) {
+  const Eigen::Vector3d at = found.model_in_scene.translation();
+  const Eigen::AngleAxisd turn(found.model_in_scene.linear());
+  char text[200];
+  std::snprintf(text, sizeof(text),
+                "  probability %.3f: origin at %.3f %.3f %.3f m, turned by %.1f deg; %zu "
+                "correspondences, %.0f %% visible, %.0f %% of that covered",
+                found.probability, at.x(), at.y(), at.z(), hyselam::degrees(turn.angle()),
+                found.correspondences, 100.0 * found.visible, 100.0 * found.coverage);
+  return text;
+}
+
+nlohmann::json jsonOf(const FoundModel& found) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (int row = 0; row < 4; ++row) {
+    nlohmann::json values = nlohmann::json::array();
+    for (int column = 0; column < 4; ++column) {
+      values.push_back(found.model_in_scene.matrix()(row, column));
+    }
+    rows.push_back(values);
+  }
+  return {{"model_in_scene", rows},
+          {"probability", found.probability},
+          {"correspondences", found.correspondences},
+          {"coverage", found.coverage},
+          {"visible", found.visible},
+          {"flush", found.flush}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Finds a model, given as a point cloud of its surface, in a scene seen from one point. Tells "
+      "nothing where the model is not, and each place where it is once, with a probability.",
+      "find_model");
+  std::string model_file, scene_file;
+  FindModelParams params;
+  app.option_defaults()->always_capture_default();
+  app.add_option("MODEL", model_file, "PCD file of the object, from one view or several [m]")
+      ->required();
+  app.add_option("SCENE", scene_file, "PCD file; z forward, x right, y down as cameras have it [m]")
+      ->required();
+  app.add_option("--min-probability", params.min_probability,
+                 "of a pose that is told, 0 .. 1; 0: all that were looked at");
+  app.add_option("--surface-sampling", params.surface_sampling,
+                 "distance of the points that both clouds are thinned to [m]");
+  app.add_option("--model-sampling", params.model_sampling, "distance of keypoints, model [m]");
+  app.add_option("--scene-sampling", params.scene_sampling, "distance of keypoints, scene [m]");
+  app.add_option("--descriptor-radius", params.descriptor_radius,
+                 "of a keypoint's surroundings [m]");
+
+  return hyselam::runTool(argc, argv, app, [&] {
+    const OrganizedCloud model = readPcd(model_file).cloud, scene = readPcd(scene_file).cloud;
+    const std::clock_t begin = std::clock();
+    const std::vector<FoundModel> found = findModel(model, scene, params);
+    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    std::cout << (found.empty() ? "not found" : "found " + std::to_string(found.size())) << " in "
+              << 1e3 * seconds << " ms\n";
+    nlohmann::json poses = nlohmann::json::array();
+    for (const FoundModel& each : found) {
+      std::cout << lineOf(each) << "\n";
+      poses.push_back(jsonOf(each));
+    }
+    return nlohmann::json{{"found", poses}, {"seconds", seconds}};
+  });
+}
