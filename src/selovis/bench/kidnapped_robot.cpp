@@ -35,6 +35,8 @@ struct Options {
   bool without_camera = false, without_scan = false, by_places = false;
 };
 
+constexpr double kLeastFilmed = 10.0;  // [s] of a film after a teleport
+
 /// Wanted hours between false alarms that the evidence at right poses is held against.
 const double kWantedHours[] = {0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 24.0};
 
@@ -311,8 +313,11 @@ class Experiment {
     if (!state.kidnapped) pending_ = false;
   }
 
+  /// Teleports that the film shows too little of are not counted.
   nlohmann::json finish() {
-    addScansUntil(1e18);
+    while (!teleports_.empty() && teleports_.back().at + kLeastFilmed > last_stamp_) {
+      teleports_.pop_back();
+    }
     return result();
   }
 

@@ -14,10 +14,17 @@ constexpr double kBeta = 1.5;
 constexpr double kPriorWeight = 3.0;
 
 constexpr double kHalfLearned = 1.0;  // weight of the kernels that is a coverage of one half
-constexpr double kMaxRatio = 6.0;     // [nats] of one look, camera and scan together
-constexpr double kCameraGain = 1.0, kCameraBias = 0.0;
+constexpr double kMaxRatio = 8.0;     // [nats] of one look, camera and scan together
+constexpr double kCameraGain = 2.0;
 // Independent returns of a scan; differences of its fit are multiplied by it.
-constexpr double kScanGain = 5.0;
+constexpr double kScanGain = 10.0;
+// Fit that a right pose may lack: somebody who stands before the laser hides an eighth of the view.
+constexpr double kForgiven = 0.3;
+
+// How much rarer evidence is at right poses than the ratios say [nats], measured; see
+// docs/algorithms/visual_places.md.
+constexpr double kCalibration = 3.0;
+constexpr double kLeastThreshold = 1.0;  // [nats]
 
 constexpr std::size_t kViewsTried = 40;  // the most similar ones elsewhere
 constexpr std::size_t kRivalsAdded = 3;  // by one frame, at most
@@ -52,8 +59,9 @@ void ViewTestParams::describe(hyselam::ParameterVisitor& visit) {
 }
 
 double ViewTest::thresholdFor(double hours, double correlation_time) {
-  // The number of looks between two false alarms (Lorden 1971).
-  return std::max(1.0, std::log(hours * 3600.0 / correlation_time));
+  // exp(threshold) looks between two false alarms, were looks independent and ratios exact (Lorden
+  // 1971); measured at right poses there are fewer by kCalibration.
+  return std::max(kLeastThreshold, std::log(hours * 3600.0 / correlation_time) - kCalibration);
 }
 
 ViewTest::ViewTest(const Samples& samples, const ViewTestParams& params)
@@ -188,12 +196,12 @@ ViewTestState ViewTest::update(const ViewTestFrame& frame) {
       const FittedPose fitted = fit_->best(*frame.scan, r.base, kKnownReach, kKnownTurn);
       r.base = fitted.base;
       r.by_scan = true;
-      by_scan = kScanGain * (fitted.fit - scan_at_pose);
+      by_scan = kScanGain * (fitted.fit - std::min(0.0, scan_at_pose + kForgiven));
     }
     LearnedViews::Regression there;
     const double ratio = std::log(likelihoodAt(r.base * frame.camera_in_base, &there) / at_pose);
     r.place = there.place;
-    double by_camera = state.coverage * kCameraGain * (ratio - kCameraBias);
+    double by_camera = state.coverage * kCameraGain * ratio;
     if (params_.remember && by_camera > 0.0 && r.place >= 0) {
       by_camera = std::min(by_camera, -std::log(memory_.errorRate(*frame.base, r.place)));
       spoken_for.insert(r.place);
