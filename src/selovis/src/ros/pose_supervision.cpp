@@ -24,6 +24,7 @@ constexpr double kMaxStatusDelay = 1.0;  // [s]
 // Stamps that are later than the image by more: time went back.
 constexpr double kMaxLead = 1.0;  // [s]
 
+constexpr std::uint32_t kScanQueue = 100;
 constexpr double kMaxScanAge = 0.1;  // [s] against an image
 constexpr double kFirstFrame = 0.2;  // [s] that the first frame counts for
 
@@ -35,6 +36,7 @@ PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
     : params_(params),
       poses_(poses),
       log_name_(std::move(log_name)),
+      nh_(nh),
       kidnapped_publisher_(private_nh.advertise<std_msgs::Bool>("kidnapped", 10, true)),
       initialpose_publisher_(
           nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("initialpose", 1)),
@@ -42,14 +44,17 @@ PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
   status_subscriber_ = nh.subscribe<LocalizationStatus>(
       "localization_status", 10,
       [this](const LocalizationStatus::ConstPtr& status) { status_ = status; });
-  if (params_.use_scan) {
-    scan_subscriber_ = nh.subscribe<sensor_msgs::LaserScan>(
-        "scan", 100, [this](const sensor_msgs::LaserScan::ConstPtr& scan) { scans_.add(scan); },
-        ros::VoidConstPtr(), hyselam::tcpNoDelay());
-    map_subscriber_ = nh.subscribe<nav_msgs::OccupancyGrid>(
-        "map", 1, [this](const nav_msgs::OccupancyGrid::ConstPtr& map) { onMap(*map); });
-  }
   publishKidnapped();
+}
+
+void PoseSupervision::subscribe() {
+  if (!params_.use_scan) return;
+  scan_subscriber_ = nh_.subscribe<sensor_msgs::LaserScan>(
+      "scan", kScanQueue,
+      [this](const sensor_msgs::LaserScan::ConstPtr& scan) { scans_.add(scan); },
+      ros::VoidConstPtr(), hyselam::tcpNoDelay());
+  map_subscriber_ = nh_.subscribe<nav_msgs::OccupancyGrid>(
+      "map", 1, [this](const nav_msgs::OccupancyGrid::ConstPtr& map) { onMap(*map); });
 }
 
 void PoseSupervision::onMap(const nav_msgs::OccupancyGrid& msg) {

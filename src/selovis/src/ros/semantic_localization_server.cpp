@@ -53,6 +53,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(const ros::NodeHandle& nh
   map_subscriber_ = node.subscribe("topological_map", 2, &SemanticLocalizationServer::onMap, this);
   learning_->advertise();
   input_->subscribe();
+  supervision_.subscribe();
   diagnostics_ = std::make_unique<hyselam::Diagnostics>(
       nh, private_nh.getNamespace().substr(1) + ": visual places", params_.diagnostic_period,
       [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });

@@ -31,6 +31,9 @@ class PoseSupervision {
   PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh, const SupervisionParams& params,
                   const CameraPoses& poses, std::string log_name);
 
+  /// From now on scans and maps are received: a nodelet's queue is served while its constructor
+  /// still runs, so this comes last.
+  void subscribe();
   /// Another model, other places, or other transitions between them: all evidence is forgotten.
   void setModel(const PlaceModel& model, const PlaceTransitions& transitions);
   /// The frame that the recognizer saw last. @param image its header.
@@ -85,6 +88,7 @@ class PoseSupervision {
   ExpectedPlaces expected_;          // at the pose
   Counts counts_;
   std::string last_alarm_;
+  ros::NodeHandle nh_;
   ros::Publisher kidnapped_publisher_, initialpose_publisher_;
   ros::ServiceClient global_localization_;
   ros::Subscriber status_subscriber_, scan_subscriber_, map_subscriber_;
