@@ -358,7 +358,7 @@ class VisualPlacesTest(unittest.TestCase):
         with open(os.path.join(other, "model.json"), "w") as file:
             json.dump(manifest, file)
         for number, params in enumerate(({"model": "/nowhere"}, {"model": cut}, {"model": other}, {"filter": "magic"},
-                                         {"kidnapping_threshold": -1.0}, {"supervisor_threshold": -1.0}, {"descriptor": "BOF-ORB500"},
+                                         {"kidnapping_false_alarm_hours": -1.0}, {"known_from": -1.0}, {"descriptor": "BOF-ORB500"},
                                          {"descriptor": "no such"})):
             rig = Rig(f"unusable_{number}", **params)
             self.addCleanup(rig.close)

@@ -82,6 +82,22 @@ std::optional<hyselam::Pose2> CameraPoses::cameraInOdometry(const std::string& c
   return found ? found->pose : baseIn(ids_.odom, stamp);
 }
 
+std::optional<hyselam::Pose2> CameraPoses::baseInOdometry(const ros::Time& stamp) const {
+  return baseIn(ids_.odom, stamp);
+}
+
+std::optional<tf2::Transform> CameraPoses::sensorInBase(const std::string& sensor) const {
+  if (sensor.empty()) return {};
+  try {
+    const auto found = tf_.lookupTransform(ids_.base, sensor, ros::Time(0)).transform;
+    const tf2::Quaternion turn(found.rotation.x, found.rotation.y, found.rotation.z,
+                               found.rotation.w);
+    return tf2::Transform(turn, {found.translation.x, found.translation.y, found.translation.z});
+  } catch (const tf2::TransformException&) {
+    return {};
+  }
+}
+
 bool CameraPoses::awaitsOdometry(const ros::Time& stamp) const {
   return tf_.canTransform(ids_.odom, ids_.base, ros::Time(0)) &&
          !tf_.canTransform(ids_.odom, ids_.base, stamp);

@@ -36,7 +36,9 @@ void LearningParams::describe(hyselam::ParameterVisitor& visit) {
 }
 
 void SupervisionParams::describe(hyselam::ParameterVisitor& visit) {
-  visit.group("kidnapping_", detector);
+  visit.group("kidnapping_", supervisor);
+  visit("kidnapping_use_scan", use_scan,
+        "compare scan and map at the pose and elsewhere as well, where both are published");
   visit("expected_place_radius", expected_place_radius, Range::between(0.0, 10.0), "m",
         "places so near to the pose agree with it");
   visit("on_kidnap", on_kidnap,
@@ -73,8 +75,6 @@ void SemanticLocalizationParams::describe(hyselam::ParameterVisitor& visit) {
         std::pair("aperture_x", "horizontal_fov"),
         std::pair("aperture_y", "vertical_fov"),
         std::pair("border", "min_border_distance"),
-        std::pair("supervisor_trust", "kidnapping_likelihood_exponent"),
-        std::pair("supervisor_threshold", "kidnapping_threshold"),
         std::pair("supervisor_least", "kidnapping_min_frame_probability"),
         std::pair("known_from", "kidnapping_min_place_probability"),
         std::pair("reach", "expected_place_radius"),

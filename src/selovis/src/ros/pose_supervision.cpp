@@ -9,8 +9,10 @@
 #include <sstream>
 #include <utility>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/diagnostics.hpp"
+#include "hyselam_common/ros/transport.hpp"
 
 namespace selovis {
 namespace {
@@ -22,12 +24,19 @@ constexpr double kMaxStatusDelay = 1.0;  // [s]
 // Stamps that are later than the image by more: time went back.
 constexpr double kMaxLead = 1.0;  // [s]
 
+constexpr std::uint32_t kScanQueue = 100;
+constexpr double kMaxScanAge = 0.1;  // [s] against an image
+constexpr double kFirstFrame = 0.2;  // [s] that the first frame counts for
+
 }  // namespace
 
 PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
-                                 const SupervisionParams& params, std::string log_name)
+                                 const SupervisionParams& params, const CameraPoses& poses,
+                                 std::string log_name)
     : params_(params),
+      poses_(poses),
       log_name_(std::move(log_name)),
+      nh_(nh),
       kidnapped_publisher_(private_nh.advertise<std_msgs::Bool>("kidnapped", 10, true)),
       initialpose_publisher_(
           nh.advertise<geometry_msgs::PoseWithCovarianceStamped>("initialpose", 1)),
@@ -38,12 +47,53 @@ PoseSupervision::PoseSupervision(ros::NodeHandle nh, ros::NodeHandle private_nh,
   publishKidnapped();
 }
 
-void PoseSupervision::setTransitions(const PlaceTransitions& transitions) {
+void PoseSupervision::subscribe() {
+  if (!params_.use_scan) return;
+  scan_subscriber_ = nh_.subscribe<sensor_msgs::LaserScan>(
+      "scan", kScanQueue,
+      [this](const sensor_msgs::LaserScan::ConstPtr& scan) { scans_.add(scan); },
+      ros::VoidConstPtr(), hyselam::tcpNoDelay());
+  map_subscriber_ = nh_.subscribe<nav_msgs::OccupancyGrid>(
+      "map", 1, [this](const nav_msgs::OccupancyGrid::ConstPtr& map) { onMap(*map); });
+}
+
+void PoseSupervision::onMap(const nav_msgs::OccupancyGrid& msg) {
+  try {
+    fit_ = std::make_shared<const ScanFit>(hyselam::fromMsg(msg, "map"));
+    scan_problem_.clear();
+  } catch (const hyselam::InputError& e) {
+    scan_problem_ = e.what();  // the map before it stays in use
+    ROS_ERROR_STREAM(log_name_ << " not used: " << e.what());
+    return;
+  }
+  if (supervisor_) supervisor_->setMap(fit_);
+}
+
+const ScanPoints* PoseSupervision::scanAt(const ros::Time& stamp) {
+  const auto msg = scans_.nearest(stamp, kMaxScanAge);
+  if (!fit_ || !msg) return nullptr;
+  const auto laser = poses_.sensorInBase(msg->header.frame_id);
+  if (!laser) return nullptr;
+  try {
+    hyselam::LaserScan scan = hyselam::fromMsg(*msg, "scan");
+    hyselam::placeLaser(*laser, "tf", &scan);
+    points_ = scanPoints(scan);
+  } catch (const hyselam::InputError& e) {
+    scan_problem_ = e.what();
+    return nullptr;
+  }
+  ++counts_.scans;
+  return &points_;
+}
+
+void PoseSupervision::setModel(const PlaceModel& model, const PlaceTransitions& transitions) {
   transitions_ = transitions;
-  detector_ = transitions.places.empty()
-                  ? nullptr
-                  : std::make_unique<KidnappingDetector>(transitions, params_.detector);
-  state_ = KidnappingState();
+  supervisor_ = transitions.places.empty()
+                    ? nullptr
+                    : std::make_unique<PoseSupervisor>(model, transitions, params_.supervisor);
+  if (supervisor_) supervisor_->setMap(fit_);
+  last_frame_.reset();
+  state_ = SupervisionState();
   pending_ = Cause::kNone;
   publishKidnapped();
 }
@@ -59,8 +109,8 @@ void PoseSupervision::followLocalizationStatus(const ros::Time& stamp) {
   if (pending_ == Cause::kLocalization && !lost) {
     // It has found its pose, or was given one: setting the place would only disturb it now.
     pending_ = Cause::kNone;
-    detector_->reset();
-    state_ = KidnappingState();
+    supervisor_->reset();
+    state_ = SupervisionState();
     return;
   }
   if (!lost || pending_ != Cause::kNone) return;
@@ -68,7 +118,7 @@ void PoseSupervision::followLocalizationStatus(const ros::Time& stamp) {
                      std::max(kMaxStatusDelay, params_.relocalization_timeout)) {
     return;  // a pose that was just set is given time
   }
-  detector_->declareLost();
+  supervisor_->declareLost();
   pending_ = Cause::kLocalization;
   pending_since_ = stamp;
   ++counts_.lost;
@@ -88,27 +138,41 @@ bool PoseSupervision::poseIsValid(const ros::Time& stamp) {
   if (set_at_) {
     // From now on the new pose is tested.
     set_at_.reset();
-    if (detector_) detector_->reset();
+    if (supervisor_) supervisor_->reset();
   }
   return true;
 }
 
-void PoseSupervision::update(const std::vector<double>& frame,
-                             const std::optional<hyselam::Pose2>& pose,
+void PoseSupervision::update(const ImageRecognizer& recognizer,
                              const hyselam_topo::AugmentedTopologicalMap& map,
-                             const ros::Time& stamp) {
-  if (!detector_) return;
+                             const std_msgs::Header& image) {
+  if (!supervisor_) return;
+  const ros::Time& stamp = image.stamp;
   reportGlobalLocalization();
   if (set_at_ && (*set_at_ - stamp).toSec() > kMaxLead) set_at_.reset();
   followLocalizationStatus(stamp);
-  expected_ = ExpectedPlaces();
+  SupervisedFrame frame;
+  frame.places = &recognizer.frameProbabilities();
+  frame.view.seconds = last_frame_ ? (stamp - *last_frame_).toSec() : kFirstFrame;
+  last_frame_ = stamp;
+  const auto pose = poses_.baseInMap(stamp);
   if (pose && poseIsValid(stamp)) {
-    expected_ =
+    frame.expected =
         expectedPlaces(map, transitions_, {pose->x, pose->y}, params_.expected_place_radius);
+    // Views are compared where the camera's own pose is known.
+    if (const auto camera = poses_.cameraInMap(image.frame_id, stamp)) {
+      frame.view.distances = recognizer.distances();
+      frame.view.base = pose;
+      frame.view.camera_in_base = hyselam::between(*pose, camera->pose);
+      frame.view.odometry = poses_.baseInOdometry(stamp);
+      frame.view.scan = scanAt(stamp);
+    }
   }
+  expected_ = frame.expected;
   const bool was_kidnapped = state_.kidnapped;
-  state_ = detector_->update(frame, expected_.agreeing, expected_.unmapped);
+  state_ = supervisor_->update(frame);
   counts_.tested += state_.tested;
+  counts_.by_views += state_.tested && state_.by_views;
   if (state_.alarm) {
     raiseAlarm(stamp);
   } else if (was_kidnapped && !state_.kidnapped) {
@@ -134,7 +198,8 @@ void PoseSupervision::relocalize(const hyselam_topo::AugmentedTopologicalMap& ma
                                  const ros::Time& stamp) {
   std::optional<PlacePosePrior> prior;
   if (params_.on_kidnap == OnKidnap::kPlace) {
-    if (state_.place >= 0) prior = posePriorOf(map, placeName());
+    prior = state_.pose;
+    if (!prior && state_.place >= 0) prior = posePriorOf(map, placeName());
     // A localization that is lost searches the whole map by itself; after an alarm the place may
     // still become known.
     if (!prior && (pending_ == Cause::kLocalization ||
@@ -162,7 +227,9 @@ void PoseSupervision::publishInitialPose(const PlacePosePrior& prior, const std:
   msg.pose.covariance[35] = prior.stddev.theta * prior.stddev.theta;
   initialpose_publisher_.publish(msg);
   ++counts_.poses_set;
-  ROS_INFO_STREAM(log_name_ << " localisation begins again in '" << placeName() << "'");
+  ROS_INFO_STREAM(log_name_ << " localisation begins again at (" << prior.mean.x << ", "
+                            << prior.mean.y << "), in '"
+                            << (state_.place >= 0 ? placeName() : std::string("?")) << "'");
 }
 
 void PoseSupervision::startGlobalLocalization() {
@@ -206,7 +273,10 @@ void PoseSupervision::report(diagnostic_msgs::DiagnosticStatus& status) const {
   addValue(status, "place of the pose", expected_.own);
   addValue(status, "evidence against the pose [nats]", state_.evidence);
   addValue(status, "kidnapped", state_.kidnapped);
+  addValue(status, "evidence of an alarm [nats]", supervisor_ ? supervisor_->threshold() : 0.0);
   addValue(status, "frames tested", counts_.tested);
+  addValue(status, "frames tested by views", counts_.by_views);
+  addValue(status, "frames tested with a scan", counts_.scans);
   addValue(status, "alarms", counts_.alarms);
   addValue(status, "localisation lost", counts_.lost);
   addValue(status, "poses set", counts_.poses_set);

@@ -21,7 +21,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(const ros::NodeHandle& nh
     : log_name_(hyselam::logName(private_nh)),
       params_(hyselam::loadAndLogParams(private_nh, loadParams)),
       poses_(params_.frame_ids),
-      supervision_(nh, private_nh, params_.supervision, log_name_),
+      supervision_(nh, private_nh, params_.supervision, poses_, log_name_),
       publisher_(nh, params_.marker_height) {
   const auto model = PlaceLearning::firstModel(params_, log_name_);
   const PlaceFilterKind filter = params_.recognizer.filter.kind;
@@ -53,6 +53,7 @@ SemanticLocalizationServer::SemanticLocalizationServer(const ros::NodeHandle& nh
   map_subscriber_ = node.subscribe("topological_map", 2, &SemanticLocalizationServer::onMap, this);
   learning_->advertise();
   input_->subscribe();
+  supervision_.subscribe();
   diagnostics_ = std::make_unique<hyselam::Diagnostics>(
       nh, private_nh.getNamespace().substr(1) + ": visual places", params_.diagnostic_period,
       [this](diagnostic_msgs::DiagnosticStatus& status) { report(status); });
@@ -66,8 +67,7 @@ void SemanticLocalizationServer::onImage(const cv::Mat& image, const SensorReadi
     const Recognition recognition = recognizer_->update(image, readings);
     frame_ms_ = 1e3 * (ros::WallTime::now() - begin).toSec();
     if (map_ && recognition.descriptive && !recognition.novel) {
-      supervision_.update(recognizer_->frameProbabilities(), poses_.baseInMap(header.stamp), *map_,
-                          header.stamp);
+      supervision_.update(*recognizer_, *map_, header);
     }
     publisher_.publish(recognition, *recognizer_, header, map_.get(), supervision_.kidnapped());
   }
@@ -77,7 +77,7 @@ void SemanticLocalizationServer::onImage(const cv::Mat& image, const SensorReadi
 
 void SemanticLocalizationServer::onTimeJump() {
   if (recognizer_) recognizer_->reset();
-  if (!transitions_.places.empty()) supervision_.setTransitions(transitions_);
+  if (!transitions_.places.empty()) supervision_.setModel(learning_->model(), transitions_);
 }
 
 void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg) {
@@ -126,7 +126,7 @@ void SemanticLocalizationServer::updateRecognizer(const PlaceModel& model, bool 
                               << recognizer_->posesProblem());
   }
   transitions_ = std::move(transitions);
-  supervision_.setTransitions(transitions_);
+  supervision_.setModel(model, transitions_);
 }
 
 void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {

@@ -9,6 +9,7 @@
 #include "hyselam_common/pose2.hpp"
 #include "hyselam_common/rng.hpp"
 #include "selovis/classifiers/samples.hpp"
+#include "selovis/filters/learned_views.hpp"
 #include "selovis/filters/place_filter.hpp"
 
 namespace selovis {
@@ -65,44 +66,17 @@ class PoseFilter {
   void reset();
 
   /// Why these samples cannot be filtered by their poses; empty if they can.
-  static std::string whyNot(const Samples& samples);
+  static std::string whyNot(const Samples& samples) { return LearnedViews::whyNot(samples); }
 
   /// Of each place, of sum 1.
   const std::vector<double>& probabilities() const { return state_; }
 
  private:
-  struct TrainingPose {  ///< position of a training frame, with its views
-    hyselam::Point2 position;
-    int place;
-    std::uint32_t begin, end;  // of views_
-  };
-  struct View {
-    double heading;
-    std::uint32_t sample;
-  };
-  /// Training poses sorted by square cells of at least the kernel's radius.
-  struct Grid {
-    hyselam::Point2 origin;
-    double cell = 1.0;  // [m]
-    int columns = 0, rows = 0;
-    std::vector<std::uint32_t> begin;  // of the training poses in each cell, and the end
-
-    std::size_t cellOf(const hyselam::Point2& p) const;
-  };
   struct Likelihood {
     double value;
     int place;  // of the nearest training pose; -1: none within the radius
   };
 
-  struct Extent {
-    hyselam::Point2 low, high;
-  };
-
-  static Extent extentOf(const Samples& samples);
-  void addTrainingPoses(const Samples& samples);
-  void buildGrid(const Extent& extent);
-  /// Writes the similarities of the views; returns their sum.
-  double updateSimilarity(const std::vector<float>& distances);
   /// A pose near a view drawn by similarity.
   hyselam::Pose2 drawPose(double total);
   void move(const std::optional<hyselam::Pose2>& odometry, double seconds);
@@ -112,15 +86,13 @@ class PoseFilter {
   void resample(double total_weight);
 
   PoseFilterParams params_;
-  std::vector<TrainingPose> training_poses_;
-  std::vector<View> views_;
-  Grid grid_;
+  LearnedViews views_;
   hyselam::Rng rng_;
   bool first_ = true;
   double injections_due_ = 0.0;
   std::optional<hyselam::Pose2> odometry_;
   std::vector<hyselam::Pose2> particles_, next_;
-  std::vector<double> weights_, similarity_, state_;
+  std::vector<double> weights_, state_;
 };
 
 }  // namespace selovis

@@ -59,6 +59,8 @@ class ImageRecognizer {
   const std::vector<double>& probabilities() const {
     return by_poses_ ? poses_->probabilities() : filter_.probabilities();
   }
+  /// Squared distances of the last frame to all samples; null where the classifier has none.
+  const std::vector<float>* distances() const { return classifier_->distances(); }
   /// What each part of the last frame said; null where the classifier does not tell them apart.
   const std::vector<PartOpinion>* opinions() const { return classifier_->opinions(); }
   /// Its colors lie outside of what was learned, what is independent of light does not: the frame

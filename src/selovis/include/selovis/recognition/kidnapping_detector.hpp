@@ -10,17 +10,17 @@
 namespace selovis {
 
 struct KidnappingDetectorParams {
-  /// Exponent of a frame's likelihoods, below 1 because consecutive frames are not independent;
-  /// 0.001 to 1.
-  double likelihood_exponent = 0.5;
-  /// Evidence [nats] that raises the alarm: about exp(threshold) independent frames pass between
-  /// two false alarms. 0.001 to 1000.
+  /// Frames that are nearer in time than this are not independent [s], 0.01 to 10: the exponent of
+  /// a frame's likelihoods is min(1, seconds / correlation_time).
+  double correlation_time = 0.4;
+  /// Evidence [nats] that raises the alarm: about exp(threshold) times the correlation time passes
+  /// between two false alarms, if errors are independent. 0.001 to 1000.
   double threshold = 7.0;
   /// Lower bound of the probability of a place by one frame: no frame rules a place out. 1e-9 to
   /// 0.1.
   double min_frame_probability = 0.002;
-  double stay_probability = 0.93;      ///< of staying in a place from one frame to the next, 0 to 1
-  double teleport_probability = 1e-3;  ///< per frame, of being carried to any place, 0 to 1
+  double stay_probability = 0.7;       ///< of staying in a place for a second, 0 to 1
+  double teleport_probability = 5e-3;  ///< per second, of being carried to any place, 0 to 1
   /// The place of a kidnapped robot is known from this probability on, 0 to 1.
   double min_place_probability = 0.9;
 
@@ -55,9 +55,10 @@ class KidnappingDetector {
   ///   robot.
   /// @param unmapped learned places that are not on the map; none of `expected`. They belong to
   ///   neither hypothesis: a frame is weighted by the probability of all others.
+  /// @param seconds since the frame before; negative values count as 0.
   /// @throws hyselam::InputError for a wrong number of probabilities, or places that do not exist.
   KidnappingState update(const std::vector<double>& frame, const std::vector<int>& expected,
-                         const std::vector<int>& unmapped = {});
+                         const std::vector<int>& unmapped = {}, double seconds = 0.2);
 
   /// Removes all evidence: the pose has been set.
   void reset();
@@ -72,7 +73,7 @@ class KidnappingDetector {
                             const std::vector<int>& unmapped) const;
   void restart(const std::vector<int>& expected);
   /// One step of the Bayes filter's motion, into next_.
-  void predict();
+  void predict(double seconds);
 
   KidnappingDetectorParams params_;
   PlaceDistances paths_;

@@ -1,6 +1,7 @@
 // Where the camera and the robot are, by tf.
 #pragma once
 
+#include <tf2/LinearMath/Transform.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
@@ -31,6 +32,10 @@ class CameraPoses {
                                                  const ros::Time& stamp) const;
   /// Whether odometry is known, but not yet at that time.
   bool awaitsOdometry(const ros::Time& stamp) const;
+  /// A sensor on the robot, in the base's frame; by the newest transform.
+  std::optional<tf2::Transform> sensorInBase(const std::string& sensor) const;
+  /// The base by odometry.
+  std::optional<hyselam::Pose2> baseInOdometry(const ros::Time& stamp) const;
   /// Heading of the camera in the frame of a laser [rad]; 0 where it is not known.
   double cameraHeadingIn(const std::string& laser, const std::string& camera) const;
 

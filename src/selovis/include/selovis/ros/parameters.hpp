@@ -6,7 +6,7 @@
 #include "hyselam_common/parameters.hpp"
 #include "selovis/learning/learner.hpp"
 #include "selovis/recognition/image_recognizer.hpp"
-#include "selovis/recognition/kidnapping_detector.hpp"
+#include "selovis/recognition/pose_supervisor.hpp"
 
 namespace hyselam {
 class ParamLoader;
@@ -52,7 +52,8 @@ enum class OnKidnap {
 };
 
 struct SupervisionParams {
-  KidnappingDetectorParams detector;
+  PoseSupervisorParams supervisor;
+  bool use_scan = true;                ///< compare the scan with the map as well
   double expected_place_radius = 1.0;  ///< places so near to the pose agree with it [m]
   OnKidnap on_kidnap = OnKidnap::kPlace;
   /// The place must become known within this time, else the whole map is searched [s].

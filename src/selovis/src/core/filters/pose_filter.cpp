@@ -10,9 +10,6 @@
 namespace selovis {
 namespace {
 
-constexpr double kMaxExtent = 5000.0;  // [m]
-constexpr double kMaxCells = 4000.0;   // of the grid, along its sides together
-constexpr double kMinSquaredDistance = 1e-9;
 constexpr double kMinLikelihood = 1e-6;  // of a pose with no training pose around it
 
 // A likelihood falls off where the nearest training pose is farther than this share of the radius.
@@ -36,6 +33,11 @@ constexpr double kHeadingPerRadian = 0.1;
 // Without odometry: share of the particles that turn on the spot, and the turn rate of the others.
 constexpr double kTurningShare = 0.35;
 constexpr double kDrivingTurn = 0.25;  // standard deviation, in max_turn_rate
+
+const PoseFilterParams& checked(const PoseFilterParams& params) {
+  params.validate();
+  return params;
+}
 
 }  // namespace
 
@@ -64,75 +66,15 @@ void PoseFilterParams::validate() const {
 }
 
 PoseFilter::PoseFilter(const Samples& samples, int places, const PoseFilterParams& params)
-    : params_(params), rng_(params.seed) {
-  params.validate();
-  const std::string problem = whyNot(samples);
-  if (!problem.empty()) throw hyselam::InputError("training samples", "", problem);
-  addTrainingPoses(samples);
-  buildGrid(extentOf(samples));
+    : params_(checked(params)),
+      views_(samples, params.kernel_radius, params.kernel_angle),
+      rng_(params.seed) {
   const auto n = static_cast<std::size_t>(params.particles);
   particles_.resize(n);
   next_.resize(n);
   weights_.resize(n);
-  similarity_.resize(samples.count());
   state_.resize(static_cast<std::size_t>(places));
   reset();
-}
-
-PoseFilter::Extent PoseFilter::extentOf(const Samples& samples) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Extent e{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
-  for (const hyselam::Pose2& p : samples.poses) {
-    if (!p.isFinite()) continue;
-    e.low = {std::min(e.low.x, p.x), std::min(e.low.y, p.y)};
-    e.high = {std::max(e.high.x, p.x), std::max(e.high.y, p.y)};
-  }
-  return e;
-}
-
-std::string PoseFilter::whyNot(const Samples& samples) {
-  if (samples.poses.size() != samples.count()) return "have not one pose each";
-  const Extent e = extentOf(samples);
-  if (e.high.x < e.low.x) return "no frame has a pose";
-  const bool near = e.high.x - e.low.x <= kMaxExtent && e.high.y - e.low.y <= kMaxExtent;
-  return near ? "" : "have poses more than 5 km apart";
-}
-
-void PoseFilter::addTrainingPoses(const Samples& samples) {
-  int frame = -1;
-  for (std::size_t i = 0; i < samples.count(); ++i) {
-    const hyselam::Pose2& pose = samples.poses[i];
-    if (!pose.isFinite()) continue;
-    if (training_poses_.empty() || samples.frames[i] != frame) {
-      const auto begin = static_cast<std::uint32_t>(views_.size());
-      training_poses_.push_back({{pose.x, pose.y}, samples.places[i], begin, begin});
-      frame = samples.frames[i];
-    }
-    views_.push_back({pose.theta, static_cast<std::uint32_t>(i)});
-    training_poses_.back().end = static_cast<std::uint32_t>(views_.size());
-  }
-}
-
-std::size_t PoseFilter::Grid::cellOf(const hyselam::Point2& p) const {
-  return static_cast<std::size_t>((p.y - origin.y) / cell) * static_cast<std::size_t>(columns) +
-         static_cast<std::size_t>((p.x - origin.x) / cell);
-}
-
-void PoseFilter::buildGrid(const Extent& extent) {
-  const hyselam::Point2& low = extent.low;
-  const double width = extent.high.x - low.x, height = extent.high.y - low.y;
-  grid_.origin = low;
-  grid_.cell = std::max(params_.kernel_radius, (width + height) / kMaxCells);
-  grid_.columns = static_cast<int>(width / grid_.cell) + 1;
-  grid_.rows = static_cast<int>(height / grid_.cell) + 1;
-  std::stable_sort(training_poses_.begin(), training_poses_.end(),
-                   [&](const TrainingPose& a, const TrainingPose& b) {
-                     return grid_.cellOf(a.position) < grid_.cellOf(b.position);
-                   });
-  const auto cells = static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows);
-  grid_.begin.assign(cells + 1, 0);
-  for (const TrainingPose& t : training_poses_) ++grid_.begin[grid_.cellOf(t.position) + 1];
-  std::partial_sum(grid_.begin.begin(), grid_.begin.end(), grid_.begin.begin());
 }
 
 void PoseFilter::reset() {
@@ -145,23 +87,18 @@ void PoseFilter::reset() {
 
 hyselam::Pose2 PoseFilter::drawPose(double total) {
   double left = rng_.uniform() * total;
-  const TrainingPose* training = &training_poses_.back();
-  std::size_t view = views_.size() - 1;
-  for (const TrainingPose& t : training_poses_) {
-    for (std::uint32_t v = t.begin; v < t.end; ++v) {
-      left -= similarity_[views_[v].sample];
-      if (left < 0.0) {
-        training = &t;
-        view = v;
-        break;
-      }
+  const LearnedViews::View* drawn = &views_.views().back();
+  for (const LearnedViews::Frame& frame : views_.frames()) {
+    for (std::uint32_t v = frame.begin; v < frame.end && left >= 0.0; ++v) {
+      drawn = &views_.views()[v];
+      left -= views_.similarity(*drawn);
     }
     if (left < 0.0) break;
   }
+  const hyselam::Pose2 pose = views_.poseOf(*drawn);
   // Brace initialization draws in this order.
-  return {training->position.x + rng_.gaussian(0.0, kDrawnPosition),
-          training->position.y + rng_.gaussian(0.0, kDrawnPosition),
-          hyselam::normalizeAngle(views_[view].heading + rng_.gaussian(0.0, kDrawnHeading))};
+  return {pose.x + rng_.gaussian(0.0, kDrawnPosition), pose.y + rng_.gaussian(0.0, kDrawnPosition),
+          hyselam::normalizeAngle(pose.theta + rng_.gaussian(0.0, kDrawnHeading))};
 }
 
 void PoseFilter::move(const std::optional<hyselam::Pose2>& odometry, double seconds) {
@@ -192,58 +129,12 @@ void PoseFilter::move(const std::optional<hyselam::Pose2>& odometry, double seco
 }
 
 PoseFilter::Likelihood PoseFilter::likelihood(const hyselam::Pose2& pose, double mean) const {
-  const double across = std::floor((pose.x - grid_.origin.x) / grid_.cell),
-               along = std::floor((pose.y - grid_.origin.y) / grid_.cell);
-  // In floating point: a particle may have drifted farther than integers count.
-  if (!(across >= -1.0 && across <= grid_.columns && along >= -1.0 && along <= grid_.rows)) {
-    return {kMinLikelihood, -1};
-  }
-  const int column = static_cast<int>(across), row = static_cast<int>(along);
-  const double radius2 = params_.kernel_radius * params_.kernel_radius,
-               angle2 = params_.kernel_angle * params_.kernel_angle;
-  double sum = params_.prior_weight * mean, weight = params_.prior_weight, nearest = radius2;
-  int place = -1;
-  for (int r = std::max(0, row - 1); r <= std::min(grid_.rows - 1, row + 1); ++r) {
-    const int first = std::max(0, column - 1), last = std::min(grid_.columns - 1, column + 1);
-    if (first > last) continue;
-    const auto base = static_cast<std::size_t>(r) * static_cast<std::size_t>(grid_.columns);
-    for (std::uint32_t i = grid_.begin[base + static_cast<std::size_t>(first)];
-         i < grid_.begin[base + static_cast<std::size_t>(last) + 1]; ++i) {
-      const TrainingPose& t = training_poses_[i];
-      const double dx = t.position.x - pose.x, dy = t.position.y - pose.y, d2 = dx * dx + dy * dy;
-      if (d2 >= radius2) continue;
-      if (d2 < nearest) {
-        nearest = d2;
-        place = t.place;
-      }
-      const double a = 1.0 - d2 / radius2;
-      for (std::uint32_t v = t.begin; v < t.end; ++v) {
-        double off = std::abs(views_[v].heading - pose.theta);
-        if (off > hyselam::kPi) off = std::abs(2.0 * hyselam::kPi - off);
-        const double b = 1.0 - off * off / angle2;
-        if (b <= 0.0) continue;
-        const double kernel = a * a * b * b;  // biweight, of distance and of turn
-        weight += kernel;
-        sum += kernel * similarity_[views_[v].sample];
-      }
-    }
-  }
-  if (place < 0) return {kMinLikelihood, -1};
-  const double beyond = std::sqrt(nearest) / params_.kernel_radius - kFullLikelihoodTo;
-  return {sum / weight * (beyond > 0.0 ? std::exp(-kFallOff * beyond * beyond) : 1.0), place};
-}
-
-double PoseFilter::updateSimilarity(const std::vector<float>& distances) {
-  double nearest = std::numeric_limits<double>::infinity(), total = 0.0;
-  for (const View& v : views_) {
-    nearest = std::min(nearest, static_cast<double>(distances[v.sample]));
-  }
-  nearest = std::max(kMinSquaredDistance, nearest);
-  for (const View& v : views_) {
-    const double d = (static_cast<double>(distances[v.sample]) - nearest) / nearest;
-    total += similarity_[v.sample] = std::exp(-params_.similarity_beta * d);
-  }
-  return total;
+  const LearnedViews::Regression seen = views_.at(pose);
+  if (seen.place < 0) return {kMinLikelihood, -1};
+  const double value =
+      (params_.prior_weight * mean + seen.sum) / (params_.prior_weight + seen.weight);
+  const double beyond = std::sqrt(seen.nearest2) / params_.kernel_radius - kFullLikelihoodTo;
+  return {value * (beyond > 0.0 ? std::exp(-kFallOff * beyond * beyond) : 1.0), seen.place};
 }
 
 void PoseFilter::injectParticles(double total, double seconds) {
@@ -274,14 +165,11 @@ void PoseFilter::update(const std::vector<float>& distances,
                         const std::optional<hyselam::Pose2>& camera, double seconds) {
   const std::optional<hyselam::Pose2> odometry =
       camera && camera->isFinite() ? camera : std::optional<hyselam::Pose2>();
-  if (distances.size() != similarity_.size()) {
-    throw hyselam::InputError("frame", "", "has not as many distances as there are samples");
-  }
   seconds = std::isfinite(seconds) ? std::max(0.0, seconds) : 1.0;
   const double frame_share = std::min(1.0, seconds);  // of a second's evidence
   const bool first = first_;
-  const double total = updateSimilarity(distances);
-  const double mean = total / static_cast<double>(views_.size());
+  const double total = views_.compare(distances, params_.similarity_beta);
+  const double mean = total / static_cast<double>(views_.views().size());
   if (first_) {
     for (auto& p : particles_) p = drawPose(total);
   } else {

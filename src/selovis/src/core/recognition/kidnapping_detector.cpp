@@ -11,16 +11,16 @@ using hyselam::InputError;
 
 void KidnappingDetectorParams::describe(hyselam::ParameterVisitor& visit) {
   using hyselam::Range;
-  visit("likelihood_exponent", likelihood_exponent, Range::between(1e-3, 1.0), "",
-        "of a frame's likelihoods: consecutive frames are not independent");
+  visit("correlation_time", correlation_time, Range::between(0.01, 10.0), "s",
+        "frames nearer in time are not independent");
   visit("threshold", threshold, Range::between(1e-3, 1e3), "nat",
         "evidence against the pose that raises the alarm");
   visit("min_frame_probability", min_frame_probability, Range::between(1e-9, 0.1), "",
         "of a place by one frame: no frame rules a place out");
   visit("stay_probability", stay_probability, Range::between(0.0, 1.0), "",
-        "of staying in a place from one frame to the next");
+        "of staying in a place for a second");
   visit("teleport_probability", teleport_probability, Range::between(0.0, 1.0), "",
-        "per frame, of being carried to any place");
+        "per second, of being carried to any place");
   visit("min_place_probability", min_place_probability, Range::between(0.0, 1.0), "",
         "from which the place of a kidnapped robot is known");
 }
@@ -81,22 +81,23 @@ std::vector<KidnappingDetector::Role> KidnappingDetector::rolesOf(
   return roles;
 }
 
-void KidnappingDetector::predict() {
+void KidnappingDetector::predict(double seconds) {
+  const double stay = std::pow(params_.stay_probability, seconds),
+               teleport = 1.0 - std::pow(1.0 - params_.teleport_probability, seconds);
   const std::size_t n = next_.size();
   std::fill(next_.begin(), next_.end(), 0.0);
   for (std::size_t from = 0; from < n; ++from) {
     const bool isolated = neighbor_counts_[from] == 0;
     for (std::size_t to = 0; to < n; ++to) {
       if (to == from) {
-        next_[to] += (isolated ? 1.0 : params_.stay_probability) * elsewhere_[from];
+        next_[to] += (isolated ? 1.0 : stay) * elsewhere_[from];
       } else if (paths_.distanceBetween(to, from) == 1) {
-        next_[to] += (1.0 - params_.stay_probability) / neighbor_counts_[from] * elsewhere_[from];
+        next_[to] += (1.0 - stay) / neighbor_counts_[from] * elsewhere_[from];
       }
     }
   }
   for (double& p : next_) {
-    p = (1.0 - params_.teleport_probability) * p +
-        params_.teleport_probability / static_cast<double>(n);
+    p = (1.0 - teleport) * p + teleport / static_cast<double>(n);
   }
 }
 
@@ -123,17 +124,18 @@ double checkedSum(const std::vector<double>& frame, std::size_t places) {
 
 KidnappingState KidnappingDetector::update(const std::vector<double>& frame,
                                            const std::vector<int>& expected,
-                                           const std::vector<int>& unmapped) {
+                                           const std::vector<int>& unmapped, double seconds) {
   const std::size_t n = next_.size();
+  seconds = std::max(0.0, seconds);
+  const double exponent = std::min(1.0, seconds / params_.correlation_time);
   const double total = checkedSum(frame, n);
   const std::vector<Role> roles = rolesOf(expected, unmapped);
   const auto likelihood = [&](std::size_t i) {
-    return std::pow(std::max(frame[i] / total, params_.min_frame_probability),
-                    params_.likelihood_exponent);
+    return std::pow(std::max(frame[i] / total, params_.min_frame_probability), exponent);
   };
 
   if (!kidnapped_ && evidence_ <= 0.0) restart(expected);
-  predict();
+  predict(seconds);
   // "Elsewhere" excludes the expected places, but a robot that was kidnapped may have come back to
   // one of them.
   double elsewhere_prior = 0.0, elsewhere_posterior = 0.0, posterior = 0.0, unmapped_share = 0.0;

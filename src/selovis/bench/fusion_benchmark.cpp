@@ -1,0 +1,122 @@
+// Time from a frame to its place with 7000 learned frames, five views each: by the index of each
+// part, and by a full scan of all views.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+#include <opencv2/imgproc.hpp>
+
+#include "../src/core/classifiers/fusion_classifier.hpp"
+#include "hyselam_common/rng.hpp"
+#include "selovis/descriptors/descriptor.hpp"
+
+namespace {
+
+using namespace selovis;  // NOLINT: a program, not a header
+
+constexpr int kFrames = 7000, kViews = 5, kPlaces = 70, kScenes = 140, kCalibrated = 400;
+
+cv::Mat scene(std::uint64_t seed, const cv::Size& size) {
+  hyselam::Rng rng(seed);
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar(150, 170, 180));
+  for (int i = 0; i < 60; ++i) {
+    const cv::Rect box(static_cast<int>(rng.below(600)), static_cast<int>(rng.below(440)),
+                       20 + static_cast<int>(rng.below(160)),
+                       20 + static_cast<int>(rng.below(160)));
+    cv::rectangle(image, box, cv::Scalar(rng.below(256), rng.below(256), rng.below(256)),
+                  cv::FILLED);
+  }
+  cv::Mat sized;
+  cv::resize(image, sized, size, 0.0, 0.0, cv::INTER_AREA);
+  return sized;
+}
+
+/// Frames between two scenes of their place, each view and value a little different.
+Samples learned(int frames) {
+  const auto descriptor = makeDescriptor("FUSION");
+  std::vector<std::vector<float>> scenes;
+  for (int i = 0; i < kScenes; ++i) {
+    scenes.push_back(descriptor->compute(scene(static_cast<std::uint64_t>(i) + 1, {160, 120})));
+  }
+  Samples samples;
+  samples.size = static_cast<std::size_t>(descriptor->size());
+  samples.parts = descriptor->parts();
+  samples.values.reserve(samples.size * static_cast<std::size_t>(frames * kViews));
+  hyselam::Rng rng(1);
+  std::vector<float> noise(4096), signature(samples.size);
+  for (float& n : noise) n = static_cast<float>(1.0 + 0.2 * rng.gaussian());
+  for (int f = 0; f < frames; ++f) {
+    const int place = f * kPlaces / frames;
+    const auto &a = scenes[static_cast<std::size_t>(2 * place)],
+               &b = scenes[static_cast<std::size_t>(2 * place + 1)];
+    for (int v = 0; v < kViews; ++v) {
+      const float share = static_cast<float>(rng.uniform());
+      const std::size_t offset = rng.below(4096);
+      for (std::size_t k = 0; k < signature.size(); ++k) {
+        signature[k] = (share * a[k] + (1.0f - share) * b[k]) * noise[(offset + 7 * k) % 4096];
+      }
+      samples.add(signature.data(), place, f, {0.2 * f, 0.0, 0.1 * v});
+    }
+  }
+  return samples;
+}
+
+ClassifierParams fusion() {
+  ClassifierParams params;
+  params.kernel = SvmKernel::kFusion;
+  return params;
+}
+
+const Samples& many() {
+  static const Samples samples = learned(kFrames);
+  return samples;
+}
+
+const std::string& calibration() {
+  static const std::string state =
+      FusionClassifier(learned(kCalibrated), kPlaces, fusion()).state();
+  return state;
+}
+
+/// Signature, places, and the distances that the filter over poses takes.
+void frameToPlace(benchmark::State& state, bool full_scan) {
+  FusionClassifier classifier(many(), kPlaces, fusion(), calibration(), full_scan);
+  const auto descriptor = makeDescriptor("FUSION");
+  const cv::Mat image = scene(3, {640, 480});
+  std::vector<float> signature(static_cast<std::size_t>(descriptor->size()));
+  std::vector<double> probabilities(kPlaces);
+  for (auto _ : state) {
+    descriptor->compute(image, {}, signature.data());
+    classifier.predict(signature.data(), probabilities.data());
+    benchmark::DoNotOptimize(classifier.distances());
+  }
+  if (!full_scan) state.SetLabel("baseline=fusion/frame_to_place_7000/full_scan");
+}
+
+/// The same, without the signature.
+void search(benchmark::State& state, bool full_scan) {
+  FusionClassifier classifier(many(), kPlaces, fusion(), calibration(), full_scan);
+  const auto signature = makeDescriptor("FUSION")->compute(scene(3, {640, 480}));
+  std::vector<double> probabilities(kPlaces);
+  for (auto _ : state) {
+    classifier.predict(signature.data(), probabilities.data());
+    benchmark::DoNotOptimize(classifier.distances());
+  }
+  if (!full_scan) state.SetLabel("baseline=fusion/search_7000/full_scan");
+}
+
+const int registered = [] {
+  using benchmark::kMillisecond;
+  for (const bool full_scan : {true, false}) {
+    const std::string kind = full_scan ? "full_scan" : "index";
+    benchmark::RegisterBenchmark(("fusion/frame_to_place_7000/" + kind).c_str(),
+                                 [full_scan](benchmark::State& s) { frameToPlace(s, full_scan); })
+        ->Unit(kMillisecond);
+    benchmark::RegisterBenchmark(("fusion/search_7000/" + kind).c_str(), [full_scan](
+                                                                             benchmark::State& s) {
+      search(s, full_scan);
+    })->Unit(kMillisecond);
+  }
+  return 0;
+}();
+
+}  // namespace
