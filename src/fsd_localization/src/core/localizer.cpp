@@ -75,7 +75,7 @@ void LocalizerParams::describe(hyselam::ParameterVisitor& visit) {
         "a place that the search found is believed from this probability on");
   visit("lost_probability", lost_probability, probability, "",
         "lost, if another place is right with this probability");
-  visit.group("place_odds_", place_odds);
+  visit.group("place_judge_", place_odds);
   visit.group("", filter);
   visit.renamed("converged_share", "converged_cluster_weight");
   visit("converged_cluster_weight", converged_cluster_weight, Range::aboveUpTo(0.0, 1.0), "",

@@ -225,7 +225,8 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
   const bool fits = verdict.best.seen >= kFits;
   if (state_ == LocalizerState::kTracking) {
     if (!answer.believed) return;  // asked before
-    search_.probation.answered(search_.way, fits ? verdict.believed : 0.0,
+    // By what had been seen when it was asked.
+    search_.probation.answered(search_.asked_at.value_or(0.0), fits ? verdict.believed : 0.0,
                                params_.found_probability);
     if (!is_beaten) {
       confirmPose(verdict);
