@@ -305,7 +305,8 @@ TEST_F(ObjectMapperWithPc, OneThatIsLargerThanItsKindAndHoldsAnotherIsNoObject) 
   mapper_.consolidate();
   EXPECT_EQ(countPcs(), 2);
   for (const ObjectInstance& object : map_.objects) {
-    if (object.kind == "PC") EXPECT_LT(object.pose->size[1], 0.5);
+    if (object.kind != "PC") continue;
+    EXPECT_LT(object.pose->size[1], 0.5);
   }
 }
 
