@@ -46,7 +46,8 @@ TEST(Outline, GivesTheBoxOfATurnedRectangle) {
     const GroundBox found = boxAround(outlineOf(pointsOf(box), 0.0));
     EXPECT_NEAR(found.x, 2.0, 1e-3) << degrees;
     EXPECT_NEAR(found.y, -1.0, 1e-3) << degrees;
-    // Directions are 5 degrees apart, and what gains little by being turned is not: up to 3 degrees.
+    // Directions are 5 degrees apart, and what gains little by being turned is not: up to 3
+    // degrees.
     EXPECT_NEAR(found.yaw, box.yaw, hyselam::radians(3.1)) << degrees;
     EXPECT_NEAR(found.length, 0.4, 0.011) << degrees;
     EXPECT_NEAR(found.width, 0.2, 0.021) << degrees;
