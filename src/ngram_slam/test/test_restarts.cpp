@@ -186,6 +186,24 @@ TEST(KnownMaps, doNotSearchTheMapOfTheRunItself) {
   EXPECT_FALSE(maps.find(lastMetresAt(kFirstScan + 300)));
 }
 
+TEST(KnownMaps, letGoOfTheScansTheyWereDrawnFrom) {
+  const std::shared_ptr<const hyselam::LaserScan>& scan = knownMap().keyframes.front().scan;
+  const long before = scan.use_count();
+  KnownMaps maps(knownMap(), static_cast<int>(knownMap().keyframes.size()), {}, 1, {});
+  EXPECT_EQ(scan.use_count(), before + 1);
+  ASSERT_TRUE(maps.find(lastMetresAt(kFirstScan + 300)));
+  EXPECT_EQ(scan.use_count(), before);
+  EXPECT_TRUE(maps.find(lastMetresAt(kFirstScan + 300)));  // again
+}
+
+TEST(KnownMaps, areNotSearchedIfOneIsTooLargeToBeDrawn) {
+  SlamState twice = knownMapTwice();
+  twice.keyframes.back().pose.x += 1e6;
+  KnownMaps maps(twice, static_cast<int>(twice.keyframes.size()), {}, 2, {});
+  EXPECT_FALSE(maps.find(lastMetresAt(kFirstScan + 300)));
+  EXPECT_FALSE(maps.find(lastMetresAt(kFirstScan + 300)));  // nor later
+}
+
 /// Nothing is found but on the drawn maps.
 SlamParams placesOnly() {
   SlamParams params;
@@ -211,6 +229,61 @@ TEST(Restart, waitsWhereTwoPlacesAreAlike) {
   EXPECT_EQ(engine.runPlace(), RunPlace::kOwnMap);
 }
 
+/// As feed(). The maps that were asked last.
+std::weak_ptr<KnownMaps> mapsAsked(SlamEngine* engine, const hyselam::RobotLog& log,
+                                   std::size_t begin, std::size_t end) {
+  std::weak_ptr<KnownMaps> asked;
+  for (std::size_t i = begin; i < std::min(end, log.scans.size()); ++i) {
+    engine->add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
+    while (const auto job = engine->takeJob()) {
+      if (job->place) asked = job->place->maps;
+      engine->apply(runJob(*job));
+    }
+  }
+  return asked;
+}
+
+TEST(Restart, keepsDrawnMapsUntilItEnds) {
+  SlamEngine engine(placesOnly(), knownMap());
+  const auto maps = mapsAsked(&engine, otherBuilding(), 0, 60);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kSupposed);
+  EXPECT_FALSE(maps.expired());
+  engine.endRun();
+  EXPECT_TRUE(maps.expired());
+}
+
+TEST(Restart, keepsDrawnMapsUntilItIsAMapOfItsOwn) {
+  SlamParams params = placesOnly();
+  params.run_start.own_map_path = 3.0;
+  SlamEngine engine(params, knownMap());
+  std::weak_ptr<KnownMaps> maps;
+  std::size_t scan = 0;
+  for (; scan < 1000 && engine.runPlace() != RunPlace::kOwnMap; ++scan) {
+    const auto asked = mapsAsked(&engine, otherBuilding(), scan, scan + 1);
+    if (!asked.expired()) maps = asked;
+  }
+  ASSERT_EQ(engine.runPlace(), RunPlace::kOwnMap);
+  mapsAsked(&engine, otherBuilding(), scan, scan + 20);  // another keyframe
+  EXPECT_TRUE(maps.expired());
+}
+
+TEST(Restart, asksNoDrawnMapsWithoutAnInterval) {
+  SlamParams params = placesOnly();
+  params.run_start.place_interval = 0.0;
+  SlamEngine engine(params, knownMap());
+  int asked = 0;
+  for (std::size_t i = 0; i < 100; ++i) {
+    engine.add(otherBuilding().scans[i],
+               *hyselam::poseAt(otherBuilding().odometry, otherBuilding().scans[i].stamp, 1.0));
+    while (const auto job = engine.takeJob()) {
+      asked += job->place.has_value();
+      engine.apply(runJob(*job));
+    }
+  }
+  EXPECT_GT(engine.pathOfRun(), 2.0);
+  EXPECT_EQ(asked, 0);
+}
+
 TEST(Restart, inAnotherBuildingIsAMapOfItsOwn) {
   SlamEngine engine(SlamParams{}, knownMap());
   feed(&engine, otherBuilding(), 0, 100);
@@ -232,12 +305,14 @@ TEST(Restart, atAKnownPoseIsTiedAtOnce) {
   EXPECT_LT(distance(engine.pose(), inMap(truthAt(secondVisit(), kFirstScan))), 0.1);
 }
 
-/// A far loop by signatures, as if the scans had verified it.
-void tell(SlamEngine* engine, int older, int newer, const Pose2& measured) {
+/// A far loop by signatures, as if the scans had verified it; or at a place of the drawn maps.
+void tell(SlamEngine* engine, int older, int newer, const Pose2& measured,
+          double place_probability = 0.0) {
   SlamJobResult result;
   LoopTask task;
   task.far = true;
-  task.source = LoopSource::kSignature;
+  task.source = place_probability > 0.0 ? LoopSource::kProximity : LoopSource::kSignature;
+  task.place_probability = place_probability;
   task.older = older;
   task.newer = newer;
   LoopVerification answer;
@@ -245,7 +320,7 @@ void tell(SlamEngine* engine, int older, int newer, const Pose2& measured) {
   answer.loop.older = older;
   answer.loop.newer = newer;
   answer.loop.far = true;
-  answer.loop.source = LoopSource::kSignature;
+  answer.loop.source = task.source;
   answer.loop.measured = measured;
   answer.loop.information = 100.0 * Eigen::Matrix3d::Identity();
   answer.loop.inlier_ratio = 0.9;
@@ -255,18 +330,69 @@ void tell(SlamEngine* engine, int older, int newer, const Pose2& measured) {
   engine->apply(result);
 }
 
-TEST(Restart, givesUpTiesThatMoreLoopsContradict) {
+/// Nothing is found by itself in so short a path.
+SlamParams nothingFound() {
   SlamParams params;
-  params.loops = LoopClosureMode::kNgrams;  // nothing is found by itself in so short a path
+  params.loops = LoopClosureMode::kNgrams;
   params.run_start.search_interval = params.run_start.whole_map_interval = 1e6;
-  SlamEngine engine(params, knownMap());
-  const auto first = static_cast<int>(engine.keyframes().size());
-  std::size_t scan = kFirstScan;
-  while (engine.keyframes().size() < static_cast<std::size_t>(first) + 30) {
-    engine.add(secondVisit().scans[scan],
-               *hyselam::poseAt(secondVisit().odometry, secondVisit().scans[scan].stamp, 1.0));
-    ++scan;
+  return params;
+}
+
+/// A run of 30 keyframes of the second visit; its first one.
+int driveThirtyKeyframes(SlamEngine* engine) {
+  const auto first = static_cast<int>(engine->keyframes().size());
+  for (std::size_t scan = kFirstScan;
+       engine->keyframes().size() < static_cast<std::size_t>(first) + 30; ++scan) {
+    engine->add(secondVisit().scans[scan],
+                *hyselam::poseAt(secondVisit().odometry, secondVisit().scans[scan].stamp, 1.0));
   }
+  return first;
+}
+
+TEST(Restart, isTiedByTwoPlacesOnlyIfBothAreSure) {
+  SlamEngine engine(nothingFound(), knownMap());
+  const int first = driveThirtyKeyframes(&engine);
+  const auto& keyframes = engine.keyframes();
+  const Pose2 correction =
+      keyframes[10].pose * Pose2{0.3, 0.2, 0.4} * keyframes[first].pose.inverse();
+  std::vector<Pose2> loops;  // as the run lay before
+  for (int i = 0; i < 30; ++i) {
+    loops.push_back(between(keyframes[10].pose,
+                            correction * keyframes[static_cast<std::size_t>(first + i)].pose));
+  }
+  const auto tellOf = [&](int i, double place_probability) {
+    tell(&engine, 10, first + i, loops[static_cast<std::size_t>(i)], place_probability);
+  };
+  const std::size_t known = engine.loops().size();
+  tellOf(0, 0.6);
+  tellOf(10, 0.95);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kSupposed);
+  EXPECT_EQ(engine.loops().size(), known);
+  tellOf(20, 0.95);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_EQ(engine.loops().size(), known + 2);
+  // One that was out meanwhile is a far loop as others are.
+  tellOf(15, 0.6);
+  EXPECT_EQ(engine.loops().size(), known + 3);
+}
+
+TEST(Restart, asksTheScansAtPlacesLikelierThanTheirLikes) {
+  SlamEngine engine(nothingFound(), knownMap());
+  const int first = driveThirtyKeyframes(&engine);
+  const auto tried = [&](double probability) {
+    const auto before = engine.state().counters.far.tried;
+    SlamJobResult result;
+    result.place = PlaceAnswer{first + 29, first + 15, KnownPlace{10, Pose2{}, probability}};
+    engine.apply(result);
+    return engine.state().counters.far.tried - before;
+  };
+  EXPECT_EQ(tried(0.5), 0u);
+  EXPECT_EQ(tried(0.51), 1u);
+}
+
+TEST(Restart, givesUpTiesThatMoreLoopsContradict) {
+  SlamEngine engine(nothingFound(), knownMap());
+  const int first = driveThirtyKeyframes(&engine);
   // Beside keyframe 10 of the known map, 40 m and half a turn from ...
   const auto& keyframes = engine.keyframes();
   const Pose2 wrong = keyframes[10].pose * Pose2{0.3, 0.2, 0.4} * keyframes[first].pose.inverse();

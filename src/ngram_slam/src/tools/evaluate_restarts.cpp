@@ -43,7 +43,7 @@ struct Options {
 
   SlamParams params() const {
     SlamParams p;
-    if (without_places) p.run_start.place_interval = std::numeric_limits<double>::max();
+    if (without_places) p.run_start.place_interval = 0.0;
     return p;
   }
 };
@@ -267,7 +267,7 @@ Outcome restart(const Log& log, const Mapped& mapped, const std::string& mode, s
     if (!step.truth) continue;
     if (!out.tied) {
       out.until_tied = step.way - log.steps[first].way;
-      if (mapped.truths.distanceTo(*step.truth) < kKnownPlace) {
+      if (i > first && mapped.truths.distanceTo(*step.truth) < kKnownPlace) {
         out.known_until_tied += step.way - log.steps[i - 1].way;
       }
       continue;
@@ -294,11 +294,14 @@ Outcome restart(const Log& log, const Mapped& mapped, const std::string& mode, s
   const auto meanError = [&](const std::vector<hyselam::StampedPose2>& trajectory,
                              const std::vector<SlamKeyframe>& keyframes) {
     double sum = 0.0;
+    int summed = 0;
     for (const Step* s : compared) {
       const auto pose = hyselam::poseAt(trajectory, s->scan->stamp, 0.1);
-      if (pose) sum += distance(*pose, mapped.truths.inMap(*s->truth, keyframes)) / n;
+      if (!pose) continue;
+      sum += distance(*pose, mapped.truths.inMap(*s->truth, keyframes));
+      ++summed;
     }
-    return sum;
+    return summed > 0 ? sum / summed : std::numeric_limits<double>::quiet_NaN();
   };
   out.end_error = meanError(engine.trajectory(), engine.keyframes());
   out.end_unbroken = meanError(mapped.unbroken_path, mapped.unbroken);
@@ -435,8 +438,8 @@ nlohmann::json run(const Options& o) {
     const Mapped& mapped = maps[l];
     const std::vector<std::size_t> known = knownStarts(log, mapped);
     if (known.empty()) {
-      std::cerr << log.name << ": its second half does not drive where the first had been\n";
-      continue;
+      std::cerr << log.name << ": its second half does not drive where the first had been"
+                << ": only runs elsewhere\n";
     }
     for (const std::string& mode : o.modes) {
       if (mode == kElsewhere) {
@@ -446,6 +449,7 @@ nlohmann::json run(const Options& o) {
         }
         continue;
       }
+      if (known.empty()) continue;
       hyselam::Rng rng(o.seed);
       std::vector<Outcome> outcomes;
       hyselam::Progress progress(log.name + " " + mode, static_cast<std::size_t>(o.starts));

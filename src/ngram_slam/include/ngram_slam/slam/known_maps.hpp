@@ -25,8 +25,8 @@ struct KnownPlace {
   int keyframe = 0;  ///< of another map, the nearest one
   hyselam::Pose2 base_in_keyframe;
   /// That no other place of any of the maps is the right one, if one of them is, 0..1: the odds of
-  /// the localizer (fsd_localization::PlaceOdds), and no more than the margin to the best other
-  /// place tells.
+  /// the localizer as shipped (the defaults of fsd_localization::PlaceOdds, not place_odds_* as
+  /// they may be set for the localizer), and no more than the margin to the best other place tells.
   double probability = 0.0;
 };
 
@@ -42,14 +42,23 @@ class KnownMaps {
   KnownMaps& operator=(const KnownMaps&) = delete;
 
   /// The place at which the scans fit best; nothing if they fit nowhere, or only where there is
-  /// none. `scans`: the last metres of a run, the newest last. Deterministic; not thread-safe.
+  /// none, or if a map is too large to be drawn: it would be missed as a rival. `scans`: the last
+  /// metres of a run, the newest last. Deterministic; not thread-safe. If drawing fails otherwise
+  /// (std::bad_alloc), that is thrown once, and nothing is found from then on.
   std::optional<KnownPlace> find(const std::vector<SubmapScan>& scans);
 
  private:
   struct Map;
   void draw();
 
-  std::vector<SlamKeyframe> keyframes_;
+  /// Where a keyframe lies.
+  struct Keyframe {
+    hyselam::Pose2 pose;
+    std::uint32_t map;
+  };
+  std::vector<Keyframe> keyframes_;
+  // What the maps are drawn from; let go then.
+  std::vector<SlamKeyframe> drawn_from_;
   SettledMap settled_;
   std::vector<std::uint32_t> map_of_run_;
   std::uint32_t but_;

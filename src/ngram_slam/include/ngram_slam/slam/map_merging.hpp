@@ -102,11 +102,12 @@ using MergingProgress =
     std::function<void(const std::string& step, std::size_t done, std::size_t total)>;
 
 /// Signatures find places of one map in the others (SignaturePlaces), the scans verify them
-/// (verifyLoop()), and what SLAM believes of a run in a known map is believed of two maps
-/// (believeFarLoops()): three loops that agree, are likelier right than wrong, and are not
-/// contradicted, here by nothing in both maps. The best known tie first; it is borne out by near
-/// loops along the common path, which go into the graph, or withdrawn. The graph is optimized with
-/// all loops and robustly, as by SlamEngine.
+/// (verifyLoop()), and what SLAM believes of the loops of a run in a known map is believed of those
+/// of two maps (believeFarLoops()): three that agree, are likelier right than wrong, and are not
+/// contradicted, here by nothing in both maps. By loops alone: no places of drawn maps are searched
+/// (KnownMaps), which tie a run to its map by two loops. The best known tie first; it is borne out
+/// by near loops along the common path, which go into the graph, or withdrawn. The graph is
+/// optimized with all loops and robustly, as by SlamEngine.
 ///
 /// Sessions without keyframes, that are inconsistent, or that hold a recording of another one are
 /// left out. Maps that meet no other come back as they are. Runs of one session that no loop joins

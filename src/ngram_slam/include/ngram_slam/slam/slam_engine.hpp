@@ -62,7 +62,8 @@ struct SlamJobResult {
   std::vector<SignatureCandidate> candidates;
   std::optional<PlaceAnswer> place;
 };
-/// Deterministic and thread-safe.
+/// Deterministic; on any thread, but one job of an engine at a time, as they share what is
+/// searched.
 SlamJobResult runJob(const SlamJob& job);
 
 /// What adding a scan did.
@@ -225,6 +226,11 @@ class SlamEngine {
     RunTrust trust;
     bool anywhere;  // the pose says nothing
   };
+  /// A verified loop to a place found on a drawn map.
+  struct PlacedLoop {
+    SlamLoop loop;
+    double place_probability;  // KnownPlace::probability
+  };
   /// The current run, all in [m] of path.
   struct Run {
     double begin = 0.0;
@@ -235,7 +241,7 @@ class SlamEngine {
     bool anywhere = false;                  // nothing is supposed of where it begins
     std::uint32_t supposed_in = 0;          // map
     std::shared_ptr<KnownMaps> other_maps;  // used by jobs only
-    std::vector<SlamLoop> placed;           // verified loops to the places found in them
+    std::vector<PlacedLoop> placed;         // in them, while the run is not tied
   };
   /// A keyframe and a pose of another one relative to it, with the window to search.
   struct LoopGuess {
@@ -327,10 +333,12 @@ class SlamEngine {
   std::vector<int> placesOfOtherMaps(int keyframe) const;
   void searchOtherMaps();
   void askForPlace();
+  void forgetPlaces();
   void applyPlace(const PlaceAnswer& answer);
   void addPlacedLoop(const SlamLoop& loop, double place_probability);
   void placeRun(const SlamLoop& tie);
   void doubtTies(const SlamLoop& loop);
+  std::vector<std::uint32_t> mapsOfRuns() const;
   void refreshConnections();
 
   // Loops, in slam_loops.cpp.

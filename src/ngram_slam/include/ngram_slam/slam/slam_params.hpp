@@ -80,7 +80,8 @@ struct StepCheckParams {
 /// A pose that is known (RunTrust::kKnown: the robot was switched to another mode meanwhile) is
 /// refined by a search of the first scan and tied to the map at once. One that is supposed may be
 /// wrong by metres or by half a turn, or be in another building: the run is a map of its own until
-/// far loops tie it to the known one.
+/// far loops tie it to the known one: three that agree (LoopParams::min_tie_loops), or two of which
+/// one is at a place of the drawn maps that no other one rivals.
 struct RunStartParams {
   double map_radius =
       10.0;  ///< beyond the window of SlamEngine::startRun(), of keyframes used [m], >= 0
@@ -98,16 +99,18 @@ struct RunStartParams {
   double search_radius = 5.0;       ///< of what is searched around it, at any heading [m], > 0
   double whole_map_interval = 5.0;  ///< path between searches of the whole map [m], > 0
   double place_spacing = 4.0;       ///< between places that are searched [m], > 0
-  /// Path between searches of the drawn maps for the last metres of the run [m], > 0.
+  /// Path between searches of the drawn maps for the last metres of the run [m], >= 0; 0: they are
+  /// not searched.
   double place_interval = 1.0;
-  /// The scans are asked at a place found so if it is right with this probability beside all
-  /// others, 0..1 ...
+  /// The scans are asked at a place found so if it is right with more than this probability beside
+  /// all others, 0..1 (of two that are alike each has 0.5) ...
   double min_place_probability = 0.5;
   /// ... and a verified loop there ties the run if it has this one, 0..1, ...
   double sure_place_probability = 0.9;
   /// ... together with what the scans say this one, 0..1, ...
   double min_tie_probability = 0.995;
-  /// ... and if another loop so much path beside it says the same [m], >= 0.
+  /// ... and if another loop so much path beside it says the same [m], >= 0: one found otherwise,
+  /// or at another place as sure as the first.
   double place_min_span = 1.0;
   /// A run that is not tied after this much path is shown as a map of its own; one that is tied
   /// listens to loops that contradict its ties for as long [m], >= 0.

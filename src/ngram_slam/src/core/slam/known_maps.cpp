@@ -25,29 +25,32 @@ struct KnownMaps::Map {
 
 KnownMaps::KnownMaps(const SlamState& state, int end, const RunConnections& connections,
                      std::uint32_t but, const ConsolidationParams& drawn)
-    : keyframes_(state.keyframes.begin(), state.keyframes.begin() + end),
+    : drawn_from_(state.keyframes.begin(), state.keyframes.begin() + end),
       settled_(state.settled),
       but_(connections.mapOf(but)),
       params_(drawn) {
-  const std::uint32_t runs = keyframes_.empty() ? 0 : keyframes_.back().run + 1;
+  const std::uint32_t runs = drawn_from_.empty() ? 0 : drawn_from_.back().run + 1;
   for (std::uint32_t run = 0; run < runs; ++run) map_of_run_.push_back(connections.mapOf(run));
+  for (const SlamKeyframe& k : drawn_from_) keyframes_.push_back({k.pose, map_of_run_[k.run]});
 }
 
 KnownMaps::~KnownMaps() = default;
 
-/// Each map as it would be shown.
+/// Each map as it would be shown; all of them or none: one that is missed is missed as a rival.
 void KnownMaps::draw() {
   drawn_ = true;
+  const std::vector<SlamKeyframe> keyframes = std::exchange(drawn_from_, {});
+  const SettledMap settled = std::exchange(settled_, {});
+  std::vector<Map> maps;
   for (const std::uint32_t name : std::set<std::uint32_t>(map_of_run_.begin(), map_of_run_.end())) {
     if (name == but_) continue;
     std::vector<bool> shown;
     for (const std::uint32_t map : map_of_run_) shown.push_back(map == name);
     PresentMap present(params_.map, params_.present);
     try {
-      present.update({keyframes_, settled_, shown, but_, 0});
+      present.update({keyframes, settled, shown, but_, 0});
     } catch (const std::length_error&) {
-      maps_.clear();  // what is too large to be drawn would be missed as a rival
-      return;
+      return;  // too large to be drawn
     }
     const hyselam::OccupancyGrid grid = present.grid();
     // One of a few scans may show nothing.
@@ -55,8 +58,9 @@ void KnownMaps::draw() {
       return c == hyselam::OccupancyGrid::kOccupied;
     });
     if (!shows) continue;
-    maps_.push_back({name, grid.geometry.origin, std::make_unique<const PlaceSearch>(grid)});
+    maps.push_back({name, grid.geometry.origin, std::make_unique<const PlaceSearch>(grid)});
   }
+  maps_ = std::move(maps);
 }
 
 std::optional<KnownPlace> KnownMaps::find(const std::vector<SubmapScan>& scans) {
@@ -83,7 +87,7 @@ std::optional<KnownPlace> KnownMaps::find(const std::vector<SubmapScan>& scans) 
   KnownPlace place;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-    if (map_of_run_[keyframes_[k].run] != map->name) continue;
+    if (keyframes_[k].map != map->name) continue;
     const double away = distance(keyframes_[k].pose, base);
     if (away >= nearest) continue;
     nearest = away;

@@ -129,8 +129,12 @@ void SlamEngine::searchOtherMaps() {
 /// While the run is not tied: asks where in the other maps its last metres fit best.
 void SlamEngine::askForPlace() {
   const RunStartParams& p = params_.run_start;
-  if (!isUntied() || runPlace() == RunPlace::kOwnMap) return;
-  if (path_length_ - run_.drawn < p.place_interval) return;
+  if (!isUntied()) return;
+  if (runPlace() == RunPlace::kOwnMap) {
+    forgetPlaces();
+    return;
+  }
+  if (p.place_interval <= 0.0 || path_length_ - run_.drawn < p.place_interval) return;
   run_.drawn = path_length_;
   if (!run_.other_maps) {
     run_.other_maps = std::make_shared<KnownMaps>(state_, first_of_run_, connections_, currentRun(),
@@ -150,10 +154,17 @@ void SlamEngine::askForPlace() {
   place_question_ = std::move(question);
 }
 
-/// A place that no other one rivals is looked at by the scans themselves.
+/// Where the run lies is known, or no longer asked: the drawn maps are large.
+void SlamEngine::forgetPlaces() {
+  run_.other_maps.reset();
+  run_.placed.clear();
+  place_question_.reset();
+}
+
+/// A place that is likelier than one with an equal beside it is looked at by the scans themselves.
 void SlamEngine::applyPlace(const PlaceAnswer& answer) {
   if (!isUntied() || answer.middle < first_of_run_ || !answer.place ||
-      answer.place->probability < params_.run_start.min_place_probability) {
+      answer.place->probability <= params_.run_start.min_place_probability) {
     return;
   }
   LoopGuess guess{answer.place->keyframe,
@@ -171,19 +182,28 @@ void SlamEngine::applyPlace(const PlaceAnswer& answer) {
 
 /// A loop at the place of the other maps that explains the last metres best. It ties the run if
 /// that no other place does and what the scans say of this one together leave no doubt, and if
-/// another loop along the run says the same.
+/// another loop along the run says the same: one found otherwise, or at another place as sure.
 void SlamEngine::addPlacedLoop(const SlamLoop& loop, double place_probability) {
-  if (!isUntied() || loop.newer < first_of_run_) return;
+  if (loop.newer < first_of_run_) return;
+  if (!isUntied()) {  // tied while it was verified
+    addFarLoop(loop);
+    return;
+  }
   const LoopParams& p = params_.loop;
-  std::vector<SlamLoop> others = state_.pending_loops;
-  others.insert(others.end(), run_.placed.begin(), run_.placed.end());
-  run_.placed.push_back(loop);
-  const LoopCompany all = companyOf(loop, others, state_.keyframes, connections_, p);
-  // Along a corridor the search finds the same again, right or wrong: it does not support itself.
+  const double sure = params_.run_start.sure_place_probability;
+  std::vector<SlamLoop> all_others = state_.pending_loops;  // may contradict it
+  std::vector<SlamLoop> others = state_.pending_loops;      // may be the second loop of a tie
+  for (const PlacedLoop& placed : run_.placed) {
+    all_others.push_back(placed.loop);
+    if (placed.place_probability >= sure) others.push_back(placed.loop);
+  }
+  run_.placed.push_back({loop, place_probability});
+  const LoopCompany all = companyOf(loop, all_others, state_.keyframes, connections_, p);
+  // Along a corridor the search finds the same again, right or wrong: no support in the odds.
   LoopCompany found_otherwise =
       companyOf(loop, state_.pending_loops, state_.keyframes, connections_, p);
   found_otherwise.contradiction = all.contradiction;
-  if (!all.isTrusted(p) || place_probability < params_.run_start.sure_place_probability ||
+  if (!all.isTrusted(p) || place_probability < sure ||
       logOdds(place_probability) + logOdds(loopProbability(loop, found_otherwise)) <
           logOdds(params_.run_start.min_tie_probability)) {
     return;
@@ -194,7 +214,6 @@ void SlamEngine::addPlacedLoop(const SlamLoop& loop, double place_probability) {
         params_.run_start.place_min_span) {
       continue;
     }
-    run_.placed.clear();
     std::vector<SlamLoop>& waiting = state_.pending_loops;
     waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
                                  [&](const SlamLoop& l) { return isSamePair(l, other); }),
@@ -220,6 +239,7 @@ void SlamEngine::placeRun(const SlamLoop& tie) {
     pose_ = correction * pose_;
     matched_pose_ = correction * matched_pose_;
     run_.tied = path_length_;
+    forgetPlaces();
   }
   connections_.connect(a, b);
   run_.other_maps.reset();
@@ -258,9 +278,18 @@ void SlamEngine::doubtTies(const SlamLoop& loop) {
   for (const SlamLoop& l : group) acceptFarLoop(l);
 }
 
+/// The map of each run.
+std::vector<std::uint32_t> SlamEngine::mapsOfRuns() const {
+  std::vector<std::uint32_t> maps;
+  for (std::uint32_t run = 0; run <= currentRun(); ++run) maps.push_back(connections_.mapOf(run));
+  return maps;
+}
+
 /// After loops lost their weight or were taken away.
 void SlamEngine::refreshConnections() {
+  const std::vector<std::uint32_t> before = mapsOfRuns();
   connections_ = RunConnections(state_.keyframes, state_.loops);
+  if (mapsOfRuns() != before) run_.other_maps.reset();  // one fell apart, or two are one
   if (isUntied()) {
     run_.tied.reset();
     run_.searched = run_.searched_map = run_.drawn = path_length_;

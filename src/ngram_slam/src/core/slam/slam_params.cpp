@@ -91,10 +91,11 @@ void RunStartParams::describe(ParameterVisitor& visit) {
   visit("whole_map_interval", whole_map_interval, kPositive, "m",
         "path between searches of the whole map, until the run is tied to it");
   visit("place_spacing", place_spacing, kPositive, "m", "between the places that are searched");
-  visit("place_interval", place_interval, kPositive, "m",
-        "path between searches of the drawn maps for the last metres of the run, until it is tied");
+  visit("place_interval", place_interval, kNotNegative, "m",
+        "path between searches of the drawn maps for the last metres of the run, until it is tied; "
+        "0: they are not searched");
   visit("min_place_probability", min_place_probability, kRatio, "",
-        "of a place found so, beside all others: at less probable ones the scans are not asked");
+        "of a place found so, beside all others: the scans are asked at more probable ones");
   visit("sure_place_probability", sure_place_probability, kRatio, "",
         "of a place found so, beside all others, to tie the run");
   visit("min_tie_probability", min_tie_probability, kRatio, "",

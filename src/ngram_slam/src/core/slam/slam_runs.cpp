@@ -38,6 +38,7 @@ void SlamEngine::endRun() {
   if (usesWords()) addWordMatches(words_.finish());
   run_to_end_ = usesSignatures();
   run_open_ = false;
+  run_.other_maps.reset();  // a question that still waits has its own hold of them
 }
 
 void SlamEngine::beginRun(const hyselam::LaserScan& scan, const Pose2& odometry) {
