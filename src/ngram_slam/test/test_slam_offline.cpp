@@ -276,6 +276,17 @@ TEST_F(SlamOffline, tellsStartsAndLoopsOfTheSavedMapApart) {
   const auto third = nlohmann::json::parse(fileBytes(d / "third/summary.json"));
   EXPECT_EQ(third["loops_by_kind"]["supposed"], 0);
   EXPECT_EQ(third["loops_by_kind"]["near"], kinds["near"] + 1);
+  // What changed is known where it is known where the robot was.
+  for (const auto& told : {summary, third}) {
+    const std::string changes = told["changes"];
+    EXPECT_EQ(changes.rfind("not known", 0) == 0, told["place"] != "tied") << told["place"];
+  }
+  // Two scans say nothing of where it is.
+  ASSERT_EQ(run(bag + d / "fourth --duration 2 --start unknown --state " + d / "first.state"), 0)
+      << errors;
+  const auto fourth = nlohmann::json::parse(fileBytes(d / "fourth/summary.json"));
+  EXPECT_EQ(fourth["place"], "supposed");
+  EXPECT_EQ(fourth["changes"], "not known: the session is not tied to the map");
 }
 
 TEST_F(SlamOffline, takesTheParametersOfTheNode) {
