@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "../src/core/classifiers/fusion_classifier.hpp"
+#include "drawn_scene.hpp"
 #include "hyselam_common/rng.hpp"
 #include "selovis/descriptors/descriptor.hpp"
 
@@ -17,16 +18,8 @@ constexpr int kFrames = 7000, kViews = 5, kPlaces = 70, kScenes = 140, kCalibrat
 
 cv::Mat scene(std::uint64_t seed, const cv::Size& size) {
   hyselam::Rng rng(seed);
-  cv::Mat image(480, 640, CV_8UC3, cv::Scalar(150, 170, 180));
-  for (int i = 0; i < 60; ++i) {
-    const cv::Rect box(static_cast<int>(rng.below(600)), static_cast<int>(rng.below(440)),
-                       20 + static_cast<int>(rng.below(160)),
-                       20 + static_cast<int>(rng.below(160)));
-    cv::rectangle(image, box, cv::Scalar(rng.below(256), rng.below(256), rng.below(256)),
-                  cv::FILLED);
-  }
   cv::Mat sized;
-  cv::resize(image, sized, size, 0.0, 0.0, cv::INTER_AREA);
+  cv::resize(drawnScene(rng), sized, size, 0.0, 0.0, cv::INTER_AREA);
   return sized;
 }
 

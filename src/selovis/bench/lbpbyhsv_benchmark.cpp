@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "../test/transcription/plain_lbp.hpp"
+#include "drawn_scene.hpp"
 #include "hyselam_common/rng.hpp"
 #include "selovis/recognition/image_recognizer.hpp"
 
@@ -15,14 +16,7 @@ using namespace selovis;  // NOLINT: a program, not a header
 /// go.
 cv::Mat scene(std::uint64_t seed) {
   hyselam::Rng rng(seed);
-  cv::Mat image(480, 640, CV_8UC3, cv::Scalar(150, 170, 180));
-  for (int i = 0; i < 60; ++i) {
-    const cv::Rect box(static_cast<int>(rng.below(600)), static_cast<int>(rng.below(440)),
-                       20 + static_cast<int>(rng.below(160)),
-                       20 + static_cast<int>(rng.below(160)));
-    cv::rectangle(image, box, cv::Scalar(rng.below(256), rng.below(256), rng.below(256)),
-                  cv::FILLED);
-  }
+  cv::Mat image = drawnScene(rng);
   cv::GaussianBlur(image, image, cv::Size(3, 3), 0.0);
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < 3 * image.cols; ++x) {

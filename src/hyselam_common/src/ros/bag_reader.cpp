@@ -108,14 +108,6 @@ double stampOf(const ros::Time& header, const rosbag::MessageInstance& m) {
   return toSeconds(header.isZero() ? m.getTime() : header);
 }
 
-tf2::Transform toTransform(const geometry_msgs::Transform& t, const std::string& source) {
-  fromMsg(t, source);  // checks it
-  tf2::Quaternion q(t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w);
-  if (!std::isfinite(t.translation.z)) throw InputError(source, "", "the position is not finite");
-  return tf2::Transform(q.normalized(),
-                        tf2::Vector3(t.translation.x, t.translation.y, t.translation.z));
-}
-
 void takeTransforms(const rosbag::MessageInstance& m, const tf2_msgs::TFMessage& msg,
                     const std::string& source, const BagOptions& options, Content* content) {
   for (const auto& t : msg.transforms) {
@@ -127,7 +119,7 @@ void takeTransforms(const rosbag::MessageInstance& m, const tf2_msgs::TFMessage&
       content->tf_odometry.push_back({stampOf(t.header.stamp, m), fromMsg(t.transform, what)});
     } else if (parent != options.odom_frame && parent != options.map_frame) {
       // Only what is fixed on the robot matters here: its first value counts.
-      content->transforms.emplace(std::make_pair(parent, child), toTransform(t.transform, what));
+      content->transforms.emplace(std::make_pair(parent, child), spatialFromMsg(t.transform, what));
     }
   }
 }

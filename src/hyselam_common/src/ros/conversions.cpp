@@ -71,6 +71,14 @@ Pose2 fromMsg(const geometry_msgs::Transform& transform, const std::string& sour
   return checkedPose(transform.translation.x, transform.translation.y, transform.rotation, source);
 }
 
+tf2::Transform spatialFromMsg(const geometry_msgs::Transform& t, const std::string& source) {
+  fromMsg(t, source);  // checks it
+  if (!std::isfinite(t.translation.z)) throw InputError(source, "", "the position is not finite");
+  const tf2::Quaternion turn(t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w);
+  return tf2::Transform(turn.normalized(),
+                        tf2::Vector3(t.translation.x, t.translation.y, t.translation.z));
+}
+
 geometry_msgs::Pose toPoseMsg(const Pose2& pose) {
   geometry_msgs::Pose msg;
   msg.position.x = pose.x;

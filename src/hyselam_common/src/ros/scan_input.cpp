@@ -121,13 +121,12 @@ void ScanInput::useScan(const sensor_msgs::LaserScan& msg) {
 bool ScanInput::handleScan(const sensor_msgs::LaserScan& msg) {
   LaserScan scan = fromMsg(msg, topic_);
   // Where the laser sits is taken to be rigid: the newest value is as good as the one at the time.
-  const geometry_msgs::Transform laser =
-      tf_.lookupTransform(params_.base_frame_id, msg.header.frame_id, ros::Time(0)).transform;
-  const tf2::Quaternion turn(laser.rotation.x, laser.rotation.y, laser.rotation.z,
-                             laser.rotation.w);
-  const tf2::Vector3 at(laser.translation.x, laser.translation.y, laser.translation.z);
-  placeLaser(tf2::Transform(turn.normalized(), at), topic_ + ": frame " + msg.header.frame_id,
-             &scan);
+  const std::string laser = topic_ + ": frame " + msg.header.frame_id;
+  placeLaser(
+      spatialFromMsg(
+          tf_.lookupTransform(params_.base_frame_id, msg.header.frame_id, ros::Time(0)).transform,
+          laser),
+      laser, &scan);
   const Pose2 base_in_odom = fromMsg(
       tf_.lookupTransform(params_.odom_frame_id, params_.base_frame_id, msg.header.stamp).transform,
       "tf " + params_.odom_frame_id + " -> " + params_.base_frame_id);

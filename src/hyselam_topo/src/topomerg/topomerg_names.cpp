@@ -5,6 +5,7 @@
 #include <map>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/odds.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {
@@ -36,7 +37,7 @@ constexpr double kDropOfShares = 0.01;
 double probabilityOf(double drop, double scale, bool placed) {
   const double nats = scale > 0.0 ? drop * scale : drop / kDropOfShares;
   const Calibration& fitted = placed ? kPlaced : kAbsent;
-  return 1.0 / (1.0 + std::exp(-(fitted.offset + fitted.factor * nats)));
+  return hyselam::probabilityOf(fitted.offset + fitted.factor * nats);
 }
 
 /// The best fitness among kept assignments that have the name elsewhere; -1: none.

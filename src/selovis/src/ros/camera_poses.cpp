@@ -89,10 +89,8 @@ std::optional<hyselam::Pose2> CameraPoses::baseInOdometry(const ros::Time& stamp
 std::optional<tf2::Transform> CameraPoses::sensorInBase(const std::string& sensor) const {
   if (sensor.empty()) return {};
   try {
-    const auto found = tf_.lookupTransform(ids_.base, sensor, ros::Time(0)).transform;
-    const tf2::Quaternion turn(found.rotation.x, found.rotation.y, found.rotation.z,
-                               found.rotation.w);
-    return tf2::Transform(turn, {found.translation.x, found.translation.y, found.translation.z});
+    return hyselam::spatialFromMsg(tf_.lookupTransform(ids_.base, sensor, ros::Time(0)).transform,
+                                   "tf: frame " + sensor);
   } catch (const tf2::TransformException&) {
     return {};
   }

@@ -72,9 +72,9 @@ void PoseSupervision::onMap(const nav_msgs::OccupancyGrid& msg) {
 const ScanPoints* PoseSupervision::scanAt(const ros::Time& stamp) {
   const auto msg = scans_.nearest(stamp, kMaxScanAge);
   if (!fit_ || !msg) return nullptr;
-  const auto laser = poses_.sensorInBase(msg->header.frame_id);
-  if (!laser) return nullptr;
   try {
+    const auto laser = poses_.sensorInBase(msg->header.frame_id);
+    if (!laser) return nullptr;
     hyselam::LaserScan scan = hyselam::fromMsg(*msg, "scan");
     hyselam::placeLaser(*laser, "tf", &scan);
     points_ = scanPoints(scan);

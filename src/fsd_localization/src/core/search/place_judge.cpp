@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/odds.hpp"
+
 namespace fsd_localization {
 
 namespace {
@@ -27,7 +29,7 @@ double probabilityOfPlace(double score, double rival, double length, const Place
   const double left = std::log(std::max(1.0 - score, kLeastLeft));
   const double log_odds =
       odds.bias + odds.margin * margin + odds.unexplained * left + odds.length * std::log1p(length);
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return hyselam::probabilityOf(log_odds);
 }
 
 std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds) {

@@ -34,6 +34,9 @@ geometry_msgs::Quaternion yawToMsg(double yaw);
 /// z, roll and pitch are dropped.
 Pose2 fromMsg(const geometry_msgs::Pose& pose, const std::string& source);
 Pose2 fromMsg(const geometry_msgs::Transform& transform, const std::string& source);
+/// All of it, the rotation normalised. @throws InputError as above, and for a height that is not
+/// finite.
+tf2::Transform spatialFromMsg(const geometry_msgs::Transform& transform, const std::string& source);
 geometry_msgs::Pose toPoseMsg(const Pose2& pose);
 geometry_msgs::Transform toTransformMsg(const Pose2& pose);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/odds.hpp"
 #include "ngram_slam/matching/ngram.hpp"
 
 namespace ngram_slam {
@@ -70,7 +71,7 @@ void MatchConfidence::estimate(NgramMatch& match, bool with_probability) {
   const double odds =
       params_.bias - params_.by_chance * std::log(std::max(match.chance, 1e-300)) +
       params_.by_misfit * std::log(misfitOf(chain, match.direction) + params_.misfit_floor);
-  match.probability = 1.0 / (1.0 + std::exp(-odds));
+  match.probability = hyselam::probabilityOf(odds);
 }
 
 double MatchConfidence::chanceOf(const std::vector<WordPair>& chain, Direction direction) {

@@ -10,6 +10,7 @@
 #include "fsd_localization/search/place_judge.hpp"
 #include "fsd_localization/search/place_search.hpp"
 #include "fsd_localization/search/submap.hpp"
+#include "hyselam_common/odds.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 
 namespace ngram_slam {
@@ -97,7 +98,7 @@ std::optional<KnownPlace> KnownMaps::find(const std::vector<SubmapScan>& scans) 
   // The odds were fitted where one place was the right one. However well scans fit, of two places
   // at which they fit equally none is likelier: no more than the margin tells.
   const fsd_localization::PlaceOdds odds;
-  const double beside = 1.0 / (1.0 + std::exp(-odds.margin * (best - rival)));
+  const double beside = hyselam::probabilityOf(odds.margin * (best - rival));
   place.probability = std::min(
       beside,
       fsd_localization::probabilityOfPlace(

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hyselam_common/odds.hpp"
+
 namespace ngram_slam {
 
 namespace {
@@ -21,7 +23,7 @@ double loopProbability(const SlamLoop& loop, const LoopCompany& company) {
   const double contradicting = all > 0.0 ? company.contradiction / all : 0.0;
   const double log_odds = kConstant + kOfMisfit * std::log(misfit) +
                           kOfSupport * std::log1p(others) + kOfContradiction * contradicting;
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return hyselam::probabilityOf(log_odds);
 }
 
 }  // namespace ngram_slam

@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "hyselam_common/odds.hpp"
 #include "ngram_slam/slam/keyframe_grid.hpp"
 
 namespace ngram_slam {
@@ -19,13 +20,9 @@ namespace {
 
 constexpr int kMargin = 2;  // of unknown cells around a map
 
-double probabilityOf(double log_odds) {
-  return 1.0 / (1.0 + std::exp(-log_odds));
-}
-
 /// The log odds after the cell may have changed with that probability.
 double afterChange(double log_odds, double change) {
-  const double p = probabilityOf(log_odds);
+  const double p = hyselam::probabilityOf(log_odds);
   const double later = p * (1.0 - change) + (1.0 - p) * change;
   return std::log(later / (1.0 - later));
 }
@@ -273,7 +270,7 @@ OccupancyGrid PresentMap::gridOf(const Grid& g) const {
 
 OccupancyGrid PresentMap::probabilitiesOf(const Grid& g) const {
   return gridOf(g, [](const Belief& b) {
-    const double p = probabilityOf(static_cast<double>(b.log_odds));
+    const double p = hyselam::probabilityOf(static_cast<double>(b.log_odds));
     return static_cast<std::int8_t>(std::lround(100.0 * p));
   });
 }
@@ -392,8 +389,9 @@ class Comparison {
       min_y = std::min(min_y, y);
       max_y = std::max(max_y, y);
       const Belief& b = now_.at(x, y);
-      const double occupied = probabilityOf(static_cast<double>(b.log_odds));
-      const double was = probabilityOf(static_cast<double>(beliefIn(before_, x, y)->log_odds));
+      const double occupied = hyselam::probabilityOf(static_cast<double>(b.log_odds));
+      const double was =
+          hyselam::probabilityOf(static_cast<double>(beliefIn(before_, x, y)->log_odds));
       change.probability += came ? occupied * (1.0 - was) : (1.0 - occupied) * was;
       again += b.changes > 1 ? 1 : 0;
       const Point2 center{(x + now_.x0 + 0.5) * side, (y + now_.y0 + 0.5) * side};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "hyselam_common/odds.hpp"
 #include "ngram_slam/slam/far_loops.hpp"
 #include "ngram_slam/slam/loop_confidence.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
@@ -18,11 +19,6 @@ constexpr double kOtherView = hyselam::kPi / 2.0;  // a laser may see only what 
 constexpr double kSubmapPath = 10.0;               // [m]; over more, even refined odometry bends
 // Around a place that was found on a drawn map.
 constexpr double kPlaceWindow = 0.5, kPlaceAngle = 0.15;  // [m], [rad]
-
-double logOdds(double probability) {
-  const double p = std::clamp(probability, 1e-6, 1.0 - 1e-6);
-  return std::log(p / (1.0 - p));
-}
 
 double sumOfInliers(const std::vector<SlamLoop>& loops) {
   double sum = 0.0;
@@ -204,8 +200,9 @@ void SlamEngine::addPlacedLoop(const SlamLoop& loop, double place_probability) {
       companyOf(loop, state_.pending_loops, state_.keyframes, connections_, p);
   found_otherwise.contradiction = all.contradiction;
   if (!all.isTrusted(p) || place_probability < sure ||
-      logOdds(place_probability) + logOdds(loopProbability(loop, found_otherwise)) <
-          logOdds(params_.run_start.min_tie_probability)) {
+      hyselam::logOdds(place_probability) +
+              hyselam::logOdds(loopProbability(loop, found_otherwise)) <
+          hyselam::logOdds(params_.run_start.min_tie_probability)) {
     return;
   }
   for (const std::size_t i : consistentLoops(loop, others, state_.keyframes, connections_, p)) {

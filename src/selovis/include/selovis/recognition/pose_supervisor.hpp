@@ -66,9 +66,9 @@ class PoseSupervisor {
  private:
   void testByViews(const SupervisedFrame& frame, SupervisionState& state);
 
+  double threshold_;
   std::optional<ViewTest> views_;
   KidnappingDetector places_;
-  double threshold_;
   bool rejected_ = false;  // by views
 };
 

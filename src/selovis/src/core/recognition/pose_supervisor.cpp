@@ -8,12 +8,11 @@ namespace {
 // Spread of a rival's pose [m, m, rad]: aligned by the scan, or known by learned views only.
 constexpr hyselam::Pose2 kAligned{0.3, 0.3, 0.15}, kSeen{1.0, 1.0, 0.3};
 
-KidnappingDetectorParams ofPlaces(const PoseSupervisorParams& params) {
+KidnappingDetectorParams ofPlaces(const PoseSupervisorParams& params, double threshold) {
   params.validate();
   KidnappingDetectorParams places = params.places;
   places.correlation_time = params.views.correlation_time;
-  places.threshold =
-      ViewTest::thresholdFor(params.views.false_alarm_hours, params.views.correlation_time);
+  places.threshold = threshold;
   return places;
 }
 
@@ -31,7 +30,9 @@ void PoseSupervisorParams::validate() const {
 
 PoseSupervisor::PoseSupervisor(const PlaceModel& model, const PlaceTransitions& transitions,
                                const PoseSupervisorParams& params)
-    : places_(transitions, ofPlaces(params)), threshold_(ofPlaces(params).threshold) {
+    : threshold_(
+          ViewTest::thresholdFor(params.views.false_alarm_hours, params.views.correlation_time)),
+      places_(transitions, ofPlaces(params, threshold_)) {
   if (comparesExemplars(model.classifier.kernel) && LearnedViews::whyNot(model.samples).empty()) {
     views_.emplace(model.samples, params.views);
   }
