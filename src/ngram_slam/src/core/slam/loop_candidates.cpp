@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <queue>
 #include <utility>
 
@@ -63,25 +62,33 @@ std::vector<double> GraphPathLengths::search(int keyframe, const std::vector<int
 
 std::vector<std::pair<int, double>> GraphPathLengths::within(int keyframe,
                                                              double max_length) const {
-  std::map<int, double> lengths{{keyframe, 0.0}};
+  // Asked for each keyframe of large maps: a table of all is faster than a map of those in reach.
+  std::vector<double> lengths(std::max(edges_.size(), static_cast<std::size_t>(keyframe) + 1),
+                              std::numeric_limits<double>::infinity());
+  std::vector<int> reached{keyframe};
   using Open = std::pair<double, int>;
   std::priority_queue<Open, std::vector<Open>, std::greater<Open>> open;
+  lengths[static_cast<std::size_t>(keyframe)] = 0.0;
   open.push({0.0, keyframe});
   while (!open.empty()) {
     const auto [length, at] = open.top();
     open.pop();
     const auto here = static_cast<std::size_t>(at);
-    if (length > lengths[at] || here >= edges_.size()) continue;
+    if (length > lengths[here] || here >= edges_.size()) continue;
     for (const Edge& edge : edges_[here]) {
       const double next = length + static_cast<double>(edge.length);
-      if (next > max_length) continue;
-      const auto [known, is_new] = lengths.emplace(edge.to, next);
-      if (!is_new && next >= known->second) continue;
-      known->second = next;
+      double& known = lengths[static_cast<std::size_t>(edge.to)];
+      if (next > max_length || next >= known) continue;
+      if (std::isinf(known)) reached.push_back(edge.to);
+      known = next;
       open.push({next, edge.to});
     }
   }
-  return {lengths.begin(), lengths.end()};
+  std::sort(reached.begin(), reached.end());
+  std::vector<std::pair<int, double>> out;
+  out.reserve(reached.size());
+  for (const int k : reached) out.emplace_back(k, lengths[static_cast<std::size_t>(k)]);
+  return out;
 }
 
 std::vector<int> keyframesInReach(const std::vector<SlamKeyframe>& keyframes, int keyframe,
