@@ -4,6 +4,7 @@
 #include "hyselam_common/parameters.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/redundant_keyframes.hpp"
+#include "ngram_slam/slam/redundant_observations.hpp"
 #include "ngram_slam/slam/slam_types.hpp"
 
 namespace ngram_slam {
@@ -17,9 +18,7 @@ struct ConsolidationParams {
   /// A piece that ends so many loops gets no more from dropped keyframes to pieces of its own run
   /// that it had none to, >= 1: without a limit they would grow with every visit.
   int max_place_loops = 12;
-  /// An observation run is forgotten with its words if this part of it was made at keyframes that
-  /// are dropped, 0..1: an earlier run has the same words.
-  double redundant_observations = 0.9;
+  ObservationRedundancyParams observations;
   /// Scans whose poses are remembered, the newest; those of the last run always are. 0: all.
   int max_scans = 50000;
   PresentMapParams present;    ///< what is remembered of dropped keyframes, see SettledCell
@@ -41,8 +40,9 @@ struct ConsolidationParams {
 /// SlamState::settled, which moves with the keyframes.
 ///
 /// What dropped keyframes said of the others stays in the graph: their edges are marginalized (see
-/// marginalizedEdges()), loops that have lost their weight are left out. Their scans, observations
-/// and matches go to the nearest keyframe that stays.
+/// marginalizedEdges()), loops that have lost their weight are left out. Their scans, and the
+/// observations and matches that no other run has there (see redundantObservations()), go to the
+/// nearest keyframe that stays.
 ///
 /// To be called between runs: a state of which a run goes on loses nothing that it needs, but the
 /// engine would have to be made again. A map that is too large to be drawn is not settled.

@@ -394,27 +394,18 @@ std::vector<SlamLoop> renamedPending(const SlamState& state, const Renaming& ren
   return loops;
 }
 
-/// The numbers of the observations that stay: all of a run of them, or none; kForgotten for others.
 constexpr std::int64_t kForgotten = -1;
-std::vector<std::int64_t> numbersOfObservations(const SlamState& state,
-                                                const std::vector<bool>& dropped,
-                                                double redundant) {
-  const ObservationStore& all = state.corpus.observations;
-  std::vector<std::int64_t> numbers(all.size(), kForgotten);
+
+/// The numbers that the observations which stay have then; kForgotten for others.
+std::vector<std::int64_t> numbersWithout(const std::vector<bool>& forgotten) {
+  std::vector<std::int64_t> numbers;
   std::int64_t next = 0;
-  for (std::uint32_t run = 0; run < all.runs(); ++run) {
-    std::uint32_t known = 0;
-    for (std::uint32_t i = all.runBegin(run); i < all.runEnd(run); ++i) {
-      if (dropped[static_cast<std::size_t>(state.keyframe_of_observation[i])]) ++known;
-    }
-    const std::uint32_t length = all.runEnd(run) - all.runBegin(run);
-    if (known > 0 && known >= redundant * length) continue;
-    for (std::uint32_t i = all.runBegin(run); i < all.runEnd(run); ++i) numbers[i] = next++;
-  }
+  for (const bool f : forgotten) numbers.push_back(f ? kForgotten : next++);
   return numbers;
 }
 
-/// Observations and matches of those that stay.
+/// Observations and matches of those that stay. What is left of a run after a gap is another one:
+/// no word goes across.
 void renameWords(const Renaming& renaming, const std::vector<std::int64_t>& numbers,
                  SlamState* state) {
   const ObservationStore& all = state->corpus.observations;
@@ -423,6 +414,7 @@ void renameWords(const Renaming& renaming, const std::vector<std::int64_t>& numb
   for (std::uint32_t run = 0; run < all.runs(); ++run) {
     bool begun = false;
     for (std::uint32_t i = all.runBegin(run); i < all.runEnd(run); ++i) {
+      if (numbers[i] == kForgotten) begun = false;
       if (numbers[i] == kForgotten) continue;
       if (!begun) kept.startRun();
       begun = true;
@@ -475,8 +467,7 @@ void ConsolidationParams::describe(hyselam::ParameterVisitor& visit) {
   visit("max_loops", max_loops, Range::between(1, 1e6), "", "between two of them");
   visit("max_place_loops", max_place_loops, Range::between(1, 1e6), "",
         "that a piece of path ends, from which it gets no more of dropped keyframes");
-  visit("redundant_observations", redundant_observations, Range::between(0.0, 1.0), "",
-        "part of a run at dropped keyframes, from which its words are forgotten");
+  visit.group("", observations);
   visit("max_scans", max_scans, Range::between(0, 1e9), "",
         "whose poses are remembered, those of the last run besides; 0: all");
   visit.group("", present);
@@ -505,7 +496,7 @@ SlamState consolidated(SlamState state, const ConsolidationParams& params) {
   std::vector<SlamLoop> loops = withNewLoops(state, edges, params);
   state.scans = renamedScans(state, renaming, params.max_scans);
   state.pending_loops = renamedPending(state, renaming);
-  renameWords(renaming, numbersOfObservations(state, dropped, params.redundant_observations),
+  renameWords(renaming, numbersWithout(redundantObservations(state, dropped, params.observations)),
               &state);
   for (PoseEdge& e : edges.odometry) {
     e.from = renaming.index(e.from);
