@@ -272,7 +272,7 @@ PoseEdge meanEdge(const std::vector<Pose2>& poses, const std::vector<PoseEdge>& 
     sum.force += s.force;
     largest = std::max(largest, size(s.weight));
   }
-  const double scale = largest / size(sum.weight);
+  const double scale = std::min(1.0, 8.0 * largest / size(sum.weight));
   sum.weight *= scale;
   sum.force *= scale;
   return springs.edge(edges.front().from, edges.front().to, sum);
