@@ -70,8 +70,32 @@ struct KeypointCloud {
   Shots::Ptr descriptors;  ///< of the keypoints
 };
 
+/// How many points are within `radius` of each keypoint, counted up to `most`.
+std::vector<int> neighborsOf(const KeypointCloud& cloud, double radius, int most) {
+  pcl::KdTreeFLANN<pcl::PointXYZ> tree;
+  tree.setInputCloud(cloud.all);
+  std::vector<int> counts, index;
+  std::vector<float> squared;
+  for (const pcl::PointXYZ& p : *cloud.keypoints) {
+    counts.push_back(tree.radiusSearch(p, radius, index, squared, static_cast<unsigned>(most)));
+  }
+  return counts;
+}
+
+void describe(KeypointCloud* cloud, double radius) {
+  cloud->descriptors.reset(new Shots);
+  pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal, pcl::SHOT352> shot;
+  shot.setRadiusSearch(radius);
+  shot.setInputCloud(cloud->keypoints);
+  shot.setInputNormals(cloud->normals);
+  shot.setSearchSurface(cloud->all);
+  shot.compute(*cloud->descriptors);
+}
+
+/// `least`: points within `radius` that a keypoint has. Far from a camera surfaces become points
+/// here and there: many, that look like nothing.
 KeypointCloud describeKeypoints(const OrganizedCloud& cloud, const char* name, double surface,
-                                double sampling, double radius) {
+                                double sampling, double radius, int least) {
   KeypointCloud out;
   out.all = thinned(toPcl(cloud, name), surface, name);
   out.normals.reset(new Normals);
@@ -84,14 +108,27 @@ KeypointCloud describeKeypoints(const OrganizedCloud& cloud, const char* name, d
   sample.setInputCloud(out.all);
   sample.setRadiusSearch(sampling);
   sample.filter(*out.keypoints);
-  out.descriptors.reset(new Shots);
-  pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal, pcl::SHOT352> shot;
-  shot.setRadiusSearch(radius);
-  shot.setInputCloud(out.keypoints);
-  shot.setInputNormals(out.normals);
-  shot.setSearchSurface(out.all);
-  shot.compute(*out.descriptors);
+  if (least > 1) {
+    const std::vector<int> neighbors = neighborsOf(out, radius, least);
+    Cloud::Ptr dense(new Cloud);
+    for (std::size_t i = 0; i < neighbors.size(); ++i) {
+      if (neighbors[i] >= least) dense->push_back((*out.keypoints)[i]);
+    }
+    out.keypoints = dense;
+  }
+  describe(&out, radius);
   return out;
+}
+
+/// What a keypoint of a scene has around it at the least, to be like one of the model: a quarter,
+/// which is a surface sampled half as densely.
+int leastNeighbors(const KeypointCloud& model, const FindModelParams& params) {
+  constexpr int kMost = 1000;
+  std::vector<int> counts = neighborsOf(model, params.descriptor_radius, kMost);
+  if (counts.empty()) return 1;
+  const auto median = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
+  std::nth_element(counts.begin(), median, counts.end());
+  return std::max(1, *median / 4);
 }
 
 /// Pairs of a keypoint of the model and one of the scene with similar descriptors.
@@ -271,10 +308,12 @@ void FindModelParams::validate() const {
 std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,
                                   const FindModelParams& params) {
   params.validate();
-  const KeypointCloud in_model = describeKeypoints(model, "model", params.surface_sampling,
-                                                   params.model_sampling, params.descriptor_radius);
-  const KeypointCloud in_scene = describeKeypoints(scene, "scene", params.surface_sampling,
-                                                   params.scene_sampling, params.descriptor_radius);
+  const KeypointCloud in_model =
+      describeKeypoints(model, "model", params.surface_sampling, params.model_sampling,
+                        params.descriptor_radius, 1);
+  const KeypointCloud in_scene =
+      describeKeypoints(scene, "scene", params.surface_sampling, params.scene_sampling,
+                        params.descriptor_radius, leastNeighbors(in_model, params));
   const SceneView view(scene);
   const std::vector<Point> surface = surfaceOf(in_model);
   pcl::KdTreeFLANN<pcl::PointXYZ> scene_tree;
