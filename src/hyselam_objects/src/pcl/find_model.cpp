@@ -308,9 +308,8 @@ void FindModelParams::validate() const {
 std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,
                                   const FindModelParams& params) {
   params.validate();
-  const KeypointCloud in_model =
-      describeKeypoints(model, "model", params.surface_sampling, params.model_sampling,
-                        params.descriptor_radius, 1);
+  const KeypointCloud in_model = describeKeypoints(
+      model, "model", params.surface_sampling, params.model_sampling, params.descriptor_radius, 1);
   const KeypointCloud in_scene =
       describeKeypoints(scene, "scene", params.surface_sampling, params.scene_sampling,
                         params.descriptor_radius, leastNeighbors(in_model, params));

@@ -21,8 +21,8 @@ struct RedundancyParams {
   double min_explained = 0.9;  ///< part of the points of a scan that is explained, 0..1
   /// Of the surfaces that a scan should see, the part that it does not see through, 0..1.
   double min_seen_again = 0.9;
-  /// Runs that a place and direction is kept of where they saw different things, so that change can
-  /// be learnt; the oldest goes, >= 1.
+  /// Runs that a place and direction is kept of where they saw different things: the newest, so
+  /// that change can be learnt, and the first, on which the others were laid, >= 2.
   int max_looks = 3;
 
   void describe(hyselam::ParameterVisitor& visit);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -134,7 +135,7 @@ class Thinning {
     return found;
   }
 
-  /// Drops a keyframe that others explain, or the oldest where too many do not.
+  /// Drops a keyframe that others explain, or an old one where too many do not.
   bool judge(int k) {
     const std::vector<Near> looks = earlierLooks(k);
     if (looks.empty() || looks.front().distance >= params_.place_radius) return false;
@@ -142,20 +143,22 @@ class Thinning {
       dropped_[static_cast<std::size_t>(k)] = true;
       return true;
     }
-    return dropOldestRun(k, looks);
+    return dropSecondRun(k, looks);
   }
 
-  /// Too many runs have been here that no other explains: what the first of them saw is no news.
-  bool dropOldestRun(int k, const std::vector<Near>& looks) {
+  /// Too many runs have been here that no other explains. The first one stays, as all others were
+  /// laid on it: without it the map would walk from visit to visit. What the second one saw is no
+  /// news.
+  bool dropSecondRun(int k, const std::vector<Near>& looks) {
     std::set<std::uint32_t> runs = {at(k).run};
     for (const Near& n : looks) {
       if (n.distance < params_.place_radius) runs.insert(at(n.keyframe).run);
     }
     if (static_cast<int>(runs.size()) <= params_.max_looks) return false;
+    const std::uint32_t goes = *std::next(runs.begin());
     bool found = false;
     for (const Near& n : looks) {
-      if (n.distance >= params_.place_radius || at(n.keyframe).run != *runs.begin() ||
-          isFixed(n.keyframe)) {
+      if (n.distance >= params_.place_radius || at(n.keyframe).run != goes || isFixed(n.keyframe)) {
         continue;
       }
       dropped_[static_cast<std::size_t>(n.keyframe)] = true;
@@ -207,9 +210,9 @@ void RedundancyParams::describe(hyselam::ParameterVisitor& visit) {
         "part of the points of a keyframe that is explained, for it to be dropped");
   visit("min_seen_again", min_seen_again, ratio, "",
         "part of the known surfaces in its view that it does not see through");
-  visit("max_looks", max_looks, count, "",
-        "runs that one place and direction is kept of where they saw different things; the oldest "
-        "goes");
+  visit("max_looks", max_looks, Range::between(2, 1e6), "",
+        "runs that one place and direction is kept of where they saw different things: the first "
+        "and the newest");
 }
 
 std::vector<bool> redundantKeyframes(const std::vector<SlamKeyframe>& keyframes,
