@@ -84,6 +84,7 @@ std::vector<int> neighborsOf(const KeypointCloud& cloud, double radius, int most
 
 void describe(KeypointCloud* cloud, double radius) {
   cloud->descriptors.reset(new Shots);
+  if (cloud->keypoints->empty()) return;
   pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal, pcl::SHOT352> shot;
   shot.setRadiusSearch(radius);
   shot.setInputCloud(cloud->keypoints);
@@ -135,8 +136,9 @@ int leastNeighbors(const KeypointCloud& model, const FindModelParams& params) {
 pcl::CorrespondencesPtr matchDescriptors(const KeypointCloud& model, const KeypointCloud& scene) {
   constexpr float kMaxSquaredDistance = 0.25f;  // of SHOT descriptors, as in PCL's tutorial
   pcl::KdTreeFLANN<pcl::SHOT352> nearest;
-  nearest.setInputCloud(model.descriptors);
   pcl::CorrespondencesPtr pairs(new pcl::Correspondences);
+  if (scene.keypoints->empty()) return pairs;
+  nearest.setInputCloud(model.descriptors);
   std::vector<int> index(1);
   std::vector<float> squared(1);
   for (std::size_t i = 0; i < scene.descriptors->size(); ++i) {
@@ -158,6 +160,8 @@ struct PoseHypothesis {
 std::vector<PoseHypothesis> groupCorrespondences(const KeypointCloud& model,
                                                  const KeypointCloud& scene,
                                                  const FindModelParams& params) {
+  const pcl::CorrespondencesPtr pairs = matchDescriptors(model, scene);
+  if (pairs->empty()) return {};
   std::vector<Eigen::Matrix4f, Eigen::aligned_allocator<Eigen::Matrix4f>> poses;
   std::vector<pcl::Correspondences> groups;
   pcl::GeometricConsistencyGrouping<pcl::PointXYZ, pcl::PointXYZ> grouping;
@@ -165,7 +169,7 @@ std::vector<PoseHypothesis> groupCorrespondences(const KeypointCloud& model,
   grouping.setGCThreshold(params.min_correspondences);
   grouping.setInputCloud(model.keypoints);
   grouping.setSceneCloud(scene.keypoints);
-  grouping.setModelSceneCorrespondences(matchDescriptors(model, scene));
+  grouping.setModelSceneCorrespondences(pairs);
   grouping.recognize(poses, groups);
   std::vector<PoseHypothesis> hypotheses;
   for (std::size_t i = 0; i < poses.size(); ++i) {
