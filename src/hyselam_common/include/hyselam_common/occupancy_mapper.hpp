@@ -8,6 +8,7 @@
 #include "hyselam_common/laser_scan.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_common/parameters.hpp"
+#include "hyselam_common/tiled_grid.hpp"
 
 namespace hyselam {
 
@@ -54,13 +55,9 @@ class OccupancyMapper {
   /// covers x to x + 1 times the resolution, and y to y + 1.
   template <typename Use>
   void forEachObserved(Use use) const {
-    std::size_t i = 0;
-    for (int y = box_.min_y; y <= box_.max_y; ++y) {
-      for (int x = box_.min_x; x <= box_.max_x; ++x, ++i) {
-        const Counts& c = counts_[i];
-        if (c.hits + c.misses > 0) use(x, y, c.hits, c.misses);
-      }
-    }
+    counts_.forEach([&](int x, int y, const Counts& c) {
+      if (c.hits + c.misses > 0) use(x, y, c.hits, c.misses);
+    });
   }
 
  private:
@@ -78,8 +75,7 @@ class OccupancyMapper {
   OccupancyMapperParams parameters_;
   std::size_t scans_ = 0;
   Box box_;
-  int stride_ = 0;
-  std::vector<Counts> counts_;
+  TiledGrid<Counts> counts_;  // covers the box
   std::vector<double> ends_;  // scratch: end points in cells
 };
 

@@ -39,7 +39,6 @@ OccupancyMapper::OccupancyMapper(const OccupancyMapperParams& parameters)
 void OccupancyMapper::clear() {
   scans_ = 0;
   box_ = Box{};
-  stride_ = 0;
   counts_.clear();
 }
 
@@ -49,7 +48,7 @@ void OccupancyMapper::cover(const Box& box) {
       box.max_y <= box_.max_y) {
     return;
   }
-  // Grown by a quarter on the sides that are too small, so that few scans copy the map.
+  // Grown by a quarter on the sides that are too small, so that few scans make it grow.
   Box grown = empty ? box : box_;
   const int slack_x = 64 + (grown.max_x - grown.min_x) / 4;
   const int slack_y = 64 + (grown.max_y - grown.min_y) / 4;
@@ -65,19 +64,8 @@ void OccupancyMapper::cover(const Box& box) {
                             " cells, more than the limit of " +
                             std::to_string(parameters_.max_cells));
   }
-  std::vector<Counts> counts(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const int stride = static_cast<int>(width);
-  if (!empty) {
-    for (int y = box_.min_y; y <= box_.max_y; ++y) {
-      const auto from = counts_.begin() + static_cast<std::ptrdiff_t>(y - box_.min_y) * stride_;
-      const auto to = counts.begin() + static_cast<std::ptrdiff_t>(y - grown.min_y) * stride +
-                      (box_.min_x - grown.min_x);
-      std::copy(from, from + stride_, to);
-    }
-  }
-  counts_.swap(counts);
+  counts_.cover(grown.min_x, grown.min_y, grown.max_x, grown.max_y);
   box_ = grown;
-  stride_ = stride;
 }
 
 // Visits the cells on the segment in order (Amanatides and Woo 1987); coordinates in cells. The
@@ -87,25 +75,32 @@ void OccupancyMapper::trace(double x0, double y0, double x1, double y1, bool hit
   const int ex = static_cast<int>(std::floor(x1)), ey = static_cast<int>(std::floor(y1));
   const double dx = x1 - x0, dy = y1 - y0;
   int steps_x = std::abs(ex - cx), steps_y = std::abs(ey - cy);
-  const std::ptrdiff_t step_x = dx > 0 ? 1 : -1;
-  const std::ptrdiff_t step_y = dy > 0 ? stride_ : -static_cast<std::ptrdiff_t>(stride_);
+  const int step_x = dx > 0 ? 1 : -1, step_y = dy > 0 ? 1 : -1;
   constexpr double kNever = 1e300;
   const double delta_x = steps_x > 0 ? std::abs(1.0 / dx) : kNever;
   const double delta_y = steps_y > 0 ? std::abs(1.0 / dy) : kNever;
   double next_x = steps_x > 0 ? (dx > 0 ? cx + 1 - x0 : x0 - cx) * delta_x : kNever;
   double next_y = steps_y > 0 ? (dy > 0 ? cy + 1 - y0 : y0 - cy) * delta_y : kNever;
 
-  Counts* cell =
-      counts_.data() + static_cast<std::ptrdiff_t>(cy - box_.min_y) * stride_ + (cx - box_.min_x);
+  // From cell to cell within a tile, and asked for anew where the beam enters another one.
+  constexpr int kSide = TiledGrid<Counts>::kSide;
+  const auto enters = [](int cell, int step) {
+    const int before = cell - step;
+    return (cell ^ before) >= kSide || (cell ^ before) < 0;
+  };
+  int x = cx, y = cy;
+  Counts* cell = counts_.at(x, y);
   for (int left = steps_x + steps_y; left > 0; --left) {
     ++cell->misses;
     if (steps_y == 0 || (steps_x > 0 && next_x < next_y)) {
       next_x += delta_x;
-      cell += step_x;
+      x += step_x;
+      cell = enters(x, step_x) ? counts_.at(x, y) : cell + step_x;
       --steps_x;
     } else {
       next_y += delta_y;
-      cell += step_y;
+      y += step_y;
+      cell = enters(y, step_y) ? counts_.at(x, y) : cell + step_y * kSide;
       --steps_y;
     }
   }
@@ -168,21 +163,11 @@ void OccupancyMapper::insert(const Pose2& base_in_map, const LaserScan& scan) {
 OccupancyGrid OccupancyMapper::grid() const {
   Box seen{box_.max_x, box_.max_y, box_.min_x, box_.min_y};
   bool any = false;
-  const auto at = [&](int x, int y) -> const Counts& {
-    return counts_[static_cast<std::size_t>(y - box_.min_y) * static_cast<std::size_t>(stride_) +
-                   static_cast<std::size_t>(x - box_.min_x)];
-  };
-  if (!counts_.empty()) {
-    for (int y = box_.min_y; y <= box_.max_y; ++y) {
-      for (int x = box_.min_x; x <= box_.max_x; ++x) {
-        const Counts& c = at(x, y);
-        if (c.hits == 0 && c.misses == 0) continue;
-        any = true;
-        seen = {std::min(seen.min_x, x), std::min(seen.min_y, y), std::max(seen.max_x, x),
-                std::max(seen.max_y, y)};
-      }
-    }
-  }
+  forEachObserved([&](int x, int y, std::uint32_t, std::uint32_t) {
+    any = true;
+    seen = {std::min(seen.min_x, x), std::min(seen.min_y, y), std::max(seen.max_x, x),
+            std::max(seen.max_y, y)};
+  });
   GridGeometry geometry;
   geometry.resolution = parameters_.resolution;
   if (!any) {
@@ -195,16 +180,12 @@ OccupancyGrid OccupancyMapper::grid() const {
   geometry.origin = {(seen.min_x - kMargin) * parameters_.resolution,
                      (seen.min_y - kMargin) * parameters_.resolution, 0.0};
   OccupancyGrid grid(geometry);
-  for (int y = seen.min_y; y <= seen.max_y; ++y) {
-    for (int x = seen.min_x; x <= seen.max_x; ++x) {
-      const Counts& c = at(x, y);
-      const double total = static_cast<double>(c.hits) + c.misses;
-      if (total < parameters_.min_observations) continue;
-      grid.at({x - seen.min_x + kMargin, y - seen.min_y + kMargin}) =
-          c.hits > parameters_.occupied_ratio * total ? OccupancyGrid::kOccupied
-                                                      : OccupancyGrid::kFree;
-    }
-  }
+  forEachObserved([&](int x, int y, std::uint32_t hits, std::uint32_t misses) {
+    const double total = static_cast<double>(hits) + misses;
+    if (total < parameters_.min_observations) return;
+    grid.at({x - seen.min_x + kMargin, y - seen.min_y + kMargin}) =
+        hits > parameters_.occupied_ratio * total ? OccupancyGrid::kOccupied : OccupancyGrid::kFree;
+  });
   return grid;
 }
 

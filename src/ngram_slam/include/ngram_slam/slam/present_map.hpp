@@ -90,29 +90,26 @@ class PresentMap {
   /// OccupancyMapper::forEachObserved().
   template <typename Use>
   void forEachKnown(Use use) const {
-    const Grid g = present();
-    for (int y = 0; y < g.height; ++y) {
-      for (int x = 0; x < g.width; ++x) {
-        const Belief& b = g.at(x, y);
-        if (b.observations > 0) use(x + g.x0, y + g.y0, b);
-      }
-    }
+    withPresent([&](const Grid& g) {
+      g.cells.forEach([&](int x, int y, const Belief& b) {
+        if (b.observations > 0) use(x, y, b);
+      });
+    });
   }
   bool isKnown(const Belief& b) const;
 
  private:
   struct Grid {
-    int x0 = 0, y0 = 0, width = 0, height = 0;
-    std::vector<Belief> cells;
+    int x0 = 0, y0 = 0, width = 0, height = 0;  ///< in the lattice of the map's frame
+    hyselam::TiledGrid<Belief> cells;           ///< in that lattice, too
+    /// Of a cell counted from x0, y0.
     const Belief& at(int x, int y) const {
-      return cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                   static_cast<std::size_t>(x)];
+      static const Belief kUnknown;
+      const Belief* b = cells.find(x + x0, y + y0);
+      return b == nullptr ? kUnknown : *b;
     }
-    /// Of a cell of the map's lattice that is covered.
-    Belief& of(int x, int y) {
-      return cells[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width) +
-                   static_cast<std::size_t>(x - x0)];
-    }
+    /// Of a cell of the lattice that is covered.
+    Belief& of(int x, int y) { return *cells.at(x, y); }
     /// @throws std::length_error beyond `max_cells`.
     void cover(int min_x, int min_y, int max_x, int max_y, std::size_t max_cells);
   };
@@ -120,7 +117,14 @@ class PresentMap {
   void beginRun(std::uint32_t run, const Source& source);
   void fold(const hyselam::OccupancyMapper& visit, bool now, Grid* grid) const;
   void settleBefore(std::uint32_t run, const Source& source);
-  Grid present() const;
+  /// Calls `use` with all runs as they are now; copies only what an open run goes on top of.
+  template <typename Use>
+  auto withPresent(Use use) const {
+    if (!open_) return use(past_);
+    Grid g = past_;
+    fold(visit_, in_session_, &g);
+    return use(g);
+  }
   template <typename Value>
   hyselam::OccupancyGrid gridOf(const Grid& g, const Value& value) const;
   hyselam::OccupancyGrid gridOf(const Grid& g) const;

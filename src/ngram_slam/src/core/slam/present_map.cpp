@@ -75,20 +75,18 @@ PresentMap::PresentMap(const hyselam::OccupancyMapperParams& map, const PresentM
 
 void PresentMap::Grid::cover(int min_x, int min_y, int max_x, int max_y, std::size_t max_cells) {
   if (width > 0 && min_x >= x0 && min_y >= y0 && max_x < x0 + width && max_y < y0 + height) return;
-  Grid grown;
-  grown.x0 = width > 0 ? std::min(min_x, x0) : min_x;
-  grown.y0 = width > 0 ? std::min(min_y, y0) : min_y;
-  grown.width = (width > 0 ? std::max(max_x, x0 + width - 1) : max_x) - grown.x0 + 1;
-  grown.height = (width > 0 ? std::max(max_y, y0 + height - 1) : max_y) - grown.y0 + 1;
-  const auto cells_of_all =
-      static_cast<std::size_t>(grown.width) * static_cast<std::size_t>(grown.height);
+  const int to_x = width > 0 ? std::max(max_x, x0 + width - 1) : max_x;
+  const int to_y = width > 0 ? std::max(max_y, y0 + height - 1) : max_y;
+  const int from_x = width > 0 ? std::min(min_x, x0) : min_x;
+  const int from_y = width > 0 ? std::min(min_y, y0) : min_y;
+  const std::size_t cells_of_all =
+      static_cast<std::size_t>(to_x - from_x + 1) * static_cast<std::size_t>(to_y - from_y + 1);
   if (cells_of_all > max_cells) throw std::length_error("the map would be too large");
-  grown.cells.resize(cells_of_all);
-  for (int y = 0; y < height; ++y) {
-    const auto from = cells.begin() + static_cast<std::ptrdiff_t>(y) * width;
-    std::copy(from, from + width, &grown.of(x0, y0 + y));
-  }
-  *this = std::move(grown);
+  cells.cover(from_x, from_y, to_x, to_y);
+  x0 = from_x;
+  y0 = from_y;
+  width = to_x - from_x + 1;
+  height = to_y - from_y + 1;
 }
 
 bool PresentMap::isKnown(const Belief& b) const {
@@ -208,23 +206,15 @@ void PresentMap::update(const Source& source) {
   }
 }
 
-PresentMap::Grid PresentMap::present() const {
-  Grid g = past_;
-  if (open_) fold(visit_, in_session_, &g);
-  return g;
-}
-
 OccupancyGrid PresentMap::emptyGrid(const Grid& g) const {
   int min_x = g.width, min_y = g.height, max_x = -1, max_y = -1;
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      if (g.at(x, y).observations == 0) continue;
-      min_x = std::min(min_x, x);
-      min_y = std::min(min_y, y);
-      max_x = std::max(max_x, x);
-      max_y = std::max(max_y, y);
-    }
-  }
+  g.cells.forEach([&](int x, int y, const Belief& b) {
+    if (b.observations == 0) return;
+    min_x = std::min(min_x, x - g.x0);
+    min_y = std::min(min_y, y - g.y0);
+    max_x = std::max(max_x, x - g.x0);
+    max_y = std::max(max_y, y - g.y0);
+  });
   hyselam::GridGeometry geometry;
   geometry.resolution = map_.resolution;
   if (max_x < 0) {
@@ -253,12 +243,9 @@ OccupancyGrid PresentMap::gridOf(const Grid& g, const Value& value) const {
   OccupancyGrid grid = emptyGrid(g);
   const int x0 = latticeOf(grid.geometry.origin.x, map_.resolution);
   const int y0 = latticeOf(grid.geometry.origin.y, map_.resolution);
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const Belief& b = g.at(x, y);
-      if (isKnown(b)) grid.at({x + g.x0 - x0, y + g.y0 - y0}) = value(b);
-    }
-  }
+  g.cells.forEach([&](int x, int y, const Belief& b) {
+    if (isKnown(b)) grid.at({x - x0, y - y0}) = value(b);
+  });
   return grid;
 }
 
@@ -276,16 +263,17 @@ OccupancyGrid PresentMap::probabilitiesOf(const Grid& g) const {
 }
 
 OccupancyGrid PresentMap::grid() const {
-  return gridOf(present());
+  return withPresent([&](const Grid& g) { return gridOf(g); });
 }
 
 OccupancyGrid PresentMap::probabilities() const {
-  return probabilitiesOf(present());
+  return withPresent([&](const Grid& g) { return probabilitiesOf(g); });
 }
 
 PresentMap::Drawn PresentMap::draw() const {
-  const Grid now = present();
-  return {gridOf(now), probabilitiesOf(now), changesOf(now)};
+  return withPresent([&](const Grid& now) {
+    return Drawn{gridOf(now), probabilitiesOf(now), changesOf(now)};
+  });
 }
 
 namespace {
@@ -296,10 +284,14 @@ class Comparison {
  public:
   Comparison(const hyselam::OccupancyMapperParams& map, const PresentMapParams& params,
              const Grid& before, const Grid& now)
-      : map_(map), params_(params), before_(before), now_(now), kind_(now.cells.size(), kSame) {
-    for (int y = 0; y < now.height; ++y) {
-      for (int x = 0; x < now.width; ++x) kind_[indexOf(x, y)] = kindOf(x, y);
-    }
+      : map_(map),
+        params_(params),
+        before_(before),
+        now_(now),
+        kind_(static_cast<std::size_t>(now.width) * static_cast<std::size_t>(now.height), kSame) {
+    now.cells.forEach([&](int x, int y, const Belief& b) {
+      if (b.now) kind_[indexOf(x - now.x0, y - now.y0)] = kindOf(x - now.x0, y - now.y0);
+    });
   }
 
   std::vector<MapChange> groups() {
@@ -422,7 +414,7 @@ std::vector<MapChange> PresentMap::changesOf(const Grid& now) const {
 }
 
 std::vector<MapChange> PresentMap::changes() const {
-  return changesOf(present());
+  return withPresent([&](const Grid& now) { return changesOf(now); });
 }
 
 namespace {
@@ -444,6 +436,13 @@ int nearestKept(const std::vector<SlamKeyframe>& keyframes, const KeyframeGrid& 
   return best;
 }
 
+OccupancyGrid mapOf(const PresentMap::Source& source, const hyselam::OccupancyMapperParams& map,
+                    const PresentMapParams& params) {
+  PresentMap present(map, params);
+  present.update(source);
+  return present.grid();
+}
+
 }  // namespace
 
 SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vector<bool>& kept,
@@ -462,14 +461,13 @@ SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vec
   for (const std::uint32_t one : std::set<std::uint32_t>(map_of_run.begin(), map_of_run.end())) {
     std::vector<bool> shown;
     for (const std::uint32_t m : map_of_run) shown.push_back(m == one);
-    PresentMap all(map, params), few(map, params);
+    const OccupancyGrid told = mapOf({staying, none, shown, last_run + 1, 0}, map, params);
+    PresentMap all(map, params);
     all.update({keyframes, before, shown, last_run + 1, 0});
-    few.update({staying, none, shown, last_run + 1, 0});
     std::vector<bool> usable(keyframes.size(), false);
     for (std::size_t k = 0; k < keyframes.size(); ++k) {
       usable[k] = kept[k] && shown[keyframes[k].run];
     }
-    const OccupancyGrid told = few.grid();
     const int x0 = latticeOf(told.geometry.origin.x, cell);
     const int y0 = latticeOf(told.geometry.origin.y, cell);
     all.forEachKnown([&](int x, int y, const PresentMap::Belief& b) {
