@@ -1,7 +1,10 @@
 // Time from a frame to its place with 7000 learned frames, five views each: by the index of each
-// part, and by a full scan of all views.
+// part, and by a full scan of all views; and from there to the poses that the frame may show
+// instead.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
@@ -9,6 +12,7 @@
 #include "drawn_scene.hpp"
 #include "hyselam_common/rng.hpp"
 #include "selovis/descriptors/descriptor.hpp"
+#include "selovis/filters/learned_views.hpp"
 
 namespace {
 
@@ -97,6 +101,43 @@ void search(benchmark::State& state, bool full_scan) {
   if (!full_scan) state.SetLabel("baseline=fusion/search_7000/full_scan");
 }
 
+/// The 40 views elsewhere that look most like a frame: among all in order, or with a position asked
+/// for only where it matters.
+void rivals(benchmark::State& state, bool all) {
+  FusionClassifier classifier(many(), kPlaces, fusion(), calibration(), false);
+  const auto signature = makeDescriptor("FUSION")->compute(scene(3, {640, 480}));
+  std::vector<double> probabilities(kPlaces);
+  classifier.predict(signature.data(), probabilities.data());
+  LearnedViews views(many(), 2.0, hyselam::radians(18.0));
+  const hyselam::Pose2 camera{700.0, 0.0, 0.0};
+  const auto elsewhere = [&](const LearnedViews::View& v) {
+    const hyselam::Pose2 pose = views.poseOf(v);
+    return hyselam::distance(pose, camera) >= 3.0 ||
+           std::abs(hyselam::normalizeAngle(pose.theta - camera.theta)) >= 1.0;
+  };
+  std::vector<std::uint32_t> found;
+  for (auto _ : state) {
+    views.compare(*classifier.distances(), 1.5);
+    if (all) {
+      found.clear();
+      for (std::uint32_t v = 0; v < views.views().size(); ++v) {
+        if (elsewhere(views.views()[v])) found.push_back(v);
+      }
+      std::partial_sort(found.begin(), found.begin() + 40, found.end(),
+                        [&](std::uint32_t a, std::uint32_t b) {
+                          const double s = views.similarity(views.views()[a]),
+                                       t = views.similarity(views.views()[b]);
+                          return s != t ? s > t : a < b;
+                        });
+      found.resize(40);
+    } else {
+      views.mostSimilar(40, elsewhere, &found);
+    }
+    benchmark::DoNotOptimize(found.data());
+  }
+  if (!all) state.SetLabel("baseline=fusion/rivals_7000/all");
+}
+
 const int registered = [] {
   using benchmark::kMillisecond;
   for (const bool full_scan : {true, false}) {
@@ -108,6 +149,12 @@ const int registered = [] {
                                                                              benchmark::State& s) {
       search(s, full_scan);
     })->Unit(kMillisecond);
+  }
+  for (const bool all : {true, false}) {
+    benchmark::RegisterBenchmark(
+        (std::string("fusion/rivals_7000/") + (all ? "all" : "most_similar")).c_str(),
+        [all](benchmark::State& s) { rivals(s, all); })
+        ->Unit(kMillisecond);
   }
   return 0;
 }();

@@ -29,11 +29,14 @@ double cpuMilliseconds() {
   return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// How often the most likely place is right, by how likely it is said to be.
+/// How often the most likely place is right, by how likely it is said to be; and the mean negative
+/// logarithm of the right place's probability.
 class Reliability {
  public:
   void add(const std::vector<double>& probabilities, int truth) {
     const auto most = std::max_element(probabilities.begin(), probabilities.end());
+    const double right = truth >= 0 ? probabilities[static_cast<std::size_t>(truth)] : 0.0;
+    loss_ -= std::log(std::max(kLeast, right));
     const auto bin = std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(*most * kBins));
     frames_[bin] += 1.0;
     said_[bin] += *most;
@@ -51,11 +54,15 @@ class Reliability {
                         {"right", right_[b] / frames_[b]}});
       }
     }
-    return {{"bins", bins}, {"expected_calibration_error", error / std::max(1.0, all)}};
+    return {{"bins", bins},
+            {"expected_calibration_error", error / std::max(1.0, all)},
+            {"log_loss", loss_ / std::max(1.0, all)}};
   }
 
  private:
   static constexpr int kBins = 10;
+  static constexpr double kLeast = 1e-6;  // a place that was ruled out, or never learned
+  double loss_ = 0.0;
   double frames_[kBins] = {}, said_[kBins] = {}, right_[kBins] = {};
 };
 
@@ -73,7 +80,8 @@ std::string kernelOf(const std::string& kernel, const std::string& descriptor) {
 }
 
 /// The filter over poses on the same frames, with and without odometry.
-void addPoses(const PlaceModel& model, const Asked& tour, nlohmann::json* shares) {
+void addPoses(const PlaceModel& model, const Asked& tour, nlohmann::json* shares,
+              nlohmann::json* reliabilities) {
   if (!comparesExemplars(model.classifier.kernel) || !model.samples.poses.front().isFinite()) {
     return;
   }
@@ -83,14 +91,18 @@ void addPoses(const PlaceModel& model, const Asked& tour, nlohmann::json* shares
     params.filter.kind = PlaceFilterKind::kPoses;
     ImageRecognizer recognizer(model, model.transitions, params);
     int right = 0;
+    Reliability reliability;
     for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
       SensorReadings readings = tour.readings[i];
       if (!odometry) readings.odometry.reset();
       const Recognition r = recognizer.updateWithSignature(tour.signatures[i].data(), readings);
-      right += r.estimate.place == model.transitions.indexOf(tour.places[i]);
+      const int truth = model.transitions.indexOf(tour.places[i]);
+      right += r.estimate.place == truth;
+      reliability.add(recognizer.probabilities(), truth);
     }
-    (*shares)[odometry ? "poses, odometry" : "poses"] =
-        right / static_cast<double>(tour.signatures.size());
+    const char* const name = odometry ? "poses, odometry" : "poses";
+    (*shares)[name] = right / static_cast<double>(tour.signatures.size());
+    (*reliabilities)[name] = reliability.toJson();
   }
 }
 
@@ -128,6 +140,7 @@ nlohmann::json rowOf(const PlaceModel& model, const std::vector<Asked>& asked,
     std::vector<int> right(filters.size(), 0);
     std::map<std::string, int> right_by_part;
     Reliability reliability;
+    std::vector<Reliability> filtered(filters.size());
     std::size_t unlearned_light = 0;
     std::vector<double> novelties;
     for (std::size_t i = 0; i < tour.signatures.size(); ++i) {
@@ -144,23 +157,26 @@ nlohmann::json rowOf(const PlaceModel& model, const std::vector<Asked>& asked,
       for (std::size_t f = 0; f < filters.size(); ++f) {
         filters[f].update(recognizer.frameProbabilities());
         right[f] += filters[f].estimate().place == truth;
+        filtered[f].add(filters[f].probabilities(), truth);
       }
     }
-    nlohmann::json shares, parts;
+    nlohmann::json shares, parts, reliabilities;
     for (const auto& [part, count] : right_by_part) {
       parts[part] = count / static_cast<double>(tour.signatures.size());
     }
     for (std::size_t f = 0; f < filters.size(); ++f) {
       shares[kFilters[f]] = right[f] / static_cast<double>(tour.signatures.size());
+      reliabilities[kFilters[f]] = filtered[f].toJson();
     }
-    addPoses(model, tour, &shares);
+    addPoses(model, tour, &shares, &reliabilities);
     row.push_back({{"frames", tour.signatures.size()},
                    {"accuracy_by_filter", shares},
                    {"accuracy_by_part", parts},
                    {"unlearned_light",
                     static_cast<double>(unlearned_light) / static_cast<double>(novelties.size())},
                    {"novelties", novelties},
-                   {"reliability", reliability.toJson()}});
+                   {"reliability", reliability.toJson()},
+                   {"reliability_by_filter", reliabilities}});
   }
   return row;
 }

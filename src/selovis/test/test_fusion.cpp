@@ -209,6 +209,87 @@ TEST(Fusion, IndexFindsWhatAFullScanFinds) {
   }
 }
 
+/// All parts of all views added up is the oracle.
+TEST(Fusion, DistancesAreThoseOfThePartsOfAllViews) {
+  hyselam::Rng rng(12);
+  Samples samples = World(12, true).learn(0);
+  for (int frame = 0; frame < 600; ++frame) {
+    const int place = frame / 10 % kPlaces;
+    for (int view = 0; view < 3; ++view) {
+      samples.add(smoothLook(rng, place).data(), place, frame / 300 * 1000 + frame);
+    }
+  }
+  for (const bool full_scan : {false, true}) {
+    const std::string state = FusionClassifier(samples, kPlaces, fusion()).state();
+    FusionClassifier fused(samples, kPlaces, fusion(), state, full_scan);
+    const FrameIndex frames(samples);
+    std::vector<double> p(kPlaces);
+    for (int i = 0; i < 10; ++i) {
+      const auto signature = smoothLook(rng, i % kPlaces);
+      fused.predict(signature.data(), p.data());
+      std::vector<float> expected(samples.count(), 1.0f);
+      std::size_t offset = 0, estimated = 0;
+      for (std::size_t part = 0; part < 2; ++part) {
+        PartExemplars exemplars(samples, frames, offset, samples.parts[part], full_scan);
+        const float least = exemplars.search(signature.data() + offset).front().distance,
+                    weight = static_cast<float>((*fused.opinions())[part].weight);
+        std::vector<float> d(samples.count());
+        for (std::size_t f = 0; f < frames.count(); ++f) {
+          for (auto k = frames.begin[f]; k < frames.begin[f + 1]; ++k) {
+            d[k] = exemplars.frameDistances()[f];
+          }
+        }
+        for (const Neighbor& n : exemplars.compared()) d[n.sample] = n.distance;
+        estimated += samples.count() - exemplars.compared().size();
+        for (std::size_t k = 0; k < d.size(); ++k) {
+          expected[k] += 5.3f * weight * std::clamp((d[k] - least) / least, 0.0f, 1.0f);
+        }
+        offset += static_cast<std::size_t>(samples.parts[part].size);
+      }
+      EXPECT_EQ(estimated > 0, !full_scan);
+      const std::vector<float>& distances = *fused.distances();
+      ASSERT_EQ(distances.size(), expected.size());
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        ASSERT_NEAR(distances[k], expected[k], 1e-5f) << k;
+      }
+    }
+  }
+}
+
+/// Ordering all frames by the estimate is the oracle.
+TEST(Fusion, FramesThatAreComparedAreTheNearestByTheEstimate) {
+  hyselam::Rng rng(13);
+  Samples samples = World(13, true).learn(0);
+  for (int frame = 0; frame < 3000; ++frame) {
+    const int place = frame % kPlaces;
+    // Many frames are there several times: equally far.
+    if (frame % 3 == 0 || samples.count() == 0) {
+      samples.add(smoothLook(rng, place).data(), place, frame);
+    } else {
+      const std::vector<float> again(samples.row(samples.count() - 1),
+                                     samples.row(samples.count() - 1) + samples.size);
+      samples.add(again.data(), samples.places.back(), frame);
+    }
+  }
+  const FrameIndex frames(samples);
+  PartExemplars exemplars(samples, frames, 0, samples.parts[0], false);
+  for (int i = 0; i < 40; ++i) {
+    std::vector<char> blocked(frames.count(), 0);
+    for (char& b : blocked) b = i % 2 == 1 && rng.below(20) != 0;
+    exemplars.search(smoothLook(rng, i % kPlaces).data(), &blocked);
+    const std::vector<float>& d = exemplars.frameDistances();
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t f = 0; f < frames.count(); ++f) {
+      if (blocked[f] == 0) order.push_back(f);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return d[a] < d[b]; });
+    order.resize(80);
+    std::sort(order.begin(), order.end());
+    ASSERT_EQ(exemplars.comparedFrames(), order) << i;
+  }
+}
+
 TEST(Fusion, LearnedSignatureIsItsOwnNearestNeighbor) {
   World world(8, true);
   const Samples samples = world.learn(6, 2, 15);  // so many that the index is used

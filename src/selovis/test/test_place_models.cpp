@@ -304,6 +304,44 @@ TEST(PlaceModel, FormerFormatIsReadAndWrittenAsTheNewOne) {
   EXPECT_EQ(again.samples.poses[1].x, 0.5);
 }
 
+TEST(PlaceModel, WhereTheCameraErrsIsSavedBesideTheModelItBelongsTo) {
+  const PlaceModel former = loadPlaceModel(SELOVIS_TEST_DATA "/model_format_1");
+  EXPECT_EQ(former.reliability.size(), 0u) << "older models have none";
+  TemporaryDirectory folder;
+  savePlaceModel(former, folder / "m");
+  const std::string before = hyselam::testing::fileBytes(folder / "m/model.json");
+  EXPECT_EQ(before.find("reliability"), std::string::npos);
+  ReliabilityMemory memory;
+  const hyselam::Pose2 door{3.0, 1.0, 0.0}, away{7.0, 1.0, 0.0};
+  const auto visit = [&] {
+    memory.add(door, {1}, 1.0);
+    memory.add(away, {}, 1.0);
+  };
+  visit();
+  saveReliability(former, memory, folder / "m");
+  visit();
+  saveReliability(former, memory, folder / "m");
+  const PlaceModel again = loadPlaceModel(folder / "m");
+  EXPECT_EQ(again.samples.values, former.samples.values);
+  EXPECT_EQ(again.reliability.toBytes(), memory.toBytes());
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "m")) {
+    files += entry.path().filename().string().compare(0, 11, "reliability") == 0;
+  }
+  EXPECT_EQ(files, 1) << "that of the first saving is gone";
+  // It goes where the model goes, and belongs to no other.
+  savePlaceModel(again, folder / "copy");
+  EXPECT_EQ(loadPlaceModel(folder / "copy").reliability.toBytes(), memory.toBytes());
+  PlaceModel other = former;
+  other.samples.values[0] += 0.1f;
+  EXPECT_NE(messageOf<InputError>([&] {
+              saveReliability(other, memory, folder / "m");
+            }).find("another model"),
+            std::string::npos);
+  saveReliability(former, {}, folder / "m");
+  EXPECT_EQ(hyselam::testing::fileBytes(folder / "m/model.json"), before);
+}
+
 TEST(PlaceModel, WithoutTrainingIsNotSaved) {
   TemporaryDirectory folder;
   for (const SvmKernel kernel : {SvmKernel::kFusion, SvmKernel::kExemplar, SvmKernel::kLinear}) {

@@ -119,5 +119,17 @@ TEST(PoseSupervisor, HoursSetTheThresholdOfBothTests) {
   EXPECT_THROW(Rig(corridor(true), params), hyselam::ParameterError);
 }
 
+TEST(PoseSupervisor, BeginsWithWhatTheModelRemembersOfErrors) {
+  PlaceModel model = corridor(true);
+  const Pose2 door{3.0, 0.0, 0.0}, away{7.0, 0.0, 0.0};
+  model.reliability.add(door, {1}, 1.0);
+  model.reliability.add(away, {}, 1.0);
+  Rig rig(model);
+  ASSERT_NE(rig.supervisor().memory(), nullptr);
+  EXPECT_EQ(rig.supervisor().memory()->errorRate(door, 1), model.reliability.errorRate(door, 1));
+  EXPECT_GT(rig.supervisor().memory()->errorRate(door, 1), 0.3);
+  EXPECT_EQ(Rig(corridor(false)).supervisor().memory(), nullptr) << "by places there is none";
+}
+
 }  // namespace
 }  // namespace selovis

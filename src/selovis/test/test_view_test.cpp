@@ -2,6 +2,7 @@
 // the fit of a scan, the memory of errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -94,6 +95,49 @@ TEST(LearnedViews, RegressionIsThatOfAllViews) {
   EXPECT_GT(known, 20);
   EXPECT_EQ(views.at({1e12, 0.0, 0.0}).place, -1);
   EXPECT_THROW(views.compare({1.0f}, beta), hyselam::InputError);
+}
+
+/// Ordering all views is the oracle.
+TEST(LearnedViews, MostSimilarOnesAreThoseOfAllViewsInOrder) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    hyselam::Rng rng(seed);
+    Samples samples;
+    samples.size = 1;
+    const float nothing = 0.0f;
+    std::vector<float> distances;
+    for (int i = 0; i < 3000; ++i) {
+      const Pose2 pose{rng.uniform(-9.0, 9.0), rng.uniform(-9.0, 9.0), rng.uniform(-3.0, 3.0)};
+      samples.add(&nothing, 0, i / 5, i % 7 == 0 ? kNoPose : pose);
+      // Many are equally far.
+      distances.push_back(static_cast<float>(1.0 + 0.02 * rng.below(200)));
+    }
+    LearnedViews views(samples, 2.0, 0.5);
+    views.compare(distances, 1.5);
+    int asked = 0;
+    const double wall = rng.uniform(-9.0, 9.0);
+    const auto wanted = [&](const LearnedViews::View& v) {
+      ++asked;
+      return views.poseOf(v).x > wall;
+    };
+    std::vector<std::uint32_t> all, found;
+    for (std::uint32_t v = 0; v < views.views().size(); ++v) {
+      if (wanted(views.views()[v])) all.push_back(v);
+    }
+    std::stable_sort(all.begin(), all.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return views.similarity(views.views()[a]) > views.similarity(views.views()[b]);
+    });
+    for (const std::size_t count : {0u, 1u, 40u, 5000u}) {
+      asked = 0;
+      views.mostSimilar(count, wanted, &found);
+      ASSERT_EQ(found, std::vector<std::uint32_t>(
+                           all.begin(),
+                           all.begin() + static_cast<std::ptrdiff_t>(std::min(count, all.size()))))
+          << seed << ' ' << count;
+      if (count == 40 && wall < 0.0) {
+        EXPECT_LT(asked, 1000) << "few views are asked for";
+      }
+    }
+  }
 }
 
 /// A room of 6 x 4 m with a pillar, cells of 0.1 m, and what a laser in it returns.
@@ -205,6 +249,39 @@ TEST(ReliabilityMemory, ASecondErrorOfTheSameKindIsExpected) {
   for (int i = 0; i < 50; ++i) visit(-1);
   EXPECT_LT(memory.errorRate(door, 5), 0.03) << "it is right most of the times";
   EXPECT_EQ(memory.size(), 2u);
+}
+
+TEST(ReliabilityMemory, IsReadBackFromBytesAndOthersAreRefused) {
+  ReliabilityMemory memory;
+  hyselam::Rng rng(3);
+  std::vector<Pose2> poses;
+  for (int i = 0; i < 300; ++i) {
+    poses.push_back({rng.uniform(-5.0, 5.0), rng.uniform(-5.0, 5.0), rng.uniform(-3.0, 3.0)});
+    memory.add(poses.back(), {static_cast<int>(rng.below(4))}, rng.uniform());
+  }
+  const std::string bytes = memory.toBytes();
+  const ReliabilityMemory again = ReliabilityMemory::fromBytes(bytes, 4);
+  EXPECT_EQ(again.size(), memory.size());
+  EXPECT_EQ(again.toBytes(), bytes);
+  int errors = 0;
+  for (const Pose2& pose : poses) {
+    for (int place = 0; place < 4; ++place) {
+      EXPECT_EQ(again.errorRate(pose, place), memory.errorRate(pose, place));
+      errors += memory.errorRate(pose, place) > 0.3;
+    }
+  }
+  EXPECT_GT(errors, 20);
+  EXPECT_THROW(ReliabilityMemory::fromBytes(bytes, 3), hyselam::InputError) << "an unknown place";
+  EXPECT_THROW(ReliabilityMemory::fromBytes(bytes + "x", 4), hyselam::InputError);
+  for (std::size_t cut = 0; cut < bytes.size(); cut += 7) {
+    EXPECT_THROW(ReliabilityMemory::fromBytes(bytes.substr(0, cut), 4), hyselam::InputError) << cut;
+  }
+  std::string bad = bytes;
+  bad[16] = 9;  // the first pose's heading
+  EXPECT_THROW(ReliabilityMemory::fromBytes(bad, 4), hyselam::InputError);
+  bad = bytes;
+  std::fill(bad.begin() + 20, bad.begin() + 28, '\xff');  // its visits: no number
+  EXPECT_THROW(ReliabilityMemory::fromBytes(bad, 4), hyselam::InputError);
 }
 
 TEST(ViewTest, ARightPoseRaisesNoEvidence) {

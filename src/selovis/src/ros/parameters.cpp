@@ -31,7 +31,9 @@ void LearningParams::describe(hyselam::ParameterVisitor& visit) {
   visit("save_model", save_model,
         "directory of the model that is learned; one that is there goes before `model`; empty: "
         "~save writes to `model`");
-  visit("autosave", autosave, "into `save_model`, if it is given, after each training");
+  visit("autosave", autosave,
+        "into `save_model`, if it is given, after each training; at the end where the camera was "
+        "found to err");
   visit("save_map", save_map, "file (XML) of the map with signatures; empty: not written");
 }
 

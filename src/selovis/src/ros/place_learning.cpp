@@ -61,12 +61,13 @@ std::shared_ptr<const PlaceModel> PlaceLearning::firstModel(
 PlaceLearning::PlaceLearning(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
                              const LearningParams& params, std::string model_directory,
                              std::shared_ptr<const PlaceModel> model, std::string log_name,
-                             ModelHandler on_model)
+                             ModelHandler on_model, Memory memory)
     : private_nh_(private_nh),
       params_(params),
       model_directory_(std::move(model_directory)),
       log_name_(std::move(log_name)),
       on_model_(std::move(on_model)),
+      memory_(std::move(memory)),
       model_(std::move(model)),
       labels_(nh, params.min_border_distance),
       learner_(model_, params.learner),
@@ -80,6 +81,12 @@ PlaceLearning::PlaceLearning(const ros::NodeHandle& nh, const ros::NodeHandle& p
 PlaceLearning::~PlaceLearning() {
   timer_.stop();
   for (auto& service : services_) service.shutdown();
+  if (!params_.autosave || !holdsPlaceModel(params_.save_model)) return;
+  try {
+    saveMemory(params_.save_model);
+  } catch (const std::exception& e) {
+    ROS_WARN_STREAM(log_name_ << " where the camera errs was not saved: " << e.what());
+  }
 }
 
 void PlaceLearning::advertise() {
@@ -270,9 +277,17 @@ std::string PlaceLearning::saveModel() {
     const std::lock_guard<std::mutex> lock(save_mutex_);
     savePlaceModel(*model_, directory);
   }
+  saveMemory(directory);
   autosave_error_.clear();
   frames_.saved = std::max(frames_.saved, frames_.trained);
   return std::to_string(model_->transitions.places.size()) + " places written to " + directory;
+}
+
+void PlaceLearning::saveMemory(const std::string& directory) {
+  const ReliabilityMemory* memory = memory_();
+  if (memory == nullptr || memory->size() == 0) return;
+  const std::lock_guard<std::mutex> lock(save_mutex_);
+  saveReliability(*model_, *memory, directory);
 }
 
 std::string PlaceLearning::saveMap() {

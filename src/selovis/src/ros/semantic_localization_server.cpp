@@ -37,7 +37,8 @@ SemanticLocalizationServer::SemanticLocalizationServer(const ros::NodeHandle& nh
       nh, private_nh, params_.learning, params_.model, model, log_name_,
       [this](const std::shared_ptr<const PlaceModel>& learned) {
         updateRecognizer(*learned, true);
-      });
+      },
+      [this] { return supervision_.memory(); });
   const ImageInput::Requirements required{model->makeDescriptor()->requiredReadings(),
                                           filters_poses && !params_.frame_ids.odom.empty()};
   const LearnerParams& camera = params_.learning.learner;

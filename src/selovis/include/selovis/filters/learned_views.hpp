@@ -1,6 +1,7 @@
 // The learned frames by pose: what a camera at a pose should see, by kernel regression.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -47,6 +48,11 @@ class LearnedViews {
   /// Of the last frame compared; 0 to 1.
   double similarity(const View& view) const { return similarity_[view.sample]; }
   Regression at(const hyselam::Pose2& pose) const;
+  /// Those of the views that `wanted` accepts that look most like the last frame compared: at most
+  /// `count` indices into views(), the most similar first, of equal ones the lowest. `wanted` is
+  /// asked for the views alone that are similar enough: few of all.
+  template <typename Wanted>
+  void mostSimilar(std::size_t count, Wanted&& wanted, std::vector<std::uint32_t>* out) const;
 
   const std::vector<Frame>& frames() const { return frames_; }
   const std::vector<View>& views() const { return views_; }
@@ -75,5 +81,27 @@ class LearnedViews {
   int columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> begin_;  // of the frames in each cell, and the end
 };
+
+template <typename Wanted>
+void LearnedViews::mostSimilar(std::size_t count, Wanted&& wanted,
+                               std::vector<std::uint32_t>* out) const {
+  out->clear();
+  if (count == 0) return;
+  const auto better = [&](std::uint32_t a, std::uint32_t b) {
+    const double s = similarity(views_[a]), t = similarity(views_[b]);
+    return s != t ? s > t : a < b;
+  };
+  for (std::uint32_t v = 0; v < views_.size(); ++v) {  // a heap, its worst one in front
+    const bool full = out->size() == count;
+    if ((full && !better(v, out->front())) || !wanted(views_[v])) continue;
+    if (full) {
+      std::pop_heap(out->begin(), out->end(), better);
+      out->pop_back();
+    }
+    out->push_back(v);
+    std::push_heap(out->begin(), out->end(), better);
+  }
+  std::sort_heap(out->begin(), out->end(), better);
+}
 
 }  // namespace selovis

@@ -13,6 +13,7 @@
 #include "selovis/classifiers/samples.hpp"
 #include "selovis/descriptors/descriptor.hpp"
 #include "selovis/places/place_transitions.hpp"
+#include "selovis/recognition/reliability_memory.hpp"
 
 namespace selovis {
 
@@ -31,6 +32,8 @@ struct PlaceModel {
   /// Stamp [s] of the last frame that learnFrames() added; NaN: not known. It is not saved.
   double learned_until = std::numeric_limits<double>::quiet_NaN();
   std::string svm;  ///< the state of a trained SVM, or of a fusion (TrainedClassifier)
+  /// Where the camera was found to err with this model; learning begins it anew.
+  ReliabilityMemory reliability;
 
   /// The descriptor with its dictionary. @throws hyselam::InputError, hyselam::ParameterError.
   std::unique_ptr<Descriptor> makeDescriptor() const;
@@ -95,6 +98,12 @@ cv::Mat shifted(const cv::Mat& image, double shift);
 /// directory holds a complete model, old or new, at every moment. @throws hyselam::InputError, also
 /// for a model that was not trained.
 void savePlaceModel(const PlaceModel& model, const std::string& directory);
+
+/// Replaces what is saved there of where the camera errs: of a model that savePlaceModel() wrote,
+/// and without writing its signatures again.
+/// @throws hyselam::InputError, also where another model is saved.
+void saveReliability(const PlaceModel& model, const ReliabilityMemory& memory,
+                     const std::string& directory);
 
 /// Whether a model was saved there, usable or not.
 bool holdsPlaceModel(const std::string& directory);

@@ -52,6 +52,8 @@ class PoseSupervisor {
                  const PoseSupervisorParams& params);
 
   bool comparesViews() const { return views_.has_value(); }
+  /// Where the camera was found to err, beginning with PlaceModel::reliability; null by places.
+  const ReliabilityMemory* memory() const { return views_ ? &views_->memory() : nullptr; }
   /// From now on scans are compared with this map; null: they are not.
   void setMap(std::shared_ptr<const ScanFit> map);
   /// @throws hyselam::InputError (KidnappingDetector::update).

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -31,6 +32,11 @@ class ReliabilityMemory {
   double errorRate(const hyselam::Pose2& pose, int place) const;
   /// Poses that were visited.
   std::size_t size() const { return visits_.size(); }
+
+  /// The visits that are over, as bytes that are the same on all machines.
+  std::string toBytes() const;
+  /// What toBytes() gave. @param places so many there are. @throws hyselam::InputError.
+  static ReliabilityMemory fromBytes(const std::string& bytes, int places);
 
  private:
   using Key = std::tuple<int, int, int>;  // column, row, heading

@@ -73,7 +73,8 @@ class ViewTest {
   static constexpr double kElsewhereTurn = 1.0;  ///< [rad] ... turned by so much
 
   /// @throws hyselam::InputError (LearnedViews).
-  ViewTest(const Samples& samples, const ViewTestParams& params);
+  /// @param memory where the camera was found to err with these samples.
+  ViewTest(const Samples& samples, const ViewTestParams& params, ReliabilityMemory memory = {});
 
   /// From now on scans are compared with this map; null: they are not.
   void setMap(std::shared_ptr<const ScanFit> map) { fit_ = std::move(map); }

@@ -46,6 +46,8 @@ class PlaceLearning {
   using Map = hyselam_topo::AugmentedTopologicalMap;
   /// Gets each new model: trained, or with other names of places.
   using ModelHandler = std::function<void(std::shared_ptr<const PlaceModel>)>;
+  /// Where the camera was found to err with the present model, to be saved with it; may be null.
+  using Memory = std::function<const ReliabilityMemory*()>;
 
   /// The model to begin with: that of `save_model`, else `model`, else one without places.
   /// @throws hyselam::InputError, hyselam::ParameterError.
@@ -57,8 +59,8 @@ class PlaceLearning {
   PlaceLearning(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh,
                 const LearningParams& params, std::string model_directory,
                 std::shared_ptr<const PlaceModel> model, std::string log_name,
-                ModelHandler on_model);
-  /// Ends the callbacks, then the training.
+                ModelHandler on_model, Memory memory);
+  /// Ends the callbacks, then the training. With `autosave` and `save_model` the memory is saved.
   ~PlaceLearning();
 
   /// From now on the services are served.
@@ -104,6 +106,8 @@ class PlaceLearning {
   /// Into `save_model`; returns the error, or nothing.
   std::string trySave(const PlaceModel& model);
   std::string saveModel();
+  /// Of the model that was saved there.
+  void saveMemory(const std::string& directory);
   std::string saveMap();
 
   bool onStart(Trigger::Request&, Trigger::Response& response);
@@ -115,6 +119,7 @@ class PlaceLearning {
   const LearningParams params_;
   const std::string model_directory_, log_name_;
   const ModelHandler on_model_;
+  const Memory memory_;
   std::shared_ptr<const PlaceModel> model_;
   std::shared_ptr<const Map> map_;
   PlaceLabels labels_;

@@ -41,6 +41,8 @@ class PoseSupervision {
               const std_msgs::Header& image);
 
   bool kidnapped() const { return state_.kidnapped; }
+  /// Where the camera was found to err with the present model; null: nothing is known.
+  const ReliabilityMemory* memory() const { return supervisor_ ? supervisor_->memory() : nullptr; }
   void report(diagnostic_msgs::DiagnosticStatus& status) const;
 
  private:

@@ -24,8 +24,10 @@ struct FusionCalibration {
   /// What was left out to learn it: "tours", "stretches" of the one tour, or "nothing": there was
   /// too little, and the weights are those that other environments suggest.
   std::string left_out = "nothing";
-  std::size_t frames = 0;    ///< so many frames were asked for
-  double temperature = 1.0;  ///< of the sum
+  std::size_t frames = 0;  ///< so many frames were asked for
+  /// Of the sum: learned with more and fewer frames left out, then lowered to what later tours
+  /// need.
+  double temperature = 1.0;
   std::vector<PartCalibration> parts;
   double accuracy = 0.0;  ///< of the fusion on the frames left out
   double log_loss = 0.0;  ///< mean negative logarithm of the right place's probability

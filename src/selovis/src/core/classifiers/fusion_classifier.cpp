@@ -8,8 +8,9 @@
 namespace selovis {
 namespace {
 
-constexpr double kMinProbability = 1e-3;  // no single frame rules a place out
-constexpr float kFar = 1.0f;              // relative squared distance from which a view is far
+// Probability that is left to all places alike: no single frame rules one out.
+constexpr double kUnsaid = 0.01;
+constexpr float kFar = 1.0f;  // relative squared distance from which a view is far
 // Chosen with the default PoseFilterParams::similarity_beta between the house's tours by lamplight
 // and on two simulated floors.
 constexpr float kViewScale = 5.3f;
@@ -92,24 +93,51 @@ void FusionClassifier::predict(const float* signature, double* probabilities) {
   }
   for (std::size_t k = 0; k < sum_.size(); ++k) {
     probabilities[k] =
-        (probabilities[k] / total + kMinProbability) / (1.0 + kMinProbability * places_);
+        (1.0 - kUnsaid) * probabilities[k] / total + kUnsaid / static_cast<double>(places_);
   }
 }
 
 const std::vector<float>* FusionClassifier::distances() const {
   if (distances_known_) return &distances_;
+  distances_known_ = true;
   distances_.assign(labels_.size(), 1.0f);
+  part_distances_.resize(labels_.size());
+  // All views of a frame are as far off as the frame, unless some part has compared them.
+  compared_.assign(frames_.count(), 0);
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    if (opinions_[p].weight <= 0.0) continue;
+    for (const std::uint32_t f : exemplars_[p].comparedFrames()) compared_[f] = 1;
+  }
+  compared_frames_.clear();
+  for (std::uint32_t f = 0; f < compared_.size(); ++f) {
+    if (compared_[f] != 0) compared_frames_.push_back(f);
+  }
+  frame_sums_.assign(frames_.count(), 1.0f);
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const float weight = static_cast<float>(opinions_[p].weight);
     if (weight <= 0.0f) continue;
-    exemplars_[p].distances(part_distances_);
     const float nearest = static_cast<float>(std::max(kMinSquaredDistance, nearest_[p]));
-    for (std::size_t i = 0; i < distances_.size(); ++i) {
-      const float relative = (part_distances_[i] - nearest) / nearest;
-      distances_[i] += kViewScale * weight * std::clamp(relative, 0.0f, kFar);
+    const auto far = [&](float distance) {
+      return kViewScale * weight * std::clamp((distance - nearest) / nearest, 0.0f, kFar);
+    };
+    const std::vector<float>& of_frames = exemplars_[p].frameDistances();
+    for (std::size_t f = 0; f < frame_sums_.size(); ++f) frame_sums_[f] += far(of_frames[f]);
+    for (const std::uint32_t f : compared_frames_) {
+      std::fill(part_distances_.begin() + frames_.begin[f],
+                part_distances_.begin() + frames_.begin[f + 1], of_frames[f]);
+    }
+    for (const Neighbor& n : exemplars_[p].compared()) part_distances_[n.sample] = n.distance;
+    for (const std::uint32_t f : compared_frames_) {
+      for (std::uint32_t i = frames_.begin[f]; i < frames_.begin[f + 1]; ++i) {
+        distances_[i] += far(part_distances_[i]);
+      }
     }
   }
-  distances_known_ = true;
+  for (std::uint32_t f = 0; f < compared_.size(); ++f) {
+    if (compared_[f] != 0) continue;
+    std::fill(distances_.begin() + frames_.begin[f], distances_.begin() + frames_.begin[f + 1],
+              frame_sums_[f]);
+  }
   return &distances_;
 }
 

@@ -47,7 +47,9 @@ class FusionClassifier : public Classifier {
   std::vector<double> sum_, log_likelihoods_, nearest_, shares_;
   std::vector<PartOpinion> opinions_;
   mutable bool distances_known_ = false;
-  mutable std::vector<float> distances_, part_distances_;
+  mutable std::vector<float> distances_, part_distances_, frame_sums_;
+  mutable std::vector<char> compared_;  // frames, by any part
+  mutable std::vector<std::uint32_t> compared_frames_;
 };
 
 }  // namespace selovis

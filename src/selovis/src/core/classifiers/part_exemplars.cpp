@@ -22,6 +22,7 @@ constexpr std::size_t kComponentRows = 400;  // that they are learned from, at m
 constexpr int kIterations = 4;               // of the subspace
 constexpr std::size_t kCompared = 80;        // frames whose views are compared exactly
 constexpr std::size_t kNeighbors = 200;      // views that are answered
+constexpr std::size_t kSampled = 16;         // of so many frames one tells what is near
 
 /// Dot product of two rows of 16-bit integers; n is a multiple of kLane.
 float dot16(const std::int16_t* a, const std::int16_t* b, std::size_t n) {
@@ -173,6 +174,44 @@ void PartExemplars::estimate() {
   }
 }
 
+/// Of order_ the nearest by the estimate, of equal ones the first, in their order.
+void PartExemplars::keepNearest() {
+  // Nearly all are farther than a limit that a sample suggests; whether it was too tight is seen.
+  few_.clear();
+  for (std::size_t i = 0; i < order_.size(); i += kSampled) {
+    few_.push_back(frame_distances_[order_[i]]);
+  }
+  const std::size_t rank = 2 * kCompared / kSampled + 2;
+  float limit = kInfinity;
+  if (rank < few_.size()) {
+    std::nth_element(few_.begin(), few_.begin() + rank, few_.end());
+    limit = few_[rank];
+  }
+  const auto collect = [&] {
+    few_.clear();
+    for (const std::uint32_t f : order_) {
+      if (frame_distances_[f] <= limit) few_.push_back(frame_distances_[f]);
+    }
+  };
+  collect();
+  if (few_.size() < kCompared) {
+    limit = kInfinity;
+    collect();
+  }
+  std::nth_element(few_.begin(), few_.begin() + (kCompared - 1), few_.end());
+  limit = few_[kCompared - 1];
+  std::size_t equal = kCompared;
+  for (std::size_t i = 0; i < kCompared; ++i) equal -= few_[i] < limit;
+  std::size_t kept = 0;
+  for (const std::uint32_t f : order_) {
+    const float d = frame_distances_[f];
+    if (d > limit || (d == limit && equal == 0)) continue;
+    equal -= d == limit;
+    order_[kept++] = f;
+  }
+  order_.resize(kept);
+}
+
 const std::vector<Neighbor>& PartExemplars::search(const float* part,
                                                    const std::vector<char>* blocked) {
   quantize(part, query_.data());
@@ -187,15 +226,7 @@ const std::vector<Neighbor>& PartExemplars::search(const float* part,
       order_.push_back(f);
     }
   }
-  if (indexed && order_.size() > kCompared) {
-    std::nth_element(order_.begin(), order_.begin() + kCompared, order_.end(),
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       return frame_distances_[a] != frame_distances_[b]
-                                  ? frame_distances_[a] < frame_distances_[b]
-                                  : a < b;
-                     });
-    order_.resize(kCompared);
-  }
+  if (indexed && order_.size() > kCompared) keepNearest();
   compared_.clear();
   for (const std::uint32_t f : order_) {
     for (std::uint32_t i = frames_->begin[f]; i < frames_->begin[f + 1]; ++i) {
@@ -209,17 +240,6 @@ const std::vector<Neighbor>& PartExemplars::search(const float* part,
                                                            : a.sample < b.sample;
                          });
   return nearest_;
-}
-
-void PartExemplars::distances(std::vector<float>& out) const {
-  out.resize(squares_.size());
-  if (compared_.size() < out.size()) {
-    for (std::size_t f = 0; f < frame_distances_.size(); ++f) {
-      std::fill(out.begin() + frames_->begin[f], out.begin() + frames_->begin[f + 1],
-                frame_distances_[f]);
-    }
-  }
-  for (const Neighbor& n : compared_) out[n.sample] = n.distance;
 }
 
 }  // namespace selovis

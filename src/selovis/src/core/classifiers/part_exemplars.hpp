@@ -38,9 +38,12 @@ class PartExemplars {
                                       const std::vector<char>* blocked = nullptr);
   /// What search() answered last.
   const std::vector<Neighbor>& nearest() const { return nearest_; }
-  /// Squared distance of the last signature to each sample; the estimate of the frame where its
-  /// views were not compared.
-  void distances(std::vector<float>& out) const;
+  /// The frames whose views were compared exactly by the last search, and these views.
+  const std::vector<std::uint32_t>& comparedFrames() const { return order_; }
+  const std::vector<Neighbor>& compared() const { return compared_; }
+  /// Squared distances of the last signature to all frames, estimated by their first views; only
+  /// where not all frames were compared.
+  const std::vector<float>& frameDistances() const { return frame_distances_; }
 
  private:
   void quantize(const float* part, std::int16_t* out);
@@ -48,6 +51,7 @@ class PartExemplars {
   void learnComponents();
   void project(const std::int16_t* row, float* out, float* residue);
   void estimate();
+  void keepNearest();
 
   const FrameIndex* frames_;
   std::size_t size_, padded_;
@@ -58,7 +62,7 @@ class PartExemplars {
   float query_square_ = 0.0f;
   // Principal components of the first views; none: all frames are compared.
   std::vector<float> mean_, components_, codes_, residues_;
-  std::vector<float> frame_distances_;
+  std::vector<float> frame_distances_, few_;
   std::vector<std::uint32_t> order_;
   std::vector<Neighbor> compared_, nearest_;
 };

@@ -2,6 +2,7 @@
 // image.
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "descriptor_terms.hpp"
@@ -110,18 +111,25 @@ class Gist : public Descriptor {
     cv::divide(plane_, smooth_, plane_);
   }
 
+  /// Mean magnitude of the responses in each block.
   void pool(float* out) const {
     const int block = side_ / kBlocks;
     for (int b = 0; b < kBlocks * kBlocks; ++b) {
-      double sum = 0.0;
+      cv::v_float32x4 sums = cv::v_setzero_f32();
+      float rest = 0.0f;
       for (int v = b / kBlocks * block; v < (b / kBlocks + 1) * block; ++v) {
-        const cv::Vec2f* row = response_.ptr<cv::Vec2f>(v);
-        for (int u = b % kBlocks * block; u < (b % kBlocks + 1) * block; ++u) {
-          sum += std::sqrt(static_cast<double>(row[u][0]) * row[u][0] +
-                           static_cast<double>(row[u][1]) * row[u][1]);
+        const float* row = response_.ptr<float>(v) + 2 * (b % kBlocks * block);
+        int u = 0;
+        for (; u + 4 <= block; u += 4) {
+          cv::v_float32x4 real, imaginary;
+          cv::v_load_deinterleave(row + 2 * u, real, imaginary);
+          sums += cv::v_sqrt(cv::v_muladd(real, real, imaginary * imaginary));
+        }
+        for (; u < block; ++u) {
+          rest += std::sqrt(row[2 * u] * row[2 * u] + row[2 * u + 1] * row[2 * u + 1]);
         }
       }
-      out[b] = weight_ * static_cast<float>(sum / (block * block));
+      out[b] = weight_ * (cv::v_reduce_sum(sums) + rest) / static_cast<float>(block * block);
     }
   }
 

@@ -86,9 +86,15 @@ double LearnedViews::compare(const std::vector<float>& distances, double beta) {
     nearest = std::min(nearest, static_cast<double>(distances[v.sample]));
   }
   nearest = std::max(kMinSquaredDistance, nearest);
+  // The views of a frame that is far off all have its distance: one exponential does for them.
+  float last = std::numeric_limits<float>::quiet_NaN();
+  double similarity = 0.0;
   for (const View& v : views_) {
-    const double d = (static_cast<double>(distances[v.sample]) - nearest) / nearest;
-    total += similarity_[v.sample] = std::exp(-beta * d);
+    if (distances[v.sample] != last) {
+      last = distances[v.sample];
+      similarity = std::exp(-beta * ((static_cast<double>(last) - nearest) / nearest));
+    }
+    total += similarity_[v.sample] = similarity;
   }
   return total;
 }

@@ -74,6 +74,7 @@ PlaceModel untrainedPlaceModel(const TrainingOptions& options) {
 }
 
 PlaceModel learnFrames(PlaceModel model, const std::vector<LearnedFrame>& frames) {
+  model.reliability = {};
   PlaceTransitions& transitions = model.transitions;
   int number = model.samples.frames.empty() ? 0 : model.samples.frames.back() + 1;
   int last_place = model.samples.places.empty() ? -1 : model.samples.places.back();

@@ -260,13 +260,24 @@ void removeOtherData(const std::string& directory, const json& manifest) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
-    for (const std::string kind : {"signatures", "poses", "svm"}) {
+    for (const std::string kind : {"signatures", "poses", "svm", "reliability"}) {
       const bool data =
           entry.path().extension() == ".bin" && name.compare(0, kind.size() + 1, kind + "-") == 0;
       const bool used = manifest.count(kind) && name == manifest[kind]["file"];
       if (data && !used) std::filesystem::remove(entry.path(), error);
     }
   }
+}
+
+/// With the memory, whose data file comes first; what the manifest does not name is removed last.
+void writeManifest(const std::string& directory, json& manifest, const ReliabilityMemory& memory) {
+  manifest.erase("reliability");
+  if (memory.size() > 0) {
+    manifest["reliability"] = saveData(directory, "reliability", memory.toBytes());
+  }
+  hyselam::writeFileAtomically(pathIn(directory, kManifest),
+                               [&](std::ostream& out) { out << manifest.dump(1) << '\n'; });
+  removeOtherData(directory, manifest);
 }
 
 }  // namespace
@@ -297,9 +308,23 @@ void savePlaceModel(const PlaceModel& model, const std::string& directory) {
   const bool fusion = model.classifier.kernel == SvmKernel::kFusion;
   if (fusion) j["fusion"] = json::parse(model.svm);
   if (!fusion && !model.svm.empty()) j["svm"] = saveData(directory, "svm", model.svm);
-  hyselam::writeFileAtomically(pathIn(directory, kManifest),
-                               [&](std::ostream& out) { out << j.dump(1) << '\n'; });
-  removeOtherData(directory, j);
+  writeManifest(directory, j, model.reliability);
+}
+
+void saveReliability(const PlaceModel& model, const ReliabilityMemory& memory,
+                     const std::string& directory) {
+  ModelDirectory files(directory);
+  try {
+    json j = files.readManifest();
+    const std::string crc = hyselam::crc32Text(headerOf("signatures") + samplesToBytes(model));
+    if (j.at("signatures").at("crc32") != crc || j.at("places") != model.transitions.places) {
+      throw InputError(files.manifest(), "",
+                       "is of another model, or was written by an older version");
+    }
+    writeManifest(directory, j, memory);
+  } catch (const json::exception& e) {
+    throw InputError(files.manifest(), "", std::string("is no model: ") + e.what());
+  }
 }
 
 bool holdsPlaceModel(const std::string& directory) {
@@ -319,6 +344,12 @@ PlaceModel loadPlaceModel(const std::string& directory) {
     if (j.count("poses")) {
       files.readData("poses", j.at("poses"), [&](const std::string& bytes) {
         model.samples.poses = posesFromBytes(bytes, model.samples.count());
+      });
+    }
+    if (j.count("reliability")) {  // not of older versions, nor before the robot drove
+      files.readData("reliability", j.at("reliability"), [&](const std::string& bytes) {
+        model.reliability =
+            ReliabilityMemory::fromBytes(bytes, static_cast<int>(model.transitions.places.size()));
       });
     }
     withSource(manifest, [&] { checkDescriptor(model); });

@@ -154,6 +154,7 @@ PlaceModel extendPlaceModel(PlaceModel model, const std::vector<std::size_t>& fr
                             const LoadFrame& load, const TrainingOptions& options) {
   addSignatures(model, *model.makeDescriptor(), frames_of_tours, load, options);
   model.learned_until = std::numeric_limits<double>::quiet_NaN();
+  model.reliability = {};
   fitClassifier(model, options);
   return model;
 }

@@ -34,7 +34,7 @@ PoseSupervisor::PoseSupervisor(const PlaceModel& model, const PlaceTransitions& 
           ViewTest::thresholdFor(params.views.false_alarm_hours, params.views.correlation_time)),
       places_(transitions, ofPlaces(params, threshold_)) {
   if (comparesExemplars(model.classifier.kernel) && LearnedViews::whyNot(model.samples).empty()) {
-    views_.emplace(model.samples, params.views);
+    views_.emplace(model.samples, params.views, model.reliability);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace selovis {
 namespace {
@@ -64,10 +65,11 @@ double ViewTest::thresholdFor(double hours, double correlation_time) {
   return std::max(kLeastThreshold, std::log(hours * 3600.0 / correlation_time) - kCalibration);
 }
 
-ViewTest::ViewTest(const Samples& samples, const ViewTestParams& params)
+ViewTest::ViewTest(const Samples& samples, const ViewTestParams& params, ReliabilityMemory memory)
     : params_(params),
       threshold_(thresholdFor(params.false_alarm_hours, params.correlation_time)),
-      views_(samples, kRadius, kAngle) {}
+      views_(samples, kRadius, kAngle),
+      memory_(std::move(memory)) {}
 
 void ViewTest::reset() {
   rivals_.clear();
@@ -107,20 +109,12 @@ void ViewTest::moveRivals(const ViewTestFrame& frame) {
 }
 
 void ViewTest::addRivals(const ViewTestFrame& frame, const hyselam::Pose2& camera) {
-  const auto& views = views_.views();
-  order_.clear();
-  for (std::uint32_t v = 0; v < views.size(); ++v) {
-    if (isElsewhere(views_.poseOf(views[v]), camera)) order_.push_back(v);
-  }
-  const std::size_t tried = std::min(kViewsTried, order_.size());
-  std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(tried),
-                    order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-                      const double s = views_.similarity(views[a]), t = views_.similarity(views[b]);
-                      return s != t ? s > t : a < b;
-                    });
+  views_.mostSimilar(
+      kViewsTried,
+      [&](const LearnedViews::View& v) { return isElsewhere(views_.poseOf(v), camera); }, &order_);
   std::vector<std::pair<double, hyselam::Pose2>> found;
-  for (std::size_t i = 0; i < tried; ++i) {
-    const hyselam::Pose2 pose = views_.poseOf(views[order_[i]]);
+  for (const std::uint32_t v : order_) {
+    const hyselam::Pose2 pose = views_.poseOf(views_.views()[v]);
     LearnedViews::Regression seen;
     found.emplace_back(likelihoodAt(pose, &seen), pose);
   }
