@@ -36,6 +36,9 @@ struct MapMergingParams {
   double min_near_ratio = 0.55;
   /// ... of at least so many, >= 1; of fewer nothing can be said, and the maps are not tied.
   int min_near_tried = 12;
+  /// Path between stretches of a map that are laid on the others as they are drawn [m], >= 0; 0:
+  /// none is.
+  double place_interval = 2.0;
   /// Of two sessions that share more than this part of the keyframes of the smaller one, 0..1, that
   /// one is left out: both hold the same recording.
   double max_shared_keyframes = 0.1;
@@ -85,6 +88,8 @@ struct MapMergingCounters {
   int tried = 0;      ///< far loops
   int verified = 0;   ///< of them
   int near_tried = 0, near_verified = 0;
+  int stretches = 0;   ///< laid on the drawn maps
+  int place_ties = 0;  ///< of the ties, those by places there that were not withdrawn
   int ties = 0;            ///< of maps, made
   int ties_withdrawn = 0;  ///< of them: wrong, or not borne out
 };

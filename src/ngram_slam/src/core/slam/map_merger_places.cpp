@@ -1,0 +1,243 @@
+// What is still apart after merging by loops is laid, stretch by stretch, on the other maps as they
+// are drawn.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "map_merger.hpp"
+#include "ngram_slam/slam/loop_tasks.hpp"
+#include "ngram_slam/slam/observed_space.hpp"
+
+namespace ngram_slam {
+
+using hyselam::between;
+using hyselam::Pose2;
+
+namespace {
+
+constexpr std::size_t kMostHypotheses = 4;  // of two maps, that are tried
+
+}  // namespace
+
+void MapMerger::tieByPlaces() {
+  if (params_.place_interval <= 0.0) return;
+  for (bool tied = true; tied;) {
+    tied = false;
+    askPlaces();
+    std::set<MapPair> pairs;
+    for (const Placed& p : placed_) pairs.insert(mapsOf(p.placed.loop));
+    for (const MapPair& maps : pairs) {
+      // Between maps that were not tied since they were asked.
+      if (mapOf(maps.first) == maps.first && mapOf(maps.second) == maps.second) {
+        tied = tieByPlaces(maps) || tied;
+      }
+    }
+    if (tied) settle();
+  }
+}
+
+MapMerger::MapPair MapMerger::mapsOf(const SlamLoop& loop) const {
+  return std::minmax({mapOfKeyframe(loop.older), mapOfKeyframe(loop.newer)});
+}
+
+/// The keyframes that the stretches end with, of all maps but the one of most keyframes: what that
+/// one has in common with another is found from the other.
+std::vector<int> MapMerger::stretches() const {
+  std::map<std::uint32_t, int> sizes;
+  for (const SlamKeyframe& k : state_.keyframes) ++sizes[mapOf(k.run)];
+  const auto largest =
+      std::max_element(sizes.begin(), sizes.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<int> ends;
+  if (sizes.size() < 2) return ends;
+  std::optional<std::uint32_t> run;
+  double last = 0.0;
+  for (std::size_t k = 0; k < state_.keyframes.size(); ++k) {
+    const SlamKeyframe& here = state_.keyframes[k];
+    if (mapOf(here.run) == largest->first) continue;
+    if (run != here.run) last = here.path_length;
+    run = here.run;
+    if (here.path_length - last < params_.place_interval) continue;
+    last = here.path_length;
+    ends.push_back(static_cast<int>(k));
+  }
+  return ends;
+}
+
+/// Lays each stretch on all other maps, and asks the scans at the places that are likelier than one
+/// with an equal beside it.
+void MapMerger::askPlaces() {
+  placed_.clear();
+  const std::vector<int> ends = stretches();
+  if (ends.empty()) return;
+  KnownMaps drawn(state_, static_cast<int>(state_.keyframes.size()), connections_, std::nullopt,
+                  params_.slam.consolidation);
+  drawn.draw();
+  std::vector<std::optional<KnownPlace>> places(ends.size());
+  for (std::size_t i = 0; i < ends.size(); i += kStretchesAtOnce) {
+    if (progress_) progress_("laying stretches on maps", i, ends.size());
+    const std::size_t n = std::min(kStretchesAtOnce, ends.size() - i);
+    forEach(n, [&](std::size_t k) {
+      const int last = ends[i + k];
+      places[i + k] = drawn.findBut(keyframe(last).run, lastMetres(state_.keyframes, last));
+    });
+  }
+  counters_.stretches += static_cast<int>(ends.size());
+  std::vector<LoopTask> tasks;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (!places[i] || places[i]->probability <= params_.slam.run_start.min_place_probability) {
+      continue;
+    }
+    tasks.push_back(placeTask(ends[i], *places[i]));
+    placed_.push_back({{{}, places[i]->probability}, ends[i]});
+  }
+  const std::vector<LoopVerification> answers = verified(tasks);
+  for (std::size_t i = 0; i < answers.size(); ++i) placed_[i].placed.loop = answers[i].loop;
+  std::size_t i = 0;
+  placed_.erase(std::remove_if(placed_.begin(), placed_.end(),
+                               [&](const Placed&) { return !answers[i++].verified; }),
+                placed_.end());
+}
+
+/// Between the middle of the stretch's last metres and the place.
+LoopTask MapMerger::placeTask(int last, const KnownPlace& place) const {
+  const LoopParams& p = params_.slam.loop;
+  const double end = keyframe(last).path_length;
+  int middle = last;
+  while (middle > 0 && keyframe(middle - 1).run == keyframe(last).run &&
+         end - keyframe(middle).path_length < p.far_new_segment_half_length) {
+    --middle;
+  }
+  const Pose2 there = place.base_in_keyframe * between(keyframe(last).pose, keyframe(middle).pose);
+  const bool is_later = place.keyframe < middle;
+  LoopTask task = is_later ? farLoopTask(state_.keyframes, place.keyframe, middle, p)
+                           : farLoopTask(state_.keyframes, middle, place.keyframe, p);
+  task.source = LoopSource::kProximity;
+  task.initial_guess = is_later ? there : there.inverse();
+  task.any_heading = false;
+  task.window = kPlaceWindow;
+  task.angle = kPlaceAngle;
+  task.place_probability = place.probability;
+  return task;
+}
+
+/// Whether two places are found with no scan in common, somewhere else in the map: what looks like
+/// another place does so each time that a robot passes it.
+bool MapMerger::areIndependent(const Placed& a, const Placed& b) const {
+  const SlamKeyframe &here = keyframe(a.last), &there = keyframe(b.last);
+  return (here.run != there.run || std::abs(here.path_length - there.path_length) > kSubmapPath) &&
+         distance(here.pose, there.pose) > 0.5 * kSubmapPath;
+}
+
+/// Pairs of independent places that say the same of two maps, each without a rival (isSurePlace()
+/// of the first, sure_place_probability of the second). Of pairs that do not contradict each other
+/// the one with most support stands for all.
+std::vector<MapTie> MapMerger::hypothesesOf(const MapPair& maps) const {
+  const LoopParams& p = params_.slam.loop;
+  std::vector<SlamLoop> found_otherwise, all;
+  for (const SlamLoop& l : pending_) {
+    if (mapsOf(l) == maps) found_otherwise.push_back(l);
+  }
+  all = found_otherwise;
+  std::vector<const Placed*> placed;
+  for (const Placed& one : placed_) {
+    if (mapsOf(one.placed.loop) != maps) continue;
+    all.push_back(one.placed.loop);
+    if (one.placed.place_probability >= params_.slam.run_start.sure_place_probability) {
+      placed.push_back(&one);
+    }
+  }
+  const auto contradict = [&](const SlamLoop& a, const SlamLoop& b) {
+    return isContradiction(loopInconsistency(a, b, state_.keyframes, connections_), p);
+  };
+  std::vector<MapTie> pairs;
+  for (const Placed* a : placed) {
+    const SlamLoop& loop = a->placed.loop;
+    if (!isSurePlace(a->placed, all, found_otherwise, state_.keyframes, connections_,
+                     params_.slam)) {
+      continue;
+    }
+    double support = 0.0;
+    for (const Placed* b : placed) {
+      if (!contradict(loop, b->placed.loop)) support += b->placed.loop.inlier_ratio;
+    }
+    for (const Placed* b : placed) {
+      if (a != b && areIndependent(*a, *b) &&
+          !consistentLoops(loop, {b->placed.loop}, state_.keyframes, connections_, p).empty()) {
+        pairs.push_back({{loop, b->placed.loop}, support, 0.0});
+        break;
+      }
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const MapTie& a, const MapTie& b) { return a.support > b.support; });
+  std::vector<MapTie> hypotheses;
+  for (const MapTie& pair : pairs) {
+    const bool is_new =
+        std::all_of(hypotheses.begin(), hypotheses.end(), [&](const MapTie& known) {
+          return contradict(pair.loops.front(), known.loops.front());
+        });
+    if (is_new && hypotheses.size() < kMostHypotheses) hypotheses.push_back(pair);
+  }
+  return hypotheses;
+}
+
+/// Each hypothesis of where two maps lie to each other is tried; one that alone is borne out ties
+/// them.
+bool MapMerger::tieByPlaces(const MapPair& maps) {
+  const std::vector<MapTie> hypotheses = hypothesesOf(maps);
+  const MapTie* right = nullptr;
+  for (const MapTie& tie : hypotheses) {
+    const Untied before = untied();
+    join(tie);
+    closeNear(maps.first);
+    const bool holds = mapOf(maps.second) == mapOf(maps.first) && isBorneOutByScans(tie);
+    withdraw(before, tie, true);
+    if (!holds) continue;
+    if (right != nullptr) return false;  // both would do
+    right = &tie;
+  }
+  if (right == nullptr) return false;
+  join(*right);
+  closeNear(maps.first);
+  for (const SlamLoop& l : right->loops) {
+    withdrawn_.erase(std::remove_if(withdrawn_.begin(), withdrawn_.end(),
+                                    [&](const SlamLoop& w) { return isSamePair(w, l); }),
+                     withdrawn_.end());
+  }
+  ++counters_.place_ties;
+  return true;
+}
+
+/// What the scans along the common path say after a tie by places: they fit, or see walls where the
+/// other map saw free space, or free space where it saw walls. A scan that sees what the other map
+/// has not seen, as that of a robot that went the other way, says nothing.
+bool MapMerger::isBorneOutByScans(const MapTie& tie) const {
+  const LoopParams& p = params_.slam.loop;
+  int fit = 0, against = 0;
+  for (const NearTry& t : near_tries_) {
+    if (t.fits) {
+      ++fit;
+      continue;
+    }
+    const LoopTask task =
+        nearLoopTask(state_.keyframes, t.older, t.newer, p.near_max_uncertainty, p);
+    ObservedSpace space(p.observed_space_side, p.far_resolution);
+    for (const LoopTask::PosedScan& s : task.old_segment) space.insert(s.pose, *s.points, s.laser);
+    const Overlap overlap = space.overlap(task.initial_guess, *keyframe(t.newer).points);
+    const bool says = overlap.observed_ratio >= p.min_overlap;
+    if (says && overlap.surface_ratio < p.near_min_surface_ratio) ++against;
+  }
+  if (std::getenv("MERGE_DEBUG") != nullptr) {
+    std::fprintf(stderr, "TRY sessions %zu %zu loops %d-%d %d-%d support %.2f near %zu fit %d against %d\n", sessionOfKeyframe(tie.loops[0].older), sessionOfKeyframe(tie.loops[0].newer), tie.loops[0].older, tie.loops[0].newer, tie.loops[1].older, tie.loops[1].newer, tie.support, near_tries_.size(), fit, against);
+    for (const SlamLoop& l : tie.loops) std::fprintf(stderr, "V last 0 older %d %.3f newer %d %.3f ok 1 score 0 amb 0 inl %.2f fit %.3f p %.3f measured %.3f %.3f %.3f\n", l.older, keyframe(l.older).stamp, l.newer, keyframe(l.newer).stamp, l.inlier_ratio, l.fit, .95, l.measured.x, l.measured.y, l.measured.theta);
+  }
+  return fit + against >= params_.min_near_tried &&
+         fit >= params_.min_near_ratio * (fit + against);
+}
+
+}  // namespace ngram_slam
