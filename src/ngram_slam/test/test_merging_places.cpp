@@ -65,34 +65,36 @@ hyselam_sim::FloorPlan roomAtHall() {
       "rooms.yaml");
 }
 
-/// Rounds in the room whose corner is at `x`, from (x + 2, 7) back to there.
+/// Rounds in the room whose corner is at `x`, from (x + 1, 4.5) back to there.
 std::string rounds(double x, int n) {
   std::string steps;
   const auto go = [&](double dx, const char* y) {
     steps += "  - {go: [" + std::to_string(x + dx) + ", " + y + "]}\n";
   };
   for (int i = 0; i < n; ++i) {
-    go(4.0, "5");
-    go(5.5, "8");
-    go(3.5, "8.7");
-    go(2.0, "7");
+    go(4.5, "4.2");
+    go(6.8, "8.8");
+    go(3.0, "8.5");
+    go(1.0, "4.5");
   }
   return steps;
 }
 
 hyselam::RobotLog driven(const hyselam_sim::FloorPlan& plan, const std::string& start,
                          const std::string& doors, const std::string& steps, std::uint64_t seed) {
-  const auto route = hyselam_sim::parseRoute("route: r\nplan: rooms\nstart: {at: " + start +
-                                                 ", heading: 0}\ndoors: " + doors +
-                                                 "\nsteps:\n" + steps,
-                                             "route.yaml");
+  const auto route =
+      hyselam_sim::parseRoute("route: r\nplan: rooms\nstart: {at: " + start +
+                                  ", heading: 0}\ndoors: " + doors + "\nsteps:\n" + steps,
+                              "route.yaml");
   hyselam_sim::SimulationParams params;
   params.scan_rate = 4.0;
   params.odometry.sigma = 0.02;
   return hyselam_sim::simulate(plan, route, seed, params).log;
 }
 
-SlamState mapped(const hyselam::RobotLog& log) { return mapOf(log, 0.0, 1.0); }
+SlamState mapped(const hyselam::RobotLog& log) {
+  return mapOf(log, 0.0, 1.0);
+}
 
 constexpr const char* kIntoA = "  - {go: [6, 1.5]}\n  - {go: [6, 5]}\n";
 constexpr const char* kOutOfA = "  - {go: [6, 5]}\n  - {go: [6, 1.5]}\n";
@@ -107,10 +109,20 @@ SlamState corridor(const std::string& what_stands_there, std::uint64_t seed) {
 }
 
 /// A robot that never leaves the room behind its shut door.
+const hyselam::RobotLog& shutInLog() {
+  static const hyselam::RobotLog log =
+      driven(twoRooms(furniture(2.0)), "[3, 4.5]", "shut", rounds(2.0, 4), 7);
+  return log;
+}
 const SlamState& shutIn() {
-  static const SlamState state = mapped(
-      driven(twoRooms(furniture(2.0)), "[4, 7]", "shut", rounds(2.0, 4), 7));
+  static const SlamState state = mapped(shutInLog());
   return state;
+}
+
+std::string bytesOf(const SlamState& state) {
+  const hyselam::testing::TemporaryDirectory d;
+  SlamStateFile::save(d / "s.state", state);
+  return hyselam::testing::fileBytes(d / "s.state");
 }
 
 /// No loops are looked for but a few.
@@ -124,23 +136,37 @@ MapMergingParams placesOnly() {
 
 TEST(MergingPlaces, TieWhatOnlyOnePlaceExplains) {
   // The other room has nothing in it.
-  const MergedMaps m = mergeMaps({{"corridor", corridor(furniture(2.0), 3)}, {"room", shutIn()}},
-                                 placesOnly());
+  const std::vector<MapSession> both{{"corridor", corridor(furniture(2.0), 3)}, {"room", shutIn()}};
+  MapMergingParams params = placesOnly();
+  const MergedMaps m = mergeMaps(both, params);
   ASSERT_EQ(m.maps.size(), 1U);
-  EXPECT_GE(m.counters.place_ties, 1);
+  EXPECT_EQ(m.counters.place_ties, 1);
+  EXPECT_GT(m.counters.stretches, 10);
+  // In the first room, where the robot was.
+  const Pose2 first = m.maps[0].parts[0].trajectory.front().pose;
+  for (const hyselam::StampedPose2& p : m.maps[0].parts[1].trajectory) {
+    const Pose2 pose = Pose2{1.0, 1.5, 0.0} * between(first, p.pose);
+    EXPECT_LT(distance(pose, *hyselam::poseAt(shutInLog().ground_truth, p.stamp, 1.0)), 0.3);
+  }
+  params.threads = 3;
+  const MergedMaps again = mergeMaps(both, params);
+  ASSERT_EQ(again.maps.size(), 1U);
+  EXPECT_TRUE(bytesOf(again.maps[0].state) == bytesOf(m.maps[0].state));
+  params.place_interval = 0.0;
+  EXPECT_EQ(mergeMaps(both, params).maps.size(), 2U) << "loops alone would do";
 }
 
 TEST(MergingPlaces, WaitWhereTwoPartsOfAMapAreAlike) {
-  const MergedMaps m = mergeMaps(
-      {{"corridor", corridor(furniture(2.0) + furniture(28.0), 3)}, {"room", shutIn()}},
-      placesOnly());
+  const MergedMaps m =
+      mergeMaps({{"corridor", corridor(furniture(2.0) + furniture(28.0), 3)}, {"room", shutIn()}},
+                placesOnly());
   EXPECT_EQ(m.maps.size(), 2U);
   EXPECT_GT(m.counters.stretches, 10);
   EXPECT_EQ(m.counters.place_ties, 0);
 }
 
 TEST(MergingPlaces, WaitWhereTwoBuildingsHaveTheSameRoom) {
-  const SlamState hall = mapped(driven(roomAtHall(), "[4, 7]", "open day",
+  const SlamState hall = mapped(driven(roomAtHall(), "[3, 4.5]", "open day",
                                        rounds(2.0, 1) + kOutOfA + "  - {go: [-6, -5]}\n", 5));
   const SlamState other = corridor(furniture(2.0), 3);
   const MergedMaps m =
@@ -150,7 +176,7 @@ TEST(MergingPlaces, WaitWhereTwoBuildingsHaveTheSameRoom) {
 
 TEST(MergingPlaces, AreRefusedWhereFreeSpaceLiesOverWalls) {
   // Both buildings have the room, beside it one has a corridor and one a hall.
-  const SlamState hall = mapped(driven(roomAtHall(), "[4, 7]", "open day",
+  const SlamState hall = mapped(driven(roomAtHall(), "[3, 4.5]", "open day",
                                        rounds(2.0, 3) + kOutOfA + "  - {go: [-6, -5]}\n", 5));
   const MergedMaps m =
       mergeMaps({{"corridor", corridor(furniture(2.0), 3)}, {"hall", hall}}, placesOnly());

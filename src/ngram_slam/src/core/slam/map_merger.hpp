@@ -55,6 +55,11 @@ class MapMerger {
 
   bool isMerged(std::uint32_t map) const;
 
+  struct NearTry {
+    int older, newer;
+    bool fits;
+  };
+
   // Far loops.
   void askAll(const std::string& step, double interval, int candidates);
   void askAroundVerified();
@@ -79,6 +84,8 @@ class MapMerger {
   bool areIndependent(const Placed& a, const Placed& b) const;
   std::vector<MapTie> hypothesesOf(const MapPair& maps) const;
   bool tieByPlaces(const MapPair& maps);
+  enum class Evidence { kNone, kFits, kAgainst };
+  Evidence evidenceOf(const NearTry& t) const;
   bool isBorneOutByScans(const MapTie& tie) const;
 
   // Ties and what follows from them.
@@ -117,10 +124,6 @@ class MapMerger {
   std::vector<Placed> placed_;       // of the maps as they are
   MapMergingCounters counters_;
   std::vector<std::pair<int, std::uint32_t>> near_asked_since_;  // the last tie
-  struct NearTry {
-    int older, newer;
-    bool fits;
-  };
   std::vector<NearTry> near_tries_;  // since the last tie
   /// Ties of two maps of which too little is known yet: their support.
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> undecided_;

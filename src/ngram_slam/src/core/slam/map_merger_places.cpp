@@ -20,6 +20,7 @@ using hyselam::Pose2;
 namespace {
 
 constexpr std::size_t kMostHypotheses = 4;  // of two maps, that are tried
+constexpr double kMostContradicted = 2.0;   // of the common path, in one piece [m]
 
 }  // namespace
 
@@ -49,9 +50,8 @@ MapMerger::MapPair MapMerger::mapsOf(const SlamLoop& loop) const {
 std::vector<int> MapMerger::stretches() const {
   std::map<std::uint32_t, int> sizes;
   for (const SlamKeyframe& k : state_.keyframes) ++sizes[mapOf(k.run)];
-  const auto largest =
-      std::max_element(sizes.begin(), sizes.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto largest = std::max_element(
+      sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   std::vector<int> ends;
   if (sizes.size() < 2) return ends;
   std::optional<std::uint32_t> run;
@@ -177,10 +177,9 @@ std::vector<MapTie> MapMerger::hypothesesOf(const MapPair& maps) const {
                    [](const MapTie& a, const MapTie& b) { return a.support > b.support; });
   std::vector<MapTie> hypotheses;
   for (const MapTie& pair : pairs) {
-    const bool is_new =
-        std::all_of(hypotheses.begin(), hypotheses.end(), [&](const MapTie& known) {
-          return contradict(pair.loops.front(), known.loops.front());
-        });
+    const bool is_new = std::all_of(hypotheses.begin(), hypotheses.end(), [&](const MapTie& known) {
+      return contradict(pair.loops.front(), known.loops.front());
+    });
     if (is_new && hypotheses.size() < kMostHypotheses) hypotheses.push_back(pair);
   }
   return hypotheses;
@@ -209,35 +208,70 @@ bool MapMerger::tieByPlaces(const MapPair& maps) {
                                     [&](const SlamLoop& w) { return isSamePair(w, l); }),
                      withdrawn_.end());
   }
+  undecided_.clear();
   ++counters_.place_ties;
   return true;
 }
 
-/// What the scans along the common path say after a tie by places: they fit, or see walls where the
-/// other map saw free space, or free space where it saw walls. A scan that sees what the other map
-/// has not seen, as that of a robot that went the other way, says nothing.
-bool MapMerger::isBorneOutByScans(const MapTie& tie) const {
+/// What a near try says after a tie by places: the scans fit, or what one map saw as a wall the
+/// other saw as free. Scans that see what the other map has not seen, as those of a robot that went
+/// the other way, say nothing.
+MapMerger::Evidence MapMerger::evidenceOf(const NearTry& t) const {
+  if (t.fits) return Evidence::kFits;
   const LoopParams& p = params_.slam.loop;
-  int fit = 0, against = 0;
-  for (const NearTry& t : near_tries_) {
-    if (t.fits) {
-      ++fit;
-      continue;
+  const LoopTask near =
+      nearLoopTask(state_.keyframes, t.older, t.newer, p.near_max_uncertainty, p);
+  const LoopTask::Segment around = farLoopTask(state_.keyframes, t.older, t.newer, p).new_segment;
+  ObservedSpace of_old(p.observed_space_side, p.far_resolution), of_new = of_old;
+  for (const LoopTask::PosedScan& s : near.old_segment) of_old.insert(s.pose, *s.points, s.laser);
+  for (const LoopTask::PosedScan& s : around) of_new.insert(s.pose, *s.points, s.laser);
+  const Overlap new_in_old = of_old.overlap(near.initial_guess, *keyframe(t.newer).points);
+  Overlap old_in_new;  // mean of the scans
+  double observed = 0.0, on_surface = 0.0, all = 0.0;
+  for (const LoopTask::PosedScan& s : near.old_segment) {
+    const Overlap o = of_new.overlap(near.initial_guess.inverse() * s.pose, *s.points);
+    const auto points = static_cast<double>(s.points->size());
+    all += points;
+    observed += points * o.observed_ratio;
+    on_surface += points * o.observed_ratio * o.surface_ratio;
+  }
+  if (all > 0.0) old_in_new.observed_ratio = observed / all;
+  if (observed > 0.0) old_in_new.surface_ratio = on_surface / observed;
+  if (std::getenv("MERGE_DEBUG")) std::fprintf(stderr, "  n %d path %.1f observed %.2f surface %.2f / %.2f %.2f\n", t.newer, keyframe(t.newer).path_length, new_in_old.observed_ratio, new_in_old.surface_ratio, old_in_new.observed_ratio, old_in_new.surface_ratio);
+  for (const Overlap& o : {new_in_old, old_in_new}) {
+    if (o.observed_ratio >= p.min_overlap && o.surface_ratio < p.near_min_surface_ratio) {
+      return Evidence::kAgainst;
     }
-    const LoopTask task =
-        nearLoopTask(state_.keyframes, t.older, t.newer, p.near_max_uncertainty, p);
-    ObservedSpace space(p.observed_space_side, p.far_resolution);
-    for (const LoopTask::PosedScan& s : task.old_segment) space.insert(s.pose, *s.points, s.laser);
-    const Overlap overlap = space.overlap(task.initial_guess, *keyframe(t.newer).points);
-    const bool says = overlap.observed_ratio >= p.min_overlap;
-    if (says && overlap.surface_ratio < p.near_min_surface_ratio) ++against;
+  }
+  return Evidence::kNone;
+}
+
+/// Whether most of the common path bears a tie by places out, and no part of it contradicts.
+bool MapMerger::isBorneOutByScans(const MapTie& tie) const {
+  int fit = 0, against = 0;
+  std::map<int, Evidence> along;  // by the newer keyframe; what fits counts more
+  for (const NearTry& t : near_tries_) {
+    const Evidence e = evidenceOf(t);
+    fit += e == Evidence::kFits ? 1 : 0;
+    against += e == Evidence::kAgainst ? 1 : 0;
+    Evidence& here = along.emplace(t.newer, e).first->second;
+    if (e == Evidence::kFits || (e == Evidence::kAgainst && here == Evidence::kNone)) here = e;
+  }
+  double contradicted = 0.0;  // [m] of path at most
+  std::optional<int> begin;
+  for (const auto& [k, e] : along) {
+    if (e == Evidence::kFits || (begin && keyframe(*begin).run != keyframe(k).run)) begin.reset();
+    if (e != Evidence::kAgainst) continue;
+    if (!begin) begin = k;
+    contradicted = std::max(contradicted, keyframe(k).path_length - keyframe(*begin).path_length);
   }
   if (std::getenv("MERGE_DEBUG") != nullptr) {
-    std::fprintf(stderr, "TRY sessions %zu %zu loops %d-%d %d-%d support %.2f near %zu fit %d against %d\n", sessionOfKeyframe(tie.loops[0].older), sessionOfKeyframe(tie.loops[0].newer), tie.loops[0].older, tie.loops[0].newer, tie.loops[1].older, tie.loops[1].newer, tie.support, near_tries_.size(), fit, against);
+    std::fprintf(stderr, "TRY sessions %zu %zu loops %d-%d %d-%d support %.2f near %zu fit %d against %d longest %.1f\n", sessionOfKeyframe(tie.loops[0].older), sessionOfKeyframe(tie.loops[0].newer), tie.loops[0].older, tie.loops[0].newer, tie.loops[1].older, tie.loops[1].newer, tie.support, near_tries_.size(), fit, against, contradicted);
     for (const SlamLoop& l : tie.loops) std::fprintf(stderr, "V last 0 older %d %.3f newer %d %.3f ok 1 score 0 amb 0 inl %.2f fit %.3f p %.3f measured %.3f %.3f %.3f\n", l.older, keyframe(l.older).stamp, l.newer, keyframe(l.newer).stamp, l.inlier_ratio, l.fit, .95, l.measured.x, l.measured.y, l.measured.theta);
   }
   return fit + against >= params_.min_near_tried &&
-         fit >= params_.min_near_ratio * (fit + against);
+         fit >= params_.min_place_near_ratio * (fit + against) &&
+         contradicted <= kMostContradicted;
 }
 
 }  // namespace ngram_slam
