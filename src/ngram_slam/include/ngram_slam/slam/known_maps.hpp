@@ -69,7 +69,7 @@ class KnownMaps {
   SettledMap settled_;
   std::vector<std::uint32_t> map_of_run_;
   std::optional<std::uint32_t> but_;  // a map
-  ConsolidationParams params_;  // how maps are drawn
+  ConsolidationParams params_;        // how maps are drawn
   bool drawn_ = false;
   std::vector<Map> maps_;
 };

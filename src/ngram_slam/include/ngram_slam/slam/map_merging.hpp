@@ -91,8 +91,8 @@ struct MapMergingCounters {
   int tried = 0;      ///< far loops
   int verified = 0;   ///< of them
   int near_tried = 0, near_verified = 0;
-  int stretches = 0;   ///< laid on the drawn maps
-  int place_ties = 0;  ///< by places there, not withdrawn
+  int stretches = 0;       ///< laid on the drawn maps
+  int place_ties = 0;      ///< by places there, not withdrawn
   int ties = 0;            ///< of maps, made
   int ties_withdrawn = 0;  ///< of them: wrong, or not borne out, or tried beside others
 };

@@ -86,7 +86,7 @@ class MapMerger {
   bool tieByPlaces(const MapPair& maps);
   enum class Evidence { kNone, kFits, kAgainst };
   Evidence evidenceOf(const NearTry& t) const;
-  bool isBorneOutByScans(const MapTie& tie) const;
+  bool isBorneOutByScans() const;
 
   // Ties and what follows from them.
   void settle();
@@ -124,7 +124,7 @@ class MapMerger {
   std::vector<Placed> placed_;       // of the maps as they are
   MapMergingCounters counters_;
   std::vector<std::pair<int, std::uint32_t>> near_asked_since_;  // the last tie
-  std::vector<NearTry> near_tries_;  // since the last tie
+  std::vector<NearTry> near_tries_;                              // since the last tie
   /// Ties of two maps of which too little is known yet: their support.
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> undecided_;
   int lengths_of_ = -1;  // keyframe of isOpen()

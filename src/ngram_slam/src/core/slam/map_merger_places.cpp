@@ -2,8 +2,6 @@
 // are drawn.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <set>
 #include <utility>
@@ -19,8 +17,9 @@ using hyselam::Pose2;
 
 namespace {
 
-constexpr std::size_t kMostHypotheses = 4;  // of two maps, that are tried
-constexpr double kMostContradicted = 2.0;   // of the common path, in one piece [m]
+// Of two maps; with more of them a building repeats itself too much to believe one.
+constexpr std::size_t kMostHypotheses = 4;
+constexpr double kMostContradicted = 2.0;  // of the common path, in one piece [m]
 
 }  // namespace
 
@@ -180,7 +179,7 @@ std::vector<MapTie> MapMerger::hypothesesOf(const MapPair& maps) const {
     const bool is_new = std::all_of(hypotheses.begin(), hypotheses.end(), [&](const MapTie& known) {
       return contradict(pair.loops.front(), known.loops.front());
     });
-    if (is_new && hypotheses.size() < kMostHypotheses) hypotheses.push_back(pair);
+    if (is_new) hypotheses.push_back(pair);
   }
   return hypotheses;
 }
@@ -189,12 +188,13 @@ std::vector<MapTie> MapMerger::hypothesesOf(const MapPair& maps) const {
 /// them.
 bool MapMerger::tieByPlaces(const MapPair& maps) {
   const std::vector<MapTie> hypotheses = hypothesesOf(maps);
+  if (hypotheses.size() > kMostHypotheses) return false;
   const MapTie* right = nullptr;
   for (const MapTie& tie : hypotheses) {
     const Untied before = untied();
     join(tie);
     closeNear(maps.first);
-    const bool holds = mapOf(maps.second) == mapOf(maps.first) && isBorneOutByScans(tie);
+    const bool holds = mapOf(maps.second) == mapOf(maps.first) && isBorneOutByScans();
     withdraw(before, tie, true);
     if (!holds) continue;
     if (right != nullptr) return false;  // both would do
@@ -219,8 +219,7 @@ bool MapMerger::tieByPlaces(const MapPair& maps) {
 MapMerger::Evidence MapMerger::evidenceOf(const NearTry& t) const {
   if (t.fits) return Evidence::kFits;
   const LoopParams& p = params_.slam.loop;
-  const LoopTask near =
-      nearLoopTask(state_.keyframes, t.older, t.newer, p.near_max_uncertainty, p);
+  const LoopTask near = nearLoopTask(state_.keyframes, t.older, t.newer, p.near_max_uncertainty, p);
   const LoopTask::Segment around = farLoopTask(state_.keyframes, t.older, t.newer, p).new_segment;
   ObservedSpace of_old(p.observed_space_side, p.far_resolution), of_new = of_old;
   for (const LoopTask::PosedScan& s : near.old_segment) of_old.insert(s.pose, *s.points, s.laser);
@@ -237,7 +236,6 @@ MapMerger::Evidence MapMerger::evidenceOf(const NearTry& t) const {
   }
   if (all > 0.0) old_in_new.observed_ratio = observed / all;
   if (observed > 0.0) old_in_new.surface_ratio = on_surface / observed;
-  if (std::getenv("MERGE_DEBUG")) std::fprintf(stderr, "  n %d path %.1f observed %.2f surface %.2f / %.2f %.2f\n", t.newer, keyframe(t.newer).path_length, new_in_old.observed_ratio, new_in_old.surface_ratio, old_in_new.observed_ratio, old_in_new.surface_ratio);
   for (const Overlap& o : {new_in_old, old_in_new}) {
     if (o.observed_ratio >= p.min_overlap && o.surface_ratio < p.near_min_surface_ratio) {
       return Evidence::kAgainst;
@@ -247,7 +245,7 @@ MapMerger::Evidence MapMerger::evidenceOf(const NearTry& t) const {
 }
 
 /// Whether most of the common path bears a tie by places out, and no part of it contradicts.
-bool MapMerger::isBorneOutByScans(const MapTie& tie) const {
+bool MapMerger::isBorneOutByScans() const {
   int fit = 0, against = 0;
   std::map<int, Evidence> along;  // by the newer keyframe; what fits counts more
   for (const NearTry& t : near_tries_) {
@@ -265,13 +263,8 @@ bool MapMerger::isBorneOutByScans(const MapTie& tie) const {
     if (!begin) begin = k;
     contradicted = std::max(contradicted, keyframe(k).path_length - keyframe(*begin).path_length);
   }
-  if (std::getenv("MERGE_DEBUG") != nullptr) {
-    std::fprintf(stderr, "TRY sessions %zu %zu loops %d-%d %d-%d support %.2f near %zu fit %d against %d longest %.1f\n", sessionOfKeyframe(tie.loops[0].older), sessionOfKeyframe(tie.loops[0].newer), tie.loops[0].older, tie.loops[0].newer, tie.loops[1].older, tie.loops[1].newer, tie.support, near_tries_.size(), fit, against, contradicted);
-    for (const SlamLoop& l : tie.loops) std::fprintf(stderr, "V last 0 older %d %.3f newer %d %.3f ok 1 score 0 amb 0 inl %.2f fit %.3f p %.3f measured %.3f %.3f %.3f\n", l.older, keyframe(l.older).stamp, l.newer, keyframe(l.newer).stamp, l.inlier_ratio, l.fit, .95, l.measured.x, l.measured.y, l.measured.theta);
-  }
   return fit + against >= params_.min_near_tried &&
-         fit >= params_.min_place_near_ratio * (fit + against) &&
-         contradicted <= kMostContradicted;
+         fit >= params_.min_place_near_ratio * (fit + against) && contradicted <= kMostContradicted;
 }
 
 }  // namespace ngram_slam
