@@ -14,7 +14,7 @@
 namespace ngram_slam {
 
 /// All numbers were chosen on intel, aces and mit-killian cut into pieces (bench/merge_maps): in
-/// sample there.
+/// sample there; those of places on seed 1 of intel and mit-killian.
 struct MapMergingParams {
   SlamParams slam;  ///< of the engines that made the maps and that will go on with the result
   int threads = 1;  ///< that verify loops, >= 1; the result does not depend on it
