@@ -180,11 +180,14 @@ class SlamInputTest(unittest.TestCase):
         rig.start()
         wait_until(lambda: rig.scan.get_num_connections() > 0 and Rig.tf.get_num_connections() > 1, "not connected")
         rig.map_heard.wait(maps + 1)  # that of the state, before the first scan
+        rig.wait_value("since the last session", "not known: the session is not tied to the map")
         rig.feed(40)
         self.assert_right(rig)
         rig.feed(60)
         self.assertEqual(rig.value("runs"), "2")
         self.assertGreater(int(rig.value("keyframes")), keyframes)
+        wait_until(lambda: rig.value("since the last session").startswith("not known") == (rig.value("place of the run") != "tied"),
+                   "changes are known where the run is tied")
         self.assert_right(rig)
         # The end saves as well; a damaged file stops the start with the reason.
         rig.process.send_signal(signal.SIGINT)

@@ -138,6 +138,8 @@ TEST(PresentMap, tellsWhatChangedSinceTheSession) {
   EXPECT_TRUE(gone);
   EXPECT_TRUE(appeared);
   EXPECT_TRUE(mapOf(state, 2).changes().empty());  // nothing was seen since
+  EXPECT_EQ(summaryOf({}), "nothing changed");
+  EXPECT_EQ(summaryOf({}, false), "not known: the session is not tied to the map");
   EXPECT_TRUE(mapOf(visits({kBefore, kBefore}), 1).changes().empty());
 }
 

@@ -113,6 +113,22 @@ INSTANTIATE_TEST_SUITE_P(Starts, Restarts,
                                          Pose2{0.0, 0.0, hyselam::kPi},
                                          Pose2{3.0, 2.0, -hyselam::kPi / 2.0}));
 
+TEST(Restart, knowsWhatChangedWhenItIsTied) {
+  SlamEngine first;
+  feed(&first, firstVisit(), 0, 10);
+  EXPECT_TRUE(first.knowsChanges());  // there is no session before it
+  SlamEngine engine(SlamParams{}, knownMap());
+  EXPECT_FALSE(engine.knowsChanges());  // nothing was seen since
+  engine.startRunAnywhere();
+  std::size_t scan = kFirstScan;
+  feed(&engine, secondVisit(), scan, scan + 1);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kSupposed);
+  EXPECT_FALSE(engine.knowsChanges());
+  driveUntilTied(&engine, &++scan);
+  ASSERT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_TRUE(engine.knowsChanges());
+}
+
 TEST(Restart, anywhereIsFound) {
   SlamEngine engine(SlamParams{}, knownMap());
   engine.startRunAnywhere();

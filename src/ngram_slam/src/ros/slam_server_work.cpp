@@ -117,6 +117,7 @@ std::optional<SlamServer::MapRequest> SlamServer::awaitMapRequest() {
   request.shown = engine.shownRuns();
   request.settled = engine.settled();
   request.session = engine.firstRunOfSession();
+  request.knows_changes = engine.knowsChanges();
   request.revision = engine.revision();
   request.epoch = epoch_;
   return request;
@@ -140,7 +141,7 @@ void SlamServer::drawMap(const MapRequest& request, PresentMap* mapper) {
   std::string changes;
   attempt([&] {  // what fits
     const PresentMap::Drawn drawn = mapper->draw();
-    changes = summaryOf(drawn.changes);
+    changes = summaryOf(drawn.changes, request.knows_changes);
     publisher_.publishMap(drawn, request.keyframes, request.shown, request.loops, request.graph,
                           request.header);
   });

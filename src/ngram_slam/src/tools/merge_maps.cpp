@@ -180,7 +180,8 @@ json toJson(const MapMergingCounters& c) {
   return {{"places_asked_for", c.questions},        {"loops_tried", c.tried},
           {"loops_verified", c.verified},           {"near_loops_tried", c.near_tried},
           {"near_loops_verified", c.near_verified}, {"ties", c.ties},
-          {"ties_withdrawn", c.ties_withdrawn}};
+          {"ties_withdrawn", c.ties_withdrawn},     {"stretches_laid_on_maps", c.stretches},
+          {"ties_by_places", c.place_ties}};
 }
 
 /// For people: which maps there are now, and who met whom.

@@ -545,11 +545,7 @@ nlohmann::json run(const Options& o) {
   if (!reference.empty()) summary["errors"] = errorOf(main_run, reference);
   const PresentMap present = mapOf(engine, o);
   const std::vector<MapChange> changes = present.changes();
-  if (!o.state.empty()) {
-    summary["changes"] = engine.runPlace() == RunPlace::kTied
-                             ? summaryOf(changes)
-                             : "not known: the session is not tied to the map";
-  }
+  if (!o.state.empty()) summary["changes"] = summaryOf(changes, engine.knowsChanges());
   writeResults(o, main_run, present, log);
   if (!o.save_state.empty()) summary["saved"] = saveMapState(o.save_state, engine);
 

@@ -73,7 +73,7 @@ class SlamServer {
     std::string job_error, map_error, save_error;
     double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
     std::size_t paused_scans = 0, weak_matches = 0;
-    std::string changes = "nothing changed";  // since the last session
+    std::string changes;  // since the last session; nothing before a map is drawn
   };
   /// What a map is drawn from, copied from the engine.
   struct MapRequest {
@@ -83,6 +83,7 @@ class SlamServer {
     std::vector<bool> shown;  // runs
     SettledMap settled;
     std::uint32_t session = 0;  // its first run
+    bool knows_changes = false;
     std_msgs::Header header;
     long revision = 0, epoch = -1;
   };

@@ -33,10 +33,10 @@ struct KnownPlace {
 class KnownMaps {
  public:
   /// The maps of the keyframes before `end`, each drawn and searched by itself, since nothing is
-  /// known of where they lie to each other; without the map that `but` belongs to. Nothing is drawn
-  /// before the first search.
-  KnownMaps(const SlamState& state, int end, const RunConnections& connections, std::uint32_t but,
-            const ConsolidationParams& drawn);
+  /// known of where they lie to each other; without the map that the run `but` belongs to, if it is
+  /// told. Nothing is drawn before the first search or draw().
+  KnownMaps(const SlamState& state, int end, const RunConnections& connections,
+            std::optional<std::uint32_t> but, const ConsolidationParams& drawn);
   ~KnownMaps();
   KnownMaps(const KnownMaps&) = delete;
   KnownMaps& operator=(const KnownMaps&) = delete;
@@ -47,9 +47,16 @@ class KnownMaps {
   /// (std::bad_alloc), that is thrown once, and nothing is found from then on.
   std::optional<KnownPlace> find(const std::vector<SubmapScan>& scans);
 
+  /// Draws the maps if they are not drawn yet, as the first search does.
+  void draw();
+  /// The same in maps that are drawn, nothing if they are not; without the map that the run `but`
+  /// belongs to. On several threads at once.
+  std::optional<KnownPlace> findBut(std::uint32_t but, const std::vector<SubmapScan>& scans) const;
+
  private:
   struct Map;
-  void draw();
+  std::optional<KnownPlace> find(std::optional<std::uint32_t> but,
+                                 const std::vector<SubmapScan>& scans) const;
 
   /// Where a keyframe lies.
   struct Keyframe {
@@ -61,8 +68,8 @@ class KnownMaps {
   std::vector<SlamKeyframe> drawn_from_;
   SettledMap settled_;
   std::vector<std::uint32_t> map_of_run_;
-  std::uint32_t but_;
-  ConsolidationParams params_;  // how maps are drawn
+  std::optional<std::uint32_t> but_;  // a map
+  ConsolidationParams params_;        // how maps are drawn
   bool drawn_ = false;
   std::vector<Map> maps_;
 };

@@ -14,7 +14,7 @@
 namespace ngram_slam {
 
 /// All numbers were chosen on intel, aces and mit-killian cut into pieces (bench/merge_maps): in
-/// sample there.
+/// sample there; those of places on seed 1 of intel and mit-killian.
 struct MapMergingParams {
   SlamParams slam;  ///< of the engines that made the maps and that will go on with the result
   int threads = 1;  ///< that verify loops, >= 1; the result does not depend on it
@@ -36,6 +36,12 @@ struct MapMergingParams {
   double min_near_ratio = 0.55;
   /// ... of at least so many, >= 1; of fewer nothing can be said, and the maps are not tied.
   int min_near_tried = 12;
+  /// Path between stretches of a map (of 10 m) that are laid on the others as they are drawn [m],
+  /// >= 0; 0: none is.
+  double place_interval = 2.0;
+  /// A tie by places is borne out if at least this part of the scans along the common path that say
+  /// something fit, 0..1, of min_near_tried or more.
+  double min_place_near_ratio = 0.8;
   /// Of two sessions that share more than this part of the keyframes of the smaller one, 0..1, that
   /// one is left out: both hold the same recording.
   double max_shared_keyframes = 0.1;
@@ -85,8 +91,10 @@ struct MapMergingCounters {
   int tried = 0;      ///< far loops
   int verified = 0;   ///< of them
   int near_tried = 0, near_verified = 0;
+  int stretches = 0;       ///< laid on the drawn maps
+  int place_ties = 0;      ///< by places there, not withdrawn
   int ties = 0;            ///< of maps, made
-  int ties_withdrawn = 0;  ///< of them: wrong, or not borne out
+  int ties_withdrawn = 0;  ///< of them: wrong, or not borne out, or tried beside others
 };
 
 struct MergedMaps {
@@ -104,10 +112,14 @@ using MergingProgress =
 /// Signatures find places of one map in the others (SignaturePlaces), the scans verify them
 /// (verifyLoop()), and what SLAM believes of the loops of a run in a known map is believed of those
 /// of two maps (believeFarLoops()): three that agree, are likelier right than wrong, and are not
-/// contradicted, here by nothing in both maps. By loops alone: no places of drawn maps are searched
-/// (KnownMaps), which tie a run to its map by two loops. The best known tie first; it is borne out
+/// contradicted, here by nothing in both maps. The best known tie first; it is borne out
 /// by near loops along the common path, which go into the graph, or withdrawn. The graph is
 /// optimized with all loops and robustly, as by SlamEngine.
+///
+/// What is apart then is laid on the other maps as they are drawn (KnownMaps), stretch by stretch,
+/// all maps but the largest. Two places that no other one rivals, found by scans of their own
+/// at different places of the map, and verified, are a hypothesis of where two maps lie; each one
+/// is tried, and the only one that the scans along the common path bear out ties them.
 ///
 /// Sessions without keyframes, that are inconsistent, or that hold a recording of another one are
 /// left out. Maps that meet no other come back as they are. Runs of one session that no loop joins

@@ -40,8 +40,9 @@ struct MapChange {
 };
 /// "appeared", "gone".
 const char* toString(MapChange::Kind kind);
-/// "12 things appeared, 9 are gone, 3 of them not for the first time"; "nothing changed".
-std::string summaryOf(const std::vector<MapChange>& changes);
+/// "12 things appeared, 9 are gone, 3 of them not for the first time"; "nothing changed"; that
+/// nothing is known of it (SlamEngine::knowsChanges()).
+std::string summaryOf(const std::vector<MapChange>& changes, bool known = true);
 
 /// Each run that saw a cell is one visit. Between visits the cell may have changed, with a
 /// probability that is learnt of each cell: one that never changed needs more evidence than a

@@ -22,6 +22,7 @@
 #include "ngram_slam/slam/loop_verifier.hpp"
 #include "ngram_slam/slam/odometry_doubt.hpp"
 #include "ngram_slam/slam/odometry_noise.hpp"
+#include "ngram_slam/slam/placed_loops.hpp"
 #include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/run_graph.hpp"
 #include "ngram_slam/slam/signature_places.hpp"
@@ -190,6 +191,9 @@ class SlamEngine {
   const SettledMap& settled() const { return state_.settled; }
   /// The first run that is not of the saved map the engine was made with.
   std::uint32_t firstRunOfSession() const { return session_; }
+  /// Whether it can be told what changed since the sessions before: there were none, or the run is
+  /// tied to the map of an earlier one.
+  bool knowsChanges() const;
   /// By run, whether it belongs to the map that the pose refers to. While the run's place is only
   /// supposed that is the map it was supposed in, without the run.
   std::vector<bool> shownRuns() const;
@@ -225,11 +229,6 @@ class SlamEngine {
     double window, angle;
     RunTrust trust;
     bool anywhere;  // the pose says nothing
-  };
-  /// A verified loop to a place found on a drawn map.
-  struct PlacedLoop {
-    SlamLoop loop;
-    double place_probability;  // KnownPlace::probability
   };
   /// The current run, all in [m] of path.
   struct Run {

@@ -25,11 +25,11 @@ struct KnownMaps::Map {
 };
 
 KnownMaps::KnownMaps(const SlamState& state, int end, const RunConnections& connections,
-                     std::uint32_t but, const ConsolidationParams& drawn)
+                     std::optional<std::uint32_t> but, const ConsolidationParams& drawn)
     : drawn_from_(state.keyframes.begin(), state.keyframes.begin() + end),
       settled_(state.settled),
-      but_(connections.mapOf(but)),
       params_(drawn) {
+  if (but) but_ = connections.mapOf(*but);
   const std::uint32_t runs = drawn_from_.empty() ? 0 : drawn_from_.back().run + 1;
   for (std::uint32_t run = 0; run < runs; ++run) map_of_run_.push_back(connections.mapOf(run));
   for (const SlamKeyframe& k : drawn_from_) keyframes_.push_back({k.pose, map_of_run_[k.run]});
@@ -39,9 +39,11 @@ KnownMaps::~KnownMaps() = default;
 
 /// Each map as it would be shown; all of them or none: one that is missed is missed as a rival.
 void KnownMaps::draw() {
+  if (drawn_) return;
   drawn_ = true;
   const std::vector<SlamKeyframe> keyframes = std::exchange(drawn_from_, {});
   const SettledMap settled = std::exchange(settled_, {});
+  const auto no_session = static_cast<std::uint32_t>(map_of_run_.size());
   std::vector<Map> maps;
   for (const std::uint32_t name : std::set<std::uint32_t>(map_of_run_.begin(), map_of_run_.end())) {
     if (name == but_) continue;
@@ -49,7 +51,7 @@ void KnownMaps::draw() {
     for (const std::uint32_t map : map_of_run_) shown.push_back(map == name);
     PresentMap present(params_.map, params_.present);
     try {
-      present.update({keyframes, settled, shown, but_, 0});
+      present.update({keyframes, settled, shown, no_session, 0});
     } catch (const std::length_error&) {
       return;  // too large to be drawn
     }
@@ -65,7 +67,17 @@ void KnownMaps::draw() {
 }
 
 std::optional<KnownPlace> KnownMaps::find(const std::vector<SubmapScan>& scans) {
-  if (!drawn_) draw();
+  draw();
+  return find(std::nullopt, scans);
+}
+
+std::optional<KnownPlace> KnownMaps::findBut(std::uint32_t but,
+                                             const std::vector<SubmapScan>& scans) const {
+  return find(but < map_of_run_.size() ? map_of_run_[but] : but, scans);
+}
+
+std::optional<KnownPlace> KnownMaps::find(std::optional<std::uint32_t> but,
+                                          const std::vector<SubmapScan>& scans) const {
   fsd_localization::SubmapBuilder builder;
   for (const SubmapScan& s : scans) builder.add(*s.scan, s.pose);
   const fsd_localization::Submap submap = builder.build();
@@ -73,6 +85,7 @@ std::optional<KnownPlace> KnownMaps::find(const std::vector<SubmapScan>& scans) 
   Pose2 base;
   double best = 0.0, rival = 0.0;
   for (const Map& m : maps_) {
+    if (m.name == but) continue;
     for (const fsd_localization::Place& p : m.search->search(submap)) {
       if (p.seen <= best) {
         rival = std::max(rival, p.seen);

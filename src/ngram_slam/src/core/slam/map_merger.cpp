@@ -48,6 +48,7 @@ void MapMerger::run() {
   settle();
   askAroundVerified();
   settle();
+  tieByPlaces();
   for (std::uint32_t map = 0; map < runs(); ++map) {
     if (mapOf(map) == map && isMerged(map)) optimize(map);
   }
@@ -117,20 +118,25 @@ bool MapMerger::isOpen(int older, int newer) {
          params_.slam.loop.near_max_uncertainty;
 }
 
-std::vector<LoopVerification> MapMerger::verified(const std::vector<LoopTask>& tasks) const {
-  std::vector<LoopVerification> answers(tasks.size());
+/// Calls `work` with each number below `n`, on several threads.
+void MapMerger::forEach(std::size_t n, const std::function<void(std::size_t)>& work) const {
   std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < tasks.size(); i = next++) {
-      answers[i] = verifyLoop(tasks[i], params_.slam);
-    }
+  const auto some = [&] {
+    for (std::size_t i = next++; i < n; i = next++) work(i);
   };
   // The future of a thread has its exception.
-  const int threads = std::min(params_.threads, static_cast<int>(tasks.size()));
+  const auto threads = std::min<std::size_t>(static_cast<std::size_t>(params_.threads), n);
   std::vector<std::future<void>> helpers;
-  for (int i = 1; i < threads; ++i) helpers.push_back(std::async(std::launch::async, work));
-  work();
+  for (std::size_t i = 1; i < threads; ++i) {
+    helpers.push_back(std::async(std::launch::async, some));
+  }
+  some();
   for (std::future<void>& f : helpers) f.get();
+}
+
+std::vector<LoopVerification> MapMerger::verified(const std::vector<LoopTask>& tasks) const {
+  std::vector<LoopVerification> answers(tasks.size());
+  forEach(tasks.size(), [&](std::size_t i) { answers[i] = verifyLoop(tasks[i], params_.slam); });
   return answers;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,6 +15,7 @@
 #include "ngram_slam/slam/map_merging.hpp"
 #include "ngram_slam/slam/map_questions.hpp"
 #include "ngram_slam/slam/map_ties.hpp"
+#include "ngram_slam/slam/placed_loops.hpp"
 #include "ngram_slam/slam/run_connections.hpp"
 
 namespace ngram_slam {
@@ -53,12 +55,38 @@ class MapMerger {
 
   bool isMerged(std::uint32_t map) const;
 
+  struct NearTry {
+    int older, newer;
+    bool fits;
+  };
+
   // Far loops.
   void askAll(const std::string& step, double interval, int candidates);
   void askAroundVerified();
   bool isOpen(int older, int newer);
   void verifyFar(const std::string& step, const std::vector<SignatureCandidate>& candidates);
   std::vector<LoopVerification> verified(const std::vector<LoopTask>& tasks) const;
+  void forEach(std::size_t n, const std::function<void(std::size_t)>& work) const;
+
+  // Places on the drawn maps, in map_merger_places.cpp.
+  static constexpr std::size_t kStretchesAtOnce = 64;
+  using MapPair = std::pair<std::uint32_t, std::uint32_t>;  // the smaller name first
+  /// A verified loop at a place.
+  struct Placed {
+    PlacedLoop placed;
+    int last;  // keyframe that the stretch ends with
+  };
+  void tieByPlaces();
+  MapPair mapsOf(const SlamLoop& loop) const;
+  std::vector<int> stretches() const;
+  void askPlaces();
+  LoopTask placeTask(int last, const KnownPlace& place) const;
+  bool areIndependent(const Placed& a, const Placed& b) const;
+  std::vector<MapTie> hypothesesOf(const MapPair& maps) const;
+  bool tieByPlaces(const MapPair& maps);
+  enum class Evidence { kNone, kFits, kAgainst };
+  Evidence evidenceOf(const NearTry& t) const;
+  bool isBorneOutByScans() const;
 
   // Ties and what follows from them.
   void settle();
@@ -93,13 +121,10 @@ class MapMerger {
   std::vector<SlamLoop> pending_;    // verified far loops that are not in the graph
   std::set<std::pair<int, std::uint32_t>> near_asked_;  // keyframe, a given map
   std::vector<bool> is_near_asked_;  // by keyframe: since its map was tied to another one
+  std::vector<Placed> placed_;       // of the maps as they are
   MapMergingCounters counters_;
   std::vector<std::pair<int, std::uint32_t>> near_asked_since_;  // the last tie
-  struct NearTry {
-    int older, newer;
-    bool fits;
-  };
-  std::vector<NearTry> near_tries_;  // since the last tie
+  std::vector<NearTry> near_tries_;                              // since the last tie
   /// Ties of two maps of which too little is known yet: their support.
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> undecided_;
   int lengths_of_ = -1;  // keyframe of isOpen()

@@ -160,6 +160,10 @@ void MapMergingParams::describe(hyselam::ParameterVisitor& visit) {
         "part of the near loops farther along both paths that must fit");
   visit("min_near_tried", min_near_tried, Range::between(1, 1e6), "",
         "near loops that must have been tried there");
+  visit("place_interval", place_interval, Range::atLeast(0.0), "m",
+        "of path between stretches that are laid on the other maps as they are drawn; 0: none is");
+  visit("min_place_near_ratio", min_place_near_ratio, ratio, "",
+        "part of the near loops that say something of a tie by places that must fit");
   visit("max_shared_keyframes", max_shared_keyframes, ratio, "",
         "part of the keyframes of a session that another one may hold too");
 }

@@ -54,7 +54,8 @@ const char* toString(MapChange::Kind kind) {
   return kind == MapChange::Kind::kAppeared ? "appeared" : "gone";
 }
 
-std::string summaryOf(const std::vector<MapChange>& changes) {
+std::string summaryOf(const std::vector<MapChange>& changes, bool known) {
+  if (!known) return "not known: the session is not tied to the map";
   if (changes.empty()) return "nothing changed";
   std::size_t appeared = 0, again = 0;
   for (const MapChange& c : changes) {

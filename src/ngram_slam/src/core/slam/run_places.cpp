@@ -3,9 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "hyselam_common/odds.hpp"
 #include "ngram_slam/slam/far_loops.hpp"
-#include "ngram_slam/slam/loop_confidence.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
@@ -16,9 +14,6 @@ using hyselam::Pose2;
 namespace {
 
 constexpr double kOtherView = hyselam::kPi / 2.0;  // a laser may see only what is ahead
-constexpr double kSubmapPath = 10.0;               // [m]; over more, even refined odometry bends
-// Around a place that was found on a drawn map.
-constexpr double kPlaceWindow = 0.5, kPlaceAngle = 0.15;  // [m], [rad]
 
 double sumOfInliers(const std::vector<SlamLoop>& loops) {
   double sum = 0.0;
@@ -51,6 +46,11 @@ RunPlace SlamEngine::runPlace() const {
   if (state_.keyframes.empty() || currentRun() == 0) return RunPlace::kFirst;
   if (!isUntied()) return RunPlace::kTied;
   return pathOfRun() < params_.run_start.own_map_path ? RunPlace::kSupposed : RunPlace::kOwnMap;
+}
+
+bool SlamEngine::knowsChanges() const {
+  if (session_ == 0) return true;
+  return currentRun() >= session_ && runPlace() == RunPlace::kTied;
 }
 
 std::optional<double> SlamEngine::pathUntilTied() const {
@@ -140,13 +140,7 @@ void SlamEngine::askForPlace() {
   question.keyframe = lastKeyframe();
   question.middle = middleOfNewSegment();
   question.maps = run_.other_maps;
-  int first = lastKeyframe();
-  while (first > first_of_run_ && path_length_ - keyframe(first - 1).path_length <= kSubmapPath) {
-    --first;
-  }
-  for (int k = first; k <= lastKeyframe(); ++k) {
-    question.scans.push_back({keyframe(k).pose, keyframe(k).scan});
-  }
+  question.scans = lastMetres(state_.keyframes, lastKeyframe());
   place_question_ = std::move(question);
 }
 
@@ -186,23 +180,17 @@ void SlamEngine::addPlacedLoop(const SlamLoop& loop, double place_probability) {
     return;
   }
   const LoopParams& p = params_.loop;
-  const double sure = params_.run_start.sure_place_probability;
   std::vector<SlamLoop> all_others = state_.pending_loops;  // may contradict it
   std::vector<SlamLoop> others = state_.pending_loops;      // may be the second loop of a tie
   for (const PlacedLoop& placed : run_.placed) {
     all_others.push_back(placed.loop);
-    if (placed.place_probability >= sure) others.push_back(placed.loop);
+    if (placed.place_probability >= params_.run_start.sure_place_probability) {
+      others.push_back(placed.loop);
+    }
   }
   run_.placed.push_back({loop, place_probability});
-  const LoopCompany all = companyOf(loop, all_others, state_.keyframes, connections_, p);
-  // Along a corridor the search finds the same again, right or wrong: no support in the odds.
-  LoopCompany found_otherwise =
-      companyOf(loop, state_.pending_loops, state_.keyframes, connections_, p);
-  found_otherwise.contradiction = all.contradiction;
-  if (!all.isTrusted(p) || place_probability < sure ||
-      hyselam::logOdds(place_probability) +
-              hyselam::logOdds(loopProbability(loop, found_otherwise)) <
-          hyselam::logOdds(params_.run_start.min_tie_probability)) {
+  if (!isSurePlace(run_.placed.back(), all_others, state_.pending_loops, state_.keyframes,
+                   connections_, params_)) {
     return;
   }
   for (const std::size_t i : consistentLoops(loop, others, state_.keyframes, connections_, p)) {
