@@ -59,13 +59,13 @@ int labelAt(const OccupancyGrid& grid, const cv::Mat& labels, double x, double y
 }  // namespace
 
 TEST(StraightCorridors, WallsThatAreInterruptedMakeOneCorridor) {
-  OccupancyGrid grid = unseen(30, 12);
-  room(grid, 2, 2, 27, 4);
-  // Rooms of 4 m on one side, the second open over all of its width but for its partitions.
+  OccupancyGrid grid = unseen(32, 12);
+  room(grid, 2, 2, 28, 4);
+  // Rooms of 5 m on one side, the second open over all of its width but for its partitions.
   for (int i = 0; i < 5; ++i) {
-    room(grid, 2.0 + 4.2 * i, 4.2, 6.0 + 4.2 * i, 9.2);
-    const double gap = i == 1 ? 0.2 : 1.5;
-    fill(grid, 2.0 + 4.2 * i + gap, 4.0, 6.0 + 4.2 * i - gap, 4.2, OccupancyGrid::kFree);
+    room(grid, 2.0 + 5.2 * i, 4.2, 7.0 + 5.2 * i, 9.2);
+    const double gap = i == 1 ? 0.2 : 2.0;
+    fill(grid, 2.0 + 5.2 * i + gap, 4.0, 7.0 + 5.2 * i - gap, 4.2, OccupancyGrid::kFree);
   }
   const FreeSpace space = findFreeSpace(grid, {}, true);
   const std::vector<StraightCorridor> corridors =
@@ -103,8 +103,8 @@ TEST(RayFans, ADoorBetweenTwoWallsStaysAndRaysGo) {
 TEST(RayFans, WhatFewRaysSawFromAfarIsNoPlace) {
   OccupancyGrid grid = unseen(30, 14);
   room(grid, 2, 2, 10, 12);
-  fill(grid, 10.0, 6.5, 10.1, 7.5, OccupancyGrid::kFree);  // an open door, and what lies behind
-  for (double y = 6.55; y < 7.5; y += 0.04) ray(grid, 9.0, y, (y - 7.0) * 0.4, 14.0);
+  fill(grid, 10.0, 6.75, 10.1, 7.25, OccupancyGrid::kFree);  // an open door, and what lies behind
+  for (double y = 6.8; y < 7.25; y += 0.04) ray(grid, 9.0, y, (y - 7.0) * 0.1, 14.0);
   const cv::Mat labels = segmentPlaces(grid).labels;
   const int places = [&] {
     double most = 0.0;

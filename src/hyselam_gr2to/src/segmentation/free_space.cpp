@@ -40,11 +40,11 @@ Masks cutOut(const hyselam::OccupancyGrid& grid, int free_max, int margin, cv::P
   Masks masks;
   if (box.empty()) return masks;
   origin = {box.x - margin, box.y - margin};
-  cv::Mat occupied;
-  cv::compare(cells(box), kOccupiedFrom, occupied, cv::CMP_GE);
   cv::copyMakeBorder(low(box), masks.free, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
-  cv::copyMakeBorder(occupied, masks.occupied, margin, margin, margin, margin, cv::BORDER_CONSTANT,
-                     0);
+  // The outermost walls lie outside of the free cells' box.
+  masks.occupied = cv::Mat(masks.free.size(), CV_8U, cv::Scalar(0));
+  const cv::Rect seen = cv::Rect(origin, masks.free.size()) & cv::Rect({0, 0}, cells.size());
+  cv::compare(cells(seen), kOccupiedFrom, masks.occupied(seen - origin), cv::CMP_GE);
   return masks;
 }
 

@@ -211,10 +211,14 @@ void RegionAdjacencyGraph::measureBorders(const cv::Mat& clearance, const cv::Ma
   const bool cut = !corridors.corridors.empty();
   const std::uint16_t* of_cell = cut ? corridors.of_cell.ptr<std::uint16_t>() : nullptr;
   const std::uint16_t* before = cut ? corridors.before.ptr<std::uint16_t>() : nullptr;
-  /// Adds a piece of border where it leaves a corridor; two that meet tell nothing.
+  /// Adds a piece of border where it leaves a corridor.
   const auto leaveCorridor = [&](int i, int j, RegionBorder& border) {
     if (of_cell[i] != 0 && of_cell[i] == of_cell[j]) border.within += resolution_;
-    if ((of_cell[i] == 0) == (of_cell[j] == 0)) return;
+    if ((of_cell[i] == 0) == (of_cell[j] == 0)) {
+      // Two corridors that share a basin meet with nothing between them.
+      if (of_cell[i] != of_cell[j] && before[i] == before[j]) border.ending += resolution_;
+      return;
+    }
     const int outside = of_cell[i] == 0 ? i : j;
     const StraightCorridor& corridor = corridors.corridors[of_cell[outside == i ? j : i] - 1u];
     if (corridor.beside(cv::Point2d(outside % stride, outside / stride)))

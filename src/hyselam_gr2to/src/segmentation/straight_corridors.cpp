@@ -12,12 +12,13 @@ namespace {
 
 constexpr double kNarrowest = 0.9, kWidest = 4.0;  // [m]
 constexpr double kLeastWall = 1.5;                 // [m] of wall on a line that is looked at
+constexpr double kRagged = 1.5;    // [cells] a corridor reaches so far beyond its lines
 constexpr int kSway = 3;           // [cells] faces of a line lie so far from it at most
 constexpr double kBlocked = 0.65;  // no corridor goes on where less of its width is free
 constexpr double kCrowded = 0.85;  // nor is it likely one where less is
 // Log-odds of a metre of corridor, by what stands at its sides.
 constexpr double kBothWalls = 1.0, kOneWall = -0.1, kNoWall = -0.8, kCrowd = -2.0;
-constexpr double kPrior = -1.5;  // log-odds of two lines before anything was seen of them
+constexpr double kPrior = -2.5;  // log-odds of two lines before anything was seen of them
 
 /// Cells of walls beside free ones, not more than are needed for a direction.
 std::vector<cv::Point> facesOf(const cv::Mat& free, const cv::Mat& walls) {
@@ -133,7 +134,9 @@ std::vector<WallLine> findWallLines(const TurnedMap& map, int up, double resolut
   for (int y = 3; y + 3 < rows; ++y) {
     const int here = around(y);
     if (here < least || here < around(y - 1) || here <= around(y + 1)) continue;
-    WallLine line{y, std::vector<std::uint8_t>(static_cast<std::size_t>(columns), 0)};
+    const auto at = counts.begin() + y;
+    const int row = y - 1 + static_cast<int>(std::max_element(at - 1, at + 2) - (at - 1));
+    WallLine line{row, std::vector<std::uint8_t>(static_cast<std::size_t>(columns), 0)};
     for (int v = std::max(0, y - kSway); v <= std::min(rows - 1, y + kSway); ++v) {
       const std::uint8_t* face = faces.ptr<std::uint8_t>(v);
       for (int x = 0; x < columns; ++x) line.face[static_cast<std::size_t>(x)] |= face[x];
