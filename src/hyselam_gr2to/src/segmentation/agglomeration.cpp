@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "furniture.hpp"
+
 namespace hyselam_topo {
 namespace {
 
@@ -45,14 +47,21 @@ void agglomerate(RegionAdjacencyGraph& graph, const OnePlace& odds) {
   }
 }
 
-PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
+PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const SegmentationParams& params,
+                             Preparation preparation) {
   PreparedPlaces prepared;
-  prepared.space = findFreeSpace(grid, params);
+  const bool full = preparation == Preparation::kFull;
+  prepared.space = findFreeSpace(grid, params, full);
   if (prepared.space.free.empty()) return prepared;
   cv::distanceTransform(prepared.space.free, prepared.clearance, cv::DIST_L2, cv::DIST_MASK_5);
   BasinParams basins;
   basins.smallest = params.min_place_area;
   prepared.basins = findBasins(prepared.clearance, prepared.space.resolution, basins);
+  if (!full) return prepared;
+  prepared.context.furniture = findFurniture(prepared.space);
+  prepared.context.corridors =
+      cutAlongCorridors(findStraightCorridors(prepared.space, prepared.context.furniture),
+                        prepared.clearance, prepared.space.resolution, prepared.basins);
   return prepared;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hyselam_common/coarsen.hpp"
+#include "ray_fans.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr std::int8_t kOccupiedFrom = 50;  // unknown may be seen through, a likely obstacle not
 constexpr double kDensityWindow = 0.35;    // [m]
 constexpr double kLeak = 0.15;             // [m] passages up to this are gaps between rays
+constexpr double kWalled = 0.2;            // [share] of the limits of free space, at least
 constexpr double kLargestWorking = 20e6;   // [cells] above that, coarse grids are not split
 
 int odd(double cells) {
@@ -38,12 +40,22 @@ Masks cutOut(const hyselam::OccupancyGrid& grid, int free_max, int margin, cv::P
   Masks masks;
   if (box.empty()) return masks;
   origin = {box.x - margin, box.y - margin};
-  cv::Mat occupied;
-  cv::compare(cells(box), kOccupiedFrom, occupied, cv::CMP_GE);
   cv::copyMakeBorder(low(box), masks.free, margin, margin, margin, margin, cv::BORDER_CONSTANT, 0);
-  cv::copyMakeBorder(occupied, masks.occupied, margin, margin, margin, margin, cv::BORDER_CONSTANT,
-                     0);
+  // The outermost walls lie outside of the free cells' box.
+  masks.occupied = cv::Mat(masks.free.size(), CV_8U, cv::Scalar(0));
+  const cv::Rect seen = cv::Rect(origin, masks.free.size()) & cv::Rect({0, 0}, cells.size());
+  cv::compare(cells(seen), kOccupiedFrom, masks.occupied(seen - origin), cv::CMP_GE);
   return masks;
+}
+
+/// Some maps show walls and what was not seen by one value. There, all that is not free is wall.
+void tellWallsFromUnseen(const cv::Mat& free, cv::Mat& occupied) {
+  cv::Mat rim, wall;
+  cv::dilate(free, rim, {});
+  rim -= free;
+  cv::dilate(occupied, wall, {});
+  wall &= rim;
+  if (cv::countNonZero(wall) < kWalled * cv::countNonZero(rim)) occupied = ~free;
 }
 
 void findPieces(FreeSpace& space) {
@@ -106,7 +118,8 @@ void clean(FreeSpace& space, const cv::Mat& occupied) {
 
 }  // namespace
 
-FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationParams& params) {
+FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationParams& params,
+                        bool without_ray_fans) {
   FreeSpace space;
   space.resolution = grid.geometry.resolution;
   space.joined =
@@ -133,6 +146,9 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
   }
   space.free = masks.free;
   clean(space, masks.occupied);
+  tellWallsFromUnseen(space.free, masks.occupied);
+  space.occupied = masks.occupied;
+  if (without_ray_fans) closeRayFans(space.free, space.occupied, space.resolution);
   findPieces(space);
   seeThroughClutter(space, params.max_clutter_size);
   return space;

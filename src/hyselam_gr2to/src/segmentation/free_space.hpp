@@ -20,6 +20,7 @@ struct SolidPiece {
 
 struct FreeSpace {
   cv::Mat free;             ///< CV_8U, 255 free, 0 not; the outermost cells are never free
+  cv::Mat occupied;         ///< CV_8U, 255 where an obstacle was seen; not all else is free
   double resolution = 0.0;  ///< [m/cell]
   int joined = 1;           ///< so many cells of the grid, along each axis, make one cell
   int split = 1;            ///< ... or one cell of the grid makes so many; one of the two is 1
@@ -30,8 +31,9 @@ struct FreeSpace {
   std::vector<CellRun> solid;
 };
 
-/// Empty `free` if the grid has no free cell.
-FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationParams& params);
+/// Empty `free` if the grid has no free cell. `without_ray_fans`: they are closed.
+FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationParams& params,
+                        bool without_ray_fans);
 
 /// Labels of working cells, brought to the grid's cells. Those that are free without a label get
 /// that of the nearest labelled one on a way through free cells of at most `reach` cells.

@@ -7,10 +7,12 @@
 
 #include "agglomeration.hpp"
 #include "describe_border.hpp"
+#include "geometric_evidence.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_gr2to/map_builder/doors.hpp"
 #include "hyselam_gr2to/segmentation/border_model.hpp"
 #include "number_places.hpp"
+#include "ray_fans.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -141,6 +143,18 @@ cv::Mat labelsOf(const RegionAdjacencyGraph& graph, const cv::Mat& basins, doubl
   return labels;
 }
 
+/// What few rays saw from afar is no place.
+void leaveOutside(cv::Mat& labels, const FreeSpace& space) {
+  double most = 0.0;
+  cv::minMaxLoc(labels, nullptr, &most);
+  const std::vector<char> outside =
+      findOutside(labels, static_cast<int>(most), space.occupied, space.resolution);
+  if (std::find(outside.begin(), outside.end(), 1) == outside.end()) return;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int *cell = labels.ptr<int>(y), *end = cell + labels.cols; cell != end; ++cell)
+      if (outside[static_cast<std::size_t>(*cell)] != 0) *cell = 0;
+}
+
 }  // namespace
 
 void SegmentationParams::describe(hyselam::ParameterVisitor& visit) {
@@ -166,18 +180,20 @@ PlaceSegmentation segmentPlaces(const hyselam::OccupancyGrid& grid,
   params.validate();
   PlaceSegmentation result;
   result.labels = cv::Mat(grid.geometry.height, grid.geometry.width, CV_16U, cv::Scalar(0));
-  const PreparedPlaces prepared = preparePlaces(grid, params);
+  const PreparedPlaces prepared = preparePlaces(grid, params, Preparation::kFull);
   if (prepared.basins.count == 0) return result;
 
-  RegionAdjacencyGraph graph(prepared.clearance, prepared.basins, prepared.space.resolution);
+  RegionAdjacencyGraph graph(prepared.clearance, prepared.basins, prepared.space.resolution,
+                             prepared.context);
   const BorderModel& model = params.border_model ? *params.border_model : BorderModel::shipped();
   agglomerate(graph, [&model](const RegionAdjacencyGraph& g, int a, int b) {
-    return model.oddsOfOnePlace(describeBorder(g, a, b));
+    return model.oddsOfOnePlace(describeBorder(g, a, b)) + geometricEvidence(g, a, b);
   });
   absorbSmall(graph, params.min_place_area);
   joinAroundDesks(graph, prepared.basins.labels, prepared.space);
 
   cv::Mat labels = labelsOf(graph, prepared.basins.labels, params.min_place_area);
+  leaveOutside(labels, prepared.space);
   fillFurniture(labels, prepared.space);
   const int reach = static_cast<int>(std::ceil(kReach / grid.geometry.resolution));
   result.labels = toGrid(labels, prepared.space, grid, params.free_max, reach);

@@ -84,6 +84,16 @@ class Probe {
     return limit;
   }
 
+  /// Whether a mask is set at the end of a line, or one cell on.
+  bool meets(const cv::Mat& mask, double angle, double end) const {
+    for (const double t : {end, end + 1.0}) {
+      const cv::Point p(from_.x + static_cast<int>(std::lround(t * std::cos(angle))),
+                        from_.y + static_cast<int>(std::lround(t * std::sin(angle))));
+      if (cv::Rect({0, 0}, mask.size()).contains(p) && mask.at<std::uint8_t>(p) != 0) return true;
+    }
+    return false;
+  }
+
   /// Share of solid cells, or of their direct neighbours, from `start` on.
   double wallShare(double angle, double start, int length) const {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -104,8 +114,8 @@ class Probe {
   cv::Point from_;
 };
 
-void measurePassage(const cv::Mat& clearance, double resolution, double clearance_at_border,
-                    Passage& passage) {
+void measurePassage(const cv::Mat& clearance, const cv::Mat& furniture, double resolution,
+                    double clearance_at_border, Passage& passage) {
   const Probe probe(clearance, passage.at);
   const double limit = 8.0 * clearance_at_border / resolution + 4.0;
   double angle = 0.0, ahead = 0.0, behind = limit, width = 1e9;
@@ -119,6 +129,9 @@ void measurePassage(const cv::Mat& clearance, double resolution, double clearanc
     angle = tried, ahead = there, behind = back;
   }
   passage.width = width * resolution;
+  if (!furniture.empty())
+    passage.furniture = (probe.meets(furniture, angle, ahead) ? 1 : 0) +
+                        (probe.meets(furniture, angle + hyselam::kPi, behind) ? 1 : 0);
   const int length = std::max(1, static_cast<int>(std::ceil(kWallProbe / resolution)));
   double first = 0.0, second = 0.0;
   for (int k = -2; k <= 2; ++k) {
@@ -133,17 +146,20 @@ void measurePassage(const cv::Mat& clearance, double resolution, double clearanc
 }  // namespace
 
 RegionAdjacencyGraph::RegionAdjacencyGraph(const cv::Mat& clearance, const Basins& basins,
-                                           double resolution)
+                                           double resolution, const BorderContext& context)
     : resolution_(resolution),
       nodes_(static_cast<std::size_t>(basins.count) + 1),
       merged_into_(static_cast<std::size_t>(basins.count) + 1) {
   CV_Assert(basins.labels.size() == clearance.size() && basins.labels.isContinuous());
   for (std::size_t i = 0; i < merged_into_.size(); ++i) merged_into_[i] = static_cast<int>(i);
   measureNodes(clearance, basins.labels);
+  measureCorridors(context.corridors, basins.labels);
   const int steps = static_cast<int>(std::lround(kThinWall / resolution));
-  measureBorders(clearance, basins.labels, reachIntoWalls(basins.labels, steps));
+  measureBorders(clearance, basins.labels, reachIntoWalls(basins.labels, steps), context.corridors);
   for (RegionBorder& border : borders_)
-    if (border.open > 0.0) measurePassage(clearance, resolution, border.clearance, border.passage);
+    if (border.open > 0.0) {
+      measurePassage(clearance, context.furniture, resolution, border.clearance, border.passage);
+    }
 }
 
 void RegionAdjacencyGraph::measureNodes(const cv::Mat& clearance, const cv::Mat& labels) {
@@ -175,12 +191,41 @@ void RegionAdjacencyGraph::measureNodes(const cv::Mat& clearance, const cv::Mat&
   for (int i = 1; i <= size(); ++i) setHull(at(i));
 }
 
+void RegionAdjacencyGraph::measureCorridors(const CorridorBasins& corridors,
+                                            const cv::Mat& labels) {
+  if (corridors.corridors.empty()) return;
+  for (int y = 0; y < labels.rows; ++y) {
+    const int* row = labels.ptr<int>(y);
+    const std::uint16_t* corridor = corridors.of_cell.ptr<std::uint16_t>(y);
+    for (int x = 0; x < labels.cols; ++x)
+      if (corridor[x] != 0) at(row[x]).corridor += resolution_ * resolution_;
+  }
+}
+
 void RegionAdjacencyGraph::measureBorders(const cv::Mat& clearance, const cv::Mat& labels,
-                                          const cv::Mat& reach) {
+                                          const cv::Mat& reach, const CorridorBasins& corridors) {
   const int stride = labels.cols;
   const int* cells = labels.ptr<int>();
   const int* near = reach.ptr<int>();
   const float* heights = clearance.ptr<float>();
+  const bool cut = !corridors.corridors.empty();
+  const std::uint16_t* of_cell = cut ? corridors.of_cell.ptr<std::uint16_t>() : nullptr;
+  const std::uint16_t* before = cut ? corridors.before.ptr<std::uint16_t>() : nullptr;
+  /// Adds a piece of border where it leaves a corridor.
+  const auto leaveCorridor = [&](int i, int j, RegionBorder& border) {
+    if (of_cell[i] != 0 && of_cell[i] == of_cell[j]) border.within += resolution_;
+    if ((of_cell[i] == 0) == (of_cell[j] == 0)) {
+      // Two corridors that share a basin meet with nothing between them.
+      if (of_cell[i] != of_cell[j] && before[i] == before[j]) border.ending += resolution_;
+      return;
+    }
+    const int outside = of_cell[i] == 0 ? i : j;
+    const StraightCorridor& corridor = corridors.corridors[of_cell[outside == i ? j : i] - 1u];
+    if (corridor.beside(cv::Point2d(outside % stride, outside / stride)))
+      border.beside += resolution_;
+    else if (before[i] == before[j])
+      border.ending += resolution_;
+  };
   const auto meet = [&](int i, int j) {
     const int a = cells[i], b = cells[j];
     if (a != b) {
@@ -189,6 +234,7 @@ void RegionAdjacencyGraph::measureBorders(const cv::Mat& clearance, const cv::Ma
       if (a != 0 && b != 0) {
         RegionBorder& border = between(a, b);
         border.open += resolution_;
+        if (cut) leaveCorridor(i, j, border);
         const double height = std::min(heights[i], heights[j]) * resolution_;
         if (height > border.clearance) {
           border.clearance = height;
@@ -239,6 +285,7 @@ void RegionAdjacencyGraph::merge(int kept, int gone) {
   const int own = to.borders.at(gone);
   to.area += from.area;
   to.clearances += from.clearances;
+  to.corridor += from.corridor;
   to.peak = std::max(to.peak, from.peak);
   to.perimeter += from.perimeter - 2.0 * border(own).open;
   to.hull.insert(to.hull.end(), from.hull.begin(), from.hull.end());
@@ -256,6 +303,9 @@ void RegionAdjacencyGraph::merge(int kept, int gone) {
     RegionBorder& joined = borders_[static_cast<std::size_t>(found->second)];
     const RegionBorder& added = border(index);
     joined.open += added.open;
+    joined.beside += added.beside;
+    joined.ending += added.ending;
+    joined.within += added.within;
     joined.wall += added.wall;
     if (added.clearance > joined.clearance) {
       joined.clearance = added.clearance;

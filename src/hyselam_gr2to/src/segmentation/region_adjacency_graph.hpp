@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "basins.hpp"
+#include "corridor_basins.hpp"
 
 namespace hyselam_topo {
 
@@ -17,11 +18,21 @@ struct Passage {
   double width = 0.0;      ///< of the shortest chord through it [m]
   double weaker_wall = 0;  ///< share of solid cells along the chord's line behind its two ends
   double stronger_wall = 0;
+  int furniture = 0;  ///< how many of its ends are furniture
+};
+
+/// What else is known of a map when its borders are measured.
+struct BorderContext {
+  CorridorBasins corridors;  ///< along which the basins are cut
+  cv::Mat furniture;         ///< CV_8U; empty: not known
 };
 
 struct RegionBorder {
-  double open = 0.0;       ///< length without a wall [m]
-  double wall = 0.0;       ///< length of thin wall between the two [m]
+  double open = 0.0;    ///< length without a wall [m]
+  double beside = 0.0;  ///< of it along the side of a straight corridor, where a wall would be [m]
+  double within = 0.0;  ///< of it within one [m]
+  double ending = 0.0;  ///< of it across the end of one, in the middle of a basin [m]
+  double wall = 0.0;    ///< length of thin wall between the two [m]
   double clearance = 0.0;  ///< largest on the open part [m]
   Passage passage;
 };
@@ -30,6 +41,7 @@ struct RegionNode {
   double area = 0.0;       ///< [m^2]
   double clearances = 0;   ///< sum over the area [m^3]
   double peak = 0.0;       ///< largest clearance [m]
+  double corridor = 0.0;   ///< of the area in straight corridors [m^2]
   double perimeter = 0.0;  ///< walls and open borders [m]
   std::vector<cv::Point> hull;
   double hull_area = 0.0;      ///< [m^2]
@@ -40,7 +52,8 @@ struct RegionNode {
 class RegionAdjacencyGraph {
  public:
   /// `clearance`: CV_32F, the distance map [cells] that the basins are of.
-  RegionAdjacencyGraph(const cv::Mat& clearance, const Basins& basins, double resolution);
+  RegionAdjacencyGraph(const cv::Mat& clearance, const Basins& basins, double resolution,
+                       const BorderContext& context = {});
 
   int size() const { return static_cast<int>(nodes_.size()) - 1; }
   /// 1 .. size(), as the basins are numbered.
@@ -57,7 +70,9 @@ class RegionAdjacencyGraph {
   RegionNode& at(int i) { return nodes_[static_cast<std::size_t>(i)]; }
   RegionBorder& between(int a, int b);
   void measureNodes(const cv::Mat& clearance, const cv::Mat& labels);
-  void measureBorders(const cv::Mat& clearance, const cv::Mat& labels, const cv::Mat& reach);
+  void measureCorridors(const CorridorBasins& corridors, const cv::Mat& labels);
+  void measureBorders(const cv::Mat& clearance, const cv::Mat& labels, const cv::Mat& reach,
+                      const CorridorBasins& corridors);
   void setHull(RegionNode& node) const;
 
   double resolution_;

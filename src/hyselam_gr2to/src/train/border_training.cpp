@@ -233,6 +233,7 @@ TrainedBorderModel trainBorderModel(const std::vector<Example>& examples,
     trained.left_out =
         summarize("building left out", examples, left_out, options.each && last, log);
     if (last) tryOffsets(examples, models, options, log);
+    if (last) trained.without = models;
     for (std::size_t i = 0; i < examples.size(); ++i) append(met[i], samples[i]);
   }
   return trained;

@@ -30,6 +30,7 @@ struct TrainedBorderModel {
   BoostedTrees trees;
   std::string in_sample;  ///< scores of each kind of maps, one line
   std::string left_out;   ///< the same, the building of each map left out of the training
+  std::map<std::string, BoostedTrees> without;  ///< the trees trained without each building
 };
 
 /// @throws hyselam::InputError without examples or without borders in them.

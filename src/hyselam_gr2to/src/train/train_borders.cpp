@@ -1,6 +1,7 @@
 // train_borders DATA --out border_trees.txt: learns which neighboring regions of a map are one
 // place, and tells how well that carries over to buildings that were not seen.
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -20,12 +21,15 @@ struct Options {
   BorderTrainingOptions training;
   std::vector<std::string> without;
   std::string out;
+  std::string left_out;
 };
 
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("DATA", o.examples.data,
                  "folder with index.csv, maps and rooms; without it generated floors only");
   app.add_option("--out", o.out, "file of the model to write");
+  app.add_option("--left-out", o.left_out,
+                 "folder for the models trained without each building, BUILDING.txt");
   app.add_option("--rounds", o.training.rounds, "times that the borders met are added, and one");
   app.add_option("--scales", o.examples.scales, "of the maps")->delimiter(',');
   app.add_option("--robot-weight", o.training.robot_weight, "of robot-built maps");
@@ -50,8 +54,8 @@ std::string commandOf(const CLI::App& app) {
   std::string command = "train_borders";
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_name();
-    if (option->count() == 0 || name == "--out" || name == "--each" || name == "--json" ||
-        name == "--odds-offsets") {
+    if (option->count() == 0 || name == "--out" || name == "--left-out" || name == "--each" ||
+        name == "--json" || name == "--odds-offsets") {
       continue;
     }
     if (name == "DATA") {
@@ -83,6 +87,16 @@ int train(int argc, char** argv) {
       const BorderModel model(std::move(trained.trees),
                               {commandOf(app), data.summary, trained.in_sample, trained.left_out});
       hyselam::writeFileAtomically(options.out, [&](std::ostream& out) { out << model.toText(); });
+    }
+    if (!options.left_out.empty()) {
+      std::filesystem::create_directories(options.left_out);
+      for (auto& [building, trees] : trained.without) {
+        const BorderModel model(std::move(trees),
+                                {commandOf(app) + ", without " + building, data.summary,
+                                 trained.in_sample, trained.left_out});
+        hyselam::writeFileAtomically(options.left_out + "/" + building + ".txt",
+                                     [&](std::ostream& out) { out << model.toText(); });
+      }
     }
     return {};
   });

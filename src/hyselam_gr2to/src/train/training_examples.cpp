@@ -57,7 +57,7 @@ Example prepare(const std::string& name, const std::string& kind, const std::str
                 hyselam::OccupancyGrid grid, const cv::Mat& rooms, double scale,
                 const ExampleOptions& options) {
   grid.geometry.resolution *= scale;
-  const PreparedPlaces p = preparePlaces(grid, options.segmentation);
+  const PreparedPlaces p = preparePlaces(grid, options.segmentation, Preparation::kBasinsAlone);
   if (p.space.joined != 1 || p.space.split != 1)
     throw hyselam::InputError(name, "resolution", "is not near the working resolution");
   double most = 0;

@@ -1,0 +1,115 @@
+// What robots' maps have and drawn ones have not: fans of rays, corridors whose walls are
+// interrupted, rooms that stand wide open, halls with rows of desks.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "hyselam_gr2to/segmentation/place_segmentation.hpp"
+#include "segmentation/agglomeration.hpp"
+#include "segmentation/furniture.hpp"
+#include "segmentation/ray_fans.hpp"
+#include "segmentation/straight_corridors.hpp"
+
+using namespace hyselam_topo;  // NOLINT: a test, not a header
+using hyselam::OccupancyGrid;
+
+namespace {
+
+constexpr double kCell = 0.05;
+
+OccupancyGrid unseen(double width, double height) {
+  hyselam::GridGeometry g;
+  g.width = static_cast<int>(std::lround(width / kCell));
+  g.height = static_cast<int>(std::lround(height / kCell));
+  g.resolution = kCell;
+  return OccupancyGrid(g, OccupancyGrid::kUnknown);
+}
+
+void fill(OccupancyGrid& grid, double x0, double y0, double x1, double y1, std::int8_t value) {
+  for (int y = static_cast<int>(std::lround(y0 / kCell)); y < std::lround(y1 / kCell); ++y)
+    for (int x = static_cast<int>(std::lround(x0 / kCell)); x < std::lround(x1 / kCell); ++x)
+      if (grid.geometry.contains({x, y})) grid.at({x, y}) = value;
+}
+
+/// Free space with walls of two cells around it.
+void room(OccupancyGrid& grid, double x0, double y0, double x1, double y1) {
+  for (int y = static_cast<int>(std::lround(y0 / kCell)) - 2; y < std::lround(y1 / kCell) + 2; ++y)
+    for (int x = static_cast<int>(std::lround(x0 / kCell)) - 2; x < std::lround(x1 / kCell) + 2;
+         ++x)
+      if (grid.at({x, y}) != OccupancyGrid::kFree) grid.at({x, y}) = OccupancyGrid::kOccupied;
+  fill(grid, x0, y0, x1, y1, OccupancyGrid::kFree);
+}
+
+/// A ray that passes what stands in its way, and is one cell wide.
+void ray(OccupancyGrid& grid, double x, double y, double angle, double length) {
+  for (double t = 0.0; t < length; t += 0.5 * kCell) {
+    const hyselam::Cell c =
+        grid.geometry.cellAt({x + t * std::cos(angle), y + t * std::sin(angle)});
+    if (grid.geometry.contains(c)) grid.at(c) = OccupancyGrid::kFree;
+  }
+}
+
+int labelAt(const OccupancyGrid& grid, const cv::Mat& labels, double x, double y) {
+  const hyselam::Cell c = grid.geometry.cellAt({x, y});
+  return labels.at<std::uint16_t>(c.y, c.x);
+}
+
+}  // namespace
+
+TEST(StraightCorridors, WallsThatAreInterruptedMakeOneCorridor) {
+  OccupancyGrid grid = unseen(32, 12);
+  room(grid, 2, 2, 28, 4);
+  // Rooms of 5 m on one side, the second open over all of its width but for its partitions.
+  for (int i = 0; i < 5; ++i) {
+    room(grid, 2.0 + 5.2 * i, 4.2, 7.0 + 5.2 * i, 9.2);
+    const double gap = i == 1 ? 0.2 : 2.0;
+    fill(grid, 2.0 + 5.2 * i + gap, 4.0, 7.0 + 5.2 * i - gap, 4.2, OccupancyGrid::kFree);
+  }
+  const FreeSpace space = findFreeSpace(grid, {}, true);
+  const std::vector<StraightCorridor> corridors =
+      findStraightCorridors(space, findFurniture(space));
+  ASSERT_FALSE(corridors.empty());
+  const StraightCorridor& c = corridors.front();
+  EXPECT_GT(c.odds, 0.0);
+  EXPECT_NEAR(2.0, 2.0 * c.half_width * kCell, 0.2);
+  EXPECT_GE(std::hypot(c.end.x - c.start.x, c.end.y - c.start.y) * kCell, 20.0);
+  EXPECT_TRUE(c.contains(cv::Point2d(15.0 / kCell - space.origin.x, 3.0 / kCell - space.origin.y)));
+  EXPECT_FALSE(
+      c.contains(cv::Point2d(15.0 / kCell - space.origin.x, 6.0 / kCell - space.origin.y)));
+}
+
+TEST(StraightCorridors, ASquareHallIsNone) {
+  OccupancyGrid grid = unseen(16, 16);
+  room(grid, 2, 2, 14, 14);
+  const FreeSpace space = findFreeSpace(grid, {}, true);
+  EXPECT_TRUE(findStraightCorridors(space, findFurniture(space)).empty());
+}
+
+TEST(RayFans, ADoorBetweenTwoWallsStaysAndRaysGo) {
+  OccupancyGrid grid = unseen(24, 10);
+  room(grid, 2, 2, 8, 8);
+  room(grid, 8.2, 2, 12, 8);
+  fill(grid, 8.0, 4.0, 8.2, 4.8, OccupancyGrid::kFree);                        // a door
+  for (int i = 0; i < 7; ++i) ray(grid, 11.5, 4.0 + 0.25 * i, 0.02 * i, 9.0);  // a window
+  const cv::Mat labels = segmentPlaces(grid).labels;
+  EXPECT_NE(0, labelAt(grid, labels, 4.0, 5.0));
+  EXPECT_NE(0, labelAt(grid, labels, 10.0, 5.0));
+  EXPECT_NE(labelAt(grid, labels, 4.0, 5.0), labelAt(grid, labels, 10.0, 5.0));
+  EXPECT_EQ(0, labelAt(grid, labels, 17.0, 4.6));
+}
+
+TEST(RayFans, WhatFewRaysSawFromAfarIsNoPlace) {
+  OccupancyGrid grid = unseen(30, 14);
+  room(grid, 2, 2, 10, 12);
+  fill(grid, 10.0, 6.75, 10.1, 7.25, OccupancyGrid::kFree);  // an open door, and what lies behind
+  for (double y = 6.8; y < 7.25; y += 0.04) ray(grid, 9.0, y, (y - 7.0) * 0.1, 14.0);
+  const cv::Mat labels = segmentPlaces(grid).labels;
+  const int places = [&] {
+    double most = 0.0;
+    cv::minMaxLoc(labels, nullptr, &most);
+    return static_cast<int>(most);
+  }();
+  EXPECT_EQ(1, places);
+}
