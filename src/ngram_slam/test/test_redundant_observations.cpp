@@ -34,6 +34,12 @@ class Visits {
     }
   }
 
+  /// By keyframe: all in one part of the graph, or each visit in one of its own.
+  std::vector<int> components() const {
+    std::vector<int> out;
+    for (const SlamKeyframe& k : state.keyframes) out.push_back(tied ? 0 : static_cast<int>(k.run));
+    return out;
+  }
   std::vector<bool> none() const { return std::vector<bool>(state.keyframes.size(), false); }
   /// Drops the keyframes of a visit between two places.
   void drop(std::uint32_t run, double begin, double end, std::vector<bool>* dropped) const {
@@ -43,7 +49,8 @@ class Visits {
     }
   }
   int kept(std::uint32_t run, const std::vector<bool>& dropped) const {
-    const auto forgotten = redundantObservations(state, dropped, ObservationRedundancyParams{});
+    const auto forgotten =
+        redundantObservations(state, dropped, components(), ObservationRedundancyParams{});
     const ObservationStore& all = state.corpus.observations;
     return static_cast<int>(std::count(forgotten.begin() + all.runBegin(run),
                                        forgotten.begin() + all.runEnd(run), false));
@@ -55,6 +62,7 @@ class Visits {
 
   SlamState state;
   std::vector<std::size_t> firsts;
+  bool tied = true;
 };
 
 TEST(RedundantObservations, AreNoneWhereNoKeyframeIsDropped) {
@@ -73,6 +81,17 @@ TEST(RedundantObservations, AreThoseOfAVisitThatSawTheSame) {
   visits.drop(1, 0.0, 20.0, &dropped);
   EXPECT_EQ(visits.kept(0, dropped), visits.made(0));
   EXPECT_EQ(visits.kept(1, dropped), 0);
+}
+
+TEST(RedundantObservations, AreNoneOfAMapThatIsNotTiedToTheOther) {
+  Visits visits;
+  visits.tied = false;
+  visits.add(0.0, 20.0);
+  visits.add(0.0, 20.0);
+  auto dropped = visits.none();
+  visits.drop(1, 0.0, 20.0, &dropped);
+  EXPECT_EQ(visits.kept(0, dropped), visits.made(0));
+  EXPECT_EQ(visits.kept(1, dropped), visits.made(1));
 }
 
 TEST(RedundantObservations, AreNotThoseOfAStretchWhereOnlyThisVisitWas) {
@@ -120,8 +139,8 @@ TEST(RedundantObservations, LeaveSomeAtEachPlaceWhateverIsDropped) {
     for (int run = 0; run < 6; ++run) visits.add(rng.uniform(0.0, 10.0), rng.uniform(20.0, 40.0));
     auto dropped = visits.none();
     for (std::size_t k = 0; k < dropped.size(); ++k) dropped[k] = rng.below(4) > 0;
-    const auto forgotten =
-        redundantObservations(visits.state, dropped, ObservationRedundancyParams{});
+    const auto forgotten = redundantObservations(visits.state, dropped, visits.components(),
+                                                 ObservationRedundancyParams{});
     for (const SlamKeyframe& k : visits.state.keyframes) {
       // Those of a visit may have gone as another one's near them were there, and so on.
       constexpr double kReach = 6 * 1.0;

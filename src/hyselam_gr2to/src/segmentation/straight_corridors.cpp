@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kNarrowest = 0.9, kWidest = 4.0;  // [m]
 constexpr double kLeastWall = 1.5;                 // [m] of wall on a line that is looked at
-constexpr double kRagged = 1.5;    // [cells] a corridor reaches so far beyond its lines
 constexpr int kSway = 3;           // [cells] faces of a line lie so far from it at most
 constexpr double kBlocked = 0.65;  // no corridor goes on where less of its width is free
 constexpr double kCrowded = 0.85;  // nor is it likely one where less is
 // Log-odds of a metre of corridor, by what stands at its sides.
 constexpr double kBothWalls = 1.0, kOneWall = -0.1, kNoWall = -0.8, kCrowd = -2.0;
-constexpr double kPrior = -2.5;  // log-odds of two lines before anything was seen of them
+constexpr double kLargest = 32000.0;  // [cells] of a turned map
+constexpr double kPrior = -2.5;       // log-odds of two lines before anything was seen of them
 
 /// Cells of walls beside free ones, not more than are needed for a direction.
 std::vector<cv::Point> facesOf(const cv::Mat& free, const cv::Mat& walls) {
@@ -150,7 +150,6 @@ struct Run {
   int low, high;    // rows, both in it
   int first, last;  // columns, both in it
   double odds;
-  double walls;
 };
 
 /// The runs of columns whose log-odds are highest, each with all that stands at its sides.
@@ -160,13 +159,10 @@ void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, d
   const int* before = map.below.ptr<int>(low.row);
   const int* after = map.below.ptr<int>(high.row + 1);
   double sum = 0.0, best = 0.0;
-  int start = 0, best_last = -1, walls = 0, best_walls = 0;
+  int start = 0, best_last = -1;
   const auto close = [&](int from) {
-    if (best + kPrior > 0.0)
-      runs.push_back({low.row, high.row, start, best_last, best + kPrior,
-                      0.5 * best_walls / (best_last - start + 1)});
+    if (best + kPrior > 0.0) runs.push_back({low.row, high.row, start, best_last, best + kPrior});
     sum = best = 0.0;
-    walls = best_walls = 0;
     start = from;
   };
   for (int x = 0; x < map.free.cols; ++x) {
@@ -177,13 +173,12 @@ void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, d
       close(x + 1);
       continue;
     }
-    walls += sides;
     const double metre = share < kCrowded ? kCrowd
                          : sides == 2     ? kBothWalls
                          : sides == 1     ? kOneWall
                                           : kNoWall;
     sum += metre * resolution;
-    if (sum > best) best = sum, best_last = x, best_walls = walls;
+    if (sum > best) best = sum, best_last = x;
     if (sum <= 0.0 || sum < best + kPrior) close(x + 1);
   }
   close(map.free.cols);
@@ -237,6 +232,8 @@ bool StraightCorridor::beside(cv::Point2d cell) const {
 std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
                                                     const cv::Mat& furniture) {
   std::vector<StraightCorridor> corridors;
+  // What OpenCV turns has sides of 16 bits: a map of 1.6 km has no corridors but its borders.
+  if (std::hypot(space.free.cols, space.free.rows) >= kLargest) return corridors;
   const cv::Mat walls = space.occupied & ~furniture;
   const double direction = mainDirection(space.free, walls);
   for (const double angle : {direction, direction + 0.5 * hyselam::kPi}) {
@@ -253,7 +250,7 @@ std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
       const double middle = 0.5 * (run.low + run.high);
       corridors.push_back({fromHere(map, run.first - 0.5, middle),
                            fromHere(map, run.last + 0.5, middle), 0.5 * (run.high - run.low + 1),
-                           run.odds, run.walls});
+                           run.odds});
     }
   }
   std::stable_sort(

@@ -14,7 +14,6 @@ struct StraightCorridor {
   cv::Point2d start, end;   ///< of its axis [cells of FreeSpace::free]
   double half_width = 0.0;  ///< [cells]
   double odds = 0.0;        ///< log-odds that walls carry on along both lines, > 0
-  double walls = 0.0;       ///< share of its two sides where there is a wall, 0 .. 1
 
   /// Whether the middle of a cell lies in it.
   bool contains(cv::Point2d cell) const;
@@ -25,7 +24,7 @@ struct StraightCorridor {
 };
 
 /// The surest first; of the same direction, none covers much of another. `furniture`: CV_8U, what
-/// is no wall.
+/// is no wall. None on a map whose diagonal has 32000 cells or more.
 std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
                                                     const cv::Mat& furniture);
 

@@ -211,6 +211,9 @@ void PlaceLearning::renameModel(const std::vector<PlaceRenaming>& renamings) {
   renamed_ += changed;
   auto named = std::make_shared<PlaceModel>(*model_);
   named->transitions = std::move(transitions);
+  // Of the same frames: what the camera was found to err in since still holds.
+  const ReliabilityMemory* memory = memory_ ? memory_() : nullptr;
+  if (memory != nullptr) named->reliability = *memory;
   setModel(std::move(named));
   ROS_INFO_STREAM(log_name_ << " the model follows new names of places, '" << renamings.back().to
                             << "' among them");

@@ -86,11 +86,13 @@ const ScanPoints* PoseSupervision::scanAt(const ros::Time& stamp) {
   return &points_;
 }
 
-void PoseSupervision::setModel(const PlaceModel& model, const PlaceTransitions& transitions) {
+void PoseSupervision::setModel(const PlaceModel& model, const PlaceTransitions& transitions,
+                               bool same_samples) {
+  const ReliabilityMemory* known = same_samples ? memory() : nullptr;
   transitions_ = transitions;
-  supervisor_ = transitions.places.empty()
-                    ? nullptr
-                    : std::make_unique<PoseSupervisor>(model, transitions, params_.supervisor);
+  supervisor_ = transitions.places.empty() ? nullptr
+                                           : std::make_unique<PoseSupervisor>(
+                                                 model, transitions, params_.supervisor, known);
   if (supervisor_) supervisor_->setMap(fit_);
   last_frame_.reset();
   state_ = SupervisionState();

@@ -78,7 +78,7 @@ void SemanticLocalizationServer::onImage(const cv::Mat& image, const SensorReadi
 
 void SemanticLocalizationServer::onTimeJump() {
   if (recognizer_) recognizer_->reset();
-  if (!transitions_.places.empty()) supervision_.setModel(learning_->model(), transitions_);
+  if (!transitions_.places.empty()) supervision_.setModel(learning_->model(), transitions_, true);
 }
 
 void SemanticLocalizationServer::onMap(const hyselam_msgs::AugmentedTopologicalMap::ConstPtr& msg) {
@@ -127,7 +127,7 @@ void SemanticLocalizationServer::updateRecognizer(const PlaceModel& model, bool 
                               << recognizer_->posesProblem());
   }
   transitions_ = std::move(transitions);
-  supervision_.setModel(model, transitions_);
+  supervision_.setModel(model, transitions_, !always);
 }
 
 void SemanticLocalizationServer::report(diagnostic_msgs::DiagnosticStatus& status) {

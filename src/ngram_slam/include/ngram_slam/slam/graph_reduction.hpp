@@ -47,10 +47,8 @@ hyselam_pose_graph::PoseEdge composedEdge(const std::vector<hyselam::Pose2>& pos
                                           const std::vector<PathStep>& path);
 
 /// The mean of edges between the same two poses in the same direction, each weighted by its
-/// information. Visits err independently, so their information adds up: a mean that weighs no more
-/// than one visit would be forgotten by the next ones, and the map would walk. But at once it
-/// becomes at most eight times that of the strongest, as scans of one visit saw the same surfaces
-/// with the same errors.
+/// information. Its own information is that of the strongest: they saw the same surfaces, with the
+/// same errors.
 hyselam_pose_graph::PoseEdge meanEdge(const std::vector<hyselam::Pose2>& poses,
                                       const std::vector<hyselam_pose_graph::PoseEdge>& edges);
 

@@ -22,7 +22,7 @@ struct RedundancyParams {
   /// Of the surfaces that a scan should see, the part that it does not see through, 0..1.
   double min_seen_again = 0.9;
   /// Runs that a place and direction is kept of where they saw different things: the newest, so
-  /// that change can be learnt, and the first, on which the others were laid, >= 2.
+  /// that change can be learnt, and the first, on which the others were laid, >= 1.
   int max_looks = 3;
 
   void describe(hyselam::ParameterVisitor& visit);

@@ -20,9 +20,12 @@ struct ObservationRedundancyParams {
 
 /// The observations to forget, true for each: those made at `dropped` keyframes (true for each
 /// keyframe) where another run has some that stay, and what is left of a run between them in
-/// stretches that are too short. No place loses its last ones. The newest runs are judged first,
-/// so that of two visits the words of the earlier one stay.
+/// stretches that are too short. Only what lies in the same part of the graph counts: by keyframe,
+/// `components`. Another run's observations are within the radius when one is forgotten; that run
+/// may lose these in turn where a third has some. The newest runs are judged first, so that of two
+/// visits the words of the earlier one stay.
 std::vector<bool> redundantObservations(const SlamState& state, const std::vector<bool>& dropped,
+                                        const std::vector<int>& components,
                                         const ObservationRedundancyParams& params);
 
 }  // namespace ngram_slam

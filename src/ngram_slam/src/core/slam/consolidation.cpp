@@ -496,8 +496,10 @@ SlamState consolidated(SlamState state, const ConsolidationParams& params) {
   std::vector<SlamLoop> loops = withNewLoops(state, edges, params);
   state.scans = renamedScans(state, renaming, params.max_scans);
   state.pending_loops = renamedPending(state, renaming);
-  renameWords(renaming, numbersWithout(redundantObservations(state, dropped, params.observations)),
-              &state);
+  renameWords(
+      renaming,
+      numbersWithout(redundantObservations(state, dropped, components, params.observations)),
+      &state);
   for (PoseEdge& e : edges.odometry) {
     e.from = renaming.index(e.from);
     e.to = renaming.index(e.to);

@@ -262,7 +262,6 @@ PoseEdge composedEdge(const std::vector<Pose2>& poses, const std::vector<PathSte
 PoseEdge meanEdge(const std::vector<Pose2>& poses, const std::vector<PoseEdge>& edges) {
   if (edges.empty()) throw hyselam::InputError("graph", "", "no edge has no mean");
   const Springs springs(poses);
-  constexpr double kMostAlike = 8.0;
   // A length of information: the same about whatever point.
   const auto size = [](const Matrix& weight) { return std::cbrt(weight.determinant()); };
   Spring sum;
@@ -273,7 +272,7 @@ PoseEdge meanEdge(const std::vector<Pose2>& poses, const std::vector<PoseEdge>& 
     sum.force += s.force;
     largest = std::max(largest, size(s.weight));
   }
-  const double scale = std::min(1.0, kMostAlike * largest / size(sum.weight));
+  const double scale = largest / size(sum.weight);
   sum.weight *= scale;
   sum.force *= scale;
   return springs.edge(edges.front().from, edges.front().to, sum);

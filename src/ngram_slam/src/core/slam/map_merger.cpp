@@ -59,6 +59,12 @@ void MapMerger::run() {
   }
 }
 
+std::size_t MapMerger::maps() const {
+  std::size_t count = 0;
+  for (std::uint32_t run = 0; run < runs(); ++run) count += mapOf(run) == run ? 1 : 0;
+  return count;
+}
+
 /// Whether a map is of several that were given.
 bool MapMerger::isMerged(std::uint32_t map) const {
   for (std::uint32_t run = 0; run < runs(); ++run) {
@@ -236,12 +242,9 @@ void MapMerger::join(const MapTie& tie) {
 /// count: the segments by which that one was verified, and found among all others, say the same.
 MapMerger::TieEvidence MapMerger::evidenceFor(const MapTie& tie,
                                               const std::vector<std::uint32_t>& maps_before) const {
-  std::size_t maps = 0, maps_now = 0;
-  for (std::uint32_t run = 0; run < runs(); ++run) {
-    maps += maps_before[run] == run ? 1 : 0;
-    maps_now += mapOf(run) == run ? 1 : 0;
-  }
-  if (maps_now >= maps) return TieEvidence::kAgainst;  // the graph itself gave up its loops
+  std::size_t before = 0;
+  for (std::uint32_t run = 0; run < runs(); ++run) before += maps_before[run] == run ? 1 : 0;
+  if (maps() >= before) return TieEvidence::kAgainst;  // the graph itself gave up its loops
   const auto isBeside = [&](int k, int of_loop) {
     const SlamKeyframe &here = keyframe(k), &there = keyframe(of_loop);
     return here.run == there.run && std::abs(here.path_length - there.path_length) <=

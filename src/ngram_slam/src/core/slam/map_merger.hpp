@@ -83,7 +83,8 @@ class MapMerger {
   LoopTask placeTask(int last, const KnownPlace& place) const;
   bool areIndependent(const Placed& a, const Placed& b) const;
   std::vector<MapTie> hypothesesOf(const MapPair& maps) const;
-  bool tieByPlaces(const MapPair& maps);
+  void tieByPlaces(const MapPair& maps);
+  std::size_t maps() const;
   enum class Evidence { kNone, kFits, kAgainst };
   Evidence evidenceOf(const NearTry& t) const;
   bool isBorneOutByScans() const;
@@ -101,6 +102,7 @@ class MapMerger {
     std::vector<SlamLoop> loops;
   };
   Untied untied() const;
+  double bend(const Untied& before) const;
   void withdraw(const Untied& before, const MapTie& tie, bool is_wrong);
   void addLoop(const SlamLoop& loop);
   bool believeWithinMaps();

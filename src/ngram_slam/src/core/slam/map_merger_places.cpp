@@ -19,24 +19,27 @@ namespace {
 
 // Of two maps; with more of them a building repeats itself too much to believe one.
 constexpr std::size_t kMostHypotheses = 4;
+constexpr double kMostBend = 0.2;          // [rad]
 constexpr double kMostContradicted = 2.0;  // of the common path, in one piece [m]
+constexpr double kOnePiece =
+    5.0;  // the path has left what is common where no scan is compared for longer [m]
 
 }  // namespace
 
 void MapMerger::tieByPlaces() {
   if (params_.place_interval <= 0.0) return;
+  // Until no map is tied; what settle() parts again would be tied again.
   for (bool tied = true; tied;) {
-    tied = false;
+    const std::size_t before = maps();
     askPlaces();
     std::set<MapPair> pairs;
     for (const Placed& p : placed_) pairs.insert(mapsOf(p.placed.loop));
     for (const MapPair& maps : pairs) {
       // Between maps that were not tied since they were asked.
-      if (mapOf(maps.first) == maps.first && mapOf(maps.second) == maps.second) {
-        tied = tieByPlaces(maps) || tied;
-      }
+      if (mapOf(maps.first) == maps.first && mapOf(maps.second) == maps.second) tieByPlaces(maps);
     }
-    if (tied) settle();
+    if (this->maps() < before) settle();
+    tied = this->maps() < before;
   }
 }
 
@@ -96,10 +99,11 @@ void MapMerger::askPlaces() {
   }
   const std::vector<LoopVerification> answers = verified(tasks);
   for (std::size_t i = 0; i < answers.size(); ++i) placed_[i].placed.loop = answers[i].loop;
-  std::size_t i = 0;
-  placed_.erase(std::remove_if(placed_.begin(), placed_.end(),
-                               [&](const Placed&) { return !answers[i++].verified; }),
-                placed_.end());
+  std::vector<Placed> found;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (answers[i].verified) found.push_back(placed_[i]);
+  }
+  placed_ = std::move(found);
 }
 
 /// Between the middle of the stretch's last metres and the place.
@@ -186,31 +190,49 @@ std::vector<MapTie> MapMerger::hypothesesOf(const MapPair& maps) const {
 
 /// Each hypothesis of where two maps lie to each other is tried; one that alone is borne out ties
 /// them.
-bool MapMerger::tieByPlaces(const MapPair& maps) {
+void MapMerger::tieByPlaces(const MapPair& maps) {
   const std::vector<MapTie> hypotheses = hypothesesOf(maps);
-  if (hypotheses.size() > kMostHypotheses) return false;
+  if (hypotheses.size() > kMostHypotheses) return;
   const MapTie* right = nullptr;
   for (const MapTie& tie : hypotheses) {
     const Untied before = untied();
+    const std::vector<SlamLoop> pending = pending_, withdrawn = withdrawn_;
     join(tie);
     closeNear(maps.first);
-    const bool holds = mapOf(maps.second) == mapOf(maps.first) && isBorneOutByScans();
+    const bool holds =
+        mapOf(maps.second) == mapOf(maps.first) && bend(before) <= kMostBend && isBorneOutByScans();
     withdraw(before, tie, true);
+    pending_ = pending;  // it was a trial: nothing is known of its loops that was not known before
+    withdrawn_ = withdrawn;
     if (!holds) continue;
-    if (right != nullptr) return false;  // both would do
+    if (right != nullptr) return;  // both would do
     right = &tie;
   }
-  if (right == nullptr) return false;
+  if (right == nullptr) return;
   join(*right);
   closeNear(maps.first);
-  for (const SlamLoop& l : right->loops) {
-    withdrawn_.erase(std::remove_if(withdrawn_.begin(), withdrawn_.end(),
-                                    [&](const SlamLoop& w) { return isSamePair(w, l); }),
-                     withdrawn_.end());
-  }
   undecided_.clear();
   ++counters_.place_ties;
-  return true;
+}
+
+/// How far a tie turned parts of a map against each other that was one before it, at most [rad]:
+/// loops of two maps that do not lie so are often far enough apart to pull both out of shape
+/// instead of contradicting each other.
+double MapMerger::bend(const Untied& before) const {
+  std::map<std::uint32_t, std::pair<double, double>> turns;  // by map before, least and most
+  std::map<std::uint32_t, double> firsts;
+  for (std::size_t k = 0; k < before.poses.size(); ++k) {
+    const std::uint32_t map = before.map_of_run[state_.keyframes[k].run];
+    const double turn = state_.keyframes[k].pose.theta - before.poses[k].theta;
+    const double first = firsts.emplace(map, turn).first->second;
+    const double since = hyselam::normalizeAngle(turn - first);
+    auto& [least, most] = turns.emplace(map, std::make_pair(0.0, 0.0)).first->second;
+    least = std::min(least, since);
+    most = std::max(most, since);
+  }
+  double worst = 0.0;
+  for (const auto& [map, range] : turns) worst = std::max(worst, range.second - range.first);
+  return worst;
 }
 
 /// What a near try says after a tie by places: the scans fit, or what one map saw as a wall the
@@ -256,9 +278,12 @@ bool MapMerger::isBorneOutByScans() const {
     if (e == Evidence::kFits || (e == Evidence::kAgainst && here == Evidence::kNone)) here = e;
   }
   double contradicted = 0.0;  // [m] of path at most
-  std::optional<int> begin;
+  std::optional<int> begin, before;
   for (const auto& [k, e] : along) {
-    if (e == Evidence::kFits || (begin && keyframe(*begin).run != keyframe(k).run)) begin.reset();
+    const bool goes_on = before && keyframe(*before).run == keyframe(k).run &&
+                         keyframe(k).path_length - keyframe(*before).path_length <= kOnePiece;
+    before = k;
+    if (e == Evidence::kFits || !goes_on) begin.reset();
     if (e != Evidence::kAgainst) continue;
     if (!begin) begin = k;
     contradicted = std::max(contradicted, keyframe(k).path_length - keyframe(*begin).path_length);

@@ -156,7 +156,8 @@ class Thinning {
     }
     if (static_cast<int>(runs.size()) <= params_.max_looks) return false;
     const std::uint32_t goes = *std::next(runs.begin());
-    bool found = false;
+    bool found = goes == at(k).run && !isFixed(k);
+    if (found) dropped_[static_cast<std::size_t>(k)] = true;
     for (const Near& n : looks) {
       if (n.distance >= params_.place_radius || at(n.keyframe).run != goes || isFixed(n.keyframe)) {
         continue;
@@ -210,7 +211,7 @@ void RedundancyParams::describe(hyselam::ParameterVisitor& visit) {
         "part of the points of a keyframe that is explained, for it to be dropped");
   visit("min_seen_again", min_seen_again, ratio, "",
         "part of the known surfaces in its view that it does not see through");
-  visit("max_looks", max_looks, Range::between(2, 1e6), "",
+  visit("max_looks", max_looks, count, "",
         "runs that one place and direction is kept of where they saw different things: the first "
         "and the newest");
 }

@@ -15,8 +15,9 @@ constexpr std::uint32_t kBridged = 10;  // so few known ones do not part a stret
 /// The observations that stay, by keyframe and by run of observations.
 class KeptObservations {
  public:
-  KeptObservations(const SlamState& state, double radius)
+  KeptObservations(const SlamState& state, const std::vector<int>& components, double radius)
       : state_(state),
+        components_(components),
         radius_(radius),
         grid_(state.keyframes, radius),
         of_keyframe_(state.keyframes.size()) {
@@ -30,12 +31,15 @@ class KeptObservations {
     if (--at(observation)[run] == 0) at(observation).erase(run);
   }
 
-  /// Whether another run has some near this one.
+  /// Whether another run of the same part of the graph has some near this one.
   bool others(std::uint32_t observation, std::uint32_t run) const {
     bool found = false;
-    grid_.forEachNear(state_.keyframes[keyframeOf(observation)].pose, radius_, [&](int k, double) {
-      const auto& runs = of_keyframe_[static_cast<std::size_t>(k)];
-      found = found || runs.size() > (runs.count(run) > 0 ? 1U : 0U);
+    const std::size_t here = keyframeOf(observation);
+    grid_.forEachNear(state_.keyframes[here].pose, radius_, [&](int k, double) {
+      const auto there = static_cast<std::size_t>(k);
+      const auto& runs = of_keyframe_[there];
+      found = found || (components_[there] == components_[here] &&
+                        runs.size() > (runs.count(run) > 0 ? 1U : 0U));
     });
     return found;
   }
@@ -50,6 +54,7 @@ class KeptObservations {
   }
 
   const SlamState& state_;
+  const std::vector<int>& components_;
   double radius_;
   KeyframeGrid grid_;
   std::vector<std::map<std::uint32_t, int>> of_keyframe_;  // how many, by run
@@ -75,9 +80,10 @@ void ObservationRedundancyParams::describe(hyselam::ParameterVisitor& visit) {
 }
 
 std::vector<bool> redundantObservations(const SlamState& state, const std::vector<bool>& dropped,
+                                        const std::vector<int>& components,
                                         const ObservationRedundancyParams& params) {
   const ObservationStore& all = state.corpus.observations;
-  KeptObservations kept(state, params.observation_radius);
+  KeptObservations kept(state, components, params.observation_radius);
   std::vector<bool> forgotten(all.size(), false);
   for (std::uint32_t run = all.runs(); run-- > 0;) {
     const std::uint32_t begin = all.runBegin(run), end = all.runEnd(run);

@@ -50,7 +50,9 @@ RunPlace SlamEngine::runPlace() const {
 
 bool SlamEngine::knowsChanges() const {
   if (session_ == 0) return true;
-  return currentRun() >= session_ && runPlace() == RunPlace::kTied;
+  // A run may be tied to another one of this session, which is apart.
+  return currentRun() >= session_ && runPlace() == RunPlace::kTied &&
+         connections_.mapOf(currentRun()) < session_;
 }
 
 std::optional<double> SlamEngine::pathUntilTied() const {

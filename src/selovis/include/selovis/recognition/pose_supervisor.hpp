@@ -47,9 +47,10 @@ struct SupervisionState {
 class PoseSupervisor {
  public:
   /// @param transitions of the model's places (reordered()).
+  /// @param memory where the camera was found to err with these samples; null: as the model says.
   /// @throws hyselam::ParameterError; hyselam::InputError without places.
   PoseSupervisor(const PlaceModel& model, const PlaceTransitions& transitions,
-                 const PoseSupervisorParams& params);
+                 const PoseSupervisorParams& params, const ReliabilityMemory* memory = nullptr);
 
   bool comparesViews() const { return views_.has_value(); }
   /// Where the camera was found to err, beginning with PlaceModel::reliability; null by places.

@@ -35,7 +35,10 @@ class PoseSupervision {
   /// still runs, so this comes last.
   void subscribe();
   /// Another model, other places, or other transitions between them: all evidence is forgotten.
-  void setModel(const PlaceModel& model, const PlaceTransitions& transitions);
+  /// `same_samples`: as those of the model before, so that what the camera was found to err in is
+  /// kept.
+  void setModel(const PlaceModel& model, const PlaceTransitions& transitions,
+                bool same_samples = false);
   /// The frame that the recognizer saw last. @param image its header.
   void update(const ImageRecognizer& recognizer, const hyselam_topo::AugmentedTopologicalMap& map,
               const std_msgs::Header& image);

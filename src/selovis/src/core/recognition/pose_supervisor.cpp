@@ -29,12 +29,12 @@ void PoseSupervisorParams::validate() const {
 }
 
 PoseSupervisor::PoseSupervisor(const PlaceModel& model, const PlaceTransitions& transitions,
-                               const PoseSupervisorParams& params)
+                               const PoseSupervisorParams& params, const ReliabilityMemory* memory)
     : threshold_(
           ViewTest::thresholdFor(params.views.false_alarm_hours, params.views.correlation_time)),
       places_(transitions, ofPlaces(params, threshold_)) {
   if (comparesExemplars(model.classifier.kernel) && LearnedViews::whyNot(model.samples).empty()) {
-    views_.emplace(model.samples, params.views, model.reliability);
+    views_.emplace(model.samples, params.views, memory != nullptr ? *memory : model.reliability);
   }
 }
 
