@@ -128,6 +128,7 @@ std::string bytesOf(const SlamState& state) {
 /// No loops are looked for but a few.
 MapMergingParams placesOnly() {
   MapMergingParams params;
+  params.place_interval = 2.0;
   params.first_interval = params.second_interval = 1e6;
   params.first_candidates = params.second_candidates = 1;
   params.ask_around = 0.0;

@@ -30,7 +30,7 @@ using nlohmann::json;
 struct Options {
   std::vector<std::string> states;
   std::string out, model;
-  double resolution = 0.05;
+  double resolution = 0.05, place_interval = 0.0;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool keep_all = false;
 };
@@ -209,6 +209,7 @@ void print(const json& report) {
 json run(const Options& o) {
   MapMergingParams params;
   params.threads = o.threads;
+  params.place_interval = o.place_interval;
   params.slam.signatures.model = o.model;
   params.slam.consolidation.enabled = !o.keep_all;
   params.validate();
@@ -284,6 +285,11 @@ int main(int argc, char** argv) {
   app.add_option("--resolution", o.resolution, "of the maps [m]");
   app.add_option("--threads", o.threads, "that verify loops; the result does not depend on it");
   app.add_option("--model", o.model, "another model of signatures; without it the shipped one");
+  app.add_option("--place-interval", o.place_interval,
+                 "[m] lay what loops leave apart on the other maps as they are drawn, a stretch "
+                 "each so many metres (2 is a good one): more is tied, but buildings that repeat "
+                 "themselves may be tied wrongly; 0: do not")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--keep-all", o.keep_all, "keep all keyframes, whether they add to the map or not");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

@@ -37,8 +37,9 @@ struct MapMergingParams {
   /// ... of at least so many, >= 1; of fewer nothing can be said, and the maps are not tied.
   int min_near_tried = 12;
   /// Path between stretches of a map (of 10 m) that are laid on the others as they are drawn [m],
-  /// >= 0; 0: none is.
-  double place_interval = 2.0;
+  /// >= 0; 0: none is, as a building that repeats itself was tied wrongly by them (mit-killian in
+  /// docs/reports/2026-11-27-life-long.md).
+  double place_interval = 0.0;
   /// A tie by places is borne out if at least this part of the scans along the common path that say
   /// something fit, 0..1, of min_near_tried or more.
   double min_place_near_ratio = 0.8;

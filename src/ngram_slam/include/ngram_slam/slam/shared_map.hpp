@@ -14,8 +14,6 @@
 namespace ngram_slam {
 
 struct SharedMapParams {
-  /// By loops alone: searches of drawn maps would be made anew each time.
-  SharedMapParams() { merging.place_interval = 0.0; }
   MapMergingParams merging;
   /// Maps of robots that began another one since, >= 0: the least ones are given up.
   int max_former_maps = 20;
