@@ -1,8 +1,6 @@
 // findModel and its program on drawn tables: no data of others.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -13,6 +11,7 @@
 #include "hyselam_objects/pcl/find_model.hpp"
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 #include "nlohmann/json.hpp"
+#include "run_program.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 using hyselam::testing::fileBytes;
@@ -48,10 +47,7 @@ OrganizedCloud largestThing(const OrganizedCloud& scene) {
 }
 
 int shell(const std::string& arguments, const TemporaryDirectory& directory) {
-  const std::string command = std::string(HYSELAM_FIND_MODEL) + " " + arguments + " >" +
-                              (directory / "stdout") + " 2>" + (directory / "stderr");
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return hyselam_objects::runProgram(HYSELAM_FIND_MODEL, arguments, directory);
 }
 
 TEST(FindModel, FarPointsThatAreTooFewToBeDescribedChangeNothing) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "hyselam_objects/pcl/segment_unorganized.hpp"
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 #include "hyselam_sim/camera.hpp"
+#include "run_program.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -464,10 +464,7 @@ TEST(PcdFile, RefusesInvalidFiles) {
 }
 
 int shell(const std::string& arguments, const TemporaryDirectory& directory) {
-  const std::string command = std::string(HYSELAM_SEGMENT_CLOUD) + " " + arguments + " >" +
-                              (directory / "stdout") + " 2>" + (directory / "stderr");
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return hyselam_objects::runProgram(HYSELAM_SEGMENT_CLOUD, arguments, directory);
 }
 
 TEST(SegmentCloudTool, WritesLabelsAndJson) {
