@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "hyselam_sim/film.hpp"
+#include "hyselam_sim/plan_geometry.hpp"
+#include "hyselam_sim/plan_ray_caster.hpp"
 #include "hyselam_sim/simulation.hpp"
 #include "selovis/learning/place_model.hpp"
 
@@ -47,6 +49,27 @@ inline hyselam_sim::FilmParams filmParams(double hour, double rate) {
   return params;
 }
 
+/// A way of somebody in a place, between points halfway to two of its corners; empty where each
+/// such way would go through a wall (rooms are not all convex).
+inline std::vector<hyselam_sim::Point2> wayIn(const hyselam_sim::PlanPlace& place,
+                                              const hyselam_sim::PlanRayCaster& walls) {
+  using hyselam_sim::operator+, hyselam_sim::operator-, hyselam_sim::operator*;
+  const auto halfway = [&](std::size_t corner) {
+    return place.at + 0.5 * (place.outline[corner] - place.at);
+  };
+  const std::size_t n = place.outline.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 2; j < n; ++j) {  // not neighbours, if one can help it: a longer way
+      const hyselam::Point2 a = halfway(i), b = halfway(j);
+      const double l = hyselam_sim::length(b - a);
+      if (l > 0.0 && !(walls.cast(a, (1.0 / l) * (b - a), l) < l)) {
+        return {a, b};
+      }
+    }
+  }
+  return {};
+}
+
 /// There and back through all places of a made-up plan, with somebody in every third.
 inline hyselam_sim::Route roundTrip(const hyselam_sim::FloorPlan& plan) {
   hyselam_sim::Route route;
@@ -61,16 +84,13 @@ inline hyselam_sim::Route roundTrip(const hyselam_sim::FloorPlan& plan) {
   };
   for (std::size_t i = 1; i < plan.places.size(); ++i) go(plan.places[i]);
   for (std::size_t i = plan.places.size(); i-- > 0;) go(plan.places[i]);
+  const hyselam_sim::PlanRayCaster walls(hyselam_sim::edges(hyselam_sim::wallSolids(plan)));
   for (std::size_t i = 0; i < plan.places.size(); i += 3) {
     const hyselam_sim::PlanPlace& place = plan.places[i];
-    if (place.outline.size() < 3) continue;
     hyselam_sim::Person person;
     person.name = "somebody in " + place.name;
-    const auto towards = [&](hyselam_sim::Point2 corner) {
-      return hyselam_sim::Point2{place.at.x + 0.5 * (corner.x - place.at.x),
-                                 place.at.y + 0.5 * (corner.y - place.at.y)};
-    };
-    person.points = {towards(place.outline[0]), towards(place.outline[2])};
+    person.points = wayIn(place, walls);
+    if (person.points.empty()) continue;
     person.speed = 0.8;
     route.people.push_back(person);
   }
