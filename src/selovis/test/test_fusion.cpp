@@ -116,6 +116,43 @@ TEST(Fusion, WeightFollowsWhatAPartWasWorthOnFramesLeftOut) {
   EXPECT_GT(good.calibration().parts[1].weight, bad.calibration().parts[1].weight);
 }
 
+TEST(Fusion, WeightsFollowHowNearTheFrameIs) {
+  FusionCalibration c;
+  c.parts.resize(3);
+  for (PartCalibration& part : c.parts) {
+    part.near_median = 0.01;
+    part.median = 1.0;
+  }
+  c.parts[0].weight = 0.4;
+  c.parts[0].near_weight = 0.1;
+  c.parts[1].weight = c.parts[1].near_weight = 0.2;
+  std::vector<double> weights(3);
+  const auto at = [&](std::vector<double> nearest) {
+    weightsAt(c, nearest, weights);
+    EXPECT_NEAR(weights[1], 0.2, 1e-12);
+    return weights[0];
+  };
+  EXPECT_NEAR(at({0.001, 0.001, 0.001}), 0.1, 1e-12) << "nearer than the next frame";
+  EXPECT_NEAR(at({0.1, 0.1, 0.1}), 0.2, 1e-12) << "halfway by logarithms";
+  EXPECT_NEAR(at({3.0, 3.0, 3.0}), 0.4, 1e-12);
+  EXPECT_NEAR(at({0.01, 0.01, 9.0}), 0.1, 1e-12) << "one part that is far does not decide";
+  for (PartCalibration& part : c.parts) part.near_median = 0.0;
+  EXPECT_NEAR(at({0.01, 0.01, 0.01}), 0.4, 1e-12) << "a model that knows no near frames";
+}
+
+TEST(Fusion, NearFramesAreToldByWhatTellsTheNextFrame) {
+  World world(12, true);
+  const FusionClassifier fused(world.learn(2), kPlaces, fusion());
+  double far = 0.0, near = 0.0;
+  for (const PartCalibration& part : fused.calibration().parts) {
+    EXPECT_GT(part.near_median, 0.0);
+    EXPECT_LE(part.near_median, 1.5 * part.median);
+    far += part.weight;
+    near += part.near_weight;
+  }
+  EXPECT_NEAR(near, far, 1e-9) << "only the shares of the parts differ";
+}
+
 TEST(Fusion, OneTourIsCalibratedByStretchesAndTooFewFramesByNothing) {
   World world(3, true);
   // One tour that comes to each place twice.
@@ -340,8 +377,18 @@ TEST(Fusion, CalibrationIsReadBackAndOthersAreRefused) {
   j["parts"][0]["weight"] = -1.0;
   refused(j);
   j = good;
+  j["parts"][0]["near_weight"] = -1.0;
+  refused(j);
+  j = good;
   j["parts"][0]["largest"] = j["parts"][0]["median"];
   refused(j);
+  j = good;
+  for (auto& part : j["parts"]) {  // as older models are
+    part.erase("near_weight");
+    part.erase("near_median");
+  }
+  const FusionClassifier older(samples, kPlaces, fusion(), j.dump());
+  EXPECT_EQ(older.calibration().parts[0].near_weight, older.calibration().parts[0].weight);
   EXPECT_THROW(FusionClassifier(samples, kPlaces, fusion(), "no json"), InputError);
   Samples without = samples;
   without.parts.clear();

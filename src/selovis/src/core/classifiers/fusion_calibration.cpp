@@ -32,8 +32,10 @@ constexpr double kMaxWeight = 5.0;
 // learned they need that share of it (see docs/algorithms/visual_places.md).
 constexpr int kGaps[] = {1, 2, 5, 10, kStretch};
 constexpr double kLaterTours = 0.6;
+constexpr int kNextFrames[] = {1, 2};  // gaps of the frames that lie as near as one can learn
 
-constexpr double kLittle = 0.02;  // share of parts that are all out of range
+constexpr double kLeastSpan = 0.1;  // of logarithms of distances, between near and far
+constexpr double kLittle = 0.02;    // share of parts that are all out of range
 constexpr double kUnknownRate = 0.05;
 constexpr double kMaxEvidenceScale = 4.0;
 
@@ -112,24 +114,37 @@ double quantile(std::vector<double> values, double share) {
 /// Log loss and accuracy of the weighted sum; `shares` of each question's parts.
 class Objective {
  public:
+  struct Trust {
+    const std::vector<double>* weights;
+    const std::vector<double>* shares;  // null: all are in range
+  };
+
   Objective(const std::vector<Question>& questions, int places)
       : questions_(questions), sum_(static_cast<std::size_t>(places)) {}
 
-  double logLoss(const std::vector<double>& weights, const std::vector<std::vector<double>>* shares,
-                 double temperature, double* accuracy = nullptr) {
+  double logLoss(const std::vector<double>& weights) {
+    return logLoss([&](std::size_t) { return Trust{&weights, nullptr}; }, 1.0);
+  }
+
+  /// @param trust_of gives the weights and shares of a question by its number.
+  template <typename TrustOf>
+  double logLoss(const TrustOf& trust_of, double temperature, double* accuracy = nullptr) {
     double loss = 0.0;
     std::size_t right = 0;
     for (std::size_t q = 0; q < questions_.size(); ++q) {
       const Question& question = questions_[q];
+      const Trust trust = trust_of(q);
+      const std::vector<double>& weights = *trust.weights;
       std::fill(sum_.begin(), sum_.end(), 0.0);
       double all = 0.0, asked = 0.0;
       for (std::size_t p = 0; p < weights.size(); ++p) {
         all += weights[p];
-        asked += weights[p] * (shares != nullptr ? (*shares)[q][p] : 1.0);
+        asked += weights[p] * (trust.shares != nullptr ? (*trust.shares)[p] : 1.0);
       }
       const double sharpness = evidenceScale(all, asked) / temperature;
       for (std::size_t p = 0; p < weights.size(); ++p) {
-        const double w = sharpness * weights[p] * (shares != nullptr ? (*shares)[q][p] : 1.0);
+        const double w =
+            sharpness * weights[p] * (trust.shares != nullptr ? (*trust.shares)[p] : 1.0);
         if (w == 0.0) continue;
         const std::vector<double>& l = question.log_likelihoods[p];
         for (std::size_t k = 0; k < sum_.size(); ++k) sum_[k] += w * l[k];
@@ -159,7 +174,7 @@ void learnWeights(Objective& objective, const std::vector<SignaturePart>& parts,
       const double r = std::log((w[p] + kPullOffset) / (priorWeight(parts[p]) + kPullOffset));
       pull += r * r;
     }
-    return objective.logLoss(w, nullptr, 1.0) + kPull * pull;
+    return objective.logLoss(w) + kPull * pull;
   };
   double best = cost(weights);
   for (double factor = 2.0; factor > 1.05;) {
@@ -204,6 +219,12 @@ double noveltyOf(const FusionCalibration& c, const std::vector<double>& nearest)
     weights += c.parts[p].weight;
   }
   return novelty / std::max(weights, 1e-12);
+}
+
+double medianNearest(const std::vector<Question>& questions, std::size_t part) {
+  std::vector<double> nearest;
+  for (const Question& q : questions) nearest.push_back(q.nearest[part]);
+  return std::max(kMinSquaredDistance, quantile(nearest, 0.5));
 }
 
 void learnRanges(const std::vector<Question>& questions, FusionCalibration& c) {
@@ -251,14 +272,18 @@ class LossByTemperature {
   LossByTemperature(const std::vector<Question>& questions, int places,
                     const std::vector<SignaturePart>& parts, const FusionCalibration& c)
       : objective_(questions, places),
-        shares_(questions.size(), std::vector<double>(parts.size())) {
+        weights_(questions.size(), std::vector<double>(parts.size())),
+        shares_(weights_) {
     for (std::size_t q = 0; q < questions.size(); ++q) {
+      weightsAt(c, questions[q].nearest, weights_[q]);
       shareByRange(c, parts, questions[q].nearest, shares_[q]);
     }
-    for (const PartCalibration& p : c.parts) weights_.push_back(p.weight);
   }
   double at(double temperature, double* accuracy = nullptr) {
-    return objective_.logLoss(weights_, &shares_, temperature, accuracy);
+    const auto trust = [this](std::size_t q) {
+      return Objective::Trust{&weights_[q], &shares_[q]};
+    };
+    return objective_.logLoss(trust, temperature, accuracy);
   }
   double bestTemperature() {
     double least = std::numeric_limits<double>::infinity(), best = 1.0;
@@ -274,8 +299,7 @@ class LossByTemperature {
 
  private:
   Objective objective_;
-  std::vector<std::vector<double>> shares_;
-  std::vector<double> weights_;
+  std::vector<std::vector<double>> weights_, shares_;
 };
 
 }  // namespace
@@ -296,6 +320,23 @@ void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector
   const double places = static_cast<double>(out.size());
   for (double& p : out) {
     p = std::log(((sum > 0.0 ? p / sum : 1.0 / places) + kFloor) / (1.0 + kFloor * places));
+  }
+}
+
+void weightsAt(const FusionCalibration& calibration, const std::vector<double>& nearest,
+               std::vector<double>& weights) {
+  std::vector<double> places;  // 0 as near as the next frame, 1 as far as another tour
+  for (std::size_t p = 0; p < nearest.size(); ++p) {
+    const PartCalibration& part = calibration.parts[p];
+    if (part.near_median <= 0.0 || part.median <= 0.0) continue;
+    const double span = std::log(part.median / part.near_median);
+    if (span < kLeastSpan) continue;
+    places.push_back(std::log(std::max(kMinSquaredDistance, nearest[p]) / part.near_median) / span);
+  }
+  const double far = places.empty() ? 1.0 : std::clamp(quantile(places, 0.5), 0.0, 1.0);
+  for (std::size_t p = 0; p < nearest.size(); ++p) {
+    const PartCalibration& part = calibration.parts[p];
+    weights[p] = std::pow(part.weight, far) * std::pow(part.near_weight, 1.0 - far);
   }
 }
 
@@ -326,8 +367,9 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
                                   const FrameIndex& frames, std::vector<PartExemplars>& exemplars) {
   FusionCalibration c;
   c.parts.resize(samples.parts.size());
-  for (std::size_t p = 0; p < c.parts.size(); ++p)
-    c.parts[p].weight = priorWeight(samples.parts[p]);
+  for (std::size_t p = 0; p < c.parts.size(); ++p) {
+    c.parts[p].weight = c.parts[p].near_weight = priorWeight(samples.parts[p]);
+  }
   LeavingOut leaving(samples, frames);
   int gap = LeavingOut::kWholeTour;
   std::vector<std::size_t> asked = leaving.askable(gap);
@@ -351,12 +393,29 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
   };
   std::vector<Question> questions;
   askAll(asked, gap, questions);
-  Objective objective(questions, places);
-  std::vector<double> weights;
-  for (const PartCalibration& p : c.parts) weights.push_back(p.weight);
-  learnWeights(objective, samples.parts, weights);
+  const auto learned = [&](const std::vector<Question>& from) {
+    std::vector<double> weights;
+    for (const SignaturePart& part : samples.parts) weights.push_back(priorWeight(part));
+    Objective objective(from, places);
+    learnWeights(objective, samples.parts, weights);
+    return weights;
+  };
+  std::vector<double> weights = learned(questions);
   for (std::size_t p = 0; p < c.parts.size(); ++p) c.parts[p].weight = weights[p];
   learnRanges(questions, c);
+
+  std::vector<Question> next;
+  for (const int g : kNextFrames) askAll(thinned(leaving.askable(g), kMaxFrames / 2), g, next);
+  weights = learned(next);
+  // How sure the sum is to be is the temperature's matter: near frames only share it out anew.
+  double far_sum = 0.0;
+  for (const PartCalibration& part : c.parts) far_sum += part.weight;
+  const double scale = far_sum / std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& w : weights) w *= scale;
+  for (std::size_t p = 0; p < c.parts.size(); ++p) {
+    c.parts[p].near_weight = weights[p];
+    c.parts[p].near_median = medianNearest(next, p);
+  }
 
   std::vector<Question> nearer = questions;
   for (const int frames_left_out : kGaps) {
@@ -399,7 +458,9 @@ std::string toText(const FusionCalibration& c, const std::vector<SignaturePart>&
                  {"size", parts[p].size},
                  {"weight", c.parts[p].weight},
                  {"accuracy", c.parts[p].accuracy},
-                 {"median", c.parts[p].median}};
+                 {"median", c.parts[p].median},
+                 {"near_weight", c.parts[p].near_weight},
+                 {"near_median", c.parts[p].near_median}};
     part["largest"] = std::isinf(c.parts[p].largest) ? json(nullptr) : json(c.parts[p].largest);
     j["parts"].push_back(part);
   }
@@ -438,6 +499,12 @@ FusionCalibration fusionCalibrationFromText(const std::string& text,
       calibration.weight = number(part, "weight", 0.0, kMaxWeight);
       calibration.accuracy = number(part, "accuracy", 0.0, 1.0);
       calibration.median = number(part, "median", 0.0, kMost);
+      // Older models have one weight.
+      calibration.near_weight = part.contains("near_weight")
+                                    ? number(part, "near_weight", 0.0, kMaxWeight)
+                                    : calibration.weight;
+      calibration.near_median =
+          part.contains("near_median") ? number(part, "near_median", 0.0, kMost) : 0.0;
       if (!part.at("largest").is_null()) {
         calibration.largest = number(part, "largest", 0.0, kMost);
         if (calibration.largest <= calibration.median) {

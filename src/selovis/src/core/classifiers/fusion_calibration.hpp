@@ -12,12 +12,14 @@ namespace selovis {
 
 /// Of one part.
 struct PartCalibration {
-  /// Exponent of the part's place probabilities: the inverse of their temperature.
-  double weight = 1.0;
+  /// Exponent of the part's place probabilities, the inverse of their temperature: where frames lie
+  /// as far from learned ones as another tour's do, and where they lie as near as the next frame.
+  double weight = 1.0, near_weight = 1.0;
   /// Squared nearest distances of the learned frames that were left out: the median, and the
   /// largest. From the median to the largest the weight falls to 0.
   double median = 0.0, largest = std::numeric_limits<double>::infinity();
-  double accuracy = 0.0;  ///< of the part alone on the frames left out
+  double near_median = 0.0;  ///< the same with but a few frames about them left out
+  double accuracy = 0.0;     ///< of the part alone on the frames left out
 };
 
 struct FusionCalibration {
@@ -40,6 +42,11 @@ struct FusionCalibration {
 /// with `beta`, and a floor.
 void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector<int>& labels,
                          double beta, std::vector<double>& out);
+
+/// The weights of the parts for a frame with these squared nearest distances: between those for far
+/// and near frames, by the median over the parts of where the distance lies between their medians.
+void weightsAt(const FusionCalibration& calibration, const std::vector<double>& nearest,
+               std::vector<double>& weights);
 
 /// The share of a part's weight at a squared nearest distance, 1 to 0.
 double rangeShare(const PartCalibration& part, double nearest);

@@ -56,6 +56,7 @@ void FusionClassifier::index(const Samples& samples, bool full_scan) {
   log_likelihoods_.resize(sum_.size());
   nearest_.resize(parts_.size());
   shares_.resize(parts_.size());
+  weights_.resize(parts_.size());
 }
 
 void FusionClassifier::predict(const float* signature, double* probabilities) {
@@ -65,24 +66,26 @@ void FusionClassifier::predict(const float* signature, double* probabilities) {
   for (std::size_t p = 0; p < parts_.size(); part += parts_[p].size, ++p) {
     nearest_[p] = exemplars_[p].search(part).front().distance;
   }
+  weightsAt(calibration_, nearest_, weights_);
   shareByRange(calibration_, parts_, nearest_, shares_);
   novelty_ = 0.0;
-  double asked = 0.0, weights = 0.0;
+  double asked = 0.0, weights = 0.0, far_weights = 0.0;
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     placeLogLikelihoods(exemplars_[p].nearest(), labels_, params_.beta, log_likelihoods_);
     const PartCalibration& c = calibration_.parts[p];
-    const double weight = c.weight * shares_[p];
+    const double weight = weights_[p] * shares_[p];
     const auto best = std::max_element(log_likelihoods_.begin(), log_likelihoods_.end());
     opinions_[p].place = static_cast<int>(best - log_likelihoods_.begin());
     opinions_[p].probability = std::exp(*best);
     opinions_[p].weight = weight;
     opinions_[p].out_of_range = rangeShare(c, nearest_[p]) <= 0.0;
     asked += weight;
-    weights += c.weight;
+    weights += weights_[p];
+    far_weights += c.weight;
     if (c.median > 0.0) novelty_ += c.weight * std::sqrt(nearest_[p] / c.median);
     for (std::size_t k = 0; k < sum_.size(); ++k) sum_[k] += weight * log_likelihoods_[k];
   }
-  novelty_ /= std::max(weights, 1e-12);
+  novelty_ /= std::max(far_weights, 1e-12);
   for (PartOpinion& opinion : opinions_) opinion.weight /= std::max(asked, 1e-12);
   const double sharpness = evidenceScale(weights, asked) / calibration_.temperature;
   const double most = *std::max_element(sum_.begin(), sum_.end());

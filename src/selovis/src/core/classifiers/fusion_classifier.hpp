@@ -44,7 +44,7 @@ class FusionClassifier : public Classifier {
   std::vector<PartExemplars> exemplars_;
   FusionCalibration calibration_;
   double novelty_ = 0.0;
-  std::vector<double> sum_, log_likelihoods_, nearest_, shares_;
+  std::vector<double> sum_, log_likelihoods_, nearest_, weights_, shares_;
   std::vector<PartOpinion> opinions_;
   mutable bool distances_known_ = false;
   mutable std::vector<float> distances_, part_distances_, frame_sums_;
