@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <utility>
 
 #include "hyselam_common/errors.hpp"
 
@@ -77,18 +79,20 @@ class LeavingOut {
     return blocked_;
   }
 
-  /// Frames whose place is left when they are left out.
-  std::vector<std::size_t> askable(int gap) {
+  /// Frames whose place is left when they are left out: its first or last one is far enough.
+  std::vector<std::size_t> askable(int gap) const {
+    const std::vector<int>& at = gap == kWholeTour ? tours_ : numbers_;
+    const int least = gap == kWholeTour ? 1 : gap;
+    std::map<int, std::pair<int, int>> ends;  // of each place
+    for (std::size_t f = 0; f < at.size(); ++f) {
+      auto& [first, last] = ends.emplace(places_[f], std::make_pair(at[f], at[f])).first->second;
+      first = std::min(first, at[f]);
+      last = std::max(last, at[f]);
+    }
     std::vector<std::size_t> frames;
-    if (gap == kWholeTour && tours_.back() == 0) return frames;
-    for (std::size_t f = 0; f < blocked_.size(); ++f) {
-      const std::vector<char>& blocked = blockedFor(f, gap, false);
-      for (std::size_t g = 0; g < blocked.size(); ++g) {
-        if (blocked[g] == 0 && places_[g] == places_[f]) {
-          frames.push_back(f);
-          break;
-        }
-      }
+    for (std::size_t f = 0; f < at.size(); ++f) {
+      const auto& [first, last] = ends.at(places_[f]);
+      if (at[f] - first >= least || last - at[f] >= least) frames.push_back(f);
     }
     return frames;
   }
