@@ -232,6 +232,10 @@ class OtherThresholds {
       }
     }
   }
+  /// What speaks against the pose now may still do so when it has just become right.
+  void poseIsWrong() {
+    for (Level& l : levels_) l.armed = false;
+  }
   nlohmann::json result() const {
     nlohmann::json list = nlohmann::json::array();
     for (const Level& l : levels_) {
@@ -307,7 +311,11 @@ class Experiment {
         std::max_element(f.places->begin(), f.places->end()) - f.places->begin() == truth;
     const SupervisionState state = supervisor_.update(supervised(f, *odom, dt));
     totals_.tested_seconds += state.tested ? dt : 0.0;
-    if (pose_right_) others_.add(state.tested ? state.evidence : 0.0, dt);
+    if (pose_right_) {
+      others_.add(state.tested ? state.evidence : 0.0, dt);
+    } else {
+      others_.poseIsWrong();
+    }
     if (state.alarm) countAlarm(f, state);
     if (pending_ && state.kidnapped) relocalize(state, f.stamp);
     if (!state.kidnapped) pending_ = false;
