@@ -31,6 +31,7 @@ struct Options {
   hyselam_sim::CameraParams camera = bench::filmParams(12.0, 1.0).camera;
   double clouds = 0.3;
   std::string film;
+  bool true_poses = false;
 };
 
 const char* const kFilters[] = {"none", "lowpass", "markov", "bayes"};
@@ -130,7 +131,7 @@ nlohmann::json accuraciesOf(const PlaceModel& model, const std::vector<PlanPlace
 
 /// The pictures of a tour and their list, as `train` and `evaluate` read it. True poses are for
 /// learning, odometry is for asking.
-void writeTour(const std::string& folder, const std::string& name, bool learned,
+void writeTour(const std::string& folder, const std::string& name, bool true_poses,
                const bench::FilmedTour& tour, const std::vector<PlanPlace>& places) {
   std::error_code error;
   const std::filesystem::path base(folder);
@@ -156,8 +157,8 @@ void writeTour(const std::string& folder, const std::string& name, bool learned,
       });
       out << file << ',' << csvCell(places[static_cast<std::size_t>(f.place)].name) << ','
           << f.stamp;
-      pose(learned, f.camera);
-      pose(!learned && f.odometry, f.odometry.value_or(hyselam::Pose2{}));
+      pose(true_poses, f.camera);
+      pose(!true_poses && f.odometry, f.odometry.value_or(hyselam::Pose2{}));
       for (const float range : f.scan) out << ',' << range;
       out << '\n';
     }
@@ -170,7 +171,7 @@ nlohmann::json writeTours(const Options& o, const Building& building, const Tour
                          const std::vector<double>& hours) {
     for (std::size_t k = 0; k < all.size(); ++k) {
       const std::string name = kind + "_" + std::to_string(static_cast<int>(hours[k])) + "h";
-      writeTour(o.film, name, kind == "learn", all[k], building.plan.places);
+      writeTour(o.film, name, o.true_poses || kind == "learn", all[k], building.plan.places);
       lists.push_back({{"list", name + ".csv"}, {"frames", all[k].frames.size()}});
     }
   };
@@ -247,5 +248,7 @@ int main(int argc, char** argv) {
   app.option_defaults()->always_capture_default(false);
   app.add_option("--film", o.film,
                  "only write the pictures and lists of all tours into this directory");
+  app.add_flag("--true-poses", o.true_poses,
+               "with --film: true poses instead of odometry in the lists of the tours asked for");
   return hyselam::runTool(argc, argv, app, [&] { return run(o); });
 }

@@ -266,6 +266,7 @@ TEST(Descriptors, SizesAreThoseOfTheTables) {
                                                {"GRAY", 768},
                                                {"FUSION", 4406},
                                                {"FUSION+scan", 4467},
+                                               {"FUSION-LEARNT", 4534},
                                                {"BOF-SIFT200", 200},
                                                {"BOF-ORB500-D", 1500},
                                                {"LBPbyHSV-U8N-D+BOF-ORB500", 1916},
@@ -307,8 +308,9 @@ TEST(Descriptors, BagOfFeaturesLearnsADictionaryAndRestoresIt) {
 
 TEST(Descriptors, GrayAndUnsuitableImagesAreRefusedWithTheDescriptorsName) {
   const cv::Mat gray(40, 40, CV_8UC1, cv::Scalar(9)), deep(40, 40, CV_16UC3, cv::Scalar(9));
-  for (const std::string name : {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP",
-                                 "GLANCE", "FUSION", "HSV-HIST", "LOGCHROMA", "RANKS"}) {
+  for (const std::string name :
+       {"LBPbyHSV-U8N", "LBPbyHSV-U8S-D", "HSV-LBP", "HSV-GIST", "hLBP", "GLANCE", "FUSION",
+        "FUSION-LEARNT", "HSV-HIST", "LOGCHROMA", "RANKS"}) {
     const auto d = makeDescriptor(name);
     EXPECT_NE(messageOf<hyselam::InputError>([&] { d->compute(gray); }).find("grey"),
               std::string::npos)

@@ -116,6 +116,7 @@ class Descriptor {
 /// | LGOP | log-gradient orientation pyramid (of this package) |
 /// | GLANCE | LGOP and GIST without hue (of this package) |
 /// | FUSION | the terms of kFusionTerms, of an image at most 320 wide, for the kernel `fusion` |
+/// | FUSION-LEARNT | FUSION and LEARNT, a projection of four of its parts whose weights were learnt elsewhere |
 /// | psi, [psi], An | heading; magnetic field and its magnitude; n ranges. Also written with a Greek psi |
 /// | scan | the whole laser scan in 61 groups of beams (of this package) |
 ///

@@ -5,9 +5,11 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "../classifiers/exemplar_classifier.hpp"
 #include "descriptor_terms.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/require.hpp"
+#include "learnt_projection.hpp"
 #include "selovis/descriptors/color_classes.hpp"
 
 namespace selovis {
@@ -125,9 +127,56 @@ DescriptorPtr makeGlance(const std::string& name, const DescriptorParams& params
                                             std::vector<std::string>{"LGOP", "SV-GIST"});
 }
 
+/// A descriptor with one more part at its end, the projection of some of the others.
+class WithLearntPart : public Descriptor {
+ public:
+  explicit WithLearntPart(DescriptorPtr of)
+      : of_(std::move(of)), projection_(LearntProjection::shipped()) {
+    for (const SignaturePart& input : projection_.inputs()) {
+      int begin = 0;
+      bool found = false;
+      for (const SignaturePart& part : of_->parts()) {
+        found = part.name == input.name && part.size == input.size && part.power == input.power;
+        if (found) break;
+        begin += part.size;
+      }
+      if (!found) {
+        throw InputError("learnt projection", input.name, "is no part of the descriptor");
+      }
+      begins_.push_back(begin);
+      inputs_.resize(inputs_.size() + static_cast<std::size_t>(input.size));
+    }
+  }
+  int size() const override { return of_->size() + projection_.size(); }
+  std::vector<SignaturePart> parts() const override {
+    std::vector<SignaturePart> all = of_->parts();
+    all.push_back({"LEARNT", projection_.size(), 1.0});
+    return all;
+  }
+  void compute(const cv::Mat& image, const SensorReadings& readings, float* out) override {
+    of_->compute(image, readings, out);
+    float* to = inputs_.data();
+    for (std::size_t i = 0; i < begins_.size(); ++i) {
+      const SignaturePart& input = projection_.inputs()[i];
+      normalizeSignature(out + begins_[i], static_cast<std::size_t>(input.size), input.power, 1.0,
+                         to);
+      to += input.size;
+    }
+    projection_.project(inputs_, out + of_->size());
+  }
+
+ private:
+  DescriptorPtr of_;
+  const LearntProjection& projection_;
+  std::vector<int> begins_;
+  std::vector<float> inputs_;
+};
+
 DescriptorPtr makeFusion(const std::string& name, const DescriptorParams& params) {
-  if (name != "FUSION") return nullptr;
-  return std::make_unique<SmallerImage>(makeDescriptor(kFusionTerms, params));
+  if (name != "FUSION" && name != "FUSION-LEARNT") return nullptr;
+  DescriptorPtr terms = makeDescriptor(kFusionTerms, params);
+  if (name == "FUSION-LEARNT") terms = std::make_unique<WithLearntPart>(std::move(terms));
+  return std::make_unique<SmallerImage>(std::move(terms));
 }
 
 /// Each maker returns null for names of other descriptors. A new descriptor is added here.
@@ -230,7 +279,7 @@ std::vector<std::string> descriptorNames() {
         "SLBP",        "HSV-GIST",      "HSV-GIST64",    "HSV-GIST128",   "BOF-SIFT200",
         "BOF-SIFT500", "BOF-ORB500",    "BOF-ORB500-D",  "LGOP",          "LGOP+scan",
         "GLANCE",      "GLANCE+scan",   "SV-GIST",       "HSV-HIST",      "LOGCHROMA",
-        "RANKS",       "GRAY",          "FUSION",        "FUSION+scan"}) {
+        "RANKS",       "GRAY",          "FUSION",        "FUSION+scan",   "FUSION-LEARNT"}) {
     names.push_back(more);
   }
   return names;
