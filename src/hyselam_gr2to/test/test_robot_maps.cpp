@@ -8,7 +8,9 @@
 
 #include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 #include "segmentation/agglomeration.hpp"
+#include "segmentation/corridor_basins.hpp"
 #include "segmentation/furniture.hpp"
+#include "segmentation/geometric_evidence.hpp"
 #include "segmentation/ray_fans.hpp"
 #include "segmentation/straight_corridors.hpp"
 
@@ -112,4 +114,91 @@ TEST(RayFans, WhatFewRaysSawFromAfarIsNoPlace) {
     return static_cast<int>(most);
   }();
   EXPECT_EQ(1, places);
+}
+
+TEST(StraightCorridors, ARoomNotMuchLongerThanWideIsNone) {
+  OccupancyGrid grid = unseen(12, 9);
+  room(grid, 2, 2, 9, 5.5);
+  const FreeSpace space = findFreeSpace(grid, {}, true);
+  EXPECT_TRUE(findStraightCorridors(space, findFurniture(space)).empty());
+}
+
+namespace {
+
+/// A corridor of 2 m with something `depth` deep that stands open to it over 4 m.
+PreparedPlaces besideCorridor(double depth) {
+  OccupancyGrid grid = unseen(28, 12);
+  room(grid, 2, 2, 26, 4);
+  room(grid, 12, 4, 16, 4.0 + depth);
+  return preparePlaces(grid, {}, Preparation::kFull);
+}
+
+int basinAt(const PreparedPlaces& places, double x, double y) {
+  const cv::Point cell(static_cast<int>(std::lround(x / kCell)) - places.space.origin.x,
+                       static_cast<int>(std::lround(y / kCell)) - places.space.origin.y);
+  return places.basins.labels.at<int>(cell);
+}
+
+}  // namespace
+
+TEST(CorridorBasins, ARoomThatStandsOpenIsCutOff) {
+  const PreparedPlaces places = besideCorridor(5.0);
+  ASSERT_FALSE(places.context.corridors.corridors.empty());
+  EXPECT_NE(basinAt(places, 14.0, 3.5), basinAt(places, 14.0, 4.5));
+}
+
+TEST(CorridorBasins, ANicheIsNot) {
+  const PreparedPlaces places = besideCorridor(1.0);
+  ASSERT_FALSE(places.context.corridors.corridors.empty());
+  EXPECT_EQ(basinAt(places, 14.0, 3.5), basinAt(places, 14.0, 4.5));
+}
+
+TEST(GeometricEvidence, SpeaksAgainstARoomAndACorridorBeingOne) {
+  const PreparedPlaces places = besideCorridor(5.0);
+  const RegionAdjacencyGraph graph(places.clearance, places.basins, places.space.resolution,
+                                   places.context);
+  const int corridor = basinAt(places, 14.0, 3.5), open_room = basinAt(places, 14.0, 4.5);
+  ASSERT_EQ(1u, graph.node(corridor).borders.count(open_room));
+  EXPECT_LT(geometricEvidence(graph, corridor, open_room), -0.5);
+}
+
+TEST(RayFans, LabelsDoNotGrowIntoClosedOnes) {
+  OccupancyGrid grid = unseen(24, 10);
+  room(grid, 2, 2, 8, 8);
+  fill(grid, 8.0, 4.8, 12.0, 5.1, OccupancyGrid::kFree);  // between unseen cells
+  fill(grid, 8.0, 4.8, 8.1, 5.1, OccupancyGrid::kFree);
+  const FreeSpace space = findFreeSpace(grid, {}, true);
+  ASSERT_GT(cv::countNonZero(space.closed), 0);
+  const cv::Mat labels = segmentPlaces(grid).labels;
+  EXPECT_NE(0, labelAt(grid, labels, 7.5, 5.0));
+  EXPECT_EQ(0, labelAt(grid, labels, 8.4, 4.95));
+}
+
+TEST(RayFans, WhatHasWallsAroundIsAPlaceAndAWedgeOfTheUnseenIsNot) {
+  cv::Mat labels(120, 200, CV_32S, cv::Scalar(0)), occupied(120, 200, CV_8U, cv::Scalar(0));
+  cv::rectangle(occupied, {8, 8}, {91, 111}, 255, 2);
+  cv::rectangle(labels, {10, 10}, {89, 109}, 1, cv::FILLED);
+  cv::rectangle(occupied, {98, 8}, {131, 61}, 255, 2);
+  cv::rectangle(labels, {100, 10}, {129, 59}, 2, cv::FILLED);
+  for (int x = 140; x < 190; ++x)  // a wedge
+    cv::line(labels, {x, 40 - (x - 140) / 3}, {x, 40 + (x - 140) / 3}, 3);
+  const std::vector<char> outside = findOutside(labels, 3, occupied, kCell);
+  EXPECT_EQ(0, outside[1]);
+  EXPECT_EQ(0, outside[2]);
+  EXPECT_EQ(1, outside[3]);
+}
+
+TEST(Furniture, ADeskIsFurnitureAndAPieceOfWallIsNot) {
+  OccupancyGrid grid = unseen(14, 14);
+  room(grid, 2, 2, 12, 12);
+  fill(grid, 4, 4, 5.6, 4.8, OccupancyGrid::kOccupied);  // a desk
+  fill(grid, 8, 6, 8.1, 8.5, OccupancyGrid::kOccupied);  // a piece of wall
+  const FreeSpace space = findFreeSpace(grid, {}, true);
+  const cv::Mat furniture = findFurniture(space);
+  const auto at = [&](double x, double y) {
+    return furniture.at<std::uint8_t>(static_cast<int>(y / kCell) - space.origin.y,
+                                      static_cast<int>(x / kCell) - space.origin.x);
+  };
+  EXPECT_EQ(255, at(4.8, 4.4));
+  EXPECT_EQ(0, at(8.05, 7.0));
 }

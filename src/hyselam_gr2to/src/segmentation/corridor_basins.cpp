@@ -17,6 +17,7 @@ constexpr double kFurther = 4.0;     // [m] that a corridor goes on beyond its e
 constexpr double kAsWide = 1.6;      // clearance of a basin in which it may, in half widths
 constexpr double kReachesOut = 1.0;  // [m^2] of a basin at the side of a corridor, at least
 constexpr double kScrap = 0.5;       // [m^2] what is left of a basin beside a corridor, at least
+constexpr double kNiche = 1.5;       // [m] and how deep: doorways in thick walls are no places
 
 /// The largest clearance of each basin [cells].
 std::vector<float> peaksOf(const Basins& basins, const cv::Mat& clearance) {
@@ -83,35 +84,59 @@ class Painter {
   cv::Mat of_cell_;
 };
 
-/// Basins that reach out of the side of a corridor. Where all are within, or beyond the ends, there
-/// is nothing to cut.
-std::vector<char> basinsToCut(const CorridorBasins& cut, const Basins& basins, double resolution) {
-  const auto size = static_cast<std::size_t>(basins.count) + 1;
-  std::vector<int> corridor_of(size, 0), inside(size, 0), beside(size, 0);
+/// The corridors that each basin has a part in.
+std::vector<std::vector<std::uint16_t>> corridorsOf(const cv::Mat& of_cell, const Basins& basins,
+                                                    std::vector<int>& inside) {
+  std::vector<std::vector<std::uint16_t>> of_basin(inside.size());
   for (int y = 0; y < basins.labels.rows; ++y) {
     const int* label = basins.labels.ptr<int>(y);
-    const std::uint16_t* corridor = cut.of_cell.ptr<std::uint16_t>(y);
+    const std::uint16_t* corridor = of_cell.ptr<std::uint16_t>(y);
     for (int x = 0; x < basins.labels.cols; ++x) {
       if (corridor[x] == 0) continue;
-      ++inside[static_cast<std::size_t>(label[x])];
-      corridor_of[static_cast<std::size_t>(label[x])] = corridor[x];
+      const auto basin = static_cast<std::size_t>(label[x]);
+      ++inside[basin];
+      auto& known = of_basin[basin];
+      const auto own = static_cast<std::uint16_t>(corridor[x] - 1);
+      if (std::find(known.begin(), known.end(), own) == known.end()) known.push_back(own);
     }
   }
+  return of_basin;
+}
+
+/// What reaches out of the sides of corridors.
+struct Reach {
+  std::vector<char> to_cut;  ///< of each basin
+  cv::Mat aside;             ///< CV_32F, how far a cell of theirs lies out of the side [cells]
+};
+
+/// Basins that reach out of the side of a corridor. Where all are within, or beyond the ends, there
+/// is nothing to cut.
+Reach reachOut(const CorridorBasins& cut, const Basins& basins, double resolution) {
+  const auto size = static_cast<std::size_t>(basins.count) + 1;
+  std::vector<int> inside(size, 0), beside(size, 0);
+  const auto of_basin = corridorsOf(cut.of_cell, basins, inside);
+  Reach reach{std::vector<char>(size, 0), cv::Mat(basins.labels.size(), CV_32F, cv::Scalar(0))};
   for (int y = 0; y < basins.labels.rows; ++y) {
     const int* label = basins.labels.ptr<int>(y);
     const std::uint16_t* corridor = cut.of_cell.ptr<std::uint16_t>(y);
+    float* aside = reach.aside.ptr<float>(y);
     for (int x = 0; x < basins.labels.cols; ++x) {
       const auto basin = static_cast<std::size_t>(label[x]);
-      if (corridor[x] != 0 || corridor_of[basin] == 0) continue;
-      const auto own = static_cast<std::size_t>(corridor_of[basin]) - 1;
-      if (cut.corridors[own].beside(cv::Point2d(x, y))) ++beside[basin];
+      if (corridor[x] != 0 || of_basin[basin].empty()) continue;
+      double nearest = -1.0;
+      for (const std::uint16_t k : of_basin[basin]) {
+        const double far = cut.corridors[k].aside(cv::Point2d(x, y));
+        if (far >= 0.0 && (nearest < 0.0 || far < nearest)) nearest = far;
+      }
+      if (nearest < 0.0) continue;
+      ++beside[basin];
+      aside[x] = static_cast<float>(nearest);
     }
   }
   const double least = kReachesOut / (resolution * resolution);
-  std::vector<char> to_cut(size, 0);
   for (std::size_t i = 1; i < size; ++i)
-    to_cut[i] = inside[i] >= 0.5 * least && beside[i] >= least ? 1 : 0;
-  return to_cut;
+    reach.to_cut[i] = inside[i] >= 0.5 * least && beside[i] >= least ? 1 : 0;
+  return reach;
 }
 
 }  // namespace
@@ -126,7 +151,8 @@ CorridorBasins cutAlongCorridors(std::vector<StraightCorridor> corridors, const 
     painter.paint(cut.corridors[k], static_cast<std::uint16_t>(k + 1));
   cut.of_cell = painter.ofCell();
 
-  const std::vector<char> to_cut = basinsToCut(cut, basins, resolution);
+  const Reach reach = reachOut(cut, basins, resolution);
+  const std::vector<char>& to_cut = reach.to_cut;
   // A basin that is cut: its parts in corridors have a value of their own, for each corridor.
   std::map<std::pair<int, int>, int> values;
   cv::Mat values_of_cells(basins.labels.size(), CV_16U);
@@ -149,8 +175,12 @@ CorridorBasins cutAlongCorridors(std::vector<StraightCorridor> corridors, const 
   const auto value_count = static_cast<std::size_t>(last_value) + 1;
   const CellRuns runs = connectedRuns(values_of_cells, 0, false);
   std::vector<int> sizes(static_cast<std::size_t>(runs.pieces), 0), value_of(sizes), becomes(sizes);
+  std::vector<float> depths(static_cast<std::size_t>(runs.pieces), 0.0f);
   std::vector<int> largest(value_count, -1);
   for (const CellRun& run : runs.runs) {
+    const float* aside = reach.aside.ptr<float>(run.y);
+    float& depth = depths[static_cast<std::size_t>(run.piece)];
+    depth = std::max(depth, *std::max_element(aside + run.first, aside + run.last + 1));
     sizes[static_cast<std::size_t>(run.piece)] += run.last - run.first + 1;
     value_of[static_cast<std::size_t>(run.piece)] = run.value;
   }
@@ -169,7 +199,8 @@ CorridorBasins cutAlongCorridors(std::vector<StraightCorridor> corridors, const 
     if (!corridor && to_cut[value] == 0) {  // basins may hang together at corners only
       if (name_of_value[value] == 0) name_of_value[value] = ++count;
       becomes[p] = name_of_value[value];
-    } else if (sizes[p] >= scrap || (corridor && largest[value] == piece)) {
+    } else if (corridor ? sizes[p] >= scrap || largest[value] == piece
+                        : sizes[p] >= scrap && depths[p] >= kNiche / resolution) {
       becomes[p] = ++count;
     }
   }

@@ -148,7 +148,11 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
   clean(space, masks.occupied);
   tellWallsFromUnseen(space.free, masks.occupied);
   space.occupied = masks.occupied;
-  if (without_ray_fans) closeRayFans(space.free, space.occupied, space.resolution);
+  if (without_ray_fans) {
+    space.closed = space.free.clone();
+    closeRayFans(space.free, space.occupied, space.resolution);
+    space.closed -= space.free;
+  }
   findPieces(space);
   seeThroughClutter(space, params.max_clutter_size);
   return space;
@@ -181,7 +185,12 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
   }
   const auto isFree = [&](int x, int y) {
     const std::int8_t cell = grid.at({x, y});
-    return cell >= 0 && cell <= free_max;
+    if (cell < 0 || cell > free_max) return false;
+    const int row = y * space.split / space.joined + space.split / 2 - space.origin.y;
+    const int column = columns[static_cast<std::size_t>(x)];
+    const bool inside =
+        row >= 0 && row < space.closed.rows && column >= 0 && column < space.closed.cols;
+    return !inside || space.closed.at<std::uint8_t>(row, column) == 0;
   };
   std::vector<cv::Point> front, next;
   const std::array<cv::Point, 4> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};

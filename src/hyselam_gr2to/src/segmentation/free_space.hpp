@@ -19,8 +19,9 @@ struct SolidPiece {
 };
 
 struct FreeSpace {
-  cv::Mat free;             ///< CV_8U, 255 free, 0 not; the outermost cells are never free
-  cv::Mat occupied;         ///< CV_8U, 255 where an obstacle was seen; not all else is free
+  cv::Mat free;      ///< CV_8U, 255 free, 0 not; the outermost cells are never free
+  cv::Mat occupied;  ///< CV_8U, 255 where an obstacle was seen; not all else is free
+  cv::Mat closed;    ///< CV_8U, 255 where fans of rays were closed; empty: none were looked for
   double resolution = 0.0;  ///< [m/cell]
   int joined = 1;           ///< so many cells of the grid, along each axis, make one cell
   int split = 1;            ///< ... or one cell of the grid makes so many; one of the two is 1
@@ -36,7 +37,7 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
                         bool without_ray_fans);
 
 /// Labels of working cells, brought to the grid's cells. Those that are free without a label get
-/// that of the nearest labelled one on a way through free cells of at most `reach` cells.
+/// that of the nearest labelled one on a way of at most `reach` free cells, none of a closed fan.
 cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::OccupancyGrid& grid,
                int free_max, int reach);
 

@@ -12,17 +12,20 @@ constexpr double kAcrossEnd = 2.0;  // in the middle of a basin: nothing stands 
 constexpr double kOnWallLine = -2.0;
 constexpr double kOneFurniture = 0.4, kTwoFurniture = 1.0;  // at the ends of the chord
 
-constexpr double kAlcove = 4.0;  // [m^2] what is smaller is left to the corridor as often as not
+constexpr double kAlcove = 4.0;   // [m^2] what is smaller is left to the corridor as often as not
+constexpr double kShallow = 2.0;  // [m] what is less deep behind its front is a niche
 constexpr double kDoor = 1.5, kDoorSpread = 0.15;  // [m] an opening is as often a door as not
 /// A place this many times deeper than its square front is as often another corridor as a room.
 constexpr double kDeep = 3.0;
 
 /// How likely what opens to the side of a corridor by `front` [m] is a room: through a door, or
-/// wide open. A deep one behind a wide front is another corridor.
+/// wide open. A deep one behind a wide front is another corridor, a shallow one a niche.
 double likelyRoom(double front, double area) {
+  const double mean_depth = area / front;
+  const double niche = 1.0 / (1.0 + mean_depth * mean_depth / (kShallow * kShallow));
   const double door = 1.0 / (1.0 + std::exp((front - kDoor) / kDoorSpread));
   const double depth = area / std::max(0.25, front * front) / kDeep;
-  return std::max(door, 1.0 / (1.0 + depth * depth));
+  return (1.0 - niche) * std::max(door, 1.0 / (1.0 + depth * depth));
 }
 
 }  // namespace

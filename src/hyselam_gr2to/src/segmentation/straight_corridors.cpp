@@ -12,9 +12,10 @@ namespace {
 
 constexpr double kNarrowest = 0.9, kWidest = 4.0;  // [m]
 constexpr double kLeastWall = 1.5;                 // [m] of wall on a line that is looked at
-constexpr int kSway = 3;           // [cells] faces of a line lie so far from it at most
-constexpr double kBlocked = 0.65;  // no corridor goes on where less of its width is free
-constexpr double kCrowded = 0.85;  // nor is it likely one where less is
+constexpr double kLeastElongation = 3.0;  // walls carry on along both sides of a room as well
+constexpr int kSway = 3;                  // [cells] faces of a line lie so far from it at most
+constexpr double kBlocked = 0.65;         // no corridor goes on where less of its width is free
+constexpr double kCrowded = 0.85;         // nor is it likely one where less is
 // Log-odds of a metre of corridor, by what stands at its sides.
 constexpr double kBothWalls = 1.0, kOneWall = -0.1, kNoWall = -0.8, kCrowd = -2.0;
 constexpr double kLargest = 32000.0;  // [cells] of a turned map
@@ -223,10 +224,11 @@ double StraightCorridor::beyond(cv::Point2d cell) const {
   return std::max({-t, t - length, 0.0});
 }
 
-bool StraightCorridor::beside(cv::Point2d cell) const {
-  const cv::Point2d along = end - start;
-  const double t = along.dot(cell - start);
-  return t >= 0.0 && t <= along.dot(along);
+double StraightCorridor::aside(cv::Point2d cell) const {
+  const cv::Point2d along = end - start, to = cell - start;
+  const double t = along.dot(to);
+  if (t < 0.0 || t > along.dot(along)) return -1.0;
+  return std::max(0.0, std::abs(along.cross(to)) / std::hypot(along.x, along.y) - half_width);
 }
 
 std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
@@ -247,6 +249,7 @@ std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
         if (width >= kNarrowest && width <= kWidest) findRuns(map, a, b, space.resolution, runs);
       }
     for (const Run& run : withoutCopies(std::move(runs))) {
+      if (run.last - run.first + 1 < kLeastElongation * (run.high - run.low + 1)) continue;
       const double middle = 0.5 * (run.low + run.high);
       corridors.push_back({fromHere(map, run.first - 0.5, middle),
                            fromHere(map, run.last + 0.5, middle), 0.5 * (run.high - run.low + 1),

@@ -19,8 +19,10 @@ struct StraightCorridor {
   bool contains(cv::Point2d cell) const;
   /// How far a cell between the two lines lies beyond the ends [cells]; -1: not between the lines.
   double beyond(cv::Point2d cell) const;
+  /// How far a cell between the two ends lies out of the side [cells], 0 within; -1: beyond an end.
+  double aside(cv::Point2d cell) const;
   /// Whether it lies between the two ends, however far to the side.
-  bool beside(cv::Point2d cell) const;
+  bool beside(cv::Point2d cell) const { return aside(cell) >= 0.0; }
 };
 
 /// The surest first; of the same direction, none covers much of another. `furniture`: CV_8U, what
