@@ -29,7 +29,7 @@ cv::Mat scene(std::uint64_t seed, const cv::Size& size) {
 
 /// Frames between two scenes of their place, each view and value a little different.
 Samples learned(int frames) {
-  const auto descriptor = makeDescriptor("FUSION");
+  const auto descriptor = makeDescriptor("FUSION-LEARNT");
   std::vector<std::vector<float>> scenes;
   for (int i = 0; i < kScenes; ++i) {
     scenes.push_back(descriptor->compute(scene(static_cast<std::uint64_t>(i) + 1, {160, 120})));
@@ -77,7 +77,7 @@ const std::string& calibration() {
 /// Signature, places, and the distances that the filter over poses takes.
 void frameToPlace(benchmark::State& state, bool full_scan) {
   FusionClassifier classifier(many(), kPlaces, fusion(), calibration(), full_scan);
-  const auto descriptor = makeDescriptor("FUSION");
+  const auto descriptor = makeDescriptor("FUSION-LEARNT");
   const cv::Mat image = scene(3, {640, 480});
   std::vector<float> signature(static_cast<std::size_t>(descriptor->size()));
   std::vector<double> probabilities(kPlaces);
@@ -92,7 +92,7 @@ void frameToPlace(benchmark::State& state, bool full_scan) {
 /// The same, without the signature.
 void search(benchmark::State& state, bool full_scan) {
   FusionClassifier classifier(many(), kPlaces, fusion(), calibration(), full_scan);
-  const auto signature = makeDescriptor("FUSION")->compute(scene(3, {640, 480}));
+  const auto signature = makeDescriptor("FUSION-LEARNT")->compute(scene(3, {640, 480}));
   std::vector<double> probabilities(kPlaces);
   for (auto _ : state) {
     classifier.predict(signature.data(), probabilities.data());
@@ -105,7 +105,7 @@ void search(benchmark::State& state, bool full_scan) {
 /// for only where it matters.
 void rivals(benchmark::State& state, bool all) {
   FusionClassifier classifier(many(), kPlaces, fusion(), calibration(), false);
-  const auto signature = makeDescriptor("FUSION")->compute(scene(3, {640, 480}));
+  const auto signature = makeDescriptor("FUSION-LEARNT")->compute(scene(3, {640, 480}));
   std::vector<double> probabilities(kPlaces);
   classifier.predict(signature.data(), probabilities.data());
   LearnedViews views(many(), 2.0, hyselam::radians(18.0));

@@ -26,7 +26,7 @@ using fsd_localization::Localizer;
 using hyselam::Pose2;
 
 struct Options {
-  std::string plan = "office", descriptor = "FUSION", keep;
+  std::string plan = "office", descriptor = "FUSION-LEARNT", keep;
   int teleports = 20, unnamed = 0;
   double between = 15.0, hour = 13.0, reach = 1.0, patience = 3.0, clouds = 0.3;
   std::vector<double> learn{9.0, 20.0}, rates{5.0};

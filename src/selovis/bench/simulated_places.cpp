@@ -24,7 +24,7 @@ struct Options {
   std::string route = "office";
   std::uint64_t generate = 0, look = 1;
   std::vector<double> learn{9.0, 20.0}, ask{12.0, 17.0};
-  std::vector<std::string> descriptors{"FUSION", "GLANCE"};
+  std::vector<std::string> descriptors{"FUSION-LEARNT", "FUSION", "GLANCE"};
   std::vector<std::string> kernels{"auto"};
   double rate = 2.0;
   bool furniture = false;

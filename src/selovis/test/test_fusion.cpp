@@ -164,6 +164,11 @@ TEST(Fusion, OneTourIsCalibratedByStretchesAndTooFewFramesByNothing) {
   EXPECT_EQ(few.calibration().frames, 0u);
   EXPECT_GT(few.calibration().parts[0].weight, few.calibration().parts[1].weight)
       << "without evidence colors are trusted less";
+  Samples learned_elsewhere = world.learn(1, 1, 3);
+  learned_elsewhere.parts[0].name = "LEARNT";
+  const FusionClassifier own(learned_elsewhere, kPlaces, fusion());
+  EXPECT_EQ(own.calibration().parts[0].weight, 0.0) << "nor is what was learned elsewhere";
+  EXPECT_GT(own.calibration().parts[1].weight, 0.0);
 }
 
 TEST(Fusion, StrangerIsNovelAlsoWhereTooLittleWasLearnedToLeaveAnythingOut) {

@@ -51,7 +51,7 @@ struct TrainingFrame {
 };
 
 struct TrainingOptions {
-  std::string descriptor = "FUSION";
+  std::string descriptor = "FUSION-LEARNT";
   DescriptorParams descriptor_params;
   ClassifierParams classifier;
   /// Sideways shifts in image widths, each -0.5 to 0.5; none: viewsFor(classifier.kernel).

@@ -67,7 +67,7 @@ struct SupervisionParams {
 
 struct SemanticLocalizationParams {
   std::string model;                      ///< directory; empty: nothing learned yet
-  std::string descriptor = "FUSION";      ///< without a model
+  std::string descriptor = "FUSION-LEARNT";      ///< without a model
   SvmKernel kernel = SvmKernel::kFusion;  ///< without a model
   ImageRecognizerParams recognizer;
   ImageInputParams input;

@@ -37,7 +37,8 @@ constexpr double kLaterTours = 0.6;
 constexpr int kNextFrames[] = {1, 2};  // gaps of the frames that lie as near as one can learn
 
 constexpr double kLeastSpan = 0.1;  // of logarithms of distances, between near and far
-constexpr double kLittle = 0.02;    // share of parts that are all out of range
+constexpr char kLearntPart[] = "LEARNT";
+constexpr double kLittle = 0.02;  // share of parts that are all out of range
 constexpr double kUnknownRate = 0.05;
 constexpr double kMaxEvidenceScale = 4.0;
 
@@ -383,6 +384,10 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
   }
   if (asked.size() < kLeastFrames) {
     learnTypicalDistances(samples, places, beta, frames, exemplars, c);
+    // What was learned elsewhere is believed where its worth could be measured.
+    for (std::size_t p = 0; p < c.parts.size(); ++p) {
+      if (samples.parts[p].name == kLearntPart) c.parts[p].weight = c.parts[p].near_weight = 0.0;
+    }
     return c;
   }
   c.left_out = gap == LeavingOut::kWholeTour ? "tours" : "stretches";
