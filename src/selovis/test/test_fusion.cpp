@@ -466,7 +466,7 @@ PlaceModel learnedModel() {
 TEST(Fusion, DefaultModelTellsItsPartsInTheManifestAndIsReadBack) {
   TemporaryDirectory folder;
   const PlaceModel model = learnedModel();
-  EXPECT_EQ(model.descriptor, "FUSION");
+  EXPECT_EQ(model.descriptor, "FUSION-LEARNT");
   EXPECT_EQ(model.classifier.kernel, SvmKernel::kFusion);
   EXPECT_EQ(model.views.size(), 5u);
   savePlaceModel(model, folder / "m");
@@ -476,10 +476,10 @@ TEST(Fusion, DefaultModelTellsItsPartsInTheManifestAndIsReadBack) {
   std::vector<std::string> parts;
   for (const auto& part : j["fusion"]["parts"]) parts.push_back(part["name"]);
   EXPECT_EQ(parts, (std::vector<std::string>{"LGOP", "H-GIST", "SV-GIST", "LBPbyHSV-U8N", "SLBP",
-                                             "HSV-HIST", "LOGCHROMA", "RANKS"}));
+                                             "HSV-HIST", "LOGCHROMA", "RANKS", "LEARNT"}));
   const PlaceModel again = loadPlaceModel(folder / "m");
   EXPECT_EQ(again.svm, model.svm);
-  EXPECT_EQ(again.samples.parts.size(), 8u);
+  EXPECT_EQ(again.samples.parts.size(), 9u);
   auto bad = j;
   bad["fusion"]["parts"][0]["weight"] = "much";
   writeFile(manifest, bad.dump());
