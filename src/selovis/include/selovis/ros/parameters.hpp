@@ -66,9 +66,9 @@ struct SupervisionParams {
 };
 
 struct SemanticLocalizationParams {
-  std::string model;                      ///< directory; empty: nothing learned yet
-  std::string descriptor = "FUSION-LEARNT";      ///< without a model
-  SvmKernel kernel = SvmKernel::kFusion;  ///< without a model
+  std::string model;                         ///< directory; empty: nothing learned yet
+  std::string descriptor = "FUSION-LEARNT";  ///< without a model
+  SvmKernel kernel = SvmKernel::kFusion;     ///< without a model
   ImageRecognizerParams recognizer;
   ImageInputParams input;
   FrameIds frame_ids;
