@@ -59,7 +59,7 @@ inline std::vector<hyselam_sim::Point2> wayIn(const hyselam_sim::PlanPlace& plac
   };
   const std::size_t n = place.outline.size();
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 2; j < n; ++j) {  // not neighbours, if one can help it: a longer way
+    for (std::size_t j = i + 2; j < n; ++j) {  // not the next corner: a longer way
       const hyselam::Point2 a = halfway(i), b = halfway(j);
       const double l = hyselam_sim::length(b - a);
       if (l > 0.0 && !(walls.cast(a, (1.0 / l) * (b - a), l) < l)) {

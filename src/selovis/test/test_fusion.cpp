@@ -141,16 +141,46 @@ TEST(Fusion, WeightsFollowHowNearTheFrameIs) {
 }
 
 TEST(Fusion, NearFramesAreToldByWhatTellsTheNextFrame) {
-  World world(12, true);
-  const FusionClassifier fused(world.learn(2), kPlaces, fusion());
-  double far = 0.0, near = 0.0;
-  for (const PartCalibration& part : fused.calibration().parts) {
-    EXPECT_GT(part.near_median, 0.0);
-    EXPECT_LE(part.near_median, 1.5 * part.median);
-    far += part.weight;
-    near += part.near_weight;
+  // One tour that comes to each place twice, a minute apart. "form" tells the places, coarsely;
+  // "color" drifts: it is that of the next frame, and tells nothing a minute later.
+  hyselam::Rng rng(12);
+  Samples samples;
+  samples.size = 2 * kPartSize;
+  samples.parts = {{"form", kPartSize, 1.0, false}, {"color", kPartSize, 1.0, true}};
+  std::vector<float> drift(kPartSize, 0.0f);
+  for (int i = 0; i < 20 * kPlaces; ++i) {
+    const int place = i / 10 % kPlaces;
+    if (i % 10 == 0) {
+      for (float& v : drift) v = static_cast<float>(10.0 * rng.uniform());
+    }
+    std::vector<float> signature;
+    for (int k = 0; k < kPartSize; ++k) {
+      signature.push_back(static_cast<float>((k % kPlaces == place) + rng.gaussian(0.0, 0.8)));
+    }
+    for (const float v : drift) {
+      signature.push_back(v + static_cast<float>(rng.gaussian(0.0, 0.02)));
+    }
+    samples.add(signature.data(), place, i);
   }
-  EXPECT_NEAR(near, far, 1e-9) << "only the shares of the parts differ";
+  const FusionClassifier fused(samples, kPlaces, fusion());
+  EXPECT_EQ(fused.calibration().left_out, "stretches");
+  const PartCalibration &form = fused.calibration().parts[0], &color = fused.calibration().parts[1];
+  EXPECT_LT(color.near_median, 0.1 * color.median);
+  EXPECT_GT(color.near_weight / form.near_weight, 2.0 * color.weight / form.weight);
+  EXPECT_NEAR(form.near_weight + color.near_weight, form.weight + color.weight, 1e-9)
+      << "only the shares of the parts differ";
+}
+
+TEST(Fusion, CalibrationOfSharpPartsIsReadBack) {
+  World world(13, true);
+  Samples samples = world.learn(2);
+  const FusionClassifier fused(samples, kPlaces, fusion());
+  auto sharp = nlohmann::json::parse(fused.state());
+  for (auto& part : sharp["parts"]) part["weight"] = part["near_weight"] = 5.0;
+  EXPECT_NO_THROW(FusionClassifier(samples, kPlaces, fusion(), sharp.dump()));
+  for (const PartCalibration& part : fused.calibration().parts) {
+    EXPECT_LE(part.near_weight, 5.0);
+  }
 }
 
 TEST(Fusion, OneTourIsCalibratedByStretchesAndTooFewFramesByNothing) {
@@ -165,7 +195,7 @@ TEST(Fusion, OneTourIsCalibratedByStretchesAndTooFewFramesByNothing) {
   EXPECT_GT(few.calibration().parts[0].weight, few.calibration().parts[1].weight)
       << "without evidence colors are trusted less";
   Samples learned_elsewhere = world.learn(1, 1, 3);
-  learned_elsewhere.parts[0].name = "LEARNT";
+  learned_elsewhere.parts[0].learned_elsewhere = true;
   const FusionClassifier own(learned_elsewhere, kPlaces, fusion());
   EXPECT_EQ(own.calibration().parts[0].weight, 0.0) << "nor is what was learned elsewhere";
   EXPECT_GT(own.calibration().parts[1].weight, 0.0);
@@ -383,6 +413,9 @@ TEST(Fusion, CalibrationIsReadBackAndOthersAreRefused) {
   refused(j);
   j = good;
   j["parts"][0]["near_weight"] = -1.0;
+  refused(j);
+  j = good;
+  j["parts"][0].erase("near_median");
   refused(j);
   j = good;
   j["parts"][0]["largest"] = j["parts"][0]["median"];

@@ -17,7 +17,7 @@ constexpr double kFurther = 4.0;     // [m] that a corridor goes on beyond its e
 constexpr double kAsWide = 1.6;      // clearance of a basin in which it may, in half widths
 constexpr double kReachesOut = 1.0;  // [m^2] of a basin at the side of a corridor, at least
 constexpr double kScrap = 0.5;       // [m^2] what is left of a basin beside a corridor, at least
-constexpr double kNiche = 1.5;       // [m] and how deep: doorways in thick walls are no places
+constexpr double kNiche = 1.5;       // [m] deep at least: doorways in thick walls are no places
 
 /// The largest clearance of each basin [cells].
 std::vector<float> peaksOf(const Basins& basins, const cv::Mat& clearance) {

@@ -22,10 +22,10 @@ constexpr double kDeep = 3.0;
 /// wide open. A deep one behind a wide front is another corridor, a shallow one a niche.
 double likelyRoom(double front, double area) {
   const double mean_depth = area / front;
-  const double niche = 1.0 / (1.0 + mean_depth * mean_depth / (kShallow * kShallow));
+  const double likely_niche = 1.0 / (1.0 + mean_depth * mean_depth / (kShallow * kShallow));
   const double door = 1.0 / (1.0 + std::exp((front - kDoor) / kDoorSpread));
   const double depth = area / std::max(0.25, front * front) / kDeep;
-  return (1.0 - niche) * std::max(door, 1.0 / (1.0 + depth * depth));
+  return (1.0 - likely_niche) * std::max(door, 1.0 / (1.0 + depth * depth));
 }
 
 }  // namespace

@@ -142,6 +142,16 @@ void PlaceLearning::setMap(std::shared_ptr<const Map> map,
 void PlaceLearning::learnFromMap() {
   std::vector<LearnedFrame> frames = framesFromMap(*map_, *model_);
   const std::size_t count = frames.size();
+  if (count == 0) {
+    for (const auto& place : map_->places) {
+      for (const auto& signature : place.signatures) {
+        if (signature.appearance.type == model_->descriptor) continue;
+        ROS_WARN_STREAM_ONCE(log_name_ << " the map's signatures are of descriptor '"
+                                       << signature.appearance.type << "', not of '"
+                                       << model_->descriptor << "': nothing is learned from them");
+      }
+    }
+  }
   if (count == 0 || !train(std::move(frames))) return;
   map_learned_ = true;
   frames_.in_training = frames_.trained;

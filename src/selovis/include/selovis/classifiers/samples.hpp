@@ -20,6 +20,8 @@ struct SignaturePart {
   double power = 0.5;  ///< that each value is raised to before distances are taken
   /// It counts colors as they are, and so hangs on the color of the light.
   bool absolute_color = false;
+  /// Its weights were learned in other buildings: it is believed where its worth can be measured.
+  bool learned_elsewhere = false;
 };
 
 /// Frame numbers of two tours are at least so far apart, ...

@@ -37,8 +37,7 @@ constexpr double kLaterTours = 0.6;
 constexpr int kNextFrames[] = {1, 2};  // gaps of the frames that lie as near as one can learn
 
 constexpr double kLeastSpan = 0.1;  // of logarithms of distances, between near and far
-constexpr char kLearntPart[] = "LEARNT";
-constexpr double kLittle = 0.02;  // share of parts that are all out of range
+constexpr double kLittle = 0.02;    // share of parts that are all out of range
 constexpr double kUnknownRate = 0.05;
 constexpr double kMaxEvidenceScale = 4.0;
 
@@ -330,15 +329,16 @@ void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector
 
 void weightsAt(const FusionCalibration& calibration, const std::vector<double>& nearest,
                std::vector<double>& weights) {
-  std::vector<double> places;  // 0 as near as the next frame, 1 as far as another tour
+  std::vector<double> positions;  // 0 as near as the next frame, 1 as far as another tour
   for (std::size_t p = 0; p < nearest.size(); ++p) {
     const PartCalibration& part = calibration.parts[p];
     if (part.near_median <= 0.0 || part.median <= 0.0) continue;
     const double span = std::log(part.median / part.near_median);
     if (span < kLeastSpan) continue;
-    places.push_back(std::log(std::max(kMinSquaredDistance, nearest[p]) / part.near_median) / span);
+    positions.push_back(std::log(std::max(kMinSquaredDistance, nearest[p]) / part.near_median) /
+                        span);
   }
-  const double far = places.empty() ? 1.0 : std::clamp(quantile(places, 0.5), 0.0, 1.0);
+  const double far = positions.empty() ? 1.0 : std::clamp(quantile(positions, 0.5), 0.0, 1.0);
   for (std::size_t p = 0; p < nearest.size(); ++p) {
     const PartCalibration& part = calibration.parts[p];
     weights[p] = std::pow(part.weight, far) * std::pow(part.near_weight, 1.0 - far);
@@ -384,9 +384,8 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
   }
   if (asked.size() < kLeastFrames) {
     learnTypicalDistances(samples, places, beta, frames, exemplars, c);
-    // What was learned elsewhere is believed where its worth could be measured.
     for (std::size_t p = 0; p < c.parts.size(); ++p) {
-      if (samples.parts[p].name == kLearntPart) c.parts[p].weight = c.parts[p].near_weight = 0.0;
+      if (samples.parts[p].learned_elsewhere) c.parts[p].weight = c.parts[p].near_weight = 0.0;
     }
     return c;
   }
@@ -420,7 +419,7 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
   double far_sum = 0.0;
   for (const PartCalibration& part : c.parts) far_sum += part.weight;
   const double scale = far_sum / std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (double& w : weights) w *= scale;
+  for (double& w : weights) w = std::min(kMaxWeight, scale * w);
   for (std::size_t p = 0; p < c.parts.size(); ++p) {
     c.parts[p].near_weight = weights[p];
     c.parts[p].near_median = medianNearest(next, p);
@@ -509,6 +508,10 @@ FusionCalibration fusionCalibrationFromText(const std::string& text,
       calibration.accuracy = number(part, "accuracy", 0.0, 1.0);
       calibration.median = number(part, "median", 0.0, kMost);
       // Older models have one weight.
+      if (part.contains("near_weight") != part.contains("near_median")) {
+        throw hyselam::InputError("fusion", "near_weight, near_median",
+                                  "one is there without the other");
+      }
       calibration.near_weight = part.contains("near_weight")
                                     ? number(part, "near_weight", 0.0, kMaxWeight)
                                     : calibration.weight;

@@ -150,7 +150,7 @@ class WithLearntPart : public Descriptor {
   int size() const override { return of_->size() + projection_.size(); }
   std::vector<SignaturePart> parts() const override {
     std::vector<SignaturePart> all = of_->parts();
-    all.push_back({"LEARNT", projection_.size(), 1.0});
+    all.push_back({"LEARNT", projection_.size(), 1.0, false, true});
     return all;
   }
   void compute(const cv::Mat& image, const SensorReadings& readings, float* out) override {
