@@ -162,12 +162,15 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
                int free_max, int reach) {
   const int width = grid.geometry.width, height = grid.geometry.height;
   cv::Mat out(height, width, CV_16U, cv::Scalar(0));
+  const auto rowOf = [&space](int y) {
+    return y * space.split / space.joined + space.split / 2 - space.origin.y;
+  };
   std::vector<int> columns(static_cast<std::size_t>(width));
   for (int x = 0; x < width; ++x)
     columns[static_cast<std::size_t>(x)] =
         x * space.split / space.joined + space.split / 2 - space.origin.x;
   for (int y = 0; y < height; ++y) {
-    const int row = y * space.split / space.joined + space.split / 2 - space.origin.y;
+    const int row = rowOf(y);
     if (row < 0 || row >= labels.rows) continue;
     const int* from = labels.ptr<int>(row);
     std::uint16_t* to = out.ptr<std::uint16_t>(y);
@@ -186,7 +189,7 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
   const auto isFree = [&](int x, int y) {
     const std::int8_t cell = grid.at({x, y});
     if (cell < 0 || cell > free_max) return false;
-    const int row = y * space.split / space.joined + space.split / 2 - space.origin.y;
+    const int row = rowOf(y);
     const int column = columns[static_cast<std::size_t>(x)];
     const bool inside =
         row >= 0 && row < space.closed.rows && column >= 0 && column < space.closed.cols;

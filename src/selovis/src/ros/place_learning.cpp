@@ -15,6 +15,17 @@ namespace {
 constexpr double kMaxPlaceAge = 3.0;   // [s] of a PlaceState against an image
 constexpr double kPollPeriod = 0.005;  // [s] of wall time, for the end of a training
 
+/// Of the map's first signature that is not of this one; empty if there is none.
+std::string otherDescriptor(const hyselam_topo::AugmentedTopologicalMap& map,
+                            const std::string& descriptor) {
+  for (const auto& place : map.places) {
+    for (const auto& signature : place.signatures) {
+      if (signature.appearance.type != descriptor) return signature.appearance.type;
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 PlaceLabels::PlaceLabels(ros::NodeHandle nh, double min_border_distance)
@@ -143,16 +154,15 @@ void PlaceLearning::learnFromMap() {
   std::vector<LearnedFrame> frames = framesFromMap(*map_, *model_);
   const std::size_t count = frames.size();
   if (count == 0) {
-    for (const auto& place : map_->places) {
-      for (const auto& signature : place.signatures) {
-        if (signature.appearance.type == model_->descriptor) continue;
-        ROS_WARN_STREAM_ONCE(log_name_ << " the map's signatures are of descriptor '"
-                                       << signature.appearance.type << "', not of '"
-                                       << model_->descriptor << "': nothing is learned from them");
-      }
+    const std::string other = otherDescriptor(*map_, model_->descriptor);
+    if (!other.empty()) {
+      ROS_WARN_STREAM_ONCE(log_name_ << " the map's signatures are of descriptor '" << other
+                                     << "', not of '" << model_->descriptor
+                                     << "': nothing is learned from them");
     }
+    return;
   }
-  if (count == 0 || !train(std::move(frames))) return;
+  if (!train(std::move(frames))) return;
   map_learned_ = true;
   frames_.in_training = frames_.trained;
   ROS_INFO_STREAM(log_name_ << " learning from " << count << " signatures of the map");

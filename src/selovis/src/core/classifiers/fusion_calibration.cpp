@@ -329,16 +329,24 @@ void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector
 
 void weightsAt(const FusionCalibration& calibration, const std::vector<double>& nearest,
                std::vector<double>& weights) {
-  std::vector<double> positions;  // 0 as near as the next frame, 1 as far as another tour
+  // Where the parts lie, 0 as near as the next frame, 1 as far as another tour: for now in
+  // `weights`, since no memory is to be allocated for a frame.
+  std::size_t known = 0;
   for (std::size_t p = 0; p < nearest.size(); ++p) {
     const PartCalibration& part = calibration.parts[p];
     if (part.near_median <= 0.0 || part.median <= 0.0) continue;
     const double span = std::log(part.median / part.near_median);
     if (span < kLeastSpan) continue;
-    positions.push_back(std::log(std::max(kMinSquaredDistance, nearest[p]) / part.near_median) /
-                        span);
+    weights[known++] =
+        std::log(std::max(kMinSquaredDistance, nearest[p]) / part.near_median) / span;
   }
-  const double far = positions.empty() ? 1.0 : std::clamp(quantile(positions, 0.5), 0.0, 1.0);
+  double far = 1.0;
+  if (known > 0) {
+    const auto begin = weights.begin(),
+               middle = begin + static_cast<std::ptrdiff_t>((known - 1) / 2);
+    std::nth_element(begin, middle, begin + static_cast<std::ptrdiff_t>(known));
+    far = std::clamp(*middle, 0.0, 1.0);
+  }
   for (std::size_t p = 0; p < nearest.size(); ++p) {
     const PartCalibration& part = calibration.parts[p];
     weights[p] = std::pow(part.weight, far) * std::pow(part.near_weight, 1.0 - far);

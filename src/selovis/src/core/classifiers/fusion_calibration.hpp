@@ -45,6 +45,7 @@ void placeLogLikelihoods(const std::vector<Neighbor>& nearest, const std::vector
 
 /// The weights of the parts for a frame with these squared nearest distances: between those for far
 /// and near frames, by the median over the parts of where the distance lies between their medians.
+/// @param weights one for each part.
 void weightsAt(const FusionCalibration& calibration, const std::vector<double>& nearest,
                std::vector<double>& weights);
 
