@@ -1,5 +1,8 @@
 #include "hyselam_gr2to/segmentation/border_model.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <locale>
 #include <sstream>
@@ -22,6 +25,70 @@ constexpr std::size_t kMaxNodes = 4095;  // of a tree
 constexpr double kStep = 0.1;    // of the logarithms
 constexpr int kLengthSteps = 2;  // to either side
 constexpr int kClearanceSteps = 1;
+constexpr std::size_t kSizes = (2 * kLengthSteps + 1) * (2 * kClearanceSteps + 1);
+
+/// A border in all these sizes, which walk through a tree together as long as they answer alike:
+/// nearly always, since they differ little and in few features.
+class BorderInSizes {
+ public:
+  explicit BorderInSizes(const BorderFeatures& border) {
+    std::size_t size = 0;
+    for (int i = -kLengthSteps; i <= kLengthSteps; ++i) {
+      for (int j = -kClearanceSteps; j <= kClearanceSteps; ++j, ++size) {
+        weights_[size] = (kLengthSteps + 1 - std::abs(i)) * (kClearanceSteps + 1 - std::abs(j));
+        const BorderFeatures rescaled = rescaledBorder(border, i * kStep, j * kStep);
+        for (std::size_t f = 0; f < kBorderFeatureCount; ++f) values_[f][size] = rescaled.values[f];
+      }
+    }
+    for (std::size_t f = 0; f < kBorderFeatureCount; ++f) {
+      const auto [low, high] = std::minmax_element(values_[f].begin(), values_[f].end());
+      low_[f] = *low;
+      high_[f] = *high;
+    }
+  }
+
+  /// The mean of the trees' sums.
+  double mean(const BoostedTrees& trees) {
+    for (const int root : trees.roots()) add(trees.nodes(), root, (1u << kSizes) - 1u);
+    double sum = 0.0;
+    int weights = 0;
+    for (std::size_t size = 0; size < kSizes; ++size) {
+      sum += weights_[size] * sums_[size];
+      weights += weights_[size];
+    }
+    return sum / weights;
+  }
+
+ private:
+  /// Adds the answers of a tree from a node on for the sizes in a set, a bit each.
+  void add(const std::vector<TreeNode>& nodes, int at, std::uint32_t sizes) {
+    const TreeNode* node = &nodes[static_cast<std::size_t>(at)];
+    while (node->feature >= 0) {
+      const auto f = static_cast<std::size_t>(node->feature);
+      if (high_[f] <= node->threshold) {
+        node = &nodes[static_cast<std::size_t>(node->left)];
+        continue;
+      }
+      if (!(low_[f] > node->threshold)) {
+        std::uint32_t left = 0;
+        for (std::size_t size = 0; size < kSizes; ++size)
+          left |= (values_[f][size] <= node->threshold ? 1u : 0u) << size;
+        left &= sizes;
+        if (left != 0) add(nodes, node->left, left);
+        sizes &= ~left;
+        if (sizes == 0) return;
+      }
+      node = &nodes[static_cast<std::size_t>(node->left + 1)];
+    }
+    for (std::size_t size = 0; size < kSizes; ++size)
+      if ((sizes >> size & 1u) != 0) sums_[size] += node->threshold;
+  }
+
+  std::array<int, kSizes> weights_{};
+  std::array<std::array<double, kSizes>, kBorderFeatureCount> values_;
+  std::array<double, kBorderFeatureCount> low_, high_;
+  std::array<double, kSizes> sums_{};
+};
 
 /// Reads the trees of a model.
 class ModelReader {
@@ -132,16 +199,7 @@ std::string BorderModel::toText() const {
 }
 
 double BorderModel::oddsOfOnePlace(const BorderFeatures& border) const {
-  double sum = 0.0;
-  int weights = 0;
-  for (int i = -kLengthSteps; i <= kLengthSteps; ++i) {
-    for (int j = -kClearanceSteps; j <= kClearanceSteps; ++j) {
-      const int weight = (kLengthSteps + 1 - std::abs(i)) * (kClearanceSteps + 1 - std::abs(j));
-      sum += weight * trees_(rescaledBorder(border, i * kStep, j * kStep).values.data());
-      weights += weight;
-    }
-  }
-  return sum / weights;
+  return BorderInSizes(border).mean(trees_);
 }
 
 }  // namespace hyselam_topo

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "cell_runs.hpp"
@@ -45,13 +44,14 @@ class Painter {
         of_cell_(basins.labels.size(), CV_16U, cv::Scalar(0)) {}
 
   void paint(const StraightCorridor& c, std::uint16_t name) {
-    std::set<int> own;
+    std::vector<char> own(peaks_.size(), 0);
     visit(c, 0.0, [&](int label, std::uint16_t& cell) {
       cell = name;
-      if (peaks_[static_cast<std::size_t>(label)] <= kAsWide * c.half_width) own.insert(label);
+      const auto basin = static_cast<std::size_t>(label);
+      own[basin] = peaks_[basin] <= kAsWide * c.half_width ? 1 : 0;
     });
     visit(c, further_, [&](int label, std::uint16_t& cell) {
-      if (own.count(label) > 0) cell = name;
+      if (own[static_cast<std::size_t>(label)] != 0) cell = name;
     });
   }
   const cv::Mat& ofCell() const { return of_cell_; }
@@ -61,16 +61,15 @@ class Painter {
   template <typename Visit>
   void visit(const StraightCorridor& c, double beyond, Visit visit) {
     const double reach = c.half_width + beyond + 1.0;
-    const cv::Rect box =
-        cv::Rect(cv::Point(static_cast<int>(std::floor(std::min(c.start.x, c.end.x) - reach)),
-                           static_cast<int>(std::floor(std::min(c.start.y, c.end.y) - reach))),
-                 cv::Point(static_cast<int>(std::ceil(std::max(c.start.x, c.end.x) + reach)) + 1,
-                           static_cast<int>(std::ceil(std::max(c.start.y, c.end.y) + reach)) + 1)) &
-        cv::Rect({0, 0}, labels_.size());
-    for (int y = box.y; y < box.y + box.height; ++y) {
+    const auto row = [this](double y) {
+      return static_cast<int>(std::clamp(y, 0.0, static_cast<double>(labels_.rows)));
+    };
+    const int end = row(std::max(c.start.y, c.end.y) + reach + 1.0);
+    for (int y = row(std::min(c.start.y, c.end.y) - reach); y < end; ++y) {
       const int* label = labels_.ptr<int>(y);
       std::uint16_t* out = of_cell_.ptr<std::uint16_t>(y);
-      for (int x = box.x; x < box.x + box.width; ++x) {
+      const auto [begin, last] = c.columns(y, beyond, labels_.cols);
+      for (int x = begin; x < last; ++x) {
         if (label[x] == 0 || out[x] != 0) continue;
         const double far = c.beyond(cv::Point2d(x, y));
         if (far >= 0.0 && far <= beyond) visit(label[x], out[x]);
@@ -103,10 +102,21 @@ std::vector<std::vector<std::uint16_t>> corridorsOf(const cv::Mat& of_cell, cons
   return of_basin;
 }
 
+/// How far a cell lies out of the side of the nearest of some corridors [cells]; -1: beside none.
+double asideOf(const std::vector<StraightCorridor>& corridors,
+               const std::vector<std::uint16_t>& some, cv::Point2d cell) {
+  double nearest = -1.0;
+  for (const std::uint16_t k : some) {
+    const double far = corridors[k].aside(cell);
+    if (far >= 0.0 && (nearest < 0.0 || far < nearest)) nearest = far;
+  }
+  return nearest;
+}
+
 /// What reaches out of the sides of corridors.
 struct Reach {
-  std::vector<char> to_cut;  ///< of each basin
-  cv::Mat aside;             ///< CV_32F, how far a cell of theirs lies out of the side [cells]
+  std::vector<std::vector<std::uint16_t>> corridors;  ///< that a basin has a part in
+  std::vector<char> to_cut;                           ///< of each basin
 };
 
 /// Basins that reach out of the side of a corridor. Where all are within, or beyond the ends, there
@@ -114,26 +124,17 @@ struct Reach {
 Reach reachOut(const CorridorBasins& cut, const Basins& basins, double resolution) {
   const auto size = static_cast<std::size_t>(basins.count) + 1;
   std::vector<int> inside(size, 0), beside(size, 0);
-  const auto of_basin = corridorsOf(cut.of_cell, basins, inside);
-  Reach reach{std::vector<char>(size, 0), cv::Mat(basins.labels.size(), CV_32F, cv::Scalar(0))};
+  Reach reach{corridorsOf(cut.of_cell, basins, inside), std::vector<char>(size, 0)};
+  const double least = kReachesOut / (resolution * resolution);
   for (int y = 0; y < basins.labels.rows; ++y) {
     const int* label = basins.labels.ptr<int>(y);
     const std::uint16_t* corridor = cut.of_cell.ptr<std::uint16_t>(y);
-    float* aside = reach.aside.ptr<float>(y);
     for (int x = 0; x < basins.labels.cols; ++x) {
       const auto basin = static_cast<std::size_t>(label[x]);
-      if (corridor[x] != 0 || of_basin[basin].empty()) continue;
-      double nearest = -1.0;
-      for (const std::uint16_t k : of_basin[basin]) {
-        const double far = cut.corridors[k].aside(cv::Point2d(x, y));
-        if (far >= 0.0 && (nearest < 0.0 || far < nearest)) nearest = far;
-      }
-      if (nearest < 0.0) continue;
-      ++beside[basin];
-      aside[x] = static_cast<float>(nearest);
+      if (corridor[x] != 0 || inside[basin] < 0.5 * least || beside[basin] >= least) continue;
+      if (asideOf(cut.corridors, reach.corridors[basin], cv::Point2d(x, y)) >= 0.0) ++beside[basin];
     }
   }
-  const double least = kReachesOut / (resolution * resolution);
   for (std::size_t i = 1; i < size; ++i)
     reach.to_cut[i] = inside[i] >= 0.5 * least && beside[i] >= least ? 1 : 0;
   return reach;
@@ -155,6 +156,8 @@ CorridorBasins cutAlongCorridors(std::vector<StraightCorridor> corridors, const 
   const std::vector<char>& to_cut = reach.to_cut;
   // A basin that is cut: its parts in corridors have a value of their own, for each corridor.
   std::map<std::pair<int, int>, int> values;
+  std::pair<int, int> last(0, 0);  // most cells are of the same as the one before
+  int* part = nullptr;
   cv::Mat values_of_cells(basins.labels.size(), CV_16U);
   cut.before = cv::Mat(basins.labels.size(), CV_16U);
   int last_value = basins.count;
@@ -166,23 +169,28 @@ CorridorBasins cutAlongCorridors(std::vector<StraightCorridor> corridors, const 
     for (int x = 0; x < basins.labels.cols; ++x) {
       before[x] = out[x] = static_cast<std::uint16_t>(label[x]);
       if (corridor[x] == 0 || to_cut[static_cast<std::size_t>(label[x])] == 0) continue;
-      int& value = values[{label[x], corridor[x]}];
-      if (value == 0) value = ++last_value;
-      out[x] = static_cast<std::uint16_t>(value);
+      if (const std::pair<int, int> key(label[x], corridor[x]); part == nullptr || key != last) {
+        last = key;
+        part = &values[key];
+        if (*part == 0) *part = ++last_value;
+      }
+      out[x] = static_cast<std::uint16_t>(*part);
     }
   }
   if (last_value > std::numeric_limits<std::uint16_t>::max()) return {};
   const auto value_count = static_cast<std::size_t>(last_value) + 1;
   const CellRuns runs = connectedRuns(values_of_cells, 0, false);
   std::vector<int> sizes(static_cast<std::size_t>(runs.pieces), 0), value_of(sizes), becomes(sizes);
-  std::vector<float> depths(static_cast<std::size_t>(runs.pieces), 0.0f);
+  std::vector<double> depths(static_cast<std::size_t>(runs.pieces), 0.0);
   std::vector<int> largest(value_count, -1);
   for (const CellRun& run : runs.runs) {
-    const float* aside = reach.aside.ptr<float>(run.y);
-    float& depth = depths[static_cast<std::size_t>(run.piece)];
-    depth = std::max(depth, *std::max_element(aside + run.first, aside + run.last + 1));
     sizes[static_cast<std::size_t>(run.piece)] += run.last - run.first + 1;
     value_of[static_cast<std::size_t>(run.piece)] = run.value;
+    if (run.value > basins.count || to_cut[static_cast<std::size_t>(run.value)] == 0) continue;
+    const auto& corridors_of_basin = reach.corridors[static_cast<std::size_t>(run.value)];
+    double& depth = depths[static_cast<std::size_t>(run.piece)];
+    for (int x = run.first; x <= run.last; ++x)
+      depth = std::max(depth, asideOf(cut.corridors, corridors_of_basin, cv::Point2d(x, run.y)));
   }
   for (int piece = 0; piece < runs.pieces; ++piece) {
     int& best = largest[static_cast<std::size_t>(value_of[static_cast<std::size_t>(piece)])];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "agglomeration.hpp"
@@ -119,8 +120,9 @@ void fillFurniture(cv::Mat& labels, const FreeSpace& space) {
   }
 }
 
-/// The places as labels of the basins' cells, CV_32S.
-cv::Mat labelsOf(const RegionAdjacencyGraph& graph, const cv::Mat& basins, double min_area) {
+/// The places as labels of the basins' cells, CV_32S, and how many there are.
+std::pair<cv::Mat, int> labelsOf(const RegionAdjacencyGraph& graph, const cv::Mat& basins,
+                                 double min_area) {
   std::vector<int> label_of(static_cast<std::size_t>(graph.size()) + 1, 0);
   int used = 0;
   for (int i = 1; i <= graph.size(); ++i) {
@@ -140,15 +142,12 @@ cv::Mat labelsOf(const RegionAdjacencyGraph& graph, const cv::Mat& basins, doubl
       *cell = label_of[static_cast<std::size_t>(*cell)];
     }
   }
-  return labels;
+  return {labels, used};
 }
 
 /// What few rays saw from afar is no place.
-void leaveOutside(cv::Mat& labels, const FreeSpace& space) {
-  double most = 0.0;
-  cv::minMaxLoc(labels, nullptr, &most);
-  const std::vector<char> outside =
-      findOutside(labels, static_cast<int>(most), space.occupied, space.resolution);
+void leaveOutside(cv::Mat& labels, int places, const FreeSpace& space) {
+  const std::vector<char> outside = findOutside(labels, places, space.occupied, space.resolution);
   if (std::find(outside.begin(), outside.end(), 1) == outside.end()) return;
   for (int y = 0; y < labels.rows; ++y)
     for (int *cell = labels.ptr<int>(y), *end = cell + labels.cols; cell != end; ++cell)
@@ -192,8 +191,8 @@ PlaceSegmentation segmentPlaces(const hyselam::OccupancyGrid& grid,
   absorbSmall(graph, params.min_place_area);
   joinAroundDesks(graph, prepared.basins.labels, prepared.space);
 
-  cv::Mat labels = labelsOf(graph, prepared.basins.labels, params.min_place_area);
-  leaveOutside(labels, prepared.space);
+  auto [labels, places] = labelsOf(graph, prepared.basins.labels, params.min_place_area);
+  leaveOutside(labels, places, prepared.space);
   fillFurniture(labels, prepared.space);
   const int reach = static_cast<int>(std::ceil(kReach / grid.geometry.resolution));
   result.labels = toGrid(labels, prepared.space, grid, params.free_max, reach);

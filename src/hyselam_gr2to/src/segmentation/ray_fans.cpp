@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cell_runs.hpp"
+#include "row_marks.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -97,22 +98,30 @@ std::vector<char> findOutside(const cv::Mat& labels, int count, const cv::Mat& o
   const auto size = static_cast<std::size_t>(count) + 1;
   std::vector<double> areas(size, 0.0), unseen(size, 0.0), walls(size, 0.0);
   std::vector<std::vector<cv::Point>> limits(size);
+  std::vector<std::uint8_t> marks(static_cast<std::size_t>(labels.cols), 0);
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const int* row = labels.ptr<int>(y);
     const int *below = labels.ptr<int>(y - 1), *above = labels.ptr<int>(y + 1);
     const std::uint8_t* kind = kinds.ptr<std::uint8_t>(y);
     for (int x = 1; x + 1 < labels.cols; ++x) {
+      const bool end = (row[x] != row[x - 1]) | (row[x] != row[x + 1]);
+      const bool beside = (row[x] == 0) & ((below[x] | above[x]) != 0);
+      marks[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(end | beside);
+    }
+    int first = 0;
+    eachMarked(marks, [&](int x) {
       if (row[x] != 0) {
-        if (row[x - 1] != row[x] || row[x + 1] != row[x])
-          limits[static_cast<std::size_t>(row[x])].emplace_back(x, y);
-        areas[static_cast<std::size_t>(row[x])] += resolution * resolution;
-        continue;
+        const auto own = static_cast<std::size_t>(row[x]);
+        limits[own].emplace_back(x, y);
+        if (row[x - 1] != row[x]) first = x;
+        if (row[x + 1] != row[x]) areas[own] += (x - first + 1) * resolution * resolution;
+        return;
       }
-      if (kind[x] == kThinSide) continue;
+      if (kind[x] == kThinSide) return;
       for (const int other : {row[x - 1], row[x + 1], below[x], above[x]})
         if (other != 0)
           (kind[x] == kWallSide ? walls : unseen)[static_cast<std::size_t>(other)] += 1.0;
-    }
+    });
   }
   std::vector<char> outside(size, 0);
   const auto largest =

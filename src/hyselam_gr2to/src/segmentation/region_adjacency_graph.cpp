@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/pose2.hpp"
+#include "row_marks.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -15,20 +15,6 @@ constexpr double kThinWall =
     0.45;  // [m] from either side: a thicker wall does not separate two rooms
 constexpr double kWallProbe = 0.8;  // [m] behind the ends of a chord
 constexpr int kChords = 36;         // tried directions
-
-/// Calls `found(x)` for every x of a row that is marked with 1: few, and the marks are made in
-/// loops without branches.
-template <typename Found>
-void eachMarked(const std::vector<std::uint8_t>& marks, Found found) {
-  const std::uint8_t* const begin = marks.data();
-  const std::uint8_t* const end = begin + marks.size();
-  const auto next = [&](const std::uint8_t* from) {
-    return static_cast<const std::uint8_t*>(
-        std::memchr(from, 1, static_cast<std::size_t>(end - from)));
-  };
-  for (const std::uint8_t* at = next(begin); at != nullptr; at = next(at + 1))
-    found(static_cast<int>(at - begin));
-}
 
 /// Solid cells near free ones get the label of the nearest, so that labels meet within thin walls.
 cv::Mat reachIntoWalls(const cv::Mat& labels, int steps) {

@@ -72,12 +72,26 @@ double mainDirection(const cv::Mat& free, const cv::Mat& walls) {
   return best;
 }
 
+/// What a cell of a turned map holds.
+constexpr std::uint8_t kFreeCell = 1, kWallCell = 2;
+
 /// The map turned so that corridors run along rows; column sums of free cells.
 struct TurnedMap {
-  cv::Mat free, walls;
+  cv::Mat cells;      // CV_8U
   cv::Mat below;      // CV_32S, free cells of a column in all rows before this one
   cv::Mat from_here;  // 2 x 3, cells here to cells of the map
 };
+
+void countBelow(TurnedMap& t) {
+  t.below = cv::Mat(t.cells.rows + 1, t.cells.cols, CV_32S);
+  t.below.row(0).setTo(0);
+  for (int y = 0; y < t.cells.rows; ++y) {
+    const std::uint8_t* row = t.cells.ptr<std::uint8_t>(y);
+    const int* before = t.below.ptr<int>(y);
+    int* after = t.below.ptr<int>(y + 1);
+    for (int x = 0; x < t.cells.cols; ++x) after[x] = before[x] + (row[x] & kFreeCell);
+  }
+}
 
 TurnedMap turn(const cv::Mat& free, const cv::Mat& walls, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -88,17 +102,32 @@ TurnedMap turn(const cv::Mat& free, const cv::Mat& walls, double angle) {
   const double nx = 0.5 * (free.cols - 1), ny = 0.5 * (free.rows - 1);
   TurnedMap t;
   t.from_here = (cv::Mat_<double>(2, 3) << c, -s, nx - c * mx + s * my, s, c, ny - s * mx - c * my);
-  const int how = cv::INTER_NEAREST | cv::WARP_INVERSE_MAP;
-  cv::warpAffine(free, t.free, t.from_here, {width, height}, how, cv::BORDER_CONSTANT, 0);
-  cv::warpAffine(walls, t.walls, t.from_here, {width, height}, how, cv::BORDER_CONSTANT, 0);
-  t.below = cv::Mat(height + 1, width, CV_32S, cv::Scalar(0));
-  for (int y = 0; y < height; ++y) {
-    const std::uint8_t* row = t.free.ptr<std::uint8_t>(y);
-    const int* before = t.below.ptr<int>(y);
-    int* after = t.below.ptr<int>(y + 1);
-    for (int x = 0; x < width; ++x) after[x] = before[x] + (row[x] != 0 ? 1 : 0);
+  cv::Mat cells(free.size(), CV_8U);
+  for (int y = 0; y < cells.rows; ++y) {
+    const std::uint8_t *f = free.ptr<std::uint8_t>(y), *w = walls.ptr<std::uint8_t>(y);
+    std::uint8_t* out = cells.ptr<std::uint8_t>(y);
+    for (int x = 0; x < cells.cols; ++x)
+      out[x] = static_cast<std::uint8_t>((f[x] & kFreeCell) | (w[x] & kWallCell));  // 0 or 255
   }
+  if (angle == 0.0)
+    t.cells = cells;
+  else
+    cv::warpAffine(cells, t.cells, t.from_here, {width, height},
+                   cv::INTER_NEAREST | cv::WARP_INVERSE_MAP, cv::BORDER_CONSTANT, 0);
+  countBelow(t);
   return t;
+}
+
+/// The same map for what runs across: turned on by a right angle, which moves whole cells.
+TurnedMap turnAcross(const TurnedMap& t) {
+  TurnedMap across;
+  cv::rotate(t.cells, across.cells, cv::ROTATE_90_COUNTERCLOCKWISE);
+  const double last = t.cells.cols - 1;  // (x, y) here is (last - y, x) there
+  const auto *a = t.from_here.ptr<double>(0), *b = t.from_here.ptr<double>(1);
+  across.from_here =
+      (cv::Mat_<double>(2, 3) << a[1], -a[0], a[0] * last + a[2], b[1], -b[0], b[0] * last + b[2]);
+  countBelow(across);
+  return across;
 }
 
 /// A line along rows at which faces of walls lie.
@@ -109,19 +138,18 @@ struct WallLine {
 
 /// Faces whose free side has the higher rows (`up` 1) or the lower ones (-1).
 std::vector<WallLine> findWallLines(const TurnedMap& map, int up, double resolution) {
-  const int rows = map.free.rows, columns = map.free.cols;
+  const int rows = map.cells.rows, columns = map.cells.cols;
   cv::Mat faces(rows, columns, CV_8U, cv::Scalar(0));
   std::vector<int> counts(static_cast<std::size_t>(rows), 0);
   for (int y = 2; y + 2 < rows; ++y) {
-    const std::uint8_t* free = map.free.ptr<std::uint8_t>(y);
-    const std::uint8_t* one = map.walls.ptr<std::uint8_t>(y - up);
-    const std::uint8_t* two = map.walls.ptr<std::uint8_t>(y - 2 * up);
-    const std::uint8_t* behind = map.free.ptr<std::uint8_t>(y - up);
+    const std::uint8_t* here = map.cells.ptr<std::uint8_t>(y);
+    const std::uint8_t* behind = map.cells.ptr<std::uint8_t>(y - up);
+    const std::uint8_t* further = map.cells.ptr<std::uint8_t>(y - 2 * up);
     std::uint8_t* out = faces.ptr<std::uint8_t>(y);
     int count = 0;
     for (int x = 0; x < columns; ++x) {
-      out[x] = static_cast<std::uint8_t>((free[x] != 0) & (behind[x] == 0) &
-                                         ((one[x] != 0) | (two[x] != 0)));
+      const int wall = (behind[x] | further[x]) & kWallCell;
+      out[x] = static_cast<std::uint8_t>(here[x] & ~behind[x] & kFreeCell & (wall / kWallCell));
       count += out[x];
     }
     counts[static_cast<std::size_t>(y)] = count;
@@ -166,7 +194,7 @@ void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, d
     sum = best = 0.0;
     start = from;
   };
-  for (int x = 0; x < map.free.cols; ++x) {
+  for (int x = 0; x < map.cells.cols; ++x) {
     const double share = static_cast<double>(after[x] - before[x]) / height;
     const int sides =
         low.face[static_cast<std::size_t>(x)] + high.face[static_cast<std::size_t>(x)];
@@ -182,7 +210,7 @@ void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, d
     if (sum > best) best = sum, best_last = x;
     if (sum <= 0.0 || sum < best + kPrior) close(x + 1);
   }
-  close(map.free.cols);
+  close(map.cells.cols);
 }
 
 /// The surest first, without those that mostly cover one before them.
@@ -208,27 +236,53 @@ cv::Point2d fromHere(const TurnedMap& map, double x, double y) {
   return {a[0] * x + a[1] * y + a[2], b[0] * x + b[1] * y + b[2]};
 }
 
+/// The corridors along the rows of a turned map.
+void findAlongRows(const TurnedMap& map, double resolution,
+                   std::vector<StraightCorridor>& corridors) {
+  const std::vector<WallLine> low = findWallLines(map, 1, resolution);
+  const std::vector<WallLine> high = findWallLines(map, -1, resolution);
+  std::vector<Run> runs;
+  for (const WallLine& a : low)
+    for (const WallLine& b : high) {
+      const double width = (b.row - a.row + 1) * resolution;
+      if (width >= kNarrowest && width <= kWidest) findRuns(map, a, b, resolution, runs);
+    }
+  for (const Run& run : withoutCopies(std::move(runs))) {
+    const double length = run.last - run.first + 1, width = run.high - run.low + 1;
+    if (length < kLeastElongation * width) continue;
+    const double middle = 0.5 * (run.low + run.high);
+    corridors.emplace_back(fromHere(map, run.first - 0.5, middle),
+                           fromHere(map, run.last + 0.5, middle), 0.5 * width, run.odds);
+  }
+}
+
 }  // namespace
 
-bool StraightCorridor::contains(cv::Point2d cell) const {
-  const cv::Point2d along = end - start, to = cell - start;
-  const double length = std::hypot(along.x, along.y);
-  return beside(cell) && std::abs(along.cross(to)) <= half_width * length;
-}
+StraightCorridor::StraightCorridor(cv::Point2d from, cv::Point2d to, double half, double log_odds)
+    : start(from),
+      end(to),
+      half_width(half),
+      odds(log_odds),
+      length_(std::hypot((to - from).x, (to - from).y)),
+      along_((to - from) / length_) {}
 
-double StraightCorridor::beyond(cv::Point2d cell) const {
-  const cv::Point2d along = end - start, to = cell - start;
-  const double length = std::hypot(along.x, along.y);
-  if (std::abs(along.cross(to)) > half_width * length) return -1.0;
-  const double t = along.dot(to) / length;
-  return std::max({-t, t - length, 0.0});
-}
-
-double StraightCorridor::aside(cv::Point2d cell) const {
-  const cv::Point2d along = end - start, to = cell - start;
-  const double t = along.dot(to);
-  if (t < 0.0 || t > along.dot(along)) return -1.0;
-  return std::max(0.0, std::abs(along.cross(to)) / std::hypot(along.x, along.y) - half_width);
+std::pair<int, int> StraightCorridor::columns(int row, double beyond, int width) const {
+  double first = 0.0, last = width - 1.0;
+  // Of the columns those with low <= slope x + offset <= high, and one more to either side.
+  const auto clip = [&](double slope, double offset, double low, double high) {
+    if (std::abs(slope) < 1e-6) {
+      if (offset < low - 1.0 || offset > high + 1.0) last = -1.0;
+      return;
+    }
+    const auto [a, b] = std::minmax({(low - offset) / slope, (high - offset) / slope});
+    first = std::max(first, a - 1.0);
+    last = std::min(last, b + 1.0);
+  };
+  const double up = row - start.y;
+  clip(-along_.y, along_.x * up + along_.y * start.x, -half_width, half_width);
+  clip(along_.x, along_.y * up - along_.x * start.x, -beyond, length_ + beyond);
+  if (last < first) return {0, 0};
+  return {static_cast<int>(std::ceil(first)), static_cast<int>(std::floor(last)) + 1};
 }
 
 std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
@@ -237,25 +291,9 @@ std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
   // What OpenCV turns has sides of 16 bits: a map of 1.6 km has no corridors but its borders.
   if (std::hypot(space.free.cols, space.free.rows) >= kLargest) return corridors;
   const cv::Mat walls = space.occupied & ~furniture;
-  const double direction = mainDirection(space.free, walls);
-  for (const double angle : {direction, direction + 0.5 * hyselam::kPi}) {
-    const TurnedMap map = turn(space.free, walls, angle);
-    const std::vector<WallLine> low = findWallLines(map, 1, space.resolution);
-    const std::vector<WallLine> high = findWallLines(map, -1, space.resolution);
-    std::vector<Run> runs;
-    for (const WallLine& a : low)
-      for (const WallLine& b : high) {
-        const double width = (b.row - a.row + 1) * space.resolution;
-        if (width >= kNarrowest && width <= kWidest) findRuns(map, a, b, space.resolution, runs);
-      }
-    for (const Run& run : withoutCopies(std::move(runs))) {
-      if (run.last - run.first + 1 < kLeastElongation * (run.high - run.low + 1)) continue;
-      const double middle = 0.5 * (run.low + run.high);
-      corridors.push_back({fromHere(map, run.first - 0.5, middle),
-                           fromHere(map, run.last + 0.5, middle), 0.5 * (run.high - run.low + 1),
-                           run.odds});
-    }
-  }
+  const TurnedMap along = turn(space.free, walls, mainDirection(space.free, walls));
+  findAlongRows(along, space.resolution, corridors);
+  findAlongRows(turnAcross(along), space.resolution, corridors);
   std::stable_sort(
       corridors.begin(), corridors.end(),
       [](const StraightCorridor& a, const StraightCorridor& b) { return a.odds > b.odds; });
