@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <map>
 #include <opencv2/imgproc.hpp>
@@ -220,10 +221,13 @@ std::vector<Place> buildPlaces(const OccupancyGrid& grid, const cv::Mat& labels,
                                const Neighbors& neighbors, const MapBuilderParams& params,
                                const PlaceSelection& selection) {
   const double r = grid.geometry.resolution;
-  std::vector<Contour> contours = traceContours(labels, selection.box, selection.wanted);
-  std::vector<PlaceWalls> walls = wallsAlong(contours, grid, labels, params.walls);
-  walls.resize(static_cast<std::size_t>(places));
+  const std::vector<Contour> contours = traceContours(labels, selection.box, selection.wanted);
+  // Walls are found beside the measuring, which knows nothing of them.
+  std::future<std::vector<PlaceWalls>> found = std::async(
+      std::launch::async, [&] { return wallsAlong(contours, grid, labels, params.walls); });
   const std::vector<Region> regions = measure(labels, contours, places, r, params.walls, selection);
+  std::vector<PlaceWalls> walls = found.get();
+  walls.resize(static_cast<std::size_t>(places));
   std::vector<Place> out;
   for (int label = 1; label <= places; ++label) {
     if (!chosen(selection.wanted, label)) continue;

@@ -1,6 +1,7 @@
 #include "agglomeration.hpp"
 
 #include <algorithm>
+#include <future>
 #include <opencv2/imgproc.hpp>
 #include <queue>
 #include <utility>
@@ -53,15 +54,22 @@ PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const Segmentat
   const bool full = preparation == Preparation::kFull;
   prepared.space = findFreeSpace(grid, params, full);
   if (prepared.space.free.empty()) return prepared;
+  // The free space alone tells where furniture and corridors are, and where basins.
+  std::future<std::vector<StraightCorridor>> corridors;
+  if (full) {
+    corridors = std::async(std::launch::async,
+                           [&space = prepared.space, &furniture = prepared.context.furniture] {
+                             furniture = findFurniture(space);
+                             return findStraightCorridors(space, furniture);
+                           });
+  }
   cv::distanceTransform(prepared.space.free, prepared.clearance, cv::DIST_L2, cv::DIST_MASK_5);
   BasinParams basins;
   basins.smallest = params.min_place_area;
   prepared.basins = findBasins(prepared.clearance, prepared.space.resolution, basins);
   if (!full) return prepared;
-  prepared.context.furniture = findFurniture(prepared.space);
-  prepared.context.corridors =
-      cutAlongCorridors(findStraightCorridors(prepared.space, prepared.context.furniture),
-                        prepared.clearance, prepared.space.resolution, prepared.basins);
+  prepared.context.corridors = cutAlongCorridors(corridors.get(), prepared.clearance,
+                                                 prepared.space.resolution, prepared.basins);
   return prepared;
 }
 

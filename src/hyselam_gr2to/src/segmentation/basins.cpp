@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -27,10 +28,26 @@ class Sets {
   std::vector<int> parents_;
 };
 
-/// For each free cell the highest of itself and its neighbours; of equal ones the first in memory,
-/// which makes a strict order of all cells, so that no way up runs in a circle.
+/// The first from `i` on that is not 0, or `end`: most of many maps is not free.
+int nextFree(const int* cells, int i, int end) {
+  constexpr int kBlock = 8;
+  static constexpr int kZeros[kBlock] = {};
+  if (i < end && cells[i] != 0) return i;
+  while (i + kBlock <= end && std::memcmp(cells + i, kZeros, sizeof(kZeros)) == 0) i += kBlock;
+  while (i < end && cells[i] == 0) ++i;
+  return i;
+}
+
+/// A cell that is free first has 1 + the cell to climb to, then -1 - its peak.
+int peakOf(int cell) {
+  return -1 - cell;
+}
+
+/// For each free cell 1 + the highest of itself and its neighbours; of equal ones the first in
+/// memory, which makes a strict order of all cells, so that no way up runs in a circle. 0: not
+/// free.
 cv::Mat waysUp(const cv::Mat& clearance) {
-  cv::Mat up(clearance.size(), CV_32S, cv::Scalar(-1));
+  cv::Mat up(clearance.size(), CV_32S, cv::Scalar(0));
   const int stride = clearance.cols;
   for (int y = 1; y + 1 < clearance.rows; ++y) {
     const float* row = clearance.ptr<float>(y);
@@ -53,7 +70,7 @@ cv::Mat waysUp(const cv::Mat& clearance) {
       if ((left || above) && c[stride - 1] > best) best = c[stride - 1], offset = stride - 1;
       if (c[stride] > best) best = c[stride], offset = stride;
       if ((right || above) && c[stride + 1] > best) offset = stride + 1;
-      out[x] = y * stride + x + offset;
+      out[x] = 1 + y * stride + x + offset;
     }
   }
   return up;
@@ -71,24 +88,24 @@ struct Peaks {
   std::vector<double> sizes;  // of the basin of each peak, later of its part [cells]
 };
 
-/// Climbs from each cell to its peak; the cell becomes -2 - peak.
+/// Climbs from each cell to its peak, which it has from then on.
 Peaks findPeaks(int* cells, const float* heights, int total) {
   Peaks peaks;
   std::vector<int> path;
-  for (int i = 0; i < total; ++i) {
+  for (int i = nextFree(cells, 0, total); i < total; i = nextFree(cells, i + 1, total)) {
     if (cells[i] < 0) continue;
     int top = i;
-    while (cells[top] >= 0 && cells[top] != top) {
+    while (cells[top] > 0 && cells[top] - 1 != top) {
       path.push_back(top);
-      top = cells[top];
+      top = cells[top] - 1;
     }
-    if (cells[top] >= 0) {
-      cells[top] = -2 - peaks.basins.add();
+    if (cells[top] > 0) {
+      cells[top] = -1 - peaks.basins.add();
       peaks.parts.add();
       peaks.heights.push_back(heights[top]);
       peaks.sizes.push_back(0.0);
     }
-    peaks.sizes[static_cast<std::size_t>(-2 - cells[top])] +=
+    peaks.sizes[static_cast<std::size_t>(peakOf(cells[top]))] +=
         1.0 + static_cast<double>(path.size());
     for (const int cell : path) cells[cell] = cells[top];
     path.clear();
@@ -99,11 +116,11 @@ Peaks findPeaks(int* cells, const float* heights, int total) {
 /// Where cells of two peaks touch, the highest first.
 std::vector<Saddle> findSaddles(const int* cells, const float* heights, int total, int stride) {
   std::vector<Saddle> saddles;
-  for (int i = 0; i + stride < total; ++i) {
-    if (cells[i] > -2) continue;
+  const int end = total - stride;
+  for (int i = nextFree(cells, 0, end); i < end; i = nextFree(cells, i + 1, end)) {
     for (const int j : {i + 1, i + stride}) {
-      if (cells[j] > -2 || cells[j] == cells[i]) continue;
-      const int a = -2 - std::max(cells[i], cells[j]), b = -2 - std::min(cells[i], cells[j]);
+      if (cells[j] == 0 || cells[j] == cells[i]) continue;
+      const auto [a, b] = std::minmax({peakOf(cells[i]), peakOf(cells[j])});
       const float height = std::min(heights[i], heights[j]);
       // Borders are followed along rows: the last saddle is often of the same pair.
       if (!saddles.empty() && saddles.back().a == a && saddles.back().b == b)
@@ -141,7 +158,7 @@ void joinBasins(const std::vector<Saddle>& saddles, double resolution, const Bas
 
 Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& params) {
   CV_Assert(clearance.type() == CV_32F && clearance.isContinuous());
-  cv::Mat labels = waysUp(clearance);  // cell to climb to, later -2 - peak
+  cv::Mat labels = waysUp(clearance);  // then peaks, then basins
   int* cells = labels.ptr<int>();
   float* heights = clearance.ptr<float>();
   const int total = static_cast<int>(labels.total());
@@ -151,12 +168,8 @@ Basins findBasins(cv::Mat& clearance, double resolution, const BasinParams& para
   Basins basins;
   std::vector<int> names(peaks.heights.size(), -1), of_peak(peaks.heights.size(), -1);
   const double smallest = params.smallest / (resolution * resolution);
-  for (int i = 0; i < total; ++i) {
-    if (cells[i] > -2) {
-      cells[i] = 0;
-      continue;
-    }
-    const int peak_index = -2 - cells[i];
+  for (int i = nextFree(cells, 0, total); i < total; i = nextFree(cells, i + 1, total)) {
+    const int peak_index = peakOf(cells[i]);
     int& known = of_peak[static_cast<std::size_t>(peak_index)];
     if (known < 0) {
       int& name = names[static_cast<std::size_t>(peaks.basins.find(peak_index))];
