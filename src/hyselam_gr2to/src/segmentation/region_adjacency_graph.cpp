@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/pose2.hpp"
@@ -138,10 +140,12 @@ RegionAdjacencyGraph::RegionAdjacencyGraph(const cv::Mat& clearance, const Basin
       merged_into_(static_cast<std::size_t>(basins.count) + 1) {
   CV_Assert(basins.labels.size() == clearance.size() && basins.labels.isContinuous());
   for (std::size_t i = 0; i < merged_into_.size(); ++i) merged_into_[i] = static_cast<int>(i);
+  std::future<cv::Mat> reach =
+      std::async(std::launch::async, reachIntoWalls, std::cref(basins.labels),
+                 static_cast<int>(std::lround(kThinWall / resolution)));
   measureNodes(clearance, basins.labels);
   measureCorridors(context.corridors, basins.labels);
-  const int steps = static_cast<int>(std::lround(kThinWall / resolution));
-  measureBorders(clearance, basins.labels, reachIntoWalls(basins.labels, steps), context.corridors);
+  measureBorders(clearance, basins.labels, reach.get(), context.corridors);
   for (RegionBorder& border : borders_)
     if (border.open > 0.0) {
       measurePassage(clearance, context.furniture, resolution, border.clearance, border.passage);

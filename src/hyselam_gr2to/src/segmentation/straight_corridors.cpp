@@ -75,22 +75,24 @@ double mainDirection(const cv::Mat& free, const cv::Mat& walls) {
 /// What a cell of a turned map holds.
 constexpr std::uint8_t kFreeCell = 1, kWallCell = 2;
 
-/// The map turned so that corridors run along rows; column sums of free cells.
+/// The map turned so that corridors run along rows.
 struct TurnedMap {
   cv::Mat cells;      // CV_8U
-  cv::Mat below;      // CV_32S, free cells of a column in all rows before this one
   cv::Mat from_here;  // 2 x 3, cells here to cells of the map
 };
 
-void countBelow(TurnedMap& t) {
-  t.below = cv::Mat(t.cells.rows + 1, t.cells.cols, CV_32S);
-  t.below.row(0).setTo(0);
-  for (int y = 0; y < t.cells.rows; ++y) {
-    const std::uint8_t* row = t.cells.ptr<std::uint8_t>(y);
-    const int* before = t.below.ptr<int>(y);
-    int* after = t.below.ptr<int>(y + 1);
-    for (int x = 0; x < t.cells.cols; ++x) after[x] = before[x] + (row[x] & kFreeCell);
+/// CV_16U, the free cells of a column in all rows before one.
+cv::Mat freeBelow(const cv::Mat& cells) {
+  cv::Mat below(cells.rows + 1, cells.cols, CV_16U);
+  below.row(0).setTo(0);
+  for (int y = 0; y < cells.rows; ++y) {
+    const std::uint8_t* row = cells.ptr<std::uint8_t>(y);
+    const std::uint16_t* before = below.ptr<std::uint16_t>(y);
+    std::uint16_t* after = below.ptr<std::uint16_t>(y + 1);
+    for (int x = 0; x < cells.cols; ++x)
+      after[x] = static_cast<std::uint16_t>(before[x] + (row[x] & kFreeCell));
   }
+  return below;
 }
 
 TurnedMap turn(const cv::Mat& free, const cv::Mat& walls, double angle) {
@@ -114,7 +116,6 @@ TurnedMap turn(const cv::Mat& free, const cv::Mat& walls, double angle) {
   else
     cv::warpAffine(cells, t.cells, t.from_here, {width, height},
                    cv::INTER_NEAREST | cv::WARP_INVERSE_MAP, cv::BORDER_CONSTANT, 0);
-  countBelow(t);
   return t;
 }
 
@@ -126,7 +127,6 @@ TurnedMap turnAcross(const TurnedMap& t) {
   const auto *a = t.from_here.ptr<double>(0), *b = t.from_here.ptr<double>(1);
   across.from_here =
       (cv::Mat_<double>(2, 3) << a[1], -a[0], a[0] * last + a[2], b[1], -b[0], b[0] * last + b[2]);
-  countBelow(across);
   return across;
 }
 
@@ -182,11 +182,11 @@ struct Run {
 };
 
 /// The runs of columns whose log-odds are highest, each with all that stands at its sides.
-void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, double resolution,
+void findRuns(const cv::Mat& below, const WallLine& low, const WallLine& high, double resolution,
               std::vector<Run>& runs) {
   const int height = high.row - low.row + 1;
-  const int* before = map.below.ptr<int>(low.row);
-  const int* after = map.below.ptr<int>(high.row + 1);
+  const std::uint16_t* before = below.ptr<std::uint16_t>(low.row);
+  const std::uint16_t* after = below.ptr<std::uint16_t>(high.row + 1);
   double sum = 0.0, best = 0.0;
   int start = 0, best_last = -1;
   const auto close = [&](int from) {
@@ -194,7 +194,7 @@ void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, d
     sum = best = 0.0;
     start = from;
   };
-  for (int x = 0; x < map.cells.cols; ++x) {
+  for (int x = 0; x < below.cols; ++x) {
     const double share = static_cast<double>(after[x] - before[x]) / height;
     const int sides =
         low.face[static_cast<std::size_t>(x)] + high.face[static_cast<std::size_t>(x)];
@@ -210,7 +210,7 @@ void findRuns(const TurnedMap& map, const WallLine& low, const WallLine& high, d
     if (sum > best) best = sum, best_last = x;
     if (sum <= 0.0 || sum < best + kPrior) close(x + 1);
   }
-  close(map.cells.cols);
+  close(below.cols);
 }
 
 /// The surest first, without those that mostly cover one before them.
@@ -241,11 +241,12 @@ void findAlongRows(const TurnedMap& map, double resolution,
                    std::vector<StraightCorridor>& corridors) {
   const std::vector<WallLine> low = findWallLines(map, 1, resolution);
   const std::vector<WallLine> high = findWallLines(map, -1, resolution);
+  const cv::Mat below = freeBelow(map.cells);
   std::vector<Run> runs;
   for (const WallLine& a : low)
     for (const WallLine& b : high) {
       const double width = (b.row - a.row + 1) * resolution;
-      if (width >= kNarrowest && width <= kWidest) findRuns(map, a, b, resolution, runs);
+      if (width >= kNarrowest && width <= kWidest) findRuns(below, a, b, resolution, runs);
     }
   for (const Run& run : withoutCopies(std::move(runs))) {
     const double length = run.last - run.first + 1, width = run.high - run.low + 1;
