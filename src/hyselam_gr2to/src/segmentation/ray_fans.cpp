@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -77,7 +78,9 @@ void clear(const CellRun& run, cv::Mat& free) {
 }  // namespace
 
 void closeRayFans(cv::Mat& free, const cv::Mat& occupied, double resolution) {
-  const cv::Mat kinds = sidesOf(free, occupied, resolution);
+  std::future<cv::Mat> kinds = std::async(std::launch::async, [free, &occupied, resolution] {
+    return sidesOf(free, occupied, resolution);
+  });
   cv::Mat wide;
   const int narrow = static_cast<int>(std::lround(kNarrow / resolution)) | 1;
   cv::morphologyEx(free, wide, cv::MORPH_OPEN,
@@ -85,7 +88,7 @@ void closeRayFans(cv::Mat& free, const cv::Mat& occupied, double resolution) {
                    cv::BORDER_CONSTANT, 0);
   cv::Mat thin = free & ~wide;
   const CellRuns passages = connectedRuns(thin, 0, false);
-  const std::vector<Sides> sides = sidesOf(passages, free, kinds);
+  const std::vector<Sides> sides = sidesOf(passages, free, kinds.get());
   for (const CellRun& run : passages.runs)
     if (sides[static_cast<std::size_t>(run.piece)].odds() > 0.0) clear(run, free);
 }
