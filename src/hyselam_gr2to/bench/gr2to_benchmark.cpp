@@ -1,4 +1,5 @@
-// Gr2To on each grid map of the data set, and on one of 4000 x 4000 cells. One thread.
+// Gr2To on each grid map of the data set, and on one of 4000 x 4000 cells: wall
+// times, since some steps run beside each other (OpenCV's own threads are off).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "hyselam_gr2to/gr2to.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterize.hpp"
+#include "segmentation/chamfer_distance.hpp"
 
 namespace {
 
@@ -31,6 +34,23 @@ void all(benchmark::State& state, const hyselam::OccupancyGrid& grid,
   Gr2ToParams params;
   params.mode = mode;
   for (auto _ : state) benchmark::DoNotOptimize(gr2to(grid, params).map.places.size());
+}
+
+/// Distances of the free cells of a map: OpenCV's and ours.
+void distances(benchmark::State& state, const hyselam::OccupancyGrid& grid, bool ours) {
+  cv::setNumThreads(1);
+  const cv::Mat cells(grid.geometry.height, grid.geometry.width, CV_8S,
+                      const_cast<std::int8_t*>(grid.cells.data()));
+  const cv::Mat free = cells == 0;
+  cv::Mat out;
+  for (auto _ : state) {
+    if (ours)
+      out = chamferDistance(free);
+    else
+      cv::distanceTransform(free, out, cv::DIST_L2, cv::DIST_MASK_5);
+    benchmark::DoNotOptimize(out.data);
+  }
+  if (ours) state.SetLabel("baseline=DistanceTransform_OpenCv");
 }
 
 /// Generated floors side by side until 200 m are full.
@@ -70,24 +90,33 @@ void addMaps() {
   for (const fs::path& file : files) {
     const auto grid = std::make_shared<hyselam::OccupancyGrid>(hyselam::loadMap(file.string()));
     const std::string name = file.stem().string();
-    benchmark::RegisterBenchmark(("Gr2ToPlaces/" + name).c_str(), [grid](benchmark::State& state) {
-      places(state, *grid);
-    })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark(("Gr2ToAll/" + name).c_str(), [grid](benchmark::State& state) {
-      all(state, *grid);
-    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("Gr2ToPlaces/" + name).c_str(),
+                                 [grid](benchmark::State& state) { places(state, *grid); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+    benchmark::RegisterBenchmark(("Gr2ToAll/" + name).c_str(),
+                                 [grid](benchmark::State& state) { all(state, *grid); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
   }
 }
 
 const bool kAdded = [] {
   addMaps();
   const auto grid = std::make_shared<hyselam::OccupancyGrid>(large());
-  benchmark::RegisterBenchmark("Gr2ToPlaces/4000x4000", [grid](benchmark::State& state) {
-    places(state, *grid);
-  })->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("Gr2ToAll/4000x4000", [grid](benchmark::State& state) {
-    all(state, *grid);
-  })->Unit(benchmark::kMillisecond);
+  for (const bool ours : {false, true})
+    benchmark::RegisterBenchmark(
+        ours ? "ChamferDistance" : "DistanceTransform_OpenCv",
+        [grid, ours](benchmark::State& state) { distances(state, *grid, ours); })
+        ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("Gr2ToPlaces/4000x4000",
+                               [grid](benchmark::State& state) { places(state, *grid); })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+  benchmark::RegisterBenchmark("Gr2ToAll/4000x4000",
+                               [grid](benchmark::State& state) { all(state, *grid); })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
   return true;
 }();
 

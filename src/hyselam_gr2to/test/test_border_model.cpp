@@ -2,6 +2,7 @@
 // the line.
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "hyselam_common/checksum.hpp"
@@ -77,6 +78,25 @@ TEST(BorderModel, WiderBordersNeverLowerTheOdds) {
     const double odds = model.oddsOfOnePlace(border);
     ASSERT_GE(odds, last - 1e-12) << ratio;
     last = odds;
+  }
+}
+
+// As it is meant, without walking through the trees together.
+TEST(BorderModel, TheOddsAreTheWeightedMeanOverLengthsAndClearances) {
+  const BorderModel& model = BorderModel::shipped();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> value(-3.0, 3.0);
+  for (int round = 0; round < 500; ++round) {
+    BorderFeatures border;
+    for (double& v : border.values) v = value(random);
+    double sum = 0.0, weights = 0.0;
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        const double weight = (3 - std::abs(i)) * (2 - std::abs(j));
+        sum += weight * model.trees()(rescaledBorder(border, 0.1 * i, 0.1 * j).values.data());
+        weights += weight;
+      }
+    ASSERT_NEAR(sum / weights, model.oddsOfOnePlace(border), 1e-12);
   }
 }
 

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "hyselam_common/pose2.hpp"
 #include "hyselam_gr2to/segmentation/place_segmentation.hpp"
 #include "segmentation/agglomeration.hpp"
+#include "segmentation/chamfer_distance.hpp"
 #include "segmentation/corridor_basins.hpp"
 #include "segmentation/furniture.hpp"
 #include "segmentation/geometric_evidence.hpp"
@@ -201,4 +203,100 @@ TEST(Furniture, ADeskIsFurnitureAndAPieceOfWallIsNot) {
   };
   EXPECT_EQ(255, at(4.8, 4.4));
   EXPECT_EQ(0, at(8.05, 7.0));
+}
+
+namespace {
+
+/// A hall of 12 m by 8 m with two things across its middle that leave 1.2 m between them;
+/// `to_wall`: they reach to the walls, else 0.6 m are left there.
+PreparedPlaces acrossAHall(bool to_wall) {
+  OccupancyGrid grid = unseen(16, 12);
+  room(grid, 2, 2, 14, 10);
+  const double off = to_wall ? 0.0 : 0.6;
+  fill(grid, 7.6, 2.0 + off, 8.4, 5.4, OccupancyGrid::kOccupied);
+  fill(grid, 7.6, 6.6, 8.4, 10.0 - off, OccupancyGrid::kOccupied);
+  return preparePlaces(grid, {}, Preparation::kFull);
+}
+
+RegionAdjacencyGraph graphOf(const PreparedPlaces& places) {
+  return RegionAdjacencyGraph(places.clearance, places.basins, places.space.resolution,
+                              places.context);
+}
+
+}  // namespace
+
+TEST(Furniture, SupportsNoBorderAsWallsDo) {
+  const PreparedPlaces desks = acrossAHall(false), walls = acrossAHall(true);
+  const auto evidence = [](const PreparedPlaces& places) {
+    const int left = basinAt(places, 5.0, 6.0), right = basinAt(places, 11.0, 6.0);
+    EXPECT_NE(left, right);
+    const RegionAdjacencyGraph graph = graphOf(places);
+    EXPECT_EQ(1u, graph.node(left).borders.count(right));
+    return geometricEvidence(graph, left, right);
+  };
+  EXPECT_NEAR(0.0, evidence(walls), 1e-9);
+  EXPECT_GE(evidence(desks), 0.9);
+}
+
+TEST(CorridorBasins, WhereTwoCorridorsCrossNothingPartsThem) {
+  OccupancyGrid grid = unseen(32, 26);
+  room(grid, 2, 12, 30, 14);
+  room(grid, 15, 2, 17, 24);
+  fill(grid, 15, 11.8, 17, 14.2, OccupancyGrid::kFree);
+  room(grid, 17, 4, 22, 8);  // stands open, so that the basin of both is cut
+  fill(grid, 16.8, 4, 17.2, 8, OccupancyGrid::kFree);
+  const PreparedPlaces places = preparePlaces(grid, {}, Preparation::kFull);
+  ASSERT_EQ(2u, places.context.corridors.corridors.size());
+  const int one = basinAt(places, 16.0, 13.0), open_room = basinAt(places, 20.0, 6.0);
+  const int other = basinAt(places, 16.0, 10.0);
+  ASSERT_NE(one, other);
+  const RegionAdjacencyGraph graph = graphOf(places);
+  ASSERT_EQ(1u, graph.node(one).borders.count(other));
+  EXPECT_GT(geometricEvidence(graph, one, other), 0.5);
+  ASSERT_EQ(1u, graph.node(other).borders.count(open_room));
+  EXPECT_LT(geometricEvidence(graph, other, open_room), 0.0);
+}
+
+TEST(StraightCorridors, TheColumnsOfARowLeaveNoCellOut) {
+  cv::RNG random(7);
+  for (int round = 0; round < 200; ++round) {
+    const auto at = [&random] {
+      return cv::Point2d(random.uniform(-20.0, 120.0), random.uniform(-20.0, 80.0));
+    };
+    const cv::Point2d from = at();
+    const double angle = round % 4 == 0 ? round * hyselam::kPi / 8.0 : random.uniform(0.0, 6.3);
+    const double length = random.uniform(1.0, 100.0), beyond = random.uniform(0.0, 20.0);
+    const StraightCorridor c(from, from + length * cv::Point2d(std::cos(angle), std::sin(angle)),
+                             random.uniform(0.5, 20.0), 1.0);
+    for (int y = 0; y < 60; ++y) {
+      const auto [first, last] = c.columns(y, beyond, 100);
+      ASSERT_GE(first, 0);
+      ASSERT_LE(last, 100);
+      for (int x = 0; x < 100; ++x) {
+        const double far = c.beyond(cv::Point2d(x, y));
+        if (far < 0.0 || far > beyond) continue;
+        ASSERT_TRUE(first <= x && x < last) << x << ' ' << y;
+      }
+    }
+  }
+}
+
+TEST(ChamferDistance, IsThatOfOpenCvBitForBit) {
+  cv::RNG random(5);
+  for (int round = 0; round < 200; ++round) {
+    const cv::Size size(random.uniform(1, 70), random.uniform(1, 70));
+    cv::Mat mask(size, CV_8U);
+    random.fill(mask, cv::RNG::UNIFORM, 0, 256);
+    mask = mask > random.uniform(0, 12);  // few zeros or many
+    if (round % 2 == 0) cv::erode(mask, mask, {}, {-1, -1}, random.uniform(0, 3));
+    mask.at<std::uint8_t>(random.uniform(0, size.height), random.uniform(0, size.width)) = 0;
+    cv::Mat expected;
+    cv::distanceTransform(mask, expected, cv::DIST_L2, cv::DIST_MASK_5);
+    ASSERT_EQ(0, cv::norm(expected, chamferDistance(mask), cv::NORM_INF)) << round;
+    const cv::Rect part(size.width / 3, size.height / 4, size.width / 2 + 1, size.height / 2 + 1);
+    const cv::Mat within = mask(part & cv::Rect({0, 0}, size));
+    if (cv::countNonZero(within) == static_cast<int>(within.total())) continue;
+    cv::distanceTransform(within, expected, cv::DIST_L2, cv::DIST_MASK_5);
+    ASSERT_EQ(0, cv::norm(expected, chamferDistance(within), cv::NORM_INF)) << round;
+  }
 }

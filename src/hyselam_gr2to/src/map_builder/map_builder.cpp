@@ -5,7 +5,6 @@
 #include <future>
 #include <limits>
 #include <map>
-#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "contour_walls.hpp"
@@ -13,6 +12,7 @@
 #include "hyselam_common/require.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "place_builder.hpp"
+#include "segmentation/chamfer_distance.hpp"
 
 namespace hyselam_topo {
 
@@ -67,14 +67,7 @@ cv::Mat distancesWithin(const cv::Mat& labels) {
       out[x] = static_cast<std::uint8_t>(is_inner ? 255 : 0);
     }
   }
-  cv::Mat distance(labels.size(), CV_32FC1, cv::Scalar(0));
-  // The middle of nowhere is large on many maps.
-  const cv::Rect box = cv::boundingRect(inner);
-  if (box.empty()) return distance;
-  const cv::Rect with_rim(box.x - 1, box.y - 1, box.width + 2, box.height + 2);
-  cv::Mat part = distance(with_rim);
-  cv::distanceTransform(inner(with_rim), part, cv::DIST_L2, cv::DIST_MASK_5);
-  return distance;
+  return chamferDistance(inner);
 }
 
 bool chosen(const std::vector<char>& selection, int label) {

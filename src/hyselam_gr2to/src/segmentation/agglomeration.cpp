@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <future>
-#include <opencv2/imgproc.hpp>
 #include <queue>
 #include <utility>
 #include <vector>
 
+#include "chamfer_distance.hpp"
 #include "furniture.hpp"
 
 namespace hyselam_topo {
@@ -63,7 +63,7 @@ PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const Segmentat
                              return findStraightCorridors(space, furniture);
                            });
   }
-  cv::distanceTransform(prepared.space.free, prepared.clearance, cv::DIST_L2, cv::DIST_MASK_5);
+  prepared.clearance = chamferDistance(prepared.space.free);
   BasinParams basins;
   basins.smallest = params.min_place_area;
   prepared.basins = findBasins(prepared.clearance, prepared.space.resolution, basins);
