@@ -17,7 +17,8 @@ constexpr std::int8_t kOccupiedFrom = 50;  // unknown may be seen through, a lik
 constexpr double kDensityWindow = 0.35;    // [m]
 constexpr double kLeak = 0.15;             // [m] passages up to this are gaps between rays
 constexpr double kWalled = 0.2;            // [share] of the limits of free space, at least
-constexpr double kLargestWorking = 20e6;   // [cells] above that, coarse grids are not split
+constexpr double kLargestWorking = 20e6;   // [cells] above that, coarse grids are not resampled
+constexpr double kSameResolution = 1.02;   // times the working one
 
 int odd(double cells) {
   return std::max(1, static_cast<int>(std::lround(cells)) | 1);
@@ -133,16 +134,14 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
   }
   Masks masks = cutOut(*source, params.free_max, 8, space.origin);
   if (masks.free.empty()) return space;
-  if (space.joined == 1) {
-    const int split =
-        std::max(1, static_cast<int>(std::lround(space.resolution / params.working_resolution)));
-    if (split > 1 && static_cast<double>(masks.free.total()) * split * split <= kLargestWorking) {
-      space.split = split;
-      space.resolution /= split;
-      space.origin *= split;
-      for (cv::Mat* mask : {&masks.free, &masks.occupied})
-        cv::resize(*mask, *mask, {}, split, split, cv::INTER_NEAREST);
-    }
+  // To the very resolution that lengths in cells and the border model were made for.
+  const double split = space.resolution / params.working_resolution;
+  if (split > kSameResolution &&
+      static_cast<double>(masks.free.total()) * split * split <= kLargestWorking) {
+    space.split = split;
+    space.resolution = params.working_resolution;
+    for (cv::Mat* mask : {&masks.free, &masks.occupied})
+      cv::resize(*mask, *mask, {}, split, split, cv::INTER_NEAREST);
   }
   space.free = masks.free;
   clean(space, masks.occupied);
@@ -162,19 +161,18 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
                int free_max, int reach) {
   const int width = grid.geometry.width, height = grid.geometry.height;
   cv::Mat out(height, width, CV_16U, cv::Scalar(0));
-  const auto rowOf = [&space](int y) {
-    return y * space.split / space.joined + space.split / 2 - space.origin.y;
+  const auto working = [&space](int cell, int origin) {
+    return static_cast<int>(std::floor(((cell + 0.5) / space.joined - origin) * space.split));
   };
+  const auto rowOf = [&](int y) { return working(y, space.origin.y); };
   std::vector<int> columns(static_cast<std::size_t>(width));
-  for (int x = 0; x < width; ++x)
-    columns[static_cast<std::size_t>(x)] =
-        x * space.split / space.joined + space.split / 2 - space.origin.x;
+  for (int x = 0; x < width; ++x) columns[static_cast<std::size_t>(x)] = working(x, space.origin.x);
   for (int y = 0; y < height; ++y) {
     const int row = rowOf(y);
     if (row < 0 || row >= labels.rows) continue;
     const int* from = labels.ptr<int>(row);
     std::uint16_t* to = out.ptr<std::uint16_t>(y);
-    if (space.split == 1 && space.joined == 1) {  // most maps, worth a loop of its own
+    if (space.split == 1.0 && space.joined == 1) {  // most maps, worth a loop of its own
       const int begin = std::max(0, space.origin.x);
       const int end = std::min(width, labels.cols + space.origin.x);
       for (int x = begin; x < end; ++x)

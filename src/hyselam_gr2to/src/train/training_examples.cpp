@@ -58,7 +58,7 @@ Example prepare(const std::string& name, const std::string& kind, const std::str
                 const ExampleOptions& options) {
   grid.geometry.resolution *= scale;
   const PreparedPlaces p = preparePlaces(grid, options.segmentation, Preparation::kBasinsAlone);
-  if (p.space.joined != 1 || p.space.split != 1)
+  if (p.space.joined != 1 || p.space.split != 1.0)
     throw hyselam::InputError(name, "resolution", "is not near the working resolution");
   double most = 0;
   cv::minMaxLoc(rooms, nullptr, &most);
