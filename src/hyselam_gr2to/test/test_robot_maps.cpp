@@ -238,6 +238,29 @@ TEST(Furniture, SupportsNoBorderAsWallsDo) {
   EXPECT_GE(evidence(desks), 0.9);
 }
 
+TEST(GeometricEvidence, WhatIsBentIsOnePlaceAndADoorNarrows) {
+  OccupancyGrid grid = unseen(24, 24);
+  for (int y = 0; y < grid.geometry.height; ++y)
+    for (int x = 0; x < grid.geometry.width; ++x) {
+      const double r = std::hypot(x * kCell - 12.0, y * kCell - 12.0);
+      const bool gone = y * kCell < 12.0 && x * kCell > 12.0;  // a quarter
+      if (r > 7.9 && r < 10.1) grid.at({x, y}) = OccupancyGrid::kOccupied;
+      if (r > 8.0 && r < 10.0 && !gone) grid.at({x, y}) = OccupancyGrid::kFree;
+    }
+  EXPECT_EQ(1, segmentPlaces(grid).places);
+
+  OccupancyGrid rooms = unseen(16, 10);
+  room(rooms, 2, 2, 7, 8);
+  room(rooms, 7.2, 2, 13, 8);
+  fill(rooms, 7.0, 4.5, 7.2, 5.5, OccupancyGrid::kFree);
+  const PreparedPlaces places = preparePlaces(rooms, {}, Preparation::kFull);
+  const RegionAdjacencyGraph graph = graphOf(places);
+  const int left = basinAt(places, 4.5, 5.0), right = basinAt(places, 10.0, 5.0);
+  ASSERT_EQ(1u, graph.node(left).borders.count(right));
+  EXPECT_LT(graph.border(graph.node(left).borders.at(right)).passage.evenness, 0.5);
+  EXPECT_NEAR(0.0, geometricEvidence(graph, left, right), 1e-9);
+}
+
 TEST(CorridorBasins, WhereTwoCorridorsCrossNothingPartsThem) {
   OccupancyGrid grid = unseen(32, 26);
   room(grid, 2, 12, 30, 14);

@@ -10,6 +10,7 @@ namespace {
 constexpr double kWithinCorridor = 0.7;
 constexpr double kAcrossEnd = 2.0;  // in the middle of a basin: nothing stands there
 constexpr double kOnWallLine = -2.0;
+constexpr double kNotNarrowed = 0.6, kEven = 0.85;          // a passage as wide as what it leads to
 constexpr double kOneFurniture = 0.4, kTwoFurniture = 1.0;  // at the ends of the chord
 
 constexpr double kAlcove = 4.0;   // [m^2] what is smaller is left to the corridor as often as not
@@ -36,6 +37,8 @@ double geometricEvidence(const RegionAdjacencyGraph& graph, int a, int b) {
   double odds = border.passage.furniture == 2   ? kTwoFurniture
                 : border.passage.furniture == 1 ? kOneFurniture
                                                 : 0.0;
+  if (border.beside <= 0.0)
+    odds += kNotNarrowed * std::clamp((border.passage.evenness - kEven) / (1.0 - kEven), 0.0, 1.0);
   odds += (kWithinCorridor * border.within + kAcrossEnd * border.ending) / border.open;
   if (border.beside <= 0.0) return odds;
   const RegionNode &one = graph.node(a), &two = graph.node(b);

@@ -15,8 +15,9 @@ namespace {
 
 constexpr double kThinWall =
     0.45;  // [m] from either side: a thicker wall does not separate two rooms
-constexpr double kWallProbe = 0.8;  // [m] behind the ends of a chord
-constexpr int kChords = 36;         // tried directions
+constexpr double kWallProbe = 0.8;      // [m] behind the ends of a chord
+constexpr int kChords = 36;             // tried directions
+constexpr double kBeforePassage = 1.5;  // [m] on either side of a passage that may be wider
 
 /// Solid cells near free ones get the label of the nearest, so that labels meet within thin walls.
 cv::Mat reachIntoWalls(const cv::Mat& labels, int steps) {
@@ -102,6 +103,23 @@ class Probe {
   cv::Point from_;
 };
 
+double evennessOf(cv::Point at, const cv::Mat& clearance, const cv::Mat& labels, int a, int b,
+                  double resolution) {
+  const int reach = static_cast<int>(kBeforePassage / resolution);
+  const cv::Rect box = cv::Rect(at.x - reach, at.y - reach, 2 * reach + 1, 2 * reach + 1) &
+                       cv::Rect({0, 0}, clearance.size());
+  float one = 0.0f, two = 0.0f;
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    const int* label = labels.ptr<int>(y);
+    const float* height = clearance.ptr<float>(y);
+    for (int x = box.x; x < box.x + box.width; ++x) {  // without branches
+      one = std::max(one, label[x] == a ? height[x] : 0.0f);
+      two = std::max(two, label[x] == b ? height[x] : 0.0f);
+    }
+  }
+  return clearance.at<float>(at) / std::max(1.0f, std::min(one, two));
+}
+
 void measurePassage(const cv::Mat& clearance, const cv::Mat& furniture, double resolution,
                     double clearance_at_border, Passage& passage) {
   const Probe probe(clearance, passage.at);
@@ -146,9 +164,13 @@ RegionAdjacencyGraph::RegionAdjacencyGraph(const cv::Mat& clearance, const Basin
   measureNodes(clearance, basins.labels);
   measureCorridors(context.corridors, basins.labels);
   measureBorders(clearance, basins.labels, reach.get(), context.corridors);
-  for (RegionBorder& border : borders_)
-    if (border.open > 0.0) {
-      measurePassage(clearance, context.furniture, resolution, border.clearance, border.passage);
+  for (int a = 1; a <= size(); ++a)
+    for (const auto& [b, index] : node(a).borders) {
+      RegionBorder& border = borders_[static_cast<std::size_t>(index)];
+      if (b < a || border.open <= 0.0) continue;
+      Passage& passage = border.passage;
+      measurePassage(clearance, context.furniture, resolution, border.clearance, passage);
+      passage.evenness = evennessOf(passage.at, clearance, basins.labels, a, b, resolution);
     }
 }
 

@@ -19,6 +19,9 @@ struct Passage {
   double weaker_wall = 0;  ///< share of solid cells along the chord's line behind its two ends
   double stronger_wall = 0;
   int furniture = 0;  ///< how many of its ends are furniture
+  /// Its clearance by the largest one within 1.5 m in either basin, the lower of the two: near 1
+  /// where nothing narrows the way, as across a corridor that is bent.
+  double evenness = 0.0;
 };
 
 /// What else is known of a map when its borders are measured.
