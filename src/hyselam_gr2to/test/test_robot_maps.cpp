@@ -238,15 +238,26 @@ TEST(Furniture, SupportsNoBorderAsWallsDo) {
   EXPECT_GE(evidence(desks), 0.9);
 }
 
-TEST(GeometricEvidence, WhatIsBentIsOnePlaceAndADoorNarrows) {
+TEST(GeometricEvidence, NothingNarrowsABentCorridorAndADoorDoes) {
   OccupancyGrid grid = unseen(24, 24);
+  cv::RNG random(3);
   for (int y = 0; y < grid.geometry.height; ++y)
     for (int x = 0; x < grid.geometry.width; ++x) {
-      const double r = std::hypot(x * kCell - 12.0, y * kCell - 12.0);
+      const double r = std::hypot(x * kCell - 12.0, y * kCell - 12.0) + random.uniform(-0.04, 0.04);
       const bool gone = y * kCell < 12.0 && x * kCell > 12.0;  // a quarter
       if (r > 7.9 && r < 10.1) grid.at({x, y}) = OccupancyGrid::kOccupied;
       if (r > 8.0 && r < 10.0 && !gone) grid.at({x, y}) = OccupancyGrid::kFree;
     }
+  const PreparedPlaces bent = preparePlaces(grid, {}, Preparation::kFull);
+  const RegionAdjacencyGraph ring = graphOf(bent);
+  int borders = 0;
+  for (int a = 1; a <= ring.size(); ++a)
+    for (const auto& [b, index] : ring.node(a).borders) {
+      if (b < a || ring.border(index).open <= 0.0) continue;
+      ++borders;
+      EXPECT_GT(geometricEvidence(ring, a, b), 0.25) << a << ' ' << b;
+    }
+  EXPECT_GE(borders, 1);
   EXPECT_EQ(1, segmentPlaces(grid).places);
 
   OccupancyGrid rooms = unseen(16, 10);
