@@ -23,7 +23,8 @@ class VersionsTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        for pattern in ("src/*/package.xml", "src/*/CHANGELOG.rst", "src/hyselam_msgs/*/*", "CHANGELOG.md", "docs/versions.md"):
+        for pattern in ("src/*/package.xml", "src/*/CHANGELOG.rst", "src/hyselam_msgs/*/*", "src/hyselam_msgs/released.md5", "CHANGELOG.md",
+                        "docs/versions.md"):
             for file in ROOT.glob(pattern):
                 if file.is_file():
                     copy = self.root / file.relative_to(ROOT)
