@@ -229,7 +229,7 @@ class KnowledgeTest(unittest.TestCase):
         with open(path) as file:
             good = json.load(file)
         outside = {**good["files"], "../secret": {"bytes": 1, "sha256": ""}}
-        for bad, text in (({**good, "version": 2}, "version 2, this program reads 1; it was saved by a newer HySeLAM"), ({**good, "format": "x"}, "this is no hyselam knowledge"),
+        for bad, text in (({**good, "version": 2}, "has version 2, this program reads 1; it was written by a newer HySeLAM"), ({**good, "format": "x"}, "this is no hyselam knowledge"),
                           ({**good, "files": outside}, "outside of the directory"), ({**good, "layers": {"slam": ["gone"]}}, "slam lacks gone"),
                           ([], "is damaged"), ({}, "is damaged")):
             with open(path, "w") as file:

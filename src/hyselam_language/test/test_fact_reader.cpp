@@ -104,7 +104,8 @@ TEST(ReaderModel, TellsWhatIsWrongWithAText) {
             "model.txt: line 6: stands before the first section");
   EXPECT_EQ(reason("nonsense\n"), "model.txt: line 1: is no 'hyselam_fact_reader 1'");
   EXPECT_EQ(reason(with("reader 1", "reader 2")),
-            "model.txt: line 1: is no 'hyselam_fact_reader 1'");
+            "model.txt: line 1: has version 2, this program reads 1; it was written by a newer "
+            "HySeLAM");
   EXPECT_EQ(reason(with("left_out none\n", "")), "model.txt: line 5: 'left_out' is expected");
   const std::string old =
       "model.txt: line 1: is no 'hyselam_fact_reader 1': models without that head are of an older "

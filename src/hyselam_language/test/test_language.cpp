@@ -268,7 +268,7 @@ TEST(Grammar, FurtherFilesAddToTheFirst) {
 
 TEST(Grammar, ErrorsNameFileLineAndKey) {
   expectParts(errorWith("format: hyselam_grammar", "format: cake"), {"g.yaml", "'format'"});
-  expectParts(errorWith("version: 1", "version: 2"), {"'version'", "'2'"});
+  expectParts(errorWith("version: 1", "version: 2"), {"'version'", "has version 2", "reads 1;"});
   expectParts(errorWith("language: xx\n", ""), {"'language' is missing"});
   expectParts(errorWith("macros:", "makros:"), {"line 7", "'makros'", "not known"});
   expectParts(errorWith("<be>", "<bee>"),

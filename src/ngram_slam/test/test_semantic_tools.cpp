@@ -133,7 +133,7 @@ TEST_F(SemanticTools, trainLearnsAForestThatEvaluateUses) {
   const std::string forest = fileBytes(d / "forest");
   writeFile(d / "cut", forest.substr(0, forest.size() / 2));
   expectRefused(evaluate() + " --model " + d / "cut", "checksum");
-  expectRefused(evaluate() + " --model " + d / "plan.yaml", "is no forest");
+  expectRefused(evaluate() + " --model " + d / "plan.yaml", "is no 'ngram_slam semantic forest 3'");
   expectRefused(evaluate() + " --model " + d / "nothing", "nothing");
 }
 

@@ -15,13 +15,13 @@ struct PartialResult {
   std::exception_ptr error;  ///< not null
 };
 
-/// Adds `--json FILE` to `app`, parses the command line, runs `body` and, if asked, writes what it
-/// returns to FILE (at once, indented).
+/// Adds `--json FILE` and `--version` to `app`, parses the command line, runs `body` and, if asked,
+/// writes what it returns to FILE (at once, indented).
 ///
-/// Returns the exit status: 0 done (also after --help), 2 wrong usage or input that cannot be used
-/// (CLI::ParseError, InputError, ParameterError), 1 anything else. Errors are one line
-/// `error: ...` on stderr. If the JSON file cannot be written, the status is 2, but for
-/// a PartialResult, whose error decides.
+/// Returns the exit status: 0 done (also after --help, --version), 2 wrong usage or input that
+/// cannot be used (CLI::ParseError, InputError, ParameterError), 1 anything else. Errors are one
+/// line `error: ...` on stderr. If the JSON file cannot be written, the status is 2, but for a
+/// PartialResult, whose error decides.
 int runTool(int argc, const char* const* argv, CLI::App& app,
             const std::function<nlohmann::json()>& body);
 

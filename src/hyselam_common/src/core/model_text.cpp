@@ -2,6 +2,7 @@
 
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/numbers.hpp"
 
 namespace hyselam {
@@ -35,7 +36,8 @@ ModelLines::ModelLines(std::string_view text, const std::string& source, const s
 }
 
 ModelOrigin ModelLines::head(const std::string& format) {
-  if (next() != format) fail("is no '" + format + "'");
+  const std::string_view first = next();
+  if (first != format) fail(formatRefusal(first, format));
   ModelOrigin origin;
   origin.command = valueOf("command");
   origin.data = valueOf("data");

@@ -6,6 +6,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/version.hpp"
 
 namespace hyselam {
 namespace {
@@ -28,6 +29,8 @@ int runTool(int argc, const char* const* argv, CLI::App& app,
             const std::function<nlohmann::json()>& body) {
   std::string json_path;
   app.add_option("--json", json_path, "write the results as JSON to this file")->type_name("FILE");
+  app.set_version_flag("--version", std::string("HySeLAM ") + version(),
+                       "print the version and end");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -4,6 +4,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_common/xml_document.hpp"
 
@@ -11,7 +12,7 @@ namespace hyselam_topo {
 namespace {
 
 constexpr char kNamespace[] = "urn:hyselam:description:1";
-constexpr char kVersion[] = "1";
+constexpr int kVersion = 1;
 
 class Writer {
  public:
@@ -19,7 +20,7 @@ class Writer {
     out_.PushHeader(false, true);
     out_.OpenElement("description");
     attribute("xmlns", kNamespace);
-    attribute("version", kVersion);
+    attribute("version", std::to_string(kVersion));
     if (building.robot_place) attribute("robot_place", *building.robot_place);
     if (building.place_count) attribute("place_count", std::to_string(*building.place_count));
     for (const DescribedPlace& place : building.places) write(place);
@@ -175,8 +176,8 @@ DescribedBuilding readDescription(hyselam::XmlElement& e) {
     e.fail("this is no description: the first element must be <description xmlns=\"" +
            std::string(kNamespace) + "\">");
   }
-  if (e.text("version") != kVersion) {
-    e.fail("version '" + e.text("version") + "' is not known, only " + kVersion);
+  if (e.text("version") != std::to_string(kVersion)) {
+    e.fail(hyselam::versionRefusal(e.text("version"), {kVersion, kVersion}));
   }
   DescribedBuilding building;
   if (e.has("robot_place")) building.robot_place = e.id("robot_place");

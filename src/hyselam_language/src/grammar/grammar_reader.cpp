@@ -7,6 +7,7 @@
 
 #include "grammar_node.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/utf8.hpp"
 #include "intent_reader.hpp"
 #include "measure_reader.hpp"
@@ -19,7 +20,7 @@ namespace language {
 namespace {
 
 constexpr char kFormat[] = "hyselam_grammar";
-constexpr char kVersion[] = "1";
+constexpr int kVersion = 1;
 
 class Reader {
  public:
@@ -133,9 +134,8 @@ class Reader {
       read->second(node);
     });
     if (format != kFormat) root.fail("the key 'format' must be " + std::string(kFormat));
-    if (version != kVersion) {
-      root.fail("the key 'version' must be " + std::string(kVersion) + ", but is '" + version +
-                "'");
+    if (version != std::to_string(kVersion)) {
+      root.fail("the key 'version': " + hyselam::versionRefusal(version, {kVersion, kVersion}));
     }
     if (g.language.empty()) root.fail("the key 'language' is missing");
   }

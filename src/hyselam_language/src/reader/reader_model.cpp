@@ -9,6 +9,7 @@
 
 #include "fact_labels.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "mention_tagger.hpp"
 
 namespace hyselam_topo {
@@ -49,7 +50,7 @@ ReaderOrigin takeHead(const std::string& source, std::istream* lines) {
                 "': models without that head are of an older format, which is not read; train it "
                 "again (bench/readers --retrain)");
   }
-  if (line != kFormat) fail(1, std::string("is no '") + kFormat + "'");
+  if (line != kFormat) fail(1, hyselam::formatRefusal(line, kFormat));
   ReaderOrigin origin;
   std::size_t number = 1;
   for (const auto& [key, value] : kHead) {

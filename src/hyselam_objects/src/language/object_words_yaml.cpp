@@ -3,6 +3,7 @@
 #include <array>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/yaml_text.hpp"
 #include "object_words.hpp"
 
@@ -89,10 +90,13 @@ ObjectWords ObjectWords::fromYaml(const hyselam_topo::GrammarSource& source) {
   ObjectWords words;
   try {
     const YAML::Node root = hyselam::parseYaml(source.yaml, source.name);
-    if (!root.IsMap() || root["format"].as<std::string>("") != kFormat ||
-        root["version"].as<std::string>("") != "1") {
-      throw hyselam::InputError(source.name, "key 'format'",
-                                "must be " + std::string(kFormat) + ", version 1");
+    if (!root.IsMap() || root["format"].as<std::string>("") != kFormat) {
+      throw hyselam::InputError(source.name, "key 'format'", "must be " + std::string(kFormat));
+    }
+    const auto version = root["version"].as<std::string>("");
+    if (version != "1") {
+      throw hyselam::InputError(source.name, "key 'version'",
+                                hyselam::versionRefusal(version, {1, 1}));
     }
     words.language = root["language"].as<std::string>("");
     addNumbers(root, &words);

@@ -3,6 +3,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_common/xml_document.hpp"
 #include "hyselam_objects/mapping/object_map.hpp"
@@ -13,9 +14,9 @@ namespace {
 
 using hyselam::XmlElement;
 
-constexpr char kVersion[] = "1";
+constexpr int kVersion = 1;
 // Of maps; since 2 objects have an outline. Those of version 1 are read, too.
-constexpr char kMapVersion[] = "2";
+constexpr int kMapVersion = 2;
 constexpr char kDictionaryNamespace[] = "urn:hyselam:object_dictionary:1";
 constexpr char kMapNamespace[] = "urn:hyselam:object_map:1";
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
@@ -55,11 +56,11 @@ class Writer {
   }
 
  private:
-  void begin(const char* name, const char* xml_namespace, const char* version) {
+  void begin(const char* name, const char* xml_namespace, int version) {
     out_.PushHeader(false, true);
     out_.OpenElement(name);
     attribute("xmlns", std::string(xml_namespace));
-    attribute("version", std::string(version));
+    attribute("version", std::to_string(version));
   }
   void attribute(const char* name, const std::string& value) {
     out_.PushAttribute(name, value.c_str());
@@ -189,14 +190,13 @@ std::array<double, N> readArray(XmlElement& e) {
 }
 
 void checkRoot(XmlElement& e, const std::string& name, const std::string& xml_namespace,
-               const std::string& newest) {
+               int newest) {
   if (e.name() != name || !e.has("xmlns") || e.text("xmlns") != xml_namespace) {
     e.fail("the first element must be <" + name + " xmlns=\"" + xml_namespace + "\">");
   }
   const std::string version = e.text("version");
-  if (version != kVersion && version != newest) {
-    const std::string known = newest == kVersion ? newest : kVersion + (" and " + newest);
-    e.fail("version '" + version + "' is not known, only " + known);
+  if (version != std::to_string(kVersion) && version != std::to_string(newest)) {
+    e.fail(hyselam::versionRefusal(version, {kVersion, newest}));
   }
 }
 

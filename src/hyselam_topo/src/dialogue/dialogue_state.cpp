@@ -7,6 +7,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/json_integer.hpp"
 #include "hyselam_language/building/description_xml.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
@@ -60,15 +61,13 @@ std::string toText(const DialogueState& state) {
 
 DialogueState dialogueStateFromText(const std::string& text, const std::string& source) {
   std::istringstream head(text.substr(0, text.find('\n')));
-  std::string format;
-  int version = 0;
+  std::string format, version;
   unsigned long crc = 0;
   std::size_t size = 0;
   head >> format >> version >> std::hex >> crc >> std::dec >> size;
   if (format != kFormat) throw InputError(source, "line 1", "this is no state of a dialogue");
-  if (version != kVersion) {
-    throw InputError(source, "line 1",
-                     "only version 1 can be read, not " + std::to_string(version));
+  if (version != std::to_string(kVersion)) {
+    throw InputError(source, "line 1", hyselam::versionRefusal(version, {kVersion, kVersion}));
   }
   const std::size_t begin = text.find('\n') + 1;
   if (head.fail() || text.find('\n') == std::string::npos || text.size() - begin != size) {

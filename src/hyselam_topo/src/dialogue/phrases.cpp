@@ -9,6 +9,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/yaml_text.hpp"
 #include "shipped_phrases.hpp"
 
@@ -255,7 +256,8 @@ Phrases Phrases::fromYaml(const std::string& source, const std::string& yaml) {
                     "walls", "contractions", "phrases"});
   if (reader.text("format") != "hyselam_phrases")
     reader.fail("format", "it is not hyselam_phrases");
-  if (reader.text("version") != "1") reader.fail("version", "only version 1 can be read");
+  const std::string version = reader.text("version");
+  if (version != "1") reader.fail("version", hyselam::versionRefusal(version, {1, 1}));
   Phrases result;
   result.language_ = reader.text("language");
   if (result.language_.empty()) reader.fail("language", "it is empty");

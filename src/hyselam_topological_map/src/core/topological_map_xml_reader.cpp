@@ -2,6 +2,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/xml_document.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 #include "packed_bytes.hpp"
@@ -21,8 +22,9 @@ class Reader {
       e.fail("this is no topological map: the first element must be <topological_map xmlns=\"" +
              std::string(xml_format::kNamespace) + "\">");
     }
-    if (e.text("version") != xml_format::kVersion) {
-      e.fail("version '" + e.text("version") + "' is not known, only " + xml_format::kVersion);
+    if (e.text("version") != std::to_string(xml_format::kVersion)) {
+      e.fail(
+          hyselam::versionRefusal(e.text("version"), {xml_format::kVersion, xml_format::kVersion}));
     }
     map.frame_id = e.text("frame_id");
     map.stamp = e.number("stamp");

@@ -20,7 +20,7 @@ class Writer {
     out_.PushHeader(false, true);
     open("topological_map");
     attribute("xmlns", xml_format::kNamespace);
-    attribute("version", xml_format::kVersion);
+    attribute("version", std::to_string(xml_format::kVersion));
     attribute("frame_id", map.frame_id);
     attribute("stamp", map.stamp);
     attribute("next_place_id", map.next_place_id);

@@ -92,8 +92,12 @@ def read(path):
                     break
                 raise ValueError(f"{path}: line {number}: this is no JSON")
             if number == 1:
+                if not isinstance(value, dict) or value.get("format") != FORMAT["format"]:
+                    raise ValueError(f"{path}: line 1: this is no {FORMAT['format']}")
                 if value != FORMAT:
-                    raise ValueError(f"{path}: line 1: this is no recording of version {FORMAT['version']}")
+                    newer = isinstance(value.get("version"), int) and value["version"] > FORMAT["version"]
+                    raise ValueError(f"{path}: line 1: has version {value.get('version')!r}, this program reads {FORMAT['version']}" +
+                                     ("; it was written by a newer HySeLAM" if newer else ""))
             elif not isinstance(value, dict) or not isinstance(value.get("t"), (int, float)) or not isinstance(value.get("d"), dict):
                 raise ValueError(f"{path}: line {number}: this is no entry of a recording")
             else:

@@ -11,6 +11,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_common/rng.hpp"
 
@@ -222,7 +223,8 @@ ForestTrees ForestTrees::parse(const std::string& text, const std::string& sourc
                                const ForestFormat& format, ForestOrigin* origin) {
   const std::string head = format.magic + "\n";
   if (text.compare(0, head.size(), head) != 0) {
-    throw hyselam::InputError(source, "line 1", "is no " + format.what + " of this version");
+    const std::string_view first = std::string_view(text).substr(0, text.find('\n'));
+    throw hyselam::InputError(source, "line 1", hyselam::formatRefusal(first, format.magic));
   }
   const std::string example = kSumName + hyselam::crc32Text("") + "\n";
   const std::size_t end = text.size() - std::min(text.size(), example.size());

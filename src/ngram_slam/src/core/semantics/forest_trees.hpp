@@ -15,7 +15,6 @@ namespace ngram_slam {
 /// What a file of a forest begins with, and the names of the features it was made for.
 struct ForestFormat {
   std::string magic;    ///< the first line
-  std::string what;     ///< for messages: "forest of semantic classes"
   std::string retrain;  ///< tool that makes one
   std::vector<std::string> features;
 };

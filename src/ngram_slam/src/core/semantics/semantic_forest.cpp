@@ -13,8 +13,7 @@ constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 const ForestFormat& format() {
   static const ForestFormat format = [] {
-    ForestFormat f{
-        "ngram_slam semantic forest 3", "forest of semantic classes", "train_semantic", {}};
+    ForestFormat f{"ngram_slam semantic forest 3", "train_semantic", {}};
     for (const SemanticFeature& feature : kSemanticFeatureList)
       f.features.emplace_back(feature.name);
     return f;

@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 const ForestFormat& format() {
-  static const ForestFormat format{"ngram_slam way forest 1", "forest of kinds along ways",
-                                   "train_way_regions", wayFeatureNames()};
+  static const ForestFormat format{"ngram_slam way forest 1", "train_way_regions",
+                                   wayFeatureNames()};
   return format;
 }
 

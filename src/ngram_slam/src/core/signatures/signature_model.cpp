@@ -7,6 +7,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "ngram_slam/signatures/place_signature.hpp"
 
@@ -193,7 +194,8 @@ SignatureModel SignatureModel::parse(std::string_view text, const std::string& s
     throw hyselam::InputError(source, "line " + std::to_string(line), reason);
   };
   const std::size_t sum = text.rfind(kSumName);
-  if (text.substr(0, text.find('\n')) != kMagic) refuse(1, "is no model of place signatures");
+  const std::string_view first = text.substr(0, text.find('\n'));
+  if (first != kMagic) refuse(1, hyselam::formatRefusal(first, kMagic));
   if (sum == std::string_view::npos ||
       text.substr(sum) != kSumName + hyselam::crc32Text(text.substr(0, sum)) + "\n") {
     throw hyselam::InputError(source, "end", "is damaged or cut off (wrong checksum)");

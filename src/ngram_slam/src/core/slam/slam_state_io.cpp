@@ -9,6 +9,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 
 namespace ngram_slam {
 
@@ -227,9 +228,9 @@ Body bodyOf(const std::string& text, const std::string& path) {
   const auto version = header.get<std::uint32_t>();
   const auto length = header.get<std::uint64_t>();
   if (version < kFirstVersion || version > SlamStateFile::kVersion) {
-    refuse("version", "is " + std::to_string(version) + ", but only " +
-                          std::to_string(kFirstVersion) + " to " +
-                          std::to_string(SlamStateFile::kVersion) + " are known");
+    refuse("header", hyselam::versionRefusal(std::to_string(version),
+                                             {static_cast<int>(kFirstVersion),
+                                              static_cast<int>(SlamStateFile::kVersion)}));
   }
   if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeaderBytes)) {
     refuse("header", "is damaged (wrong checksum)");

@@ -6,6 +6,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 
 namespace ngram_slam {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using hyselam::InputError;
 
 constexpr char kMagic[] = "NGRAMTXT";
-constexpr std::uint32_t kVersion = 2;
+constexpr int kVersion = 2;
 constexpr std::size_t kHeaderBytes = 28;
 
 }  // namespace
@@ -31,7 +32,7 @@ void CorpusFile::write(std::ostream& out, const ObservationStore& o, const Densi
                        const DensityHistogram& histogram) {
   hyselam::BinaryWriter w(out);
   w.putText(kMagic, 8);
-  w.put(kVersion);
+  w.put(static_cast<std::uint32_t>(kVersion));
   w.put(o.runs());
   w.put(o.size());
   w.put(static_cast<std::uint32_t>(classes.list().size()));
@@ -79,7 +80,7 @@ Sizes readHeader(const std::string& text, hyselam::BinaryReader& r, const Refuse
   r.skip(8);
   const auto version = r.get<std::uint32_t>();
   if (version != kVersion) {
-    refuse("version", "is " + std::to_string(version) + ", but only 2 is known");
+    refuse("header", hyselam::versionRefusal(std::to_string(version), {kVersion, kVersion}));
   }
   Sizes n{};
   n.runs = r.get<std::uint32_t>();

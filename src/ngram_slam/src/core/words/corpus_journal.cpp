@@ -14,6 +14,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 
 namespace ngram_slam {
 namespace {
@@ -22,7 +23,7 @@ using hyselam::InputError;
 
 constexpr char kMagic[] = "NGRAMJNL";
 constexpr char kBlock[] = "BLCK";
-constexpr std::uint32_t kVersion = 1;
+constexpr int kVersion = 1;
 constexpr std::size_t kHeader = 20, kBlockHeader = 16, kObservation = 58;
 
 std::string reason() {
@@ -101,7 +102,7 @@ std::string headerFor(std::uint32_t file_checksum) {
   std::ostringstream out;
   hyselam::BinaryWriter w(out);
   w.putText(kMagic, 8);
-  w.put(kVersion);
+  w.put(static_cast<std::uint32_t>(kVersion));
   w.put(file_checksum);
   w.putChecksum();
   return out.str();
@@ -220,11 +221,12 @@ std::uint32_t CorpusJournal::readJournal(Loaded& loaded) {
   if (text.compare(0, 8, kMagic) != 0) {
     throw InputError(path, "byte 0", "is no journal of a corpus");
   }
+  if (version != kVersion) {
+    throw InputError(path, "header",
+                     hyselam::versionRefusal(std::to_string(version), {kVersion, kVersion}));
+  }
   if (header.get<std::uint32_t>() != hyselam::checksumOf(text, 0, kHeader - 4)) {
     throw InputError(path, "header", "is damaged (wrong checksum)");
-  }
-  if (version != kVersion) {
-    throw InputError(path, "version", "is " + std::to_string(version) + ", but only 1 is known");
   }
   if (belongs_to != file_checksum_) {
     // The file was written anew and holds all of it, or it is another one.

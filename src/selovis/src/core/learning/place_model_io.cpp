@@ -8,6 +8,7 @@
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/format_version.hpp"
 #include "hyselam_common/json_integer.hpp"
 #include "selovis/learning/error_source.hpp"
 #include "selovis/learning/place_model.hpp"
@@ -57,7 +58,7 @@ class ModelDirectory {
     json j = json::parse(text);
     const std::string format = j.is_object() ? j.value("format", "") : "";
     if (format != kFormat && format != kFormerFormat) {
-      throw InputError(manifest_, "format", std::string("is not '") + kFormat + "'");
+      throw InputError(manifest_, "format", hyselam::formatRefusal(format, kFormat, 1));
     }
     has_headers_ = format == kFormat;
     return j;
